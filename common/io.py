@@ -1,0 +1,68 @@
+"""What a service sees of the outside world: the same protocol over Zenoh and over memory."""
+
+from collections.abc import Callable
+from typing import Any, Generic, Protocol, TypeVar
+
+import numpy as np
+
+from common import messages as m
+from common.scene import Scene
+from common.topics import Topic
+
+M = TypeVar("M", bound=m.Message)
+R = TypeVar("R")
+R_co = TypeVar("R_co", covariant=True)
+Handler = Callable[[bytes], bytes]
+
+
+class Log(Protocol):
+    def debug(self, event: str, **fields: Any) -> None: ...
+    def info(self, event: str, **fields: Any) -> None: ...
+    def warning(self, event: str, **fields: Any) -> None: ...
+    def error(self, event: str, **fields: Any) -> None: ...
+
+
+class Job(Protocol[R_co]):
+    """Slow work under way in the service's one worker."""
+
+    def poll(self, now: float) -> bool:
+        """True once the result may be used."""
+
+    def result(self) -> R_co:
+        """The value, or the exception that the work raised."""
+
+
+class Io(Protocol):
+    """A service's bus, worker, randomness and logger."""
+
+    name: str
+    epoch: str
+    scene: Scene
+    rng: np.random.Generator
+    log: Log
+    lockstep: bool
+
+    def drain(self, topic: Topic[M]) -> list[M]:
+        """Every message received since the last step, oldest first."""
+
+    def latest(self, topic: Topic[M]) -> M | None:
+        """The newest message ever received, None before the first."""
+
+    def age(self, topic: Topic[M], now: float) -> float:
+        """Robot seconds since the newest message was received; inf before the first."""
+
+    def publish(self, topic: Topic[M], message: M) -> None: ...
+
+    def submit(self, fn: Callable[..., R], *args: Any, seconds: float = 0.2) -> Job[R]:
+        """Run fn(*args) in the worker; in lockstep its result is visible exactly `seconds` later."""
+
+    def serve(self, key: str, handler: Handler) -> None:
+        """Answer zenoh `get` on `key`; the handler runs in the service's thread before a step."""
+
+    def peer(self, name: str) -> str | None:
+        """The epoch of a live peer process, "" while unknown, None when its token is gone."""
+
+    def new_id(self, prefix: str) -> str: ...
+
+    def count_drop(self, key: str, reason: str) -> None:
+        """Count input that was refused, in the service's health."""

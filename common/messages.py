@@ -1,0 +1,467 @@
+"""Every payload on the bus, as msgspec structs.
+
+SI units, radians, frame `map` unless the name says otherwise, quaternions (w, x, y, z), `t` robot time [s].
+Unknown fields are ignored on receipt. Field names and strings are the wire contract.
+"""
+
+from typing import Literal
+
+import msgspec
+
+Vec3 = tuple[float, float, float]
+Quat = tuple[float, float, float, float]
+IDENTITY: Quat = (1.0, 0.0, 0.0, 0.0)
+
+NavStatus = Literal["idle", "navigating", "arrived", "failed"]
+ManipStatus = Literal["idle", "executing", "done", "failed"]
+BrainStateName = Literal[
+    "IDLE", "WAITING", "LISTENING", "CONFIRMING", "PLANNING", "GROUNDING", "NAVIGATING",
+    "GRABBING", "RETURNING", "RELEASING", "COMPLETED", "ERROR",
+]  # fmt: skip
+SystemStateName = Literal[
+    "IDLE", "LISTENING", "PLANNING", "GROUNDING", "NAVIGATING", "EXECUTING", "SUCCESS", "ERROR"
+]
+StepAction = Literal["navigate", "find", "grasp", "place", "release", "say", "wait", "return"]
+
+
+class Message(msgspec.Struct, kw_only=True):
+    """Base of all payloads."""
+
+
+class ObjectRef(Message):
+    """What manipulation is told about the object to grab: `position` is its centre, `size` full extent."""
+
+    label: str
+    position: Vec3
+    orientation: Quat = IDENTITY
+    size: Vec3 = (0.0, 0.0, 0.0)
+    kind: str = ""
+    frame: str = "map"
+
+
+class WorldObject(Message):
+    """An object the robot knows of. `on` names its receptacle, `seen_at` is the time of the evidence."""
+
+    label: str
+    kind: str
+    colour: str
+    position: Vec3
+    orientation: Quat = IDENTITY
+    size: Vec3 = (0.0, 0.0, 0.0)
+    on: str = ""
+    confidence: float = 1.0
+    seen_at: float = 0.0
+    held: bool = False
+    id: str = ""
+
+
+class WorldObjects(Message):
+    t: float
+    objects: list[WorldObject]
+    source: str = "survey"
+
+
+# --- fetch pipeline -------------------------------------------------------------------------------
+
+
+class SpeechGoal(Message):
+    """`listen`, `say <text>` or `cancel`."""
+
+    goal: str
+    id: str = ""
+    attempt: int = 1
+
+
+class SpeechResult(Message):
+    """What was heard; `text` is `ERROR` after silence, noise or speech that is no command."""
+
+    text: str
+    goal_id: str = ""
+    confidence: float = 1.0
+    attempt: int = 0
+    code: str = ""
+    detail: str = ""
+
+
+class SpeechStatus(Message):
+    state: Literal["idle", "listening", "transcribing", "speaking"]
+    goal_id: str = ""
+    attempt: int = 0
+    detail: str = ""
+
+
+class TypedText(Message):
+    """Text typed by a person; counts as heard with confidence 1."""
+
+    text: str
+    id: str = ""
+
+
+class AudioChunk(Message):
+    """Mono int16 little-endian samples that start at robot time `t`; `end` marks the last chunk."""
+
+    t: float
+    data: bytes
+    rate: int = 16000
+    seq: int = 0
+    end: bool = False
+
+
+class NavigationGoal(Message):
+    """`find <item>`, `goto <place>`, `return_to_start` or `stop`."""
+
+    goal: str
+    id: str = ""
+    attempt: int = 1
+
+
+class NavigationStatus(Message):
+    status: NavStatus
+    goal_id: str = ""
+    attempt: int = 0
+    code: str = ""
+    detail: str = ""
+
+
+class ManipulationGoal(Message):
+    """`grab`, `release`, `place <receptacle>`, `home` or `stop`."""
+
+    goal: str
+    id: str = ""
+    attempt: int = 1
+    object: ObjectRef | None = None
+
+
+class ManipulationStatus(Message):
+    status: ManipStatus
+    goal_id: str = ""
+    attempt: int = 0
+    phase: str = ""
+    code: str = ""
+    detail: str = ""
+
+
+class BaseTarget(Message):
+    x: float
+    y: float
+    theta: float
+    id: str = ""
+
+
+class GoalReached(Message):
+    reached: bool
+    target_id: str = ""
+
+
+class JointStates(Message):
+    """100 Hz. base_x base_y base_yaw joint_1..joint_7 gripper; the gripper's position is its width [m]."""
+
+    t: float
+    name: list[str]
+    position: list[float]
+    velocity: list[float]
+    effort: list[float]
+
+
+class BrainState(Message):
+    state: BrainStateName
+    t: float = 0.0
+    mission_id: str = ""
+    command: str = ""
+    step: str = ""
+    detail: str = ""
+    started: float = 0.0
+    pipeline: str = ""
+    last: "MissionOutcome | None" = None
+
+
+class MissionOutcome(Message):
+    """How the last mission ended."""
+
+    id: str
+    command: str
+    outcome: Literal["delivered", "failed", "cancelled"]
+    reason: str = ""
+    t: float = 0.0
+
+
+class TreeNode(Message):
+    name: str
+    type: str
+    status: str
+    detail: str = ""
+    children: list["TreeNode"] = []
+
+
+class TreeSnapshot(Message):
+    t: float
+    root: TreeNode
+    tick: int = 0
+
+
+# --- VLA pipeline ---------------------------------------------------------------------------------
+
+
+class VoiceCommand(Message):
+    text: str
+    confidence: float = 1.0
+    id: str = ""
+
+
+class KnownWorld(Message):
+    objects: list[str] = []
+    places: list[str] = []
+    receptacles: list[str] = []
+    held: str = ""
+
+
+class RejectedPlan(Message):
+    steps: list["PlanStep"] = []
+    reason: str = ""
+
+
+class PlanStep(Message):
+    action: StepAction
+    object: str = ""
+    target: str = ""
+    text: str = ""
+
+
+class PlanRequest(Message):
+    id: str
+    command: str
+    world: KnownWorld = msgspec.field(default_factory=KnownWorld)
+    rejected: RejectedPlan | None = None
+
+
+class ActionPlan(Message):
+    request_id: str
+    steps: list[PlanStep]
+    source: str = ""
+    detail: str = ""
+
+
+class ObjectQuery(Message):
+    id: str
+    query: str
+
+
+class ObjectPose(Message):
+    query_id: str
+    found: bool
+    label: str = ""
+    confidence: float = 0.0
+    frame: str = "map"
+    position: Vec3 = (0.0, 0.0, 0.0)
+    orientation: Quat = IDENTITY
+    size: Vec3 = (0.0, 0.0, 0.0)
+    seen_at: float = 0.0
+    detail: str = ""
+
+
+class NavGoal(Message):
+    id: str
+    x: float
+    y: float
+    theta: float = 0.0
+    frame: str = "map"
+    attempt: int = 1
+
+
+class NavigationFeedback(Message):
+    goal_id: str
+    status: NavStatus
+    distance_remaining: float = 0.0
+    eta: float = 0.0
+    recoveries: int = 0
+    code: str = ""
+
+
+class GripperCommand(Message):
+    """`position` 0 open .. 1 closed; `max_effort` [N]."""
+
+    position: float
+    max_effort: float = 40.0
+
+
+class SystemStatus(Message):
+    state: SystemStateName
+    mission_id: str = ""
+    detail: str = ""
+
+
+# --- robot and simulation -------------------------------------------------------------------------
+
+
+class RobotStop(Message):
+    reason: str = ""
+    source: str = ""
+
+
+class RobotResume(Message):
+    source: str = ""
+
+
+class CmdVel(Message):
+    """Base velocity in the robot's own frame [m/s, m/s, rad/s]; 0.25 s of silence means hold."""
+
+    vx: float
+    vy: float
+    omega: float
+
+
+class ArmCommand(Message):
+    """Joint set-points [rad] to be reached `period` seconds after receipt; a stream, 0.25 s of silence means hold."""
+
+    position: list[float]
+    period: float = 0.02
+    t: float = 0.0
+
+
+class Odometry(Message):
+    """Wheel odometry: pose in frame `odom`, velocity in the robot's frame."""
+
+    t: float
+    x: float
+    y: float
+    theta: float
+    vx: float = 0.0
+    vy: float = 0.0
+    omega: float = 0.0
+
+
+class PoseEstimate(Message):
+    """The robot's pose in frame `map` as navigation believes it; `covariance` row-major 3 x 3."""
+
+    t: float
+    x: float
+    y: float
+    theta: float
+    covariance: list[float] = []
+
+
+class LaserScan(Message):
+    """Ranges [m] counter-clockwise from `angle_min` in the lidar's frame; > range_max means nothing seen.
+
+    `ranges` is float32 little-endian; the lidar sits at (`x`, `y`) in the base frame.
+    """
+
+    t: float
+    ranges: bytes
+    angle_min: float = -3.141592653589793
+    angle_increment: float = 0.017453292519943295
+    range_min: float = 0.05
+    range_max: float = 10.0
+    x: float = 0.0
+    y: float = 0.0
+
+
+class NavPath(Message):
+    """The path being followed, for viewers: points in frame map."""
+
+    t: float
+    points: list[tuple[float, float]]
+    goal_id: str = ""
+
+
+class SimState(Message):
+    """Full physics state for cameras and viewers: float64 little-endian qpos and mocap poses."""
+
+    t: float
+    tick: int
+    epoch: str
+    qpos: bytes
+    mocap: bytes = b""
+
+
+class SimModel(Message):
+    scene: str
+    seed: int
+    epoch: str
+    mjcf: str
+
+
+class RobotDescription(Message):
+    """Robot-only MJCF, the robot's drawing as on `robot_description`."""
+
+    mjcf: str
+
+
+class SimStatus(Message):
+    state: Literal["running", "paused", "stopped"]
+    speed: str = "realtime"
+    epoch: str = ""
+    scene: str = ""
+    seed: int = 0
+    detail: str = ""
+
+
+class SimClockTick(Message):
+    """Robot time; published after the state of that tick."""
+
+    t: float
+    tick: int = -1
+    epoch: str = ""
+    lockstep: bool = False
+
+
+class LockstepAck(Message):
+    """Participant `name` has finished `tick` (tick -1: joins) and is due every `period` ticks."""
+
+    name: str
+    tick: int
+    period: int
+    epoch: str = ""
+
+
+class CameraRequest(Message):
+    id: str
+    camera: Literal["head", "wrist"]
+    width: int = 320
+    height: int = 240
+
+
+class Rgbd(Message):
+    """One RGB-D image: rgb uint8 h*w*3, depth uint16 [mm] h*w (0: nothing seen).
+
+    `position`, `orientation`: pose of the optical frame (x right, y down, z forward) in the base frame.
+    """
+
+    t: float
+    id: str
+    camera: str
+    width: int
+    height: int
+    fx: float
+    fy: float
+    cx: float
+    cy: float
+    position: Vec3
+    orientation: Quat
+    rgb: bytes
+    depth: bytes
+    backend: str = ""
+
+
+# --- every process --------------------------------------------------------------------------------
+
+
+class Health(Message):
+    name: str
+    epoch: str
+    t: float
+    uptime: float
+    hz: float
+    drops: int
+    rss_mb: float
+    pid: int
+    last_error: str = ""
+    by_key: dict[str, int] = {}
+
+
+class LogRecord(Message):
+    t: float
+    service: str
+    level: str
+    event: str
+    fields: dict[str, object] = {}
