@@ -1,7 +1,7 @@
 """What a service sees of the outside world: the same protocol over Zenoh and over memory."""
 
 from collections.abc import Callable
-from typing import Any, Generic, Protocol, TypeVar
+from typing import Any, Protocol, TypeVar
 
 import numpy as np
 
@@ -37,6 +37,7 @@ class Io(Protocol):
 
     name: str
     epoch: str
+    seed: int
     scene: Scene
     rng: np.random.Generator
     log: Log
@@ -61,6 +62,9 @@ class Io(Protocol):
 
     def peer(self, name: str) -> str | None:
         """The epoch of a live peer process, "" while unknown, None when its token is gone."""
+
+    def matched(self, topic: Topic[Any]) -> bool:
+        """True when somebody subscribes to what this process publishes on the topic."""
 
     def new_id(self, prefix: str) -> str: ...
 

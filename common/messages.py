@@ -18,9 +18,7 @@ BrainStateName = Literal[
     "IDLE", "WAITING", "LISTENING", "CONFIRMING", "PLANNING", "GROUNDING", "NAVIGATING",
     "GRABBING", "RETURNING", "RELEASING", "COMPLETED", "ERROR",
 ]  # fmt: skip
-SystemStateName = Literal[
-    "IDLE", "LISTENING", "PLANNING", "GROUNDING", "NAVIGATING", "EXECUTING", "SUCCESS", "ERROR"
-]
+SystemStateName = Literal["IDLE", "LISTENING", "PLANNING", "GROUNDING", "NAVIGATING", "EXECUTING", "SUCCESS", "ERROR"]
 StepAction = Literal["navigate", "find", "grasp", "place", "release", "say", "wait", "return"]
 
 

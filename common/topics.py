@@ -18,8 +18,9 @@ class Topic(msgspec.Struct, Generic[M], frozen=True, kw_only=True):
 
     `rate` is the declared frequency [Hz], 0 for events. `latched`: the last value also answers a zenoh `get`.
     `keep` "latest" means only the newest value matters (dropped under load), "all" means reliable, in order, recovered
-    after an outage. `text` names the field that bare text fills. `command`: values from before the reader's start are
-    not acted on. `writers` lists the services that publish it; `*` is any client.
+    after an outage. `text` names the field that bare text fills. `command`: values from before the reader's start
+    are not acted on. `recover`: what a router outage swallowed is sent again. `writers` lists the services that
+    publish it; `*` is any client.
     """
 
     key: str
@@ -31,6 +32,7 @@ class Topic(msgspec.Struct, Generic[M], frozen=True, kw_only=True):
     binary: bool = False
     text: str = ""
     command: bool = False
+    recover: bool = True
 
     def __hash__(self) -> int:
         return hash(self.key)
@@ -47,9 +49,7 @@ def _event(key: str, type: type[M], *writers: str, text: str = "", latched: bool
 def _stream(
     key: str, type: type[M], *writers: str, rate: float, binary: bool = True, latched: bool = False
 ) -> Topic[M]:
-    return Topic(
-        key=key, type=type, writers=writers, rate=rate, binary=binary, latched=latched, keep="latest"
-    )
+    return Topic(key=key, type=type, writers=writers, rate=rate, binary=binary, latched=latched, keep="latest")
 
 
 SPEECH_GOAL = _goal("brain/speech_goal", m.SpeechGoal, "brain", text="goal")
@@ -93,8 +93,8 @@ ROBOT_DESCRIPTION = _event("robot/description", m.RobotDescription, "sim")
 SIM_STATE = _stream("sim/state", m.SimState, "sim", rate=20.0, latched=True)
 SIM_MODEL = _event("sim/model", m.SimModel, "sim")
 SIM_STATUS = _event("sim/status", m.SimStatus, "sim")
-SIM_CLOCK = Topic(key="sim/clock", type=m.SimClockTick, writers=("sim",), rate=100.0, binary=True)
-LOCKSTEP_ACK = Topic(key="sim/ack", type=m.LockstepAck, writers=("*",), binary=True)
+SIM_CLOCK = Topic(key="sim/clock", type=m.SimClockTick, writers=("sim",), rate=100.0, binary=True, recover=False)
+LOCKSTEP_ACK = Topic(key="sim/ack", type=m.LockstepAck, writers=("*",), binary=True, recover=False)
 
 CAMERA_REQUEST = _goal("camera/request", m.CameraRequest, "perception", "*", latched=False)
 HEAD_RGBD = _stream("camera/head/rgbd", m.Rgbd, "camera", rate=10.0)

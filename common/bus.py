@@ -1,0 +1,290 @@
+"""Zenoh: sessions, and `ZenohIo`, the `Io` of a process of its own.
+
+Events and goals travel over advanced publishers (cache, miss detection) to advanced subscribers (history,
+recovery), so a router outage loses none; streams keep the newest value only. Every latched key also answers a plain `get`.
+Callbacks only enqueue: they share one thread of Zenoh's.
+"""
+
+import queue
+import struct
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import zenoh
+from zenoh import ext
+
+from common import codec, topics
+from common import messages as m
+from common.clock import Clock, monotonic, unix_time
+from common.io import Handler
+from common.iobase import UNSTAMPED, IoBase
+from common.scene import Scene
+from common.topics import Topic
+
+CONFIGS = Path(__file__).resolve().parent.parent / "config" / "zenoh"
+DEFAULT_CONNECT = "tcp/127.0.0.1:7447"
+CACHE = 64
+HEARTBEAT = 0.25
+_TICK = struct.Struct("<q")
+
+
+class BusError(ValueError):
+    """An endpoint, namespace or Zenoh configuration that cannot be used."""
+
+
+def client_config(connect: str, namespace: str = "", directory: Path = CONFIGS) -> zenoh.Config:
+    """A client of the comma-separated router endpoints.
+
+    Raises:
+        BusError: a bad endpoint or namespace.
+    """
+    try:
+        config = zenoh.Config.from_file(str(directory / "client.json5"))
+        endpoints = [e.strip() for e in connect.split(",") if e.strip()]
+        config.insert_json5("connect/endpoints", _json(endpoints))
+        if namespace:
+            config.insert_json5("namespace", _json(namespace))
+    except zenoh.ZError as error:
+        raise BusError(f"zenoh configuration for {connect!r}, namespace {namespace!r}: {error}") from None
+    return config
+
+
+@contextmanager
+def session(connect: str, namespace: str = "") -> Iterator[zenoh.Session]:
+    """An open session that is closed whatever happens: an open one keeps the process from ending."""
+    with zenoh.open(client_config(connect, namespace)) as opened:
+        yield opened
+
+
+def fetch(opened: zenoh.Session, key: str, payload: bytes = b"", timeout: float = 2.0) -> dict[str, bytes]:
+    """What answers a `get` on a key expression: key -> payload. Empty: nobody answered."""
+    answers: dict[str, bytes] = {}
+    for reply in opened.get(key, payload=payload or None, timeout=timeout):
+        if reply.ok is not None:
+            answers[str(reply.ok.key_expr)] = reply.ok.payload.to_bytes()
+    return answers
+
+
+def send(opened: zenoh.Session, topic: Topic[Any], message: m.Message) -> None:
+    """One message, once, as any client sends it."""
+    opened.put(topic.key, codec.encode(topic, message), encoding=codec.encoding_of(topic))
+
+
+class _Publisher:
+    def __init__(self, opened: zenoh.Session, topic: Topic[Any]) -> None:
+        self._matching = opened.declare_publisher(topic.key)
+        self.last: bytes | None = None
+        encoding = codec.encoding_of(topic)
+        self._out: Any
+        if topic.keep == "latest":
+            self._out = opened.declare_publisher(
+                topic.key, encoding=encoding, congestion_control=zenoh.CongestionControl.DROP
+            )
+        elif not topic.recover:
+            self._out = opened.declare_publisher(
+                topic.key, encoding=encoding, congestion_control=zenoh.CongestionControl.BLOCK, express=True
+            )
+        else:
+            self._out = ext.declare_advanced_publisher(
+                opened,
+                topic.key,
+                encoding=encoding,
+                congestion_control=zenoh.CongestionControl.BLOCK,
+                cache=ext.CacheConfig(CACHE),
+                sample_miss_detection=ext.MissDetectionConfig(heartbeat=None, sporadic_heartbeat=HEARTBEAT),
+                publisher_detection=True,
+            )
+        if topic.latched:
+            self._queryable = opened.declare_queryable(topic.key, self._answer)
+        self._key, self._encoding = topic.key, encoding
+
+    def _answer(self, query: zenoh.Query) -> None:
+        with query:
+            if self.last is not None:
+                query.reply(self._key, self.last, encoding=self._encoding)
+
+    def put(self, payload: bytes, tick: int | None) -> None:
+        self.last = payload
+        self._out.put(payload, attachment=None if tick is None else _TICK.pack(tick))
+
+    @property
+    def matched(self) -> bool:
+        return bool(self._matching.matching_status.matching)  # type: ignore[attr-defined]
+
+
+class ZenohIo(IoBase):
+    """`Io` over a Zenoh session."""
+
+    def __init__(
+        self,
+        opened: zenoh.Session,
+        name: str,
+        reads: Iterable[Topic[Any]],
+        writes: Iterable[Topic[Any]],
+        *,
+        scene: Scene,
+        seed: int,
+        lockstep: bool,
+        clock: Clock,
+        log_level: str = "info",
+    ) -> None:
+        reads, writes = tuple(reads), tuple(writes)
+        self._session = opened
+        self._log_publisher: Any = opened.declare_publisher(topics.LOG_KEY.format(name=name), encoding=codec.JSON)
+        super().__init__(
+            name, reads, writes, scene=scene, seed=seed, lockstep=lockstep, clock=clock, log_level=log_level
+        )
+        self._started = unix_time()
+        self.out_tick: int | None = None
+        self._peers: dict[str, str] = {}
+        self._queries: queue.SimpleQueue[tuple[Handler, zenoh.Query]] = queue.SimpleQueue()
+        self._kept: list[Any] = []
+        self._publishers = {t.key: _Publisher(opened, t) for t in writes}
+        for topic in reads:
+            self._subscribe(topic)
+        self._kept.append(opened.liveliness().declare_subscriber("service/*/alive", self._on_token, history=True))
+        self._kept.append(opened.declare_subscriber("service/*/health", self._on_health))
+
+    def _subscribe(self, topic: Topic[Any]) -> None:
+        put, started, stale_key = self._boxes[topic.key].put, self._started, f"{topic.key} (stale)"
+
+        def receive(sample: zenoh.Sample) -> None:
+            attachment = sample.attachment
+            stamp = UNSTAMPED
+            if attachment is not None:
+                raw = attachment.to_bytes()
+                stamp = _TICK.unpack(raw)[0] if len(raw) == _TICK.size else UNSTAMPED
+            if topic.command and sample.timestamp is not None and _seconds(sample.timestamp) < started:
+                self.drops[stale_key] += 1
+                return
+            put(sample.payload.to_bytes(), stamp)
+
+        if topic.keep == "latest" or not topic.recover:
+            self._kept.append(self._session.declare_subscriber(topic.key, receive))
+            if topic.latched:
+                self._session.get(topic.key, lambda reply: receive(reply.ok) if reply.ok is not None else None)
+            return
+        self._kept.append(
+            ext.declare_advanced_subscriber(
+                self._session,
+                topic.key,
+                receive,
+                history=ext.HistoryConfig(detect_late_publishers=True, max_samples=CACHE),
+                recovery=ext.RecoveryConfig(periodic_queries=None, heartbeat=True),
+            )
+        )
+
+    # --- peers
+    def _on_token(self, sample: zenoh.Sample) -> None:
+        name = str(sample.key_expr).split("/")[-2]
+        if sample.kind == zenoh.SampleKind.PUT:
+            self._peers.setdefault(name, "")
+        else:
+            self._peers.pop(name, None)
+
+    def _on_health(self, sample: zenoh.Sample) -> None:
+        try:
+            health = codec.decode_as(m.Health, sample.payload.to_bytes())
+        except codec.DecodeError as error:
+            self.drops[str(sample.key_expr)] += 1
+            self.log.debug("dropped", key=str(sample.key_expr), reason=str(error))
+            return
+        if health.name in self._peers:
+            self._peers[health.name] = health.epoch
+
+    def peer(self, name: str) -> str | None:
+        return self._peers.get(name)
+
+    def matched(self, topic: Topic[Any]) -> bool:
+        return self._publishers[topic.key].matched
+
+    # --- sending
+    def _send(self, topic: Topic[Any], payload: bytes) -> None:
+        tick = None
+        if self.lockstep:
+            tick = self.tick if self.out_tick is None else self.out_tick
+        self._publishers[topic.key].put(payload, tick)
+
+    def _send_log(self, record: m.LogRecord) -> None:
+        self._log_publisher.put(msgspec.json.encode(record))
+
+    # --- queries
+    def serve(self, key: str, handler: Handler) -> None:
+        self._kept.append(self._session.declare_queryable(key, lambda query: self._queries.put((handler, query))))
+
+    def answer_queries(self) -> None:
+        """Run the handlers of waiting queries, in the calling thread."""
+        while not self._queries.empty():
+            handler, query = self._queries.get()
+            payload = query.payload.to_bytes() if query.payload is not None else b""
+            with query:
+                try:
+                    query.reply(query.key_expr, handler(payload), encoding=codec.JSON)
+                except (ValueError, KeyError, TypeError) as error:
+                    self.count_drop(str(query.key_expr), str(error))
+                    query.reply_err(str(error))
+
+
+class ClockListener:
+    """Ticks of `sim/clock` that a participant is due at."""
+
+    def __init__(self, opened: zenoh.Session, period: int) -> None:
+        self._ticks: queue.SimpleQueue[m.SimClockTick] = queue.SimpleQueue()
+        self._period = period
+        self.seen = float("-inf")
+        self.bad = 0
+        self._kept = opened.declare_subscriber(topics.SIM_CLOCK.key, self._receive)
+
+    def _receive(self, sample: zenoh.Sample) -> None:
+        try:
+            tick = codec.decode(topics.SIM_CLOCK, sample.payload.to_bytes())
+        except codec.DecodeError:
+            self.bad += 1
+            return
+        if tick.tick < 0:
+            tick.tick = round(tick.t * 100)
+        if tick.tick % self._period == 0:
+            self._ticks.put(tick)
+
+    def next(self, timeout: float, newest: bool) -> m.SimClockTick | None:
+        """The next due tick, or with `newest` the last of those waiting; None after `timeout` seconds."""
+        try:
+            tick = self._ticks.get(timeout=timeout)
+        except queue.Empty:
+            return None
+        while newest and not self._ticks.empty():
+            tick = self._ticks.get()
+        self.seen = monotonic()
+        return tick
+
+
+class AckCollector:
+    """Acknowledgements on `sim/ack`, for the simulation's barrier."""
+
+    def __init__(self, opened: zenoh.Session) -> None:
+        self._acks: queue.SimpleQueue[tuple[str, int, int]] = queue.SimpleQueue()
+        self._kept = opened.declare_subscriber(topics.LOCKSTEP_ACK.key, self._receive)
+
+    def _receive(self, sample: zenoh.Sample) -> None:
+        try:
+            ack = codec.decode(topics.LOCKSTEP_ACK, sample.payload.to_bytes())
+        except codec.DecodeError:
+            return
+        self._acks.put((ack.name, ack.tick, ack.period))
+
+    def next(self, timeout: float) -> tuple[str, int, int] | None:
+        try:
+            return self._acks.get(timeout=timeout) if timeout > 0 else self._acks.get_nowait()
+        except queue.Empty:
+            return None
+
+
+def _seconds(timestamp: zenoh.Timestamp) -> float:
+    return timestamp.get_time().timestamp()
+
+
+def _json(value: object) -> str:
+    return msgspec.json.encode(value).decode()

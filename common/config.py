@@ -1,0 +1,101 @@
+"""Configuration: TOML files, environment and `--set`, checked against frozen structs before anything starts."""
+
+import os
+import tomllib
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any, TypeVar
+
+import msgspec
+
+S = TypeVar("S", bound=msgspec.Struct)
+PREFIX = "TIDYBOT__"
+DEFAULT_DIR = Path(__file__).resolve().parent.parent / "config"
+
+
+class ConfigError(ValueError):
+    """A configuration that cannot be used; names source, key and expected type."""
+
+
+class Config(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """Base of a service's parameters."""
+
+
+class RuntimeConfig(Config, frozen=True):
+    """Parameters that every process shares (section `runtime`)."""
+
+    scene: str = "apartment"
+    seed: int = 0
+    lockstep: bool = False
+    log_level: str = "info"
+
+
+def parse_value(text: str) -> Any:
+    """`3`, `true`, `[1, 2]`, `{a = 1}` as TOML values; anything else is a string."""
+    try:
+        return tomllib.loads(f"v = {text}")["v"]
+    except tomllib.TOMLDecodeError:
+        return text
+
+
+def overrides(environ: Mapping[str, str], settings: Iterable[str]) -> dict[str, dict[str, tuple[Any, str]]]:
+    """section -> key -> (value, where it came from), from TIDYBOT__SECTION__KEY and `section.key=value`.
+
+    Raises:
+        ConfigError: a setting that is not of that form.
+    """
+    found: dict[str, dict[str, tuple[Any, str]]] = {}
+    for name, text in environ.items():
+        parts = name[len(PREFIX) :].lower().split("__") if name.startswith(PREFIX) else []
+        if len(parts) == 2 and all(parts):
+            found.setdefault(parts[0], {})[parts[1]] = parse_value(text), name
+        elif parts:
+            raise ConfigError(f"{name}: expected {PREFIX}<SECTION>__<KEY>")
+    for setting in settings:
+        left, equals, text = setting.partition("=")
+        section, dot, key = left.strip().partition(".")
+        if not (equals and dot and section and key):
+            raise ConfigError(f"--set {setting}: expected section.key=value")
+        found.setdefault(section, {})[key] = parse_value(text), f"--set {left.strip()}"
+    return found
+
+
+def config_dir(environ: Mapping[str, str] = os.environ) -> Path:
+    """Where the TOML files are: TIDYBOT_CONFIG_DIR or the project's own `config/`."""
+    return Path(environ["TIDYBOT_CONFIG_DIR"]) if environ.get("TIDYBOT_CONFIG_DIR") else DEFAULT_DIR
+
+
+def load(section: str, kind: type[S], directory: Path, changes: Mapping[str, Mapping[str, tuple[Any, str]]]) -> S:
+    """The parameters of one section: defaults, then `<section>.toml`, then environment, then `--set`.
+
+    Raises:
+        ConfigError: unknown key, wrong type or bad TOML.
+    """
+    path = directory / f"{section}.toml"
+    values: dict[str, Any] = {}
+    if path.exists():
+        try:
+            values = tomllib.loads(path.read_text(encoding="utf-8"))
+        except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+            raise ConfigError(f"{path}: not valid TOML: {error}") from None
+        except OSError as error:
+            raise ConfigError(f"{path}: {error.strerror}") from None
+        _convert(values, kind, str(path))
+    for key, (value, source) in changes.get(section, {}).items():
+        values[key] = value
+        _convert(values, kind, source, key)
+    return _convert(values, kind, section)
+
+
+def _convert(values: dict[str, Any], kind: type[S], source: str, key: str = "") -> S:
+    fields = {f.name: f for f in msgspec.structs.fields(kind)}
+    for name in values:
+        if name not in fields:
+            raise ConfigError(f"{source}: unknown key {name!r}; known keys: {', '.join(sorted(fields))}")
+    for name, value in values.items():
+        if fields[name].type is str and isinstance(value, (int, float)) and key == name:
+            values[name] = str(value)
+    try:
+        return msgspec.convert(values, kind)
+    except msgspec.ValidationError as error:
+        raise ConfigError(f"{source}: {error}") from None

@@ -1,0 +1,74 @@
+"""Angles, planar poses and quaternions (w, x, y, z)."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Pose2 = tuple[float, float, float]
+
+
+def wrap(angle: float) -> float:
+    """The same angle in (-pi, pi]."""
+    wrapped = math.fmod(angle + math.pi, 2 * math.pi)
+    return wrapped - math.pi if wrapped > 0 else wrapped + math.pi
+
+
+def compose(a: Pose2, b: Pose2) -> Pose2:
+    """Pose b, given in frame a, in the frame that a is given in."""
+    c, s = math.cos(a[2]), math.sin(a[2])
+    return a[0] + c * b[0] - s * b[1], a[1] + s * b[0] + c * b[1], wrap(a[2] + b[2])
+
+
+def inverse(a: Pose2) -> Pose2:
+    """The pose of the parent frame seen from frame a."""
+    c, s = math.cos(a[2]), math.sin(a[2])
+    return -c * a[0] - s * a[1], s * a[0] - c * a[1], wrap(-a[2])
+
+
+def to_frame(frame: Pose2, point: tuple[float, float]) -> tuple[float, float]:
+    """A point of the parent frame in `frame`."""
+    x, y, _ = compose(inverse(frame), (point[0], point[1], 0.0))
+    return x, y
+
+
+def yaw_quat(yaw: float) -> tuple[float, float, float, float]:
+    """Rotation by `yaw` about z."""
+    return math.cos(yaw / 2), 0.0, 0.0, math.sin(yaw / 2)
+
+
+def quat_yaw(q: tuple[float, float, float, float]) -> float:
+    """Heading of a rotation: the angle of its x axis in the ground plane."""
+    w, x, y, z = q
+    return math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
+
+
+def quat_matrix(q: tuple[float, float, float, float]) -> Array:
+    """Rotation matrix (3, 3) of a unit quaternion."""
+    w, x, y, z = q
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+
+
+def matrix_quat(r: Array) -> tuple[float, float, float, float]:
+    """Unit quaternion with w >= 0 of a rotation matrix (3, 3); Shepperd's method."""
+    t = np.array([r[0, 0] + r[1, 1] + r[2, 2], r[0, 0], r[1, 1], r[2, 2]])
+    i = int(np.argmax(t))
+    if i == 0:
+        q = np.array([1 + t[0], r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1]])
+    else:
+        a, b, c = [(0, 1, 2), (1, 2, 0), (2, 0, 1)][i - 1]
+        q = np.zeros(4)
+        q[0] = r[c, b] - r[b, c]
+        q[1 + a] = 1 + r[a, a] - r[b, b] - r[c, c]
+        q[1 + b] = r[a, b] + r[b, a]
+        q[1 + c] = r[a, c] + r[c, a]
+    q /= np.linalg.norm(q)
+    w, x, y, z = (float(v) for v in (q if q[0] >= 0 else -q))
+    return w, x, y, z

@@ -1,0 +1,236 @@
+"""The transport-independent half of `Io`: mailboxes, the worker, ids, randomness, drop counts.
+
+In lockstep every message is stamped with the tick in which it was published and becomes visible to steps of
+later ticks only, so that what a step sees does not depend on which process ran first.
+"""
+
+import hashlib
+import uuid
+from collections import Counter, deque
+from collections.abc import Callable, Iterable
+from concurrent.futures import Future, ThreadPoolExecutor
+from typing import Any, Generic, TypeVar
+
+import numpy as np
+
+from common import codec
+from common import messages as m
+from common.clock import Clock, monotonic
+from common.io import Handler
+from common.logs import Logger
+from common.scene import Scene
+from common.topics import Topic
+
+M = TypeVar("M", bound=m.Message)
+R = TypeVar("R")
+UNSTAMPED = -(2**62)
+CAPACITY = 1024
+WORKER_LIMIT = 120.0
+_EPSILON = 1e-6
+
+
+class Mailbox(Generic[M]):
+    """Received payloads of one topic. `put` may be called from another thread than the rest."""
+
+    def __init__(self, topic: Topic[M], lockstep: bool) -> None:
+        self.topic = topic
+        keep_one = topic.keep == "latest" and not lockstep
+        self._inbox: deque[tuple[int, bytes]] = deque(maxlen=1 if keep_one else CAPACITY)
+        self._keep_one = keep_one
+        self._ready: list[bytes] = []
+        self._last: bytes | None = None
+        self._decoded: M | None = None
+        self.received_at = float("-inf")
+        self.overflow = 0
+
+    def put(self, payload: bytes, stamp: int = UNSTAMPED) -> None:
+        if not self._keep_one and len(self._inbox) == CAPACITY:
+            self.overflow += 1
+        self._inbox.append((stamp, payload))
+
+    def open(self, tick: int | None, now: float) -> None:
+        """Make visible what may be seen by the step of `tick` (None: everything)."""
+        inbox = self._inbox
+        if not inbox:
+            return
+        latest_only = self.topic.keep == "latest"
+        while inbox and (tick is None or inbox[0][0] < tick):
+            payload = inbox.popleft()[1]
+            self.received_at = now
+            self._last, self._decoded = payload, None
+            if latest_only:
+                self._ready = [payload]
+            elif len(self._ready) < CAPACITY:
+                self._ready.append(payload)
+            else:
+                self.overflow += 1
+
+    def take(self) -> list[bytes]:
+        ready, self._ready = self._ready, []
+        return ready
+
+    def newest(self) -> M | None:
+        """Decoded once per payload.
+
+        Raises:
+            codec.DecodeError: the newest payload is bad; the one before it stays the newest.
+        """
+        if self._last is not None and self._decoded is None:
+            try:
+                self._decoded = codec.decode(self.topic, self._last)
+                self._good = self._decoded
+            except codec.DecodeError:
+                self._last = None
+                raise
+        return self._decoded if self._decoded is not None else self._good
+
+    _good: M | None = None
+
+
+class WorkerJob(Generic[R]):
+    """A future whose result shows at a fixed robot time in lockstep, or as soon as ready otherwise."""
+
+    def __init__(self, future: "Future[R]", due: float, lockstep: bool) -> None:
+        self._future, self._due, self._lockstep = future, due, lockstep
+
+    def poll(self, now: float) -> bool:
+        if not self._lockstep:
+            return self._future.done()
+        if now < self._due - _EPSILON:
+            return False
+        self._future.exception(timeout=WORKER_LIMIT)
+        return True
+
+    def result(self) -> R:
+        return self._future.result(timeout=0 if not self._lockstep else WORKER_LIMIT)
+
+
+class IoBase:
+    """Subclasses add `_send`, `serve`, `peer`."""
+
+    def __init__(
+        self,
+        name: str,
+        reads: Iterable[Topic[Any]],
+        writes: Iterable[Topic[Any]],
+        *,
+        scene: Scene,
+        seed: int,
+        lockstep: bool,
+        clock: Clock,
+        log_level: str = "info",
+        stderr: bool = True,
+    ) -> None:
+        self.name, self.scene, self.seed, self.lockstep, self.clock = name, scene, seed, lockstep, clock
+        self.epoch = uuid.uuid4().hex[:12]
+        digest = hashlib.sha256(f"{seed}/{name}".encode()).digest()
+        self.rng = np.random.default_rng(int.from_bytes(digest[:8], "little"))
+        self.log = Logger(name, clock, log_level, self._send_log, stderr)
+        self.drops: Counter[str] = Counter()
+        self.tick = 0
+        self._boxes: dict[str, Mailbox[Any]] = {t.key: Mailbox(t, lockstep) for t in reads}
+        self._writes = {t.key for t in writes}
+        self._worker: ThreadPoolExecutor | None = None
+        self._ids = 0
+        self._warned: dict[str, float] = {}
+
+    # --- reading
+    def begin(self, tick: int | None, now: float) -> None:
+        """Start a step: what was published before `tick` becomes visible."""
+        if tick is not None:
+            self.tick = tick
+        for box in self._boxes.values():
+            box.open(tick if self.lockstep else None, now)
+            if box.overflow:
+                lost, box.overflow = box.overflow, 0
+                self.count_drop(box.topic.key, f"{lost} messages over the queue limit", lost)
+
+    def drain(self, topic: Topic[M]) -> list[M]:
+        box: Mailbox[M] = self._boxes[topic.key]
+        if topic.keep == "latest":
+            return [one] if box.take() and (one := self.latest(topic)) is not None else []
+        messages: list[M] = []
+        for payload in box.take():
+            try:
+                messages.append(codec.decode(topic, payload))
+            except codec.DecodeError as error:
+                self.count_drop(topic.key, str(error))
+        if topic.command and messages:
+            self._note_mission(messages[-1])
+        return messages
+
+    def latest(self, topic: Topic[M]) -> M | None:
+        box: Mailbox[M] = self._boxes[topic.key]
+        try:
+            return box.newest()
+        except codec.DecodeError as error:
+            self.count_drop(topic.key, str(error))
+            return box.newest()
+
+    def age(self, topic: Topic[M], now: float) -> float:
+        return now - self._boxes[topic.key].received_at
+
+    def _note_mission(self, message: m.Message) -> None:
+        mission, dot, _ = str(getattr(message, "id", "")).partition(".")
+        if dot:
+            self.log.mission = mission
+
+    # --- writing
+    def publish(self, topic: Topic[M], message: M) -> None:
+        if topic.key not in self._writes:
+            raise ValueError(f"{self.name} does not declare {topic.key} in WRITES")
+        self._send(topic, codec.encode(topic, message))
+
+    def _send(self, topic: Topic[Any], payload: bytes) -> None:
+        raise NotImplementedError
+
+    def _send_log(self, record: m.LogRecord) -> None:
+        """Where log records go beside stderr."""
+
+    def serve(self, key: str, handler: Handler) -> None:
+        raise NotImplementedError
+
+    def peer(self, name: str) -> str | None:
+        raise NotImplementedError
+
+    def matched(self, topic: Topic[Any]) -> bool:
+        """True when somebody subscribes to what this process publishes there."""
+        raise NotImplementedError
+
+    # --- the rest
+    def submit(self, fn: Callable[..., R], *args: Any, seconds: float = 0.2) -> WorkerJob[R]:
+        if self._worker is None:
+            self._worker = ThreadPoolExecutor(1, thread_name_prefix=f"{self.name}-worker")
+        return WorkerJob(self._worker.submit(fn, *args), self.clock.now() + seconds, self.lockstep)
+
+    def new_id(self, prefix: str) -> str:
+        self._ids += 1
+        unique = f"{self.seed}-{self._ids}" if self.lockstep else f"{uuid.uuid4().hex[:8]}"
+        return f"{prefix}-{unique}"
+
+    def count_drop(self, key: str, reason: str, number: int = 1) -> None:
+        self.drops[key] += number
+        now = monotonic()
+        if now - self._warned.get(key, float("-inf")) >= 1.0:
+            self._warned[key] = now
+            self.log.warning("dropped", key=key, reason=reason, total=self.drops[key])
+
+    def shutdown(self) -> None:
+        if self._worker is not None:
+            self._worker.shutdown(wait=False, cancel_futures=True)
+
+
+def health_of(io: IoBase, uptime: float, hz: float, rss_mb: float, pid: int) -> m.Health:
+    """This process's health record."""
+    return m.Health(
+        name=io.name,
+        epoch=io.epoch,
+        t=io.clock.now(),
+        uptime=uptime,
+        hz=hz,
+        drops=sum(io.drops.values()),
+        rss_mb=rss_mb,
+        pid=pid,
+        last_error=io.log.last_error,
+        by_key=dict(io.drops),
+    )

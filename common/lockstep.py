@@ -1,0 +1,145 @@
+"""Lockstep: the simulation advances only when every participant due at a tick has acknowledged it.
+
+`Barrier` is the simulation's side over any transport; `InProcess` steps the same service objects in one process.
+Tick k is the robot time k * DT. The simulation publishes the state of tick k, then `sim/clock` k; participants due at
+k step and acknowledge; then the simulation advances to k + 1.
+"""
+
+from collections.abc import Callable, Iterable
+from typing import Any, Protocol
+
+from common.clock import ManualClock, monotonic
+from common.memory import MemoryIo
+
+DT = 0.01
+
+
+class Stepped(Protocol):
+    """A service object."""
+
+    HZ: int
+
+    def step(self, now: float) -> None: ...
+
+
+def period_of(hz: float) -> int:
+    """Ticks between two steps of a service.
+
+    Raises:
+        ValueError: the rate does not divide 100 Hz.
+    """
+    period = round(1 / (hz * DT))
+    if period < 1 or abs(period * hz * DT - 1) > 1e-9:
+        raise ValueError(f"a rate of {hz} Hz does not divide {1 / DT:.0f} Hz")
+    return period
+
+
+class Barrier:
+    """Who takes part, how often each is due, and whose acknowledgement is missing.
+
+    `next_ack(timeout)` returns the next (name, tick, period) or None; a tick of -1 joins.
+    """
+
+    AGAIN = 1.0
+
+    def __init__(
+        self,
+        next_ack: Callable[[float], tuple[str, int, int] | None],
+        wait_for: Iterable[str] = (),
+        limit: float = 30.0,
+        report: Callable[[str], None] = lambda text: None,
+    ) -> None:
+        self._next_ack, self._limit, self._report = next_ack, limit, report
+        self._expected = set(wait_for)
+        self._tick = 0
+        self.periods: dict[str, int] = {}
+        self._acked: dict[str, int] = {}
+
+    def assemble(self, alive: Callable[[], bool] = lambda: True) -> None:
+        """Wait until every expected participant has joined, or the limit has passed, which is reported."""
+        end = monotonic() + self._limit
+        while (missing := self._expected - self.periods.keys()) and alive():
+            if monotonic() > end:
+                self._report(f"lockstep starts without {', '.join(sorted(missing))}")
+                break
+            self._take(0.05)
+
+    def wait(self, tick: int, gone: Callable[[str], bool], again: Callable[[], None]) -> None:
+        """Return when everyone due at `tick` has acknowledged it or left.
+
+        `gone(name)` says that a participant's liveliness token is lost; `again()` repeats the tick, for one that
+        was lost on the way.
+        """
+        self._tick = tick
+        started = repeated = 0.0
+        while late := self._late(tick):
+            if self._take(0.05):
+                continue
+            now = monotonic()
+            started, repeated = started or now, repeated or now
+            if now - repeated > self.AGAIN:
+                repeated = now
+                again()
+            for name in late:
+                if gone(name):
+                    self._leave(name, f"{name} left the lockstep at tick {tick}: its process is gone")
+                elif now - started > self._limit:
+                    self._leave(name, f"{name} left the lockstep: no answer to tick {tick} in {self._limit:.0f} s")
+
+    def drain(self) -> None:
+        """Take every acknowledgement that has already arrived."""
+        while self._take(0.0):
+            pass
+
+    def _late(self, tick: int) -> list[str]:
+        return [n for n, p in self.periods.items() if tick % p == 0 and self._acked[n] < tick]
+
+    def _take(self, timeout: float) -> bool:
+        ack = self._next_ack(timeout)
+        if ack is None:
+            return False
+        name, tick, period = ack
+        if tick < 0:
+            self.periods[name] = max(1, period)
+            self._acked[name] = self._tick
+        elif name in self._acked:
+            self._acked[name] = max(self._acked[name], tick)
+        return True
+
+    def _leave(self, name: str, why: str) -> None:
+        del self.periods[name], self._acked[name]
+        self._report(why)
+
+
+class InProcess:
+    """Runs a simulation and services in one process, in lockstep, with one clock."""
+
+    def __init__(self, sim: Stepped, sim_io: MemoryIo, clock: ManualClock) -> None:
+        self.clock = clock
+        self.tick = 0
+        self._sim, self._sim_io = sim, sim_io
+        self._members: list[tuple[Any, MemoryIo, int]] = []
+        sim_io.out_stamp = -1
+
+    def add(self, service: Stepped, io: MemoryIo) -> None:
+        """Services step in the order added; the order does not change what they see."""
+        self._members.append((service, io, period_of(service.HZ)))
+
+    def remove(self, service: Stepped) -> None:
+        self._members = [row for row in self._members if row[0] is not service]
+
+    def advance(self) -> float:
+        """One tick of the world and of every service due; returns the new robot time."""
+        sim_io = self._sim_io
+        tick, now = self.tick, self.tick * DT
+        sim_io.begin(tick + 1, now)
+        sim_io.out_stamp = tick
+        self._sim.step(now)
+        self.tick = tick = tick + 1
+        self.clock.advance(tick * DT - self.clock.now())
+        now = self.clock.now()
+        for service, io, period in self._members:
+            if tick % period == 0:
+                io.begin(tick, now)
+                service.step(now)
+        return now

@@ -1,0 +1,110 @@
+"""The bus of a single process: the same visibility rules and the same bytes as over Zenoh, no network."""
+
+from collections.abc import Iterable
+from typing import Any, TypeVar
+
+from common import codec
+from common import messages as m
+from common.clock import ManualClock
+from common.io import Handler
+from common.iobase import UNSTAMPED, IoBase, Mailbox
+from common.scene import Scene
+from common.topics import Topic
+
+M = TypeVar("M", bound=m.Message)
+
+
+class MemoryBus:
+    """Connects the `MemoryIo`s of one process."""
+
+    def __init__(self) -> None:
+        self.ios: dict[str, MemoryIo] = {}
+        self.last: dict[str, bytes] = {}
+        self.handlers: dict[str, Handler] = {}
+        self._readers: dict[str, list[Mailbox[Any]]] = {}
+        self._taps: dict[str, list[list[bytes]]] = {}
+
+    def attach(self, io: "MemoryIo") -> None:
+        self.ios[io.name] = io
+        for key, box in io._boxes.items():
+            self._readers.setdefault(key, []).append(box)
+            if box.topic.latched and not box.topic.command and key in self.last:
+                box.put(self.last[key])
+
+    def detach(self, io: "MemoryIo") -> None:
+        """As when the process dies: it reads nothing more and its token is gone."""
+        self.ios.pop(io.name, None)
+        for key, box in io._boxes.items():
+            self._readers[key].remove(box)
+
+    def put(self, topic: Topic[Any], payload: bytes, stamp: int = UNSTAMPED) -> None:
+        """Deliver raw bytes, as any client can."""
+        if topic.latched:
+            self.last[topic.key] = payload
+        for box in self._readers.get(topic.key, ()):
+            box.put(payload, stamp)
+        for tap in self._taps.get(topic.key, ()):
+            tap.append(payload)
+
+    def send(self, topic: Topic[M], message: M) -> None:
+        """Deliver a message, as any client can."""
+        self.put(topic, codec.encode(topic, message))
+
+    def tap(self, topic: Topic[Any]) -> list[bytes]:
+        """A list that receives every later payload of the topic."""
+        tap: list[bytes] = []
+        self._taps.setdefault(topic.key, []).append(tap)
+        return tap
+
+    def get(self, key: str, payload: bytes = b"") -> bytes | None:
+        """What a zenoh `get` on the key would answer first."""
+        handler = self.handlers.get(key)
+        return handler(payload) if handler else self.last.get(key)
+
+
+class MemoryIo(IoBase):
+    """`Io` over a `MemoryBus`."""
+
+    def __init__(
+        self,
+        bus: MemoryBus,
+        name: str,
+        reads: Iterable[Topic[Any]],
+        writes: Iterable[Topic[Any]],
+        *,
+        scene: Scene,
+        seed: int = 0,
+        clock: ManualClock | None = None,
+        log_level: str = "error",
+        lockstep: bool = True,
+    ) -> None:
+        super().__init__(
+            name,
+            reads,
+            writes,
+            scene=scene,
+            seed=seed,
+            lockstep=lockstep,
+            clock=clock or ManualClock(),
+            log_level=log_level,
+        )
+        self._bus = bus
+        self.out_stamp: int | None = None
+        bus.attach(self)
+
+    def _send(self, topic: Topic[Any], payload: bytes) -> None:
+        if not self.lockstep:
+            stamp = UNSTAMPED
+        else:
+            stamp = self.tick if self.out_stamp is None else self.out_stamp
+        self._bus.put(topic, payload, stamp)
+
+    def serve(self, key: str, handler: Handler) -> None:
+        self._bus.handlers[key] = handler
+
+    def peer(self, name: str) -> str | None:
+        other = self._bus.ios.get(name)
+        return other.epoch if other else None
+
+    def matched(self, topic: Topic[Any]) -> bool:
+        return True
