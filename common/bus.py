@@ -1,15 +1,18 @@
 """Zenoh: sessions, and `ZenohIo`, the `Io` of a process of its own.
 
 Events and goals travel over advanced publishers (cache, miss detection) to advanced subscribers (history,
-recovery), so a router outage loses none; streams keep the newest value only. Every latched key also answers a plain `get`.
-Callbacks only enqueue: they share one thread of Zenoh's.
+recovery), so a router outage loses none; streams keep the newest value only. Every latched key also answers a
+plain `get`. Callbacks only enqueue: they share one thread of Zenoh's.
 """
 
 import queue
 import struct
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import Future
+from concurrent.futures import wait as futures_wait
 from contextlib import contextmanager
 from pathlib import Path
+from threading import Thread
 from typing import Any
 
 import msgspec
@@ -35,6 +38,10 @@ class BusError(ValueError):
     """An endpoint, namespace or Zenoh configuration that cannot be used."""
 
 
+class NoRouter(BusError):
+    """Nobody listens at the endpoints."""
+
+
 def client_config(connect: str, namespace: str = "", directory: Path = CONFIGS) -> zenoh.Config:
     """A client of the comma-separated router endpoints.
 
@@ -53,9 +60,34 @@ def client_config(connect: str, namespace: str = "", directory: Path = CONFIGS) 
 
 
 @contextmanager
-def session(connect: str, namespace: str = "") -> Iterator[zenoh.Session]:
-    """An open session that is closed whatever happens: an open one keeps the process from ending."""
-    with zenoh.open(client_config(connect, namespace)) as opened:
+def session(
+    connect: str, namespace: str = "", wait: Callable[[float], bool] | None = None, patience: float = 3.0
+) -> Iterator[zenoh.Session]:
+    """An open session that is closed whatever happens: an open one keeps the process from ending.
+
+    Zenoh blocks until the first connection, deaf to signals, so it opens in a thread of its own. A node passes
+    `wait(seconds) -> stop?` and waits for its router as long as that is False; a tool waits `patience` seconds.
+
+    Raises:
+        BusError: a bad endpoint, or no router in time.
+        NoRouter: `wait` said stop before a router was there.
+    """
+    opening: Future[zenoh.Session] = Future()
+    config = client_config(connect, namespace)
+    Thread(target=_open, args=(config, opening), name="zenoh-open", daemon=True).start()
+    end = monotonic() + patience
+    while not opening.done():
+        if wait is None and monotonic() > end:
+            raise NoRouter(f"nothing answers at {connect}; start the robot with `tidybot up`")
+        if wait is None:
+            futures_wait([opening], 0.05)
+        elif wait(0.05):
+            raise NoRouter("stopped before a router was there")
+    try:
+        opened = opening.result()
+    except zenoh.ZError as error:
+        raise BusError(f"cannot connect to {connect}: {error}") from None
+    with opened:
         yield opened
 
 
@@ -73,7 +105,16 @@ def send(opened: zenoh.Session, topic: Topic[Any], message: m.Message) -> None:
     opened.put(topic.key, codec.encode(topic, message), encoding=codec.encoding_of(topic))
 
 
-class _Publisher:
+def _open(config: zenoh.Config, opening: "Future[zenoh.Session]") -> None:
+    try:
+        opening.set_result(zenoh.open(config))
+    except zenoh.ZError as error:
+        opening.set_exception(error)
+
+
+class Publisher:
+    """Sends one topic with the delivery that the table declares."""
+
     def __init__(self, opened: zenoh.Session, topic: Topic[Any]) -> None:
         self._matching = opened.declare_publisher(topic.key)
         self.last: bytes | None = None
@@ -142,7 +183,7 @@ class ZenohIo(IoBase):
         self._peers: dict[str, str] = {}
         self._queries: queue.SimpleQueue[tuple[Handler, zenoh.Query]] = queue.SimpleQueue()
         self._kept: list[Any] = []
-        self._publishers = {t.key: _Publisher(opened, t) for t in writes}
+        self._publishers = {t.key: Publisher(opened, t) for t in writes}
         for topic in reads:
             self._subscribe(topic)
         self._kept.append(opened.liveliness().declare_subscriber("service/*/alive", self._on_token, history=True))

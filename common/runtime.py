@@ -213,8 +213,10 @@ def main(kind: type[Service]) -> None:
             raise config.ConfigError(f"TIDYBOT_CLOCK={clock_name}: expected sim or wall")
         clock: SimClock | WallClock = SimClock() if clock_name == "sim" else WallClock()
         connect = environ.get("TIDYBOT_CONNECT") or bus.DEFAULT_CONNECT
-        with bus.session(connect, environ.get("TIDYBOT_NAMESPACE", "")) as opened:
+        with bus.session(connect, environ.get("TIDYBOT_NAMESPACE", ""), wait=stop.wait) as opened:
             _run(Process(kind, parameters, shared, opened, clock, stop), clock)
+    except bus.NoRouter:
+        sys.exit(0)
     except (config.ConfigError, SceneError, bus.BusError, StartError) as error:
         print(f"{kind.NAME}: {error}", file=sys.stderr)
         sys.exit(BAD_CONFIGURATION)

@@ -1,6 +1,6 @@
 """The one table of topics: key, payload, rate, latched or not, keep the latest or keep all.
 
-`docs/INTERFACES.md` is generated from this table (`python -m common.topics`).
+`docs/INTERFACES.md` is generated from this table (`python -m common.interfaces`).
 """
 
 from typing import Any, Generic, Literal, TypeVar

@@ -1,0 +1,15 @@
+"""Fixtures shared by all layers."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from tests.support import Site, site
+
+
+@pytest.fixture
+def here(tmp_path: Path) -> Iterator[Site]:
+    """A router of the test's own on a free port, and a fresh namespace."""
+    with site(tmp_path) as opened:
+        yield opened

@@ -1,0 +1,108 @@
+from collections import deque
+
+import pytest
+
+from common import messages as m
+from common import topics
+from common.clock import ManualClock
+from common.lockstep import Barrier, InProcess, period_of
+from common.memory import MemoryBus, MemoryIo
+from common.scene import Place, Scene
+
+SCENE = Scene(name="empty", low=(-1, -1), high=(1, 1), home=Place(name="home", x=0, y=0))
+
+
+class Relay:
+    """Answers each navigation goal one status; notes at which tick it saw what."""
+
+    HZ = 100
+
+    def __init__(self, io: MemoryIo) -> None:
+        self.io = io
+        self.seen: list[tuple[int, str]] = []
+
+    def step(self, now: float) -> None:
+        for goal in self.io.drain(topics.NAVIGATION_GOAL):
+            self.seen.append((round(now * 100), goal.goal))
+
+
+class Talker:
+    HZ = 50
+
+    def __init__(self, io: MemoryIo) -> None:
+        self.io = io
+
+    def step(self, now: float) -> None:
+        self.io.publish(topics.NAVIGATION_GOAL, m.NavigationGoal(goal=f"find {round(now * 100)}"))
+
+
+class World:
+    HZ = 100
+
+    def __init__(self, io: MemoryIo) -> None:
+        self.io = io
+
+    def step(self, now: float) -> None:
+        self.io.publish(topics.GOAL_REACHED, m.GoalReached(reached=True, target_id=str(round(now * 100) + 1)))
+
+
+def run(talker_first: bool) -> list[tuple[int, str]]:
+    bus, clock = MemoryBus(), ManualClock()
+
+    def io(name: str, reads: tuple, writes: tuple) -> MemoryIo:
+        return MemoryIo(bus, name, reads, writes, scene=SCENE, clock=clock)
+
+    sim_io = io("sim", (), (topics.GOAL_REACHED,))
+    world = InProcess(World(sim_io), sim_io, clock)
+    relay_io = io("relay", (topics.NAVIGATION_GOAL, topics.GOAL_REACHED), ())
+    talker_io = io("talker", (), (topics.NAVIGATION_GOAL,))
+    relay, talker = Relay(relay_io), Talker(talker_io)
+    for service, service_io in [(talker, talker_io), (relay, relay_io)][:: 1 if talker_first else -1]:
+        world.add(service, service_io)
+    for _ in range(6):
+        world.advance()
+    latest = relay_io.latest(topics.GOAL_REACHED)
+    assert latest is not None
+    assert latest.target_id == "6", "the state of a tick is visible to the steps of that tick"
+    return relay.seen
+
+
+def test_what_a_step_sees_does_not_depend_on_the_order_of_steps() -> None:
+    assert run(True) == run(False) == [(3, "find 2"), (5, "find 4")]
+
+
+def barrier(acks: list[tuple[str, int, int] | None], wait_for: tuple[str, ...] = ()) -> tuple[Barrier, list[str]]:
+    waiting, reports = deque(acks), []
+    return Barrier(lambda _: waiting.popleft() if waiting else None, wait_for, 0.05, reports.append), reports
+
+
+def test_the_barrier_waits_only_for_those_due() -> None:
+    gate, reports = barrier([("a", -1, 1), ("b", -1, 5), ("a", 1, 1), ("a", 2, 1)], ("a", "b"))
+    gate.assemble()
+    gate.wait(1, lambda _: False, lambda: None)
+    gate.wait(2, lambda _: False, lambda: None)
+    assert not reports
+    assert gate.periods == {"a": 1, "b": 5}
+
+
+def test_a_dead_participant_leaves_at_once_and_a_hung_one_after_the_limit() -> None:
+    gate, reports = barrier([("a", -1, 1), ("b", -1, 1)], ("a", "b"))
+    gate.assemble()
+    gate.wait(1, lambda name: name == "a", lambda: None)
+    assert gate.periods == {}
+    assert reports == [
+        "a left the lockstep at tick 1: its process is gone",
+        "b left the lockstep: no answer to tick 1 in 0 s",
+    ]
+
+
+def test_a_participant_that_never_joins_is_reported() -> None:
+    gate, reports = barrier([("a", -1, 1)], ("a", "ghost"))
+    gate.assemble()
+    assert reports == ["lockstep starts without ghost"]
+
+
+@pytest.mark.parametrize("hz", [0.3, 30, 1000])
+def test_a_rate_must_divide_the_tick_rate(hz: float) -> None:
+    with pytest.raises(ValueError, match="does not divide"):
+        period_of(hz)
