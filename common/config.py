@@ -4,7 +4,7 @@ import os
 import tomllib
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, Literal, TypeVar
 
 import msgspec
 
@@ -27,7 +27,7 @@ class RuntimeConfig(Config, frozen=True):
     scene: str = "apartment"
     seed: int = 0
     lockstep: bool = False
-    log_level: str = "info"
+    log_level: Literal["debug", "info", "warning", "error"] = "info"
 
 
 def parse_value(text: str) -> Any:

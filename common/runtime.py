@@ -16,7 +16,7 @@ from common.clock import Clock, Pacer, SimClock, WallClock, monotonic
 from common.iobase import health_of
 from common.lockstep import DT, Barrier, period_of
 from common.process import StopSignal, die_with_parent, rss_mb
-from common.scene import SceneError, load_scene
+from common.scene import Scene, SceneError, load_scene
 from common.topics import Topic
 
 HEALTH_PERIOD = 1.0
@@ -46,18 +46,18 @@ class Process:
         kind: type[Service],
         parameters: Any,
         shared: config.RuntimeConfig,
+        scene: Scene,
         opened: zenoh.Session,
         clock: Clock,
         stop: StopSignal,
     ) -> None:
         self._kind, self._session, self._clock, self._stop = kind, opened, clock, stop
-        self._shared = shared
         self.io = bus.ZenohIo(
             opened,
             kind.NAME,
             kind.READS,
             kind.WRITES,
-            scene=load_scene(shared.scene),
+            scene=scene,
             seed=shared.seed,
             lockstep=shared.lockstep and isinstance(clock, SimClock),
             clock=clock,
@@ -207,6 +207,7 @@ def main(kind: type[Service]) -> None:
         changes = config.overrides(environ, args.set)
         directory = config.config_dir(environ)
         shared = config.load("runtime", config.RuntimeConfig, directory, changes)
+        scene = load_scene(shared.scene)
         parameters = config.load(kind.NAME, kind.CONFIG, directory, changes)
         clock_name = environ.get("TIDYBOT_CLOCK", "sim")
         if clock_name not in ("sim", "wall"):
@@ -214,7 +215,7 @@ def main(kind: type[Service]) -> None:
         clock: SimClock | WallClock = SimClock() if clock_name == "sim" else WallClock()
         connect = environ.get("TIDYBOT_CONNECT") or bus.DEFAULT_CONNECT
         with bus.session(connect, environ.get("TIDYBOT_NAMESPACE", ""), wait=stop.wait) as opened:
-            _run(Process(kind, parameters, shared, opened, clock, stop), clock)
+            _run(Process(kind, parameters, shared, scene, opened, clock, stop), clock)
     except bus.NoRouter:
         sys.exit(0)
     except (config.ConfigError, SceneError, bus.BusError, StartError) as error:

@@ -169,7 +169,7 @@ def test_an_error_in_a_step_is_logged_and_survived(here: Site) -> None:
         ([], {"TIDYBOT_CLOCK": "sundial"}, "expected sim or wall"),
         ([], {"TIDYBOT_CONNECT": "nonsense"}, "nonsense"),
         (["--set", "runtime.scene=castle"], {}, "no scene file"),
-        (["--set", "runtime.log_level=loud"], {}, "log level"),
+        (["--set", "runtime.log_level=loud"], {}, "Invalid enum value 'loud'"),
     ],
 )
 def test_a_bad_configuration_ends_with_status_2_and_a_reason(
