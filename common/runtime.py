@@ -5,7 +5,7 @@ import os
 import sys
 import traceback
 from functools import partial
-from typing import Any, ClassVar, Protocol
+from typing import Any
 
 import msgspec
 import zenoh
@@ -17,25 +17,15 @@ from common.iobase import health_of
 from common.lockstep import DT, Barrier, period_of
 from common.process import StopSignal, die_with_parent, rss_mb
 from common.scene import Scene, SceneError, load_scene
-from common.topics import Topic
 
 HEALTH_PERIOD = 1.0
 MAX_CONSECUTIVE_ERRORS = 10
 BAD_CONFIGURATION = 2
 
 
-class Service(Protocol):
-    """`step(now)` drains, decides, publishes and never blocks; `now` is robot time [s]."""
-
-    NAME: ClassVar[str]
-    HZ: ClassVar[int]
-    CONFIG: ClassVar[type[Any]]
-    READS: ClassVar[tuple[Topic[Any], ...]]
-    WRITES: ClassVar[tuple[Topic[Any], ...]]
-
-    def __init__(self, config: Any, io: Any) -> None: ...
-
-    def step(self, now: float) -> None: ...
+# A class with NAME, HZ, CONFIG, READS, WRITES, a constructor (config, io) and `step(now)`, which drains, decides,
+# publishes and never blocks; `now` is robot time [s]. The simulation also has `paused`, `start_time` and `pace()`.
+ServiceClass = type[Any]
 
 
 class Process:
@@ -43,7 +33,7 @@ class Process:
 
     def __init__(
         self,
-        kind: type[Service],
+        kind: ServiceClass,
         parameters: Any,
         shared: config.RuntimeConfig,
         scene: Scene,
@@ -165,7 +155,7 @@ class Process:
         tick = round(getattr(self.service, "start_time", 0.0) / DT)
         pacer = Pacer(DT, speed) if speed else None
         while not self._stop.is_set():
-            if self.service.paused:  # type: ignore[attr-defined]
+            if self.service.paused:
                 self.housekeeping()
                 self._stop.wait(0.02)
                 continue
@@ -197,7 +187,7 @@ class Process:
         self.io.shutdown()
 
 
-def main(kind: type[Service]) -> None:
+def main(kind: ServiceClass) -> None:
     """Entry point of `python -m services.<name>`; ends the process with the documented exit status."""
     args = _arguments(kind)
     stop = StopSignal()
@@ -232,7 +222,7 @@ def _run(process: Process, clock: SimClock | WallClock) -> None:
         if isinstance(clock, WallClock):
             process.run_on_wall_clock()
         elif hasattr(process.service, "paused"):
-            speed, wait_for = process.service.pace()  # type: ignore[attr-defined]
+            speed, wait_for = process.service.pace()
             process.run_simulation(clock, speed, wait_for)
         else:
             process.run_on_sim_clock(clock)
@@ -240,7 +230,7 @@ def _run(process: Process, clock: SimClock | WallClock) -> None:
         process.close()
 
 
-def _arguments(kind: type[Service]) -> argparse.Namespace:
+def _arguments(kind: ServiceClass) -> argparse.Namespace:
     fields = "\n".join(
         f"  {kind.NAME}.{f.name} = {f.default!r}"
         for f in msgspec.structs.fields(kind.CONFIG)

@@ -1,0 +1,44 @@
+"""The arm's driver: follows a stream of joint set-points and holds when it falls silent."""
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+JUMP = 0.6
+_LIMITS = np.array([np.inf, 2.24, np.inf, 2.57, np.inf, 2.09, np.inf])
+
+
+class ArmDriver:
+    """Moves the set-point (7,) linearly to each commanded one within its period."""
+
+    def __init__(self, position: NDArray[np.float64], timeout: float) -> None:
+        self._position, self._goal = position.copy(), position.copy()
+        self._left, self._timeout, self._heard = 0.0, timeout, -math.inf
+
+    def follow(self, position: list[float], period: float, now: float) -> str:
+        """Take the next set-point; the reason when it is refused."""
+        goal: Any = np.array(position)
+        if goal.shape != (7,) or not np.isfinite(goal).all() or not 0 < period <= 1.0:
+            return "a set-point is 7 finite angles and a period of at most 1 s"
+        if (np.abs(goal) > _LIMITS).any():
+            return "set-point beyond a joint limit"
+        if np.abs(goal - self._position).max() > JUMP:
+            return f"set-point jumps by more than {JUMP} rad"
+        self._goal, self._left, self._heard = goal, period, now
+        return ""
+
+    def halt(self, actual: NDArray[np.float64]) -> None:
+        """Hold the measured position."""
+        self._position, self._goal, self._left = actual.copy(), actual.copy(), 0.0
+
+    def advance(self, now: float, dt: float) -> NDArray[np.float64]:
+        """The set-point after `dt` seconds."""
+        if now - self._heard > self._timeout:
+            self._left, self._goal = 0.0, self._position
+        if self._left > 0:
+            share = min(1.0, dt / self._left)
+            self._position = self._position + (self._goal - self._position) * share
+            self._left = max(0.0, self._left - dt)
+        return self._position

@@ -1,0 +1,99 @@
+"""The base's driver: an acceleration-limited set-point that runs to a target pose or follows a velocity."""
+
+import math
+from dataclasses import dataclass, field
+
+from common.geometry import wrap
+from services.sim.config import SimConfig
+
+SETPOINT_LEAD = 0.05
+_STILL = 0.02
+
+
+@dataclass
+class BaseDriver:
+    """Owns the set-point (x, y, yaw) that the base servos follow; frame of the odometry."""
+
+    config: SimConfig
+    pose: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    target: tuple[float, float, float] | None = None
+    target_id: str = ""
+    stopped: bool = False
+    _twist: tuple[float, float, float] = field(default=(0.0, 0.0, 0.0))
+    _twist_until: float = -1.0
+
+    def go_to(self, x: float, y: float, theta: float, target_id: str) -> None:
+        """Run to a pose; replaces whatever was asked before."""
+        self.target, self.target_id, self._twist_until = (x, y, theta), target_id, -1.0
+
+    def drive(self, vx: float, vy: float, omega: float, now: float) -> None:
+        """Follow a velocity in the robot's own frame until the stream falls silent."""
+        self.target, self.target_id = None, ""
+        self._twist, self._twist_until = (vx, vy, omega), now + self.config.stream_timeout
+
+    def halt(self, actual: tuple[float, float, float]) -> None:
+        """Brake as hard as the wheels can: the set-point stays where the base is now."""
+        if not self.stopped:
+            self.pose, self.velocity = actual, (0.0, 0.0, 0.0)
+        self.target, self._twist_until, self.stopped = None, -1.0, True
+
+    def reached(self, actual: tuple[float, float, float]) -> bool:
+        """True when the measured pose is at the target, at rest."""
+        if self.target is None or math.hypot(*self.velocity[:2]) > _STILL or abs(self.velocity[2]) > 0.05:
+            return False
+        x, y, yaw = self.target
+        close = math.hypot(actual[0] - x, actual[1] - y) <= self.config.position_tolerance
+        return close and abs(wrap(actual[2] - yaw)) <= self.config.angle_tolerance
+
+    def advance(self, actual: tuple[float, float, float], now: float, dt: float) -> tuple[float, float, float]:
+        """The set-point after `dt` seconds."""
+        wanted, limit, turn_limit = self._wanted(now, dt)
+        vx, vy = _towards(self.velocity[:2], wanted[:2], limit * dt)
+        omega = self.velocity[2] + max(-turn_limit * dt, min(turn_limit * dt, wanted[2] - self.velocity[2]))
+        x, y, yaw = self.pose[0] + vx * dt, self.pose[1] + vy * dt, self.pose[2] + omega * dt
+        ex, ey = x - actual[0], y - actual[1]
+        lead = math.hypot(ex, ey)
+        if lead > SETPOINT_LEAD:
+            x, y = actual[0] + ex * SETPOINT_LEAD / lead, actual[1] + ey * SETPOINT_LEAD / lead
+            vx, vy = vx * 0.5, vy * 0.5
+        if abs(yaw - actual[2]) > 2 * SETPOINT_LEAD:
+            yaw = actual[2] + math.copysign(2 * SETPOINT_LEAD, yaw - actual[2])
+            omega *= 0.5
+        self.pose, self.velocity = (x, y, yaw), (vx, vy, omega)
+        return self.pose
+
+    def _wanted(self, now: float, dt: float) -> tuple[tuple[float, float, float], float, float]:
+        """Desired world velocity and the acceleration limits to reach it with."""
+        c = self.config
+        if self.stopped:
+            return (0.0, 0.0, 0.0), c.acceleration, c.turn_acceleration
+        if self.target is not None:
+            dx, dy = self.target[0] - self.pose[0], self.target[1] - self.pose[1]
+            turn = wrap(self.target[2] - self.pose[2])
+            distance = math.hypot(dx, dy)
+            speed = _profile(distance, c.acceleration, c.max_speed, dt)
+            scale = speed / distance if distance > 1e-9 else 0.0
+            omega = math.copysign(_profile(abs(turn), c.turn_acceleration, c.max_turn, dt), turn)
+            return (dx * scale, dy * scale, omega), 2 * c.acceleration, 2 * c.turn_acceleration
+        if now < self._twist_until:
+            vx, vy, omega = self._twist
+            fast = math.hypot(vx, vy)
+            k = min(1.0, c.max_speed / fast) if fast > 0 else 1.0
+            cos, sin = math.cos(self.pose[2]), math.sin(self.pose[2])
+            world = (k * (cos * vx - sin * vy), k * (sin * vx + cos * vy), max(-c.max_turn, min(c.max_turn, omega)))
+            return world, 2 * c.acceleration, 2 * c.turn_acceleration
+        return (0.0, 0.0, 0.0), 3 * c.acceleration, 3 * c.turn_acceleration
+
+
+def _profile(distance: float, deceleration: float, limit: float, dt: float) -> float:
+    """The fastest speed from which `distance` still suffices to stop."""
+    return min(limit, math.sqrt(2 * deceleration * distance) * 0.95, distance / dt)
+
+
+def _towards(now: tuple[float, ...], wanted: tuple[float, ...], step: float) -> tuple[float, float]:
+    dx, dy = wanted[0] - now[0], wanted[1] - now[1]
+    change = math.hypot(dx, dy)
+    if change <= step:
+        return wanted[0], wanted[1]
+    return now[0] + dx * step / change, now[1] + dy * step / change

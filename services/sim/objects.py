@@ -1,0 +1,92 @@
+"""Graspable objects as MJCF bodies of primitive geoms, origin at the centre of the bounding box."""
+
+import math
+
+from common.scene import ObjectSpec
+
+_CONTACT = 'condim="4" friction="1 .02 .0005" solref=".005 1" solimp=".95 .99 .001"'
+_WALLS = 10
+
+
+def _geom(spec: ObjectSpec, shape: str, share: float, rgba: tuple[float, ...] | None = None) -> str:
+    colour = " ".join(f"{v:g}" for v in rgba or spec.rgba)
+    return f'<geom {shape} mass="{spec.mass * share:.5f}" rgba="{colour}" {_CONTACT} conaffinity="3"/>'
+
+
+def _ring(spec: ObjectSpec, radius: float, half: float, z: float, thickness: float, lean: float, share: float) -> str:
+    """A wall of boxes around the z axis; `lean` tilts each outward."""
+    width = radius * math.tan(math.pi / _WALLS) * 1.02
+    parts = []
+    for k in range(_WALLS):
+        a = 2 * math.pi * k / _WALLS
+        r = radius - thickness
+        shape = (
+            f'type="box" size="{thickness} {width:.5f} {half}" pos="{r * math.cos(a):.5f} {r * math.sin(a):.5f} {z}" '
+            f'euler="0 {lean} {a:.5f}"'
+        )
+        parts.append(_geom(spec, shape, share / _WALLS))
+    return "".join(parts)
+
+
+def _mug(spec: ObjectSpec) -> str:
+    r, h = spec.size[0] / 2, spec.size[2]
+    bottom = _geom(spec, f'type="cylinder" size="{r - 0.003} 0.004" pos="0 0 {-h / 2 + 0.004}"', 0.2)
+    handle = "".join(
+        _geom(spec, f'type="capsule" fromto="{a}" size="0.0045"', 0.04)
+        for a in (
+            f"{r - 0.002} 0 {h * 0.28} {r + 0.022} 0 {h * 0.22}",
+            f"{r + 0.022} 0 {h * 0.22} {r + 0.022} 0 {-h * 0.20}",
+            f"{r + 0.022} 0 {-h * 0.20} {r - 0.002} 0 {-h * 0.28}",
+        )
+    )
+    return _ring(spec, r, h / 2, 0.0, 0.002, 0.0, 0.68) + bottom + handle
+
+
+def _bowl(spec: ObjectSpec) -> str:
+    r, h = spec.size[0] / 2, spec.size[2]
+    lean = 0.55
+    base_r = r - h * math.tan(lean)
+    bottom = _geom(spec, f'type="cylinder" size="{base_r + 0.004} 0.005" pos="0 0 {-h / 2 + 0.005}"', 0.3)
+    half = h / 2 / math.cos(lean)
+    return _ring(spec, (r + base_r) / 2, half, 0.0, 0.003, lean, 0.7) + bottom
+
+
+def _bottle(spec: ObjectSpec) -> str:
+    r, h = spec.size[0] / 2, spec.size[2]
+    body, neck = 0.72 * h, 0.22 * h
+    return (
+        _geom(spec, f'type="cylinder" size="{r} {body / 2}" pos="0 0 {-h / 2 + body / 2}"', 0.85)
+        + _geom(spec, f'type="cylinder" size="0.014 {neck / 2}" pos="0 0 {h / 2 - 0.06 * h - neck / 2}"', 0.1)
+        + _geom(
+            spec, f'type="cylinder" size="0.016 {0.03 * h}" pos="0 0 {h / 2 - 0.03 * h}"', 0.05, (0.9, 0.9, 0.9, 1.0)
+        )
+    )
+
+
+def geoms(spec: ObjectSpec) -> str:
+    """The geoms of one object."""
+    r, h = spec.size[0] / 2, spec.size[2]
+    if spec.kind == "mug":
+        return _mug(spec)
+    if spec.kind == "bowl":
+        return _bowl(spec)
+    if spec.kind == "bottle":
+        return _bottle(spec)
+    if spec.kind == "can":
+        return _geom(spec, f'type="cylinder" size="{r} {h / 2}"', 1.0)
+    if spec.kind in ("apple", "ball"):
+        return _geom(spec, f'type="sphere" size="{r}"', 1.0).replace('condim="4"', 'condim="6"')
+    x, y, z = (v / 2 for v in spec.size)
+    return _geom(spec, f'type="box" size="{x} {y} {z}"', 1.0)
+
+
+def body_name(spec: ObjectSpec) -> str:
+    """The MJCF body of an object."""
+    return spec.name.replace(" ", "_")
+
+
+def body_xml(spec: ObjectSpec, position: tuple[float, float, float], yaw: float) -> str:
+    """A free body at a pose."""
+    name = body_name(spec)
+    x, y, z = position
+    return f'<body name="{name}" pos="{x} {y} {z}" euler="0 0 {yaw}"><freejoint name="{name}"/>{geoms(spec)}</body>'

@@ -1,0 +1,124 @@
+"""The MuJoCo world of a scene: model, state, actuation. Names are resolved once."""
+
+from typing import Any
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from common.scene import Scene
+from services.sim import objects, robot
+from services.sim.config import Obstacle
+from services.sim.layout import Placement, place_objects
+from services.sim.world import world_mjcf
+
+SUBSTEPS = 5
+SETTLE_STEPS = 250
+_STATE = mujoco.mjtState.mjSTATE_INTEGRATION
+
+
+class Physics:
+    """One world; `advance` runs 10 ms of it at 500 Hz."""
+
+    def __init__(self, scene: Scene, seed: int, obstacles: tuple[Obstacle, ...] = ()) -> None:
+        self.scene, self.seed = scene, seed
+        self.placements: list[Placement] = place_objects(scene, seed)
+        self.obstacles = obstacles
+        self.mjcf = world_mjcf(scene, self.placements, "".join(_mocap(o) for o in obstacles))
+        self.model: Any = mujoco.MjModel.from_xml_string(self.mjcf)
+        self.model.opt.enableflags |= mujoco.mjtEnableBit.mjENBL_SLEEP
+        self.data: Any = mujoco.MjData(self.model)
+        model = self.model
+        joints = ("base_x", "base_y", "base_yaw", *robot.ARM_JOINTS)
+        self.qpos_at = np.array([model.joint(j).qposadr[0] for j in joints])
+        self.qvel_at = np.array([model.joint(j).dofadr[0] for j in joints])
+        self.finger_qpos = np.array([model.joint(f"{s}_finger").qposadr[0] for s in ("left", "right")])
+        self.finger_qvel = np.array([model.joint(f"{s}_finger").dofadr[0] for s in ("left", "right")])
+        self.ctrl_at = np.array([model.actuator(j).id for j in joints])
+        self.gripper_ctrl = model.actuator("gripper").id
+        self.lidar_site = model.site("lidar").id
+        self.pads = tuple(model.geom(f"{s}_pad").id for s in ("left", "right"))
+        self.bodies = {p.spec.name: model.body(objects.body_name(p.spec)).id for p in self.placements}
+        self.gripper_bodies = {model.body(n).id for n in ("gripper", "left_finger", "right_finger")}
+        self.robot_bodies = {b for b in range(model.nbody) if model.body_rootid[b] == model.body("base").id}
+        self.reset()
+
+    def reset(self) -> None:
+        """The layout of the seed, the robot at home, everything at rest."""
+        mujoco.mj_resetData(self.model, self.data)
+        home = (self.scene.home.x, self.scene.home.y, self.scene.home.theta, *robot.HOME_ARM)
+        self.data.qpos[self.qpos_at] = home
+        self.data.ctrl[self.ctrl_at] = home
+        for p in self.placements:
+            at = self.model.joint(objects.body_name(p.spec)).qposadr[0]
+            self.data.qpos[at : at + 3] = p.position
+            self.data.qpos[at + 3 : at + 7] = (np.cos(p.yaw / 2), 0, 0, np.sin(p.yaw / 2))
+        mujoco.mj_step(self.model, self.data, SETTLE_STEPS)
+
+    def reseed(self, seed: int) -> None:
+        """Another layout in the same world."""
+        self.seed, self.placements = seed, place_objects(self.scene, seed)
+        self.reset()
+
+    def advance(self, start: NDArray[np.float64], end: NDArray[np.float64]) -> None:
+        """Run 10 ms while the set-points (10,) of base and arm move from `start` to `end`."""
+        model, data, ctrl_at = self.model, self.data, self.ctrl_at
+        change = (end - start) / SUBSTEPS
+        if not change.any():
+            data.ctrl[ctrl_at] = end
+            mujoco.mj_step(model, data, SUBSTEPS)
+            return
+        for i in range(1, SUBSTEPS + 1):
+            data.ctrl[ctrl_at] = start + change * i
+            mujoco.mj_step(model, data)
+
+    def grip(self, closed: float, effort: float) -> None:
+        """Drive the fingers to `closed` (0..1) with at most `effort` newtons each."""
+        self.data.ctrl[self.gripper_ctrl] = closed * robot.STROKE / 2
+        self.model.actuator_forcerange[self.gripper_ctrl] = (-2 * effort, 2 * effort)
+
+    def width(self) -> float:
+        """Distance between the pads [m]."""
+        return float(robot.STROKE - self.data.qpos[self.finger_qpos].sum())
+
+    def finger_force(self) -> float:
+        """Closing force of one finger [N]."""
+        return float(self.data.actuator_force[self.gripper_ctrl] / 2)
+
+    def snapshot(self) -> NDArray[np.float64]:
+        """The full integration state."""
+        state = np.empty(mujoco.mj_stateSize(self.model, _STATE))
+        mujoco.mj_getState(self.model, self.data, state, _STATE)
+        return state
+
+    def restore(self, state: NDArray[np.float64]) -> None:
+        """Back to a snapshot of the same model."""
+        mujoco.mj_setState(self.model, self.data, state, _STATE)
+        mujoco.mj_forward(self.model, self.data)
+
+    def move_obstacles(self, t: float) -> None:
+        """Put every moving obstacle where it is at robot time t."""
+        for n, obstacle in enumerate(self.obstacles):
+            if obstacle.speed > 0 and len(obstacle.waypoints) > 1:
+                x, y = _along(obstacle, t)
+                self.data.mocap_pos[n, :2] = (x, y)
+
+
+def _mocap(obstacle: Obstacle) -> str:
+    sx, sy, sz = (v / 2 for v in obstacle.size)
+    x, y = obstacle.waypoints[0] if obstacle.waypoints else (0.0, 0.0)
+    size = f"{sx} {sz}" if obstacle.kind == "cylinder" else f"{sx} {sy} {sz}"
+    return (
+        f'<body name="{obstacle.name}" mocap="true" pos="{x} {y} {sz}"><geom type="{obstacle.kind}" size="{size}" '
+        'rgba="0.6 0.3 0.6 1" contype="1" conaffinity="3"/></body>'
+    )
+
+
+def _along(obstacle: Obstacle, t: float) -> tuple[float, float]:
+    """The point of a to-and-fro walk at time t."""
+    points = np.array(obstacle.waypoints)
+    points = np.concatenate([points, points[-2:0:-1], points[:1]])
+    lengths = np.hypot(*np.diff(points, axis=0).T)
+    travelled = (t * obstacle.speed) % max(lengths.sum(), 1e-9)
+    ends = np.concatenate([[0.0], np.cumsum(lengths)])
+    return float(np.interp(travelled, ends, points[:, 0])), float(np.interp(travelled, ends, points[:, 1]))

@@ -1,0 +1,251 @@
+"""The simulation: owns MuJoCo and robot time, plays the robot's drivers and sensors."""
+
+import math
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import numpy as np
+
+from common import messages as m
+from common import topics
+from common.io import Io
+from common.lockstep import DT
+from common.runtime import StartError
+from services.sim import robot, truth
+from services.sim.arm import ArmDriver
+from services.sim.base import BaseDriver
+from services.sim.config import SimConfig
+from services.sim.lidar import RANGE_MAX, RANGE_MIN, RAYS, Lidar
+from services.sim.odometry import WheelOdometry
+from services.sim.physics import Physics
+from services.sim.viewer import Viewer
+
+SCAN_TICKS, STATE_TICKS = 10, 5
+MAX_DISTANCE = 50.0
+
+
+class Pause(msgspec.Struct):
+    paused: bool
+
+
+class Reset(msgspec.Struct):
+    seed: int | None = None
+
+
+class SimService:
+    """MuJoCo world, robot drivers and sensors."""
+
+    NAME = "sim"
+    HZ = 100
+    CONFIG = SimConfig
+    READS = (
+        topics.BASE_TARGET, topics.CMD_VEL, topics.ARM_COMMAND, topics.GRIPPER_COMMAND,
+        topics.ROBOT_STOP, topics.ROBOT_RESUME,
+    )  # fmt: skip
+    WRITES = (
+        topics.JOINT_STATES, topics.ODOMETRY, topics.SCAN, topics.GOAL_REACHED, topics.SIM_STATE, topics.SIM_MODEL,
+        topics.SIM_STATUS, topics.ROBOT_DESCRIPTION, topics.WORLD_OBJECTS,
+    )  # fmt: skip
+
+    def __init__(self, config: SimConfig, io: Io) -> None:
+        self._config, self._io = config, io
+        self._speed = _speed(config.speed)
+        self.paused = False
+        self.start_time = 0.0
+        self.physics = Physics(io.scene, io.seed, config.obstacles)
+        self._lidar = Lidar(self.physics.model, self.physics.lidar_site, config.lidar_noise, io.rng)
+        self._viewer = Viewer(self.physics) if config.viewer else None
+        self._tick = 0
+        self._begin(0.0)
+        io.serve(topics.SIM_TRUTH, self._answer_truth)
+        io.serve(topics.SIM_RESET, self._answer_reset)
+        io.serve(topics.SIM_PAUSE, self._answer_pause)
+        io.serve(topics.SIM_SNAPSHOT, self._answer_snapshot)
+
+    def pace(self) -> tuple[float | None, tuple[str, ...]]:
+        """Speed as a factor of real time (None: as fast as possible) and the participants to wait for."""
+        return self._speed, self._config.wait_for
+
+    def _begin(self, now: float) -> None:
+        """Drivers and sensors of a world that has just been laid out."""
+        config, io = self._config, self._io
+        home = io.scene.home
+        pose = (home.x, home.y, home.theta)
+        self._base = BaseDriver(config, pose)
+        self._arm = ArmDriver(np.array(robot.HOME_ARM), config.stream_timeout)
+        self._odometry = WheelOdometry(pose, config.odometry_slip, config.odometry_noise, io.rng)
+        self._setpoint = np.array([*pose, *robot.HOME_ARM])
+        self.physics.grip(0.0, 40.0)
+        self._reached: tuple[bool, str] = (False, "")
+        physics = self.physics
+        io.publish(topics.ROBOT_DESCRIPTION, m.RobotDescription(mjcf=robot.robot_mjcf()))
+        model = m.SimModel(scene=io.scene.name, seed=physics.seed, epoch=io.epoch, mjcf=physics.mjcf)
+        io.publish(topics.SIM_MODEL, model)
+        io.publish(topics.WORLD_OBJECTS, self._survey(now))
+        io.publish(topics.GOAL_REACHED, m.GoalReached(reached=False))
+        self._publish_status("running")
+
+    def _survey(self, now: float) -> m.WorldObjects:
+        """Where the objects were put when the flat was set up; never updated."""
+        objects = [
+            m.WorldObject(
+                label=p.spec.name,
+                kind=p.spec.kind,
+                colour=p.spec.colour,
+                position=p.position,
+                orientation=(math.cos(p.yaw / 2), 0.0, 0.0, math.sin(p.yaw / 2)),
+                size=p.spec.size,
+                on=p.on,
+                seen_at=now,
+                id=p.spec.name,
+            )
+            for p in self.physics.placements
+        ]
+        return m.WorldObjects(t=now, objects=objects, source="survey")
+
+    def _publish_status(self, state: Any, detail: str = "") -> None:
+        status = m.SimStatus(
+            state=state,
+            speed=self._config.speed,
+            epoch=self._io.epoch,
+            scene=self._io.scene.name,
+            seed=self.physics.seed,
+            detail=detail,
+        )
+        self._io.publish(topics.SIM_STATUS, status)
+
+    # --- one tick
+    def step(self, now: float) -> None:
+        self._take_commands(now)
+        physics = self.physics
+        qpos = physics.data.qpos
+        x, y, yaw = (float(v) for v in qpos[physics.qpos_at[:3]])
+        after = np.empty(10)
+        after[:3] = self._base.advance((x, y, yaw), now, DT)
+        after[3:] = self._arm.advance(now, DT)
+        if physics.obstacles:
+            physics.move_obstacles(now + DT)
+        physics.advance(self._setpoint, after)
+        self._setpoint = after
+        self._tick += 1
+        self._publish(now + DT)
+        if self._viewer:
+            self._viewer.sync()
+
+    def _take_commands(self, now: float) -> None:
+        io = self._io
+        stops, resumes = io.drain(topics.ROBOT_STOP), io.drain(topics.ROBOT_RESUME)
+        if resumes and self._base.stopped:
+            self._base.stopped = False
+            io.log.info("resumed", by=resumes[-1].source)
+            self._publish_status("running")
+        if stops:
+            if not self._base.stopped:
+                io.log.warning("stopped", reason=stops[-1].reason, by=stops[-1].source)
+                self._publish_status("stopped", stops[-1].reason)
+            actual = self.physics.data.qpos[self.physics.qpos_at]
+            if not self._base.stopped:
+                self._setpoint = actual.copy()
+            self._base.halt((float(actual[0]), float(actual[1]), float(actual[2])))
+            self._arm.halt(actual[3:])
+        for target in io.drain(topics.BASE_TARGET):
+            if not all(map(_sane, (target.x, target.y, target.theta))):
+                io.count_drop(topics.BASE_TARGET.key, "not a finite pose near the apartment")
+            elif not self._base.stopped:
+                self._base.go_to(target.x, target.y, target.theta, target.id)
+        for twist in io.drain(topics.CMD_VEL):
+            if not all(map(_sane, (twist.vx, twist.vy, twist.omega))):
+                io.count_drop(topics.CMD_VEL.key, "not a finite velocity")
+            elif not self._base.stopped:
+                self._base.drive(twist.vx, twist.vy, twist.omega, now)
+        for command in io.drain(topics.ARM_COMMAND):
+            if self._base.stopped:
+                continue
+            if why := self._arm.follow(command.position, command.period, now):
+                io.count_drop(topics.ARM_COMMAND.key, why)
+        for grip in io.drain(topics.GRIPPER_COMMAND):
+            if not (0.0 <= grip.position <= 1.0 and grip.max_effort > 0.0):
+                io.count_drop(topics.GRIPPER_COMMAND.key, "position is 0..1, max_effort above 0")
+            elif not self._base.stopped:
+                self.physics.grip(grip.position, min(grip.max_effort, 40.0))
+
+    def _publish(self, t: float) -> None:
+        io, physics, data = self._io, self.physics, self.physics.data
+        qpos, qvel = data.qpos[physics.qpos_at], data.qvel[physics.qvel_at]
+        actual = (float(qpos[0]), float(qpos[1]), float(qpos[2]))
+        ox, oy, oyaw = self._odometry.update(actual)
+        cos, sin = math.cos(actual[2]), math.sin(actual[2])
+        vx, vy, omega = (float(v) for v in qvel[:3])
+        odometry = m.Odometry(t=t, x=ox, y=oy, theta=oyaw, vx=cos * vx + sin * vy, vy=cos * vy - sin * vx, omega=omega)
+        io.publish(topics.ODOMETRY, odometry)
+        io.publish(
+            topics.JOINT_STATES,
+            m.JointStates(
+                t=t,
+                name=list(robot.JOINT_NAMES),
+                position=[ox, oy, oyaw, *qpos[3:].tolist(), physics.width()],
+                velocity=[*qvel.tolist(), -float(data.qvel[physics.finger_qvel].sum())],
+                effort=[*data.actuator_force[physics.ctrl_at].tolist(), physics.finger_force()],
+            ),
+        )
+        reached = (self._base.reached((ox, oy, oyaw)), self._base.target_id)
+        if reached != self._reached:
+            self._reached = reached
+            io.publish(topics.GOAL_REACHED, m.GoalReached(reached=reached[0], target_id=reached[1]))
+        if self._tick % SCAN_TICKS == 0:
+            ranges = self._lidar.scan(physics.model, data)
+            increment = 2 * math.pi / RAYS
+            scan = m.LaserScan(
+                t=t, ranges=ranges.tobytes(), angle_increment=increment, range_min=RANGE_MIN, range_max=RANGE_MAX
+            )
+            io.publish(topics.SCAN, scan)
+        if self._tick % STATE_TICKS == 0:
+            state = m.SimState(
+                t=t, tick=self._tick, epoch=io.epoch, qpos=data.qpos.tobytes(), mocap=data.mocap_pos.tobytes()
+            )
+            io.publish(topics.SIM_STATE, state)
+
+    # --- queries
+    def _answer_truth(self, payload: bytes) -> bytes:
+        now = self.start_time + self._tick * DT
+        return msgspec.json.encode(truth.report(self.physics, now, self._io.epoch))
+
+    def _answer_pause(self, payload: bytes) -> bytes:
+        self.paused = msgspec.json.decode(payload or b'{"paused": true}', type=Pause).paused
+        self._publish_status("paused" if self.paused else "running")
+        return msgspec.json.encode({"paused": self.paused})
+
+    def _answer_reset(self, payload: bytes) -> bytes:
+        wanted = msgspec.json.decode(payload or b"{}", type=Reset)
+        self.physics.reseed(self.physics.seed if wanted.seed is None else wanted.seed)
+        self._begin(self._tick * DT)
+        return msgspec.json.encode({"seed": self.physics.seed, "scene": self._io.scene.name})
+
+    def _answer_snapshot(self, payload: bytes) -> bytes:
+        state = self.physics.snapshot()
+        directory = Path(self._config.snapshot_dir or "out")
+        directory.mkdir(parents=True, exist_ok=True)
+        path = directory / f"snapshot-{self.physics.seed}-{self._tick}.npy"
+        np.save(path, state)
+        return msgspec.json.encode({"path": str(path), "t": self._tick * DT, "bytes": path.stat().st_size})
+
+    def close(self) -> None:
+        if self._viewer:
+            self._viewer.close()
+
+
+def _sane(value: float) -> bool:
+    return math.isfinite(value) and abs(value) <= MAX_DISTANCE
+
+
+def _speed(text: str) -> float | None:
+    if text in ("realtime", "max"):
+        return 1.0 if text == "realtime" else None
+    try:
+        factor = float(text)
+    except ValueError:
+        factor = -1.0
+    if not 0 < factor < math.inf:
+        raise StartError(f"sim.speed = {text!r}: expected realtime, max or a factor such as 4")
+    return factor

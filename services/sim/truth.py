@@ -1,0 +1,81 @@
+"""What is really so: for evaluators and tests, answered on `sim/truth`, read by no service."""
+
+import math
+from typing import Any
+
+from common.scene import Receptacle, Scene
+from services.sim.physics import Physics
+
+ON_TOP = 0.03
+_MARGIN = 0.02
+
+
+def touching(physics: Physics) -> tuple[dict[str, set[int]], dict[str, bool]]:
+    """Per object: the geoms of the robot that touch it, and whether anything else does."""
+    by_body = {body: name for name, body in physics.bodies.items()}
+    robot: dict[str, set[int]] = {name: set() for name in physics.bodies}
+    other = dict.fromkeys(physics.bodies, False)
+    geom_body = physics.model.geom_bodyid
+    for a, b in physics.data.contact.geom[: physics.data.ncon]:
+        for one, two in ((int(a), int(b)), (int(b), int(a))):
+            name = by_body.get(int(geom_body[one]))
+            if name is None:
+                continue
+            if int(geom_body[two]) in physics.robot_bodies:
+                robot[name].add(two)
+            else:
+                other[name] = True
+    return robot, other
+
+
+def holding(physics: Physics) -> str | None:
+    """The object that both pads touch and nothing else supports."""
+    robot, other = touching(physics)
+    pads = set(physics.pads)
+    return next((n for n, geoms in robot.items() if pads <= geoms and not other[n]), None)
+
+
+def support(scene: Scene, x: float, y: float, bottom: float) -> str:
+    """The receptacle that a thing with its underside at height `bottom` rests on or in; "" if none."""
+    for r in scene.receptacles:
+        if not inside(r, x, y):
+            continue
+        low, high = (-0.01, r.depth) if r.depth else (r.center[2] - ON_TOP, r.center[2] + ON_TOP)
+        if low <= bottom <= high:
+            return r.name
+    return "floor" if bottom < ON_TOP else ""
+
+
+def inside(r: Receptacle, x: float, y: float) -> bool:
+    """True when a point is over the surface of a receptacle."""
+    c, s = math.cos(r.yaw), math.sin(r.yaw)
+    dx, dy = x - r.center[0], y - r.center[1]
+    return abs(c * dx + s * dy) <= r.size[0] / 2 + _MARGIN and abs(c * dy - s * dx) <= r.size[1] / 2 + _MARGIN
+
+
+def report(physics: Physics, t: float, epoch: str) -> dict[str, Any]:
+    """The answer of `sim/truth`."""
+    data, scene = physics.data, physics.scene
+    robot, _ = touching(physics)
+    held = holding(physics)
+    found: dict[str, Any] = {}
+    for p in physics.placements:
+        body = physics.bodies[p.spec.name]
+        x, y, z = (float(v) for v in data.xpos[body])
+        up = data.xmat[body].reshape(3, 3)[2]
+        reach = sum(abs(float(u)) * s / 2 for u, s in zip(up, p.spec.size, strict=True))
+        gripper = {g for g in robot[p.spec.name] if int(physics.model.geom_bodyid[g]) in physics.gripper_bodies}
+        found[p.spec.name] = {
+            "kind": p.spec.kind,
+            "colour": p.spec.colour,
+            "position": [x, y, z],
+            "quaternion": [float(v) for v in data.xquat[body]],
+            "on": "" if held == p.spec.name else support(scene, x, y, z - reach),
+            "touching_gripper": bool(gripper),
+        }
+    regions = {
+        r.name: {"kind": r.kind, "center": list(r.center), "size": list(r.size), "yaw": r.yaw, "depth": r.depth}
+        for r in scene.receptacles
+    }
+    base = [float(v) for v in data.qpos[physics.qpos_at[:3]]]
+    return {"t": t, "epoch": epoch, "base": base, "holding": held, "objects": found, "goal_regions": regions}

@@ -1,0 +1,124 @@
+"""A scene and a seed as MJCF: apartment, robot, free objects."""
+
+import math
+from collections.abc import Sequence
+
+from common.scene import Receptacle, Scene
+from services.sim import objects, robot
+from services.sim.layout import Placement
+
+STATIC = 'contype="1" conaffinity="3"'
+_WOOD, _WHITE, _STEEL = "0.62 0.46 0.32 1", "0.90 0.89 0.86 1", "0.72 0.74 0.76 1"
+_COLOURS = {"grey": "0.45 0.46 0.48 1", "green": "0.25 0.50 0.30 1", "yellow": "0.80 0.68 0.25 1"}
+_TOP = 0.03
+
+
+def _box(name: str, center: Sequence[float], size: Sequence[float], rgba: str, yaw: float = 0.0) -> str:
+    half = " ".join(f"{v / 2:.4f}" for v in size)
+    pos = " ".join(f"{v:.4f}" for v in center)
+    return f'<geom name="{name}" type="box" pos="{pos}" size="{half}" euler="0 0 {yaw}" rgba="{rgba}" {STATIC}/>'
+
+
+def _walls(scene: Scene) -> str:
+    parts = []
+    for n, wall in enumerate(scene.walls):
+        dx, dy = wall.end[0] - wall.start[0], wall.end[1] - wall.start[1]
+        length = math.hypot(dx, dy) + wall.thickness
+        center = ((wall.start[0] + wall.end[0]) / 2, (wall.start[1] + wall.end[1]) / 2, wall.height / 2)
+        size = (length, wall.thickness, wall.height)
+        parts.append(_box(f"wall_{n}", center, size, "0.86 0.84 0.80 1", math.atan2(dy, dx)))
+    return "".join(parts)
+
+
+def _furniture(scene: Scene) -> str:
+    parts = []
+    for box in scene.furniture:
+        rgba = " ".join(f"{v:g}" for v in box.rgba)
+        parts.append(_box(box.name.replace(" ", "_"), box.center, box.size, rgba, box.yaw))
+    return "".join(parts)
+
+
+def _table(r: Receptacle, rgba: str) -> str:
+    """A top on four legs."""
+    x, y, z = r.center
+    sx, sy = r.size
+    name = r.name.replace(" ", "_")
+    parts = [_box(name, (0, 0, z - _TOP / 2), (sx, sy, _TOP), rgba)]
+    for n, (i, j) in enumerate(((1, 1), (1, -1), (-1, 1), (-1, -1))):
+        center = (i * (sx / 2 - 0.04), j * (sy / 2 - 0.04), (z - _TOP) / 2)
+        parts.append(_box(f"{name}_leg_{n}", center, (0.05, 0.05, z - _TOP), rgba))
+    return f'<body pos="{x} {y} 0" euler="0 0 {r.yaw}">{"".join(parts)}</body>'
+
+
+def _cabinet(r: Receptacle, rgba: str, top: str) -> str:
+    """A closed body under a top."""
+    x, y, z = r.center
+    sx, sy = r.size
+    name = r.name.replace(" ", "_")
+    body = _box(f"{name}_body", (0, 0, (z - _TOP) / 2), (sx - 0.02, sy - 0.02, z - _TOP), rgba)
+    return (
+        f'<body pos="{x} {y} 0" euler="0 0 {r.yaw}">{body}'
+        f"{_box(name, (0, 0, z - _TOP / 2), (sx, sy, _TOP), top)}</body>"
+    )
+
+
+def _bin(r: Receptacle, rgba: str) -> str:
+    """An open box: a floor and four walls of 15 mm."""
+    x, y, z = r.center
+    sx, sy = r.size
+    wall, name = 0.015, r.name.replace(" ", "_")
+    parts = [_box(name, (0, 0, z / 2), (sx, sy, max(z, 0.01)), rgba)]
+    for n, (i, j) in enumerate(((1, 0), (-1, 0), (0, 1), (0, -1))):
+        center = (i * (sx + wall) / 2, j * (sy + wall) / 2, r.depth / 2)
+        size = (wall if i else sx + 2 * wall, wall if j else sy + 2 * wall, r.depth)
+        parts.append(_box(f"{name}_wall_{n}", center, size, rgba))
+    return f'<body pos="{x} {y} 0" euler="0 0 {r.yaw}">{"".join(parts)}</body>'
+
+
+def _receptacle(r: Receptacle) -> str:
+    if r.kind == "bin":
+        return _bin(r, _COLOURS.get(r.colour, _COLOURS["grey"]))
+    if r.kind == "table":
+        return _table(r, _WOOD)
+    if r.kind == "tray":
+        return _cabinet(r, "0.35 0.36 0.40 1", "0.20 0.55 0.55 1")
+    return _cabinet(r, _WHITE if r.kind == "counter" else _WOOD, _STEEL if r.kind == "counter" else _WOOD)
+
+
+def world_mjcf(scene: Scene, placements: Sequence[Placement], mocap: str = "") -> str:
+    """The complete model. `mocap` adds bodies of moving obstacles."""
+    lights = "".join(
+        f'<light pos="{(r.low[0] + r.high[0]) / 2} {(r.low[1] + r.high[1]) / 2} 3.5" dir="0 0 -1" '
+        'diffuse="0.35 0.35 0.34" specular="0.05 0.05 0.05" castshadow="false"/>'
+        for r in scene.rooms
+    )
+    center = ((scene.low[0] + scene.high[0]) / 2, (scene.low[1] + scene.high[1]) / 2)
+    extent = (scene.high[0] - scene.low[0] + 2, scene.high[1] - scene.low[1] + 2)
+    bodies = "".join(objects.body_xml(p.spec, p.position, p.yaw) for p in placements)
+    return f"""<mujoco model="{scene.name}">
+<compiler angle="radian" autolimits="true"/>
+<option timestep="0.002" integrator="implicitfast" cone="elliptic" impratio="10" jacobian="dense"/>
+<statistic center="{center[0]} {center[1]} 0.5" extent="6"/>
+<visual>
+  <global offwidth="1280" offheight="960"/>
+  <quality offsamples="0" shadowsize="0"/>
+  <headlight ambient="0.35 0.35 0.35" diffuse="0.25 0.25 0.25" specular="0 0 0"/>
+  <map znear="0.005" zfar="30"/>
+</visual>
+<asset>
+  <texture name="sky" type="skybox" builtin="gradient" rgb1=".75 .82 .90" rgb2=".95 .96 .98" width="64" height="64"/>
+  <texture name="floor" type="2d" builtin="checker" rgb1=".72 .66 .58" rgb2=".68 .62 .54" width="128" height="128"/>
+  <material name="floor" texture="floor" texrepeat="{extent[0]:.0f} {extent[1]:.0f}"/>
+</asset>
+<worldbody>
+  {lights}
+  <geom name="floor" type="plane" pos="{center[0]} {center[1]} 0" size="{extent[0] / 2} {extent[1] / 2} 0.1"
+        material="floor" {STATIC}/>
+  {_walls(scene)}{_furniture(scene)}{"".join(_receptacle(r) for r in scene.receptacles)}
+  {robot.body_xml()}
+  {bodies}
+  {mocap}
+</worldbody>
+{robot.actuators_xml()}
+{robot.equality_xml()}
+</mujoco>"""
