@@ -106,6 +106,7 @@ BY_KEY: dict[str, Topic[Any]] = {t.key: t for t in TABLE}
 HEALTH_KEY = "service/{name}/health"
 ALIVE_KEY = "service/{name}/alive"
 LOG_KEY = "log/{name}"
+BRAIN_MISSIONS = "brain/missions"
 SIM_RESET, SIM_PAUSE, SIM_SNAPSHOT, SIM_TRUTH = "sim/reset", "sim/pause", "sim/snapshot", "sim/truth"
 
 

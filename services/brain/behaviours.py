@@ -1,0 +1,247 @@
+"""Leaves and decorators of the trees, on the robot's clock. Every wait has an end."""
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+from py_trees.behaviour import Behaviour
+from py_trees.common import Status
+from py_trees.decorators import Decorator
+
+from common import messages as m
+from common import topics
+from common.topics import Topic
+from services.brain.context import Context
+from services.brain.goals import Answer, Channel
+from services.brain.mission import Failure
+
+MAX_RESENDS = 5
+
+
+class Leaf(Behaviour):
+    """A leaf that knows the context and when it began."""
+
+    def __init__(self, name: str, ctx: Context) -> None:
+        super().__init__(name)
+        self.ctx = ctx
+        self.since = 0.0
+
+    def initialise(self) -> None:
+        self.since = self.ctx.now
+        self.feedback_message = ""
+
+    @property
+    def elapsed(self) -> float:
+        return self.ctx.now - self.since
+
+
+class Settle(Leaf):
+    """Lets physics come to rest before the next goal."""
+
+    def update(self) -> Status:
+        return Status.SUCCESS if self.elapsed >= self.ctx.config.settle else Status.RUNNING
+
+
+class Do(Leaf):
+    """Calls a function once; SUCCESS unless it returns False."""
+
+    def __init__(self, name: str, ctx: Context, act: Callable[[], bool | None]) -> None:
+        super().__init__(name, ctx)
+        self._act = act
+
+    def update(self) -> Status:
+        return Status.FAILURE if self._act() is False else Status.SUCCESS
+
+
+class Goal(Leaf):
+    """Sends one goal to one peer and waits for its final word.
+
+    Sent once a peer subscribes. Sent again with the next attempt after `failed` (at most `retries` times, a settle
+    later) and after the peer's process was replaced. Subclasses say what to send and what the answer means.
+    """
+
+    def __init__(
+        self, name: str, ctx: Context, channel: Channel, *, state: m.BrainStateName, timeout: float, retries: int = 0
+    ) -> None:
+        super().__init__(name, ctx)
+        self.channel, self.state = channel, state
+        self._timeout, self._retries = timeout, retries
+        self._sent_at: float | None = None
+        self._again_at: float | None = None
+        self._tries = self._resends = 0
+
+    # --- for subclasses
+    def goal(self, goal_id: str) -> tuple[Topic[Any], m.Message]:
+        raise NotImplementedError
+
+    def step(self) -> str:
+        """The step as shown on `brain/state`."""
+        return self.name
+
+    def spoken(self) -> str:
+        """What to say when this fails for good."""
+        return f"I could not {self.name}."
+
+    def done(self, answer: Answer) -> Status:
+        return Status.SUCCESS
+
+    def unfinished(self) -> None:
+        """The goal was cut short or timed out: its effect on the world is unknown."""
+
+    def give_up(self, failure: Failure) -> Status:
+        self.ctx.fail(failure)
+        return Status.FAILURE
+
+    # --- lifecycle
+    def initialise(self) -> None:
+        super().initialise()
+        self._sent_at = self._again_at = None
+        self._tries = self._resends = 0
+
+    def update(self) -> Status:
+        ctx, channel = self.ctx, self.channel
+        if self._again_at is not None:
+            if ctx.now < self._again_at:
+                return Status.RUNNING
+            self._again_at, self._sent_at = None, ctx.now
+            channel.again()
+            return Status.RUNNING
+        if self._sent_at is None:
+            return self._send()
+        answer = channel.answer
+        if answer is not None and answer.word == "ok":
+            channel.abandon()
+            return self.done(answer)
+        if answer is not None and answer.word == "failed":
+            return self._failed(answer.code or "FAILED", answer.detail)
+        if channel.restarted:
+            return self._resend()
+        if channel.gone(ctx.now) > ctx.config.peer_timeout:
+            return self._failed("NO_PEER", f"{channel.peer} is gone")
+        if ctx.now - self._sent_at > self._timeout:
+            self.unfinished()
+            return self._failed("TIMEOUT", f"no answer in {self._timeout:.0f} s")
+        if answer is not None:
+            self.feedback_message = answer.detail
+        return Status.RUNNING
+
+    def terminate(self, new_status: Status) -> None:
+        if new_status == Status.INVALID and self.status == Status.RUNNING:
+            if self._sent_at is not None:
+                self.unfinished()
+            self.channel.abandon()
+
+    def _send(self) -> Status:
+        ctx = self.ctx
+        ctx.enter(self.state, self.step())
+        topic, message = self.goal(f"{ctx.mission.id}.{ctx.mission.goals + 1}")
+        if not ctx.io.matched(topic):
+            if self.elapsed > ctx.config.peer_timeout:
+                return self._failed("NO_PEER", f"{self.channel.peer} does not answer")
+            self.feedback_message = f"waiting for {self.channel.peer}"
+            return Status.RUNNING
+        ctx.mission.next_goal()
+        self.channel.send(topic, message)
+        self._sent_at = ctx.now
+        self.feedback_message = ""
+        return Status.RUNNING
+
+    def _resend(self) -> Status:
+        self._resends += 1
+        if self._resends > MAX_RESENDS:
+            return self._failed("NO_PEER", f"{self.channel.peer} keeps restarting")
+        self.ctx.note(f"{self.channel.peer} restarted", f"attempt {self.channel.attempt + 1}")
+        self.channel.again()
+        self._sent_at = self.ctx.now
+        return Status.RUNNING
+
+    def _failed(self, code: str, detail: str) -> Status:
+        self.channel.abandon()
+        failure = Failure(stage=self.state, code=code, detail=detail, spoken=self.spoken())
+        if self._tries < self._retries and not failure.permanent:
+            self._tries += 1
+            self._again_at = self.ctx.now + self.ctx.config.settle
+            self.feedback_message = f"retry {self._tries} of {self._retries} after {code}"
+            self.ctx.note(f"{self.step()}: {self.feedback_message}", detail)
+            return Status.RUNNING
+        self.feedback_message = code
+        return self.give_up(failure)
+
+
+class Say(Leaf):
+    """Speaks without depending on speech: ends when speech has spoken, or after as long as the words take."""
+
+    def __init__(self, name: str, ctx: Context, text: Callable[[], str]) -> None:
+        super().__init__(name, ctx)
+        self._text = text
+        self._goal_id = ""
+        self._heard = False
+        self._estimate = 0.0
+
+    def initialise(self) -> None:
+        super().initialise()
+        ctx, text = self.ctx, " ".join(self._text().split())
+        self._heard, self._goal_id = False, ""
+        if text and ctx.io.matched(topics.SPEECH_GOAL):
+            self._goal_id = ctx.tell(ctx.speech, topics.SPEECH_GOAL, f"say {text}")
+        self._estimate = min(1.0 + 0.07 * len(text), ctx.config.say_timeout)
+        self.feedback_message = text
+
+    def update(self) -> Status:
+        if not self._goal_id:
+            return Status.SUCCESS
+        status = self.ctx.speaking
+        speaking = status is not None and status.goal_id == self._goal_id and status.state == "speaking"
+        if self._heard and not speaking:
+            return Status.SUCCESS
+        self._heard = self._heard or speaking
+        limit = self.ctx.config.say_timeout if self._heard else self._estimate
+        return Status.SUCCESS if self.elapsed >= limit else Status.RUNNING
+
+
+class Attempts(Decorator):
+    """Runs its child again after a failure, at most `retries` times, a settle later, if `again()` agrees."""
+
+    def __init__(self, name: str, ctx: Context, child: Behaviour, retries: int, again: Callable[[], bool]) -> None:
+        super().__init__(name=name, child=child)
+        self._ctx, self._retries, self._again = ctx, retries, again
+        self.used = 0
+        self._resume_at = 0.0
+
+    def initialise(self) -> None:
+        self.used, self._resume_at, self.feedback_message = 0, 0.0, ""
+
+    def tick(self) -> Iterator[Behaviour]:
+        if self.status == Status.RUNNING and self._ctx.now < self._resume_at:
+            yield self
+            return
+        yield from super().tick()
+
+    def update(self) -> Status:
+        if self.decorated.status != Status.FAILURE or self.used >= self._retries or not self._again():
+            return self.decorated.status
+        self.used += 1
+        self._resume_at = self._ctx.now + self._ctx.config.settle
+        self.feedback_message = f"retry {self.used} of {self._retries}"
+        self._ctx.note(f"{self.name}: {self.feedback_message}")
+        return Status.RUNNING
+
+
+class When(Decorator):
+    """Runs its child only when the condition holds at the start; ends with `otherwise` if not."""
+
+    def __init__(
+        self, name: str, child: Behaviour, condition: Callable[[], bool], otherwise: Status = Status.SUCCESS
+    ) -> None:
+        super().__init__(name=name, child=child)
+        self._condition, self._otherwise = condition, otherwise
+
+    def tick(self) -> Iterator[Behaviour]:
+        if self.status != Status.RUNNING and not self._condition():
+            self.decorated.stop(Status.INVALID)
+            self.stop(self._otherwise)
+            yield self
+            return
+        yield from super().tick()
+
+    def update(self) -> Status:
+        return self.decorated.status

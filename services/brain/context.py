@@ -1,0 +1,128 @@
+"""What the leaves of both trees share: time, bus, mission, hand, channels, and the state shown to the world."""
+
+from typing import Any
+
+import msgspec
+
+from common import messages as m
+from common import topics
+from common.io import Io
+from common.topics import Topic
+from services.brain.config import BrainConfig
+from services.brain.goals import Channel
+from services.brain.journal import Entry, Journal
+from services.brain.mission import SYSTEM_STATE, Failure, Hand, Mission, Outcome
+
+
+class Context:
+    """One per brain; `now` is set before every tick of the tree."""
+
+    def __init__(self, config: BrainConfig, io: Io, journal: Journal) -> None:
+        self.config, self.io, self.journal = config, io, journal
+        self.now = 0.0
+        self.speech = Channel(io, "speech")
+        self.navigation = Channel(io, "navigation")
+        self.manipulation = Channel(io, "manipulation")
+        self.planner = Channel(io, "planner")
+        self.perception = Channel(io, "perception")
+        self.channels = (self.speech, self.navigation, self.manipulation, self.planner, self.perception)
+        self.mission = Mission(id=io.new_id("mission"))
+        self.hand = Hand()
+        self.stopped: str | None = None
+        self.command: m.VoiceCommand | None = None
+        self.listen_after = 0.0
+        self.speaking: m.SpeechStatus | None = None
+        self.last: m.MissionOutcome | None = None
+        self.shown = m.BrainState(state="IDLE", pipeline=config.pipeline, detail="starting")
+        self._publish_state()
+
+    # --- the world's view
+    @property
+    def state(self) -> m.BrainStateName:
+        return self.shown.state
+
+    def enter(self, state: m.BrainStateName, step: str = "", detail: str = "", cause: str = "") -> None:
+        """Show a state; a change is published at once and noted in the journal."""
+        mission, before = self.mission, self.shown
+        running = mission.active or state in ("COMPLETED", "ERROR")
+        self.shown = m.BrainState(
+            state=state,
+            t=self.now,
+            mission_id=mission.id if running else "",
+            command=mission.command if running else "",
+            step=step,
+            detail=detail,
+            started=mission.started if running else 0.0,
+            pipeline=self.config.pipeline,
+            last=self.last,
+        )
+        if _same(before, self.shown):
+            self.shown = before
+            return
+        self._publish_state()
+        if before.state != state or before.step != step:
+            self.note(cause or step or state, detail)
+            self.io.log.info(
+                "state", mission=self.shown.mission_id, state=state, step=step, detail=detail, was=before.state
+            )
+
+    def _publish_state(self) -> None:
+        self.io.publish(topics.BRAIN_STATE, self.shown)
+        status = m.SystemStatus(
+            state=SYSTEM_STATE[self.shown.state],
+            mission_id=self.shown.mission_id,
+            detail=self.shown.detail or self.shown.step,
+        )
+        self.io.publish(topics.SYSTEM_STATUS, status)
+
+    def note(self, cause: str, evidence: str = "") -> None:
+        self.journal.note(self.mission.id, Entry(self.now, self.shown.state, cause, evidence))
+
+    # --- the mission
+    def renew(self) -> None:
+        """A fresh mission once the last one has ended."""
+        if self.mission.outcome is not None:
+            self.mission = Mission(id=self.io.new_id("mission"))
+
+    def accept(self, text: str, confidence: float, source: str) -> None:
+        """The mission begins with this command."""
+        mission = self.mission
+        mission.command, mission.confidence, mission.started = text, confidence, self.now
+        self.journal.begin(mission)
+        self.note(f"{source}: {text}", f"confidence {confidence:.2f}")
+
+    def fail(self, failure: Failure) -> None:
+        self.mission.failure = failure
+        self.note(f"failed: {failure.stage}", failure.reason)
+        self.io.log.warning("step failed", stage=failure.stage, code=failure.code, detail=failure.detail)
+
+    def finish(self, outcome: Outcome, reason: str) -> None:
+        """The mission's outcome; shown with the next state."""
+        mission = self.mission
+        mission.outcome = outcome
+        self.last = m.MissionOutcome(id=mission.id, command=mission.command, outcome=outcome, reason=reason, t=self.now)
+        self.note(outcome, reason)
+        self.journal.end(mission, outcome, reason, self.now)
+        self.io.log.info("mission ended", outcome=outcome, reason=reason)
+
+    def tell(self, channel: Channel, topic: Topic[Any], text: str) -> str:
+        """Send a goal nobody waits for; returns its id."""
+        goal_id = self.mission.next_goal()
+        channel.tell(topic, topic.type(goal=text, id=goal_id))
+        return goal_id
+
+    def quiet(self) -> None:
+        """Tell every peer of an ended mission to stop what it does for it."""
+        if self.speech.outstanding:
+            self.tell(self.speech, topics.SPEECH_GOAL, "cancel")
+        self.tell(self.navigation, topics.NAVIGATION_GOAL, "stop")
+        self.tell(self.manipulation, topics.MANIPULATION_GOAL, "stop")
+
+    def known_object(self, label: str) -> m.WorldObject | None:
+        """The object of that name as last surveyed."""
+        world = self.io.latest(topics.WORLD_OBJECTS)
+        return next((o for o in world.objects if o.label == label), None) if world else None
+
+
+def _same(a: m.BrainState, b: m.BrainState) -> bool:
+    return msgspec.structs.replace(a, t=0.0) == msgspec.structs.replace(b, t=0.0)

@@ -1,0 +1,105 @@
+"""Goals under way: which answer counts, and when a goal has to be sent again."""
+
+from collections import deque
+from typing import Any, Literal
+
+import msgspec
+
+from common import messages as m
+from common.io import Io
+from common.topics import Topic
+
+Word = Literal["busy", "ok", "failed"]
+_RECENT = 32
+
+
+class Answer(msgspec.Struct, frozen=True):
+    """A peer's word on the outstanding goal; `message` is what it sent."""
+
+    word: Word
+    code: str = ""
+    detail: str = ""
+    message: m.Message | None = None
+
+
+class Channel:
+    """One goal at a time to one peer process.
+
+    An answer counts when it names the outstanding goal and attempt. A peer of bare texts names none: its answers
+    count for whatever is outstanding. Nothing counts that arrived before the goal was sent.
+    """
+
+    def __init__(self, io: Io, peer: str) -> None:
+        self._io, self.peer = io, peer
+        self.goal_id = ""
+        self.attempt = 0
+        self.answer: Answer | None = None
+        self.ignored = 0
+        self._topic: Topic[Any] | None = None
+        self._message: Any = None
+        self._epoch = self._known = ""
+        self._gone_since: float | None = None
+        self._recent: deque[str] = deque(maxlen=_RECENT)
+
+    @property
+    def outstanding(self) -> bool:
+        return bool(self.goal_id)
+
+    def send(self, topic: Topic[Any], message: Any) -> None:
+        """A new goal; its `id` must be fresh."""
+        self.goal_id, self.attempt, self.answer = message.id, getattr(message, "attempt", 0), None
+        self._recent.append(message.id)
+        self._topic, self._message = topic, message
+        present = self._io.peer(self.peer)
+        self._epoch = self._known if present is None else present
+        self._io.publish(topic, message)
+
+    def tell(self, topic: Topic[Any], message: Any) -> None:
+        """Send without waiting for an answer."""
+        self._recent.append(message.id)
+        self._io.publish(topic, message)
+
+    def again(self) -> None:
+        """The same goal with the next attempt number."""
+        if self._topic is None:
+            raise RuntimeError(f"no goal to {self.peer} was sent yet")
+        if self.attempt:
+            self._message = msgspec.structs.replace(self._message, attempt=self.attempt + 1)
+        self.send(self._topic, self._message)
+
+    def abandon(self) -> None:
+        """No answer is awaited any more."""
+        self.goal_id, self.answer = "", None
+
+    def offer(self, goal_id: str, attempt: int, answer: Answer) -> bool:
+        """Take an answer if it counts; the first final word stands. An attempt of 0 is one the peer did not state."""
+        ours = not goal_id or (goal_id == self.goal_id and (not attempt or not self.attempt or attempt == self.attempt))
+        if not self.outstanding or not ours:
+            self.ignored += 1
+            if goal_id and goal_id not in self._recent:
+                self._io.count_drop(f"{self.peer} answers", f"answer to a goal that is not ours: {goal_id[:40]!r}")
+            return False
+        if self.answer is None or self.answer.word == "busy":
+            self.answer = answer
+        return True
+
+    # --- the peer's process
+    def watch(self, now: float) -> None:
+        """Once a step: remember the peer's epoch and since when it is gone."""
+        present = self._io.peer(self.peer)
+        if present:
+            self._known = present
+            self._epoch = self._epoch or present
+        if present is None and self._known:
+            self._gone_since = now if self._gone_since is None else self._gone_since
+        else:
+            self._gone_since = None
+
+    @property
+    def restarted(self) -> bool:
+        """The process that got the goal is not the one that is alive now."""
+        return self.outstanding and bool(self._epoch) and self._known != self._epoch
+
+    def gone(self, now: float) -> float:
+        """Seconds since a peer that once lived is gone; 0 while alive or never seen."""
+        return 0.0 if self._gone_since is None else now - self._gone_since

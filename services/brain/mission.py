@@ -1,0 +1,112 @@
+"""A mission as data: what was asked, how far it came, what is in the hand, why it failed. No bus, no clock."""
+
+from collections.abc import Mapping
+from typing import Literal
+
+import msgspec
+
+from common import messages as m
+
+Outcome = Literal["delivered", "failed", "cancelled"]
+
+SYSTEM_STATE: Mapping[m.BrainStateName, m.SystemStateName] = {
+    "IDLE": "IDLE",
+    "WAITING": "IDLE",
+    "LISTENING": "LISTENING",
+    "CONFIRMING": "LISTENING",
+    "PLANNING": "PLANNING",
+    "GROUNDING": "GROUNDING",
+    "NAVIGATING": "NAVIGATING",
+    "RETURNING": "NAVIGATING",
+    "GRABBING": "EXECUTING",
+    "RELEASING": "EXECUTING",
+    "COMPLETED": "SUCCESS",
+    "ERROR": "ERROR",
+}
+"""The brain's states folded onto the eight names of `system_status`."""
+
+GRIPPER_EMPTY = 0.003
+GRIPPER_OPEN = 0.080
+HOLDING_FORCE = 2.0
+
+
+class Failure(msgspec.Struct, frozen=True):
+    """Why a step failed: `spoken` is a sentence for people, `code` and `detail` are the peer's own words."""
+
+    stage: str
+    code: str
+    detail: str = ""
+    spoken: str = ""
+
+    @property
+    def permanent(self) -> bool:
+        """True when trying the same again cannot help, or somebody else has taken the robot over."""
+        return self.code.startswith("UNKNOWN_") or self.code in ("PREEMPTED", "STOPPED", "CANCELLED", "NO_PEER")
+
+    @property
+    def reason(self) -> str:
+        why = ": ".join(part for part in (self.code, self.detail) if part)
+        return " ".join(part for part in (self.spoken, f"({self.stage}: {why})" if why else "") if part)
+
+
+class Mission(msgspec.Struct):
+    """One command from hearing to outcome. Goal ids are `<id>.<n>`."""
+
+    id: str
+    command: str = ""
+    confidence: float = 1.0
+    started: float = 0.0
+    item: str = ""
+    label: str = ""
+    kind: str = ""
+    goals: int = 0
+    grabbed: bool = False
+    released: bool = False
+    failure: Failure | None = None
+    outcome: Outcome | None = None
+    plan: list[m.PlanStep] = []
+    step: int = 0
+
+    def next_goal(self) -> str:
+        self.goals += 1
+        return f"{self.id}.{self.goals}"
+
+    @property
+    def active(self) -> bool:
+        """A command was accepted and has not ended."""
+        return bool(self.command) and self.outcome is None
+
+
+class Hand(msgspec.Struct):
+    """What the brain believes is in the gripper. `uncertain` after an interrupted grab or release."""
+
+    holding: str = ""
+    uncertain: str = ""
+
+    def grabbed(self, label: str) -> None:
+        self.holding, self.uncertain = label, ""
+
+    def released(self) -> None:
+        self.holding = self.uncertain = ""
+
+    def interrupted(self, label: str) -> None:
+        """A grab or release of `label` was cut short; the fingers decide later."""
+        self.uncertain = label
+
+    def look(self, evidence: bool | None) -> None:
+        """Settle an uncertainty by what the fingers feel; with no evidence the old belief stays."""
+        if self.uncertain and evidence is not None:
+            self.holding = self.uncertain if evidence else ""
+            self.uncertain = ""
+
+
+def fingers_hold(joints: m.JointStates | None) -> bool | None:
+    """Do width [m] and force [N] of the gripper speak of an object between the pads? None: no gripper reported."""
+    if joints is None or "gripper" not in joints.name:
+        return None
+    index = joints.name.index("gripper")
+    if index >= len(joints.position):
+        return None
+    width = joints.position[index]
+    effort = abs(joints.effort[index]) if index < len(joints.effort) else 0.0
+    return GRIPPER_EMPTY < width < GRIPPER_OPEN and effort > HOLDING_FORCE

@@ -1,0 +1,191 @@
+"""Leaves that move the robot, and those that begin and end a mission; both pipelines use them."""
+
+from collections.abc import Callable
+from typing import Any
+
+from py_trees.common import Status
+
+from common import messages as m
+from common import topics
+from common.topics import Topic
+from services.brain.behaviours import Goal, Leaf
+from services.brain.context import Context
+from services.brain.goals import Answer
+from services.brain.mission import Failure
+
+Text = Callable[[], str]
+
+
+class Drive(Goal):
+    """A navigation goal in words."""
+
+    def __init__(self, name: str, ctx: Context, text: Text, spoken: Text, state: m.BrainStateName) -> None:
+        config = ctx.config
+        super().__init__(
+            name,
+            ctx,
+            ctx.navigation,
+            state=state,
+            timeout=config.navigation_timeout,
+            retries=config.navigation_retries,
+        )
+        self._text, self._spoken = text, spoken
+
+    def step(self) -> str:
+        return self._text()
+
+    def goal(self, goal_id: str) -> tuple[Topic[Any], m.Message]:
+        return topics.NAVIGATION_GOAL, m.NavigationGoal(goal=self._text(), id=goal_id)
+
+    def spoken(self) -> str:
+        return self._spoken()
+
+    def give_up(self, failure: Failure) -> Status:
+        if failure.code == "TIMEOUT":
+            self.ctx.tell(self.ctx.navigation, topics.NAVIGATION_GOAL, "stop")
+        return super().give_up(failure)
+
+
+class Manipulate(Goal):
+    """A manipulation goal in words; `about` gives the object it concerns."""
+
+    def __init__(
+        self,
+        name: str,
+        ctx: Context,
+        text: Text,
+        about: Callable[[], m.ObjectRef | None],
+        *,
+        state: m.BrainStateName,
+        retries: int = 0,
+    ) -> None:
+        super().__init__(
+            name, ctx, ctx.manipulation, state=state, timeout=ctx.config.manipulation_timeout, retries=retries
+        )
+        self._text, self._about = text, about
+
+    def step(self) -> str:
+        return self._text()
+
+    def goal(self, goal_id: str) -> tuple[Topic[Any], m.Message]:
+        message = m.ManipulationGoal(goal=self._text(), id=goal_id, object=self._about())
+        return topics.MANIPULATION_GOAL, message
+
+    def give_up(self, failure: Failure) -> Status:
+        if failure.code == "TIMEOUT":
+            self.ctx.tell(self.ctx.manipulation, topics.MANIPULATION_GOAL, "stop")
+        return super().give_up(failure)
+
+
+class Grab(Manipulate):
+    """Holding is believed only after `done`."""
+
+    def __init__(self, name: str, ctx: Context, label: Text, about: Callable[[], m.ObjectRef | None]) -> None:
+        super().__init__(name, ctx, lambda: "grab", about, state="GRABBING")
+        self._label = label
+
+    def done(self, answer: Answer) -> Status:
+        self.ctx.hand.grabbed(self._label())
+        self.ctx.mission.grabbed = True
+        return Status.SUCCESS
+
+    def unfinished(self) -> None:
+        self.ctx.hand.interrupted(self._label())
+
+    def spoken(self) -> str:
+        return f"I could not pick up the {self._label()}."
+
+
+class Release(Manipulate):
+    """`release` or `place <receptacle>`; while it is not `done` the object counts as held."""
+
+    def __init__(self, name: str, ctx: Context, text: Text = lambda: "release") -> None:
+        super().__init__(name, ctx, text, lambda: None, state="RELEASING", retries=ctx.config.release_retries)
+
+    def done(self, answer: Answer) -> Status:
+        self.ctx.hand.released()
+        self.ctx.mission.released = True
+        return Status.SUCCESS
+
+    def unfinished(self) -> None:
+        self.ctx.hand.interrupted(self.ctx.hand.holding)
+
+    def spoken(self) -> str:
+        return f"I could not put down the {self.ctx.hand.holding or 'object'}."
+
+
+class Ready(Leaf):
+    """IDLE until joint states flow, speech is there, and the robot is not stopped."""
+
+    def update(self) -> Status:
+        ctx = self.ctx
+        if ctx.stopped is not None:
+            missing = (
+                f"stopped ({ctx.stopped}); waiting for robot/resume" if ctx.stopped else "waiting for robot/resume"
+            )
+        elif ctx.io.latest(topics.JOINT_STATES) is None:
+            missing = "waiting for joint_states"
+        elif not ctx.io.matched(topics.SPEECH_GOAL):
+            missing = "waiting for speech"
+        else:
+            return Status.SUCCESS
+        ctx.enter("IDLE", detail=missing)
+        self.feedback_message = missing
+        return Status.RUNNING
+
+
+class Wait(Leaf):
+    """WAITING: for the pause before listening to end, or for a command from anybody."""
+
+    def __init__(self, name: str, ctx: Context, ends: Callable[[], bool]) -> None:
+        super().__init__(name, ctx)
+        self._ends = ends
+
+    def update(self) -> Status:
+        ctx = self.ctx
+        ctx.renew()
+        if not ctx.mission.active:
+            ctx.enter("WAITING")
+        take_command(ctx)
+        return Status.SUCCESS if ctx.mission.active or self._ends() else Status.RUNNING
+
+
+class Listen(Goal):
+    """Hears a command; silence and `ERROR` cost the pause before the next listening, not a mission."""
+
+    def __init__(self, name: str, ctx: Context) -> None:
+        limit = ctx.config.listen_timeout + ctx.config.listen_grace
+        super().__init__(name, ctx, ctx.speech, state="LISTENING", timeout=limit)
+
+    def update(self) -> Status:
+        ctx = self.ctx
+        if not ctx.mission.active and take_command(ctx) and self.channel.outstanding:
+            self.channel.abandon()
+            ctx.tell(ctx.speech, topics.SPEECH_GOAL, "cancel")
+        return Status.SUCCESS if ctx.mission.active else super().update()
+
+    def step(self) -> str:
+        return "listen"
+
+    def goal(self, goal_id: str) -> tuple[Topic[Any], m.Message]:
+        return topics.SPEECH_GOAL, m.SpeechGoal(goal="listen", id=goal_id)
+
+    def done(self, answer: Answer) -> Status:
+        ctx, heard = self.ctx, answer.message
+        assert isinstance(heard, m.SpeechResult)
+        ctx.accept(heard.text.strip(), heard.confidence, "heard")
+        return Status.SUCCESS
+
+    def give_up(self, failure: Failure) -> Status:
+        self.ctx.listen_after = self.ctx.now + self.ctx.config.speech_retry_delay
+        self.ctx.io.log.info("nothing heard", code=failure.code, detail=failure.detail)
+        return Status.FAILURE
+
+
+def take_command(ctx: Context) -> bool:
+    """Begin the mission of a waiting `voice_command`, if there is one."""
+    command, ctx.command = ctx.command, None
+    if command is None:
+        return False
+    ctx.accept(command.text.strip(), command.confidence, "voice_command")
+    return True

@@ -1,0 +1,162 @@
+"""The brain: receives, ticks the tree, shows state and tree."""
+
+import msgspec
+from py_trees.common import Status
+
+from common import messages as m
+from common import topics
+from common.io import Io
+from services.brain.config import BrainConfig
+from services.brain.context import Context
+from services.brain.goals import Answer, Channel, Word
+from services.brain.intent import CANCEL, RETURN, STOP, normal
+from services.brain.journal import MemoryJournal
+from services.brain.mission import Failure
+from services.brain.snapshot import Signature, signature, snapshot
+from services.brain.trees import fetch_tree
+
+_NAVIGATION: dict[m.NavStatus, Word] = {"navigating": "busy", "arrived": "ok", "failed": "failed"}
+_MANIPULATION: dict[m.ManipStatus, Word] = {"executing": "busy", "done": "ok", "failed": "failed"}
+
+
+class BrainService:
+    """Orchestrates speech, navigation and manipulation into missions."""
+
+    NAME = "brain"
+    HZ = 20
+    CONFIG = BrainConfig
+    READS = (
+        topics.SPEECH_RESULT,
+        topics.SPEECH_STATUS,
+        topics.VOICE_COMMAND,
+        topics.NAVIGATION_STATUS,
+        topics.NAVIGATION_FEEDBACK,
+        topics.MANIPULATION_STATUS,
+        topics.ACTION_PLAN,
+        topics.OBJECT_POSE,
+        topics.WORLD_OBJECTS,
+        topics.JOINT_STATES,
+        topics.SIM_STATUS,
+        topics.ROBOT_STOP,
+        topics.ROBOT_RESUME,
+    )
+    WRITES = (
+        topics.SPEECH_GOAL,
+        topics.NAVIGATION_GOAL,
+        topics.NAV_GOAL,
+        topics.MANIPULATION_GOAL,
+        topics.PLAN_REQUEST,
+        topics.OBJECT_QUERY,
+        topics.BRAIN_STATE,
+        topics.BRAIN_TREE,
+        topics.SYSTEM_STATUS,
+    )
+
+    def __init__(self, config: BrainConfig, io: Io) -> None:
+        self._io = io
+        self._journal = MemoryJournal()
+        self.context = Context(config, io, self._journal)
+        self.tree = fetch_tree(self.context)
+        self._shown: Signature | None = None
+        self._ticks = 0
+        self._sim_stopped = False
+        io.serve(topics.BRAIN_MISSIONS, self._answer_missions)
+
+    def step(self, now: float) -> None:
+        ctx = self.context
+        ctx.now = now
+        for channel in ctx.channels:
+            channel.watch(now)
+        self._receive_answers()
+        self._receive_stops()
+        self._receive_commands()
+        self.tree.tick_once()
+        self._ticks += 1
+        seen = signature(self.tree)
+        if seen != self._shown:
+            self._shown = seen
+            self._io.publish(topics.BRAIN_TREE, snapshot(self.tree, now, self._ticks))
+
+    # --- answers of the peers
+    def _receive_answers(self) -> None:
+        ctx, io = self.context, self._io
+        for status in io.drain(topics.NAVIGATION_STATUS):
+            self._offer(ctx.navigation, status, _NAVIGATION.get(status.status), status.code, status.detail)
+        for feedback in io.drain(topics.NAVIGATION_FEEDBACK):
+            if ctx.navigation.goal_id and feedback.goal_id == ctx.navigation.goal_id:
+                self._offer(ctx.navigation, feedback, _NAVIGATION.get(feedback.status), feedback.code, "")
+        for done in io.drain(topics.MANIPULATION_STATUS):
+            detail = done.detail or done.phase
+            self._offer(ctx.manipulation, done, _MANIPULATION.get(done.status), done.code, detail)
+        for heard in io.drain(topics.SPEECH_RESULT):
+            text = heard.text.strip()
+            if text:
+                word: Word = "failed" if text == "ERROR" else "ok"
+                self._offer(ctx.speech, heard, word, heard.code, heard.detail)
+        for speech in io.drain(topics.SPEECH_STATUS):
+            ctx.speaking = speech
+        for plan in io.drain(topics.ACTION_PLAN):
+            ctx.planner.offer(plan.request_id, 0, Answer("ok", message=plan))
+        for pose in io.drain(topics.OBJECT_POSE):
+            ctx.perception.offer(pose.query_id, 0, Answer("ok", message=pose))
+        io.drain(topics.WORLD_OBJECTS)
+
+    @staticmethod
+    def _offer(channel: Channel, message: m.Message, word: Word | None, code: str, detail: str) -> None:
+        if word is not None:  # `idle` of a service that has just started is no answer
+            goal_id, attempt = getattr(message, "goal_id", ""), getattr(message, "attempt", 0)
+            channel.offer(goal_id, attempt, Answer(word, code, detail, message))
+
+    # --- people
+    def _receive_stops(self) -> None:
+        ctx, io = self.context, self._io
+        for status in io.drain(topics.SIM_STATUS):
+            stopped = status.state == "stopped"
+            if stopped != self._sim_stopped and status.state != "paused":
+                self._sim_stopped = stopped
+                ctx.stopped = (ctx.stopped or status.detail) if stopped else None
+        for stop in io.drain(topics.ROBOT_STOP):
+            ctx.stopped = stop.reason
+        for _ in io.drain(topics.ROBOT_RESUME):
+            ctx.stopped = None
+        if ctx.stopped is not None and ctx.state != "IDLE":
+            self._interrupt("stopped" + (f": {ctx.stopped}" if ctx.stopped else ""))
+
+    def _receive_commands(self) -> None:
+        ctx = self.context
+        for command in self._io.drain(topics.VOICE_COMMAND):
+            words = normal(command.text)
+            if ctx.mission.active and words in STOP | CANCEL | RETURN:
+                self._interrupt(f"asked to {words}")
+                ctx.command = command if words in RETURN else None
+            elif words in STOP | CANCEL:
+                ctx.command = None
+            elif ctx.state in ("WAITING", "LISTENING", "COMPLETED", "ERROR"):
+                ctx.command = command
+            else:
+                self._io.log.warning("command ignored", text=command.text, state=ctx.state)
+
+    def _interrupt(self, reason: str) -> None:
+        """End the mission under way and everything that is done for it."""
+        ctx = self.context
+        if ctx.mission.active:
+            ctx.quiet()
+            self.tree.stop(Status.INVALID)
+            ctx.mission.failure = Failure(ctx.state, "CANCELLED", reason)
+            held = ctx.hand.holding or ctx.hand.uncertain
+            ctx.finish("cancelled", f"{reason}; holding the {held}" if held else reason)
+        else:
+            if ctx.speech.outstanding:
+                ctx.tell(ctx.speech, topics.SPEECH_GOAL, "cancel")
+            self.tree.stop(Status.INVALID)
+        ctx.listen_after = ctx.now + ctx.config.settle
+        ctx.command = None
+
+    # --- queries
+    def _answer_missions(self, payload: bytes) -> bytes:
+        """All missions, or the timeline of the one whose id is asked for."""
+        if payload:
+            record = self._journal.mission(payload.decode())
+            return msgspec.json.encode(record)
+        rows = [{k: v for k, v in msgspec.to_builtins(r).items() if k != "entries"} for r in self._journal.missions()]
+        return msgspec.json.encode(rows)
