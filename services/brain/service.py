@@ -126,7 +126,9 @@ class BrainService:
         ctx = self.context
         for command in self._io.drain(topics.VOICE_COMMAND):
             words = normal(command.text)
-            if ctx.mission.active and words in STOP | CANCEL | RETURN:
+            if not words:
+                self._io.count_drop(topics.VOICE_COMMAND.key, "no words")
+            elif ctx.mission.active and words in STOP | CANCEL | RETURN:
                 self._interrupt(f"asked to {words}")
                 ctx.command = command if words in RETURN else None
             elif words in STOP | CANCEL:
