@@ -201,9 +201,12 @@ class TreeSnapshot(Message):
 
 
 class VoiceCommand(Message):
+    """A command in words; `confirmed`: the sender vouches for them (typed text), so nobody asks "Did you say ...?"."""
+
     text: str
     confidence: float = 1.0
     id: str = ""
+    confirmed: bool = False
 
 
 class KnownWorld(Message):

@@ -84,9 +84,10 @@ class Context:
         if self.mission.outcome is not None:
             self.mission = Mission(id=self.io.new_id("mission"))
 
-    def accept(self, text: str, confidence: float, source: str) -> None:
+    def accept(self, text: str, confidence: float, source: str, confirmed: bool = False) -> None:
         """The mission begins with this command."""
         mission = self.mission
+        mission.confirmed = confirmed
         mission.command, mission.confidence, mission.started = text, confidence, self.now
         self.journal.begin(mission)
         self.note(f"{source}: {text}", f"confidence {confidence:.2f}")

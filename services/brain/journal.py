@@ -67,6 +67,7 @@ class MemoryJournal:
     def end(self, mission: Mission, outcome: Outcome, reason: str, t: float) -> None:
         record = self._records.get(mission.id)
         if record is not None:
+            record.command = mission.command
             record.outcome, record.reason, record.ended, record.steps = outcome, reason, t, mission.goals
 
     def missions(self) -> list[Record]:

@@ -55,6 +55,7 @@ class Mission(msgspec.Struct):
     id: str
     command: str = ""
     confidence: float = 1.0
+    confirmed: bool = False
     started: float = 0.0
     item: str = ""
     label: str = ""
@@ -65,7 +66,11 @@ class Mission(msgspec.Struct):
     failure: Failure | None = None
     outcome: Outcome | None = None
     plan: list[m.PlanStep] = []
-    step: int = 0
+    rejected: m.RejectedPlan | None = None
+    repeat: bool = False
+    found: dict[str, m.ObjectPose] = {}
+    at: str = ""
+    visited: list[str] = []
 
     def next_goal(self) -> str:
         self.goals += 1

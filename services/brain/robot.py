@@ -187,5 +187,5 @@ def take_command(ctx: Context) -> bool:
     command, ctx.command = ctx.command, None
     if command is None:
         return False
-    ctx.accept(command.text.strip(), command.confidence, "voice_command")
+    ctx.accept(command.text.strip(), command.confidence, "voice_command", command.confirmed)
     return True

@@ -14,6 +14,7 @@ from services.brain.journal import MemoryJournal
 from services.brain.mission import Failure
 from services.brain.snapshot import Signature, signature, snapshot
 from services.brain.trees import fetch_tree
+from services.brain.vla import vla_tree
 
 _NAVIGATION: dict[m.NavStatus, Word] = {"navigating": "busy", "arrived": "ok", "failed": "failed"}
 _MANIPULATION: dict[m.ManipStatus, Word] = {"executing": "busy", "done": "ok", "failed": "failed"}
@@ -36,6 +37,7 @@ class BrainService:
         topics.OBJECT_POSE,
         topics.WORLD_OBJECTS,
         topics.JOINT_STATES,
+        topics.POSE,
         topics.SIM_STATUS,
         topics.ROBOT_STOP,
         topics.ROBOT_RESUME,
@@ -56,7 +58,7 @@ class BrainService:
         self._io = io
         self._journal = MemoryJournal()
         self.context = Context(config, io, self._journal)
-        self.tree = fetch_tree(self.context)
+        self.tree = {"fetch": fetch_tree, "vla": vla_tree}[config.pipeline](self.context)
         self._shown: Signature | None = None
         self._ticks = 0
         self._sim_stopped = False
@@ -133,6 +135,9 @@ class BrainService:
                 ctx.command = command if words in RETURN else None
             elif words in STOP | CANCEL:
                 ctx.command = None
+            elif ctx.state == "CONFIRMING" and ctx.speech.outstanding:
+                heard = m.SpeechResult(text=command.text, confidence=command.confidence)
+                ctx.speech.offer("", 0, Answer("ok", message=heard))
             elif ctx.state in ("WAITING", "LISTENING", "COMPLETED", "ERROR"):
                 ctx.command = command
             else:

@@ -6,8 +6,9 @@ from py_trees.composites import Selector, Sequence
 
 from common import messages as m
 from common import topics
-from services.brain.behaviours import Attempts, Do, Leaf, Say, Settle, When
+from services.brain.behaviours import Do, Leaf, Say, Settle
 from services.brain.context import Context
+from services.brain.decorators import Attempts, When
 from services.brain.intent import parse
 from services.brain.mission import Failure, fingers_hold
 from services.brain.robot import Drive, Grab, Listen, Ready, Release, Wait
@@ -90,9 +91,11 @@ def drive_home(ctx: Context) -> Behaviour:
 
 
 def report_failure(ctx: Context) -> Behaviour:
-    """ERROR with a published and a spoken reason; never fails and never hangs."""
+    """ERROR with a published and a spoken reason; never fails and never hangs. What a person called off is no error."""
     return sequence(
-        "report failure", Do("error", ctx, lambda: enter_error(ctx)), Say("say why", ctx, lambda: spoken_reason(ctx))
+        "report failure",
+        Do("error", ctx, lambda: enter_error(ctx)),
+        Say("say why", ctx, lambda: spoken_reason(ctx)),
     )
 
 
@@ -164,8 +167,11 @@ def enter_error(ctx: Context) -> None:
     if ctx.hand.holding or ctx.hand.uncertain:
         sure = "still" if ctx.hand.holding else "perhaps"
         reason += f"; {sure} holding the {ctx.hand.holding or ctx.hand.uncertain}"
-    ctx.finish("failed", reason)
-    ctx.enter("ERROR", step=failure.stage, detail=reason)
+    if failure.stage == "CONFIRMING" and failure.code == "CANCELLED":
+        ctx.finish("cancelled", reason)
+    else:
+        ctx.finish("failed", reason)
+        ctx.enter("ERROR", step=failure.stage, detail=reason)
     ctx.listen_after = ctx.now + ctx.config.settle
 
 

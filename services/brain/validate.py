@@ -1,0 +1,94 @@
+"""Is a plan possible in the known world? Pure: a plan in, the reason against it out."""
+
+from collections.abc import Sequence
+
+from common.messages import KnownWorld, PlanStep
+from common.scene import Scene
+
+GRIPPER_WIDTH = 0.085
+MAX_STEPS = 60
+
+
+def known_world(scene: Scene, seen: Sequence[str], held: str) -> KnownWorld:
+    """What the planner is told and plans are checked against."""
+    places = [scene.home.name, *(p.name for p in scene.places), *(r.name for r in scene.rooms)]
+    return KnownWorld(
+        objects=list(dict.fromkeys(seen)),
+        places=list(dict.fromkeys(places)),
+        receptacles=[r.name for r in scene.receptacles],
+        held=held,
+    )
+
+
+def objection(steps: Sequence[PlanStep], world: KnownWorld, scene: Scene) -> str:
+    """Why the plan cannot be carried out, as a clause that can be spoken; "" if it can."""
+    if not steps:
+        return "the plan has no steps"
+    if len(steps) > MAX_STEPS:
+        return f"the plan has {len(steps)} steps"
+    held, found = world.held, set[str]()
+    for number, step in enumerate(steps, 1):
+        reason = _objection(step, held, found, world, scene)
+        if reason:
+            return f"step {number}: {reason}"
+        if step.action == "find":
+            found.add(_name(step.object, scene))
+        elif step.action == "grasp":
+            held = step.object
+        elif step.action in ("place", "release"):
+            held = ""
+    return ""
+
+
+def _objection(step: PlanStep, held: str, found: set[str], world: KnownWorld, scene: Scene) -> str:
+    match step.action:
+        case "find":
+            return _not_a_thing(step.object, world, scene)
+        case "grasp":
+            if not_a_thing := _not_a_thing(step.object, world, scene):
+                return not_a_thing
+            if held:
+                return f"the hand already holds the {held}"
+            if _name(step.object, scene) not in found:
+                return f"the {step.object} must be found before it can be grasped"
+            return _too_big(step.object, scene)
+        case "place":
+            if not held:
+                return "there is nothing in the hand to place"
+            return "" if scene.receptacle(step.target) else f"there is no {step.target or 'place'} to put things on"
+        case "release":
+            return "" if held else "there is nothing in the hand to release"
+        case "navigate":
+            where = step.target or step.object
+            return "" if is_destination(where, scene) or not _not_a_thing(where, world, scene) else f"I know no {where}"
+        case "say":
+            return "" if step.text.strip() else "there is nothing to say"
+        case _:
+            return ""
+
+
+def is_destination(name: str, scene: Scene) -> bool:
+    """A place, room or receptacle, by name or alias."""
+    places = any(name == p.name or name in p.aliases for p in (scene.home, *scene.places))
+    return places or any(name == r.name or name in r.aliases for r in scene.rooms) or bool(scene.receptacle(name))
+
+
+def _name(thing: str, scene: Scene) -> str:
+    spec = scene.object(thing)
+    return spec.name if spec else thing
+
+
+def _not_a_thing(thing: str, world: KnownWorld, scene: Scene) -> str:
+    if not thing:
+        return "no object is named"
+    if scene.object(thing) or thing in world.objects or thing in {o.kind for o in scene.objects}:
+        return ""
+    return f"I know no {thing} that I could pick up"
+
+
+def _too_big(thing: str, scene: Scene) -> str:
+    """Bowls are gripped at the rim; everything else between the pads."""
+    spec = scene.object(thing)
+    if spec is None or spec.kind == "bowl" or min(spec.size) <= GRIPPER_WIDTH:
+        return ""
+    return f"the {thing} does not fit into the gripper"

@@ -1,0 +1,197 @@
+"""The VLA pipeline as a tree: listen, confirm, plan, then the plan's steps, each with its fallbacks, then report."""
+
+from collections.abc import Iterator
+
+from py_trees.behaviour import Behaviour
+from py_trees.common import Status
+from py_trees.composites import Sequence
+
+from common.messages import PlanStep
+from services.brain.behaviours import Do, Leaf, Say, Settle
+from services.brain.context import Context
+from services.brain.decorators import Attempts, When
+from services.brain.robot import Drive, Grab, Ready, Release
+from services.brain.trees import drive_home, first_of, grab_failed, report_failure, sequence
+from services.brain.validate import is_destination
+from services.brain.vla_leaves import (
+    Await,
+    Evidence,
+    HearReply,
+    Look,
+    NotFound,
+    Plan,
+    TakeView,
+    in_words,
+    question,
+    reference,
+)
+
+VIEWS_PER_ATTEMPT = 2
+
+
+def vla_tree(ctx: Context) -> Behaviour:
+    """Each round is one command; ticked for ever."""
+    do = sequence(
+        "do",
+        When("confirm", confirm(ctx), lambda: needs_confirmation(ctx)),
+        plan(ctx),
+        RunPlan("execute", ctx),
+        Evidence("complete", ctx, lambda: "; ".join(map(in_words, ctx.mission.plan))),
+        Say("report success", ctx, lambda: "Done."),
+        Settle("settle", ctx),
+    )
+    return sequence(
+        "vla pipeline", Ready("ready", ctx), Await("listen", ctx), first_of("mission", do, report_failure(ctx))
+    )
+
+
+def needs_confirmation(ctx: Context) -> bool:
+    mission, config = ctx.mission, ctx.config
+    return not mission.confirmed and (config.enable_confirmation or mission.confidence < config.confirm_below)
+
+
+def confirm(ctx: Context) -> Behaviour:
+    """Ask, hear yes, no or a correction; after no, ask for the command again."""
+    ask = sequence(
+        "ask",
+        Do("confirming", ctx, lambda: ctx.enter("CONFIRMING", question(ctx))),
+        Say("question", ctx, lambda: question(ctx)),
+        HearReply("hear reply", ctx),
+    )
+    rounds = 2 * ctx.config.max_retry_attempts - 1
+    return Attempts("until confirmed", ctx, ask, rounds, again=lambda: not permanent(ctx))
+
+
+def plan(ctx: Context) -> Behaviour:
+    retries = ctx.config.max_retry_attempts - 1
+    return Attempts("plan and validate", ctx, Plan("plan", ctx), retries, again=lambda: not permanent(ctx))
+
+
+def permanent(ctx: Context) -> bool:
+    failure = ctx.mission.failure
+    return failure is not None and (failure.permanent or failure.code == "NO_PLAN")
+
+
+class RunPlan(Sequence):
+    """The accepted plan as a sequence, built when it starts."""
+
+    def __init__(self, name: str, ctx: Context) -> None:
+        super().__init__(name=name, memory=True)
+        self._ctx = ctx
+
+    def tick(self) -> Iterator[Behaviour]:
+        if self.status != Status.RUNNING:
+            self.remove_all_children()
+            self.add_children([step_tree(self._ctx, step) for step in self._ctx.mission.plan])
+        yield from super().tick()
+
+
+def step_tree(ctx: Context, step: PlanStep) -> Behaviour:
+    """One step with its own recovery; the next goal comes a settle later."""
+    name = in_words(step)
+    match step.action:
+        case "find":
+            return find(ctx, step.object)
+        case "navigate":
+            where = step.target or step.object
+            if is_destination(where, ctx.io.scene):
+                return sequence(name, go_to(ctx, where), Settle("settle", ctx))
+            unseen = When("find it", find(ctx, where), lambda: where not in ctx.mission.found)
+            return sequence(name, unseen, approach(ctx, where))
+        case "grasp":
+            return grasp(ctx, step.object)
+        case "place":
+            there = When("go there", go_and_settle(ctx, step.target), lambda: ctx.mission.at != step.target)
+            release = Release("place", ctx, lambda: f"place {step.target}")
+            return sequence(name, there, release, Settle("settle", ctx))
+        case "release":
+            return sequence(name, Release("release", ctx), Settle("settle", ctx))
+        case "say":
+            return Say(name, ctx, lambda: step.text)
+        case "wait":
+            return Settle(name, ctx)
+        case "return":
+            return sequence(name, drive_home(ctx), Stand("at home", ctx, "home"), Settle("settle", ctx))
+
+
+def find(ctx: Context, thing: str) -> Behaviour:
+    """Look from here, else search: turn, then other viewpoints."""
+    tries = ctx.config.max_retry_attempts
+    looks: list[Behaviour] = []
+    for attempt in range(1, tries + 1):
+        for view in range(1, VIEWS_PER_ATTEMPT + 1):
+            elsewhere = attempt > 1 and view == 1
+            turns = 0 if elsewhere else 1
+            label = f"attempt {attempt}, view {view}"
+            looks.append(
+                sequence(label, TakeView(label, ctx, turns, elsewhere), Settle("settle", ctx), Look("look", ctx, thing))
+            )
+    return first_of(
+        f"perception: {thing}",
+        Look("primary detection", ctx, thing),
+        first_of("search", *looks),
+        NotFound("not found", ctx, thing, tries),
+    )
+
+
+def approach(ctx: Context, thing: str) -> Behaviour:
+    """Drive to where the arm reaches the thing; navigation picks the pose."""
+    drive = Drive(
+        "approach",
+        ctx,
+        text=lambda: f"find {label_of(ctx, thing)}",
+        spoken=lambda: f"I could not reach the {thing}.",
+        state="NAVIGATING",
+    )
+    return sequence(f"approach {thing}", drive, Stand("there", ctx, thing), Settle("settle", ctx))
+
+
+def grasp(ctx: Context, thing: str) -> Behaviour:
+    """Approach if needed and grab; after a failed grab look again, drive up again, grab again."""
+    near = When("near it", approach(ctx, thing), lambda: ctx.mission.at != thing)
+    grab = Grab("grab", ctx, lambda: label_of(ctx, thing), lambda: reference(ctx, thing))
+    first = sequence(f"grasp {thing}", near, grab, Settle("settle", ctx))
+    again = sequence(
+        "look and grab again",
+        find(ctx, thing),
+        approach(ctx, thing),
+        Grab("grab", ctx, lambda: label_of(ctx, thing), lambda: reference(ctx, thing)),
+        Settle("settle", ctx),
+    )
+    retries = max(0, ctx.config.grab_retries - 1)
+    regrasp = Attempts("regrasp", ctx, again, retries, again=lambda: grab_failed(ctx))
+    if not ctx.config.grab_retries:
+        return first
+    return first_of(f"grasp: {thing}", first, When("grab failed", regrasp, lambda: grab_failed(ctx), Status.FAILURE))
+
+
+def go_to(ctx: Context, where: str) -> Behaviour:
+    drive = Drive(
+        "go",
+        ctx,
+        text=lambda: f"goto {where}",
+        spoken=lambda: f"I could not get to the {where}.",
+        state="NAVIGATING",
+    )
+    return sequence(f"go to {where}", drive, Stand("there", ctx, where))
+
+
+def go_and_settle(ctx: Context, where: str) -> Behaviour:
+    return sequence("go and settle", go_to(ctx, where), Settle("settle", ctx))
+
+
+class Stand(Leaf):
+    """Remembers where the robot stands."""
+
+    def __init__(self, name: str, ctx: Context, where: str) -> None:
+        super().__init__(name, ctx)
+        self._where = where
+
+    def update(self) -> Status:
+        self.ctx.mission.at = self._where
+        return Status.SUCCESS
+
+
+def label_of(ctx: Context, thing: str) -> str:
+    pose = ctx.mission.found.get(thing)
+    return (pose.label if pose else "") or thing

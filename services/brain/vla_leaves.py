@@ -1,0 +1,213 @@
+"""Leaves of the VLA pipeline: hear and confirm, plan, look."""
+
+from collections.abc import Callable
+from typing import Any
+
+import msgspec
+from py_trees.common import Status
+
+from common import messages as m
+from common import topics
+from common.topics import Topic
+from services.brain.behaviours import Goal, Leaf
+from services.brain.context import Context
+from services.brain.dialogue import corrected, reply
+from services.brain.goals import Answer
+from services.brain.mission import Failure
+from services.brain.robot import take_command
+from services.brain.search import next_place, turned
+from services.brain.validate import known_world, objection
+
+
+class Await(Leaf):
+    """Until somebody says something: WAITING, or LISTENING while speech takes in an utterance."""
+
+    def update(self) -> Status:
+        ctx = self.ctx
+        ctx.renew()
+        if not take_command(ctx):
+            hearing = ctx.speaking is not None and ctx.speaking.state in ("listening", "transcribing")
+            ctx.enter("LISTENING" if hearing else "WAITING")
+            return Status.RUNNING
+        return Status.SUCCESS
+
+
+class HearReply(Goal):
+    """The person's answer to a question; SUCCESS once the command stands."""
+
+    def __init__(self, name: str, ctx: Context) -> None:
+        super().__init__(name, ctx, ctx.speech, state="CONFIRMING", timeout=ctx.config.answer_timeout)
+
+    def goal(self, goal_id: str) -> tuple[Topic[Any], m.Message]:
+        return topics.SPEECH_GOAL, m.SpeechGoal(goal="listen", id=goal_id)
+
+    def step(self) -> str:
+        return question(self.ctx)
+
+    def spoken(self) -> str:
+        return "I did not hear an answer."
+
+    def done(self, answer: Answer) -> Status:
+        mission, heard = self.ctx.mission, answer.message
+        assert isinstance(heard, m.SpeechResult)
+        kind, rest = reply(heard.text)
+        self.ctx.note(f"reply: {kind}", heard.text)
+        self.feedback_message = kind
+        if kind == "cancel":
+            return self.give_up(Failure("CONFIRMING", "CANCELLED", spoken="All right, I will do nothing."))
+        if kind == "yes" and not mission.repeat:
+            return Status.SUCCESS
+        if kind == "correction":
+            mission.command = rest if mission.repeat else corrected(mission.command, rest, self.ctx.io.scene)
+            mission.repeat = False
+        elif kind == "no":
+            mission.repeat = True
+        return self.give_up(Failure("CONFIRMING", "NOT_CONFIRMED", spoken="I did not understand what I should do."))
+
+
+def question(ctx: Context) -> str:
+    return "Please say it again." if ctx.mission.repeat else f"Did you say {ctx.mission.command}?"
+
+
+class Plan(Goal):
+    """Asks the planner and checks its plan against the known world; an impossible one is rejected with the reason."""
+
+    def __init__(self, name: str, ctx: Context) -> None:
+        super().__init__(name, ctx, ctx.planner, state="PLANNING", timeout=ctx.config.planning_timeout)
+
+    def goal(self, goal_id: str) -> tuple[Topic[Any], m.Message]:
+        ctx = self.ctx
+        request = m.PlanRequest(
+            id=goal_id, command=ctx.mission.command, world=self._world(), rejected=ctx.mission.rejected
+        )
+        return topics.PLAN_REQUEST, request
+
+    def step(self) -> str:
+        return f"plan: {self.ctx.mission.command}"
+
+    def spoken(self) -> str:
+        return "I could not make a plan for that."
+
+    def done(self, answer: Answer) -> Status:
+        ctx, plan = self.ctx, answer.message
+        assert isinstance(plan, m.ActionPlan)
+        reason = objection(plan.steps, self._world(), ctx.io.scene)
+        if not reason:
+            ctx.mission.plan = plan.steps
+            ctx.note("plan accepted", "; ".join(map(in_words, plan.steps)))
+            return Status.SUCCESS
+        if not plan.steps and plan.detail:
+            reason = plan.detail
+        ctx.mission.rejected = m.RejectedPlan(steps=plan.steps, reason=reason)
+        self.feedback_message = reason
+        code = "REJECTED" if plan.steps else "NO_PLAN"
+        return self.give_up(Failure("PLANNING", code, reason, spoken=f"I cannot do that: {reason}."))
+
+    def _world(self) -> m.KnownWorld:
+        ctx = self.ctx
+        world = ctx.io.latest(topics.WORLD_OBJECTS)
+        return known_world(ctx.io.scene, [o.label for o in world.objects] if world else [], ctx.hand.holding)
+
+
+def in_words(step: m.PlanStep) -> str:
+    """A step as `brain/state` and the journal show it."""
+    return " ".join(part for part in (step.action, step.object, step.target, step.text) if part)
+
+
+class Look(Goal):
+    """Asks perception for an object from where the robot stands."""
+
+    def __init__(self, name: str, ctx: Context, thing: str) -> None:
+        super().__init__(name, ctx, ctx.perception, state="GROUNDING", timeout=ctx.config.perception_timeout)
+        self._thing = thing
+
+    def goal(self, goal_id: str) -> tuple[Topic[Any], m.Message]:
+        return topics.OBJECT_QUERY, m.ObjectQuery(id=goal_id, query=self._thing)
+
+    def step(self) -> str:
+        return f"look for {self._thing}"
+
+    def spoken(self) -> str:
+        return f"I could not find the {self._thing}."
+
+    def done(self, answer: Answer) -> Status:
+        ctx, pose = self.ctx, answer.message
+        assert isinstance(pose, m.ObjectPose)
+        if not pose.found:
+            self.feedback_message = pose.detail or "not seen"
+            return self.give_up(Failure("GROUNDING", "NOT_FOUND", pose.detail, self.spoken()))
+        ctx.mission.found[self._thing] = pose
+        ctx.note(f"found {self._thing}", f"{pose.label} at {pose.position}, confidence {pose.confidence:.2f}")
+        return Status.SUCCESS
+
+
+class TakeView(Goal):
+    """Brings the camera to another view: `turns` thirds of a circle from where it is, at another place if asked."""
+
+    def __init__(self, name: str, ctx: Context, turns: int, elsewhere: bool) -> None:
+        config = ctx.config
+        super().__init__(name, ctx, ctx.navigation, state="GROUNDING", timeout=config.navigation_timeout)
+        self._turns, self._elsewhere = turns, elsewhere
+        self._target: tuple[float, float, float] | None = None
+
+    def initialise(self) -> None:
+        super().initialise()
+        ctx, mission = self.ctx, self.ctx.mission
+        here = ctx.io.latest(topics.POSE)
+        pose = (here.x, here.y, here.theta) if here else (0.0, 0.0, 0.0)
+        place = next_place(pose, ctx.io.scene, mission.visited) if self._elsewhere else None
+        if place is not None:
+            mission.visited.append(place.name)
+            pose = (place.x, place.y, place.theta)
+        self._target = turned(pose, self._turns)
+        mission.at = ""
+
+    def goal(self, goal_id: str) -> tuple[Topic[Any], m.Message]:
+        assert self._target is not None
+        x, y, theta = self._target
+        return topics.NAV_GOAL, m.NavGoal(id=goal_id, x=x, y=y, theta=theta)
+
+    def step(self) -> str:
+        return f"search: {self.name}"
+
+
+class NotFound(Leaf):
+    """Ends a search without result with the reason that counts, whatever failed last."""
+
+    def __init__(self, name: str, ctx: Context, thing: str, tries: int) -> None:
+        super().__init__(name, ctx)
+        self._thing, self._tries = thing, tries
+
+    def update(self) -> Status:
+        detail = f"not seen in {self._tries} search attempts"
+        self.ctx.fail(Failure("GROUNDING", "NOT_FOUND", detail, f"I could not find the {self._thing}."))
+        return Status.FAILURE
+
+
+class Evidence(Leaf):
+    """COMPLETED when every step of the plan left its mark on the hand."""
+
+    def __init__(self, name: str, ctx: Context, summary: Callable[[], str]) -> None:
+        super().__init__(name, ctx)
+        self._summary = summary
+
+    def update(self) -> Status:
+        ctx, mission = self.ctx, self.ctx.mission
+        lets_go = any(s.action in ("place", "release") for s in mission.plan)
+        grasps = any(s.action == "grasp" for s in mission.plan)
+        if (grasps and not mission.grabbed) or (lets_go and not mission.released):
+            ctx.fail(Failure("COMPLETED", "NO_EVIDENCE", spoken="I am not sure that it worked."))
+            return Status.FAILURE
+        detail = self._summary()
+        ctx.finish("delivered", detail)
+        ctx.enter("COMPLETED", detail=detail)
+        return Status.SUCCESS
+
+
+def reference(ctx: Context, thing: str) -> m.ObjectRef | None:
+    """What perception said about the thing, for manipulation."""
+    pose = ctx.mission.found.get(thing)
+    if pose is None:
+        return None
+    fields = {k: getattr(pose, k) for k in ("label", "position", "orientation", "size", "frame")}
+    return msgspec.convert(fields, m.ObjectRef)

@@ -1,0 +1,267 @@
+"""The VLA tree with hand-driven peers: dialogue, planning, search, and every kind of recovery."""
+
+from typing import Any
+
+from common import messages as m
+from common import topics
+from services.brain.config import BrainConfig
+from tests.unit.brain_bench import Bench
+
+SPEECH, NAV, MANIP, VIEW = topics.SPEECH_GOAL, topics.NAVIGATION_GOAL, topics.MANIPULATION_GOAL, topics.NAV_GOAL
+PLAN, QUERY = topics.PLAN_REQUEST, topics.OBJECT_QUERY
+MUG = {"object": "red mug"}
+FETCH = [
+    m.PlanStep(action="find", **MUG),
+    m.PlanStep(action="grasp", **MUG),
+    m.PlanStep(action="return"),
+    m.PlanStep(action="release"),
+]
+
+
+def bench_of(**changes: Any) -> Bench:
+    bench = Bench(BrainConfig(pipeline="vla", **changes))
+    bench.step()
+    return bench
+
+
+def asked(text: str = "bring me the red mug", **changes: Any) -> Bench:
+    """A command is in, nothing confirmed."""
+    bench = bench_of(**changes)
+    bench.send(topics.VOICE_COMMAND, m.VoiceCommand(text=text, confidence=0.9))
+    bench.step()
+    return bench
+
+
+def planned(steps: list[m.PlanStep] = FETCH) -> Bench:
+    """The plan is accepted, confirmation off."""
+    bench = asked(enable_confirmation=False)
+    answer_plan(bench, 1, steps)
+    return bench
+
+
+def answer_plan(bench: Bench, count: int, steps: list[m.PlanStep], detail: str = "") -> None:
+    request = bench.next_goal(PLAN, count)
+    bench.send(topics.ACTION_PLAN, m.ActionPlan(request_id=request.id, steps=steps, detail=detail))
+    bench.step()
+
+
+def see(bench: Bench, count: int, found: bool = True) -> None:
+    query = bench.next_goal(QUERY, count)
+    assert query.query == "red mug"
+    position = (1.0, 2.0, 0.8)
+    bench.send(topics.OBJECT_POSE, m.ObjectPose(query_id=query.id, found=found, label="red mug", position=position))
+    bench.step()
+
+
+def reply(bench: Bench, text: str) -> None:
+    """Answer the newest question."""
+    count = bench.texts(SPEECH).count("listen") + 1
+    bench.until(lambda: bench.texts(SPEECH).count("listen") == count)
+    listen = [g for g in bench.sent(SPEECH) if g.goal == "listen"][-1]
+    bench.send(topics.SPEECH_RESULT, m.SpeechResult(text=text, goal_id=listen.id, attempt=1))
+    bench.step()
+
+
+def test_the_contracts_sequence() -> None:
+    bench = asked()
+    reply(bench, "yes")
+    answer_plan(bench, 1, FETCH)
+    see(bench, 1)
+    bench.drove(bench.nav(1))
+    grab = bench.manip(1)
+    assert grab.object is not None and grab.object.position == (1.0, 2.0, 0.8)
+    bench.did(grab)
+    bench.drove(bench.nav(2))
+    bench.did(bench.manip(2))
+    bench.until(lambda: bench.states()[-1] == "WAITING")
+    assert bench.states() == [
+        "IDLE", "WAITING", "CONFIRMING", "PLANNING", "GROUNDING", "NAVIGATING", "GRABBING", "RETURNING", "RELEASING",
+        "COMPLETED", "WAITING",
+    ]  # fmt: skip
+    assert list(dict.fromkeys(s.state for s in bench.sent(topics.SYSTEM_STATUS))) == [
+        "IDLE", "LISTENING", "PLANNING", "GROUNDING", "NAVIGATING", "EXECUTING", "SUCCESS",
+    ]  # fmt: skip
+    assert bench.texts(SPEECH) == ["say Did you say bring me the red mug?", "listen", "say Done."]
+    assert bench.texts(NAV) == ["find red mug", "return_to_start"]
+    assert bench.texts(MANIP) == ["grab", "release"]
+    last = bench.state.last
+    assert last is not None and last.outcome == "delivered"
+
+
+def test_a_correction_is_taken_and_confirmed_again() -> None:
+    bench = asked()
+    reply(bench, "no, the blue mug")
+    reply(bench, "yes")
+    assert bench.next_goal(PLAN, 1).command == "bring me the blue mug"
+    assert "say Did you say bring me the blue mug?" in bench.texts(SPEECH)
+
+
+def test_a_rejection_asks_for_the_command_again() -> None:
+    bench = asked()
+    reply(bench, "no")
+    reply(bench, "bring me the apple")
+    reply(bench, "yes")
+    assert bench.next_goal(PLAN, 1).command == "bring me the apple"
+
+
+def test_never_confirmed_is_never_done() -> None:
+    bench = asked()
+    while bench.state.state == "CONFIRMING":
+        reply(bench, "no")
+    assert bench.state.state == "ERROR"
+    assert bench.texts(SPEECH).count("listen") == 6
+    assert bench.sent(PLAN) == []
+
+
+def test_confirmation_by_need() -> None:
+    assert asked(enable_confirmation=False, confirm_below=0.8).state.state == "PLANNING"
+    assert asked(enable_confirmation=False, confirm_below=0.95).state.state == "CONFIRMING"
+    bench = bench_of()
+    bench.send(topics.VOICE_COMMAND, m.VoiceCommand(text="bring me the red mug", confirmed=True))
+    bench.step()
+    assert bench.state.state == "PLANNING"
+
+
+def test_cancel_as_an_answer_is_no_error() -> None:
+    bench = asked()
+    reply(bench, "never mind")
+    bench.until(lambda: bench.states()[-1] == "WAITING")
+    last = bench.state.last
+    assert last is not None and last.outcome == "cancelled"
+    assert "ERROR" not in bench.states()
+
+
+def test_a_typed_yes_counts() -> None:
+    bench = asked()
+    bench.until(lambda: "listen" in bench.texts(SPEECH))
+    bench.send(topics.VOICE_COMMAND, m.VoiceCommand(text="yes"))
+    bench.step()
+    bench.next_goal(PLAN, 1)
+
+
+def test_an_impossible_plan_is_rejected_with_the_reason_and_replanned() -> None:
+    bench = planned([m.PlanStep(action="grasp", object="sofa")])
+    request = bench.next_goal(PLAN, 2)
+    assert request.rejected is not None
+    assert "sofa" in request.rejected.reason and request.rejected.steps[0].object == "sofa"
+    assert bench.sent(NAV) == []
+    answer_plan(bench, 2, FETCH)
+    see(bench, 1)
+    bench.nav(1)
+
+
+def test_three_impossible_plans_are_explained_aloud() -> None:
+    bench = asked(enable_confirmation=False)
+    for count in (1, 2, 3):
+        answer_plan(bench, count, [m.PlanStep(action="release")])
+    assert bench.state.state == "ERROR"
+    assert len(bench.sent(PLAN)) == 3
+    assert "nothing in the hand" in bench.texts(SPEECH)[-1]
+
+
+def test_a_planner_without_a_plan_is_quoted_at_once() -> None:
+    bench = asked("sing", enable_confirmation=False)
+    answer_plan(bench, 1, [], detail="I cannot sing")
+    assert bench.state.state == "ERROR"
+    assert bench.texts(SPEECH)[-1] == "say I cannot do that: I cannot sing."
+
+
+def test_search_turns_then_looks_from_elsewhere() -> None:
+    bench = planned()
+    bench.send(topics.POSE, m.PoseEstimate(t=0.0, x=1.0, y=0.5, theta=0.0))
+    see(bench, 1, found=False)
+    turn = bench.next_goal(VIEW, 1)
+    assert (turn.x, turn.y) == (1.0, 0.5) and turn.theta > 1.0
+    feedback = m.NavigationFeedback(goal_id=turn.id, status="arrived")
+    bench.send(topics.NAVIGATION_FEEDBACK, feedback)
+    see(bench, 2, found=False)
+    second = bench.next_goal(VIEW, 2)
+    bench.drove(second, "failed", "BLOCKED")
+    third = bench.next_goal(VIEW, 3)
+    assert (third.x, third.y) != (turn.x, turn.y)
+    bench.drove(third)
+    see(bench, 3)
+    bench.drove(bench.nav(1))
+    bench.manip(1)
+
+
+def test_an_absent_object_is_reported_after_three_attempts() -> None:
+    bench = planned()
+    see(bench, 1, found=False)
+    for count in range(1, 7):
+        bench.drove(bench.next_goal(VIEW, count))
+        see(bench, count + 1, found=False)
+    assert bench.state.state == "ERROR"
+    assert "NOT_FOUND" in bench.state.detail
+    assert bench.texts(SPEECH)[-1] == "say I could not find the red mug."
+
+
+def test_a_failed_grab_looks_again_and_drives_up_again() -> None:
+    bench = planned()
+    see(bench, 1)
+    bench.drove(bench.nav(1))
+    bench.did(bench.manip(1), "failed", "EMPTY_GRASP")
+    see(bench, 2)
+    bench.drove(bench.nav(2))
+    bench.did(bench.manip(2), "failed", "SLIPPED")
+    see(bench, 3)
+    bench.drove(bench.nav(3))
+    bench.did(bench.manip(3))
+    assert bench.nav(4).goal == "return_to_start"
+
+
+def test_three_failed_grabs_are_an_error() -> None:
+    bench = planned()
+    for count in (1, 2, 3):
+        see(bench, count)
+        bench.drove(bench.nav(count))
+        bench.did(bench.manip(count), "failed", "SLIPPED")
+    assert bench.state.state == "ERROR"
+    assert "COMPLETED" not in bench.states()
+
+
+def test_place_drives_to_the_receptacle_once() -> None:
+    bin_steps = [*FETCH[:2], m.PlanStep(action="navigate", target="bin"), m.PlanStep(action="place", target="bin")]
+    bench = planned(bin_steps)
+    see(bench, 1)
+    bench.drove(bench.nav(1))
+    bench.did(bench.manip(1))
+    bench.drove(bench.nav(2))
+    bench.did(bench.manip(2))
+    assert bench.texts(NAV) == ["find red mug", "goto bin"]
+    assert bench.texts(MANIP) == ["grab", "place bin"]
+    bench.until(lambda: bench.state.state == "COMPLETED")
+
+
+def test_saying_waiting_and_going_need_no_hand() -> None:
+    steps = [
+        m.PlanStep(action="say", text="On my way."),
+        m.PlanStep(action="wait"),
+        m.PlanStep(action="navigate", target="kitchen"),
+    ]
+    bench = planned(steps)
+    bench.drove(bench.nav(1))
+    bench.until(lambda: bench.state.state == "COMPLETED")
+    assert bench.texts(NAV) == ["goto kitchen"]
+    assert "say On my way." in bench.texts(SPEECH)
+
+
+def test_listening_is_shown_while_speech_takes_in_an_utterance() -> None:
+    bench = bench_of()
+    bench.send(topics.SPEECH_STATUS, m.SpeechStatus(state="transcribing"))
+    bench.step()
+    bench.send(topics.SPEECH_STATUS, m.SpeechStatus(state="idle"))
+    bench.step()
+    assert bench.states() == ["IDLE", "WAITING", "LISTENING", "WAITING"]
+
+
+def test_stop_cuts_any_step_short() -> None:
+    bench = planned()
+    see(bench, 1)
+    bench.nav(1)
+    bench.send(topics.VOICE_COMMAND, m.VoiceCommand(text="stop"))
+    bench.step(1.0)
+    last = bench.state.last
+    assert last is not None and last.outcome == "cancelled"
+    assert bench.texts(NAV) == ["find red mug", "stop"]
+    assert bench.state.state == "WAITING"
