@@ -1,0 +1,140 @@
+"""Reach, grasp, lift, carry and put down in real physics, per kind of object: `python -m bench.grasp --trials 10`.
+
+The base stands where navigation would put it, off by a random error; the peer is the same code with one candidate only.
+"""
+
+import argparse
+import json
+import math
+import sys
+from collections import Counter
+from typing import Any
+
+import msgspec
+import mujoco
+import numpy as np
+
+from common import messages as m
+from common import topics
+from common.clock import ManualClock
+from common.geometry import compose, inverse, yaw_quat
+from common.lockstep import InProcess
+from common.memory import MemoryBus, MemoryIo
+from common.scene import ObjectSpec, Scene, load_scene
+from services.manipulation.config import ManipulationConfig
+from services.manipulation.service import ManipulationService
+from services.sim import objects, truth
+from services.sim.config import SimConfig
+from services.sim.service import SimService
+
+
+class Bench:
+    """One object on one table of a chosen height, the robot in front of it."""
+
+    def __init__(self, scene: Scene, spec: ObjectSpec, height: float, seed: int, config: ManipulationConfig) -> None:
+        surface = next(r for r in scene.receptacles if r.kind == "table")
+        x, y, _ = surface.center
+        table = msgspec.structs.replace(surface, center=(x, y, height))
+        receptacles = tuple(table if r is surface else r for r in scene.receptacles)
+        alone = msgspec.structs.replace(scene, objects=(spec,), receptacles=receptacles)
+        self.spec = spec
+        self.bus, clock = MemoryBus(), ManualClock()
+        sim_io = MemoryIo(self.bus, "sim", SimService.READS, SimService.WRITES, scene=alone, seed=seed, clock=clock)
+        sim_io.out_stamp = -1
+        self.sim = SimService(SimConfig(), sim_io)
+        self.world = InProcess(self.sim, sim_io, clock)
+        io = MemoryIo(
+            self.bus, "manipulation", ManipulationService.READS, ManipulationService.WRITES, scene=alone, seed=seed,
+            clock=clock,
+        )  # fmt: skip
+        self.world.add(ManipulationService(config, io), io)
+
+    def stand(self, base: tuple[float, float, float]) -> None:
+        """Put the base there at rest, with what it holds."""
+        physics = self.sim.physics
+        data = physics.data
+        held = truth.holding(physics)
+        was = tuple(float(v) for v in data.qpos[physics.qpos_at[:3]])
+        data.qpos[physics.qpos_at[:3]] = base
+        if held:
+            at = physics.model.body(objects.body_name(self.spec)).jntadr[0]
+            at = physics.model.jnt_qposadr[at]
+            x, y, yaw = compose(base, compose(inverse(was), (data.qpos[at], data.qpos[at + 1], 0.0)))
+            turned = np.empty(4)
+            mujoco.mju_mulQuat(turned, np.array(yaw_quat(yaw)), data.qpos[at + 3 : at + 7].copy())
+            data.qpos[at : at + 2], data.qpos[at + 3 : at + 7] = (x, y), turned
+        self.sim._base.pose, self.sim._base.target = base, None
+        self.sim._setpoint[:3] = base
+        for _ in range(30):
+            self.world.advance()
+
+    def run(self, text: str, goal_id: str, patience: float = 60.0) -> m.ManipulationStatus:
+        """Send a goal and step the world until it ends."""
+        self.bus.send(topics.MANIPULATION_GOAL, m.ManipulationGoal(goal=text, id=goal_id))
+        for _ in range(round(patience * 100)):
+            self.world.advance()
+            status = msgspec.json.decode(self.bus.last[topics.MANIPULATION_STATUS.key], type=m.ManipulationStatus)
+            if status.goal_id == goal_id and status.status in ("done", "failed"):
+                return status
+        return m.ManipulationStatus(status="failed", code="TIMEOUT", detail=f"{patience:.0f} s")
+
+    def truth(self) -> dict[str, Any]:
+        answer = self.bus.get(topics.SIM_TRUTH)
+        found: dict[str, Any] = json.loads(answer or b"{}")
+        return found
+
+
+def trial(scene: Scene, spec: ObjectSpec, seed: int, config: ManipulationConfig) -> str:
+    """`ok`, or the stage and reason of the failure."""
+    rng = np.random.default_rng([seed, 3])
+    bench = Bench(scene, spec, float(rng.uniform(0.45, 0.76)), seed, config)
+    placed = bench.sim.physics.placements[0]
+    x, y, _ = placed.position
+    surface = next(r for r in bench.sim._io.scene.receptacles if r.name == placed.on)
+    along = max(surface.approach, key=lambda a: a[0] * (x - surface.center[0]) + a[1] * (y - surface.center[1]))
+    facing = math.atan2(-along[1], -along[0])
+    half = surface.size[0] / 2 if along[0] else surface.size[1] / 2
+    inset = half - (along[0] * (x - surface.center[0]) + along[1] * (y - surface.center[1]))
+    distance = max(rng.uniform(0.55, 0.65), inset + 0.36)
+    side = rng.uniform(-0.05, 0.05)
+    bx = x - distance * math.cos(facing) - side * math.sin(facing)
+    by = y - distance * math.sin(facing) + side * math.cos(facing)
+    bench.stand((bx, by, facing + rng.uniform(-0.05, 0.05)))
+    grabbed = bench.run("grab", "b.1")
+    holding = bench.truth()["holding"]
+    if grabbed.status != "done":
+        return f"grab {grabbed.code}: {grabbed.detail}"
+    if holding != spec.name:
+        return "grab: false success"
+    bench.stand((0.0, 0.0, 0.0))
+    released = bench.run("release", "b.2")
+    on = bench.truth()["objects"][spec.name]["on"]
+    if released.status != "done":
+        return f"release {released.code}: {released.detail}"
+    return "ok" if on == scene.delivery else f"release: object on {on!r}"
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--trials", type=int, default=10)
+    parser.add_argument("--kinds", default="mug,can,bottle,apple,block,box,ball,bowl")
+    parser.add_argument("--peer", action="store_true", help="also run with a single candidate grasp")
+    args = parser.parse_args()
+    scene = load_scene("apartment")
+    configs = {"full": ManipulationConfig()}
+    if args.peer:
+        configs["one candidate"] = ManipulationConfig(max_candidates=1)
+    print(f"{'kind':8} {'variant':14} {'ok':>5} {'of':>4}  failures")
+    failed = False
+    for kind in args.kinds.split(","):
+        spec = next(o for o in scene.objects if o.kind == kind)
+        for name, config in configs.items():
+            outcomes = Counter(trial(scene, spec, seed, config) for seed in range(args.trials))
+            good = outcomes.pop("ok", 0)
+            failed |= good < args.trials and name == "full"
+            print(f"{kind:8} {name:14} {good:5} {args.trials:4}  {dict(outcomes) or ''}", flush=True)
+    sys.exit(int(failed))
+
+
+if __name__ == "__main__":
+    main()

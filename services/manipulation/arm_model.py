@@ -1,0 +1,127 @@
+"""The arm for planning: kinematics and collision checks in the base frame, with boxes for what stands around."""
+
+import math
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+ARM = tuple(f"joint_{i}" for i in range(1, 8))
+HOME = np.array([0.0, -0.34906585, 3.14159265, -2.54818071, 0.0, -0.87266463, 1.57079633])
+BOXES = 24
+FAR = 50.0
+OPEN = 0.0
+
+
+@dataclass(frozen=True)
+class Obstacle:
+    """A box in the base frame: centre, full extents, yaw."""
+
+    center: tuple[float, float, float]
+    size: tuple[float, float, float]
+    yaw: float = 0.0
+
+
+@dataclass(frozen=True)
+class Pose:
+    """A pose of the pinch point in the base frame: `rotation` (3, 3) has z along the approach, y along the closing."""
+
+    position: Array
+    rotation: Array
+
+    def moved(self, offset: Array) -> "Pose":
+        return Pose(self.position + offset, self.rotation)
+
+
+def planning_mjcf(robot_mjcf: str) -> str:
+    """The robot's model plus movable boxes and a box in the gripper that stands for a held object."""
+    boxes = "".join(
+        f'<body name="box_{i}" mocap="true" pos="{FAR} {FAR} {i}"><geom name="box_{i}" type="box" size=".01 .01 .01" '
+        'contype="1" conaffinity="2"/></body>'
+        for i in range(BOXES)
+    )
+    held = '<geom name="held" type="box" size=".12 .12 .12" pos="0 0 0.145" mass="0" contype="2" conaffinity="1"/>'
+    text = robot_mjcf.replace("</worldbody>", boxes + "</worldbody>")
+    return re.sub(r'(<body name="gripper"[^>]*>)', rf"\1{held}", text, count=1)
+
+
+class ArmModel:
+    """One MuJoCo model of the robot at the origin, arm configurations as arrays (7,)."""
+
+    def __init__(self, robot_mjcf: str) -> None:
+        self.model: Any = mujoco.MjModel.from_xml_string(planning_mjcf(robot_mjcf))
+        self.data: Any = mujoco.MjData(self.model)
+        self.qpos_at = np.array([self.model.joint(j).qposadr[0] for j in ARM])
+        self.dof_at = np.array([self.model.joint(j).dofadr[0] for j in ARM])
+        self.low, self.high = self.model.jnt_range[[self.model.joint(j).id for j in ARM]].T
+        free = self.model.jnt_limited[[self.model.joint(j).id for j in ARM]] == 0
+        self.low, self.high = np.where(free, -np.inf, self.low), np.where(free, np.inf, self.high)
+        self.unlimited = free
+        self.pinch = self.model.site("pinch").id
+        self._held = self.model.geom("held").id
+        self._boxes = [self.model.geom(f"box_{i}").id for i in range(BOXES)]
+        self._mocap = [self.model.body(f"box_{i}").mocapid[0] for i in range(BOXES)]
+        self.set_obstacles(())
+        self.hold(None)
+
+    def set_obstacles(self, obstacles: Sequence[Obstacle]) -> None:
+        """Put boxes around the robot, the most important first; those over the limit are left out."""
+        nearest = obstacles[:BOXES]
+        for i, (geom, mocap) in enumerate(zip(self._boxes, self._mocap, strict=True)):
+            if i < len(nearest):
+                box = nearest[i]
+                half = np.array(box.size) / 2
+                self._resize(geom, half)
+                self.data.mocap_pos[mocap] = box.center
+                self.data.mocap_quat[mocap] = (math.cos(box.yaw / 2), 0, 0, math.sin(box.yaw / 2))
+            else:
+                self.data.mocap_pos[mocap] = (FAR, FAR, i)
+
+    def hold(self, half: Array | None, offset: Array | None = None) -> None:
+        """Carry a box of these half extents, centred `offset` from the pinch point in its frame; None: nothing."""
+        flags = (0, 0) if half is None else (2, 1)
+        self.model.geom_contype[self._held], self.model.geom_conaffinity[self._held] = flags
+        if half is not None and offset is not None:
+            self._resize(self._held, half)
+            self.model.geom_pos[self._held] = self.model.site_pos[self.pinch] + offset
+
+    def _resize(self, geom: int, half: Array) -> None:
+        self.model.geom_size[geom] = half
+        self.model.geom_rbound[geom] = float(np.linalg.norm(half))
+        self.model.geom_aabb[geom] = (0, 0, 0, *half)
+        if geom != self._held:
+            # The broad phase looks at the body's bounding volume, which the compiler sized.
+            self.model.bvh_aabb[self.model.body_bvhadr[self.model.geom_bodyid[geom]]] = (0, 0, 0, *half)
+
+    def place(self, q: Array) -> None:
+        """Set the arm and compute kinematics."""
+        self.data.qpos[self.qpos_at] = q
+        mujoco.mj_kinematics(self.model, self.data)
+
+    def pose(self, q: Array) -> Pose:
+        """Forward kinematics of the pinch point."""
+        self.place(q)
+        rotation = self.data.site_xmat[self.pinch].reshape(3, 3)
+        return Pose(self.data.site_xpos[self.pinch].copy(), rotation.copy())
+
+    def collides(self, q: Array) -> bool:
+        """True when the robot touches itself or a box."""
+        self.place(q)
+        mujoco.mj_collision(self.model, self.data)
+        return bool(self.data.ncon)
+
+    def contact_names(self, q: Array) -> list[tuple[str, str]]:
+        """Which geoms touch, for messages and tests."""
+        self.collides(q)
+        geom = self.model.geom
+        return [(geom(int(a)).name, geom(int(b)).name) for a, b in self.data.contact.geom[: self.data.ncon]]
+
+    def nearest_turn(self, q: Array, near: Array) -> Array:
+        """The same configuration with every unlimited joint at the turn closest to `near`."""
+        turns = np.round((near - q) / (2 * math.pi))
+        return np.where(self.unlimited, q + 2 * math.pi * turns, q)

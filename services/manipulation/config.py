@@ -1,0 +1,22 @@
+"""Parameters of manipulation."""
+
+from common.config import Config
+
+
+class ManipulationConfig(Config, frozen=True):
+    """Lengths in metres, speeds in rad/s or m/s, forces in newtons, times in seconds."""
+
+    max_candidates: int = 4
+    reach: float = 1.0
+    joint_speed: float = 1.0
+    joint_acceleration: float = 2.5
+    cartesian_speed: float = 0.18
+    approach_distance: float = 0.10
+    lift_height: float = 0.10
+    grip_effort: float = 25.0
+    empty_width: float = 0.003
+    slip_width: float = 0.004
+    blocked_error: float = 0.12
+    planning_seconds: float = 0.5
+    state_timeout: float = 0.5
+    settle: float = 0.3

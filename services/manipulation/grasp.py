@@ -1,0 +1,139 @@
+"""Candidate grasps for an object of known kind, size and pose: side grasps for upright things, tilted ones for mugs,
+from above for low ones, at the rim for bowls. Angles were measured in simulation for a 85 mm parallel gripper."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from services.manipulation.arm_model import Array, Pose
+
+MAX_WIDTH = 0.080
+HANDLE_CONE = math.radians(40)
+
+
+@dataclass(frozen=True)
+class Target:
+    """An object in the base frame: `position` its centre, `yaw` about z, `size` full extents standing upright."""
+
+    label: str
+    kind: str
+    position: tuple[float, float, float]
+    yaw: float
+    size: tuple[float, float, float]
+
+    @property
+    def bottom(self) -> float:
+        return self.position[2] - self.size[2] / 2
+
+
+@dataclass(frozen=True)
+class Grasp:
+    """Where the pinch point goes, how wide the object is there, and its height above the object's underside."""
+
+    pose: Pose
+    width: float
+    height: float
+    tilt: float
+    name: str
+
+
+def approach_rotation(azimuth: float, tilt: float, roll: float = 0.0) -> Array:
+    """Rotation (3, 3) that approaches along `azimuth`, `tilt` downward of horizontal.
+
+    `roll` turns the fingers about the approach, counter-clockwise seen from behind the hand.
+    """
+    ca, sa, ct, st = math.cos(azimuth), math.sin(azimuth), math.cos(tilt), math.sin(tilt)
+    z = np.array([ct * ca, ct * sa, -st])
+    y = np.array([-sa, ca, 0.0])
+    x = np.cross(y, z)
+    c, s = math.cos(roll), math.sin(roll)
+    return np.stack([c * x - s * y, s * x + c * y, z], axis=1)
+
+
+def candidates(target: Target) -> list[Grasp]:
+    """Grasps in the order to try them; empty when nothing of the object fits between the fingers."""
+    facing = math.atan2(target.position[1], target.position[0] - 0.12)
+    if target.kind == "mug":
+        return _round(target, facing, (40, 55, 25), handle=True)
+    if target.kind in ("can", "bottle"):
+        return _round(target, facing, (15, 25, 5, 40), handle=False)
+    if target.kind == "box":
+        return _flat(target, facing, (15, 25, 5, 40), target.size[2] * 0.6) + _flat(
+            target, facing, (90, 70), target.size[2] * 0.8
+        )
+    if target.kind in ("apple", "ball"):
+        return _round(target, facing, (90, 65, 45, 30), handle=False)
+    if target.kind == "bowl":
+        return _rim(target, facing)
+    tilts = (90, 65, 45, 30) if target.size[2] < 0.09 else (15, 30, 45)
+    return _flat(target, facing, tilts, target.size[2] / 2)
+
+
+def _make(target: Target, height: float, azimuth: float, tilt: float, roll: float, width: float, name: str) -> Grasp:
+    x, y, _ = target.position
+    rotation = approach_rotation(azimuth, tilt, roll)
+    return Grasp(Pose(np.array([x, y, target.bottom + height]), rotation), width, height, tilt, name)
+
+
+def _round(target: Target, facing: float, tilts: Sequence[float], handle: bool) -> list[Grasp]:
+    width = max(target.size[0], target.size[1])
+    if width > MAX_WIDTH:
+        return []
+    height = target.size[2] * (0.42 if target.kind == "bottle" else 0.55)
+    if target.kind in ("apple", "ball"):
+        height = target.size[2] / 2
+    found = []
+    for degrees in tilts:
+        tilt = math.radians(degrees)
+        for turn in (0.0, 25.0, -25.0, 50.0, -50.0):
+            azimuth = facing + math.radians(turn)
+            if handle and _closes_on(target.yaw, azimuth):
+                continue
+            found.append(_make(target, height, azimuth, tilt, 0.0, width, f"{degrees:.0f} deg at {turn:+.0f}"))
+    return found
+
+
+def _closes_on(handle: float, azimuth: float) -> bool:
+    """True when a finger would land on a handle that points along `handle`."""
+    return abs(math.cos(handle - azimuth - math.pi / 2)) > math.cos(HANDLE_CONE)
+
+
+def _flat(target: Target, facing: float, tilts: Sequence[float], height: float) -> list[Grasp]:
+    """Fingers on two parallel faces."""
+    found = []
+    for degrees in tilts:
+        tilt = math.radians(degrees)
+        options = []
+        for quarter in range(4):
+            face = target.yaw + quarter * math.pi / 2
+            width = target.size[1] if quarter % 2 == 0 else target.size[0]
+            off = math.remainder(face - facing, 2 * math.pi)
+            if width <= MAX_WIDTH and abs(off) < math.radians(75):
+                options.append((abs(off), face, width))
+        for off, face, width in sorted(options):
+            name = f"{degrees:.0f} deg on faces at {math.degrees(off):.0f}"
+            if degrees >= 60:
+                # From above any azimuth will do: face the robot's way and turn the fingers instead.
+                roll = math.remainder(face - facing, math.pi)
+                found.append(_make(target, height, facing, tilt, roll, width, name))
+            else:
+                found.append(_make(target, height, face, tilt, 0.0, width, name))
+    return found
+
+
+def _rim(target: Target, facing: float) -> list[Grasp]:
+    """Fingers on either side of a bowl's wall, at the rim towards the robot first."""
+    x, y, _ = target.position
+    radius = target.size[0] / 2 - 0.012
+    height = target.size[2] - 0.012
+    found = []
+    for turn in (180.0, 150.0, -150.0, 120.0, -120.0, 90.0, -90.0):
+        radial = facing + math.radians(turn)
+        point = np.array([x + radius * math.cos(radial), y + radius * math.sin(radial), target.bottom + height])
+        roll = math.remainder(radial - facing - math.pi / 2, math.pi)
+        for degrees in (90, 70):
+            rotation = approach_rotation(facing, math.radians(degrees), roll)
+            found.append(Grasp(Pose(point, rotation), 0.012, height, math.radians(degrees), f"rim at {turn:+.0f}"))
+    return found

@@ -1,0 +1,89 @@
+"""Where the pose of the object to grab comes from.
+
+The goal's own object counts first. Else the latched `world/objects` is asked: in the fetch pipeline that is the
+survey made when the flat was set up; perception replaces the writer of that topic and nothing here changes.
+"""
+
+import math
+
+from common.geometry import Pose2, to_frame
+from common.messages import ManipulationGoal, ObjectRef, WorldObject, WorldObjects
+from common.naming import match_object
+from common.scene import Scene
+
+FRONT = 1.2
+DEFAULT_SIZE = (0.06, 0.06, 0.08)
+
+
+class ObjectSource:
+    """Knows the objects that were reported and where held or placed ones have gone since."""
+
+    def __init__(self, scene: Scene) -> None:
+        self._scene = scene
+        self._moved: dict[str, WorldObject] = {}
+        self._reported: WorldObjects | None = None
+
+    def update(self, reported: WorldObjects | None) -> None:
+        """A newer report replaces what was remembered of moved objects seen since."""
+        if reported is not None and reported is not self._reported:
+            self._reported = reported
+            self._moved = {} if reported.source == "survey" else self._still_newer(reported)
+
+    def _still_newer(self, reported: WorldObjects) -> dict[str, WorldObject]:
+        seen = {o.label: o.seen_at for o in reported.objects}
+        return {k: o for k, o in self._moved.items() if seen.get(k, -math.inf) < o.seen_at}
+
+    def objects(self) -> list[WorldObject]:
+        """The objects as they are believed to be now."""
+        if self._reported is None:
+            return list(self._moved.values())
+        reported = [self._moved.get(o.label, o) for o in self._reported.objects]
+        labels = {o.label for o in reported}
+        return reported + [o for k, o in self._moved.items() if k not in labels]
+
+    def remember(self, label: str, position: tuple[float, float, float] | None, on: str, now: float) -> None:
+        """An object was picked up (`position` None) or put down."""
+        known = next((o for o in self.objects() if o.label == label), None)
+        if known is None:
+            return
+        self._moved[label] = WorldObject(
+            label=label,
+            kind=known.kind,
+            colour=known.colour,
+            position=position or known.position,
+            orientation=known.orientation,
+            size=known.size,
+            on=on,
+            seen_at=now,
+            held=position is None,
+            id=known.id,
+        )
+
+    def resolve(self, goal: ManipulationGoal, wanted: str, base: Pose2) -> WorldObject | None:
+        """The object of a goal: the one it describes, the one last looked for, or the nearest in front."""
+        if goal.object is not None:
+            return self._described(goal.object)
+        found = match_object(wanted, self.objects(), self._scene) if wanted else self.objects()
+        near = []
+        for o in found:
+            x, y = to_frame(base, (o.position[0], o.position[1]))
+            if not o.held and (wanted or (x > 0 and math.hypot(x, y) < FRONT)):
+                near.append((math.hypot(x, y), o.label, o))
+        return min(near)[2] if near else None
+
+    def _described(self, ref: ObjectRef) -> WorldObject:
+        known = next((o for o in self.objects() if o.label == ref.label), None)
+        size = ref.size if min(ref.size) > 0 else (known.size if known else DEFAULT_SIZE)
+        return WorldObject(
+            label=ref.label,
+            kind=ref.kind or (known.kind if known else ""),
+            colour=known.colour if known else "",
+            position=ref.position,
+            orientation=ref.orientation,
+            size=size,
+            on=known.on if known and _close(known.position, ref.position) else "",
+        )
+
+
+def _close(a: tuple[float, float, float], b: tuple[float, float, float]) -> bool:
+    return math.hypot(a[0] - b[0], a[1] - b[1]) < 0.1

@@ -1,0 +1,248 @@
+"""Plans a whole grab or placement: inverse kinematics for candidates, collision-free paths between the phases."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from services.manipulation.arm_model import HOME, ArmModel, Array, Obstacle, Pose
+from services.manipulation.grasp import Grasp, Target, candidates
+from services.manipulation.ik import InverseKinematics, seeds
+from services.manipulation.trajectory import connect
+
+CARTESIAN_STEP = 0.02
+MAX_JUMP = 0.6
+HELD_SHRINK = 0.008
+# Close to the body; for long things the hand is turned or tips up so that they stay clear of the arm.
+CARRY = tuple(
+    HOME + np.array([0, 0, 0, 0, 0, tip, turn]) for tip in (0.0, 0.4, 0.8) for turn in (0.0, np.pi / 2, -np.pi / 2)
+)
+
+
+class PlanError(Exception):
+    """No plan; `code` is the status code, the text says why."""
+
+    def __init__(self, code: str, detail: str) -> None:
+        super().__init__(detail)
+        self.code = code
+
+
+@dataclass(frozen=True)
+class Held:
+    """What is in the gripper: the pose it was grasped with, relative to the object's underside centre."""
+
+    label: str
+    kind: str
+    rotation: Array
+    offset: Array
+    size: tuple[float, float, float]
+    width: float
+    yaw: float
+
+    def box(self) -> tuple[Array, Array]:
+        """Half extents and centre of the object in the pinch frame."""
+        c, s = np.cos(self.yaw), np.sin(self.yaw)
+        turned = self.rotation.T @ np.array([[c, -s, 0], [s, c, 0], [0, 0, 1.0]])
+        half = np.abs(turned) @ (np.array(self.size) / 2) - HELD_SHRINK
+        center = self.rotation.T @ (np.array([0, 0, self.size[2] / 2]) - self.offset)
+        return np.maximum(half, 0.004), center
+
+
+@dataclass(frozen=True)
+class GrabPlan:
+    """Joint paths of the phases, and what will be held."""
+
+    grasp: Grasp
+    reach: list[Array]
+    insert: list[Array]
+    lift: list[Array]
+    carry: list[Array]
+    held: Held
+
+
+@dataclass(frozen=True)
+class PlacePlan:
+    reach: list[Array]
+    lower: list[Array]
+    retreat: list[Array]
+    home: list[Array]
+    spot: tuple[float, float]
+
+
+class Planner:
+    """Lives in the worker thread; owns the arm's model."""
+
+    def __init__(self, robot_mjcf: str, seed: int) -> None:
+        self.arm = ArmModel(robot_mjcf)
+        self.ik = InverseKinematics(self.arm)
+        self._seed = seed
+
+    def grab(
+        self,
+        target: Target,
+        around: Sequence[Obstacle],
+        now: Array,
+        approach: float,
+        lift: float,
+        reach: float,
+        skip: frozenset[str],
+    ) -> GrabPlan:
+        """The first candidate grasp that can be reached and carried away.
+
+        Raises:
+            PlanError: UNREACHABLE.
+        """
+        distance = float(np.hypot(target.position[0] - 0.12, target.position[1]))
+        if distance > reach:
+            raise PlanError("UNREACHABLE", f"{target.label} is {distance:.2f} m from the arm, reach is {reach:.2f} m")
+        options = [g for g in candidates(target) if g.name not in skip]
+        if not options:
+            raise PlanError("UNREACHABLE", f"no grasp left to try on {target.label}")
+        failures: dict[str, int] = {}
+        for grasp in options:
+            plan = self._try_grab(target, grasp, around, now, approach, lift)
+            if isinstance(plan, GrabPlan):
+                return plan
+            failures[plan] = failures.get(plan, 0) + 1
+        reasons = ", ".join(f"{why} x{n}" for why, n in failures.items())
+        raise PlanError("UNREACHABLE", f"no reachable grasp of {target.label} at {distance:.2f} m: {reasons}")
+
+    def _try_grab(
+        self, target: Target, grasp: Grasp, around: Sequence[Obstacle], now: Array, approach: float, lift: float
+    ) -> "GrabPlan | str":
+        arm = self.arm
+        rng = np.random.default_rng(self._seed)
+        own = Obstacle(target.position, target.size, target.yaw)
+        arm.hold(None)
+        arm.set_obstacles(around)
+        at = self.ik.solve(grasp.pose, seeds(arm, grasp.pose, now), avoid=True)
+        if at is None:
+            return "no IK"
+        at = arm.nearest_turn(at, now)
+        if arm.collides(at):
+            return "grasp collides"
+        back = self.straight(at, grasp.pose, grasp.pose.moved(-approach * grasp.pose.rotation[:, 2]))
+        if back is None:
+            return "no straight approach"
+        up = self.straight(at, grasp.pose, grasp.pose.moved(np.array([0.0, 0.0, lift])))
+        if up is None:
+            return "no straight lift"
+        if any(arm.collides(q) for q in back):
+            return "approach collides"
+        arm.set_obstacles([*around[:14], own, *around[14:]])
+        there = connect(arm, now, back[-1], rng)
+        if there is None:
+            return "no path to the pre-grasp"
+        bottom = np.array([target.position[0], target.position[1], target.bottom])
+        held = Held(
+            target.label, target.kind, grasp.pose.rotation, grasp.pose.position - bottom, target.size, grasp.width,
+            target.yaw,
+        )  # fmt: skip
+        arm.set_obstacles(around)
+        arm.hold(*held.box())
+        away = self._to_carry(up[-1], rng)
+        arm.hold(None)
+        if away is None:
+            return "no path to the carry pose"
+        return GrabPlan(grasp, there, [at, *back][::-1], [at, *up], away, held)
+
+    def _to_carry(self, start: Array, rng: np.random.Generator) -> list[Array] | None:
+        """A path to the first carry pose where the held object is clear of the arm."""
+        for carry in CARRY:
+            goal = self.arm.nearest_turn(carry, start)
+            if not self.arm.collides(goal):
+                path = connect(self.arm, start, goal, rng)
+                if path is not None:
+                    return path
+        return None
+
+    def place(
+        self,
+        held: Held,
+        spots: Sequence[tuple[float, float]],
+        surface: float,
+        drop: float,
+        around: Sequence[Obstacle],
+        now: Array,
+    ) -> PlacePlan:
+        """Set the held object down on the first spot of a surface that works, `drop` above it.
+
+        Raises:
+            PlanError: UNREACHABLE.
+        """
+        arm = self.arm
+        arm.set_obstacles(around)
+        rng = np.random.default_rng(self._seed)
+        failures: dict[str, int] = {}
+        for spot in spots[:10]:
+            for turn in (0.0, 0.5, -0.5, 1.0, -1.0, 2.0, -2.0, np.pi):
+                plan = self._try_place(held, spot, surface + drop, turn, now, rng)
+                if isinstance(plan, PlacePlan):
+                    return plan
+                failures[plan] = failures.get(plan, 0) + 1
+        reasons = ", ".join(f"{why} x{n}" for why, n in failures.items()) or "no free spot within reach"
+        raise PlanError("UNREACHABLE", f"cannot put {held.label} there: {reasons}")
+
+    def _try_place(
+        self, held: Held, spot: tuple[float, float], height: float, turn: float, now: Array, rng: np.random.Generator
+    ) -> "PlacePlan | str":
+        arm = self.arm
+        approach = held.rotation[:, 2]
+        # Straight down has no azimuth of its own: the hand's x axis points away from the robot there.
+        level = approach if np.hypot(approach[0], approach[1]) > 0.2 else held.rotation[:, 0]
+        was = np.arctan2(level[1], level[0])
+        delta = np.arctan2(spot[1], spot[0] - 0.12) - was + turn
+        c, s = np.cos(delta), np.sin(delta)
+        spin = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1.0]])
+        target = Pose(np.array([*spot, height]) + spin @ held.offset, spin @ held.rotation)
+        above = target.moved(np.array([0.0, 0.0, 0.08]))
+        arm.hold(None)
+        high = self.ik.solve(above, seeds(arm, above, now))
+        if high is None:
+            return "no IK"
+        high = arm.nearest_turn(high, now)
+        down = self.straight(high, above, target)
+        if down is None:
+            return "no straight way down"
+        if any(arm.collides(q) for q in down):
+            return "placing collides"
+        arm.hold(*held.box())
+        if arm.collides(high):
+            return "object collides above the spot"
+        there = connect(arm, now, high, rng)
+        arm.hold(None)
+        if there is None:
+            return "no path"
+        tilted = abs(approach[2]) < 0.85
+        away = -0.10 * target.rotation[:, 2] if tilted else np.array([0.0, 0.0, 0.12])
+        back = self.straight(down[-1], target, target.moved(away))
+        if back is None:
+            return "no way back"
+        home = connect(arm, back[-1], arm.nearest_turn(HOME, back[-1]), rng)
+        if home is None:
+            return "no path home"
+        return PlacePlan(there, [high, *down], [down[-1], *back], home, spot)
+
+    def to_home(self, now: Array, around: Sequence[Obstacle]) -> list[Array]:
+        """A path to the carry pose; straight where nothing better is found."""
+        self.arm.hold(None)
+        self.arm.set_obstacles(around)
+        goal = self.arm.nearest_turn(HOME, now)
+        return connect(self.arm, now, goal, np.random.default_rng(self._seed)) or [now, goal]
+
+    def pose(self, q: Array) -> Pose:
+        """Where the pinch point is."""
+        return self.arm.pose(q)
+
+    def straight(self, start: Array, begin: Pose, end: Pose) -> list[Array] | None:
+        """Configurations along a straight line of the pinch point, without the first; None when the arm cannot."""
+        gap = end.position - begin.position
+        count = max(2, round(float(np.linalg.norm(gap)) / CARTESIAN_STEP))
+        path, q = [], start
+        for i in range(1, count + 1):
+            solved = self.ik.solve(Pose(begin.position + gap * (i / count), begin.rotation), [q])
+            if solved is None or np.abs(solved - q).max() > MAX_JUMP:
+                return None
+            path.append(solved)
+            q = solved
+        return path

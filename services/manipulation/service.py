@@ -1,0 +1,206 @@
+"""Manipulation: takes goals from the brain, runs one sequence at a time, answers with evidence."""
+
+import math
+
+import numpy as np
+
+from common import messages as m
+from common import topics
+from common.geometry import Pose2
+from common.io import Io, Job
+from services.manipulation import routines
+from services.manipulation.config import ManipulationConfig
+from services.manipulation.object_source import ObjectSource
+from services.manipulation.plan import Planner
+from services.manipulation.routines import Failure, Robot, Steps
+from services.manipulation.verify import Grip, holds
+
+ARM = tuple(f"joint_{i}" for i in range(1, 8))
+DESCRIPTION_PATIENCE = 3.0
+
+
+class ManipulationService:
+    """Grabs, places and releases objects; claims `done` on the evidence of width and force."""
+
+    NAME = "manipulation"
+    HZ = 50
+    CONFIG = ManipulationConfig
+    READS = (
+        topics.MANIPULATION_GOAL, topics.NAVIGATION_GOAL, topics.JOINT_STATES, topics.POSE, topics.ODOMETRY,
+        topics.WORLD_OBJECTS, topics.ROBOT_DESCRIPTION, topics.ROBOT_STOP,
+    )  # fmt: skip
+    WRITES = (topics.MANIPULATION_STATUS, topics.ARM_COMMAND, topics.GRIPPER_COMMAND)
+
+    def __init__(self, config: ManipulationConfig, io: Io) -> None:
+        self._config, self._io = config, io
+        self._source = ObjectSource(io.scene)
+        self._robot = Robot(config, io, self._source)
+        self._loading: Job[Planner] | None = None
+        self._steps: Steps[str] | None = None
+        self._goal = m.ManipulationGoal(goal="")
+        self._seen: set[tuple[str, int]] = set()
+        self._looked_for = ""
+        self._indices: tuple[list[str], list[int], int] | None = None
+        self._waiting_since: float | None = None
+        self._status = m.ManipulationStatus(status="idle")
+        io.publish(topics.MANIPULATION_STATUS, self._status)
+
+    def step(self, now: float) -> None:
+        io, robot = self._io, self._robot
+        robot.now = now
+        self._sense(now)
+        for look in io.drain(topics.NAVIGATION_GOAL):
+            verb, _, item = look.goal.partition(" ")
+            if verb == "find":
+                self._looked_for = item.strip()
+        if io.drain(topics.ROBOT_STOP):
+            self._end(Failure("STOPPED", "robot/stop"))
+        for goal in io.drain(topics.MANIPULATION_GOAL):
+            self._take(goal, now)
+        if self._steps is not None:
+            self._advance(now)
+
+    # --- sensing
+    def _sense(self, now: float) -> None:
+        io, robot = self._io, self._robot
+        if robot.planner is None:
+            self._load(now)
+        states = io.latest(topics.JOINT_STATES)
+        if states is not None:
+            self._read_joints(states)
+        robot.base = self._base(now)
+        self._source.update(io.latest(topics.WORLD_OBJECTS))
+
+    def _load(self, now: float) -> None:
+        description = self._io.latest(topics.ROBOT_DESCRIPTION)
+        if description is not None and self._loading is None:
+            self._loading = self._io.submit(Planner, description.mjcf, self._io.seed, seconds=0.5)
+        if self._loading is not None and self._loading.poll(now):
+            self._robot.planner = self._loading.result()
+
+    def _read_joints(self, states: m.JointStates) -> None:
+        if self._indices is None or self._indices[0] != states.name:
+            if not {*ARM, "gripper"} <= set(states.name) or len(states.position) < len(states.name):
+                return
+            order = {name: i for i, name in enumerate(states.name)}
+            self._indices = states.name, [order[j] for j in ARM], order["gripper"]
+        _, arm, gripper = self._indices
+        self._robot.joints = np.array([states.position[i] for i in arm])
+        effort = states.effort[gripper] if len(states.effort) > gripper else 0.0
+        self._robot.grip = Grip(states.position[gripper], effort)
+
+    def _base(self, now: float) -> Pose2:
+        pose = self._io.latest(topics.POSE)
+        if pose is not None and self._io.age(topics.POSE, now) < self._config.state_timeout:
+            return pose.x, pose.y, pose.theta
+        odometry = self._io.latest(topics.ODOMETRY)
+        return (odometry.x, odometry.y, odometry.theta) if odometry else self._robot.base
+
+    # --- goals
+    def _take(self, goal: m.ManipulationGoal, now: float) -> None:
+        goal.id = goal.id or self._io.new_id("manipulation")
+        if (goal.id, goal.attempt) in self._seen:
+            self._io.publish(topics.MANIPULATION_STATUS, self._status)
+            return
+        self._seen.add((goal.id, goal.attempt))
+        if self._steps is not None:
+            self._end(Failure("PREEMPTED", f"replaced by {goal.goal}"))
+        self._goal = goal
+        verb, _, rest = goal.goal.strip().partition(" ")
+        robot = self._robot
+        if goal.goal.strip() == "stop":
+            robot.forget_command()
+            self._publish("idle", "", "STOPPED", "the arm holds")
+            return
+        steps = self._sequence(verb, rest.strip())
+        if steps is None:
+            detail = f"{goal.goal!r}: expected grab, release, place <receptacle>, home or stop"
+            self._publish("failed", "", "UNKNOWN_GOAL", detail)
+            return
+        self._io.log.info("goal", goal=goal.goal, id=goal.id, attempt=goal.attempt)
+        self._steps, self._waiting_since = steps, now
+        robot.phase, robot.held = "start", robot.held if holds(robot.grip, self._config) else None
+        robot.forget_command()
+        self._publish("executing", "start")
+
+    def _sequence(self, verb: str, rest: str) -> Steps[str] | None:
+        robot = self._robot
+        if verb == "grab" and not rest:
+            return self._grab()
+        if verb == "release" and not rest:
+            return self._release()
+        if verb == "place" and rest:
+            return self._place(rest)
+        if verb == "home" and not rest:
+            return self._with_planner(routines.go_home(robot))
+        return None
+
+    def _with_planner(self, steps: Steps[str]) -> Steps[str]:
+        """Wait for the robot's description first, for a while."""
+        while self._robot.planner is None and self._robot.now - (self._waiting_since or 0.0) < DESCRIPTION_PATIENCE:
+            yield
+        return (yield from steps)
+
+    def _grab(self) -> Steps[str]:
+        robot, goal = self._robot, self._goal
+        wanted = goal.object.label if goal.object else self._looked_for
+        if holds(robot.grip, self._config):
+            label = robot.held.label if robot.held else ""
+            if not label or not wanted or label == wanted or goal.attempt > 1:
+                return f"already holding {label or 'something'}: width {robot.grip.width * 1000:.1f} mm"
+            raise Failure("HAND_FULL", f"the {label} is in the gripper")
+        return (yield from self._with_planner(routines.grab(robot, goal, self._looked_for)))
+
+    def _release(self) -> Steps[str]:
+        robot = self._robot
+        if not holds(robot.grip, self._config):
+            yield from robot.move_gripper(0.0)
+            return "nothing was held, the gripper is open"
+        return (yield from self._with_planner(routines.place(robot, "")))
+
+    def _place(self, where: str) -> Steps[str]:
+        robot = self._robot
+        if self._io.scene.receptacle(where) is None:
+            known = ", ".join(r.name for r in self._io.scene.receptacles)
+            raise Failure("UNKNOWN_PLACE", f"no receptacle {where!r}; known: {known}")
+        if not holds(robot.grip, self._config):
+            raise Failure("NOT_HOLDING", "nothing is in the gripper")
+        return (yield from self._with_planner(routines.place(robot, where)))
+
+    # --- running
+    def _advance(self, now: float) -> None:
+        assert self._steps is not None
+        age = self._io.age(topics.JOINT_STATES, now)
+        started = self._waiting_since or 0.0
+        if age > self._config.state_timeout and now - started > self._config.state_timeout:
+            silent = "no joint_states yet" if math.isinf(age) else f"joint_states silent for {age:.1f} s"
+            self._end(Failure("STALE_STATE", silent))
+            return
+        phase = self._robot.phase
+        try:
+            next(self._steps)
+        except StopIteration as stop:
+            self._steps = None
+            self._io.log.info("done", goal=self._goal.goal, evidence=stop.value)
+            self._publish("done", "", "", str(stop.value))
+        except Failure as failure:
+            self._end(failure)
+        else:
+            if self._robot.phase != phase:
+                self._publish("executing", self._robot.phase)
+
+    def _end(self, failure: Failure) -> None:
+        if self._steps is None:
+            return
+        self._steps.close()
+        self._steps = None
+        self._robot.forget_command()
+        self._io.log.warning("failed", goal=self._goal.goal, code=failure.code, detail=failure.detail)
+        self._publish("failed", self._robot.phase, failure.code, failure.detail)
+
+    def _publish(self, status: m.ManipStatus, phase: str, code: str = "", detail: str = "") -> None:
+        goal = self._goal
+        self._status = m.ManipulationStatus(
+            status=status, goal_id=goal.id, attempt=goal.attempt, phase=phase, code=code, detail=detail
+        )
+        self._io.publish(topics.MANIPULATION_STATUS, self._status)

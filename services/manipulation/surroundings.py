@@ -1,0 +1,91 @@
+"""What stands around the robot, as boxes in the base frame, from the scene's furniture and the known objects."""
+
+import math
+from collections.abc import Iterable
+
+import numpy as np
+
+from common.geometry import Pose2, compose, inverse, quat_yaw
+from common.messages import WorldObject
+from common.scene import Receptacle, Scene
+from services.manipulation.arm_model import Obstacle
+from services.manipulation.grasp import Target
+
+RANGE = 1.4
+SLAB = 0.14
+MARGIN = 0.01
+
+
+def target_of(found: WorldObject, base: Pose2, scene: Scene) -> Target:
+    """An object in the base frame; its height is snapped to the surface that it is said to stand on."""
+    x, y, yaw = compose(inverse(base), (found.position[0], found.position[1], quat_yaw(found.orientation)))
+    z = found.position[2]
+    receptacle = scene.receptacle(found.on)
+    if receptacle is not None and not receptacle.depth:
+        z = receptacle.center[2] + found.size[2] / 2
+    return Target(found.label, found.kind, (x, y, z), yaw, found.size)
+
+
+def _box(base: Pose2, center: tuple[float, float, float], size: tuple[float, float, float], yaw: float) -> Obstacle:
+    x, y, turn = compose(inverse(base), (center[0], center[1], yaw))
+    return Obstacle((x, y, center[2]), size, turn)
+
+
+def _near(box: Obstacle) -> float:
+    """Distance [m] from the base's centre to the box, seen from above."""
+    c, s = math.cos(box.yaw), math.sin(box.yaw)
+    u, v = -(c * box.center[0] + s * box.center[1]), -(c * box.center[1] - s * box.center[0])
+    return math.hypot(max(abs(u) - box.size[0] / 2, 0.0), max(abs(v) - box.size[1] / 2, 0.0))
+
+
+def _receptacle(r: Receptacle, base: Pose2) -> list[Obstacle]:
+    x, y, z = r.center
+    sx, sy = r.size
+    if not r.depth:
+        return [_box(base, (x, y, z - SLAB / 2), (sx, sy, SLAB), r.yaw)]
+    walls = []
+    c, s = math.cos(r.yaw), math.sin(r.yaw)
+    for i, j in ((1, 0), (-1, 0), (0, 1), (0, -1)):
+        u, v = i * sx / 2, j * sy / 2
+        size = (0.03 if i else sx, 0.03 if j else sy, r.depth)
+        walls.append(_box(base, (x + c * u - s * v, y + s * u + c * v, r.depth / 2), size, r.yaw))
+    return walls
+
+
+def obstacles(
+    scene: Scene, base: Pose2, objects: Iterable[WorldObject], without: str = "", margin: float = MARGIN
+) -> list[Obstacle]:
+    """Everything within reach, nearest first; the objects grow by `margin`, `without` names the one to leave out."""
+    found: list[Obstacle] = []
+    for r in scene.receptacles:
+        found += _receptacle(r, base)
+    found += [_box(base, f.center, f.size, f.yaw) for f in scene.furniture]
+    for wall in scene.walls:
+        dx, dy = wall.end[0] - wall.start[0], wall.end[1] - wall.start[1]
+        center = ((wall.start[0] + wall.end[0]) / 2, (wall.start[1] + wall.end[1]) / 2, wall.height / 2)
+        found.append(_box(base, center, (math.hypot(dx, dy), wall.thickness, wall.height), math.atan2(dy, dx)))
+    near = sorted((b for b in found if _near(b) < RANGE), key=_near)
+    things = []
+    for o in objects:
+        if o.label != without and not o.held:
+            target = target_of(o, base, scene)
+            size = (o.size[0] + 2 * margin, o.size[1] + 2 * margin, o.size[2] + margin)
+            things.append(Obstacle(target.position, size, target.yaw))
+    return near[:14] + sorted((t for t in things if _near(t) < RANGE), key=_near)
+
+
+def spots(r: Receptacle, base: Pose2, footprint: float, taken: Iterable[WorldObject]) -> list[tuple[float, float]]:
+    """Free points of a surface in the base frame, those easiest to reach first."""
+    c, s = math.cos(r.yaw), math.sin(r.yaw)
+    others = [(o.position[0], o.position[1], max(o.size[0], o.size[1]) / 2) for o in taken if not o.held]
+    radius = footprint / 2
+    grid = []
+    half = [max(0.0, v / 2 - radius - 0.02) for v in r.size]
+    for u in np.linspace(-half[0], half[0], 5):
+        for v in np.linspace(-half[1], half[1], 7):
+            x, y = r.center[0] + c * u - s * v, r.center[1] + s * u + c * v
+            if all(math.hypot(x - ox, y - oy) > radius + other + 0.03 for ox, oy, other in others):
+                bx, by, _ = compose(inverse(base), (x, y, 0.0))
+                ideal = math.hypot(bx - 0.62, 0.6 * by)
+                grid.append((ideal, (bx, by)))
+    return [spot for ideal, spot in sorted(grid) if ideal < 0.6]

@@ -1,0 +1,40 @@
+"""What the gripper's width and force say: nothing between the fingers, something held, something lost."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+from services.manipulation.config import ManipulationConfig
+
+HOLDING_FORCE = 3.0
+OPEN_WIDTH = 0.080
+
+
+@dataclass(frozen=True)
+class Grip:
+    """Width between the pads [m] and closing force of a finger [N]."""
+
+    width: float
+    force: float
+
+
+def holds(grip: Grip, config: ManipulationConfig) -> bool:
+    """Something keeps the closing fingers apart."""
+    return grip.force > HOLDING_FORCE and grip.width > config.empty_width
+
+
+def judge(
+    grip: Grip, nominal: float, at_close: float | None, config: ManipulationConfig
+) -> Literal["", "EMPTY_GRASP", "SLIPPED"]:
+    """The failure code of a grasp on something `nominal` metres wide; "" when it is good.
+
+    `at_close` is the width when the fingers had closed: after the lift it must not have changed.
+    """
+    if grip.width <= config.empty_width:
+        return "SLIPPED" if at_close is not None and at_close > config.empty_width else "EMPTY_GRASP"
+    if grip.force <= HOLDING_FORCE:
+        return "EMPTY_GRASP" if at_close is None else "SLIPPED"
+    if at_close is not None and abs(grip.width - at_close) > config.slip_width:
+        return "SLIPPED"
+    if nominal > 0 and grip.width < nominal * 0.4:
+        return "SLIPPED"
+    return ""
