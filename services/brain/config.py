@@ -26,4 +26,3 @@ class BrainConfig(Config, frozen=True):
     navigation_retries: int = 2
     grab_retries: int = 2
     release_retries: int = 2
-    view_distance: float = 0.8

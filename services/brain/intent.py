@@ -27,6 +27,7 @@ _VERB = re.compile(
 _ME = re.compile(r"^(?:to )?(?:me|us|up)\s+")
 _DETERMINER = re.compile(r"^(?:(?:the|a|an|my|that|this|some|any|one|your|our)\s+)+")
 _WHERE = re.compile(r"\s+(?:from|on|in|at|off|under|near|next to|that is|which is)\s+.*$")
+_INDEFINITE = re.compile(r"\b(?:a|an|any|some)\s+\w")
 _SIZES = frozenset({"big", "small", "little", "large"})
 
 
@@ -52,8 +53,9 @@ def parse(text: str, scene: Scene) -> Intent:
     for kind, phrases in controls:
         if words in phrases or whole in phrases:
             return Intent(kind)
+    any_one = _INDEFINITE.search(words) is not None
     for candidate in _things(words):
-        label, _ = find_object(candidate, scene)
+        label, _ = find_object(candidate, scene, any_one)
         if label:
             exact = scene.object(candidate) is not None
             return Intent("fetch", item=candidate if exact else label, label=label)
@@ -70,8 +72,8 @@ def _things(words: str) -> list[str]:
     return list(dict.fromkeys(readings))
 
 
-def find_object(thing: str, scene: Scene) -> tuple[str, str]:
-    """(scene name, "") of the one object that the words can mean, else ("", why not)."""
+def find_object(thing: str, scene: Scene, any_one: bool = False) -> tuple[str, str]:
+    """(scene name, "") of the object meant, else ("", why not); with `any_one` the first of several will do."""
     known = scene.object(thing)
     if known is not None:
         return known.name, ""
@@ -86,7 +88,7 @@ def find_object(thing: str, scene: Scene) -> tuple[str, str]:
         if kind is None or not set(words[:split]) <= colours:
             continue
         named = [o for o in scene.objects if o.kind == kind and (not split or o.colour in words[:split])]
-        if len(named) == 1:
+        if len(named) == 1 or (named and any_one):
             return named[0].name, ""
         if named:
             return "", f"Which {noun}: {_choice(named)}?"

@@ -28,6 +28,7 @@ SYSTEM_STATE: Mapping[m.BrainStateName, m.SystemStateName] = {
 GRIPPER_EMPTY = 0.003
 GRIPPER_OPEN = 0.080
 HOLDING_FORCE = 2.0
+LOST_AFTER = 0.5
 
 
 class Failure(msgspec.Struct, frozen=True):
@@ -83,15 +84,24 @@ class Mission(msgspec.Struct):
 
 
 class Hand(msgspec.Struct):
-    """What the brain believes is in the gripper. `uncertain` after an interrupted grab or release."""
+    """What the brain believes is in the gripper. `uncertain` after an interrupted grab or release.
+
+    `felt`: since the grab the fingers have been seen to hold something; only then can they tell of a loss.
+    """
 
     holding: str = ""
     uncertain: str = ""
+    felt: bool = False
+    empty_since: float | None = None
+    put_down: dict[str, float] = {}
 
     def grabbed(self, label: str) -> None:
         self.holding, self.uncertain = label, ""
+        self.felt, self.empty_since = False, None
 
-    def released(self) -> None:
+    def released(self, now: float) -> None:
+        if self.holding:
+            self.put_down[self.holding] = now
         self.holding = self.uncertain = ""
 
     def interrupted(self, label: str) -> None:
@@ -103,6 +113,20 @@ class Hand(msgspec.Struct):
         if self.uncertain and evidence is not None:
             self.holding = self.uncertain if evidence else ""
             self.uncertain = ""
+
+    def feel(self, evidence: bool | None, now: float) -> None:
+        """Once a step: what the fingers say while something should be between them."""
+        self.felt = self.felt or evidence is True
+        if evidence is False:
+            self.empty_since = now if self.empty_since is None else self.empty_since
+        else:
+            self.empty_since = None
+
+    def lost(self, now: float) -> bool:
+        """Something was felt in the hand and is not any more."""
+        return (
+            bool(self.holding) and self.felt and self.empty_since is not None and now - self.empty_since >= LOST_AFTER
+        )
 
 
 def fingers_hold(joints: m.JointStates | None) -> bool | None:

@@ -102,8 +102,17 @@ class Release(Manipulate):
     def __init__(self, name: str, ctx: Context, text: Text = lambda: "release") -> None:
         super().__init__(name, ctx, text, lambda: None, state="RELEASING", retries=ctx.config.release_retries)
 
+    def update(self) -> Status:
+        ctx, hand = self.ctx, self.ctx.hand
+        if self._sent_at is None and hand.lost(ctx.now):
+            label = hand.holding
+            hand.released(ctx.now)
+            ctx.fail(Failure(ctx.state, "LOST_OBJECT", "the fingers are empty", f"I lost the {label} on the way."))
+            return Status.FAILURE
+        return super().update()
+
     def done(self, answer: Answer) -> Status:
-        self.ctx.hand.released()
+        self.ctx.hand.released(self.ctx.now)
         self.ctx.mission.released = True
         return Status.SUCCESS
 

@@ -11,7 +11,7 @@ from services.brain.context import Context
 from services.brain.goals import Answer, Channel, Word
 from services.brain.intent import CANCEL, RETURN, STOP, normal
 from services.brain.journal import MemoryJournal
-from services.brain.mission import Failure
+from services.brain.mission import Failure, fingers_hold
 from services.brain.snapshot import Signature, signature, snapshot
 from services.brain.trees import fetch_tree
 from services.brain.vla import vla_tree
@@ -69,6 +69,7 @@ class BrainService:
         ctx.now = now
         for channel in ctx.channels:
             channel.watch(now)
+        ctx.hand.feel(fingers_hold(self._io.latest(topics.JOINT_STATES)), now)
         self._receive_answers()
         self._receive_stops()
         self._receive_commands()

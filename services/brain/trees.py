@@ -150,9 +150,9 @@ def grab_failed(ctx: Context) -> bool:
 
 
 def object_ref(ctx: Context) -> m.ObjectRef | None:
-    """Which object to grab, for a manipulation that would otherwise take the nearest."""
+    """Which object to grab, as last reported; none if the robot itself has moved it since."""
     known = ctx.known_object(ctx.mission.label)
-    if known is None:
+    if known is None or known.seen_at <= ctx.hand.put_down.get(known.label, -1.0):
         return None
     return m.ObjectRef(
         label=known.label, position=known.position, orientation=known.orientation, size=known.size, kind=known.kind

@@ -81,6 +81,13 @@ class Peer:
         return eventually(found, f"state {name}; so far {self.states()}")
 
 
+def shown_state(session: zenoh.Session) -> dict[str, Any]:
+    """What a late `get` of the state is answered."""
+    answers = eventually(lambda: list(session.get("brain/state", timeout=2.0)), "the state answers a get")
+    fields: dict[str, Any] = json.loads(answers[0].ok.payload.to_bytes())
+    return fields
+
+
 @contextmanager
 def scripted(here: Site, joints: bool = True, **parameters: str) -> Iterator[Peer]:
     """A brain process and the scripted peer that plays everybody else."""
@@ -132,12 +139,23 @@ def test_a_whole_mission(here: Site) -> None:
 
 def test_waits_for_joint_states_and_answers_a_late_get(here: Site) -> None:
     with scripted(here, joints=False) as peer:
-        answers = eventually(lambda: list(peer.session.get("brain/state", timeout=2.0)), "the state answers a get")
-        assert json.loads(answers[0].ok.payload.to_bytes())["state"] == "IDLE"
+        assert shown_state(peer.session)["state"] == "IDLE"
         time.sleep(1.0)
         assert peer.goals() == []
         peer.put("joint_states", **JOINTS)
         peer.goal(1, "listen")
+
+
+def test_waits_for_somebody_who_hears_speech_goals(here: Site) -> None:
+    with here.session() as session:
+        here.start("services.brain", TIDYBOT_CLOCK="wall")
+        here.wait_alive(session, "brain")
+        session.put("joint_states", json.dumps(JOINTS))
+        eventually(lambda: shown_state(session)["detail"] == "waiting for speech", "the brain waits for speech")
+        peer = Peer(session)
+        subscriber = session.declare_subscriber(SPEECH, peer.receive)
+        peer.goal(1, "listen")
+        subscriber.undeclare()
 
 
 @pytest.mark.parametrize("failure", [b"ERROR", b'"ERROR"', b'{"text": "ERROR"}'])

@@ -353,6 +353,45 @@ def test_an_interrupted_grab_is_settled_by_the_fingers() -> None:
     assert bench.texts(NAV) == ["find red mug", "stop", "return_to_start"]
 
 
+def fingers(bench: Bench, width: float, force: float) -> None:
+    joints = m.JointStates(t=1.0, name=["gripper"], position=[width], velocity=[0.0], effort=[force])
+    bench.send(topics.JOINT_STATES, joints)
+    bench.step(1.0)
+
+
+def test_an_object_lost_on_the_way_is_never_delivered() -> None:
+    bench = holding()
+    fingers(bench, 0.07, 30.0)
+    back = bench.nav(2)
+    fingers(bench, 0.0, 30.0)
+    bench.drove(back)
+    bench.until(lambda: bench.state.state == "ERROR")
+    assert "LOST_OBJECT" in bench.state.detail
+    assert bench.texts(MANIP) == ["grab"]
+    assert "COMPLETED" not in bench.states()
+
+
+def test_fingers_that_never_told_of_an_object_cannot_tell_of_its_loss() -> None:
+    bench = holding()
+    fingers(bench, 0.0, 0.0)
+    bench.drove(bench.nav(2))
+    bench.did(bench.manip(2))
+    assert bench.state.state == "COMPLETED"
+
+
+def test_the_survey_is_not_quoted_for_what_the_robot_moved() -> None:
+    bench = Bench()
+    mug = m.WorldObject(label="red mug", kind="mug", colour="red", position=(1.0, 2.0, 0.8))
+    bench.send(topics.WORLD_OBJECTS, m.WorldObjects(t=0.0, objects=[mug]))
+    bench.hear("red mug")
+    bench = holding(bench)
+    bench.drove(bench.nav(2))
+    bench.did(bench.manip(2))
+    bench.hear("red mug", count=2)
+    bench.drove(bench.nav(3))
+    assert bench.manip(3).object is None
+
+
 def test_grab_names_the_surveyed_object() -> None:
     bench = Bench()
     mug = m.WorldObject(label="red mug", kind="mug", colour="red", position=(1.0, 2.0, 0.8))

@@ -28,6 +28,8 @@ SCENE = load_scene("apartment")
         ("bring the blue block here please", "blue block"),
         ("i need the red mug on the counter", "red mug"),
         ("yellow cubes", "yellow block"),
+        ("bring me a mug", "red mug"),
+        ("get me some blue bottle", "blue bottle"),
     ],
 )
 def test_fetch(text: str, item: str) -> None:

@@ -1,0 +1,126 @@
+"""The real brain process in `pipeline = "vla"` against a scripted peer of plain zenoh and JSON."""
+
+import json
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import zenoh
+
+from tests.support import Site, eventually
+
+GOALS = (
+    "brain/speech_goal", "brain/navigation_goal", "brain/manipulation_goal", "nav_goal", "plan_request", "object_query",
+)  # fmt: skip
+JOINTS = {"t": 0.0, "name": ["base_x"], "position": [0.0], "velocity": [0.0], "effort": [0.0]}
+FETCH = [
+    {"action": "find", "object": "red mug"},
+    {"action": "grasp", "object": "red mug"},
+    {"action": "return"},
+    {"action": "release"},
+]
+
+
+class Peer:
+    """Plays every other node; remembers goals and system states in order."""
+
+    def __init__(self, session: zenoh.Session) -> None:
+        self.session = session
+        self.goals: list[tuple[str, dict[str, Any]]] = []
+        self.system: list[str] = []
+
+    def receive(self, sample: zenoh.Sample) -> None:
+        key, fields = str(sample.key_expr), json.loads(sample.payload.to_bytes())
+        if key == "system_status":
+            self.system += [fields["state"]] if [fields["state"]] != self.system[-1:] else []
+        else:
+            self.goals.append((key, fields))
+
+    def put(self, key: str, **fields: Any) -> None:
+        self.session.put(key, json.dumps(fields))
+
+    def next(self, key: str, **expected: Any) -> dict[str, Any]:
+        """The next goal, which must be this one."""
+        eventually(lambda: self.goals, f"{key} {expected}")
+        got_key, fields = self.goals.pop(0)
+        assert (got_key, {k: fields[k] for k in expected}) == (key, expected)
+        return fields
+
+    def speech(self, text: str) -> dict[str, Any]:
+        return self.next("brain/speech_goal", goal=text)
+
+    def drove(self, goal: dict[str, Any], status: str = "arrived", **more: Any) -> None:
+        self.put("brain/navigation_status", status=status, goal_id=goal["id"], attempt=goal["attempt"], **more)
+
+    def did(self, goal: dict[str, Any], status: str = "done", **more: Any) -> None:
+        self.put("brain/manipulation_status", status=status, goal_id=goal["id"], attempt=goal["attempt"], **more)
+
+    def saw(self, query: dict[str, Any], found: bool = True) -> None:
+        self.put("object_pose", query_id=query["id"], found=found, label="red mug", position=[1.0, 2.0, 0.8])
+
+
+@contextmanager
+def scripted(here: Site, **parameters: str) -> Iterator[Peer]:
+    with here.session() as session:
+        peer = Peer(session)
+        subscribers = [session.declare_subscriber(key, peer.receive) for key in (*GOALS, "system_status")]
+        changes = {f"TIDYBOT__BRAIN__{k.upper()}": v for k, v in parameters.items()}
+        process = here.start("services.brain", TIDYBOT_CLOCK="wall", TIDYBOT__BRAIN__PIPELINE="vla", **changes)
+        here.wait_alive(session, "brain")
+        peer.put("joint_states", **JOINTS)
+
+        def waits() -> bool:
+            replies = list(session.get("brain/state", timeout=2.0))
+            return bool(replies) and json.loads(replies[0].ok.payload.to_bytes())["state"] == "WAITING"
+
+        eventually(waits, "the brain waits for a command")
+        yield peer
+        assert process.poll() is None, here.log("services.brain")
+        for subscriber in subscribers:
+            subscriber.undeclare()
+
+
+def test_voice_to_action_with_a_correction_and_a_replan(here: Site) -> None:
+    with scripted(here, settle="0.2") as peer:
+        peer.session.put("voice_command", "bring me the blue mug")
+        peer.speech("say Did you say bring me the blue mug?")
+        listen = peer.speech("listen")
+        peer.put("brain/speech_result", text="no, the red mug", goal_id=listen["id"], attempt=1)
+        peer.speech("say Did you say bring me the red mug?")
+        listen = peer.speech("listen")
+        peer.put("brain/speech_result", text="yes", goal_id=listen["id"], attempt=1)
+        request = peer.next("plan_request", command="bring me the red mug", rejected=None)
+        peer.put("action_plan", request_id="another", steps=FETCH)
+        peer.put("action_plan", request_id=request["id"], steps=[{"action": "grasp", "object": "sofa"}])
+        request = peer.next("plan_request", command="bring me the red mug")
+        assert "sofa" in request["rejected"]["reason"]
+        peer.put("action_plan", request_id=request["id"], steps=FETCH)
+        peer.saw(peer.next("object_query", query="red mug"))
+        peer.drove(peer.next("brain/navigation_goal", goal="find red mug"))
+        grab = peer.next("brain/manipulation_goal", goal="grab")
+        assert (grab["object"]["label"], grab["object"]["position"]) == ("red mug", [1.0, 2.0, 0.8])
+        peer.did(grab)
+        peer.drove(peer.next("brain/navigation_goal", goal="return_to_start"))
+        peer.did(peer.next("brain/manipulation_goal", goal="release"))
+        peer.speech("say Done.")
+        eventually(lambda: peer.system[-1] == "IDLE", "back to waiting")
+        assert peer.system[peer.system.index("LISTENING") :] == [
+            "LISTENING", "PLANNING", "GROUNDING", "NAVIGATING", "EXECUTING", "NAVIGATING", "EXECUTING",
+            "SUCCESS", "IDLE",
+        ]  # fmt: skip
+
+
+def test_search_and_alternative_path(here: Site) -> None:
+    with scripted(here, settle="0.2", enable_confirmation="false") as peer:
+        peer.session.put("voice_command", "bring me the red mug")
+        request = peer.next("plan_request")
+        peer.put("action_plan", request_id=request["id"], steps=FETCH)
+        peer.saw(peer.next("object_query"), found=False)
+        view = peer.next("nav_goal", frame="map")
+        peer.put("navigation_feedback", goal_id=view["id"], status="arrived")
+        peer.saw(peer.next("object_query"))
+        for attempt in (1, 2, 3):
+            drive = peer.next("brain/navigation_goal", goal="find red mug", attempt=attempt)
+            peer.drove(drive, "failed", code="BLOCKED")
+        peer.speech("say I could not reach the red mug.")
+        assert "ERROR" in peer.system and "SUCCESS" not in peer.system
