@@ -24,6 +24,7 @@ class Bench:
         self.bus = MemoryBus()
         self.now = 100.0
         self._taps = {t.key: self.bus.tap(t) for t in BrainService.WRITES}
+        self._decoded: dict[str, list[Any]] = {}
         scene = load_scene("apartment")
         self.io = MemoryIo(
             self.bus, "brain", BrainService.READS, BrainService.WRITES, scene=scene, lockstep=False, log_level="error"
@@ -50,7 +51,9 @@ class Bench:
         return self.now - start
 
     def sent(self, topic: Topic[M]) -> list[M]:
-        return [codec.decode(topic, payload) for payload in self._taps[topic.key]]
+        decoded = self._decoded.setdefault(topic.key, [])
+        decoded += [codec.decode(topic, payload) for payload in self._taps[topic.key][len(decoded) :]]
+        return decoded.copy()
 
     def states(self) -> list[str]:
         """State names in order, repetitions (a new step in the same state) folded."""
@@ -58,7 +61,8 @@ class Bench:
 
     @property
     def state(self) -> m.BrainState:
-        return self.sent(topics.BRAIN_STATE)[-1]
+        last: m.BrainState = codec.decode(topics.BRAIN_STATE, self._taps[topics.BRAIN_STATE.key][-1])
+        return last
 
     def next_goal(self, topic: Topic[M], count: int, limit: float = 400.0) -> M:
         """The goal number `count` (from 1) on a topic, stepping until it is there."""

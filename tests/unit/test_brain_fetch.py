@@ -112,6 +112,15 @@ def test_foreign_late_and_idle_statuses_do_not_count() -> None:
     assert bench.texts(MANIP) == ["grab"]
 
 
+def test_the_first_final_word_stands() -> None:
+    bench = start()
+    goal = bench.nav(1)
+    for word in ("arrived", "failed", "navigating"):
+        bench.bus.put(topics.NAVIGATION_STATUS, f'{{"status":"{word}","goal_id":"{goal.id}","attempt":1}}'.encode())
+    bench.manip(1)
+    assert bench.texts(NAV) == ["find red mug"]
+
+
 def test_a_status_from_before_the_goal_does_not_count() -> None:
     bench = Bench()
     bench.send(topics.NAVIGATION_STATUS, m.NavigationStatus(status="arrived"))
