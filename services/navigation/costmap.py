@@ -1,0 +1,125 @@
+"""Where the base can be: the scene's static map, what the lidar sees beyond it, and the distance to either."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from common.geometry import Pose2
+from common.scene import Scene
+
+Grid = NDArray[np.bool_]
+Array = NDArray[np.float64]
+_PAD = 0.3
+_EXPLAINED = 0.12
+BIN_WALL = 0.02
+
+
+class Costmap:
+    """Cells of `resolution`; `distance` [m] is from each cell to the nearest obstacle, static or seen."""
+
+    def __init__(self, scene: Scene, resolution: float, memory: float) -> None:
+        self.resolution, self._memory = resolution, memory
+        self.origin = (scene.low[0] - _PAD, scene.low[1] - _PAD)
+        width = math.ceil((scene.high[0] - scene.low[0] + 2 * _PAD) / resolution)
+        height = math.ceil((scene.high[1] - scene.low[1] + 2 * _PAD) / resolution)
+        self.shape = (height, width)
+        self.static = self._rasterise(scene)
+        self._static_distance = self._distance_to(self.static)
+        self._seen_at = np.full(self.shape, -np.inf)
+        self.distance = self._static_distance
+        self.version = 0
+
+    def _rasterise(self, scene: Scene) -> Grid:
+        grid = np.zeros(self.shape, bool)
+        xs = self.origin[0] + (np.arange(self.shape[1]) + 0.5) * self.resolution
+        ys = self.origin[1] + (np.arange(self.shape[0]) + 0.5) * self.resolution
+        gx, gy = np.meshgrid(xs, ys)
+        outside = (gx < scene.low[0]) | (gx > scene.high[0]) | (gy < scene.low[1]) | (gy > scene.high[1])
+        grid |= outside
+        boxes = [(f.center[0], f.center[1], f.size[0], f.size[1], f.yaw) for f in scene.furniture]
+        # A table counts with its whole top: the lidar sees only its legs.
+        for r in scene.receptacles:
+            rim = 2 * BIN_WALL if r.depth else 0.0
+            boxes.append((r.center[0], r.center[1], r.size[0] + rim, r.size[1] + rim, r.yaw))
+        for wall in scene.walls:
+            dx, dy = wall.end[0] - wall.start[0], wall.end[1] - wall.start[1]
+            middle = (wall.start[0] + wall.end[0]) / 2, (wall.start[1] + wall.end[1]) / 2
+            length = math.hypot(dx, dy) + wall.thickness
+            boxes.append((*middle, length, wall.thickness, math.atan2(dy, dx)))
+        for x, y, sx, sy, yaw in boxes:
+            c, s = math.cos(yaw), math.sin(yaw)
+            u, v = c * (gx - x) + s * (gy - y), c * (gy - y) - s * (gx - x)
+            grid |= (np.abs(u) <= sx / 2) & (np.abs(v) <= sy / 2)
+        return grid
+
+    def _distance_to(self, occupied: Grid) -> Array:
+        found: Array = ndimage.distance_transform_edt(~occupied) * self.resolution
+        return found
+
+    # --- cells
+    def cell(self, x: float, y: float) -> tuple[int, int]:
+        """(row, column) of a point, clipped to the map."""
+        column = int((x - self.origin[0]) / self.resolution)
+        row = int((y - self.origin[1]) / self.resolution)
+        return min(max(row, 0), self.shape[0] - 1), min(max(column, 0), self.shape[1] - 1)
+
+    def point(self, row: int, column: int) -> tuple[float, float]:
+        """The centre of a cell."""
+        return (
+            self.origin[0] + (column + 0.5) * self.resolution,
+            self.origin[1] + (row + 0.5) * self.resolution,
+        )
+
+    def clearance(self, x: float, y: float) -> float:
+        """Distance [m] from a point to the nearest obstacle."""
+        return float(self.distance[self.cell(x, y)])
+
+    def line_clearance(self, a: tuple[float, float], b: tuple[float, float]) -> float:
+        """The least clearance on the straight line between two points."""
+        count = max(2, math.ceil(math.hypot(b[0] - a[0], b[1] - a[1]) / self.resolution) + 1)
+        xs, ys = np.linspace(a[0], b[0], count), np.linspace(a[1], b[1], count)
+        columns = np.clip(((xs - self.origin[0]) / self.resolution).astype(int), 0, self.shape[1] - 1)
+        rows = np.clip(((ys - self.origin[1]) / self.resolution).astype(int), 0, self.shape[0] - 1)
+        return float(self.distance[rows, columns].min())
+
+    # --- lidar
+    def see(self, pose: Pose2, angles: Array, ranges: Array, range_max: float, now: float) -> None:
+        """Mark what the static map does not explain, clear what the rays passed through, forget what is old."""
+        hit = ranges <= range_max
+        directions = angles[hit] + pose[2]
+        xs, ys = pose[0] + ranges[hit] * np.cos(directions), pose[1] + ranges[hit] * np.sin(directions)
+        columns = ((xs - self.origin[0]) / self.resolution).astype(int)
+        rows = ((ys - self.origin[1]) / self.resolution).astype(int)
+        inside = (rows >= 0) & (rows < self.shape[0]) & (columns >= 0) & (columns < self.shape[1])
+        rows, columns = rows[inside], columns[inside]
+        new = self._static_distance[rows, columns] > _EXPLAINED
+        before = self._seen_at > -np.inf
+        if not new.any() and not before.any():
+            return
+        self._clear(pose, angles, np.where(hit, ranges, range_max), now)
+        self._seen_at[rows[new], columns[new]] = now
+        after = self._seen_at > -np.inf
+        if (after != before).any():
+            self.distance = self._distance_to(self.static | after) if after.any() else self._static_distance
+            self.version += 1
+
+    def _clear(self, pose: Pose2, angles: Array, reach: Array, now: float) -> None:
+        rows, columns = np.nonzero(self._seen_at > -np.inf)
+        if not len(rows):
+            return
+        x = self.origin[0] + (columns + 0.5) * self.resolution - pose[0]
+        y = self.origin[1] + (rows + 0.5) * self.resolution - pose[1]
+        step = angles[1] - angles[0]
+        bearing = np.arctan2(y, x) - pose[2] - angles[0]
+        ray = np.round(np.mod(bearing, 2 * math.pi) / step).astype(int) % len(angles)
+        passed = reach[ray] > np.hypot(x, y) + 0.15
+        old = now - self._seen_at[rows, columns] > self._memory
+        gone = passed | old
+        self._seen_at[rows[gone], columns[gone]] = -np.inf
+
+    @property
+    def sees_unmapped(self) -> bool:
+        """True while something is there that the static map does not have."""
+        return bool((self._seen_at > -np.inf).any())

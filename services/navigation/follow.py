@@ -1,0 +1,87 @@
+"""Path following for a holonomic base: a carrot ahead on the path, a heading, and a brake for what the lidar sees."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from common.geometry import Pose2, wrap
+from services.navigation.costmap import Array, Costmap
+from services.navigation.planner import SPACING, Point
+
+TURN_AT = 0.9
+SLOW_TURN = 0.6
+MIN_STEP = 0.08
+
+
+@dataclass(frozen=True)
+class Carrot:
+    """Where to send the base next; `final` is the goal itself, `blocked` says that something stands in the way."""
+
+    pose: Pose2
+    final: bool
+    blocked: bool
+    remaining: float
+
+
+class Follower:
+    """Follows one path; progress along it never goes back."""
+
+    def __init__(self, path: list[Point], goal: Pose2, lookahead: float, corridor: float) -> None:
+        self.path, self.goal = path, goal
+        self._points = np.array(path)
+        self._lookahead, self._corridor = lookahead, corridor
+        self._index = 0
+
+    def remaining(self, pose: Pose2) -> float:
+        """Metres of path left."""
+        ahead = len(self.path) - 1 - self._index
+        off = math.hypot(self.path[self._index][0] - pose[0], self.path[self._index][1] - pose[1])
+        return ahead * SPACING + min(off, 1.0)
+
+    def step(self, pose: Pose2, costmap: Costmap, radius: float, points: Array | None) -> Carrot:
+        """The next carrot; `points` (n, 2) is what the lidar sees now, in frame map."""
+        window = self._points[self._index : self._index + 40]
+        self._index += int(np.argmin(np.hypot(window[:, 0] - pose[0], window[:, 1] - pose[1])))
+        remaining = self.remaining(pose)
+        near_end = remaining < TURN_AT
+        reach = min(len(self.path) - 1, self._index + round(self._lookahead / SPACING))
+        here = (pose[0], pose[1])
+        while reach > self._index + 2 and costmap.line_clearance(here, self.path[reach]) < radius - 0.005:
+            reach -= 2
+        target = self.path[reach]
+        heading = self.goal[2] if near_end else math.atan2(target[1] - pose[1], target[0] - pose[0])
+        turn = abs(wrap(heading - pose[2]))
+        final = reach == len(self.path) - 1
+        if turn > SLOW_TURN and not near_end:
+            target = _towards(here, target, max(MIN_STEP, 0.2 * math.cos(min(turn, math.pi / 2))))
+            final = False
+        room = self._room(here, target, points)
+        distance = math.hypot(target[0] - here[0], target[1] - here[1])
+        if room < distance:
+            stop = max(0.0, room - 0.10)
+            target = _towards(here, target, stop)
+            return Carrot((target[0], target[1], heading), False, stop < 0.05, remaining)
+        pose_to = self.goal if final else (target[0], target[1], heading)
+        return Carrot(pose_to, final, False, remaining)
+
+    def _room(self, here: Point, target: Point, points: Array | None) -> float:
+        """How far the base can go towards `target` before it touches a lidar point."""
+        length = math.hypot(target[0] - here[0], target[1] - here[1])
+        if points is None or not len(points) or length < 1e-6:
+            return math.inf
+        ux, uy = (target[0] - here[0]) / length, (target[1] - here[1]) / length
+        x, y = points[:, 0] - here[0], points[:, 1] - here[1]
+        along, across = x * ux + y * uy, np.abs(y * ux - x * uy)
+        ahead = (along > 0) & (across < self._corridor)
+        if not ahead.any():
+            return math.inf
+        touch = along[ahead] - np.sqrt(np.maximum(self._corridor**2 - np.square(across[ahead]), 0.0))
+        return float(max(0.0, touch.min()))
+
+
+def _towards(here: Point, target: Point, distance: float) -> Point:
+    length = math.hypot(target[0] - here[0], target[1] - here[1])
+    if length <= distance or length < 1e-9:
+        return target
+    return here[0] + (target[0] - here[0]) * distance / length, here[1] + (target[1] - here[1]) * distance / length

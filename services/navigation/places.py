@@ -1,0 +1,87 @@
+"""Names to places: rooms, surfaces and poses of the scene, places and items of places.toml, objects that were seen."""
+
+import tomllib
+from pathlib import Path
+
+import msgspec
+
+from common.config import ConfigError
+from common.geometry import Pose2
+from common.messages import WorldObject
+from common.naming import match_object, near_names, normalise
+from common.scene import Receptacle, Scene
+
+
+class Spot(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    x: float
+    y: float
+    theta: float = 0.0
+
+
+class PlacesFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """config/places.toml."""
+
+    places: dict[str, Spot] = {}
+    items: dict[str, Spot] = {}
+
+
+def load_places(directory: Path) -> PlacesFile:
+    """Read places.toml; empty when there is none.
+
+    Raises:
+        ConfigError: bad TOML, an unknown key or a wrong type.
+    """
+    path = directory / "places.toml"
+    try:
+        return msgspec.convert(tomllib.loads(path.read_text(encoding="utf-8")), PlacesFile)
+    except FileNotFoundError:
+        return PlacesFile()
+    except (tomllib.TOMLDecodeError, msgspec.ValidationError, UnicodeDecodeError) as error:
+        raise ConfigError(f"{path}: {error}") from None
+
+
+class Places:
+    """Looks names up; what it returns is a pose, a receptacle or an object to stand at."""
+
+    def __init__(self, scene: Scene, file: PlacesFile) -> None:
+        self._scene = scene
+        self._items = {normalise(k): v for k, v in file.items.items()}
+        self._poses: dict[str, Pose2] = {}
+        for place in (scene.home, *scene.places):
+            for name in (place.name, *place.aliases):
+                self._poses[normalise(name)] = (place.x, place.y, place.theta)
+        self._poses |= {normalise(k): (v.x, v.y, v.theta) for k, v in file.places.items()}
+        self._receptacles = {normalise(n): r for r in scene.receptacles for n in (r.name, *r.aliases)}
+        for room in scene.rooms:
+            middle = ((room.low[0] + room.high[0]) / 2, (room.low[1] + room.high[1]) / 2, 0.0)
+            for name in (room.name, *room.aliases):
+                self._poses.setdefault(normalise(name), middle)
+
+    @property
+    def home(self) -> Pose2:
+        return self._scene.home.x, self._scene.home.y, self._scene.home.theta
+
+    def place(self, name: str) -> Pose2 | Receptacle | None:
+        """A named place."""
+        wanted = normalise(name)
+        return self._poses.get(wanted) or self._receptacles.get(wanted)
+
+    def similar(self, name: str) -> str:
+        """For error messages: names that look like it, else all."""
+        names = [*self._poses, *self._receptacles]
+        return ", ".join(near_names(name, names) or sorted(set(names)))
+
+    def item(self, name: str, objects: list[WorldObject]) -> list[WorldObject] | Pose2 | None:
+        """The objects that the name can mean, else the spot of places.toml, else None."""
+        found = [o for o in match_object(name, objects, self._scene) if not o.held]
+        if found:
+            return found
+        spot = self._items.get(normalise(name))
+        if spot is None:
+            spec = self._scene.object(normalise(name))
+            spot = self._items.get(normalise(spec.name)) if spec else None
+        return (spot.x, spot.y, spot.theta) if spot else None
+
+    def receptacle_of(self, o: WorldObject) -> Receptacle | None:
+        """What an object stands on."""
+        return self._scene.receptacle(o.on) if o.on else None

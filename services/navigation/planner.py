@@ -1,0 +1,124 @@
+"""Shortest paths on the grid with a cost that prefers clearance, and their smoothing."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import sparse
+from scipy.sparse import csgraph
+
+from services.navigation.costmap import Costmap
+
+Point = tuple[float, float]
+SPACING = 0.05
+_NEIGHBOURS = ((0, 1, 1.0), (1, 0, 1.0), (1, 1, math.sqrt(2)), (1, -1, math.sqrt(2)))
+_WEIGHT = 4.0
+
+
+@dataclass(frozen=True)
+class Field:
+    """Cost from one cell to all others, with the way back."""
+
+    start: tuple[int, int]
+    cost: NDArray[np.float64]
+    previous: NDArray[np.int32]
+
+
+class PathPlanner:
+    """Plans for a disc of `radius` [m]; cells closer to an obstacle than that cannot be entered."""
+
+    def __init__(self, costmap: Costmap, radius: float, inflation: float) -> None:
+        self._map, self._radius, self._inflation = costmap, radius, inflation
+        self._graph: sparse.csr_matrix | None = None
+        self._version = -1
+
+    def free(self, x: float, y: float) -> bool:
+        """True when the disc fits there."""
+        return self._map.clearance(x, y) >= self._radius
+
+    def field(self, x: float, y: float) -> Field:
+        """Costs from a point; a start that is too close to something is moved to the nearest free cell."""
+        start = self._nearest_free(self._map.cell(x, y))
+        index = start[0] * self._map.shape[1] + start[1]
+        cost, previous = csgraph.dijkstra(
+            self._edges(), directed=False, indices=index, return_predecessors=True, min_only=False
+        )
+        return Field(start, cost.reshape(self._map.shape), previous)
+
+    def path(self, field: Field, start: Point, goal: Point) -> list[Point] | None:
+        """Points every 5 cm from start to goal; None when there is no way."""
+        row, column = self._map.cell(*goal)
+        if not math.isfinite(field.cost[row, column]):
+            return None
+        width = self._map.shape[1]
+        index, cells = row * width + column, []
+        while index >= 0:
+            cells.append(index)
+            index = int(field.previous[index])
+        points = [self._map.point(*divmod(i, width)) for i in reversed(cells)]
+        return self._resample(self._shorten([start, *points[1:-1], goal]))
+
+    def cost_to(self, field: Field, goal: Point) -> float:
+        """Path cost [m and more] to a point; inf when there is no way."""
+        return float(field.cost[self._map.cell(*goal)])
+
+    def _edges(self) -> sparse.csr_matrix:
+        if self._graph is not None and self._version == self._map.version:
+            return self._graph
+        distance = self._map.distance
+        free = distance >= self._radius
+        lack = np.clip((self._inflation - distance) / (self._inflation - self._radius), 0, 1)
+        weight = 1.0 + _WEIGHT * np.square(lack)
+        rows, columns = self._map.shape
+        numbers = np.arange(rows * columns).reshape(rows, columns)
+        heads, tails, costs = [], [], []
+        for dr, dc, length in _NEIGHBOURS:
+            a = (slice(0, rows - dr), slice(max(0, -dc), columns - max(0, dc)))
+            b = (slice(dr, rows), slice(max(0, dc), columns + min(0, dc)))
+            both = free[a] & free[b]
+            heads.append(numbers[a][both])
+            tails.append(numbers[b][both])
+            costs.append((weight[a] + weight[b])[both] * (0.5 * length * self._map.resolution))
+        size = rows * columns
+        self._graph = sparse.csr_matrix(
+            (np.concatenate(costs), (np.concatenate(heads), np.concatenate(tails))), shape=(size, size)
+        )
+        self._version = self._map.version
+        return self._graph
+
+    def _nearest_free(self, cell: tuple[int, int]) -> tuple[int, int]:
+        free = self._map.distance >= self._radius
+        if free[cell] or not free.any():
+            return cell
+        rows, columns = np.nonzero(free)
+        best = int(np.argmin(np.square(rows - cell[0]) + np.square(columns - cell[1])))
+        return int(rows[best]), int(columns[best])
+
+    def _shorten(self, points: list[Point]) -> list[Point]:
+        """Straight lines where they keep the clearance that the path had."""
+        kept, i = [points[0]], 0
+        while i < len(points) - 1:
+            j = min(len(points) - 1, i + 60)
+            while j > i + 1:
+                least = min(self._map.clearance(*p) for p in points[i : j + 1 : 3])
+                if self._map.line_clearance(points[i], points[j]) >= min(least, self._inflation) - 0.03 and (
+                    self._map.line_clearance(points[i], points[j]) >= self._radius or i == 0
+                ):
+                    break
+                j -= max(1, (j - i) // 4)
+            kept.append(points[j])
+            i = j
+        return kept
+
+    @staticmethod
+    def _resample(points: Sequence[Point]) -> list[Point]:
+        array = np.array(points)
+        lengths = np.hypot(*np.diff(array, axis=0).T)
+        along = np.concatenate([[0.0], np.cumsum(lengths)])
+        count = max(2, math.ceil(along[-1] / SPACING) + 1)
+        s = np.linspace(0, along[-1], count)
+        return list(
+            zip(np.interp(s, along, array[:, 0]).tolist(), np.interp(s, along, array[:, 1]).tolist(), strict=True)
+        )
