@@ -11,7 +11,7 @@ from common.geometry import Pose2
 from common.io import Io
 from common.scene import Receptacle
 from services.navigation.config import NavigationConfig
-from services.navigation.costmap import Costmap
+from services.navigation.costmap import Array, Costmap
 from services.navigation.drive import Drive, Ended
 from services.navigation.places import Places, load_places
 from services.navigation.planner import PathPlanner
@@ -41,8 +41,8 @@ class NavigationService:
         self._drive: Drive | None = None
         self._seen: set[tuple[str, int]] = set()
         self._pose: Pose2 | None = None
-        self._points: np.ndarray | None = None
-        self._angles: np.ndarray | None = None
+        self._points: Array | None = None
+        self._angles: Array | None = None
         self._now = 0.0
         self._from_brain = True
         self._status = m.NavigationStatus(status="idle")
@@ -82,15 +82,16 @@ class NavigationService:
         if not (scans := self._io.drain(topics.SCAN)) or self._pose is None:
             return
         scan = scans[-1]
-        ranges = np.frombuffer(scan.ranges, "<f4").astype(float)
+        ranges = np.frombuffer(scan.ranges, "<f4").astype(np.float64)
         if not len(ranges) or not np.isfinite(ranges).all():
             self._io.count_drop(topics.SCAN.key, "no finite ranges")
             return
-        if self._angles is None or len(self._angles) != len(ranges):
-            self._angles = scan.angle_min + np.arange(len(ranges)) * scan.angle_increment
-        self._map.see(self._pose, self._angles, ranges, scan.range_max, now)
+        angles = self._angles
+        if angles is None or len(angles) != len(ranges):
+            angles = self._angles = scan.angle_min + np.arange(len(ranges)) * scan.angle_increment
+        self._map.see(self._pose, angles, ranges, scan.range_max, now)
         near = ranges < 1.5
-        directions = self._angles[near] + self._pose[2]
+        directions = angles[near] + self._pose[2]
         self._points = np.stack(
             [self._pose[0] + ranges[near] * np.cos(directions), self._pose[1] + ranges[near] * np.sin(directions)],
             axis=1,
