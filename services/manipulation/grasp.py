@@ -9,7 +9,7 @@ import numpy as np
 
 from services.manipulation.arm_model import Array, Pose
 
-MAX_WIDTH = 0.080
+MAX_WIDTH = 0.076
 HANDLE_CONE = math.radians(40)
 
 
@@ -60,9 +60,8 @@ def candidates(target: Target) -> list[Grasp]:
     if target.kind in ("can", "bottle"):
         return _round(target, facing, (15, 25, 5, 40), handle=False)
     if target.kind == "box":
-        return _flat(target, facing, (15, 25, 5, 40), target.size[2] * 0.6) + _flat(
-            target, facing, (90, 70), target.size[2] * 0.8
-        )
+        from_above = _flat(target, facing, (90, 70), target.size[2] * 0.8)
+        return _flat(target, facing, (15, 30, 45), target.size[2] * 0.6) + from_above
     if target.kind in ("apple", "ball"):
         return _round(target, facing, (90, 65, 45, 30), handle=False)
     if target.kind == "bowl":
@@ -110,7 +109,7 @@ def _flat(target: Target, facing: float, tilts: Sequence[float], height: float) 
             face = target.yaw + quarter * math.pi / 2
             width = target.size[1] if quarter % 2 == 0 else target.size[0]
             off = math.remainder(face - facing, 2 * math.pi)
-            if width <= MAX_WIDTH and abs(off) < math.radians(75):
+            if width <= MAX_WIDTH and abs(off) < math.radians(80 if degrees < 60 else 181):
                 options.append((abs(off), face, width))
         for off, face, width in sorted(options):
             name = f"{degrees:.0f} deg on faces at {math.degrees(off):.0f}"

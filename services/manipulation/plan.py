@@ -13,6 +13,7 @@ from services.manipulation.trajectory import connect
 CARTESIAN_STEP = 0.02
 MAX_JUMP = 0.6
 HELD_SHRINK = 0.008
+TRANSIT_MARGIN = 0.012
 # Close to the body; for long things the hand is turned or tips up so that they stay clear of the arm.
 CARRY = tuple(
     HOME + np.array([0, 0, 0, 0, 0, tip, turn]) for tip in (0.0, 0.4, 0.8) for turn in (0.0, np.pi / 2, -np.pi / 2)
@@ -46,6 +47,12 @@ class Held:
         half = np.abs(turned) @ (np.array(self.size) / 2) - HELD_SHRINK
         center = self.rotation.T @ (np.array([0, 0, self.size[2] / 2]) - self.offset)
         return np.maximum(half, 0.004), center
+
+
+def inflated(around: Sequence[Obstacle]) -> list[Obstacle]:
+    """The boxes grown by the margin kept in transit."""
+    grow = 2 * TRANSIT_MARGIN
+    return [Obstacle(o.center, (o.size[0] + grow, o.size[1] + grow, o.size[2] + grow), o.yaw) for o in around]
 
 
 @dataclass(frozen=True)
@@ -129,7 +136,9 @@ class Planner:
             return "no straight lift"
         if any(arm.collides(q) for q in back):
             return "approach collides"
-        arm.set_obstacles([*around[:14], own, *around[14:]])
+        arm.set_obstacles(inflated([*around[:14], own, *around[14:]]))
+        if arm.collides(back[-1]):
+            arm.set_obstacles([*around[:14], own, *around[14:]])
         there = connect(arm, now, back[-1], rng)
         if there is None:
             return "no path to the pre-grasp"
