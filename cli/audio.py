@@ -1,0 +1,115 @@
+"""A recording for the robot's ear: read and checked, then played at the robot's own pace."""
+
+import struct
+import wave
+from collections.abc import Callable
+from math import gcd
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.signal import resample_poly
+
+from cli.errors import CliError
+from cli.link import Link, Watch
+from common import codec, topics
+from common import messages as m
+from common.clock import monotonic
+from common.lockstep import DT
+
+RATE = 16000
+CHUNK = 0.1
+LEAD_IN, TRAILING = 0.3, 1.5
+EAR = "ear"
+_PERIOD = round(CHUNK / DT)
+_TICK = struct.Struct("<q")
+
+
+def read_wav(path: Path) -> NDArray[np.int16]:
+    """16 kHz mono samples of a PCM WAV file of any rate and number of channels.
+
+    Raises:
+        CliError: no such file, not PCM WAV, truncated, or empty.
+    """
+    try:
+        size = path.stat().st_size
+        with wave.open(str(path), "rb") as file:
+            channels, width, rate, frames = file.getparams()[:4]
+            raw = file.readframes(frames)
+    except FileNotFoundError:
+        raise CliError(f"{path}: no such file") from None
+    except (OSError, EOFError, wave.Error) as error:
+        raise CliError(f"{path}: not a PCM WAV file ({str(error) or 'it ends too early'})") from None
+    if frames == 0:
+        raise CliError(f"{path}: contains no sound")
+    if len(raw) < frames * channels * width:
+        raise CliError(f"{path}: truncated: {len(raw)} of {frames * channels * width} bytes of sound are there")
+    if width != 2 or not 4000 <= rate <= 192000:
+        raise CliError(f"{path}: {8 * width} bit at {rate} Hz; 16 bit PCM is needed (sox in.wav -b 16 out.wav)")
+    if size > 64 * 2**20:
+        raise CliError(f"{path}: {size >> 20} MB; a command lasts seconds")
+    mono = np.frombuffer(raw, "<i2").reshape(-1, channels).mean(axis=1)
+    if rate != RATE:
+        common = gcd(rate, RATE)
+        mono = resample_poly(mono, RATE // common, rate // common)
+    samples: NDArray[np.int16] = np.clip(np.rint(mono), -32768, 32767).astype(np.int16)
+    return samples
+
+
+def padded(samples: NDArray[np.int16]) -> list[bytes]:
+    """Chunks of 0.1 s with silence before and after, the last one full."""
+    quiet = np.zeros(round(LEAD_IN * RATE), np.int16), np.zeros(round(TRAILING * RATE), np.int16)
+    whole = np.concatenate((quiet[0], samples, quiet[1]))
+    step = round(CHUNK * RATE)
+    whole = np.pad(whole, (0, -len(whole) % step))
+    return [whole[i : i + step].astype("<i2").tobytes() for i in range(0, len(whole), step)]
+
+
+class Player:
+    """Sends a chunk every 0.1 s of robot time. In lockstep it takes part, so that the simulation waits for it."""
+
+    SILENCE = 10.0
+
+    def __init__(self, link: Link, chunks: list[bytes]) -> None:
+        self._link, self._chunks = link, chunks
+
+    def play(self, progress: Callable[[float], None] = lambda t: None) -> None:
+        """Returns when all is said.
+
+        Raises:
+            CliError: robot time stands still.
+        """
+        session, token = self._link.session, None
+        clock = Watch(self._link, topics.SIM_CLOCK)
+        out = session.declare_publisher(topics.AUDIO_PCM.key, encoding=codec.encoding_of(topics.AUDIO_PCM))
+        heard, sent, start = monotonic(), 0, -1
+        try:
+            while sent < len(self._chunks):
+                tick = clock.next(0.5)
+                if tick is None:
+                    if monotonic() - heard > self.SILENCE:
+                        raise CliError("robot time stands still; is the simulation up and running? See `tidybot ps`")
+                    continue
+                heard = monotonic()
+                if start < 0:
+                    start = tick.tick - tick.tick % _PERIOD + 2 * _PERIOD
+                    if tick.lockstep:
+                        token = session.liveliness().declare_token(topics.ALIVE_KEY.format(name=EAR))
+                        self._acknowledge(-1)
+                while sent < len(self._chunks) and tick.tick >= start + sent * _PERIOD:
+                    last = sent == len(self._chunks) - 1
+                    at = (start + sent * _PERIOD) * DT
+                    chunk = m.AudioChunk(t=at, data=self._chunks[sent], rate=RATE, seq=sent, end=last)
+                    stamp = _TICK.pack(tick.tick) if tick.lockstep else None
+                    out.put(codec.encode(topics.AUDIO_PCM, chunk), attachment=stamp)
+                    sent += 1
+                    progress(at)
+                if tick.lockstep and tick.tick % _PERIOD == 0:
+                    self._acknowledge(tick.tick)
+        finally:
+            clock.close()
+            if token is not None:
+                token.undeclare()
+
+    def _acknowledge(self, tick: int) -> None:
+        self._link.send(topics.LOCKSTEP_ACK, m.LockstepAck(name=EAR, tick=tick, period=_PERIOD))

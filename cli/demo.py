@@ -1,0 +1,220 @@
+"""`tidybot demo`: the whole flow once, from a recorded voice to an object delivered, judged by physics."""
+
+import argparse
+import shutil
+import subprocess
+import sys
+import uuid
+from pathlib import Path
+from typing import Any
+
+from cli.audio import padded, read_wav
+from cli.errors import CliError, near
+from cli.link import Link, Watch
+from cli.mission import ACCEPT, Conversation, speak_into
+from cli.robot import query_truth
+from cli.supervision import ROOT, Supervision, free_port, port_is_free, run_dir
+from cli.up import Plan, Stopped, add_start_options, bring_up, check_free, interruptible, state_line
+from cli.verdict import Verdict, Witness
+from common import bus, topics
+from common import messages as m
+from common.clock import monotonic
+from common.scene import Scene, SceneError, load_scene
+
+VOICE = ROOT / "docs" / "audio" / "bring_me_the_red_mug.wav"
+SPOKEN = "red mug"
+OUT = ROOT / "out"
+SETTLED, SAMPLE, PROGRESS = 0.5, 0.3, 10.0
+
+
+class Screen:
+    """States on lines of their own, and below them one line of progress."""
+
+    def __init__(self) -> None:
+        self._tty = sys.stdout.isatty()
+        self._shown = ""
+        self._began = monotonic()
+        self._due = 0.0
+        self.robot = self._first = 0.0
+
+    def say(self, text: str) -> None:
+        if self._tty:
+            sys.stdout.write("\r\033[K")
+        print(text, flush=True)
+
+    def state(self, state: m.BrainState) -> None:
+        line = state_line(state)
+        if line[11:] != self._shown:
+            self._shown = line[11:]
+            self.say(line)
+
+    def start(self, robot: float) -> None:
+        self._began, self._first, self.robot = monotonic(), robot, robot
+
+    def times(self) -> str:
+        wall = monotonic() - self._began
+        robot = self.robot - self._first
+        return f"robot time {robot:.1f} s, wall time {wall:.1f} s, {robot / max(wall, 1e-3):.1f}x real time"
+
+    def progress(self, robot: float) -> None:
+        self.robot = max(self.robot, robot)
+        if monotonic() < self._due:
+            return
+        self._due = monotonic() + (0.2 if self._tty else PROGRESS)
+        if self._tty:
+            sys.stdout.write(f"\r\033[K  ... {self.times()}")
+            sys.stdout.flush()
+        else:
+            print(f"  ... {self.times()}", flush=True)
+
+
+class Demo:
+    """One demonstration against a robot that is up."""
+
+    def __init__(self, link: Link, screen: Screen, scene: Scene, thing: str) -> None:
+        self._link, self._screen = link, screen
+        self._thing, self._delivery = thing, scene.delivery
+        self._clock = Watch(link, topics.SIM_STATUS)
+        self._sampled = 0.0
+        self._witness: Witness
+
+    def perform(self, text: str, chunks: list[bytes], timeout: float) -> Verdict:
+        """Command, follow, judge.
+
+        Raises:
+            CliError: the command was not accepted or never ended.
+        """
+        before = query_truth(self._link)
+        self._witness = Witness(self._thing, self._delivery, before)
+        self._screen.start(before["t"])
+        talk = Conversation(self._link, self._screen.state)
+        if chunks:
+            mission_id, why = speak_into(self._link, talk, chunks)
+        else:
+            self._link.send(topics.VOICE_COMMAND, m.VoiceCommand(text=text, id=f"demo-{uuid.uuid4().hex[:8]}"))
+            mission_id, why = talk.accepted(ACCEPT), "the brain started no mission"
+        if not mission_id:
+            raise CliError(f"the command was not accepted: {why}")
+        outcome = talk.outcome(timeout, self._sample)
+        after = query_truth(self._link)
+        later = after
+        while later["t"] < after["t"] + SETTLED:
+            later = query_truth(self._link)
+        self._screen.robot = later["t"]
+        verdict = self._witness.judge(after, later)
+        if outcome.outcome != "delivered":
+            said = f"the brain reports {outcome.outcome}: {outcome.reason}"
+            return Verdict(False, f"{said}; {verdict.why}")
+        return verdict
+
+    def _sample(self) -> None:
+        if monotonic() - self._sampled > SAMPLE:
+            truth: dict[str, Any] = query_truth(self._link)
+            self._sampled = monotonic()
+            self._witness.look(truth)
+            self._screen.progress(truth["t"])
+
+
+def take_picture(plan: Plan, path: Path) -> str:
+    """A picture of the scene as it is now; what was done about it."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    command = [sys.executable, "-m", "services.camera.picture", "--out", str(path)]
+    environment = {**plan.environ, "PYTHONPATH": str(ROOT)}
+    try:
+        done = subprocess.run(
+            command, cwd=ROOT, env=environment, capture_output=True, text=True, timeout=60, errors="replace"
+        )
+    except subprocess.TimeoutExpired:
+        return "no picture: the camera did not answer"
+    if done.returncode == 0 and path.exists():
+        return f"picture: {path.relative_to(ROOT) if path.is_relative_to(ROOT) else path}"
+    words = done.stderr.strip().splitlines()
+    return f"no picture: {words[-1] if words else 'the camera failed'}"
+
+
+def troubles(supervision: Supervision, names: list[str]) -> list[str]:
+    """The last warnings and errors of every service."""
+    found = []
+    for name in names:
+        lines = [x for x in supervision.tail(name, 400) if "ERROR" in x[:24] or "WARNING" in x[:24] or "Error" in x]
+        found += lines[-3:]
+    return found
+
+
+def choose(args: argparse.Namespace, scene: Scene) -> tuple[str, str, Path | None]:
+    """The object's name in the scene, the sentence, and the recording to play (None: typed).
+
+    Raises:
+        CliError: no such object, or no such recording.
+    """
+    spec = scene.object(args.object)
+    if spec is None:
+        raise CliError(
+            f"the scene {scene.name} has no {args.object!r}{near(args.object, [o.name for o in scene.objects])}"
+        )
+    text = f"bring me the {args.object}"
+    if args.wav is not None:
+        return spec.name, text, args.wav
+    return spec.name, text, VOICE if args.object == SPOKEN and not args.typed else None
+
+
+def demo(args: argparse.Namespace) -> int:
+    args.port = args.port or (7447 if port_is_free(7447) else free_port())
+    args.namespace = f"demo-{uuid.uuid4().hex[:6]}" if args.port != 7447 else ""
+    args.only = args.without = ""
+    try:
+        scene = load_scene(args.scene or "apartment")
+    except SceneError as error:
+        raise CliError(str(error)) from None
+    thing, text, recording = choose(args, scene)
+    chunks = padded(read_wav(recording)) if recording else []
+    plan, screen = Plan(args), Screen()
+    supervision = Supervision(run_dir() / f"demo-{uuid.uuid4().hex[:8]}")
+    check_free(supervision, plan)
+    verdict, good = Verdict(False, "nothing was done"), False
+    try:
+        with interruptible():
+            screen.say(f"starting on {plan.connect}, speed {plan.speed}, seed {args.seed or 0}")
+            screen.say(f"ready in {bring_up(supervision, plan, screen.say):.1f} s")
+            screen.say(f'"{text}" ' + (f"from {recording.name}" if recording else "typed"))
+            with bus.session(plan.connect, plan.namespace) as session:
+                link = Link(session, plan.connect)
+                verdict = Demo(link, screen, scene, thing).perform(text, chunks, args.timeout)
+                screen.say(take_picture(plan, args.out))
+            good = verdict.delivered
+    except CliError as error:
+        verdict = Verdict(False, str(error))
+    except Stopped:
+        screen.say("stopped")
+        return 130
+    finally:
+        if not good:
+            for line in troubles(supervision, plan.names):
+                screen.say(f"    {line}")
+        supervision.stop()
+        _keep_logs(supervision, good)
+    screen.say(f"{'DELIVERED' if good else 'NOT DELIVERED'}: {verdict.why}")
+    screen.say(screen.times())
+    if not good:
+        screen.say(f"logs: {OUT / 'demo-logs'}")
+    return 0 if good else 1
+
+
+def _keep_logs(supervision: Supervision, good: bool) -> None:
+    kept = OUT / "demo-logs"
+    if not good and (supervision.directory / "logs").exists():
+        shutil.rmtree(kept, ignore_errors=True)
+        shutil.copytree(supervision.directory / "logs", kept)
+    shutil.rmtree(supervision.directory, ignore_errors=True)
+
+
+def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+    parser = commands.add_parser("demo", help="the whole flow once: voice in, object delivered, judged by physics")
+    add_start_options(parser)
+    parser.add_argument("--object", default=SPOKEN, metavar="NAME", help="what to bring (default: %(default)s)")
+    parser.add_argument("--wav", type=Path, metavar="FILE", help="another recording of the command")
+    parser.add_argument("--typed", action="store_true", help="type the command instead of playing a recording")
+    parser.add_argument("--port", type=int, default=0, help="default: 7447, or a free one when that is in use")
+    parser.add_argument("--timeout", type=float, default=900.0, metavar="S", help="wall time (default %(default)s)")
+    parser.add_argument("--out", type=Path, default=OUT / "demo.png", metavar="FILE", help="the picture")
+    parser.set_defaults(run=demo)

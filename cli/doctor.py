@@ -1,0 +1,156 @@
+"""`tidybot doctor`: what this machine has, what is missing, and the command that fixes it."""
+
+import argparse
+import ctypes.util
+import os
+import platform
+import shutil
+import sys
+from collections.abc import Iterator
+from importlib import metadata
+from pathlib import Path
+
+import msgspec
+
+from cli.errors import CliError
+from cli.supervision import ROOT, Supervision, port_is_free, run_dir
+
+
+class Finding(msgspec.Struct):
+    """One thing looked at. `level`: ok, note (an option is not there), error (the robot cannot run)."""
+
+    level: str
+    what: str
+    state: str
+    fix: str = ""
+
+
+def python() -> Iterator[Finding]:
+    version = platform.python_version()
+    good = sys.version_info >= (3, 11)
+    yield Finding("ok" if good else "error", "python", version, "" if good else "install Python 3.11 or newer")
+
+
+def packages() -> Iterator[Finding]:
+    """Every locked package is there in the locked version."""
+    lock = ROOT / "requirements.lock"
+    missing, other, count = [], [], 0
+    for line in lock.read_text(encoding="utf-8").splitlines() if lock.exists() else ():
+        name, equals, rest = line.strip().partition("==")
+        if not equals or name.startswith("#"):
+            continue
+        wanted = rest.split()[0]
+        count += 1
+        try:
+            if (found := metadata.version(name)) != wanted:
+                other.append(f"{name} {found} (locked {wanted})")
+        except metadata.PackageNotFoundError:
+            missing.append(name)
+    if missing:
+        yield Finding("error", "packages", f"missing: {', '.join(missing)}", "make setup")
+    if other:
+        yield Finding("note", "packages", f"not the locked versions: {', '.join(other)}", "make setup")
+    if not missing and not other:
+        state = f"all {count} as locked" if count else "no requirements.lock here"
+        yield Finding("ok" if count else "note", "packages", state)
+
+
+def graphics() -> Iterator[Finding]:
+    fix = "apt-get install libegl1 libgl1-mesa-dri   (or libosmesa6)"
+    found = [name for name, library in (("EGL", "EGL"), ("OSMesa", "OSMesa")) if ctypes.util.find_library(library)]
+    if found:
+        yield Finding("ok", "camera GL", ", ".join(found))
+    else:
+        yield Finding("note", "camera GL", "none: cameras use ray casting (slower, plain colours)", fix)
+    if os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"):
+        yield Finding("ok", "window (--viewer)", "a display is there")
+    else:
+        yield Finding("note", "window (--viewer)", "no display", "run in a desktop session, or ssh -X")
+
+
+def audio() -> Iterator[Finding]:
+    if ctypes.util.find_library("portaudio"):
+        cards = Path("/proc/asound/cards")
+        have = cards.exists() and "no soundcards" not in cards.read_text(errors="replace")
+        state = "portaudio and a sound card" if have else "portaudio, but no sound card"
+        yield Finding("ok" if have else "note", "microphone, speakers", state, "" if have else "tidybot say --wav FILE")
+    else:
+        yield Finding(
+            "note",
+            "microphone, speakers",
+            "no portaudio: recordings and typed text only",
+            "apt-get install libportaudio2",
+        )
+
+
+def port() -> Iterator[Finding]:
+    supervision = Supervision(run_dir())
+    pid = supervision.pid()
+    if pid is not None:
+        yield Finding("ok", "run", f"up, supervisor pid {pid}, {supervision.info().connect}")
+    elif port_is_free(7447):
+        yield Finding("ok", "port 7447", "free")
+    else:
+        who = listener(7447)
+        yield Finding(
+            "note", "port 7447", f"in use{' by ' + who if who else ''}", "stop that program, or tidybot up --port 7448"
+        )
+
+
+def listener(port: int) -> str:
+    """`name (pid N)` of the process that listens on a TCP port; "" where that cannot be seen."""
+    inodes = set()
+    for table in ("/proc/net/tcp", "/proc/net/tcp6"):
+        try:
+            rows = Path(table).read_text(encoding="ascii").splitlines()[1:]
+        except OSError:
+            continue
+        inodes |= {r.split()[9] for r in rows if r.split()[3] == "0A" and r.split()[1].endswith(f":{port:04X}")}
+    targets = {f"socket:[{inode}]" for inode in inodes}
+    for process in Path("/proc").glob("[0-9]*"):
+        try:
+            if any(str(fd.readlink()) in targets for fd in (process / "fd").iterdir()):
+                words = (process / "cmdline").read_bytes().replace(b"\0", b" ").decode(errors="replace").strip()
+                return f"{words[:60]} (pid {process.name})"
+        except OSError:
+            continue
+    return ""
+
+
+def machine() -> Iterator[Finding]:
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    good = cores >= 2
+    yield Finding("ok" if good else "note", "cores", str(cores), "" if good else "real time needs two")
+    directory = run_dir()
+    try:
+        directory.mkdir(parents=True, exist_ok=True)
+        usable = os.access(directory, os.W_OK)
+    except OSError:
+        usable = False
+    fix = "" if usable else "TIDYBOT_RUN_DIR=<a directory of yours>"
+    yield Finding("ok" if usable else "error", "run directory", str(directory), fix)
+    docker = shutil.which("docker")
+    engine = docker is not None and Path("/var/run/docker.sock").exists()
+    state = "client and engine" if engine else "client, no engine" if docker else "none (only for `docker compose`)"
+    yield Finding("ok" if engine else "note", "docker", state)
+
+
+def doctor(args: argparse.Namespace) -> int:
+    findings = [f for look in (python, packages, graphics, audio, port, machine) for f in look()]
+    if args.json:
+        print(msgspec.json.encode(findings).decode())
+    else:
+        for f in findings:
+            print(f"{f.level:5}  {f.what:21} {f.state}")
+            if f.fix:
+                print(f"{'':7}{'':21} -> {f.fix}")
+    bad = [f.what for f in findings if f.level == "error"]
+    if bad:
+        raise CliError(f"the robot cannot run here: {', '.join(bad)}")
+    return 0
+
+
+def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+    parser = commands.add_parser("doctor", help="what is missing on this machine, and the command that fixes it")
+    parser.add_argument("--json", action="store_true")
+    parser.set_defaults(run=doctor)

@@ -1,0 +1,139 @@
+"""The command line's way onto the bus: a session, the latched values, and messages as they come."""
+
+import argparse
+import os
+import queue
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any, Generic, TypeVar
+
+import msgspec
+
+from cli.errors import CliError
+from cli.supervision import Supervision, run_dir
+from common import bus, codec, topics
+from common import messages as m
+from common.clock import monotonic
+from common.topics import Topic
+
+M = TypeVar("M", bound=m.Message)
+
+
+class Link:
+    """An open session with what the commands ask of it."""
+
+    def __init__(self, session: Any, connect: str) -> None:
+        self.session, self.connect = session, connect
+
+    def latest(self, topic: Topic[M]) -> M | None:
+        """The latched value, None when its writer does not answer."""
+        for payload in bus.fetch(self.session, topic.key).values():
+            try:
+                return codec.decode(topic, payload)
+            except codec.DecodeError as error:
+                raise CliError(f"{topic.key}: {error}") from None
+        return None
+
+    def alive(self) -> set[str]:
+        """Names of the services whose liveliness token is seen."""
+        replies = self.session.liveliness().get("service/*/alive", timeout=2.0)
+        return {str(r.ok.key_expr).split("/")[1] for r in replies if r.ok is not None}
+
+    def health(self) -> dict[str, m.Health]:
+        """The last health record of every live service."""
+        found = {}
+        for payload in bus.fetch(self.session, "service/*/health").values():
+            try:
+                record = codec.decode_as(m.Health, payload)
+            except codec.DecodeError:
+                continue
+            found[record.name] = record
+        return found
+
+    def send(self, topic: Topic[M], message: M) -> None:
+        bus.send(self.session, topic, message)
+
+    def query(self, key: str, request: dict[str, object] | None = None) -> Any:
+        """The JSON answer of a queryable.
+
+        Raises:
+            CliError: nobody answers.
+        """
+        payload = msgspec.json.encode(request) if request is not None else b""
+        answers = bus.fetch(self.session, key, payload, timeout=5.0)
+        if not answers:
+            raise CliError(f"nothing answers on {key}; is the simulation up? See `tidybot ps`")
+        return msgspec.json.decode(next(iter(answers.values())))
+
+
+class Watch(Generic[M]):
+    """Messages of one topic as they come; of a latched one the present value first, and again after an outage."""
+
+    REFRESH = 2.0
+
+    def __init__(self, link: Link, topic: Topic[M]) -> None:
+        self._link, self._topic = link, topic
+        self._inbox: queue.SimpleQueue[bytes] = queue.SimpleQueue()
+        self.last: M | None = None
+        self._kept = link.session.declare_subscriber(topic.key, lambda s: self._inbox.put(s.payload.to_bytes()))
+        self._refreshed = float("-inf")
+
+    def next(self, timeout: float) -> M | None:
+        """The next message; None after `timeout` seconds without one."""
+        end = monotonic() + timeout
+        while True:
+            if self._topic.latched and self._inbox.empty() and monotonic() - self._refreshed > self.REFRESH:
+                self._refreshed = monotonic()
+                present = self._link.latest(self._topic)
+                if present is not None and present != self.last and self._inbox.empty():
+                    self.last = present
+                    return present
+            try:
+                payload = self._inbox.get(timeout=min(0.2, max(0.0, end - monotonic())))
+                self.last = codec.decode(self._topic, payload)
+                self._refreshed = monotonic()
+                return self.last
+            except (queue.Empty, codec.DecodeError):
+                if monotonic() >= end:
+                    return None
+
+    def close(self) -> None:
+        self._kept.undeclare()
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """`--connect` and `--namespace` for commands that talk to the robot."""
+    parser.add_argument("--connect", metavar="ENDPOINTS", help="router endpoints (default: the run's, TIDYBOT_CONNECT)")
+    parser.add_argument("--namespace", metavar="NAME", help="the robot's namespace (default: TIDYBOT_NAMESPACE)")
+
+
+def address(args: argparse.Namespace) -> tuple[str, str]:
+    """Endpoints and namespace: options, then environment, then the run that is up, then the default."""
+    connect = getattr(args, "connect", None) or os.environ.get("TIDYBOT_CONNECT")
+    namespace = getattr(args, "namespace", None)
+    if namespace is None:
+        namespace = os.environ.get("TIDYBOT_NAMESPACE")
+    if connect is None:
+        try:
+            info = Supervision(run_dir()).info()
+        except CliError:
+            return bus.DEFAULT_CONNECT, namespace or ""
+        return info.connect, info.namespace if namespace is None else namespace
+    return connect, namespace or ""
+
+
+@contextmanager
+def linked(args: argparse.Namespace, patience: float = 3.0) -> Iterator[Link]:
+    """A link to the robot.
+
+    Raises:
+        BusError: no router, or a bad endpoint.
+    """
+    connect, namespace = address(args)
+    with bus.session(connect, namespace, patience=patience) as session:
+        yield Link(session, connect)
+
+
+def known_keys() -> list[str]:
+    """Every key of the table, with the keys that each process has."""
+    return [t.key for t in topics.TABLE]

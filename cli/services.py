@@ -1,0 +1,25 @@
+"""The one table of processes that make up the robot. A new service is one line here."""
+
+import msgspec
+
+
+class Service(msgspec.Struct, frozen=True):
+    """A process `python -m <module>`. `paced`: follows the simulation in lockstep. `token`: shows itself on the bus."""
+
+    name: str
+    module: str
+    paced: bool = True
+    token: bool = True
+
+
+SERVICES = (
+    Service("router", "services.router", paced=False, token=False),
+    Service("sim", "services.sim", paced=False),
+    Service("camera", "services.camera"),
+    Service("navigation", "services.navigation"),
+    Service("manipulation", "services.manipulation"),
+    Service("speech", "services.speech"),
+    Service("brain", "services.brain"),
+)
+NAMES = tuple(s.name for s in SERVICES)
+SECTIONS = ("runtime", *(n for n in NAMES if n != "router"))

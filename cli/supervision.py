@@ -1,0 +1,315 @@
+"""A run of the robot's processes under supervisord: its directory, configuration, start, control and end."""
+
+import contextlib
+import hashlib
+import http.client
+import os
+import shlex
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import xmlrpc.client
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import msgspec
+from supervisor.xmlrpc import SupervisorTransport
+
+from cli.errors import CliError
+from cli.services import Service
+from common import clock
+
+ROOT = Path(__file__).resolve().parent.parent
+STATES = {
+    "RUNNING": "running",
+    "STARTING": "starting",
+    "BACKOFF": "starting",
+    "FATAL": "failed",
+    "STOPPED": "stopped",
+    "STOPPING": "stopped",
+    "EXITED": "stopped",
+    "UNKNOWN": "failed",
+}
+SOCKET_PATH_LIMIT = 100
+
+
+class RunInfo(msgspec.Struct):
+    """What other commands need to know of a run; `run.json` in its directory."""
+
+    connect: str
+    namespace: str
+    speed: str
+    services: list[str]
+    started: float
+
+
+class ProcessState(msgspec.Struct):
+    name: str
+    pid: int
+    state: str
+    restarts: int
+    detail: str = ""
+
+
+def run_dir(environ: Mapping[str, str] = os.environ) -> Path:
+    """Where a run keeps its socket and logs: TIDYBOT_RUN_DIR, or `run/` in the project, or one of the user's own."""
+    if environ.get("TIDYBOT_RUN_DIR"):
+        return Path(environ["TIDYBOT_RUN_DIR"]).resolve()
+    if os.access(ROOT, os.W_OK):
+        return ROOT / "run"
+    return Path(environ.get("XDG_RUNTIME_DIR") or tempfile.gettempdir()) / f"tidybot-{os.getuid()}"
+
+
+def port_is_free(port: int) -> bool:
+    """True when the router can listen on 127.0.0.1:port."""
+    with socket.socket() as probe:
+        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            probe.bind(("127.0.0.1", port))
+            probe.listen(1)
+        except OSError:
+            return False
+    return True
+
+
+def free_port() -> int:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return int(probe.getsockname()[1])
+
+
+def socket_path(directory: Path) -> Path:
+    """The control socket: in the run directory, or in the temporary one when that path is too long for a socket."""
+    path = directory / "supervisor.sock"
+    if len(str(path)) <= SOCKET_PATH_LIMIT:
+        return path
+    digest = hashlib.sha256(str(directory).encode()).hexdigest()[:12]
+    return Path(tempfile.gettempdir()) / f"tidybot-{os.getuid()}-{digest}.sock"
+
+
+def render_config(directory: Path, services: Sequence[Service], connect: str) -> str:
+    """The supervisord configuration of one run."""
+
+    def path(value: object) -> str:
+        return str(value).replace("%", "%%")
+
+    lines = [
+        "[unix_http_server]",
+        f"file={path(socket_path(directory))}",
+        "chmod=0700",
+        "[supervisord]",
+        f"logfile={path(directory / 'logs' / 'supervisord.log')}",
+        "logfile_maxbytes=1MB",
+        "logfile_backups=1",
+        f"pidfile={path(directory / 'supervisord.pid')}",
+        f"directory={path(ROOT)}",
+        "nodaemon=true",
+        "silent=true",
+        "nocleanup=true",
+        "[rpcinterface:supervisor]",
+        "supervisor.rpcinterface_factory=supervisor.rpcinterface:make_main_rpcinterface",
+        "[rpcinterface:tidybot]",
+        "supervisor.rpcinterface_factory=cli.supervisord:make_rpc",
+    ]
+    for order, service in enumerate(services):
+        command = [sys.executable, "-m", service.module]
+        if service.name == "router":
+            command += ["--listen", connect]
+        lines += [
+            f"[program:{service.name}]",
+            f"command={path(shlex.join(command))}",
+            f"priority={order + 1}",
+            "autorestart=true",
+            "startsecs=1",
+            "startretries=3",
+            "stopsignal=TERM",
+            "stopwaitsecs=6",
+            "stopasgroup=true",
+            "killasgroup=true",
+            "redirect_stderr=true",
+            f"stdout_logfile={path(directory / 'logs' / (service.name + '.log'))}",
+            "stdout_logfile_maxbytes=5MB",
+            "stdout_logfile_backups=2",
+        ]
+    return "\n".join(lines) + "\n"
+
+
+class Supervision:
+    """One run directory and, when it is up, the supervisord in it."""
+
+    def __init__(self, directory: Path) -> None:
+        self.directory = directory
+        self.process: subprocess.Popen[bytes] | None = None
+
+    # --- start and end
+    def start(
+        self, services: Sequence[Service], connect: str, environ: Mapping[str, str], info: RunInfo, detach: bool
+    ) -> None:
+        """Start supervisord with these services; in the foreground it ends when this process does."""
+        logs = self.directory / "logs"
+        logs.mkdir(parents=True, exist_ok=True)
+        for name in ("supervisord", *(s.name for s in services)):
+            (logs / f"{name}.log").unlink(missing_ok=True)
+        config = self.directory / "supervisord.conf"
+        config.write_text(render_config(self.directory, services, connect), encoding="utf-8")
+        (self.directory / "run.json").write_bytes(msgspec.json.encode(info))
+        environment = {**environ, "PYTHONPATH": _python_path(environ)}
+        if not detach:
+            environment["TIDYBOT_FOREGROUND_PARENT"] = str(os.getpid())
+        with (logs / "supervisord.err").open("wb") as errors:
+            self.process = subprocess.Popen(
+                [sys.executable, "-m", "cli.supervisord", "-c", str(config)],
+                cwd=ROOT,
+                env=environment,
+                stdin=subprocess.DEVNULL,
+                stdout=errors,
+                stderr=errors,
+                start_new_session=True,
+            )
+
+    def died(self) -> str:
+        """Why our supervisord ended, "" while it runs."""
+        if self.process is None or self.process.poll() is None:
+            return ""
+        with contextlib.suppress(OSError):
+            text = (self.directory / "logs" / "supervisord.err").read_text(errors="replace").strip()
+            return text.splitlines()[-1] if text else f"supervisord ended with {self.process.returncode}"
+        return "supervisord ended"
+
+    def stop(self, patience: float = 15.0) -> bool:
+        """End every process of the run; False when there was none."""
+        pid = self.pid()
+        with contextlib.suppress(CliError):
+            self.call("supervisor.shutdown")
+        if pid is None and self.process is not None and self.process.poll() is None:
+            pid = self.process.pid
+        if pid is None:
+            self._forget()
+            return False
+        end = clock.monotonic() + patience
+        while self._runs(pid):
+            if clock.monotonic() > end:
+                # Its children follow it: they asked the kernel to.
+                with contextlib.suppress(ProcessLookupError):
+                    os.kill(pid, signal.SIGKILL)
+                end = clock.monotonic() + patience
+            clock.sleep(0.02)
+        self._forget()
+        return True
+
+    def _runs(self, pid: int) -> bool:
+        if self.process is not None and self.process.pid == pid:
+            return self.process.poll() is None
+        return _alive(pid)
+
+    def _forget(self) -> None:
+        for name in ("run.json", "supervisord.pid"):
+            (self.directory / name).unlink(missing_ok=True)
+        socket_path(self.directory).unlink(missing_ok=True)
+
+    # --- control
+    def call(self, method: str, *args: Any) -> Any:
+        """An XML-RPC call.
+
+        Raises:
+            CliError: nothing is up in this directory, or supervisord refuses.
+        """
+        path = socket_path(self.directory)
+        if not path.exists():
+            raise CliError("nothing is up; start with `tidybot up`")
+        transport = SupervisorTransport(None, None, serverurl=f"unix://{path}")
+        try:
+            proxy = xmlrpc.client.ServerProxy("http://127.0.0.1", transport=transport)
+            return getattr(proxy, method)(*args)
+        except xmlrpc.client.ProtocolError as error:
+            raise CliError(f"supervisord: {error.errmsg}; see {self.log_path('supervisord')}") from None
+        except (OSError, http.client.HTTPException):
+            raise CliError("nothing is up; start with `tidybot up`") from None
+        except xmlrpc.client.Fault as fault:
+            raise CliError(f"supervisord: {fault.faultString}") from None
+        finally:
+            transport.close()
+
+    def pid(self) -> int | None:
+        """The process id of the supervisord that answers here, None when nobody does."""
+        try:
+            return int(self.call("supervisor.getPID"))
+        except CliError:
+            return None
+
+    def processes(self) -> list[ProcessState]:
+        """Every process of the run, in the order of the table.
+
+        Raises:
+            CliError: nothing is up.
+        """
+        starts, exits = self.call("tidybot.starts"), self.call("tidybot.exits")
+        found = []
+        for row in self.call("supervisor.getAllProcessInfo"):
+            name, state = row["name"], STATES.get(row["statename"], "failed")
+            detail = ""
+            if name in exits and state != "running":
+                detail = f"ended by exit status {exits[name]}" if exits[name] >= 0 else "ended by a signal"
+            restarts = max(0, starts.get(name, 0) - 1)
+            found.append(ProcessState(name=name, pid=row["pid"], state=state, restarts=restarts, detail=detail))
+        order = {name: i for i, name in enumerate(self.info().services)} if self.info() else {}
+        return sorted(found, key=lambda p: order.get(p.name, 99))
+
+    def restart(self, name: str) -> None:
+        """Stop and start one process.
+
+        Raises:
+            CliError: no such process, or it does not start.
+        """
+        if name not in {p.name for p in self.processes()}:
+            raise CliError(f"{name} is not part of this run")
+        with contextlib.suppress(CliError):
+            self.call("supervisor.stopProcess", name)
+        self.call("supervisor.startProcess", name, False)
+
+    def info(self) -> "RunInfo":
+        """What `tidybot up` wrote down.
+
+        Raises:
+            CliError: nothing is up.
+        """
+        try:
+            return msgspec.json.decode((self.directory / "run.json").read_bytes(), type=RunInfo)
+        except (OSError, msgspec.DecodeError):
+            raise CliError("nothing is up; start with `tidybot up`") from None
+
+    # --- logs
+    def log_path(self, name: str) -> Path:
+        return self.directory / "logs" / f"{name}.log"
+
+    def tail(self, name: str, lines: int = 8) -> list[str]:
+        """The last lines that a process wrote."""
+        try:
+            return self.log_path(name).read_text(errors="replace").splitlines()[-lines:]
+        except OSError:
+            return []
+
+
+@contextlib.contextmanager
+def stopping(supervision: Supervision) -> Iterator[Supervision]:
+    """Whatever happens inside, every process of the run has ended afterwards."""
+    try:
+        yield supervision
+    finally:
+        supervision.stop()
+
+
+def _python_path(environ: Mapping[str, str]) -> str:
+    given = environ.get("PYTHONPATH", "")
+    return f"{ROOT}{os.pathsep}{given}" if given else str(ROOT)
+
+
+def _alive(pid: int) -> bool:
+    try:
+        stat = Path(f"/proc/{pid}/stat").read_text(encoding="ascii", errors="replace")
+    except OSError:
+        return False
+    return stat.rpartition(")")[2].split()[0] != "Z"

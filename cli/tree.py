@@ -1,0 +1,49 @@
+"""`tidybot tree`: the brain's behaviour tree as it is now."""
+
+import argparse
+
+import msgspec
+
+from cli.errors import CliError
+from cli.link import Watch, add_options, linked
+from common import messages as m
+from common import topics
+
+MARKS = {"SUCCESS": "+", "FAILURE": "x", "RUNNING": "*", "INVALID": "-"}
+
+
+def drawn(snapshot: m.TreeSnapshot) -> str:
+    """One line a node: mark, name, detail; the running path stands out by `*`."""
+    lines = [f"{snapshot.t:.2f} s   * running  + success  x failure  - idle"]
+
+    def draw(node: m.TreeNode, depth: int) -> None:
+        detail = f"  {node.detail}" if node.detail else ""
+        mark = MARKS.get(node.status.rpartition(".")[2].upper(), "?")
+        lines.append(f"{'  ' * depth}{mark} {node.name} [{node.type}]{detail}")
+        for child in node.children:
+            draw(child, depth + 1)
+
+    draw(snapshot.root, 0)
+    return "\n".join(lines)
+
+
+def tree(args: argparse.Namespace) -> int:
+    with linked(args) as link:
+        watch = Watch(link, topics.BRAIN_TREE)
+        snapshot = watch.next(3.0)
+        if snapshot is None:
+            raise CliError("the brain shows no tree; see `tidybot ps`")
+        while True:
+            if snapshot is not None:
+                print(msgspec.json.encode(snapshot).decode() if args.json else drawn(snapshot), flush=True)
+            if not args.follow:
+                return 0
+            snapshot = watch.next(1.0)
+
+
+def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+    parser = commands.add_parser("tree", help="the brain's behaviour tree as it is now")
+    parser.add_argument("--follow", "-f", action="store_true", help="print it again whenever it changes")
+    parser.add_argument("--json", action="store_true")
+    add_options(parser)
+    parser.set_defaults(run=tree)

@@ -1,0 +1,268 @@
+"""`tidybot up`: start everything, say when it is ready, follow it, end everything."""
+
+import argparse
+import contextlib
+import os
+import signal
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from types import FrameType
+
+from cli.errors import CliError, checked
+from cli.link import Link, Watch
+from cli.services import NAMES, SECTIONS, SERVICES, Service
+from cli.supervision import ROOT, RunInfo, Supervision, port_is_free, run_dir, socket_path
+from common import bus, config, topics
+from common import messages as m
+from common.clock import monotonic, sleep, unix_time
+
+READY_LIMIT = 60.0
+
+
+class Stopped(Exception):
+    """The user, or the system, asked us to end."""
+
+
+class Plan:
+    """What is to be started, checked before anything starts.
+
+    Raises:
+        CliError: an unknown service or section, a bad speed, a busy port.
+    """
+
+    def __init__(self, args: argparse.Namespace) -> None:
+        self.port, self.namespace = args.port, args.namespace or os.environ.get("TIDYBOT_NAMESPACE", "")
+        self.speed = _speed(args.speed)
+        self.services = _selection(args.only, args.without)
+        self.connect = f"tcp/127.0.0.1:{self.port}"
+        settings = {"OMP_NUM_THREADS": "1", "PYTHONUNBUFFERED": "1"}
+        settings["TIDYBOT_CONNECT"], settings["TIDYBOT_NAMESPACE"] = self.connect, self.namespace
+        if args.scene:
+            settings["TIDYBOT__RUNTIME__SCENE"] = args.scene
+        if args.seed is not None:
+            settings["TIDYBOT__RUNTIME__SEED"] = str(args.seed)
+        if args.viewer:
+            settings["TIDYBOT__SIM__VIEWER"] = "true"
+        settings["TIDYBOT__SIM__SPEED"] = self.speed
+        if self.speed != "realtime":
+            paced = [f'"{s.name}"' for s in self.services if s.paced]
+            settings["TIDYBOT__RUNTIME__LOCKSTEP"] = "true"
+            settings["TIDYBOT__SIM__WAIT_FOR"] = f"[{', '.join(paced)}]"
+        settings |= _overrides(args.set)
+        self.environ = {**os.environ, **settings}
+
+    @property
+    def names(self) -> list[str]:
+        return [s.name for s in self.services]
+
+    def info(self) -> RunInfo:
+        return RunInfo(
+            connect=self.connect,
+            namespace=self.namespace,
+            speed=self.speed,
+            services=self.names,
+            started=unix_time(),
+        )
+
+
+def _speed(text: str) -> str:
+    if text in ("realtime", "max"):
+        return text
+    with contextlib.suppress(ValueError):
+        if float(text) > 0:
+            return text
+    raise CliError(f"--speed {text}: expected realtime, max or a positive factor such as 4")
+
+
+def _selection(only: str, without: str) -> list[Service]:
+    chosen = [checked(n, NAMES, "service") for n in only.split(",") if n] or list(NAMES)
+    dropped = [checked(n, NAMES, "service") for n in without.split(",") if n]
+    return [s for s in SERVICES if s.name in chosen and s.name not in dropped]
+
+
+def _overrides(settings: Sequence[str]) -> dict[str, str]:
+    try:
+        config.overrides({}, settings)
+    except config.ConfigError as error:
+        raise CliError(str(error)) from None
+    environ = {}
+    for setting in settings:
+        left, _, value = setting.partition("=")
+        section, _, key = left.strip().partition(".")
+        checked(section, SECTIONS, "section")
+        environ[f"{config.PREFIX}{section.upper()}__{key.upper()}"] = value
+    return environ
+
+
+@contextmanager
+def interruptible() -> Iterator[None]:
+    """SIGINT, SIGTERM and SIGHUP raise `Stopped` once inside; further ones do not disturb the clean-up."""
+
+    def handle(number: int, frame: FrameType | None) -> None:
+        for each in numbers:
+            signal.signal(each, signal.SIG_IGN)
+        raise Stopped
+
+    numbers = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+    before = [signal.signal(n, handle) for n in numbers]
+    try:
+        yield
+    finally:
+        for number, old in zip(numbers, before, strict=True):
+            signal.signal(number, old)
+
+
+def check_free(supervision: Supervision, plan: Plan) -> None:
+    """Nothing of ours is up here and the port can be had.
+
+    Raises:
+        CliError: says what to do.
+    """
+    pid = supervision.pid()
+    if pid is not None:
+        raise CliError(f"already up (supervisor pid {pid}, {supervision.info().connect}); `tidybot down` stops it")
+    if "router" in plan.names and not port_is_free(plan.port):
+        raise CliError(
+            f"port {plan.port} is in use by another program; stop it, or choose another with `--port N` "
+            f"(`tidybot doctor` shows who listens)"
+        )
+    for service in plan.services:
+        if not (ROOT / service.module.replace(".", "/") / "__main__.py").exists():
+            raise CliError(f"{service.module} is not there; leave it out with `--without {service.name}`")
+
+
+def bring_up(supervision: Supervision, plan: Plan, say: Callable[[str], None], detach: bool = False) -> float:
+    """Start everything and wait until every service is alive and the brain takes commands; seconds it took.
+
+    Raises:
+        CliError: a process failed, or was not ready in time; with its last log lines.
+    """
+    began = monotonic()
+    supervision.start(plan.services, plan.connect, plan.environ, plan.info(), detach)
+    _until(lambda: supervision.pid() is not None, supervision, "the supervisor", began)
+    if "router" in plan.names:
+        _until(lambda: not port_is_free(plan.port), supervision, "the router", began)
+        say(f"  router        {monotonic() - began:4.1f} s  {plan.connect}")
+    waiting = {s.name for s in plan.services if s.token}
+    with bus.session(plan.connect, plan.namespace, patience=READY_LIMIT) as session:
+        link = Link(session, plan.connect)
+        while waiting:
+            for name in sorted(waiting & link.alive()):
+                waiting.discard(name)
+                say(f"  {name:12}  {monotonic() - began:4.1f} s")
+            _check(supervision, ", ".join(sorted(waiting)), began)
+            sleep(0.03)
+        if set(plan.names) == set(NAMES):
+            _until(lambda: _awake(link), supervision, "the brain's first joint states", began, pause=0.05)
+    return monotonic() - began
+
+
+def _awake(link: Link) -> bool:
+    state = link.latest(topics.BRAIN_STATE)
+    return state is not None and state.state != "IDLE"
+
+
+def _until(done: Callable[[], bool], supervision: Supervision, what: str, began: float, pause: float = 0.03) -> None:
+    while not done():
+        _check(supervision, what, began)
+        sleep(pause)
+
+
+def _check(supervision: Supervision, what: str, began: float) -> None:
+    why = supervision.died()
+    if why:
+        raise CliError(f"the supervisor did not start: {why}")
+    # Before its socket is there nothing can be asked of it.
+    if socket_path(supervision.directory).exists() and supervision.pid() is not None:
+        for process in supervision.processes():
+            if process.state == "failed":
+                raise CliError(failure(supervision, process.name, process.detail))
+    if monotonic() - began > READY_LIMIT:
+        raise CliError(f"not ready after {READY_LIMIT:.0f} s: still waiting for {what}; see `tidybot logs`")
+
+
+def failure(supervision: Supervision, name: str, detail: str) -> str:
+    """One process failed: the reason and the last lines of its log."""
+    lines = "\n".join(f"    {line}" for line in supervision.tail(name))
+    return f"{name} failed{': ' + detail if detail else ''}; its last words:\n{lines}"
+
+
+def state_line(state: m.BrainState) -> str:
+    """`  12.3 s  NAVIGATING  step  detail`."""
+    words = [f"{state.t:8.1f} s  {state.state:11}"]
+    words += [w for w in (state.step, state.detail) if w]
+    return "  ".join(words)
+
+
+def follow(supervision: Supervision, plan: Plan, say: Callable[[str], None]) -> None:
+    """Print what changes until interrupted, or until supervisord ends."""
+    seen: dict[str, tuple[int, str]] = {}
+    shown = ""
+    with bus.session(plan.connect, plan.namespace, patience=READY_LIMIT) as session:
+        watch = Watch(Link(session, plan.connect), topics.BRAIN_STATE)
+        while not supervision.died():
+            state = watch.next(0.5)
+            if state is not None and (line := state_line(state))[11:] != shown:
+                shown = line[11:]
+                say(line)
+            try:
+                processes = supervision.processes()
+            except CliError:
+                continue
+            for p in processes:
+                now, before = (p.restarts, p.state), seen.get(p.name)
+                if (
+                    before is not None
+                    and before != now
+                    and (p.restarts > before[0] or p.state in ("failed", "stopped"))
+                ):
+                    say(f"{'':13}{p.name}: {p.state} (restarts: {p.restarts}{', ' + p.detail if p.detail else ''})")
+                seen[p.name] = now
+
+
+def run(args: argparse.Namespace) -> int:
+    """The command."""
+    supervision, plan = Supervision(run_dir()), Plan(args)
+    check_free(supervision, plan)
+
+    def say(text: str) -> None:
+        print(text, flush=True)
+
+    detached = False
+    try:
+        with interruptible():
+            seconds = bring_up(supervision, plan, say, args.detach)
+            say(f"ready in {seconds:.1f} s")
+            if args.detach:
+                detached = True
+                say("`tidybot status` shows the robot, `tidybot down` stops it")
+                return 0
+            say("Ctrl-C stops everything")
+            follow(supervision, plan, say)
+            raise CliError(f"the supervisor is gone: {supervision.died()}")
+    except Stopped:
+        say("stopped")
+        return 0
+    finally:
+        if not detached:
+            supervision.stop()
+
+
+def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+    parser = commands.add_parser("up", help="start every service and a router; Ctrl-C stops all")
+    add_start_options(parser)
+    parser.add_argument("--port", type=int, default=7447, help="the router's port on 127.0.0.1 (default %(default)s)")
+    parser.add_argument("--namespace", metavar="NAME", help="all keys of this robot go below this name")
+    parser.add_argument("--detach", "-d", action="store_true", help="return when ready; `tidybot down` stops it")
+    parser.add_argument("--only", default="", metavar="A,B", help=f"start only these of {', '.join(NAMES)}")
+    parser.add_argument("--without", default="", metavar="A,B", help="start all but these")
+    parser.set_defaults(run=run)
+
+
+def add_start_options(parser: argparse.ArgumentParser) -> None:
+    """Options that `up` and `demo` share."""
+    parser.add_argument("--speed", default="realtime", metavar="realtime|N|max", help="other than realtime: lockstep")
+    parser.add_argument("--scene", help="a shipped scene's name or a path")
+    parser.add_argument("--seed", type=int, help="object layout and noise")
+    parser.add_argument("--set", action="append", default=[], metavar="section.key=value", help="override a parameter")
+    parser.add_argument("--viewer", action="store_true", help="open a window on the simulation")
