@@ -1,0 +1,63 @@
+# `make help` lists the targets. PYTHON may name another interpreter (3.11 or newer).
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+STAMP := $(VENV)/.ready
+export OMP_NUM_THREADS = 1
+PIP := $(BIN)/python -m pip --disable-pip-version-check
+ARGS ?=
+
+.PHONY: help setup demo test test-all check test-compose bench lock wheels clean
+
+help: ## this list
+	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 16
+
+setup: $(STAMP) ## .venv from requirements.lock, with `.venv/bin/tidybot` in it
+
+$(STAMP): requirements.lock pyproject.toml
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
+	    { echo "Python 3.11 or newer is needed; $(PYTHON) is `$(PYTHON) --version`. Try: make setup PYTHON=python3.12"; exit 1; }
+	@$(PYTHON) -c 'import venv, ensurepip' 2>/dev/null || \
+	    { echo "this Python cannot make virtual environments; on Debian or Ubuntu: apt-get install python3-venv"; exit 1; }
+	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
+	$(PIP) install --quiet -r requirements.lock
+	$(PIP) install --quiet --no-deps --no-build-isolation -e .
+	@touch $(STAMP)
+	@echo "ready: $(BIN)/tidybot"
+
+demo: setup ## "bring me the red mug", from a recording to the delivery; ARGS='--speed max --seed 3'
+	$(BIN)/tidybot demo $(ARGS)
+
+test: setup ## every test but the slow ones
+	$(BIN)/python -m pytest -q -m 'not slow' $(ARGS)
+
+test-all: setup ## the slow ones too
+	$(BIN)/python -m pytest -q $(ARGS)
+
+check: setup ## lint, format, types, imports
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+test-compose: setup ## the compose file under a Docker engine of its own (root, Debian)
+	$(BIN)/python -m tests.compose.run $(ARGS)
+
+bench: setup ## every benchmark, each prints a table
+	@for file in bench/[a-z]*.py; do echo "== $$file"; $(BIN)/python $$file || exit 1; done
+
+lock: ## requirements.lock anew from pyproject.toml
+	rm -rf build/lock && $(PYTHON) -m venv build/lock
+	build/lock/bin/python -m pip install --quiet --upgrade pip setuptools wheel
+	build/lock/bin/python -m pip install --quiet --no-build-isolation -e '.[test,check]'
+	{ echo "# made by \`make lock\`"; build/lock/bin/python -m pip freeze --exclude-editable; \
+	  build/lock/bin/python -m pip freeze --all | grep -E '^(setuptools|wheel)=='; } > requirements.lock.new
+	mv requirements.lock.new requirements.lock
+	rm -rf build/lock
+
+wheels: setup ## build/wheels: everything the image needs, so that it builds without a network
+	$(PIP) download --quiet --dest build/wheels -r requirements.lock
+
+clean: ## what was made here
+	rm -rf $(VENV) build out run .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis *.egg-info
+	find . -name __pycache__ -not -path './.git/*' -exec rm -rf {} +
