@@ -40,6 +40,10 @@ class Conversation:
             self._show(state)
         return state
 
+    def refresh(self) -> None:
+        """Take the next state, if one comes soon."""
+        self._next(0.2)
+
     def require_open(self) -> None:
         """Raises:
         CliError: the robot takes no command now.

@@ -6,20 +6,17 @@ import subprocess
 import sys
 from pathlib import Path
 
-from cli.audio import read_wav
 from cli.supervision import ROOT
 
 MODULE = "services.speech.transcribe"
 
 
 def transcribe(args: argparse.Namespace) -> int:
-    for path in args.wav:
-        read_wav(path)
     options = ["--json"] if args.json else []
-    words = [str(path.resolve()) for path in args.wav]
+    words = [str(path) for path in args.wav]
     path = os.pathsep.join(p for p in (str(ROOT), os.environ.get("PYTHONPATH", "")) if p)
     environment = {**os.environ, "PYTHONPATH": path}
-    return subprocess.run([sys.executable, "-m", MODULE, *options, *words], cwd=ROOT, env=environment).returncode
+    return subprocess.run([sys.executable, "-m", MODULE, *options, *words], env=environment).returncode
 
 
 def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:

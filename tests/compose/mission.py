@@ -1,0 +1,62 @@
+"""A mission driven from outside, with something done to the robot in the middle of it."""
+
+from collections.abc import Callable
+
+from cli.link import Link, Watch
+from cli.mission import Conversation
+from cli.robot import query_truth
+from cli.verdict import Verdict, Witness
+from common import messages as m
+from common import topics
+from common.clock import monotonic
+from common.scene import load_scene
+
+
+def carry_out(
+    link: Link, thing: str, disturb: dict[str, Callable[[], None]], timeout: float, show: Callable[[str], None] = print
+) -> Verdict:
+    """Ask for `thing` by typed text; `disturb[state]` runs once, a little after the brain enters that state."""
+    scene = load_scene("apartment")
+    witness = Witness(thing, scene.delivery, query_truth(link))
+    pending = dict(disturb)
+    since: dict[str, float] = {}
+
+    def seen(state: m.BrainState) -> None:
+        show(f"{state.t:8.1f} s  {state.state}  {state.step}  {state.detail}")
+        since.setdefault(state.state, state.t)
+
+    def idle() -> None:
+        truth = query_truth(link)
+        witness.look(truth)
+        name = talk.state.state
+        if name in pending and truth["t"] - since[name] > 1.0:
+            pending.pop(name)()
+
+    talk = Conversation(link, seen)
+    end = monotonic() + 60
+    while talk.closed():
+        assert monotonic() < end, talk.closed()
+        talk.refresh()
+    link.send(topics.VOICE_COMMAND, m.VoiceCommand(text=f"bring me the {thing}"))
+    assert talk.accepted(20.0), f"not accepted: {talk.state}"
+    outcome = talk.outcome(timeout, idle)
+    assert not pending, f"never came to {list(pending)}: {outcome}"
+    after = query_truth(link)
+    later = after
+    while later["t"] < after["t"] + 0.5:
+        later = query_truth(link)
+    verdict = witness.judge(after, later)
+    if outcome.outcome != "delivered":
+        return Verdict(False, f"{outcome.outcome}: {outcome.reason}; {verdict.why}")
+    return verdict
+
+
+def wait_for_state(link: Link, states: tuple[str, ...], patience: float) -> str:
+    """The first of the states that the brain shows."""
+    watch = Watch(link, topics.BRAIN_STATE)
+    end = monotonic() + patience
+    while monotonic() < end:
+        state = watch.next(0.5) or watch.last
+        if state is not None and state.state in states:
+            return state.state
+    raise AssertionError(f"none of {states} within {patience:.0f} s; last {watch.last}")

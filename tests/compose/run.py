@@ -1,0 +1,143 @@
+"""`make test-compose`: the compose file as it is, under a real engine, through a mission with two broken nodes."""
+
+import os
+import shutil
+import signal
+import socket
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+from cli.link import Link
+from common import bus
+from tests.compose.engine import Engine, download_wheels, install, note, run
+from tests.compose.mission import carry_out
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+PROJECT, IMAGE, BASE = "tidybot-test", "tidybot-zenoh:dev", "tidybot-base"
+NODES = ("sim", "camera", "navigation", "manipulation", "speech", "brain")
+SPEED = "2"
+
+
+def free_port() -> int:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return int(probe.getsockname()[1])
+
+
+class Stack:
+    """The compose file, up."""
+
+    def __init__(self, engine: Engine, port: int) -> None:
+        self.engine, self.port = engine, port
+        paced = ", ".join(f'"{n}"' for n in NODES if n != "sim")
+        self._environ = {
+            **engine.environ,
+            "ZENOH_IMAGE": IMAGE,
+            "TIDYBOT_IMAGE": IMAGE,
+            "TIDYBOT_PORT": str(port),
+            "TIDYBOT_SPEED": SPEED,
+            "TIDYBOT_LOCKSTEP": "true",
+            "TIDYBOT_WAIT_FOR": f"[{paced}]",
+        }
+
+    def compose(self, *words: str, timeout: float = 300) -> str:
+        files = ["-f", ROOT / "docker-compose.yml", "-f", ROOT / "tests" / "compose" / "override.yml"]
+        return run(["docker-compose", "-p", PROJECT, *files, *words], timeout, env=self._environ, cwd=ROOT)
+
+    def container(self, name: str) -> str:
+        return self.compose("ps", "-q", name).split()[-1]
+
+    def state(self, name: str) -> dict[str, object]:
+        found = self.engine.inspect(self.container(name))["State"]
+        assert isinstance(found, dict)
+        return found
+
+    def kill(self, name: str) -> None:
+        """-9 from outside, as the kernel does when memory runs out."""
+        before = self.state(name)["Pid"]
+        note(f"kill -9 of {name} (pid {before})")
+        os.kill(int(str(before)), signal.SIGKILL)
+        wait_until(lambda: self.state(name)["Running"] and self.state(name)["Pid"] not in (0, before), f"{name} is back")
+        note(f"{name} was restarted by the engine")
+
+    def restart(self, name: str) -> None:
+        note(f"docker-compose restart {name}")
+        self.compose("restart", name)
+
+    def healthy(self) -> bool:
+        return all(dict(self.state(n).get("Health", {}) or {}).get("Status") == "healthy" for n in NODES)  # type: ignore[call-overload]
+
+    def logs(self) -> str:
+        return self.compose("logs", "--no-color", "--tail=60")
+
+
+def wait_until(done: Callable[[], object], what: str, patience: float = 90) -> None:
+    end = time.monotonic() + patience
+    while not done():
+        if time.monotonic() > end:
+            raise AssertionError(f"not within {patience:.0f} s: {what}")
+        time.sleep(0.5)
+
+
+def build(engine: Engine) -> None:
+    engine.base_image(BASE)
+    download_wheels(ROOT / "requirements.lock", ROOT / "build" / "wheels")
+    note("docker build")
+    began = time.monotonic()
+    arguments = ["--build-arg", f"BASE_IMAGE={BASE}", "--build-arg", "APT_PACKAGES="]
+    engine.docker("build", "--network", "host", *arguments, "-t", IMAGE, ROOT, timeout=1500)
+    note(f"built in {time.monotonic() - began:.0f} s")
+
+
+def mission(stack: Stack) -> None:
+    note("docker-compose up")
+    began = time.monotonic()
+    stack.compose("up", "-d", "--no-build")
+    connect = f"tcp/127.0.0.1:{stack.port}"
+    with bus.session(connect, patience=60) as session:
+        link = Link(session, connect)
+        wait_until(lambda: set(NODES) <= link.alive(), "every node is alive")
+        note(f"every node alive {time.monotonic() - began:.1f} s after `up`")
+        disturb = {"NAVIGATING": lambda: stack.kill("navigation"), "RETURNING": lambda: stack.restart("navigation")}
+        verdict = carry_out(link, "red mug", disturb, timeout=600)
+        assert verdict.delivered, verdict.why
+        note(f"delivered: {verdict.why}")
+    wait_until(stack.healthy, "every healthcheck says healthy", 120)
+    note("every container healthy")
+
+
+def main() -> int:
+    if os.geteuid() != 0 or shutil.which("apt-get") is None:
+        print("test-compose needs root on Debian or Ubuntu: it starts a Docker engine of its own", file=sys.stderr)
+        return 1
+    cache = Path(os.environ.get("TIDYBOT_CACHE", "/var/cache/tidybot"))
+    cache.mkdir(parents=True, exist_ok=True)
+    install()
+    work = Path(tempfile.mkdtemp(prefix="tidybot-engine-"))
+    engine = Engine(cache, work)
+    try:
+        engine.start()
+        stack = Stack(engine, free_port())
+        stack.compose("down", "--volumes", "--remove-orphans", "--timeout", "2")
+        build(engine)
+        try:
+            mission(stack)
+        except BaseException:
+            print(stack.logs(), flush=True)
+            raise
+        finally:
+            note("docker-compose down")
+            stack.compose("down", "--volumes", "--remove-orphans")
+        print("compose: passed")
+    finally:
+        engine.stop()
+        shutil.rmtree(work, ignore_errors=True)
+    return 0
+
+
+if __name__ == "__main__":
+    signal.signal(signal.SIGTERM, lambda number, frame: sys.exit(143))
+    sys.exit(main())

@@ -1,0 +1,124 @@
+"""The command line: typos, options, plans, generated configuration."""
+
+import argparse
+import configparser
+from pathlib import Path
+
+import pytest
+
+from cli import main, supervision, up
+from cli.errors import CliError
+from cli.services import NAMES, SERVICES
+
+
+def plan(*words: str) -> up.Plan:
+    return up.Plan(main.parser().parse_args(["up", *words]))
+
+
+@pytest.mark.parametrize(
+    ("words", "hint"),
+    [
+        (["stauts"], "status"),
+        (["up", "--spede", "3"], "--speed"),
+        (["up", "--speed", "fast"], "realtime, max or a positive factor"),
+        (["up", "--speed", "-1"], "positive factor"),
+        (["up", "--only", "navgation"], "'navigation'"),
+        (["up", "--set", "navgation.x=1"], "'navigation'"),
+        (["up", "--set", "nonsense"], "section.key=value"),
+        (["say"], "say what?"),
+        (["topic", "echo", "brain/sate", "--connect", "tcp/127.0.0.1:1"], "brain/state"),
+        (["topic", "pub", "base/target_pose", "x=1", "y=0", "teta=0"], "'theta'"),
+        (["topic", "pub", "base/target_pose", "x=1"], "missing required field"),
+        (["topic", "pub", "base/target_pose", "x=far", "y=0", "theta=0"], "base/target_pose carries BaseTarget"),
+        (["topic", "pub", "brain/**", "x"], "not one topic"),
+        (["demo", "--object", "red mugg"], "'red mug'"),
+        (["status", "--wait", "NAVIGATNG"], "'NAVIGATING'"),
+    ],
+)
+def test_a_mistake_is_one_line_that_names_the_remedy(
+    words: list[str], hint: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    try:
+        code = main.main(words)
+    except SystemExit as exit_:
+        code = int(str(exit_.code))
+    said = capsys.readouterr()
+    assert code in (1, 2)
+    assert hint in said.err
+    assert len(said.err.strip().splitlines()) == 1
+    assert said.out == ""
+
+
+@pytest.mark.parametrize("command", [[], *[[c] for c in ("up", "ps", "say", "status", "topic", "doctor", "demo", "logs")]])
+def test_every_command_has_help(command: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main.main([*command, "--help"])
+    assert ended.value.code == 0
+    assert "usage" in capsys.readouterr().out
+
+
+def test_no_router_is_said_with_the_remedy(capsys: pytest.CaptureFixture[str]) -> None:
+    port = supervision.free_port()
+    assert main.main(["status", "--connect", f"tcp/127.0.0.1:{port}"]) == 1
+    assert "tidybot up" in capsys.readouterr().err
+
+
+def test_another_speed_than_realtime_means_lockstep_with_every_paced_service() -> None:
+    fast = plan("--speed", "max", "--without", "camera").environ
+    assert fast["TIDYBOT__RUNTIME__LOCKSTEP"] == "true"
+    assert fast["TIDYBOT__SIM__SPEED"] == "max"
+    assert fast["TIDYBOT__SIM__WAIT_FOR"] == '["navigation", "manipulation", "speech", "brain"]'
+    assert "TIDYBOT__RUNTIME__LOCKSTEP" not in plan().environ
+
+
+def test_options_become_the_environment_of_the_services() -> None:
+    words = ("--scene", "minimal", "--seed", "7", "--set", "brain.settle=2.5", "--port", "7999", "--namespace", "kit")
+    environ = plan(*words).environ
+    assert environ["TIDYBOT__RUNTIME__SCENE"] == "minimal"
+    assert environ["TIDYBOT__RUNTIME__SEED"] == "7"
+    assert environ["TIDYBOT__BRAIN__SETTLE"] == "2.5"
+    assert environ["TIDYBOT_CONNECT"] == "tcp/127.0.0.1:7999"
+    assert environ["TIDYBOT_NAMESPACE"] == "kit"
+
+
+def test_only_and_without_choose_in_the_order_of_the_table() -> None:
+    assert plan("--only", "brain,router").names == ["router", "brain"]
+    assert plan("--without", "sim").names == [n for n in NAMES if n != "sim"]
+
+
+def test_the_generated_configuration_has_one_program_a_service(tmp_path: Path) -> None:
+    directory = tmp_path / "100% run"
+    text = supervision.render_config(directory, SERVICES, "tcp/127.0.0.1:7001")
+    parsed = configparser.RawConfigParser()
+    parsed.read_string(text)
+    assert [s for s in parsed.sections() if s.startswith("program:")] == [f"program:{n}" for n in NAMES]
+    assert "--listen tcp/127.0.0.1:7001" in parsed["program:router"]["command"]
+    assert "--listen" not in parsed["program:brain"]["command"]
+    assert "100%% run" in parsed["program:brain"]["stdout_logfile"]
+
+
+def test_a_long_run_directory_still_has_a_usable_socket(tmp_path: Path) -> None:
+    deep = tmp_path / ("x" * 120)
+    assert len(str(supervision.socket_path(deep))) <= supervision.SOCKET_PATH_LIMIT
+    assert supervision.socket_path(deep) != supervision.socket_path(tmp_path / ("y" * 120))
+    assert supervision.socket_path(Path("/run/x")).parent == Path("/run/x")
+
+
+def test_the_run_directory_can_be_named() -> None:
+    assert supervision.run_dir({"TIDYBOT_RUN_DIR": "/somewhere/else"}) == Path("/somewhere/else")
+
+
+def test_a_command_without_a_run_says_so(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("TIDYBOT_RUN_DIR", str(tmp_path))
+    for words in (["ps"], ["restart", "brain"], ["logs"]):
+        assert main.main(words) == 1
+        assert "tidybot up" in capsys.readouterr().err
+    assert main.main(["down"]) == 0
+
+
+def test_checked_words() -> None:
+    with pytest.raises(CliError, match="known: a, b"):
+        up.checked("zzz", ("a", "b"), "letter")
+    assert isinstance(main.parser(), argparse.ArgumentParser)
