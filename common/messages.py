@@ -19,6 +19,7 @@ BrainStateName = Literal[
     "GRABBING", "RETURNING", "RELEASING", "COMPLETED", "ERROR",
 ]  # fmt: skip
 SystemStateName = Literal["IDLE", "LISTENING", "PLANNING", "GROUNDING", "NAVIGATING", "EXECUTING", "SUCCESS", "ERROR"]
+SpeechStateName = Literal["idle", "listening", "transcribing", "speaking"]
 StepAction = Literal["navigate", "find", "grasp", "place", "release", "say", "wait", "return"]
 
 
@@ -82,7 +83,7 @@ class SpeechResult(Message):
 
 
 class SpeechStatus(Message):
-    state: Literal["idle", "listening", "transcribing", "speaking"]
+    state: SpeechStateName
     goal_id: str = ""
     attempt: int = 0
     detail: str = ""

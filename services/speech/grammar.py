@@ -1,0 +1,172 @@
+"""What can be said: patterns over words, compiled to an automaton over characters.
+
+Patterns use `(a | b)`, `[optional]` and `<part>`; a line `name = pattern` defines a part, several lines for one
+name are alternatives, a line without a name is a sentence.
+"""
+
+import re
+from collections.abc import Iterable, Mapping
+
+from common.scene import Scene
+
+State = frozenset[int]
+_TOKEN = re.compile(r"<(\w+)>|([()\[\]|])|([a-z0-9']+)")
+_WORDS = re.compile(r"^[a-z0-9' ]+$")
+_NAMED = re.compile(r"^(\w+)\s*=\s*(.+)$")
+
+
+class GrammarError(ValueError):
+    """A pattern that cannot be used; names it."""
+
+
+class Grammar:
+    """A nondeterministic automaton over characters; states of the walk are sets of its nodes, found lazily."""
+
+    def __init__(self, patterns: Iterable[str], words: Mapping[str, Iterable[str]]) -> None:
+        self._parts: dict[str, list[str]] = {name: list(dict.fromkeys(rows)) for name, rows in words.items()}
+        sentences = []
+        for line in patterns:
+            named = _NAMED.match(line.strip())
+            if named:
+                self._parts.setdefault(named[1], []).append(named[2])
+            else:
+                sentences.append(line)
+        self._edges: list[dict[str, list[int]]] = []
+        self._silent: list[list[int]] = []
+        self._words: dict[tuple[int, str], int] = {}
+        start, self._final = self._node(), self._node()
+        self._depth = 0
+        for sentence in sentences:
+            self._parse(sentence, start, self._final)
+        self._steps: dict[tuple[State, str], State] = {}
+        self.start: State = self._closure({start})
+        if self.accepts(""):
+            raise GrammarError("the grammar accepts silence: a pattern is wholly optional")
+
+    # --- walking
+    def step(self, state: State, character: str) -> State:
+        """The state after one character; empty when no sentence goes on like that."""
+        key = state, character
+        found = self._steps.get(key)
+        if found is None:
+            found = self._closure({n for s in state for n in self._edges[s].get(character, ())})
+            self._steps[key] = found
+        return found
+
+    def walk(self, text: str, state: State | None = None) -> State:
+        """The state after `text`."""
+        state = self.start if state is None else state
+        for character in text:
+            state = self.step(state, character)
+            if not state:
+                break
+        return state
+
+    def is_final(self, state: State) -> bool:
+        """True where a sentence may end."""
+        return self._final in state
+
+    def accepts(self, text: str) -> bool:
+        """True for a whole sentence, in lower case without punctuation."""
+        return self.is_final(self.walk(f" {text}" if text else ""))
+
+    # --- building
+    def _node(self) -> int:
+        self._edges.append({})
+        self._silent.append([])
+        return len(self._edges) - 1
+
+    def _closure(self, nodes: set[int]) -> State:
+        stack, seen = list(nodes), set(nodes)
+        while stack:
+            for n in self._silent[stack.pop()]:
+                if n not in seen:
+                    seen.add(n)
+                    stack.append(n)
+        return frozenset(seen)
+
+    def _word(self, start: int, word: str) -> int:
+        """The node after a word (with the space before it); words with a common beginning share nodes."""
+        node = start
+        for character in f" {word}":
+            key = node, character
+            if key not in self._words:
+                self._words[key] = self._node()
+                self._edges[node].setdefault(character, []).append(self._words[key])
+            node = self._words[key]
+        return node
+
+    def _parse(self, pattern: str, start: int, end: int) -> None:
+        tokens = _TOKEN.findall(pattern.lower())
+        rest = _TOKEN.sub("", pattern.lower()).strip()
+        if rest:
+            raise GrammarError(f"pattern {pattern!r}: {rest[:10]!r} is not understood")
+        position = self._alternatives(tokens, 0, start, end, pattern)
+        if position != len(tokens):
+            raise GrammarError(f"pattern {pattern!r}: a closing bracket too many")
+
+    def _alternatives(self, tokens: list[tuple[str, str, str]], i: int, start: int, end: int, pattern: str) -> int:
+        while True:
+            inner = self._node()
+            self._silent[start].append(inner)
+            i, last = self._sequence(tokens, i, inner, pattern)
+            self._silent[last].append(end)
+            if i >= len(tokens) or tokens[i][1] != "|":
+                return i
+            i += 1
+
+    def _sequence(self, tokens: list[tuple[str, str, str]], i: int, node: int, pattern: str) -> tuple[int, int]:
+        while i < len(tokens):
+            part, mark, word = tokens[i]
+            if mark in ("|", ")", "]"):
+                break
+            after = self._node()
+            if word:
+                self._silent[self._word(node, word)].append(after)
+            elif part:
+                self._part(part, node, after, pattern)
+            else:
+                i = self._alternatives(tokens, i + 1, node, after, pattern)
+                closing = ")" if mark == "(" else "]"
+                if i >= len(tokens) or tokens[i][1] != closing:
+                    raise GrammarError(f"pattern {pattern!r}: {mark} is not closed")
+                if mark == "[":
+                    self._silent[node].append(after)
+            node, i = after, i + 1
+        return i, node
+
+    def _part(self, name: str, start: int, end: int, pattern: str) -> None:
+        if name not in self._parts:
+            raise GrammarError(f"pattern {pattern!r}: nothing defines <{name}>")
+        self._depth += 1
+        if self._depth > 12:
+            raise GrammarError(f"pattern {pattern!r}: <{name}> contains itself")
+        for row in self._parts[name]:
+            if _WORDS.match(row):
+                node = start
+                for word in row.split():
+                    node = self._word(node, word)
+                self._silent[node].append(end)
+            else:
+                self._parse(row, start, end)
+        self._depth -= 1
+
+
+def vocabulary(
+    scene: Scene, objects: Iterable[str], places: Iterable[str], colours: Iterable[str]
+) -> dict[str, list[str]]:
+    """The words of <object>, <place> and <colour>: the scene's names and aliases and the configured ones."""
+    things = [n for o in scene.objects for n in (o.name, o.kind, *o.aliases)]
+    spots = [n for r in scene.receptacles for n in (r.name, *r.aliases)]
+    spots += [n for r in scene.rooms for n in (r.name, *r.aliases)]
+    spots += [n for p in (scene.home, *scene.places) for n in (p.name, *p.aliases)]
+    return {
+        "object": [spoken(n) for n in (*things, *objects)],
+        "place": [spoken(n) for n in (*spots, *places)],
+        "colour": [spoken(n) for n in (*(o.colour for o in scene.objects), *colours) if n],
+    }
+
+
+def spoken(text: str) -> str:
+    """Lower case words without punctuation, as the grammar has them."""
+    return " ".join(re.sub(r"[^a-z0-9' ]+", " ", text.lower()).split())

