@@ -88,7 +88,8 @@ class NavigationService:
             return
         angles = self._angles
         if angles is None or len(angles) != len(ranges):
-            angles = self._angles = scan.angle_min + np.arange(len(ranges)) * scan.angle_increment
+            angles = np.asarray(scan.angle_min + np.arange(len(ranges)) * scan.angle_increment, dtype=np.float64)
+            self._angles = angles
         self._map.see(self._pose, angles, ranges, scan.range_max, now)
         near = ranges < 1.5
         directions = angles[near] + self._pose[2]
