@@ -8,7 +8,7 @@ RUN if [ -n "$APT_PACKAGES" ]; then \
         apt-get update && apt-get install -y --no-install-recommends $APT_PACKAGES && rm -rf /var/lib/apt/lists/*; \
     fi
 
-ENV PYTHONUNBUFFERED=1 OMP_NUM_THREADS=1 MUJOCO_GL=egl PATH=/opt/venv/bin:$PATH PYTHONPATH=/app
+ENV PYTHONUNBUFFERED=1 OMP_NUM_THREADS=1 PATH=/opt/venv/bin:$PATH PYTHONPATH=/app
 RUN python3 -m venv /opt/venv
 WORKDIR /app
 

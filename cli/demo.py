@@ -161,7 +161,7 @@ def choose(args: argparse.Namespace, scene: Scene) -> tuple[str, str, Path | Non
 def demo(args: argparse.Namespace) -> int:
     args.port = args.port or (7447 if port_is_free(7447) else free_port())
     args.namespace = f"demo-{uuid.uuid4().hex[:6]}" if args.port != 7447 else ""
-    args.only = args.without = ""
+    args.only = ""
     try:
         scene = load_scene(args.scene or "apartment")
     except SceneError as error:
@@ -214,6 +214,7 @@ def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") ->
     parser.add_argument("--object", default=SPOKEN, metavar="NAME", help="what to bring (default: %(default)s)")
     parser.add_argument("--wav", type=Path, metavar="FILE", help="another recording of the command")
     parser.add_argument("--typed", action="store_true", help="type the command instead of playing a recording")
+    parser.add_argument("--without", default="", metavar="A,B", help="leave these services out")
     parser.add_argument("--port", type=int, default=0, help="default: 7447, or a free one when that is in use")
     parser.add_argument("--timeout", type=float, default=900.0, metavar="S", help="wall time (default %(default)s)")
     parser.add_argument("--out", type=Path, default=OUT / "demo.png", metavar="FILE", help="the picture")

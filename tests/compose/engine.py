@@ -105,14 +105,16 @@ class Engine:
         self.docker("import", archive, tag)
 
     def stop(self) -> None:
-        if self._process is None or self._process.poll() is not None:
-            return
-        self._process.terminate()
-        try:
-            self._process.wait(30)
-        except subprocess.TimeoutExpired:
-            self._process.kill()
-            self._process.wait()
+        if self._process is not None and self._process.poll() is None:
+            self._process.terminate()
+            try:
+                self._process.wait(30)
+            except subprocess.TimeoutExpired:
+                self._process.kill()
+                self._process.wait()
+        # dockerd leaves the network namespaces of its containers mounted.
+        for left in (self._work / "exec" / "netns").glob("*"):
+            subprocess.run(["umount", str(left)], capture_output=True)
 
 
 def download_wheels(lock: Path, wheels: Path) -> None:

@@ -60,7 +60,9 @@ class Stack:
         before = self.state(name)["Pid"]
         note(f"kill -9 of {name} (pid {before})")
         os.kill(int(str(before)), signal.SIGKILL)
-        wait_until(lambda: self.state(name)["Running"] and self.state(name)["Pid"] not in (0, before), f"{name} is back")
+        wait_until(
+            lambda: self.state(name)["Running"] and self.state(name)["Pid"] not in (0, before), f"{name} is back"
+        )
         note(f"{name} was restarted by the engine")
 
     def restart(self, name: str) -> None:

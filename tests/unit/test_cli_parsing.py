@@ -49,7 +49,9 @@ def test_a_mistake_is_one_line_that_names_the_remedy(
     assert said.out == ""
 
 
-@pytest.mark.parametrize("command", [[], *[[c] for c in ("up", "ps", "say", "status", "topic", "doctor", "demo", "logs")]])
+@pytest.mark.parametrize(
+    "command", [[], *[[c] for c in ("up", "ps", "say", "status", "topic", "doctor", "demo", "logs")]]
+)
 def test_every_command_has_help(command: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as ended:
         main.main([*command, "--help"])

@@ -65,7 +65,9 @@ def test_messages_from_words() -> None:
     pose = topic.compose(topics.BASE_TARGET, ["x=1", "y=-2.5", "theta=0"])
     assert pose == m.BaseTarget(x=1.0, y=-2.5, theta=0.0)
     assert topic.compose(topics.NAVIGATION_GOAL, ["find", "red", "mug"]) == m.NavigationGoal(goal="find red mug")
-    assert topic.compose(topics.NAVIGATION_GOAL, ['{"goal": "stop", "id": "7"}']) == m.NavigationGoal(goal="stop", id="7")
+    assert topic.compose(topics.NAVIGATION_GOAL, ['{"goal": "stop", "id": "7"}']) == m.NavigationGoal(
+        goal="stop", id="7"
+    )
     assert topic.compose(topics.VOICE_COMMAND, ["text=hello you", "confidence=0.5"]) == m.VoiceCommand(
         text="hello you", confidence=0.5
     )
