@@ -13,7 +13,7 @@ from services.manipulation.trajectory import connect
 CARTESIAN_STEP = 0.02
 MAX_JUMP = 0.6
 HELD_SHRINK = 0.008
-TRANSIT_MARGIN = 0.012
+TRANSIT_MARGIN = 0.02
 # Close to the body; for long things the hand is turned or tips up so that they stay clear of the arm.
 CARRY = tuple(
     HOME + np.array([0, 0, 0, 0, 0, tip, turn]) for tip in (0.0, 0.4, 0.8) for turn in (0.0, np.pi / 2, -np.pi / 2)
@@ -136,9 +136,7 @@ class Planner:
             return "no straight lift"
         if any(arm.collides(q) for q in back):
             return "approach collides"
-        arm.set_obstacles(inflated([*around[:14], own, *around[14:]]))
-        if arm.collides(back[-1]):
-            arm.set_obstacles([*around[:14], own, *around[14:]])
+        self._surround([*around[:14], own, *around[14:]], back[-1])
         there = connect(arm, now, back[-1], rng)
         if there is None:
             return "no path to the pre-grasp"
@@ -147,13 +145,33 @@ class Planner:
             target.label, target.kind, grasp.pose.rotation, grasp.pose.position - bottom, target.size, grasp.width,
             target.yaw,
         )  # fmt: skip
-        arm.set_obstacles(around)
         arm.hold(*held.box())
+        self._surround(around, up[-1])
         away = self._to_carry(up[-1], rng)
         arm.hold(None)
         if away is None:
             return "no path to the carry pose"
         return GrabPlan(grasp, there, [at, *back][::-1], [at, *up], away, held)
+
+    def _surround(self, around: Sequence[Obstacle], end: Array) -> None:
+        """Boxes with the transit margin, or as they are where the path must end closer to them."""
+        self.arm.set_obstacles(inflated(around))
+        if self.arm.collides(end):
+            self.arm.set_obstacles(around)
+
+    def carry(self, held: Held, now: Array, around: Sequence[Obstacle]) -> list[Array]:
+        """A path to a carry pose with the object in hand, from wherever the arm is.
+
+        Raises:
+            PlanError: BLOCKED.
+        """
+        self.arm.hold(*held.box())
+        self.arm.set_obstacles(around)
+        path = self._to_carry(now, np.random.default_rng(self._seed))
+        self.arm.hold(None)
+        if path is None:
+            raise PlanError("BLOCKED", f"no way to the carry pose with the {held.label} in hand")
+        return path
 
     def _to_carry(self, start: Array, rng: np.random.Generator) -> list[Array] | None:
         """A path to the first carry pose where the held object is clear of the arm."""
@@ -179,13 +197,11 @@ class Planner:
         Raises:
             PlanError: UNREACHABLE.
         """
-        arm = self.arm
-        arm.set_obstacles(around)
         rng = np.random.default_rng(self._seed)
         failures: dict[str, int] = {}
         for spot in spots[:10]:
             for turn in (0.0, 0.5, -0.5, 1.0, -1.0, 2.0, -2.0, np.pi):
-                plan = self._try_place(held, spot, surface + drop, turn, now, rng)
+                plan = self._try_place(held, spot, surface + drop, turn, around, now, rng)
                 if isinstance(plan, PlacePlan):
                     return plan
                 failures[plan] = failures.get(plan, 0) + 1
@@ -193,9 +209,17 @@ class Planner:
         raise PlanError("UNREACHABLE", f"cannot put {held.label} there: {reasons}")
 
     def _try_place(
-        self, held: Held, spot: tuple[float, float], height: float, turn: float, now: Array, rng: np.random.Generator
+        self,
+        held: Held,
+        spot: tuple[float, float],
+        height: float,
+        turn: float,
+        around: Sequence[Obstacle],
+        now: Array,
+        rng: np.random.Generator,
     ) -> "PlacePlan | str":
         arm = self.arm
+        arm.set_obstacles(around)
         approach = held.rotation[:, 2]
         # Straight down has no azimuth of its own: the hand's x axis points away from the robot there.
         level = approach if np.hypot(approach[0], approach[1]) > 0.2 else held.rotation[:, 0]
@@ -218,8 +242,10 @@ class Planner:
         arm.hold(*held.box())
         if arm.collides(high):
             return "object collides above the spot"
+        self._surround(around, high)
         there = connect(arm, now, high, rng)
         arm.hold(None)
+        arm.set_obstacles(around)
         if there is None:
             return "no path"
         tilted = abs(approach[2]) < 0.85

@@ -9,14 +9,14 @@ from common import messages as m
 from common import topics
 from common.geometry import Pose2, compose
 from common.io import Io
-from services.manipulation.arm_model import HOME, Array
+from services.manipulation.arm_model import HOME, Array, Obstacle
 from services.manipulation.config import ManipulationConfig
 from services.manipulation.grasp import approach_rotation
 from services.manipulation.object_source import ObjectSource
 from services.manipulation.plan import GrabPlan, Held, PlacePlan, PlanError, Planner
 from services.manipulation.surroundings import obstacles, spots, target_of
 from services.manipulation.trajectory import timed
-from services.manipulation.verify import Grip, judge
+from services.manipulation.verify import Grip, holds, judge
 
 T = TypeVar("T")
 Steps = Generator[None, None, T]
@@ -138,6 +138,8 @@ def grab(robot: Robot, goal: m.ManipulationGoal, wanted: str) -> Steps[str]:
                 raise
             last = failure
             robot.io.log.warning("grasp failed", code=failure.code, detail=failure.detail, grasp=plan.grasp.name)
+            if failure.code == "BLOCKED" and robot.held is not None and holds(robot.grip, config):
+                return (yield from _carry_again(robot, robot.held, around))
             robot.phase = "retract"
             robot.held = None
             yield from robot.move_gripper(0.0)
@@ -163,6 +165,17 @@ def _execute_grab(robot: Robot, plan: GrabPlan) -> Steps[str]:
     _judge(robot, plan, closed.width)
     robot.source.remember(plan.held.label, None, "", robot.now)
     return f"{plan.held.label} held: width {robot.grip.width * 1000:.1f} mm, force {robot.grip.force:.0f} N"
+
+
+def _carry_again(robot: Robot, held: Held, around: list[Obstacle]) -> Steps[str]:
+    """Something was in the way with the object in hand: another path to the carry pose, without letting go."""
+    robot.forget_command()
+    path = yield from robot.work(_planner(robot).carry, held, robot.joints.copy(), around)
+    yield from robot.follow(path, robot.config.joint_speed * 0.5)
+    if not holds(robot.grip, robot.config):
+        raise Failure("SLIPPED", f"the {held.label} was lost on the way to the carry pose")
+    robot.source.remember(held.label, None, "", robot.now)
+    return f"{held.label} held: width {robot.grip.width * 1000:.1f} mm, force {robot.grip.force:.0f} N"
 
 
 def _judge(robot: Robot, plan: GrabPlan, at_close: float | None) -> None:

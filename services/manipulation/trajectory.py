@@ -10,7 +10,7 @@ from services.manipulation.arm_model import ArmModel, Array
 STEP = 0.06
 EXTEND = 0.35
 MAX_NODES = 1500
-_SMOOTH = 9
+_SMOOTH = 5
 
 
 def free_line(collides: Callable[[Array], bool], start: Array, end: Array) -> bool:
