@@ -6,11 +6,13 @@ from common.scene import ObjectSpec
 
 _CONTACT = 'condim="4" friction="1 .02 .0005" solref=".005 1" solimp=".95 .99 .001"'
 _WALLS = 10
+# Nothing that stands on a table reaches the lidar: its rays skip this group.
+GROUP = 1
 
 
 def _geom(spec: ObjectSpec, shape: str, share: float, rgba: tuple[float, ...] | None = None) -> str:
     colour = " ".join(f"{v:g}" for v in rgba or spec.rgba)
-    return f'<geom {shape} mass="{spec.mass * share:.5f}" rgba="{colour}" {_CONTACT} conaffinity="3"/>'
+    return f'<geom {shape} mass="{spec.mass * share:.5f}" rgba="{colour}" group="{GROUP}" {_CONTACT} conaffinity="3"/>'
 
 
 def _ring(spec: ObjectSpec, radius: float, half: float, z: float, thickness: float, lean: float, share: float) -> str:

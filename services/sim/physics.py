@@ -31,6 +31,7 @@ class Physics:
         model = self.model
         joints = ("base_x", "base_y", "base_yaw", *robot.ARM_JOINTS)
         self.qpos_at = np.array([model.joint(j).qposadr[0] for j in joints])
+        self.base_at = self.qpos_at[:3]
         self.qvel_at = np.array([model.joint(j).dofadr[0] for j in joints])
         self.finger_qpos = np.array([model.joint(f"{s}_finger").qposadr[0] for s in ("left", "right")])
         self.finger_qvel = np.array([model.joint(f"{s}_finger").dofadr[0] for s in ("left", "right")])
@@ -79,7 +80,13 @@ class Physics:
 
     def width(self) -> float:
         """Distance between the pads [m]."""
-        return float(robot.STROKE - self.data.qpos[self.finger_qpos].sum())
+        left, right = self.finger_qpos
+        return float(robot.STROKE - self.data.qpos[left] - self.data.qpos[right])
+
+    def width_rate(self) -> float:
+        """How fast the pads move apart [m/s]."""
+        left, right = self.finger_qvel
+        return float(-self.data.qvel[left] - self.data.qvel[right])
 
     def finger_force(self) -> float:
         """Closing force of one finger [N]."""

@@ -23,6 +23,7 @@ from services.sim.viewer import Viewer
 
 SCAN_TICKS, STATE_TICKS = 10, 5
 MAX_DISTANCE = 50.0
+_NAMES = list(robot.JOINT_NAMES)
 
 
 class Pause(msgspec.Struct):
@@ -120,7 +121,7 @@ class SimService:
         self._take_commands(now)
         physics = self.physics
         qpos = physics.data.qpos
-        x, y, yaw = (float(v) for v in qpos[physics.qpos_at[:3]])
+        x, y, yaw = qpos[physics.base_at].tolist()
         after = np.empty(10)
         after[:3] = self._base.advance((x, y, yaw), now, DT)
         after[3:] = self._arm.advance(now, DT)
@@ -173,19 +174,21 @@ class SimService:
     def _publish(self, t: float) -> None:
         io, physics, data = self._io, self.physics, self.physics.data
         qpos, qvel = data.qpos[physics.qpos_at], data.qvel[physics.qvel_at]
-        actual = (float(qpos[0]), float(qpos[1]), float(qpos[2]))
+        arm = qpos.tolist()
+        actual = (arm[0], arm[1], arm[2])
         ox, oy, oyaw = self._odometry.update(actual)
         cos, sin = math.cos(actual[2]), math.sin(actual[2])
-        vx, vy, omega = (float(v) for v in qvel[:3])
+        velocity = qvel.tolist()
+        vx, vy, omega = velocity[:3]
         odometry = m.Odometry(t=t, x=ox, y=oy, theta=oyaw, vx=cos * vx + sin * vy, vy=cos * vy - sin * vx, omega=omega)
         io.publish(topics.ODOMETRY, odometry)
         io.publish(
             topics.JOINT_STATES,
             m.JointStates(
                 t=t,
-                name=list(robot.JOINT_NAMES),
-                position=[ox, oy, oyaw, *qpos[3:].tolist(), physics.width()],
-                velocity=[*qvel.tolist(), -float(data.qvel[physics.finger_qvel].sum())],
+                name=_NAMES,
+                position=[ox, oy, oyaw, *arm[3:], physics.width()],
+                velocity=[*velocity, physics.width_rate()],
                 effort=[*data.actuator_force[physics.ctrl_at].tolist(), physics.finger_force()],
             ),
         )
