@@ -1,0 +1,91 @@
+"""`say`, `status`, `missions`, `transcribe` and `demo` with the whole robot."""
+
+import json
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.integration.test_cli_up import Run, read_until, run
+from tests.support import ROOT, eventually
+
+VOICE = "docs/audio/bring_me_the_red_mug.wav"
+
+__all__ = ["run"]
+
+
+@pytest.mark.timeout(400)
+def test_commands_by_text_and_by_recording_end_as_physics_says(run: Run, tmp_path: Path) -> None:
+    done = run.detached("--without", "camera", "--speed", "max", "--seed", "1")
+    assert done.returncode == 0, done.stderr
+    listening = run.command("status", "--wait", "LISTENING", "--timeout", "30", "--json")
+    assert listening.returncode == 0 and json.loads(listening.stdout)["mission"] is None
+    # What is no command starts nothing that succeeds.
+    refused = run.command("say", "--json", "--wait", "bring me the moon", timeout=120)
+    assert refused.returncode == 1
+    assert json.loads(refused.stdout).get("outcome") != "delivered"
+    # Two broken recordings are refused before the robot hears of them.
+    (tmp_path / "empty.wav").write_bytes(b"")
+    whole = (ROOT / VOICE).read_bytes()
+    (tmp_path / "short.wav").write_bytes(whole[: len(whole) // 2])
+    for name in ("empty.wav", "short.wav"):
+        broken = run.command("say", "--wav", str(tmp_path / name))
+        assert broken.returncode == 1 and name in broken.stderr and "Traceback" not in broken.stderr
+    heard = run.command("say", "--wav", VOICE, "--wait", "--json", timeout=300)
+    record = json.loads(heard.stdout)
+    assert heard.returncode == 0, heard
+    assert record["accepted"] and record["mission_id"] and record["outcome"] == "delivered"
+    truth = json.loads(run.command("status", "--json").stdout)
+    assert truth["last"]["id"] == record["mission_id"] and "red mug" in truth["last"]["command"]
+    listed = json.loads(run.command("missions", "--json").stdout)
+    assert listed[-1]["id"] == record["mission_id"] and listed[-1]["outcome"] == "delivered"
+    # While it fetches, a second command is refused with the reason.
+    assert run.command("say", "bring me the green can").returncode == 0
+    again = run.command("say", "bring me the blue mug")
+    if again.returncode:
+        assert "busy" in again.stdout
+    run.command("down")
+    assert run.processes() == []
+
+
+def test_transcribe_reads_good_files_and_names_bad_ones(run: Run, tmp_path: Path) -> None:
+    bad = tmp_path / "bad.wav"
+    bad.write_text("no sound")
+    done = run.command("transcribe", "--json", VOICE, str(bad))
+    rows = [json.loads(x) for x in done.stdout.splitlines()]
+    assert done.returncode == 1 and "bad.wav" in done.stderr and "Traceback" not in done.stderr
+    assert rows[0]["file"] == VOICE and rows[0]["accepted"] and "red mug" in rows[0]["text"]
+    assert set(rows[0]) >= {"file", "text", "accepted", "confidence", "wake"}
+
+
+@pytest.mark.timeout(400)
+def test_the_demo_delivers_and_leaves_nothing_behind(run: Run, tmp_path: Path) -> None:
+    done = run.command("demo", "--speed", "max", "--out", str(tmp_path / "demo.png"), timeout=360)
+    assert done.returncode == 0, done.stdout + done.stderr
+    for word in ("LISTENING", "NAVIGATING", "GRABBING", "RETURNING", "RELEASING", "COMPLETED", "DELIVERED"):
+        assert word in done.stdout
+    assert (tmp_path / "demo.png").stat().st_size > 5000, done.stdout
+    assert run.processes() == []
+    assert not list(run.directory.glob("demo-*"))
+
+
+def test_a_demo_that_runs_out_of_time_says_so_and_leaves_nothing(run: Run) -> None:
+    words = ("demo", "--without", "camera", "--typed", "--timeout", "1")
+    done = run.command(*words, timeout=120)
+    assert done.returncode == 1
+    assert "NOT DELIVERED: no outcome after 1 s" in done.stdout
+    assert run.processes() == []
+
+
+def test_an_interrupted_demo_leaves_nothing(run: Run) -> None:
+    line = [sys.executable, "-m", "cli.main", "demo", "--without", "camera", "--typed"]
+    demo = subprocess.Popen(
+        line, env=run.environ, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+    )
+    run.opened.append(demo)
+    read_until(demo, "NAVIGATING")
+    demo.send_signal(signal.SIGTERM)
+    assert demo.wait(30) != 0
+    eventually(lambda: not run.processes(), "every process has ended")
