@@ -53,6 +53,7 @@ class SpeechService:
         self._typed: deque[tuple[float, str]] = deque(maxlen=8)
         self._frames: list[Samples] = []
         self._rest = np.zeros(0, np.int16)
+        self._audio_at = 0.0
         self._hearing: Job[Heard] | None = None
         self._synthesis: Job[Samples] | None = None
         self._speech = np.zeros(0, np.int16)
@@ -138,7 +139,12 @@ class SpeechService:
     def _hear(self, parts: list[Samples], now: float) -> None:
         """Run voice detection over new audio; keeps a little from before the speech."""
         if not parts:
+            # A stream that stops in mid-utterance has ended it, as silence would have.
+            silent = now - self._audio_at > self._config.end_silence + CHUNK / RATE
+            if self._endpointer.speaking and self._hearing is None and silent:
+                self._recognise(np.concatenate(self._frames))
             return
+        self._audio_at = now
         stream = np.concatenate([self._rest, *parts])
         usable = len(stream) // FRAME * FRAME
         self._rest = stream[usable:]
