@@ -35,6 +35,7 @@ class Screen:
         self._shown = ""
         self._began = monotonic()
         self._due = 0.0
+        self._ended = 0.0
         self.robot = self._first = 0.0
 
     def say(self, text: str) -> None:
@@ -51,8 +52,11 @@ class Screen:
     def start(self, robot: float) -> None:
         self._began, self._first, self.robot = monotonic(), robot, robot
 
+    def finish(self, robot: float) -> None:
+        self.robot, self._ended = robot, monotonic()
+
     def times(self) -> str:
-        wall = monotonic() - self._began
+        wall = (self._ended or monotonic()) - self._began
         robot = self.robot - self._first
         return f"robot time {robot:.1f} s, wall time {wall:.1f} s, {robot / max(wall, 1e-3):.1f}x real time"
 
@@ -100,7 +104,7 @@ class Demo:
         later = after
         while later["t"] < after["t"] + SETTLED:
             later = query_truth(self._link)
-        self._screen.robot = later["t"]
+        self._screen.finish(later["t"])
         verdict = self._witness.judge(after, later)
         if outcome.outcome != "delivered":
             said = f"the brain reports {outcome.outcome}: {outcome.reason}"
