@@ -122,7 +122,7 @@ class Demo:
 def take_picture(plan: Plan, path: Path) -> str:
     """A picture of the scene as it is now; what was done about it."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    command = [sys.executable, "-m", "services.camera.picture", "--out", str(path)]
+    command = [sys.executable, "-m", "services.camera.picture", "--view", "delivery", "--out", str(path)]
     environment = {**plan.environ, "PYTHONPATH": str(ROOT)}
     try:
         done = subprocess.run(

@@ -1,0 +1,14 @@
+"""Parameters of the cameras."""
+
+from typing import Literal
+
+from common.config import Config
+
+
+class CameraConfig(Config, frozen=True):
+    """`backend` auto takes EGL or OSMesa where they work and MuJoCo's own ray casting otherwise."""
+
+    backend: Literal["auto", "egl", "osmesa", "raycast"] = "auto"
+    max_width: int = 1280
+    max_height: int = 960
+    render_seconds: float = 0.1

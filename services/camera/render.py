@@ -1,0 +1,144 @@
+"""One renderer for the streamed state, by EGL, OSMesa or ray casting. Use it in one thread only."""
+
+import os
+import subprocess
+import sys
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+BACKENDS = ("egl", "osmesa", "raycast")
+PROBE_SECONDS = 20.0
+_PROBE = (
+    "import mujoco; m = mujoco.MjModel.from_xml_string('<mujoco/>'); d = mujoco.MjData(m); "
+    "mujoco.mj_forward(m, d); r = mujoco.Renderer(m, 8, 8); r.update_scene(d); r.render(); r.close()"
+)
+
+
+@dataclass(frozen=True)
+class View:
+    """A free camera that looks at a point: distance [m], azimuth and elevation [deg]."""
+
+    lookat: tuple[float, float, float]
+    distance: float
+    azimuth: float
+    elevation: float
+
+
+def works(backend: str) -> bool:
+    """True when MuJoCo can render with that GL library; tried in a process of its own, since failures can crash."""
+    if backend == "raycast":
+        return True
+    environment = {**os.environ, "MUJOCO_GL": backend, "PYOPENGL_PLATFORM": backend}
+    command = [sys.executable, "-c", _PROBE]
+    try:
+        return subprocess.run(command, env=environment, capture_output=True, timeout=PROBE_SECONDS).returncode == 0
+    except subprocess.TimeoutExpired:
+        return False
+
+
+def choose(wanted: str) -> str:
+    """The backend to use; must run before anything in this process imports mujoco."""
+    if wanted != "auto":
+        backend = wanted
+    else:
+        backend = next(b for b in BACKENDS if works(b))
+    os.environ["MUJOCO_GL"] = "disable" if backend == "raycast" else backend
+    if backend != "raycast":
+        os.environ["PYOPENGL_PLATFORM"] = backend
+    return backend
+
+
+class Renderer:
+    """Holds the model, the state and a GL context."""
+
+    def __init__(self, mjcf: str, wanted: str) -> None:
+        self.backend = choose(wanted)
+        import mujoco
+
+        self._mujoco = mujoco
+        self.model: Any = mujoco.MjModel.from_xml_string(mjcf)
+        self.data: Any = mujoco.MjData(self.model)
+        self._gl: dict[tuple[int, int], Any] = {}
+        self._option = mujoco.MjvOption()
+        self._option.geomgroup[:] = (1, 1, 1, 1, 0, 0)
+
+    def load(self, qpos: bytes, mocap: bytes) -> None:
+        """Take a streamed state.
+
+        Raises:
+            ValueError: it belongs to another model.
+        """
+        values = np.frombuffer(qpos)
+        if values.shape != (self.model.nq,):
+            raise ValueError(f"a state of {len(values)} numbers for a model of {self.model.nq}")
+        self.data.qpos[:] = values
+        if self.model.nmocap and len(mocap) == 24 * self.model.nmocap:
+            self.data.mocap_pos[:] = np.frombuffer(mocap).reshape(-1, 3)
+        self._mujoco.mj_kinematics(self.model, self.data)
+        self._mujoco.mj_camlight(self.model, self.data)
+
+    def rgbd(self, camera: str, width: int, height: int) -> tuple[NDArray[np.uint8], NDArray[np.float64]]:
+        """RGB (height, width, 3) and depth (height, width) [m] of a camera of the model."""
+        number = self.model.camera(camera).id
+        if self.backend == "raycast":
+            from services.camera.raycast import render
+
+            rotation = self.data.cam_xmat[number].reshape(3, 3)
+            fovy = float(self.model.cam_fovy[number])
+            return render(self.model, self.data, self.data.cam_xpos[number], rotation, fovy, width, height)
+        gl = self._context(width, height)
+        gl.update_scene(self.data, camera, self._option)
+        rgb = gl.render().copy()
+        gl.enable_depth_rendering()
+        depth = gl.render().astype(np.float64)
+        gl.disable_depth_rendering()
+        return rgb, np.where(depth < 25.0, depth, 0.0)
+
+    def picture(self, view: View, width: int, height: int) -> NDArray[np.uint8]:
+        """RGB (height, width, 3) of a free view."""
+        if self.backend == "raycast":
+            from services.camera.raycast import render
+
+            position, rotation = _pose(view)
+            return render(self.model, self.data, position, rotation, 45.0, width, height)[0]
+        camera = self._mujoco.MjvCamera()
+        camera.lookat[:], camera.distance = view.lookat, view.distance
+        camera.azimuth, camera.elevation = view.azimuth, view.elevation
+        gl = self._context(width, height)
+        gl.update_scene(self.data, camera, self._option)
+        image: NDArray[np.uint8] = gl.render().copy()
+        return image
+
+    def optical_pose(self, camera: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Position (3,) and rotation (3, 3) of the optical frame (x right, y down, z forward) in the base frame."""
+        number, base = self.model.camera(camera).id, self.model.body("base").id
+        turn = self.data.xmat[base].reshape(3, 3)
+        position = turn.T @ (self.data.cam_xpos[number] - self.data.xpos[base])
+        return position, turn.T @ self.data.cam_xmat[number].reshape(3, 3) @ np.diag([1.0, -1.0, -1.0])
+
+    def _context(self, width: int, height: int) -> Any:
+        if (width, height) not in self._gl:
+            self.close()
+            self.model.vis.global_.offwidth = max(width, self.model.vis.global_.offwidth)
+            self.model.vis.global_.offheight = max(height, self.model.vis.global_.offheight)
+            self._gl[width, height] = self._mujoco.Renderer(self.model, height, width)
+        return self._gl[width, height]
+
+    def close(self) -> None:
+        """Free the GL context, in the thread that made it."""
+        for gl in self._gl.values():
+            gl.close()
+        self._gl.clear()
+
+
+def _pose(view: View) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Position and MuJoCo camera rotation (columns right, up, back) of a free view."""
+    a, e = np.radians(view.azimuth), np.radians(view.elevation)
+    forward = np.array([np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)])
+    right = np.array([np.sin(a), -np.cos(a), 0.0])
+    return np.array(view.lookat) - view.distance * forward, np.stack(
+        [right, np.cross(right, forward), -forward], axis=1
+    )

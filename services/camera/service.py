@@ -1,0 +1,107 @@
+"""The cameras: render an RGB-D image from the streamed state when somebody asks for one."""
+
+from collections import deque
+
+import numpy as np
+
+from common import messages as m
+from common import topics
+from common.geometry import matrix_quat
+from common.io import Io, Job
+from services.camera.config import CameraConfig
+from services.camera.render import Renderer
+
+MAX_WAITING = 8
+
+
+class Shutter:
+    """Lives in the worker: a renderer for the model at hand."""
+
+    def __init__(self, backend: str) -> None:
+        self._backend, self._epoch, self._mjcf = backend, "", ""
+        self._renderer: Renderer | None = None
+
+    def take(self, model: m.SimModel, state: m.SimState, request: m.CameraRequest) -> m.Rgbd:
+        """Render one image."""
+        if self._renderer is None or model.mjcf != self._mjcf:
+            if self._renderer is not None:
+                self._renderer.close()
+            self._renderer, self._mjcf = Renderer(model.mjcf, self._backend), model.mjcf
+        renderer, width, height = self._renderer, request.width, request.height
+        renderer.load(state.qpos, state.mocap)
+        rgb, depth = renderer.rgbd(request.camera, width, height)
+        position, rotation = renderer.optical_pose(request.camera)
+        x, y, z = (float(v) for v in position)
+        focal = height / 2 / np.tan(np.radians(float(renderer.model.camera(request.camera).fovy[0])) / 2)
+        return m.Rgbd(
+            t=state.t,
+            id=request.id,
+            camera=request.camera,
+            width=width,
+            height=height,
+            fx=float(focal),
+            fy=float(focal),
+            cx=width / 2,
+            cy=height / 2,
+            position=(x, y, z),
+            orientation=matrix_quat(rotation),
+            rgb=rgb.tobytes(),
+            depth=np.clip(np.round(depth * 1000), 0, 65535).astype("<u2").tobytes(),
+            backend=renderer.backend,
+        )
+
+    def close(self) -> None:
+        if self._renderer is not None:
+            self._renderer.close()
+
+
+class CameraService:
+    """Head and wrist RGB-D cameras, on demand."""
+
+    NAME = "camera"
+    HZ = 10
+    CONFIG = CameraConfig
+    READS = (topics.SIM_MODEL, topics.SIM_STATE, topics.CAMERA_REQUEST)
+    WRITES = (topics.HEAD_RGBD, topics.WRIST_RGBD)
+
+    def __init__(self, config: CameraConfig, io: Io) -> None:
+        self._config, self._io = config, io
+        self._shutter = Shutter(config.backend)
+        self._waiting: deque[m.CameraRequest] = deque(maxlen=MAX_WAITING)
+        self._job: Job[m.Rgbd] | None = None
+        self._rendered = False
+
+    def step(self, now: float) -> None:
+        for request in self._io.drain(topics.CAMERA_REQUEST):
+            if not (0 < request.width <= self._config.max_width and 0 < request.height <= self._config.max_height):
+                limit = f"{self._config.max_width} x {self._config.max_height}"
+                self._io.count_drop(topics.CAMERA_REQUEST.key, f"{request.width} x {request.height}: up to {limit}")
+                continue
+            self._waiting.append(request)
+        if self._job is not None and self._job.poll(now):
+            self._finish(self._job)
+            self._job = None
+        if self._job is None and self._waiting:
+            self._start(self._waiting.popleft())
+
+    def _start(self, request: m.CameraRequest) -> None:
+        model, state = self._io.latest(topics.SIM_MODEL), self._io.latest(topics.SIM_STATE)
+        if model is None or state is None:
+            self._io.count_drop(topics.CAMERA_REQUEST.key, "no picture before the first sim/model and sim/state")
+            return
+        seconds = self._config.render_seconds
+        self._job = self._io.submit(self._shutter.take, model, state, request, seconds=seconds)
+
+    def _finish(self, job: Job[m.Rgbd]) -> None:
+        try:
+            image = job.result()
+        except ValueError as error:
+            self._io.count_drop(topics.SIM_STATE.key, str(error))
+            return
+        if not self._rendered:
+            self._rendered = True
+            self._io.log.info("rendering", backend=image.backend)
+        self._io.publish(topics.HEAD_RGBD if image.camera == "head" else topics.WRIST_RGBD, image)
+
+    def close(self) -> None:
+        self._io.submit(self._shutter.close, seconds=0.0)
