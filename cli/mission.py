@@ -30,6 +30,7 @@ class Conversation:
         if first is None:
             raise CliError("the brain does not answer; see `tidybot ps`")
         self.state = first
+        show(first)
         self._before = {first.mission_id, first.last.id if first.last else ""}
         self.mission_id = ""
 
