@@ -1,0 +1,280 @@
+import itertools
+import math
+
+import msgspec
+import numpy as np
+import pytest
+
+from bench.mission import Robot
+from common import messages as m
+from common import topics
+from common.memory import MemoryBus, MemoryIo
+from common.scene import load_scene
+from services.manipulation.arm_model import HOME, ArmModel, Obstacle, Pose
+from services.manipulation.config import ManipulationConfig
+from services.manipulation.grasp import MAX_WIDTH, Target, approach_rotation, candidates
+from services.manipulation.ik import InverseKinematics, seeds
+from services.manipulation.service import ManipulationService
+from services.manipulation.trajectory import connect, free_line, timed
+from services.manipulation.verify import Grip, holds, judge
+from services.sim.robot import HOME_ARM, JOINT_NAMES, robot_mjcf
+
+SCENE = load_scene("minimal")
+CONFIG = ManipulationConfig()
+
+
+@pytest.fixture(scope="module")
+def arm() -> ArmModel:
+    return ArmModel(robot_mjcf())
+
+
+def test_home_is_the_simulations_and_touches_nothing(arm: ArmModel) -> None:
+    assert pytest.approx(HOME_ARM) == HOME
+    assert not arm.collides(HOME)
+    assert arm.pose(HOME).position[0] < 0.36
+
+
+def test_boxes_and_a_held_object_are_seen_by_the_collision_check(arm: ArmModel) -> None:
+    tip = arm.pose(HOME).position
+    arm.set_obstacles([Obstacle((float(tip[0]), float(tip[1]), float(tip[2])), (0.1, 0.1, 0.1))])
+    assert arm.collides(HOME)
+    arm.set_obstacles([Obstacle((float(tip[0]), float(tip[1]), float(tip[2]) - 0.16), (0.1, 0.1, 0.1))])
+    assert not arm.collides(HOME)
+    arm.hold(np.array([0.03, 0.03, 0.12]), np.zeros(3))
+    assert arm.collides(HOME), "the held object reaches down to the box"
+    arm.hold(None)
+    arm.set_obstacles(())
+
+
+def test_inverse_kinematics_finds_reachable_poses_to_the_millimetre(arm: ArmModel) -> None:
+    solver = InverseKinematics(arm)
+    rng = np.random.default_rng(1)
+    solved = 0
+    for _ in range(30):
+        tilt, turn = rng.uniform(0.3, 1.57), rng.uniform(-0.5, 0.5)
+        position = np.array([rng.uniform(0.45, 0.7), rng.uniform(-0.2, 0.2), rng.uniform(0.45, 0.7)])
+        target = Pose(position, approach_rotation(turn, tilt))
+        q = solver.solve(target, seeds(arm, target, HOME))
+        if q is not None:
+            solved += 1
+            found = arm.pose(q)
+            assert np.linalg.norm(found.position - position) < 0.002
+            assert np.arccos(np.clip((np.trace(found.rotation.T @ target.rotation) - 1) / 2, -1, 1)) < 0.03
+            assert np.all(q >= arm.low - 1e-6) and np.all(q <= arm.high + 1e-6)
+    assert solved >= 24
+
+
+@pytest.mark.parametrize("kind", ["mug", "can", "bottle", "apple", "ball", "block", "box", "bowl"])
+def test_every_kind_has_grasps_that_fit_the_gripper(kind: str) -> None:
+    spec = next(o for o in load_scene("apartment").objects if o.kind == kind)
+    target = Target(spec.name, kind, (0.6, 0.05, 0.6 + spec.size[2] / 2), 0.4, spec.size)
+    found = candidates(target)
+    assert len(found) >= 3
+    for grasp in found:
+        assert grasp.width <= MAX_WIDTH
+        assert np.allclose(grasp.pose.rotation.T @ grasp.pose.rotation, np.eye(3), atol=1e-9)
+        assert np.linalg.det(grasp.pose.rotation) == pytest.approx(1.0)
+        assert grasp.pose.rotation[2, 2] < 0.05, "no approach from below"
+    assert len({g.name for g in found}) == len(found)
+
+
+def test_a_block_is_gripped_on_its_faces_from_above() -> None:
+    for yaw in np.linspace(-3, 3, 13):
+        target = Target("block", "block", (0.6, 0.0, 0.625), float(yaw), (0.05, 0.05, 0.05))
+        closing = candidates(target)[0].pose.rotation[:, 1]
+        off = math.remainder(math.atan2(closing[1], closing[0]) - yaw, math.pi / 2)
+        assert abs(off) < 1e-6
+
+
+def test_what_is_too_wide_has_no_grasp() -> None:
+    assert candidates(Target("crate", "box", (0.6, 0.0, 0.7), 0.0, (0.2, 0.2, 0.2))) == []
+
+
+def test_paths_go_around_boxes(arm: ArmModel) -> None:
+    goal = HOME.copy()
+    goal[0] = 1.5
+    middle = HOME.copy()
+    middle[0] = 0.75
+    tip = arm.pose(middle).position
+    arm.set_obstacles([Obstacle((float(tip[0]), float(tip[1]), float(tip[2]) - 0.02), (0.08, 0.08, 0.06))])
+    assert not free_line(arm.collides, HOME, goal)
+    path = connect(arm, HOME, goal, np.random.default_rng(0))
+    assert path is not None and path[0] is HOME and np.allclose(path[-1], goal)
+    for a, b in itertools.pairwise(path):
+        assert free_line(arm.collides, a, b)
+    arm.set_obstacles(())
+
+
+@pytest.mark.parametrize("scale", [0.001, 0.05, 0.4, 2.0])
+def test_trajectories_keep_speed_and_acceleration_and_end_where_they_should(scale: float) -> None:
+    path = [HOME, HOME + scale]
+    samples = timed(path, 1.0, 2.5, 0.02)
+    assert np.allclose(samples[-1], path[-1])
+    speed = np.diff(np.vstack([HOME, samples]), axis=0) / 0.02
+    assert np.abs(speed).max() <= 1.0 + 1e-6
+    assert np.abs(np.diff(speed[:-1], axis=0)).max(initial=0.0) / 0.02 <= 2.5 + 1e-6
+
+
+@pytest.mark.parametrize(
+    ("grip", "at_close", "code"),
+    [
+        (Grip(0.0, 0.0), None, "EMPTY_GRASP"),
+        (Grip(0.066, 25.0), None, ""),
+        (Grip(0.066, 25.0), 0.0662, ""),
+        (Grip(0.0, 0.0), 0.066, "SLIPPED"),
+        (Grip(0.055, 25.0), 0.066, "SLIPPED"),
+        (Grip(0.066, 0.5), 0.066, "SLIPPED"),
+        (Grip(0.020, 25.0), None, "SLIPPED"),
+    ],
+)
+def test_width_and_force_decide_what_a_grasp_is_worth(grip: Grip, at_close: float | None, code: str) -> None:
+    assert judge(grip, 0.066, at_close, CONFIG) == code
+
+
+def test_an_open_hand_holds_nothing() -> None:
+    assert not holds(Grip(0.085, 0.0), CONFIG)
+    assert holds(Grip(0.05, 25.0), CONFIG)
+
+
+class Node:
+    """The service on a memory bus with joint states that a test sends."""
+
+    def __init__(self, description: bool = True) -> None:
+        self.bus = MemoryBus()
+        reads, writes = ManipulationService.READS, ManipulationService.WRITES
+        self.io = MemoryIo(self.bus, "manipulation", reads, writes, scene=SCENE)
+        self.service = ManipulationService(CONFIG, self.io)
+        self.tick = 0
+        self.width, self.force = 0.085, 0.0
+        if description:
+            self.bus.send(topics.ROBOT_DESCRIPTION, m.RobotDescription(mjcf=robot_mjcf()))
+
+    def step(self, seconds: float = 0.02, joints: bool = True) -> None:
+        for _ in range(max(1, round(seconds / 0.02))):
+            self.tick += 2
+            now = self.tick * 0.01
+            if joints:
+                position = [0.0, 0.0, 0.0, *HOME_ARM, self.width]
+                effort = [0.0] * 10 + [self.force]
+                state = m.JointStates(
+                    t=now, name=list(JOINT_NAMES), position=position, velocity=[0.0] * 11, effort=effort
+                )
+                self.bus.send(topics.JOINT_STATES, state)
+            self.io.clock.advance(now - self.io.clock.now())  # type: ignore[attr-defined]
+            self.io.begin(self.tick, now)
+            self.service.step(now)
+
+    def ask(self, text: str, goal_id: str = "a.1", seconds: float = 2.0, **more: object) -> m.ManipulationStatus:
+        goal = m.ManipulationGoal(goal=text, id=goal_id, **more)  # type: ignore[arg-type]
+        self.bus.send(topics.MANIPULATION_GOAL, goal)
+        self.step(seconds)
+        return self.status()
+
+    def status(self) -> m.ManipulationStatus:
+        return msgspec.json.decode(self.bus.last["brain/manipulation_status"], type=m.ManipulationStatus)
+
+
+def ref(x: float) -> m.ObjectRef:
+    return m.ObjectRef(label="red mug", position=(x, 0.0, 0.65), size=(0.074, 0.074, 0.095), kind="mug")
+
+
+@pytest.mark.parametrize(
+    ("text", "code"),
+    [
+        ("juggle", "UNKNOWN_GOAL"),
+        ("grab everything", "UNKNOWN_GOAL"),
+        ("place", "UNKNOWN_GOAL"),
+        ("place the moon", "UNKNOWN_PLACE"),
+        ("place table", "NOT_HOLDING"),
+        ("grab", "NO_OBJECT"),
+    ],
+)
+def test_what_cannot_be_done_fails_with_a_code_and_a_reason(text: str, code: str) -> None:
+    status = Node().ask(text)
+    assert (status.status, status.code, status.goal_id, status.attempt) == ("failed", code, "a.1", 1)
+    assert status.detail
+
+
+def test_an_object_out_of_reach_is_refused_with_the_distance() -> None:
+    status = Node().ask("grab", object=ref(2.4))
+    assert (status.status, status.code) == ("failed", "UNREACHABLE")
+    assert "2.28 m" in status.detail
+
+
+def test_without_a_robot_description_a_grab_fails_within_seconds() -> None:
+    status = Node(description=False).ask("grab", seconds=4.0, object=ref(0.6))
+    assert (status.status, status.code) == ("failed", "NO_ROBOT")
+
+
+def test_silent_joint_states_end_the_goal() -> None:
+    node = Node()
+    node.step(1.0)
+    node.bus.send(topics.MANIPULATION_GOAL, m.ManipulationGoal(goal="grab", id="a.1", object=ref(0.62)))
+    node.step(2.0, joints=False)
+    assert (node.status().status, node.status().code) == ("failed", "STALE_STATE")
+
+
+def test_a_stop_ends_the_goal_and_the_stream() -> None:
+    node = Node()
+    node.step(1.0)
+    assert node.ask("grab", object=ref(0.62), seconds=1.5).status == "executing"
+    node.bus.put(topics.ROBOT_STOP, b"enough")
+    node.step(0.04)
+    assert (node.status().status, node.status().code) == ("failed", "STOPPED")
+    stream = node.bus.tap(topics.ARM_COMMAND)
+    node.step(0.5)
+    assert not stream
+
+
+def test_the_same_goal_twice_is_answered_and_not_run_again() -> None:
+    node = Node()
+    node.ask("place table")
+    tap = node.bus.tap(topics.MANIPULATION_STATUS)
+    node.ask("place table")
+    assert [msgspec.json.decode(p)["code"] for p in tap] == ["NOT_HOLDING"]
+
+
+def test_grab_with_something_in_the_hand_looks_before_it_acts() -> None:
+    node = Node()
+    node.width, node.force = 0.066, 25.0
+    node.step(0.1)
+    status = node.ask("grab", "a.2")
+    assert status.status == "done" and "already holding" in status.detail
+
+
+def test_release_with_an_empty_hand_just_opens_it() -> None:
+    node = Node()
+    grips = node.bus.tap(topics.GRIPPER_COMMAND)
+    status = node.ask("release")
+    assert status.status == "done" and "nothing was held" in status.detail
+    assert msgspec.json.decode(grips[-1])["position"] == 0.0
+
+
+@pytest.mark.parametrize("item", ["yellow block", "red mug", "green can"])
+def test_friction_carries_an_object_from_the_table_to_the_tray(item: str) -> None:
+    robot = Robot("minimal", seed=4)
+    robot.advance(0.5)
+    base = robot.sim.physics.bodies[item]
+    robot.bus.put(topics.NAVIGATION_GOAL, f'{{"goal": "find {item}", "id": "t.1"}}'.encode())
+    wait(robot, topics.NAVIGATION_STATUS, "t.1", 30.0)
+    robot.bus.put(topics.MANIPULATION_GOAL, b'{"goal": "grab", "id": "t.2"}')
+    grabbed = wait(robot, topics.MANIPULATION_STATUS, "t.2", 40.0)
+    assert grabbed["status"] == "done", grabbed
+    assert robot.truth()["holding"] == item
+    assert robot.sim.physics.data.xpos[base][2] > 0.4
+    robot.bus.put(topics.NAVIGATION_GOAL, b'{"goal": "return_to_start", "id": "t.3"}')
+    wait(robot, topics.NAVIGATION_STATUS, "t.3", 30.0)
+    robot.bus.put(topics.MANIPULATION_GOAL, b'{"goal": "release", "id": "t.4"}')
+    released = wait(robot, topics.MANIPULATION_STATUS, "t.4", 40.0)
+    assert released["status"] == "done", released
+    assert robot.truth()["objects"][item]["on"] == "delivery tray"
+    assert robot.truth()["holding"] is None
+
+
+def wait(robot: Robot, topic: topics.Topic[m.Message], goal_id: str, patience: float) -> dict[str, str]:
+    for _ in range(round(patience * 10)):
+        robot.advance(0.1)
+        status: dict[str, str] = msgspec.json.decode(robot.bus.last[topic.key])
+        if status["goal_id"] == goal_id and status["status"] in ("arrived", "done", "failed"):
+            return status
+    raise AssertionError(f"{goal_id} did not end within {patience:.0f} s of robot time")

@@ -1,0 +1,238 @@
+import itertools
+import math
+
+import msgspec
+import numpy as np
+import pytest
+
+from common import messages as m
+from common import topics
+from common.geometry import quat_yaw
+from common.memory import MemoryBus, MemoryIo
+from common.scene import load_scene
+from services.navigation.config import NavigationConfig
+from services.navigation.costmap import Costmap
+from services.navigation.follow import Follower
+from services.navigation.planner import PathPlanner
+from services.navigation.service import NavigationService
+from services.navigation.standoff import poses_for
+from services.sim.layout import place_objects
+
+SCENE = load_scene("apartment")
+CONFIG = NavigationConfig()
+RADIUS = CONFIG.footprint_radius + CONFIG.clearance
+
+
+@pytest.fixture(scope="module")
+def planner() -> tuple[Costmap, PathPlanner]:
+    costmap = Costmap(SCENE, CONFIG.resolution, CONFIG.obstacle_memory)
+    return costmap, PathPlanner(costmap, RADIUS, CONFIG.inflation)
+
+
+def test_home_and_the_example_spot_are_free(planner: tuple[Costmap, PathPlanner]) -> None:
+    assert planner[1].free(0.0, 0.0) and planner[1].free(1.0, 1.0)
+
+
+def test_paths_between_free_points_keep_their_clearance(planner: tuple[Costmap, PathPlanner]) -> None:
+    costmap, paths = planner
+    rng = np.random.default_rng(3)
+    found = 0
+    while found < 60:
+        a, b = (tuple(rng.uniform(SCENE.low, SCENE.high).tolist()) for _ in range(2))
+        if not (paths.free(*a) and paths.free(*b)):
+            continue
+        field = paths.field(*a)
+        path = paths.path(field, a, b)
+        if path is None:
+            continue
+        found += 1
+        assert path[0] == pytest.approx(a) and path[-1] == pytest.approx(b)
+        assert min(costmap.clearance(*p) for p in path) > CONFIG.footprint_radius - costmap.resolution
+        assert max(math.dist(p, q) for p, q in itertools.pairwise(path)) < 0.06
+
+
+def test_every_room_and_surface_can_be_reached_from_home(planner: tuple[Costmap, PathPlanner]) -> None:
+    field = planner[1].field(0.0, 0.0)
+    for place in SCENE.places:
+        assert math.isfinite(planner[1].cost_to(field, (place.x, place.y))), place.name
+
+
+def test_there_is_no_path_into_a_wall(planner: tuple[Costmap, PathPlanner]) -> None:
+    field = planner[1].field(0.0, 0.0)
+    assert planner[1].path(field, (0.0, 0.0), (2.5, 1.5)) is None
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_every_object_has_a_stand_that_is_free_reachable_and_close(
+    seed: int, planner: tuple[Costmap, PathPlanner]
+) -> None:
+    field = planner[1].field(0.0, 0.0)
+    for p in place_objects(SCENE, seed):
+        x, y, _ = p.position
+        stands = poses_for((x, y), SCENE.receptacle(p.on), CONFIG.stand_off, CONFIG.edge_distance)
+        good = [
+            s for _, s in stands
+            if planner[1].free(s[0], s[1]) and math.isfinite(planner[1].cost_to(field, (s[0], s[1])))
+        ]  # fmt: skip
+        assert good, f"{p.spec.name} on {p.on}"
+        assert min(math.hypot(s[0] - x, s[1] - y) for s in good) < 0.70
+        for s in good:
+            bearing = math.atan2(y - s[1], x - s[0])
+            assert abs(math.remainder(bearing - s[2], 2 * math.pi)) < 0.01, "the robot faces the object"
+
+
+def test_the_lidar_marks_what_the_map_lacks_and_clears_it_again() -> None:
+    costmap = Costmap(SCENE, 0.05, 4.0)
+    angles = -math.pi + np.arange(360) * math.radians(1)
+    ranges = np.full(360, 11.0)
+    ranges[175:186] = 0.8
+    costmap.see((0.0, -0.9, -math.pi / 2), angles, ranges, 10.0, 1.0)
+    assert costmap.sees_unmapped and costmap.clearance(0.0, -1.7) < 0.1
+    costmap.see((0.0, -0.9, -math.pi / 2), angles, np.full(360, 11.0), 10.0, 1.1)
+    assert not costmap.sees_unmapped and costmap.clearance(0.0, -1.7) > 0.3
+
+
+def test_the_follower_stops_before_what_the_lidar_sees() -> None:
+    costmap = Costmap(SCENE, 0.05, 4.0)
+    path = [(0.0, -0.05 * i) for i in range(30)]
+    follower = Follower(path, (0.0, -1.45, -1.57), 0.5, CONFIG.corridor)
+    pose = (0.0, 0.0, -math.pi / 2)
+    free = follower.step(pose, costmap, CONFIG.footprint_radius, None)
+    assert free.pose[1] < -0.4 and not free.blocked
+    near = follower.step(pose, costmap, CONFIG.footprint_radius, np.array([[0.0, -0.36]]))
+    assert near.blocked and abs(near.pose[1]) < 0.05
+    beside = follower.step(pose, costmap, CONFIG.footprint_radius, np.array([[0.5, -0.3]]))
+    assert not beside.blocked
+
+
+class Node:
+    """The service on a memory bus, with a base that a test moves."""
+
+    def __init__(self) -> None:
+        self.bus = MemoryBus()
+        reads, writes = NavigationService.READS, NavigationService.WRITES
+        self.io = MemoryIo(self.bus, "navigation", reads, writes, scene=SCENE, lockstep=False)
+        self.service = NavigationService(CONFIG, self.io)
+        self.targets = self.bus.tap(topics.BASE_TARGET)
+        self.now = 0.0
+        self.pose = (0.0, 0.0, 0.0)
+
+    def step(self, seconds: float = 0.05, odometry: bool = True) -> None:
+        for _ in range(max(1, round(seconds / 0.05))):
+            self.now += 0.05
+            if odometry:
+                x, y, theta = self.pose
+                self.bus.send(topics.ODOMETRY, m.Odometry(t=self.now, x=x, y=y, theta=theta))
+            self.io.begin(None, self.now)
+            self.service.step(self.now)
+
+    def ask(self, text: str, goal_id: str = "a.1", attempt: int = 1) -> m.NavigationStatus:
+        self.bus.send(topics.NAVIGATION_GOAL, m.NavigationGoal(goal=text, id=goal_id, attempt=attempt))
+        self.step()
+        return self.status()
+
+    def status(self) -> m.NavigationStatus:
+        return msgspec.json.decode(self.bus.last["brain/navigation_status"], type=m.NavigationStatus)
+
+    def target(self) -> m.BaseTarget:
+        return msgspec.json.decode(self.targets[-1], type=m.BaseTarget)
+
+
+@pytest.mark.parametrize(
+    ("goal", "code"),
+    [
+        ("dance", "UNKNOWN_GOAL"),
+        ("find", "UNKNOWN_GOAL"),
+        ("goto", "UNKNOWN_GOAL"),
+        ("goto the moon", "UNKNOWN_PLACE"),
+        ("find banana", "UNKNOWN_OBJECT"),
+    ],
+)
+def test_what_cannot_be_done_fails_with_a_code_and_a_reason(goal: str, code: str) -> None:
+    status = Node().ask(goal)
+    assert (status.status, status.code, status.goal_id, status.attempt) == ("failed", code, "a.1", 1)
+    assert status.detail
+
+
+def test_arrived_comes_only_from_the_base() -> None:
+    node = Node()
+    assert node.ask("find the red mug").status == "navigating"
+    node.pose = (1.0, 1.0, 0.0)
+    node.step(0.5)
+    final = node.target()
+    assert (final.x, final.y) == pytest.approx((1.0, 1.0)), "the spot of places.toml"
+    assert node.status().status == "navigating"
+    node.bus.send(topics.GOAL_REACHED, m.GoalReached(reached=True, target_id="somebody else's"))
+    node.step()
+    assert node.status().status == "navigating"
+    node.bus.send(topics.GOAL_REACHED, m.GoalReached(reached=True, target_id=final.id))
+    node.step()
+    assert node.status().status == "arrived"
+
+
+def test_an_object_that_was_seen_counts_before_the_places_file() -> None:
+    node = Node()
+    mug = place_objects(SCENE, 0)[0]
+    seen = m.WorldObject(
+        label="red mug", kind="mug", colour="red", position=mug.position, size=mug.spec.size, on=mug.on
+    )
+    node.bus.send(topics.WORLD_OBJECTS, m.WorldObjects(t=0.0, objects=[seen]))
+    node.ask("find red cup")
+    path = msgspec.json.decode(node.bus.last["navigation/path"], type=m.NavPath)
+    assert path.goal_id == "a.1"
+    assert math.dist(path.points[-1], mug.position[:2]) < 1.0
+
+
+def test_the_same_goal_twice_runs_once_and_is_answered() -> None:
+    node = Node()
+    node.ask("goto kitchen")
+    tap = node.bus.tap(topics.NAVIGATION_STATUS)
+    paths = node.bus.tap(topics.NAV_PATH)
+    node.ask("goto kitchen")
+    assert [msgspec.json.decode(p)["status"] for p in tap] == ["navigating"]
+    assert not paths
+
+
+def test_a_new_goal_replaces_the_old_one_and_stop_holds() -> None:
+    node = Node()
+    node.ask("goto kitchen", "a.1")
+    assert node.ask("goto bedroom", "a.2").goal_id == "a.2"
+    stopped = node.ask("stop", "a.3")
+    assert (stopped.status, stopped.code) == ("idle", "STOPPED")
+    count = len(node.targets)
+    node.step(0.5)
+    assert len(node.targets) == count
+
+
+def test_silent_odometry_ends_the_goal() -> None:
+    node = Node()
+    node.ask("goto kitchen")
+    node.step(1.0, odometry=False)
+    assert (node.status().status, node.status().code) == ("failed", "NO_ODOMETRY")
+
+
+@pytest.mark.parametrize(
+    "pose",
+    [
+        m.NavGoal(id="c", x=math.nan, y=0.0),
+        m.NavGoal(id="c", x=99.0, y=0.0),
+        m.NavGoal(id="c", x=0.5, y=0.5, frame="moon"),
+    ],
+)
+def test_a_bad_pose_is_refused(pose: m.NavGoal) -> None:
+    node = Node()
+    node.service._take(pose.id, 1, "", pose)
+    feedback = msgspec.json.decode(node.bus.last["navigation_feedback"], type=m.NavigationFeedback)
+    assert (feedback.status, feedback.code) == ("failed", "BAD_POSE")
+
+
+def test_a_goal_inside_furniture_has_no_path() -> None:
+    node = Node()
+    node.bus.send(topics.NAV_GOAL, m.NavGoal(id="c", x=6.0, y=3.5))
+    node.step(0.2)
+    feedback = msgspec.json.decode(node.bus.last["navigation_feedback"], type=m.NavigationFeedback)
+    assert (feedback.goal_id, feedback.status, feedback.code) == ("c", "failed", "NO_PATH")
+
+
+def test_quaternion_of_the_survey_has_the_heading() -> None:
+    assert quat_yaw((math.cos(0.3), 0.0, 0.0, math.sin(0.3))) == pytest.approx(0.6)
