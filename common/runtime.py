@@ -66,7 +66,8 @@ class Process:
 
     def _answer_health(self, query: zenoh.Query) -> None:
         with query:
-            query.reply(self._health.key_expr, self._last_health, encoding=codec.JSON)
+            if self._last_health:
+                query.reply(self._health.key_expr, self._last_health, encoding=codec.JSON)
 
     def _publish_health(self, hz: float) -> None:
         record = health_of(self.io, monotonic() - self._started, hz, rss_mb(), os.getpid())

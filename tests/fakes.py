@@ -15,7 +15,7 @@ class EchoConfig(Config, frozen=True):
 class EchoService:
     """Answers every navigation goal with a status, raises on one word."""
 
-    NAME = "navigation"
+    NAME = "echo"
     HZ = 100
     CONFIG = EchoConfig
     READS = (topics.NAVIGATION_GOAL, topics.JOINT_STATES, topics.BRAIN_STATE)

@@ -38,14 +38,14 @@ def details(payloads: list[bytes]) -> list[str]:
 
 
 def health(session: zenoh.Session) -> m.Health:
-    answer = eventually(lambda: bus.fetch(session, "service/navigation/health"), "health answers a get")
+    answer = eventually(lambda: bus.fetch(session, "service/echo/health"), "health answers a get")
     return codec.decode_as(m.Health, next(iter(answer.values())))
 
 
 def test_a_plain_peer_is_heard_in_every_form_and_the_status_is_latched(here: Site) -> None:
     start_echo(here)
     with here.session() as session:
-        here.wait_alive(session, "navigation")
+        here.wait_alive(session, "echo")
         with heard(session, STATUS) as got:
             session.put("brain/navigation_goal", "find red mug")
             session.put("brain/navigation_goal", '"goto kitchen"')
@@ -58,7 +58,7 @@ def test_a_plain_peer_is_heard_in_every_form_and_the_status_is_latched(here: Sit
 def test_noise_is_counted_and_harms_nothing(here: Site) -> None:
     start_echo(here)
     with here.session() as session:
-        here.wait_alive(session, "navigation")
+        here.wait_alive(session, "echo")
         with heard(session, STATUS) as got:
             for junk in (b"\xff\xfe", b"\x00" * 100, b'{"goal":', b"", b"\xc1" * 9):
                 session.put("brain/navigation_goal", junk)
@@ -75,7 +75,7 @@ def test_noise_is_counted_and_harms_nothing(here: Site) -> None:
 def test_goals_survive_a_router_outage_in_order(here: Site) -> None:
     start_echo(here)
     with here.session() as session:
-        here.wait_alive(session, "navigation")
+        here.wait_alive(session, "echo")
         goals = bus.Publisher(session, topics.NAVIGATION_GOAL)
         with heard(session, STATUS) as got:
 
@@ -102,7 +102,7 @@ def test_a_goal_from_before_the_start_is_not_acted_on(here: Site) -> None:
         goals.put(codec.encode(topics.NAVIGATION_GOAL, m.NavigationGoal(goal="old", id="m.1")), None)
         with heard(session, STATUS) as got:
             start_echo(here)
-            here.wait_alive(session, "navigation")
+            here.wait_alive(session, "echo")
             goals.put(codec.encode(topics.NAVIGATION_GOAL, m.NavigationGoal(goal="new", id="m.2")), None)
             eventually(lambda: got, "an answer to the new goal")
             assert details(got) == ["new"]
@@ -112,14 +112,14 @@ def test_a_goal_from_before_the_start_is_not_acted_on(here: Site) -> None:
 def test_a_killed_process_loses_its_token_and_its_successor_has_another_epoch(here: Site) -> None:
     first = start_echo(here)
     with here.session() as session:
-        here.wait_alive(session, "navigation")
+        here.wait_alive(session, "echo")
         epoch = health(session).epoch
         first.send_signal(signal.SIGKILL)
         first.wait()
-        alive = "service/navigation/alive"
+        alive = "service/echo/alive"
         eventually(lambda: not list(session.liveliness().get(alive, timeout=1.0)), "the token is gone")
         start_echo(here)
-        here.wait_alive(session, "navigation")
+        here.wait_alive(session, "echo")
         assert health(session).epoch != epoch
 
 
@@ -127,7 +127,7 @@ def test_a_killed_process_loses_its_token_and_its_successor_has_another_epoch(he
 def test_signals_end_a_process_with_status_0(here: Site, number: signal.Signals) -> None:
     process = start_echo(here)
     with here.session() as session:
-        here.wait_alive(session, "navigation")
+        here.wait_alive(session, "echo")
     process.send_signal(number)
     assert process.wait(10) == 0
     assert "Traceback" not in here.log("tests.fakes")
@@ -145,13 +145,13 @@ def test_a_node_started_before_its_router_keeps_trying(here: Site) -> None:
     assert quitter.wait(10) == 0, "it also ends on a signal while it waits"
     here.start_router()
     with here.session() as session:
-        here.wait_alive(session, "navigation")
+        here.wait_alive(session, "echo")
 
 
 def test_an_error_in_a_step_is_logged_and_survived(here: Site) -> None:
     process = start_echo(here)
     with here.session() as session:
-        here.wait_alive(session, "navigation")
+        here.wait_alive(session, "echo")
         with heard(session, STATUS) as got:
             session.put("brain/navigation_goal", "raise")
             eventually(lambda: "asked to fail" in here.log("tests.fakes"), "the error is logged")
@@ -164,8 +164,8 @@ def test_an_error_in_a_step_is_logged_and_survived(here: Site) -> None:
 @pytest.mark.parametrize(
     ("args", "extra", "expected"),
     [
-        (["--set", "navigation.wrod=x"], {}, "unknown key 'wrod'"),
-        ([], {"TIDYBOT__NAVIGATION__WORD": "[1]"}, "Expected `str`"),
+        (["--set", "echo.wrod=x"], {}, "unknown key 'wrod'"),
+        ([], {"TIDYBOT__ECHO__WORD": "[1]"}, "Expected `str`"),
         ([], {"TIDYBOT_CLOCK": "sundial"}, "expected sim or wall"),
         ([], {"TIDYBOT_CONNECT": "nonsense"}, "nonsense"),
         (["--set", "runtime.scene=castle"], {}, "no scene file"),
