@@ -1,0 +1,254 @@
+import struct
+import wave
+from pathlib import Path
+
+import msgspec
+import numpy as np
+import pytest
+
+from common import config, topics
+from common import messages as m
+from common.memory import MemoryBus, MemoryIo
+from common.runtime import StartError
+from common.scene import load_scene
+from services.speech.audio import RATE, AudioError, read_wav, write_wav
+from services.speech.config import SpeechConfig
+from services.speech.grammar import Grammar, GrammarError, vocabulary
+from services.speech.moonshine import Vocabulary
+from services.speech.service import SpeechService
+from services.speech.vad import Endpointer
+
+ROOT = Path(__file__).parents[2]
+VOICE = ROOT / "docs" / "audio" / "bring_me_the_red_mug.wav"
+SCENE = load_scene("apartment")
+CONFIG = config.load("speech", SpeechConfig, ROOT / "config", {})
+
+
+@pytest.fixture(scope="module")
+def grammar() -> Grammar:
+    return Grammar(CONFIG.commands, vocabulary(SCENE, CONFIG.objects, CONFIG.places, CONFIG.colours))
+
+
+def test_every_object_and_surface_of_the_scene_can_be_named(grammar: Grammar) -> None:
+    for o in SCENE.objects:
+        for name in (o.name, *o.aliases):
+            assert grammar.accepts(f"bring me the {name}")
+    for r in SCENE.receptacles:
+        assert grammar.accepts(f"put it on the {r.name}")
+    assert grammar.accepts("put the apple in the bowl and then come back")
+
+
+@pytest.mark.parametrize("text", ["", "bring", "bring me the", "the weather is nice", "mug red the me bring", "x"])
+def test_what_is_no_command_is_not_accepted(grammar: Grammar, text: str) -> None:
+    assert not grammar.accepts(text)
+
+
+@pytest.mark.parametrize(
+    ("patterns", "words"),
+    [
+        (("(a | b",), "not closed"),
+        (("a ] b",), "a closing bracket too many"),
+        (("<nothing>",), "nothing defines <nothing>"),
+        (("<loop>", "loop = a <loop>"), "contains itself"),
+        (("[please]",), "accepts silence"),
+        (("a + b",), "is not understood"),
+    ],
+)
+def test_a_bad_pattern_is_named(patterns: tuple[str, ...], words: str) -> None:
+    with pytest.raises(GrammarError, match=words):
+        Grammar(patterns, {})
+
+
+def test_tokens_that_continue_a_sentence_are_found_whatever_their_case_and_length() -> None:
+    grammar = Grammar(("stop it", "go"), {})
+    vocabulary = Vocabulary(["<unk>", "<s>", "</s>", " St", "op", " stop", " it", ".", " g", "o", " x"], grammar)
+    numbers, states = vocabulary.allowed(grammar.start)
+    assert sorted(numbers) == [3, 5, 7, 8]
+    after = dict(zip(numbers.tolist(), states, strict=True))
+    assert not grammar.is_final(after[5])
+    numbers, states = vocabulary.allowed(after[5])
+    assert sorted(numbers) == [6, 7]
+    assert grammar.is_final(dict(zip(numbers.tolist(), states, strict=True))[6])
+
+
+def test_an_utterance_ends_after_a_pause_and_not_in_a_short_one() -> None:
+    ends = Endpointer(end_silence=0.6, max_utterance=10.0)
+    assert not any(ends.push(0.9) for _ in range(10))
+    assert not any(ends.push(0.1) for _ in range(10))
+    assert not any(ends.push(0.9) for _ in range(5))
+    assert [ends.push(0.1) for _ in range(19)].index(True) == 18
+
+
+def test_clicks_do_not_begin_an_utterance() -> None:
+    ends = Endpointer(end_silence=0.6, max_utterance=10.0)
+    for _ in range(20):
+        ends.push(0.9)
+        for _ in range(4):
+            ends.push(0.0)
+    assert not ends.speaking
+
+
+def test_recordings_of_other_forms_are_brought_to_16_khz_mono(tmp_path: Path) -> None:
+    tone = (np.sin(np.arange(44100) * 2 * np.pi * 440 / 44100) * 20000).astype("<i2")
+    path = tmp_path / "stereo.wav"
+    with wave.open(str(path), "wb") as file:
+        file.setnchannels(2)
+        file.setsampwidth(2)
+        file.setframerate(44100)
+        file.writeframes(np.repeat(tone, 2).tobytes())
+    samples = read_wav(path)
+    assert len(samples) == RATE
+    spectrum = np.abs(np.fft.rfft(samples.astype(float)))
+    assert int(spectrum.argmax()) == 440
+
+
+@pytest.mark.parametrize(
+    ("content", "expected"),
+    [
+        (None, "no such file"),
+        (b"", "not a PCM WAV file"),
+        (b"RIFF", "not a PCM WAV file"),
+        (b"this is no sound at all, just words in a file", "not a PCM WAV file"),
+    ],
+)
+def test_what_is_no_recording_is_named(tmp_path: Path, content: bytes | None, expected: str) -> None:
+    path = tmp_path / "x.wav"
+    if content is not None:
+        path.write_bytes(content)
+    with pytest.raises(AudioError, match=expected):
+        read_wav(path)
+
+
+def test_empty_and_truncated_recordings_are_named(tmp_path: Path) -> None:
+    path = tmp_path / "x.wav"
+    write_wav(path, np.zeros(0, np.int16))
+    with pytest.raises(AudioError, match="empty"):
+        read_wav(path)
+    write_wav(path, np.ones(RATE, np.int16))
+    whole = path.read_bytes()
+    path.write_bytes(whole[: len(whole) // 2])
+    with pytest.raises(AudioError, match=r"truncated|not a PCM"):
+        read_wav(path)
+    path.write_bytes(whole[:22] + struct.pack("<H", 0) + whole[24:])
+    with pytest.raises(AudioError):
+        read_wav(path)
+
+
+class Node:
+    """The service on a memory bus in lockstep."""
+
+    def __init__(self, **changes: object) -> None:
+        self.bus = MemoryBus()
+        reads, writes = SpeechService.READS, SpeechService.WRITES
+        self.io = MemoryIo(self.bus, "speech", reads, writes, scene=SCENE)
+        self.service = SpeechService(msgspec.structs.replace(CONFIG, **changes), self.io)
+        self.results = self.bus.tap(topics.SPEECH_RESULT)
+        self.tick = 0
+
+    def step(self, seconds: float = 0.1) -> None:
+        for _ in range(max(1, round(seconds * 10))):
+            self.tick += 10
+            now = self.tick / 100
+            self.io.clock.advance(now - self.io.clock.now())  # type: ignore[attr-defined]
+            self.io.begin(self.tick, now)
+            self.service.step(now)
+
+    def ask(self, text: str, goal_id: str = "a.1") -> None:
+        self.bus.send(topics.SPEECH_GOAL, m.SpeechGoal(goal=text, id=goal_id))
+        self.step()
+
+    def play(self, samples: np.ndarray) -> None:
+        for n, start in enumerate(range(0, len(samples), 1600)):
+            data = samples[start : start + 1600].tobytes()
+            self.bus.send(topics.AUDIO_PCM, m.AudioChunk(t=self.tick / 100, data=data, seq=n))
+            self.step()
+
+    def last(self) -> m.SpeechResult:
+        return msgspec.json.decode(self.results[-1], type=m.SpeechResult)
+
+    def state(self) -> str:
+        return msgspec.json.decode(self.bus.last["speech/status"], type=m.SpeechStatus).state
+
+
+def test_a_recorded_command_is_understood_and_noise_is_not() -> None:
+    node = Node()
+    node.ask("listen", "a.1")
+    assert node.state() == "listening"
+    node.play(np.concatenate([np.zeros(RATE // 2, np.int16), read_wav(VOICE), np.zeros(RATE, np.int16)]))
+    node.step(1.0)
+    heard = node.last()
+    assert (heard.text, heard.goal_id) == ("bring me the red mug", "a.1")
+    assert heard.confidence > 0.5
+    node.ask("listen", "a.2")
+    noise = np.random.default_rng(0).normal(0, 3000, RATE * 3).astype(np.int16)
+    node.play(noise)
+    node.step(2.0)
+    assert node.last().goal_id == "a.1", "noise is no speech"
+
+
+def test_the_robot_understands_its_own_voice() -> None:
+    node = Node()
+    spoken = node.bus.tap(topics.AUDIO_OUT)
+    node.ask("say go to the kitchen", "a.1")
+    node.step(5.0)
+    chunks = [msgspec.msgpack.decode(p, type=m.AudioChunk) for p in spoken]
+    assert chunks[-1].end and [c.seq for c in chunks] == list(range(len(chunks)))
+    assert node.state() == "idle"
+    node.ask("listen", "a.2")
+    audio = np.concatenate([np.frombuffer(c.data, "<i2") for c in chunks])
+    node.play(np.concatenate([audio, np.zeros(RATE, np.int16)]))
+    node.step(1.0)
+    assert node.last().text == "go to the kitchen"
+
+
+def test_silence_is_an_error_after_the_timeout() -> None:
+    node = Node(listen_timeout=5.0)
+    node.ask("listen")
+    node.play(np.zeros(RATE * 4, np.int16))
+    assert not node.results
+    node.step(2.0)
+    assert (node.last().text, node.last().code) == ("ERROR", "TIMEOUT")
+
+
+def test_typed_words_count_and_wait_for_the_next_listen() -> None:
+    node = Node()
+    node.bus.put(topics.SPEECH_TEXT, b"Bring me the blue mug!")
+    node.step()
+    node.ask("listen")
+    assert (node.last().text, node.last().confidence) == ("bring me the blue mug", 1.0)
+    node.bus.put(topics.SPEECH_TEXT, b"too old")
+    node.step(CONFIG.typed_memory + 1)
+    node.ask("listen", "a.2")
+    assert node.state() == "listening"
+
+
+def test_cancel_ends_listening_and_an_unknown_goal_is_answered() -> None:
+    node = Node()
+    node.ask("listen", "a.1")
+    node.ask("cancel", "a.2")
+    assert node.state() == "idle" and not node.results
+    node.ask("sing", "a.3")
+    assert (node.last().text, node.last().code, node.last().goal_id) == ("ERROR", "UNKNOWN_GOAL", "a.3")
+
+
+def test_the_same_goal_twice_gets_the_same_answer() -> None:
+    node = Node()
+    node.bus.put(topics.SPEECH_TEXT, b"stop")
+    node.ask("listen")
+    node.ask("listen")
+    assert len(node.results) == 2 and node.results[0] == node.results[1]
+    assert node.state() == "idle"
+
+
+def test_odd_audio_is_counted() -> None:
+    node = Node()
+    node.ask("listen")
+    node.bus.send(topics.AUDIO_PCM, m.AudioChunk(t=0.0, data=b"\x00"))
+    node.bus.send(topics.AUDIO_PCM, m.AudioChunk(t=0.0, data=b"\x00\x00", rate=1))
+    node.step()
+    assert node.io.drops["audio/pcm"] == 2
+
+
+def test_a_missing_recording_stops_the_start_with_a_reason(tmp_path: Path) -> None:
+    with pytest.raises(StartError, match="no such file"):
+        Node(wav=str(tmp_path / "nothing.wav"))
