@@ -4,6 +4,7 @@ import time
 from collections.abc import Callable
 from statistics import median
 
+import msgspec
 import mujoco
 import numpy as np
 
@@ -12,6 +13,7 @@ from services.sim.physics import SUBSTEPS, Physics
 
 SECONDS = 5.0
 RUNS = 5
+OBJECTS = 12
 
 
 def speed(advance: Callable[[], None], seconds_a_call: float) -> float:
@@ -26,7 +28,8 @@ def speed(advance: Callable[[], None], seconds_a_call: float) -> float:
 
 
 def main() -> None:
-    physics = Physics(load_scene("apartment"), 0)
+    scene = load_scene("apartment")
+    physics = Physics(msgspec.structs.replace(scene, objects=scene.objects[:OBJECTS]), 0)
     model, data = physics.model, physics.data
     hold = np.array(data.ctrl[physics.ctrl_at])
     print(f"{len(physics.placements)} objects, nv {model.nv}, {model.ngeom} geoms, 2 ms steps")

@@ -134,7 +134,6 @@ class Publisher:
                 topic.key,
                 encoding=encoding,
                 congestion_control=zenoh.CongestionControl.BLOCK,
-                express=True,
                 cache=ext.CacheConfig(CACHE),
                 sample_miss_detection=ext.MissDetectionConfig(heartbeat=None, sporadic_heartbeat=HEARTBEAT),
                 publisher_detection=True,

@@ -134,5 +134,7 @@ def _rim(target: Target, facing: float) -> list[Grasp]:
         roll = math.remainder(radial - facing - math.pi / 2, math.pi)
         for degrees in (90, 70):
             rotation = approach_rotation(facing, math.radians(degrees), roll)
-            found.append(Grasp(Pose(point, rotation), 0.012, height, math.radians(degrees), f"rim at {turn:+.0f}, {degrees} deg"))
+            found.append(
+                Grasp(Pose(point, rotation), 0.012, height, math.radians(degrees), f"rim at {turn:+.0f}, {degrees} deg")
+            )
     return found

@@ -1,0 +1,52 @@
+"""The robot as processes: seconds to ready, resident memory, and a mission in lockstep; the peer is one process."""
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from typing import Any
+
+from bench.mission import Robot, fetch
+from tests.support import free_port
+
+ITEM = "red mug"
+
+
+def main() -> None:
+    with tempfile.TemporaryDirectory() as run_dir:
+        environment = {**os.environ, "TIDYBOT_RUN_DIR": run_dir}
+
+        def tidybot(*words: str) -> str:
+            command = [sys.executable, "-m", "cli.main", *words]
+            done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
+            return done.stdout
+
+        began = time.perf_counter()
+        tidybot("up", "--detach", "--speed", "max", "--port", str(free_port()))
+        ready = time.perf_counter() - began
+        try:
+            before, started = _clock(tidybot), time.perf_counter()
+            tidybot("say", f"bring me the {ITEM}", "--wait")
+            speed = (_clock(tidybot) - before) / (time.perf_counter() - started)
+            rows: list[dict[str, Any]] = json.loads(tidybot("ps", "--json"))
+        finally:
+            tidybot("down")
+    alone = fetch(Robot(seed=0), ITEM, 0)
+    print(f"{'up to ready':34} {ready:8.1f} s")
+    for row in rows:
+        print(f"{'resident, ' + row['name']:34} {row['rss_mb']:8.0f} MB")
+    print(f"{'resident, all':34} {sum(row['rss_mb'] for row in rows):8.0f} MB")
+    print(f"{'fetch in lockstep, processes':34} {speed:8.1f} x real time")
+    print(f"{'fetch in lockstep, one process':34} {alone.robot_seconds / alone.wall_seconds:8.1f} x real time")
+
+
+def _clock(tidybot: Any) -> float:
+    """Robot time now."""
+    found: float = json.loads(tidybot("topic", "echo", "joint_states", "--count", "1", "--json"))["t"]
+    return found
+
+
+if __name__ == "__main__":
+    main()
