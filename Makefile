@@ -44,7 +44,7 @@ test-compose: setup ## the compose file under a Docker engine of its own (root, 
 	$(BIN)/python -m tests.compose.run $(ARGS)
 
 bench: setup ## every benchmark, each prints a table
-	@for file in bench/[a-z]*.py; do echo "== $$file"; $(BIN)/python $$file || exit 1; done
+	@for name in physics bus processes fetch grasp speech; do echo "== bench.$$name"; $(BIN)/python -m bench.$$name; done
 
 lock: ## requirements.lock anew from pyproject.toml
 	rm -rf build/lock && $(PYTHON) -m venv build/lock
