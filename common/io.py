@@ -33,7 +33,7 @@ class Job(Protocol[R_co]):
 
 
 class Io(Protocol):
-    """A service's bus, worker, randomness and logger."""
+    """A service's bus, worker, randomness and logger. `fresh`: something arrived for this step."""
 
     name: str
     epoch: str
@@ -42,6 +42,7 @@ class Io(Protocol):
     rng: np.random.Generator
     log: Log
     lockstep: bool
+    fresh: bool
 
     def drain(self, topic: Topic[M]) -> list[M]:
         """Every message received since the last step, oldest first."""

@@ -36,6 +36,7 @@ class Mailbox(Generic[M]):
         self.topic = topic
         keep_one = topic.keep == "latest" and not lockstep
         self._inbox: deque[tuple[int, bytes]] = deque(maxlen=1 if keep_one else CAPACITY)
+        self.waiting = self._inbox
         self._keep_one = keep_one
         self._ready: list[bytes] = []
         self._last: bytes | None = None
@@ -129,6 +130,8 @@ class IoBase:
         self.drops: Counter[str] = Counter()
         self.tick = 0
         self._boxes: dict[str, Mailbox[Any]] = {t.key: Mailbox(t, lockstep) for t in reads}
+        self._open_order = tuple(self._boxes.values())
+        self.fresh = False
         self._writes = {t.key for t in writes}
         self._worker: ThreadPoolExecutor | None = None
         self._ids = 0
@@ -139,7 +142,11 @@ class IoBase:
         """Start a step: what was published before `tick` becomes visible."""
         if tick is not None:
             self.tick = tick
-        for box in self._boxes.values():
+        self.fresh = False
+        for box in self._open_order:
+            if not box.waiting:
+                continue
+            self.fresh = True
             box.open(tick if self.lockstep else None, now)
             if box.overflow:
                 lost, box.overflow = box.overflow, 0

@@ -31,12 +31,18 @@ class Physics:
         model = self.model
         joints = ("base_x", "base_y", "base_yaw", *robot.ARM_JOINTS)
         self.qpos_at = np.array([model.joint(j).qposadr[0] for j in joints])
-        self.base_at = self.qpos_at[:3]
         self.qvel_at = np.array([model.joint(j).dofadr[0] for j in joints])
         self.finger_qpos = np.array([model.joint(f"{s}_finger").qposadr[0] for s in ("left", "right")])
         self.finger_qvel = np.array([model.joint(f"{s}_finger").dofadr[0] for s in ("left", "right")])
         self.ctrl_at = np.array([model.actuator(j).id for j in joints])
         self.gripper_ctrl = model.actuator("gripper").id
+        # Live views: looking an array up on MjData and indexing it by a list cost more than a physics step.
+        self.joints = _view(self.data.qpos, self.qpos_at)
+        self.rates = _view(self.data.qvel, self.qvel_at)
+        self.fingers = _view(self.data.qpos, self.finger_qpos)
+        self.finger_rates = _view(self.data.qvel, self.finger_qvel)
+        self.forces = _view(self.data.actuator_force, np.append(self.ctrl_at, self.gripper_ctrl))
+        self._ctrl = _view(self.data.ctrl, self.ctrl_at)
         self.lidar_site = model.site("lidar").id
         self.pads = tuple(model.geom(f"{s}_pad").id for s in ("left", "right"))
         self.bodies = {p.spec.name: model.body(objects.body_name(p.spec)).id for p in self.placements}
@@ -63,14 +69,14 @@ class Physics:
 
     def advance(self, start: NDArray[np.float64], end: NDArray[np.float64]) -> None:
         """Run 10 ms while the set-points (10,) of base and arm move from `start` to `end`."""
-        model, data, ctrl_at = self.model, self.data, self.ctrl_at
+        model, data, ctrl = self.model, self.data, self._ctrl
+        ctrl[:] = start
         change = (end - start) / SUBSTEPS
         if not change.any():
-            data.ctrl[ctrl_at] = end
             mujoco.mj_step(model, data, SUBSTEPS)
             return
-        for i in range(1, SUBSTEPS + 1):
-            data.ctrl[ctrl_at] = start + change * i
+        for _ in range(SUBSTEPS):
+            ctrl += change
             mujoco.mj_step(model, data)
 
     def grip(self, closed: float, effort: float) -> None:
@@ -80,17 +86,17 @@ class Physics:
 
     def width(self) -> float:
         """Distance between the pads [m]."""
-        left, right = self.finger_qpos
-        return float(robot.STROKE - self.data.qpos[left] - self.data.qpos[right])
+        left, right = self.fingers.tolist()
+        return float(robot.STROKE - left - right)
 
     def width_rate(self) -> float:
         """How fast the pads move apart [m/s]."""
-        left, right = self.finger_qvel
-        return float(-self.data.qvel[left] - self.data.qvel[right])
+        left, right = self.finger_rates.tolist()
+        return float(-left - right)
 
     def finger_force(self) -> float:
         """Closing force of one finger [N]."""
-        return float(self.data.actuator_force[self.gripper_ctrl] / 2)
+        return float(self.forces[-1] / 2)
 
     def snapshot(self) -> NDArray[np.float64]:
         """The full integration state."""
@@ -109,6 +115,14 @@ class Physics:
             if obstacle.speed > 0 and len(obstacle.waypoints) > 1:
                 x, y = _along(obstacle, t)
                 self.data.mocap_pos[n, :2] = (x, y)
+
+
+def _view(array: Any, at: NDArray[np.int64]) -> NDArray[np.float64]:
+    """The entries `at` of an array of MjData, which must lie side by side, as a view that stays current."""
+    if (np.diff(at) != 1).any():
+        raise ValueError("the robot's joints and actuators must come first in the model, in order")
+    found: NDArray[np.float64] = array[at[0] : at[-1] + 1]
+    return found
 
 
 def _mocap(obstacle: Obstacle) -> str:

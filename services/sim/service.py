@@ -118,10 +118,10 @@ class SimService:
 
     # --- one tick
     def step(self, now: float) -> None:
-        self._take_commands(now)
+        if self._io.fresh:
+            self._take_commands(now)
         physics = self.physics
-        qpos = physics.data.qpos
-        x, y, yaw = qpos[physics.base_at].tolist()
+        x, y, yaw, *_ = physics.joints.tolist()
         after = np.empty(10)
         after[:3] = self._base.advance((x, y, yaw), now, DT)
         after[3:] = self._arm.advance(now, DT)
@@ -145,7 +145,7 @@ class SimService:
             if not self._base.stopped:
                 io.log.warning("stopped", reason=stops[-1].reason, by=stops[-1].source)
                 self._publish_status("stopped", stops[-1].reason)
-            actual = self.physics.data.qpos[self.physics.qpos_at]
+            actual = self.physics.joints.copy()
             if not self._base.stopped:
                 self._setpoint = actual.copy()
             self._base.halt((float(actual[0]), float(actual[1]), float(actual[2])))
@@ -173,12 +173,11 @@ class SimService:
 
     def _publish(self, t: float) -> None:
         io, physics, data = self._io, self.physics, self.physics.data
-        qpos, qvel = data.qpos[physics.qpos_at], data.qvel[physics.qvel_at]
-        arm = qpos.tolist()
+        arm = physics.joints.tolist()
         actual = (arm[0], arm[1], arm[2])
         ox, oy, oyaw = self._odometry.update(actual)
         cos, sin = math.cos(actual[2]), math.sin(actual[2])
-        velocity = qvel.tolist()
+        velocity = physics.rates.tolist()
         vx, vy, omega = velocity[:3]
         odometry = m.Odometry(t=t, x=ox, y=oy, theta=oyaw, vx=cos * vx + sin * vy, vy=cos * vy - sin * vx, omega=omega)
         io.publish(topics.ODOMETRY, odometry)
@@ -189,7 +188,7 @@ class SimService:
                 name=_NAMES,
                 position=[ox, oy, oyaw, *arm[3:], physics.width()],
                 velocity=[*velocity, physics.width_rate()],
-                effort=[*data.actuator_force[physics.ctrl_at].tolist(), physics.finger_force()],
+                effort=[*physics.forces[:-1].tolist(), physics.finger_force()],
             ),
         )
         reached = (self._base.reached((ox, oy, oyaw)), self._base.target_id)
