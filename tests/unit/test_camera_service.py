@@ -1,0 +1,120 @@
+import math
+
+import msgspec
+import mujoco
+import numpy as np
+import pytest
+
+from common import messages as m
+from common import topics
+from common.geometry import quat_matrix
+from common.memory import MemoryBus, MemoryIo
+from common.scene import load_scene
+from services.camera import raycast
+from services.camera.config import CameraConfig
+from services.camera.service import CameraService
+from services.sim.physics import Physics
+from services.sim.robot import HEAD_CAMERA, HEAD_FOVY, HEAD_PITCH
+
+TINY = """<mujoco><worldbody>
+<geom type="plane" size="5 5 .1" rgba="0 1 0 1"/>
+<geom type="box" size=".2 .2 .25" pos="0 0 .25" rgba="1 0 0 1"/>
+<camera name="down" pos="0 0 2" xyaxes="1 0 0 0 1 0" fovy="60"/>
+</worldbody></mujoco>"""
+
+
+@pytest.fixture(scope="module")
+def physics() -> Physics:
+    return Physics(load_scene("minimal"), 0)
+
+
+def test_ray_cast_depth_and_colours_are_those_of_the_scene() -> None:
+    model = mujoco.MjModel.from_xml_string(TINY)
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    rotation = data.cam_xmat[0].reshape(3, 3)
+    rgb, depth = raycast.render(model, data, data.cam_xpos[0], rotation, 60.0, 80, 60)
+    assert depth.shape == (60, 80) and rgb.shape == (60, 80, 3)
+    assert depth[30, 40] == pytest.approx(1.5, abs=0.002), "the box's top"
+    assert depth[2, 2] == pytest.approx(2.0, abs=0.002), "the floor, along the optical axis"
+    assert rgb[30, 40].argmax() == 0 and rgb[2, 2].argmax() == 1
+
+
+class Node:
+    """The service on a memory bus, rendering by ray casting."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        monkeypatch.setenv("MUJOCO_GL", "")
+        self.bus = MemoryBus()
+        reads, writes = CameraService.READS, CameraService.WRITES
+        self.io = MemoryIo(self.bus, "camera", reads, writes, scene=load_scene("minimal"))
+        self.service = CameraService(CameraConfig(backend="raycast"), self.io)
+        self.images = self.bus.tap(topics.HEAD_RGBD)
+        self.tick = 0
+
+    def state(self, physics: Physics) -> None:
+        model = m.SimModel(scene="minimal", seed=0, epoch="e", mjcf=physics.mjcf)
+        self.bus.send(topics.SIM_MODEL, model)
+        qpos = physics.data.qpos.tobytes()
+        self.bus.send(topics.SIM_STATE, m.SimState(t=1.5, tick=150, epoch="e", qpos=qpos))
+
+    def ask(self, **fields: object) -> None:
+        request = {"id": "r", "camera": "head", "width": 64, "height": 48, **fields}
+        self.bus.put(topics.CAMERA_REQUEST, msgspec.json.encode(request))
+        self.step()
+
+    def step(self) -> None:
+        for _ in range(5):
+            self.tick += 10
+            self.io.clock.advance(0.1)  # type: ignore[attr-defined]
+            self.io.begin(self.tick, self.tick / 100)
+            self.service.step(self.tick / 100)
+
+
+def test_an_image_carries_intrinsics_and_the_pose_of_its_frame(
+    physics: Physics, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    node = Node(monkeypatch)
+    node.state(physics)
+    node.ask()
+    image = msgspec.msgpack.decode(node.images[-1], type=m.Rgbd)
+    assert (image.id, image.camera, image.t, image.backend) == ("r", "head", 1.5, "raycast")
+    assert image.fy == pytest.approx(24 / math.tan(math.radians(HEAD_FOVY) / 2))
+    assert image.position == pytest.approx(HEAD_CAMERA, abs=1e-3)
+    forward = quat_matrix(image.orientation)[:, 2]
+    assert forward == pytest.approx([math.cos(HEAD_PITCH), 0.0, -math.sin(HEAD_PITCH)], abs=1e-3)
+    depth = np.frombuffer(image.depth, "<u2").reshape(48, 64)
+    assert len(image.rgb) == 64 * 48 * 3
+    u, v = 5, 44
+    ray = quat_matrix(image.orientation) @ [(u + 0.5 - image.cx) / image.fx, (v + 0.5 - image.cy) / image.fy, 1.0]
+    point = np.array(image.position) + ray * depth[v, u] / 1000
+    assert point[2] == pytest.approx(0.0, abs=0.01), "a pixel beside the tray sees the floor"
+
+
+@pytest.mark.parametrize("fields", [{"width": 0}, {"height": -1}, {"width": 9999}, {"camera": "tail"}, {"width": "x"}])
+def test_impossible_requests_are_counted(
+    fields: dict[str, object], physics: Physics, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    node = Node(monkeypatch)
+    node.state(physics)
+    node.ask(**fields)
+    assert node.io.drops["camera/request"] == 1 and not node.images
+
+
+def test_a_request_before_the_first_state_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:
+    node = Node(monkeypatch)
+    node.ask()
+    assert node.io.drops["camera/request"] == 1 and not node.images
+
+
+def test_a_state_of_another_model_is_counted_and_the_next_one_works(
+    physics: Physics, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    node = Node(monkeypatch)
+    node.state(physics)
+    node.bus.send(topics.SIM_STATE, m.SimState(t=1.0, tick=1, epoch="e", qpos=b"\0" * 16))
+    node.ask()
+    assert node.io.drops["sim/state"] == 1 and not node.images
+    node.state(physics)
+    node.ask()
+    assert len(node.images) == 1
