@@ -13,7 +13,7 @@ from common.scene import load_scene
 from services.speech.audio import RATE, read_wav
 from services.speech.config import SpeechConfig
 from services.speech.grammar import spoken
-from services.speech.recognise import Ear
+from services.speech.recognise import Ear, command_grammar
 
 ROWS = (("cmd", "clean"), ("cmd", "10"), ("oog", ""), ("near", ""))
 CORPUS = Path(__file__).resolve().parents[2] / "shared" / "speech"
@@ -30,7 +30,8 @@ def main() -> int:
         print(f"no recordings at {args.corpus}: nothing measured")
         return 0
     parameters = config.load("speech", SpeechConfig, config.config_dir(), {})
-    ear = Ear(parameters, load_scene("apartment"))
+    scene = load_scene("apartment")
+    ear = Ear(parameters, scene, command_grammar(parameters, scene))
     with manifest.open(encoding="utf-8") as file:
         recordings = list(csv.DictReader(file, delimiter="\t"))
     random.Random(0).shuffle(recordings)

@@ -59,6 +59,15 @@ def confidence_of(score: float, config: SpeechConfig) -> float:
     return round(math.exp(min(0.0, score) * math.log(2) / -config.accept_score), 3)
 
 
+def command_grammar(config: SpeechConfig, scene: Scene) -> Grammar:
+    """The configured patterns over the words of the scene.
+
+    Raises:
+        GrammarError: a pattern that cannot be used.
+    """
+    return Grammar(config.commands, vocabulary(scene, config.objects, config.places, config.colours))
+
+
 def prepare(audio: Array, detector: VoiceDetector) -> Array | None:
     """The part with speech and a little around it, at full scale; None when nobody speaks."""
     span = speech_span(audio, detector)
@@ -77,8 +86,7 @@ def prepare(audio: Array, detector: VoiceDetector) -> Array | None:
 class Ear:
     """The whole path from samples to a verdict; models load at construction, so make it in the worker."""
 
-    def __init__(self, config: SpeechConfig, scene: Scene) -> None:
-        grammar = Grammar(config.commands, vocabulary(scene, config.objects, config.places, config.colours))
+    def __init__(self, config: SpeechConfig, scene: Scene, grammar: Grammar) -> None:
         self._detector = VoiceDetector()
         self._recogniser: Recogniser
         if config.recogniser == "pocketsphinx":

@@ -11,8 +11,8 @@ from common.io import Io, Job
 from common.runtime import StartError
 from services.speech.audio import RATE, AudioError, Samples, read_wav, resample
 from services.speech.config import SpeechConfig
-from services.speech.grammar import Grammar, GrammarError, spoken, vocabulary
-from services.speech.recognise import Ear, Heard
+from services.speech.grammar import GrammarError, spoken
+from services.speech.recognise import Ear, Heard, command_grammar
 from services.speech.speak import Microphone, Speakers, Voice
 from services.speech.vad import FRAME, Endpointer, VoiceDetector
 
@@ -35,13 +35,13 @@ class SpeechService:
     def __init__(self, config: SpeechConfig, io: Io) -> None:
         self._config, self._io = config, io
         try:
-            Grammar(config.commands, vocabulary(io.scene, config.objects, config.places, config.colours))
+            grammar = command_grammar(config, io.scene)
             self._recording: Samples | None = read_wav(Path(config.wav)) if config.wav else None
         except (GrammarError, AudioError) as error:
             raise StartError(f"speech: {error}") from None
         self._microphone = Microphone() if config.microphone else None
         self._speakers = Speakers() if config.speakers else None
-        self._ear: Job[Ear] = io.submit(Ear, config, io.scene, seconds=0.5)
+        self._ear: Job[Ear] = io.submit(Ear, config, io.scene, grammar, seconds=0.5)
         self._voice: Job[Voice] | None = None
         self._detector = VoiceDetector()
         self._endpointer = Endpointer(config.end_silence, config.max_utterance)

@@ -13,7 +13,7 @@ from common.scene import SceneError, load_scene
 from services.speech.audio import AudioError, read_wav
 from services.speech.config import SpeechConfig
 from services.speech.grammar import GrammarError
-from services.speech.recognise import Ear
+from services.speech.recognise import Ear, command_grammar
 
 
 def main() -> int:
@@ -26,7 +26,8 @@ def main() -> int:
         changes = config.overrides(os.environ, ())
         directory = config.config_dir()
         shared = config.load("runtime", config.RuntimeConfig, directory, changes)
-        ear = Ear(config.load("speech", SpeechConfig, directory, changes), load_scene(shared.scene))
+        parameters, scene = config.load("speech", SpeechConfig, directory, changes), load_scene(shared.scene)
+        ear = Ear(parameters, scene, command_grammar(parameters, scene))
     except (config.ConfigError, SceneError, GrammarError, FileNotFoundError) as error:
         print(f"transcribe: {error}", file=sys.stderr)
         return BAD_CONFIGURATION
