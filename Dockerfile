@@ -23,6 +23,7 @@ RUN if ls /wheels/*.whl >/dev/null 2>&1; then \
 COPY common common
 COPY config config
 COPY cli cli
+COPY evaluation evaluation
 COPY services services
 COPY docs/audio docs/audio
 COPY pyproject.toml README.m[d] ./

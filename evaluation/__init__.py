@@ -1,0 +1,1 @@
+"""Runs scenarios against the real services and judges them by physics alone."""

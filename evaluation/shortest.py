@@ -1,0 +1,114 @@
+"""The shortest collision-free way of a mission on the true floor plan: the yardstick for what was driven."""
+
+import math
+from collections.abc import Sequence
+from itertools import pairwise, permutations
+
+import numpy as np
+from scipy import sparse
+from scipy.sparse import csgraph
+
+from common.geometry import Pose2
+from common.scene import Receptacle, Scene
+from services.navigation.config import NavigationConfig
+from services.navigation.costmap import Costmap
+from services.navigation.standoff import poses_for
+
+Point = tuple[float, float]
+MAX_ORDERED = 5
+_STEPS = [
+    (r, c) for r in range(-2, 3) for c in range(-2, 3) if math.gcd(r, c) == 1 and (r > 0 or (r == 0 and c > 0))
+]  # fmt: skip
+
+
+class FloorPlan:
+    """Lengths of shortest paths for the base as a disc; 16 directions, then pulled tight."""
+
+    def __init__(self, scene: Scene) -> None:
+        config = NavigationConfig()
+        self._config, self._scene = config, scene
+        self._map = Costmap(scene, config.resolution, 1.0)
+        self._free = self._map.distance >= config.footprint_radius
+        rows, columns = self._map.shape
+        numbers = np.arange(rows * columns).reshape(rows, columns)
+        heads, tails, lengths = [], [], []
+        for dr, dc in _STEPS:
+            a = (slice(0, rows - dr), slice(max(0, -dc), columns - max(0, dc)))
+            b = (slice(dr, rows), slice(max(0, dc), columns + min(0, dc)))
+            both = self._free[a] & self._free[b]
+            heads.append(numbers[a][both])
+            tails.append(numbers[b][both])
+            lengths.append(np.full(int(both.sum()), math.hypot(dr, dc) * config.resolution))
+        size = rows * columns
+        edges = (np.concatenate(heads), np.concatenate(tails))
+        self._graph = sparse.csr_matrix((np.concatenate(lengths), edges), shape=(size, size))
+
+    def length(self, start: Point, ends: Sequence[Point]) -> float:
+        """To the nearest of `ends` [m]; inf when none can be reached."""
+        width = self._map.shape[1]
+        cost, previous = csgraph.dijkstra(
+            self._graph, directed=False, indices=self._index(start), return_predecessors=True
+        )
+        goals = [self._index(e) for e in ends]
+        if not goals:
+            return math.inf
+        best = min(goals, key=lambda g: cost[g])
+        if not math.isfinite(cost[best]):
+            return math.inf
+        cells = [best]
+        while previous[cells[-1]] >= 0:
+            cells.append(int(previous[cells[-1]]))
+        return self._tight([self._map.point(*divmod(c, width)) for c in cells])
+
+    def _tight(self, points: list[Point]) -> float:
+        total, i = 0.0, 0
+        radius = self._config.footprint_radius
+        while i < len(points) - 1:
+            j = len(points) - 1
+            while j > i + 1 and self._map.line_clearance(points[i], points[j]) < radius:
+                j -= max(1, (j - i) // 8)
+            total += math.dist(points[i], points[j])
+            i = j
+        return total
+
+    def _index(self, point: Point) -> int:
+        row, column = self._map.cell(*point)
+        if not self._free[row, column]:
+            rows, columns = np.nonzero(self._free)
+            best = int(np.argmin(np.square(rows - row) + np.square(columns - column)))
+            row, column = int(rows[best]), int(columns[best])
+        return row * self._map.shape[1] + column
+
+    # --- missions
+    def stands(self, x: float, y: float, receptacle: Receptacle | None) -> list[Point]:
+        """Where the base may stand to reach a point on a receptacle."""
+        config = self._config
+        found = [p for _, p in poses_for((x, y), receptacle, config.stand_off, config.edge_distance)]
+        free = [(p[0], p[1]) for p in found if self._map.clearance(p[0], p[1]) >= config.footprint_radius]
+        return free or [(p[0], p[1]) for p in found]
+
+    def _goal(self, name: str) -> list[Point]:
+        scene = self._scene
+        receptacle = scene.receptacle(name)
+        if name == scene.delivery or receptacle is None:
+            return [(scene.home.x, scene.home.y)]
+        return self.stands(receptacle.center[0], receptacle.center[1], receptacle)
+
+    def mission(self, start: Pose2, errands: Sequence[tuple[Point, str, str]]) -> float:
+        """From `start` over every (object's place, what it stands on, where it goes), in the best order [m]."""
+        scene = self._scene
+        pick = [self.stands(*where, scene.receptacle(on)) for where, on, _ in errands]
+        drop = [self._goal(goal) for _, _, goal in errands]
+        carry = [min(self.length(p, d) for p in _spread(ps)) for ps, d in zip(pick, drop, strict=True)]
+        count = len(errands)
+        if not count:
+            return 0.0
+        first = [self.length((start[0], start[1]), p) for p in pick]
+        between = [[min(self.length(d, p) for d in _spread(drop[i])) for p in pick] for i in range(count)]
+        orders = permutations(range(count)) if count <= MAX_ORDERED else iter([tuple(range(count))])
+        return min(first[o[0]] + sum(carry) + sum(between[a][b] for a, b in pairwise(o)) for o in orders)
+
+
+def _spread(points: Sequence[Point]) -> Sequence[Point]:
+    """A few of many standing places, the first of them among them."""
+    return points[:: max(1, len(points) // 4)] or points

@@ -1,0 +1,152 @@
+"""The whole robot in one process: the real services on the in-memory bus, in lockstep."""
+
+import importlib
+import json
+from collections.abc import Callable, Mapping
+from functools import cache
+from typing import Any
+
+import msgspec
+
+from cli.services import SERVICES
+from common import config, topics
+from common import messages as m
+from common.clock import ManualClock
+from common.lockstep import DT, InProcess
+from common.memory import MemoryBus, MemoryIo
+from common.scene import Scene, load_scene
+
+Swap = Callable[[Any], Any]
+"""Takes a service's class and returns the one that runs in its place."""
+
+
+@cache
+def service_class(name: str) -> Any:
+    """The class of a service of the table, by its NAME.
+
+    Raises:
+        LookupError: the service's module has no such class.
+    """
+    module = importlib.import_module(f"services.{name}.service")
+    for found in vars(module).values():
+        if isinstance(found, type) and getattr(found, "NAME", None) == name:
+            return found
+    raise LookupError(f"services.{name}.service has no class with NAME = {name!r}")
+
+
+def paced_services() -> tuple[str, ...]:
+    """Every service that follows the simulation in lockstep, from the command line's table."""
+    return tuple(s.name for s in SERVICES if s.paced)
+
+
+class Stack:
+    """A simulation and the services around it. `advance` makes time pass; nothing else does.
+
+    `kill`, `hang` and `start` do to a service object what signals and the supervisor do to its process.
+    """
+
+    def __init__(
+        self,
+        scene: Scene | str = "apartment",
+        seed: int = 0,
+        settings: tuple[str, ...] = (),
+        *,
+        without: tuple[str, ...] = (),
+        swaps: Mapping[str, Swap] | None = None,
+        log_level: str = "error",
+    ) -> None:
+        self.scene = load_scene(scene) if isinstance(scene, str) else scene
+        self.seed, self._log_level = seed, log_level
+        self._changes = config.overrides({}, settings)
+        self._swaps = dict(swaps or {})
+        self.bus, self._clock = MemoryBus(), ManualClock()
+        self.members: dict[str, tuple[Any, MemoryIo]] = {}
+        self._hung: list[tuple[float, str]] = []
+        self.starts: dict[str, int] = {}
+        self.sim, sim_io = self._make(service_class("sim"))
+        self.world = InProcess(self.sim, sim_io, self._clock)
+        self._sim_io = sim_io
+        for name in paced_services():
+            if name not in without:
+                self.start(name)
+
+    def _make(self, kind: Any) -> tuple[Any, MemoryIo]:
+        kind = self._swaps.get(kind.NAME, lambda same: same)(kind)
+        parameters = config.load(kind.NAME, kind.CONFIG, config.config_dir(), self._changes)
+        io = MemoryIo(
+            self.bus, kind.NAME, kind.READS, kind.WRITES, scene=self.scene, seed=self.seed, clock=self._clock,
+            log_level=self._log_level,
+        )  # fmt: skip
+        if kind.NAME == "sim":
+            io.out_stamp = -1
+        started = self.starts[kind.NAME] = self.starts.get(kind.NAME, 0) + 1
+        # Ids of one process never come again from the next one of that name.
+        io._ids = (started - 1) * 100_000
+        return kind(parameters, io), io
+
+    # --- members
+    def start(self, name: str) -> Any:
+        """A fresh process of the service joins at the next tick."""
+        return self.join(service_class(name))
+
+    def join(self, kind: Any) -> Any:
+        """A participant of any class, such as the person who talks to the robot."""
+        service, io = self._make(kind)
+        self.members[kind.NAME] = service, io
+        self.world.add(service, io)
+        return service
+
+    def kill(self, name: str) -> None:
+        """As SIGKILL: it neither reads nor writes any more, and what it knew is gone."""
+        service, io = self.members.pop(name)
+        self.world.remove(service)
+        self.bus.detach(io)
+        io.shutdown()
+
+    def hang(self, name: str, seconds: float) -> None:
+        """As SIGSTOP and, later, SIGCONT: its mail piles up meanwhile."""
+        self.world.remove(self.members[name][0])
+        self._hung.append((self.now + seconds, name))
+
+    def close(self) -> None:
+        """End every service; worker threads and contexts go with them."""
+        for service, io in [*self.members.values(), (self.sim, self._sim_io)]:
+            if hasattr(service, "close"):
+                service.close()
+            io.shutdown()
+
+    # --- time
+    @property
+    def now(self) -> float:
+        """Robot time [s]."""
+        return self._clock.now()
+
+    def tick(self) -> float:
+        """10 ms of the world and of every service that is due."""
+        for row in [r for r in self._hung if r[0] <= self.now]:
+            self._hung.remove(row)
+            if row[1] in self.members:
+                self.world.add(*self.members[row[1]])
+        return self.world.advance()
+
+    def advance(self, seconds: float) -> None:
+        """Let robot time pass."""
+        for _ in range(round(seconds / DT)):
+            self.tick()
+
+    # --- looking in from outside
+    def state(self) -> m.BrainState:
+        """What the brain says it does."""
+        return msgspec.json.decode(self.bus.last[topics.BRAIN_STATE.key], type=m.BrainState)
+
+    def truth(self) -> dict[str, Any]:
+        """The answer of `sim/truth`."""
+        found: dict[str, Any] = json.loads(self.bus.get(topics.SIM_TRUTH) or b"{}")
+        return found
+
+    def play(self, samples: Any) -> None:
+        """Put 16 kHz int16 audio (n,) into the robot's ear at the pace of robot time."""
+        for n, start in enumerate(range(0, len(samples), 1600)):
+            data = samples[start : start + 1600].tobytes()
+            self.bus.send(topics.AUDIO_PCM, m.AudioChunk(t=self.now, data=data, seq=n))
+            self.advance(0.1)
