@@ -19,6 +19,9 @@ Vec3 = tuple[float, float, float]
 Rgba = tuple[float, float, float, float]
 ObjectKind = Literal["mug", "can", "bottle", "apple", "block", "box", "bowl", "ball"]
 ReceptacleKind = Literal["table", "counter", "shelf", "bin", "tray", "sink"]
+# How furniture is built: a table's legs and how far inside the top's edge they stand, how far a cabinet's body stays
+# behind its top, the thickness of a bin's walls [m].
+LEG, LEG_INSET, BODY_INSET, BIN_WALL = 0.05, 0.04, 0.01, 0.015
 
 
 class SceneError(ValueError):

@@ -7,6 +7,7 @@ class NavigationConfig(Config, frozen=True):
     """Lengths in metres, speeds in m/s, times in seconds."""
 
     resolution: float = 0.05
+    lidar_height: float = 0.2
     footprint_radius: float = 0.37
     clearance: float = 0.02
     inflation: float = 0.65

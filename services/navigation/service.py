@@ -2,8 +2,6 @@
 
 import math
 
-import numpy as np
-
 from common import messages as m
 from common import topics
 from common.config import config_dir
@@ -11,10 +9,11 @@ from common.geometry import Pose2
 from common.io import Io
 from common.scene import Receptacle
 from services.navigation.config import NavigationConfig
-from services.navigation.costmap import Array, Costmap
+from services.navigation.costmap import Costmap
 from services.navigation.drive import Drive, Ended
 from services.navigation.places import Places, load_places
 from services.navigation.planner import PathPlanner
+from services.navigation.senses import Senses
 from services.navigation.standoff import poses_for
 
 
@@ -40,9 +39,7 @@ class NavigationService:
         self._planner = PathPlanner(self._map, config.footprint_radius + config.clearance, config.inflation)
         self._drive: Drive | None = None
         self._seen: set[tuple[str, int]] = set()
-        self._pose: Pose2 | None = None
-        self._points: Array | None = None
-        self._angles: Array | None = None
+        self._senses = Senses(config, io, self._map)
         self._now = 0.0
         self._from_brain = True
         self._status = m.NavigationStatus(status="idle")
@@ -50,8 +47,7 @@ class NavigationService:
 
     def step(self, now: float) -> None:
         io, self._now = self._io, now
-        self._locate(now)
-        self._look(now)
+        self._senses.step(now)
         if io.drain(topics.ROBOT_STOP) and self._drive:
             self._finish(Ended("failed", "STOPPED", "robot/stop"))
         for goal in io.drain(topics.NAVIGATION_GOAL):
@@ -62,41 +58,6 @@ class NavigationService:
         reached = io.drain(topics.GOAL_REACHED)
         if self._drive is not None:
             self._advance(reached, now)
-
-    # --- sensing
-    def _locate(self, now: float) -> None:
-        io = self._io
-        odometry = io.latest(topics.ODOMETRY)
-        if odometry is not None:
-            self._pose = (odometry.x, odometry.y, odometry.theta)
-        else:
-            self._pose = _from_joints(io.latest(topics.JOINT_STATES))
-        if self._pose is not None:
-            x, y, theta = self._pose
-            io.publish(topics.POSE, m.PoseEstimate(t=now, x=x, y=y, theta=theta, covariance=[0.0] * 9))
-
-    def _pose_age(self, now: float) -> float:
-        return min(self._io.age(topics.ODOMETRY, now), self._io.age(topics.JOINT_STATES, now))
-
-    def _look(self, now: float) -> None:
-        if not (scans := self._io.drain(topics.SCAN)) or self._pose is None:
-            return
-        scan = scans[-1]
-        ranges = np.frombuffer(scan.ranges, "<f4").astype(np.float64)
-        if not len(ranges) or not np.isfinite(ranges).all():
-            self._io.count_drop(topics.SCAN.key, "no finite ranges")
-            return
-        angles = self._angles
-        if angles is None or len(angles) != len(ranges):
-            angles = np.asarray(scan.angle_min + np.arange(len(ranges)) * scan.angle_increment, dtype=np.float64)
-            self._angles = angles
-        self._map.see(self._pose, angles, ranges, scan.range_max, now)
-        near = ranges < 1.5
-        directions = angles[near] + self._pose[2]
-        self._points = np.stack(
-            [self._pose[0] + ranges[near] * np.cos(directions), self._pose[1] + ranges[near] * np.sin(directions)],
-            axis=1,
-        )
 
     # --- goals
     def _take(self, goal_id: str, attempt: int, text: str, pose: m.NavGoal | None) -> None:
@@ -175,19 +136,21 @@ class NavigationService:
     def _advance(self, reached: list[m.GoalReached], now: float) -> None:
         drive = self._drive
         assert drive is not None
-        age = self._pose_age(now)
-        if self._pose is not None and age > self._config.odometry_timeout:
+        senses = self._senses
+        age = senses.silence(now)
+        if senses.pose is not None and age > self._config.odometry_timeout:
             self._finish(Ended("failed", "NO_ODOMETRY", f"odometry silent for {age:.1f} s"))
             return
-        if self._points is not None and self._io.age(topics.SCAN, now) > self._config.scan_timeout:
+        if senses.points is not None and self._io.age(topics.SCAN, now) > self._config.scan_timeout:
             self._finish(Ended("failed", "NO_SCAN", "the lidar fell silent"))
             return
         try:
-            target = drive.step(self._pose, reached, self._points, now)
+            target = drive.step(senses.pose, reached, senses.points, now)
         except Ended as ended:
             self._finish(ended)
             return
         if target is not None:
+            target.x, target.y, target.theta = senses.localiser.to_odometry((target.x, target.y, target.theta))
             self._io.publish(topics.BASE_TARGET, target)
         if path := drive.take_new_path():
             self._io.publish(topics.NAV_PATH, m.NavPath(t=now, points=path[::4], goal_id=self._status.goal_id))
@@ -196,7 +159,7 @@ class NavigationService:
             self._feedback()
 
     def _finish(self, ended: Ended) -> None:
-        if ended.status == "failed" and self._drive is not None and self._pose is not None:
+        if ended.status == "failed" and self._drive is not None and self._senses.pose is not None:
             self._hold()
         self._report(ended.status, ended.code, ended.detail)
         self._drive = None
@@ -232,14 +195,3 @@ class NavigationService:
             code=status.code,
         )
         self._io.publish(topics.NAVIGATION_FEEDBACK, feedback)
-
-
-def _from_joints(joints: m.JointStates | None) -> Pose2 | None:
-    """The base pose of `joint_states`, for a robot without `base/odom`."""
-    if joints is None:
-        return None
-    found = dict(zip(joints.name, joints.position, strict=False))
-    try:
-        return found["base_x"], found["base_y"], found["base_yaw"]
-    except KeyError:
-        return None

@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass, field
 
-from common.geometry import wrap
+from common.geometry import Pose2, compose, inverse, wrap
 from services.sim.config import SimConfig
 
 SETPOINT_LEAD = 0.05
@@ -12,12 +12,15 @@ _STILL = 0.02
 
 @dataclass
 class BaseDriver:
-    """Owns the set-point (x, y, yaw) that the base servos follow; frame of the odometry."""
+    """Owns the set-point (x, y, yaw) that the base servos follow.
+
+    A target is a pose in frame odom: what the wheels report decides how far is left to go, not where the base is.
+    """
 
     config: SimConfig
-    pose: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    pose: Pose2 = (0.0, 0.0, 0.0)
     velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    target: tuple[float, float, float] | None = None
+    target: Pose2 | None = None
     target_id: str = ""
     stopped: bool = False
     _twist: tuple[float, float, float] = field(default=(0.0, 0.0, 0.0))
@@ -32,23 +35,23 @@ class BaseDriver:
         self.target, self.target_id = None, ""
         self._twist, self._twist_until = (vx, vy, omega), now + self.config.stream_timeout
 
-    def halt(self, actual: tuple[float, float, float]) -> None:
+    def halt(self, actual: Pose2) -> None:
         """Brake as hard as the wheels can: the set-point stays where the base is now."""
         if not self.stopped:
             self.pose, self.velocity = actual, (0.0, 0.0, 0.0)
         self.target, self._twist_until, self.stopped = None, -1.0, True
 
-    def reached(self, actual: tuple[float, float, float]) -> bool:
+    def reached(self, odometry: Pose2) -> bool:
         """True when the measured pose is at the target, at rest."""
         if self.target is None or math.hypot(*self.velocity[:2]) > _STILL or abs(self.velocity[2]) > 0.05:
             return False
         x, y, yaw = self.target
-        close = math.hypot(actual[0] - x, actual[1] - y) <= self.config.position_tolerance
-        return close and abs(wrap(actual[2] - yaw)) <= self.config.angle_tolerance
+        close = math.hypot(odometry[0] - x, odometry[1] - y) <= self.config.position_tolerance
+        return close and abs(wrap(odometry[2] - yaw)) <= self.config.angle_tolerance
 
-    def advance(self, actual: tuple[float, float, float], now: float, dt: float) -> tuple[float, float, float]:
-        """The set-point after `dt` seconds."""
-        wanted, limit, turn_limit = self._wanted(now, dt)
+    def advance(self, actual: Pose2, odometry: Pose2, now: float, dt: float) -> Pose2:
+        """The set-point after `dt` seconds; `actual` is where the servos are, `odometry` what the wheels report."""
+        wanted, limit, turn_limit = self._wanted(actual, odometry, now, dt)
         vx, vy = _towards(self.velocity[:2], wanted[:2], limit * dt)
         omega = self.velocity[2] + max(-turn_limit * dt, min(turn_limit * dt, wanted[2] - self.velocity[2]))
         x, y, yaw = self.pose[0] + vx * dt, self.pose[1] + vy * dt, self.pose[2] + omega * dt
@@ -63,14 +66,17 @@ class BaseDriver:
         self.pose, self.velocity = (x, y, yaw), (vx, vy, omega)
         return self.pose
 
-    def _wanted(self, now: float, dt: float) -> tuple[tuple[float, float, float], float, float]:
+    def _wanted(
+        self, actual: Pose2, odometry: Pose2, now: float, dt: float
+    ) -> tuple[tuple[float, float, float], float, float]:
         """Desired world velocity and the acceleration limits to reach it with."""
         c = self.config
         if self.stopped:
             return (0.0, 0.0, 0.0), c.acceleration, c.turn_acceleration
         if self.target is not None:
-            dx, dy = self.target[0] - self.pose[0], self.target[1] - self.pose[1]
-            turn = wrap(self.target[2] - self.pose[2])
+            x, y, yaw = compose(actual, compose(inverse(odometry), self.target))
+            dx, dy = x - self.pose[0], y - self.pose[1]
+            turn = wrap(yaw - self.pose[2])
             distance = math.hypot(dx, dy)
             speed = _profile(distance, c.acceleration, c.max_speed, dt)
             scale = speed / distance if distance > 1e-9 else 0.0

@@ -16,7 +16,11 @@ class Obstacle(Config, frozen=True):
 
 
 class SimConfig(Config, frozen=True):
-    """`speed` is `realtime`, a factor, or `max`; `wait_for` names the participants that lockstep waits for."""
+    """`speed` is `realtime`, a factor, or `max`; `wait_for` names the participants that lockstep waits for.
+
+    Wheel odometry: `slip` is the largest constant scale error, `veer` the largest constant turn [rad/m],
+    `noise` a random walk [m and rad per sqrt(m)].
+    """
 
     speed: str = "realtime"
     wait_for: tuple[str, ...] = ()
@@ -29,7 +33,8 @@ class SimConfig(Config, frozen=True):
     angle_tolerance: float = 0.05
     stream_timeout: float = 0.25
     lidar_noise: float = 0.004
-    odometry_slip: float = 0.0
-    odometry_noise: float = 0.0
+    odometry_slip: float = 0.02
+    odometry_veer: float = 0.005
+    odometry_noise: float = 0.005
     obstacles: tuple[Obstacle, ...] = ()
     snapshot_dir: str = ""

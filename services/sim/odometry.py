@@ -1,20 +1,25 @@
-"""Wheel odometry: the true motion, integrated with a constant slip and random noise."""
+"""Wheel odometry: the true motion, integrated with a constant slip, a constant veer and random noise."""
 
 import math
 
 import numpy as np
 
 from common.geometry import Pose2, compose, inverse, wrap
+from services.sim.config import SimConfig
+
+_TURN_RADIUS = 0.2
 
 
 class WheelOdometry:
-    """`slip` is the spread of a constant scale error, `noise` a random walk [m per sqrt(m)]; both 0: exact."""
+    """Believes it starts at `start`; its errors are those of the seed. All three parameters 0: exact."""
 
-    def __init__(self, start: Pose2, slip: float, noise: float, rng: np.random.Generator) -> None:
+    def __init__(self, start: Pose2, config: SimConfig, seed: int) -> None:
+        rng = self._rng = np.random.default_rng([seed, 11])
         self._true, self._believed = start, start
-        self._noise, self._rng = noise, rng
-        self._scale = 1.0 + (rng.normal(0.0, slip, 3) if slip else np.zeros(3))
-        self._exact = not slip and not noise
+        self._noise = config.odometry_noise
+        self._scale = 1.0 + config.odometry_slip * rng.uniform(-1, 1, 3)
+        self._veer = config.odometry_veer * float(rng.uniform(-1, 1))
+        self._exact = not (config.odometry_slip or config.odometry_noise or config.odometry_veer)
 
     def update(self, true: Pose2) -> Pose2:
         """The believed pose after the robot has moved to `true`."""
@@ -22,13 +27,11 @@ class WheelOdometry:
             return true[0], true[1], wrap(true[2])
         dx, dy, turn = compose(inverse(self._true), true)
         self._true = true
-        moved = math.hypot(dx, dy) + 0.2 * abs(turn)
-        error = self._rng.normal(0.0, self._noise * math.sqrt(moved), 3) if moved > 1e-6 else np.zeros(3)
-        step = (
-            dx * self._scale[0] + error[0],
-            dy * self._scale[1] + error[1],
-            turn * self._scale[2] + error[2],
-        )
-        x, y, yaw = compose(self._believed, step)
-        self._believed = (float(x), float(y), float(yaw))
+        moved = math.hypot(dx, dy) + _TURN_RADIUS * abs(turn)
+        if moved < 1e-7:
+            return self._believed
+        ex, ey, eturn = self._rng.normal(0.0, self._noise * math.sqrt(moved), 3).tolist()
+        a, b, c = self._scale.tolist()
+        step = dx * a + ex, dy * b + ey, turn * c + self._veer * moved + eturn
+        self._believed = compose(self._believed, step)
         return self._believed

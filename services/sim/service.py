@@ -75,7 +75,8 @@ class SimService:
         pose = (home.x, home.y, home.theta)
         self._base = BaseDriver(config, pose)
         self._arm = ArmDriver(np.array(robot.HOME_ARM), config.stream_timeout)
-        self._odometry = WheelOdometry(pose, config.odometry_slip, config.odometry_noise, io.rng)
+        self._odometry = WheelOdometry(pose, config, self.physics.seed)
+        self._believed = pose
         self._setpoint = np.array([*pose, *robot.HOME_ARM])
         self.physics.grip(0.0, 40.0)
         self._reached: tuple[bool, str] = (False, "")
@@ -123,7 +124,7 @@ class SimService:
         physics = self.physics
         x, y, yaw, *_ = physics.joints.tolist()
         after = np.empty(10)
-        after[:3] = self._base.advance((x, y, yaw), now, DT)
+        after[:3] = self._base.advance((x, y, yaw), self._believed, now, DT)
         after[3:] = self._arm.advance(now, DT)
         if physics.obstacles:
             physics.move_obstacles(now + DT)
@@ -175,7 +176,7 @@ class SimService:
         io, physics, data = self._io, self.physics, self.physics.data
         arm = physics.joints.tolist()
         actual = (arm[0], arm[1], arm[2])
-        ox, oy, oyaw = self._odometry.update(actual)
+        ox, oy, oyaw = self._believed = self._odometry.update(actual)
         cos, sin = math.cos(actual[2]), math.sin(actual[2])
         velocity = physics.rates.tolist()
         vx, vy, omega = velocity[:3]

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 
-from common.scene import Receptacle, Scene
+from common.scene import BIN_WALL, BODY_INSET, LEG, LEG_INSET, Receptacle, Scene
 from services.sim import objects, robot
 from services.sim.layout import Placement
 
@@ -45,8 +45,8 @@ def _table(r: Receptacle, rgba: str) -> str:
     name = r.name.replace(" ", "_")
     parts = [_box(name, (0, 0, z - _TOP / 2), (sx, sy, _TOP), rgba)]
     for n, (i, j) in enumerate(((1, 1), (1, -1), (-1, 1), (-1, -1))):
-        center = (i * (sx / 2 - 0.04), j * (sy / 2 - 0.04), (z - _TOP) / 2)
-        parts.append(_box(f"{name}_leg_{n}", center, (0.05, 0.05, z - _TOP), rgba))
+        center = (i * (sx / 2 - LEG_INSET), j * (sy / 2 - LEG_INSET), (z - _TOP) / 2)
+        parts.append(_box(f"{name}_leg_{n}", center, (LEG, LEG, z - _TOP), rgba))
     return f'<body pos="{x} {y} 0" euler="0 0 {r.yaw}">{"".join(parts)}</body>'
 
 
@@ -55,7 +55,7 @@ def _cabinet(r: Receptacle, rgba: str, top: str) -> str:
     x, y, z = r.center
     sx, sy = r.size
     name = r.name.replace(" ", "_")
-    body = _box(f"{name}_body", (0, 0, (z - _TOP) / 2), (sx - 0.02, sy - 0.02, z - _TOP), rgba)
+    body = _box(f"{name}_body", (0, 0, (z - _TOP) / 2), (sx - 2 * BODY_INSET, sy - 2 * BODY_INSET, z - _TOP), rgba)
     return (
         f'<body pos="{x} {y} 0" euler="0 0 {r.yaw}">{body}'
         f"{_box(name, (0, 0, z - _TOP / 2), (sx, sy, _TOP), top)}</body>"
@@ -63,10 +63,10 @@ def _cabinet(r: Receptacle, rgba: str, top: str) -> str:
 
 
 def _bin(r: Receptacle, rgba: str) -> str:
-    """An open box: a floor and four walls of 15 mm."""
+    """An open box: a floor and four walls."""
     x, y, z = r.center
     sx, sy = r.size
-    wall, name = 0.015, r.name.replace(" ", "_")
+    wall, name = BIN_WALL, r.name.replace(" ", "_")
     parts = [_box(name, (0, 0, z / 2), (sx, sy, max(z, 0.01)), rgba)]
     for n, (i, j) in enumerate(((1, 0), (-1, 0), (0, 1), (0, -1))):
         center = (i * (sx + wall) / 2, j * (sy + wall) / 2, r.depth / 2)

@@ -1,0 +1,102 @@
+"""The static map as the lidar sees it: a horizontal cut through the scene, as a signed distance field."""
+
+import math
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from common.scene import BIN_WALL, BODY_INSET, LEG, LEG_INSET, Receptacle, Scene
+
+Array = NDArray[np.float64]
+# x, y, full extent along x and y, yaw
+Rectangle = tuple[float, float, float, float, float]
+RESOLUTION = 0.025
+REACH = 0.6
+
+
+def rectangles(scene: Scene, height: float) -> list[Rectangle]:
+    """What a horizontal ray at `height` [m] can hit."""
+    found: list[Rectangle] = []
+    for wall in scene.walls:
+        dx, dy = wall.end[0] - wall.start[0], wall.end[1] - wall.start[1]
+        middle = (wall.start[0] + wall.end[0]) / 2, (wall.start[1] + wall.end[1]) / 2
+        found.append((*middle, math.hypot(dx, dy) + wall.thickness, wall.thickness, math.atan2(dy, dx)))
+    for box in scene.furniture:
+        if abs(height - box.center[2]) <= box.size[2] / 2:
+            found.append((box.center[0], box.center[1], box.size[0], box.size[1], box.yaw))
+    for r in scene.receptacles:
+        found += [_placed(r, local) for local in _parts(r, height)]
+    return found
+
+
+def _parts(r: Receptacle, height: float) -> list[tuple[float, float, float, float]]:
+    """x, y and extents of a receptacle's solid parts at `height`, in its own frame."""
+    sx, sy = r.size
+    corners = ((1, 1), (1, -1), (-1, 1), (-1, -1))
+    if r.kind == "bin":
+        if height > r.depth:
+            return []
+        x, y = (sx + BIN_WALL) / 2, (sy + BIN_WALL) / 2
+        along, across = sx + 2 * BIN_WALL, sy + 2 * BIN_WALL
+        return [(x, 0, BIN_WALL, across), (-x, 0, BIN_WALL, across), (0, y, along, BIN_WALL), (0, -y, along, BIN_WALL)]
+    if height > r.center[2]:
+        return []
+    if r.kind == "table":
+        return [(i * (sx / 2 - LEG_INSET), j * (sy / 2 - LEG_INSET), LEG, LEG) for i, j in corners]
+    return [(0.0, 0.0, sx - 2 * BODY_INSET, sy - 2 * BODY_INSET)]
+
+
+def _placed(r: Receptacle, part: tuple[float, float, float, float]) -> Rectangle:
+    x, y, sx, sy = part
+    c, s = math.cos(r.yaw), math.sin(r.yaw)
+    return r.center[0] + c * x - s * y, r.center[1] + s * x + c * y, sx, sy, r.yaw
+
+
+class DistanceField:
+    """Signed distance [m] to what the lidar can hit, up to REACH: exact at the nodes, bilinear between them."""
+
+    def __init__(self, scene: Scene, height: float, resolution: float = RESOLUTION) -> None:
+        self._resolution = resolution
+        self._origin = np.array(scene.low) - REACH
+        columns, rows = (np.ceil((np.array(scene.high) + REACH - self._origin) / resolution)).astype(int) + 1
+        field = np.full((rows, columns), REACH)
+        xs = self._origin[0] + np.arange(columns) * resolution
+        ys = self._origin[1] + np.arange(rows) * resolution
+        for x, y, sx, sy, yaw in rectangles(scene, height):
+            c, s = math.cos(yaw), math.sin(yaw)
+            wide = (abs(c) * sx + abs(s) * sy) / 2 + REACH
+            high = (abs(s) * sx + abs(c) * sy) / 2 + REACH
+            i, j = np.searchsorted(xs, (x - wide, x + wide))
+            k, n = np.searchsorted(ys, (y - high, y + high))
+            gx, gy = xs[i:j] - x, (ys[k:n] - y)[:, None]
+            u, v = np.abs(c * gx + s * gy) - sx / 2, np.abs(c * gy - s * gx) - sy / 2
+            box = np.hypot(np.maximum(u, 0.0), np.maximum(v, 0.0)) + np.minimum(np.maximum(u, v), 0.0)
+            np.minimum(field[k:n, i:j], box, out=field[k:n, i:j])
+        self._columns, self._last = columns, np.array((columns, rows)) - 1.001
+        self._flat = field.ravel()
+
+    def at(self, points: Array) -> tuple[Array, Array, Array]:
+        """Distance and its gradient along x and y (each (n,)) at points (n, 2); beyond the map: at its rim."""
+        scaled = np.clip((points - self._origin) / self._resolution, 0.0, self._last)
+        cell = scaled.astype(np.intp)
+        u, v = (scaled - cell).T
+        index = cell[:, 1] * self._columns + cell[:, 0]
+        flat = self._flat
+        a, b = flat[index], flat[index + 1]
+        c, d = flat[index + self._columns], flat[index + self._columns + 1]
+        low, high = a + (b - a) * u, c + (d - c) * u
+        gx = ((b - a) * (1 - v) + (d - c) * v) / self._resolution
+        return low + (high - low) * v, gx, (high - low) / self._resolution
+
+    def near(self, points: Array, limit: float) -> NDArray[np.bool_]:
+        """Which points (n, 2) lie within `limit` [m] of something, by the nearest node."""
+        cell = np.rint(np.clip((points - self._origin) / self._resolution, 0.0, self._last)).astype(np.intp)
+        found: NDArray[np.bool_] = self._flat[cell[:, 1] * self._columns + cell[:, 0]] <= limit
+        return found
+
+
+@lru_cache(maxsize=4)
+def distance_field(scene: Scene, height: float) -> DistanceField:
+    """The field of a scene, made once."""
+    return DistanceField(scene, height)

@@ -1,0 +1,103 @@
+"""The robot's pose in the map: odometry predicts, the lidar corrects; an iterated Kalman filter over a distance field.
+
+Each scan is matched to the static map by Gauss-Newton steps on the signed distance of its end points, with the
+prediction as the prior and Tukey's weights, so that what the map does not have (people, boxes) pulls at nothing.
+"""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from common.geometry import Pose2, compose, inverse, wrap
+from services.navigation.floorplan import Array, DistanceField
+
+# Odometry is trusted to this share of the motion and this random walk [m, rad; per sqrt(m)].
+SHARE, WALK = 0.03, 0.01
+TURN_RADIUS = 0.2
+# One end point counts as known to this [m]: more than its noise, since neighbours err together.
+SIGMA = 0.03
+STEPS = 6
+JUMP = 0.5
+START = (0.02, 0.02, 0.02)
+UNKNOWN = (0.3, 0.3, 0.2)
+FLOOR = np.square([0.001, 0.001, 0.0007])
+INLIER = 0.10
+
+
+class Localiser:
+    """Keeps pose, covariance (3, 3) and how well the last scan fits (`fit`, the share of rays on the map)."""
+
+    def __init__(self, field: DistanceField) -> None:
+        self._field = field
+        self._odometry: Pose2 | None = None
+        self.pose: Pose2 = (0.0, 0.0, 0.0)
+        self.covariance: Array = np.diag(np.square(START))
+        self.fit = 1.0
+        self.jumped = False
+
+    def place(self, pose: Pose2, spread: tuple[float, float, float]) -> None:
+        """Start anew from a guess."""
+        self.pose, self.covariance = pose, np.diag(np.square(spread))
+
+    def predict(self, odometry: Pose2) -> Pose2:
+        """Move with the wheels; odometry that jumps has restarted and is taken as a new guess in the map."""
+        if self._odometry is None:
+            self._odometry = odometry
+            self.place(odometry, START)
+            return self.pose
+        if odometry == self._odometry:
+            return self.pose
+        dx, dy, turn = compose(inverse(self._odometry), odometry)
+        self._odometry = odometry
+        if math.hypot(dx, dy) > JUMP:
+            self.place(odometry, UNKNOWN)
+            self.jumped = True
+            return self.pose
+        c, s = math.cos(self.pose[2]), math.sin(self.pose[2])
+        f = np.array([[1, 0, -s * dx - c * dy], [0, 1, c * dx - s * dy], [0, 0, 1]])
+        moved = math.hypot(dx, dy) + TURN_RADIUS * abs(turn)
+        place = (SHARE * moved) ** 2 + WALK**2 * moved
+        self.covariance = f @ self.covariance @ f.T + np.diag([place, place, place])
+        self.pose = compose(self.pose, (dx, dy, turn))
+        return self.pose
+
+    def correct(self, points: Array) -> float:
+        """Match scan end points (n, 2) in the base frame; the share of them that the map explains."""
+        if len(points) < 20:
+            self.fit = 0.0
+            return 0.0
+        covariance = self.covariance + np.diag(FLOOR)
+        prior = np.linalg.inv(covariance)
+        spread = math.sqrt(max(covariance[0, 0], covariance[1, 1]) + 4.0 * covariance[2, 2])
+        start = np.array(self.pose)
+        x = start.copy()
+        hessian = prior
+        for step in range(STEPS):
+            width = max(0.10, min(0.5, 3.0 * spread) * 0.5**step)
+            r, j = self._residuals(x, points)
+            weight = np.square(1.0 - np.minimum(np.square(r / width), 1.0)) / SIGMA**2
+            weighted = j * weight
+            hessian = weighted @ j.T + prior
+            move = np.linalg.solve(hessian, -(weighted @ r) - prior @ (x - start))
+            x += move
+            if width == 0.10 and abs(move).max() < 2e-4:
+                break
+        fit = float(np.mean(np.abs(r) < INLIER))
+        self.fit = fit
+        self.pose = float(x[0]), float(x[1]), wrap(float(x[2]))
+        self.covariance = np.linalg.inv(hessian)
+        return fit
+
+    def _residuals(self, x: Array, points: Array) -> tuple[Array, NDArray[np.float64]]:
+        """Distances (n,) and their derivatives (3, n) by x, y and heading."""
+        c, s = math.cos(x[2]), math.sin(x[2])
+        turned = points @ np.array([[c, s], [-s, c]])
+        r, gx, gy = self._field.at(turned + x[:2])
+        return r, np.stack([gx, gy, gy * turned[:, 0] - gx * turned[:, 1]])
+
+    def to_odometry(self, target: Pose2) -> Pose2:
+        """A pose of the map in the frame that the wheels count in."""
+        if self._odometry is None:
+            return target
+        return compose(self._odometry, compose(inverse(self.pose), target))
