@@ -44,6 +44,7 @@ class RunInfo(msgspec.Struct):
     speed: str
     services: list[str]
     started: float
+    settings: dict[str, str] = {}
 
 
 class ProcessState(msgspec.Struct):

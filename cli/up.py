@@ -63,6 +63,7 @@ class Plan:
             speed=self.speed,
             services=self.names,
             started=unix_time(),
+            settings={k: v for k, v in self.environ.items() if k.startswith(config.PREFIX)},
         )
 
 

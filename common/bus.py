@@ -105,6 +105,39 @@ def send(opened: zenoh.Session, topic: Topic[Any], message: m.Message) -> None:
     opened.put(topic.key, codec.encode(topic, message), encoding=codec.encoding_of(topic))
 
 
+def subscribe(opened: zenoh.Session, topic: Topic[Any], receive: Callable[[zenoh.Sample], None]) -> Any:
+    """A subscriber with the delivery that the table declares: streams as they come, events with what was missed."""
+    if topic.keep == "latest" or not topic.recover:
+        return opened.declare_subscriber(topic.key, receive)
+    return ext.declare_advanced_subscriber(
+        opened,
+        topic.key,
+        receive,
+        history=ext.HistoryConfig(detect_late_publishers=True, max_samples=CACHE),
+        recovery=ext.RecoveryConfig(periodic_queries=None, heartbeat=True),
+    )
+
+
+def watch_tokens(opened: zenoh.Session, changed: Callable[[str, bool], None]) -> Any:
+    """A subscriber to the liveliness of services: `changed(name, alive)`, those already there first."""
+
+    def receive(sample: zenoh.Sample) -> None:
+        changed(str(sample.key_expr).split("/")[-2], sample.kind == zenoh.SampleKind.PUT)
+
+    return opened.liveliness().declare_subscriber(topics.ALIVE_KEY.format(name="*"), receive, history=True)
+
+
+def tick_of(sample: zenoh.Sample) -> int | None:
+    """The lockstep tick in which a sample was published, None where it carries none."""
+    raw = sample.attachment.to_bytes() if sample.attachment is not None else b""
+    return int(_TICK.unpack(raw)[0]) if len(raw) == _TICK.size else None
+
+
+def sent_at(sample: zenoh.Sample) -> float:
+    """Unix time of the sender's put."""
+    return _seconds(sample.timestamp) if sample.timestamp is not None else unix_time()
+
+
 def _open(config: zenoh.Config, opening: "Future[zenoh.Session]") -> None:
     try:
         opening.set_result(zenoh.open(config))
@@ -186,42 +219,26 @@ class ZenohIo(IoBase):
         self._publishers = {t.key: Publisher(opened, t) for t in writes}
         for topic in reads:
             self._subscribe(topic)
-        self._kept.append(opened.liveliness().declare_subscriber("service/*/alive", self._on_token, history=True))
+        self._kept.append(watch_tokens(opened, self._on_token))
         self._kept.append(opened.declare_subscriber("service/*/health", self._on_health))
 
     def _subscribe(self, topic: Topic[Any]) -> None:
         put, started, stale_key = self._boxes[topic.key].put, self._started, f"{topic.key} (stale)"
 
         def receive(sample: zenoh.Sample) -> None:
-            attachment = sample.attachment
-            stamp = UNSTAMPED
-            if attachment is not None:
-                raw = attachment.to_bytes()
-                stamp = _TICK.unpack(raw)[0] if len(raw) == _TICK.size else UNSTAMPED
+            tick = tick_of(sample)
             if topic.command and sample.timestamp is not None and _seconds(sample.timestamp) < started:
                 self.drops[stale_key] += 1
                 return
-            put(sample.payload.to_bytes(), stamp)
+            put(sample.payload.to_bytes(), UNSTAMPED if tick is None else tick)
 
-        if topic.keep == "latest" or not topic.recover:
-            self._kept.append(self._session.declare_subscriber(topic.key, receive))
-            if topic.latched:
-                self._session.get(topic.key, lambda reply: receive(reply.ok) if reply.ok is not None else None)
-            return
-        self._kept.append(
-            ext.declare_advanced_subscriber(
-                self._session,
-                topic.key,
-                receive,
-                history=ext.HistoryConfig(detect_late_publishers=True, max_samples=CACHE),
-                recovery=ext.RecoveryConfig(periodic_queries=None, heartbeat=True),
-            )
-        )
+        self._kept.append(subscribe(self._session, topic, receive))
+        if topic.latched and topic.keep == "latest":
+            self._session.get(topic.key, lambda reply: receive(reply.ok) if reply.ok is not None else None)
 
     # --- peers
-    def _on_token(self, sample: zenoh.Sample) -> None:
-        name = str(sample.key_expr).split("/")[-2]
-        if sample.kind == zenoh.SampleKind.PUT:
+    def _on_token(self, name: str, alive: bool) -> None:
+        if alive:
             self._peers.setdefault(name, "")
         else:
             self._peers.pop(name, None)

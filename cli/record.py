@@ -1,0 +1,248 @@
+"""`tidybot record`: every topic of the running robot into an MCAP file, until Ctrl-C."""
+
+import argparse
+import contextlib
+import os
+import queue
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from cli.errors import CliError
+from cli.link import Link, add_options, address
+from cli.supervision import Supervision, run_dir
+from common import bus, codec, topics
+from common import messages as m
+from common.clock import monotonic, unix_time
+from common.config import config_dir
+from common.lockstep import DT
+from common.process import StopSignal
+from common.recording import Recorder, RecordingError
+from common.scene import scene_path
+
+FLUSH, BATCH = 1.0, 2000
+# The brain asks whether anybody subscribes to these before it counts on the service that reads them, so the
+# recorder listens only while that service is there: a recording must not change what it records.
+READERS: "dict[topics.Topic[Any], str]" = {
+    topics.SPEECH_GOAL: "speech",
+    topics.NAVIGATION_GOAL: "navigation",
+    topics.NAV_GOAL: "navigation",
+    topics.MANIPULATION_GOAL: "manipulation",
+    topics.PLAN_REQUEST: "planner",
+    topics.OBJECT_QUERY: "perception",
+}
+Arrival = tuple[str, bytes, int | None, float]
+
+
+class Listener:
+    """Subscriptions to everything; arrivals wait in one queue, in the order they came."""
+
+    def __init__(self, session: Any) -> None:
+        self._session = session
+        self.inbox: queue.SimpleQueue[Arrival] = queue.SimpleQueue()
+        self.tokens: queue.SimpleQueue[tuple[str, bool]] = queue.SimpleQueue()
+        self._gated: dict[str, Any] = {}
+        gated = {t.key for t in READERS}
+        self._kept = [bus.subscribe(session, t, self._receive) for t in topics.TABLE if t.key not in gated]
+        self._kept += [session.declare_subscriber(key, self._receive) for key in ("service/*/health", "log/*")]
+        self._kept.append(bus.watch_tokens(session, lambda name, alive: self.tokens.put((name, alive))))
+
+    def _receive(self, sample: Any) -> None:
+        self.inbox.put((str(sample.key_expr), sample.payload.to_bytes(), bus.tick_of(sample), bus.sent_at(sample)))
+
+    def gate(self, alive: set[str]) -> None:
+        """Listen to the goals of services that are there, and to no others."""
+        for topic, reader in READERS.items():
+            if reader in alive and topic.key not in self._gated:
+                self._gated[topic.key] = bus.subscribe(self._session, topic, self._receive)
+            elif reader not in alive and topic.key in self._gated:
+                self._gated.pop(topic.key).undeclare()
+
+    def close(self) -> None:
+        for subscriber in (*self._kept, *self._gated.values()):
+            subscriber.undeclare()
+
+
+class Tape:
+    """Gives every arrival its robot time and writes it."""
+
+    def __init__(self, recorder: Recorder, listener: Listener, wall_clock: bool) -> None:
+        self._recorder, self._listener, self._wall_clock = recorder, listener, wall_clock
+        self.now = self.began = 0.0
+        self._running = False
+        self.alive: set[str] = set()
+        self.lockstep = False
+        self.status: m.SimStatus | None = None
+
+    def write(self) -> int:
+        """Take what is waiting, at most a batch; the number taken."""
+        self._tokens()
+        for taken in range(BATCH):
+            try:
+                key, payload, tick, wall = self._listener.inbox.get_nowait()
+            except queue.Empty:
+                return taken
+            self._one(key, payload, tick, wall)
+        return BATCH
+
+    def _one(self, key: str, payload: bytes, tick: int | None, wall: float) -> None:
+        if self._wall_clock:
+            self.now = wall
+        elif key == topics.SIM_CLOCK.key:
+            self._clock(payload)
+        if key == topics.SIM_STATUS.key:
+            with contextlib.suppress(codec.DecodeError):
+                self.status = codec.decode(topics.SIM_STATUS, payload)
+        self._recorder.write(key, payload, self.now if tick is None else tick * DT, wall, tick)
+
+    def _clock(self, payload: bytes) -> None:
+        try:
+            tick = codec.decode(topics.SIM_CLOCK, payload)
+        except codec.DecodeError:
+            return
+        self.now, self.lockstep = tick.t, tick.lockstep
+        if not self._running:
+            self._running, self.began = True, tick.t
+
+    def _tokens(self) -> None:
+        """Who is there, as messages: `service/<name>/alive`."""
+        while not self._listener.tokens.empty():
+            name, alive = self._listener.tokens.get()
+            (self.alive.add if alive else self.alive.discard)(name)
+            self._listener.gate(self.alive)
+            self._recorder.presence(name, alive, self.now, unix_time())
+
+
+class Progress:
+    """One line that renews itself on a terminal, a line every ten seconds elsewhere."""
+
+    def __init__(self, recorder: Recorder, tape: Tape) -> None:
+        self._recorder, self._tape = recorder, tape
+        self._tty = sys.stderr.isatty()
+        self._due = 0.0
+
+    def show(self, waiting: int, last: bool = False) -> None:
+        if monotonic() < self._due and not last:
+            return
+        self._due = monotonic() + (0.2 if self._tty else 10.0)
+        r = self._recorder
+        text = (
+            f"{self._tape.now:8.1f} s  {sum(r.counts.values())} messages on {len(r.counts)} keys  {r.size / 1e6:.1f} MB"
+        )
+        text += f"  {waiting} waiting" if waiting > BATCH else ""
+        print(
+            f"\r\033[K{text}" if self._tty else text,
+            end="\n" if last or not self._tty else "",
+            file=sys.stderr,
+            flush=True,
+        )
+
+
+def facts_of(link: Link, tape: Tape) -> dict[str, str]:
+    """What a replay needs to know of the run."""
+    connect, namespace = link.connect, ""
+    facts = {"connect": connect, "namespace": namespace, "lockstep": str(tape.lockstep).lower()}
+    if tape.status is not None:
+        s = tape.status
+        facts |= {"scene": s.scene, "seed": str(s.seed), "speed": s.speed, "epoch": s.epoch}
+    return facts
+
+
+def settings_of(environ: "os._Environ[str]") -> dict[str, str]:
+    """The overrides the services run with: those of the run that is up, or of this process."""
+    try:
+        given = Supervision(run_dir()).info().settings
+    except CliError:
+        given = {}
+    return {k: v for k, v in {**environ, **given}.items() if k.startswith("TIDYBOT__")}
+
+
+def record(args: argparse.Namespace) -> int:
+    path = args.output or Path("out") / time.strftime("run-%Y%m%d-%H%M%S.mcap", time.localtime(unix_time()))
+    stop = StopSignal()
+    connect, namespace = address(args)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        recorder = Recorder(path)
+    except (OSError, RecordingError) as error:
+        raise CliError(str(error)) from None
+    try:
+        with bus.session(connect, namespace, wait=_patience(args.wait, stop, connect)) as session:
+            return _run(args, recorder, Link(session, connect), stop)
+    except bus.NoRouter:
+        raise CliError("stopped before a router was there") from None
+    finally:
+        _close(recorder)
+
+
+def _patience(seconds: float, stop: StopSignal, connect: str) -> Callable[[float], bool]:
+    """Wait for a router until `seconds` are over (0: as long as it takes) or a signal comes."""
+    end = monotonic() + seconds if seconds else float("inf")
+
+    def wait(pause: float) -> bool:
+        if monotonic() > end:
+            raise CliError(f"nothing answers at {connect}; start the robot with `tidybot up`")
+        return stop.wait(pause)
+
+    return wait
+
+
+def _run(args: argparse.Namespace, recorder: Recorder, link: Link, stop: StopSignal) -> int:
+    listener = Listener(link.session)
+    tape = Tape(recorder, listener, os.environ.get("TIDYBOT_CLOCK") == "wall")
+    progress = Progress(recorder, tape)
+    print(f"recording {link.connect} into {recorder.path}; Ctrl-C ends it", file=sys.stderr, flush=True)
+    end = monotonic() + args.duration if args.duration else float("inf")
+    flushed = monotonic()
+    try:
+        while not stop.is_set() and monotonic() < end:
+            if tape.write() < BATCH:
+                stop.wait(0.02)
+            if monotonic() - flushed > FLUSH:
+                flushed = monotonic()
+                recorder.flush()
+            progress.show(listener.inbox.qsize())
+        listener.close()
+        while tape.write():
+            pass
+        recorder.note("run", facts_of(link, tape))
+        recorder.note("settings", settings_of(os.environ))
+        _attach(recorder, tape)
+    except OSError as error:
+        raise CliError(f"{recorder.path}: {error.strerror}; what was written until then is kept") from None
+    progress.show(0, last=True)
+    return 0
+
+
+def _attach(recorder: Recorder, tape: Tape) -> None:
+    """The configuration and the scene of this machine, so that a replay elsewhere runs with the same."""
+    now = unix_time()
+    for file in sorted(config_dir().glob("*.toml")):
+        recorder.attach(f"config/{file.name}", file.read_bytes(), now)
+    scene = scene_path(tape.status.scene) if tape.status is not None else None
+    if scene is not None and scene.exists():
+        recorder.attach(f"scene/{scene.name}", scene.read_bytes(), now)
+
+
+def _close(recorder: Recorder) -> None:
+    try:
+        recorder.close()
+    except OSError as error:
+        raise CliError(
+            f"{recorder.path}: {error.strerror}; `tidybot replay {recorder.path} --repair` saves it"
+        ) from None
+    if not recorder.counts:
+        print(f"nothing was heard; {recorder.path} is empty", file=sys.stderr)
+
+
+def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+    parser = commands.add_parser("record", help="every topic into an MCAP file, until Ctrl-C")
+    parser.add_argument("-o", "--output", type=Path, metavar="FILE", help="default: out/run-<time>.mcap")
+    parser.add_argument("--duration", type=float, default=0.0, metavar="S", help="wall seconds (default: until Ctrl-C)")
+    parser.add_argument(
+        "--wait", type=float, default=3.0, metavar="S", help="for the robot's router; 0: as long as it takes"
+    )
+    add_options(parser)
+    parser.set_defaults(run=record)
