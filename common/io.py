@@ -1,6 +1,7 @@
 """What a service sees of the outside world: the same protocol over Zenoh and over memory."""
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any, Protocol, TypeVar
 
 import numpy as np
@@ -33,7 +34,10 @@ class Job(Protocol[R_co]):
 
 
 class Io(Protocol):
-    """A service's bus, worker, randomness and logger. `fresh`: something arrived for this step."""
+    """A service's bus, worker, randomness and logger. `fresh`: something arrived for this step.
+
+    `state_dir`: where a process keeps files that outlive it; None within an evaluation.
+    """
 
     name: str
     epoch: str
@@ -43,6 +47,7 @@ class Io(Protocol):
     log: Log
     lockstep: bool
     fresh: bool
+    state_dir: Path | None
 
     def drain(self, topic: Topic[M]) -> list[M]:
         """Every message received since the last step, oldest first."""

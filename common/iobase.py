@@ -9,6 +9,7 @@ import uuid
 from collections import Counter, deque
 from collections.abc import Callable, Iterable
 from concurrent.futures import Future, ThreadPoolExecutor
+from pathlib import Path
 from typing import Any, Generic, TypeVar
 
 import numpy as np
@@ -108,6 +109,8 @@ class WorkerJob(Generic[R]):
 
 class IoBase:
     """Subclasses add `_send`, `serve`, `peer`."""
+
+    state_dir: Path | None = None
 
     def __init__(
         self,

@@ -98,6 +98,7 @@ class Goal(Leaf):
 
     def update(self) -> Status:
         ctx, channel = self.ctx, self.channel
+        ctx.at = self
         if self._again_at is not None:
             if ctx.now < self._again_at:
                 return Status.RUNNING
@@ -105,10 +106,12 @@ class Goal(Leaf):
             channel.again()
             return Status.RUNNING
         if self._sent_at is None:
-            return self._send()
+            return self._take_up() if channel.taken_up else self._send()
         answer = channel.answer
         if answer is not None and answer.word == "ok":
             channel.abandon()
+            if isinstance(answer.message, m.NavigationStatus | m.NavigationFeedback | m.ManipulationStatus):
+                ctx.note(f"{channel.peer}: {answer.message.status}", answer.detail, "did")
             return self.done(answer)
         if answer is not None and answer.word == "failed":
             return self._failed(answer.code or "FAILED", answer.detail)
@@ -142,6 +145,16 @@ class Goal(Leaf):
         self.channel.send(topic, message)
         self._sent_at = ctx.now
         self.feedback_message = ""
+        return Status.RUNNING
+
+    def _take_up(self) -> Status:
+        """Go on with the goal that this brain had sent before it was restarted."""
+        ctx, channel = self.ctx, self.channel
+        channel.taken_up = False
+        self._sent_at = ctx.now
+        ctx.enter(self.state, self.step())
+        if channel.answer is None and not channel.restarted:
+            channel.repeat()
         return Status.RUNNING
 
     def _resend(self) -> Status:

@@ -6,7 +6,12 @@ from common.config import Config
 
 
 class BrainConfig(Config, frozen=True):
-    """`settle` follows every arrival and every finished manipulation; a limit of n retries means n + 1 tries."""
+    """`settle` follows every arrival and every finished manipulation; a limit of n retries means n + 1 tries.
+
+    `journal` is relative to the process's state directory; "" keeps missions in memory only. A mission whose brain
+    was killed is resumed within `resume_within` seconds of wall time. `run` names the run of the whole robot that
+    this brain belongs to: within one, a mission outlives also an orderly restart.
+    """
 
     pipeline: Literal["fetch", "vla"] = "fetch"
     enable_confirmation: bool = True
@@ -26,3 +31,6 @@ class BrainConfig(Config, frozen=True):
     navigation_retries: int = 2
     grab_retries: int = 2
     release_retries: int = 2
+    journal: str = "missions.db"
+    resume_within: float = 600.0
+    run: str = ""

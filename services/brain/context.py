@@ -3,6 +3,7 @@
 from typing import Any
 
 import msgspec
+from py_trees.behaviour import Behaviour
 
 from common import messages as m
 from common import topics
@@ -10,8 +11,9 @@ from common.io import Io
 from common.topics import Topic
 from services.brain.config import BrainConfig
 from services.brain.goals import Channel
-from services.brain.journal import Entry, Journal
+from services.brain.journal import Checkpoint, Entry, Journal, Kind, Place
 from services.brain.mission import SYSTEM_STATE, Failure, Hand, Mission, Outcome
+from services.brain.snapshot import path_to
 
 
 class Context:
@@ -26,14 +28,20 @@ class Context:
         self.planner = Channel(io, "planner")
         self.perception = Channel(io, "perception")
         self.channels = (self.speech, self.navigation, self.manipulation, self.planner, self.perception)
-        self.mission = Mission(id=io.new_id("mission"))
+        for channel in self.channels:
+            channel.before_send = self.save
+        self.mission = Mission(id=self._fresh_id())
         self.hand = Hand()
+        self.at: Behaviour | None = None
+        self.resumes = 0
+        self._path: list[Place] = []
+        self._saved = b""
         self.stopped: str | None = None
         self.command: m.VoiceCommand | None = None
         self.listen_after = 0.0
         self.speaking: m.SpeechStatus | None = None
-        self.last: m.MissionOutcome | None = None
-        self.shown = m.BrainState(state="IDLE", pipeline=config.pipeline, detail="starting")
+        self.last = _outcome(journal)
+        self.shown = m.BrainState(state="IDLE", pipeline=config.pipeline, detail="starting", last=self.last)
         self._publish_state()
 
     # --- the world's view
@@ -61,7 +69,7 @@ class Context:
             return
         self._publish_state()
         if before.state != state or before.step != step:
-            self.note(cause or step or state, detail)
+            self.note(cause or step or state, detail, "state")
             self.io.log.info(
                 "state", mission=self.shown.mission_id, state=state, step=step, detail=detail, was=before.state
             )
@@ -75,14 +83,50 @@ class Context:
         )
         self.io.publish(topics.SYSTEM_STATUS, status)
 
-    def note(self, cause: str, evidence: str = "") -> None:
-        self.journal.note(self.mission.id, Entry(self.now, self.shown.state, cause, evidence))
+    def note(self, cause: str, evidence: str = "", kind: Kind = "note") -> None:
+        self.journal.note(self.mission.id, Entry(self.now, self.shown.state, cause, evidence, kind))
+
+    # --- the journal
+    def save(self, closed: bool = False) -> None:
+        """Put on disk how the mission stands, if that has changed; before anything of it is said to others."""
+        mission = self.mission
+        if not mission.command:
+            return
+        path = path_to(self.at) if self.at is not None else []
+        if path != self._path:
+            self._path, self.resumes = path, 0
+        state = Checkpoint(
+            mission=mission,
+            hand=msgspec.structs.replace(self.hand, empty_since=None),
+            path=path,
+            sent=[sent for channel in self.channels if (sent := channel.sent())],
+            run=self.config.run,
+            closed=closed,
+            resumes=self.resumes,
+        )
+        body = msgspec.json.encode(state)
+        if body == self._saved:
+            return
+        self._saved = body
+        here = self.io.latest(topics.POSE)
+        state.t, state.base = self.now, (here.x, here.y, here.theta) if here else None
+        self.journal.save(state)
+
+    def placed(self, at: Behaviour, resumes: int) -> None:
+        """A mission has been taken up again at this node."""
+        self.at, self._path, self.resumes = at, path_to(at), resumes
+
+    def _fresh_id(self) -> str:
+        """Never one that another process of this brain has used; in lockstep `new_id` begins anew with each."""
+        boot = self.journal.boot
+        return self.io.new_id(f"mission-{boot}" if self.io.lockstep and boot > 1 else "mission")
 
     # --- the mission
     def renew(self) -> None:
         """A fresh mission once the last one has ended."""
         if self.mission.outcome is not None:
-            self.mission = Mission(id=self.io.new_id("mission"))
+            self.save()
+            self.mission, self.resumes = Mission(id=self._fresh_id()), 0
 
     def accept(self, text: str, confidence: float, source: str, confirmed: bool = False) -> None:
         """The mission begins with this command."""
@@ -90,11 +134,12 @@ class Context:
         mission.confirmed = confirmed
         mission.command, mission.confidence, mission.started = text, confidence, self.now
         self.journal.begin(mission)
-        self.note(f"{source}: {text}", f"confidence {confidence:.2f}")
+        self.note(f"{source}: {text}", f"confidence {confidence:.2f}", "heard")
+        self.save()
 
     def fail(self, failure: Failure) -> None:
         self.mission.failure = failure
-        self.note(f"failed: {failure.stage}", failure.reason)
+        self.note(f"failed: {failure.stage}", failure.reason, "failed")
         self.io.log.warning("step failed", stage=failure.stage, code=failure.code, detail=failure.detail)
 
     def finish(self, outcome: Outcome, reason: str) -> None:
@@ -102,8 +147,9 @@ class Context:
         mission = self.mission
         mission.outcome = outcome
         self.last = m.MissionOutcome(id=mission.id, command=mission.command, outcome=outcome, reason=reason, t=self.now)
-        self.note(outcome, reason)
+        self.note(outcome, reason, "did" if outcome == "delivered" else "failed")
         self.journal.end(mission, outcome, reason, self.now)
+        self.save()
         self.io.log.info("mission ended", outcome=outcome, reason=reason)
 
     def tell(self, channel: Channel, topic: Topic[Any], text: str) -> str:
@@ -127,3 +173,11 @@ class Context:
 
 def _same(a: m.BrainState, b: m.BrainState) -> bool:
     return msgspec.structs.replace(a, t=0.0) == msgspec.structs.replace(b, t=0.0)
+
+
+def _outcome(journal: Journal) -> m.MissionOutcome | None:
+    """How the last mission ended, also one of an earlier process."""
+    last = journal.last()
+    if last is None or last.outcome is None:
+        return None
+    return m.MissionOutcome(id=last.id, command=last.command, outcome=last.outcome, reason=last.reason, t=last.ended)

@@ -1,13 +1,14 @@
 """Goals under way: which answer counts, and when a goal has to be sent again."""
 
 from collections import deque
+from collections.abc import Callable
 from typing import Any, Literal
 
 import msgspec
 
 from common import messages as m
 from common.io import Io
-from common.topics import Topic
+from common.topics import BY_KEY, Topic
 
 Word = Literal["busy", "ok", "failed"]
 _RECENT = 32
@@ -22,6 +23,15 @@ class Answer(msgspec.Struct, frozen=True):
     message: m.Message | None = None
 
 
+class Sent(msgspec.Struct, frozen=True):
+    """A goal under way as the journal keeps it: who got it, on which key, and which process it was."""
+
+    peer: str
+    key: str
+    message: dict[str, Any]
+    epoch: str = ""
+
+
 class Channel:
     """One goal at a time to one peer process.
 
@@ -31,6 +41,8 @@ class Channel:
 
     def __init__(self, io: Io, peer: str) -> None:
         self._io, self.peer = io, peer
+        self.before_send: Callable[[], None] = lambda: None
+        self.taken_up = False
         self.goal_id = ""
         self.attempt = 0
         self.answer: Answer | None = None
@@ -52,6 +64,7 @@ class Channel:
         self._topic, self._message = topic, message
         present = self._io.peer(self.peer)
         self._epoch = self._known if present is None else present
+        self.before_send()
         self._io.publish(topic, message)
 
     def tell(self, topic: Topic[Any], message: Any) -> None:
@@ -67,9 +80,35 @@ class Channel:
             self._message = msgspec.structs.replace(self._message, attempt=self.attempt + 1)
         self.send(self._topic, self._message)
 
+    def repeat(self) -> None:
+        """The same goal and attempt once more: whoever has it already answers with how it stands."""
+        if self._topic is None:
+            raise RuntimeError(f"no goal to {self.peer} was sent yet")
+        self._io.publish(self._topic, self._message)
+
     def abandon(self) -> None:
         """No answer is awaited any more."""
-        self.goal_id, self.answer = "", None
+        self.goal_id, self.answer, self.taken_up = "", None, False
+
+    # --- across a restart of the brain
+    def sent(self) -> Sent | None:
+        """The goal under way, for the journal."""
+        if not self.outstanding or self._topic is None:
+            return None
+        return Sent(self.peer, self._topic.key, msgspec.to_builtins(self._message), self._epoch)
+
+    def take_up(self, sent: Sent) -> None:
+        """Await the answer to a goal that an earlier process sent; the leaf that sent it goes on with it.
+
+        Raises:
+            msgspec.ValidationError, KeyError: the goal is of a kind that is not known any more.
+        """
+        topic = BY_KEY[sent.key]
+        message = msgspec.convert(sent.message, topic.type)
+        self.goal_id, self.attempt, self.answer = message.id, getattr(message, "attempt", 0), None
+        self._recent.append(message.id)
+        self._topic, self._message, self.taken_up = topic, message, True
+        self._epoch, self._known = sent.epoch, self._known or sent.epoch
 
     def offer(self, goal_id: str, attempt: int, answer: Answer) -> bool:
         """Take an answer if it counts; the first final word stands. An attempt of 0 is one the peer did not state."""

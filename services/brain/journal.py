@@ -1,15 +1,20 @@
-"""What happened in which mission: the seam behind which missions are kept on disk."""
+"""What happened in which mission, and where it stands: the seam behind which missions are kept on disk."""
 
 from collections import OrderedDict
-from typing import Protocol
+from collections.abc import Callable
+from typing import Literal, Protocol
 
 import msgspec
 
+from common.clock import unix_time
 from common.messages import BrainStateName
-from services.brain.mission import Mission, Outcome
+from services.brain.goals import Sent
+from services.brain.mission import Hand, Mission, Outcome
 
 KEPT = 200
 ENTRIES_KEPT = 500
+Kind = Literal["heard", "planned", "saw", "did", "failed", "state", "note"]
+Pose = tuple[float, float, float]
 
 
 class Entry(msgspec.Struct, frozen=True):
@@ -19,10 +24,11 @@ class Entry(msgspec.Struct, frozen=True):
     state: BrainStateName
     cause: str
     evidence: str = ""
+    kind: Kind = "state"
 
 
 class Record(msgspec.Struct):
-    """A mission as `tidybot missions` lists it; `steps` counts its goals."""
+    """A mission as `tidybot missions` lists it; `steps` counts its goals, `date` is Unix time of its start."""
 
     id: str
     command: str
@@ -31,38 +37,100 @@ class Record(msgspec.Struct):
     reason: str = ""
     ended: float = 0.0
     steps: int = 0
+    date: float = 0.0
     entries: list[Entry] = []
 
 
+class Place(msgspec.Struct, frozen=True):
+    """One node on the way from the root of the tree to the leaf at work: which child, its name, retries used there."""
+
+    index: int
+    name: str
+    used: int = 0
+
+
+class Checkpoint(msgspec.Struct):
+    """All that a new process needs to go on: `path` leads to the leaf at work, `sent` are the goals under way.
+
+    `run`: the run of the robot in which it was written. `closed`: the process ended in order, not by a crash.
+    `resumes`: times the mission was taken up since it last advanced. `date` is Unix time.
+    """
+
+    mission: Mission
+    hand: Hand
+    path: list[Place] = []
+    sent: list[Sent] = []
+    t: float = 0.0
+    base: Pose | None = None
+    date: float = 0.0
+    run: str = ""
+    closed: bool = False
+    resumes: int = 0
+
+
 class Journal(Protocol):
-    """Missions in order of their start, each with its timeline."""
+    """Missions in order of their start, each with its timeline. Nothing is durable before `save` has returned.
+
+    No method raises because of the medium: a failure is counted, and what was not written is tried again.
+    `boot` numbers the processes that have used this journal, from 1.
+    """
+
+    boot: int
 
     def begin(self, mission: Mission) -> None: ...
 
-    def note(self, mission_id: str, entry: Entry) -> None: ...
+    def resume(self, mission: Mission) -> None:
+        """Go on with a mission that an earlier process began."""
+
+    def note(self, mission_id: str, entry: Entry) -> object: ...
 
     def end(self, mission: Mission, outcome: Outcome, reason: str, t: float) -> None: ...
 
-    def missions(self) -> list[Record]: ...
+    def save(self, checkpoint: Checkpoint) -> None: ...
+
+    def checkpoint(self) -> Checkpoint | None:
+        """What the process before this one left behind."""
+
+    def missions(self) -> list[Record]:
+        """The newest missions, oldest first, without their timelines."""
 
     def mission(self, mission_id: str) -> Record | None: ...
+
+    def last(self) -> Record | None:
+        """The newest mission that has ended."""
+
+    def close(self) -> None: ...
 
 
 class MemoryJournal:
     """The journal of a process's lifetime: the newest missions only, so that a long run does not grow."""
 
-    def __init__(self) -> None:
+    def __init__(self, clock: Callable[[], float] = unix_time) -> None:
+        self.boot = 1
+        self._clock = clock
         self._records: OrderedDict[str, Record] = OrderedDict()
+        self._checkpoint = b""
 
     def begin(self, mission: Mission) -> None:
-        self._records[mission.id] = Record(id=mission.id, command=mission.command, started=mission.started)
+        self._records[mission.id] = Record(mission.id, mission.command, mission.started, date=self._clock())
         while len(self._records) > KEPT:
             self._records.popitem(last=False)
 
-    def note(self, mission_id: str, entry: Entry) -> None:
+    def keep(self, record: Record) -> None:
+        """A mission that an earlier process began."""
+        self._records[record.id] = record
+
+    def resume(self, mission: Mission) -> None:
+        if mission.id not in self._records:
+            self.begin(mission)
+
+    def note(self, mission_id: str, entry: Entry) -> bool:
+        """True if there was room for it."""
         record = self._records.get(mission_id)
-        if record is not None and len(record.entries) < ENTRIES_KEPT:
-            record.entries.append(entry)
+        if record is None or len(record.entries) >= ENTRIES_KEPT:
+            return False
+        record.entries.append(entry)
+        return True
 
     def end(self, mission: Mission, outcome: Outcome, reason: str, t: float) -> None:
         record = self._records.get(mission.id)
@@ -70,8 +138,23 @@ class MemoryJournal:
             record.command = mission.command
             record.outcome, record.reason, record.ended, record.steps = outcome, reason, t, mission.goals
 
+    def save(self, checkpoint: Checkpoint) -> None:
+        self._checkpoint = msgspec.json.encode(checkpoint)
+
+    def checkpoint(self) -> Checkpoint | None:
+        return msgspec.json.decode(self._checkpoint, type=Checkpoint) if self._checkpoint else None
+
     def missions(self) -> list[Record]:
-        return list(self._records.values())
+        return [msgspec.structs.replace(record, entries=[]) for record in self._records.values()]
 
     def mission(self, mission_id: str) -> Record | None:
         return self._records.get(mission_id)
+
+    def records(self) -> list[Record]:
+        return list(self._records.values())
+
+    def last(self) -> Record | None:
+        return next((r for r in reversed(self._records.values()) if r.outcome is not None), None)
+
+    def close(self) -> None:
+        """Nothing to let go of."""

@@ -134,7 +134,7 @@ class Ready(Leaf):
             )
         elif ctx.io.latest(topics.JOINT_STATES) is None:
             missing = "waiting for joint_states"
-        elif not ctx.io.matched(topics.SPEECH_GOAL):
+        elif not ctx.mission.active and not ctx.io.matched(topics.SPEECH_GOAL):
             missing = "waiting for speech"
         else:
             return Status.SUCCESS

@@ -10,9 +10,11 @@ from services.brain.config import BrainConfig
 from services.brain.context import Context
 from services.brain.goals import Answer, Channel, Word
 from services.brain.intent import CANCEL, RETURN, STOP, normal
-from services.brain.journal import MemoryJournal
+from services.brain.journal import Journal
 from services.brain.mission import Failure, fingers_hold
-from services.brain.snapshot import Signature, signature, snapshot
+from services.brain.resume import Resumption
+from services.brain.snapshot import Signature, signature, snapshot, tip
+from services.brain.store import open_journal
 from services.brain.trees import fetch_tree
 from services.brain.vla import vla_tree
 
@@ -54,14 +56,15 @@ class BrainService:
         topics.SYSTEM_STATUS,
     )
 
-    def __init__(self, config: BrainConfig, io: Io) -> None:
+    def __init__(self, config: BrainConfig, io: Io, journal: Journal | None = None) -> None:
         self._io = io
-        self._journal = MemoryJournal()
+        self._journal = journal or open_journal(config, io)
         self.context = Context(config, io, self._journal)
         self.tree = {"fetch": fetch_tree, "vla": vla_tree}[config.pipeline](self.context)
         self._shown: Signature | None = None
         self._ticks = 0
         self._sim_stopped = False
+        self._resumption = self._left_behind()
         io.serve(topics.BRAIN_MISSIONS, self._answer_missions)
 
     def step(self, now: float) -> None:
@@ -73,12 +76,37 @@ class BrainService:
         self._receive_answers()
         self._receive_stops()
         self._receive_commands()
-        self.tree.tick_once()
+        if self._resumption is not None and self._resumption.step():
+            self._resumption = None
+        if self._resumption is None:
+            self.tree.tick_once()
+            for channel in ctx.channels:
+                if channel.taken_up:  # no leaf has gone on with it
+                    channel.abandon()
+            ctx.at = tip(self.tree)
+            ctx.save()
         self._ticks += 1
         seen = signature(self.tree)
         if seen != self._shown:
             self._shown = seen
             self._io.publish(topics.BRAIN_TREE, snapshot(self.tree, now, self._ticks))
+
+    def close(self) -> None:
+        """An orderly end; the journal says so."""
+        if self._resumption is None:
+            self.context.save(closed=True)
+        self._journal.close()
+
+    def _left_behind(self) -> Resumption | None:
+        """The mission that the process before this one did not end; what it held in its hand in any case."""
+        left = self._journal.checkpoint()
+        if left is None:
+            return None
+        record = self._journal.mission(left.mission.id)
+        if left.mission.active and (record is None or record.outcome is None):
+            return Resumption(self.context, self.tree, left)
+        self.context.hand = left.hand
+        return None
 
     # --- answers of the peers
     def _receive_answers(self) -> None:
@@ -163,8 +191,13 @@ class BrainService:
     # --- queries
     def _answer_missions(self, payload: bytes) -> bytes:
         """All missions, or the timeline of the one whose id is asked for."""
-        if payload:
-            record = self._journal.mission(payload.decode())
-            return msgspec.json.encode(record)
-        rows = [{k: v for k, v in msgspec.to_builtins(r).items() if k != "entries"} for r in self._journal.missions()]
+        wanted = payload.decode().strip()
+        if wanted.startswith("{"):
+            wanted = str(msgspec.json.decode(payload).get("id", ""))
+        missions = self._journal.missions()
+        if wanted == "last":
+            wanted = missions[-1].id if missions else wanted
+        if wanted:
+            return msgspec.json.encode(self._journal.mission(wanted))
+        rows = [{k: v for k, v in msgspec.to_builtins(record).items() if k != "entries"} for record in missions]
         return msgspec.json.encode(rows)

@@ -39,8 +39,8 @@ def carry_out(ctx: Context) -> Behaviour:
     fetching = sequence(
         "fetch",
         When("free the hand", put_down_at_home(ctx), lambda: holds_another(ctx)),
-        When("get it", acquire(ctx), lambda: not ctx.hand.holding),
-        bring_home(ctx),
+        When("get it", acquire(ctx), lambda: not ctx.hand.holding and not ctx.mission.released),
+        When("deliver it", bring_home(ctx), lambda: not ctx.mission.released),
         Complete("complete", ctx),
         Settle("settle", ctx),
     )
@@ -106,7 +106,7 @@ class Understand(Leaf):
         ctx = self.ctx
         ctx.hand.look(fingers_hold(ctx.io.latest(topics.JOINT_STATES)))
         intent = parse(ctx.mission.command, ctx.io.scene)
-        ctx.note(f"understood: {intent.kind}", intent.item or intent.reason)
+        ctx.note(f"understood: {intent.kind}", intent.item or intent.reason, "planned")
         if intent.kind == "none":
             ctx.fail(Failure("UNDERSTANDING", "NOT_UNDERSTOOD", spoken=intent.reason))
             return Status.FAILURE

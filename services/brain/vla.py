@@ -79,10 +79,14 @@ class RunPlan(Sequence):
         super().__init__(name=name, memory=True)
         self._ctx = ctx
 
+    def unfold(self) -> None:
+        """Build the children; a restarted brain does so to find its place among them."""
+        self.remove_all_children()
+        self.add_children([step_tree(self._ctx, step) for step in self._ctx.mission.plan])
+
     def tick(self) -> Iterator[Behaviour]:
         if self.status != Status.RUNNING:
-            self.remove_all_children()
-            self.add_children([step_tree(self._ctx, step) for step in self._ctx.mission.plan])
+            self.unfold()
         yield from super().tick()
 
 

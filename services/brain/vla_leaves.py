@@ -25,7 +25,7 @@ class Await(Leaf):
     def update(self) -> Status:
         ctx = self.ctx
         ctx.renew()
-        if not take_command(ctx):
+        if not ctx.mission.active and not take_command(ctx):
             hearing = ctx.speaking is not None and ctx.speaking.state in ("listening", "transcribing")
             ctx.enter("LISTENING" if hearing else "WAITING")
             return Status.RUNNING
@@ -51,7 +51,7 @@ class HearReply(Goal):
         mission, heard = self.ctx.mission, answer.message
         assert isinstance(heard, m.SpeechResult)
         kind, rest = reply(heard.text)
-        self.ctx.note(f"reply: {kind}", heard.text)
+        self.ctx.note(f"reply: {kind}", heard.text, "heard")
         self.feedback_message = kind
         if kind == "cancel":
             return self.give_up(Failure("CONFIRMING", "CANCELLED", spoken="All right, I will do nothing."))
@@ -94,7 +94,7 @@ class Plan(Goal):
         reason = objection(plan.steps, self._world(), ctx.io.scene)
         if not reason:
             ctx.mission.plan = plan.steps
-            ctx.note("plan accepted", "; ".join(map(in_words, plan.steps)))
+            ctx.note("plan accepted", "; ".join(map(in_words, plan.steps)), "planned")
             return Status.SUCCESS
         if not plan.steps and plan.detail:
             reason = plan.detail
@@ -137,7 +137,8 @@ class Look(Goal):
             self.feedback_message = pose.detail or "not seen"
             return self.give_up(Failure("GROUNDING", "NOT_FOUND", pose.detail, self.spoken()))
         ctx.mission.found[self._thing] = pose
-        ctx.note(f"found {self._thing}", f"{pose.label} at {pose.position}, confidence {pose.confidence:.2f}")
+        where = ", ".join(f"{c:.2f}" for c in pose.position)
+        ctx.note(f"found {self._thing}", f"{pose.label} at ({where}), confidence {pose.confidence:.2f}", "saw")
         return Status.SUCCESS
 
 

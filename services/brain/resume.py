@@ -1,0 +1,249 @@
+"""Taking up a mission that a restart of the brain cut short: look at the world, then decide where to go on."""
+
+import math
+from collections.abc import Sequence
+from typing import Literal
+
+import msgspec
+from py_trees.behaviour import Behaviour
+
+from common import topics
+from common.clock import unix_time
+from common.messages import PlanStep
+from services.brain.config import BrainConfig
+from services.brain.context import Context
+from services.brain.journal import Checkpoint, Place, Pose
+from services.brain.mission import Failure, Hand, Mission, fingers_hold
+from services.brain.snapshot import Moved, put
+from services.brain.vla_leaves import in_words
+
+LOOK = 0.6
+PEER_PATIENCE = 3.0
+MAX_RESUMES = 5
+MOVED = 0.3
+TURNED = 0.5
+CLOCK_SLACK = 2.0
+SPARE_GOALS = 10
+Change = Literal["", "lost", "holding", "moved", "new world"]
+
+
+class Seen(msgspec.Struct, frozen=True):
+    """What the world says: the fingers, the base, robot time, and whether a peer still has or has done our arm goal."""
+
+    fingers: bool | None
+    base: Pose | None
+    t: float
+    arm_answered: bool = False
+
+
+class Decision(msgspec.Struct, frozen=True):
+    """`path` is where to go on; `change` is what is not as the journal left it; `label` the object it is about."""
+
+    path: list[Place]
+    change: Change = ""
+    label: str = ""
+
+
+def refusal(left: Checkpoint, config: BrainConfig, now: float) -> Failure | None:
+    """Why the mission is not taken up at Unix time `now`."""
+    same_run = bool(config.run) and config.run == left.run
+    if left.closed and not same_run:
+        return Failure("RESTART", "CANCELLED", "the robot was shut down")
+    if now - left.date > config.resume_within:
+        return Failure("RESTART", "TOO_LATE", f"interrupted for {now - left.date:.0f} s")
+    if left.resumes >= MAX_RESUMES:
+        return Failure("RESTART", "CRASH_LOOP", f"the brain was restarted {left.resumes} times at the same place")
+    return None
+
+
+def decide(left: Checkpoint, seen: Seen) -> Decision:
+    """Go on at the same leaf unless the world has changed: then no further back than the change makes necessary."""
+    mission, hand, path = left.mission, left.hand, left.path
+    under_way = {sent.peer for sent in left.sent}
+    arm_busy = "manipulation" in under_way
+    fresh = seen.t < left.t - CLOCK_SLACK
+    if hand.holding and not arm_busy and seen.fingers is False:
+        return Decision(_back(path, mission, "lost"), "lost", hand.holding)
+    if seen.fingers and not (hand.holding or hand.uncertain or arm_busy or mission.released):
+        label, behind = _about_to_grasp(path, mission)
+        if label:
+            return Decision(behind, "holding", label)
+    if fresh and not hand.holding and not mission.released:
+        return Decision(_back(path, mission, "new world"), "new world")
+    if "navigation" not in under_way and not seen.arm_answered and _moved(left.base, seen.base):
+        return Decision(_back(path, mission, "moved"), "moved")
+    return Decision(path)
+
+
+def apply(decision: Decision, mission: Mission, hand: Hand) -> None:
+    """Correct what is believed by what was seen."""
+    if decision.change == "lost":
+        hand.holding, mission.grabbed = "", False
+        mission.found = {k: p for k, p in mission.found.items() if decision.label not in (k, p.label)}
+    elif decision.change == "holding":
+        hand.grabbed(decision.label)
+        mission.grabbed = True
+    elif decision.change == "new world":
+        mission.found, mission.visited, hand.put_down = {}, [], {}
+    if decision.change:
+        mission.at = ""
+
+
+def _moved(before: Pose | None, now: Pose | None) -> bool:
+    if before is None or now is None:
+        return False
+    turned = math.remainder(now[2] - before[2], math.tau)
+    return math.hypot(now[0] - before[0], now[1] - before[1]) > MOVED or abs(turned) > TURNED
+
+
+# --- where to go on
+def _at(path: Sequence[Place], name: str) -> int | None:
+    return next((i for i, place in enumerate(path) if place.name == name), None)
+
+
+def _back(path: list[Place], mission: Mission, change: Change) -> list[Place]:
+    """The place from which the rest of the mission can be done again: in a plan the step that needs it."""
+    execute = _at(path, "execute")
+    if execute is not None and execute + 1 < len(path):
+        k = path[execute + 1].index
+        return _step(path, execute, mission, earlier(mission.plan, k, change))
+    do = _at(path, "do")
+    return path if do is None or execute is not None else path[: do + 1]
+
+
+def _step(path: list[Place], execute: int, mission: Mission, number: int) -> list[Place]:
+    return [*path[: execute + 1], Place(number, in_words(mission.plan[number]))]
+
+
+def earlier(plan: Sequence[PlanStep], k: int, change: Change) -> int:
+    """The step, not after `k`, that has to be done again."""
+    if change == "moved" and plan[k].action == "release":
+        return next((j for j in range(k, -1, -1) if plan[j].action in ("return", "navigate")), k)
+    if change == "moved":
+        return k
+    grasps = [j for j, step in enumerate(plan) if step.action == "grasp"]
+    grasp = max((j for j in grasps if j <= k), default=None) if change == "lost" else k
+    if grasp is None:
+        return k
+    thing = plan[grasp].object
+    finds = [j for j in range(grasp + 1) if plan[j].action == "find" and plan[j].object == thing]
+    return max(finds, default=grasp)
+
+
+def _about_to_grasp(path: list[Place], mission: Mission) -> tuple[str, list[Place]]:
+    """The object that the mission was about to take, and the place behind the taking; "" if there is none."""
+    execute = _at(path, "execute")
+    if execute is not None and execute + 1 < len(path):
+        for j in range(path[execute + 1].index, len(mission.plan) - 1):
+            step = mission.plan[j]
+            if step.action == "grasp":
+                pose = mission.found.get(step.object)
+                return (pose.label if pose else "") or step.object, _step(path, execute, mission, j + 1)
+            if step.action in ("place", "release"):
+                break
+        return "", path
+    if execute is None and _at(path, "do") is not None and mission.kind == "fetch":
+        return mission.label, _back(path, mission, "holding")
+    return "", path
+
+
+class Resumption:
+    """Stands in for the tree until the mission has been taken up, or ended because it cannot be."""
+
+    def __init__(self, ctx: Context, root: Behaviour, left: Checkpoint) -> None:
+        self._ctx, self._root, self._left = ctx, root, left
+        self._since: float | None = None
+        self._told = False
+        self._felt: set[bool | None] = set()
+        ctx.mission, ctx.hand = left.mission, left.hand
+        ctx.mission.goals += SPARE_GOALS
+        ctx.journal.resume(ctx.mission)
+        for sent in left.sent:
+            for channel in ctx.channels:
+                if channel.peer == sent.peer:
+                    channel.take_up(sent)
+        self._refused = refusal(left, ctx.config, unix_time())
+        ctx.io.log.warning("mission found", mission=ctx.mission.id, command=ctx.mission.command)
+
+    def step(self) -> bool:
+        """True once the tree may be ticked."""
+        ctx = self._ctx
+        if not ctx.mission.active:
+            return True
+        if self._refused is not None:
+            self._end(self._refused)
+            return True
+        joints = ctx.io.latest(topics.JOINT_STATES)
+        if not self._told:
+            self._told = True
+            ctx.note("brain restarted", f"at {' > '.join(p.name for p in self._left.path) or 'the start'}")
+        if joints is None:
+            ctx.enter("IDLE", detail="resuming: waiting for joint_states")
+            return False
+        ctx.enter("IDLE", detail="resuming: looking at the world")
+        self._since = ctx.now if self._since is None else self._since
+        self._felt.add(fingers_hold(joints))
+        looked = ctx.now - self._since
+        strangers = any(not ctx.io.peer(sent.peer) for sent in self._left.sent)
+        if looked < LOOK or (strangers and looked < PEER_PATIENCE):
+            return False
+        if ctx.stopped is not None:
+            self._end(Failure("RESTART", "CANCELLED", "the robot was stopped while the brain was down"))
+        else:
+            self._go_on()
+        return True
+
+    def _go_on(self) -> None:
+        ctx, left = self._ctx, self._left
+        here = ctx.io.latest(topics.POSE)
+        arm = ctx.manipulation
+        seen = Seen(
+            fingers=next(iter(self._felt)) if len(self._felt) == 1 else None,
+            base=(here.x, here.y, here.theta) if here else None,
+            t=ctx.now,
+            arm_answered=arm.outstanding and arm.answer is not None and not arm.restarted,
+        )
+        decision = decide(left, seen)
+        apply(decision, ctx.mission, ctx.hand)
+        if decision.change:
+            self._call_off()
+        try:
+            ctx.placed(put(self._root, decision.path), left.resumes + 1)
+        except Moved as moved:
+            self._end(Failure("RESTART", "CANNOT_RESUME", str(moved)))
+            return
+        ctx.note("resumed", _account(decision, seen, ctx.hand), "saw")
+        ctx.io.log.info("resumed", mission=ctx.mission.id, path=" > ".join(p.name for p in decision.path),
+                        change=decision.change)  # fmt: skip
+        ctx.save()
+
+    def _call_off(self) -> None:
+        """What was under way does not fit the world any more."""
+        ctx = self._ctx
+        for channel, topic in ((ctx.navigation, topics.NAVIGATION_GOAL), (ctx.manipulation, topics.MANIPULATION_GOAL)):
+            if channel.outstanding:
+                ctx.tell(channel, topic, "stop")
+        for channel in ctx.channels:
+            channel.abandon()
+
+    def _end(self, failure: Failure) -> None:
+        ctx = self._ctx
+        ctx.mission.failure = failure
+        self._call_off()
+        held = ctx.hand.holding or ctx.hand.uncertain
+        reason = failure.reason + (f"; holding the {held}" if held else "")
+        ctx.finish("cancelled" if failure.code == "CANCELLED" else "failed", reason)
+
+
+def _account(decision: Decision, seen: Seen, hand: Hand) -> str:
+    """What was seen, in words for the timeline."""
+    fingers = {True: "the fingers hold something", False: "the fingers are empty", None: "the fingers say nothing"}
+    where = "" if seen.base is None else f", base at ({seen.base[0]:.2f}, {seen.base[1]:.2f})"
+    change = {
+        "": "goes on where it was",
+        "lost": f"the {decision.label} is not in the hand any more",
+        "holding": f"the {decision.label} is in the hand already",
+        "moved": "the base is not where it was",
+        "new world": "the simulation began anew",
+    }[decision.change]
+    return f"{fingers[seen.fingers]}{where}; {change}"

@@ -1,0 +1,254 @@
+"""The journal on disk: sqlite in WAL mode, every save one transaction that is on the disk when it returns."""
+
+import sqlite3
+from collections import deque
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from common.clock import unix_time
+from common.io import Io
+from services.brain.config import BrainConfig
+from services.brain.journal import ENTRIES_KEPT, KEPT, Checkpoint, Entry, Journal, MemoryJournal, Record
+from services.brain.mission import Mission, Outcome
+
+KEY = "journal"
+WAITING_KEPT, MISSIONS_KEPT = 5000, 5000
+MIGRATIONS: tuple[tuple[str, ...], ...] = (
+    (
+        "create table missions (number integer primary key autoincrement, id text not null unique,"
+        " command text not null, started real not null, outcome text, reason text not null default '',"
+        " ended real not null default 0, steps integer not null default 0, date real not null)",
+        "create table entries (number integer primary key autoincrement, mission text not null, t real not null,"
+        " state text not null, cause text not null, evidence text not null, kind text not null)",
+        "create index entries_by_mission on entries (mission, number)",
+        "create table checkpoint (one integer primary key check (one = 1), body blob not null)",
+        "create table boots (number integer primary key autoincrement, date real not null)",
+    ),
+)
+"""Statements that bring a file from version n to n + 1; `PRAGMA user_version` holds n. Only ever appended to."""
+
+_FIELDS = "id, command, started, outcome, reason, ended, steps, date"
+_BEGIN = f"insert or ignore into missions ({_FIELDS}) values (?, ?, ?, ?, ?, ?, ?, ?)"
+_END = "update missions set command = ?, outcome = ?, reason = ?, ended = ?, steps = ? where id = ?"
+_ENTRY = "insert into entries (mission, t, state, cause, evidence, kind) values (?, ?, ?, ?, ?, ?)"
+_CHECKPOINT = "insert or replace into checkpoint (one, body) values (1, ?)"
+_TRIM = (
+    f"delete from missions where number <= (select max(number) from missions) - {MISSIONS_KEPT}",
+    "delete from entries where mission not in (select id from missions)",
+)
+_Op = tuple[str, tuple[Any, ...]]
+
+
+class Unusable(Exception):
+    """The file is no journal that this program can read; the message says why."""
+
+
+class SqliteJournal:
+    """Survives kill and power cut at any moment. A file that cannot be read is moved aside and a new one is begun.
+
+    While the disk refuses (full, gone, read-only) the mission goes on: every refusal is counted, what was refused is
+    kept in memory and written with the next save that succeeds.
+    """
+
+    def __init__(
+        self,
+        path: Path,
+        io: Io,
+        clock: Callable[[], float] = unix_time,
+        migrations: Sequence[Sequence[str]] = MIGRATIONS,
+    ) -> None:
+        self.path, self.errors, self.boot = path, 0, 0
+        self._io, self._clock, self._migrations = io, clock, migrations
+        self._memory = MemoryJournal(clock)
+        self._waiting: deque[_Op] = deque(maxlen=WAITING_KEPT)
+        self._db: sqlite3.Connection | None = None
+        try:
+            self._opened()
+        except (sqlite3.Error, OSError, Unusable) as error:
+            self._refused(error)
+            self.boot = int(clock())  # how many processes had used the file is unknown
+
+    # --- writing
+    def begin(self, mission: Mission) -> None:
+        self._memory.begin(mission)
+        record = self._memory.mission(mission.id)
+        assert record is not None
+        self._waiting.append((_BEGIN, _values(record)))
+
+    def resume(self, mission: Mission) -> None:
+        record = self.mission(mission.id)
+        if record is None:
+            self.begin(mission)
+        else:
+            self._memory.keep(record)
+
+    def note(self, mission_id: str, entry: Entry) -> None:
+        if self._memory.note(mission_id, entry):
+            self._waiting.append((_ENTRY, _entry(mission_id, entry)))
+
+    def end(self, mission: Mission, outcome: Outcome, reason: str, t: float) -> None:
+        self._memory.end(mission, outcome, reason, t)
+        self._waiting.append((_END, (mission.command, outcome, reason, t, mission.goals, mission.id)))
+
+    def save(self, checkpoint: Checkpoint) -> None:
+        checkpoint.date = self._clock()
+        body = msgspec.json.encode(checkpoint)
+        try:
+            self._write((*self._waiting, (_CHECKPOINT, (body,))))
+        except (sqlite3.Error, OSError, Unusable) as error:
+            self._refused(error)
+        else:
+            self._waiting.clear()
+
+    def _write(self, ops: Sequence[_Op]) -> None:
+        db = self._opened()
+        db.execute("begin immediate")
+        for statement, values in ops:
+            db.execute(statement, values)
+        db.execute("commit")
+
+    def _refused(self, error: Exception) -> None:
+        """Count a failure; start a new file when this one is damaged."""
+        self.errors += 1
+        self._io.count_drop(KEY, f"{self.path}: {error}")
+        code = getattr(error, "sqlite_errorcode", 0) & 0xFF
+        if isinstance(error, Unusable) or code in (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB):
+            self._close()
+            self._move_aside(str(error))
+        elif self._db is not None and self._db.in_transaction:
+            try:
+                self._db.execute("rollback")
+            except sqlite3.Error:
+                self._close()
+
+    # --- reading
+    def checkpoint(self) -> Checkpoint | None:
+        rows = self._rows("select body from checkpoint")
+        try:
+            return msgspec.json.decode(rows[0][0], type=Checkpoint) if rows else None
+        except (msgspec.DecodeError, UnicodeDecodeError) as error:
+            self._io.log.error("the mission under way cannot be read", path=str(self.path), error=str(error))
+            return None
+
+    def missions(self) -> list[Record]:
+        rows = self._rows(f"select {_FIELDS} from missions order by number desc limit ?", KEPT)
+        # What the disk has refused, this process still knows.
+        found = {**{row[0]: Record(*row) for row in reversed(rows)}, **{r.id: r for r in self._memory.missions()}}
+        return list(found.values())
+
+    def mission(self, mission_id: str) -> Record | None:
+        own = self._memory.mission(mission_id)
+        rows = [] if own else self._rows(f"select {_FIELDS} from missions where id = ?", mission_id)
+        if not rows:
+            return own
+        of = "select t, state, cause, evidence, kind from entries where mission = ? order by number limit ?"
+        entries = [Entry(*row) for row in self._rows(of, mission_id, ENTRIES_KEPT)]
+        return msgspec.structs.replace(Record(*rows[0]), entries=entries)
+
+    def last(self) -> Record | None:
+        rows = self._rows(f"select {_FIELDS} from missions where outcome is not null order by number desc limit 1")
+        return self._memory.last() or (Record(*rows[0]) if rows else None)
+
+    def _rows(self, statement: str, *values: Any) -> list[Any]:
+        try:
+            return self._opened().execute(statement, values).fetchall()
+        except (sqlite3.Error, OSError, Unusable) as error:
+            self._refused(error)
+            return []
+
+    # --- the file
+    def _opened(self) -> sqlite3.Connection:
+        """The checked and migrated file; opened again when it was closed, or deleted under us.
+
+        Raises:
+            Unusable: damaged, or written by a newer version.
+            sqlite3.Error, OSError: the disk refuses.
+        """
+        if self._db is not None and not self.path.exists():
+            self._close()
+        if self._db is not None:
+            return self._db
+        self.path.parent.mkdir(parents=True, exist_ok=True)
+        # One brain writes; a second one started by mistake must not hold up the first.
+        db = sqlite3.connect(self.path, timeout=0.2, isolation_level=None)
+        try:
+            db.execute("pragma journal_mode = wal")
+            db.execute("pragma synchronous = full")
+            health = db.execute("pragma quick_check(1)").fetchone()[0]
+            if health != "ok":
+                raise Unusable(f"damaged: {health}")
+            if self._migrate(db) == 0:
+                self._tell_all(db)
+            for statement in _TRIM:
+                db.execute(statement)
+            boot = "insert or ignore into boots (number, date) values (?, ?)"
+            started = db.execute(boot, (self.boot or None, self._clock())).lastrowid
+            self.boot = self.boot or int(started or 1)
+        except (sqlite3.Error, OSError, Unusable):
+            db.close()
+            raise
+        self._db = db
+        return db
+
+    def _migrate(self, db: sqlite3.Connection) -> int:
+        """Bring the file to the newest version; the version it had."""
+        version = int(db.execute("pragma user_version").fetchone()[0])
+        if version > len(self._migrations):
+            raise Unusable(f"version {version} of a newer program; this one knows {len(self._migrations)}")
+        for number in range(version, len(self._migrations)):
+            db.execute("begin immediate")
+            for statement in self._migrations[number]:
+                db.execute(statement)
+            db.execute(f"pragma user_version = {number + 1}")
+            db.execute("commit")
+        return version
+
+    def _tell_all(self, db: sqlite3.Connection) -> None:
+        """Into a new file: what this process knows."""
+        db.execute("begin immediate")
+        for record in self._memory.records():
+            db.execute(_BEGIN, _values(record))
+            db.executemany(_ENTRY, [_entry(record.id, entry) for entry in record.entries])
+        db.execute("commit")
+        self._waiting.clear()
+
+    def _move_aside(self, reason: str) -> None:
+        """Keep the unreadable file for people to look at; the next save begins a new one."""
+        stamp = f"unreadable-{int(self._clock())}"
+        for suffix in ("-wal", "-shm", ""):
+            old = self.path.with_name(self.path.name + suffix)
+            try:
+                old.rename(self.path.with_name(f"{self.path.name}.{stamp}{suffix}"))
+            except FileNotFoundError:
+                continue
+            except OSError as error:
+                self._io.count_drop(KEY, f"{old}: {error}")
+                return
+        self._io.log.error("journal moved aside", path=f"{self.path}.{stamp}", reason=reason)
+
+    def _close(self) -> None:
+        if self._db is not None:
+            self._db.close()  # rolls back what was not committed
+            self._db = None
+
+    def close(self) -> None:
+        self._close()
+
+
+def _values(r: Record) -> tuple[Any, ...]:
+    return r.id, r.command, r.started, r.outcome, r.reason, r.ended, r.steps, r.date
+
+
+def _entry(mission_id: str, e: Entry) -> tuple[Any, ...]:
+    return mission_id, e.t, e.state, e.cause, e.evidence, e.kind
+
+
+def open_journal(config: BrainConfig, io: Io) -> Journal:
+    """On disk at the configured path, below the process's state directory; in memory when it has none."""
+    path = Path(config.journal)
+    if not config.journal or not (path.is_absolute() or io.state_dir):
+        return MemoryJournal()
+    return SqliteJournal((io.state_dir or Path()) / path, io)
