@@ -4,6 +4,7 @@ Pure: a sequence of looks at the world in, evidence and verdict out. What the ro
 """
 
 import math
+from collections.abc import Mapping
 
 import msgspec
 
@@ -45,7 +46,7 @@ class ThingEvidence(msgspec.Struct):
 
 
 class Evidence(msgspec.Struct):
-    """The whole case. `hits` are furniture, walls and obstacles the robot touched; `disturbed` other objects it moved."""
+    """The whole case. `hits`: furniture, walls and obstacles the robot touched; `disturbed`: other objects it moved."""
 
     things: list[ThingEvidence] = []
     hits: list[str] = []
@@ -57,7 +58,7 @@ class Evidence(msgspec.Struct):
 class Recorder:
     """Takes looks in the order of time."""
 
-    def __init__(self, wants: tuple[Want, ...], kinds: dict[str, str]) -> None:
+    def __init__(self, wants: tuple[Want, ...], kinds: Mapping[str, str]) -> None:
         self._wants, self._kinds = wants, kinds
         self._first: Look | None = None
         self._last: Look | None = None
@@ -97,7 +98,9 @@ class Recorder:
         """The evidence so far; what is at rest is judged over the last half second."""
         first, last = self._first, self._last
         if first is None or last is None:
-            return Evidence(things=[ThingEvidence(w.thing, "", why="the simulation showed nothing") for w in self._wants])
+            return Evidence(
+                things=[ThingEvidence(w.thing, "", why="the simulation showed nothing") for w in self._wants]
+            )
         wanted = {w.thing for w in self._wants}
         hits = [f"{key}, {1000 * depth:.0f} mm" for key, depth in sorted(self._hits.items())]
         return Evidence(

@@ -82,7 +82,8 @@ class FaultyIo:
                 self._overtaken[topic.key] = topic, message
             case "edit":
                 assert rule is not None
-                self._io.publish(topic, msgspec.structs.replace(message, **rule.fields))
+                altered = {**msgspec.to_builtins(message), **rule.fields}
+                self._io.publish(topic, msgspec.convert(altered, type(message)))
         if overtaken is not None:
             self._io.publish(*overtaken)
 

@@ -4,8 +4,8 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-import mujoco
 import msgspec
+import mujoco
 import numpy as np
 
 from common import messages as m
@@ -28,7 +28,7 @@ class Thing(msgspec.Struct, frozen=True):
 
 
 class Look(msgspec.Struct, frozen=True):
-    """The world at robot time `t`. `hits`: (part of the robot, what it touches, depth [m]) but for objects and floor."""
+    """The world at robot time `t`. `hits`: (part of the robot, what it touches, depth [m])."""
 
     t: float
     base: tuple[float, float, float]

@@ -1,0 +1,98 @@
+"""`python -m evaluation`, which `tidybot eval` becomes: the options are declared in `cli/evaluate.py`."""
+
+import sys
+from pathlib import Path
+
+import msgspec
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
+
+from cli.errors import CliError
+from cli.main import FAILED, INTERRUPTED, parser
+from cli.up import Stopped, interruptible
+from common.clock import monotonic
+from common.config import ConfigError
+from evaluation import processes, report, runner
+from evaluation.case import Case, Result
+from evaluation.pool import Progressed, evaluate
+from evaluation.suites import DEFAULT_SCENARIOS, cases
+
+
+class Board:
+    """One bar for the run and one line for what each worker is at."""
+
+    def __init__(self, console: Console, total: int) -> None:
+        columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+        self._bar = Progress(*columns, TextColumn("{task.fields[now]}"), console=console, transient=True)
+        self._task: TaskID = self._bar.add_task("scenarios", total=total, now="")
+        self._at: dict[int, str] = {}
+
+    def __enter__(self) -> "Board":
+        self._bar.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._bar.stop()
+
+    def show(self, at: Progressed) -> None:
+        self._at[at.worker] = f"{at.case.seed}: {at.state} {at.t:.0f} s"
+        self._bar.update(self._task, now="  ".join(self._at.values()))
+
+    def finished(self, result: Result, timeline: bool) -> None:
+        self._bar.advance(self._task)
+        self._bar.print(report.line(result), highlight=False)
+        if timeline:
+            rows = result.evidence.get("timeline", [])
+            for row in rows if isinstance(rows, list) else []:
+                self._bar.print(f"[dim]        {row}[/]", highlight=False)
+
+
+def main(argv: list[str]) -> int:
+    """Exit status 0 when every case was run, 1 when not or below `--at-least`, 130 after Ctrl-C."""
+    args = parser().parse_args(["eval", *argv])
+    console = Console(stderr=bool(args.json == "-"), soft_wrap=True)
+    count = args.scenarios or DEFAULT_SCENARIOS.get(args.suite, 10)
+    try:
+        todo = cases(args.suite, count, args.seed, tuple(args.set), args.pipeline)
+        results, seconds = _run(todo, args.jobs, args.processes, args.timeline or args.suite == "seed", console)
+    except (CliError, ConfigError) as error:
+        print(f"tidybot: {error}", file=sys.stderr)
+        return FAILED
+    found = report.record(args.suite, results, seconds)
+    report.show(console, found, results)
+    if args.json:
+        text = msgspec.json.format(msgspec.json.encode(found), indent=2).decode()
+        if args.json == "-":
+            print(text)
+        else:
+            Path(args.json).write_text(text + "\n", encoding="utf-8")
+    if len(results) < count:
+        console.print(f"[yellow]interrupted after {len(results)} of {count} scenarios[/]")
+        return INTERRUPTED
+    met = sum(r.met for r in results)
+    return 0 if met >= args.at_least * count else FAILED
+
+
+def _run(
+    todo: list[Case], jobs: int, as_processes: bool, timeline: bool, console: Console
+) -> tuple[list[Result], float]:
+    """The results so far, also after an interruption, and the wall time [s]."""
+    results: list[Result] = []
+    began = monotonic()
+    run = processes.run if as_processes else runner.run
+    with Board(console, len(todo)) as board:
+        try:
+            with interruptible():
+                for said in evaluate(todo, jobs, run):
+                    if isinstance(said, Progressed):
+                        board.show(said)
+                    else:
+                        results.append(said)
+                        board.finished(said, timeline)
+        except Stopped:
+            pass
+    return results, monotonic() - began
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,93 @@
+"""One scenario as data: everything that a run needs and that a seed decides."""
+
+from typing import Literal
+
+import msgspec
+
+from common.scene import Scene
+from evaluation.evidence import Evidence, Want
+from evaluation.faults import Rule
+
+Expect = Literal["delivered", "nothing", "stopped"]
+Outcome = Literal["delivered", "declined", "stopped", "reported", "failed", "false_success", "timeout", "crashed"]
+Cause = str
+
+
+class Line(msgspec.Struct, frozen=True):
+    """Something the person says unasked.
+
+    `when` is `ready`, `ended` (after a mission) or a state of the brain; `after` seconds of robot time pass first.
+    """
+
+    text: str
+    when: str = "ready"
+    after: float = 0.0
+
+
+class Strike(msgspec.Struct, frozen=True):
+    """What happens to a service's process the first time the brain is in `state`: hung for `seconds`, 0: killed."""
+
+    service: str
+    state: str
+    seconds: float = 0.0
+    back_after: float = 1.0
+
+
+class Case(msgspec.Struct, kw_only=True):
+    """`lines` are what the person says, `thing` what they really want, `expect` what physics should show.
+
+    Without a `scene` it is the shipped flat. `honest`: a spoken, published failure counts as well as a delivery.
+    `wake`: a command that opens a dialogue starts with the wake word. `silent`: the person answers no question.
+    """
+
+    suite: str
+    seed: int
+    name: str
+    command: str
+    lines: tuple[Line, ...]
+    wants: tuple[Want, ...] = ()
+    thing: str = ""
+    expect: Expect = "delivered"
+    honest: bool = False
+    spoken: bool = False
+    wake: bool = False
+    silent: bool = False
+    noise: float | None = None
+    fault: str = ""
+    rules: tuple[Rule, ...] = ()
+    strikes: tuple[Strike, ...] = ()
+    settings: tuple[str, ...] = ()
+    scene: Scene | None = None
+    limit: float = 600.0
+
+
+class Observed(msgspec.Struct, kw_only=True):
+    """What the examiner saw of one case, before it is judged."""
+
+    evidence: Evidence = msgspec.field(default_factory=Evidence)
+    claimed: str = "none"
+    reason: str = ""
+    ended: bool = False
+    stopped: bool = False
+    states: list[str] = []
+    said: list[str] = []
+    stage: str = ""
+    robot_seconds: float = 0.0
+    shortest: float = 0.0
+    crash: str = ""
+
+
+class Result(msgspec.Struct, kw_only=True):
+    """One row of the report."""
+
+    seed: int
+    command: str
+    outcome: Outcome
+    evidence: dict[str, object]
+    cause: Cause
+    name: str = ""
+    delivered: bool = False
+    met: bool = False
+    spl: float = 0.0
+    sim_seconds: float = 0.0
+    wall_seconds: float = 0.0

@@ -1,0 +1,76 @@
+"""A person with a wish: says it, listens to what the robot says, and answers its questions.
+
+Pure: sentences of the robot in, sentences of the person out. They know nothing of the bus.
+"""
+
+import re
+from typing import Literal
+
+from common.scene import Scene
+
+Manner = Literal["correct", "reject", "silent", "agree"]
+PATIENCE = 6
+_HEARD = re.compile(r"^did you say,?\s*(.+?)\??$", re.IGNORECASE)
+_AGAIN = re.compile(r"say (?:it|that) again|please repeat|did not (?:hear|understand|catch)|pardon|what did you", re.I)
+_WHICH = re.compile(r"^(?:which\b|do you mean|the .+ or the .+\?)", re.IGNORECASE)
+_FILLER = re.compile(r"\b(?:please|hey jarvis|jarvis|the|a|an|my|me|to)\b")
+
+
+def plain(text: str) -> str:
+    """The words that carry the meaning, for comparing two sentences."""
+    words = re.sub(r"[^a-z0-9' ]+", " ", text.lower())
+    return " ".join(_FILLER.sub(" ", words).split())
+
+
+class Person:
+    """Wants `command` done with `thing`.
+
+    Manners: `correct` a wrong question with "no, the <thing>", `reject` it with "no" and repeat when asked, keep
+    `silent`, or `agree` to anything.
+    """
+
+    def __init__(self, command: str, thing: str, scene: Scene, manner: Manner = "correct") -> None:
+        self._command, self._thing, self._scene, self._manner = command, thing, scene, manner
+        self.answers = 0
+
+    def answer(self, sentence: str) -> str:
+        """What to say to a sentence of the robot's; "" for nothing."""
+        if self._manner == "silent" or self.answers >= PATIENCE:
+            return ""
+        reply = self._reply(sentence.strip())
+        self.answers += bool(reply)
+        return reply
+
+    def _reply(self, sentence: str) -> str:
+        if heard := _HEARD.match(sentence):
+            if self._manner == "agree" or self._same(heard[1]):
+                return "yes"
+            if self._manner == "correct" and self._only_the_thing_differs(heard[1]):
+                return f"no, the {self._thing}"
+            return "no"
+        if _AGAIN.search(sentence):
+            return self._command
+        if _WHICH.match(sentence) and self._thing:
+            return f"the {self._thing}"
+        return ""
+
+    def _same(self, heard: str) -> bool:
+        return self._canonical(heard) == self._canonical(self._command)
+
+    def _canonical(self, text: str) -> str:
+        """With aliases of objects replaced by their names."""
+        words = plain(text)
+        for spec in self._scene.objects:
+            for alias in sorted(spec.aliases, key=len, reverse=True):
+                if " " in alias:
+                    words = re.sub(rf"\b{re.escape(plain(alias))}\b", plain(spec.name), words)
+        return words
+
+    def _only_the_thing_differs(self, heard: str) -> bool:
+        """The robot understood what to do, but with another object."""
+        if not self._thing:
+            return False
+        pattern = re.escape(self._canonical(self._command)).replace(re.escape(plain(self._thing)), "(.+)", 1)
+        found = re.fullmatch(pattern, self._canonical(heard))
+        names = {plain(n) for o in self._scene.objects for n in (o.name, *o.aliases)}
+        return found is not None and bool(found.groups()) and found[1] in names

@@ -1,0 +1,136 @@
+"""Worker processes for cases: spawned, each with a pipe; one that dies or hangs costs its case, never the run."""
+
+import multiprocessing
+import os
+import signal
+from collections import deque
+from collections.abc import Callable, Iterator
+from multiprocessing.connection import Connection, wait
+from typing import Any
+
+import msgspec
+
+from common.clock import monotonic
+from evaluation.case import Case, Observed, Result
+from evaluation.verdict import judge
+
+WALL_LIMIT = 1800.0
+Run = Callable[[Case, Callable[[float, str], None]], Result]
+
+
+class Progressed(msgspec.Struct):
+    """Where a worker's case is: robot time [s] and the brain's state."""
+
+    worker: int
+    case: Case
+    t: float
+    state: str
+
+
+def work(run: Run, pipe: "Connection[Any, Any]") -> None:
+    """A worker's life: cases in, results and progress out, until the pipe closes."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, _leave)
+    os.environ.setdefault("OMP_NUM_THREADS", "1")
+    try:
+        while True:
+            case = msgspec.msgpack.decode(pipe.recv_bytes(), type=Case)
+            result = run(case, lambda t, state: pipe.send_bytes(msgspec.msgpack.encode((t, state))))
+            pipe.send_bytes(msgspec.msgpack.encode(result))
+    except (EOFError, BrokenPipeError):
+        return
+
+
+def _leave(number: int, frame: object) -> None:
+    raise SystemExit(128 + number)
+
+
+class Worker:
+    """One spawned process and the case it has."""
+
+    def __init__(self, number: int, run: Run) -> None:
+        self.number, self._run = number, run
+        self.case: Case | None = None
+        self.started = 0.0
+        self._start()
+
+    def _start(self) -> None:
+        context = multiprocessing.get_context("spawn")
+        self.pipe, theirs = context.Pipe()
+        self._process = context.Process(target=work, args=(self._run, theirs), daemon=False)
+        self._process.start()
+        theirs.close()
+
+    def give(self, case: Case) -> None:
+        self.case, self.started = case, monotonic()
+        self.pipe.send_bytes(msgspec.msgpack.encode(case))
+
+    def failed(self, why: str) -> Result:
+        """The case of a worker that is lost; a new process takes its place."""
+        case = self.case
+        assert case is not None
+        self.end()
+        self._start()
+        self.case = None
+        return judge(case, Observed(crash=why), monotonic() - self.started)
+
+    @property
+    def exit_code(self) -> int | None:
+        return self._process.exitcode
+
+    def ask(self) -> None:
+        """Ask it to end."""
+        self.pipe.close()
+        self._process.terminate()
+
+    def end(self) -> None:
+        """Stop it, gently first: it may have processes of its own."""
+        self.ask()
+        self._process.join(20)
+        if self._process.is_alive():
+            self._process.kill()
+            self._process.join()
+
+
+def evaluate(cases: list[Case], jobs: int, run: Run, limit: float = WALL_LIMIT) -> Iterator[Result | Progressed]:
+    """Results as they come, and progress between them. `limit` is wall time for one case [s]."""
+    waiting = deque(cases)
+    workers = [Worker(n, run) for n in range(max(1, min(jobs, len(cases))))]
+    try:
+        for worker in workers:
+            if waiting:
+                worker.give(waiting.popleft())
+        while busy := [w for w in workers if w.case is not None]:
+            ready = set(wait([w.pipe for w in busy], timeout=1.0))
+            for worker in busy:
+                if worker.pipe in ready:
+                    said = _receive(worker)
+                    yield said
+                    if isinstance(said, Progressed):
+                        continue
+                elif monotonic() - worker.started > limit:
+                    yield worker.failed(f"no result within {limit:.0f} s of wall time")
+                else:
+                    continue
+                worker.case = None
+                if waiting:
+                    worker.give(waiting.popleft())
+    finally:
+        for worker in workers:
+            worker.ask()
+        for worker in workers:
+            worker.end()
+
+
+def _receive(worker: Worker) -> Result | Progressed:
+    case = worker.case
+    assert case is not None
+    try:
+        raw = worker.pipe.recv_bytes()
+    except (EOFError, OSError):
+        return worker.failed(f"the worker process ended with status {worker.exit_code}")
+    try:
+        return msgspec.msgpack.decode(raw, type=Result)
+    except msgspec.ValidationError:
+        t, state = msgspec.msgpack.decode(raw, type=tuple[float, str])
+        return Progressed(worker.number, case, t, state)

@@ -1,0 +1,118 @@
+"""One case with every service a real process: `tidybot up --speed max`, and the examiner as one more participant."""
+
+import argparse
+import os
+import shutil
+import tempfile
+import threading
+import uuid
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from cli.errors import CliError
+from cli.services import SERVICES, Service
+from cli.supervision import Supervision, free_port
+from cli.up import Plan, bring_up
+from common import bus, config, topics
+from common.clock import SimClock, monotonic
+from common.process import StopSignal
+from common.runtime import Process
+from common.scene import load_scene
+from evaluation.case import Case, Observed, Result
+from evaluation.examiner import Examiner, ExaminerConfig, examiner_of
+from evaluation.node import CASE
+from evaluation.runner import REPORT, Progress, timeline
+from evaluation.scene_file import to_toml
+from evaluation.verdict import judge
+
+WALL_LIMIT = 1500.0
+
+
+class Ended(StopSignal):
+    """Stops the examiner's loop when its case is over."""
+
+    def __init__(self, progress: Progress) -> None:
+        # Signals stay with the worker: this one only ends a loop.
+        self._event = threading.Event()
+        self.process: Process | None = None
+        self._progress, self._due = progress, 0.0
+        self._end = monotonic() + WALL_LIMIT
+
+    def is_set(self) -> bool:
+        process = self.process
+        if process is not None and process.io.clock.now() >= self._due:
+            self._due = process.io.clock.now() + REPORT
+            last = process.service.observed.states[-1:]
+            self._progress(process.io.clock.now(), last[0] if last else "starting")
+        over = process is not None and bool(process.service.done)
+        return over or monotonic() > self._end or super().is_set()
+
+
+def run(case: Case, progress: Progress = lambda t, state: None) -> Result:
+    """Run and judge one case. A process that does not come up ends it as `crashed`."""
+    began = monotonic()
+    directory = Path(tempfile.mkdtemp(prefix="tidybot-eval-"))
+    supervision = Supervision(directory / "run")
+    try:
+        if case.strikes:
+            raise CliError("strikes at services are made in one process; leave --processes out")
+        return _run(case, directory, supervision, progress, began)
+    except (CliError, bus.BusError) as error:
+        return judge(case, Observed(crash=str(error).partition("\n")[0]), monotonic() - began)
+    finally:
+        supervision.stop()
+        shutil.rmtree(directory, ignore_errors=True)
+
+
+def _run(case: Case, directory: Path, supervision: Supervision, progress: Progress, began: float) -> Result:
+    plan = _plan(case, directory)
+    scene = case.scene or load_scene("apartment")
+    bring_up(supervision, plan, lambda text: None)
+    stop, clock = Ended(progress), SimClock()
+    shared = config.RuntimeConfig(seed=case.seed, lockstep=True, log_level="error")
+    with bus.session(plan.connect, plan.namespace) as session:
+        process = Process(examiner_of(case), ExaminerConfig(), shared, scene, session, clock, stop)
+        stop.process = process
+        examiner: Examiner = process.service
+        try:
+            process.run_on_sim_clock(clock)
+            if not examiner.done:
+                examiner.abort(clock.now(), f"no end within {WALL_LIMIT:.0f} s of wall time")
+            result = judge(case, examiner.observed, monotonic() - began)
+            result.evidence["timeline"] = timeline(partial(_ask, session))
+        finally:
+            process.close()
+    return result
+
+
+def _ask(session: Any, payload: bytes) -> bytes | None:
+    return next(iter(bus.fetch(session, topics.BRAIN_MISSIONS, payload).values()), None)
+
+
+def _plan(case: Case, directory: Path) -> Plan:
+    """`tidybot up` for the case: the services with rules behind their doors, the examiner awaited as well."""
+    file = directory / "case.json"
+    file.write_bytes(msgspec.json.encode(case))
+    scene = ""
+    if case.scene is not None:
+        scene = str(directory / "scene.toml")
+        Path(scene).write_text(to_toml(case.scene), encoding="utf-8")
+    args = argparse.Namespace(
+        port=free_port(), namespace=f"eval-{uuid.uuid4().hex[:8]}", speed="max", only="", without="", scene=scene,
+        seed=case.seed, viewer=False, set=list(case.settings),
+    )  # fmt: skip
+    plan = Plan(args)
+    faulty = {r.service for r in case.rules}
+    plan.services = [Service(s.name, "evaluation.node", s.paced, s.token) if s.name in faulty else s for s in SERVICES]
+    clean = {k: v for k, v in plan.environ.items() if k in _plan_keys(plan) or not k.startswith(config.PREFIX)}
+    waited = [f'"{s.name}"' for s in plan.services if s.paced] + [f'"{Examiner.NAME}"']
+    plan.environ = {**clean, CASE: str(file), "TIDYBOT__SIM__WAIT_FOR": f"[{', '.join(waited)}]"}
+    return plan
+
+
+def _plan_keys(plan: Plan) -> set[str]:
+    """What the plan itself sets, and not the user's environment: a seed must mean the same everywhere."""
+    return {k for k, v in plan.environ.items() if os.environ.get(k) != v}

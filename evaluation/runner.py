@@ -1,0 +1,86 @@
+"""One case in this process: the real services, the examiner among them, in lockstep as fast as the CPU allows."""
+
+import json
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+from common import topics
+from common.clock import monotonic
+from common.lockstep import DT
+from evaluation.case import Case, Result, Strike
+from evaluation.examiner import Examiner, examiner_of
+from evaluation.faults import faulty
+from evaluation.stack import Stack, paced_services
+from evaluation.verdict import judge
+
+Progress = Callable[[float, str], None]
+REPORT = 2.0
+
+
+class Director:
+    """Does the strikes of a case when the brain is in their states."""
+
+    def __init__(self, stack: Stack, strikes: tuple[Strike, ...]) -> None:
+        self._stack, self._waiting = stack, list(strikes)
+        self._back: list[tuple[float, str]] = []
+
+    def step(self) -> None:
+        stack, state = self._stack, self._stack.state().state
+        for strike in [s for s in self._waiting if s.state == state]:
+            self._waiting.remove(strike)
+            if strike.seconds:
+                stack.hang(strike.service, strike.seconds)
+            else:
+                stack.kill(strike.service)
+                self._back.append((stack.now + strike.back_after, strike.service))
+        for row in [r for r in self._back if r[0] <= stack.now]:
+            self._back.remove(row)
+            stack.start(row[1])
+
+
+def run(case: Case, progress: Progress = lambda t, state: None) -> Result:
+    """Run and judge one case. What a service raises ends the case as `crashed`."""
+    began = monotonic()
+    stack = Stack(case.scene or "apartment", case.seed, case.settings, swaps=_swaps(case), without=_idle_services(case))
+    try:
+        examiner: Examiner = stack.join(examiner_of(case))
+        director = Director(stack, case.strikes)
+        due = 0.0
+        try:
+            while not examiner.done:
+                stack.tick()
+                if case.strikes and round(stack.now / DT) % 5 == 0:
+                    director.step()
+                if stack.now >= due:
+                    due = stack.now + REPORT
+                    progress(stack.now, stack.state().state)
+        except Exception as error:
+            examiner.abort(stack.now, f"{type(error).__name__}: {error}")
+        result = judge(case, examiner.observed, monotonic() - began)
+        result.evidence["timeline"] = timeline(partial(stack.bus.get, topics.BRAIN_MISSIONS))
+        return result
+    finally:
+        stack.close()
+
+
+def _swaps(case: Case) -> dict[str, Any]:
+    return {r.service: partial(faulty, rules=case.rules) for r in case.rules}
+
+
+def _idle_services(case: Case) -> tuple[str, ...]:
+    """The fetch pipeline asks no camera, planner or perception for anything."""
+    if not any("pipeline=fetch" in s for s in case.settings):
+        return ()
+    return tuple(n for n in ("camera", "planner", "perception") if n in paced_services())
+
+
+def timeline(query: Callable[[bytes], bytes | None]) -> list[str]:
+    """The mission log of every mission of the case, as the brain tells it."""
+    rows: list[str] = []
+    for mission in json.loads(query(b"") or b"[]"):
+        record = json.loads(query(str(mission["id"]).encode()) or b"null") or {}
+        for entry in record.get("entries", []):
+            words = (f"{entry['t']:.2f} s", entry["state"], entry["cause"], entry["evidence"])
+            rows.append("  ".join(str(w) for w in words if w))
+    return rows

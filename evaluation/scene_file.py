@@ -1,0 +1,25 @@
+"""A scene as the TOML that `load_scene` reads, for processes that get their scene from a file."""
+
+import json
+from typing import Any
+
+import msgspec
+
+from common.scene import Scene
+
+
+def to_toml(scene: Scene) -> str:
+    """The file's text; fields at their defaults are left out."""
+    fields: dict[str, Any] = msgspec.to_builtins(scene)
+    lists = {k: v for k, v in fields.items() if isinstance(v, list) and v and isinstance(v[0], dict)}
+    rows = [f"{k} = {_value(v)}" for k, v in fields.items() if k not in lists]
+    rows += [f"{k} = [\n{''.join(f'  {_value(row)},{chr(10)}' for row in v)}]" for k, v in lists.items()]
+    return "\n".join(rows) + "\n"
+
+
+def _value(value: Any) -> str:
+    if isinstance(value, dict):
+        return "{ " + ", ".join(f"{k} = {_value(v)}" for k, v in value.items()) + " }"
+    if isinstance(value, (list, tuple)):
+        return "[" + ", ".join(map(_value, value)) + "]"
+    return json.dumps(value)
