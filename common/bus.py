@@ -7,30 +7,37 @@ plain `get`. Callbacks only enqueue: they share one thread of Zenoh's.
 
 import queue
 import struct
+import sys
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Future
 from concurrent.futures import wait as futures_wait
 from contextlib import contextmanager
 from pathlib import Path
 from threading import Thread
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import msgspec
 import zenoh
 from zenoh import ext
 
-from common import codec, topics
+from common import codec, keys, probe, topics
 from common import messages as m
+from common.access import OPERATOR
 from common.clock import Clock, monotonic, unix_time
 from common.io import Handler
 from common.iobase import UNSTAMPED, IoBase
 from common.scene import Scene
 from common.topics import Topic
 
+if TYPE_CHECKING:
+    from common.certificate import Identity
+
 CONFIGS = Path(__file__).resolve().parent.parent / "config" / "zenoh"
 DEFAULT_CONNECT = "tcp/127.0.0.1:7447"
+DEFAULT_SECURE = "tls/127.0.0.1:7447"
 CACHE = 64
 HEARTBEAT = 0.25
+PROBE_AFTER, PROBE_PERIOD = 2.0, 30.0
 _TICK = struct.Struct("<q")
 
 
@@ -42,16 +49,60 @@ class NoRouter(BusError):
     """Nobody listens at the endpoints."""
 
 
-def client_config(connect: str, namespace: str = "", directory: Path = CONFIGS) -> zenoh.Config:
-    """A client of the comma-separated router endpoints.
+def default_connect() -> str:
+    """The router of this machine: over TLS when there are keys.
+
+    Raises:
+        BusError: TIDYBOT_KEYS names nothing.
+    """
+    try:
+        return DEFAULT_SECURE if keys.directory() else DEFAULT_CONNECT
+    except keys.KeysError as error:
+        raise BusError(str(error)) from None
+
+
+def identity_for(connect: str, name: str, namespace: str) -> "Identity | None":
+    """The certificate to show at these endpoints, None for plain ones.
+
+    Raises:
+        BusError: keys that cannot be used, or plain endpoints although there are keys.
+    """
+    secure = [e.startswith("tls/") for e in endpoints(connect)]
+    try:
+        found = keys.directory()
+        if found is None and any(secure):
+            raise BusError(f"{connect} needs certificates: `tidybot keys` makes them, TIDYBOT_KEYS says where they are")
+        if found is None:
+            return None
+        if not all(secure):
+            raise BusError(
+                f"{connect}: there are keys in {found}, so only tls/ endpoints are used (TIDYBOT_KEYS=off: none)"
+            )
+        from common.certificate import Identity
+
+        return Identity(keys.folder(found, name, namespace), name, namespace)
+    except keys.KeysError as error:
+        raise BusError(str(error)) from None
+
+
+def endpoints(connect: str) -> list[str]:
+    return [e.strip() for e in connect.split(",") if e.strip()]
+
+
+def client_config(
+    connect: str, namespace: str = "", directory: Path = CONFIGS, shown: "Identity | None" = None
+) -> zenoh.Config:
+    """A client of the comma-separated router endpoints; with a certificate `shown` it speaks TLS only.
 
     Raises:
         BusError: a bad endpoint or namespace.
     """
     try:
         config = zenoh.Config.from_file(str(directory / "client.json5"))
-        endpoints = [e.strip() for e in connect.split(",") if e.strip()]
-        config.insert_json5("connect/endpoints", _json(endpoints))
+        config.insert_json5("connect/endpoints", _json(endpoints(connect)))
+        if shown is not None:
+            config.insert_json5("transport/link/protocols", _json(["tls"]))
+            config.insert_json5("transport/link/tls", _json(shown.settings(serving=False)))
         if namespace:
             config.insert_json5("namespace", _json(namespace))
     except zenoh.ZError as error:
@@ -61,24 +112,40 @@ def client_config(connect: str, namespace: str = "", directory: Path = CONFIGS) 
 
 @contextmanager
 def session(
-    connect: str, namespace: str = "", wait: Callable[[float], bool] | None = None, patience: float = 3.0
+    connect: str,
+    namespace: str = "",
+    wait: Callable[[float], bool] | None = None,
+    patience: float = 3.0,
+    name: str = OPERATOR,
 ) -> Iterator[zenoh.Session]:
     """An open session that is closed whatever happens: an open one keeps the process from ending.
 
     Zenoh blocks until the first connection, deaf to signals, so it opens in a thread of its own. A node passes
     `wait(seconds) -> stop?` and waits for its router as long as that is False; a tool waits `patience` seconds.
+    With keys the session shows the certificate of `name`.
 
     Raises:
-        BusError: a bad endpoint, or no router in time.
+        BusError: a bad endpoint or certificate, or no router in time.
         NoRouter: `wait` said stop before a router was there.
     """
     opening: Future[zenoh.Session] = Future()
-    config = client_config(connect, namespace)
+    shown = identity_for(connect, name, namespace)
+    config = client_config(connect, namespace, shown=shown)
     Thread(target=_open, args=(config, opening), name="zenoh-open", daemon=True).start()
-    end = monotonic() + patience
+    began = monotonic()
+    asked = began + PROBE_AFTER
     while not opening.done():
-        if wait is None and monotonic() > end:
-            raise NoRouter(f"nothing answers at {connect}; start the robot with `tidybot up`")
+        if wait is None and monotonic() > began + patience:
+            raise NoRouter(
+                _trouble(connect, shown) or f"nothing answers at {connect}; start the robot with `tidybot up`"
+            )
+        if monotonic() > asked:
+            asked = monotonic() + PROBE_PERIOD
+            why = _trouble(connect, shown)
+            if why and wait is None:
+                raise BusError(why)
+            if why:
+                print(f"{name}: {why}", file=sys.stderr, flush=True)
         if wait is None:
             futures_wait([opening], 0.05)
         elif wait(0.05):
@@ -89,6 +156,12 @@ def session(
         raise BusError(f"cannot connect to {connect}: {error}") from None
     with opened:
         yield opened
+
+
+def _trouble(connect: str, shown: "Identity | None") -> str:
+    """Why no router takes us, "" when none is there."""
+    found = (probe.trouble(endpoint, shown) for endpoint in endpoints(connect))
+    return next((why for why in found if why), "")
 
 
 def fetch(opened: zenoh.Session, key: str, payload: bytes = b"", timeout: float = 2.0) -> dict[str, bytes]:

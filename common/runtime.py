@@ -204,8 +204,9 @@ def main(kind: ServiceClass) -> None:
         if clock_name not in ("sim", "wall"):
             raise config.ConfigError(f"TIDYBOT_CLOCK={clock_name}: expected sim or wall")
         clock: SimClock | WallClock = SimClock() if clock_name == "sim" else WallClock()
-        connect = environ.get("TIDYBOT_CONNECT") or bus.DEFAULT_CONNECT
-        with bus.session(connect, environ.get("TIDYBOT_NAMESPACE", ""), wait=stop.wait) as opened:
+        connect = environ.get("TIDYBOT_CONNECT") or bus.default_connect()
+        namespace = environ.get("TIDYBOT_NAMESPACE", "")
+        with bus.session(connect, namespace, wait=stop.wait, name=kind.NAME) as opened:
             _run(Process(kind, parameters, shared, scene, opened, clock, stop), clock)
     except bus.NoRouter:
         sys.exit(0)
@@ -242,7 +243,7 @@ def _arguments(kind: ServiceClass) -> argparse.Namespace:
         description=(kind.__doc__ or "").strip(),
         formatter_class=argparse.RawDescriptionHelpFormatter,
         epilog=f"parameters (config/{kind.NAME}.toml, TIDYBOT__{kind.NAME.upper()}__<KEY>, --set):\n{fields}\n\n"
-        "environment: TIDYBOT_CONNECT, TIDYBOT_NAMESPACE, TIDYBOT_CONFIG_DIR, TIDYBOT_CLOCK=sim|wall",
+        "environment: TIDYBOT_CONNECT, TIDYBOT_NAMESPACE, TIDYBOT_KEYS, TIDYBOT_CONFIG_DIR, TIDYBOT_CLOCK=sim|wall",
     )
     parser.add_argument("--set", action="append", default=[], metavar="section.key=value", help="override a parameter")
     return parser.parse_args()

@@ -1,0 +1,148 @@
+"""`tidybot keys`: a certificate for every service and client, so that each may do only its own part."""
+
+import argparse
+import os
+import re
+from pathlib import Path
+
+import msgspec
+
+from cli.authority import Authority, hosts_of
+from cli.errors import CliError
+from cli.services import NAMES
+from common.access import OPERATOR, ROUTER, Role, Subject
+from common.keys import OFF, default_directory
+
+DAYS = 365.0
+_WORD = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]*")
+
+
+def everybody(namespace: str) -> list[Subject]:
+    """Who a robot consists of: the router, its services, and one operator."""
+    services = [Subject(name=n, namespace=namespace) for n in NAMES if n != ROUTER]
+    router = Subject(name=ROUTER, role="router")
+    return [router, *services, Subject(name=OPERATOR, role="operator", namespace=namespace)]
+
+
+def keys(args: argparse.Namespace) -> int:
+    """The command."""
+    authority = Authority(_directory(args))
+    _check(args)
+    if args.list:
+        return _show(authority, args.json)
+    known = authority.subjects() if authority.exists and not args.force else []
+    wanted = [_client(args)] if args.client and known else everybody(args.namespace)
+    if args.client and not known:
+        wanted.append(_client(args))
+    if args.force and authority.exists:
+        # Everybody who had a certificate gets a new one: the old authority is no longer trusted.
+        wanted = _merged(authority.subjects(), wanted)
+    if known and not args.missing:
+        taken = [s for s in wanted if s.role != "router" and s in known]
+        if taken or (not args.client and not args.namespace):
+            raise CliError(
+                f"there are keys in {authority.directory} already; --missing makes what is not there, "
+                "--force makes all of them anew (every host then needs its new ones), --client NAME adds a client"
+            )
+    if not known:
+        authority.found(max(args.days, DAYS) * 3)
+    made = [s for s in wanted if not known or not authority.has(s)]
+    for subject in made:
+        authority.issue(subject, args.days, hosts_of(args.host))
+    authority.register(_merged(known, wanted))
+    if args.owner is not None:
+        _give(authority, args.owner)
+    _report(authority, made, args)
+    return 0
+
+
+def _check(args: argparse.Namespace) -> None:
+    for word in (args.client, *args.namespace.split("/")):
+        if word and not _WORD.fullmatch(word):
+            raise CliError(f"{word!r}: letters, digits, '_', '.' and '-' only")
+    if args.client in NAMES:
+        raise CliError(f"{args.client} is a service; a client needs another name")
+    if args.days <= 0:
+        raise CliError(f"--days {args.days:g}: expected a positive number")
+    if args.observer and not args.client:
+        raise CliError("--observer goes with --client NAME")
+
+
+def _client(args: argparse.Namespace) -> Subject:
+    role: Role = "observer" if args.observer else "operator"
+    return Subject(name=args.client, role=role, namespace=args.namespace)
+
+
+def _merged(known: list[Subject], more: list[Subject]) -> list[Subject]:
+    by_name = {s.common_name: s for s in (*known, *more)}
+    return list(by_name.values())
+
+
+def _directory(args: argparse.Namespace) -> Path:
+    if args.dir is not None:
+        return Path(args.dir).resolve()
+    given = os.environ.get("TIDYBOT_KEYS", "")
+    return Path(given).resolve() if given not in ("", OFF) else default_directory()
+
+
+def _give(authority: Authority, owner: int) -> None:
+    """Services' keys to the user that containers run as; the rest to whom the directory belongs."""
+    above = authority.directory.stat()
+    private = {authority.directory / "ca"}
+    private |= {
+        authority.directory / s.common_name for s in authority.subjects() if s.role not in ("service", "router")
+    }
+    for folder, _, files in os.walk(authority.directory):
+        path = Path(folder)
+        if path == authority.directory:
+            continue
+        user, group = (above.st_uid, above.st_gid) if path in private else (owner, owner)
+        for one in (path, *(path / f for f in files)):
+            try:
+                os.chown(one, user, group)
+            except PermissionError:
+                raise CliError(f"--owner {owner}: only root can give files away") from None
+
+
+def _report(authority: Authority, made: list[Subject], args: argparse.Namespace) -> None:
+    names = {s.common_name for s in made}
+    rows = [r for r in authority.rows() if r.name in names]
+    if args.json:
+        print(msgspec.json.encode({"directory": str(authority.directory), "made": rows}).decode())
+        return
+    if not made:
+        print(f"nothing was missing in {authority.directory}")
+        return
+    for row in rows:
+        print(f"{row.name:24} {row.role:9} until {row.expires}")
+    print(f"in {authority.directory}; a router that is up must be restarted (`tidybot restart router`)")
+    if args.dir is None and not os.environ.get("TIDYBOT_KEYS"):
+        print("`tidybot up` uses them from now on; TIDYBOT_KEYS=off does without")
+
+
+def _show(authority: Authority, as_json: bool) -> int:
+    if not authority.exists:
+        raise CliError(f"no keys in {authority.directory}; `tidybot keys` makes them")
+    rows = authority.rows()
+    if as_json:
+        print(msgspec.json.encode(rows).decode())
+        return 0
+    for row in rows:
+        print(f"{row.name:24} {row.role:9} until {row.expires}  {row.folder}")
+    return 0
+
+
+def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+    parser = commands.add_parser("keys", help="certificates: each service and client may do only its own part")
+    parser.add_argument("--dir", metavar="DIR", help="where (default: TIDYBOT_KEYS, TIDYBOT_KEYS_DIR, or run/keys)")
+    parser.add_argument("--client", metavar="NAME", default="", help="add a client: a person's laptop, a tool")
+    parser.add_argument("--observer", action="store_true", help="that client may only look")
+    parser.add_argument("--namespace", metavar="NAME", default="", help="for the robot of that namespace")
+    parser.add_argument("--host", action="append", default=[], metavar="NAME", help="the router's name or address")
+    parser.add_argument("--days", type=float, default=DAYS, metavar="N", help="validity (default %(default)s)")
+    parser.add_argument("--missing", action="store_true", help="make what is not there, keep the rest")
+    parser.add_argument("--force", action="store_true", help="a new authority and new certificates for everybody")
+    parser.add_argument("--owner", type=int, metavar="UID", help="give the services' keys to this user (containers)")
+    parser.add_argument("--list", action="store_true", help="what there is, and until when")
+    parser.add_argument("--json", action="store_true")
+    parser.set_defaults(run=keys)

@@ -1,0 +1,259 @@
+"""Certificates and access control with a real router: every pair of certificate and key, allowed or denied."""
+
+import importlib
+import os
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Any
+
+import pytest
+import zenoh
+
+from cli.main import main as tidybot
+from cli.services import NAMES
+from common import bus, topics
+from tests.support import Site, eventually
+
+SERVICES = tuple(n for n in NAMES if n != "router")
+LAST = "service/test/health"
+PER_SERVICE = ("service/{}/health", "log/{}")
+QUESTIONS = {
+    topics.BRAIN_MISSIONS: "brain", topics.SIM_RESET: "sim", topics.SIM_PAUSE: "sim", topics.SIM_SNAPSHOT: "sim",
+    topics.SIM_TRUTH: "sim",
+}  # fmt: skip
+KEYS = [t.key for t in topics.TABLE] + [k.format(n) for n in SERVICES for k in PER_SERVICE] + list(QUESTIONS)
+SUBJECTS = (*SERVICES, "operator", "looker")
+
+
+def kind(name: str) -> Any:
+    """The service class itself: expectations come from it, not from the table that the access control is made of."""
+    module = importlib.import_module(f"services.{name}.service")
+    return next(v for v in vars(module).values() if isinstance(v, type) and getattr(v, "NAME", None) == name)
+
+
+def may_write(subject: str) -> set[str]:
+    if subject == "looker":
+        return set()
+    if subject == "operator":
+        return {t.key for t in topics.TABLE if "*" in t.writers}
+    clock = topics.SIM_CLOCK if subject == "sim" else topics.LOCKSTEP_ACK
+    own = {t.key for t in topics.TABLE if subject in t.writers} | {t.key for t in kind(subject).WRITES}
+    return own | {clock.key} | {k.format(subject) for k in PER_SERVICE}
+
+
+def may_read(subject: str) -> set[str]:
+    if subject in ("operator", "looker"):
+        return set(KEYS)
+    clock = topics.LOCKSTEP_ACK if subject == "sim" else topics.SIM_CLOCK
+    read = {t.key for t in kind(subject).READS if t.key in topics.BY_KEY}
+    return read | {clock.key} | {f"service/{n}/health" for n in SERVICES}
+
+
+def may_ask(subject: str) -> set[str]:
+    if subject == "operator":
+        return set(KEYS)
+    if subject == "looker":
+        changing = {topics.SIM_RESET, topics.SIM_PAUSE, topics.SIM_SNAPSHOT}
+        return set(KEYS) - changing - {f"log/{n}" for n in SERVICES}
+    return may_read(subject)
+
+
+def may_answer(subject: str) -> set[str]:
+    if subject in ("operator", "looker"):
+        return set()
+    latched = {t.key for t in topics.TABLE if t.latched and subject in t.writers}
+    return latched | {k for k, n in QUESTIONS.items() if n == subject} | {f"service/{subject}/health"}
+
+
+@pytest.fixture(scope="module")
+def directory(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    made = tmp_path_factory.mktemp("security") / "keys"
+    for words in ([], ["--client", "looker", "--observer"], ["--namespace", "kitchen"]):
+        assert tidybot(["keys", "--dir", str(made), *words]) == 0
+    return made
+
+
+class Guarded(Site):
+    """A router that takes certificates only."""
+
+    def __init__(self, log_dir: Path, keys: Path) -> None:
+        super().__init__(log_dir)
+        self.namespace, self.keys = "", keys
+        self.connect = f"tls/127.0.0.1:{self.port}"
+
+    def environment(self, **extra: str) -> dict[str, str]:
+        return super().environment(**{"TIDYBOT_KEYS": str(self.keys), **extra})
+
+    def open(self, stack: ExitStack, name: str, namespace: str = "") -> zenoh.Session:
+        return stack.enter_context(bus.session(self.connect, namespace, name=name, patience=20))
+
+
+@pytest.fixture(scope="module")
+def guarded(directory: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Guarded]:
+    before = os.environ.get("TIDYBOT_KEYS")
+    os.environ["TIDYBOT_KEYS"] = str(directory)
+    opened = Guarded(tmp_path_factory.mktemp("router"), directory)
+    try:
+        opened.start_router()
+        yield opened
+    finally:
+        opened.close()
+        if before is None:
+            del os.environ["TIDYBOT_KEYS"]
+        else:
+            os.environ["TIDYBOT_KEYS"] = before
+
+
+Opener = Callable[[ExitStack, str], zenoh.Session]
+
+
+def heard_puts(open_session: Opener) -> set[tuple[str, str]]:
+    """(subject, key) of every message that came through when every subject sends on every key."""
+    got: set[tuple[str, str]] = set()
+    with ExitStack() as stack:
+        witness = open_session(stack, "router")
+        witness.declare_subscriber("**", lambda s: got.add((s.payload.to_string(), str(s.key_expr))))
+        witness.declare_queryable(LAST, lambda query: query.reply(LAST, b"here"))
+        for subject in SUBJECTS:
+            session = open_session(stack, subject)
+            eventually(lambda s=session: bus.fetch(s, LAST), "the witness answers")
+            for key in KEYS:
+                session.put(key, subject)
+            # A question follows what was sent before it, so its answer says that everything has arrived.
+            assert bus.fetch(session, LAST, timeout=20.0)
+    return got
+
+
+def test_every_certificate_publishes_its_own_keys_and_no_other(guarded: Guarded) -> None:
+    got = heard_puts(guarded.open)
+    for subject in SUBJECTS:
+        assert {k for s, k in got if s == subject} == may_write(subject), subject
+
+
+def test_without_access_control_everything_would_come_through(here: Site, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("TIDYBOT_KEYS", "off")
+
+    def plain(stack: ExitStack, name: str) -> zenoh.Session:
+        return stack.enter_context(bus.session(here.connect))
+
+    assert heard_puts(plain) == {(s, k) for s in SUBJECTS for k in KEYS}, "or the tests above would show nothing"
+
+
+def test_every_certificate_receives_its_own_keys_and_no_other(guarded: Guarded) -> None:
+    got: set[tuple[str, str, str]] = set()
+
+    def listen(session: zenoh.Session, subject: str) -> None:
+        def note(sample: zenoh.Sample) -> None:
+            got.add((subject, str(sample.key_expr), sample.payload.to_string()))
+
+        for key in (*KEYS, "**", "brain/**", LAST):
+            session.declare_subscriber(key, note)
+
+    with ExitStack() as stack:
+        witness = guarded.open(stack, "router")
+        for subject in SUBJECTS:
+            listen(guarded.open(stack, subject), subject)
+
+        def all_hear(word: str) -> bool:
+            witness.put(LAST, word)
+            return all((s, LAST, word) in got for s in SUBJECTS)
+
+        eventually(lambda: all_hear("begin"), "everybody listens")
+        for key in KEYS:
+            witness.put(key, "secret")
+        eventually(lambda: all_hear("end"), "everything has arrived")
+    for subject in SUBJECTS:
+        assert {k for s, k, word in got if s == subject and word == "secret"} == may_read(subject), subject
+
+
+def test_every_certificate_asks_and_answers_its_own_keys_and_no_other(guarded: Guarded) -> None:
+    asked: set[tuple[str, str]] = set()
+    answered: set[tuple[str, str]] = set()
+
+    def reply(query: zenoh.Query) -> None:
+        key = str(query.key_expr)
+        if query.payload is not None:
+            asked.add((query.payload.to_string(), key))
+        query.reply(key, b"x")
+
+    with ExitStack() as stack:
+        witness = guarded.open(stack, "router")
+        serving = witness.declare_queryable("**", reply)
+        sessions = {s: guarded.open(stack, s) for s in SUBJECTS}
+        for subject, session in sessions.items():
+            eventually(lambda s=session: bus.fetch(s, LAST), "the witness answers")
+            for key in KEYS:
+                session.get(key, lambda reply: None, payload=subject, timeout=2.0)
+            assert bus.fetch(session, LAST, timeout=20.0)
+        serving.undeclare()
+        for subject, session in sessions.items():
+
+            def tell(query: zenoh.Query, name: str = subject) -> None:
+                query.reply(query.key_expr, name)
+
+            for key in KEYS:
+                session.declare_queryable(key, tell)
+        expected = {(s, k) for s in SUBJECTS for k in may_answer(s)}
+
+        def ask_all() -> bool:
+            done = threading.Semaphore(0)
+            for key in KEYS:
+
+                def note(answer: zenoh.Reply, key: str = key) -> None:
+                    if answer.ok is not None:
+                        answered.add((answer.ok.payload.to_string(), key))
+                    done.release()
+
+                witness.get(key, note, target=zenoh.QueryTarget.ALL, consolidation=zenoh.ConsolidationMode.NONE)
+            return expected <= answered
+
+        eventually(ask_all, "everybody answers")
+    for subject in SUBJECTS:
+        assert {k for s, k in asked if s == subject} == may_ask(subject), subject
+    assert answered == expected
+
+
+def test_a_certificate_shows_only_itself_as_alive(guarded: Guarded) -> None:
+    with ExitStack() as stack:
+        witness = guarded.open(stack, "router")
+        kept = []
+        for subject in SUBJECTS:
+            session = guarded.open(stack, subject)
+            kept += [session.liveliness().declare_token(f"service/{n}/alive") for n in (*SERVICES, "ear")]
+
+        def alive() -> set[str]:
+            replies = witness.liveliness().get("service/*/alive", timeout=5.0)
+            return {str(r.ok.key_expr).split("/")[1] for r in replies if r.ok is not None}
+
+        eventually(lambda: alive() == {*SERVICES, "ear"}, "everybody is alive")
+    with ExitStack() as stack:
+        witness, speech = guarded.open(stack, "router"), guarded.open(stack, "speech")
+        kept = [speech.liveliness().declare_token(f"service/{n}/alive") for n in SERVICES]
+        eventually(lambda: alive() == {"speech"}, "one token, and only one")
+
+
+def test_a_robot_does_not_reach_into_another(guarded: Guarded) -> None:
+    got: set[tuple[str, str]] = set()
+    with ExitStack() as stack:
+        ours, theirs = guarded.open(stack, "operator"), guarded.open(stack, "operator", "kitchen")
+        elsewhere = zenoh.Locality.REMOTE
+        ours.declare_subscriber("**", lambda s: got.add(("ours", str(s.key_expr))), allowed_origin=elsewhere)
+        theirs.declare_subscriber("**", lambda s: got.add(("theirs", str(s.key_expr))), allowed_origin=elsewhere)
+        speech = guarded.open(stack, "speech", "kitchen")
+        home = guarded.open(stack, "speech")
+
+        def both() -> bool:
+            speech.put("speech/status", "kitchen")
+            home.put("speech/status", "home")
+            ours.put("kitchen/robot/stop", "reach")
+            return {("ours", "speech/status"), ("theirs", "speech/status")} <= got
+
+        eventually(both, "each robot hears itself")
+        # What was sent before an answer has arrived.
+        guarded.open(stack, "router").declare_queryable(LAST, lambda query: query.reply(LAST, b""))
+        eventually(lambda: bus.fetch(ours, LAST), "everything has arrived")
+        both()
+        assert bus.fetch(ours, LAST)
+    assert got == {("ours", "speech/status"), ("theirs", "speech/status")}
