@@ -103,6 +103,30 @@ class ObjectSpec(_Strict, frozen=True):
     on: str = ""
 
 
+class Obstacle(_Strict, frozen=True):
+    """Something in the simulated world that the robot's map does not have.
+
+    It stands at `position`, turned by `yaw`; `size` is its full extent. With a `path` it goes from there along these
+    points at `speed`: after `start` seconds, and, if `near` is set, once the robot is so near to its place or path.
+    `repeat`: to and fro for ever, else it stays at the end. `polite`: it waits while the robot is in its way.
+    With `placed = false` it is there only when `sim.obstacles` names it.
+    """
+
+    name: str
+    position: Vec2
+    kind: Literal["box", "cylinder"] = "cylinder"
+    size: Vec3 = (0.4, 0.4, 1.65)
+    yaw: float = 0.0
+    path: tuple[Vec2, ...] = ()
+    speed: float = 0.6
+    start: float = 0.0
+    near: float = 0.0
+    repeat: bool = False
+    polite: bool = True
+    placed: bool = True
+    rgba: Rgba = (0.55, 0.35, 0.60, 1.0)
+
+
 class Scene(_Strict, frozen=True):
     """A whole apartment."""
 
@@ -116,6 +140,7 @@ class Scene(_Strict, frozen=True):
     places: tuple[Place, ...] = ()
     receptacles: tuple[Receptacle, ...] = ()
     objects: tuple[ObjectSpec, ...] = ()
+    obstacles: tuple[Obstacle, ...] = ()
     delivery: str = ""
 
     def receptacle(self, name: str) -> Receptacle | None:
@@ -164,6 +189,7 @@ def _check(scene: Scene, path: Path) -> None:
         ("receptacle", [r.name for r in scene.receptacles]),
         ("object", [o.name for o in scene.objects]),
         ("place", [p.name for p in scene.places]),
+        ("obstacle", [o.name for o in scene.obstacles]),
     ):
         doubled = sorted({n for n in names if names.count(n) > 1})
         if doubled:

@@ -1,25 +1,15 @@
 """Parameters of the simulation."""
 
-from typing import Literal
-
 from common.config import Config
-
-
-class Obstacle(Config, frozen=True):
-    """Something the static map does not have: stands at its first waypoint, or walks the waypoints to and fro."""
-
-    name: str
-    kind: Literal["box", "cylinder"] = "cylinder"
-    size: tuple[float, float, float] = (0.4, 0.4, 1.6)
-    waypoints: tuple[tuple[float, float], ...] = ()
-    speed: float = 0.0
+from common.scene import Obstacle
 
 
 class SimConfig(Config, frozen=True):
     """`speed` is `realtime`, a factor, or `max`; `wait_for` names the participants that lockstep waits for.
 
     Wheel odometry: `slip` is the largest constant scale error, `veer` the largest constant turn [rad/m],
-    `noise` a random walk [m and rad per sqrt(m)].
+    `noise` a random walk [m and rad per sqrt(m)]. `obstacles`: tables, or names of the scene's; `none`: not even those
+    that the scene places.
     """
 
     speed: str = "realtime"
@@ -36,5 +26,5 @@ class SimConfig(Config, frozen=True):
     odometry_slip: float = 0.02
     odometry_veer: float = 0.005
     odometry_noise: float = 0.005
-    obstacles: tuple[Obstacle, ...] = ()
+    obstacles: tuple[Obstacle | str, ...] | str = ()
     snapshot_dir: str = ""

@@ -6,10 +6,11 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from common.scene import Scene
+from common.scene import Obstacle, Scene
 from services.sim import objects, robot
-from services.sim.config import Obstacle
+from services.sim.contacts import Contacts
 from services.sim.layout import Placement, place_objects
+from services.sim.obstacles import Obstacles, body_xml
 from services.sim.world import world_mjcf
 
 SUBSTEPS = 5
@@ -23,8 +24,7 @@ class Physics:
     def __init__(self, scene: Scene, seed: int, obstacles: tuple[Obstacle, ...] = ()) -> None:
         self.scene, self.seed = scene, seed
         self.placements: list[Placement] = place_objects(scene, seed)
-        self.obstacles = obstacles
-        self.mjcf = world_mjcf(scene, self.placements, "".join(_mocap(o) for o in obstacles))
+        self.mjcf = world_mjcf(scene, self.placements, "".join(map(body_xml, obstacles)))
         self.model: Any = mujoco.MjModel.from_xml_string(self.mjcf)
         self.model.opt.enableflags |= mujoco.mjtEnableBit.mjENBL_SLEEP
         self.data: Any = mujoco.MjData(self.model)
@@ -48,6 +48,8 @@ class Physics:
         self.bodies = {p.spec.name: model.body(objects.body_name(p.spec)).id for p in self.placements}
         self.gripper_bodies = {model.body(n).id for n in ("gripper", "left_finger", "right_finger")}
         self.robot_bodies = {b for b in range(model.nbody) if model.body_rootid[b] == model.body("base").id}
+        self.contacts = Contacts(self.model, self.robot_bodies)
+        self.obstacles = Obstacles(obstacles, self.model)
         self.reset()
 
     def reset(self) -> None:
@@ -61,6 +63,8 @@ class Physics:
             self.data.qpos[at : at + 3] = p.position
             self.data.qpos[at + 3 : at + 7] = (np.cos(p.yaw / 2), 0, 0, np.sin(p.yaw / 2))
         mujoco.mj_step(self.model, self.data, SETTLE_STEPS)
+        self.contacts.forget()
+        self.obstacles.reset()
 
     def reseed(self, seed: int) -> None:
         """Another layout in the same world."""
@@ -109,13 +113,6 @@ class Physics:
         mujoco.mj_setState(self.model, self.data, state, _STATE)
         mujoco.mj_forward(self.model, self.data)
 
-    def move_obstacles(self, t: float) -> None:
-        """Put every moving obstacle where it is at robot time t."""
-        for n, obstacle in enumerate(self.obstacles):
-            if obstacle.speed > 0 and len(obstacle.waypoints) > 1:
-                x, y = _along(obstacle, t)
-                self.data.mocap_pos[n, :2] = (x, y)
-
 
 def _view(array: Any, at: NDArray[np.int64]) -> NDArray[np.float64]:
     """The entries `at` of an array of MjData, which must lie side by side, as a view that stays current."""
@@ -123,23 +120,3 @@ def _view(array: Any, at: NDArray[np.int64]) -> NDArray[np.float64]:
         raise ValueError("the robot's joints and actuators must come first in the model, in order")
     found: NDArray[np.float64] = array[at[0] : at[-1] + 1]
     return found
-
-
-def _mocap(obstacle: Obstacle) -> str:
-    sx, sy, sz = (v / 2 for v in obstacle.size)
-    x, y = obstacle.waypoints[0] if obstacle.waypoints else (0.0, 0.0)
-    size = f"{sx} {sz}" if obstacle.kind == "cylinder" else f"{sx} {sy} {sz}"
-    return (
-        f'<body name="{obstacle.name}" mocap="true" pos="{x} {y} {sz}"><geom type="{obstacle.kind}" size="{size}" '
-        'rgba="0.6 0.3 0.6 1" contype="1" conaffinity="3"/></body>'
-    )
-
-
-def _along(obstacle: Obstacle, t: float) -> tuple[float, float]:
-    """The point of a to-and-fro walk at time t."""
-    points = np.array(obstacle.waypoints)
-    points = np.concatenate([points, points[-2:0:-1], points[:1]])
-    lengths = np.hypot(*np.diff(points, axis=0).T)
-    travelled = (t * obstacle.speed) % max(lengths.sum(), 1e-9)
-    ends = np.concatenate([[0.0], np.cumsum(lengths)])
-    return float(np.interp(travelled, ends, points[:, 0])), float(np.interp(travelled, ends, points[:, 1]))

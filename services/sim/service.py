@@ -17,6 +17,7 @@ from services.sim.arm import ArmDriver
 from services.sim.base import BaseDriver
 from services.sim.config import SimConfig
 from services.sim.lidar import RANGE_MAX, RANGE_MIN, RAYS, Lidar
+from services.sim.obstacles import chosen
 from services.sim.odometry import WheelOdometry
 from services.sim.physics import Physics
 from services.sim.viewer import Viewer
@@ -54,7 +55,7 @@ class SimService:
         self._speed = _speed(config.speed)
         self.paused = False
         self.start_time = 0.0
-        self.physics = Physics(io.scene, io.seed, config.obstacles)
+        self.physics = Physics(io.scene, io.seed, chosen(io.scene, config.obstacles))
         self._lidar = Lidar(self.physics.model, self.physics.lidar_site, config.lidar_noise, io.rng)
         self._viewer = Viewer(self.physics) if config.viewer else None
         self._tick = 0
@@ -126,9 +127,11 @@ class SimService:
         after = np.empty(10)
         after[:3] = self._base.advance((x, y, yaw), self._believed, now, DT)
         after[3:] = self._arm.advance(now, DT)
-        if physics.obstacles:
-            physics.move_obstacles(now + DT)
+        physics.obstacles.advance(physics.data, (x, y), DT)
+        moving = bool((after != self._setpoint).any()) or physics.obstacles.moving
         physics.advance(self._setpoint, after)
+        if moving:
+            physics.contacts.note(physics.data, now + DT)
         self._setpoint = after
         self._tick += 1
         self._publish(now + DT)

@@ -78,4 +78,13 @@ def report(physics: Physics, t: float, epoch: str) -> dict[str, Any]:
         for r in scene.receptacles
     }
     base = [float(v) for v in data.qpos[physics.qpos_at[:3]]]
-    return {"t": t, "epoch": epoch, "base": base, "holding": held, "objects": found, "goal_regions": regions}
+    return {
+        "t": t,
+        "epoch": epoch,
+        "base": base,
+        "holding": held,
+        "objects": found,
+        "goal_regions": regions,
+        "obstacles": physics.obstacles.report(data),
+        "contacts": physics.contacts.report(),
+    }

@@ -76,7 +76,7 @@ def test_objects_stay_where_they_were_put(seed: int) -> None:
 
 def test_truth_has_the_fields_of_the_wire() -> None:
     truth = World().truth()
-    assert set(truth) == {"t", "epoch", "base", "holding", "objects", "goal_regions"}
+    assert set(truth) == {"t", "epoch", "base", "holding", "objects", "goal_regions", "obstacles", "contacts"}
     assert truth["holding"] is None and truth["base"] == pytest.approx([0, 0, 0], abs=1e-6)
     mug = truth["objects"]["red mug"]  # type: ignore[index]
     assert set(mug) == {"kind", "colour", "position", "quaternion", "on", "touching_gripper"}
