@@ -4,6 +4,7 @@ import argparse
 import contextlib
 import os
 import signal
+import uuid
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from types import FrameType
@@ -38,6 +39,8 @@ class Plan:
         self.connect = f"tcp/127.0.0.1:{self.port}"
         settings = {"OMP_NUM_THREADS": "1", "PYTHONUNBUFFERED": "1"}
         settings["TIDYBOT_CONNECT"], settings["TIDYBOT_NAMESPACE"] = self.connect, self.namespace
+        settings["TIDYBOT_STATE_DIR"] = os.environ.get("TIDYBOT_STATE_DIR") or str(run_dir())
+        settings["TIDYBOT__BRAIN__RUN"] = uuid.uuid4().hex
         if args.scene:
             settings["TIDYBOT__RUNTIME__SCENE"] = args.scene
         if args.seed is not None:

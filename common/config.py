@@ -1,6 +1,7 @@
 """Configuration: TOML files, environment and `--set`, checked against frozen structs before anything starts."""
 
 import os
+import re
 import tomllib
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -63,6 +64,16 @@ def overrides(environ: Mapping[str, str], settings: Iterable[str]) -> dict[str, 
 def config_dir(environ: Mapping[str, str] = os.environ) -> Path:
     """Where the TOML files are: TIDYBOT_CONFIG_DIR or the project's own `config/`."""
     return Path(environ["TIDYBOT_CONFIG_DIR"]) if environ.get("TIDYBOT_CONFIG_DIR") else DEFAULT_DIR
+
+
+def state_dir(environ: Mapping[str, str], connect: str, namespace: str) -> Path:
+    """Where processes keep what outlives them: TIDYBOT_STATE_DIR, or a folder for each robot and router."""
+    if environ.get("TIDYBOT_STATE_DIR"):
+        return Path(environ["TIDYBOT_STATE_DIR"])
+    base = DEFAULT_DIR.parent / "run"
+    if not os.access(base if base.exists() else base.parent, os.W_OK):
+        base = Path(environ.get("XDG_STATE_HOME") or Path.home() / ".local" / "state") / "tidybot"
+    return base / "state" / re.sub(r"[^\w.-]+", "-", f"{namespace or 'robot'}-{connect}")
 
 
 def load(section: str, kind: type[S], directory: Path, changes: Mapping[str, Mapping[str, tuple[Any, str]]]) -> S:

@@ -5,6 +5,7 @@ import os
 import sys
 import traceback
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 import msgspec
@@ -40,6 +41,7 @@ class Process:
         opened: zenoh.Session,
         clock: Clock,
         stop: StopSignal,
+        state_dir: Path,
     ) -> None:
         self._kind, self._session, self._clock, self._stop = kind, opened, clock, stop
         self.io = bus.ZenohIo(
@@ -53,6 +55,7 @@ class Process:
             clock=clock,
             log_level=shared.log_level,
         )
+        self.io.state_dir = state_dir
         self._health = opened.declare_publisher(topics.HEALTH_KEY.format(name=kind.NAME), encoding=codec.JSON)
         self._last_health = b""
         self._health_queryable = opened.declare_queryable(self._health.key_expr, self._answer_health)
@@ -207,7 +210,8 @@ def main(kind: ServiceClass) -> None:
         connect = environ.get("TIDYBOT_CONNECT") or bus.default_connect()
         namespace = environ.get("TIDYBOT_NAMESPACE", "")
         with bus.session(connect, namespace, wait=stop.wait, name=kind.NAME) as opened:
-            _run(Process(kind, parameters, shared, scene, opened, clock, stop), clock)
+            state_dir = config.state_dir(environ, connect, namespace)
+            _run(Process(kind, parameters, shared, scene, opened, clock, stop, state_dir), clock)
     except bus.NoRouter:
         sys.exit(0)
     except (config.ConfigError, SceneError, bus.BusError, StartError) as error:

@@ -55,6 +55,7 @@ class Site:
             **clean,
             "PYTHONPATH": str(ROOT),
             "OMP_NUM_THREADS": "1",
+            "TIDYBOT_STATE_DIR": str(self.log_dir / "state"),
             "TIDYBOT_CONNECT": self.connect,
             "TIDYBOT_NAMESPACE": self.namespace,
             **extra,
