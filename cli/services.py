@@ -19,7 +19,9 @@ SERVICES = (
     Service("navigation", "services.navigation"),
     Service("manipulation", "services.manipulation"),
     Service("speech", "services.speech"),
+    Service("planner", "services.planner"),
     Service("brain", "services.brain"),
+    Service("dashboard", "services.dashboard", paced=False),
 )
 NAMES = tuple(s.name for s in SERVICES)
 SECTIONS = ("runtime", *(n for n in NAMES if n != "router"))

@@ -97,13 +97,17 @@ class TypedText(Message):
 
 
 class AudioChunk(Message):
-    """Mono int16 little-endian samples that start at robot time `t`; `end` marks the last chunk."""
+    """Mono int16 little-endian samples that start at robot time `t`; `end` marks the last chunk.
+
+    `addressed`: the speaker means the robot (push-to-talk), so that no wake word is needed.
+    """
 
     t: float
     data: bytes
     rate: int = 16000
     seq: int = 0
     end: bool = False
+    addressed: bool = False
 
 
 class NavigationGoal(Message):
@@ -230,17 +234,23 @@ class PlanStep(Message):
 
 
 class PlanRequest(Message):
+    """`done`: steps already carried out for this command, from a sender that asks again after a plan marked `again`."""
+
     id: str
     command: str
     world: KnownWorld = msgspec.field(default_factory=KnownWorld)
     rejected: RejectedPlan | None = None
+    done: list["PlanStep"] | None = None
 
 
 class ActionPlan(Message):
+    """`again`: these steps only go and look; the command has to be planned anew with what they show."""
+
     request_id: str
     steps: list[PlanStep]
     source: str = ""
     detail: str = ""
+    again: bool = False
 
 
 class ObjectQuery(Message):
@@ -443,6 +453,12 @@ class Rgbd(Message):
     rgb: bytes
     depth: bytes
     backend: str = ""
+
+
+class PageStatus(Message):
+    """Where the operator's page is."""
+
+    url: str
 
 
 # --- every process --------------------------------------------------------------------------------

@@ -17,7 +17,7 @@ from tests.compose.mission import carry_out
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 PROJECT, IMAGE, BASE = "tidybot-test", "tidybot-zenoh:dev", "tidybot-base"
-NODES = ("sim", "camera", "navigation", "manipulation", "speech", "brain")
+NODES = ("sim", "camera", "navigation", "manipulation", "speech", "planner", "brain")
 SPEED = "2"
 
 

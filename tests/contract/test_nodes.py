@@ -14,11 +14,12 @@ from common import messages as m
 from services.camera.service import CameraService
 from services.manipulation.service import ManipulationService
 from services.navigation.service import NavigationService
+from services.planner.service import PlannerService
 from services.sim.service import SimService
 from services.speech.service import SpeechService
 from tests.support import Site, eventually
 
-NODES = (SimService, NavigationService, ManipulationService, SpeechService, CameraService)
+NODES = (SimService, NavigationService, ManipulationService, SpeechService, CameraService, PlannerService)
 
 
 class Peer:

@@ -17,11 +17,11 @@ from common import bus
 from tests.compose.mission import carry_out
 from tests.support import ROOT, eventually, free_port
 
-NODES = ("sim", "camera", "navigation", "manipulation", "speech", "brain")
+NODES = ("sim", "camera", "navigation", "manipulation", "speech", "planner", "brain")
 SHELL = {
     "TIDYBOT_SPEED": "8",
     "TIDYBOT_LOCKSTEP": "true",
-    "TIDYBOT_WAIT_FOR": '["camera", "navigation", "manipulation", "speech", "brain"]',
+    "TIDYBOT_WAIT_FOR": '["camera", "navigation", "manipulation", "speech", "planner", "brain"]',
 }
 
 

@@ -1,0 +1,32 @@
+"""Parameters of the planner: where things go, what words mean beyond the scene's, and the optional language model."""
+
+from typing import Literal
+
+from common.config import Config
+
+
+class Rule(Config, frozen=True):
+    """Things of these kinds and colours (empty: any) go to the first of `to` that the scene has: a name or a kind."""
+
+    to: tuple[str, ...]
+    kinds: tuple[str, ...] = ()
+    colours: tuple[str, ...] = ()
+
+
+class PlannerConfig(Config, frozen=True):
+    """`tidy` and `throw` are tried in order; `groups` are words for several kinds. Times in seconds."""
+
+    backend: Literal["grammar", "llm"] = "grammar"
+    tidy: tuple[Rule, ...] = ()
+    throw: tuple[Rule, ...] = ()
+    groups: dict[str, tuple[str, ...]] = {}
+    colours: dict[str, str] = {}
+    set_down: tuple[str, ...] = ("counter", "table", "shelf")
+    max_steps: int = 60
+    fresh: float = 5.0
+    llm_url: str = "http://127.0.0.1:8081/v1"
+    llm_model: str = "local"
+    llm_key_variable: str = "OPENAI_API_KEY"
+    llm_timeout: float = 12.0
+    llm_tries: int = 2
+    llm_seconds: float = 2.0

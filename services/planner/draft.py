@@ -1,0 +1,178 @@
+"""A plan in the making: the steps so far and the world as they will have left it. Pure."""
+
+import msgspec
+
+from common.messages import PlanStep
+from common.scene import Receptacle
+from services.planner.choices import Choices
+from services.planner.config import PlannerConfig, Rule
+from services.planner.vocabulary import Spot, Vocabulary
+from services.planner.words import listed
+from services.planner.world import Thing, World
+
+
+class Refusal(Exception):
+    """Why there is no plan, as a clause that can be spoken after "I cannot do that:"."""
+
+
+class LookFirst(Exception):
+    """The command needs sight of something: carry out these steps and ask again."""
+
+    def __init__(self, steps: list[PlanStep]) -> None:
+        super().__init__("look first")
+        self.steps = steps
+
+
+class Draft:
+    """`done`: the steps already carried out for this command by a sender who asks again, None for one who does not."""
+
+    def __init__(
+        self,
+        world: World,
+        vocabulary: Vocabulary,
+        config: PlannerConfig,
+        choices: Choices,
+        done: list[PlanStep] | None = None,
+    ) -> None:
+        self.world, self.vocabulary, self.config, self.choices, self.done = world, vocabulary, config, choices, done
+        self.steps: list[PlanStep] = []
+        self.last: list[Thing] = []
+        self.spot: Spot | None = None
+        self.moved = False
+        self._found: set[str] = set()
+
+    def fork(self) -> "Draft":
+        """A copy to try something on; its choices count only when it is adopted."""
+        other = Draft(self.world.copy(), self.vocabulary, self.config, self.choices.fork(), self.done)
+        other.steps, other.last, other.spot = list(self.steps), list(self.last), self.spot
+        other.moved, other._found = self.moved, set(self._found)
+        return other
+
+    def adopt(self, other: "Draft") -> None:
+        self.world, self.steps, self.last, self.spot = other.world, other.steps, other.last, other.spot
+        self.moved, self._found = other.moved, other._found
+        self.choices.taken = other.choices.taken
+
+    # --- steps
+    def say(self, text: str) -> None:
+        self.steps.append(PlanStep(action="say", text=text))
+
+    def wait(self) -> None:
+        self.steps.append(PlanStep(action="wait"))
+
+    def go(self, spot: Spot) -> None:
+        self.spot = spot
+        self.moved = True
+        self.steps.append(PlanStep(action="return") if spot.home else PlanStep(action="navigate", target=spot.name))
+
+    def approach(self, thing: Thing) -> None:
+        """Find a thing and drive up to it."""
+        self.find(thing)
+        self.moved = True
+        self.steps.append(PlanStep(action="navigate", object=thing.label))
+
+    def find(self, thing: Thing, words: str = "") -> None:
+        """`words` are the whole phrase where the label alone does not tell which one is meant."""
+        self.last = [thing]
+        if thing.label not in self._found:
+            self._found.add(thing.label)
+            self.steps.append(PlanStep(action="find", object=thing.label, text=words))
+            self.moved = True
+
+    def take(self, thing: Thing, words: str = "") -> None:
+        """Have it in the hand; what else is there is put down first."""
+        held = self.world.held
+        if held is not None and held.label == thing.label:
+            self.last = [held]
+            return
+        if held is not None:
+            self.place(self._set_down(held))
+        self.find(thing, words)
+        self.steps.append(PlanStep(action="grasp", object=thing.label))
+        self.world.grasp(thing.label)
+        self.last = [thing]
+
+    def place(self, receptacle: Receptacle) -> None:
+        """Put what is held there."""
+        held = self._held()
+        self.steps.append(PlanStep(action="place", object=held.label, target=receptacle.name))
+        self.world.put(receptacle.name)
+        self._found.discard(held.label)
+        self.last, self.spot, self.moved = [held], Spot(receptacle.name, receptacle=receptacle), True
+
+    def hand_over(self) -> None:
+        """Bring what is held to where the person is."""
+        self._held()
+        self.steps.append(PlanStep(action="return"))
+        self.release()
+        self.moved = True
+
+    def release(self) -> None:
+        """Put what is held down within reach."""
+        held = self._held()
+        self.steps.append(PlanStep(action="release"))
+        self.world.put("")
+        self._found.discard(held.label)
+        self.last = [held]
+
+    def _held(self) -> Thing:
+        held = self.world.held
+        if held is None:
+            raise Refusal("there is nothing in my hand")
+        return held
+
+    # --- where things go
+    def destination(self, thing: Thing, rules: tuple[Rule, ...]) -> Receptacle:
+        """By the first rule that fits the thing and the scene."""
+        for rule in rules:
+            if (rule.kinds and thing.kind not in rule.kinds) or (rule.colours and thing.colour not in rule.colours):
+                continue
+            if options := self._named(rule.to):
+                return self.choices.pick(options)
+        raise Refusal(f"I do not know where the {thing.label} goes")
+
+    def in_room(self, room: str) -> Receptacle:
+        """A surface of a room to put something on."""
+        found = self.vocabulary.surfaces(room)
+        order = {kind: i for i, kind in enumerate(self.config.set_down)}
+        options = sorted((r for r in found if r.kind in order), key=lambda r: order[r.kind])
+        if not options:
+            raise Refusal(f"there is nothing in the {room} to put things on")
+        return self.choices.pick(options)
+
+    def _set_down(self, held: Thing) -> Receptacle:
+        """The nearest surface for something that is in the way."""
+        x, y, _ = self.world.pose
+        found = sorted(self.vocabulary.surfaces(), key=lambda r: (r.center[0] - x) ** 2 + (r.center[1] - y) ** 2)
+        if not found:
+            raise Refusal(f"I am holding the {held.label} and see no place to put it down")
+        return self.choices.pick(found)
+
+    def _named(self, wanted: tuple[str, ...]) -> list[Receptacle]:
+        scene = self.world.scene
+        found: list[Receptacle] = []
+        for name in wanted:
+            exact = scene.receptacle(name)
+            found += [exact] if exact else [r for r in scene.receptacles if r.kind == name and r.spawn]
+        return list(dict.fromkeys(found))
+
+    # --- looking first
+    def look_first(self, spots: list[Receptacle], reason: str) -> None:
+        """Go and look there, unless that was done or the sender would not ask again; `reason` is what is missing."""
+        if self.done is None:
+            raise Refusal(reason)
+        visited = {s.target for s in self.done if s.action == "navigate"}
+        steps = [PlanStep(action="navigate", target=r.name) for r in spots if r.name not in visited]
+        if steps:
+            raise LookFirst(steps)
+        seen = listed([f"the {r.name}" for r in spots])
+        raise Refusal(f"I looked at {seen} and found nothing of the kind" if spots else reason)
+
+
+def same(a: list[PlanStep], b: list[PlanStep]) -> bool:
+    """Equal but for what is said."""
+    return [_bare(s) for s in a] == [_bare(s) for s in b]
+
+
+def _bare(step: PlanStep) -> PlanStep:
+    return step if step.action == "say" else msgspec.structs.replace(step, text="")

@@ -1,0 +1,159 @@
+"""The embedded planner: a sentence and the believed world in, a plan or the reason against it out. Pure."""
+
+import re
+from collections.abc import Sequence
+
+from common.messages import ActionPlan, PlanStep, RejectedPlan
+from services.planner.choices import Choices, every
+from services.planner.commands import Action
+from services.planner.config import PlannerConfig
+from services.planner.draft import Draft, LookFirst, Refusal, same
+from services.planner.forms import Form, Words
+from services.planner.phrases import PLURAL_PRONOUNS, PRONOUNS
+from services.planner.sentences import ALONE, FORMS, VERBS
+from services.planner.vocabulary import DETERMINERS, Vocabulary
+from services.planner.words import parts, plain
+from services.planner.world import World
+
+SOURCE = "grammar"
+_THING_STARTS = DETERMINERS | PRONOUNS | PLURAL_PRONOUNS | {"all", "every", "two", "three"}
+_STEP = re.compile(r"^step (\d+): ")
+
+
+class _Failure(Exception):
+    """`at`: how many words were understood before it."""
+
+    def __init__(self, at: int, reason: str) -> None:
+        super().__init__(reason)
+        self.at, self.reason = at, reason
+
+
+def plan(
+    command: str,
+    world: World,
+    config: PlannerConfig,
+    rejected: Sequence[RejectedPlan] = (),
+    done: list[PlanStep] | None = None,
+    request_id: str = "",
+) -> ActionPlan:
+    """The preferred plan that differs from every rejected one; without steps when there is none, with the reason."""
+    vocabulary = Vocabulary(world, config)
+
+    def run(choices: Choices) -> ActionPlan:
+        draft = Draft(world.copy(), vocabulary, config, choices, done)
+        try:
+            steps = _steps(command, draft)
+        except LookFirst as look:
+            return ActionPlan(request_id=request_id, steps=look.steps, source=SOURCE, again=True)
+        except Refusal as refusal:
+            return ActionPlan(request_id=request_id, steps=[], source=SOURCE, detail=str(refusal))
+        if len(steps) > config.max_steps:
+            detail = f"that is too much at once: {len(steps)} steps"
+            return ActionPlan(request_id=request_id, steps=[], source=SOURCE, detail=detail)
+        return ActionPlan(request_id=request_id, steps=steps, source=SOURCE)
+
+    if not rejected:
+        return run(Choices())
+    culprits = [c for r in rejected if (c := _culprit(r)) is not None]
+    other: ActionPlan | None = None
+    for candidate in every(run):
+        if not candidate.steps or any(same(candidate.steps, r.steps) for r in rejected):
+            continue
+        if not any(c in candidate.steps for c in culprits):
+            return candidate
+        other = other or candidate
+    return other or _spent(run(Choices()), rejected[-1])
+
+
+def _spent(first: ActionPlan, rejected: RejectedPlan) -> ActionPlan:
+    """No other plan: the reason against the last one, or why there never was one."""
+    reason = _STEP.sub("", rejected.reason).strip().rstrip(".") or "that plan was rejected and I know no other"
+    detail = reason if first.steps or not first.detail else first.detail
+    return ActionPlan(request_id=first.request_id, steps=[], source=SOURCE, detail=detail)
+
+
+def _culprit(rejected: RejectedPlan) -> PlanStep | None:
+    """The step that a reason of the form `step 3: ...` complains about."""
+    found = _STEP.match(rejected.reason)
+    number = int(found[1]) if found else 0
+    return rejected.steps[number - 1] if 0 < number <= len(rejected.steps) else None
+
+
+def _steps(command: str, draft: Draft) -> list[PlanStep]:
+    sentences = parts(command)
+    if not sentences:
+        raise Refusal("I did not hear a command")
+    for number, sentence in enumerate(sentences):
+        words = tuple(sentence.split())
+        _whole(words, draft, alone=len(sentences) == 1, started=number > 0)
+    if not draft.steps:
+        raise Refusal("there is nothing to do")
+    return draft.steps
+
+
+def _whole(words: Words, draft: Draft, alone: bool, started: bool) -> None:
+    """One part of the sentence: one command, or several joined by "and"."""
+    try:
+        _joined(words, draft, "" if not started else "bring", 0, alone)
+    except _Failure as failure:
+        raise Refusal(failure.reason) from None
+
+
+def _joined(words: Words, draft: Draft, verb: str, at: int, alone: bool) -> None:
+    """Carry out `words` as the longest command that works, followed by the rest; changes `draft` only on success."""
+    cuts = [len(words), *(i for i in range(len(words) - 1, 0, -1) if words[i] == "and")]
+    worst: _Failure | None = None
+    for cut in cuts:
+        head, rest = words[:cut], words[cut + 1 :]
+        trial = draft.fork()
+        try:
+            _command(head, trial, verb, at, alone and not rest)
+            if rest:
+                _joined(rest, trial, head[0], at + cut, False)
+        except _Failure as failure:
+            worst = failure if worst is None or failure.at >= worst.at else worst
+            continue
+        draft.adopt(trial)
+        return
+    assert worst is not None
+    raise worst
+
+
+def _command(words: Words, draft: Draft, verb: str, at: int, alone: bool) -> None:
+    """The first form that fits the words and can be done; else the reason of the first that fits."""
+    if not words:
+        raise _Failure(at, "I did not hear a command")
+    words = (plain(words[0], VERBS), *words[1:])
+    reason = _try(words, draft, FORMS)
+    if reason is None:
+        return
+    if not reason and alone:
+        reason = _try(words, draft, ALONE)
+    elif not reason and verb and _is_thing(words, draft):
+        # "put the mug on the table and the can on the counter": the verb is said once.
+        reason = _try((verb, *words), draft, FORMS)
+    if reason is None:
+        return
+    said = " ".join(words)
+    raise _Failure(at if reason else at - 1, reason or f"I do not understand {said!r}")
+
+
+def _is_thing(words: Words, draft: Draft) -> bool:
+    """Do the words begin like a thing's name?"""
+    return words[0] in _THING_STARTS or any(draft.vocabulary.noun(w) for w in words[:3])
+
+
+def _try(words: Words, draft: Draft, forms: Sequence[tuple[Form, Action]]) -> str | None:
+    """None when a form was carried out; else the first reason against it, "" when no form fits."""
+    reason = ""
+    for form, action in forms:
+        for slots in form.matches(words):
+            trial = draft.fork()
+            try:
+                action(trial, slots)
+            except Refusal as refusal:
+                reason = reason or str(refusal)
+                continue
+            draft.adopt(trial)
+            return None
+    return reason

@@ -1,0 +1,101 @@
+"""The sentence forms that are understood and what each does, in order of trial."""
+
+from services.planner import answers, commands
+from services.planner.commands import Action
+from services.planner.forms import Form
+
+FORMS: tuple[tuple[Form, Action], ...] = tuple(
+    (Form(pattern), action)
+    for pattern, action in (
+        ("(stop | halt | freeze) [it | now | moving]", commands.refuse("stopping needs no plan")),
+        ("(cancel | abort) [that | it] | never mind | forget it", commands.refuse("there is nothing to cancel")),
+        ("continue | resume | go on | go ahead", commands.refuse("there is nothing to continue")),
+        (
+            "yes [<words>] | yeah | yep | no | nope | no thanks | correct | right | okay",
+            commands.refuse("I did not ask anything"),
+        ),
+        ("follow <words>", commands.refuse("I cannot follow people")),
+        ("(open | let go [of] | release) [the | your] (gripper | hand | fingers)", commands.let_go),
+        ("(close | shut) [the | your] (gripper | hand | fingers)", commands.close_gripper),
+        ("what (do | can) you see | look around | tell me what you (can | ) see", answers.seen),
+        ("(what | tell me what) (is | are | lies | do you see) (on | in | at) <spot>", answers.contents),
+        ("what are you holding | what do you (have | hold) [in your (hand | gripper)]", answers.holding),
+        ("what (is | have you got | do you have) in your (hand | gripper)", answers.holding),
+        ("where are you", answers.whereabouts),
+        ("(where | tell me where) (is | are) <thing>", answers.where),
+        ("(do | can) you (see | know) <thing>", answers.where),
+        ("(is | are) there <thing>", answers.where),
+        ("how many <thing> (are there | do you see | can you see | do you know | are <words>)", answers.number),
+        ("(say | announce) <words>", commands.say),
+        ("wait [here | a moment | a bit | for me | a second]", commands.wait),
+        ("(come | go | drive) [back] home", commands.come_back),
+        ("(come | go | drive | get) (here | back | to me | back here | back to me | over here)", commands.come_back),
+        ("return [home | here | to (start | me | base)] | come", commands.come_back),
+        ("(go | drive | get | walk) and (get | fetch | bring | find) [me | us] <thing>", commands.fetch),
+        ("go (get | fetch | bring) [me | us] <thing>", commands.fetch),
+        ("(tidy | clean | clear) up [<spot>]", commands.tidy),
+        ("(tidy | clean | clear) [<spot>] [up]", commands.tidy),
+        ("(clean | clear) <spot> off", commands.tidy),
+        ("go [over | back] (to | into | in | near | towards) <spot>", commands.go),
+        (
+            "(drive | navigate | move | walk | return | head | come | roll) [over | back] (to | into | towards) <spot>",
+            commands.go,
+        ),
+        ("approach <spot>", commands.go),
+        (
+            "put (down | back down) <thing> | put <thing> [back] down | set down <thing> | set <thing> down",
+            commands.put_down,
+        ),
+        ("(drop | release | let go of | let go) <thing> | let go", commands.put_down),
+        (
+            "(put | place | set | move | leave | bring) <thing> (next to | near | beside | close to | by) <spot>",
+            commands.put_near,
+        ),
+        ("(throw | toss) <thing> (away | out)", commands.throw_away),
+        (
+            "(throw | toss) (away | out) <thing> | get rid of <thing> | dispose of <thing> | trash <thing>",
+            commands.throw_away,
+        ),
+        ("(put | tidy | clear | clean) away <thing> | (put | tidy | clear | clean) <thing> away", commands.put_away),
+        ("put <thing> (back | where it belongs | where they belong | in its place)", commands.put_away),
+        ("(bring | take | carry | move | put | deliver) <thing> there", commands.deliver_there),
+        ("(bring | fetch | get | give | hand | pass | grab | take | carry | find) (me | us) <thing>", commands.fetch),
+        (
+            "(bring | fetch | get | give | hand | pass | grab | take | carry | move) <thing>"
+            " [over | back] to (me | us)",
+            commands.fetch,
+        ),
+        ("(bring | fetch | get) <thing> [over] (here | back)", commands.fetch),
+        (
+            "(put | place | set | throw | toss | drop | lay | stick | move | stack)"
+            " <thing> (in | into | inside | on top of | on | onto | at | under | to) <spot>",
+            commands.put,
+        ),
+        (
+            "(bring | take | carry | deliver | transport | move | get | fetch) [me] <thing>"
+            " [over | back] (to | into) <spot>",
+            commands.deliver,
+        ),
+        ("(take | carry | bring) <thing> (on | onto | in) <spot>", commands.put),
+        ("(pick | take | grab | lift) up <thing> | pick <thing> up | lift <thing> [up]", commands.pick_up),
+        ("(grab | grasp | take | hold | pick) <thing>", commands.pick_up),
+        ("(find | search for | look for | locate | show me) <thing>", commands.find),
+        ("(bring | fetch | get | give | hand | pass) <thing>", commands.fetch),
+        ("(i | we) (want | need | would like | 'd like) <thing> | i'd like <thing>", commands.fetch),
+        (
+            "(open | close | shut | lock | unlock) <words>",
+            commands.refuse("I cannot open or close doors, drawers or lids"),
+        ),
+        ("(turn | switch) (on | off) <words>", commands.refuse("I cannot switch things on or off")),
+    )
+)
+"""In order: the first form that fits and can be done counts."""
+
+ALONE: tuple[tuple[Form, Action], ...] = ((Form("[no] [i (said | meant)] <thing>"), commands.fetch_named),)
+"""Forms that stand only as a whole command."""
+
+VERBS = frozenset({
+    "bring", "fetch", "get", "give", "hand", "pass", "grab", "take", "carry", "put", "place", "set", "throw", "toss",
+    "drop", "move", "pick", "find", "go", "drive", "tidy", "clean", "clear", "open", "close", "release", "come",
+    "return", "wait", "say", "tell", "look", "search", "show", "deliver",
+})  # fmt: skip

@@ -1,0 +1,151 @@
+"""The words for things and spots: all of them from the scene, from what was seen, and from the configuration. Pure."""
+
+from collections.abc import Iterable
+
+import msgspec
+
+from common.scene import Receptacle, Scene
+from services.planner.config import PlannerConfig
+from services.planner.forms import Words
+from services.planner.words import listed, normal
+from services.planner.world import World
+
+ANY = frozenset({"thing", "object", "item", "stuff", "mess", "one"})
+WHOLE = frozenset({"everything", "anything", "something", "all", "mess"})
+DETERMINERS = frozenset({"the", "a", "an", "my", "your", "our", "that", "this", "some", "any", "those", "these"})
+_HERE = frozenset({"me", "us", "here", "home", "start", "over here", "back"})
+
+
+class Sense(msgspec.Struct, frozen=True):
+    """What a noun can mean: things of these kinds, or of these names; `every`: any thing at all."""
+
+    kinds: frozenset[str] = frozenset()
+    names: frozenset[str] = frozenset()
+    every: bool = False
+    prefer: str = ""
+
+
+class Spot(msgspec.Struct, frozen=True):
+    """A place to go to or to put things: exactly one of the receptacle, the room, a standing place, or the person."""
+
+    name: str
+    receptacle: Receptacle | None = None
+    room: bool = False
+    home: bool = False
+
+
+class Vocabulary:
+    """Built for one request."""
+
+    def __init__(self, world: World, config: PlannerConfig) -> None:
+        self._scene = scene = world.scene
+        known = [*world.specs, *world.things]
+        self.kinds = {t.kind for t in known if t.kind}
+        self.colours = {c: c for c in {*(t.colour for t in known), *(r.colour for r in scene.receptacles)} if c}
+        self.colours |= {word: c for word, c in config.colours.items() if c in self.colours}
+        self._nouns: dict[str, Sense] = {}
+        self._aliases(scene)
+        for thing in known:
+            self._nouns.setdefault(normal(thing.label), Sense(names=frozenset({thing.label})))
+        for kind in self.kinds:
+            named = self._nouns.get(kind, Sense())
+            only = next(iter(named.names)) if len(named.names) == 1 else ""
+            self._nouns[kind] = Sense(kinds=frozenset({kind}), prefer=only)
+        for word, group in config.groups.items():
+            if members := frozenset(k for k in group if k in self.kinds):
+                self._nouns.setdefault(normal(word), Sense(kinds=members))
+        self._places = self._standing(scene, world.places)
+
+    def _aliases(self, scene: Scene) -> None:
+        for spec in scene.objects:
+            for alias in (spec.name, *spec.aliases):
+                self._nouns[normal(alias)] = Sense(names=frozenset({spec.name}))
+            for alias in spec.aliases:
+                noun = normal(alias).removeprefix(f"{spec.colour} ")
+                if noun != normal(alias):
+                    self._nouns.setdefault(noun, Sense(kinds=frozenset({spec.kind})))
+
+    def _standing(self, scene: Scene, told: Iterable[str]) -> dict[str, Spot]:
+        spots = {normal(p): Spot(p) for p in told if scene.receptacle(p) is None}
+        for place in scene.places:
+            spots |= {normal(n): Spot(place.name) for n in (place.name, *place.aliases)}
+        for room in scene.rooms:
+            spots |= {normal(n): Spot(room.name, room=True) for n in (room.name, *room.aliases)}
+        home = Spot(scene.home.name, home=True)
+        return spots | {normal(n): home for n in (scene.home.name, *scene.home.aliases, *_HERE)}
+
+    # --- nouns
+    def noun(self, phrase: str) -> tuple[Sense, bool] | None:
+        """(meaning, is it a plural) of a noun without colours; None if unknown."""
+        if phrase in WHOLE:
+            return Sense(every=True), phrase in ("everything", "all", "mess")
+        for form, plural in _singulars(phrase):
+            if form in ANY:
+                return Sense(every=True), plural
+            if sense := self._nouns.get(form):
+                return sense, plural
+        return None
+
+    # --- spots
+    def spot(self, words: Words, room: str = "") -> list[Spot]:
+        """Every place that the words can mean, the best alone when one is meant by name; [] if unknown."""
+        phrase = " ".join(bare(words))
+        if not phrase:
+            return []
+        for preposition in ("in", "of", "from", "at"):
+            head, found, tail = phrase.partition(f" {preposition} ")
+            where = self._places.get(" ".join(bare(tuple(tail.split())))) if found else None
+            if where is not None and where.room:
+                return self.spot(tuple(head.split()), where.name)
+        if not room and (place := self._places.get(phrase)):
+            return [place]
+        named = [r for r in self._scene.receptacles if phrase in map(normal, (r.name, *r.aliases))]
+        colour, _, rest = phrase.partition(" ")
+        meant = self.colours.get(colour)
+        kin = [
+            r
+            for r in self._scene.receptacles
+            if r.kind == phrase or f" {normal(r.name)}".endswith(f" {phrase}") or (meant and _coloured(r, meant, rest))
+        ]
+        if room:
+            named, kin = [r for r in named if self._is_in(r, room)], [r for r in kin if self._is_in(r, room)]
+        return [Spot(r.name, receptacle=r) for r in named or kin]
+
+    def _is_in(self, r: Receptacle, room: str) -> bool:
+        found = self._scene.room_at(r.center[0], r.center[1])
+        return found is not None and found.name == room
+
+    def furniture(self, words: Words) -> str:
+        """The furniture meant, which is in the way but no place to put things."""
+        phrase = " ".join(bare(words))
+        return next((f.name for f in self._scene.furniture if phrase and phrase in normal(f.name)), "")
+
+    def surfaces(self, room: str = "") -> list[Receptacle]:
+        """Where things may lie, in a room or everywhere."""
+        return [r for r in self._scene.receptacles if r.spawn and not r.depth and (not room or self._is_in(r, room))]
+
+    def receptacles_named(self) -> str:
+        return listed([r.name for r in self._scene.receptacles], "or")
+
+
+def bare(words: Words) -> Words:
+    """Without leading determiners."""
+    while words and words[0] in DETERMINERS:
+        words = words[1:]
+    return words
+
+
+def _coloured(r: Receptacle, colour: str, rest: str) -> bool:
+    return r.colour == colour and rest in (r.kind, *r.name.split(), r.name, *r.aliases)
+
+
+def _singulars(phrase: str) -> list[tuple[str, bool]]:
+    forms = [(phrase, False)]
+    if phrase.endswith("s"):
+        forms += [(phrase[:-1], True)]
+    if phrase.endswith("es"):
+        forms += [(phrase[:-2], True)]
+    first, _, rest = phrase.partition(" of ")
+    if rest and first.endswith("s"):
+        forms += [(f"{first[:-1]} of {rest}", True)]
+    return forms

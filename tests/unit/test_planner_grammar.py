@@ -1,0 +1,318 @@
+"""What the embedded planner makes of sentences in a small believed world; every plan passes the brain's own checks."""
+
+import pytest
+
+from common import config
+from common.messages import ActionPlan, KnownWorld, PlanStep, RejectedPlan, WorldObject
+from common.scene import Scene, load_scene
+from services.brain.validate import known_world, objection
+from services.planner import grammar
+from services.planner.config import PlannerConfig
+from services.planner.world import believed
+
+CONFIG = config.load("planner", PlannerConfig, config.DEFAULT_DIR, {})
+SCENE = load_scene("apartment")
+NOW = 20.0
+
+
+def seen(
+    label: str, on: str, position: tuple[float, float, float], seen_at: float = NOW, scene: Scene = SCENE
+) -> WorldObject:
+    spec = scene.object(label)
+    assert spec is not None
+    return WorldObject(
+        label=label, kind=spec.kind, colour=spec.colour, size=spec.size, on=on, position=position, seen_at=seen_at
+    )
+
+
+WORLD = [
+    seen("red mug", "living table", (-1.5, -2.2, 0.55)),
+    seen("green can", "living table", (-1.2, -2.3, 0.55)),
+    seen("blue mug", "counter", (4.5, -3.1, 0.8)),
+    seen("red can", "counter", (4.0, -3.1, 0.8)),
+    seen("yellow block", "kitchen table", (5.3, -0.7, 0.75)),
+    seen("apple", "kitchen table", (5.0, -0.7, 0.75)),
+]
+
+
+def ask(
+    command: str,
+    held: str = "",
+    objects: list[WorldObject] = WORLD,
+    rejected: tuple[RejectedPlan, ...] = (),
+    done: list[PlanStep] | None = None,
+    scene: Scene = SCENE,
+) -> ActionPlan:
+    told = known_world(scene, [o.label for o in objects], held)
+    plan = grammar.plan(command, believed(scene, told, objects, (0.0, 0.0, 0.0), NOW), CONFIG, rejected, done, "r")
+    assert plan.request_id == "r"
+    if plan.steps:
+        assert objection(plan.steps, told, scene) == "", f"{command}: {text(plan)}"
+    else:
+        assert plan.detail and not plan.detail.endswith(".")
+    return plan
+
+
+def text(plan: ActionPlan) -> str:
+    """`find red mug; grasp red mug; ...`, or `no: <reason>`."""
+    rows = [" ".join(p for p in (s.action, s.object, s.target, s.text) if p) for s in plan.steps]
+    return "; ".join(rows) or f"no: {plan.detail}"
+
+
+def bring(thing: str) -> str:
+    return f"find {thing}; grasp {thing}; return; release"
+
+
+def put(thing: str, where: str) -> str:
+    return f"find {thing}; grasp {thing}; place {thing} {where}"
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        "bring me the red mug", "Could you please bring me the red mug?", "fetch the red cup", "get me the red mug",
+        "give me the red mug now", "hand me the red mug, please", "I want the red mug", "I'd like the red mug",
+        "would you mind bringing me the red mug", "go and get the red mug", "red mug", "bring the red mug here",
+        "take the red mug to me", "hey jarvis bring me my red mug", "bring me the mug on the table",
+        "bring me the mug in the living room", "bring me the mug from the living table", "bring me the nearest mug",
+        "no i said the red mug", "find the red mug and bring it to me", "get the mug that is on the coffee table",
+        "bring me the red mug to the dock", "bring me the mug next to the green can", "Bring me THE RED MUG!",
+    ],
+)  # fmt: skip
+def test_fetching(command: str) -> None:
+    assert text(ask(command)) == bring("red mug")
+
+
+@pytest.mark.parametrize(
+    ("command", "expected"),
+    [
+        ("put the red mug on the counter", put("red mug", "counter")),
+        ("put the red mug on the table in the kitchen", put("red mug", "kitchen table")),
+        ("move the yellow block to the toy box", put("yellow block", "toy box")),
+        ("place the red mug next to the apple", put("red mug", "kitchen table")),
+        ("take the red mug to the kitchen", put("red mug", "counter")),
+        ("bring the apple to the sofa", "find apple; grasp apple; navigate sofa; release"),
+        ("throw away the green can", put("green can", "recycling bin")),
+        ("throw the apple away", put("apple", "bin")),
+        ("put the red can in the green bin", put("red can", "recycling bin")),
+        ("put away the red mug", put("red mug", "counter")),
+        ("put the red mug away", put("red mug", "counter")),
+        ("pick up the red mug", "find red mug; grasp red mug"),
+        ("pick the red mug up and put it down", "find red mug; grasp red mug; release"),
+        ("find the apple", "find apple"),
+        ("go to the kitchen", "navigate kitchen"),
+        ("go to the office", "navigate study"),
+        ("go back to the kitchen table", "navigate kitchen table"),
+        ("go to the red mug", "find red mug; navigate red mug"),
+        ("come back", "return"),
+        ("go home", "return"),
+        ("drive to the dock", "return"),
+        ("wait here", "wait"),
+        ("say hello, my friend", "say Hello, my friend."),
+        ("open the gripper", "say My hand is empty."),
+        ("what are you holding", "say My hand is empty."),
+        ("where are you", "say I am in the living room."),
+        ("where is the red mug", "say The red mug is on the living table."),
+        ("do you see an apple", "say The apple is on the kitchen table."),
+        ("where is the blue bottle", "find blue bottle; say I have found the blue bottle."),
+        ("where is the counter", "say The counter is in the kitchen."),
+        ("what is on the counter", "say A blue mug and a red can are on the counter."),
+        ("how many mugs are there", "say I know of 2 mugs: the red mug and the blue mug."),
+    ],
+)
+def test_one_command(command: str, expected: str) -> None:
+    assert text(ask(command)) == expected
+
+
+@pytest.mark.parametrize(
+    ("command", "expected"),
+    [
+        ("go to the kitchen and then bring me the apple", f"navigate kitchen; {bring('apple')}"),
+        ("bring me the red mug and the green can", f"{bring('red mug')}; {bring('green can')}"),
+        ("bring me the red mug, then come back", f"{bring('red mug')}; return"),
+        (
+            "put the red mug on the counter and the green can in the bin",
+            f"{put('red mug', 'counter')}; {put('green can', 'bin')}",
+        ),
+        ("pick up the red mug and put it on the bookshelf", put("red mug", "bookshelf")),
+        ("get the green can and throw it away", f"{bring('green can')}; {put('green can', 'recycling bin')}"),
+        ("bring me the cans", f"{bring('green can')}; {bring('red can')}"),
+        ("bring me all the cans in the kitchen", bring("red can")),
+        ("bring me two mugs", f"{bring('red mug')}; {bring('blue mug')}"),
+        ("put the toys in the toy box", put("yellow block", "toy box")),
+        (
+            "put everything on the kitchen table in the toy box",
+            f"{put('apple', 'toy box')}; {put('yellow block', 'toy box')}",
+        ),
+        (
+            "find the cans and put them in the bin",
+            "find green can; find red can; grasp green can; place green can bin; grasp red can; place red can bin",
+        ),
+        ("go to the kitchen. Wait. Come back!", "navigate kitchen; wait; return"),
+    ],
+)  # fmt: skip
+def test_several_commands(command: str, expected: str) -> None:
+    assert text(ask(command)) == expected
+
+
+@pytest.mark.parametrize(
+    ("command", "held", "expected"),
+    [
+        ("put it in the bin", "red mug", "place red mug bin"),
+        ("put it down", "red mug", "release"),
+        ("put down the red mug", "red mug", "release"),
+        ("open the gripper", "red mug", "release"),
+        ("let go", "red mug", "release"),
+        ("bring me the red mug", "red mug", "return; release"),
+        ("bring it to me", "red mug", "return; release"),
+        ("put the mug on the counter", "red mug", "place red mug counter"),
+        ("what is in your hand", "red mug", "say I am holding the red mug."),
+        ("pick up the red mug", "red mug", "say I am holding the red mug already."),
+        ("put down the apple", "red mug", "no: I am not holding the apple"),
+        ("bring me the apple", "red mug", f"place red mug bookshelf; {bring('apple')}"),
+        ("put it down", "", "no: there is nothing in my hand"),
+        ("throw it away", "", "no: I do not know what you mean by it"),
+    ],
+)
+def test_with_something_in_the_hand(command: str, held: str, expected: str) -> None:
+    assert text(ask(command, held)) == expected
+
+
+def test_tidying_follows_the_rules_of_the_configuration() -> None:
+    table = f"{put('green can', 'recycling bin')}; {put('red mug', 'counter')}"
+    assert text(ask("tidy up the table")) == table
+    assert text(ask("clean up the living room")) == table
+    assert text(ask("tidy up the room")) == table, "the room that the robot is in"
+    everywhere = f"{table}; {put('red can', 'recycling bin')}; {put('yellow block', 'toy box')}"
+    assert text(ask("tidy up")) == everywhere, "the blue mug and the apple are where they belong"
+    assert text(ask("clear the counter", objects=[WORLD[2]])) == "say The counter is tidy already."
+
+
+def test_which_one_is_meant() -> None:
+    assert text(ask("bring me the mug")) == "no: I do not know which one you mean: the blue mug or the red mug"
+    assert text(ask("bring me a mug")) == bring("red mug"), "any: the nearest"
+    assert text(ask("bring me the other mug", held="red mug")).endswith(bring("blue mug"))
+    assert text(ask("bring me the blue one")) == bring("blue mug")
+    assert text(ask("bring me the mug", objects=WORLD[:2])) == bring("red mug"), "the only one seen"
+    assert text(ask("bring me the big mug")).startswith("no: they are all of the same size")
+    assert text(ask("bring me three mugs")) == "no: I know of only 2 of the 3 mugs"
+    row = [seen("red mug", "counter", (4.0, -3.1, 0.8)), seen("blue mug", "counter", (4.4, -3.1, 0.8))]
+    row.append(seen("white mug", "counter", (4.8, -3.1, 0.8)))
+    assert text(ask("bring me the mug on the right", objects=row)) == bring("red mug")
+    assert text(ask("bring me the mug on the left", objects=row)) == bring("white mug")
+    assert text(ask("bring me the second mug on the counter", objects=row)) == bring("blue mug")
+    assert text(ask("bring me the mug left of the blue mug", objects=row)) == bring("white mug")
+
+
+def test_things_that_nobody_has_seen_are_looked_for() -> None:
+    nothing: list[WorldObject] = []
+    assert text(ask("bring me the white mug", objects=nothing)) == bring("white mug")
+    assert text(ask("bring me the mug", objects=nothing)) == bring("mug")
+    assert text(ask("bring me the can on the counter", objects=WORLD[:2])) == (
+        "navigate counter; find can can on the counter; grasp can; return; release"
+    )
+    left = ask("bring me the mug on the left", objects=nothing)
+    assert left.steps[0] == PlanStep(action="find", object="mug", text="mug on the left")
+
+
+REFUSED = {
+    "bring me the purple mug": "I know no purple mug, only the red mug, the blue mug and the white mug",
+    "bring me the banana": "I know no banana",
+    "bring me the sofa": "I cannot pick up the sofa",
+    "put the apple in the bowl": "I cannot put things on or in the bowl",
+    "put the red mug in the fridge": "the fridge is no place that I can use",
+    "put the red mug on the floor": "I cannot put things on the floor",
+    "put the red mug next to the table": "I cannot put things on the floor",
+    "put the red mug on the sofa": "I cannot put things on the sofa, only",
+    "take the plate to the sink": "I know no plate",
+    "go to the garage": "I know no garage",
+    "clean the bathroom": "I know no bathroom",
+    "follow me": "I cannot follow people",
+    "open the fridge": "I cannot open or close doors",
+    "close the gripper": "only around a thing",
+    "stop": "stopping needs no plan",
+    "yes": "I did not ask anything",
+    "dance with me": "I do not understand 'dance with me'",
+    "pick up the red mug and the green can": "only one thing at a time",
+    "go to the kitchen and tell me what you see": "ask me again then",
+    "bring me the red mug and dance": "I do not understand 'dance'",
+    "what is on the bookshelf": "I have seen nothing there so far",
+    "": "I did not hear a command",
+    "?!": "I did not hear a command",
+}
+
+
+@pytest.mark.parametrize(("command", "reason"), REFUSED.items())
+def test_what_cannot_be_planned_is_refused_in_plain_words(command: str, reason: str) -> None:
+    plan = ask(command)
+    assert not plan.steps and reason in plan.detail
+
+
+def test_another_scene_has_another_vocabulary() -> None:
+    scene = load_scene("minimal")
+    assert text(ask("bring me the mug", objects=[], scene=scene)) == bring("red mug")
+    assert "I know no apple" in ask("bring me the apple", objects=[], scene=scene).detail
+    assert "I know no kitchen" in ask("go to the kitchen", objects=[], scene=scene).detail
+    can = [seen("green can", "delivery tray", (0.7, 0.0, 0.5), scene=scene)]
+    assert text(ask("put away the green can", objects=can, scene=scene)) == put("green can", "table")
+    assert "where the green can goes" in ask("throw away the green can", objects=can, scene=scene).detail
+
+
+def reject(plan: ActionPlan, reason: str) -> RejectedPlan:
+    return RejectedPlan(steps=plan.steps, reason=reason)
+
+
+def test_a_rejected_plan_is_followed_by_another_and_in_the_end_by_the_reason() -> None:
+    rejected: list[RejectedPlan] = []
+    places = []
+    for _ in range(2):
+        plan = ask("take the red mug to the kitchen", rejected=tuple(rejected))
+        places.append(plan.steps[-1].target)
+        rejected.append(reject(plan, f"step 3: there is no {places[-1]} to put things on"))
+    assert places == ["counter", "kitchen table"]
+    last = ask("take the red mug to the kitchen", rejected=tuple(rejected))
+    assert not last.steps and last.detail == "there is no kitchen table to put things on"
+    first = ask("bring me a mug")
+    assert text(ask("bring me a mug", rejected=(reject(first, "step 2: the red mug is broken"),))) == bring("blue mug")
+    plan = ask("bring me the red mug")
+    spent = ask("bring me the red mug", rejected=(reject(plan, "step 2: the red mug does not fit into the gripper"),))
+    assert (spent.steps, spent.detail) == ([], "the red mug does not fit into the gripper")
+
+
+def test_a_plan_of_somebody_else_that_was_rejected_is_replaced() -> None:
+    sofa = RejectedPlan(steps=[PlanStep(action="grasp", object="sofa")], reason="step 1: I know no sofa")
+    assert text(ask("bring me the red mug", rejected=(sofa,))) == bring("red mug")
+
+
+def test_a_sender_that_asks_again_gets_a_look_first() -> None:
+    command, far = "tidy up the living room", WORLD[2:]
+    assert "I have not seen what lies" in ask(command, objects=far).detail
+    look = ask(command, objects=far, done=[])
+    assert look.again and text(look) == "navigate living table; navigate bookshelf"
+    after = ask(command, done=look.steps)
+    assert not after.again and text(after).startswith("find green can")
+    empty = ask(command, objects=far, done=look.steps)
+    assert not empty.steps and "found nothing" in empty.detail
+    both = ask("bring me the apple and then tidy up the bookshelf", done=[])
+    assert both.again and text(both) == "navigate bookshelf", "it looks before it moves anything"
+
+
+def test_a_long_plan_is_refused() -> None:
+    command = ", then ".join(["bring me the red mug"] * 20)
+    assert "too much at once" in ask(command).detail
+
+
+def test_what_it_sees_and_what_it_remembers() -> None:
+    assert text(ask("what do you see", objects=WORLD[:1])) == "say I see a red mug on the living table."
+    old = [seen("apple", "counter", (4.0, -3.1, 0.8), seen_at=1.0)]
+    assert text(ask("what do you see", objects=old)) == (
+        "say From here I see nothing that I know. I remember an apple on the counter in the kitchen."
+    )
+    assert text(ask("what do you see", objects=[])) == "say I have seen nothing that I know yet."
+
+
+def test_objects_without_a_survey_are_known_by_name() -> None:
+    told = KnownWorld(objects=["red cup", "strange thing"], held="")
+    plan = grammar.plan("bring me the mug", believed(SCENE, told, []), CONFIG)
+    assert text(plan) == bring("red mug")
+    assert text(grammar.plan("bring me the strange thing", believed(SCENE, told, []), CONFIG)) == bring("strange thing")
