@@ -1,4 +1,4 @@
-"""`tidybot say`, `status`, `missions`: commands to the robot and what becomes of them."""
+"""`tidybot say` and `status`: commands to the robot and what becomes of them."""
 
 import argparse
 import uuid
@@ -229,17 +229,6 @@ def _print_status(record: dict[str, object]) -> None:
             print(f"{word:8} " + "  ".join(f"{k}: {v}" for k, v in value.items() if v != ""))
 
 
-def missions(args: argparse.Namespace) -> int:
-    with linked(args) as link:
-        found = link.query(topics.BRAIN_MISSIONS)
-    if args.json:
-        print(msgspec.json.encode(found).decode())
-        return 0
-    for row in found:
-        print("  ".join(f"{k}: {v}" for k, v in row.items() if v not in ("", None)))
-    return 0
-
-
 def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
     parser = commands.add_parser("say", help="command the robot by text, or by a recording played into its ear")
     parser.add_argument("text", nargs="*", help="such as: bring me the red mug")
@@ -255,7 +244,3 @@ def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") ->
     parser.add_argument("--timeout", type=float, default=600.0, metavar="S", help="for --wait (default %(default)s)")
     add_options(parser)
     parser.set_defaults(run=status)
-    parser = commands.add_parser("missions", help="all missions of this run of the brain")
-    parser.add_argument("--json", action="store_true")
-    add_options(parser)
-    parser.set_defaults(run=missions)
