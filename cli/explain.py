@@ -1,0 +1,59 @@
+"""`tidybot explain ID`: one mission as a timeline: what was heard, planned, seen and done, and why it failed."""
+
+import argparse
+import textwrap
+from typing import Any
+
+import msgspec
+
+from cli.errors import CliError, near
+from cli.link import add_options, linked
+from cli.missions import date_of
+from common import topics
+
+WIDTH = 118
+WORDS = {"failed": "FAILED", "state": ""}
+"""What stands before an entry, where that is not its kind; transitions carry their state instead."""
+
+
+def told(record: dict[str, Any]) -> str:
+    """The timeline: seconds since the mission began, state, what happened and the evidence for it."""
+    lines = [f"mission {record['id']}: {record['command']!r}, begun {date_of(record)}", ""]
+    began = record["started"]
+    state = ""
+    for entry in record["entries"]:
+        shown = entry["state"] if entry["state"] != state else ""
+        state = entry["state"]
+        word = WORDS.get(entry["kind"], entry["kind"])
+        text = f"{word}: {entry['cause']}" if word else entry["cause"]
+        if entry["evidence"]:
+            text += f" - {entry['evidence']}"
+        head = f"{max(0.0, entry['t'] - began):8.1f} s  {shown:11}  "
+        lines += textwrap.wrap(text, WIDTH, initial_indent=head, subsequent_indent=" " * len(head)) or [head.rstrip()]
+    lines.append("")
+    if record["outcome"]:
+        reason = f": {record['reason']}" if record["reason"] else ""
+        lines.append(f"{record['outcome']} after {record['ended'] - began:.1f} s, {record['steps']} goals{reason}")
+    else:
+        lines.append("under way")
+    return "\n".join(lines)
+
+
+def explain(args: argparse.Namespace) -> int:
+    with linked(args) as link:
+        record = link.query(topics.BRAIN_MISSIONS, {"id": args.id})
+        if record is None:
+            known = [row["id"] for row in link.query(topics.BRAIN_MISSIONS)]
+            if not known:
+                raise CliError("there has been no mission yet")
+            raise CliError(f"no mission {args.id!r}{near(args.id, known)}; `tidybot missions` lists all")
+    print(msgspec.json.encode(record).decode() if args.json else told(record))
+    return 0
+
+
+def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+    parser = commands.add_parser("explain", help="one mission as a timeline, and why it failed")
+    parser.add_argument("id", nargs="?", default="last", help="a mission's id, or last (the default)")
+    parser.add_argument("--json", action="store_true")
+    add_options(parser)
+    parser.set_defaults(run=explain)
