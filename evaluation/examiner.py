@@ -149,10 +149,15 @@ class Examiner:
         io = self._io
         self._quiet_since, self._ended_at = now, None
         io.log.info("person", says=text)
+        # Who speaks first has to get the robot's attention; speech itself hears only what it listens for.
+        opening = self._case.wake and not self._active
+        if not self._case.spoken and opening:
+            io.publish(topics.VOICE_COMMAND, m.VoiceCommand(text=text, id=io.new_id("typed")))
+            return
         if not self._case.spoken:
             io.publish(topics.SPEECH_TEXT, m.TypedText(text=text))
             return
-        words = WAKE + text if self._case.wake and not self._active else text
+        words = WAKE + text if opening else text
         self._voice = io.submit(utter, words, self._case.noise, self._case.seed, seconds=0.2)
 
     def _play(self, now: float) -> None:

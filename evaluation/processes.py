@@ -74,7 +74,7 @@ def _run(case: Case, directory: Path, supervision: Supervision, progress: Progre
     stop, clock = Ended(progress), SimClock()
     shared = config.RuntimeConfig(seed=case.seed, lockstep=True, log_level="error")
     with bus.session(plan.connect, plan.namespace) as session:
-        process = Process(examiner_of(case), ExaminerConfig(), shared, scene, session, clock, stop)
+        process = Process(examiner_of(case), ExaminerConfig(), shared, scene, session, clock, stop, directory)
         stop.process = process
         examiner: Examiner = process.service
         try:
@@ -109,7 +109,12 @@ def _plan(case: Case, directory: Path) -> Plan:
     plan.services = [Service(s.name, "evaluation.node", s.paced, s.token) if s.name in faulty else s for s in SERVICES]
     clean = {k: v for k, v in plan.environ.items() if k in _plan_keys(plan) or not k.startswith(config.PREFIX)}
     waited = [f'"{s.name}"' for s in plan.services if s.paced] + [f'"{Examiner.NAME}"']
-    plan.environ = {**clean, CASE: str(file), "TIDYBOT__SIM__WAIT_FOR": f"[{', '.join(waited)}]"}
+    plan.environ = {
+        **clean,
+        CASE: str(file),
+        "TIDYBOT_STATE_DIR": str(directory),
+        "TIDYBOT__SIM__WAIT_FOR": f"[{', '.join(waited)}]",
+    }
     return plan
 
 

@@ -1,8 +1,10 @@
 """One case in this process: the real services, the examiner among them, in lockstep as fast as the CPU allows."""
 
 import json
+import tempfile
 from collections.abc import Callable
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 from common import topics
@@ -42,7 +44,15 @@ class Director:
 def run(case: Case, progress: Progress = lambda t, state: None) -> Result:
     """Run and judge one case. What a service raises ends the case as `crashed`."""
     began = monotonic()
-    stack = Stack(case.scene or "apartment", case.seed, case.settings, swaps=_swaps(case), without=_idle_services(case))
+    with tempfile.TemporaryDirectory(prefix="tidybot-eval-") as state_dir:
+        return _run(case, progress, began, Path(state_dir) if case.strikes else None)
+
+
+def _run(case: Case, progress: Progress, began: float, state_dir: Path | None) -> Result:
+    stack = Stack(
+        case.scene or "apartment", case.seed, case.settings, swaps=_swaps(case), without=_idle_services(case),
+        state_dir=state_dir,
+    )  # fmt: skip
     try:
         examiner: Examiner = stack.join(examiner_of(case))
         director = Director(stack, case.strikes)

@@ -4,6 +4,7 @@ import importlib
 import json
 from collections.abc import Callable, Mapping
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 import msgspec
@@ -42,7 +43,8 @@ def paced_services() -> tuple[str, ...]:
 class Stack:
     """A simulation and the services around it. `advance` makes time pass; nothing else does.
 
-    `kill`, `hang` and `start` do to a service object what signals and the supervisor do to its process.
+    `kill`, `hang` and `start` do to a service object what signals and the supervisor do to its process. What services
+    keep on disk goes to `state_dir`, None: nowhere.
     """
 
     def __init__(
@@ -53,10 +55,11 @@ class Stack:
         *,
         without: tuple[str, ...] = (),
         swaps: Mapping[str, Swap] | None = None,
+        state_dir: Path | None = None,
         log_level: str = "error",
     ) -> None:
         self.scene = load_scene(scene) if isinstance(scene, str) else scene
-        self.seed, self._log_level = seed, log_level
+        self.seed, self._log_level, self._state_dir = seed, log_level, state_dir
         self._changes = config.overrides({}, settings)
         self._swaps = dict(swaps or {})
         self.bus, self._clock = MemoryBus(), ManualClock()
@@ -79,6 +82,7 @@ class Stack:
         )  # fmt: skip
         if kind.NAME == "sim":
             io.out_stamp = -1
+        io.state_dir = self._state_dir
         started = self.starts[kind.NAME] = self.starts.get(kind.NAME, 0) + 1
         # Ids of one process never come again from the next one of that name.
         io._ids = (started - 1) * 100_000

@@ -7,11 +7,12 @@ from pathlib import Path
 import msgspec
 import numpy as np
 
-from common.config import config_dir
+from common.config import config_dir, load
 from common.scene import ObjectSpec, Receptacle, Scene, load_scene
 from evaluation.case import Case, Line, Strike
 from evaluation.evidence import Want
 from evaluation.faults import Kind, Rule
+from services.brain.config import BrainConfig
 from services.sim.layout import place_objects
 
 VLA = "brain.pipeline=vla"
@@ -46,8 +47,15 @@ def cases(suite: str, scenarios: int, seed: int, settings: tuple[str, ...] = (),
     for n in range(scenarios):
         case = SUITES[suite](seed + n)
         own = case.settings if any(s.startswith("brain.pipeline=") for s in case.settings) else chosen + case.settings
-        found.append(msgspec.structs.replace(case, settings=own + settings))
+        effective = own + settings
+        found.append(msgspec.structs.replace(case, settings=effective, wake=_wakes(effective)))
     return found
+
+
+def _wakes(settings: tuple[str, ...]) -> bool:
+    """In the VLA pipeline the robot has to be addressed before it takes a command."""
+    chosen = [s.partition("=")[2] for s in settings if s.startswith("brain.pipeline=")]
+    return (chosen[-1] if chosen else load("brain", BrainConfig, config_dir(), {}).pipeline) == "vla"
 
 
 # --- building blocks
@@ -84,12 +92,9 @@ def _fetch(suite: str, seed: int, spec: ObjectSpec, scene: Scene, wording: str =
 
 
 def misheard_as(command: str, confidence: float = 0.85) -> tuple[Rule, ...]:
-    """What recognition makes of the person's first command, whichever way speech tells the brain."""
-    said = {"text": command, "confidence": confidence}
-    return (
-        Rule(service="speech", key="voice_command", kind="edit", fields={**said, "confirmed": False}),
-        Rule(service="speech", key="brain/speech_result", kind="edit", fields=said, until=0.0),
-    )
+    """What recognition makes of the person's first command."""
+    said = {"text": command, "confidence": confidence, "confirmed": False}
+    return (Rule(service="speech", key="voice_command", kind="edit", fields=said),)
 
 
 def hallucinated(plan: list[dict[str, str]]) -> tuple[Rule, ...]:
