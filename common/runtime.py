@@ -203,7 +203,8 @@ def main(kind: ServiceClass) -> None:
         shared = config.load("runtime", config.RuntimeConfig, directory, changes)
         scene = load_scene(shared.scene)
         parameters = config.load(kind.NAME, kind.CONFIG, directory, changes)
-        clock_name = environ.get("TIDYBOT_CLOCK", "sim")
+        # A service for people keeps their time: it goes on while the simulation pauses, and never holds it up.
+        clock_name = getattr(kind, "CLOCK", "") or environ.get("TIDYBOT_CLOCK", "sim")
         if clock_name not in ("sim", "wall"):
             raise config.ConfigError(f"TIDYBOT_CLOCK={clock_name}: expected sim or wall")
         clock: SimClock | WallClock = SimClock() if clock_name == "sim" else WallClock()

@@ -100,6 +100,8 @@ CAMERA_REQUEST = _goal("camera/request", m.CameraRequest, "perception", "*", lat
 HEAD_RGBD = _stream("camera/head/rgbd", m.Rgbd, "camera", rate=10.0)
 WRIST_RGBD = _stream("camera/wrist/rgbd", m.Rgbd, "camera", rate=10.0)
 
+PAGE_STATUS = _event("page/status", m.PageStatus, "dashboard")
+
 TABLE: tuple[Topic[Any], ...] = tuple(t for t in list(globals().values()) if isinstance(t, Topic))
 BY_KEY: dict[str, Topic[Any]] = {t.key: t for t in TABLE}
 

@@ -17,7 +17,7 @@ from tests.compose.mission import carry_out
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 PROJECT, IMAGE, BASE = "tidybot-test", "tidybot-zenoh:dev", "tidybot-base"
-NODES = ("sim", "camera", "navigation", "manipulation", "speech", "planner", "brain")
+NODES = ("sim", "camera", "navigation", "manipulation", "speech", "planner", "brain", "dashboard")
 SPEED = "2"
 
 
@@ -32,7 +32,7 @@ class Stack:
 
     def __init__(self, engine: Engine, port: int) -> None:
         self.engine, self.port = engine, port
-        paced = ", ".join(f'"{n}"' for n in NODES if n != "sim")
+        paced = ", ".join(f'"{n}"' for n in NODES if n not in ("sim", "dashboard"))
         self._environ = {
             **engine.environ,
             "ZENOH_IMAGE": IMAGE,

@@ -17,7 +17,7 @@ from common import bus
 from tests.compose.mission import carry_out
 from tests.support import ROOT, eventually, free_port
 
-NODES = ("sim", "camera", "navigation", "manipulation", "speech", "planner", "brain")
+NODES = ("sim", "camera", "navigation", "manipulation", "speech", "planner", "brain", "dashboard")
 SHELL = {
     "TIDYBOT_SPEED": "8",
     "TIDYBOT_LOCKSTEP": "true",

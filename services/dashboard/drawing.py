@@ -1,0 +1,246 @@
+"""MJCF as meshes: the flat, the robot's links with the joints that move them, and the shapes of the objects."""
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import mujoco
+import numpy as np
+import trimesh
+from numpy.typing import NDArray
+
+from common.geometry import matrix_quat, quat_matrix
+
+Array = NDArray[np.float64]
+ROBOT_BODY = "base"
+HIDDEN_GROUP = 4
+# Walls are cut off here, so that one can look into the rooms.
+CUT = 1.0
+SEE_THROUGH = "wall"
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """Triangles with a colour (0..1) for each vertex."""
+
+    vertices: Array
+    faces: NDArray[np.int64]
+    colours: Array
+
+
+@dataclass(frozen=True)
+class Joint:
+    """`kind` hinge or slide; `axis`, `anchor` in the body's frame; `top` is the upper end of its range."""
+
+    name: str
+    kind: str
+    axis: Array
+    anchor: Array
+    top: float
+
+
+@dataclass(frozen=True)
+class Link:
+    """A body of the robot: where it stands in its parent with all joints at zero, and what it looks like."""
+
+    name: str
+    parent: str
+    position: Array
+    rotation: Array
+    joints: tuple[Joint, ...]
+    mesh: Mesh | None
+
+
+@dataclass(frozen=True)
+class Camera:
+    """A camera's optical frame (x right, y down, z forward) in its link."""
+
+    name: str
+    link: str
+    position: Array
+    rotation: Array
+    fovy: float
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """What a model looks like."""
+
+    flat: Mesh | None
+    walls: Mesh | None
+    links: tuple[Link, ...] = ()
+    cameras: tuple[Camera, ...] = ()
+    objects: dict[str, Mesh] = field(default_factory=dict)
+
+
+def draw(mjcf: str) -> Drawing:
+    """Everything of a model but what moves without the robot.
+
+    Raises:
+        ValueError: not a model.
+    """
+    model: Any = mujoco.MjModel.from_xml_string(mjcf)
+    data: Any = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    roots = [model.body(int(model.body_rootid[b])).name for b in range(model.nbody)]
+    flat: list[Mesh] = []
+    walls: list[Mesh] = []
+    links: list[Link] = []
+    objects: dict[str, Mesh] = {}
+    for body in range(model.nbody):
+        name = model.body(body).name
+        geoms = [g for g in range(model.ngeom) if model.geom_bodyid[g] == body and model.geom_group[g] < HIDDEN_GROUP]
+        if roots[body] == ROBOT_BODY:
+            links.append(_link(model, body, joined([_geom(model, g) for g in geoms])))
+        elif _free(model, body):
+            shape = joined([_geom(model, g) for g in geoms])
+            if shape is not None:
+                objects[name.replace("_", " ")] = shape
+        elif model.body_mocapid[model.body_rootid[body]] < 0:
+            place, turn = data.xpos[body], data.xmat[body].reshape(3, 3)
+            for g in geoms:
+                see_through = model.geom(g).name.startswith(SEE_THROUGH)
+                mesh = moved(_geom(model, g), place, turn)
+                (walls if see_through else flat).append(cut(mesh, CUT) if see_through else mesh)
+    return Drawing(joined(flat), joined(walls), tuple(links), tuple(_cameras(model, roots)), objects)
+
+
+def _free(model: Any, body: int) -> bool:
+    root = int(model.body_rootid[body])
+    first = int(model.body_jntadr[root])
+    return first >= 0 and int(model.jnt_type[first]) == int(mujoco.mjtJoint.mjJNT_FREE)
+
+
+def _link(model: Any, body: int, mesh: Mesh | None) -> Link:
+    first, count = int(model.body_jntadr[body]), int(model.body_jntnum[body])
+    joints = []
+    for j in range(first, first + count):
+        kind = "hinge" if int(model.jnt_type[j]) == int(mujoco.mjtJoint.mjJNT_HINGE) else "slide"
+        axis, anchor = model.jnt_axis[j].copy(), model.jnt_pos[j].copy()
+        joints.append(Joint(model.joint(j).name, kind, axis, anchor, float(model.jnt_range[j][1])))
+    parent = "" if model.body(body).name == ROBOT_BODY else model.body(int(model.body_parentid[body])).name
+    rotation = quat_matrix(tuple(model.body_quat[body]))
+    return Link(model.body(body).name, parent, model.body_pos[body].copy(), rotation, tuple(joints), mesh)
+
+
+def _cameras(model: Any, roots: list[str]) -> list[Camera]:
+    found = []
+    for c in range(model.ncam):
+        body = int(model.cam_bodyid[c])
+        if roots[body] != ROBOT_BODY:
+            continue
+        rotation = quat_matrix(tuple(model.cam_quat[c])) @ np.diag([1.0, -1.0, -1.0])
+        fovy = float(np.radians(model.cam_fovy[c]))
+        found.append(Camera(model.camera(c).name, model.body(body).name, model.cam_pos[c].copy(), rotation, fovy))
+    return found
+
+
+def _geom(model: Any, g: int) -> Mesh:
+    """A geom in its body's frame."""
+    kinds, size = mujoco.mjtGeom, model.geom_size[g]
+    kind = kinds(int(model.geom_type[g]))
+    if kind == kinds.mjGEOM_BOX:
+        shape = trimesh.creation.box(extents=2 * size)
+    elif kind in (kinds.mjGEOM_SPHERE, kinds.mjGEOM_ELLIPSOID):
+        shape = trimesh.creation.icosphere(subdivisions=2)
+        shape.apply_scale(size if kind == kinds.mjGEOM_ELLIPSOID else size[0])
+    elif kind == kinds.mjGEOM_CYLINDER:
+        shape = trimesh.creation.cylinder(radius=size[0], height=2 * size[1], sections=24)
+    elif kind == kinds.mjGEOM_CAPSULE:
+        shape = trimesh.creation.capsule(radius=size[0], height=2 * size[1], count=(12, 16))
+        shape.apply_translation([0, 0, -shape.bounds.mean(axis=0)[2]])
+    elif kind == kinds.mjGEOM_PLANE:
+        half = np.where(size[:2] > 0, size[:2], 20.0)
+        shape = trimesh.creation.box(extents=[2 * half[0], 2 * half[1], 0.01])
+        shape.apply_translation([0, 0, -0.005])
+    elif kind == kinds.mjGEOM_MESH:
+        m = int(model.geom_dataid[g])
+        a, n = int(model.mesh_vertadr[m]), int(model.mesh_vertnum[m])
+        b, k = int(model.mesh_faceadr[m]), int(model.mesh_facenum[m])
+        shape = trimesh.Trimesh(model.mesh_vert[a : a + n], model.mesh_face[b : b + k], process=False)
+    else:
+        shape = trimesh.Trimesh()
+    rgba = np.array([0.78, 0.72, 0.63]) if model.geom_matid[g] >= 0 else model.geom_rgba[g][:3]
+    vertices = np.asarray(shape.vertices, dtype=np.float64)
+    mesh = Mesh(vertices, np.asarray(shape.faces, dtype=np.int64), np.tile(rgba, (len(vertices), 1)))
+    return moved(mesh, model.geom_pos[g], quat_matrix(tuple(model.geom_quat[g])))
+
+
+def moved(mesh: Mesh, place: Array, turn: Array) -> Mesh:
+    """The same mesh at `place`, turned by the rotation matrix `turn`."""
+    return Mesh(mesh.vertices @ turn.T + place, mesh.faces, mesh.colours)
+
+
+def cut(mesh: Mesh, height: float) -> Mesh:
+    """Nothing of it stands higher; for upright boxes."""
+    vertices = mesh.vertices.copy()
+    vertices[:, 2] = np.minimum(vertices[:, 2], height)
+    return Mesh(vertices, mesh.faces, mesh.colours)
+
+
+def joined(meshes: list[Mesh]) -> Mesh | None:
+    """All as one; None when there is nothing."""
+    meshes = [m for m in meshes if len(m.faces)]
+    if not meshes:
+        return None
+    starts = np.cumsum([0, *(len(m.vertices) for m in meshes[:-1])])
+    return Mesh(
+        np.concatenate([m.vertices for m in meshes]),
+        np.concatenate([m.faces + start for m, start in zip(meshes, starts, strict=True)]),
+        np.concatenate([m.colours for m in meshes]),
+    )
+
+
+def posture(link: Link, q: dict[str, float]) -> tuple[Array, Array]:
+    """Position (3,) and rotation (3, 3) of a link in its parent with these joint positions; unknown ones are 0."""
+    place, turn = link.position, link.rotation
+    for joint in link.joints:
+        value = q.get(joint.name, 0.0)
+        if joint.kind == "slide":
+            place = place + turn @ (joint.axis * value)
+        else:
+            spin = _about(joint.axis, value)
+            place = place + turn @ (joint.anchor - spin @ joint.anchor)
+            turn = turn @ spin
+    return place, turn
+
+
+def _about(axis: Array, angle: float) -> Array:
+    """Rotation matrix (3, 3); Rodrigues."""
+    x, y, z = axis / np.linalg.norm(axis)
+    k = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    return np.asarray(np.eye(3) + np.sin(angle) * k + (1 - np.cos(angle)) * (k @ k))
+
+
+def quaternion(turn: Array) -> tuple[float, float, float, float]:
+    """(w, x, y, z)."""
+    return matrix_quat(turn)
+
+
+def fallback(kind: str, size: tuple[float, float, float], colour: str) -> Mesh:
+    """An object that no model shows: a shape of its kind, size and colour."""
+    x, y, z = (max(s, 0.02) for s in size)
+    if kind in ("apple", "ball", "sphere"):
+        shape = trimesh.creation.icosphere(subdivisions=2)
+        shape.apply_scale([x / 2, y / 2, z / 2])
+    elif kind in ("mug", "can", "bottle", "bowl", "cup"):
+        shape = trimesh.creation.cylinder(radius=(x + y) / 4, height=z, sections=24)
+    else:
+        shape = trimesh.creation.box(extents=[x, y, z])
+    vertices = np.asarray(shape.vertices, dtype=np.float64)
+    rgb = np.array(COLOURS.get(colour, (0.6, 0.6, 0.62)))
+    return Mesh(vertices, np.asarray(shape.faces, dtype=np.int64), np.tile(rgb, (len(vertices), 1)))
+
+
+COLOURS = {
+    "red": (0.80, 0.12, 0.12),
+    "green": (0.12, 0.55, 0.20),
+    "blue": (0.15, 0.30, 0.80),
+    "yellow": (0.92, 0.78, 0.12),
+    "orange": (0.95, 0.50, 0.10),
+    "white": (0.92, 0.92, 0.90),
+    "black": (0.10, 0.10, 0.11),
+    "brown": (0.45, 0.30, 0.18),
+    "grey": (0.55, 0.55, 0.57),
+    "purple": (0.50, 0.25, 0.60),
+    "pink": (0.92, 0.55, 0.66),
+}

@@ -1,0 +1,123 @@
+"""What the page remembers of the last minutes: who said what, how the services are, curves."""
+
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from common import messages as m
+
+LINES = 60
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Line:
+    """One line of the transcript; `who` is heard, typed, said or robot."""
+
+    t: float
+    who: str
+    text: str
+
+
+class Transcript:
+    """Speech in both directions, newest last."""
+
+    def __init__(self) -> None:
+        self.lines: deque[Line] = deque(maxlen=LINES)
+        self.changed = True
+
+    def add(self, t: float, who: str, text: str) -> None:
+        """The same words from the same side within two seconds count once: a command comes by two topics."""
+        text = text.strip()
+        if not text:
+            return
+        if any(line.text == text and line.who == who and t - line.t < 2.0 for line in self.lines):
+            return
+        self.lines.append(Line(t, who, text))
+        self.changed = True
+
+    def heard(self, t: float, result: m.SpeechResult) -> None:
+        if result.text == "ERROR":
+            self.add(t, "robot", f"not understood: {result.code} {result.detail}".strip())
+        else:
+            self.add(t, "heard", result.text)
+
+    def goal(self, t: float, goal: m.SpeechGoal) -> None:
+        verb, _, words = goal.goal.strip().partition(" ")
+        if verb == "say":
+            self.add(t, "said", words)
+
+
+@dataclass(frozen=True)
+class Row:
+    """A service as the table shows it."""
+
+    name: str
+    alive: bool
+    restarts: int
+    hz: float
+    rss_mb: float
+    drops: int
+    uptime: float
+    error: str
+
+
+class Services:
+    """Health records by name; a new epoch of a name is a restart."""
+
+    def __init__(self) -> None:
+        self._last: dict[str, m.Health] = {}
+        self._restarts: dict[str, int] = {}
+
+    def take(self, health: m.Health) -> None:
+        before = self._last.get(health.name)
+        if before is not None and before.epoch != health.epoch:
+            self._restarts[health.name] = self._restarts.get(health.name, 0) + 1
+        self._last[health.name] = health
+
+    def rows(self, alive: Callable[[str], bool]) -> list[Row]:
+        """One for every service ever heard of, by name."""
+        return [
+            Row(h.name, alive(h.name), self._restarts.get(h.name, 0), h.hz, h.rss_mb, h.drops, h.uptime, h.last_error)
+            for h in sorted(self._last.values(), key=lambda one: one.name)
+        ]
+
+
+class Curves:
+    """Several values over time, at most one sample each `spacing` seconds, the last `seconds` of them."""
+
+    def __init__(self, names: tuple[str, ...], seconds: float = 60.0, spacing: float = 0.1) -> None:
+        self.names, self._spacing = names, spacing
+        self._t: deque[float] = deque(maxlen=round(seconds / spacing))
+        self._values = {name: deque[float](maxlen=self._t.maxlen) for name in names}
+
+    def add(self, t: float, **values: float) -> None:
+        """Samples too close to the last one are left out, unless they are larger: peaks are what one looks for."""
+        if self._t and t - self._t[-1] < self._spacing:
+            for name, value in values.items():
+                self._values[name][-1] = max(self._values[name][-1], value)
+            return
+        self._t.append(t)
+        for name in self.names:
+            self._values[name].append(values.get(name, 0.0))
+
+    def arrays(self) -> tuple[Array, ...]:
+        """Age of each sample [s] (0: now), then the values of each name."""
+        if not self._t:
+            return (np.zeros(1), *(np.zeros(1) for _ in self.names))
+        t = np.array(self._t)
+        return (t - t[-1], *(np.array(self._values[name]) for name in self.names))
+
+
+class Jitter:
+    """How far a stream's steps on its own clock are from the steps that passed here [s]."""
+
+    def __init__(self) -> None:
+        self._before: tuple[float, float] | None = None
+
+    def late(self, stamped: float, now: float) -> float:
+        before, self._before = self._before, (stamped, now)
+        return abs((stamped - before[0]) - (now - before[1])) if before is not None else 0.0

@@ -1,0 +1,142 @@
+// The bar above the 3-D view: stop, commands, microphone, the robot's voice.
+"use strict";
+const $ = (id) => document.getElementById(id);
+const RATE = 16000;
+let live = null;
+let retry = 200;
+
+function connect() {
+  live = new WebSocket(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/live`);
+  live.binaryType = "arraybuffer";
+  live.onopen = () => { retry = 200; link("connected", false); };
+  live.onclose = () => {
+    link("connection lost", true);
+    setTimeout(connect, retry);
+    retry = Math.min(retry * 2, 3000);
+  };
+  live.onmessage = (event) => {
+    if (event.data instanceof ArrayBuffer) { play(event.data); return; }
+    const { kind, value } = JSON.parse(event.data);
+    if (kind === "state") show(value);
+  };
+}
+
+function link(text, lost) {
+  $("link").textContent = text;
+  $("link").classList.toggle("lost", lost);
+  if (lost) { $("state").textContent = "?"; $("detail").textContent = "what the robot does is not known"; }
+}
+
+function send(message) {
+  if (live && live.readyState === WebSocket.OPEN) live.send(message);
+}
+const act = (what, text = "") => send(JSON.stringify({ do: what, text }));
+
+function show(s) {
+  document.body.dataset.state = s.state;
+  $("state").textContent = s.stopped ? "STOPPED" : s.state || "no brain";
+  const last = s.last && !s.detail ? `${s.last.command}: ${s.last.outcome}` : "";
+  $("detail").textContent = s.detail || last;
+  document.body.dataset.outcome = s.last ? s.last.outcome : "";
+  $("stop").classList.toggle("braked", s.stopped);
+  $("resume").hidden = !s.stopped;
+  $("ask").hidden = !s.asking;
+  $("question").textContent = s.asking ? s.detail || "Is that right?" : "";
+  $("talk").classList.toggle("on", s.listening);
+  if (!s.sim) link("no simulation or robot", false);
+  else if (live.readyState === WebSocket.OPEN) link("connected", false);
+}
+
+$("stop").onclick = () => act("stop");
+$("resume").onclick = () => act("resume");
+$("yes").onclick = () => act("yes");
+$("no").onclick = () => act("no");
+$("say").onsubmit = (event) => {
+  event.preventDefault();
+  const text = $("text").value.trim();
+  if (text) act("say", text);
+  $("text").value = "";
+};
+
+// The space bar stops the robot wherever the focus is, except while words are being typed.
+function onKey(event) {
+  if (event.code !== "Space" || event.repeat) return;
+  const at = event.target;
+  if (at && (at.isContentEditable || at.tagName === "TEXTAREA" || (at.tagName === "INPUT" && at.type !== "checkbox"))) return;
+  event.preventDefault();
+  event.stopImmediatePropagation();
+  act("stop");
+}
+// A focused button would be pressed by the same key's release.
+const onKeyUp = (event) => { if (event.code === "Space" && event.target.tagName === "BUTTON") event.preventDefault(); };
+for (const [name, fn] of [["keydown", onKey], ["keyup", onKeyUp]]) window.addEventListener(name, fn, true);
+$("view").addEventListener("load", () => {
+  for (const [name, fn] of [["keydown", onKey], ["keyup", onKeyUp]]) $("view").contentWindow.addEventListener(name, fn, true);
+});
+
+// --- microphone
+let microphone = null;
+let talking = false;
+
+async function openMicrophone() {
+  const stream = await navigator.mediaDevices.getUserMedia({
+    audio: { channelCount: 1, echoCancellation: true, noiseSuppression: true, autoGainControl: true },
+  });
+  const context = new AudioContext({ sampleRate: RATE });
+  await context.audioWorklet.addModule("/page/recorder.js");
+  const node = new AudioWorkletNode(context, "recorder", { numberOfOutputs: 0 });
+  node.port.onmessage = (event) => { if (talking) send(event.data); };
+  context.createMediaStreamSource(stream).connect(node);
+  return { stream, context };
+}
+
+async function talkStart(event) {
+  event.preventDefault();
+  if (talking) return;
+  talking = true;
+  $("talk").textContent = "🎤 …";
+  try {
+    microphone = microphone || (await openMicrophone());
+    await microphone.context.resume();
+    $("talk").textContent = "🎤 talking";
+  } catch (error) {
+    talking = false;
+    $("talk").textContent = "🎤 no microphone";
+    $("talk").title = String(error);
+  }
+}
+
+function talkEnd() {
+  if (!talking) return;
+  talking = false;
+  $("talk").textContent = "🎤 Hold to talk";
+  send(new ArrayBuffer(0));
+}
+$("talk").addEventListener("pointerdown", talkStart);
+for (const name of ["pointerup", "pointercancel", "pointerleave"]) $("talk").addEventListener(name, talkEnd);
+window.addEventListener("blur", talkEnd);
+
+// --- the robot's voice
+let speaker = null;
+let until = 0;
+
+function play(buffer) {
+  if (!$("voice").checked) return;
+  speaker = speaker || new AudioContext();
+  const rate = new DataView(buffer).getUint32(0, true);
+  const raw = new Int16Array(buffer, 4);
+  if (!raw.length || speaker.state === "suspended") return;
+  const samples = Float32Array.from(raw, (v) => v / 32768);
+  const piece = speaker.createBuffer(1, samples.length, rate);
+  piece.copyToChannel(samples, 0);
+  const source = speaker.createBufferSource();
+  source.buffer = piece;
+  source.connect(speaker.destination);
+  until = Math.max(until, speaker.currentTime + 0.05);
+  source.start(until);
+  until += piece.duration;
+}
+// Browsers let a page sound only after the visitor has done something.
+window.addEventListener("pointerdown", () => { speaker = speaker || new AudioContext(); speaker.resume(); }, { once: true });
+
+connect();

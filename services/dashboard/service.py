@@ -1,0 +1,208 @@
+"""The operator's page: shows what the robot does and lets a person talk to it; does only what any client may."""
+
+import sys
+from functools import partial
+
+from common import messages as m
+from common import topics
+from common.geometry import Pose2
+from common.io import Io, Job
+from common.runtime import StartError
+from common.topics import Topic
+from services.dashboard import markup
+from services.dashboard.commands import Commands
+from services.dashboard.config import DashboardConfig
+from services.dashboard.drawing import Drawing, draw
+from services.dashboard.history import Curves, Jitter, Services, Transcript
+from services.dashboard.panels import CAMERAS, Panels
+from services.dashboard.picking import pick
+from services.dashboard.view import View
+from services.dashboard.web import Click, PageError, Sound, Web, Words
+
+HEALTH = Topic(key=topics.HEALTH_KEY.format(name="*"), type=m.Health, writers=("*",), recover=False)
+PICTURES = {"head": topics.HEAD_RGBD, "wrist": topics.WRIST_RGBD}
+SLOW, PLOT = 0.25, 0.5
+ANSWER_LIMIT = 3.0
+
+
+class DashboardService:
+    """The operator's page: 3-D view, panels, microphone, stop."""
+
+    NAME = "dashboard"
+    HZ = 100 / 3
+    CLOCK = "wall"
+    CONFIG = DashboardConfig
+    READS = (
+        topics.SIM_MODEL, topics.SIM_STATUS, topics.JOINT_STATES, topics.POSE, topics.SCAN, topics.NAV_PATH,
+        topics.WORLD_OBJECTS, topics.BRAIN_STATE, topics.BRAIN_TREE, topics.ACTION_PLAN, topics.SPEECH_GOAL,
+        topics.SPEECH_RESULT, topics.SPEECH_STATUS, topics.NAVIGATION_STATUS, topics.MANIPULATION_STATUS,
+        topics.HEAD_RGBD, topics.WRIST_RGBD, topics.AUDIO_OUT, HEALTH,
+    )  # fmt: skip
+    WRITES = (
+        topics.VOICE_COMMAND, topics.ROBOT_STOP, topics.ROBOT_RESUME, topics.NAV_GOAL, topics.CAMERA_REQUEST,
+        topics.AUDIO_PCM, topics.PAGE_STATUS,
+    )  # fmt: skip
+
+    def __init__(self, config: DashboardConfig, io: Io) -> None:
+        self._config, self._io = config, io
+        try:
+            self._web = Web(config)
+        except PageError as error:
+            raise StartError(str(error)) from None
+        self._view = View(self._web.viser)
+        self._panels = Panels(self._web.viser, config.camera_width, config.camera_height)
+        self._transcript, self._services, self._jitter = Transcript(), Services(), Jitter()
+        self._commands = Commands(io, self._transcript)
+        self._speed, self._force = Curves(("base",)), Curves(("gripper",))
+        self._late = Curves(("late",))
+        for curves, title, unit, top in (
+            (self._speed, "base speed", "m/s", 0.6),
+            (self._force, "gripper force", "N", 50.0),
+            (self._late, "loop jitter", "ms", 60.0),
+        ):
+            self._panels.plot(curves, title, unit, top)
+        self._mjcf = ""
+        self._drawn: Job[Drawing] | None = None
+        self._base: Pose2 = (0.0, 0.0, 0.0)
+        self._t = 0.0
+        self._moved = self._slow_at = self._plot_at = float("-inf")
+        self._asked: dict[str, float] = {}
+        self._told: object = None
+        io.publish(topics.PAGE_STATUS, m.PageStatus(url=self._web.url))
+        io.log.info("page", url=self._web.url)
+        # The token is for eyes at this terminal only, not for the log on the bus.
+        sys.stderr.write(f"dashboard: open {self._web.entrance}\n")
+
+    def step(self, now: float) -> None:
+        self._receive(now)
+        self._obey(now)
+        self._redraw_model(now)
+        watched = self._web.watched
+        if now - self._moved >= (0.9 / self._config.frame_rate if watched else 1.0):
+            self._moved = now
+            with self._web.viser.atomic():
+                self._move(now)
+        if now - self._slow_at >= (SLOW if watched else 1.0):
+            self._slow_at = now
+            self._refresh(now)
+        if watched:
+            self._look(now)
+            if now - self._plot_at >= PLOT:
+                self._plot_at = now
+                self._panels.redraw()
+
+    # --- from the bus
+    def _receive(self, now: float) -> None:
+        io, t = self._io, self._t
+        joints = io.latest(topics.JOINT_STATES)
+        if joints is not None and joints.t != t:
+            self._t = t = joints.t
+            velocity = dict(zip(joints.name, joints.velocity, strict=False))
+            effort = dict(zip(joints.name, joints.effort, strict=False))
+            speed = (velocity.get("base_x", 0.0) ** 2 + velocity.get("base_y", 0.0) ** 2) ** 0.5
+            self._speed.add(now, base=speed)
+            self._force.add(now, gripper=abs(effort.get("gripper", 0.0)))
+            self._late.add(now, late=1000 * self._jitter.late(t, now))
+        for goal in io.drain(topics.SPEECH_GOAL):
+            self._transcript.goal(t, goal)
+        for result in io.drain(topics.SPEECH_RESULT):
+            self._transcript.heard(t, result)
+        for health in io.drain(HEALTH):
+            self._services.take(health)
+        for chunk in io.drain(topics.AUDIO_OUT):
+            self._web.play(chunk.data, chunk.rate)
+
+    # --- from the visitors
+    def _obey(self, now: float) -> None:
+        state = self._io.latest(topics.BRAIN_STATE)
+        while not self._web.inbox.empty():
+            event = self._web.inbox.get_nowait()
+            if isinstance(event, Words):
+                self._commands.words(event.do, event.text, self._t)
+            elif isinstance(event, Sound):
+                self._commands.sound(event.data, self._t)
+            elif isinstance(event, Click) and self._panels.clicks:
+                world = self._io.latest(topics.WORLD_OBJECTS)
+                objects = world.objects if world is not None else []
+                picked = pick(event.origin, event.direction, self._view.drawing.flat, objects)
+                self._commands.picked(picked, self._base, state, self._t)
+
+    # --- to the visitors
+    def _redraw_model(self, now: float) -> None:
+        model = self._io.latest(topics.SIM_MODEL)
+        if self._drawn is not None and self._drawn.poll(now):
+            job, self._drawn = self._drawn, None
+            try:
+                self._view.show(job.result())
+            except ValueError as error:
+                self._io.count_drop(topics.SIM_MODEL.key, str(error))
+        if model is not None and model.mjcf != self._mjcf and self._drawn is None:
+            self._mjcf = model.mjcf
+            self._drawn = self._io.submit(partial(draw, model.mjcf))
+
+    def _move(self, now: float) -> None:
+        io, panels, view = self._io, self._panels, self._view
+        joints, pose = io.latest(topics.JOINT_STATES), io.latest(topics.POSE)
+        q = dict(zip(joints.name, joints.position, strict=False)) if joints is not None else {}
+        if pose is not None:
+            self._base = (pose.x, pose.y, pose.theta)
+        elif joints is not None:
+            self._base = (q.get("base_x", 0.0), q.get("base_y", 0.0), q.get("base_yaw", 0.0))
+        view.pose(q, self._base, q.get("gripper", 0.0))
+        view.follow(self._base, panels.follow)
+        for scan in io.drain(topics.SCAN):
+            view.scan(scan, self._base, panels.scan)
+        for path in io.drain(topics.NAV_PATH):
+            view.path(path.points)
+        if (world := io.latest(topics.WORLD_OBJECTS)) is not None:
+            view.objects(world.objects, self._t, self._config.ghost_after, panels.labels)
+
+    def _refresh(self, now: float) -> None:
+        io, panels = self._io, self._panels
+        state, plan = io.latest(topics.BRAIN_STATE), io.latest(topics.ACTION_PLAN)
+        steps = plan.steps if plan is not None and state is not None and state.pipeline == "vla" else []
+        navigation, manipulation = io.latest(topics.NAVIGATION_STATUS), io.latest(topics.MANIPULATION_STATUS)
+        panels.text("mission", markup.mission(state, self._t, steps, navigation, manipulation))
+        if self._transcript.changed:
+            self._transcript.changed = False
+            panels.text("transcript", markup.transcript(self._transcript.lines))
+        for tree in io.drain(topics.BRAIN_TREE)[-1:]:
+            panels.text("tree", markup.tree(tree.root))
+        panels.text("services", markup.services(self._services.rows(lambda name: io.peer(name) is not None)))
+        self._tell(state)
+
+    def _tell(self, state: m.BrainState | None) -> None:
+        """The bar at the top of the page."""
+        sim, speech = self._io.latest(topics.SIM_STATUS), self._io.latest(topics.SPEECH_STATUS)
+        told = {
+            "state": state.state if state is not None else "",
+            "detail": state.detail if state is not None else "",
+            "command": state.command if state is not None else "",
+            "asking": state is not None and state.state == "CONFIRMING",
+            "stopped": sim is not None and sim.state == "stopped",
+            "listening": speech is not None and speech.state == "listening",
+            "sim": self._io.peer("sim") is not None,
+            "last": state.last if state is not None else None,
+        }
+        if told != self._told:
+            self._told = told
+            self._web.say("state", told)
+
+    # --- cameras
+    def _look(self, now: float) -> None:
+        """Ask a camera only while somebody looks, and not again before it has answered."""
+        config = self._config
+        for name in CAMERAS:
+            for image in self._io.drain(PICTURES[name]):
+                self._panels.picture(image)
+                self._asked[name] = min(self._asked.get(name, now), now - 1.0 / config.camera_rate + 0.05)
+            waiting = self._asked.get(name, float("-inf"))
+            if self._panels.wanted(name) and now - waiting >= (1.0 / config.camera_rate):
+                request = m.CameraRequest(
+                    id=self._io.new_id("page"), camera=name, width=config.camera_width, height=config.camera_height
+                )
+                self._asked[name] = now
+                self._io.publish(topics.CAMERA_REQUEST, request)
+
+    def close(self) -> None:
+        self._web.close()

@@ -1,0 +1,290 @@
+"""The page's web server. The only module with a thread: viser's event loop, which also runs the front door.
+
+Visitors reach one port: our page with the stop button, microphone and voice, and viser's 3-D view below `/view`, passed
+on to viser's own server on a loopback port that answers nobody else. The service talks to it through `inbox`, `say`
+and `play` only.
+"""
+
+import asyncio
+import contextlib
+import queue
+import secrets
+import socket
+from collections.abc import Awaitable, Callable, Iterator
+from concurrent.futures import Future
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import numpy as np
+import viser
+import websockets.asyncio.server
+from aiohttp import ClientSession, WSMsgType, web
+from numpy.typing import NDArray
+from websockets.http11 import Request, Response
+
+from services.dashboard import access
+from services.dashboard.config import DashboardConfig
+
+PAGE = Path(__file__).parent / "page"
+VIEW = Path(viser.__file__).parent / "client" / "build" / "index.html"
+KEY_HEADER = "X-Tidybot-Page"
+SEND_QUEUE = 100
+PATIENCE = 10.0
+MAX_CHUNK = 64 * 1024
+VIEW_LIMIT = 8 * 2**20
+# Everything the page shows comes from here; `data:` and `blob:` are viser's own pictures and workers.
+POLICY = (
+    "default-src 'self'; img-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; font-src 'self' data:; "
+    "script-src 'self' 'unsafe-inline' 'unsafe-eval' blob: data:; worker-src 'self' blob: data:; "
+    "connect-src 'self' ws: wss: data: blob:; frame-ancestors 'self'"
+)
+
+
+class Words(msgspec.Struct, frozen=True):
+    """What a visitor did: `do` is stop, resume, say, yes or no; `text` goes with say."""
+
+    do: str
+    text: str = ""
+
+
+class Sound(msgspec.Struct, frozen=True):
+    """A piece of what a visitor's microphone heard: int16 at 16 kHz; an empty one ends it."""
+
+    data: bytes
+
+
+@dataclass(frozen=True)
+class Click:
+    """A visitor clicked in the 3-D view: the ray below the pointer, in frame map."""
+
+    origin: NDArray[np.float64]
+    direction: NDArray[np.float64]
+
+
+Event = Words | Sound | Click
+
+
+class PageError(RuntimeError):
+    """The page cannot be served as configured; says why."""
+
+
+class Web:
+    """Serves the page until `close`."""
+
+    def __init__(self, config: DashboardConfig) -> None:
+        try:
+            self._token = access.token_for(config.host, config.token)
+        except ValueError as error:
+            raise PageError(str(error)) from None
+        self._socket = _listen(config)
+        self.port: int = self._socket.getsockname()[1]
+        self.inbox: queue.SimpleQueue[Event] = queue.SimpleQueue()
+        self._visitors: dict[web.WebSocketResponse, asyncio.Queue[str | bytes]] = {}
+        self._last: dict[str, str] = {}
+        self._secret = secrets.token_urlsafe(24)
+        with _guarded(self._secret):
+            self.viser = viser.ViserServer(host="127.0.0.1", port=0, label="tidybot", verbose=False)
+        self._loop = self.viser.get_event_loop()
+        self.viser.scene.on_click()(self._clicked)  # type: ignore[arg-type]
+        host = "127.0.0.1" if config.host in ("", "0.0.0.0", "::") else config.host
+        self.url = f"http://{f'[{host}]' if ':' in host else host}:{self.port}/"
+        self.entrance = self.url + (f"?token={self._token}" if self._token else "")
+        self._runner = self._in_loop(self._start())
+
+    # --- the service's side; any thread
+    def say(self, kind: str, message: object) -> None:
+        """Tell every page; the newest of each kind is also told to a page that opens later."""
+        text = msgspec.json.encode({"kind": kind, "value": message}).decode()
+        self._loop.call_soon_threadsafe(self._tell, kind, text)
+
+    def play(self, samples: bytes, rate: int) -> None:
+        """Let every page play int16 samples."""
+        self._loop.call_soon_threadsafe(self._spread, rate.to_bytes(4, "little") + samples)
+
+    @property
+    def watched(self) -> bool:
+        """True while a browser has the 3-D view open."""
+        return bool(self.viser.get_clients())
+
+    def close(self) -> None:
+        with contextlib.suppress(TimeoutError):
+            self._in_loop(self._end())
+        self.viser.stop()
+
+    def _in_loop(self, work: Any) -> Any:
+        future: Future[Any] = asyncio.run_coroutine_threadsafe(work, self._loop)
+        return future.result(PATIENCE)
+
+    # --- the loop's side
+    async def _start(self) -> web.AppRunner:
+        app = web.Application(middlewares=[self._door], client_max_size=MAX_CHUNK)
+        app.router.add_get("/", self._page)
+        app.router.add_get("/view", self._view)
+        app.router.add_get("/view/", self._view)
+        app.router.add_get("/live", self._live)
+        app.router.add_static("/page", PAGE)
+        # A connector belongs to the loop that it is made in.
+        self._inner = ClientSession()
+        runner = web.AppRunner(app, access_log=None, shutdown_timeout=0.5)
+        await runner.setup()
+        await web.SockSite(runner, self._socket).start()
+        return runner
+
+    async def _end(self) -> None:
+        for visitor in list(self._visitors):
+            with contextlib.suppress(ConnectionError, TimeoutError):
+                await asyncio.wait_for(visitor.close(), 0.5)
+        await self._inner.close()
+        await self._runner.cleanup()
+
+    @web.middleware
+    async def _door(
+        self, request: web.Request, handler: Callable[[web.Request], Awaitable[web.StreamResponse]]
+    ) -> web.StreamResponse:
+        host = request.host
+        if not access.host_is_ours(host, self._token) or not access.same_origin(request.headers.get("Origin"), host):
+            raise web.HTTPForbidden(text="This address is not the robot's page.\n")
+        shown = request.query.get("token")
+        if not access.admits(self._token, request.cookies.get(access.COOKIE), shown):
+            raise web.HTTPUnauthorized(text="Open the address with ?token=..., as printed when the robot started.\n")
+        if self._token and shown and request.path == "/":
+            answer: web.StreamResponse = web.HTTPSeeOther("/")
+            answer.set_cookie(access.COOKIE, self._token, httponly=True, samesite="Strict", max_age=12 * 3600)
+            return answer
+        answer = await handler(request)
+        if not answer.prepared:
+            answer.headers["Content-Security-Policy"] = POLICY
+            answer.headers["X-Content-Type-Options"] = "nosniff"
+            answer.headers["Referrer-Policy"] = "no-referrer"
+        return answer
+
+    async def _page(self, request: web.Request) -> web.StreamResponse:
+        return web.FileResponse(PAGE / "index.html")
+
+    async def _view(self, request: web.Request) -> web.StreamResponse:
+        """viser's page, or its stream when a WebSocket is asked for."""
+        if request.headers.get("Upgrade", "").lower() != "websocket":
+            return web.FileResponse(VIEW)
+        wanted = [p.strip() for p in request.headers.get("Sec-WebSocket-Protocol", "").split(",") if p.strip()]
+        outer = web.WebSocketResponse(protocols=wanted, heartbeat=20.0, compress=False, max_msg_size=VIEW_LIMIT)
+        await outer.prepare(request)
+        address = f"ws://127.0.0.1:{self.viser.get_port()}/"
+        async with self._inner.ws_connect(
+            address, protocols=wanted, headers={KEY_HEADER: self._secret}, max_msg_size=0, compress=0
+        ) as inner:
+            ways = [asyncio.ensure_future(_pass(outer, inner)), asyncio.ensure_future(_pass(inner, outer))]
+            try:
+                await asyncio.wait(ways, return_when=asyncio.FIRST_COMPLETED)
+            finally:
+                for way in ways:
+                    way.cancel()
+                await asyncio.gather(*ways, return_exceptions=True)
+        await outer.close()
+        return outer
+
+    async def _live(self, request: web.Request) -> web.StreamResponse:
+        """What the page itself needs: the state to it; words and sound from it."""
+        socket = web.WebSocketResponse(heartbeat=10.0, max_msg_size=MAX_CHUNK, compress=False)
+        await socket.prepare(request)
+        outbox: asyncio.Queue[str | bytes] = asyncio.Queue(SEND_QUEUE)
+        for text in self._last.values():
+            outbox.put_nowait(text)
+        self._visitors[socket] = outbox
+        sender = asyncio.ensure_future(_send(socket, outbox))
+        try:
+            async for message in socket:
+                if message.type is WSMsgType.BINARY:
+                    self.inbox.put(Sound(message.data))
+                elif message.type is WSMsgType.TEXT:
+                    with contextlib.suppress(msgspec.DecodeError):
+                        self.inbox.put(msgspec.json.decode(message.data, type=Words))
+        finally:
+            self._visitors.pop(socket, None)
+            sender.cancel()
+            await asyncio.gather(sender, return_exceptions=True)
+            # A microphone that goes with its page must not leave half a sentence open.
+            self.inbox.put(Sound(b""))
+        return socket
+
+    async def _clicked(self, event: viser.SceneClickEvent) -> None:
+        self.inbox.put(Click(np.array(event.ray_origin), np.array(event.ray_direction)))
+
+    def _tell(self, kind: str, text: str) -> None:
+        self._last[kind] = text
+        self._spread(text)
+
+    def _spread(self, message: str | bytes) -> None:
+        for visitor, outbox in list(self._visitors.items()):
+            try:
+                outbox.put_nowait(message)
+            except asyncio.QueueFull:
+                # A browser that hangs loses its connection, and nobody else notices; it opens a new one by itself.
+                self._visitors.pop(visitor, None)
+                if visitor._req is not None and visitor._req.transport is not None:
+                    visitor._req.transport.abort()
+
+
+async def _send(socket: web.WebSocketResponse, outbox: "asyncio.Queue[str | bytes]") -> None:
+    while True:
+        message = await outbox.get()
+        if isinstance(message, str):
+            await socket.send_str(message)
+        else:
+            await socket.send_bytes(message)
+
+
+async def _pass(source: Any, sink: Any) -> None:
+    """Frames from one WebSocket to another until either closes."""
+    async for message in source:
+        if message.type is WSMsgType.BINARY:
+            await sink.send_bytes(message.data)
+        elif message.type is WSMsgType.TEXT:
+            await sink.send_str(message.data)
+
+
+def _listen(config: DashboardConfig) -> socket.socket:
+    """A listening socket on the configured port or one of the next.
+
+    Raises:
+        PageError: none can be had.
+    """
+    ports = [config.port] if config.port == 0 else range(config.port, config.port + max(1, config.port_tries))
+    family = socket.AF_INET6 if ":" in config.host else socket.AF_INET
+    why = ""
+    for port in ports:
+        opened = socket.socket(family, socket.SOCK_STREAM)
+        opened.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            opened.bind((config.host, port))
+            opened.listen(64)
+            opened.setblocking(False)
+            return opened
+        except (OSError, OverflowError) as error:
+            opened.close()
+            why = str(error)
+    raise PageError(
+        f"dashboard: no port of {config.host}:{config.port} and the {config.port_tries - 1} after it is free ({why}); "
+        "choose another with `--set dashboard.port=N`"
+    )
+
+
+@contextlib.contextmanager
+def _guarded(secret: str) -> Iterator[None]:
+    """Inside, viser's server is made such that it answers only to requests with our key in the header."""
+    serve: Any = websockets.asyncio.server.serve
+
+    def with_key(handler: Any, *where: Any, **options: Any) -> Any:
+        def check(connection: Any, request: Request) -> Response | None:
+            if request.headers.get(KEY_HEADER) != secret:
+                return connection.respond(403, "")  # type: ignore[no-any-return]
+            return None
+
+        return serve(handler, *where, **{**options, "process_request": check})
+
+    websockets.asyncio.server.serve = with_key  # type: ignore[misc,assignment]
+    try:
+        yield
+    finally:
+        websockets.asyncio.server.serve = serve  # type: ignore[misc]
