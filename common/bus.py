@@ -219,17 +219,16 @@ def _open(config: zenoh.Config, opening: "Future[zenoh.Session]") -> None:
 
 
 class Publisher:
-    """Sends one topic with the delivery that the table declares."""
+    """Sends one topic with the delivery that the table declares; in lockstep streams lose nothing either."""
 
-    def __init__(self, opened: zenoh.Session, topic: Topic[Any]) -> None:
+    def __init__(self, opened: zenoh.Session, topic: Topic[Any], lossless: bool = False) -> None:
         self._matching = opened.declare_publisher(topic.key)
         self.last: bytes | None = None
         encoding = codec.encoding_of(topic)
         self._out: Any
         if topic.keep == "latest":
-            self._out = opened.declare_publisher(
-                topic.key, encoding=encoding, congestion_control=zenoh.CongestionControl.DROP
-            )
+            control = zenoh.CongestionControl.BLOCK if lossless else zenoh.CongestionControl.DROP
+            self._out = opened.declare_publisher(topic.key, encoding=encoding, congestion_control=control)
         elif not topic.recover:
             self._out = opened.declare_publisher(
                 topic.key, encoding=encoding, congestion_control=zenoh.CongestionControl.BLOCK, express=True
@@ -289,7 +288,7 @@ class ZenohIo(IoBase):
         self._peers: dict[str, str] = {}
         self._queries: queue.SimpleQueue[tuple[Handler, zenoh.Query]] = queue.SimpleQueue()
         self._kept: list[Any] = []
-        self._publishers = {t.key: Publisher(opened, t) for t in writes}
+        self._publishers = {t.key: Publisher(opened, t, lossless=lockstep) for t in writes}
         for topic in reads:
             self._subscribe(topic)
         self._kept.append(watch_tokens(opened, self._on_token))

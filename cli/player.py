@@ -1,0 +1,164 @@
+"""One service fed with its recorded inputs, in lockstep, on a bus in memory."""
+
+import importlib
+import re
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import msgspec
+
+from cli.services import SERVICES
+from common import messages as m
+from common import topics
+from common.clock import ManualClock
+from common.iobase import UNSTAMPED
+from common.lockstep import DT, period_of
+from common.memory import MemoryBus, MemoryIo
+from common.recording import Recording, Row
+from common.scene import Scene
+from common.topics import Topic
+
+ANY_ID = re.compile(r"[A-Za-z]+-[0-9a-f]{8}$")
+
+
+class Alive(msgspec.Struct):
+    alive: bool
+
+
+class ReplayIo(MemoryIo):
+    """Collects what the service publishes; knows its peers and, outside lockstep, its ids from the recording."""
+
+    def __init__(self, *args: Any, ids: Iterator[str], peers: Iterator[tuple[float, str, str | None]], **kw: Any):
+        self.outputs: list[tuple[float, str, bytes]] = []
+        self._known_ids = ids
+        self._changes, self._next = peers, next(peers, None)
+        self._present: dict[str, str] = {}
+        super().__init__(*args, **kw)
+
+    def _send(self, topic: Topic[Any], payload: bytes) -> None:
+        stamp = self.tick if self.out_stamp is None else self.out_stamp
+        self.outputs.append((max(0, stamp) * DT, topic.key, payload))
+
+    def peer(self, name: str) -> str | None:
+        while self._next is not None and self._next[0] <= self.clock.now():
+            _, who, epoch = self._next
+            if epoch is None:
+                self._present.pop(who, None)
+            else:
+                self._present[who] = epoch or self._present.get(who, "")
+            self._next = next(self._changes, None)
+        return self._present.get(name)
+
+    def new_id(self, prefix: str) -> str:
+        return next(self._known_ids, None) or super().new_id(prefix)
+
+
+def service_class(name: str) -> Any:
+    """The class that `python -m services.<name>` runs."""
+    module = importlib.import_module(next(s.module for s in SERVICES if s.name == name) + ".service")
+    return next(v for v in vars(module).values() if isinstance(v, type) and getattr(v, "NAME", None) == name)
+
+
+class Player:
+    """A service object and the recording it hears."""
+
+    def __init__(self, kind: Any, parameters: Any, recording: Recording, scene: Scene, seed: int) -> None:
+        self.kind, self.recording = kind, recording
+        self.lockstep = recording.facts.get("run", {}).get("lockstep") == "true"
+        self.bus, self.clock = MemoryBus(), ManualClock()
+        self._ticks = self._due()
+        inputs = {t.key for t in kind.READS}
+        self._rows = [r for r in recording.rows if r.key in inputs]
+        first = self._ticks[0] if self._ticks else 0
+        self.clock.advance(max(0, first - 1) * DT if first > 1 else 0.0)
+        self.io = ReplayIo(
+            self.bus, kind.NAME, kind.READS, kind.WRITES, scene=scene, seed=seed, clock=self.clock, log_level="error",
+            ids=iter(() if self.lockstep else self._ids()), peers=_peers(recording),
+        )  # fmt: skip
+        if first > 2 * period_of(kind.HZ):  # the recording starts in the middle of a run
+            self.io.tick = first - 1
+        self._sim = hasattr(kind, "pace")
+        if self._sim:
+            self.io.out_stamp = 0
+        self.service = kind(parameters, self.io)
+
+    @property
+    def seconds(self) -> float:
+        """Robot time covered."""
+        return (self._ticks[-1] - self._ticks[0]) * DT if self._ticks else 0.0
+
+    @property
+    def exact(self) -> bool:
+        """Every input carries the tick it was published in, so the replay sees each in the same step as the run did."""
+        return self.lockstep and all(row.tick is not None for row in self._rows)
+
+    def _due(self) -> list[int]:
+        """The ticks in which the recorded process stepped."""
+        name, recording = self.kind.NAME, self.recording
+        if self.lockstep and not hasattr(self.kind, "pace"):
+            acks = (
+                msgspec.json.decode(row.payload, type=m.LockstepAck) for row in recording.of("sim/ack") if not row.junk
+            )
+            return sorted({ack.tick for ack in acks if ack.name == name and ack.tick >= 0})
+        clocks = [
+            msgspec.json.decode(row.payload, type=m.SimClockTick) for row in recording.of("sim/clock") if not row.junk
+        ]
+        ticks = sorted({c.tick if c.tick >= 0 else round(c.t / DT) for c in clocks})
+        if not ticks and recording.rows:
+            ticks = list(range(round(recording.rows[0].t / DT), round(recording.rows[-1].t / DT) + 1))
+        period = period_of(self.kind.HZ)
+        return [tick for tick in ticks if tick % period == 0]
+
+    def _ids(self) -> Iterator[str]:
+        """Ids that the recorded process made up, in the order they first appeared."""
+        seen: set[str] = set()
+        writes = {t.key for t in self.kind.WRITES}
+        for row in self.recording.rows:
+            if row.key in writes and not row.junk:
+                found = msgspec.json.decode(row.payload)
+                if not isinstance(found, dict):
+                    continue
+                for field in ("mission_id", "id", "goal_id"):
+                    word = str(found.get(field, "")).split(".")[0]
+                    if ANY_ID.match(word) and word not in seen:
+                        seen.add(word)
+                        yield word
+
+    def run(self, progress: Callable[[float], None] = lambda t: None) -> list[tuple[float, str, bytes]]:
+        """Step through the whole recording; what the service published: (time, key, payload)."""
+        rows = iter(self._rows)
+        waiting = next(rows, None)
+        for tick in self._ticks:
+            while waiting is not None and self._stamp(waiting) < tick:
+                self.bus.put(topics.BY_KEY[waiting.key], waiting.payload, self._stamp(waiting))
+                waiting = next(rows, None)
+            if self._sim:
+                self.io.out_stamp, now = tick - 1, (tick - 1) * DT
+            else:
+                now = tick * DT
+            self.clock.advance(tick * DT - self.clock.now())
+            self.io.begin(tick, now)
+            self.service.step(now)
+            progress(now)
+        return self.io.outputs
+
+    @staticmethod
+    def _stamp(row: Row) -> int:
+        return row.tick if row.tick is not None else max(UNSTAMPED, round(row.t / DT) - 1)
+
+    def close(self) -> None:
+        if hasattr(self.service, "close"):
+            self.service.close()
+        self.io.shutdown()
+
+
+def _peers(recording: Recording) -> Iterator[tuple[float, str, str | None]]:
+    """(time, service, epoch): "" when its token was seen, None when it was lost."""
+    for row in recording.rows:
+        parts = row.key.split("/")
+        if parts[0] != "service" or row.junk:
+            continue
+        if parts[-1] == "alive":
+            yield row.t, parts[1], "" if msgspec.json.decode(row.payload, type=Alive).alive else None
+        elif parts[-1] == "health":
+            yield row.t, parts[1], msgspec.json.decode(row.payload, type=m.Health).epoch
