@@ -8,11 +8,12 @@ from pathlib import Path
 import msgspec
 
 from cli.errors import CliError, checked
-from cli.link import Link
+from cli.link import Link, use_keys
 from cli.services import NAMES
 from cli.supervision import Supervision, run_dir
 from common import bus
 from common.clock import monotonic, sleep
+from common.keys import OFF
 
 
 def down(args: argparse.Namespace) -> int:
@@ -33,6 +34,7 @@ def rows(supervision: Supervision) -> list[dict[str, object]]:
     info = supervision.info()
     alive, health = set[str](), {}
     try:
+        use_keys(info.keys or OFF)
         with bus.session(info.connect, info.namespace, patience=1.0) as session:
             link = Link(session, info.connect)
             # The router has no token of its own: this session shows that it is alive.

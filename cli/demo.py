@@ -1,6 +1,7 @@
 """`tidybot demo`: the whole flow once, from a recorded voice to an object delivered, judged by physics."""
 
 import argparse
+import os
 import shutil
 import subprocess
 import sys
@@ -19,6 +20,7 @@ from cli.verdict import Verdict, Witness
 from common import bus, topics
 from common import messages as m
 from common.clock import monotonic
+from common.keys import OFF
 from common.scene import Scene, SceneError, load_scene
 
 VOICE = ROOT / "docs" / "audio" / "bring_me_the_red_mug.wav"
@@ -165,7 +167,7 @@ def choose(args: argparse.Namespace, scene: Scene) -> tuple[str, str, Path | Non
 def demo(args: argparse.Namespace) -> int:
     args.port = args.port or (7447 if port_is_free(7447) else free_port())
     args.namespace = f"demo-{uuid.uuid4().hex[:6]}" if args.port != 7447 else ""
-    args.only = ""
+    args.only, args.keys = "", OFF if args.namespace and "TIDYBOT_KEYS" not in os.environ else None
     try:
         scene = load_scene(args.scene or "apartment")
     except SceneError as error:

@@ -12,9 +12,9 @@ def main() -> int:
         print("usage: python -m cli.healthcheck <service>|router", file=sys.stderr)
         return 2
     name = sys.argv[1]
-    connect = os.environ.get("TIDYBOT_CONNECT") or bus.DEFAULT_CONNECT
     try:
-        with bus.session(connect, os.environ.get("TIDYBOT_NAMESPACE", "")) as session:
+        connect = os.environ.get("TIDYBOT_CONNECT") or bus.default_connect()
+        with bus.session(connect, os.environ.get("TIDYBOT_NAMESPACE", ""), name=name) as session:
             if name == "router" or bus.fetch(session, topics.HEALTH_KEY.format(name=name)):
                 return 0
             others = ", ".join(sorted(Link(session, connect).alive())) or "nobody"

@@ -14,6 +14,7 @@ from cli.supervision import Supervision, run_dir
 from common import bus, codec, topics
 from common import messages as m
 from common.clock import monotonic
+from common.keys import OFF
 from common.topics import Topic
 
 M = TypeVar("M", bound=m.Message)
@@ -117,9 +118,15 @@ def address(args: argparse.Namespace) -> tuple[str, str]:
         try:
             info = Supervision(run_dir()).info()
         except CliError:
-            return bus.DEFAULT_CONNECT, namespace or ""
+            return bus.default_connect(), namespace or ""
+        use_keys(info.keys or OFF)
         return info.connect, info.namespace if namespace is None else namespace
     return connect, namespace or ""
+
+
+def use_keys(directory: str) -> None:
+    """Show certificates from there on, unless the environment says otherwise already."""
+    os.environ.setdefault("TIDYBOT_KEYS", directory)
 
 
 @contextmanager

@@ -44,6 +44,7 @@ class RunInfo(msgspec.Struct):
     speed: str
     services: list[str]
     started: float
+    keys: str = ""
     settings: dict[str, str] = {}
 
 

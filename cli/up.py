@@ -10,15 +10,17 @@ from contextlib import contextmanager
 from types import FrameType
 
 from cli.errors import CliError, checked
-from cli.link import Link, Watch
+from cli.link import Link, Watch, use_keys
 from cli.services import NAMES, SECTIONS, SERVICES, Service
 from cli.supervision import ROOT, RunInfo, Supervision, port_is_free, run_dir, socket_path
-from common import bus, config, topics
+from common import bus, config, keys, topics
 from common import messages as m
+from common.access import OPERATOR, ROUTER
 from common.clock import monotonic, sleep, unix_time
+from common.keys import OFF
 
 READY_LIMIT = 60.0
-EXTRA = {"camera"}  # the brain starts missions without these
+EXTRA = {"camera", "dashboard"}  # the brain starts missions without these
 
 
 class Stopped(Exception):
@@ -36,9 +38,11 @@ class Plan:
         self.port, self.namespace = args.port, args.namespace or os.environ.get("TIDYBOT_NAMESPACE", "")
         self.speed = _speed(args.speed)
         self.services = _selection(args.only, args.without)
-        self.connect = f"tcp/127.0.0.1:{self.port}"
+        self.keys = certificates(getattr(args, "keys", OFF), self.names, self.namespace)
+        self.connect = f"{'tls' if self.keys else 'tcp'}/127.0.0.1:{self.port}"
         settings = {"OMP_NUM_THREADS": "1", "PYTHONUNBUFFERED": "1"}
         settings["TIDYBOT_CONNECT"], settings["TIDYBOT_NAMESPACE"] = self.connect, self.namespace
+        settings["TIDYBOT_KEYS"] = self.keys or OFF
         settings["TIDYBOT_STATE_DIR"] = os.environ.get("TIDYBOT_STATE_DIR") or str(run_dir())
         settings["TIDYBOT__BRAIN__RUN"] = uuid.uuid4().hex
         if args.scene:
@@ -66,6 +70,7 @@ class Plan:
             speed=self.speed,
             services=self.names,
             started=unix_time(),
+            keys=self.keys,
             settings={k: v for k, v in self.environ.items() if k.startswith(config.PREFIX)},
         )
 
@@ -77,6 +82,31 @@ def _speed(text: str) -> str:
         if float(text) > 0:
             return text
     raise CliError(f"--speed {text}: expected realtime, max or a positive factor such as 4")
+
+
+def certificates(option: str | None, names: Sequence[str], namespace: str) -> str:
+    """The keys that everything is to use, every certificate looked at; "" for none.
+
+    Raises:
+        CliError: keys asked for that are not there, or one that cannot be used.
+    """
+    try:
+        given = {"TIDYBOT_KEYS": option} if option else os.environ
+        found = keys.directory(given)
+        if found is None:
+            if option == "":
+                raise CliError(f"no keys in {keys.default_directory()}; `tidybot keys` makes them")
+            use_keys(OFF)
+            return ""
+        from common.certificate import Identity
+
+        for name in (*names, OPERATOR):
+            where = namespace if name != ROUTER else ""
+            Identity(keys.folder(found, name, where), name, where)
+    except keys.KeysError as error:
+        raise CliError(str(error)) from None
+    use_keys(str(found))
+    return str(found)
 
 
 def _selection(only: str, without: str) -> list[Service]:
@@ -149,7 +179,7 @@ def bring_up(supervision: Supervision, plan: Plan, say: Callable[[str], None], d
         _until(lambda: not port_is_free(plan.port), supervision, "the router", began)
         say(f"  router        {monotonic() - began:4.1f} s  {plan.connect}")
     waiting = {s.name for s in plan.services if s.token}
-    with bus.session(plan.connect, plan.namespace, patience=READY_LIMIT) as session:
+    with bus.session(plan.connect, plan.namespace, wait=_gone(supervision, began)) as session:
         link = Link(session, plan.connect)
         while waiting:
             for name in sorted(waiting & link.alive()):
@@ -165,6 +195,16 @@ def bring_up(supervision: Supervision, plan: Plan, say: Callable[[str], None], d
 def _awake(link: Link) -> bool:
     state = link.latest(topics.BRAIN_STATE)
     return state is not None and state.state != "IDLE"
+
+
+def _gone(supervision: Supervision, began: float) -> Callable[[float], bool]:
+    """For `bus.session`: give up as soon as there is nobody left to wait for."""
+
+    def wait(seconds: float) -> bool:
+        sleep(seconds)
+        return bool(supervision.died()) or monotonic() - began > READY_LIMIT
+
+    return wait
 
 
 def _until(done: Callable[[], bool], supervision: Supervision, what: str, began: float, pause: float = 0.03) -> None:
@@ -203,7 +243,10 @@ def follow(supervision: Supervision, plan: Plan, say: Callable[[str], None]) -> 
     """Print what changes until interrupted, or until supervisord ends."""
     seen: dict[str, tuple[int, str]] = {}
     shown = ""
-    with bus.session(plan.connect, plan.namespace, patience=READY_LIMIT) as session:
+    with (
+        contextlib.suppress(bus.NoRouter),
+        bus.session(plan.connect, plan.namespace, wait=_gone(supervision, monotonic())) as session,
+    ):
         watch = Watch(Link(session, plan.connect), topics.BRAIN_STATE)
         while not supervision.died():
             state = watch.next(0.5)
@@ -258,6 +301,7 @@ def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") ->
     add_start_options(parser)
     parser.add_argument("--port", type=int, default=7447, help="the router's port on 127.0.0.1 (default %(default)s)")
     parser.add_argument("--namespace", metavar="NAME", help="all keys of this robot go below this name")
+    parser.add_argument("--keys", nargs="?", const="", metavar="DIR", help="insist on certificates (default: if there)")
     parser.add_argument("--detach", "-d", action="store_true", help="return when ready; `tidybot down` stops it")
     parser.add_argument("--only", default="", metavar="A,B", help=f"start only these of {', '.join(NAMES)}")
     parser.add_argument("--without", default="", metavar="A,B", help="start all but these")

@@ -61,6 +61,7 @@ CHANGING = (t.SIM_RESET, t.SIM_PAUSE, t.SIM_SNAPSHOT)
 
 ALL_HEALTH, ALL_ALIVE = t.HEALTH_KEY.format(name="*"), t.ALIVE_KEY.format(name="*")
 ADVANCED = "@adv/**"  # caches, heartbeats and tokens of advanced publishers live below the key
+EVERYTHING = ("**", f"**/{ADVANCED}")
 
 
 class Subject(msgspec.Struct, frozen=True):
@@ -89,12 +90,11 @@ def grants(subject: Subject) -> Grants:
     """What the table gives a subject that is not a router."""
     if subject.role == "service":
         return _service(subject.name)
-    everything = ("**", f"**/{ADVANCED}")
     questions = tuple(k for k in SERVES if k not in CHANGING)
     if subject.role == "observer":
-        return Grants(reads=everything, asks=(*questions, *(topic.key for topic in t.TABLE), ALL_HEALTH))
+        return Grants(reads=EVERYTHING, asks=(*questions, *(topic.key for topic in t.TABLE), ALL_HEALTH))
     puts = tuple(topic.key for topic in t.TABLE if ANYONE in topic.writers)
-    return Grants(puts=puts, reads=everything, asks=everything, tokens=(t.ALIVE_KEY.format(name=EAR),))
+    return Grants(puts=puts, reads=EVERYTHING, asks=EVERYTHING, tokens=(t.ALIVE_KEY.format(name=EAR),))
 
 
 def _service(name: str) -> Grants:
@@ -138,7 +138,7 @@ MESSAGES = (
 
 
 def _open(name: str) -> dict[str, Any]:
-    return _rule(f"{name}: everything", MESSAGES, ("ingress", "egress"), ("**", f"**/{ADVANCED}", "@/**"))
+    return _rule(f"{name}: everything", MESSAGES, ("ingress", "egress"), (*EVERYTHING, "@/**"))
 
 
 def _rules(subject: Subject, robots: list[str]) -> list[dict[str, Any]]:
@@ -163,7 +163,8 @@ def _rules(subject: Subject, robots: list[str]) -> list[dict[str, Any]]:
         ("is matched", ("declare_subscriber",), ("egress",), puts),
         ("answers", ("declare_queryable",), ("ingress",), (*answers, *caches)),
         ("replies", ("reply",), ("ingress",), (*answers, *puts)),
-        ("is asked", ("query",), ("egress",), (*answers, *caches)),
+        # A question may be wider than the key; it only comes to who may declare that it answers.
+        ("is asked", ("query",), ("egress",), below(EVERYTHING) if answers else ()),
         ("is alive", ("liveliness_token",), ("ingress",), (*tokens, *caches)),
         ("subscribes", listening, ("ingress",), reads),
         ("receives", ("put", "delete", "reply", "liveliness_token"), ("egress",), (*reads, *asks)),

@@ -38,8 +38,10 @@ def default_directory(environ: Mapping[str, str] = os.environ) -> Path:
     """`keys` in the run directory: TIDYBOT_KEYS_DIR, or below TIDYBOT_RUN_DIR, or `run/` of the project."""
     if environ.get("TIDYBOT_KEYS_DIR"):
         return Path(environ["TIDYBOT_KEYS_DIR"]).resolve()
-    run = environ.get("TIDYBOT_RUN_DIR")
-    return (Path(run).resolve() if run else Path(__file__).resolve().parent.parent / "run") / "keys"
+    if environ.get("TIDYBOT_RUN_DIR"):
+        return Path(environ["TIDYBOT_RUN_DIR"]).resolve() / "keys"
+    project = Path(__file__).resolve().parent.parent
+    return project / "run" / "keys" if os.access(project, os.W_OK) else Path.home() / ".config" / "tidybot" / "keys"
 
 
 def folder(keys: Path, name: str, namespace: str = "") -> Path:

@@ -1,11 +1,15 @@
 """Fixtures shared by all layers."""
 
+import os
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 from tests.support import Site, site
+
+# Keys in the developer's own `run/` have no part in the tests.
+os.environ["TIDYBOT_KEYS"] = "off"
 
 
 @pytest.fixture

@@ -58,6 +58,7 @@ class Site:
             "TIDYBOT_STATE_DIR": str(self.log_dir / "state"),
             "TIDYBOT_CONNECT": self.connect,
             "TIDYBOT_NAMESPACE": self.namespace,
+            "TIDYBOT_KEYS": "off",
             **extra,
         }
 

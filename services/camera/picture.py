@@ -25,8 +25,8 @@ def main() -> int:
     parser.add_argument("--backend", choices=("auto", "egl", "osmesa", "raycast"), default="auto")
     parser.add_argument("--timeout", type=float, default=5.0)
     args = parser.parse_args()
-    connect = os.environ.get("TIDYBOT_CONNECT") or bus.DEFAULT_CONNECT
     try:
+        connect = os.environ.get("TIDYBOT_CONNECT") or bus.default_connect()
         with bus.session(connect, os.environ.get("TIDYBOT_NAMESPACE", ""), patience=args.timeout) as opened:
             model = bus.fetch(opened, topics.SIM_MODEL.key, timeout=args.timeout)
             state = bus.fetch(opened, topics.SIM_STATE.key, timeout=args.timeout)

@@ -215,6 +215,17 @@ def test_every_certificate_asks_and_answers_its_own_keys_and_no_other(guarded: G
     assert answered == expected
 
 
+def test_a_question_to_many_reaches_all_of_them(guarded: Guarded) -> None:
+    with ExitStack() as stack:
+        for name in SERVICES:
+            session, key = guarded.open(stack, name), f"service/{name}/health"
+            session.declare_queryable(key, lambda query, key=key: query.reply(key, b"well"))
+        for asking in ("operator", "looker", "brain"):
+            session = guarded.open(stack, asking)
+            everybody = {f"service/{n}/health" for n in SERVICES if n != asking}
+            eventually(lambda s=session, e=everybody: e <= set(bus.fetch(s, "service/*/health")), f"{asking} hears")
+
+
 def test_a_certificate_shows_only_itself_as_alive(guarded: Guarded) -> None:
     with ExitStack() as stack:
         witness = guarded.open(stack, "router")
