@@ -99,7 +99,7 @@ class Player:
                 while sent < len(self._chunks) and tick.tick >= start + sent * _PERIOD:
                     last = sent == len(self._chunks) - 1
                     at = (start + sent * _PERIOD) * DT
-                    chunk = m.AudioChunk(t=at, data=self._chunks[sent], rate=RATE, seq=sent, end=last)
+                    chunk = m.AudioChunk(t=at, data=self._chunks[sent], rate=RATE, seq=sent, end=last, addressed=True)
                     stamp = _TICK.pack(tick.tick) if tick.lockstep else None
                     out.put(codec.encode(topics.AUDIO_PCM, chunk), attachment=stamp)
                     sent += 1

@@ -16,7 +16,7 @@ from common import topics
 from common.clock import monotonic
 
 OPEN = ("WAITING", "LISTENING", "COMPLETED", "ERROR")
-ACCEPT, HEAR, LISTEN = 5.0, 60.0, 90.0
+ACCEPT, HEAR = 5.0, 60.0
 Show = Callable[[m.BrainState], None]
 
 
@@ -94,38 +94,26 @@ class Conversation:
             idle()
 
 
-def await_listening(link: Link, timeout: float = LISTEN) -> None:
-    """Return when the robot's ear is open.
+def speak_into(link: Link, talk: Conversation, chunks: list[bytes]) -> tuple[str, str]:
+    """Say it to the robot, as with a push-to-talk button: (mission id or "", why not).
 
     Raises:
-        CliError: it does not open in time.
+        CliError: the speech service is not there.
     """
-    watch = Watch(link, topics.SPEECH_STATUS)
-    end = monotonic() + timeout
-    while monotonic() < end:
-        status = watch.next(0.5)
-        if status is not None and status.state == "listening":
-            watch.close()
-            return
-        if status is None and watch.last is None and "speech" not in link.alive():
-            raise CliError("the speech service is not there; see `tidybot ps`")
-    now = watch.last.state if watch.last else "silent"
-    raise CliError(f"the robot did not listen within {timeout:.0f} s (speech is {now}); see `tidybot status`")
-
-
-def speak_into(link: Link, talk: Conversation, chunks: list[bytes]) -> tuple[str, str]:
-    """Play chunks into the open ear: (mission id or "", why not)."""
-    heard = Watch(link, topics.SPEECH_RESULT)
+    heard, status = Watch(link, topics.SPEECH_RESULT), Watch(link, topics.SPEECH_STATUS)
     heard.next(0.3)  # the result of an earlier utterance
-    await_listening(link)
+    if status.next(1.0) is None and "speech" not in link.alive():
+        raise CliError("the speech service is not there; see `tidybot ps`")
     Player(link, chunks).play()
     why = ""
 
     def refused() -> str:
         nonlocal why
-        result = heard.next(0.0)
+        result, now = heard.next(0.0), status.next(0.0)
         if result is not None and result.text == "ERROR":
             why = f"not understood: {result.code} {result.detail}".strip()
+        elif now is not None and now.detail.startswith("not understood"):
+            why = now.detail
         return why
 
     found = talk.accepted(HEAR, refused)

@@ -259,6 +259,8 @@ class ObjectQuery(Message):
 
 
 class ObjectPose(Message):
+    """The answer to a query. `candidates` names the objects that match when several do and none is chosen."""
+
     query_id: str
     found: bool
     label: str = ""
@@ -269,6 +271,7 @@ class ObjectPose(Message):
     size: Vec3 = (0.0, 0.0, 0.0)
     seen_at: float = 0.0
     detail: str = ""
+    candidates: list[str] = []
 
 
 class NavGoal(Message):

@@ -6,7 +6,11 @@ from common.config import Config
 
 
 class SpeechConfig(Config, frozen=True):
-    """`commands` are the patterns of the grammar; the lists extend the scene's vocabulary. Times in seconds."""
+    """`commands` are the patterns of the grammar; the lists extend the scene's vocabulary. Times in seconds.
+
+    `wake_window`: how long after the wake word a command may begin. `interrupt_pause`: the pause after a short
+    utterance at which it is already examined for "stop" and "cancel"; `interrupt_longest`: how short.
+    """
 
     recogniser: Literal["moonshine", "pocketsphinx"] = "moonshine"
     listen_timeout: float = 60.0
@@ -21,6 +25,15 @@ class SpeechConfig(Config, frozen=True):
     wav: str = ""
     microphone: bool = False
     speakers: bool = False
+    wake_word: bool = True
+    wake_threshold: float = 0.3
+    wake_window: float = 6.0
+    wake: tuple[str, ...] = ("hey jarvis",)
+    stop: tuple[str, ...] = ("stop",)
+    cancel: tuple[str, ...] = ("cancel",)
+    interrupt_pause: float = 0.25
+    interrupt_longest: float = 1.6
+    interrupt_seconds: float = 0.4
     commands: tuple[str, ...] = ("[please] (bring | fetch | get | give | hand) me <thing> [please]",)
     objects: tuple[str, ...] = ()
     places: tuple[str, ...] = ()

@@ -18,6 +18,7 @@ Array = NDArray[np.float32]
 BOS, EOS = 1, 2
 LAYERS, HEADS, WIDTH = 8, 8, 52
 TOKENS_PER_SECOND = 6.5
+MARGIN = 3.0
 RATE = 16000
 _SILENT = set(".,?!;:'\"-")
 
@@ -63,7 +64,7 @@ class Vocabulary:
 
     def __init__(self, tokens: list[str], grammar: Grammar) -> None:
         self.tokens = tokens
-        self._grammar = grammar
+        self.grammar = grammar
         self._trie: dict[str, Any] = {}
         self._allowed: dict[State, tuple[NDArray[np.int64], list[State]]] = {}
         for number, token in enumerate(tokens):
@@ -89,7 +90,7 @@ class Vocabulary:
         for character, child in node.items():
             if not character:
                 continue
-            after = self._grammar.step(state, character)
+            after = self.grammar.step(state, character)
             if after:
                 self._collect(child, after, numbers, states)
             elif character in _SILENT:
@@ -101,9 +102,13 @@ class Vocabulary:
 
 
 class Moonshine:
-    """One encoder and one decoder session; not for use by several threads at once."""
+    """One encoder and one decoder session; not for use by several threads at once.
 
-    def __init__(self, grammar: Grammar, beam: int = 8, threads: int = 1) -> None:
+    An utterance may be given in several renditions of equal length (as recorded, noise taken out): their token
+    probabilities are averaged, so that a word must be plausible in all of them.
+    """
+
+    def __init__(self, beam: int = 8, threads: int = 1) -> None:
         import onnxruntime
 
         options = onnxruntime.SessionOptions()
@@ -118,31 +123,83 @@ class Moonshine:
             str(folder / "decoder_model_merged.ort"), options, providers=providers
         )
         self._outputs = [o.name for o in self._decoder.get_outputs()]
-        self._grammar, self._beam = grammar, beam
-        self._vocabulary = Vocabulary(read_tokens(folder / "tokenizer.bin"), grammar)
+        self._beam = beam
+        self.tokens = read_tokens(folder / "tokenizer.bin")
 
-    def recognise(self, audio: Array) -> tuple[Decoded, Decoded | None]:
-        """Free transcription and the likeliest sentence of the grammar (None: there is none) of 16 kHz samples (n,)."""
-        hidden = self._encoder.run(None, {"input_values": audio[np.newaxis].astype(np.float32)})[0]
-        limit = max(2, int(len(audio) / RATE * TOKENS_PER_SECOND) + 2)
-        free = self._greedy(hidden, limit)
-        plain = spoken(free.text)
-        if plain and self._grammar.accepts(plain):
-            return free, Decoded(plain, free.log_probability, free.tokens)
-        return free, self._constrained(hidden, limit)
+    def encode(self, renditions: Array) -> "Utterance":
+        """16 kHz samples (renditions, n) of one utterance, ready for decoding."""
+        hidden = self._encoder.run(None, {"input_values": renditions.astype(np.float32)})[0]
+        return Utterance(hidden, max(2, int(renditions.shape[1] / RATE * TOKENS_PER_SECOND) + 2))
 
-    # --- decoding
+    def free(self, utterance: "Utterance") -> Decoded:
+        """The transcription without any grammar."""
+        scores, cache = self._first(utterance.hidden)
+        numbers: list[int] = []
+        total = 0.0
+        for _ in range(utterance.limit):
+            best = int(scores[0].argmax())
+            total += float(scores[0, best])
+            if best == EOS:
+                break
+            numbers.append(best)
+            scores, cache = self._next(utterance.hidden, [best], cache)
+        return Decoded("".join(self.tokens[n] for n in numbers).strip(), total, len(numbers) + 1)
+
+    def best(self, utterance: "Utterance", vocabulary: Vocabulary) -> list[Decoded]:
+        """Different sentences of the grammar, the likeliest first; empty when none fits into the length."""
+        grammar = vocabulary.grammar
+        scores, cache = self._first(utterance.hidden)
+        renditions = len(utterance.hidden)
+        beams: list[tuple[float, list[int], State]] = [(0.0, [], grammar.start)]
+        finished: list[tuple[float, list[int]]] = []
+        for _ in range(utterance.limit):
+            options: list[tuple[float, int, int, State]] = []
+            for row, (total, numbers, state) in enumerate(beams):
+                if numbers and grammar.is_final(state):
+                    finished.append((total + float(scores[row, EOS]), numbers))
+                allowed, after = vocabulary.allowed(state)
+                if len(allowed):
+                    values = scores[row, allowed]
+                    for k in np.argsort(values)[::-1][: self._beam]:
+                        options.append((total + float(values[k]), row, int(allowed[k]), after[int(k)]))
+            options = sorted(options, key=lambda o: -o[0])[: self._beam]
+            best = max((f[0] for f in finished), default=-np.inf)
+            options = [o for o in options if o[0] > best - MARGIN]
+            if not options:
+                break
+            rows = [row for _, row, _, _ in options]
+            beams = [(total, [*beams[row][1], number], state) for total, row, number, state in options]
+            kept = [row * renditions + r for row in rows for r in range(renditions)]
+            cache = {name: value[kept] for name, value in cache.items()}
+            scores, cache = self._next(utterance.hidden, [b[1][-1] for b in beams], cache)
+        found: dict[str, Decoded] = {}
+        for total, numbers in sorted(finished, key=lambda f: -f[0]):
+            text = spoken(vocabulary.text(numbers))
+            found.setdefault(text, Decoded(text, total, len(numbers) + 1))
+        return list(found.values())
+
+    # --- the network
     def _first(self, hidden: Array) -> tuple[Array, dict[str, Array]]:
         feeds: dict[str, Any] = {"encoder_hidden_states": hidden, "use_cache_branch": np.array([False])}
-        feeds["input_ids"] = np.full((1, 1), BOS, np.int64)
+        feeds["input_ids"] = np.full((len(hidden), 1), BOS, np.int64)
         empty = np.zeros((0, HEADS, 1, WIDTH), np.float32)
         for layer in range(LAYERS):
             for side in ("decoder", "encoder"):
                 for what in ("key", "value"):
                     feeds[f"past_key_values.{layer}.{side}.{what}"] = empty
-        return self._run(feeds, {})
+        return self._run(feeds, {}, len(hidden))
 
-    def _run(self, feeds: dict[str, Any], cache: dict[str, Array]) -> tuple[Array, dict[str, Array]]:
+    def _next(self, hidden: Array, last: list[int], cache: dict[str, Array]) -> tuple[Array, dict[str, Array]]:
+        renditions = len(hidden)
+        feeds: dict[str, Any] = {
+            "input_ids": np.repeat(np.array(last, np.int64), renditions)[:, np.newaxis],
+            "encoder_hidden_states": np.tile(hidden, (len(last), 1, 1)),
+            "use_cache_branch": np.array([True]),
+            **cache,
+        }
+        return self._run(feeds, cache, renditions)
+
+    def _run(self, feeds: dict[str, Any], cache: dict[str, Array], renditions: int) -> tuple[Array, dict[str, Array]]:
         found = dict(zip(self._outputs, self._decoder.run(None, feeds), strict=True))
         logits = found.pop("logits")[:, -1].astype(np.float64)
         kept = {}
@@ -152,54 +209,12 @@ class Moonshine:
             kept[past] = cache[past] if cache and ".encoder." in name else value
         shifted = logits - logits.max(axis=1, keepdims=True)
         log_probabilities = shifted - np.log(np.exp(shifted).sum(axis=1, keepdims=True))
-        return log_probabilities, kept
+        return log_probabilities.reshape(-1, renditions, log_probabilities.shape[1]).mean(axis=1), kept
 
-    def _next(self, hidden: Array, last: list[int], cache: dict[str, Array]) -> tuple[Array, dict[str, Array]]:
-        feeds: dict[str, Any] = {
-            "input_ids": np.array(last, np.int64)[:, np.newaxis],
-            "encoder_hidden_states": np.repeat(hidden, len(last), axis=0),
-            "use_cache_branch": np.array([True]),
-            **cache,
-        }
-        return self._run(feeds, cache)
 
-    def _greedy(self, hidden: Array, limit: int) -> Decoded:
-        scores, cache = self._first(hidden)
-        numbers: list[int] = []
-        total = 0.0
-        for _ in range(limit):
-            best = int(scores[0].argmax())
-            total += float(scores[0, best])
-            if best == EOS:
-                break
-            numbers.append(best)
-            scores, cache = self._next(hidden, [best], cache)
-        return Decoded(self._vocabulary.text(numbers), total, len(numbers) + 1)
+@dataclass(frozen=True)
+class Utterance:
+    """What the encoder made of the renditions (r, frames, width), and the most tokens it can hold."""
 
-    def _constrained(self, hidden: Array, limit: int) -> Decoded | None:
-        scores, cache = self._first(hidden)
-        beams: list[tuple[float, list[int], State]] = [(0.0, [], self._grammar.start)]
-        finished: list[tuple[float, list[int]]] = []
-        for _ in range(limit):
-            options: list[tuple[float, int, int, State]] = []
-            for row, (total, numbers, state) in enumerate(beams):
-                if numbers and self._grammar.is_final(state):
-                    finished.append((total + float(scores[row, EOS]), numbers))
-                allowed, after = self._vocabulary.allowed(state)
-                if len(allowed):
-                    values = scores[row, allowed]
-                    for k in np.argsort(values)[::-1][: self._beam]:
-                        options.append((total + float(values[k]), row, int(allowed[k]), after[int(k)]))
-            options = sorted(options, key=lambda o: -o[0])[: self._beam]
-            best = max((f[0] for f in finished), default=-np.inf)
-            options = [o for o in options if o[0] > best]
-            if not options:
-                break
-            rows = [row for _, row, _, _ in options]
-            beams = [(total, [*beams[row][1], number], state) for total, row, number, state in options]
-            cache = {name: value[rows] for name, value in cache.items()}
-            scores, cache = self._next(hidden, [b[1][-1] for b in beams], cache)
-        if not finished:
-            return None
-        total, numbers = max(finished, key=lambda f: f[0])
-        return Decoded(spoken(self._vocabulary.text(numbers)), total, len(numbers) + 1)
+    hidden: Array
+    limit: int

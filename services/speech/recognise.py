@@ -1,7 +1,8 @@
 """Speech to a command: crop, normalise, recognise, and accept, ask or reject by likelihood ratio."""
 
 import math
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
 from typing import Literal, Protocol
 
 import numpy as np
@@ -13,44 +14,53 @@ from services.speech.grammar import Grammar, vocabulary
 from services.speech.vad import RATE, VoiceDetector, speech_span
 
 Array = NDArray[np.float32]
+Verdict = Literal["accept", "ask", "reject", "silence"]
+Scope = Literal["command", "woken", "interrupt"]
 BEFORE, AFTER = 0.2, 0.6
 MIN_SAMPLES = 4000
 
 
 @dataclass(frozen=True)
 class Heard:
-    """What was understood. `verdict`: accept, ask (perhaps), reject (no command), silence."""
+    """What was understood, without the wake word. `verdict`: accept, ask (perhaps), reject (no command), silence."""
 
     text: str
-    verdict: Literal["accept", "ask", "reject", "silence"]
+    verdict: Verdict
     confidence: float
     free: str = ""
 
 
 class Recogniser(Protocol):
-    """Turns 16 kHz samples in -1..1 (n,) that contain speech into a command."""
+    """Turns 16 kHz samples in -1..1 (n,) that contain speech into a command.
 
-    def hear(self, audio: Array) -> Heard: ...
+    `scope` is the grammar: a command, a command after the wake word or the wake word alone, or stop and cancel only.
+    """
+
+    def hear(self, audio: Array, scope: Scope) -> Heard: ...
 
 
 class MoonshineRecogniser:
     """Moonshine under the grammar."""
 
-    def __init__(self, config: SpeechConfig, grammar: Grammar) -> None:
-        from services.speech.moonshine import Moonshine
+    def __init__(self, config: SpeechConfig, grammars: dict[Scope, Grammar]) -> None:
+        from services.speech.moonshine import Moonshine, Vocabulary
 
         self._config = config
-        self._model = Moonshine(grammar, config.beam)
+        self._model = Moonshine(config.beam)
+        self._words = {scope: Vocabulary(self._model.tokens, grammar) for scope, grammar in grammars.items()}
 
-    def hear(self, audio: Array) -> Heard:
-        free, command = self._model.recognise(audio)
-        if command is None:
+    def hear(self, audio: Array, scope: Scope) -> Heard:
+        utterance = self._model.encode(audio[np.newaxis])
+        free = self._model.free(utterance)
+        found = self._model.best(utterance, self._words[scope])
+        if not found:
             return Heard("", "reject", 0.0, free.text)
+        command = found[0]
         score = (command.log_probability - free.log_probability) / command.tokens
         confidence = confidence_of(score, self._config)
         if score >= self._config.accept_score:
             return Heard(command.text, "accept", confidence, free.text)
-        verdict: Literal["ask", "reject"] = "ask" if score >= self._config.ask_score else "reject"
+        verdict: Verdict = "ask" if score >= self._config.ask_score else "reject"
         return Heard(command.text, verdict, confidence, free.text)
 
 
@@ -59,13 +69,56 @@ def confidence_of(score: float, config: SpeechConfig) -> float:
     return round(math.exp(min(0.0, score) * math.log(2) / -config.accept_score), 3)
 
 
-def command_grammar(config: SpeechConfig, scene: Scene) -> Grammar:
-    """The configured patterns over the words of the scene.
+def patterns(config: SpeechConfig, scope: Scope) -> list[str]:
+    """The lines of a scope's grammar."""
+    if scope == "command":
+        return list(config.commands)
+    wake = _either(config.wake)
+    if scope == "interrupt":
+        return [f"[{wake}] {_either((*config.stop, *config.cancel))}"]
+    sentences = [line for line in config.commands if not _is_part(line)]
+    return [f"{wake} [{_either(sentences)}]", *(line for line in config.commands if _is_part(line))]
+
+
+def grammars(config: SpeechConfig, scene: Scene) -> dict[Scope, Grammar]:
+    """One grammar for each scope.
 
     Raises:
         GrammarError: a pattern that cannot be used.
     """
-    return Grammar(config.commands, vocabulary(scene, config.objects, config.places, config.colours))
+    words = vocabulary(scene, config.objects, config.places, config.colours)
+    scopes: tuple[Scope, ...] = ("command", "woken", "interrupt")
+    return {scope: Grammar(patterns(config, scope), words) for scope in scopes}
+
+
+def _is_part(line: str) -> bool:
+    name, equals, _ = line.partition("=")
+    return bool(equals) and name.strip().isidentifier()
+
+
+def _either(patterns: Iterable[str]) -> str:
+    return "(" + " | ".join(patterns) + ")"
+
+
+class Interrupts:
+    """Which of the words that end everything were said."""
+
+    def __init__(self, config: SpeechConfig) -> None:
+        self._stop, self._cancel = Grammar(config.stop, {}), Grammar(config.cancel, {})
+
+    def of(self, text: str) -> Literal["stop", "cancel", ""]:
+        """stop, cancel, or neither."""
+        if self._stop.accepts(text):
+            return "stop"
+        return "cancel" if self._cancel.accepts(text) else ""
+
+
+def without_wake(text: str, phrases: Iterable[str]) -> str:
+    """What follows the wake word, or the whole text."""
+    for phrase in phrases:
+        if f"{text} ".startswith(f"{phrase} "):
+            return text[len(phrase) :].strip()
+    return text
 
 
 def prepare(audio: Array, detector: VoiceDetector) -> Array | None:
@@ -86,17 +139,20 @@ def prepare(audio: Array, detector: VoiceDetector) -> Array | None:
 class Ear:
     """The whole path from samples to a verdict; models load at construction, so make it in the worker."""
 
-    def __init__(self, config: SpeechConfig, scene: Scene, grammar: Grammar) -> None:
-        self._detector = VoiceDetector()
+    def __init__(self, config: SpeechConfig, scene: Scene, found: dict[Scope, Grammar]) -> None:
+        self._detector, self._wake = VoiceDetector(), config.wake
         self._recogniser: Recogniser
         if config.recogniser == "pocketsphinx":
             from services.speech.sphinx import SphinxRecogniser
 
             self._recogniser = SphinxRecogniser(config, scene)
         else:
-            self._recogniser = MoonshineRecogniser(config, grammar)
+            self._recogniser = MoonshineRecogniser(config, found)
 
-    def hear(self, samples: NDArray[np.int16]) -> Heard:
+    def hear(self, samples: NDArray[np.int16], scope: Scope = "command") -> Heard:
         """What 16 kHz int16 samples (n,) say."""
         audio = prepare(samples.astype(np.float32) / np.float32(32768), self._detector)
-        return Heard("", "silence", 0.0) if audio is None else self._recogniser.hear(audio)
+        if audio is None:
+            return Heard("", "silence", 0.0)
+        heard = self._recogniser.hear(audio, scope)
+        return replace(heard, text=without_wake(heard.text, self._wake))

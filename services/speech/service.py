@@ -1,6 +1,7 @@
-"""Speech: listens on request and answers with the command that was heard; speaks what it is asked to say."""
+"""Speech: listens all the time for the wake word, "stop" and "cancel", on request for anything; speaks when asked."""
 
 from collections import deque
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,20 +10,20 @@ from common import messages as m
 from common import topics
 from common.io import Io, Job
 from common.runtime import StartError
+from services.speech.attention import Attention, Hearing
 from services.speech.audio import RATE, AudioError, Samples, read_wav, resample
 from services.speech.config import SpeechConfig
+from services.speech.dialogue import act
 from services.speech.grammar import GrammarError, spoken
-from services.speech.recognise import Ear, Heard, command_grammar
-from services.speech.speak import Microphone, Speakers, Voice
-from services.speech.vad import FRAME, Endpointer, VoiceDetector
+from services.speech.mouth import CHUNK, Mouth
+from services.speech.recognise import Ear, Heard, Interrupts, grammars
+from services.speech.speak import Microphone
 
-CHUNK = RATE // 10
-PRE_ROLL = int(0.4 * RATE)
 _FAILURES = {"silence": "NO_SPEECH", "ask": "UNCERTAIN", "reject": "NO_COMMAND"}
 
 
 class SpeechService:
-    """Voice activity detection, recognition under the command grammar, and a voice."""
+    """Voice activity detection, wake word, recognition under the command grammar, and a voice."""
 
     NAME = "speech"
     HZ = 10
@@ -35,29 +36,21 @@ class SpeechService:
     def __init__(self, config: SpeechConfig, io: Io) -> None:
         self._config, self._io = config, io
         try:
-            grammar = command_grammar(config, io.scene)
+            found = grammars(config, io.scene)
+            self._interrupts = Interrupts(config)
             self._recording: Samples | None = read_wav(Path(config.wav)) if config.wav else None
         except (GrammarError, AudioError) as error:
             raise StartError(f"speech: {error}") from None
         self._microphone = Microphone() if config.microphone else None
-        self._speakers = Speakers() if config.speakers else None
-        self._ear: Job[Ear] = io.submit(Ear, config, io.scene, grammar, seconds=0.5)
-        self._voice: Job[Voice] | None = None
-        self._detector = VoiceDetector()
-        self._endpointer = Endpointer(config.end_silence, config.max_utterance)
+        ear: Job[Ear] = io.submit(Ear, config, io.scene, found, seconds=0.5)
+        self._attention = Attention(config, io, ear)
+        self._mouth = Mouth(io, config.speakers, config.synthesis_seconds)
         self._goal = m.SpeechGoal(goal="")
         self._seen: set[tuple[str, int]] = set()
         self._answers: dict[tuple[str, int], m.SpeechResult] = {}
         self._listening = False
         self._deadline = 0.0
         self._typed: deque[tuple[float, str]] = deque(maxlen=8)
-        self._frames: list[Samples] = []
-        self._rest = np.zeros(0, np.int16)
-        self._audio_at = 0.0
-        self._hearing: Job[Heard] | None = None
-        self._synthesis: Job[Samples] | None = None
-        self._speech = np.zeros(0, np.int16)
-        self._sequence = 0
         self._status = m.SpeechStatus(state="idle")
         io.publish(topics.SPEECH_STATUS, self._status)
 
@@ -66,11 +59,14 @@ class SpeechService:
         for goal in io.drain(topics.SPEECH_GOAL):
             self._take(goal, now)
         for typed in io.drain(topics.SPEECH_TEXT):
-            self._typed.append((now, typed.text.strip()))
-        self._hear(self._audio(), now)
+            self._type(typed.text.strip(), now)
+        key = self._goal.id, self._goal.attempt
+        self._attention.push(self._audio(), now, bool(self._mouth.saying), self._listening, key)
+        while hearing := self._attention.take(now):
+            self._heard(hearing, now)
         if self._listening:
             self._listen(now)
-        self._speak(now)
+        self._show(now, "said" if self._mouth.step(now) else "")
 
     # --- goals
     def _take(self, goal: m.SpeechGoal, now: float) -> None:
@@ -84,20 +80,17 @@ class SpeechService:
         self._seen.add(key)
         verb, _, text = goal.goal.strip().partition(" ")
         if verb == "say" and text.strip():
-            self._quiet()
             self._goal, self._listening = goal, False
-            if self._voice is None:
-                self._voice = self._io.submit(Voice, seconds=0.2)
+            self._mouth.say(text.strip())
             self._set("speaking", text.strip())
         elif goal.goal.strip() == "listen":
-            self._quiet()
+            self._mouth.stop()
             self._goal, self._listening = goal, True
             self._deadline = now + self._config.listen_timeout
-            self._forget_audio()
             self._set("listening")
             self._io.log.info("listening", id=goal.id)
         elif goal.goal.strip() == "cancel":
-            self._quiet()
+            self._mouth.stop()
             self._goal, self._listening = goal, False
             self._set("idle", "cancelled")
         else:
@@ -112,124 +105,111 @@ class SpeechService:
         self._io.log.info("heard", text=text, confidence=confidence, code=code, detail=detail)
         self._io.publish(topics.SPEECH_RESULT, result)
 
+    # --- status
     def _set(self, state: m.SpeechStateName, detail: str = "") -> None:
         goal = self._goal
         self._status = m.SpeechStatus(state=state, goal_id=goal.id, attempt=goal.attempt, detail=detail)
         self._io.publish(topics.SPEECH_STATUS, self._status)
 
+    def _show(self, now: float, detail: str) -> None:
+        """Publish the state when it has changed."""
+        state: m.SpeechStateName = "idle"
+        if self._mouth.saying:
+            state = "speaking"
+        elif self._attention.transcribing:
+            state = "transcribing"
+        elif self._listening or self._attention.awake(now):
+            state = "listening"
+        if state != self._status.state:
+            self._set(state, detail)
+
     # --- hearing
-    def _audio(self) -> list[Samples]:
-        """What arrived since the last step, at 16 kHz."""
-        found: list[Samples] = []
+    def _audio(self) -> list[tuple[Samples, bool]]:
+        """What arrived since the last step, at 16 kHz, and whether it is meant for the robot."""
+        found: list[tuple[Samples, bool]] = []
         for chunk in self._io.drain(topics.AUDIO_PCM):
             if len(chunk.data) % 2 or not 4000 <= chunk.rate <= 192000:
                 self._io.count_drop(topics.AUDIO_PCM.key, "not 16 bit samples at 4 to 192 kHz")
                 continue
             samples = np.frombuffer(chunk.data, "<i2").astype(np.int16)
-            found.append(samples if chunk.rate == RATE else resample(samples.astype(np.float32), chunk.rate))
+            samples = samples if chunk.rate == RATE else resample(samples.astype(np.float32), chunk.rate)
+            found.append((samples, chunk.addressed))
         if self._microphone:
-            found += self._microphone.take()
+            room = self._microphone.take()
+            if not found:  # two sources mixed would be understood by nobody
+                found += [(samples, False) for samples in room]
         if self._recording is not None and self._listening:
-            found.append(self._recording[:CHUNK])
+            found.append((self._recording[:CHUNK], False))
             self._recording = self._recording[CHUNK:] if len(self._recording) > CHUNK else None
             if self._recording is None:
-                found.append(np.zeros(RATE, np.int16))
+                found.append((np.zeros(RATE, np.int16), False))
         return found
 
-    def _hear(self, parts: list[Samples], now: float) -> None:
-        """Run voice detection over new audio; keeps a little from before the speech."""
-        if not parts:
-            # A stream that stops in mid-utterance has ended it, as silence would have.
-            silent = now - self._audio_at > self._config.end_silence + CHUNK / RATE
-            if self._endpointer.speaking and self._hearing is None and silent:
-                self._recognise(np.concatenate(self._frames))
-            return
-        self._audio_at = now
-        stream = np.concatenate([self._rest, *parts])
-        usable = len(stream) // FRAME * FRAME
-        self._rest = stream[usable:]
-        if not self._listening or self._hearing is not None:
-            return
-        for i in range(0, usable, FRAME):
-            frame = stream[i : i + FRAME]
-            ended = self._endpointer.push(self._detector(frame))
-            self._frames.append(frame)
-            if not self._endpointer.speaking:
-                self._frames = self._frames[-(PRE_ROLL // FRAME) :]
-            if ended:
-                self._recognise(np.concatenate(self._frames))
-                return
+    def _heard(self, hearing: Hearing, now: float) -> None:
+        """Do what follows from an utterance."""
+        heard, setting = hearing.job.result(), hearing.setting
+        same = self._listening and hearing.key == (self._goal.id, self._goal.attempt)
+        setting = replace(setting, listening=setting.listening and same)
+        found = act(heard, self._interrupts.of(heard.text), hearing.scope, setting)
+        self._io.log.debug("utterance", text=heard.text, free=heard.free, verdict=heard.verdict, act=found)
+        if found in ("stop", "cancel"):
+            self._interrupt(found, heard.confidence, now)
+        elif found == "answer":
+            self._attention.sleep(now)
+            self._end_listening(heard)
+        elif found == "command":
+            self._attention.sleep(now)
+            self._command(heard.text, heard.confidence)
+        elif found in ("awake", "again"):
+            self._attention.wake(now)
+            if found == "again":
+                self._set("listening", f"not understood: {_FAILURES[heard.verdict]} {heard.free!r}")
 
-    def _recognise(self, samples: Samples) -> None:
-        ear = self._ear
-        self._hearing = self._io.submit(lambda: ear.result().hear(samples), seconds=self._config.recognition_seconds)
-        self._forget_audio()
-        self._set("transcribing")
+    def _end_listening(self, heard: Heard) -> None:
+        self._listening = False
+        if heard.verdict == "accept":
+            self._answer(self._goal, heard.text, heard.confidence)
+        else:
+            detail = f"perhaps {heard.text!r}" if heard.verdict == "ask" else f"understood {heard.free!r}"
+            self._answer(self._goal, "ERROR", heard.confidence, _FAILURES[heard.verdict], detail)
 
-    def _forget_audio(self) -> None:
-        self._frames = []
-        self._rest = np.zeros(0, np.int16)
-        self._endpointer.reset()
-        self._detector.reset()
+    def _interrupt(self, word: str, confidence: float, now: float) -> None:
+        """Somebody said stop or cancel: be silent and tell the brain; a stop goes to the motors directly."""
+        self._mouth.stop()
+        self._attention.sleep(now)
+        self._attention.interrupted()
+        if word == "stop":
+            self._io.publish(topics.ROBOT_STOP, m.RobotStop(reason="somebody said stop", source=self.NAME))
+        if self._listening:
+            self._listening = False
+            self._answer(self._goal, word, confidence)
+        self._command(word, confidence)
+
+    def _command(self, text: str, confidence: float) -> None:
+        command = m.VoiceCommand(text=text, confidence=confidence, id=self._io.new_id("voice"))
+        self._io.log.info("command", text=text, confidence=confidence)
+        self._io.publish(topics.VOICE_COMMAND, command)
+
+    # --- listening on request
+    def _type(self, text: str, now: float) -> None:
+        word = self._interrupts.of(spoken(text))
+        if word == "stop" or (word and not self._listening):
+            self._interrupt(word, 1.0, now)
+        else:
+            self._typed.append((now, text))
 
     def _listen(self, now: float) -> None:
-        """End the goal when something was typed or understood, or the time is over."""
+        """End the goal when something was typed, or the time is over."""
         while self._typed:
             at, text = self._typed.popleft()
             if now - at <= self._config.typed_memory and spoken(text):
-                self._end_listening(spoken(text), 1.0)
+                self._listening = False
+                self._answer(self._goal, spoken(text), 1.0)
                 return
-        if self._hearing is not None:
-            if self._hearing.poll(now):
-                heard = self._hearing.result()
-                self._hearing = None
-                if heard.verdict == "accept":
-                    self._end_listening(heard.text, heard.confidence)
-                else:
-                    detail = f"perhaps {heard.text!r}" if heard.verdict == "ask" else f"understood {heard.free!r}"
-                    self._end_listening("ERROR", heard.confidence, _FAILURES[heard.verdict], detail)
-        elif now >= self._deadline:
+        if now >= self._deadline and not self._attention.busy:
+            self._listening = False
             silent = f"nobody spoke for {self._config.listen_timeout:.0f} s"
-            self._end_listening("ERROR", 0.0, "TIMEOUT", silent)
-
-    def _end_listening(self, text: str, confidence: float, code: str = "", detail: str = "") -> None:
-        self._listening = False
-        self._answer(self._goal, text, confidence, code, detail)
-        self._set("idle")
-
-    # --- speaking
-    def _speak(self, now: float) -> None:
-        if self._status.state != "speaking":
-            return
-        if self._synthesis is None and self._voice is not None and self._voice.poll(now):
-            voice, text = self._voice, self._status.detail
-            self._synthesis = self._io.submit(
-                lambda: voice.result().speak(text), seconds=self._config.synthesis_seconds
-            )
-            return
-        if self._synthesis is not None and not len(self._speech):
-            if not self._synthesis.poll(now):
-                return
-            self._speech = self._synthesis.result()
-            if self._speakers:
-                self._speakers.play(self._speech)
-        if not len(self._speech):
-            return
-        part, self._speech = self._speech[:CHUNK], self._speech[CHUNK:]
-        last = not len(self._speech)
-        chunk = m.AudioChunk(t=now, data=part.tobytes(), rate=RATE, seq=self._sequence, end=last)
-        self._sequence += 1
-        self._io.publish(topics.AUDIO_OUT, chunk)
-        if last:
-            self._synthesis = None
-            self._set("idle", "said")
-
-    def _quiet(self) -> None:
-        """Stop whatever is being heard or said."""
-        self._hearing = self._synthesis = None
-        self._speech = np.zeros(0, np.int16)
-        if self._speakers:
-            self._speakers.stop()
+            self._answer(self._goal, "ERROR", 0.0, "TIMEOUT", silent)
 
     def close(self) -> None:
         if self._microphone:

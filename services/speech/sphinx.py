@@ -7,14 +7,14 @@ from common.runtime import StartError
 from common.scene import Scene
 from services.speech.config import SpeechConfig
 from services.speech.grammar import vocabulary
-from services.speech.recognise import Heard
+from services.speech.recognise import Heard, Scope, patterns
 
 
-def jsgf(config: SpeechConfig, scene: Scene) -> str:
-    """The command patterns as a JSGF grammar."""
+def jsgf(config: SpeechConfig, scene: Scene, scope: Scope = "command") -> str:
+    """The patterns of a scope as a JSGF grammar."""
     parts = vocabulary(scene, config.objects, config.places, config.colours)
     sentences = []
-    for line in config.commands:
+    for line in patterns(config, scope):
         name, equals, pattern = line.partition("=")
         if equals and name.strip().isidentifier():
             parts.setdefault(name.strip(), []).append(pattern.strip())
@@ -33,10 +33,12 @@ class SphinxRecogniser:
         except ImportError:
             raise StartError('speech.recogniser = "pocketsphinx" needs: pip install pocketsphinx') from None
         self._decoder = Decoder(lm=None, loglevel="FATAL")
-        self._decoder.add_jsgf_string("commands", jsgf(config, scene))
-        self._decoder.activate_search("commands")
+        scopes: tuple[Scope, ...] = ("command", "woken", "interrupt")
+        for scope in scopes:
+            self._decoder.add_jsgf_string(scope, jsgf(config, scene, scope))
 
-    def hear(self, audio: NDArray[np.float32]) -> Heard:
+    def hear(self, audio: NDArray[np.float32], scope: Scope) -> Heard:
+        self._decoder.activate_search(scope)
         self._decoder.start_utt()
         self._decoder.process_raw((audio * 32000).astype(np.int16).tobytes(), full_utt=True)
         self._decoder.end_utt()

@@ -8,12 +8,30 @@ from pathlib import Path
 import msgspec
 
 from common import config
-from common.runtime import BAD_CONFIGURATION
-from common.scene import SceneError, load_scene
-from services.speech.audio import AudioError, read_wav
+from common.runtime import BAD_CONFIGURATION, StartError
+from common.scene import Scene, SceneError, load_scene
+from services.speech.audio import AudioError, Samples, read_wav
 from services.speech.config import SpeechConfig
 from services.speech.grammar import GrammarError
-from services.speech.recognise import Ear, command_grammar
+from services.speech.recognise import Ear, Heard, grammars
+from services.speech.wake import WakeWord
+
+
+class Reader:
+    """Recordings of one utterance each, taken as meant for the robot with or without the wake word."""
+
+    def __init__(self, parameters: SpeechConfig, scene: Scene) -> None:
+        self._threshold = parameters.wake_threshold
+        self._ear = Ear(parameters, scene, grammars(parameters, scene))
+        self._wake = WakeWord() if parameters.wake_word else None
+
+    def __call__(self, samples: Samples) -> tuple[Heard, bool]:
+        """What 16 kHz samples (n,) say, and whether the wake word is in them."""
+        woken = False
+        if self._wake:
+            self._wake.restart()
+            woken = self._wake(samples) >= self._threshold
+        return self._ear.hear(samples, "woken" if woken else "command"), woken
 
 
 def main() -> int:
@@ -27,25 +45,26 @@ def main() -> int:
         directory = config.config_dir()
         shared = config.load("runtime", config.RuntimeConfig, directory, changes)
         parameters, scene = config.load("speech", SpeechConfig, directory, changes), load_scene(shared.scene)
-        ear = Ear(parameters, scene, command_grammar(parameters, scene))
-    except (config.ConfigError, SceneError, GrammarError, FileNotFoundError) as error:
+        reader = Reader(parameters, scene)
+    except (config.ConfigError, SceneError, GrammarError, StartError, FileNotFoundError) as error:
         print(f"transcribe: {error}", file=sys.stderr)
         return BAD_CONFIGURATION
     failed = False
     for path in args.wav:
         try:
-            heard = ear.hear(read_wav(path))
+            heard, woken = reader(read_wav(path))
         except AudioError as error:
             print(f"transcribe: {error}", file=sys.stderr)
             failed = True
             continue
-        accepted = heard.verdict == "accept"
+        accepted = heard.verdict == "accept" and bool(heard.text)
         row: dict[str, object] = {"file": str(path), "text": heard.text, "accepted": accepted}
-        row |= {"confidence": heard.confidence, "wake": False}
+        row |= {"confidence": heard.confidence, "wake": woken}
         if args.json:
             print(msgspec.json.encode(row).decode(), flush=True)
         else:
-            print(f"{path.name}: {heard.text or '-'} ({heard.verdict}, {heard.confidence:.2f})", flush=True)
+            wake = ", wake word" if woken else ""
+            print(f"{path.name}: {heard.text or '-'} ({heard.verdict}, {heard.confidence:.2f}{wake})", flush=True)
     return int(failed)
 
 

@@ -38,26 +38,27 @@ def speech_span(audio: NDArray[np.float32], detector: VoiceDetector) -> tuple[in
 class Endpointer:
     """Finds one utterance in a stream of frame probabilities.
 
-    `push` returns True once, when speech has begun and then paused for `end_silence` seconds, or grown too long.
+    `push` returns True once, when speech has begun and then paused for `end_silence` seconds, or grown too long;
+    `quiet` counts the frames of the pause.
     """
 
     end_silence: float
     max_utterance: float
     speaking: bool = False
+    quiet: int = 0
     _recent: list[bool] = field(default_factory=list)
-    _quiet: int = 0
     _length: int = 0
 
     def push(self, probability: float) -> bool:
         if not self.speaking:
             self._recent = [*self._recent[-4:], probability > START_AT]
             if sum(self._recent) >= START_FRAMES:
-                self.speaking, self._quiet, self._length = True, 0, 0
+                self.speaking, self.quiet, self._length = True, 0, 0
             return False
         self._length += 1
-        self._quiet = self._quiet + 1 if probability < STOP_AT else 0
+        self.quiet = self.quiet + 1 if probability < STOP_AT else 0
         seconds = FRAME / RATE
-        return self._quiet * seconds >= self.end_silence or self._length * seconds >= self.max_utterance
+        return self.quiet * seconds >= self.end_silence or self._length * seconds >= self.max_utterance
 
     def reset(self) -> None:
-        self.speaking, self._recent, self._quiet, self._length = False, [], 0, 0
+        self.speaking, self._recent, self.quiet, self._length = False, [], 0, 0

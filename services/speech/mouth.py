@@ -1,0 +1,62 @@
+"""The robot's voice on the bus and on the speakers: one sentence at a time, a tenth of a second of it a step."""
+
+import numpy as np
+
+from common import messages as m
+from common import topics
+from common.io import Io, Job
+from services.speech.audio import RATE, Samples
+from services.speech.speak import Speakers, Voice
+
+CHUNK = RATE // 10
+
+
+class Mouth:
+    """Synthesis runs in the worker; the voice is loaded when first used."""
+
+    def __init__(self, io: Io, speakers: bool, seconds: float) -> None:
+        self._io, self._seconds = io, seconds
+        self._speakers = Speakers() if speakers else None
+        self._voice: Job[Voice] | None = None
+        self._synthesis: Job[Samples] | None = None
+        self._sound = np.zeros(0, np.int16)
+        self._sequence = 0
+        self.saying = ""
+
+    def say(self, text: str) -> None:
+        """Begin; what was being said is broken off."""
+        self.stop()
+        self.saying = text
+        if self._voice is None:
+            self._voice = self._io.submit(Voice, seconds=0.2)
+
+    def step(self, now: float) -> bool:
+        """True when the last of it has been said in this step."""
+        if not self.saying or self._voice is None:
+            return False
+        if self._synthesis is None:
+            if self._voice.poll(now):
+                voice, text = self._voice, self.saying
+                self._synthesis = self._io.submit(lambda: voice.result().speak(text), seconds=self._seconds)
+            return False
+        if not len(self._sound):
+            if not self._synthesis.poll(now):
+                return False
+            self._sound = self._synthesis.result()
+            if self._speakers:
+                self._speakers.play(self._sound)
+        part, self._sound = self._sound[:CHUNK], self._sound[CHUNK:]
+        last = not len(self._sound)
+        chunk = m.AudioChunk(t=now, data=part.tobytes(), rate=RATE, seq=self._sequence, end=last)
+        self._sequence += 1
+        self._io.publish(topics.AUDIO_OUT, chunk)
+        if last:
+            self._synthesis, self.saying = None, ""
+        return last
+
+    def stop(self) -> None:
+        """Silence, at once."""
+        self._synthesis, self.saying = None, ""
+        self._sound = np.zeros(0, np.int16)
+        if self._speakers:
+            self._speakers.stop()

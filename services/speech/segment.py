@@ -1,0 +1,101 @@
+"""A stream of sound cut into utterances; the wake word is looked for in each while it lasts."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from services.speech.audio import RATE, Samples
+from services.speech.vad import FRAME, Endpointer, VoiceDetector
+from services.speech.wake import WakeWord
+
+PRE_ROLL = int(0.4 * RATE)
+
+
+@dataclass(frozen=True)
+class Segment:
+    """An utterance (n,) with a little from before it; `over` is False for one that only pauses, `examined` True when
+    nothing was said since its last pause. `wake` is the score of the wake word."""
+
+    samples: Samples
+    over: bool
+    wake: float
+    examined: bool = False
+
+
+class Segmenter:
+    """`push` sound, get the utterances that pause or end in it."""
+
+    def __init__(self, end_silence: float, max_utterance: float, pause: float, short: float, wake: bool) -> None:
+        self._detector = VoiceDetector()
+        self._endpointer = Endpointer(end_silence, max_utterance)
+        self._wakes = wake
+        self._wake: WakeWord | None = None
+        self._pause, self._short = round(pause * RATE / FRAME), short * RATE
+        self._frames: list[Samples] = []
+        self._rest = np.zeros(0, np.int16)
+        self._examined = False
+
+    @property
+    def speaking(self) -> bool:
+        """True in mid-utterance."""
+        return self._endpointer.speaking
+
+    @property
+    def wake(self) -> float:
+        """The wake word's score in the utterance under way."""
+        return self._wake.score if self._wake and self.speaking else 0.0
+
+    def load(self) -> None:
+        """Load the wake word's model now rather than at the first utterance."""
+        if self._wakes and self._wake is None:
+            self._wake = WakeWord()
+
+    def push(self, samples: Samples) -> list[Segment]:
+        """What pauses or ends in these 16 kHz samples (n,)."""
+        found = []
+        stream = np.concatenate([self._rest, samples])
+        usable = len(stream) // FRAME * FRAME
+        self._rest = stream[usable:]
+        for start in range(0, usable, FRAME):
+            segment = self._frame(stream[start : start + FRAME])
+            if segment is not None:
+                found.append(segment)
+        return found
+
+    def finish(self) -> Segment | None:
+        """The utterance that a stream cut off."""
+        return self._end() if self.speaking else None
+
+    def forget(self) -> None:
+        """Drop what was heard so far."""
+        self._frames, self._rest, self._examined = [], np.zeros(0, np.int16), False
+        self._endpointer.reset()
+        self._detector.reset()
+
+    def _frame(self, frame: Samples) -> Segment | None:
+        before = self.speaking
+        ended = self._endpointer.push(self._detector(frame))
+        self._frames.append(frame)
+        if not self.speaking:
+            self._frames = self._frames[-(PRE_ROLL // FRAME) :]
+            return None
+        if not before:
+            self.load()
+            if self._wake:
+                self._wake.restart()
+                self._wake(np.concatenate(self._frames))
+        elif self._wake:
+            self._wake(frame)
+        if ended:
+            return self._end()
+        if self._endpointer.quiet == 0:
+            self._examined = False
+        elif self._endpointer.quiet == self._pause and len(self._frames) * FRAME <= self._short + PRE_ROLL:
+            self._examined = True
+            return Segment(np.concatenate(self._frames), False, self.wake)
+        return None
+
+    def _end(self) -> Segment:
+        segment = Segment(np.concatenate(self._frames), True, self.wake, self._examined)
+        self.forget()
+        return segment
