@@ -13,7 +13,10 @@ from services.brain.config import BrainConfig
 from services.brain.goals import Channel
 from services.brain.journal import Checkpoint, Entry, Journal, Kind, Place
 from services.brain.mission import SYSTEM_STATE, Failure, Hand, Mission, Outcome
+from services.brain.search import lookout
 from services.brain.snapshot import path_to
+
+SAVE_AGAIN = 1.0
 
 
 class Context:
@@ -32,10 +35,12 @@ class Context:
             channel.before_send = self.save
         self.mission = Mission(id=self._fresh_id())
         self.hand = Hand()
+        self.lookout = lookout(io.scene)
         self.at: Behaviour | None = None
         self.resumes = 0
         self._path: list[Place] = []
-        self._saved = b""
+        self._saved = self._refused = b""
+        self._again_at = 0.0
         self.stopped: str | None = None
         self.command: m.VoiceCommand | None = None
         self.listen_after = 0.0
@@ -105,12 +110,14 @@ class Context:
             resumes=self.resumes,
         )
         body = msgspec.json.encode(state)
-        if body == self._saved:
+        if body == self._saved or (body == self._refused and self.now < self._again_at and not closed):
             return
-        self._saved = body
         here = self.io.latest(topics.POSE)
         state.t, state.base = self.now, (here.x, here.y, here.theta) if here else None
-        self.journal.save(state)
+        if self.journal.save(state):
+            self._saved = body
+        else:
+            self._refused, self._again_at = body, self.now + SAVE_AGAIN
 
     def placed(self, at: Behaviour, resumes: int) -> None:
         """A mission has been taken up again at this node."""

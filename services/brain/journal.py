@@ -86,7 +86,8 @@ class Journal(Protocol):
 
     def end(self, mission: Mission, outcome: Outcome, reason: str, t: float) -> None: ...
 
-    def save(self, checkpoint: Checkpoint) -> None: ...
+    def save(self, checkpoint: Checkpoint) -> bool:
+        """False when the medium refused it."""
 
     def checkpoint(self) -> Checkpoint | None:
         """What the process before this one left behind."""
@@ -138,8 +139,9 @@ class MemoryJournal:
             record.command = mission.command
             record.outcome, record.reason, record.ended, record.steps = outcome, reason, t, mission.goals
 
-    def save(self, checkpoint: Checkpoint) -> None:
+    def save(self, checkpoint: Checkpoint) -> bool:
         self._checkpoint = msgspec.json.encode(checkpoint)
+        return True
 
     def checkpoint(self) -> Checkpoint | None:
         return msgspec.json.decode(self._checkpoint, type=Checkpoint) if self._checkpoint else None

@@ -93,22 +93,20 @@ class SqliteJournal:
         self._memory.end(mission, outcome, reason, t)
         self._waiting.append((_END, (mission.command, outcome, reason, t, mission.goals, mission.id)))
 
-    def save(self, checkpoint: Checkpoint) -> None:
+    def save(self, checkpoint: Checkpoint) -> bool:
         checkpoint.date = self._clock()
         body = msgspec.json.encode(checkpoint)
         try:
-            self._write((*self._waiting, (_CHECKPOINT, (body,))))
+            db = self._opened()
+            db.execute("begin immediate")
+            for statement, values in (*self._waiting, (_CHECKPOINT, (body,))):
+                db.execute(statement, values)
+            db.execute("commit")
         except (sqlite3.Error, OSError, Unusable) as error:
             self._refused(error)
-        else:
-            self._waiting.clear()
-
-    def _write(self, ops: Sequence[_Op]) -> None:
-        db = self._opened()
-        db.execute("begin immediate")
-        for statement, values in ops:
-            db.execute(statement, values)
-        db.execute("commit")
+            return False
+        self._waiting.clear()
+        return True
 
     def _refused(self, error: Exception) -> None:
         """Count a failure; start a new file when this one is damaged."""
