@@ -8,7 +8,7 @@ from services.planner.draft import Draft, Refusal
 from services.planner.forms import Slots
 from services.planner.phrases import PLURAL_PRONOUNS, PRONOUNS, Phrase, read
 from services.planner.resolve import Meant, one, spot, things
-from services.planner.vocabulary import Spot
+from services.planner.vocabulary import DETERMINERS, Spot
 from services.planner.words import listed
 
 Action = Callable[[Draft, Slots], None]
@@ -18,7 +18,8 @@ Action = Callable[[Draft, Slots], None]
 def fetch_named(draft: Draft, slots: Slots) -> None:
     """A thing's name alone; other words are no command."""
     last = draft.vocabulary.noun(slots["thing"][-1])
-    if last is None and not isinstance(read(slots["thing"], draft.vocabulary), Phrase):
+    named = slots["thing"][0] in DETERMINERS or slots["thing"][0] in draft.vocabulary.colours
+    if last is None and not named and not isinstance(read(slots["thing"], draft.vocabulary), Phrase):
         raise Refusal(f"I do not understand {' '.join(slots['thing'])!r}")
     fetch(draft, slots)
 
@@ -251,4 +252,8 @@ def _area(draft: Draft, slots: Slots) -> Spot | None:
 
 
 def _surfaces_of(draft: Draft, where: Spot) -> list[Receptacle]:
-    return [where.receptacle] if where.receptacle else draft.vocabulary.surfaces(where.name)
+    if where.receptacle is None:
+        return draft.vocabulary.surfaces(where.name)
+    if where.receptacle.depth:
+        raise Refusal(f"I cannot empty the {where.name}")
+    return [where.receptacle]

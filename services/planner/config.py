@@ -14,12 +14,14 @@ class Rule(Config, frozen=True):
 
 
 class PlannerConfig(Config, frozen=True):
-    """`tidy` and `throw` are tried in order; `groups` are words for several kinds. Times in seconds."""
+    """`tidy` and `throw` are tried in order; `groups` are words for several kinds, `mass` those of them
+    that mean all there is. Times in seconds."""
 
     backend: Literal["grammar", "llm"] = "grammar"
     tidy: tuple[Rule, ...] = ()
     throw: tuple[Rule, ...] = ()
     groups: dict[str, tuple[str, ...]] = {}
+    mass: tuple[str, ...] = ()
     colours: dict[str, str] = {}
     set_down: tuple[str, ...] = ("counter", "table", "shelf")
     max_steps: int = 60

@@ -39,13 +39,14 @@ class Draft:
         self.last: list[Thing] = []
         self.spot: Spot | None = None
         self.moved = False
+        self.effort = [0]
         self._found: set[str] = set()
 
     def fork(self) -> "Draft":
         """A copy to try something on; its choices count only when it is adopted."""
         other = Draft(self.world.copy(), self.vocabulary, self.config, self.choices.fork(), self.done)
         other.steps, other.last, other.spot = list(self.steps), list(self.last), self.spot
-        other.moved, other._found = self.moved, set(self._found)
+        other.moved, other._found, other.effort = self.moved, set(self._found), self.effort
         return other
 
     def adopt(self, other: "Draft") -> None:

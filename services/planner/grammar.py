@@ -12,10 +12,13 @@ from services.planner.forms import Form, Words
 from services.planner.phrases import PLURAL_PRONOUNS, PRONOUNS
 from services.planner.sentences import ALONE, FORMS, VERBS
 from services.planner.vocabulary import DETERMINERS, Vocabulary
-from services.planner.words import parts, plain
+from services.planner.words import parts, plain, polite
 from services.planner.world import World
 
 SOURCE = "grammar"
+MAX_CHARACTERS = 2000
+MAX_WORDS = 60
+MAX_EFFORT = 120
 _THING_STARTS = DETERMINERS | PRONOUNS | PLURAL_PRONOUNS | {"all", "every", "two", "three"}
 _STEP = re.compile(r"^step (\d+): ")
 
@@ -80,9 +83,11 @@ def _culprit(rejected: RejectedPlan) -> PlanStep | None:
 
 
 def _steps(command: str, draft: Draft) -> list[PlanStep]:
-    sentences = parts(command)
+    sentences = parts(command[:MAX_CHARACTERS])
     if not sentences:
         raise Refusal("I did not hear a command")
+    if len(command) > MAX_CHARACTERS or any(len(s.split()) > MAX_WORDS for s in sentences):
+        raise Refusal("that is too long a sentence for me")
     for number, sentence in enumerate(sentences):
         words = tuple(sentence.split())
         _whole(words, draft, alone=len(sentences) == 1, started=number > 0)
@@ -123,6 +128,10 @@ def _command(words: Words, draft: Draft, verb: str, at: int, alone: bool) -> Non
     """The first form that fits the words and can be done; else the reason of the first that fits."""
     if not words:
         raise _Failure(at, "I did not hear a command")
+    words = tuple(polite(" ".join(words)).split()) or words
+    draft.effort[0] += 1
+    if draft.effort[0] > MAX_EFFORT:
+        raise Refusal("that is too long a sentence for me")
     words = (plain(words[0], VERBS), *words[1:])
     reason = _try(words, draft, FORMS)
     if reason is None:

@@ -41,6 +41,7 @@ class Phrase(msgspec.Struct, frozen=True):
 
     sense: Sense
     noun: str
+    singular: str = ""
     count: int = 1
     any_one: bool = False
     plural: bool = False
@@ -111,12 +112,13 @@ def _head(words: Words, vocabulary: Vocabulary) -> Phrase | None:
     which: Which = ""
     while rest:
         found = vocabulary.noun(" ".join(rest))
-        if found is not None:
-            sense, plural = found
+        if found is not None and not (colours and rest[0] in vocabulary.colours):
+            sense, singular, plural = found
             whole = every or (plural and not number)
             return Phrase(
                 sense=sense,
                 noun=" ".join(rest),
+                singular=singular,
                 count=0 if whole else count,
                 any_one=any_one or (number and not whole) or rest[0] in ("something", "anything"),
                 plural=plural,
@@ -140,6 +142,8 @@ def _head(words: Words, vocabulary: Vocabulary) -> Phrase | None:
             any_one = any_one or word == "another"
         elif word in vocabulary.colours:
             colours.append(vocabulary.colours[word])
-        elif word not in ("and", "or") or not colours:
+        elif word in ("and", "or") and colours:
+            every, any_one = every or word == "and", any_one or word == "or"
+        else:
             return None
     return None

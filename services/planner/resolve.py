@@ -14,6 +14,8 @@ from services.planner.words import listed
 from services.planner.world import Thing
 
 MAX_QUESTION = 4
+NEAR = 1.5
+LONGEST_NAME = 4
 
 
 class Meant(msgspec.Struct, frozen=True):
@@ -59,16 +61,17 @@ def spot(draft: Draft, words: Words) -> Spot:
     Raises:
         Refusal: no such place, or several.
     """
-    phrase = " ".join(words)
-    if phrase in ("there", "it", "that") and draft.spot is not None:
+    if " ".join(words) in ("there", "it", "that") and draft.spot is not None:
         return draft.spot
     nearest = words[-2:-1] if words[:1] == ("the",) and len(words) == 3 else ()
     wanted = words[2:] if nearest and nearest[0] in ("nearest", "closest") else words
     found = draft.vocabulary.spot(wanted)
     if not found:
         furniture = draft.vocabulary.furniture(words)
-        name = furniture or " ".join(w for w in words if w not in ("the", "a", "an", "my"))
-        raise Refusal(f"the {name} is no place that I can use" if furniture else f"I know no {name}")
+        phrase = read(words, draft.vocabulary)
+        if furniture or isinstance(phrase, Phrase):
+            raise Refusal(f"the {furniture or ' '.join(bare(words))} is no place that I can use")
+        raise Refusal(f"I know no {' '.join(bare(words))}")
     if len(found) > 1 and wanted is not words:
         return min(found, key=lambda s: _away(draft, s))
     if len(found) > 1:
@@ -78,6 +81,8 @@ def spot(draft: Draft, words: Words) -> Spot:
 
 def unknown(draft: Draft, words: Words, noun: str) -> str:
     """Why a phrase means nothing, with what there is instead."""
+    if len(noun.split()) > LONGEST_NAME:
+        return f"I do not understand {' '.join(words)!r}"
     *front, last = noun.split() or [""]
     known = draft.vocabulary.noun(last)
     if front and known is not None and not known[0].every:
@@ -140,11 +145,11 @@ def _related(draft: Draft, phrase: Phrase, seen: list[Thing], specs: list[Thing]
         place = spots[0]
         if phrase.count != 1 or phrase.sense.every:
             surfaces = [place.receptacle] if place.receptacle else draft.vocabulary.surfaces(place.name)
-            draft.look_first(surfaces, f"I have seen no {phrase.noun.removesuffix('s')} there yet")
+            draft.look_first(surfaces, f"I have seen no {phrase.singular} there yet")
         return [_unseen(draft, phrase, specs, place)]
-    if spots and phrase.relation == "near":
-        on = {s.name for s in spots}
-        return _choose(draft, phrase, [t for t in seen if t.on in on] or seen, specs)
+    if phrase.relation == "near" and spots:
+        near = [t for t in seen if any(_is_near(draft, t, s) for s in spots)]
+        return _choose(draft, phrase, near, specs) if near else [_unseen(draft, phrase, specs, spots[0])]
     anchor = one(draft, phrase.anchor).thing
     placed = [t for t in seen if t.position and t.label != anchor.label]
     if anchor.position is None or not placed:
@@ -161,7 +166,7 @@ def _choose(draft: Draft, phrase: Phrase, seen: list[Thing], specs: list[Thing])
         seen = [t for t in seen if t.label not in {x.label for x in draft.last}]
     if not seen:
         if phrase.count != 1:
-            draft.look_first(draft.vocabulary.surfaces(), f"I have seen no {phrase.noun.removesuffix('s')} yet")
+            draft.look_first(draft.vocabulary.surfaces(), f"I have seen no {phrase.singular} yet")
         return [_unseen(draft, phrase, specs, None)]
     if phrase.which and phrase.which != "other":
         return [Meant(_superlative(draft, phrase, seen))]
@@ -187,8 +192,8 @@ def _unseen(draft: Draft, phrase: Phrase, specs: list[Thing], at: Spot | None) -
         raise Refusal(f"I have seen no {phrase.noun}")
     where = at if at is None or not at.home else None
     words = " ".join(bare(tuple(phrase.text.split()))) if phrase.which or phrase.relation else ""
-    if len(specs) == 1 and not phrase.which:
-        return Meant(specs[0], words if where is None else "", where)
+    if len(specs) == 1:
+        return Meant(specs[0], at=where)
     preferred = [t for t in specs if t.label == phrase.sense.prefer]
     if preferred and not (phrase.colours or phrase.relation or phrase.which):
         return Meant(preferred[0])
@@ -237,6 +242,16 @@ def _holds(draft: Draft, relation: str, thing: Thing, anchor: Thing) -> bool:
     return _between(thing, anchor) < 0.6 if relation == "near" else thing.on == anchor.label
 
 
+def _is_near(draft: Draft, thing: Thing, place: Spot) -> bool:
+    """On a surface or a step away from it, or from a standing place; in a room."""
+    if place.room:
+        return draft.world.room_of(thing) == place.name
+    where = draft.vocabulary.position(place)
+    if thing.on == place.name or where is None or thing.position is None:
+        return thing.on == place.name
+    return math.dist(where, thing.position[:2]) < NEAR
+
+
 def _between(a: Thing, b: Thing) -> float:
     assert a.position is not None and b.position is not None
     return math.dist(a.position, b.position)
@@ -244,8 +259,8 @@ def _between(a: Thing, b: Thing) -> float:
 
 def _away(draft: Draft, place: Spot) -> float:
     x, y, _ = draft.world.pose
-    r = place.receptacle
-    return math.hypot(r.center[0] - x, r.center[1] - y) if r else 0.0
+    where = draft.vocabulary.position(place)
+    return math.dist(where, (x, y)) if where else 0.0
 
 
 def _spoken(relation: str) -> str:

@@ -14,6 +14,8 @@ FORMS: tuple[tuple[Form, Action], ...] = tuple(
             "yes [<words>] | yeah | yep | no | nope | no thanks | correct | right | okay",
             commands.refuse("I did not ask anything"),
         ),
+        ("(don't | do not | never) <words>", commands.refuse("you told me not to, so I leave it")),
+        ("if <words> | when <words> | unless <words>", commands.refuse("I cannot wait for conditions")),
         ("follow <words>", commands.refuse("I cannot follow people")),
         ("(open | let go [of] | release) [the | your] (gripper | hand | fingers)", commands.let_go),
         ("(close | shut) [the | your] (gripper | hand | fingers)", commands.close_gripper),
@@ -25,6 +27,7 @@ FORMS: tuple[tuple[Form, Action], ...] = tuple(
         ("(where | tell me where) (is | are) <thing>", answers.where),
         ("(do | can) you (see | know) <thing>", answers.where),
         ("(is | are) there <thing>", answers.where),
+        ("(is | are) <thing> (in | on | at) <spot>", answers.where),
         ("how many <thing> (are there | do you see | can you see | do you know | are <words>)", answers.number),
         ("(say | announce) <words>", commands.say),
         ("wait [here | a moment | a bit | for me | a second]", commands.wait),
@@ -35,20 +38,20 @@ FORMS: tuple[tuple[Form, Action], ...] = tuple(
         ("go (get | fetch | bring) [me | us] <thing>", commands.fetch),
         ("(tidy | clean | clear) up [<spot>]", commands.tidy),
         ("(tidy | clean | clear) [<spot>] [up]", commands.tidy),
-        ("(clean | clear) <spot> off", commands.tidy),
+        ("(clean | clear) <spot> off | empty <spot>", commands.tidy),
         ("go [over | back] (to | into | in | near | towards) <spot>", commands.go),
         (
             "(drive | navigate | move | walk | return | head | come | roll) [over | back] (to | into | towards) <spot>",
             commands.go,
         ),
-        ("approach <spot>", commands.go),
+        ("(approach | look at) <spot>", commands.go),
         (
             "put (down | back down) <thing> | put <thing> [back] down | set down <thing> | set <thing> down",
             commands.put_down,
         ),
         ("(drop | release | let go of | let go) <thing> | let go", commands.put_down),
         (
-            "(put | place | set | move | leave | bring) <thing> (next to | near | beside | close to | by) <spot>",
+            "(put | place | set | move | throw | toss | drop) <thing> (next to | near | beside | close to | by) <spot>",
             commands.put_near,
         ),
         ("(throw | toss) <thing> (away | out)", commands.throw_away),
@@ -72,7 +75,7 @@ FORMS: tuple[tuple[Form, Action], ...] = tuple(
             commands.put,
         ),
         (
-            "(bring | take | carry | deliver | transport | move | get | fetch) [me] <thing>"
+            "(bring | take | carry | deliver | transport | move | get | fetch | return) [me] <thing>"
             " [over | back] (to | into) <spot>",
             commands.deliver,
         ),
@@ -80,7 +83,7 @@ FORMS: tuple[tuple[Form, Action], ...] = tuple(
         ("(pick | take | grab | lift) up <thing> | pick <thing> up | lift <thing> [up]", commands.pick_up),
         ("(grab | grasp | take | hold | pick) <thing>", commands.pick_up),
         ("(find | search for | look for | locate | show me) <thing>", commands.find),
-        ("(bring | fetch | get | give | hand | pass) <thing>", commands.fetch),
+        ("(bring | fetch | get | give | hand | pass | collect | gather) <thing>", commands.fetch),
         ("(i | we) (want | need | would like | 'd like) <thing> | i'd like <thing>", commands.fetch),
         (
             "(open | close | shut | lock | unlock) <words>",
@@ -91,7 +94,10 @@ FORMS: tuple[tuple[Form, Action], ...] = tuple(
 )
 """In order: the first form that fits and can be done counts."""
 
-ALONE: tuple[tuple[Form, Action], ...] = ((Form("[no] [i (said | meant)] <thing>"), commands.fetch_named),)
+ALONE: tuple[tuple[Form, Action], ...] = (
+    (Form("[no] i (said | meant) <thing> | no <thing>"), commands.fetch),
+    (Form("<thing>"), commands.fetch_named),
+)
 """Forms that stand only as a whole command."""
 
 VERBS = frozenset({

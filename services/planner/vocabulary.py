@@ -54,6 +54,7 @@ class Vocabulary:
         for word, group in config.groups.items():
             if members := frozenset(k for k in group if k in self.kinds):
                 self._nouns.setdefault(normal(word), Sense(kinds=members))
+        self._mass = frozenset(map(normal, config.mass))
         self._places = self._standing(scene, world.places)
 
     def _aliases(self, scene: Scene) -> None:
@@ -75,15 +76,15 @@ class Vocabulary:
         return spots | {normal(n): home for n in (scene.home.name, *scene.home.aliases, *_HERE)}
 
     # --- nouns
-    def noun(self, phrase: str) -> tuple[Sense, bool] | None:
-        """(meaning, is it a plural) of a noun without colours; None if unknown."""
+    def noun(self, phrase: str) -> tuple[Sense, str, bool] | None:
+        """(meaning, singular form, is it a plural) of a noun without colours; None if unknown."""
         if phrase in WHOLE:
-            return Sense(every=True), phrase in ("everything", "all", "mess")
+            return Sense(every=True), "thing", phrase in ("everything", "all", "mess")
         for form, plural in _singulars(phrase):
             if form in ANY:
-                return Sense(every=True), plural
+                return Sense(every=True), form, plural
             if sense := self._nouns.get(form):
-                return sense, plural
+                return sense, form, plural or form in self._mass
         return None
 
     # --- spots
@@ -119,6 +120,13 @@ class Vocabulary:
         """The furniture meant, which is in the way but no place to put things."""
         phrase = " ".join(bare(words))
         return next((f.name for f in self._scene.furniture if phrase and phrase in normal(f.name)), "")
+
+    def position(self, place: Spot) -> tuple[float, float] | None:
+        """The middle of a surface, or where one stands at a place [m]; None for a room."""
+        if place.receptacle is not None:
+            return place.receptacle.center[0], place.receptacle.center[1]
+        stands = (self._scene.home, *self._scene.places)
+        return next(((p.x, p.y) for p in stands if p.name == place.name and not place.room), None)
 
     def surfaces(self, room: str = "") -> list[Receptacle]:
         """Where things may lie, in a room or everywhere."""

@@ -15,13 +15,14 @@ _TAIL = re.compile(
     r"jarvis|again))+$"
 )
 _PART = re.compile(r"\s*[,;.!?]+\s*(?:and\s+)?(?:then\s+)?|\s+(?:and\s+)?(?:then|after that|afterwards)\s+")
+_IS = re.compile(r"\b(what|where|who|there|that|it)'s\b")
 _SAY = re.compile(r"^(?:say|announce)\s+(.+)$")
 
 
 def normal(text: str) -> str:
     """Lower case, single spaces, only words and the marks that separate parts of a sentence."""
     clean = re.sub(r"[^a-z0-9',;.!?]+", " ", text.lower().replace("’", "'").replace("_", " "))
-    return " ".join(clean.split())
+    return " ".join(_IS.sub(r"\1 is", clean).split())
 
 
 def parts(text: str) -> list[str]:

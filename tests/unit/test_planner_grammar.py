@@ -115,6 +115,8 @@ def test_fetching(command: str) -> None:
         ("where is the red mug", "say The red mug is on the living table."),
         ("do you see an apple", "say The apple is on the kitchen table."),
         ("where is the blue bottle", "find blue bottle; say I have found the blue bottle."),
+        ("where's the apple", "say The apple is on the kitchen table."),
+        ("is the apple in the kitchen", "say The apple is on the kitchen table."),
         ("where is the counter", "say The counter is in the kitchen."),
         ("what is on the counter", "say A blue mug and a red can are on the counter."),
         ("how many mugs are there", "say I know of 2 mugs: the red mug and the blue mug."),
@@ -138,6 +140,9 @@ def test_one_command(command: str, expected: str) -> None:
         ("get the green can and throw it away", f"{bring('green can')}; {put('green can', 'recycling bin')}"),
         ("bring me the cans", f"{bring('green can')}; {bring('red can')}"),
         ("bring me all the cans in the kitchen", bring("red can")),
+        ("bring me the red and the blue mug", f"{bring('red mug')}; {bring('blue mug')}"),
+        ("bring me a red or a blue mug", bring("red mug")),
+        ("throw the rubbish away", f"{put('green can', 'recycling bin')}; {put('red can', 'recycling bin')}"),
         ("bring me two mugs", f"{bring('red mug')}; {bring('blue mug')}"),
         ("put the toys in the toy box", put("yellow block", "toy box")),
         (
@@ -211,6 +216,8 @@ def test_things_that_nobody_has_seen_are_looked_for() -> None:
     assert text(ask("bring me the can on the counter", objects=WORLD[:2])) == (
         "navigate counter; find can can on the counter; grasp can; return; release"
     )
+    assert text(ask("bring me the blue block on the right", objects=nothing)) == bring("blue block")
+    assert text(ask("bring me the toy next to the sofa", objects=nothing)).startswith("no: I do not know which one")
     left = ask("bring me the mug on the left", objects=nothing)
     assert left.steps[0] == PlanStep(action="find", object="mug", text="mug on the left")
 
@@ -236,6 +243,14 @@ REFUSED = {
     "pick up the red mug and the green can": "only one thing at a time",
     "go to the kitchen and tell me what you see": "ask me again then",
     "bring me the red mug and dance": "I do not understand 'dance'",
+    "empty the bin": "I cannot empty the bin",
+    "don't bring me the red mug": "you told me not to",
+    "please do not touch the apple": "you told me not to",
+    "if you see a mug bring it to me": "I cannot wait for conditions",
+    "swap the red mug and the blue mug": "I do not understand",
+    "no i said keys": "I know no keys",
+    "bring the apple to the red can": "the red can is no place",
+    "my shoes": "I know no shoes",
     "what is on the bookshelf": "I have seen nothing there so far",
     "": "I did not hear a command",
     "?!": "I did not hear a command",
@@ -300,6 +315,17 @@ def test_a_sender_that_asks_again_gets_a_look_first() -> None:
 def test_a_long_plan_is_refused() -> None:
     command = ", then ".join(["bring me the red mug"] * 20)
     assert "too much at once" in ask(command).detail
+
+
+def test_sentences_without_end_are_refused() -> None:
+    for command in (
+        "bring me " * 1000,
+        "the red mug and " * 30 + "the unicorn",
+        "bring me " + "the red mug and " * 12 + "x",
+    ):
+        assert "too long" in ask(command).detail
+    chain = "bring me the red mug" + " and the apple" * 8 + " and the unicorn"
+    assert not ask(chain).steps
 
 
 def test_what_it_sees_and_what_it_remembers() -> None:
