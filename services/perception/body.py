@@ -1,0 +1,73 @@
+"""The robot's own body: which pixels show it, and where its hand is. Made from `robot/description`."""
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from common.geometry import Array, Pose2
+from services.perception.view import Mask, View
+
+STEP = 4
+REACH = 1.1
+MARGIN = 0.025
+ARM = tuple(f"joint_{i}" for i in range(1, 8))
+
+
+class Body:
+    """Kinematics of the robot with its base at the origin."""
+
+    def __init__(self, mjcf: str) -> None:
+        self._model = mujoco.MjModel.from_xml_string(mjcf)
+        self._data = mujoco.MjData(self._model)
+        self._arm = [self._model.joint(name).qposadr[0] for name in ARM]
+        self._fingers = [self._model.joint(f"{side}_finger").qposadr[0] for side in ("left", "right")]
+        self._stroke = float(self._model.joint("left_finger").range[1])
+        self._solid = [g for g in range(self._model.ngeom) if self._model.geom_type[g] != mujoco.mjtGeom.mjGEOM_PLANE]
+
+    def pose(self, arm: Array, width: float) -> None:
+        """Take the arm's joint angles (7,) and the gripper's width [m]."""
+        self._data.qpos[:] = 0.0
+        self._data.qpos[self._arm] = arm
+        self._data.qpos[self._fingers] = np.clip(self._stroke - width / 2, 0.0, self._stroke)
+        mujoco.mj_kinematics(self._model, self._data)
+
+    def hand(self, base: Pose2) -> tuple[float, float, float]:
+        """Where the middle between the finger pads is, in frame map."""
+        x, y, z = self._data.site("pinch").xpos
+        c, s = np.cos(base[2]), np.sin(base[2])
+        return float(base[0] + c * x - s * y), float(base[1] + s * x + c * y), float(z)
+
+    def mask(self, view: View, base: Pose2) -> Mask:
+        """The pixels (h, w) that show the robot itself."""
+        coarse = view.points[::STEP, ::STEP].astype(np.float64)
+        c, s = np.cos(base[2]), np.sin(base[2])
+        dx, dy = coarse[..., 0] - base[0], coarse[..., 1] - base[1]
+        local = np.stack([c * dx + s * dy, c * dy - s * dx, coarse[..., 2]], axis=-1)
+        near = (np.hypot(local[..., 0], local[..., 1]) < REACH) & (view.depth[::STEP, ::STEP] > 0)
+        own = np.zeros(near.shape, bool)
+        own[near] = self._distance(local[near]) < MARGIN
+        h, w = view.shape
+        full: Mask = np.repeat(np.repeat(own, STEP, axis=0), STEP, axis=1)[:h, :w]
+        return full
+
+    def _distance(self, points: Array) -> Array:
+        """Distance [m] of points (n, 3) in the base frame from the body's geoms."""
+        best = np.full(len(points), np.inf)
+        for g in self._solid:
+            rotation = self._data.geom_xmat[g].reshape(3, 3)
+            local = np.abs((points - self._data.geom_xpos[g]) @ rotation)
+            best = np.minimum(best, _outside(local, int(self._model.geom_type[g]), self._model.geom_size[g]))
+        return best
+
+
+def _outside(local: Array, kind: int, size: NDArray[np.float64]) -> Array:
+    """Distance of |x|, |y|, |z| in a geom's frame from its surface, 0 inside."""
+    if kind == mujoco.mjtGeom.mjGEOM_SPHERE:
+        return np.asarray(np.maximum(np.linalg.norm(local, axis=1) - size[0], 0.0))
+    if kind == mujoco.mjtGeom.mjGEOM_CAPSULE:
+        along = np.maximum(local[:, 2] - size[1], 0.0)
+        return np.asarray(np.maximum(np.hypot(np.hypot(local[:, 0], local[:, 1]), along) - size[0], 0.0))
+    if kind == mujoco.mjtGeom.mjGEOM_CYLINDER:
+        radial = np.maximum(np.hypot(local[:, 0], local[:, 1]) - size[0], 0.0)
+        return np.asarray(np.hypot(radial, np.maximum(local[:, 2] - size[1], 0.0)))
+    return np.asarray(np.linalg.norm(np.maximum(local - size, 0.0), axis=1))

@@ -1,0 +1,25 @@
+"""Parameters of perception."""
+
+from common.config import Config
+
+
+class PerceptionConfig(Config, frozen=True):
+    """`detector` is `classical` or `package.module:Class` of a detector of one's own (see detect.Detector).
+
+    A picture is taken every `period` seconds while the robot moves or works, every `idle_period` while it rests,
+    and at once for a query. While the base turns faster than `max_turn` [rad/s] pictures are not worth having.
+    """
+
+    detector: str = "classical"
+    width: int = 640
+    height: int = 480
+    period: float = 1.0
+    idle_period: float = 5.0
+    max_turn: float = 0.35
+    max_range: float = 3.5
+    detection_seconds: float = 0.15
+    picture_timeout: float = 1.5
+    query_pictures: int = 2
+    min_confidence: float = 0.5
+    gone_after: int = 3
+    synonyms: dict[str, str] = {}

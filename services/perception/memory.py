@@ -1,0 +1,177 @@
+"""The objects over time: seen, seen again, moved, held, gone. Pure."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from common.geometry import Pose2, yaw_quat
+from common.messages import WorldObject, WorldObjects
+from common.scene import Scene, Vec3
+from services.perception.detect import Detection
+from services.perception.view import View
+
+SAME = 0.12
+MOVED = 0.05
+HELD_RANGE = 0.12
+SURE = 0.55
+TRUST = 4.0
+EDGE_PIXELS = 30
+LOOK_RANGE = 2.5
+SEEN_THROUGH = 0.04
+
+
+@dataclass
+class Track:
+    """One thing in one place, with the evidence for its name."""
+
+    id: str
+    position: Vec3
+    yaw: float
+    size: Vec3
+    on: str
+    seen_at: float
+    weight: float
+    scores: dict[tuple[str, str, str], float] = field(default_factory=dict)
+    misses: int = 0
+    sightings: int = 0
+    held: bool = False
+
+    @property
+    def name(self) -> tuple[str, str, str]:
+        """Label, kind, colour with the most evidence."""
+        return max(self.scores, key=lambda key: (self.scores[key], key))
+
+    @property
+    def confidence(self) -> float:
+        """Share of the evidence that is for the name, and how much of it there is."""
+        best = self.scores[self.name]
+        return best / max(sum(self.scores.values()), 1e-9) * (1 - math.exp(-3.0 * best))
+
+
+class Memory:
+    """What is where, as far as it was seen."""
+
+    def __init__(self, scene: Scene, gone_after: int, min_confidence: float) -> None:
+        self._scene, self._gone_after, self._min = scene, gone_after, min_confidence
+        self._tracks: list[Track] = []
+        self._count = 0
+
+    def look(self, view: View, detections: Sequence[Detection], now: float) -> set[str]:
+        """Take in what a view shows; ids of the things that were seen."""
+        seen: set[str] = set()
+        free = [t for t in self._tracks if not t.held]
+        pairs = sorted(
+            (math.hypot(d.position[0] - t.position[0], d.position[1] - t.position[1]), n, k)
+            for n, d in enumerate(detections)
+            for k, t in enumerate(free)
+        )
+        matched: dict[int, Track] = {}
+        for distance, n, k in pairs:
+            if distance < SAME and n not in matched and free[k].id not in seen:
+                matched[n] = free[k]
+                seen.add(free[k].id)
+        for n, d in enumerate(detections):
+            track = matched.get(n)
+            if track is None:
+                self._count += 1
+                track = Track(f"object-{self._count}", d.position, d.yaw, d.size, d.on, now, 0.0)
+                self._tracks.append(track)
+                seen.add(track.id)
+            _see(track, d, now)
+        for track in free:
+            if track.id not in seen and _should_show(track, view):
+                track.misses += 1
+        self._tracks = [t for t in self._tracks if t.misses < self._gone_after]
+        return seen
+
+    def carry(self, hand: Vec3, holding: bool, now: float) -> None:
+        """Follow the hand: what it closes on is held and moves with it until it opens."""
+        held = next((t for t in self._tracks if t.held), None)
+        if holding and held is None:
+            near = [(math.dist(t.position, hand), t.id, t) for t in self._tracks]
+            if near and min(near)[0] < HELD_RANGE:
+                held = min(near)[2]
+                held.held, held.on, held.seen_at = True, "", now
+        if held is None:
+            return
+        if holding:
+            held.position = hand
+            return
+        # Where the hand let go; the next look says better.
+        held.held, held.misses, held.weight, held.seen_at = False, 0, 0.0, now
+        held.on = self._under(hand)
+        surface = self._scene.receptacle(held.on)
+        height = surface.center[2] if surface else 0.0
+        held.position = (hand[0], hand[1], height + held.size[2] / 2)
+
+    def _under(self, point: Vec3) -> str:
+        for r in self._scene.receptacles:
+            c, s = math.cos(r.yaw), math.sin(r.yaw)
+            dx, dy = point[0] - r.center[0], point[1] - r.center[1]
+            inside = abs(c * dx + s * dy) < r.size[0] / 2 and abs(c * dy - s * dx) < r.size[1] / 2
+            if inside and point[2] > r.center[2] - 0.05:
+                return r.name
+        return ""
+
+    def objects(self) -> list[WorldObject]:
+        """What is believed, one place for each thing of the household, the newest that was sure."""
+        sure = [t for t in self._tracks if t.confidence >= self._min or t.held]
+        best: dict[str, Track] = {}
+        others: list[Track] = []
+        for track in sure:
+            label = track.name[0]
+            if self._scene.object(label) is None:
+                others.append(track)
+                continue
+            rival = best.get(label)
+            if rival is None or (track.held, track.confidence >= SURE, track.seen_at, track.confidence) > (
+                rival.held, rival.confidence >= SURE, rival.seen_at, rival.confidence
+            ):  # fmt: skip
+                best[label] = track
+        chosen = [*best.values(), *(t for t in others if t.sightings > 1)]
+        return [_as_object(t) for t in sorted(chosen, key=lambda t: t.id)]
+
+    def report(self, now: float) -> WorldObjects:
+        return WorldObjects(t=now, objects=self.objects(), source="perception")
+
+
+def _see(track: Track, d: Detection, now: float) -> None:
+    weight = 1.0 / max(0.2, d.distance) ** 2 * (0.3 if d.confidence < SURE else 1.0)
+    shift = math.hypot(d.position[0] - track.position[0], d.position[1] - track.position[1])
+    if shift > MOVED or track.weight == 0.0 or weight > track.weight:
+        track.weight, share = weight, 1.0
+    else:
+        track.weight = min(track.weight + weight, TRUST * weight)
+        share = weight / track.weight
+    old, new = np.array(track.position), np.array(d.position)
+    x, y, z = (float(v) for v in old + share * (new - old))
+    track.position, track.yaw, track.on = (x, y, z), d.yaw, d.on
+    track.seen_at, track.misses, track.sightings = now, 0, track.sightings + 1
+    key = (d.label, d.kind, d.colour)
+    # Close looks count more, and old mistakes fade.
+    evidence = d.confidence * min(2.0, 1.5 / max(0.3, d.distance))
+    track.scores = {k: v * 0.9 for k, v in track.scores.items()}
+    track.scores[key] = track.scores.get(key, 0.0) + evidence
+    if track.name == key:
+        track.size = d.size
+
+
+def _should_show(track: Track, view: View) -> bool:
+    """True when the view looks at the track's place and sees through it."""
+    u, v, z = (float(a) for a in view.project(np.array([track.position]))[0])
+    h, w = view.shape
+    if not (0.3 < z < LOOK_RANGE and EDGE_PIXELS < u < w - EDGE_PIXELS and EDGE_PIXELS < v < h - EDGE_PIXELS):
+        return False
+    around = view.depth[int(v) - 2 : int(v) + 3, int(u) - 2 : int(u) + 3]
+    seen = around[around > 0]
+    return bool(len(seen) > 12 and float(np.median(seen)) > z + SEEN_THROUGH)
+
+
+def _as_object(t: Track) -> WorldObject:
+    label, kind, colour = t.name
+    return WorldObject(
+        label=label, kind=kind, colour=colour, position=t.position, orientation=yaw_quat(t.yaw), size=t.size, on=t.on,
+        confidence=round(t.confidence, 3), seen_at=t.seen_at, held=t.held, id=t.id,
+    )  # fmt: skip

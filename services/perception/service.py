@@ -1,0 +1,242 @@
+"""Perception: looks through the cameras, remembers objects, and finds the one that words mean."""
+
+import importlib
+from collections import deque
+
+import numpy as np
+
+from common import messages as m
+from common import topics
+from common.geometry import Array, Pose2, wrap
+from common.io import Io, Job
+from common.runtime import StartError
+from services.perception.body import ARM, Body
+from services.perception.config import PerceptionConfig
+from services.perception.detect import ClassicalDetector, Detection, Detector
+from services.perception.ground import Grounding, ground
+from services.perception.memory import Memory
+from services.perception.view import View, view_of
+
+HISTORY = 100
+HELD_WIDTH = (0.003, 0.080)
+HELD_FORCE = 5.0
+MOVING = 0.02
+
+
+class PerceptionService:
+    """Pictures to objects, objects over time, words to an object."""
+
+    NAME = "perception"
+    HZ = 10
+    CONFIG = PerceptionConfig
+    READS = (
+        topics.OBJECT_QUERY, topics.HEAD_RGBD, topics.WRIST_RGBD, topics.POSE, topics.ODOMETRY, topics.JOINT_STATES,
+        topics.ROBOT_DESCRIPTION, topics.MANIPULATION_STATUS, topics.SIM_STATUS,
+    )  # fmt: skip
+    WRITES = (topics.OBJECT_POSE, topics.WORLD_OBJECTS, topics.CAMERA_REQUEST)
+
+    def __init__(self, config: PerceptionConfig, io: Io) -> None:
+        self._config, self._io = config, io
+        self._detector = load_detector(config.detector)(io.scene, config.max_range)
+        self._epoch = ""
+        self._forget()
+        self._body: Job[Body] | None = None
+        self._poses: deque[tuple[float, Pose2]] = deque(maxlen=HISTORY)
+        self._arm, self._width, self._holding = np.zeros(7), 0.085, False
+        self._picture = ""
+        self._asked_at = -1e9
+        self._detecting: Job[tuple[View, list[Detection]]] | None = None
+        self._looked_from: tuple[Pose2, str] | None = None
+        self._query: m.ObjectQuery | None = None
+        self._answers: dict[str, m.ObjectPose] = {}
+
+    def _forget(self) -> None:
+        self._memory = Memory(self._io.scene, self._config.gone_after, self._config.min_confidence)
+        self._shown: list[m.WorldObject] = []
+        self._io.publish(topics.WORLD_OBJECTS, m.WorldObjects(t=0.0, objects=[], source="perception"))
+
+    def step(self, now: float) -> None:
+        self._sense(now)
+        for query in self._io.drain(topics.OBJECT_QUERY):
+            self._take(query)
+        self._receive(now)
+        if self._detecting is not None and self._detecting.poll(now):
+            self._see(self._detecting, now)
+            self._detecting = None
+        self._ask(now)
+
+    # --- the robot
+    def _sense(self, now: float) -> None:
+        io = self._io
+        for pose in io.drain(topics.POSE):
+            self._poses.append((pose.t, (pose.x, pose.y, pose.theta)))
+        status = io.latest(topics.SIM_STATUS)
+        if status is not None and status.epoch != self._epoch:
+            if self._epoch:
+                self._forget()
+                io.log.info("another world", epoch=status.epoch)
+            self._epoch = status.epoch
+        description = io.latest(topics.ROBOT_DESCRIPTION)
+        if self._body is None and description is not None:
+            self._body = io.submit(Body, description.mjcf, seconds=0.2)
+        joints = io.latest(topics.JOINT_STATES)
+        if joints is None or not {*ARM, "gripper"} <= set(joints.name) or len(joints.effort) < len(joints.name):
+            return
+        found = dict(zip(joints.name, zip(joints.position, joints.effort, strict=False), strict=False))
+        self._arm = np.array([found[name][0] for name in ARM])
+        self._width, force = found["gripper"]
+        self._holding = HELD_WIDTH[0] < self._width < HELD_WIDTH[1] and abs(force) > HELD_FORCE
+        if self._body is not None and self._body.poll(now) and self._poses and self._detecting is None:
+            body = self._body.result()
+            body.pose(self._arm, self._width)
+            self._memory.carry(body.hand(self._poses[-1][1]), self._holding, now)
+            self._show(now)
+
+    def _pose_at(self, t: float) -> Pose2 | None:
+        """The base's pose at robot time `t`, between the two estimates around it."""
+        if not self._poses:
+            return None
+        before = [p for p in self._poses if p[0] <= t]
+        after = [p for p in self._poses if p[0] > t]
+        if not before or not after:
+            return (before[-1] if before else after[0])[1]
+        (t0, a), (t1, b) = before[-1], after[0]
+        s = (t - t0) / (t1 - t0)
+        return a[0] + s * (b[0] - a[0]), a[1] + s * (b[1] - a[1]), wrap(a[2] + s * wrap(b[2] - a[2]))
+
+    def _turning(self) -> float:
+        """How fast the base turned over the last estimates [rad/s]."""
+        if len(self._poses) < 4:
+            return 0.0
+        (t0, a), (t1, b) = self._poses[-4], self._poses[-1]
+        return abs(wrap(b[2] - a[2])) / max(t1 - t0, 1e-3)
+
+    # --- pictures
+    def _ask(self, now: float) -> None:
+        """Request the next picture when one is due."""
+        config = self._config
+        waiting = bool(self._picture) and now - self._asked_at < config.picture_timeout
+        if waiting or self._detecting is not None or not self._poses or self._turning() > config.max_turn:
+            return
+        status = self._io.latest(topics.MANIPULATION_STATUS)
+        phase = status.phase if status is not None and status.status == "executing" else ""
+        here = self._poses[-1][1]
+        resting = self._looked_from is not None and _near(self._looked_from[0], here) and self._looked_from[1] == phase
+        period = config.idle_period if resting else config.period
+        if self._query is None and now - self._asked_at < period:
+            return
+        self._looked_from = here, phase
+        self._picture, self._asked_at = self._io.new_id("picture"), now
+        request = m.CameraRequest(id=self._picture, camera="head", width=config.width, height=config.height)
+        self._io.publish(topics.CAMERA_REQUEST, request)
+
+    def _receive(self, now: float) -> None:
+        for image in self._io.drain(topics.HEAD_RGBD):
+            base = self._pose_at(image.t)
+            if image.id != self._picture or base is None:
+                continue
+            self._picture = ""
+            try:
+                view = view_of(image, base)
+            except ValueError as error:
+                self._io.count_drop(topics.HEAD_RGBD.key, str(error))
+                continue
+            arm, width = self._arm.copy(), self._width
+            body = self._body.result() if self._body is not None and self._body.poll(now) else None
+            self._detecting = self._io.submit(
+                detect, self._detector, view, base, body, arm, width, seconds=self._config.detection_seconds
+            )
+
+    def _see(self, job: Job[tuple[View, list[Detection]]], now: float) -> None:
+        view, detections = job.result()
+        seen = self._memory.look(view, detections, view.t)
+        self._show(now)
+        self._answer(seen)
+
+    def _show(self, now: float) -> None:
+        """Publish what is believed when it has changed."""
+        objects = self._memory.objects()
+        if [_outline(o) for o in objects] != [_outline(o) for o in self._shown]:
+            self._shown = objects
+            self._io.publish(topics.WORLD_OBJECTS, m.WorldObjects(t=now, objects=objects, source="perception"))
+
+    # --- queries
+    def _take(self, query: m.ObjectQuery) -> None:
+        query.id = query.id or self._io.new_id("query")
+        if query.id in self._answers:
+            self._io.publish(topics.OBJECT_POSE, self._answers[query.id])
+            return
+        if self._query is not None and self._query.id == query.id:
+            return
+        # A picture that is under way was not taken for this question.
+        self._query, self._pictures, self._picture = query, 0, ""
+
+    def _answer(self, seen: set[str]) -> None:
+        query = self._query
+        if query is None:
+            return
+        self._pictures += 1
+        result = self._ground(query.query)
+        found = result.found
+        if found is None and not result.candidates and self._pictures < self._config.query_pictures:
+            return
+        if found is not None and found.id not in seen and self._pictures < self._config.query_pictures:
+            return
+        self._query = None
+        answer = _pose_answer(query, result)
+        self._answers[query.id] = answer
+        self._io.log.info("asked", query=query.query, found=answer.label, detail=answer.detail)
+        self._io.publish(topics.OBJECT_POSE, answer)
+
+    def _ground(self, words: str) -> Grounding:
+        base = self._poses[-1][1] if self._poses else (0.0, 0.0, 0.0)
+        return ground(words, self._memory.objects(), self._io.scene, base, self._config.synonyms)
+
+
+def detect(
+    detector: Detector, view: View, base: Pose2, body: Body | None, arm: Array, width: float
+) -> tuple[View, list[Detection]]:
+    """The worker's part: find the robot in the view, then the objects beside it."""
+    mask = None
+    if body is not None:
+        body.pose(arm, width)
+        mask = body.mask(view, base)
+    return view, detector.detect(view, mask)
+
+
+def load_detector(name: str) -> type[Detector]:
+    """The detector class of the configuration.
+
+    Raises:
+        StartError: no such module or class.
+    """
+    if name == "classical":
+        return ClassicalDetector
+    module, _, attribute = name.partition(":")
+    try:
+        found: type[Detector] = getattr(importlib.import_module(module), attribute)
+    except (ImportError, AttributeError, ValueError) as error:
+        raise StartError(
+            f"perception.detector = {name!r}: {error}; expected classical or package.module:Class"
+        ) from None
+    return found
+
+
+def _pose_answer(query: m.ObjectQuery, result: Grounding) -> m.ObjectPose:
+    found = result.found
+    if found is None:
+        return m.ObjectPose(query_id=query.id, found=False, detail=result.reason, candidates=result.candidates)
+    return m.ObjectPose(
+        query_id=query.id, found=True, label=found.label, confidence=found.confidence, position=found.position,
+        orientation=found.orientation, size=found.size, seen_at=found.seen_at, detail=f"on the {found.on}" if found.on else "",
+    )  # fmt: skip
+
+
+def _near(a: Pose2, b: Pose2) -> bool:
+    return abs(a[0] - b[0]) + abs(a[1] - b[1]) < MOVING and abs(wrap(a[2] - b[2])) < MOVING
+
+
+def _outline(o: m.WorldObject) -> tuple[object, ...]:
+    """What others care about: a change below 2 mm or in the time of sighting alone is none."""
+    x, y, z = (round(v / 0.002) for v in o.position)
+    return o.id, o.label, o.on, o.held, x, y, z, round(o.confidence, 1), round(o.seen_at / 10)
