@@ -16,6 +16,7 @@ from common.clock import ManualClock
 from common.lockstep import DT, InProcess
 from common.memory import MemoryBus, MemoryIo
 from common.scene import Scene, load_scene
+from services.camera.render import choose
 
 Swap = Callable[[Any], Any]
 """Takes a service's class and returns the one that runs in its place."""
@@ -62,6 +63,8 @@ class Stack:
         self.seed, self._log_level, self._state_dir = seed, log_level, state_dir
         self._changes = config.overrides({}, settings)
         self._swaps = dict(swaps or {})
+        # One process, one GL library, chosen before anything imports MuJoCo.
+        choose("auto")
         self.bus, self._clock = MemoryBus(), ManualClock()
         self.members: dict[str, tuple[Any, MemoryIo]] = {}
         self._hung: list[tuple[float, str]] = []

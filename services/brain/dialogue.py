@@ -1,6 +1,7 @@
 """Yes, no, or a correction: what an answer to "Did you say ...?" means. Pure."""
 
 import re
+from collections.abc import Sequence
 from typing import Literal
 
 from common.scene import Scene
@@ -44,3 +45,13 @@ def corrected(command: str, correction: str, scene: Scene) -> str:
         if re.search(rf"\b{re.escape(name)}\b", words):
             return re.sub(rf"\b{re.escape(name)}\b", thing, words, count=1)
     return correction
+
+
+def chosen(answer: str, options: Sequence[str]) -> str | None:
+    """The one option that the answer's words single out; "the first" and "the second one" count too."""
+    words = set(_DETERMINER.sub("", normal(answer)).split()) - {"one", "the", "please"}
+    for n, ordinal in enumerate(("first", "second", "third", "fourth")):
+        if words == {ordinal} and n < len(options):
+            return options[n]
+    matching = [o for o in options if words and words <= set(o.split())]
+    return matching[0] if len(matching) == 1 else None

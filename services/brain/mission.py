@@ -71,7 +71,9 @@ class Mission(msgspec.Struct):
     repeat: bool = False
     found: dict[str, m.ObjectPose] = {}
     at: str = ""
-    visited: list[str] = []
+    visited: list[tuple[float, float, float]] = []
+    options: list[str] = []
+    chosen: dict[str, str] = {}
 
     def next_goal(self) -> str:
         self.goals += 1

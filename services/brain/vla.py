@@ -16,6 +16,7 @@ from services.brain.validate import is_destination
 from services.brain.vla_leaves import (
     Await,
     Evidence,
+    HearChoice,
     HearReply,
     Look,
     NotFound,
@@ -24,9 +25,11 @@ from services.brain.vla_leaves import (
     in_words,
     question,
     reference,
+    which,
 )
 
-VIEWS_PER_ATTEMPT = 2
+# Attempt 1 turns on the spot, the others go to where more can be seen.
+VIEWS = (2, 5, 9)
 
 
 def vla_tree(ctx: Context) -> Behaviour:
@@ -119,23 +122,44 @@ def step_tree(ctx: Context, step: PlanStep) -> Behaviour:
 
 
 def find(ctx: Context, thing: str) -> Behaviour:
-    """Look from here, else search: turn, then other viewpoints."""
+    """Look from here, ask when several match, else search: turn, then other viewpoints."""
     tries = ctx.config.max_retry_attempts
-    looks: list[Behaviour] = []
+    attempts = []
     for attempt in range(1, tries + 1):
-        for view in range(1, VIEWS_PER_ATTEMPT + 1):
-            elsewhere = attempt > 1 and view == 1
-            turns = 0 if elsewhere else 1
-            label = f"attempt {attempt}, view {view}"
-            looks.append(
-                sequence(label, TakeView(label, ctx, turns, elsewhere), Settle("settle", ctx), Look("look", ctx, thing))
-            )
+        label = f"attempt {attempt}"
+        views = VIEWS[min(attempt, len(VIEWS)) - 1]
+        look = sequence(
+            f"view of {label}",
+            TakeView(label, ctx, attempt > 1),
+            Settle("settle", ctx),
+            first_of("look or ask", Look("look", ctx, thing), clarify(ctx, thing)),
+        )
+        attempts.append(Attempts(label, ctx, look, views - 1, again=lambda: more_to_see(ctx)))
     return first_of(
         f"perception: {thing}",
         Look("primary detection", ctx, thing),
-        first_of("search", *looks),
-        NotFound("not found", ctx, thing, tries),
+        clarify(ctx, thing),
+        When("search", first_of("search", *attempts), lambda: not permanent(ctx), Status.FAILURE),
+        When("not found", NotFound("not found", ctx, thing, tries), lambda: not permanent(ctx), Status.FAILURE),
     )
+
+
+def more_to_see(ctx: Context) -> bool:
+    failure = ctx.mission.failure
+    return not permanent(ctx) and (failure is None or failure.code != "NOTHING_NEW")
+
+
+def clarify(ctx: Context, thing: str) -> Behaviour:
+    """Ask which of several things was meant, and look for that one."""
+    ask = sequence(
+        "ask which",
+        Do("asking", ctx, lambda: ctx.enter("CONFIRMING", which(ctx))),
+        Say("which", ctx, lambda: which(ctx)),
+        HearChoice("hear choice", ctx, thing),
+        Look("look for the one meant", ctx, thing),
+    )
+    rounds = Attempts("clarify", ctx, ask, ctx.config.max_retry_attempts - 1, again=lambda: not permanent(ctx))
+    return When("several match", rounds, lambda: len(ctx.mission.options) > 1, Status.FAILURE)
 
 
 def approach(ctx: Context, thing: str) -> Behaviour:
@@ -153,12 +177,19 @@ def approach(ctx: Context, thing: str) -> Behaviour:
 def grasp(ctx: Context, thing: str) -> Behaviour:
     """Approach if needed and grab; after a failed grab look again, drive up again, grab again."""
     near = When("near it", approach(ctx, thing), lambda: ctx.mission.at != thing)
+    closer = Look("look closer", ctx, thing)
     grab = Grab("grab", ctx, lambda: label_of(ctx, thing), lambda: reference(ctx, thing))
-    first = sequence(f"grasp {thing}", near, grab, Settle("settle", ctx))
+    there = first_of(
+        "at the object",
+        sequence("go and look", near, closer),
+        sequence("search again", find(ctx, thing), approach(ctx, thing), Look("look closer", ctx, thing)),
+    )
+    first = sequence(f"grasp {thing}", there, grab, Settle("settle", ctx))
     again = sequence(
         "look and grab again",
         find(ctx, thing),
         approach(ctx, thing),
+        Look("look closer", ctx, thing),
         Grab("grab", ctx, lambda: label_of(ctx, thing), lambda: reference(ctx, thing)),
         Settle("settle", ctx),
     )

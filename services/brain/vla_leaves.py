@@ -11,11 +11,11 @@ from common import topics
 from common.topics import Topic
 from services.brain.behaviours import Goal, Leaf
 from services.brain.context import Context
-from services.brain.dialogue import corrected, reply
+from services.brain.dialogue import chosen, corrected, reply
 from services.brain.goals import Answer
 from services.brain.mission import Failure
 from services.brain.robot import take_command
-from services.brain.search import next_place, turned
+from services.brain.search import View
 from services.brain.validate import known_world, objection
 
 
@@ -122,7 +122,9 @@ class Look(Goal):
         self._thing = thing
 
     def goal(self, goal_id: str) -> tuple[Topic[Any], m.Message]:
-        return topics.OBJECT_QUERY, m.ObjectQuery(id=goal_id, query=self._thing)
+        return topics.OBJECT_QUERY, m.ObjectQuery(
+            id=goal_id, query=self.ctx.mission.chosen.get(self._thing, self._thing)
+        )
 
     def step(self) -> str:
         return f"look for {self._thing}"
@@ -133,35 +135,80 @@ class Look(Goal):
     def done(self, answer: Answer) -> Status:
         ctx, pose = self.ctx, answer.message
         assert isinstance(pose, m.ObjectPose)
+        ctx.mission.options = pose.candidates
         if not pose.found:
             self.feedback_message = pose.detail or "not seen"
-            return self.give_up(Failure("GROUNDING", "NOT_FOUND", pose.detail, self.spoken()))
+            code = "AMBIGUOUS" if pose.candidates else "NOT_FOUND"
+            return self.give_up(Failure("GROUNDING", code, pose.detail, self.spoken()))
         ctx.mission.found[self._thing] = pose
-        where = ", ".join(f"{c:.2f}" for c in pose.position)
-        ctx.note(f"found {self._thing}", f"{pose.label} at ({where}), confidence {pose.confidence:.2f}", "saw")
+        x, y, z = pose.position
+        evidence = f"{pose.label} at ({x:.2f}, {y:.2f}, {z:.2f}), confidence {pose.confidence:.2f}"
+        ctx.note(f"found {self._thing}", evidence)
         return Status.SUCCESS
 
 
-class TakeView(Goal):
-    """Brings the camera to another view: `turns` thirds of a circle from where it is, at another place if asked."""
+class HearChoice(Goal):
+    """Which of several things was meant; SUCCESS once the answer names one of them."""
 
-    def __init__(self, name: str, ctx: Context, turns: int, elsewhere: bool) -> None:
+    def __init__(self, name: str, ctx: Context, thing: str) -> None:
+        super().__init__(name, ctx, ctx.speech, state="CONFIRMING", timeout=ctx.config.answer_timeout)
+        self._thing = thing
+
+    def goal(self, goal_id: str) -> tuple[Topic[Any], m.Message]:
+        return topics.SPEECH_GOAL, m.SpeechGoal(goal="listen", id=goal_id)
+
+    def step(self) -> str:
+        return which(self.ctx)
+
+    def spoken(self) -> str:
+        return f"I do not know which {self._thing} you mean."
+
+    def done(self, answer: Answer) -> Status:
+        mission, heard = self.ctx.mission, answer.message
+        assert isinstance(heard, m.SpeechResult)
+        kind, rest = reply(heard.text)
+        if kind == "cancel":
+            return self.give_up(Failure("CONFIRMING", "CANCELLED", spoken="All right, I will do nothing."))
+        label = chosen(rest, mission.options)
+        if label is None:
+            return self.give_up(Failure("CONFIRMING", "NOT_CONFIRMED", heard.text, self.spoken()))
+        mission.chosen[self._thing] = label
+        self.ctx.note(f"meant: {label}", heard.text)
+        return Status.SUCCESS
+
+
+def which(ctx: Context) -> str:
+    """The question between several things."""
+    *some, last = [f"the {name}" for name in ctx.mission.options]
+    return f"Do you mean {', '.join(some)} or {last}?"
+
+
+class TakeView(Goal):
+    """Brings the camera to the view that shows most that is new: by turning on the spot, or `elsewhere`."""
+
+    def __init__(self, name: str, ctx: Context, elsewhere: bool) -> None:
         config = ctx.config
         super().__init__(name, ctx, ctx.navigation, state="GROUNDING", timeout=config.navigation_timeout)
-        self._turns, self._elsewhere = turns, elsewhere
-        self._target: tuple[float, float, float] | None = None
+        self._elsewhere = elsewhere
+        self._target: View | None = None
 
     def initialise(self) -> None:
         super().initialise()
         ctx, mission = self.ctx, self.ctx.mission
         here = ctx.io.latest(topics.POSE)
         pose = (here.x, here.y, here.theta) if here else (0.0, 0.0, 0.0)
-        place = next_place(pose, ctx.io.scene, mission.visited) if self._elsewhere else None
-        if place is not None:
-            mission.visited.append(place.name)
-            pose = (place.x, place.y, place.theta)
-        self._target = turned(pose, self._turns)
+        choose = ctx.lookout.next if self._elsewhere else ctx.lookout.turns
+        self._target = choose(pose, [*mission.visited, pose])
+        # A view that cannot be reached is not tried a second time either.
+        mission.visited = [*mission.visited, pose, *([self._target] if self._target else [])]
         mission.at = ""
+
+    def update(self) -> Status:
+        if self._target is None:
+            self.feedback_message = "everything has been looked at"
+            self.ctx.fail(Failure("GROUNDING", "NOTHING_NEW", self.feedback_message, self.spoken()))
+            return Status.FAILURE
+        return super().update()
 
     def goal(self, goal_id: str) -> tuple[Topic[Any], m.Message]:
         assert self._target is not None
@@ -170,6 +217,9 @@ class TakeView(Goal):
 
     def step(self) -> str:
         return f"search: {self.name}"
+
+    def spoken(self) -> str:
+        return "I could not get to where I wanted to look."
 
 
 class NotFound(Leaf):

@@ -40,11 +40,12 @@ def works(backend: str) -> bool:
 
 
 def choose(wanted: str) -> str:
-    """The backend to use; must run before anything in this process imports mujoco."""
-    if wanted != "auto":
-        backend = wanted
-    else:
-        backend = next(b for b in BACKENDS if works(b))
+    """The backend to use. MuJoCo settles on its GL library when it is first imported: before that `wanted` counts,
+    after that only what the environment said then, or ray casting."""
+    if "mujoco" in sys.modules:
+        given = os.environ.get("MUJOCO_GL", "")
+        return given if given in ("egl", "osmesa") and wanted in ("auto", given) else "raycast"
+    backend = wanted if wanted != "auto" else next(b for b in BACKENDS if works(b))
     os.environ["MUJOCO_GL"] = "disable" if backend == "raycast" else backend
     if backend != "raycast":
         os.environ["PYOPENGL_PLATFORM"] = backend

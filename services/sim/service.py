@@ -85,7 +85,8 @@ class SimService:
         io.publish(topics.ROBOT_DESCRIPTION, m.RobotDescription(mjcf=robot.robot_mjcf()))
         model = m.SimModel(scene=io.scene.name, seed=physics.seed, epoch=io.epoch, mjcf=physics.mjcf)
         io.publish(topics.SIM_MODEL, model)
-        io.publish(topics.WORLD_OBJECTS, self._survey(now))
+        if config.survey:
+            io.publish(topics.WORLD_OBJECTS, self._survey(now))
         io.publish(topics.GOAL_REACHED, m.GoalReached(reached=False))
         self._publish_status("running")
 
