@@ -148,10 +148,7 @@ def _host_names(hosts: Iterable[str]) -> list[x509.GeneralName]:
         try:
             names.append(x509.IPAddress(ipaddress.ip_address(host)))
         except ValueError:
-            try:
-                names.append(x509.DNSName(host.encode("idna").decode()))
-            except UnicodeError:
-                raise CliError(f"--host {host}: neither a name nor an address") from None
+            names.append(x509.DNSName(host))
     return names
 
 

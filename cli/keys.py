@@ -15,6 +15,7 @@ from common.keys import OFF, default_directory
 
 DAYS = 365.0
 _WORD = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]*")
+_HOST = re.compile(r"[A-Za-z0-9:][A-Za-z0-9:._-]*")
 
 
 def everybody(namespace: str) -> list[Subject]:
@@ -30,26 +31,23 @@ def keys(args: argparse.Namespace) -> int:
     _check(args)
     if args.list:
         return _show(authority, args.json)
-    known = authority.subjects() if authority.exists and not args.force else []
-    wanted = [_client(args)] if args.client and known else everybody(args.namespace)
-    if args.client and not known:
-        wanted.append(_client(args))
-    if args.force and authority.exists:
+    known = authority.subjects()
+    asked = [_client(args)] if args.client else everybody(args.namespace)
+    if args.force or not authority.exists:
         # Everybody who had a certificate gets a new one: the old authority is no longer trusted.
-        wanted = _merged(authority.subjects(), wanted)
-    if known and not args.missing:
-        taken = [s for s in wanted if s.role != "router" and s in known]
-        if taken or (not args.client and not args.namespace):
-            raise CliError(
-                f"there are keys in {authority.directory} already; --missing makes what is not there, "
-                "--force makes all of them anew (every host then needs its new ones), --client NAME adds a client"
-            )
-    if not known:
+        made = _merged(known, everybody(args.namespace), asked)
         authority.found(max(args.days, DAYS) * 3)
-    made = [s for s in wanted if not known or not authority.has(s)]
+    else:
+        made = [s for s in asked if not authority.has(s)]
+        there = [s for s in asked if s.role != "router" and authority.has(s)]
+        if there and not args.missing:
+            raise CliError(
+                f"{there[0].common_name} has a certificate in {authority.directory} already; --missing makes what is "
+                "not there, --force makes all anew (every host then needs its new ones), --client NAME adds a client"
+            )
     for subject in made:
         authority.issue(subject, args.days, hosts_of(args.host))
-    authority.register(_merged(known, wanted))
+    authority.register(_merged(known, asked, made))
     if args.owner is not None:
         _give(authority, args.owner)
     _report(authority, made, args)
@@ -60,6 +58,9 @@ def _check(args: argparse.Namespace) -> None:
     for word in (args.client, *args.namespace.split("/")):
         if word and not _WORD.fullmatch(word):
             raise CliError(f"{word!r}: letters, digits, '_', '.' and '-' only")
+    for host in args.host:
+        if not _HOST.fullmatch(host):
+            raise CliError(f"--host {host}: neither a name nor an address")
     if args.client in NAMES:
         raise CliError(f"{args.client} is a service; a client needs another name")
     if args.days <= 0:
@@ -73,9 +74,9 @@ def _client(args: argparse.Namespace) -> Subject:
     return Subject(name=args.client, role=role, namespace=args.namespace)
 
 
-def _merged(known: list[Subject], more: list[Subject]) -> list[Subject]:
-    by_name = {s.common_name: s for s in (*known, *more)}
-    return list(by_name.values())
+def _merged(*lists: list[Subject]) -> list[Subject]:
+    """Each once, the later word counts."""
+    return list({s.common_name: s for subjects in lists for s in subjects}.values())
 
 
 def _directory(args: argparse.Namespace) -> Path:

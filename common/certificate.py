@@ -7,6 +7,7 @@ from typing import Any
 
 from cryptography import x509
 from cryptography.exceptions import InvalidSignature
+from cryptography.hazmat.primitives import serialization
 from cryptography.x509.oid import NameOID
 
 from common.clock import unix_time
@@ -24,8 +25,7 @@ class Identity:
         self.directory, self.name = directory, name
         wanted = f"{namespace}/{name}" if namespace else name
         self.ca, self.cert, self.key = directory / CA, directory / CERT, directory / KEY
-        authority, own = _read(self.ca, name), _read(self.cert, name)
-        self._readable_key()
+        authority, own, key = _read(self.ca, name), _read(self.cert, name), _read_key(self.key)
         self.common_name = common_name(own)
         self.expires = own.not_valid_after_utc
         now = datetime.fromtimestamp(unix_time(), UTC)
@@ -50,13 +50,8 @@ class Identity:
                 "`tidybot keys --force`"
             ) from error
 
-    def _readable_key(self) -> None:
-        try:
-            self.key.read_bytes()
-        except FileNotFoundError:
-            raise KeysError(f"{self.key} is missing; run `tidybot keys --force`") from None
-        except OSError as error:
-            raise KeysError(f"{self.key} cannot be read by this user ({error.strerror})") from None
+        if key.public_key() != own.public_key():
+            raise KeysError(f"{self.key} does not belong to {self.cert}: copy the whole folder again")
 
     def settings(self, serving: bool) -> dict[str, Any]:
         """Zenoh's `transport/link/tls`: mutual authentication for a router (`serving`) or a client."""
@@ -92,6 +87,17 @@ def _read(path: Path, name: str) -> x509.Certificate:
         raise KeysError(f"{path} cannot be read by this user ({error.strerror})") from None
     except ValueError as error:
         raise KeysError(f"{path} is not a certificate: {error}") from None
+
+
+def _read_key(path: Path) -> Any:
+    try:
+        return serialization.load_pem_private_key(path.read_bytes(), None)
+    except FileNotFoundError:
+        raise KeysError(f"{path} is missing; run `tidybot keys --force`") from None
+    except OSError as error:
+        raise KeysError(f"{path} cannot be read by this user ({error.strerror})") from None
+    except (ValueError, TypeError) as error:
+        raise KeysError(f"{path} is not a key: {error}") from None
 
 
 def _day(when: datetime) -> str:

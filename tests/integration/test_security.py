@@ -63,7 +63,8 @@ def may_ask(subject: str) -> set[str]:
 def may_answer(subject: str) -> set[str]:
     if subject in ("operator", "looker"):
         return set()
-    latched = {t.key for t in topics.TABLE if t.latched and subject in t.writers}
+    own = kind(subject).WRITES
+    latched = {t.key for t in topics.TABLE if t.latched and (subject in t.writers or t in own)}
     return latched | {k for k, n in QUESTIONS.items() if n == subject} | {f"service/{subject}/health"}
 
 
