@@ -10,6 +10,8 @@ from common.scene import Scene
 
 Manner = Literal["correct", "reject", "silent", "agree"]
 PATIENCE = 6
+CORRECTIONS = ("no, the {}", "no, I said the {}", "the {}")
+"""Who was not understood says it in other words."""
 _HEARD = re.compile(r"^did you say,?\s*(.+?)\??$", re.IGNORECASE)
 _AGAIN = re.compile(r"say (?:it|that) again|please repeat|did not (?:hear|understand|catch)|pardon|what did you", re.I)
 _WHICH = re.compile(r"^(?:which\b|do you mean|the .+ or the .+\?)", re.IGNORECASE)
@@ -25,8 +27,8 @@ def plain(text: str) -> str:
 class Person:
     """Wants `command` done with `thing`.
 
-    Manners: `correct` a wrong question with "no, the <thing>", `reject` it with "no" and repeat when asked, keep
-    `silent`, or `agree` to anything.
+    Manners: `correct` a wrong question ("no, the <thing>"), `reject` it with "no" and repeat when asked, keep `silent`,
+    or `agree` to anything.
     """
 
     def __init__(self, command: str, thing: str, scene: Scene, manner: Manner = "correct") -> None:
@@ -46,7 +48,7 @@ class Person:
             if self._manner == "agree" or self._same(heard[1]):
                 return "yes"
             if self._manner == "correct" and self._only_the_thing_differs(heard[1]):
-                return f"no, the {self._thing}"
+                return CORRECTIONS[self.answers % len(CORRECTIONS)].format(self._thing)
             return "no"
         if _AGAIN.search(sentence):
             return self._command

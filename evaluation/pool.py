@@ -74,8 +74,9 @@ class Worker:
         self.case = None
         return judge(case, Observed(crash=why), monotonic() - self.started)
 
-    @property
     def exit_code(self) -> int | None:
+        """Of a process whose pipe has closed; it may still be on its way out."""
+        self._process.join(5)
         return self._process.exitcode
 
     def ask(self) -> None:
@@ -128,7 +129,7 @@ def _receive(worker: Worker) -> Result | Progressed:
     try:
         raw = worker.pipe.recv_bytes()
     except (EOFError, OSError):
-        return worker.failed(f"the worker process ended with status {worker.exit_code}")
+        return worker.failed(f"the worker process ended with status {worker.exit_code()}")
     try:
         return msgspec.msgpack.decode(raw, type=Result)
     except msgspec.ValidationError:

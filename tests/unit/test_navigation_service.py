@@ -145,7 +145,6 @@ class Node:
         ("find", "UNKNOWN_GOAL"),
         ("goto", "UNKNOWN_GOAL"),
         ("goto the moon", "UNKNOWN_PLACE"),
-        ("find banana", "UNKNOWN_OBJECT"),
     ],
 )
 def test_what_cannot_be_done_fails_with_a_code_and_a_reason(goal: str, code: str) -> None:

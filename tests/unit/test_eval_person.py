@@ -1,0 +1,58 @@
+"""The person in the evaluation: what they answer to what the robot says."""
+
+import pytest
+
+from common.scene import load_scene
+from evaluation.person import PATIENCE, Manner, Person, plain
+
+SCENE = load_scene("apartment")
+
+
+def person(manner: Manner = "correct", command: str = "bring me the red mug", thing: str = "red mug") -> Person:
+    return Person(command, thing, SCENE, manner)
+
+
+@pytest.mark.parametrize(
+    ("question", "answer"),
+    [
+        ("Did you say bring me the red mug?", "yes"),
+        ("Did you say: Bring me the red mug?", "yes"),
+        ("Did you say bring me the red cup?", "yes"),
+        ("Did you say bring me the blue mug?", "no, the red mug"),
+        ("Did you say bring me the red can?", "no, the red mug"),
+        ("Did you say go home?", "no"),
+        ("Please say it again.", "bring me the red mug"),
+        ("I did not understand. What did you say?", "bring me the red mug"),
+        ("Do you mean the red mug or the blue mug?", "the red mug"),
+        ("Which mug?", "the red mug"),
+        ("Done.", ""),
+        ("I could not reach the red mug.", ""),
+    ],
+)
+def test_answers(question: str, answer: str) -> None:
+    assert person().answer(question) == answer
+
+
+def test_who_is_misheard_again_says_it_in_other_words() -> None:
+    one = person()
+    question = "Did you say bring me the blue mug?"
+    assert len({one.answer(question) for _ in range(3)}) == 3
+
+
+def test_the_rejecting_the_silent_and_the_agreeable() -> None:
+    wrong = "Did you say bring me the blue mug?"
+    assert [person(m).answer(wrong) for m in ("reject", "silent", "agree")] == ["no", "", "yes"]
+
+
+def test_patience_ends() -> None:
+    one = person()
+    answers = [one.answer("Please say it again.") for _ in range(PATIENCE + 3)]
+    assert [a for a in answers if a] == answers[:PATIENCE]
+
+
+def test_a_command_without_an_object_is_never_corrected_with_one() -> None:
+    assert person(command="tidy up the living table", thing="").answer("Did you say tidy up the desk?") == "no"
+
+
+def test_plain_words() -> None:
+    assert plain("Hey Jarvis, please bring me THE red-mug!") == "bring red mug"

@@ -1,0 +1,75 @@
+"""Workers that die or hang cost one case; the report has the fields of the contract; help and mistakes."""
+
+import os
+from collections.abc import Callable
+from io import StringIO
+
+import pytest
+from rich.console import Console
+
+from cli.main import main, parser
+from evaluation import report
+from evaluation.case import Case, Line, Observed, Result
+from evaluation.pool import Progressed, evaluate
+from evaluation.verdict import judge
+
+FIELDS = [
+    "suite", "scenarios", "delivered", "false_success", "by_cause", "spl", "sim_seconds", "wall_seconds", "cases",
+]  # fmt: skip
+
+
+def case_of(seed: int, name: str = "fine") -> Case:
+    return Case(suite="fetch", seed=seed, name=name, command=f"do {name}", lines=(Line("do"),))
+
+
+def pretend(case: Case, progress: Callable[[float, str], None]) -> Result:
+    """A case without a robot."""
+    progress(1.0, "WAITING")
+    if case.name == "dies":
+        os._exit(7)
+    while case.name == "hangs":
+        pass
+    return judge(case, Observed(claimed="failed", reason="(GRABBING: MISSED: air)", ended=True), 0.1)
+
+
+def test_a_worker_that_dies_costs_its_case_only() -> None:
+    todo = [case_of(0), case_of(1, "dies"), case_of(2), case_of(3)]
+    said = list(evaluate(todo, 2, pretend))
+    results = {r.seed: r for r in said if isinstance(r, Result)}
+    assert sorted(results) == [0, 1, 2, 3]
+    assert results[1].outcome == "crashed" and "status 7" in results[1].cause
+    assert {results[n].outcome for n in (0, 2, 3)} == {"reported"}
+    assert any(isinstance(p, Progressed) and p.state == "WAITING" for p in said)
+
+
+def test_a_case_without_end_is_given_up() -> None:
+    said = [r for r in evaluate([case_of(0, "hangs"), case_of(1)], 1, pretend, limit=3.0) if isinstance(r, Result)]
+    assert [r.outcome for r in said] == ["crashed", "reported"]
+
+
+def test_the_report_is_that_of_the_contract() -> None:
+    results = [judge(case_of(n), Observed(claimed="failed", reason="(GRABBING: MISSED: air)", ended=True), 0.1)
+               for n in (2, 1)]  # fmt: skip
+    found = report.record("fetch", results, 3.0)
+    assert list(found) == FIELDS
+    assert [list(c) for c in found["cases"]] == [["seed", "command", "outcome", "evidence", "cause"]] * 2
+    assert [c["seed"] for c in found["cases"]] == [1, 2]
+    assert found["by_cause"] == {"grasp: MISSED": 2}
+    console = Console(record=True, width=120, file=StringIO())
+    report.show(console, found, results)
+    assert "grasp: MISSED" in console.export_text()
+
+
+def test_an_empty_run_is_no_division_by_zero() -> None:
+    assert report.record("fetch", [], 0.0)["spl"] == 0.0
+
+
+def test_help_has_examples(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        parser().parse_args(["eval", "--help"])
+    assert "tidybot eval --suite seed" in capsys.readouterr().out
+
+
+def test_a_mistyped_suite_is_named(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["eval", "--suite", "fetsh"]) == 1
+    assert "fetch" in capsys.readouterr().err

@@ -1,0 +1,101 @@
+"""Scenarios from seeds: repeatable one by one, and such that they can be run."""
+
+import msgspec
+import pytest
+
+from common import topics
+from common.codec import decode, encode
+from common.scene import load_scene
+from evaluation.case import Case
+from evaluation.faults import Rule
+from evaluation.scene_file import to_toml
+from evaluation.stack import service_class
+from evaluation.suites import CHAOS_SERVICES, DIALOGUES, FAULTS, NAMED, SUITES, cases, destination
+from services.sim.layout import place_objects
+
+SCENE = load_scene("apartment")
+
+
+@pytest.mark.parametrize("suite", SUITES)
+def test_a_case_can_be_repeated_alone_and_sent_to_a_worker(suite: str) -> None:
+    run = cases(suite, 6, 7)
+    assert [c.seed for c in run] == list(range(7, 13))
+    assert cases(suite, 1, 10)[0] == run[3]
+    assert msgspec.msgpack.decode(msgspec.msgpack.encode(run[3]), type=Case) == run[3]
+    assert all(c.lines and c.command for c in run)
+
+
+@pytest.mark.parametrize(("suite", "names"), [("seed", NAMED), ("dialogue", DIALOGUES), ("faults", FAULTS)])
+def test_every_kind_comes_in_turn(suite: str, names: tuple[str, ...]) -> None:
+    assert {c.name for c in cases(suite, len(names), 40)} == set(names)
+
+
+def test_fetch_varies() -> None:
+    run = cases("fetch", 60, 0)
+    assert len({c.thing for c in run}) == len(SCENE.objects)
+    assert len({c.command.replace(c.thing, "X") for c in run}) > 5
+    assert 10 < sum(c.spoken for c in run) < 50
+
+
+def test_a_misheard_command_is_another_one() -> None:
+    for case in (c for c in cases("seed", 20, 0) if c.name == "misheard"):
+        assert case.rules[0].fields["text"] != case.command
+
+
+def test_rules_speak_of_what_their_service_publishes() -> None:
+    rules = [r for suite in SUITES for c in cases(suite, 60, 0) for r in c.rules]
+    assert {r.service for r in rules} == {*CHAOS_SERVICES}
+    for rule in rules:
+        topic = topics.BY_KEY[rule.key]
+        assert rule.service in topic.writers or "*" in topic.writers, rule
+        assert set(rule.match) | set(rule.fields) <= set(topic.type.__struct_fields__), rule
+
+
+def test_edits_make_messages() -> None:
+    rules: list[Rule] = [r for s in ("seed", "faults", "dialogue") for c in cases(s, 60, 0) for r in c.rules]
+    for rule in (r for r in rules if r.kind == "edit"):
+        topic = topics.BY_KEY[rule.key]
+        required = {"request_id": "r", "steps": [], "query_id": "q", "found": True, "text": "x"}
+        fields = {k: v for k, v in required.items() if k in topic.type.__struct_fields__}
+        message = msgspec.convert({**fields, **rule.fields}, topic.type)
+        assert decode(topic, encode(topic, message)) == message
+
+
+def test_tidy_lays_four_things_on_the_table_that_belong_elsewhere() -> None:
+    for case in cases("tidy", 10, 0):
+        assert case.scene is not None
+        placed = {p.spec.name: p.on for p in place_objects(case.scene, case.seed)}
+        assert len(case.wants) == 4
+        for want in case.wants:
+            assert placed[want.thing] == "living table"
+            assert want.goals[0] not in ("", "living table")
+        assert sum(on == "living table" for on in placed.values()) == 4
+
+
+def test_where_things_go() -> None:
+    by_kind = {o.kind: destination(o, SCENE) for o in SCENE.objects}
+    assert by_kind["can"] == "recycling bin"
+    assert by_kind["block"] == "toy box"
+    assert all(by_kind.values())
+
+
+def test_a_scene_survives_its_file(tmp_path) -> None:  # type: ignore[no-untyped-def]
+    scene = cases("tidy", 1, 3)[0].scene
+    assert scene is not None
+    path = tmp_path / "scene.toml"
+    path.write_text(to_toml(scene))
+    assert load_scene(str(path)) == scene
+
+
+def test_a_setting_of_the_user_comes_last_and_the_pipeline_of_a_suite_stands() -> None:
+    assert cases("seed", 1, 0, ("brain.settle=0.5",), "fetch")[0].settings[-1] == "brain.settle=0.5"
+    assert "brain.pipeline=fetch" not in cases("seed", 1, 0, (), "fetch")[0].settings
+    case = cases("fetch", 1, 0, (), "vla")[0]
+    assert case.settings == ("brain.pipeline=vla",) and case.wake
+    assert not cases("fetch", 1, 0, (), "fetch")[0].wake
+
+
+def test_services_are_found_by_the_table() -> None:
+    assert service_class("navigation").NAME == "navigation"
+    with pytest.raises(ImportError):
+        service_class("nonsense")
