@@ -7,7 +7,7 @@ measured size and its nearest kind, with little confidence.
 
 import math
 from dataclasses import dataclass
-from typing import Protocol, get_args
+from typing import Protocol
 
 import numpy as np
 
@@ -17,10 +17,10 @@ from services.perception import colour, segment, shapes
 from services.perception.segment import Piece
 from services.perception.view import Mask, View
 
-KINDS: tuple[ObjectKind, ...] = get_args(ObjectKind)
 SHAPE_SCALE, HEIGHT_SCALE, COLOUR_SCALE = 0.0035, 0.010, 0.07
 WORST = 3.2
 STRANGE_CONFIDENCE = 0.45
+STRANGE_KINDS: tuple[ObjectKind, ...] = ("can", "box")
 
 
 @dataclass(frozen=True)
@@ -115,10 +115,8 @@ class ClassicalDetector:
         low, high = piece.points[:, :2].min(axis=0), piece.points[:, :2].max(axis=0)
         width = float(np.clip(np.max(high - low), 0.02, 0.25))
         size = (width, width, max(0.02, height))
-        fits = [
-            (shapes.fit(kind, size, piece.points, piece.surface.height, view.position), kind) for kind in ("can", "box")
-        ]
-        fit, kind = min(fits, key=lambda row: row[0].residual)
+        fits = [shapes.fit(k, size, piece.points, piece.surface.height, view.position) for k in STRANGE_KINDS]
+        fit = min(fits, key=lambda f: f.residual)
         if piece.cut or len(piece.rows) < 2 * segment.MIN_PIXELS:
             return None
         word = colour.name(rgb)

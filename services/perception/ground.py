@@ -70,9 +70,10 @@ def _take_place(words: str, scene: Scene) -> tuple[str, str]:
     if match is None:
         return "", words
     wanted = match["place"]
-    for entry in (*scene.receptacles, *scene.rooms):
-        if wanted in map(normalise, (entry.name, *entry.aliases)):
-            return entry.name, match["thing"]
+    names = [(r.name, r.aliases) for r in scene.receptacles] + [(r.name, r.aliases) for r in scene.rooms]
+    for name, aliases in names:
+        if wanted in map(normalise, (name, *aliases)):
+            return name, match["thing"]
     return "", words
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from common.geometry import Pose2, yaw_quat
+from common.geometry import yaw_quat
 from common.messages import WorldObject, WorldObjects
 from common.scene import Scene, Vec3
 from services.perception.detect import Detection

@@ -110,7 +110,7 @@ def _on(view: View, expected: Surface, inside: Mask) -> list[Piece]:
     else:
         surface = expected
     above = inside & (z > surface.height + CLEARANCE) & (z < surface.height + MAX_HEIGHT)
-    labels, count = ndimage.label(_cut(above, view.depth))
+    labels = ndimage.label(_cut(above, view.depth))[0]
     parts = []
     for n, box in enumerate(ndimage.find_objects(labels), 1):
         rows, columns = np.nonzero(labels[box] == n)

@@ -228,7 +228,8 @@ def _pose_answer(query: m.ObjectQuery, result: Grounding) -> m.ObjectPose:
         return m.ObjectPose(query_id=query.id, found=False, detail=result.reason, candidates=result.candidates)
     return m.ObjectPose(
         query_id=query.id, found=True, label=found.label, confidence=found.confidence, position=found.position,
-        orientation=found.orientation, size=found.size, seen_at=found.seen_at, detail=f"on the {found.on}" if found.on else "",
+        orientation=found.orientation, size=found.size, seen_at=found.seen_at,
+        detail=f"on the {found.on}" if found.on else "",
     )  # fmt: skip
 
 

@@ -64,7 +64,7 @@ def _from_segments(rho: Array, z: Array, segments: Sequence[Segment]) -> Array:
 def _from_box(local: Array, z: Array, size: Vec3) -> Array:
     outside = np.abs(np.stack([local[:, 0], local[:, 1], z - size[2] / 2], axis=1)) - np.array(size) / 2
     distance = np.linalg.norm(np.maximum(outside, 0.0), axis=1) + np.minimum(outside.max(axis=1), 0.0)
-    return np.abs(distance)
+    return np.asarray(np.abs(distance))
 
 
 def distances(kind: ObjectKind, size: Vec3, points: Array, floor: float, x: float, y: float, yaw: float) -> Array:
