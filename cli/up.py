@@ -189,6 +189,9 @@ def bring_up(supervision: Supervision, plan: Plan, say: Callable[[str], None], d
             sleep(0.03)
         if {*NAMES} - {*plan.names} <= EXTRA:
             _until(lambda: _awake(link), supervision, "the brain's first joint states", began, pause=0.05)
+        page = link.latest(topics.PAGE_STATUS) if "dashboard" in plan.names else None
+        if page is not None:
+            say(f"  page                  {page.url}")
     return monotonic() - began
 
 

@@ -40,6 +40,8 @@ class Transcript:
         self.changed = True
 
     def heard(self, t: float, result: m.SpeechResult) -> None:
+        if result.code == "TIMEOUT":
+            return
         if result.text == "ERROR":
             self.add(t, "robot", f"not understood: {result.code} {result.detail}".strip())
         else:

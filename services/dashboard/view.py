@@ -35,7 +35,8 @@ class View:
         self._paths: dict[str, str] = {}
         self.drawing = Drawing(None, None)
         self._scene.set_up_direction("+z")
-        self._scene.configure_default_lights()
+        # Shadows cost more than all else on machines that draw without a graphics card.
+        self._scene.configure_default_lights(cast_shadow=False)
         server.initial_camera.position, server.initial_camera.look_at = EYE, LOOK
 
     # --- the model
@@ -190,7 +191,7 @@ class View:
         if not labels:
             return (body,)
         text = f"{one.label}?" if ghost else one.label
-        return body, self._scene.add_label(f"/names/{name}", text, position=_above(one))
+        return body, self._scene.add_label(f"/names/{name}", text, position=_above(one), font_screen_scale=0.8)
 
 
 def _above(one: m.WorldObject) -> tuple[float, float, float]:

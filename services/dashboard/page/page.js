@@ -94,14 +94,14 @@ async function talkStart(event) {
   event.preventDefault();
   if (talking) return;
   talking = true;
-  $("talk").textContent = "🎤 …";
+  $("talk").textContent = "…";
   try {
     microphone = microphone || (await openMicrophone());
     await microphone.context.resume();
-    $("talk").textContent = "🎤 talking";
+    $("talk").textContent = "Talking";
   } catch (error) {
     talking = false;
-    $("talk").textContent = "🎤 no microphone";
+    $("talk").textContent = "No microphone";
     $("talk").title = String(error);
   }
 }
@@ -109,7 +109,7 @@ async function talkStart(event) {
 function talkEnd() {
   if (!talking) return;
   talking = false;
-  $("talk").textContent = "🎤 Hold to talk";
+  $("talk").textContent = "Hold to talk";
   send(new ArrayBuffer(0));
 }
 $("talk").addEventListener("pointerdown", talkStart);
