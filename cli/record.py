@@ -46,7 +46,7 @@ class Listener:
         self._gated: dict[str, Any] = {}
         gated = {t.key for t in READERS}
         self._kept = [bus.subscribe(session, t, self._receive) for t in topics.TABLE if t.key not in gated]
-        self._kept += [session.declare_subscriber(key, self._receive) for key in ("service/*/health", "log/*")]
+        self._kept += [bus.listen(session, key, self._receive) for key in ("service/*/health", "log/*")]
         self._kept.append(bus.watch_tokens(session, lambda name, alive: self.tokens.put((name, alive))))
 
     def _receive(self, sample: Any) -> None:

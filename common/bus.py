@@ -2,7 +2,7 @@
 
 Events and goals travel over advanced publishers (cache, miss detection) to advanced subscribers (history,
 recovery), so a router outage loses none; streams keep the newest value only. Every latched key also answers a
-plain `get`. Callbacks only enqueue: they share one thread of Zenoh's.
+plain `get`. Callbacks only enqueue: they run in Zenoh's receiving thread, one after the other in the order of arrival.
 """
 
 import queue
@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 import zenoh
-from zenoh import ext
+from zenoh import ext, handlers
 
 from common import codec, keys, probe, topics
 from common import messages as m
@@ -181,14 +181,24 @@ def send(opened: zenoh.Session, topic: Topic[Any], message: m.Message) -> None:
 def subscribe(opened: zenoh.Session, topic: Topic[Any], receive: Callable[[zenoh.Sample], None]) -> Any:
     """A subscriber with the delivery that the table declares: streams as they come, events with what was missed."""
     if topic.keep == "latest" or not topic.recover:
-        return opened.declare_subscriber(topic.key, receive)
+        return listen(opened, topic.key, receive)
     return ext.declare_advanced_subscriber(
         opened,
         topic.key,
-        receive,
+        _in_order(receive),
         history=ext.HistoryConfig(detect_late_publishers=True, max_samples=CACHE),
         recovery=ext.RecoveryConfig(periodic_queries=None, heartbeat=True),
     )
+
+
+def listen(opened: zenoh.Session, key: str, receive: Callable[[zenoh.Sample], None]) -> Any:
+    """A plain subscriber to a key expression."""
+    return opened.declare_subscriber(key, _in_order(receive))
+
+
+def _in_order(receive: Callable[[zenoh.Sample], None]) -> Any:
+    """Zenoh would give every subscriber a thread of its own: a tick could be seen before the data it follows."""
+    return handlers.Callback(receive, indirect=False)
 
 
 def watch_tokens(opened: zenoh.Session, changed: Callable[[str, bool], None]) -> Any:
@@ -197,7 +207,7 @@ def watch_tokens(opened: zenoh.Session, changed: Callable[[str, bool], None]) ->
     def receive(sample: zenoh.Sample) -> None:
         changed(str(sample.key_expr).split("/")[-2], sample.kind == zenoh.SampleKind.PUT)
 
-    return opened.liveliness().declare_subscriber(topics.ALIVE_KEY.format(name="*"), receive, history=True)
+    return opened.liveliness().declare_subscriber(topics.ALIVE_KEY.format(name="*"), _in_order(receive), history=True)
 
 
 def tick_of(sample: zenoh.Sample) -> int | None:
@@ -292,7 +302,7 @@ class ZenohIo(IoBase):
         for topic in reads:
             self._subscribe(topic)
         self._kept.append(watch_tokens(opened, self._on_token))
-        self._kept.append(opened.declare_subscriber("service/*/health", self._on_health))
+        self._kept.append(listen(opened, topics.HEALTH_KEY.format(name="*"), self._on_health))
 
     def _subscribe(self, topic: Topic[Any]) -> None:
         put, started, stale_key = self._boxes[topic.key].put, self._started, f"{topic.key} (stale)"
@@ -366,7 +376,7 @@ class ClockListener:
         self._period = period
         self.seen = float("-inf")
         self.bad = 0
-        self._kept = opened.declare_subscriber(topics.SIM_CLOCK.key, self._receive)
+        self._kept = listen(opened, topics.SIM_CLOCK.key, self._receive)
 
     def _receive(self, sample: zenoh.Sample) -> None:
         try:
@@ -396,7 +406,7 @@ class AckCollector:
 
     def __init__(self, opened: zenoh.Session) -> None:
         self._acks: queue.SimpleQueue[tuple[str, int, int]] = queue.SimpleQueue()
-        self._kept = opened.declare_subscriber(topics.LOCKSTEP_ACK.key, self._receive)
+        self._kept = listen(opened, topics.LOCKSTEP_ACK.key, self._receive)
 
     def _receive(self, sample: zenoh.Sample) -> None:
         try:
