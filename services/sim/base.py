@@ -8,6 +8,7 @@ from services.sim.config import SimConfig
 
 SETPOINT_LEAD = 0.05
 _STILL = 0.02
+STREAM = 5  # targets in a row
 
 
 @dataclass
@@ -25,9 +26,18 @@ class BaseDriver:
     stopped: bool = False
     _twist: tuple[float, float, float] = field(default=(0.0, 0.0, 0.0))
     _twist_until: float = -1.0
+    _targeted_at: float = -math.inf
+    _targets_in_a_row: int = 0
 
-    def go_to(self, x: float, y: float, theta: float, target_id: str) -> None:
-        """Run to a pose; replaces whatever was asked before."""
+    def go_to(self, x: float, y: float, theta: float, target_id: str, now: float) -> None:
+        """Run to a pose; replaces whatever was asked before.
+
+        One target is run to its end. Targets that come as a stream are good for `target_timeout` each: whoever
+        steers the base may die or lose the network in mid-drive.
+        """
+        streaming = now - self._targeted_at <= self.config.target_timeout
+        self._targets_in_a_row = self._targets_in_a_row + 1 if streaming else 0
+        self._targeted_at = now
         self.target, self.target_id, self._twist_until = (x, y, theta), target_id, -1.0
 
     def drive(self, vx: float, vy: float, omega: float, now: float) -> None:
@@ -66,6 +76,10 @@ class BaseDriver:
         self.pose, self.velocity = (x, y, yaw), (vx, vy, omega)
         return self.pose
 
+    def _abandoned(self, now: float) -> bool:
+        """A stream of targets fell silent; the last one stands again when the stream goes on."""
+        return self._targets_in_a_row >= STREAM and now - self._targeted_at > self.config.target_timeout
+
     def _wanted(
         self, actual: Pose2, odometry: Pose2, now: float, dt: float
     ) -> tuple[tuple[float, float, float], float, float]:
@@ -73,7 +87,7 @@ class BaseDriver:
         c = self.config
         if self.stopped:
             return (0.0, 0.0, 0.0), c.acceleration, c.turn_acceleration
-        if self.target is not None:
+        if self.target is not None and not self._abandoned(now):
             x, y, yaw = compose(actual, compose(inverse(odometry), self.target))
             dx, dy = x - self.pose[0], y - self.pose[1]
             turn = wrap(yaw - self.pose[2])

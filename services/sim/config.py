@@ -22,6 +22,7 @@ class SimConfig(Config, frozen=True):
     position_tolerance: float = 0.02
     angle_tolerance: float = 0.05
     stream_timeout: float = 0.25
+    target_timeout: float = 0.2
     lidar_noise: float = 0.004
     odometry_slip: float = 0.02
     odometry_veer: float = 0.005

@@ -159,7 +159,7 @@ class SimService:
             if not all(map(_sane, (target.x, target.y, target.theta))):
                 io.count_drop(topics.BASE_TARGET.key, "not a finite pose near the apartment")
             elif not self._base.stopped:
-                self._base.go_to(target.x, target.y, target.theta, target.id)
+                self._base.go_to(target.x, target.y, target.theta, target.id, now)
         for twist in io.drain(topics.CMD_VEL):
             if not all(map(_sane, (twist.vx, twist.vy, twist.omega))):
                 io.count_drop(topics.CMD_VEL.key, "not a finite velocity")

@@ -191,7 +191,7 @@ def test_the_base_goes_by_its_wheels_and_not_by_where_it_is() -> None:
     config, dt = SimConfig(), 0.01
     driver = BaseDriver(config, (3.0, 1.0, math.pi / 2))
     wrong = (0.0, 0.0, 0.0)
-    driver.go_to(1.0, 0.0, 0.0, "a")
+    driver.go_to(1.0, 0.0, 0.0, "a", 0.0)
     actual = (3.0, 1.0, math.pi / 2)
     for k in range(600):
         actual = driver.advance(actual, wrong, k * dt, dt)
