@@ -14,7 +14,7 @@ from common.clock import monotonic
 from evaluation.case import Case, Observed, Result
 from evaluation.verdict import judge
 
-WALL_LIMIT = 1800.0
+WALL_LIMIT, START_LIMIT = 1800.0, 120.0
 Run = Callable[[Case, Callable[[float, str], None]], Result]
 
 
@@ -51,7 +51,7 @@ class Worker:
     def __init__(self, number: int, run: Run) -> None:
         self.number, self._run = number, run
         self.case: Case | None = None
-        self.started = 0.0
+        self.started, self.begun = 0.0, False
         self._start()
 
     def _start(self) -> None:
@@ -62,8 +62,16 @@ class Worker:
         theirs.close()
 
     def give(self, case: Case) -> None:
-        self.case, self.started = case, monotonic()
+        self.case, self.started, self.begun = case, monotonic(), False
         self.pipe.send_bytes(msgspec.msgpack.encode(case))
+
+    def hears(self) -> None:
+        """The first word from a case starts its clock: a fresh process may take long to load."""
+        if not self.begun:
+            self.started, self.begun = monotonic(), True
+
+    def overdue(self, limit: float) -> bool:
+        return monotonic() - self.started > (limit if self.begun else max(limit, START_LIMIT))
 
     def failed(self, why: str) -> Result:
         """The case of a worker that is lost; a new process takes its place."""
@@ -108,8 +116,9 @@ def evaluate(cases: list[Case], jobs: int, run: Run, limit: float = WALL_LIMIT) 
                     said = _receive(worker)
                     yield said
                     if isinstance(said, Progressed):
+                        worker.hears()
                         continue
-                elif monotonic() - worker.started > limit:
+                elif worker.overdue(limit):
                     yield worker.failed(f"no result within {limit:.0f} s of wall time")
                 else:
                     continue

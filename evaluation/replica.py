@@ -47,9 +47,11 @@ class Replica:
         model = self._model
         self._specs: list[ObjectSpec] = list(scene.objects)
         self._body = {o.name: model.body(body_name(o)).id for o in self._specs}
-        self._object_of = {body: name for name, body in self._body.items()}
-        base = model.body("base").id
-        self._robot = {b for b in range(model.nbody) if model.body_rootid[b] == base}
+        self._base = base = model.body("base").id
+        self._is_robot = model.body_rootid[model.geom_bodyid] == base
+        self._owner = np.full(model.ngeom, -1)
+        for number, body in enumerate(self._body.values()):
+            self._owner[model.geom_bodyid == body] = number
         self._gripper = {model.body(n).id for n in GRIPPER}
         self._pads = {model.geom(f"{side}_pad").id for side in ("left", "right")}
         self._base_at = [model.joint(j).qposadr[0] for j in ("base_x", "base_y", "base_yaw")]
@@ -78,7 +80,7 @@ class Replica:
             x, y, z = (float(v) for v in data.xpos[body])
             up = data.xmat[body].reshape(3, 3)[2]
             reach = sum(abs(float(u)) * s / 2 for u, s in zip(up, spec.size, strict=True))
-            held = robot[name] >= self._pads and not other[name]
+            held = robot[name] >= self._pads and name not in other
             things[name] = Thing(
                 position=(x, y, z),
                 tilt=math.acos(max(-1.0, min(1.0, float(up[2])))),
@@ -90,31 +92,27 @@ class Replica:
         base = tuple(float(v) for v in data.qpos[self._base_at])
         return Look(state.t, (base[0], base[1], base[2]), things, tuple(hits), pushed)
 
-    def _contacts(self) -> tuple[dict[str, set[int]], dict[str, bool], list[tuple[str, str, float]]]:
-        """Per object the robot's geoms that touch it, and whether anything else does; the robot's other contacts."""
-        model, data = self._model, self._data
-        robot: dict[str, set[int]] = {name: set() for name in self._body}
-        other = dict.fromkeys(self._body, False)
+    def _contacts(self) -> tuple[dict[str, set[int]], set[str], list[tuple[str, str, float]]]:
+        """Per object the robot's geoms that touch it; the objects that anything else touches; the robot's hits."""
+        data, owner, mine = self._data, self._owner, self._is_robot
+        pairs = data.contact.geom[: data.ncon]
+        one, two = pairs[:, 0], pairs[:, 1]
+        by_robot = mine[one] | mine[two]
+        supported = {self._specs[k].name for k in set(owner[pairs[~by_robot]].ravel().tolist()) - {-1}}
+        robot: dict[str, set[int]] = {o.name: set() for o in self._specs}
         hits = []
-        for contact in range(data.ncon):
-            pair = [int(g) for g in data.contact.geom[contact]]
-            for one, two in (pair, pair[::-1]):
-                body, opposite = int(model.geom_bodyid[one]), int(model.geom_bodyid[two])
-                name = self._object_of.get(body)
-                if name is not None:
-                    if opposite in self._robot:
-                        robot[name].add(two)
-                    else:
-                        other[name] = True
-                elif body in self._robot and opposite not in self._robot and opposite not in self._object_of:
-                    depth = -float(data.contact.dist[contact])
-                    if depth > PENETRATION and not (two == self._floor and body == self._base_body):
-                        hits.append((model.body(body).name, self._name(two), depth))
-        return robot, other, hits
-
-    @property
-    def _base_body(self) -> int:
-        return int(self._model.body("base").id)
+        for contact in np.nonzero(by_robot)[0].tolist():
+            a, b = (int(g) for g in pairs[contact])
+            part, thing = (a, b) if mine[a] else (b, a)
+            if mine[thing]:
+                continue
+            if owner[thing] >= 0:
+                robot[self._specs[owner[thing]].name].add(part)
+                continue
+            body, depth = int(self._model.geom_bodyid[part]), -float(data.contact.dist[contact])
+            if depth > PENETRATION and not (thing == self._floor and body == self._base):
+                hits.append((self._model.body(body).name, self._name(thing), depth))
+        return robot, supported, hits
 
     def _name(self, geom: int) -> str:
         """What people call the thing a geom belongs to."""
