@@ -24,8 +24,9 @@ from common.scene import load_scene
 from evaluation.case import Case, Observed, Result
 from evaluation.examiner import Examiner, ExaminerConfig, examiner_of
 from evaluation.node import CASE
-from evaluation.runner import REPORT, Progress, timeline
+from evaluation.runner import REPORT, Progress, idle_services, timeline
 from evaluation.scene_file import to_toml
+from evaluation.stack import paced_services
 from evaluation.verdict import judge
 
 WALL_LIMIT = 1500.0
@@ -106,7 +107,12 @@ def _plan(case: Case, directory: Path) -> Plan:
     )  # fmt: skip
     plan = Plan(args)
     faulty = {r.service for r in case.rules}
-    plan.services = [Service(s.name, "evaluation.node", s.paced, s.token) if s.name in faulty else s for s in SERVICES]
+    needed = {"router", "sim", *paced_services()} - {*idle_services(case)}
+    plan.services = [
+        Service(s.name, "evaluation.node", s.paced, s.token) if s.name in faulty else s
+        for s in SERVICES
+        if s.name in needed
+    ]
     clean = {k: v for k, v in plan.environ.items() if k in _plan_keys(plan) or not k.startswith(config.PREFIX)}
     waited = [f'"{s.name}"' for s in plan.services if s.paced] + [f'"{Examiner.NAME}"']
     plan.environ = {

@@ -50,7 +50,7 @@ def run(case: Case, progress: Progress = lambda t, state: None) -> Result:
 
 def _run(case: Case, progress: Progress, began: float, state_dir: Path | None) -> Result:
     stack = Stack(
-        case.scene or "apartment", case.seed, case.settings, swaps=_swaps(case), without=_idle_services(case),
+        case.scene or "apartment", case.seed, case.settings, swaps=_swaps(case), without=idle_services(case),
         state_dir=state_dir,
     )  # fmt: skip
     try:
@@ -78,7 +78,7 @@ def _swaps(case: Case) -> dict[str, Any]:
     return {r.service: partial(faulty, rules=case.rules) for r in case.rules}
 
 
-def _idle_services(case: Case) -> tuple[str, ...]:
+def idle_services(case: Case) -> tuple[str, ...]:
     """The fetch pipeline asks no camera, planner or perception for anything."""
     if not any("pipeline=fetch" in s for s in case.settings):
         return ()
