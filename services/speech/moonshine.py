@@ -6,6 +6,7 @@ the `moonshine-cpp` wheel (MIT).
 
 import importlib.util
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from services.speech.grammar import Grammar, State, spoken
+from services.speech.unpack import session
 
 Array = NDArray[np.float32]
 BOS, EOS = 1, 2
@@ -45,6 +47,14 @@ def models() -> Path:
     return folder
 
 
+@cache
+def networks(threads: int) -> tuple[Any, Any]:
+    """Sessions of encoder and decoder, shared by all that live in one process."""
+    folder = models()
+    return session(folder / "encoder_model.ort", threads), session(folder / "decoder_model_merged.ort", threads)
+
+
+@cache
 def read_tokens(path: Path) -> list[str]:
     """tokenizer.bin: per token one length byte (two from 128 on) and its UTF-8 bytes; 0 marks an unused number."""
     raw, tokens, i = path.read_bytes(), [], 0
@@ -59,20 +69,26 @@ def read_tokens(path: Path) -> list[str]:
     return tokens
 
 
+@cache
+def _trie(tokens: tuple[str, ...]) -> dict[str, Any]:
+    trie: dict[str, Any] = {}
+    for number, token in enumerate(tokens):
+        if number > EOS and token and not token.startswith("<") and all(c.isascii() for c in token):
+            node = trie
+            for character in token.lower():
+                node = node.setdefault(character, {})
+            node.setdefault("", []).append(number)
+    return trie
+
+
 class Vocabulary:
     """The tokens as a trie of lower-case characters, for finding those that a grammar state allows."""
 
     def __init__(self, tokens: list[str], grammar: Grammar) -> None:
         self.tokens = tokens
         self.grammar = grammar
-        self._trie: dict[str, Any] = {}
+        self._trie = _trie(tuple(tokens))
         self._allowed: dict[State, tuple[NDArray[np.int64], list[State]]] = {}
-        for number, token in enumerate(tokens):
-            if number > EOS and token and not token.startswith("<") and all(c.isascii() for c in token):
-                node = self._trie
-                for character in token.lower():
-                    node = node.setdefault(character, {})
-                node.setdefault("", []).append(number)
 
     def allowed(self, state: State) -> tuple[NDArray[np.int64], list[State]]:
         """Token numbers that continue a sentence from `state`, and the state after each."""
@@ -97,8 +113,8 @@ class Vocabulary:
                 self._collect(child, state, numbers, states)
 
     def text(self, numbers: list[int]) -> str:
-        """Tokens joined to words."""
-        return "".join(self.tokens[n] for n in numbers).strip()
+        """Tokens joined to the words of the grammar, which has no punctuation."""
+        return spoken("".join(c for n in numbers for c in self.tokens[n] if c not in _SILENT or c == "'"))
 
 
 class Moonshine:
@@ -109,19 +125,8 @@ class Moonshine:
     """
 
     def __init__(self, beam: int = 8, threads: int = 1) -> None:
-        import onnxruntime
-
-        options = onnxruntime.SessionOptions()
-        options.intra_op_num_threads = threads
-        options.inter_op_num_threads = 1
-        # Weights are dequantised at each run: memory patterns would keep a second copy of the space for that.
-        options.enable_mem_pattern = False
         folder = models()
-        providers = ["CPUExecutionProvider"]
-        self._encoder = onnxruntime.InferenceSession(str(folder / "encoder_model.ort"), options, providers=providers)
-        self._decoder = onnxruntime.InferenceSession(
-            str(folder / "decoder_model_merged.ort"), options, providers=providers
-        )
+        self._encoder, self._decoder = networks(threads)
         self._outputs = [o.name for o in self._decoder.get_outputs()]
         self._beam = beam
         self.tokens = read_tokens(folder / "tokenizer.bin")
@@ -174,7 +179,7 @@ class Moonshine:
             scores, cache = self._next(utterance.hidden, [b[1][-1] for b in beams], cache)
         found: dict[str, Decoded] = {}
         for total, numbers in sorted(finished, key=lambda f: -f[0]):
-            text = spoken(vocabulary.text(numbers))
+            text = vocabulary.text(numbers)
             found.setdefault(text, Decoded(text, total, len(numbers) + 1))
         return list(found.values())
 
