@@ -15,7 +15,6 @@ from services.brain.context import Context
 from services.brain.journal import Checkpoint, Place, Pose
 from services.brain.mission import Failure, Hand, Mission, fingers_hold
 from services.brain.snapshot import Moved, put
-from services.brain.vla_leaves import in_words
 
 LOOK = 0.6
 PEER_PATIENCE = 3.0
@@ -106,13 +105,9 @@ def _back(path: list[Place], mission: Mission, change: Change) -> list[Place]:
     execute = _at(path, "execute")
     if execute is not None and execute + 1 < len(path):
         k = path[execute + 1].index
-        return _step(path, execute, mission, earlier(mission.plan, k, change))
+        return [*path[: execute + 1], Place(earlier(mission.plan, k, change), "")]
     do = _at(path, "do")
     return path if do is None or execute is not None else path[: do + 1]
-
-
-def _step(path: list[Place], execute: int, mission: Mission, number: int) -> list[Place]:
-    return [*path[: execute + 1], Place(number, in_words(mission.plan[number]))]
 
 
 def earlier(plan: Sequence[PlanStep], k: int, change: Change) -> int:
@@ -138,7 +133,7 @@ def _about_to_grasp(path: list[Place], mission: Mission) -> tuple[str, list[Plac
             step = mission.plan[j]
             if step.action == "grasp":
                 pose = mission.found.get(step.object)
-                return (pose.label if pose else "") or step.object, _step(path, execute, mission, j + 1)
+                return (pose.label if pose else "") or step.object, [*path[: execute + 1], Place(j + 1, "")]
             if step.action in ("place", "release"):
                 break
         return "", path

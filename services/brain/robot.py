@@ -104,7 +104,7 @@ class Release(Manipulate):
 
     def update(self) -> Status:
         ctx, hand = self.ctx, self.ctx.hand
-        if self._sent_at is None and hand.lost(ctx.now):
+        if self._sent_at is None and not self.channel.taken_up and hand.lost(ctx.now):
             label = hand.holding
             hand.released(ctx.now)
             ctx.fail(Failure(ctx.state, "LOST_OBJECT", "the fingers are empty", f"I lost the {label} on the way."))

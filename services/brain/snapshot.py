@@ -62,6 +62,8 @@ def path_to(node: Behaviour) -> list[Place]:
 def put(root: Behaviour, path: Sequence[Place]) -> Behaviour:
     """Make the next tick begin at the end of the path, as if all before it had just been done; the node there.
 
+    A place without a name fits whatever the node at its index is called.
+
     Raises:
         Moved: there is no such path; the tree is as it was.
     """
@@ -71,7 +73,7 @@ def put(root: Behaviour, path: Sequence[Place]) -> Behaviour:
         if unfold is not None:
             unfold()
         below = nodes[-1].children
-        if place.index >= len(below) or below[place.index].name != place.name:
+        if place.index >= len(below) or below[place.index].name != (place.name or below[place.index].name):
             raise Moved(f"no {place.name!r} below {nodes[-1].name!r}")
         nodes.append(below[place.index])
     root.stop(Status.INVALID)
