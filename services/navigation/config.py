@@ -3,6 +3,17 @@
 from common.config import Config
 
 
+class Camera(Config, frozen=True):
+    """The head camera on the base [m, rad]: `width` and `tallness` are the angles it covers."""
+
+    forward: float = -0.12
+    height: float = 1.30
+    pitch: float = 0.62
+    width: float = 1.25
+    tallness: float = 1.0
+    reach: float = 2.2
+
+
 class NavigationConfig(Config, frozen=True):
     """Lengths in metres, speeds in m/s, times in seconds."""
 
@@ -15,11 +26,20 @@ class NavigationConfig(Config, frozen=True):
     corridor: float = 0.34
     stand_off: float = 0.56
     edge_distance: float = 0.40
-    obstacle_memory: float = 4.0
+    obstacle_memory: float = 30.0
     blocked_wait: float = 4.0
+    keep_off: float = 0.9
+    back_off: float = 0.5
+    back_off_time: float = 3.0
     retries: int = 2
+    usual_speed: float = 0.4
     no_progress: float = 6.0
     min_average_speed: float = 0.12
     timeout_margin: float = 30.0
     scan_timeout: float = 0.5
     odometry_timeout: float = 0.5
+    camera: Camera = Camera()
+    look_time: float = 1.5
+    look_memory: float = 60.0
+    find_timeout: float = 300.0
+    find_spot: tuple[float, float, float] = (1.0, 1.0, 0.0)

@@ -13,11 +13,13 @@ Grid = NDArray[np.bool_]
 Array = NDArray[np.float64]
 _PAD = 0.3
 _EXPLAINED = 0.12
+# Farther than this from something seen nobody cares [m].
+_REACH = 0.8
 BIN_WALL = 0.02
 
 
 class Costmap:
-    """Cells of `resolution`; `distance` [m] is from each cell to the nearest obstacle, static or seen."""
+    """Cells of `resolution`; `static_distance` [m] is from each cell to the nearest obstacle of the static map."""
 
     def __init__(self, scene: Scene, resolution: float, memory: float) -> None:
         self.resolution, self._memory = resolution, memory
@@ -26,10 +28,14 @@ class Costmap:
         height = math.ceil((scene.high[1] - scene.low[1] + 2 * _PAD) / resolution)
         self.shape = (height, width)
         self.static = self._rasterise(scene)
-        self._static_distance = self._distance_to(self.static)
+        self.static_distance = self._distance_to(self.static, resolution)
         self._seen_at = np.full(self.shape, -np.inf)
-        self.distance = self._static_distance
+        self._distance: Array | None = self.static_distance
         self.version = 0
+        reach = math.ceil(_REACH / resolution)
+        offsets = np.arange(-reach, reach + 1) * resolution
+        self._disc: Array = np.hypot(offsets, offsets[:, None])
+        self._disc_reach = reach
 
     def _rasterise(self, scene: Scene) -> Grid:
         grid = np.zeros(self.shape, bool)
@@ -54,9 +60,24 @@ class Costmap:
             grid |= (np.abs(u) <= sx / 2) & (np.abs(v) <= sy / 2)
         return grid
 
-    def _distance_to(self, occupied: Grid) -> Array:
-        found: Array = ndimage.distance_transform_edt(~occupied) * self.resolution
+    @staticmethod
+    def _distance_to(occupied: Grid, resolution: float) -> Array:
+        found: Array = ndimage.distance_transform_edt(~occupied) * resolution
         return found
+
+    @property
+    def distance(self) -> Array:
+        """To the nearest obstacle, static or seen [m]; made when asked for, by a disc around each seen cell."""
+        if self._distance is None:
+            grid = self.static_distance.copy()
+            n, disc = self._disc_reach, self._disc
+            for row, column in zip(*(axis.tolist() for axis in np.nonzero(self._seen_at > -np.inf)), strict=True):
+                top, left = max(0, row - n), max(0, column - n)
+                part = grid[top : row + n + 1, left : column + n + 1]
+                shift, aside = top - (row - n), left - (column - n)
+                np.minimum(part, disc[shift : shift + part.shape[0], aside : aside + part.shape[1]], out=part)
+            self._distance = grid
+        return self._distance
 
     # --- cells
     def cell(self, x: float, y: float) -> tuple[int, int]:
@@ -79,10 +100,16 @@ class Costmap:
     def line_clearance(self, a: tuple[float, float], b: tuple[float, float]) -> float:
         """The least clearance on the straight line between two points."""
         count = max(2, math.ceil(math.hypot(b[0] - a[0], b[1] - a[1]) / self.resolution) + 1)
-        xs, ys = np.linspace(a[0], b[0], count), np.linspace(a[1], b[1], count)
-        columns = np.clip(((xs - self.origin[0]) / self.resolution).astype(int), 0, self.shape[1] - 1)
-        rows = np.clip(((ys - self.origin[1]) / self.resolution).astype(int), 0, self.shape[0] - 1)
-        return float(self.distance[rows, columns].min())
+        share = np.arange(count) / (count - 1)
+        xs, ys = a[0] + (b[0] - a[0]) * share, a[1] + (b[1] - a[1]) * share
+        return float(self.distance[self._cells(xs, ys)].min())
+
+    def _cells(self, xs: Array, ys: Array) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+        """Rows and columns of points, clipped to the map."""
+        columns = ((xs - self.origin[0]) / self.resolution).astype(np.intp)
+        rows = ((ys - self.origin[1]) / self.resolution).astype(np.intp)
+        top, right = self.shape[0] - 1, self.shape[1] - 1
+        return np.minimum(np.maximum(rows, 0), top), np.minimum(np.maximum(columns, 0), right)
 
     # --- lidar
     def see(self, pose: Pose2, angles: Array, ranges: Array, range_max: float, now: float) -> None:
@@ -94,7 +121,7 @@ class Costmap:
         rows = ((ys - self.origin[1]) / self.resolution).astype(int)
         inside = (rows >= 0) & (rows < self.shape[0]) & (columns >= 0) & (columns < self.shape[1])
         rows, columns = rows[inside], columns[inside]
-        new = self._static_distance[rows, columns] > _EXPLAINED
+        new = self.static_distance[rows, columns] > _EXPLAINED
         before = self._seen_at > -np.inf
         if not new.any() and not before.any():
             return
@@ -102,7 +129,7 @@ class Costmap:
         self._seen_at[rows[new], columns[new]] = now
         after = self._seen_at > -np.inf
         if (after != before).any():
-            self.distance = self._distance_to(self.static | after) if after.any() else self._static_distance
+            self._distance = None if after.any() else self.static_distance
             self.version += 1
 
     def _clear(self, pose: Pose2, angles: Array, reach: Array, now: float) -> None:
@@ -118,6 +145,13 @@ class Costmap:
         old = now - self._seen_at[rows, columns] > self._memory
         gone = passed | old
         self._seen_at[rows[gone], columns[gone]] = -np.inf
+
+    def seen_within(self, points: Array, radius: float) -> Grid:
+        """Which points (n, 2) have something within `radius` that the static map does not put there."""
+        cells = self._cells(points[:, 0], points[:, 1])
+        near = self.distance[cells]
+        found: Grid = (near < radius) & (near < self.static_distance[cells])
+        return found
 
     @property
     def sees_unmapped(self) -> bool:

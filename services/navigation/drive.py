@@ -1,18 +1,21 @@
 """One goal under way: choose a pose, plan, follow, wait out or go around what blocks, give up in time."""
 
 import math
+from collections import deque
 
 from common import messages as m
 from common.geometry import Pose2
 from services.navigation.config import NavigationConfig
 from services.navigation.costmap import Array, Costmap
-from services.navigation.follow import Follower
+from services.navigation.follow import Carrot, Follower
 from services.navigation.planner import PathPlanner, Point
 
 REPLAN_PERIOD = 1.0
 FEEDBACK_PERIOD = 1.0
 PROGRESS = 0.05
-BACK_OFF = 0.25
+TRAIL_STEP, TRAIL = 0.05, 40
+DETOUR_PAUSE = 4.0
+SHORTER = 0.85
 
 
 class Ended(Exception):
@@ -24,7 +27,10 @@ class Ended(Exception):
 
 
 class Drive:
-    """Steps at the service's rate; returns the next target pose for the base, raises `Ended` when over."""
+    """Steps at the service's rate; returns the next target pose [map] for the base, raises `Ended` when over.
+
+    `recoveries` counts detours and retreats, `doing` tells which is under way: "", WAITING, DETOUR or BACKING_OFF.
+    """
 
     def __init__(
         self,
@@ -46,17 +52,27 @@ class Drive:
         self._blocked_since: float | None = None
         self._backing_until: float | None = None
         self._back_to: Pose2 = (0.0, 0.0, 0.0)
+        self._trail: deque[Point] = deque(maxlen=TRAIL)
         self._new_path: list[Point] | None = None
         self._feedback_at = -math.inf
+        self._detour_at = -math.inf
         self._via_pose: Pose2 | None = None
         self._assumed: Pose2 | None = None
         self._first_pose: Pose2 | None = None
+        self._retries = 0
         self.recoveries = 0
         self.remaining = 0.0
+        self.doing = ""
 
     @property
     def final_id(self) -> str:
         return self._name
+
+    @property
+    def eta(self) -> float:
+        """Seconds that are left, as far as one can tell."""
+        now_waiting = self._config.blocked_wait if self.doing else 0.0
+        return self.remaining / self._config.usual_speed + now_waiting
 
     def take_new_path(self) -> list[Point] | None:
         path, self._new_path = self._new_path, None
@@ -79,13 +95,16 @@ class Drive:
         pose = self._assumed or pose
         if pose is None:
             return self._blind(now)
-        if self._follower is None:
-            self._plan(pose, now)
-        assert self._follower is not None
+        if self._first_pose is None:
+            self._begin(pose, now)
         if now > self._deadline:
             raise Ended("failed", "TIMEOUT", f"not there after {now - self._started:.0f} s")
+        if not self._trail or math.dist(self._trail[-1], pose[:2]) > TRAIL_STEP:
+            self._trail.append((pose[0], pose[1]))
         if self._backing_until is not None:
             return self._back(pose, now)
+        if self._follower is None:
+            return self._wait(pose, now)
         return self._follow(pose, points, now)
 
     # --- a base that reports no motion
@@ -108,14 +127,21 @@ class Drive:
         return m.BaseTarget(x=x, y=y, theta=theta, id=self.final_id)
 
     # --- planning
-    def _plan(self, pose: Pose2, now: float) -> None:
-        """Choose the pose to stand at and the way there.
+    def _begin(self, pose: Pose2, now: float) -> None:
+        """The first plan.
 
         Raises:
-            Ended: NO_PATH.
+            Ended: NO_PATH, when even an empty flat has none.
         """
-        if self._first_pose is None:
-            self._first_pose = pose
+        self._first_pose = pose
+        if self._plan(pose, now):
+            return
+        if not self._planner.possible((pose[0], pose[1]), [(g[0], g[1]) for _, g in self._choices]):
+            raise Ended("failed", "NO_PATH", "no free way leads there")
+        self._deadline = now + self._config.timeout_margin + self._config.blocked_wait * 10
+
+    def _plan(self, pose: Pose2, now: float) -> bool:
+        """Choose the pose to stand at and the way there; False, and nothing changes, when there is none now."""
         field = self._planner.field(pose[0], pose[1])
         costs = []
         for penalty, goal in self._choices:
@@ -123,77 +149,115 @@ class Drive:
             if here or self._planner.free(goal[0], goal[1]):
                 cost = self._planner.cost_to(field, (goal[0], goal[1]))
                 costs.append((penalty + 0.15 * cost, goal))
-        best = min(costs, default=(math.inf, None))
-        path = None
-        if best[1] is not None and math.isfinite(best[0]):
-            path = self._planner.path(field, (pose[0], pose[1]), (best[1][0], best[1][1]))
         self._planned_at, self._planned_version = now, self._map.version
-        if path is None or best[1] is None:
-            if self._map.sees_unmapped:
-                raise Ended("failed", "BLOCKED", "something stands in every way there")
-            raise Ended("failed", "NO_PATH", "no free way leads there")
-        config = self._config
-        self._follower = Follower(path, best[1], config.lookahead, config.corridor)
-        self._new_path = path
-        length = self._follower.remaining(pose)
+        score, goal = min(costs, default=(math.inf, (0.0, 0.0, 0.0)))
+        path = self._planner.path(field, (pose[0], pose[1]), (goal[0], goal[1])) if math.isfinite(score) else None
+        if path is None:
+            return False
+        follower = Follower(path, goal, self._config.lookahead, self._config.corridor)
+        old = self._follower
+        if old is not None and self._blocked_at(old, pose) is None:
+            if follower.remaining(pose) > SHORTER * old.remaining(pose):
+                return True
+        elif old is not None and now - self._detour_at > DETOUR_PAUSE:
+            self.recoveries += 1
+            self._detour_at, self.doing = now, "DETOUR"
+        self._follower, self._new_path = follower, path
+        length = follower.remaining(pose)
         self._best, self._best_at = length, now
-        self._deadline = max(
-            now + length / config.min_average_speed + config.timeout_margin,
-            self._deadline if math.isfinite(self._deadline) else 0.0,
-        )
+        limit = now + length / self._config.min_average_speed + self._config.timeout_margin
+        self._deadline = max(limit, self._deadline if math.isfinite(self._deadline) else 0.0)
+        return True
+
+    def _blocked_at(self, follower: Follower, pose: Pose2) -> float | None:
+        """How far ahead [m] something that was seen lies on the path; None when it is clear."""
+        return follower.blocked_at(pose, self._map, self._config.footprint_radius - 0.02)
 
     def _follow(self, pose: Pose2, points: Array | None, now: float) -> m.BaseTarget | None:
-        assert self._follower is not None
-        radius = self._config.footprint_radius
         if self._map.version != self._planned_version and now - self._planned_at > REPLAN_PERIOD:
             self._replan(pose, now)
-        carrot = self._follower.step(pose, self._map, radius, points)
+        follower = self._follower
+        if follower is None:
+            return self._wait(pose, now)
+        carrot = follower.step(pose, self._map, self._config.footprint_radius, points)
         self.remaining = carrot.remaining
+        self._watch(carrot, pose, now)
+        self._via += 1
+        self._via_pose = carrot.pose
+        x, y, theta = carrot.pose
+        return m.BaseTarget(x=x, y=y, theta=theta, id=self.final_id if carrot.final else f"{self._name}#{self._via}")
+
+    def _watch(self, carrot: Carrot, pose: Pose2, now: float) -> None:
+        """Patience: with a blocked way, and with no progress on a free one."""
         if carrot.remaining < self._best - PROGRESS:
             self._best, self._best_at = carrot.remaining, now
+            if self.doing != "DETOUR" or now - self._detour_at > DETOUR_PAUSE:
+                self.doing = ""
         if carrot.blocked:
             self._blocked_since = self._blocked_since or now
-            self._best_at = now
+            self._best_at, self.doing = now, "WAITING"
             if now - self._blocked_since > self._config.blocked_wait:
                 self._recover(pose, now, "the way is blocked")
         else:
             self._blocked_since = None
             if now - self._best_at > self._config.no_progress:
                 self._recover(pose, now, "no progress")
-        self._via += 1
-        self._via_pose = carrot.pose
-        x, y, theta = carrot.pose
-        return m.BaseTarget(x=x, y=y, theta=theta, id=self.final_id if carrot.final else f"{self._name}#{self._via}")
 
     def _replan(self, pose: Pose2, now: float) -> None:
-        try:
-            self._plan(pose, now)
-        except Ended:
-            # No way at this moment: keep the old path, its brake and its patience decide.
-            self._planned_at, self._planned_version = now, self._map.version
+        """Around what was seen; when there is no way round, on towards it, but not up to it."""
+        if self._plan(pose, now) or self._follower is None:
+            return
+        ahead = self._blocked_at(self._follower, pose)
+        if ahead is not None and ahead < self._config.keep_off:
+            self._follower = None
 
     # --- recovery
+    def _wait(self, pose: Pose2, now: float) -> m.BaseTarget:
+        """No way at this moment: stand, look for one every second, lose patience in time."""
+        self._blocked_since = self._blocked_since or now
+        self.doing = "WAITING"
+        if now - self._planned_at > REPLAN_PERIOD and self._plan(pose, now):
+            self._blocked_since = None
+        elif now - self._blocked_since > self._config.blocked_wait:
+            self._recover(pose, now, "something stands in every way there")
+        return self._hold_at(pose)
+
+    def _hold_at(self, pose: Pose2) -> m.BaseTarget:
+        self._via += 1
+        return m.BaseTarget(x=pose[0], y=pose[1], theta=pose[2], id=f"{self._name}#{self._via}")
+
     def _recover(self, pose: Pose2, now: float, why: str) -> None:
-        """Back off a little, then look for another path; after the retries report.
+        """Go back a little the way it came, then look for another path; after the retries report.
 
         Raises:
             Ended: BLOCKED.
         """
-        if self.recoveries >= self._config.retries:
-            raise Ended("failed", "BLOCKED", f"{why} after {self.recoveries} retries")
+        if self._retries >= self._config.retries:
+            raise Ended("failed", "BLOCKED", f"{why} after {self._retries} retries")
+        self._retries += 1
         self.recoveries += 1
+        self.doing = "BACKING_OFF"
         self._blocked_since = None
-        back = (pose[0] - BACK_OFF * math.cos(pose[2]), pose[1] - BACK_OFF * math.sin(pose[2]))
-        free = self._map.line_clearance((pose[0], pose[1]), back) > self._config.footprint_radius
-        self._back_to = (*back, pose[2]) if free else pose
-        self._backing_until = now + 2.0
+        self._back_to = (*self._retreat(pose), pose[2])
+        self._backing_until = now + self._config.back_off_time
+
+    def _retreat(self, pose: Pose2) -> Point:
+        """The farthest point of the trail that is not too far and free all the way; else where it stands."""
+        here = best = (pose[0], pose[1])
+        for point in reversed(self._trail):
+            if math.dist(point, here) > self._config.back_off:
+                break
+            if self._map.line_clearance(here, point) < self._config.footprint_radius:
+                break
+            best = point
+        return best
 
     def _back(self, pose: Pose2, now: float) -> m.BaseTarget | None:
         assert self._backing_until is not None
         if now >= self._backing_until:
             self._backing_until = None
-            self._best_at = now
-            self._replan(pose, now)
-        self._via += 1
-        x, y, theta = self._back_to
-        return m.BaseTarget(x=x, y=y, theta=theta, id=f"{self._name}#{self._via}")
+            self._best, self._best_at = math.inf, now
+            self._follower = None
+            self._plan(pose, now)
+            self._blocked_since = None
+        return self._hold_at(self._back_to)

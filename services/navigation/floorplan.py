@@ -78,7 +78,7 @@ class DistanceField:
 
     def at(self, points: Array) -> tuple[Array, Array, Array]:
         """Distance and its gradient along x and y (each (n,)) at points (n, 2); beyond the map: at its rim."""
-        scaled = np.clip((points - self._origin) / self._resolution, 0.0, self._last)
+        scaled = np.minimum(np.maximum((points - self._origin) / self._resolution, 0.0), self._last)
         cell = scaled.astype(np.intp)
         u, v = (scaled - cell).T
         index = cell[:, 1] * self._columns + cell[:, 0]

@@ -39,6 +39,13 @@ class Follower:
         off = math.hypot(self.path[self._index][0] - pose[0], self.path[self._index][1] - pose[1])
         return ahead * SPACING + min(off, 1.0)
 
+    def blocked_at(self, pose: Pose2, costmap: Costmap, radius: float) -> float | None:
+        """Metres along the path to where it comes closer than `radius` to something seen; None when it does not."""
+        ahead = self._points[self._index + 1 :]
+        near = np.hypot(ahead[:, 0] - pose[0], ahead[:, 1] - pose[1]) < radius
+        close = costmap.seen_within(ahead, radius) & ~near
+        return float(np.argmax(close) + 1) * SPACING if close.any() else None
+
     def step(self, pose: Pose2, costmap: Costmap, radius: float, points: Array | None) -> Carrot:
         """The next carrot; `points` (n, 2) is what the lidar sees now, in frame map."""
         window = self._points[self._index : self._index + 40]

@@ -1,5 +1,6 @@
 """Names to places: rooms, surfaces and poses of the scene, places and items of places.toml, objects that were seen."""
 
+import math
 import tomllib
 from pathlib import Path
 
@@ -71,11 +72,12 @@ class Places:
         names = [*self._poses, *self._receptacles]
         return ", ".join(near_names(name, names) or sorted(set(names)))
 
-    def item(self, name: str, objects: list[WorldObject]) -> list[WorldObject] | Pose2 | None:
-        """The objects that the name can mean, else the spot of places.toml, else None."""
-        found = [o for o in match_object(name, objects, self._scene) if not o.held]
-        if found:
-            return found
+    def matching(self, name: str, objects: list[WorldObject]) -> list[WorldObject]:
+        """The known objects that the name can mean and that nobody holds."""
+        return [o for o in match_object(name, objects, self._scene) if not o.held]
+
+    def spot(self, name: str) -> Pose2 | None:
+        """The spot of places.toml for an item."""
         spot = self._items.get(normalise(name))
         if spot is None:
             spec = self._scene.object(normalise(name))
@@ -83,5 +85,13 @@ class Places:
         return (spot.x, spot.y, spot.theta) if spot else None
 
     def receptacle_of(self, o: WorldObject) -> Receptacle | None:
-        """What an object stands on."""
-        return self._scene.receptacle(o.on) if o.on else None
+        """What an object stands on: as reported, else the surface under it."""
+        if o.on:
+            return self._scene.receptacle(o.on)
+        return next((r for r in self._scene.receptacles if _over(r, o.position[0], o.position[1])), None)
+
+
+def _over(r: Receptacle, x: float, y: float) -> bool:
+    c, s = math.cos(r.yaw), math.sin(r.yaw)
+    dx, dy = x - r.center[0], y - r.center[1]
+    return abs(c * dx + s * dy) <= r.size[0] / 2 and abs(c * dy - s * dx) <= r.size[1] / 2

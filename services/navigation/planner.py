@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import sparse
+from scipy import ndimage, sparse
 from scipy.sparse import csgraph
 
 from services.navigation.costmap import Costmap
@@ -40,7 +40,7 @@ class PathPlanner:
 
     def field(self, x: float, y: float) -> Field:
         """Costs from a point; a start that is too close to something is moved to the nearest free cell."""
-        start = self._nearest_free(self._map.cell(x, y))
+        start = self._nearest_free(self._map.cell(x, y), self._map.distance)
         index = start[0] * self._map.shape[1] + start[1]
         cost, previous = csgraph.dijkstra(
             self._edges(), directed=False, indices=index, return_predecessors=True, min_only=False
@@ -63,6 +63,13 @@ class PathPlanner:
     def cost_to(self, field: Field, goal: Point) -> float:
         """Path cost [m and more] to a point; inf when there is no way."""
         return float(field.cost[self._map.cell(*goal)])
+
+    def possible(self, start: Point, goals: Sequence[Point]) -> bool:
+        """True when the static map alone has a way to one of the goals."""
+        distance = self._map.static_distance
+        labels, _ = ndimage.label(distance >= self._radius, np.ones((3, 3)))
+        here = labels[self._nearest_free(self._map.cell(*start), distance)]
+        return bool(here) and any(labels[self._map.cell(*goal)] == here for goal in goals)
 
     def _edges(self) -> sparse.csr_matrix:
         if self._graph is not None and self._version == self._map.version:
@@ -88,8 +95,8 @@ class PathPlanner:
         self._version = self._map.version
         return self._graph
 
-    def _nearest_free(self, cell: tuple[int, int]) -> tuple[int, int]:
-        free = self._map.distance >= self._radius
+    def _nearest_free(self, cell: tuple[int, int], distance: NDArray[np.float64]) -> tuple[int, int]:
+        free = distance >= self._radius
         if free[cell] or not free.any():
             return cell
         rows, columns = np.nonzero(free)
@@ -99,13 +106,13 @@ class PathPlanner:
     def _shorten(self, points: list[Point]) -> list[Point]:
         """Straight lines where they keep the clearance that the path had."""
         kept, i = [points[0]], 0
+        clearances = np.array([self._map.clearance(*p) for p in points])
         while i < len(points) - 1:
             j = min(len(points) - 1, i + 60)
             while j > i + 1:
-                least = min(self._map.clearance(*p) for p in points[i : j + 1 : 3])
-                if self._map.line_clearance(points[i], points[j]) >= min(least, self._inflation) - 0.03 and (
-                    self._map.line_clearance(points[i], points[j]) >= self._radius or i == 0
-                ):
+                least = float(clearances[i : j + 1 : 3].min())
+                straight = self._map.line_clearance(points[i], points[j])
+                if straight >= min(least, self._inflation) - 0.03 and (straight >= self._radius or i == 0):
                     break
                 j -= max(1, (j - i) // 4)
             kept.append(points[j])
