@@ -31,4 +31,4 @@ RUN pip install --no-cache-dir --no-deps --no-build-isolation -e . \
     && useradd --system --uid 10001 --create-home tidybot && mkdir -p /data && chown tidybot /data
 USER tidybot
 VOLUME /data
-CMD ["python", "-m", "services.router", "--listen", "tcp/0.0.0.0:7447"]
+CMD ["python", "-m", "services.router", "--listen", "tls/0.0.0.0:7447"]

@@ -50,10 +50,14 @@ def folder(keys: Path, name: str, namespace: str = "") -> Path:
     Raises:
         KeysError: not there.
     """
-    if (keys / CERT).exists():
-        return keys
     found = keys / namespace / name if namespace else keys / name
-    if not found.is_dir():
+    try:
+        if (keys / CERT).exists():
+            return keys
+        there = found.is_dir()
+    except PermissionError:
+        raise KeysError(f"{keys} cannot be read by this user") from None
+    if not there:
         who = f"{name} of the robot {namespace}" if namespace else name
         make = f"tidybot keys --missing{f' --namespace {namespace}' if namespace else ''}"
         raise KeysError(f"no certificate of {who} in {keys}; `{make}` makes what is missing")

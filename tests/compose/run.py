@@ -17,7 +17,7 @@ from tests.compose.mission import carry_out
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 PROJECT, IMAGE, BASE = "tidybot-test", "tidybot-zenoh:dev", "tidybot-base"
-NODES = ("sim", "camera", "navigation", "manipulation", "speech", "planner", "brain", "dashboard")
+NODES = ("sim", "camera", "navigation", "manipulation", "speech", "planner", "perception", "brain", "dashboard")
 SPEED = "2"
 
 
@@ -30,14 +30,15 @@ def free_port() -> int:
 class Stack:
     """The compose file, up."""
 
-    def __init__(self, engine: Engine, port: int) -> None:
-        self.engine, self.port = engine, port
+    def __init__(self, engine: Engine, port: int, keys: Path) -> None:
+        self.engine, self.port, self.keys = engine, port, keys
         paced = ", ".join(f'"{n}"' for n in NODES if n not in ("sim", "dashboard"))
         self._environ = {
             **engine.environ,
             "ZENOH_IMAGE": IMAGE,
             "TIDYBOT_IMAGE": IMAGE,
             "TIDYBOT_PORT": str(port),
+            "TIDYBOT_KEYS_DIR": str(keys),
             "TIDYBOT_SPEED": SPEED,
             "TIDYBOT_LOCKSTEP": "true",
             "TIDYBOT_WAIT_FOR": f"[{paced}]",
@@ -98,7 +99,8 @@ def mission(stack: Stack) -> None:
     note("docker-compose up")
     began = time.monotonic()
     stack.compose("up", "-d", "--no-build")
-    connect = f"tcp/127.0.0.1:{stack.port}"
+    connect = f"tls/127.0.0.1:{stack.port}"
+    os.environ["TIDYBOT_KEYS"] = str(stack.keys)
     with bus.session(connect, patience=60) as session:
         link = Link(session, connect)
         wait_until(lambda: set(NODES) <= link.alive(), "every node is alive")
@@ -122,7 +124,8 @@ def main() -> int:
     engine = Engine(cache, work)
     try:
         engine.start()
-        stack = Stack(engine, free_port())
+        (work / "keys").mkdir()
+        stack = Stack(engine, free_port(), work / "keys")
         stack.compose("down", "--volumes", "--remove-orphans", "--timeout", "2")
         build(engine)
         try:

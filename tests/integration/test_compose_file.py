@@ -17,11 +17,11 @@ from common import bus
 from tests.compose.mission import carry_out
 from tests.support import ROOT, eventually, free_port
 
-NODES = ("sim", "camera", "navigation", "manipulation", "speech", "planner", "brain", "dashboard")
+NODES = ("sim", "camera", "navigation", "manipulation", "speech", "planner", "perception", "brain", "dashboard")
 SHELL = {
     "TIDYBOT_SPEED": "8",
     "TIDYBOT_LOCKSTEP": "true",
-    "TIDYBOT_WAIT_FOR": '["camera", "navigation", "manipulation", "speech", "planner", "brain"]',
+    "TIDYBOT_WAIT_FOR": '["camera", "navigation", "manipulation", "speech", "planner", "perception", "brain"]',
 }
 
 
@@ -43,21 +43,40 @@ def compose() -> dict[str, Any]:
 
 
 def test_each_node_is_a_container_with_a_healthcheck_and_comes_back(compose: dict[str, Any]) -> None:
-    assert set(compose) == {"router", *NODES}
+    assert set(compose) == {"keys", "router", *NODES}
     for name, service in compose.items():
+        if name == "keys":
+            continue
         assert service["restart"] == "unless-stopped"
         for port in service.get("ports", []):
             assert port.startswith("127.0.0.1:"), f"{name} publishes {port} beyond this machine"
         if name != "router":
             assert service["command"] == ["python", "-m", f"services.{name}"]
             assert service["healthcheck"]["test"] == ["CMD", "python", "-m", "cli.healthcheck", name]
-            assert service["environment"]["TIDYBOT_CONNECT"] == "tcp/router:7447"
+            assert service["environment"]["TIDYBOT_CONNECT"] == "tls/router:7447"
+
+
+def test_each_container_sees_its_own_certificate_only(compose: dict[str, Any]) -> None:
+    for name in ("router", *NODES):
+        keys = [v for v in compose[name]["volumes"] if v.split(":")[1].startswith("/keys")]
+        folder = name if name == "router" else f"./{name}"
+        assert keys == [f"./run/keys/{folder}:/keys:ro"]
+        assert compose[name]["depends_on"]["keys"] == {"condition": "service_completed_successfully"}
+    assert compose["keys"]["network_mode"] == "none", "the authority's key is out of reach"
 
 
 def test_the_router_is_of_the_version_of_our_wheel(compose: dict[str, Any]) -> None:
     wheel = re.search(r"^eclipse-zenoh==(\S+)$", (ROOT / "requirements.lock").read_text(), re.MULTILINE)
     assert wheel is not None
     assert compose["router"]["image"] == f"eclipse/zenoh:{wheel[1]}"
+
+
+def test_the_language_model_is_a_profile_that_only_the_planner_reaches(compose: dict[str, Any]) -> None:
+    model, planner = compose["llm"], compose["planner"]["environment"]
+    assert model["profiles"] == ["llm"] and "ports" not in model
+    port = model["command"][model["command"].index("--port") + 1]
+    assert planner["TIDYBOT__PLANNER__LLM_URL"] == f"http://llm:{port}/v1"
+    assert planner["TIDYBOT__PLANNER__BACKEND"] == "grammar"
 
 
 def test_no_variable_is_left_unfilled(compose: dict[str, Any]) -> None:
@@ -70,7 +89,8 @@ class Containers:
     def __init__(self, compose: dict[str, Any], logs: Path) -> None:
         self._compose, self._logs = compose, logs
         self.port = free_port()
-        self.connect = f"tcp/127.0.0.1:{self.port}"
+        self.connect = f"tls/127.0.0.1:{self.port}"
+        self.keys = logs / "keys"
         self.running: dict[str, subprocess.Popen[bytes]] = {}
 
     def environment(self, name: str) -> dict[str, str]:
@@ -81,15 +101,22 @@ class Containers:
     def _declared(self, name: str) -> dict[str, Any]:
         here = f"127.0.0.1:{self.port}"
         declared = self._compose[name].get("environment", {})
-        return {k: v.replace("router:7447", here) if isinstance(v, str) else v for k, v in declared.items()}
+        mounted = {k: v.replace("router:7447", here) if isinstance(v, str) else v for k, v in declared.items()}
+        return {**mounted, "TIDYBOT_KEYS": str(self.keys / name)} if "TIDYBOT_KEYS" in mounted else mounted
+
+    def make_keys(self) -> None:
+        """What the container `keys` does, for the user that the tests run as."""
+        words = [w.replace("=/keys", f"={self.keys}") for w in self._compose["keys"]["command"]]
+        words = [w.replace("=10001", f"={os.getuid()}") for w in words]
+        command = [sys.executable, *words[1:]]
+        subprocess.run(command, env=self.environment("keys"), cwd=ROOT, check=True, capture_output=True)
 
     def start(self, name: str) -> None:
         service = self._compose[name]
         words = list(service["command"])
         if name == "router":
             # The image's entry point is a router; its files are ours, mounted.
-            mounts = dict(v.split(":")[1::-1] for v in service["volumes"])
-            words = [str(ROOT / mounts[w]) if w in mounts else w for w in words]
+            words = [w.replace("/keys/", f"{self.keys / name}/") for w in words]
             words = [w.replace("0.0.0.0:7447", f"127.0.0.1:{self.port}") for w in words]
             words = ["python", "-m", "services.router", *words]
         log = (self._logs / f"{name}.log").open("ab")
@@ -137,11 +164,15 @@ def containers(compose: dict[str, Any], tmp_path: Path) -> Iterator[Containers]:
 
 
 @pytest.mark.timeout(400)
-def test_a_mission_survives_a_killed_and_a_restarted_navigation(containers: Containers) -> None:
+def test_a_mission_survives_a_killed_and_a_restarted_navigation(
+    containers: Containers, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    containers.make_keys()
+    monkeypatch.setenv("TIDYBOT_KEYS", str(containers.keys))
     # A node may come before the router, as containers do.
     for name in ("brain", "router", *(n for n in NODES if n != "brain")):
         containers.start(name)
-    with bus.session(containers.connect, patience=30) as session:
+    with bus.session(containers.connect, patience=60) as session:
         link = Link(session, containers.connect)
         eventually(lambda: set(NODES) <= link.alive(), f"all of {NODES} are alive")
         disturb = {
