@@ -21,10 +21,10 @@ WORDINGS = (
     "please bring me the {}", "get me the {} please",
 )  # fmt: skip
 SHELVES = ("kitchen table", "counter", "bookshelf", "dresser", "bedside table", "study shelf", "desk")
-CRATE = 'sim.obstacles=[{name="crate",kind="box",size=[0.5,0.9,0.9],waypoints=[[2.5,-0.75]]}]'  # in the kitchen's door
+CRATE = 'sim.obstacles=[{name="crate",kind="box",size=[0.5,0.9,0.9],position=[2.5,-0.75]}]'  # in the kitchen's door
 WALKER = (
     'sim.obstacles=[{name="walker",kind="cylinder",size=[0.4,0.4,1.6],'
-    "waypoints=[[2.5,-0.75],[1.2,-0.9],[1.2,-2.4]],speed=0.3}]"
+    "position=[2.5,-0.75],path=[[1.2,-0.9],[1.2,-2.4]],speed=0.3,repeat=true}]"
 )
 IMPOSSIBLE: tuple[list[dict[str, str]], ...] = (
     [{"action": "grasp", "object": "sofa"}, {"action": "return"}, {"action": "release"}],
