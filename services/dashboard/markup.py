@@ -82,7 +82,7 @@ def transcript(lines: Iterable[Line]) -> str:
     for line in reversed(list(lines)):
         word, colour = looks.get(line.who, (line.who, FAINT))
         rows.append(
-            f'<div><span style="color:{FAINT}">{line.t:.0f} s</span> <span style="color:{colour}">{word}</span> '
+            f'<div><span style="color:{FAINT}">{line.t:.0f} s</span> <span style="color:{colour}">{escape(word)}</span> '
             f"{escape(line.text)}</div>"
         )
     return block("".join(rows) or f'<span style="color:{FAINT}">Nothing has been said yet.</span>')

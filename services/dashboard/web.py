@@ -34,11 +34,14 @@ SEND_QUEUE = 100
 PATIENCE = 10.0
 MAX_CHUNK = 64 * 1024
 VIEW_LIMIT = 8 * 2**20
+# The view under the other name of this machine is another site to a browser, which draws it in another process: however
+# slow the drawing is, the stop button answers.
+OTHER_NAME = {"127.0.0.1": "localhost", "localhost": "127.0.0.1"}
 # Everything the page shows comes from here; `data:` and `blob:` are viser's own pictures and workers.
 POLICY = (
     "default-src 'self'; img-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; font-src 'self' data:; "
     "script-src 'self' 'unsafe-inline' 'unsafe-eval' blob: data:; worker-src 'self' blob: data:; "
-    "connect-src 'self' ws: wss: data: blob:; frame-ancestors 'self'"
+    "connect-src 'self' ws: wss: data: blob:; frame-src 'self' {us}; frame-ancestors 'self' {us}"
 )
 
 
@@ -91,6 +94,10 @@ class Web:
         host = "127.0.0.1" if config.host in ("", "0.0.0.0", "::") else config.host
         self.url = f"http://{f'[{host}]' if ':' in host else host}:{self.port}/"
         self.entrance = self.url + (f"?token={self._token}" if self._token else "")
+        # The space bar stops the robot in the view as well.
+        self._view_page = VIEW.read_text(encoding="utf-8").replace(
+            "<head>", '<head><script src="/page/keys.js"></script>', 1
+        )
         self._runner = self._in_loop(self._start())
 
     # --- the service's side; any thread
@@ -150,23 +157,28 @@ class Web:
         if not access.admits(self._token, request.cookies.get(access.COOKIE), shown):
             raise web.HTTPUnauthorized(text="Open the address with ?token=..., as printed when the robot started.\n")
         if self._token and shown and request.path == "/":
-            answer: web.StreamResponse = web.HTTPSeeOther("/")
+            answer: web.StreamResponse = web.Response(status=303, headers={"Location": "/"})
             answer.set_cookie(access.COOKIE, self._token, httponly=True, samesite="Strict", max_age=12 * 3600)
             return answer
         answer = await handler(request)
         if not answer.prepared:
-            answer.headers["Content-Security-Policy"] = POLICY
+            us = " ".join(f"http://{name}:{self.port}" for name in OTHER_NAME)
+            answer.headers["Content-Security-Policy"] = POLICY.format(us=us)
             answer.headers["X-Content-Type-Options"] = "nosniff"
             answer.headers["Referrer-Policy"] = "no-referrer"
         return answer
 
     async def _page(self, request: web.Request) -> web.StreamResponse:
-        return web.FileResponse(PAGE / "index.html")
+        port = request.url.port
+        name = "" if self._token else OTHER_NAME.get(request.url.host or "", "")
+        text = (PAGE / "index.html").read_text(encoding="utf-8")
+        text = text.replace('"/view/"', f'"http://{name}:{port}/view/"' if name else '"/view/"')
+        return web.Response(text=text, content_type="text/html")
 
     async def _view(self, request: web.Request) -> web.StreamResponse:
         """viser's page, or its stream when a WebSocket is asked for."""
         if request.headers.get("Upgrade", "").lower() != "websocket":
-            return web.FileResponse(VIEW)
+            return web.Response(text=self._view_page, content_type="text/html")
         wanted = [p.strip() for p in request.headers.get("Sec-WebSocket-Protocol", "").split(",") if p.strip()]
         outer = web.WebSocketResponse(protocols=wanted, heartbeat=20.0, compress=False, max_msg_size=VIEW_LIMIT)
         await outer.prepare(request)

@@ -58,20 +58,9 @@ $("say").onsubmit = (event) => {
   $("text").value = "";
 };
 
-// The space bar stops the robot wherever the focus is, except while words are being typed.
-function onKey(event) {
-  if (event.code !== "Space" || event.repeat) return;
-  const at = event.target;
-  if (at && (at.isContentEditable || at.tagName === "TEXTAREA" || (at.tagName === "INPUT" && at.type !== "checkbox"))) return;
-  event.preventDefault();
-  event.stopImmediatePropagation();
-  act("stop");
-}
-// A focused button would be pressed by the same key's release.
-const onKeyUp = (event) => { if (event.code === "Space" && event.target.tagName === "BUTTON") event.preventDefault(); };
-for (const [name, fn] of [["keydown", onKey], ["keyup", onKeyUp]]) window.addEventListener(name, fn, true);
-$("view").addEventListener("load", () => {
-  for (const [name, fn] of [["keydown", onKey], ["keyup", onKeyUp]]) $("view").contentWindow.addEventListener(name, fn, true);
+// keys.js, here and in the view, says when the space bar was pressed.
+window.addEventListener("message", (event) => {
+  if (event.data === "stop" && (event.source === window || event.source === $("view").contentWindow)) act("stop");
 });
 
 // --- microphone

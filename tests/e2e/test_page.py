@@ -1,0 +1,195 @@
+"""The operator's page in a real browser, while the whole robot is up and on a mission."""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+from urllib.parse import urlsplit
+
+import pytest
+
+from cli.link import Link
+from common import bus, topics
+from tests.support import ROOT, eventually, free_port
+
+playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
+CHROMIUM = os.environ.get("CHROMIUM") or shutil.which("chromium") or shutil.which("chromium-browser")
+VOICE = ROOT / "docs" / "audio" / "bring_me_the_red_mug.wav"
+SHOTS = Path(os.environ.get("TIDYBOT_SCREENSHOTS") or ROOT / "out" / "page")
+PATIENCE = 240_000
+FLAGS = [
+    "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
+    "--use-fake-ui-for-media-stream", "--use-fake-device-for-media-stream",
+    f"--use-file-for-fake-audio-capture={VOICE}",
+]  # fmt: skip
+pytestmark = [
+    pytest.mark.skipif(not CHROMIUM, reason="Chromium is not installed; on Debian: apt-get install chromium"),
+    pytest.mark.timeout(900),
+    # playwright and Chromium leave sockets to the garbage collector.
+    pytest.mark.filterwarnings("ignore::ResourceWarning"),
+    pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning"),
+]
+
+
+@pytest.fixture(scope="module")
+def robot(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    """Every process of `tidybot up`; gives the router's address."""
+    directory = tmp_path_factory.mktemp("page") / "run"
+    port = free_port()
+    clean = {k: v for k, v in os.environ.items() if not k.startswith("TIDYBOT")}
+    environ = {**clean, "PYTHONPATH": str(ROOT), "TIDYBOT_RUN_DIR": str(directory)}
+    command = [sys.executable, "-m", "cli.main"]
+    settings = ["--scene", "minimal", "--speed", "0.5", "--set", "dashboard.port=0", "--set", "dashboard.frame_rate=3"]
+    up = [*command, "up", "--detach", "--port", str(port), *settings]
+    try:
+        done = subprocess.run(up, env=environ, cwd=ROOT, capture_output=True, text=True, timeout=120)
+        assert done.returncode == 0, done.stdout + done.stderr
+        assert "page " in done.stdout
+        yield f"tcp/127.0.0.1:{port}"
+    finally:
+        subprocess.run([*command, "down"], env=environ, cwd=ROOT, capture_output=True, timeout=60)
+
+
+@pytest.fixture(scope="module")
+def link(robot: str) -> Iterator[Link]:
+    with bus.session(robot, patience=10) as session:
+        yield Link(session, robot)
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    with playwright.sync_playwright() as started:
+        opened = started.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
+        yield opened
+        opened.close()
+
+
+class Visitor:
+    """A browser window on the page, and everything that it asked the network for."""
+
+    def __init__(self, browser: Any, url: str) -> None:
+        self.asked: list[str] = []
+        self.errors: list[str] = []
+        self.page = browser.new_page(viewport={"width": 760, "height": 480})
+        self.page.set_default_timeout(PATIENCE)
+        self.page.on("request", lambda request: self.asked.append(request.url))
+        self.page.on("websocket", lambda opened: self.asked.append(opened.url))
+        self.page.on("pageerror", lambda error: self.errors.append(str(error)))
+        self.page.goto(url)
+
+    def until(self, state: str) -> None:
+        self.page.wait_for_function(f"/^({state})$/.test(document.getElementById('state').textContent)")
+
+    def shot(self, name: str) -> None:
+        SHOTS.mkdir(parents=True, exist_ok=True)
+        self.page.screenshot(path=SHOTS / f"{name}.png", timeout=PATIENCE)
+
+    def outside(self) -> list[str]:
+        """Requests to any other machine."""
+        return [u for u in self.asked if urlsplit(u).scheme not in ("blob", "data") and not _local(u)]
+
+
+def _local(url: str) -> bool:
+    return urlsplit(url).hostname in ("127.0.0.1", "localhost")
+
+
+@pytest.fixture
+def visitor(browser: Any, link: Link) -> Iterator[Visitor]:
+    found = eventually(lambda: link.latest(topics.PAGE_STATUS), "the page says where it is")
+    assert found is not None
+    opened = Visitor(browser, found.url)
+    try:
+        yield opened
+    finally:
+        opened.page.close()
+
+
+def sim_state(link: Link) -> str:
+    status = link.latest(topics.SIM_STATUS)
+    return status.state if status is not None else ""
+
+
+def last_outcome(link: Link) -> tuple[str, str]:
+    state = link.latest(topics.BRAIN_STATE)
+    last = state.last if state is not None else None
+    return (last.id, last.outcome) if last is not None else ("", "")
+
+
+def test_a_command_a_stop_and_a_delivery(visitor: Visitor, link: Link) -> None:
+    page = visitor.page
+    visitor.until("WAITING|LISTENING")
+    page.fill("#text", "bring me the red mug")
+    page.press("#text", "Enter")
+    visitor.until("NAVIGATING")
+    page.evaluate("document.activeElement.blur()")
+    page.keyboard.press("Space")
+    visitor.until("STOPPED")
+    assert sim_state(link) == "stopped"
+    visitor.shot("stopped")
+    assert page.is_visible("#resume")
+    page.click("#resume")
+    eventually(lambda: sim_state(link) == "running", "the brake is released")
+    visitor.until("WAITING|LISTENING")
+    assert not page.is_visible("#resume")
+    before = last_outcome(link)
+    page.fill("#text", "bring me the red mug")
+    page.press("#text", "Enter")
+    visitor.until("NAVIGATING|GRABBING")
+    visitor.shot("mission")
+    page.wait_for_function("document.body.dataset.outcome === 'delivered'")
+    outcome = last_outcome(link)
+    assert outcome[0] != before[0]
+    assert outcome[1] == "delivered"
+    panel = page.frame_locator("#view")
+    panel.get_by_text("bring me the red mug: delivered").wait_for()
+    visitor.shot("delivered")
+    assert visitor.outside() == []
+    assert visitor.errors == []
+
+
+def test_the_space_bar_stops_from_inside_the_view(visitor: Visitor, link: Link) -> None:
+    visitor.until("WAITING|LISTENING")
+    view = visitor.page.locator("#view").element_handle().content_frame()
+    view.wait_for_selector("canvas")
+    view.evaluate("document.body.tabIndex = 0; document.body.focus()")
+    visitor.page.keyboard.press("Space")
+    visitor.until("STOPPED")
+    assert sim_state(link) == "stopped"
+    visitor.page.click("#resume")
+    eventually(lambda: sim_state(link) == "running", "the brake is released")
+
+
+def test_a_command_by_microphone(visitor: Visitor, link: Link) -> None:
+    page = visitor.page
+    visitor.until("LISTENING")
+    heard: list[str] = []
+    watch = link.session.declare_subscriber(
+        topics.SPEECH_RESULT.key, lambda sample: heard.append(json.loads(sample.payload.to_string())["text"])
+    )
+    commands: list[str] = []
+    listener = link.session.declare_subscriber(
+        topics.VOICE_COMMAND.key, lambda sample: commands.append(json.loads(sample.payload.to_string())["text"])
+    )
+    try:
+        button = page.locator("#talk")
+        button.dispatch_event("pointerdown")
+        page.wait_for_function("document.getElementById('talk').textContent === 'Talking'")
+        # The fake microphone plays the recording of two seconds over and over.
+        eventually(lambda: "bring me the red mug" in (*heard, *commands), f"understood; heard {heard}", 120)
+        button.dispatch_event("pointerup")
+    finally:
+        watch.undeclare()
+        listener.undeclare()
+    visitor.until("CONFIRMING|PLANNING|GROUNDING|NAVIGATING|GRABBING")
+    if page.is_visible("#ask"):
+        visitor.shot("asking")
+        page.click("#yes")
+        visitor.until("PLANNING|GROUNDING|NAVIGATING|GRABBING")
+    visitor.shot("talked")
+    page.click("#stop")
+    visitor.until("STOPPED")
+    page.click("#resume")

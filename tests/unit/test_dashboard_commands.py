@@ -1,0 +1,130 @@
+"""What visitors do, as it arrives on the bus."""
+
+from math import pi
+from typing import Any
+
+import numpy as np
+import pytest
+
+from common import codec, topics
+from common import messages as m
+from common.memory import MemoryBus, MemoryIo
+from common.scene import load_scene
+from common.topics import Topic
+from services.dashboard.commands import CHUNK, LONGEST, TRAILING, Commands
+from services.dashboard.history import Transcript
+from services.dashboard.picking import Picked
+
+WRITES = (topics.VOICE_COMMAND, topics.ROBOT_STOP, topics.ROBOT_RESUME, topics.NAV_GOAL, topics.AUDIO_PCM)
+READY = m.BrainState(state="LISTENING")
+
+
+class Desk:
+    """Commands on a bus whose every message is kept."""
+
+    def __init__(self) -> None:
+        self.bus = MemoryBus()
+        self.io = MemoryIo(self.bus, "dashboard", (), WRITES, scene=load_scene("minimal"), lockstep=False)
+        self.transcript = Transcript()
+        self.commands = Commands(self.io, self.transcript)
+        self._taps = {topic.key: self.bus.tap(topic) for topic in WRITES}
+
+    def sent(self, topic: Topic[Any]) -> list[Any]:
+        return [codec.decode(topic, payload) for payload in self._taps[topic.key]]
+
+    def everything(self) -> int:
+        return sum(len(tap) for tap in self._taps.values())
+
+
+@pytest.fixture
+def desk() -> Desk:
+    return Desk()
+
+
+def test_stop_and_resume(desk: Desk) -> None:
+    desk.commands.words("stop", "", 1.0)
+    assert [s.source for s in desk.sent(topics.ROBOT_STOP)] == ["page"]
+    assert desk.sent(topics.ROBOT_RESUME) == []
+    desk.commands.words("resume", "", 2.0)
+    assert len(desk.sent(topics.ROBOT_RESUME)) == 1
+
+
+def test_typed_words_are_a_command_that_needs_no_question(desk: Desk) -> None:
+    desk.commands.words("say", "  bring me the red mug ", 1.0)
+    (command,) = desk.sent(topics.VOICE_COMMAND)
+    assert (command.text, command.confirmed) == ("bring me the red mug", True)
+    assert command.id
+    assert desk.transcript.lines[-1].text == "bring me the red mug"
+
+
+@pytest.mark.parametrize("word", ["yes", "no"])
+def test_answers(desk: Desk, word: str) -> None:
+    desk.commands.words(word, "", 1.0)
+    assert [c.text for c in desk.sent(topics.VOICE_COMMAND)] == [word]
+
+
+@pytest.mark.parametrize(("do", "text"), [("say", "  "), ("dance", "x"), ("", ""), ("robot/stop", "")])
+def test_anything_else_is_counted_and_does_nothing(desk: Desk, do: str, text: str) -> None:
+    desk.commands.words(do, text, 1.0)
+    assert desk.everything() == 0
+    assert desk.io.drops["page"] == 1
+
+
+def test_a_click_on_the_floor_drives_there_facing_away(desk: Desk) -> None:
+    desk.commands.picked(Picked(point=(1.0, 3.0)), (1.0, 1.0, 0.0), READY, 1.0)
+    (goal,) = desk.sent(topics.NAV_GOAL)
+    assert (goal.x, goal.y, goal.frame) == (1.0, 3.0, "map")
+    assert goal.theta == pytest.approx(pi / 2)
+
+
+def test_a_click_on_an_object_fetches_it(desk: Desk) -> None:
+    desk.commands.picked(Picked("green can"), (0.0, 0.0, 0.0), READY, 1.0)
+    assert [c.text for c in desk.sent(topics.VOICE_COMMAND)] == ["bring me the green can"]
+    assert desk.sent(topics.NAV_GOAL) == []
+
+
+@pytest.mark.parametrize("state", [None, m.BrainState(state="GRABBING"), m.BrainState(state="IDLE")])
+def test_clicks_do_nothing_during_a_mission(desk: Desk, state: m.BrainState | None) -> None:
+    for picked in (Picked("green can"), Picked(point=(1.0, 1.0)), Picked()):
+        desk.commands.picked(picked, (0.0, 0.0, 0.0), state, 1.0)
+    assert desk.everything() == 0
+
+
+def test_sound_goes_out_in_even_chunks_and_ends_in_silence(desk: Desk) -> None:
+    rng = np.random.default_rng(0)
+    said = rng.integers(-9000, 9000, 16000 * 2 + 777, dtype=np.int16).astype("<i2").tobytes()
+    for start in range(0, len(said), 1998):
+        desk.commands.sound(said[start : start + 1998], 5.0)
+    desk.commands.sound(b"", 7.0)
+    chunks = desk.sent(topics.AUDIO_PCM)
+    assert b"".join(c.data for c in chunks)[: len(said)] == said
+    assert {len(c.data) for c in chunks} == {CHUNK}
+    assert [c.end for c in chunks].count(True) == 1
+    assert chunks[-1].end
+    assert [c.seq for c in chunks] == list(range(len(chunks)))
+    assert all(not any(c.data) for c in chunks[-TRAILING:])
+    assert all(c.addressed for c in chunks)
+
+
+def test_silence_ends_only_what_has_begun(desk: Desk) -> None:
+    desk.commands.sound(b"", 1.0)
+    assert desk.everything() == 0
+
+
+def test_a_second_utterance_starts_anew(desk: Desk) -> None:
+    for _ in range(2):
+        desk.commands.sound(bytes(CHUNK), 1.0)
+        desk.commands.sound(b"", 1.0)
+    assert [c.seq for c in desk.sent(topics.AUDIO_PCM)].count(0) == 2
+
+
+def test_a_button_held_for_ever_does_not_talk_for_ever(desk: Desk) -> None:
+    for _ in range(LONGEST + 50):
+        desk.commands.sound(bytes(CHUNK), 1.0)
+    assert len(desk.sent(topics.AUDIO_PCM)) == LONGEST
+
+
+def test_half_a_sample_is_refused(desk: Desk) -> None:
+    desk.commands.sound(b"\0\0\0", 1.0)
+    assert desk.everything() == 0
+    assert desk.io.drops[topics.AUDIO_PCM.key] == 1
