@@ -14,7 +14,9 @@ class Rule(Config, frozen=True):
 
 
 class PlannerConfig(Config, frozen=True):
-    """`tidy` and `throw` are tried in order; `groups` are words for several kinds, `mass` those of them
+    """`llm_tries` answers are asked for within `llm_timeout`; in lockstep they show after `llm_seconds`.
+
+    `tidy` and `throw` are tried in order; `groups` are words for several kinds, `mass` those of them
     that mean all there is. Times in seconds."""
 
     backend: Literal["grammar", "llm"] = "grammar"
@@ -28,7 +30,8 @@ class PlannerConfig(Config, frozen=True):
     fresh: float = 5.0
     llm_url: str = "http://127.0.0.1:8081/v1"
     llm_model: str = "local"
-    llm_key_variable: str = "OPENAI_API_KEY"
+    llm_key: str = ""
+    llm_options: dict[str, float | int | str | bool] = {}
     llm_timeout: float = 12.0
     llm_tries: int = 2
     llm_seconds: float = 2.0

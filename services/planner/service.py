@@ -3,15 +3,29 @@
 from collections import OrderedDict
 from typing import TypeVar
 
+import msgspec
+
 from common import messages as m
 from common import topics
-from common.io import Io
+from common.io import Io, Job
+from common.runtime import StartError
 from services.planner import grammar
 from services.planner.config import PlannerConfig
+from services.planner.llm import Llm, LlmError, Reply, installed
 from services.planner.world import World, believed
 
 T = TypeVar("T")
 REMEMBERED = 32
+GRACE = 1.0
+
+
+class Pending(msgspec.Struct):
+    """A request that the language model works on."""
+
+    request: m.PlanRequest
+    world: World
+    rejected: list[m.RejectedPlan]
+    due: float
 
 
 class PlannerService:
@@ -24,7 +38,15 @@ class PlannerService:
     WRITES = (topics.ACTION_PLAN,)
 
     def __init__(self, config: PlannerConfig, io: Io) -> None:
+        if config.backend == "llm" and not installed():
+            raise StartError("planner.backend = llm needs the openai package: pip install 'tidybot-zenoh[llm]'")
         self._config, self._io = config, io
+        self._job: Job[Reply] | None = None
+        self._llm: Llm | None = None
+        if config.backend == "llm":
+            self._llm = Llm(config)
+            io.submit(self._llm.open)
+        self._pending: Pending | None = None
         self._answers: OrderedDict[str, m.ActionPlan] = OrderedDict()
         self._rejected: OrderedDict[str, list[m.RejectedPlan]] = OrderedDict()
 
@@ -32,16 +54,57 @@ class PlannerService:
         for request in self._io.drain(topics.PLAN_REQUEST):
             if request.id in self._answers:
                 self._io.publish(topics.ACTION_PLAN, self._answers[request.id])
-            else:
-                self._answer(request, now)
+            elif self._pending is None or self._pending.request.id != request.id:
+                self._take(request, now)
+        self._poll(now)
 
-    def _answer(self, request: m.PlanRequest, now: float) -> None:
-        rejected = self._rejections(request)
-        plan = grammar.plan(
-            request.command, self._world(request, now), self._config, rejected, request.done, request.id
-        )
-        self._publish(request, plan)
+    # --- the language model
+    def _take(self, request: m.PlanRequest, now: float) -> None:
+        """Only the newest request counts: a sender has one outstanding."""
+        rejected, world = self._rejections(request), self._world(request, now)
+        self._pending = None
+        if self._llm is None:
+            self._publish(request, self._by_grammar(request, world, rejected))
+        elif self._job is not None and not self._job.poll(now):
+            self._publish(request, self._by_grammar(request, world, rejected, "the language model is busy"))
+        else:
+            seconds = self._config.llm_seconds
+            self._job = self._io.submit(self._llm.plan, request.command, world, rejected, seconds=seconds)
+            self._pending = Pending(request, world, rejected, now + self._config.llm_timeout + GRACE)
 
+    def _poll(self, now: float) -> None:
+        if self._job is None:
+            return
+        pending, ready = self._pending, self._job.poll(now)
+        if pending is not None and (ready or (now > pending.due and not self._io.lockstep)):
+            self._pending = None
+            self._publish(pending.request, self._outcome(pending, self._job if ready else None))
+        if ready:
+            self._job = None
+
+    def _outcome(self, pending: Pending, job: Job[Reply] | None) -> m.ActionPlan:
+        """The model's plan; the grammar's where the model failed or knows none."""
+        try:
+            if job is None:
+                raise LlmError("timed out")
+            reply = job.result()
+        except LlmError as error:
+            return self._by_grammar(pending.request, pending.world, pending.rejected, f"llm: {error}")
+        plan = m.ActionPlan(request_id=pending.request.id, steps=reply.steps, source="llm", detail=reply.detail)
+        if plan.steps:
+            return plan
+        reason = f"llm: {reply.detail or 'no plan'}"
+        other = self._by_grammar(pending.request, pending.world, pending.rejected, reason)
+        return other if other.steps or not reply.detail else plan
+
+    def _by_grammar(
+        self, request: m.PlanRequest, world: World, rejected: list[m.RejectedPlan], why: str = ""
+    ) -> m.ActionPlan:
+        plan = grammar.plan(request.command, world, self._config, rejected, request.done, request.id)
+        plan.source = f"{plan.source} ({why})" if why else plan.source
+        return plan
+
+    # --- requests and answers
     def _publish(self, request: m.PlanRequest, plan: m.ActionPlan) -> None:
         _remember(self._answers, request.id, plan)
         self._io.publish(topics.ACTION_PLAN, plan)

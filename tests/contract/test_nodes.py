@@ -154,6 +154,32 @@ def test_speech_hears_typed_words_and_speaks(here: Site) -> None:
         assert (failed["text"], failed["code"]) == ("ERROR", "UNKNOWN_GOAL")
 
 
+def test_the_planner_answers_a_plain_peer(here: Site) -> None:
+    here.start("services.planner", TIDYBOT_CLOCK="wall")
+    with here.session() as session:
+        here.wait_alive(session, "planner")
+        peer = Peer(session, "action_plan")
+        peer.put("plan_request", id="m.1", command="Bring me the red mug, please!")
+        plan = peer.wait("action_plan", request_id="m.1")
+        assert [s["action"] for s in plan["steps"]] == ["find", "grasp", "return", "release"]
+        assert {s["object"] for s in plan["steps"]} == {"red mug", ""} and plan["source"] == "grammar"
+        rejected = {"steps": plan["steps"], "reason": "step 2: the red mug does not fit into the gripper"}
+        peer.put("plan_request", id="m.2", command="Bring me the red mug, please!", rejected=rejected)
+        none = peer.wait("action_plan", request_id="m.2")
+        assert none["steps"] == [] and none["detail"] == "the red mug does not fit into the gripper"
+        row = {"kind": "mug", "colour": "blue", "position": [4.5, -3.1, 0.8], "on": "counter", "label": "blue mug"}
+        peer.put("world/objects", t=1.0, objects=[row])
+        world = {"objects": ["blue mug"], "held": "apple"}
+        peer.put("plan_request", id="m.3", command="put it in the bin and bring me the mug on the counter", world=world)
+        steps = peer.wait("action_plan", request_id="m.3")["steps"]
+        assert [(s["action"], s["object"] or s["target"]) for s in steps] == [
+            ("place", "apple"), ("find", "blue mug"), ("grasp", "blue mug"), ("return", ""), ("release", ""),
+        ]  # fmt: skip
+        peer.put("plan_request", id="m.4", command="dance with me")
+        assert "do not understand" in peer.wait("action_plan", request_id="m.4")["detail"]
+        assert json.loads(bus.fetch(session, "action_plan")["action_plan"])["request_id"] == "m.4"
+
+
 def test_the_simulation_obeys_a_plain_peer(here: Site) -> None:
     here.start("services.sim", TIDYBOT__RUNTIME__SCENE="minimal")
     with here.session() as session:

@@ -1,0 +1,81 @@
+"""What a language model is told and the form its answer must have. Pure."""
+
+from typing import Any
+
+import msgspec
+
+from common.messages import RejectedPlan, StepAction
+from services.planner.config import PlannerConfig, Rule
+from services.planner.world import World
+
+RULES = """\
+You plan for a household robot with one arm. Answer with JSON only: {"steps": [...], "detail": "..."}.
+Actions: find (object), grasp (object), place (target: a receptacle), release (set down here), return (to the person),
+navigate (target: a place, room or receptacle), say (text), wait. Unused fields are "".
+- A thing must be found before it is grasped; the hand holds one thing; place and release empty it.
+- Bringing something to the person is: find, grasp, return, release.
+- place drives to the receptacle by itself.
+- Use only names from the lists, letter by letter. Never invent objects, places or actions.
+- Questions are answered with say, from what is listed.
+- If it cannot be done, or several things could be meant, answer with no steps and the reason in detail."""
+
+
+class Step(msgspec.Struct, forbid_unknown_fields=True):
+    """As asked for: every field present."""
+
+    action: StepAction
+    object: str
+    target: str
+    text: str
+
+
+class Answer(msgspec.Struct, forbid_unknown_fields=True):
+    steps: list[Step]
+    detail: str
+
+
+def schema(world: World) -> dict[str, Any]:
+    """JSON schema of an answer, with the names of this world as the only values of `object` and `target`."""
+    (_,), parts = msgspec.json.schema_components([Answer], ref_template="#/$defs/{name}")
+    root = parts.pop("Answer")
+    fields = parts["Step"]["properties"]
+    fields["object"] = {"type": "string", "enum": ["", *_objects(world)]}
+    fields["target"] = {"type": "string", "enum": ["", *_targets(world)]}
+    return {**root, "$defs": parts}
+
+
+def messages(command: str, world: World, config: PlannerConfig, rejected: list[RejectedPlan]) -> list[dict[str, str]]:
+    """System and user message; the latter is the world and the command as JSON."""
+    told: dict[str, object] = {
+        "objects": [
+            {"name": t.label, "kind": t.kind, "colour": t.colour, "where": t.on or world.room_of(t)}
+            for t in world.things
+            if not t.held
+        ],
+        "objects_not_seen_yet": [n for n in _objects(world) if n not in {t.label for t in world.things}],
+        "in_hand": world.held.label if world.held else "",
+        "receptacles": [r.name for r in world.scene.receptacles],
+        "places": [n for n in _targets(world) if world.scene.receptacle(n) is None],
+        "where_things_go": [_rule(r) for r in config.tidy],
+        "where_rubbish_goes": [_rule(r) for r in config.throw],
+        "command": command,
+    }
+    if rejected:
+        told["rejected_plans"] = [{"steps": r.steps, "reason": r.reason} for r in rejected]
+    user = msgspec.json.encode(told).decode()
+    return [{"role": "system", "content": RULES}, {"role": "user", "content": user}]
+
+
+def _rule(rule: Rule) -> str:
+    which = " ".join((*rule.colours, *(rule.kinds or ("anything else",))))
+    return f"{which}: {' or '.join(rule.to)}"
+
+
+def _objects(world: World) -> list[str]:
+    return list(dict.fromkeys(t.label for t in (*world.things, *world.specs)))
+
+
+def _targets(world: World) -> list[str]:
+    scene = world.scene
+    names = [r.name for r in scene.receptacles] + [r.name for r in scene.rooms] + [p.name for p in scene.places]
+    return list(dict.fromkeys([*names, *world.places, scene.home.name]))

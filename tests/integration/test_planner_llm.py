@@ -1,0 +1,327 @@
+"""The language model planner against a chat endpoint on this machine that answers well, badly, late or not at all."""
+
+import json
+import threading
+from collections.abc import Callable, Iterator
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from typing import Any
+
+import msgspec
+import openai  # noqa: F401  its import takes long and is not what is measured here
+import pytest
+
+from common import messages as m
+from common import topics
+from common.memory import MemoryBus, MemoryIo
+from common.runtime import StartError
+from common.scene import load_scene
+from services.planner import llm
+from services.planner.config import PlannerConfig
+from services.planner.service import GRACE, PlannerService
+from tests.support import eventually, free_port
+
+SCENE = load_scene("apartment")
+MUG = [
+    {"action": "find", "object": "red mug", "target": "", "text": ""},
+    {"action": "grasp", "object": "red mug", "target": "", "text": ""},
+    {"action": "place", "object": "", "target": "desk", "text": ""},
+]
+GRAMMAR = ["find", "grasp", "return", "release"]
+Answer = Callable[[BaseHTTPRequestHandler], None]
+
+
+def says(content: str) -> Answer:
+    """A chat completion with these words."""
+
+    def answer(handler: BaseHTTPRequestHandler) -> None:
+        message = {"role": "assistant", "content": content}
+        choice = {"index": 0, "finish_reason": "stop", "message": message}
+        send(handler, {"id": "c", "object": "chat.completion", "created": 0, "model": "local", "choices": [choice]})
+
+    return answer
+
+
+def plans(*steps: dict[str, str], detail: str = "") -> Answer:
+    return says(json.dumps({"steps": steps, "detail": detail}))
+
+
+def send(handler: BaseHTTPRequestHandler, body: Any, status: int = 200) -> None:
+    data = body if isinstance(body, bytes) else json.dumps(body).encode()
+    handler.send_response(status)
+    handler.send_header("Content-Type", "application/json")
+    handler.send_header("Content-Length", str(len(data)))
+    handler.end_headers()
+    handler.wfile.write(data)
+
+
+class Endpoint:
+    """Answers the n-th request with the n-th of `answers`, the last one ever after; remembers the requests."""
+
+    def __init__(self) -> None:
+        self.answers: list[Answer] = []
+        self.requests: list[dict[str, Any]] = []
+        self.over = threading.Event()
+        self.nodes: list[Node] = []
+        endpoint = self
+
+        class Handler(BaseHTTPRequestHandler):
+            def do_POST(self) -> None:
+                body = json.loads(self.rfile.read(int(self.headers["Content-Length"])))
+                endpoint.requests.append({"path": self.path, "key": self.headers["Authorization"], **body})
+                number = min(len(endpoint.requests), len(endpoint.answers)) - 1
+                try:
+                    endpoint.answers[number](self)
+                except (BrokenPipeError, ConnectionResetError):
+                    return
+
+            def log_message(self, format: str, *args: object) -> None:
+                return
+
+        self._server = ThreadingHTTPServer(("127.0.0.1", 0), Handler)
+        self._server.daemon_threads = True
+        self.url = f"http://127.0.0.1:{self._server.server_address[1]}/v1"
+        self._thread = threading.Thread(target=self._server.serve_forever, args=(0.05,), daemon=True)
+        self._thread.start()
+
+    def hangs(self, handler: BaseHTTPRequestHandler) -> None:
+        """No answer until the test is over."""
+        self.over.wait(30)
+
+    def drips(self, handler: BaseHTTPRequestHandler) -> None:
+        """Headers, then a space now and then: each read is in time, the whole never is."""
+        handler.send_response(200)
+        handler.send_header("Content-Type", "application/json")
+        handler.send_header("Content-Length", "100000")
+        handler.end_headers()
+        while not self.over.wait(0.05):
+            handler.wfile.write(b" ")
+            handler.wfile.flush()
+
+    def close(self) -> None:
+        self.over.set()
+        for node in self.nodes:
+            node.io.shutdown()
+        self._server.shutdown()
+        self._server.server_close()
+        self._thread.join()
+
+
+@pytest.fixture
+def endpoint(monkeypatch: pytest.MonkeyPatch) -> Iterator[Endpoint]:
+    monkeypatch.setenv("NO_PROXY", "127.0.0.1")
+    opened = Endpoint()
+    try:
+        yield opened
+    finally:
+        opened.close()
+
+
+class Node:
+    """The service on a memory bus; robot time stands still unless a test moves it."""
+
+    def __init__(self, endpoint: Endpoint, lockstep: bool = False, **changes: Any) -> None:
+        self.bus = MemoryBus()
+        reads, writes = PlannerService.READS, PlannerService.WRITES
+        self.io = MemoryIo(self.bus, "planner", reads, writes, scene=SCENE, lockstep=lockstep)
+        config = PlannerConfig(**{"backend": "llm", "llm_url": endpoint.url, "llm_timeout": 20.0, **changes})
+        self.service = PlannerService(config, self.io)
+        self.plans = self.bus.tap(topics.ACTION_PLAN)
+        self.tick = 0
+        endpoint.nodes.append(self)
+
+    def request(self, command: str = "bring me the red mug", request_id: str = "m.1", **fields: Any) -> None:
+        self.bus.send(topics.PLAN_REQUEST, m.PlanRequest(id=request_id, command=command, **fields))
+
+    def step(self, seconds: float = 0.0) -> None:
+        self.tick += 10
+        self.io.clock.advance(seconds)  # type: ignore[attr-defined]
+        self.io.begin(self.tick, self.io.clock.now())
+        self.service.step(self.io.clock.now())
+
+    def wait(self, number: int = 1) -> m.ActionPlan:
+        def answered() -> bool:
+            self.step()
+            return len(self.plans) >= number
+
+        eventually(answered, "a plan")
+        return msgspec.json.decode(self.plans[number - 1], type=m.ActionPlan)
+
+    def ask(self, **fields: Any) -> m.ActionPlan:
+        self.request(**fields)
+        return self.wait()
+
+
+def actions(plan: m.ActionPlan) -> list[str]:
+    return [s.action for s in plan.steps]
+
+
+def test_a_good_answer_is_the_plan(endpoint: Endpoint) -> None:
+    endpoint.answers = [plans(*MUG)]
+    node = Node(endpoint, llm_key="secret", llm_model="tiny", llm_options={"temperature": 0})
+    plan = node.ask(command="desk, the mug must go")
+    assert (plan.source, actions(plan), plan.steps[2].target) == ("llm", ["find", "grasp", "place"], "desk")
+    request = endpoint.requests[-1]
+    assert (request["path"], request["key"], request["model"]) == ("/v1/chat/completions", "Bearer secret", "tiny")
+    assert request["temperature"] == 0
+    told = json.loads(request["messages"][1]["content"])
+    assert told["command"] == "desk, the mug must go" and "desk" in told["receptacles"]
+
+
+def test_the_schema_asks_for_our_actions_and_names_only(endpoint: Endpoint) -> None:
+    endpoint.answers = [plans(*MUG)]
+    Node(endpoint).ask(world=m.KnownWorld(objects=["strange thing"]))
+    form = endpoint.requests[0]["response_format"]
+    assert form["type"] == "json_schema" and form["json_schema"]["strict"] is True
+    schema = form["json_schema"]["schema"]
+    step = schema["$defs"]["Step"]
+    assert schema["type"] == "object" and schema["additionalProperties"] is False
+    assert set(step["required"]) == {"action", "object", "target", "text"}
+    assert set(step["properties"]["action"]["enum"]) == {
+        "navigate", "find", "grasp", "place", "release", "say", "wait", "return",
+    }  # fmt: skip
+    assert {"red mug", "strange thing", ""} <= set(step["properties"]["object"]["enum"])
+    assert "sofa" in step["properties"]["target"]["enum"] and "moon" not in step["properties"]["target"]["enum"]
+
+
+@pytest.mark.parametrize(
+    ("answer", "why"),
+    [
+        (says("Sure! Here is the plan: find the mug."), "malformed answer"),
+        (says(""), "malformed answer"),
+        (says('{"steps": "find"}'), "malformed answer"),
+        (says('{"plan": []}'), "malformed answer"),
+        (plans({"action": "teleport", "object": "red mug"}), "malformed answer: Invalid enum value 'teleport'"),
+        (plans({"action": "find", "object": "unicorn"}), "impossible plan: step 1: I know no unicorn"),
+        (plans({"action": "find", "object": "sofa"}), "impossible plan: step 1: I know no sofa"),
+        (plans({"action": "navigate", "target": "moon"}), "impossible plan: step 1: I know no place 'moon'"),
+        (plans(*MUG[:2], *MUG[:2]), "impossible plan: step 4: the hand already holds the red mug"),
+        (plans(MUG[1]), "impossible plan: step 1: the red mug must be found"),
+        (plans(MUG[2]), "impossible plan: step 1: there is nothing in the hand"),
+        (plans(*MUG[:2], {"action": "place", "target": "cloud"}), "impossible plan: step 3: there is no cloud"),
+        (plans({"action": "say", "text": " "}), "impossible plan: step 1: there is nothing to say"),
+        (plans(*[{"action": "wait"}] * 100), "impossible plan: the plan has 100 steps"),
+        (lambda handler: send(handler, {"error": "overloaded"}, 503), "status 503"),
+        (lambda handler: send(handler, b"<html>hello</html>"), "no chat completion"),
+        (lambda handler: send(handler, {"choices": []}), "no chat completion"),
+        (lambda handler: handler.connection.close(), "no connection"),
+    ],
+)
+def test_the_grammar_steps_in_and_says_why(endpoint: Endpoint, answer: Answer, why: str) -> None:
+    endpoint.answers = [answer]
+    plan = Node(endpoint).ask()
+    assert actions(plan) == GRAMMAR
+    assert plan.source.startswith(f"grammar (llm: {why}"), plan.source
+
+
+def test_an_impossible_plan_goes_back_with_the_reason_once(endpoint: Endpoint) -> None:
+    endpoint.answers = [plans({"action": "grasp", "object": "sofa"}), plans(*MUG)]
+    plan = Node(endpoint).ask()
+    assert plan.source == "llm" and len(endpoint.requests) == 2
+    assert "I know no sofa" in endpoint.requests[1]["messages"][-1]["content"]
+
+
+def test_odd_spellings_become_the_names_of_the_scene(endpoint: Endpoint) -> None:
+    endpoint.answers = [
+        says(
+            '```json\n{"steps": [{"action": "find", "object": "Red_Cup"}, {"action": "grasp", "object": "the red mug"},'
+            ' {"action": "navigate", "target": "office"}, {"action": "place", "target": "worktop"}]}\n```'
+        )
+    ]
+    plan = Node(endpoint).ask()
+    assert plan.source == "llm"
+    assert [s.object or s.target for s in plan.steps] == ["red mug", "red mug", "study", "counter"]
+
+
+def test_a_rejected_plan_is_told_and_not_accepted_again(endpoint: Endpoint) -> None:
+    steps = [msgspec.convert(s, m.PlanStep) for s in MUG]
+    endpoint.answers = [plans(*MUG)]
+    plan = Node(endpoint).ask(rejected=m.RejectedPlan(steps=steps, reason="step 3: the desk is full"))
+    assert plan.source == "grammar (llm: the rejected plan again: step 3: the desk is full)"
+    assert actions(plan) == GRAMMAR
+    told = json.loads(endpoint.requests[0]["messages"][1]["content"])
+    assert told["rejected_plans"][0]["reason"] == "step 3: the desk is full"
+
+
+def test_what_the_model_declines_is_planned_by_the_grammar_if_it_can(endpoint: Endpoint) -> None:
+    endpoint.answers = [plans(detail="I am only a small model")]
+    plan = Node(endpoint).ask()
+    assert (actions(plan), plan.source) == (GRAMMAR, "grammar (llm: I am only a small model)")
+    plan = Node(endpoint).ask(command="sing a song about mugs")
+    assert (plan.steps, plan.source, plan.detail) == ([], "llm", "I am only a small model")
+
+
+def test_nobody_listens(endpoint: Endpoint) -> None:
+    plan = Node(endpoint, llm_url=f"http://127.0.0.1:{free_port()}/v1").ask()
+    assert (actions(plan), plan.source) == (GRAMMAR, "grammar (llm: no connection)")
+
+
+def test_a_late_answer_is_not_waited_for(endpoint: Endpoint) -> None:
+    endpoint.answers = [endpoint.hangs]
+    plan = Node(endpoint, llm_timeout=0.2).ask()
+    assert (actions(plan), plan.source) == (GRAMMAR, "grammar (llm: timed out)")
+
+
+def test_a_dripping_answer_ends_at_the_deadline_and_the_next_request_does_not_wait(endpoint: Endpoint) -> None:
+    endpoint.answers = [endpoint.drips]
+    node = Node(endpoint, llm_timeout=5.0)
+    node.request()
+    node.step()
+    eventually(lambda: endpoint.requests, "the request is under way")
+    node.step(5.0)
+    assert not node.plans
+    node.step(GRACE + 0.1)
+    assert node.wait().source == "grammar (llm: timed out)"
+    node.request(request_id="m.2")
+    assert node.wait(2).source == "grammar (the language model is busy)"
+
+
+def test_a_newer_request_replaces_the_older(endpoint: Endpoint) -> None:
+    first = threading.Event()
+
+    def waits(handler: BaseHTTPRequestHandler) -> None:
+        first.wait(30)
+        plans(*MUG)(handler)
+
+    endpoint.answers = [waits]
+    node = Node(endpoint)
+    node.request()
+    node.step()
+    eventually(lambda: endpoint.requests, "the request is under way")
+    node.request("bring me the apple", "m.2")
+    plan = node.wait()
+    assert (plan.request_id, plan.steps[0].object) == ("m.2", "apple")
+    first.set()
+    eventually(lambda: node.step() or node.service._job is None, "the old answer is thrown away")
+    assert len(node.plans) == 1
+
+
+def test_the_same_request_twice_is_asked_once(endpoint: Endpoint) -> None:
+    endpoint.answers = [plans(*MUG)]
+    node = Node(endpoint)
+    node.request()
+    node.step()
+    node.request()
+    assert node.wait().source == "llm"
+    node.request()
+    assert node.wait(2) == node.wait(1)
+    assert len(endpoint.requests) == 1
+
+
+def test_in_lockstep_the_answer_comes_at_its_tick(endpoint: Endpoint) -> None:
+    endpoint.answers = [plans(*MUG)]
+    node = Node(endpoint, lockstep=True, llm_seconds=0.5)
+    node.request()
+    for _ in range(5):
+        node.step(0.1)
+        assert not node.plans
+    node.step(0.1)
+    assert msgspec.json.decode(node.plans[0], type=m.ActionPlan).source == "llm"
+
+
+def test_without_the_client_the_service_says_what_to_install(
+    endpoint: Endpoint, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("services.planner.service.installed", lambda: False)
+    with pytest.raises(StartError, match=r"tidybot-zenoh\[llm\]"):
+        Node(endpoint)
+    assert llm.installed()

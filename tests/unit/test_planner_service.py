@@ -1,0 +1,107 @@
+"""The planner on the memory bus with its default backend."""
+
+import msgspec
+import pytest
+
+from common import config, topics
+from common import messages as m
+from common.memory import MemoryBus, MemoryIo
+from common.scene import load_scene
+from services.planner.config import PlannerConfig
+from services.planner.service import REMEMBERED, PlannerService
+
+SCENE = load_scene("apartment")
+CONFIG = config.load("planner", PlannerConfig, config.DEFAULT_DIR, {})
+
+
+class Node:
+    def __init__(self) -> None:
+        self.bus = MemoryBus()
+        self.io = MemoryIo(self.bus, "planner", PlannerService.READS, PlannerService.WRITES, scene=SCENE)
+        self.service = PlannerService(CONFIG, self.io)
+        self.plans = self.bus.tap(topics.ACTION_PLAN)
+        self.tick = 0
+
+    def step(self) -> None:
+        self.tick += 10
+        self.io.begin(self.tick, self.tick / 100)
+        self.service.step(self.tick / 100)
+
+    def ask(self, command: str, request_id: str = "m.1", **fields: object) -> m.ActionPlan:
+        request = msgspec.convert({"id": request_id, "command": command, **fields}, m.PlanRequest)
+        self.bus.send(topics.PLAN_REQUEST, request)
+        self.step()
+        plan = msgspec.json.decode(self.plans[-1], type=m.ActionPlan)
+        assert plan.request_id == request_id
+        return plan
+
+
+def targets(plan: m.ActionPlan) -> list[str]:
+    return [s.object if s.action != "place" else s.target for s in plan.steps]
+
+
+def mugs(*rows: tuple[str, tuple[float, float, float]]) -> m.WorldObjects:
+    objects = [m.WorldObject(label=f"{c} mug", kind="mug", colour=c, position=p, on="counter") for c, p in rows]
+    return m.WorldObjects(t=1.0, objects=objects)
+
+
+def test_what_was_seen_and_where_the_robot_stands_decide_which_one_is_meant() -> None:
+    node = Node()
+    node.bus.send(topics.WORLD_OBJECTS, mugs(("red", (4.0, -3.1, 0.8)), ("white", (4.8, -3.1, 0.8))))
+    node.bus.send(topics.POSE, m.PoseEstimate(t=1.0, x=4.4, y=-2.3, theta=-1.6))
+    assert targets(node.ask("bring me the mug on the left", "m.1"))[0] == "white mug"
+    node.bus.send(topics.POSE, m.PoseEstimate(t=1.0, x=4.4, y=-3.9, theta=1.6))
+    assert targets(node.ask("bring me the mug on the left", "m.2"))[0] == "red mug", "from the other side"
+    node.bus.send(topics.WORLD_OBJECTS, mugs(("white", (4.8, -3.1, 0.8))))
+    assert targets(node.ask("bring me the mug", "m.3"))[0] == "white mug"
+
+
+def test_the_request_says_what_is_held() -> None:
+    plan = Node().ask("put it on the desk", world={"held": "red cup"})
+    assert [(s.action, s.object, s.target) for s in plan.steps] == [("place", "red mug", "desk")]
+
+
+def test_the_same_request_twice_gets_the_same_plan() -> None:
+    node = Node()
+    first = node.ask("bring me the red mug")
+    assert node.ask("bring me the apple") == first
+    assert len(node.plans) == 2
+
+
+def test_every_rejected_plan_of_a_mission_is_remembered() -> None:
+    node, command, seen = Node(), "take the red mug to the living room", []
+    plan = node.ask(command, "m.1")
+    for number in range(2, 5):
+        if not plan.steps:
+            break
+        seen.append(plan.steps[-1].target)
+        reason = f"step 3: the {seen[-1]} is full"
+        rejected = {"steps": msgspec.to_builtins(plan.steps), "reason": reason}
+        plan = node.ask(command, f"m.{number}", rejected=rejected)
+    assert sorted(seen) == ["bookshelf", "living table"]
+    assert plan.detail == f"the {seen[-1]} is full"
+    assert node.ask(command, "n.1").steps[-1].target == seen[0], "another mission starts afresh"
+
+
+def test_its_memory_is_bounded() -> None:
+    node = Node()
+    rejected = {"steps": [], "reason": "step 1: no"}
+    for number in range(REMEMBERED + 10):
+        node.ask("bring me the apple", f"m{number}.1", rejected=rejected)
+    assert len(node.service._answers) == len(node.service._rejected) == REMEMBERED
+
+
+def test_a_request_that_does_not_decode_is_counted() -> None:
+    node = Node()
+    node.bus.put(topics.PLAN_REQUEST, b'{"command": "bring me the apple"}')
+    node.bus.put(topics.PLAN_REQUEST, b"bring me the apple")
+    node.step()
+    assert node.io.drops["plan_request"] == 2 and not node.plans
+
+
+@pytest.mark.parametrize(
+    "command", ["\x00\x01", "'" * 300, "and and and", "the the the", "é ü ß", "put", "all of", "it"]
+)
+def test_odd_words_are_refused(command: str) -> None:
+    plan = Node().ask(command)
+    assert not plan.steps and plan.detail
