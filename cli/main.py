@@ -6,7 +6,23 @@ import sys
 from collections.abc import Sequence
 from typing import NoReturn
 
-from cli import control, demo, doctor, explain, keys, mission, missions, record, replay, robot, speech, topic, tree, up
+from cli import (
+    control,
+    demo,
+    doctor,
+    evaluate,
+    explain,
+    keys,
+    mission,
+    missions,
+    record,
+    replay,
+    robot,
+    speech,
+    topic,
+    tree,
+    up,
+)
 from cli.errors import CliError, near
 from common.bus import BusError
 
@@ -32,7 +48,23 @@ def parser() -> argparse.ArgumentParser:
     """The whole command line."""
     top = Parser(prog="tidybot", description="A voice-commanded mobile manipulator: start it, command it, look inside.")
     commands = top.add_subparsers(required=True, metavar="COMMAND", parser_class=Parser)
-    for module in (up, control, mission, missions, explain, speech, robot, topic, tree, record, replay, doctor, keys, demo):
+    for module in (
+        up,
+        control,
+        mission,
+        missions,
+        explain,
+        speech,
+        robot,
+        topic,
+        tree,
+        record,
+        replay,
+        doctor,
+        keys,
+        demo,
+        evaluate,
+    ):
         module.register(commands)
     return top
 
