@@ -2,6 +2,7 @@
 
 import json
 import tempfile
+import traceback
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
@@ -10,7 +11,7 @@ from typing import Any
 from common import topics
 from common.clock import monotonic
 from common.lockstep import DT
-from evaluation.case import Case, Result, Strike
+from evaluation.case import Case, Observed, Result, Strike
 from evaluation.examiner import Examiner, examiner_of
 from evaluation.faults import faulty
 from evaluation.stack import Stack, paced_services
@@ -49,29 +50,43 @@ def run(case: Case, progress: Progress = lambda t, state: None) -> Result:
 
 
 def _run(case: Case, progress: Progress, began: float, state_dir: Path | None) -> Result:
-    stack = Stack(
-        case.scene or "apartment", case.seed, case.settings, swaps=_swaps(case), without=idle_services(case),
-        state_dir=state_dir,
-    )  # fmt: skip
+    try:
+        stack = Stack(
+            case.scene or "apartment", case.seed, case.settings, swaps=_swaps(case), without=idle_services(case),
+            state_dir=state_dir,
+        )  # fmt: skip
+    except Exception as error:
+        return judge(case, Observed(crash=_words(error)), monotonic() - began)
     try:
         examiner: Examiner = stack.join(examiner_of(case))
-        director = Director(stack, case.strikes)
-        due = 0.0
         try:
-            while not examiner.done:
-                stack.tick()
-                if case.strikes and round(stack.now / DT) % 5 == 0:
-                    director.step()
-                if stack.now >= due:
-                    due = stack.now + REPORT
-                    progress(stack.now, stack.state().state)
+            _until_over(stack, examiner, case, progress)
         except Exception as error:
-            examiner.abort(stack.now, f"{type(error).__name__}: {error}")
+            examiner.abort(stack.now, _words(error))
         result = judge(case, examiner.observed, monotonic() - began)
         result.evidence["timeline"] = timeline(partial(stack.bus.get, topics.BRAIN_MISSIONS))
         return result
     finally:
         stack.close()
+
+
+def _until_over(stack: Stack, examiner: Examiner, case: Case, progress: Progress) -> None:
+    director = Director(stack, case.strikes)
+    due = 0.0
+    while not examiner.done:
+        stack.tick()
+        if case.strikes and round(stack.now / DT) % 5 == 0:
+            director.step()
+        if stack.now >= due:
+            due = stack.now + REPORT
+            progress(stack.now, stack.state().state)
+
+
+def _words(error: Exception) -> str:
+    """What was raised, and where in our code."""
+    frames = [f for f in traceback.extract_tb(error.__traceback__) if "site-packages" not in f.filename]
+    where = f" at {Path(frames[-1].filename).name}:{frames[-1].lineno}" if frames else ""
+    return f"{type(error).__name__}: {error}{where}"
 
 
 def _swaps(case: Case) -> dict[str, Any]:

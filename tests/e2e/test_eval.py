@@ -1,0 +1,101 @@
+"""`tidybot eval` as a user runs it: spoken and typed scenarios, faults, Ctrl-C, and the same seed as processes."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import msgspec
+import psutil
+import pytest
+
+from common.scene import load_scene
+from evaluation import runner
+from evaluation.case import Case, Line, Result
+from evaluation.evidence import Want
+from evaluation.faults import Rule
+from tests.support import ROOT, eventually
+
+FETCH = ("brain.pipeline=fetch",)
+ENVIRON = {k: v for k, v in os.environ.items() if not k.startswith("TIDYBOT")}
+
+
+def case_of(seed: int, thing: str, **more: object) -> Case:
+    """A fetch in the small flat, typed."""
+    command = f"bring me the {thing}"
+    fields = {
+        "suite": "fetch", "seed": seed, "name": "fetch", "command": command, "lines": (Line(command),),
+        "thing": thing, "wants": (Want(thing, ("delivery tray",)),), "settings": FETCH,
+        "scene": load_scene("minimal"), **more,
+    }  # fmt: skip
+    return Case(**fields)  # type: ignore[arg-type]
+
+
+def untimed(result: Result) -> dict[str, object]:
+    return {k: v for k, v in result.evidence.items() if k != "wall_seconds"}
+
+
+def test_a_seed_repeats_with_all_its_evidence() -> None:
+    first, second = (runner.run(case_of(2, "green can")) for _ in range(2))
+    assert first.outcome == "delivered", first.evidence
+    assert first.evidence["things"][0]["carried"] > 0.5  # type: ignore[index]
+    assert untimed(first) == untimed(second)
+
+
+def test_a_gripper_that_does_not_close_is_noticed_and_tried_again() -> None:
+    rule = Rule(service="manipulation", key="gripper_command", kind="drop", match={"position": 1.0})
+    result = runner.run(case_of(2, "yellow block", rules=(rule,)))
+    assert result.delivered, result.evidence
+    always = msgspec.structs.replace(rule, count=1000)
+    lame = runner.run(case_of(2, "yellow block", rules=(always,)))
+    assert (lame.outcome, lame.evidence["claimed"]) == ("reported", "failed")
+    assert lame.cause.startswith("grasp")
+
+
+@pytest.mark.parametrize("skip", [0, 1])
+def test_a_service_that_raises_ends_its_case_as_crashed(skip: int) -> None:
+    """At its start, or with its first status."""
+    rule = Rule(
+        service="navigation", key="brain/navigation_status", kind="edit", skip=skip, fields={"status": "flying"}
+    )  # fmt: skip
+    result = runner.run(case_of(2, "green can", rules=(rule,)))
+    assert result.outcome == "crashed"
+    assert "status" in result.cause
+
+
+def command(*words: str) -> list[str]:
+    return [sys.executable, "-m", "cli.main", "eval", *words]
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(900)
+def test_in_one_process_and_as_processes_a_seed_ends_the_same(tmp_path: Path) -> None:
+    reports = []
+    for n, mode in enumerate(([], ["--processes"])):
+        out = tmp_path / f"{n}.json"
+        words = command("-n", "1", "--seed", "1", "--pipeline", "fetch", "--json", str(out), *mode)
+        assert subprocess.run(words, cwd=ROOT, env=ENVIRON, capture_output=True).returncode == 0
+        reports.append(json.loads(out.read_text()))
+    cases = [r["cases"][0] for r in reports]
+    assert cases[0]["outcome"] == cases[1]["outcome"] == "delivered"
+    assert cases[0]["evidence"]["states"] == cases[1]["evidence"]["states"]
+    assert cases[0]["evidence"]["spl"] == pytest.approx(cases[1]["evidence"]["spl"], abs=0.02)
+
+
+def test_ctrl_c_keeps_what_is_done_and_leaves_nothing_behind(tmp_path: Path) -> None:
+    out = tmp_path / "report.json"
+    words = command("-n", "50", "--jobs", "2", "--pipeline", "fetch", "--json", str(out))
+    process = subprocess.Popen(
+        words, cwd=ROOT, env=ENVIRON, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, start_new_session=True
+    )
+    family = psutil.Process(process.pid)
+    eventually(lambda: len(family.children(recursive=True)) >= 2, "the workers run")
+    children = family.children(recursive=True)
+    os.killpg(process.pid, signal.SIGINT)
+    text = process.communicate(timeout=60)[0].decode()
+    assert process.returncode == 130, text
+    assert "interrupted" in text
+    assert json.loads(out.read_text())["suite"] == "fetch"
+    assert not [c for c in children if c.is_running() and c.status() != "zombie"]
