@@ -20,6 +20,7 @@ SERVICES = (
     Service("manipulation", "services.manipulation"),
     Service("speech", "services.speech"),
     Service("planner", "services.planner"),
+    Service("perception", "services.perception"),
     Service("brain", "services.brain"),
     Service("dashboard", "services.dashboard", paced=False),
 )

@@ -37,6 +37,10 @@ READS: dict[str, tuple[Topic[Any], ...]] = {
         t.ROBOT_RESUME, t.POSE, t.JOINT_STATES,
     ),
     "planner": (t.PLAN_REQUEST, t.WORLD_OBJECTS, t.POSE),
+    "perception": (
+        t.OBJECT_QUERY, t.HEAD_RGBD, t.WRIST_RGBD, t.POSE, t.ODOMETRY, t.JOINT_STATES, t.ROBOT_DESCRIPTION,
+        t.MANIPULATION_STATUS, t.SIM_STATUS,
+    ),
     "dashboard": (
         t.SIM_MODEL, t.SIM_STATUS, t.JOINT_STATES, t.POSE, t.SCAN, t.NAV_PATH, t.WORLD_OBJECTS, t.BRAIN_STATE,
         t.BRAIN_TREE, t.ACTION_PLAN, t.SPEECH_GOAL, t.SPEECH_RESULT, t.SPEECH_STATUS, t.NAVIGATION_STATUS,

@@ -74,7 +74,7 @@ OBJECT_POSE = _event("object_pose", m.ObjectPose, "perception")
 NAV_GOAL = _goal("nav_goal", m.NavGoal, "brain", "*")
 NAVIGATION_FEEDBACK = _event("navigation_feedback", m.NavigationFeedback, "navigation")
 SYSTEM_STATUS = _event("system_status", m.SystemStatus, "brain")
-WORLD_OBJECTS = _event("world/objects", m.WorldObjects, "perception", "sim")
+WORLD_OBJECTS = _event("world/objects", m.WorldObjects, "perception")
 
 BASE_TARGET = _goal("base/target_pose", m.BaseTarget, "navigation", latched=False)
 GOAL_REACHED = _event("base/goal_reached", m.GoalReached, "sim")

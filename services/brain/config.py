@@ -13,7 +13,7 @@ class BrainConfig(Config, frozen=True):
     this brain belongs to: within one, a mission outlives also an orderly restart.
     """
 
-    pipeline: Literal["fetch", "vla"] = "fetch"
+    pipeline: Literal["fetch", "vla"] = "vla"
     enable_confirmation: bool = True
     max_retry_attempts: int = 3
     confirm_below: float = 0.8

@@ -4,7 +4,10 @@ from common.config import Config
 
 
 class ManipulationConfig(Config, frozen=True):
-    """Lengths in metres, speeds in rad/s or m/s, forces in newtons, times in seconds."""
+    """Lengths in metres, speeds in rad/s or m/s, forces in newtons, times in seconds.
+
+    A sighting of the object is good for `fresh` seconds; a newer one is waited for at most `look_patience`.
+    """
 
     max_candidates: int = 4
     reach: float = 1.0
@@ -20,3 +23,5 @@ class ManipulationConfig(Config, frozen=True):
     planning_seconds: float = 0.5
     state_timeout: float = 0.5
     settle: float = 0.3
+    fresh: float = 1.5
+    look_patience: float = 3.0

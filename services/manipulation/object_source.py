@@ -1,7 +1,7 @@
 """Where the pose of the object to grab comes from.
 
-The goal's own object counts first. Else the latched `world/objects` is asked: in the fetch pipeline that is the
-survey made when the flat was set up; perception replaces the writer of that topic and nothing here changes.
+The goal's own object says which and where; a sighting of it in `world/objects` that is newer says better where.
+Without one the latched `world/objects` is asked for what was last looked for.
 """
 
 import math
@@ -12,6 +12,7 @@ from common.naming import match_object
 from common.scene import Scene
 
 FRONT = 1.2
+SHIFTED = 0.4
 DEFAULT_SIZE = (0.06, 0.06, 0.08)
 
 
@@ -27,7 +28,7 @@ class ObjectSource:
         """A newer report replaces what was remembered of moved objects seen since."""
         if reported is not None and reported is not self._reported:
             self._reported = reported
-            self._moved = {} if reported.source == "survey" else self._still_newer(reported)
+            self._moved = self._still_newer(reported)
 
     def _still_newer(self, reported: WorldObjects) -> dict[str, WorldObject]:
         seen = {o.label: o.seen_at for o in reported.objects}
@@ -59,9 +60,15 @@ class ObjectSource:
             id=known.id,
         )
 
-    def resolve(self, goal: ManipulationGoal, wanted: str, base: Pose2) -> WorldObject | None:
-        """The object of a goal: the one it describes, the one last looked for, or the nearest in front."""
+    def resolve(self, goal: ManipulationGoal, wanted: str, base: Pose2, since: float = math.inf) -> WorldObject | None:
+        """The object of a goal: the one it describes, the one last looked for, or the nearest in front.
+
+        One that was seen after `since` near the described place counts as it was seen.
+        """
         if goal.object is not None:
+            seen = next((o for o in self.objects() if o.label == goal.object.label), None)
+            if seen is not None and seen.seen_at >= since and _close(seen.position, goal.object.position, SHIFTED):
+                return seen
             return self._described(goal.object)
         found = match_object(wanted, self.objects(), self._scene) if wanted else self.objects()
         near = []
@@ -85,5 +92,5 @@ class ObjectSource:
         )
 
 
-def _close(a: tuple[float, float, float], b: tuple[float, float, float]) -> bool:
-    return math.hypot(a[0] - b[0], a[1] - b[1]) < 0.1
+def _close(a: tuple[float, float, float], b: tuple[float, float, float], within: float = 0.1) -> bool:
+    return math.hypot(a[0] - b[0], a[1] - b[1]) < within

@@ -9,6 +9,7 @@ from common import messages as m
 from common import topics
 from common.geometry import Pose2, compose
 from common.io import Io
+from common.messages import WorldObject
 from services.manipulation.arm_model import HOME, Array, Obstacle
 from services.manipulation.config import ManipulationConfig
 from services.manipulation.grasp import approach_rotation
@@ -112,13 +113,12 @@ class Robot:
 def grab(robot: Robot, goal: m.ManipulationGoal, wanted: str) -> Steps[str]:
     """Reach, grasp, retract; another candidate after a miss. Returns the evidence."""
     config, planner = robot.config, _planner(robot)
-    found = robot.source.resolve(goal, wanted, robot.base)
-    if found is None:
-        what = wanted or (goal.object.label if goal.object else "object")
-        raise Failure("NO_OBJECT", f"no {what} is known here")
+    since = robot.now - config.fresh
     tried: set[str] = set()
     last = Failure("UNREACHABLE", "no grasp tried")
     for _ in range(config.max_candidates):
+        found = yield from _sighted(robot, goal, wanted, since)
+        since = robot.now
         robot.phase = "reach"
         target = target_of(found, robot.base, robot.io.scene)
         around = obstacles(robot.io.scene, robot.base, robot.source.objects(), without=found.label)
@@ -145,6 +145,20 @@ def grab(robot: Robot, goal: m.ManipulationGoal, wanted: str) -> Steps[str]:
             yield from robot.move_gripper(0.0)
             yield from go_home(robot)
     raise last
+
+
+def _sighted(robot: Robot, goal: m.ManipulationGoal, wanted: str, since: float) -> Steps[WorldObject]:
+    """The object to grab as it was seen after `since`; an older sighting will do when no newer one comes in time."""
+    robot.phase = "look"
+    end = robot.now + (robot.config.look_patience if robot.io.peer("perception") else 0.0)
+    while True:
+        found = robot.source.resolve(goal, wanted, robot.base, since)
+        if found is not None and (found.seen_at >= since or robot.now >= end):
+            return found
+        if robot.now >= end:
+            what = wanted or (goal.object.label if goal.object else "object")
+            raise Failure("NO_OBJECT", f"no {what} is known here")
+        yield
 
 
 def _execute_grab(robot: Robot, plan: GrabPlan) -> Steps[str]:

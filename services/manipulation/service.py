@@ -36,6 +36,7 @@ class ManipulationService:
         self._source = ObjectSource(io.scene)
         self._robot = Robot(config, io, self._source)
         self._loading: Job[Planner] | None = None
+        self._description: m.RobotDescription | None = None
         self._steps: Steps[str] | None = None
         self._goal = m.ManipulationGoal(goal="")
         self._seen: set[tuple[str, int]] = set()
@@ -73,10 +74,15 @@ class ManipulationService:
 
     def _load(self, now: float) -> None:
         description = self._io.latest(topics.ROBOT_DESCRIPTION)
-        if description is not None and self._loading is None:
+        if description is not None and self._loading is None and description is not self._description:
+            self._description = description
             self._loading = self._io.submit(Planner, description.mjcf, self._io.seed, seconds=0.5)
         if self._loading is not None and self._loading.poll(now):
-            self._robot.planner = self._loading.result()
+            loading, self._loading = self._loading, None
+            try:
+                self._robot.planner = loading.result()
+            except (ValueError, KeyError) as error:
+                self._io.count_drop(topics.ROBOT_DESCRIPTION.key, f"not a robot with our joints: {error}")
 
     def _read_joints(self, states: m.JointStates) -> None:
         if self._indices is None or self._indices[0] != states.name:

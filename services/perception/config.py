@@ -20,6 +20,6 @@ class PerceptionConfig(Config, frozen=True):
     detection_seconds: float = 0.15
     picture_timeout: float = 1.5
     query_pictures: int = 2
-    min_confidence: float = 0.5
+    min_confidence: float = 0.6
     gone_after: int = 3
     synonyms: dict[str, str] = {}

@@ -52,70 +52,93 @@ class Piece:
 
 def pieces(view: View, scene: Scene, max_range: float, robot: Mask | None = None) -> list[Piece]:
     """The things that stand on the surfaces of the scene. `robot` marks the pixels that show the robot itself."""
-    depth = view.depth
-    usable = (depth > 0.05) & (depth < max_range)
+    z = view.points[..., 2]
+    usable = (view.depth > 0.05) & (view.depth < max_range)
     if robot is not None:
         usable &= ~robot
+    eye = view.position
+    near = _Nearby(scene, float(eye[0]), float(eye[1]), max_range)
     found: list[Piece] = []
-    points = view.points
-    free = usable & (points[..., 2] < MAX_HEIGHT) & (depth < FLOOR_RANGE) & ~_near_walls(points, scene, FLOOR_MARGIN)
-    usable &= ~_near_walls(points, scene, WALL_MARGIN)
-    for r in scene.receptacles:
-        inside = usable & _inside(points, r, -0.012)
-        if np.count_nonzero(inside) >= MIN_PIXELS:
-            found += _on(view, Surface(r.name, r.center[2]), inside)
-        free &= ~_in_box(
-            points, r.center[0], r.center[1], r.yaw, r.size[0] + 2 * FLOOR_MARGIN, r.size[1] + 2 * FLOOR_MARGIN
-        )
-    for box in scene.furniture:
-        size = box.size[0] + 2 * FLOOR_MARGIN, box.size[1] + 2 * FLOOR_MARGIN
-        free &= ~_in_box(points, box.center[0], box.center[1], box.yaw, *size)
-    if np.count_nonzero(free) >= MIN_PLANE:
-        found += _on(view, Surface("", 0.0), free)
-    return found
+    for r in near.receptacles:
+        low, high = r.center[2] - PLANE_SEARCH, r.center[2] + MAX_HEIGHT
+        pixels = np.flatnonzero(usable & (z > low) & (z < high))
+        pixels = pixels[_in_box(view, pixels, *_box_of(r, -0.012))]
+        found += _on(view, Surface(r.name, r.center[2]), pixels, near)
+    pixels = np.flatnonzero(usable & (z > CLEARANCE) & (z < MAX_HEIGHT) & (view.depth < FLOOR_RANGE))
+    for box in near.boxes:
+        pixels = pixels[~_in_box(view, pixels, *box)]
+    return found + _on(view, Surface("", 0.0), pixels, near)
 
 
-def _in_box(points: NDArray[np.float32], x: float, y: float, yaw: float, sx: float, sy: float) -> Mask:
+Box = tuple[float, float, float, float, float]
+
+
+def _box_of(r: Receptacle, margin: float) -> Box:
+    return r.center[0], r.center[1], r.yaw, r.size[0] + 2 * margin, r.size[1] + 2 * margin
+
+
+class _Nearby:
+    """What of the floor plan a view can show: surfaces, wall strips, and the floor that furniture takes."""
+
+    def __init__(self, scene: Scene, x: float, y: float, reach: float) -> None:
+        def close(box: Box) -> bool:
+            return math.hypot(box[0] - x, box[1] - y) < reach + math.hypot(box[3], box[4]) / 2
+
+        self.receptacles = [r for r in scene.receptacles if close(_box_of(r, 0.0))]
+        self.walls: list[Box] = []
+        self.boxes: list[Box] = []
+        for wall in scene.walls:
+            dx, dy = wall.end[0] - wall.start[0], wall.end[1] - wall.start[1]
+            mx, my = (wall.start[0] + wall.end[0]) / 2, (wall.start[1] + wall.end[1]) / 2
+            length, yaw = math.hypot(dx, dy), math.atan2(dy, dx)
+            for margin, into in ((WALL_MARGIN, self.walls), (FLOOR_MARGIN, self.boxes)):
+                width = wall.thickness + 2 * margin
+                if close((mx, my, yaw, length + width, width)):
+                    into.append((mx, my, yaw, length + width, width))
+        self.boxes += [b for r in scene.receptacles if close(b := _box_of(r, FLOOR_MARGIN))]
+        for f in scene.furniture:
+            box = (f.center[0], f.center[1], f.yaw, f.size[0] + 2 * FLOOR_MARGIN, f.size[1] + 2 * FLOOR_MARGIN)
+            if close(box):
+                self.boxes.append(box)
+
+
+def _in_box(
+    view: View, pixels: NDArray[np.intp], x: float, y: float, yaw: float, sx: float, sy: float
+) -> NDArray[np.bool_]:
+    """Which of the pixels (n,) lie in a rectangle on the floor plan, at any height."""
     c, s = math.cos(yaw), math.sin(yaw)
-    dx, dy = points[..., 0] - x, points[..., 1] - y
-    inside: Mask = (np.abs(c * dx + s * dy) < sx / 2) & (np.abs(c * dy - s * dx) < sy / 2)
+    points = view.points.reshape(-1, 3)[pixels]
+    dx, dy = points[:, 0] - np.float32(x), points[:, 1] - np.float32(y)
+    inside: NDArray[np.bool_] = (np.abs(c * dx + s * dy) < sx / 2) & (np.abs(c * dy - s * dx) < sy / 2)
     return inside
 
 
-def _inside(points: NDArray[np.float32], r: Receptacle, margin: float) -> Mask:
-    inside = _in_box(points, r.center[0], r.center[1], r.yaw, r.size[0] + 2 * margin, r.size[1] + 2 * margin)
-    z = points[..., 2] - r.center[2]
-    return inside & (z > -PLANE_SEARCH) & (z < MAX_HEIGHT)
-
-
-def _near_walls(points: NDArray[np.float32], scene: Scene, margin: float) -> Mask:
-    near = np.zeros(points.shape[:2], bool)
-    for wall in scene.walls:
-        dx, dy = wall.end[0] - wall.start[0], wall.end[1] - wall.start[1]
-        middle = ((wall.start[0] + wall.end[0]) / 2, (wall.start[1] + wall.end[1]) / 2)
-        length, width = math.hypot(dx, dy), wall.thickness + 2 * margin
-        near |= _in_box(points, *middle, math.atan2(dy, dx), length + width, width)
-    return near
-
-
-def _on(view: View, expected: Surface, inside: Mask) -> list[Piece]:
+def _on(view: View, expected: Surface, pixels: NDArray[np.intp], near: _Nearby) -> list[Piece]:
     """Pieces above one surface, its height measured where enough of it is visible."""
-    z = view.points[..., 2]
-    level = z[inside & (np.abs(z - expected.height) < PLANE_SEARCH)]
+    z = view.points[..., 2].reshape(-1)[pixels]
+    level = z[np.abs(z - expected.height) < PLANE_SEARCH] if expected.name else z[:0]
+    surface = expected
     if len(level) >= MIN_PLANE:
         heights, edges = np.histogram(level, bins=25)
         peak = int(heights.argmax())
         level = level[np.abs(level - (edges[peak] + edges[peak + 1]) / 2) < 0.006]
         surface = Surface(expected.name, float(np.median(level)))
-    else:
-        surface = expected
-    above = inside & (z > surface.height + CLEARANCE) & (z < surface.height + MAX_HEIGHT)
-    labels = ndimage.label(_cut(above, view.depth))[0]
+    above = pixels[(z > surface.height + CLEARANCE) & (z < surface.height + MAX_HEIGHT)]
+    for box in near.walls:
+        above = above[~_in_box(view, above, *box)]
+    if len(above) < MIN_PIXELS:
+        return []
+    rows, columns = np.unravel_index(above, view.shape)
+    top, left = int(rows.min()), int(columns.min())
+    window = (slice(top, int(rows.max()) + 1), slice(left, int(columns.max()) + 1))
+    mask = np.zeros((window[0].stop - top, window[1].stop - left), bool)
+    mask[rows - top, columns - left] = True
+    labels = ndimage.label(_cut(mask, view.depth[window]))[0]
     parts = []
     for n, box in enumerate(ndimage.find_objects(labels), 1):
-        rows, columns = np.nonzero(labels[box] == n)
-        if len(rows) >= MIN_PIXELS // 3:
-            parts.append((rows + box[0].start, columns + box[1].start))
+        part_rows, part_columns = np.nonzero(labels[box] == n)
+        if len(part_rows) >= MIN_PIXELS // 3:
+            parts.append((part_rows + box[0].start + top, part_columns + box[1].start + left))
     return [p for p in _join(view, surface, parts) if len(p.rows) >= MIN_PIXELS and _is_thing(p)]
 
 

@@ -1,6 +1,7 @@
 """Perception: looks through the cameras, remembers objects, and finds the one that words mean."""
 
 import importlib
+import math
 from collections import deque
 
 import numpy as np
@@ -21,6 +22,8 @@ HISTORY = 100
 HELD_WIDTH = (0.003, 0.080)
 HELD_FORCE = 5.0
 MOVING = 0.02
+HAND_RANGE = 0.35
+CLEAR = ("", "start", "look")
 
 
 class PerceptionService:
@@ -42,7 +45,8 @@ class PerceptionService:
         self._forget()
         self._body: Job[Body] | None = None
         self._poses: deque[tuple[float, Pose2]] = deque(maxlen=HISTORY)
-        self._arm, self._width, self._holding = np.zeros(7), 0.085, False
+        self._joints: deque[tuple[float, Array, float]] = deque(maxlen=20)
+        self._hand: tuple[float, float, float] | None = None
         self._picture = ""
         self._asked_at = -1e9
         self._detecting: Job[tuple[View, list[Detection]]] | None = None
@@ -83,13 +87,15 @@ class PerceptionService:
         if joints is None or not {*ARM, "gripper"} <= set(joints.name) or len(joints.effort) < len(joints.name):
             return
         found = dict(zip(joints.name, zip(joints.position, joints.effort, strict=False), strict=False))
-        self._arm = np.array([found[name][0] for name in ARM])
-        self._width, force = found["gripper"]
-        self._holding = HELD_WIDTH[0] < self._width < HELD_WIDTH[1] and abs(force) > HELD_FORCE
+        arm = np.array([found[name][0] for name in ARM])
+        width, force = found["gripper"]
+        self._joints.append((joints.t, arm, width))
+        holding = HELD_WIDTH[0] < width < HELD_WIDTH[1] and abs(force) > HELD_FORCE
         if self._body is not None and self._body.poll(now) and self._poses and self._detecting is None:
             body = self._body.result()
-            body.pose(self._arm, self._width)
-            self._memory.carry(body.hand(self._poses[-1][1]), self._holding, now)
+            body.pose(arm, width)
+            self._hand = body.hand(self._poses[-1][1])
+            self._memory.carry(self._hand, holding, now)
             self._show(now)
 
     def _pose_at(self, t: float) -> Pose2 | None:
@@ -111,6 +117,11 @@ class PerceptionService:
         (t0, a), (t1, b) = self._poses[-4], self._poses[-1]
         return abs(wrap(b[2] - a[2])) / max(t1 - t0, 1e-3)
 
+    def _working(self) -> str:
+        """The phase of the manipulation under way, "" when the arm rests."""
+        status = self._io.latest(topics.MANIPULATION_STATUS)
+        return status.phase or "working" if status is not None and status.status == "executing" else ""
+
     # --- pictures
     def _ask(self, now: float) -> None:
         """Request the next picture when one is due."""
@@ -118,8 +129,7 @@ class PerceptionService:
         waiting = bool(self._picture) and now - self._asked_at < config.picture_timeout
         if waiting or self._detecting is not None or not self._poses or self._turning() > config.max_turn:
             return
-        status = self._io.latest(topics.MANIPULATION_STATUS)
-        phase = status.phase if status is not None and status.status == "executing" else ""
+        phase = self._working()
         here = self._poses[-1][1]
         resting = self._looked_from is not None and _near(self._looked_from[0], here) and self._looked_from[1] == phase
         period = config.idle_period if resting else config.period
@@ -141,22 +151,27 @@ class PerceptionService:
             except ValueError as error:
                 self._io.count_drop(topics.HEAD_RGBD.key, str(error))
                 continue
-            arm, width = self._arm.copy(), self._width
-            body = self._body.result() if self._body is not None and self._body.poll(now) else None
+            body = self._body.result() if self._body is not None and self._body.poll(now) and self._joints else None
+            if body is not None:
+                _, arm, width = min(self._joints, key=lambda row: abs(row[0] - image.t))
+                body.pose(arm, width)
             self._detecting = self._io.submit(
-                detect, self._detector, view, base, body, arm, width, seconds=self._config.detection_seconds
+                detect, self._detector, view, base, body, seconds=self._config.detection_seconds
             )
 
     def _see(self, job: Job[tuple[View, list[Detection]]], now: float) -> None:
         view, detections = job.result()
+        if self._working() not in CLEAR and self._hand is not None:
+            # Half hidden by the hand, a thing looks like another.
+            detections = [d for d in detections if math.dist(d.position, self._hand) > HAND_RANGE]
         seen = self._memory.look(view, detections, view.t)
-        self._show(now)
+        self._show(now, bool(seen))
         self._answer(seen)
 
-    def _show(self, now: float) -> None:
-        """Publish what is believed when it has changed."""
+    def _show(self, now: float, seen: bool = False) -> None:
+        """Publish what is believed when it has changed or was `seen` again."""
         objects = self._memory.objects()
-        if [_outline(o) for o in objects] != [_outline(o) for o in self._shown]:
+        if seen or [_outline(o) for o in objects] != [_outline(o) for o in self._shown]:
             self._shown = objects
             self._io.publish(topics.WORLD_OBJECTS, m.WorldObjects(t=now, objects=objects, source="perception"))
 
@@ -193,15 +208,9 @@ class PerceptionService:
         return ground(words, self._memory.objects(), self._io.scene, base, self._config.synonyms)
 
 
-def detect(
-    detector: Detector, view: View, base: Pose2, body: Body | None, arm: Array, width: float
-) -> tuple[View, list[Detection]]:
+def detect(detector: Detector, view: View, base: Pose2, body: Body | None) -> tuple[View, list[Detection]]:
     """The worker's part: find the robot in the view, then the objects beside it."""
-    mask = None
-    if body is not None:
-        body.pose(arm, width)
-        mask = body.mask(view, base)
-    return view, detector.detect(view, mask)
+    return view, detector.detect(view, body.mask(view, base) if body is not None else None)
 
 
 def load_detector(name: str) -> type[Detector]:
@@ -238,6 +247,6 @@ def _near(a: Pose2, b: Pose2) -> bool:
 
 
 def _outline(o: m.WorldObject) -> tuple[object, ...]:
-    """What others care about: a change below 2 mm or in the time of sighting alone is none."""
+    """What others care about: a change below 2 mm is none."""
     x, y, z = (round(v / 0.002) for v in o.position)
-    return o.id, o.label, o.on, o.held, x, y, z, round(o.confidence, 1), round(o.seen_at / 10)
+    return o.id, o.label, o.on, o.held, x, y, z

@@ -9,7 +9,7 @@ class SimConfig(Config, frozen=True):
 
     Wheel odometry: `slip` is the largest constant scale error, `veer` the largest constant turn [rad/m],
     `noise` a random walk [m and rad per sqrt(m)]. `obstacles`: tables, or names of the scene's; `none`: not even those
-    that the scene places. `survey`: tell everybody once where the objects were put, for runs without perception.
+    that the scene places.
     """
 
     speed: str = "realtime"
@@ -29,4 +29,3 @@ class SimConfig(Config, frozen=True):
     odometry_noise: float = 0.005
     obstacles: tuple[Obstacle | str, ...] | str = ()
     snapshot_dir: str = ""
-    survey: bool = True

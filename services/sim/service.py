@@ -47,7 +47,7 @@ class SimService:
     )  # fmt: skip
     WRITES = (
         topics.JOINT_STATES, topics.ODOMETRY, topics.SCAN, topics.GOAL_REACHED, topics.SIM_STATE, topics.SIM_MODEL,
-        topics.SIM_STATUS, topics.ROBOT_DESCRIPTION, topics.WORLD_OBJECTS,
+        topics.SIM_STATUS, topics.ROBOT_DESCRIPTION,
     )  # fmt: skip
 
     def __init__(self, config: SimConfig, io: Io) -> None:
@@ -85,28 +85,8 @@ class SimService:
         io.publish(topics.ROBOT_DESCRIPTION, m.RobotDescription(mjcf=robot.robot_mjcf()))
         model = m.SimModel(scene=io.scene.name, seed=physics.seed, epoch=io.epoch, mjcf=physics.mjcf)
         io.publish(topics.SIM_MODEL, model)
-        if config.survey:
-            io.publish(topics.WORLD_OBJECTS, self._survey(now))
         io.publish(topics.GOAL_REACHED, m.GoalReached(reached=False))
         self._publish_status("running")
-
-    def _survey(self, now: float) -> m.WorldObjects:
-        """Where the objects were put when the flat was set up; never updated."""
-        objects = [
-            m.WorldObject(
-                label=p.spec.name,
-                kind=p.spec.kind,
-                colour=p.spec.colour,
-                position=p.position,
-                orientation=(math.cos(p.yaw / 2), 0.0, 0.0, math.sin(p.yaw / 2)),
-                size=p.spec.size,
-                on=p.on,
-                seen_at=now,
-                id=p.spec.name,
-            )
-            for p in self.physics.placements
-        ]
-        return m.WorldObjects(t=now, objects=objects, source="survey")
 
     def _publish_status(self, state: Any, detail: str = "") -> None:
         status = m.SimStatus(

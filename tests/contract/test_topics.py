@@ -9,7 +9,7 @@ import pytest
 from common import interfaces, topics
 from common.lockstep import period_of
 
-SERVICES = ("brain", "speech", "navigation", "manipulation", "sim", "camera", "planner", "dashboard")
+SERVICES = ("brain", "speech", "navigation", "manipulation", "sim", "camera", "planner", "perception", "dashboard")
 FROM_ANYONE = "*"
 SHARED = {"gripper_command", "voice_command", "robot/stop", "nav_goal", "camera/request"}
 
