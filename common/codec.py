@@ -5,6 +5,7 @@ from typing import Any, TypeVar
 import msgspec
 
 from common import messages as m
+from common.finite import bad_field
 from common.topics import Topic
 
 M = TypeVar("M", bound=m.Message)
@@ -54,12 +55,12 @@ def decode_as(kind: type[M], payload: bytes, text_field: str = "") -> M:
     stripped = payload.lstrip(_SPACE)
     try:
         if stripped[:1] == b"{":
-            return _json(kind).decode(payload)
+            return _sound(_json(kind).decode(payload))
         if text_field:
             return kind(**{text_field: _text(stripped)})
         if stripped[:1] in (b"[", b'"'):
             raise DecodeError("not a JSON object")
-        return _msgpack(kind).decode(payload)
+        return _sound(_msgpack(kind).decode(payload))
     except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
         raise DecodeError(str(error)) from None
 
@@ -67,6 +68,12 @@ def decode_as(kind: type[M], payload: bytes, text_field: str = "") -> M:
 def decode(topic: Topic[M], payload: bytes) -> M:
     """`decode_as` for a topic of the table."""
     return decode_as(topic.type, payload, topic.text)
+
+
+def _sound(message: M) -> M:
+    if where := bad_field(message):
+        raise DecodeError(f"{where} is not a finite number of a sane size")
+    return message
 
 
 def _text(payload: bytes) -> str:

@@ -10,8 +10,11 @@ from services.navigation.config import NavigationConfig
 from services.navigation.costmap import Array, Costmap
 from services.navigation.floorplan import distance_field
 from services.navigation.localise import Localiser
+from services.navigation.movers import Movers
 
-NEAR = 3.0
+NEAR = 4.0
+EXPLAINED = 0.15
+MAX_RANGE = 1000.0
 
 
 class Senses:
@@ -19,7 +22,9 @@ class Senses:
 
     def __init__(self, config: NavigationConfig, io: Io, costmap: Costmap) -> None:
         self._config, self._io, self._map = config, io, costmap
-        self.localiser = Localiser(distance_field(io.scene, config.lidar_height))
+        self._field = distance_field(io.scene, config.lidar_height)
+        self.localiser = Localiser(self._field)
+        self.movers = Movers()
         self.pose: Pose2 | None = None
         self.points: Array | None = None
         self._angles: Array = np.empty(0)
@@ -49,9 +54,12 @@ class Senses:
         return min(self._io.age(topics.ODOMETRY, now), self._io.age(topics.JOINT_STATES, now))
 
     def _look(self, scan: m.LaserScan, odometry: m.Odometry | None, late: float, now: float) -> None:
+        if not scan.ranges or len(scan.ranges) % 4:
+            self._io.count_drop(topics.SCAN.key, "ranges are 32 bit floats")
+            return
         ranges = np.frombuffer(scan.ranges, "<f4").astype(np.float64)
-        if not len(ranges) or not np.isfinite(ranges).all():
-            self._io.count_drop(topics.SCAN.key, "no finite ranges")
+        if not (np.abs(ranges) <= MAX_RANGE).all():
+            self._io.count_drop(topics.SCAN.key, "ranges are finite and within a kilometre")
             return
         if len(self._angles) != len(ranges):
             self._angles = np.asarray(scan.angle_min + np.arange(len(ranges)) * scan.angle_increment, np.float64)
@@ -64,9 +72,13 @@ class Senses:
             seen = _transformed(back, seen)
         self.localiser.correct(seen)
         self.pose = pose = self.localiser.pose
+        placed = _transformed(pose, seen)
+        near = ranges[hit] < NEAR
+        unknown = near & ~self._field.near(placed, EXPLAINED)
+        self.movers.update(placed[unknown], (pose[0], pose[1]), now)
         lidar = compose(pose, (scan.x, scan.y, 0.0))
         self._map.see(lidar, self._angles, ranges, scan.range_max, now)
-        self.points = _transformed(pose, seen[ranges[hit] < NEAR])
+        self.points = placed[near]
 
 
 def _transformed(frame: Pose2, points: Array) -> Array:
