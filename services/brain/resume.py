@@ -18,7 +18,7 @@ from services.brain.snapshot import Moved, put
 
 LOOK = 0.6
 PEER_PATIENCE = 3.0
-MAX_RESUMES = 5
+MAX_RESUMES = 10
 MOVED = 0.3
 TURNED = 0.5
 CLOCK_SLACK = 2.0
