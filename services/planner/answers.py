@@ -3,7 +3,8 @@
 from services.planner.draft import Draft, Refusal
 from services.planner.forms import Slots
 from services.planner.phrases import Phrase, read
-from services.planner.resolve import spot, things, unknown
+from services.planner.resolve import Meant, spot, things, unknown
+from services.planner.vocabulary import bare
 from services.planner.words import listed
 from services.planner.world import Thing
 
@@ -56,7 +57,7 @@ def whereabouts(draft: Draft, slots: Slots) -> None:
 def where(draft: Draft, slots: Slots) -> None:
     """Where something is; what nobody has seen is looked for."""
     phrase = read(slots["thing"], draft.vocabulary)
-    for meant in things(draft, slots["thing"], prefer_held=True) if isinstance(phrase, Phrase) else ():
+    for meant in _all_meant(draft, slots) if isinstance(phrase, Phrase) else ():
         thing = meant.thing
         if thing.held:
             draft.say(f"The {thing.label} is in my hand.")
@@ -71,6 +72,13 @@ def where(draft: Draft, slots: Slots) -> None:
             _place(draft, slots)
             return
         raise Refusal(unknown(draft, slots["thing"], phrase))
+
+
+def _all_meant(draft: Draft, slots: Slots) -> list[Meant]:
+    """For "where is the mug" every mug that was seen."""
+    meant = things(draft, slots["thing"], prefer_held=True)
+    several = [t for t in draft.world.things if t.kind == meant[0].thing.label != t.label]
+    return things(draft, ("all", *bare(slots["thing"]))) if len(meant) == 1 and several else meant
 
 
 def number(draft: Draft, slots: Slots) -> None:

@@ -47,6 +47,7 @@ class Phrase(msgspec.Struct, frozen=True):
     plural: bool = False
     colours: tuple[str, ...] = ()
     which: Which = ""
+    side: Which = ""
     relation: str = ""
     anchor: Words = ()
     text: str = ""
@@ -61,7 +62,8 @@ def read(words: Words, vocabulary: Vocabulary) -> Phrase | str:
         head, rest = words[:at], _without_clause(words[at:])
         side = _SIDES.get(" ".join(rest))
         if side and (phrase := _head(head, vocabulary)):
-            return msgspec.structs.replace(phrase, which=side, text=" ".join(words))
+            which = phrase.which if phrase.which in ("first", "second", "third", "last") else side
+            return msgspec.structs.replace(phrase, which=which, side=side, text=" ".join(words))
         for spoken, relation in _RELATIONS:
             width = len(spoken.split())
             if " ".join(rest[:width]) == spoken and len(rest) > width and (phrase := _head(head, vocabulary)):
@@ -124,6 +126,7 @@ def _head(words: Words, vocabulary: Vocabulary) -> Phrase | None:
                 plural=plural,
                 colours=tuple(colours),
                 which=which,
+                side="right" if which == "right" else "left",
                 text=" ".join(words),
             )
         word, rest = rest[0], rest[1:]

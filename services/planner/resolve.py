@@ -183,6 +183,11 @@ def _choose(draft: Draft, phrase: Phrase, seen: list[Thing], specs: list[Thing])
     names = [t.label for t in sorted(near, key=lambda t: t.label)[:MAX_QUESTION]]
     if len(set(names)) == 1:
         return [Meant(near[0])]
+    kinds = {t.kind for t in near}
+    if len(kinds) == 1 and kinds == phrase.sense.kinds and not phrase.colours:
+        # Perception will find several and the brain asks which one.
+        kind, words = next(iter(kinds)), " ".join(bare(tuple(phrase.text.split())))
+        return [Meant(Thing(label=kind, kind=kind, size=near[0].size), "" if words == kind else words)]
     raise Refusal(f"I do not know which one you mean: {listed([f'the {n}' for n in names], 'or')}")
 
 
@@ -215,10 +220,11 @@ def _superlative(draft: Draft, phrase: Phrase, seen: Sequence[Thing]) -> Thing:
         by_distance = sorted(seen, key=draft.world.distance)
         return by_distance[0 if phrase.which == "nearest" else -1]
     with_place = [t for t in seen if t.position]
-    placed = sorted(with_place, key=lambda t: -_bearing(draft, t, with_place))
+    sign = 1 if phrase.side == "right" else -1
+    placed = sorted(with_place, key=lambda t: sign * _bearing(draft, t, with_place))
     if not placed:
         raise Refusal(f"I have not seen which {phrase.noun} that is")
-    index = {"left": 0, "first": 0, "second": 1, "third": 2, "right": -1, "last": -1}[phrase.which]
+    index = {"left": 0, "first": 0, "second": 1, "third": 2, "right": 0, "last": -1}[phrase.which]
     if index >= len(placed):
         raise Refusal(f"I see only {len(placed)} of them")
     return placed[index]
