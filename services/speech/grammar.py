@@ -155,14 +155,18 @@ class Grammar:
 def vocabulary(
     scene: Scene, objects: Iterable[str], places: Iterable[str], colours: Iterable[str]
 ) -> dict[str, list[str]]:
-    """The words of <object>, <place> and <colour>: the scene's names and aliases and the configured ones."""
+    """The words of <object>, <place>, <surface>, <container> and <colour>: names and aliases of the scene and the
+    configured ones. Anything can be put on a receptacle; bins and rooms can hold things."""
     things = [n for o in scene.objects for n in (o.name, o.kind, *o.aliases)]
-    spots = [n for r in scene.receptacles for n in (r.name, *r.aliases)]
-    spots += [n for r in scene.rooms for n in (r.name, *r.aliases)]
-    spots += [n for p in (scene.home, *scene.places) for n in (p.name, *p.aliases)]
+    surfaces = [n for r in scene.receptacles for n in (r.name, *r.aliases)]
+    rooms = [n for r in scene.rooms for n in (r.name, *r.aliases)]
+    bins = [n for r in scene.receptacles if r.kind in ("bin", "tray") for n in (r.name, *r.aliases)]
+    spots = [n for p in (scene.home, *scene.places) for n in (p.name, *p.aliases)]
     return {
         "object": [spoken(n) for n in (*things, *objects)],
-        "place": [spoken(n) for n in (*spots, *places)],
+        "place": [spoken(n) for n in (*surfaces, *rooms, *spots, *places)],
+        "surface": [spoken(n) for n in surfaces],
+        "container": [spoken(n) for n in (*bins, *rooms)],
         "colour": [spoken(n) for n in (*(o.colour for o in scene.objects), *colours) if n],
     }
 

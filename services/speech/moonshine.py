@@ -20,7 +20,7 @@ Array = NDArray[np.float32]
 BOS, EOS = 1, 2
 LAYERS, HEADS, WIDTH = 8, 8, 52
 TOKENS_PER_SECOND = 6.5
-MARGIN = 3.0
+BREADTH = 10.0
 RATE = 16000
 _SILENT = set(".,?!;:'\"-")
 
@@ -113,8 +113,14 @@ class Vocabulary:
                 self._collect(child, state, numbers, states)
 
     def text(self, numbers: list[int]) -> str:
-        """Tokens joined to the words of the grammar, which has no punctuation."""
-        return spoken("".join(c for n in numbers for c in self.tokens[n] if c not in _SILENT or c == "'"))
+        """Tokens joined to the words of the grammar; a character that it does not have is silent."""
+        state, kept = self.grammar.start, []
+        for character in "".join(self.tokens[n] for n in numbers).lower():
+            after = self.grammar.step(state, character)
+            if after:
+                state = after
+                kept.append(character)
+        return "".join(kept).strip()
 
 
 class Moonshine:
@@ -169,7 +175,7 @@ class Moonshine:
                         options.append((total + float(values[k]), row, int(allowed[k]), after[int(k)]))
             options = sorted(options, key=lambda o: -o[0])[: self._beam]
             best = max((f[0] for f in finished), default=-np.inf)
-            options = [o for o in options if o[0] > best - MARGIN]
+            options = [o for o in options if o[0] > max(best, options[0][0]) - BREADTH]
             if not options:
                 break
             rows = [row for _, row, _, _ in options]
