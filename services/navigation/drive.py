@@ -2,12 +2,15 @@
 
 import math
 from collections import deque
+from collections.abc import Sequence
 
 from common import messages as m
 from common.geometry import Pose2
+from services.navigation.avoid import avoid
 from services.navigation.config import NavigationConfig
 from services.navigation.costmap import Array, Costmap
 from services.navigation.follow import Carrot, Follower
+from services.navigation.movers import Mover
 from services.navigation.planner import PathPlanner, Point
 
 REPLAN_PERIOD = 1.0
@@ -29,7 +32,8 @@ class Ended(Exception):
 class Drive:
     """Steps at the service's rate; returns the next target pose [map] for the base, raises `Ended` when over.
 
-    `recoveries` counts detours and retreats, `doing` tells which is under way: "", WAITING, DETOUR or BACKING_OFF.
+    `recoveries` counts detours and retreats, `doing` tells which is under way: "", WAITING,
+    DETOUR, BACKING_OFF or GIVING_WAY.
     """
 
     def __init__(
@@ -85,8 +89,14 @@ class Drive:
         return True
 
     def step(
-        self, pose: Pose2 | None, reached: list[m.GoalReached], points: Array | None, now: float
+        self,
+        pose: Pose2 | None,
+        reached: list[m.GoalReached],
+        points: Array | None,
+        movers: Sequence[Mover],
+        now: float,
     ) -> m.BaseTarget | None:
+        """`points` (n, 2) is what the lidar sees around, in frame map; raises `Ended`."""
         for answer in reached:
             if answer.reached and answer.target_id == self.final_id:
                 raise Ended("arrived")
@@ -101,6 +111,18 @@ class Drive:
             raise Ended("failed", "TIMEOUT", f"not there after {now - self._started:.0f} s")
         if not self._trail or math.dist(self._trail[-1], pose[:2]) > TRAIL_STEP:
             self._trail.append((pose[0], pose[1]))
+        target = self._go_on(pose, points, now)
+        if target is None:
+            return None
+        here = (pose[0], pose[1])
+        aside = avoid(here, (target.x, target.y), movers, self._map, self._config.footprint_radius)
+        if aside is None:
+            return target
+        self._via_pose, self.doing = None, "GIVING_WAY"
+        self._best_at = now
+        return self._hold_at((*aside, pose[2]))
+
+    def _go_on(self, pose: Pose2, points: Array | None, now: float) -> m.BaseTarget | None:
         if self._backing_until is not None:
             return self._back(pose, now)
         if self._follower is None:

@@ -10,8 +10,10 @@ from services.navigation.config import NavigationConfig
 from services.navigation.costmap import Array, Costmap
 from services.navigation.floorplan import distance_field
 from services.navigation.localise import Localiser
+from services.navigation.movers import Movers
 
-NEAR = 3.0
+NEAR = 4.0
+EXPLAINED = 0.15
 MAX_RANGE = 1000.0
 
 
@@ -20,7 +22,9 @@ class Senses:
 
     def __init__(self, config: NavigationConfig, io: Io, costmap: Costmap) -> None:
         self._config, self._io, self._map = config, io, costmap
-        self.localiser = Localiser(distance_field(io.scene, config.lidar_height))
+        self._field = distance_field(io.scene, config.lidar_height)
+        self.localiser = Localiser(self._field)
+        self.movers = Movers()
         self.pose: Pose2 | None = None
         self.points: Array | None = None
         self._angles: Array = np.empty(0)
@@ -68,9 +72,13 @@ class Senses:
             seen = _transformed(back, seen)
         self.localiser.correct(seen)
         self.pose = pose = self.localiser.pose
+        placed = _transformed(pose, seen)
+        near = ranges[hit] < NEAR
+        unknown = near & ~self._field.near(placed, EXPLAINED)
+        self.movers.update(placed[unknown], (pose[0], pose[1]), now)
         lidar = compose(pose, (scan.x, scan.y, 0.0))
         self._map.see(lidar, self._angles, ranges, scan.range_max, now)
-        self.points = _transformed(pose, seen[ranges[hit] < NEAR])
+        self.points = placed[near]
 
 
 def _transformed(frame: Pose2, points: Array) -> Array:

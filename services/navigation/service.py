@@ -167,7 +167,7 @@ class NavigationService:
         if senses.points is not None and self._io.age(topics.SCAN, now) > self._config.scan_timeout:
             raise Ended("failed", "NO_SCAN", "the lidar fell silent")
         try:
-            target = drive.step(senses.pose, reached, senses.points, now)
+            target = drive.step(senses.pose, reached, senses.points, senses.movers.moving(), now)
         except Ended as ended:
             if self._search is None or ended.code == "TIMEOUT":
                 raise
