@@ -9,10 +9,10 @@ import uuid
 from pathlib import Path
 from typing import Any
 
-from cli.audio import padded, read_wav
+from cli.audio import Player, padded, read_wav
 from cli.errors import CliError, near
 from cli.link import Link, Watch
-from cli.mission import ACCEPT, Conversation, speak_into
+from cli.mission import ACCEPT, Conversation, speak_into, typed
 from cli.robot import query_truth
 from cli.supervision import ROOT, Supervision, free_port, port_is_free, run_dir
 from cli.up import Plan, Stopped, add_start_options, bring_up, check_free, interruptible, state_line
@@ -24,6 +24,7 @@ from common.keys import OFF
 from common.scene import Scene, SceneError, load_scene
 
 VOICE = ROOT / "docs" / "audio" / "bring_me_the_red_mug.wav"
+YES = ROOT / "docs" / "audio" / "yes.wav"
 SPOKEN = "red mug"
 OUT = ROOT / "out"
 SETTLED, SAMPLE, PROGRESS = 0.5, 0.3, 10.0
@@ -80,7 +81,8 @@ class Demo:
     def __init__(self, link: Link, screen: Screen, scene: Scene, thing: str) -> None:
         self._link, self._screen = link, screen
         self._thing, self._delivery = thing, scene.delivery
-        self._clock = Watch(link, topics.SIM_STATUS)
+        self._speech = Watch(link, topics.SPEECH_STATUS)
+        self._answered = ""
         self._sampled = 0.0
         self._witness: Witness
 
@@ -97,11 +99,11 @@ class Demo:
         if chunks:
             mission_id, why = speak_into(self._link, talk, chunks)
         else:
-            self._link.send(topics.VOICE_COMMAND, m.VoiceCommand(text=text, id=f"demo-{uuid.uuid4().hex[:8]}"))
+            self._link.send(topics.VOICE_COMMAND, typed(text, "demo"))
             mission_id, why = talk.accepted(ACCEPT), "the brain started no mission"
         if not mission_id:
             raise CliError(f"the command was not accepted: {why}")
-        outcome = talk.outcome(timeout, self._sample)
+        outcome = talk.outcome(timeout, lambda: self._meanwhile(talk))
         after = query_truth(self._link)
         later = after
         while later["t"] < after["t"] + SETTLED:
@@ -112,6 +114,16 @@ class Demo:
             said = f"the brain reports {outcome.outcome}: {outcome.reason}"
             return Verdict(False, f"{said}; {verdict.why}")
         return verdict
+
+    def _meanwhile(self, talk: Conversation) -> None:
+        """Say yes, aloud, when the robot asks whether it heard right; look at the objects."""
+        status = self._speech.next(0.0) or self._speech.last
+        asks = talk.state.state == "CONFIRMING" and status is not None and status.state == "listening"
+        if asks and status is not None and status.goal_id != self._answered:
+            self._answered = status.goal_id
+            self._screen.say(f'{"":13}"yes" from {YES.name}')
+            Player(self._link, padded(read_wav(YES))).play()
+        self._sample()
 
     def _sample(self) -> None:
         if monotonic() - self._sampled > SAMPLE:

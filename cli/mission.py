@@ -75,6 +75,15 @@ class Conversation:
                     return found
         return ""
 
+    def answer(self, text: str, chunks: list[bytes]) -> str:
+        """Answer the robot's question, in writing or aloud; the id of the mission that it asked for."""
+        self.mission_id = self.state.mission_id
+        if chunks:
+            Player(self._link, chunks).play()
+        else:
+            self._link.send(topics.SPEECH_TEXT, m.TypedText(text=text))
+        return self.mission_id
+
     def outcome(self, timeout: float, idle: Callable[[], None] = lambda: None) -> m.MissionOutcome:
         """How the accepted mission ended.
 
@@ -92,6 +101,11 @@ class Conversation:
                 raise CliError(f"mission {self.state.mission_id} took the place of {self.mission_id}")
             self._next(0.2)
             idle()
+
+
+def typed(text: str, source: str) -> m.VoiceCommand:
+    """A command in written words, which nobody can have misheard."""
+    return m.VoiceCommand(text=text, id=f"{source}-{uuid.uuid4().hex[:8]}", confirmed=True)
 
 
 def speak_into(link: Link, talk: Conversation, chunks: list[bytes]) -> tuple[str, str]:
@@ -126,12 +140,14 @@ def say(args: argparse.Namespace) -> int:
     chunks = padded(read_wav(args.wav)) if args.wav else []
     with linked(args) as link:
         talk = Conversation(link, _shower(args))
-        if args.wav:
+        if talk.state.state == "CONFIRMING":
+            mission_id, why = talk.answer(" ".join(args.text), chunks), ""
+        elif args.wav:
             talk.require_open()
             mission_id, why = speak_into(link, talk, chunks)
         else:
             text = " ".join(args.text)
-            link.send(topics.VOICE_COMMAND, m.VoiceCommand(text=text, id=f"cli-{uuid.uuid4().hex[:8]}"))
+            link.send(topics.VOICE_COMMAND, typed(text, "cli"))
             why = talk.closed()
             mission_id = talk.accepted(ACCEPT)
             why = "" if mission_id else why or "the brain started no mission from it"
