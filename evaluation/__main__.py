@@ -17,6 +17,9 @@ from evaluation.case import Case, Result
 from evaluation.pool import Progressed, evaluate
 from evaluation.suites import DEFAULT_SCENARIOS, cases
 
+PERIOD = 30.0
+"""Seconds between lines of progress where there is no terminal to draw a bar on."""
+
 
 class Board:
     """One bar for the run and one line for what each worker is at."""
@@ -26,6 +29,7 @@ class Board:
         self._bar = Progress(*columns, TextColumn("{task.fields[now]}"), console=console, transient=True)
         self._task: TaskID = self._bar.add_task("scenarios", total=total, now="")
         self._at: dict[int, str] = {}
+        self._console, self._due = console, monotonic() + PERIOD
 
     def __enter__(self) -> "Board":
         self._bar.start()
@@ -36,7 +40,11 @@ class Board:
 
     def show(self, at: Progressed) -> None:
         self._at[at.worker] = f"{at.case.seed}: {at.state} {at.t:.0f} s"
-        self._bar.update(self._task, now="  ".join(self._at.values()))
+        now = "  ".join(self._at.values())
+        self._bar.update(self._task, now=now)
+        if not self._console.is_terminal and monotonic() >= self._due:
+            self._due = monotonic() + PERIOD
+            self._console.print(f"  ... {now}", highlight=False)
 
     def finished(self, result: Result, timeline: bool) -> None:
         self._bar.advance(self._task)

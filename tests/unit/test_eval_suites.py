@@ -5,6 +5,7 @@ import pytest
 
 from common import topics
 from common.codec import decode, encode
+from common.config import config_dir, load, overrides
 from common.scene import load_scene
 from evaluation.case import Case
 from evaluation.faults import Rule
@@ -99,3 +100,11 @@ def test_services_are_found_by_the_table() -> None:
     assert service_class("navigation").NAME == "navigation"
     with pytest.raises(ImportError):
         service_class("nonsense")
+
+
+def test_settings_are_such_that_services_start_with_them() -> None:
+    everything = {s for suite in SUITES for c in cases(suite, 40, 0) for s in c.settings}
+    for setting in everything:
+        section = setting.partition(".")[0]
+        kind = service_class(section)
+        load(section, kind.CONFIG, config_dir(), overrides({}, [setting]))
