@@ -3,6 +3,7 @@
 import random
 import typing
 from collections.abc import Callable
+from copy import copy
 from typing import Any
 
 import msgspec
@@ -28,6 +29,7 @@ class Payloads:
 
     def __init__(self, seed: int, gentle: bool = False) -> None:
         self.rng = random.Random(seed)
+        self._samples: dict[str, list[m.Message]] = {}
         self._kinds: tuple[Callable[[Topic[Any]], bytes], ...] = (
             self.noise, self.valid, self.valid, self.truncated, self.flipped, self.mistyped, self.mistyped,
             self.impossible, self.impossible, self.deep, self.text, self.big if not gentle else self.text,
@@ -37,12 +39,16 @@ class Payloads:
         """A payload of a random kind."""
         return self.rng.choice(self._kinds)(topic)
 
+    def learn(self, topic: Topic[Any], message: m.Message) -> None:
+        """A message as the robot really sends it, to be varied."""
+        self._samples.setdefault(topic.key, []).append(message)
+
     # --- kinds
     def noise(self, topic: Topic[Any]) -> bytes:
         return self.rng.randbytes(self.rng.choice((0, 1, 2, 7, 60, 400)))
 
     def valid(self, topic: Topic[Any]) -> bytes:
-        return self._encode(topic, self.message(topic.type))
+        return self._encode(topic, self._message(topic))
 
     def truncated(self, topic: Topic[Any]) -> bytes:
         whole = self.valid(topic)
@@ -71,7 +77,7 @@ class Payloads:
 
     def impossible(self, topic: Topic[Any]) -> bytes:
         """A message whose numbers are no numbers or far too large; in JSON also 1e999 and NaN."""
-        message = self.message(topic.type, wild=True)
+        message = self._message(topic, wild=True)
         if self.rng.random() < 0.7:
             return msgspec.msgpack.encode(message)
         return msgspec.json.encode(message).replace(b"null", self.rng.choice((b"NaN", b"1e999", b"-Infinity", b"null")))
@@ -96,8 +102,29 @@ class Payloads:
         found: m.Message = self._value(kind, wild, 3)
         return found
 
+    def _message(self, topic: Topic[Any], wild: bool = False) -> m.Message:
+        """An invented message, or a real one with a field replaced."""
+        if topic.key not in self._samples or self.rng.random() < 0.4:
+            return self.message(topic.type, wild)
+        found = copy(self.rng.choice(self._samples[topic.key]))
+        name, other = self.rng.choice(found.__struct_fields__), self.message(topic.type, wild)
+        value = getattr(found, name)
+        if isinstance(value, list) and value and self.rng.random() < 0.6:
+            value = list(value)
+            place = self.rng.randrange(len(value))
+            if self.rng.random() < 0.4:
+                del value[place:]
+            elif isinstance(value[place], float):
+                value[place] = self.rng.choice(NUMBERS + (NOT_FINITE if wild else ()))
+            else:
+                value.append(value[place])
+            setattr(found, name, value)
+        else:
+            setattr(found, name, getattr(other, name))
+        return found
+
     def _fields(self, topic: Topic[Any]) -> dict[str, Any]:
-        message = self.message(topic.type)
+        message = self._message(topic)
         return {name: getattr(message, name) for name in message.__struct_fields__}
 
     def _encode(self, topic: Topic[Any], message: m.Message) -> bytes:

@@ -44,6 +44,7 @@ class PerceptionService:
         self._epoch = ""
         self._forget()
         self._body: Job[Body] | None = None
+        self._description: m.RobotDescription | None = None
         self._poses: deque[tuple[float, Pose2]] = deque(maxlen=HISTORY)
         self._joints: deque[tuple[float, Array, float]] = deque(maxlen=20)
         self._hand: tuple[float, float, float] | None = None
@@ -81,22 +82,36 @@ class PerceptionService:
                 io.log.info("another world", epoch=status.epoch)
             self._epoch = status.epoch
         description = io.latest(topics.ROBOT_DESCRIPTION)
-        if self._body is None and description is not None:
+        if self._body is None and description is not None and description is not self._description:
+            self._description = description
             self._body = io.submit(Body, description.mjcf, seconds=0.2)
         joints = io.latest(topics.JOINT_STATES)
-        if joints is None or not {*ARM, "gripper"} <= set(joints.name) or len(joints.effort) < len(joints.name):
+        if joints is None or not {*ARM, "gripper"} <= set(joints.name) or min(len(joints.position), len(joints.effort)) < len(
+            joints.name
+        ):
             return
         found = dict(zip(joints.name, zip(joints.position, joints.effort, strict=False), strict=False))
         arm = np.array([found[name][0] for name in ARM])
         width, force = found["gripper"]
         self._joints.append((joints.t, arm, width))
         holding = HELD_WIDTH[0] < width < HELD_WIDTH[1] and abs(force) > HELD_FORCE
-        if self._body is not None and self._body.poll(now) and self._poses and self._detecting is None:
-            body = self._body.result()
+        body = self._robot(now) if self._poses and self._detecting is None else None
+        if body is not None:
             body.pose(arm, width)
             self._hand = body.hand(self._poses[-1][1])
             self._memory.carry(self._hand, holding, now)
             self._show(now)
+
+    def _robot(self, now: float) -> Body | None:
+        """The robot's model once it is loaded."""
+        if self._body is None or not self._body.poll(now):
+            return None
+        try:
+            return self._body.result()
+        except (ValueError, KeyError) as error:
+            self._io.count_drop(topics.ROBOT_DESCRIPTION.key, f"not a robot with our joints: {error}")
+            self._body = None
+            return None
 
     def _pose_at(self, t: float) -> Pose2 | None:
         """The base's pose at robot time `t`, between the two estimates around it."""
@@ -151,7 +166,7 @@ class PerceptionService:
             except ValueError as error:
                 self._io.count_drop(topics.HEAD_RGBD.key, str(error))
                 continue
-            body = self._body.result() if self._body is not None and self._body.poll(now) and self._joints else None
+            body = self._robot(now) if self._joints else None
             if body is not None:
                 _, arm, width = min(self._joints, key=lambda row: abs(row[0] - image.t))
                 body.pose(arm, width)
