@@ -22,6 +22,7 @@ from cli import (
     topic,
     tree,
     up,
+    watch,
 )
 from cli.errors import CliError, near
 from common.bus import BusError
@@ -58,6 +59,7 @@ def parser() -> argparse.ArgumentParser:
         robot,
         topic,
         tree,
+        watch,
         record,
         replay,
         doctor,

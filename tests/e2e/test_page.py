@@ -82,7 +82,11 @@ class Visitor:
         self.page.goto(url)
 
     def until(self, state: str) -> None:
-        self.page.wait_for_function(f"/^({state})$/.test(document.getElementById('state').textContent)")
+        self.wait(f"/^({state})$/.test(document.getElementById('state').textContent)")
+
+    def wait(self, condition: str) -> None:
+        # Not at each frame: frames are rare on a machine that draws without a graphics card.
+        self.page.wait_for_function(condition, polling=100)
 
     def shot(self, name: str) -> None:
         SHOTS.mkdir(parents=True, exist_ok=True)
@@ -140,7 +144,7 @@ def test_a_command_a_stop_and_a_delivery(visitor: Visitor, link: Link) -> None:
     page.press("#text", "Enter")
     visitor.until("NAVIGATING|GRABBING")
     visitor.shot("mission")
-    page.wait_for_function("document.body.dataset.outcome === 'delivered'")
+    visitor.wait("document.body.dataset.outcome === 'delivered'")
     outcome = last_outcome(link)
     assert outcome[0] != before[0]
     assert outcome[1] == "delivered"
@@ -177,7 +181,7 @@ def test_a_command_by_microphone(visitor: Visitor, link: Link) -> None:
     try:
         button = page.locator("#talk")
         button.dispatch_event("pointerdown")
-        page.wait_for_function("document.getElementById('talk').textContent === 'Talking'")
+        visitor.wait("document.getElementById('talk').textContent === 'Talking'")
         # The fake microphone plays the recording of two seconds over and over.
         eventually(lambda: "bring me the red mug" in (*heard, *commands), f"understood; heard {heard}", 120)
         button.dispatch_event("pointerup")

@@ -1,0 +1,218 @@
+"""`tidybot watch`: state, tree, plan, speech and services in the terminal, for those on ssh; space stops the robot."""
+
+import argparse
+import contextlib
+import select
+import sys
+import termios
+import tty
+from collections import deque
+from collections.abc import Iterator
+from typing import Any
+
+from rich.console import Console, Group
+from rich.layout import Layout
+from rich.live import Live
+from rich.panel import Panel
+from rich.table import Table
+from rich.text import Text
+from rich.tree import Tree
+
+from cli.link import Link, Watch, add_options, linked
+from common import messages as m
+from common import topics
+from common.clock import monotonic
+
+COLOURS = {"RUNNING": "bold blue", "SUCCESS": "green", "FAILURE": "red", "INVALID": "bright_black"}
+GOOD, BAD, FAINT = "green", "bold red", "bright_black"
+SERVICES_EVERY = 1.0
+LINES = 12
+KEYS = "space stop, r resume, y/n, q"
+
+
+class Picture:
+    """What is known now; `update` takes what has arrived."""
+
+    def __init__(self, link: Link) -> None:
+        self._link = link
+        self._watches: dict[str, Watch[Any]] = {
+            t.key: Watch(link, t)
+            for t in (
+                topics.BRAIN_STATE, topics.BRAIN_TREE, topics.ACTION_PLAN, topics.SIM_STATUS, topics.SPEECH_STATUS,
+                topics.SPEECH_GOAL, topics.SPEECH_RESULT, topics.VOICE_COMMAND, topics.NAVIGATION_STATUS,
+                topics.MANIPULATION_STATUS,
+            )
+        }  # fmt: skip
+        self.now: dict[str, Any] = {}
+        self.said: deque[tuple[str, str]] = deque(maxlen=LINES)
+        self.health: dict[str, m.Health] = {}
+        self.alive: set[str] = set()
+        self.restarts: dict[str, int] = {}
+        self._asked = float("-inf")
+
+    def update(self) -> None:
+        for key, watch in self._watches.items():
+            while (message := watch.next(0.0)) is not None:
+                self.now[key] = message
+                self._listen(message)
+        if monotonic() - self._asked >= SERVICES_EVERY:
+            self._asked = monotonic()
+            self.alive = self._link.alive()
+            for name, record in self._link.health().items():
+                before = self.health.get(name)
+                if before is not None and before.epoch != record.epoch:
+                    self.restarts[name] = self.restarts.get(name, 0) + 1
+                self.health[name] = record
+
+    def _listen(self, message: m.Message) -> None:
+        if isinstance(message, m.SpeechGoal) and message.goal.startswith("say "):
+            self._note("robot", message.goal[4:])
+        elif isinstance(message, m.SpeechResult) and message.code != "TIMEOUT":
+            self._note("heard", f"({message.code or 'nothing'})" if message.text == "ERROR" else message.text)
+        elif isinstance(message, m.VoiceCommand):
+            self._note("heard", message.text)
+
+    def _note(self, who: str, text: str) -> None:
+        if (who, text) not in list(self.said)[-2:]:
+            self.said.append((who, text))
+
+    def get(self, topic: topics.Topic[Any]) -> Any:
+        return self.now.get(topic.key)
+
+
+def mission(picture: Picture) -> Group:
+    """State, command, step, plan, base, arm, last outcome."""
+    state, sim = picture.get(topics.BRAIN_STATE), picture.get(topics.SIM_STATUS)
+    rows: list[Any] = []
+    if sim is not None and sim.state == "stopped":
+        rows.append(Text("STOPPED: the brake is on", style=BAD))
+    if state is None:
+        return Group(*rows, Text("the brain has not been heard", style=FAINT))
+    head = Text(state.state, style="bold")
+    head.append(f"  {state.detail}", style=FAINT)
+    rows.append(head)
+    ended = state.last.id if state.last else ""
+    if state.command and state.mission_id not in ("", ended):
+        rows.append(Text(f"“{state.command}”  step {state.step}  for {max(0.0, state.t - state.started):.0f} s"))
+    plan = picture.get(topics.ACTION_PLAN)
+    if plan is not None and state.pipeline == "vla":
+        for n, step in enumerate(plan.steps, 1):
+            rows.append(Text(f"  {n}. " + " ".join(w for w in (step.action, step.object, step.target, step.text) if w)))
+    for name, topic in (("base", topics.NAVIGATION_STATUS), ("arm", topics.MANIPULATION_STATUS)):
+        status = picture.get(topic)
+        if status is not None:
+            words = (status.status, getattr(status, "phase", ""), status.code, status.detail)
+            rows.append(Text(f"{name}: " + " ".join(w for w in words if w)))
+    if state.last is not None:
+        why = f" ({state.last.reason})" if state.last.reason else ""
+        style = GOOD if state.last.outcome == "delivered" else BAD
+        rows.append(Text(f"last: {state.last.command}: {state.last.outcome}{why}", style=style))
+    return Group(*rows)
+
+
+def tree(snapshot: m.TreeSnapshot | None) -> Tree | Text:
+    """The behaviour tree; what neither runs nor failed is folded below the first levels."""
+    if snapshot is None:
+        return Text("no tree yet", style=FAINT)
+
+    def label(node: m.TreeNode) -> Text:
+        text = Text(node.name, style=COLOURS.get(status(node), FAINT))
+        return text.append(f"  {node.detail}", style=FAINT) if node.detail else text
+
+    def status(node: m.TreeNode) -> str:
+        return node.status.rpartition(".")[2].upper()
+
+    def grow(node: m.TreeNode, onto: Tree, depth: int) -> None:
+        for child in node.children:
+            branch = onto.add(label(child))
+            if status(child) in ("RUNNING", "FAILURE") or depth < 1:
+                grow(child, branch, depth + 1)
+
+    root = Tree(label(snapshot.root), guide_style=FAINT)
+    grow(snapshot.root, root, 0)
+    return root
+
+
+def services(picture: Picture) -> Table:
+    table = Table(box=None, pad_edge=False, padding=(0, 1, 0, 0))
+    for n, name in enumerate(("", "service", "again", "Hz", "MB", "drops", "up s")):
+        table.add_column(name, justify="right" if n > 1 else "left", no_wrap=True)
+    for name in sorted(picture.health.keys() | picture.alive):
+        there = name in picture.alive
+        word = Text("●", style=GOOD) if there else Text("✗", style=BAD)
+        record = picture.health.get(name)
+        if record is None:
+            table.add_row(word, name)
+            continue
+        numbers = (picture.restarts.get(name, 0), record.hz, record.rss_mb, record.drops, record.uptime)
+        table.add_row(word, name, *(f"{n:.0f}" for n in numbers))
+        if record.last_error:
+            table.add_row("", Text(record.last_error[:60], style=BAD))
+    return table
+
+
+def drawn(picture: Picture) -> Layout:
+    """Everything on one screen."""
+    talk = Text()
+    for who, text in picture.said:
+        talk.append(f"{who}: ", style=FAINT if who == "heard" else "blue").append(f"{text}\n")
+    layout = Layout()
+    layout.split_row(Layout(name="left"), Layout(name="right"))
+    layout["left"].split_column(
+        Layout(Panel(mission(picture), title="mission"), ratio=3), Layout(Panel(talk, title="speech"), ratio=2)
+    )
+    layout["right"].split_column(
+        Layout(Panel(tree(picture.get(topics.BRAIN_TREE)), title="tree"), ratio=3),
+        Layout(Panel(services(picture), title="services", subtitle=KEYS), ratio=2),
+    )
+    return layout
+
+
+@contextlib.contextmanager
+def keyboard() -> Iterator[bool]:
+    """Single key presses while inside; False when nobody types here."""
+    if not sys.stdin.isatty():
+        yield False
+        return
+    before = termios.tcgetattr(sys.stdin)
+    try:
+        tty.setcbreak(sys.stdin)
+        yield True
+    finally:
+        termios.tcsetattr(sys.stdin, termios.TCSADRAIN, before)
+
+
+def press(link: Link, key: str) -> bool:
+    """Do what a key means; False to leave."""
+    if key == " ":
+        link.send(topics.ROBOT_STOP, m.RobotStop(reason="space bar", source="tidybot watch"))
+    elif key == "r":
+        link.send(topics.ROBOT_RESUME, m.RobotResume(source="tidybot watch"))
+    elif key in ("y", "n"):
+        link.send(topics.VOICE_COMMAND, m.VoiceCommand(text={"y": "yes", "n": "no"}[key], confirmed=True))
+    return key != "q"
+
+
+def watch(args: argparse.Namespace) -> int:
+    console = Console()
+    with linked(args) as link:
+        picture = Picture(link)
+        picture.update()
+        if args.once:
+            console.print(drawn(picture), height=args.height)
+            return 0
+        with keyboard() as typing, Live(drawn(picture), console=console, screen=True, auto_refresh=False) as live:
+            while True:
+                waiting = select.select([sys.stdin] if typing else [], [], [], 0.2)[0]
+                if waiting and not press(link, sys.stdin.read(1)):
+                    return 0
+                picture.update()
+                live.update(drawn(picture), refresh=True)
+
+
+def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+    parser = commands.add_parser("watch", help="state, tree, plan, speech and services in the terminal; space stops")
+    parser.add_argument("--once", action="store_true", help="print one picture and leave")
+    parser.add_argument("--height", type=int, default=40, help="lines of that picture (default %(default)s)")
+    add_options(parser)
+    parser.set_defaults(run=watch)
