@@ -19,7 +19,7 @@ import zenoh
 from common import access, keys
 from common.certificate import Identity
 from common.keys import CA, CERT, KEY
-from common.process import StopSignal, die_with_parent
+from common.process import SILENCE, StopSignal, die_with_parent, limit_silence
 
 CONFIG = Path(__file__).resolve().parent.parent / "config" / "zenoh" / "router.json5"
 SUBJECTS = "subjects.json"
@@ -40,7 +40,7 @@ def main() -> None:
     with opened:
         print(f"router: listening on {args.listen}", file=sys.stderr, flush=True)
         while not stop.wait(1.0):
-            pass
+            limit_silence(SILENCE)
 
 
 def _arguments() -> argparse.Namespace:

@@ -16,7 +16,7 @@ from common import messages as m
 from common.clock import Clock, Pacer, SimClock, WallClock, monotonic
 from common.iobase import health_of
 from common.lockstep import DT, Barrier, period_of
-from common.process import StopSignal, die_with_parent, rss_mb
+from common.process import SILENCE, StopSignal, die_with_parent, limit_silence, rss_mb
 from common.scene import Scene, SceneError, load_scene
 
 HEALTH_PERIOD = 1.0
@@ -84,6 +84,7 @@ class Process:
         if elapsed >= HEALTH_PERIOD:
             self._publish_health(self._steps / elapsed)
             self._health_at += elapsed
+            limit_silence(SILENCE)
             self._steps = 0
 
     def step(self, tick: int | None, now: float) -> None:
