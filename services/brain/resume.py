@@ -23,6 +23,7 @@ MOVED = 0.3
 TURNED = 0.5
 CLOCK_SLACK = 2.0
 SPARE_GOALS = 10
+PLANS = ("execute", "go and look")
 Change = Literal["", "lost", "holding", "moved", "new world"]
 
 
@@ -96,18 +97,21 @@ def _moved(before: Pose | None, now: Pose | None) -> bool:
 
 
 # --- where to go on
-def _at(path: Sequence[Place], name: str) -> int | None:
-    return next((i for i, place in enumerate(path) if place.name == name), None)
+def _at(path: Sequence[Place], name: str) -> int:
+    return next((i for i, place in enumerate(path) if place.name == name), -1)
+
+
+def _plan(path: Sequence[Place]) -> int | None:
+    """Where in the path a plan is carried out: the place after it is the plan's step."""
+    return next((i for i, place in enumerate(path[:-1]) if place.name in PLANS), None)
 
 
 def _back(path: list[Place], mission: Mission, change: Change) -> list[Place]:
     """The place from which the rest of the mission can be done again: in a plan the step that needs it."""
-    execute = _at(path, "execute")
-    if execute is not None and execute + 1 < len(path):
-        k = path[execute + 1].index
-        return [*path[: execute + 1], Place(earlier(mission.plan, k, change), "")]
-    do = _at(path, "do")
-    return path if do is None or execute is not None else path[: do + 1]
+    plan = _plan(path)
+    if plan is not None:
+        return [*path[: plan + 1], Place(earlier(mission.plan, path[plan + 1].index, change), "")]
+    return path[: _at(path, "do") + 1] if _at(path, "as asked") >= 0 else path
 
 
 def earlier(plan: Sequence[PlanStep], k: int, change: Change) -> int:
@@ -127,17 +131,17 @@ def earlier(plan: Sequence[PlanStep], k: int, change: Change) -> int:
 
 def _about_to_grasp(path: list[Place], mission: Mission) -> tuple[str, list[Place]]:
     """The object that the mission was about to take, and the place behind the taking; "" if there is none."""
-    execute = _at(path, "execute")
-    if execute is not None and execute + 1 < len(path):
-        for j in range(path[execute + 1].index, len(mission.plan) - 1):
+    plan = _plan(path)
+    if plan is not None:
+        for j in range(path[plan + 1].index, len(mission.plan) - 1):
             step = mission.plan[j]
             if step.action == "grasp":
                 pose = mission.found.get(step.object)
-                return (pose.label if pose else "") or step.object, [*path[: execute + 1], Place(j + 1, "")]
+                return (pose.label if pose else "") or step.object, [*path[: plan + 1], Place(j + 1, "")]
             if step.action in ("place", "release"):
                 break
         return "", path
-    if execute is None and _at(path, "do") is not None and mission.kind == "fetch":
+    if _at(path, "as asked") >= 0 and mission.kind == "fetch":
         return mission.label, _back(path, mission, "holding")
     return "", path
 

@@ -7,19 +7,19 @@ from typing import Any
 import msgspec
 import pytest
 
-from bench.mission import Robot
 from common import messages as m
 from common import topics
+from evaluation.stack import Stack
 
 ITEM = "red mug"
 STATES = ("NAVIGATING", "GRABBING", "RETURNING", "RELEASING")
 
 
-class Watched(Robot):
+class Watched(Stack):
     """A robot whose brain can be killed; keeps what was asked of the arm and whether the object was ever let fall."""
 
     def __init__(self, directory: Path, seed: int = 0) -> None:
-        super().__init__(seed=seed, settings=(f"brain.journal={directory / 'missions.db'}",))
+        super().__init__(seed=seed, settings=("brain.pipeline=fetch",), without=("planner",), state_dir=directory)
         self.arm_goals = self.bus.tap(topics.MANIPULATION_GOAL)
         self.arm_says = self.bus.tap(topics.MANIPULATION_STATUS)
         self.kills: list[str] = []

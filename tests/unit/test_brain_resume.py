@@ -69,12 +69,11 @@ def test_killed_again_and_again(pipeline: str, seed: int, tmp_path: Path) -> Non
     kills = 0
     while world.state.last is None:
         world.step(dice.uniform(0.05, 4.0))
-        if world.state.last is None and dice.random() < 0.9 and world.state.state not in ("LISTENING", "WAITING"):
+        if kills < 9 and world.state.last is None and world.state.state not in ("LISTENING", "WAITING"):
             world.kill_brain()
             world.step(dice.choice((0.05, 0.5, 5.0)))
             world.start_brain()
             kills += 1
-        assert kills < 60, world.timeline()
     delivered_once(world)
     assert kills > 0
 
