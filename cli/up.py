@@ -19,7 +19,7 @@ from common.access import OPERATOR, ROUTER
 from common.clock import monotonic, sleep, unix_time
 from common.keys import OFF
 
-READY_LIMIT = 60.0
+READY_LIMIT = 120.0
 EXTRA = {"camera", "dashboard"}  # the brain starts missions without these
 
 

@@ -33,6 +33,7 @@ class Track:
     on: str
     seen_at: float
     weight: float
+    best: float = 0.0
     scores: dict[tuple[str, str, str], float] = field(default_factory=dict)
     misses: int = 0
     sightings: int = 0
@@ -141,9 +142,10 @@ def _see(track: Track, d: Detection, now: float) -> None:
     weight = 1.0 / max(0.2, d.distance) ** 2 * (0.3 if d.confidence < SURE else 1.0)
     shift = math.hypot(d.position[0] - track.position[0], d.position[1] - track.position[1])
     if shift > MOVED or track.weight == 0.0 or weight > track.weight:
-        track.weight, share = weight, 1.0
+        track.weight = track.best = weight
+        share = 1.0
     else:
-        track.weight = min(track.weight + weight, TRUST * weight)
+        track.weight = min(track.weight + weight, TRUST * track.best)
         share = weight / track.weight
     old, new = np.array(track.position), np.array(d.position)
     x, y, z = (float(v) for v in old + share * (new - old))

@@ -86,8 +86,10 @@ class PerceptionService:
             self._description = description
             self._body = io.submit(Body, description.mjcf, seconds=0.2)
         joints = io.latest(topics.JOINT_STATES)
-        if joints is None or not {*ARM, "gripper"} <= set(joints.name) or min(len(joints.position), len(joints.effort)) < len(
-            joints.name
+        if (
+            joints is None
+            or not {*ARM, "gripper"} <= set(joints.name)
+            or min(len(joints.position), len(joints.effort)) < len(joints.name)
         ):
             return
         found = dict(zip(joints.name, zip(joints.position, joints.effort, strict=False), strict=False))

@@ -1,0 +1,136 @@
+"""Detection on views that MuJoCo's ray casting renders: no GL needed."""
+
+import math
+from functools import cache
+
+import numpy as np
+import pytest
+
+from common.scene import Scene, load_scene
+from services.camera.raycast import render
+from services.perception import colour, shapes
+from services.perception.body import Body
+from services.perception.detect import ClassicalDetector, Detection
+from services.perception.view import View
+from services.sim import robot
+from services.sim.layout import Placement, place_objects
+from services.sim.world import world_mjcf
+
+mujoco = pytest.importorskip("mujoco")
+WIDTH, HEIGHT, FOVY = 400, 300, 62.0
+HEAD = np.array([-0.12, 0.0, 1.30])
+
+
+@cache
+def world(seed: int) -> tuple[Scene, list[Placement], object, object]:
+    scene = load_scene("apartment")
+    placements = place_objects(scene, seed)
+    model = mujoco.MjModel.from_xml_string(world_mjcf(scene, placements))
+    return scene, placements, model, mujoco.MjData(model)
+
+
+def view(seed: int, x: float, y: float, theta: float) -> View:
+    """What the head camera of a robot at (x, y, theta) sees."""
+    _, _, model, data = world(seed)
+    for name, value in zip(robot.JOINT_NAMES[:10], (x, y, theta, *robot.HOME_ARM), strict=True):
+        data.qpos[model.joint(name).qposadr[0]] = value  # type: ignore[attr-defined]
+    mujoco.mj_kinematics(model, data)
+    mujoco.mj_camlight(model, data)
+    number = model.camera("head").id  # type: ignore[attr-defined]
+    rotation = data.cam_xmat[number].reshape(3, 3)  # type: ignore[attr-defined]
+    rgb, depth = render(model, data, data.cam_xpos[number], rotation, FOVY, WIDTH, HEIGHT)  # type: ignore[attr-defined]
+    focal = HEIGHT / 2 / math.tan(math.radians(FOVY) / 2)
+    return View(
+        rgb=rgb,
+        depth=depth.astype(np.float32),
+        focal=(focal, focal),
+        middle=(WIDTH / 2, HEIGHT / 2),
+        position=np.array(data.cam_xpos[number]),  # type: ignore[attr-defined]
+        rotation=rotation @ np.diag([1.0, -1.0, -1.0]),
+    )
+
+
+def before(seed: int, on: str, distance: float = 1.1) -> tuple[View, list[Placement]]:
+    """A view of a receptacle from its first free side, and what stands on it."""
+    scene, placements, _, _ = world(seed)
+    r = scene.receptacle(on)
+    assert r is not None
+    ax, ay = r.approach[0]
+    edge = (r.size[0] if ax else r.size[1]) / 2 + distance
+    x, y = r.center[0] + ax * edge, r.center[1] + ay * edge
+    return view(seed, x, y, math.atan2(-ay, -ax)), [p for p in placements if p.on == on]
+
+
+def detect(seen: View, seed: int) -> list[Detection]:
+    scene = world(seed)[0]
+    body = Body(robot.robot_mjcf())
+    body.pose(np.array(robot.HOME_ARM), 0.085)
+    turn = math.atan2(seen.rotation[1, 2], seen.rotation[0, 2])
+    base = (
+        float(seen.position[0] - HEAD[0] * math.cos(turn)),
+        float(seen.position[1] - HEAD[0] * math.sin(turn)),
+        turn,
+    )
+    return ClassicalDetector(scene, 3.5).detect(seen, body.mask(seen, base))
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_what_stands_before_the_camera_is_named_and_placed(seed: int) -> None:
+    scene, placements, _, _ = world(seed)
+    on = max((r.name for r in scene.receptacles), key=lambda name: sum(p.on == name for p in placements))
+    seen, there = before(seed, on)
+    found = {d.label: d for d in detect(seen, seed) if d.on == on}
+    for p in there:
+        u, v, _ = seen.project(np.array([p.position]))[0]
+        if not (25 < u < WIDTH - 25 and 25 < v < HEIGHT - 25):
+            continue
+        assert p.spec.name in found, (p.spec.name, sorted(found))
+        assert math.dist(found[p.spec.name].position, p.position) < 0.015
+        assert found[p.spec.name].colour == p.spec.colour
+    assert set(found) <= {p.spec.name for p in there}
+
+
+def test_an_empty_floor_and_the_robot_itself_are_nothing() -> None:
+    seen = view(0, 0.9, -1.4, math.pi)
+    assert [d for d in detect(seen, 0) if not d.on] == []
+
+
+@pytest.mark.parametrize(
+    ("kind", "size"), [("can", (0.066, 0.066, 0.115)), ("box", (0.06, 0.08, 0.13)), ("ball", (0.066, 0.066, 0.066))]
+)
+def test_a_shape_is_placed_from_the_half_that_is_seen(kind: str, size: tuple[float, float, float]) -> None:
+    rng = np.random.default_rng(1)
+    x, y, yaw, floor = 0.3, -0.2, 0.4, 0.7
+    cloud = rng.uniform(-0.08, 0.08, (60000, 3)) + np.array([x, y, floor + size[2] / 2])
+    shell = cloud[shapes.distances(kind, size, cloud, floor, x, y, yaw) < 0.001]  # type: ignore[arg-type]
+    camera = np.array([-0.8, 0.1, 1.3])
+    facing = shell[(shell - np.array([x, y, floor + size[2] / 2])) @ (camera - np.array([x, y, floor])) > 0]
+    fit = shapes.fit(kind, size, facing, floor, camera)  # type: ignore[arg-type]
+    assert math.hypot(fit.x - x, fit.y - y) < 0.004
+    assert fit.residual < 0.002
+    if kind == "box":
+        assert abs(math.remainder(fit.yaw - yaw, math.pi)) < 0.05
+
+
+def test_a_can_explains_a_mug_worse_than_a_mug_does() -> None:
+    size = (0.074, 0.074, 0.095)
+    angle = np.linspace(0, 2 * math.pi, 200)
+    ring = [
+        np.stack([r * np.cos(angle), r * np.sin(angle), np.full(200, z)], axis=1)
+        for r, z in ((0.035, 0.05), (0.033, 0.03), (0.037, 0.09))
+    ]
+    points = np.concatenate(ring)
+    camera = np.array([-1.0, 0.0, 1.0])
+    assert shapes.fit("mug", size, points, 0.0, camera).residual < shapes.fit("can", size, points, 0.0, camera).residual
+
+
+def test_colours_have_their_everyday_names_in_bright_and_dim_light() -> None:
+    for spec in load_scene("apartment").objects:
+        for light in (1.0, 0.6):
+            named = colour.name(np.array(spec.rgba[:3]) * light)
+            assert named == spec.colour or (spec.colour == "white" and named == "grey" and light < 1)
+
+
+def test_the_typical_colour_ignores_a_small_part_of_another() -> None:
+    rgb = np.array([[30, 130, 50]] * 80 + [[230, 230, 230]] * 20, np.uint8)
+    assert colour.name(colour.typical(rgb)) == "green"

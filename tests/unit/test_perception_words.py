@@ -1,0 +1,160 @@
+"""Words to objects, and objects over time."""
+
+import math
+
+import numpy as np
+import pytest
+
+from common.geometry import yaw_quat
+from common.messages import WorldObject
+from common.scene import load_scene
+from services.perception.detect import Detection
+from services.perception.ground import ground
+from services.perception.memory import Memory
+from services.perception.view import View
+
+SCENE = load_scene("apartment")
+SYNONYMS = {"cup": "mug", "tin": "can"}
+
+
+def known(label: str, x: float, y: float, on: str = "counter", held: bool = False) -> WorldObject:
+    spec = SCENE.object(label)
+    assert spec is not None
+    return WorldObject(
+        label=label, kind=spec.kind, colour=spec.colour, position=(x, y, 0.8), orientation=yaw_quat(0.0),
+        size=spec.size, on=on, held=held, id=label,
+    )  # fmt: skip
+
+
+WORLD = [
+    known("red mug", 1.0, 0.5),
+    known("blue mug", 1.0, -0.5),
+    known("green can", 1.2, 0.0, "living table"),
+    known("yellow bowl", 0.5, 0.2, "bookshelf"),
+    known("blue bottle", 2.0, 0.0, "", held=True),
+]
+
+
+@pytest.mark.parametrize(
+    ("words", "label"),
+    [
+        ("red mug", "red mug"),
+        ("the red mug", "red mug"),
+        ("red cup", "red mug"),
+        ("blue one", ""),
+        ("mug on the left", "red mug"),
+        ("the left mug", "red mug"),
+        ("the mug on the right", "blue mug"),
+        ("nearest mug", "red mug"),
+        ("bowl", "yellow bowl"),
+        ("the bowl on the shelf", "yellow bowl"),
+        ("tin", "green can"),
+        ("mug on the table", ""),
+        ("white mug", ""),
+        ("sofa", ""),
+        ("", ""),
+    ],
+)
+def test_a_phrase_means_one_object_or_none(words: str, label: str) -> None:
+    result = ground(words, WORLD, SCENE, (0.0, 0.0, 0.0), SYNONYMS)
+    assert (result.found.label if result.found else "") == label
+    assert bool(result.found) != bool(result.reason)
+
+
+def test_several_matches_are_named_and_none_is_chosen() -> None:
+    result = ground("mug", WORLD, SCENE, (0.0, 0.0, 0.0), SYNONYMS)
+    assert result.found is None
+    assert result.candidates == ["blue mug", "red mug"]
+
+
+def test_left_and_right_are_the_robots() -> None:
+    assert ground("left mug", WORLD, SCENE, (2.0, 0.0, math.pi), SYNONYMS).found is WORLD[1]
+
+
+def test_what_the_hand_holds_is_not_offered() -> None:
+    result = ground("blue bottle", WORLD, SCENE, (0.0, 0.0, 0.0), SYNONYMS)
+    assert result.found is None
+    assert "gripper" in result.reason
+
+
+# --- memory
+
+
+def detection(label: str, x: float, y: float, confidence: float = 0.9, distance: float = 1.0) -> Detection:
+    spec = SCENE.object(label)
+    assert spec is not None
+    return Detection(label, spec.kind, spec.colour, (x, y, 0.8), 0.0, spec.size, confidence, "counter", distance)
+
+
+def empty_view(far: float = 3.0) -> View:
+    """A camera at (0, 0, 1.3) that looks along x, slightly down, at nothing nearer than `far` metres."""
+    return View(
+        rgb=np.zeros((240, 320, 3), np.uint8),
+        depth=np.full((240, 320), far, np.float32),
+        focal=(200.0, 200.0),
+        middle=(160.0, 120.0),
+        position=np.array([0.0, 0.0, 1.3]),
+        rotation=np.array([[0.0, -0.34, 0.94], [-1.0, 0.0, 0.0], [0.0, -0.94, -0.34]]),
+    )
+
+
+def test_looks_add_up_and_nearer_ones_count_more() -> None:
+    memory = Memory(SCENE, 3, 0.6)
+    memory.look(empty_view(), [detection("red mug", 1.00, 0.0, distance=3.0)], 1.0)
+    memory.look(empty_view(), [detection("red mug", 1.03, 0.0, distance=0.8)], 2.0)
+    memory.look(empty_view(), [detection("red mug", 1.00, 0.0, distance=3.0)], 3.0)
+    (found,) = memory.objects()
+    assert abs(found.position[0] - 1.03) < 0.005
+    assert found.seen_at == 3.0
+
+
+def test_one_wrong_name_does_not_rename() -> None:
+    memory = Memory(SCENE, 3, 0.6)
+    for t in range(3):
+        memory.look(empty_view(), [detection("red mug", 1.0, 0.0)], float(t))
+    memory.look(empty_view(), [detection("red can", 1.0, 0.0, confidence=0.7)], 3.0)
+    assert [o.label for o in memory.objects()] == ["red mug"]
+
+
+def test_a_doubtful_sighting_is_not_reported() -> None:
+    memory = Memory(SCENE, 3, 0.6)
+    memory.look(empty_view(), [detection("white mug", 1.0, 0.0, confidence=0.2, distance=3.0)], 0.0)
+    assert memory.objects() == []
+
+
+def test_a_thing_is_gone_after_looks_through_its_place_only() -> None:
+    memory = Memory(SCENE, 3, 0.6)
+    memory.look(empty_view(), [detection("red mug", 1.2, 0.0)], 0.0)
+    for t in range(5):
+        memory.look(empty_view(far=0.8), [], 1.0 + t)  # something stands in front
+    assert len(memory.objects()) == 1
+    for t in range(3):
+        memory.look(empty_view(far=3.0), [], 10.0 + t)
+    assert memory.objects() == []
+
+
+def test_a_moved_thing_is_in_its_new_place_only() -> None:
+    memory = Memory(SCENE, 3, 0.6)
+    memory.look(empty_view(), [detection("red mug", 1.2, 0.0)], 0.0)
+    memory.look(empty_view(far=0.5), [detection("red mug", 1.2, 0.8)], 5.0)
+    (found,) = memory.objects()
+    assert found.position[1] == 0.8
+
+
+def test_a_held_thing_moves_with_the_hand_and_stays_where_it_is_let_go() -> None:
+    memory = Memory(SCENE, 3, 0.6)
+    memory.look(empty_view(), [detection("red mug", 1.2, 0.0)], 0.0)
+    memory.carry((1.2, 0.0, 0.82), True, 1.0)
+    memory.carry((0.4, 0.0, 0.9), True, 2.0)
+    (held,) = memory.objects()
+    assert held.held and held.position == (0.4, 0.0, 0.9)
+    memory.carry((0.7, 0.1, 0.52), False, 3.0)
+    (found,) = memory.objects()
+    assert not found.held and found.on == "delivery tray"
+
+
+def test_a_closed_hand_far_from_everything_holds_nothing_known() -> None:
+    memory = Memory(SCENE, 3, 0.6)
+    memory.look(empty_view(), [detection("red mug", 1.2, 0.0)], 0.0)
+    memory.carry((0.0, 1.0, 0.9), True, 1.0)
+    assert [o.held for o in memory.objects()] == [False]
