@@ -1,5 +1,9 @@
-"""Recognition on recorded commands: sentence accuracy, false acceptance and speed; the peer is the same model
-without the grammar. `python -m bench.speech --limit 20`."""
+"""Recognition on recorded commands, through the code that the service and `tidybot transcribe` use.
+
+Per kind of recording and noise: sentences that are exactly right and accepted; exactly right whatever the verdict; the
+peer, which is the same model without the grammar; accepted at all; wake word heard; CPU seconds per second of sound.
+`python -m bench.speech --limit 0` takes all recordings.
+"""
 
 import argparse
 import csv
@@ -13,16 +17,20 @@ from common.scene import load_scene
 from services.speech.audio import RATE, read_wav
 from services.speech.config import SpeechConfig
 from services.speech.grammar import spoken
-from services.speech.recognise import Ear, command_grammar
+from services.speech.recognise import without_wake
+from services.speech.transcribe import Reader
 
-ROWS = (("cmd", "clean"), ("cmd", "10"), ("oog", ""), ("near", ""))
+ROWS = (
+    ("cmd", "clean"), ("cmd", "10"), ("wakecmd", "clean"), ("wakecmd", "10"), ("wake", ""), ("near", ""), ("oog", ""),
+)  # fmt: skip
 CORPUS = Path(__file__).resolve().parents[2] / "shared" / "speech"
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--corpus", type=Path, default=CORPUS)
     parser.add_argument("--limit", type=int, default=30, help="recordings a row, 0 for all")
+    parser.add_argument("--only", default="", help="rows whose name begins like this, such as 'cmd 10'")
     parser.add_argument("--errors", action="store_true", help="print what was misheard")
     args = parser.parse_args()
     manifest = args.corpus / "manifest.tsv"
@@ -30,31 +38,33 @@ def main() -> int:
         print(f"no recordings at {args.corpus}: nothing measured")
         return 0
     parameters = config.load("speech", SpeechConfig, config.config_dir(), {})
-    scene = load_scene("apartment")
-    ear = Ear(parameters, scene, command_grammar(parameters, scene))
+    reader = Reader(parameters, load_scene("apartment"))
     with manifest.open(encoding="utf-8") as file:
         recordings = list(csv.DictReader(file, delimiter="\t"))
     random.Random(0).shuffle(recordings)
-    print(f"{'recordings':14} {'n':>4} {'exact':>7} {'free':>7} {'accepted':>9} {'x real time':>12}")
+    print(f"{'recordings':14} {'n':>4} {'right':>7} {'exact':>7} {'free':>7} {'accepted':>9} {'wake':>6} {'CPU/s':>7}")
     for kind, noise in ROWS:
+        name = f"{kind} {noise or 'all'}"
+        if not name.startswith(args.only):
+            continue
         rows = [r for r in recordings if r["kind"] == kind and r["snr"].startswith(noise)]
         rows = rows[: args.limit or None]
-        exact, free, accepted, heard_seconds, spent = 0, 0, 0, 0.0, 0.0
+        right, exact, free, accepted, woken, heard_seconds, spent = 0, 0, 0, 0, 0, 0.0, 0.0
         for row in rows:
             samples = read_wav(args.corpus / row["file"])
-            began = time.perf_counter()
-            heard = ear.hear(samples)
-            spent += time.perf_counter() - began
+            began = time.process_time()
+            heard, wake = reader(samples)
+            spent += time.process_time() - began
             heard_seconds += len(samples) / RATE
-            right = heard.verdict == "accept" and heard.text == row["text"]
-            exact, free = exact + right, free + (spoken(heard.free) == row["text"])
-            accepted += heard.verdict == "accept"
-            if args.errors and right != (kind == "cmd"):
-                print(f"   {row['file']}: {heard}")
+            same = heard.text == without_wake(row["text"], parameters.wake)
+            taken = heard.verdict == "accept" and bool(heard.text)
+            right, exact, free = right + (same and taken), exact + same, free + (spoken(heard.free) == row["text"])
+            accepted, woken = accepted + taken, woken + wake
+            if args.errors and ((same and taken) != kind.endswith("cmd") or wake != kind.startswith("wake")):
+                print(f"   {row['file']}: {heard} wake={wake}", flush=True)
         n = max(1, len(rows))
-        name = f"{kind} {noise or 'all'}"
-        rate = heard_seconds / max(spent, 1e-9)
-        print(f"{name:14} {len(rows):4} {exact / n:7.2f} {free / n:7.2f} {accepted / n:9.2f} {rate:12.1f}", flush=True)
+        figures = f"{right / n:7.3f} {exact / n:7.3f} {free / n:7.3f} {accepted / n:9.3f} {woken / n:6.2f}"
+        print(f"{name:14} {len(rows):4} {figures} {spent / max(heard_seconds, 1e-9):7.2f}", flush=True)
     return 0
 
 

@@ -16,7 +16,7 @@ from common import topics
 from common.clock import monotonic
 
 OPEN = ("WAITING", "LISTENING", "COMPLETED", "ERROR")
-ACCEPT, HEAR = 5.0, 60.0
+ACCEPT, HEAR, LISTEN = 5.0, 60.0, 90.0
 Show = Callable[[m.BrainState], None]
 
 
@@ -52,6 +52,18 @@ class Conversation:
         why = self.closed()
         if why:
             raise CliError(f"{why}; wait with `tidybot status --wait WAITING`, or end it with `tidybot say cancel`")
+
+    def await_open(self, timeout: float = LISTEN) -> None:
+        """Return when the robot takes a command.
+
+        Raises:
+            CliError: it does not in time.
+        """
+        end = monotonic() + timeout
+        while why := self.closed():
+            if monotonic() > end:
+                raise CliError(f"after {timeout:.0f} s still: {why}")
+            self._next(0.2)
 
     def closed(self) -> str:
         """Why the robot takes no command now; "" when it does."""
@@ -112,12 +124,13 @@ def speak_into(link: Link, talk: Conversation, chunks: list[bytes]) -> tuple[str
     """Say it to the robot, as with a push-to-talk button: (mission id or "", why not).
 
     Raises:
-        CliError: the speech service is not there.
+        CliError: the speech service is not there, or the robot stays busy.
     """
     heard, status = Watch(link, topics.SPEECH_RESULT), Watch(link, topics.SPEECH_STATUS)
     heard.next(0.3)  # the result of an earlier utterance
     if status.next(1.0) is None and "speech" not in link.alive():
         raise CliError("the speech service is not there; see `tidybot ps`")
+    talk.await_open()
     Player(link, chunks).play()
     why = ""
 

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from services.speech.grammar import Grammar, State, spoken
+from services.speech.grammar import Grammar, State
 from services.speech.unpack import session
 
 Array = NDArray[np.float32]
@@ -27,11 +27,15 @@ _SILENT = set(".,?!;:'\"-")
 
 @dataclass(frozen=True)
 class Decoded:
-    """Text, the sum of its tokens' log-probabilities, and their number."""
+    """Text, the sum of its tokens' log-probabilities, and the tokens with the final one."""
 
     text: str
     log_probability: float
-    tokens: int
+    numbers: tuple[int, ...]
+
+    @property
+    def tokens(self) -> int:
+        return len(self.numbers)
 
 
 def models() -> Path:
@@ -135,6 +139,7 @@ class Moonshine:
         self._encoder, self._decoder = networks(threads)
         self._outputs = [o.name for o in self._decoder.get_outputs()]
         self._beam = beam
+        self._expected: dict[tuple[int, ...], float] = {}
         self.tokens = read_tokens(folder / "tokenizer.bin")
 
     def encode(self, renditions: Array) -> "Utterance":
@@ -154,7 +159,7 @@ class Moonshine:
                 break
             numbers.append(best)
             scores, cache = self._next(utterance.hidden, [best], cache)
-        return Decoded("".join(self.tokens[n] for n in numbers).strip(), total, len(numbers) + 1)
+        return Decoded("".join(self.tokens[n] for n in numbers).strip(), total, (*numbers, EOS))
 
     def best(self, utterance: "Utterance", vocabulary: Vocabulary) -> list[Decoded]:
         """Different sentences of the grammar, the likeliest first; empty when none fits into the length."""
@@ -186,19 +191,39 @@ class Moonshine:
         found: dict[str, Decoded] = {}
         for total, numbers in sorted(finished, key=lambda f: -f[0]):
             text = vocabulary.text(numbers)
-            found.setdefault(text, Decoded(text, total, len(numbers) + 1))
+            found.setdefault(text, Decoded(text, total, (*numbers, EOS)))
         return list(found.values())
+
+    def expected(self, sentences: list[Decoded]) -> list[float]:
+        """Log-probability of each sentence when nothing at all is heard: what the model expects people to say."""
+        new = [s.numbers for s in sentences if s.numbers not in self._expected]
+        if new:
+            length = max(map(len, new))
+            inputs = np.full((len(new), length), EOS, np.int64)
+            for row, numbers in enumerate(new):
+                inputs[row, : len(numbers)] = (BOS, *numbers[:-1])
+            deaf = np.zeros((len(new), 1, HEADS * WIDTH), np.float32)
+            found = self._decoder.run(["logits"], self._opening(deaf, inputs))[0]
+            scores = _log_probabilities(found)
+            for row, numbers in enumerate(new):
+                self._expected[numbers] = float(sum(scores[row, i, n] for i, n in enumerate(numbers)))
+        return [self._expected[s.numbers] for s in sentences]
 
     # --- the network
     def _first(self, hidden: Array) -> tuple[Array, dict[str, Array]]:
+        feeds = self._opening(hidden, np.full((len(hidden), 1), BOS, np.int64))
+        return self._run(feeds, {}, len(hidden))
+
+    def _opening(self, hidden: Array, inputs: NDArray[np.int64]) -> dict[str, Any]:
+        """What the decoder takes when it has no memory yet."""
         feeds: dict[str, Any] = {"encoder_hidden_states": hidden, "use_cache_branch": np.array([False])}
-        feeds["input_ids"] = np.full((len(hidden), 1), BOS, np.int64)
+        feeds["input_ids"] = inputs
         empty = np.zeros((0, HEADS, 1, WIDTH), np.float32)
         for layer in range(LAYERS):
             for side in ("decoder", "encoder"):
                 for what in ("key", "value"):
                     feeds[f"past_key_values.{layer}.{side}.{what}"] = empty
-        return self._run(feeds, {}, len(hidden))
+        return feeds
 
     def _next(self, hidden: Array, last: list[int], cache: dict[str, Array]) -> tuple[Array, dict[str, Array]]:
         renditions = len(hidden)
@@ -212,15 +237,20 @@ class Moonshine:
 
     def _run(self, feeds: dict[str, Any], cache: dict[str, Array], renditions: int) -> tuple[Array, dict[str, Array]]:
         found = dict(zip(self._outputs, self._decoder.run(None, feeds), strict=True))
-        logits = found.pop("logits")[:, -1].astype(np.float64)
+        scores = _log_probabilities(found.pop("logits")[:, -1])
         kept = {}
         for name, value in found.items():
             past = name.replace("present", "past_key_values")
             # Only the first step fills the encoder's part; later steps return it empty.
             kept[past] = cache[past] if cache and ".encoder." in name else value
-        shifted = logits - logits.max(axis=1, keepdims=True)
-        log_probabilities = shifted - np.log(np.exp(shifted).sum(axis=1, keepdims=True))
-        return log_probabilities.reshape(-1, renditions, log_probabilities.shape[1]).mean(axis=1), kept
+        return scores.reshape(-1, renditions, scores.shape[1]).mean(axis=1), kept
+
+
+def _log_probabilities(logits: NDArray[Any]) -> Array:
+    shifted = logits.astype(np.float64)
+    shifted -= shifted.max(axis=-1, keepdims=True)
+    found: Array = shifted - np.log(np.exp(shifted).sum(axis=-1, keepdims=True))
+    return found
 
 
 @dataclass(frozen=True)
