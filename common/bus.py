@@ -8,6 +8,7 @@ plain `get`. Callbacks only enqueue: they run in Zenoh's receiving thread, one a
 import queue
 import struct
 import sys
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Future
 from concurrent.futures import wait as futures_wait
@@ -371,18 +372,18 @@ class ZenohIo(IoBase):
 class ClockListener:
     """Ticks of `sim/clock` that a participant is due at."""
 
-    def __init__(self, opened: zenoh.Session, period: int) -> None:
+    def __init__(self, opened: zenoh.Session, period: int, drops: Counter[str]) -> None:
+        self._drops = drops
         self._ticks: queue.SimpleQueue[m.SimClockTick] = queue.SimpleQueue()
         self._period = period
         self.seen = float("-inf")
-        self.bad = 0
         self._kept = listen(opened, topics.SIM_CLOCK.key, self._receive)
 
     def _receive(self, sample: zenoh.Sample) -> None:
         try:
             tick = codec.decode(topics.SIM_CLOCK, sample.payload.to_bytes())
         except codec.DecodeError:
-            self.bad += 1
+            self._drops[topics.SIM_CLOCK.key] += 1
             return
         if tick.tick < 0:
             tick.tick = round(tick.t * 100)
@@ -404,7 +405,8 @@ class ClockListener:
 class AckCollector:
     """Acknowledgements on `sim/ack`, for the simulation's barrier."""
 
-    def __init__(self, opened: zenoh.Session) -> None:
+    def __init__(self, opened: zenoh.Session, drops: Counter[str]) -> None:
+        self._drops = drops
         self._acks: queue.SimpleQueue[tuple[str, int, int]] = queue.SimpleQueue()
         self._kept = listen(opened, topics.LOCKSTEP_ACK.key, self._receive)
 
@@ -412,6 +414,7 @@ class AckCollector:
         try:
             ack = codec.decode(topics.LOCKSTEP_ACK, sample.payload.to_bytes())
         except codec.DecodeError:
+            self._drops[topics.LOCKSTEP_ACK.key] += 1
             return
         self._acks.put((ack.name, ack.tick, ack.period))
 

@@ -115,7 +115,7 @@ class Process:
     def run_on_sim_clock(self, clock: SimClock) -> None:
         """Follow `sim/clock`; in lockstep, join, and acknowledge every due tick."""
         period = period_of(self._kind.HZ)
-        listener = bus.ClockListener(self._session, period)
+        listener = bus.ClockListener(self._session, period, self.io.drops)
         lockstep = self.io.lockstep
         acks = self._session.declare_publisher(
             topics.LOCKSTEP_ACK.key, congestion_control=zenoh.CongestionControl.BLOCK, express=True
@@ -149,7 +149,7 @@ class Process:
     def run_simulation(self, clock: SimClock, speed: float | None, wait_for: tuple[str, ...]) -> None:
         """The simulation's own loop: it makes the time that the others follow. `speed` None: as fast as possible."""
         lockstep, io = self.io.lockstep, self.io
-        acks = bus.AckCollector(self._session)
+        acks = bus.AckCollector(self._session, self.io.drops)
         clock_out = self._session.declare_publisher(
             topics.SIM_CLOCK.key, congestion_control=zenoh.CongestionControl.BLOCK, express=True
         )
