@@ -60,7 +60,7 @@ def mission(
     if state.command and state.mission_id not in ("", ended):
         rows.append(f"“{escape(state.command)}”")
         rows.append(f"step <b>{escape(state.step)}</b>, {max(0.0, now - state.started):.0f} s since the command")
-    plan = [f"<li>{escape(' '.join(w for w in (s.action, s.object, s.target, s.text) if w))}</li>" for s in steps]
+    plan = [f"<li>{_step(s, state.step)}</li>" for s in steps]
     if plan:
         rows.append(f'plan<ol style="margin:0;padding-left:1.6em">{"".join(plan)}</ol>')
     for name, status in (("base", navigation), ("arm", manipulation)):
@@ -75,6 +75,13 @@ def mission(
     return block("".join(f"<div>{row}</div>" for row in rows))
 
 
+def _step(step: m.PlanStep, current: str) -> str:
+    """A step of the plan; the one that the brain names now is bold."""
+    words = escape(" ".join(w for w in (step.action, step.object, step.target, step.text) if w))
+    meant = current.startswith(step.action) and (not step.object or step.object in current)
+    return f"<b>{words}</b>" if meant else words
+
+
 def transcript(lines: Iterable[Line]) -> str:
     """Newest first."""
     looks = {"said": ("robot", "#1c7ed6"), "heard": ("heard", GOOD), "typed": ("typed", GOOD), "robot": ("", FAINT)}
@@ -82,8 +89,8 @@ def transcript(lines: Iterable[Line]) -> str:
     for line in reversed(list(lines)):
         word, colour = looks.get(line.who, (line.who, FAINT))
         rows.append(
-            f'<div><span style="color:{FAINT}">{line.t:.0f} s</span> <span style="color:{colour}">{escape(word)}</span> '
-            f"{escape(line.text)}</div>"
+            f'<div><span style="color:{FAINT}">{line.t:.0f} s</span> '
+            f'<span style="color:{colour}">{escape(word)}</span> {escape(line.text)}</div>'
         )
     return block("".join(rows) or f'<span style="color:{FAINT}">Nothing has been said yet.</span>')
 

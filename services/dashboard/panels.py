@@ -7,7 +7,6 @@ import viser
 import viser.uplot as uplot
 from numpy.typing import NDArray
 
-from common import messages as m
 from services.dashboard.history import Curves
 
 BLANK = np.full((12, 16, 3), 32, np.uint8)
@@ -67,10 +66,9 @@ class Panels:
             self._texts[name] = html
             self._html[name].content = html
 
-    def picture(self, image: m.Rgbd) -> None:
-        pixels: NDArray[np.uint8] = np.frombuffer(image.rgb, np.uint8)
-        if pixels.size == image.width * image.height * 3 and image.camera in self._images:
-            self._images[image.camera].image = pixels.reshape(image.height, image.width, 3)
+    def picture(self, camera: str, pixels: NDArray[np.uint8]) -> None:
+        """Show (height, width, 3) uint8."""
+        self._images[camera].image = pixels
 
     def plot(self, curves: Curves, title: str, unit: str, top: float) -> None:
         """Add a chart of curves; `top` is the least upper end of its axis."""

@@ -14,6 +14,7 @@ from services.dashboard.commands import Commands
 from services.dashboard.config import DashboardConfig
 from services.dashboard.drawing import Drawing, draw
 from services.dashboard.history import Curves, Jitter, Services, Transcript
+from services.dashboard.overlay import marked
 from services.dashboard.panels import CAMERAS, Panels
 from services.dashboard.picking import pick
 from services.dashboard.view import View
@@ -191,10 +192,14 @@ class DashboardService:
     # --- cameras
     def _look(self, now: float) -> None:
         """Ask a camera only while somebody looks, and not again before it has answered."""
-        config = self._config
+        config, world = self._config, self._io.latest(topics.WORLD_OBJECTS)
         for name in CAMERAS:
             for image in self._io.drain(PICTURES[name]):
-                self._panels.picture(image)
+                pixels = marked(image, self._base, world.objects if world is not None else [])
+                if pixels is None:
+                    self._io.count_drop(PICTURES[name].key, "not as many pixels as it says")
+                    continue
+                self._panels.picture(name, pixels)
                 self._asked[name] = min(self._asked.get(name, now), now - 1.0 / config.camera_rate + 0.05)
             waiting = self._asked.get(name, float("-inf"))
             if self._panels.wanted(name) and now - waiting >= (1.0 / config.camera_rate):

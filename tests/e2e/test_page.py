@@ -169,7 +169,7 @@ def test_the_space_bar_stops_from_inside_the_view(visitor: Visitor, link: Link) 
 
 def test_a_command_by_microphone(visitor: Visitor, link: Link) -> None:
     page = visitor.page
-    visitor.until("LISTENING")
+    visitor.until("WAITING|LISTENING")
     heard: list[str] = []
     watch = link.session.declare_subscriber(
         topics.SPEECH_RESULT.key, lambda sample: heard.append(json.loads(sample.payload.to_string())["text"])
@@ -190,6 +190,7 @@ def test_a_command_by_microphone(visitor: Visitor, link: Link) -> None:
         listener.undeclare()
     visitor.until("CONFIRMING|PLANNING|GROUNDING|NAVIGATING|GRABBING")
     if page.is_visible("#ask"):
+        assert "red mug" in page.inner_text("#question")
         visitor.shot("asking")
         page.click("#yes")
         visitor.until("PLANNING|GROUNDING|NAVIGATING|GRABBING")
