@@ -1,128 +1,188 @@
-"""Perception on random rendered views: `python -m bench.perception --views 200`.
+"""Perception on random views: `python -m bench.perception --views 200`.
 
-Each view shows a random layout from a random place a robot can stand at. The table compares detections with the
-simulation's own poses. The peer is the naive estimate from the same pixels: the middle of the visible points, named
-by colour alone.
+Each view shows a random layout from a random place before a piece of furniture, with noise on the depth. The table
+compares what is detected with the simulation's own poses, and asks for things that are not there. The peer gets the
+same pixels of each thing and takes the middle of the visible points and the nearest colour for its answer.
 """
 
 import argparse
 import math
+import sys
 import time
+from collections.abc import Iterator
+from dataclasses import dataclass, field
 
 import numpy as np
 
-from common.geometry import inverse, compose
-from common.scene import load_scene
+from common.geometry import Pose2
+from common.messages import WorldObject
+from common.scene import Receptacle, Scene, load_scene
 from services.camera.render import Renderer
 from services.perception import colour, segment
-from services.perception.detect import ClassicalDetector, Detection
+from services.perception.detect import ClassicalDetector
+from services.perception.ground import ground
 from services.perception.view import View
-from services.sim.layout import place_objects
+from services.sim.layout import Placement, place_objects
+from services.sim.robot import HOME_ARM
 from services.sim.world import world_mjcf
-from services.sim import robot as robot_model
-from services.sim.objects import body_name
 
-FAR = 3.0
-MIN_VISIBLE = 60
+RANGE, MARGIN, NEAR = 3.0, 12, 0.10
+VIEWS_PER_LAYOUT = 5
+MIN_CONFIDENCE = 0.5
 
 
-def view_from(renderer: Renderer, pose, width, height, noise, rng):
-    d, model = renderer.data, renderer.model
-    for n, v in zip(("base_x", "base_y", "base_yaw"), pose):
-        d.qpos[model.joint(n).qposadr[0]] = v
-    for i, v in enumerate(robot_model.HOME_ARM):
-        d.qpos[model.joint(f"joint_{i+1}").qposadr[0]] = v
-    renderer.load(d.qpos.copy().tobytes(), b"")
-    rgb, depth = renderer.rgbd("head", width, height)
-    depth = depth + rng.normal(0, 1, depth.shape) * noise * depth**2
-    depth = np.round(np.maximum(depth, 0) * 1000) / 1000
-    p, r = renderer.optical_pose("head")
-    c, s = math.cos(pose[2]), math.sin(pose[2])
-    turn = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
-    focal = height / 2 / math.tan(math.radians(float(model.camera("head").fovy[0])) / 2)
-    return View(rgb, depth.astype(np.float32), (focal, focal), (width / 2, height / 2), turn @ p + np.array([pose[0], pose[1], 0]), turn @ r)
+@dataclass
+class Score:
+    """Errors [m] of what was found, and how many were named right."""
+
+    errors: list[float] = field(default_factory=list)
+    right: int = 0
+
+    def row(self, name: str, total: int) -> str:
+        e = np.array(self.errors) * 100 if self.errors else np.array([math.nan])
+        return (
+            f"{name:28} {len(self.errors) / max(1, total):7.3f} {self.right / max(1, total):7.3f} "
+            f"{np.median(e):9.2f} {e.mean():7.2f} {np.percentile(e, 95):7.2f}"
+        )
+
+
+def stand(rng: np.random.Generator, scene: Scene, placement: Placement) -> Pose2 | None:
+    """A place before the furniture of an object, roughly facing it; None when that is in another room."""
+    r = scene.receptacle(placement.on)
+    assert r is not None
+    x, y = _before(rng, r)
+    if scene.room_at(x, y) is not scene.room_at(r.center[0], r.center[1]):
+        return None
+    facing = math.atan2(placement.position[1] - y, placement.position[0] - x)
+    return x, y, facing + float(rng.uniform(-0.4, 0.4))
+
+
+def _before(rng: np.random.Generator, r: Receptacle) -> tuple[float, float]:
+    ax, ay = r.approach[int(rng.integers(len(r.approach)))]
+    c, s = math.cos(r.yaw), math.sin(r.yaw)
+    ux, uy = c * ax - s * ay, s * ax + c * ay
+    distance = (r.size[0] if ax else r.size[1]) / 2 + rng.uniform(0.4, 1.6)
+    side = rng.uniform(-0.6, 0.6)
+    return float(r.center[0] + ux * distance - uy * side), float(r.center[1] + uy * distance + ux * side)
+
+
+def views(args: argparse.Namespace, scene: Scene) -> Iterator[tuple[View, list[Placement]]]:
+    """Views with what stands in the flat."""
+    rng = np.random.default_rng(args.seed)
+    made = 0
+    while made < args.views:
+        placements = place_objects(scene, int(rng.integers(1 << 30)))
+        renderer = Renderer(world_mjcf(scene, placements), args.backend)
+        for _ in range(VIEWS_PER_LAYOUT):
+            pose = stand(rng, scene, placements[int(rng.integers(len(placements)))])
+            if pose is not None and made < args.views:
+                made += 1
+                yield _view(renderer, pose, args, rng), placements
+        renderer.close()
+
+
+def _view(renderer: Renderer, pose: Pose2, args: argparse.Namespace, rng: np.random.Generator) -> View:
+    model, data = renderer.model, renderer.data
+    names = ("base_x", "base_y", "base_yaw", *(f"joint_{i}" for i in range(1, 8)))
+    for name, value in zip(names, (*pose, *HOME_ARM), strict=True):
+        data.qpos[model.joint(name).qposadr[0]] = value
+    renderer.load(data.qpos.copy().tobytes(), b"")
+    rgb, depth = renderer.rgbd("head", args.width, args.height)
+    depth = depth + rng.normal(0.0, 1.0, depth.shape) * args.noise * depth**2
+    position, rotation = renderer.optical_pose("head")
+    # Where the robot believes to be is a little off.
+    x, y, theta = (v + float(rng.normal(0.0, args.pose_noise)) for v in pose)
+    c, s = math.cos(theta), math.sin(theta)
+    turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+    focal = args.height / 2 / math.tan(math.radians(float(model.camera("head").fovy[0])) / 2)
+    return View(
+        rgb=rgb,
+        depth=(np.round(np.maximum(depth, 0.0) * 1000) / 1000).astype(np.float32),
+        focal=(focal, focal),
+        middle=(args.width / 2, args.height / 2),
+        position=turn @ position + np.array([x, y, 0.0]),
+        rotation=turn @ rotation,
+    )
+
+
+def visible(view: View, placement: Placement) -> bool:
+    """Its centre is in the picture, not far, and nothing stands before it."""
+    u, v, z = (float(a) for a in view.project(np.array([placement.position]))[0])
+    h, w = view.shape
+    if not (MARGIN < u < w - MARGIN and MARGIN < v < h - MARGIN and 0.0 < z < RANGE):
+        return False
+    return abs(float(view.depth[int(v), int(u)]) - z) < 0.09
+
+
+def naive(view: View, scene: Scene, placement: Placement) -> tuple[float, bool] | None:
+    """The peer: error and rightness for the piece at an object's place."""
+    for piece in segment.pieces(view, scene, RANGE):
+        middle = piece.points.mean(axis=0)
+        if math.hypot(middle[0] - placement.position[0], middle[1] - placement.position[1]) < NEAR:
+            rgb = colour.typical(view.rgb[piece.rows, piece.columns])
+            named = min(scene.objects, key=lambda o: colour.difference(rgb, o.rgba))
+            return math.dist(middle, placement.position), named.name == placement.spec.name
+    return None
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--views", type=int, default=200)
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--width", type=int, default=640)
     parser.add_argument("--height", type=int, default=480)
-    parser.add_argument("--noise", type=float, default=0.0012)
-    parser.add_argument("--pose-noise", type=float, default=0.0)
-    parser.add_argument("--backend", default="auto")
-    parser.add_argument("-v", action="store_true")
+    parser.add_argument("--noise", type=float, default=0.0012, help="of the depth [m at 1 m, grows squared]")
+    parser.add_argument("--pose-noise", type=float, default=0.0, help="of the robot's own pose [m and rad]")
+    parser.add_argument("--backend", default="auto", choices=("auto", "egl", "osmesa", "raycast"))
+    parser.add_argument("--verbose", "-v", action="store_true", help="name every mistake")
     args = parser.parse_args()
     scene = load_scene("apartment")
-    rng = np.random.default_rng(args.seed)
     detector = ClassicalDetector(scene, 3.5)
-    errors, right, total, missed, false, times, wrong = [], 0, 0, 0, 0, [], []
-    n = 0
-    while n < args.views:
-        seed = int(rng.integers(1 << 30))
-        placements = place_objects(scene, seed)
-        renderer = Renderer(world_mjcf(scene, placements), args.backend)
-        for _ in range(5):
-            p = placements[int(rng.integers(len(placements)))]
-            r = scene.receptacle(p.on)
-            ax, ay = r.approach[int(rng.integers(len(r.approach)))]
-            c, s = math.cos(r.yaw), math.sin(r.yaw)
-            ux, uy = c * ax - s * ay, s * ax + c * ay
-            edge = (r.size[0] if ax else r.size[1]) / 2
-            dist = edge + rng.uniform(0.4, 1.6)
-            side = rng.uniform(-0.6, 0.6)
-            x, y = r.center[0] + ux * dist - uy * side, r.center[1] + uy * dist + ux * side
-            if scene.room_at(x, y) is not scene.room_at(*r.center[:2]):
+    ours, peer = Score(), Score()
+    seen = total = false = absent = abstained = 0
+    seconds: list[float] = []
+    for view, placements in views(args, scene):
+        began = time.perf_counter()
+        found = detector.detect(view)
+        seconds.append(time.perf_counter() - began)
+        seen += 1
+        for p in placements:
+            if not visible(view, p):
                 continue
-            th = math.atan2(p.position[1] - y, p.position[0] - x) + rng.uniform(-0.4, 0.4)
-            v = view_from(renderer, (x, y, th), args.width, args.height, args.noise, rng)
-            if args.pose_noise:
-                e = rng.normal(0, args.pose_noise, 2); a = rng.normal(0, args.pose_noise)
-                c, s = math.cos(a), math.sin(a); T = np.array([[c,-s,0],[s,c,0],[0,0,1]])
-                piv = np.array([x, y, 0])
-                v = View(v.rgb, v.depth, v.focal, v.middle, T @ (v.position - piv) + piv + np.array([*e, 0]), T @ v.rotation)
-            t0 = time.perf_counter()
-            found = detector.detect(v)
-            times.append(time.perf_counter() - t0)
-            n += 1
-            # visible: objects with enough pixels
-            import mujoco
-            used = set()
-            for q in placements:
-                uvz = v.project(np.array([q.position]))[0]
-                if not (12 < uvz[0] < args.width - 12 and 12 < uvz[1] < args.height - 12 and 0 < uvz[2] < FAR):
-                    continue
-                # centre of object visible: depth about expected
-                d = v.depth[int(uvz[1]), int(uvz[0])]
-                if abs(d - uvz[2]) > 0.09:
-                    continue
-                total += 1
-                near = [k for k in found if math.hypot(k.position[0] - q.position[0], k.position[1] - q.position[1]) < 0.10]
-                if not near:
-                    missed += 1
-                    wrong.append((seed, (x, y, th), q.spec.name, "missed", round(float(uvz[2]), 2)))
-                    continue
-                k = min(near, key=lambda k: math.dist(k.position, q.position))
-                used.add(id(k))
-                errors.append(math.dist(k.position, q.position))
-                if k.label == q.spec.name:
-                    right += 1
-                else:
-                    wrong.append((seed, (x, y, th), q.spec.name, k.label, round(float(uvz[2]), 2), round(k.confidence, 2)))
-            for k in found:
-                if not any(math.hypot(k.position[0] - q.position[0], k.position[1] - q.position[1]) < 0.12 for q in placements):
-                    false += 1
-                    wrong.append((seed, (x, y, th), "-", k.label, k.on, round(k.distance, 2), round(k.confidence, 2)))
-        renderer.close()
-    e = np.array(errors) * 100
-    print(f"views {n} objects {total} found {1 - missed / total:.3f} label+colour right {right / max(1, total - missed):.3f} of all {right/total:.3f}")
-    print(f"error cm median {np.median(e):.2f} mean {e.mean():.2f} p95 {np.percentile(e, 95):.2f}; false {false}; ms {np.median(times) * 1e3:.0f} p95 {np.percentile(times, 95) * 1e3:.0f}")
-    if args.v:
-        for row in wrong:
-            print(row)
+            total += 1
+            near = [d for d in found if math.dist(d.position[:2], p.position[:2]) < NEAR]
+            best = min(near, key=lambda d: math.dist(d.position, p.position), default=None)
+            if best is not None:
+                ours.errors.append(math.dist(best.position, p.position))
+                ours.right += best.label == p.spec.name
+            if args.verbose and (best is None or best.label != p.spec.name):
+                print(f"view {seen}: {p.spec.name} was taken for {best.label if best else 'nothing'}")
+            other = naive(view, scene, p)
+            if other is not None:
+                peer.errors.append(other[0])
+                peer.right += other[1]
+        false += sum(all(math.dist(d.position[:2], p.position[:2]) > 0.12 for p in placements) for d in found)
+        # Ask for the things of the household that are certainly not in the picture.
+        world = [
+            WorldObject(label=d.label, kind=d.kind, colour=d.colour, position=d.position, on=d.on, id=str(n))
+            for n, d in enumerate(found)
+            if d.confidence >= MIN_CONFIDENCE
+        ]
+        for p in placements:
+            u, v, z = (float(a) for a in view.project(np.array([p.position]))[0])
+            if z <= 0.0 or not (-60 < u < args.width + 60 and -60 < v < args.height + 60):
+                absent += 1
+                abstained += ground(p.spec.name, world, scene, (0.0, 0.0, 0.0), {}).found is None
+    print(f"{seen} views, {total} visible objects within {RANGE:.0f} m, {args.width} x {args.height}")
+    print(f"{'':28} {'found':>7} {'named':>7} {'median cm':>9} {'mean':>7} {'p95':>7}")
+    print(ours.row("fitted models", total))
+    print(peer.row("middle of points and colour", total))
+    print(
+        f"asked for what is not in view: abstained {abstained / max(1, absent):.3f} of {absent}; false objects: {false}"
+    )
+    print(f"time a view: median {np.median(seconds) * 1e3:.0f} ms, p95 {np.percentile(seconds, 95) * 1e3:.0f} ms")
     return 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())
