@@ -89,10 +89,16 @@ class DistanceField:
         gx = ((b - a) * (1 - v) + (d - c) * v) / self._resolution
         return low + (high - low) * v, gx, (high - low) / self._resolution
 
+    def nearest(self, points: Array) -> Array:
+        """Distance (n,) at the nearest node to points (n, 2)."""
+        scaled = (points - self._origin) / self._resolution + 0.5
+        cell = np.minimum(np.maximum(scaled, 0.0), self._last).astype(np.intp)
+        found: Array = self._flat[cell[:, 1] * self._columns + cell[:, 0]]
+        return found
+
     def near(self, points: Array, limit: float) -> NDArray[np.bool_]:
-        """Which points (n, 2) lie within `limit` [m] of something, by the nearest node."""
-        cell = np.rint(np.clip((points - self._origin) / self._resolution, 0.0, self._last)).astype(np.intp)
-        found: NDArray[np.bool_] = self._flat[cell[:, 1] * self._columns + cell[:, 0]] <= limit
+        """Which points (n, 2) lie within `limit` [m] of something."""
+        found: NDArray[np.bool_] = self.nearest(points) <= limit
         return found
 
 

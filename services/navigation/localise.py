@@ -28,13 +28,12 @@ INLIER = 0.10
 class Localiser:
     """Keeps pose, covariance (3, 3) and how well the last scan fits (`fit`, the share of rays on the map)."""
 
-    def __init__(self, field: DistanceField) -> None:
-        self._field = field
+    def __init__(self, field: DistanceField, home: Pose2 = (0.0, 0.0, 0.0)) -> None:
+        self._field, self._home = field, home
         self._odometry: Pose2 | None = None
         self.pose: Pose2 = (0.0, 0.0, 0.0)
         self.covariance: Array = np.diag(np.square(START))
         self.fit = 1.0
-        self.jumped = False
 
     def place(self, pose: Pose2, spread: tuple[float, float, float]) -> None:
         """Start anew from a guess."""
@@ -44,7 +43,8 @@ class Localiser:
         """Move with the wheels; odometry that jumps has restarted and is taken as a new guess in the map."""
         if self._odometry is None:
             self._odometry = odometry
-            self.place(odometry, START)
+            at_home = math.dist(odometry[:2], self._home[:2]) < START[0]
+            self.place(odometry, START if at_home else UNKNOWN)
             return self.pose
         if odometry == self._odometry:
             return self.pose
@@ -52,7 +52,6 @@ class Localiser:
         self._odometry = odometry
         if math.hypot(dx, dy) > JUMP:
             self.place(odometry, UNKNOWN)
-            self.jumped = True
             return self.pose
         c, s = math.cos(self.pose[2]), math.sin(self.pose[2])
         f = np.array([[1, 0, -s * dx - c * dy], [0, 1, c * dx - s * dy], [0, 0, 1]])

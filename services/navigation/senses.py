@@ -4,17 +4,21 @@ import numpy as np
 
 from common import messages as m
 from common import topics
-from common.geometry import Pose2, compose
-from common.io import Io
+from common.geometry import Pose2, compose, inverse
+from common.io import Io, Job
 from services.navigation.config import NavigationConfig
 from services.navigation.costmap import Array, Costmap
 from services.navigation.floorplan import distance_field
 from services.navigation.localise import Localiser
 from services.navigation.movers import Movers
+from services.navigation.relocalise import relocalise
 
 NEAR = 4.0
 EXPLAINED = 0.15
 MAX_RANGE = 1000.0
+# Shares of rays that the map explains: below BAD_FIT for DOUBT seconds the robot counts as lost.
+BAD_FIT, GOOD_FIT, BETTER, DOUBT, MIN_RAYS = 0.5, 0.6, 0.15, 1.0, 60
+FOUND = (0.1, 0.1, 0.05)
 
 
 class Senses:
@@ -23,7 +27,11 @@ class Senses:
     def __init__(self, config: NavigationConfig, io: Io, costmap: Costmap) -> None:
         self._config, self._io, self._map = config, io, costmap
         self._field = distance_field(io.scene, config.lidar_height)
-        self.localiser = Localiser(self._field)
+        home = io.scene.home
+        self.localiser = Localiser(self._field, (home.x, home.y, home.theta))
+        self._good_at = 0.0
+        self._asked: Job[tuple[Pose2, float]] | None = None
+        self._asked_from: Pose2 = (0.0, 0.0, 0.0)
         self.movers = Movers()
         self.pose: Pose2 | None = None
         self.points: Array | None = None
@@ -71,6 +79,7 @@ class Senses:
             back = (-odometry.vx * late, -odometry.vy * late, -odometry.omega * late)
             seen = _transformed(back, seen)
         self.localiser.correct(seen)
+        self._doubt(seen, now)
         self.pose = pose = self.localiser.pose
         placed = _transformed(pose, seen)
         near = ranges[hit] < NEAR
@@ -79,6 +88,32 @@ class Senses:
         lidar = compose(pose, (scan.x, scan.y, 0.0))
         self._map.see(lidar, self._angles, ranges, scan.range_max, now)
         self.points = placed[near]
+
+    # --- lost
+    @property
+    def lost(self) -> bool:
+        """The scans have not fitted the map for a while."""
+        return self._asked is not None
+
+    def _doubt(self, seen: Array, now: float) -> None:
+        """When the scan fits badly for a while, look for a better pose in the whole map."""
+        localiser, io = self.localiser, self._io
+        if self._asked is not None:
+            if not self._asked.poll(now):
+                return
+            pose, fit = self._asked.result()
+            self._asked, self._good_at = None, now
+            if fit > max(GOOD_FIT, localiser.fit + BETTER):
+                io.log.warning("localised anew", fit=round(fit, 2), before=round(localiser.fit, 2))
+                # The robot may have moved since the scan was taken.
+                localiser.place(compose(pose, compose(inverse(self._asked_from), localiser.pose)), FOUND)
+                localiser.correct(seen)
+        elif localiser.fit > BAD_FIT:
+            self._good_at = now
+        elif now - self._good_at > DOUBT and len(seen) > MIN_RAYS:
+            io.log.warning("lost", fit=round(localiser.fit, 2))
+            self._asked_from = localiser.pose
+            self._asked = io.submit(relocalise, self._field, seen, io.scene.low, io.scene.high, seconds=0.3)
 
 
 def _transformed(frame: Pose2, points: Array) -> Array:

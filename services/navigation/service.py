@@ -166,6 +166,9 @@ class NavigationService:
             raise Ended("failed", "NO_ODOMETRY", f"odometry silent for {age:.1f} s")
         if senses.points is not None and self._io.age(topics.SCAN, now) > self._config.scan_timeout:
             raise Ended("failed", "NO_SCAN", "the lidar fell silent")
+        if senses.lost:
+            self._io.publish(topics.CMD_VEL, m.CmdVel(vx=0.0, vy=0.0, omega=0.0))
+            return
         try:
             target = drive.step(senses.pose, reached, senses.points, senses.movers.moving(), now)
         except Ended as ended:

@@ -1,0 +1,118 @@
+"""A flat without physics for tests of navigation: a base that goes where it is told, a lidar by the slab method."""
+
+import math
+
+import msgspec
+import numpy as np
+
+from common import messages as m
+from common import topics
+from common.clock import ManualClock
+from common.geometry import Pose2, compose, inverse, wrap
+from common.memory import MemoryBus, MemoryIo
+from common.scene import load_scene
+from services.navigation.config import NavigationConfig
+from services.navigation.floorplan import Rectangle, rectangles
+from services.navigation.service import NavigationService
+
+SCENE = load_scene("apartment")
+ANGLES = -math.pi + np.arange(360) * math.radians(1)
+SPEED, TURN = 0.5, 1.5
+
+
+def cast(pose: Pose2, boxes: list[Rectangle]) -> np.ndarray:
+    """Ranges (360,) to rectangles, an oracle beside the distance field; 11: nothing hit."""
+    ranges = np.full(360, 11.0)
+    for x, y, sx, sy, yaw in boxes:
+        c, s = math.cos(yaw), math.sin(yaw)
+        turn = np.array([[c, -s], [s, c]])
+        start = (np.array(pose[:2]) - (x, y)) @ turn
+        a = ANGLES + pose[2]
+        way = np.stack([np.cos(a), np.sin(a)], 1) @ turn
+        way[np.abs(way) < 1e-9] = 1e-9
+        one, two = (-np.array([sx, sy]) / 2 - start) / way, (np.array([sx, sy]) / 2 - start) / way
+        enters, leaves = np.minimum(one, two).max(axis=1), np.maximum(one, two).min(axis=1)
+        hit = (enters < leaves) & (enters > 0)
+        ranges[hit] = np.minimum(ranges[hit], enters[hit])
+    return ranges
+
+
+def ends(ranges: np.ndarray) -> np.ndarray:
+    hit = ranges < 10.0
+    return np.stack([np.cos(ANGLES[hit]), np.sin(ANGLES[hit])], 1) * ranges[hit, None]
+
+
+class Flat:
+    """The navigation service in the apartment; `boxes` is what its map does not have, `wheels` its odometry."""
+
+    def __init__(self, boxes: list[Rectangle] | None = None, **parameters: object) -> None:
+        self.boxes = boxes or []
+        self.bus, self.clock = MemoryBus(), ManualClock()
+        reads, writes = NavigationService.READS, NavigationService.WRITES
+        self.io = MemoryIo(self.bus, "navigation", reads, writes, scene=SCENE, clock=self.clock)
+        self.service = NavigationService(msgspec.convert(parameters, NavigationConfig), self.io)
+        self.feedbacks = self.bus.tap(topics.NAVIGATION_FEEDBACK)
+        self._targets = self.bus.tap(topics.BASE_TARGET)
+        self._stops = self.bus.tap(topics.CMD_VEL)
+        self._plan = rectangles(SCENE, 0.2)
+        self.true: Pose2 = (0.0, 0.0, 0.0)
+        self.wheels: Pose2 = (0.0, 0.0, 0.0)
+        self._target: m.BaseTarget | None = None
+        self._reached = ""
+        self.tick = 0
+        self.closest = math.inf
+
+    @property
+    def now(self) -> float:
+        return self.tick * 0.01
+
+    def step(self) -> None:
+        """50 ms: the base moves, the sensors report, navigation steps."""
+        self.tick += 5
+        self.clock.advance(0.05)
+        self._drive(0.05)
+        x, y, theta = self.wheels
+        self.bus.send(topics.ODOMETRY, m.Odometry(t=self.now, x=x, y=y, theta=theta))
+        if self.tick % 10 == 0:
+            ranges = cast(self.true, self._plan + self.boxes)
+            seen = ranges[ranges < 10.0]
+            self.closest = min(self.closest, float(seen.min()))
+            self.bus.send(topics.SCAN, m.LaserScan(t=self.now, ranges=ranges.astype("<f4").tobytes()))
+        self.io.begin(self.tick, self.now)
+        self.service.step(self.now)
+
+    def _drive(self, dt: float) -> None:
+        for payload in self._targets:
+            self._target = msgspec.json.decode(payload, type=m.BaseTarget)
+        if self._stops:
+            self._target = None
+        self._targets.clear()
+        self._stops.clear()
+        if self._target is None:
+            return
+        dx, dy, turn = compose(inverse(self.wheels), (self._target.x, self._target.y, self._target.theta))
+        length = math.hypot(dx, dy)
+        share = min(1.0, SPEED * dt / length) if length else 0.0
+        step = dx * share, dy * share, max(-TURN * dt, min(TURN * dt, turn))
+        self.true, self.wheels = compose(self.true, step), compose(self.wheels, (step[0], step[1], step[2] + 1e-4))
+        done = length * (1 - share) < 0.02 and abs(wrap(turn - step[2])) < 0.05
+        if done and self._reached != self._target.id:
+            self._reached = self._target.id
+            self.bus.send(topics.GOAL_REACHED, m.GoalReached(reached=True, target_id=self._target.id))
+
+    def ask(self, text: str, goal_id: str = "a.1") -> None:
+        self.bus.send(topics.NAVIGATION_GOAL, m.NavigationGoal(goal=text, id=goal_id))
+        self.step()
+
+    def run(self, seconds: float) -> m.NavigationStatus:
+        """Step until the goal has ended, or for so long."""
+        until = self.now + seconds
+        while self.now < until and self.status().status == "navigating":
+            self.step()
+        return self.status()
+
+    def status(self) -> m.NavigationStatus:
+        return msgspec.json.decode(self.bus.last["brain/navigation_status"], type=m.NavigationStatus)
+
+    def feedback(self) -> m.NavigationFeedback:
+        return msgspec.json.decode(self.bus.last["navigation_feedback"], type=m.NavigationFeedback)

@@ -1,0 +1,226 @@
+import itertools
+import math
+
+import msgspec
+import numpy as np
+import pytest
+
+from common import messages as m
+from common import topics
+from common.memory import MemoryIo
+from services.navigation.avoid import avoid
+from services.navigation.config import Camera, NavigationConfig
+from services.navigation.costmap import Costmap
+from services.navigation.movers import Mover, Movers, clusters
+from services.navigation.views import Views
+from tests.unit.navigation_flat import SCENE, Flat
+
+KITCHEN_DOOR = (2.5, -0.75, 0.4, 0.9, 0.0)
+STUDY_DOOR = (-0.45, 2.0, 0.9, 0.4, 0.0)
+CHASSIS = 0.30
+
+
+def doings(flat: Flat) -> list[str]:
+    found = [msgspec.json.decode(f, type=m.NavigationFeedback).code for f in flat.feedbacks]
+    return [code for n, code in enumerate(found) if code and code not in found[:n]]
+
+
+def test_a_box_in_the_door_is_driven_around_by_the_other_doors() -> None:
+    flat = Flat([KITCHEN_DOOR])
+    flat.ask("goto kitchen")
+    assert flat.run(120.0).status == "arrived"
+    assert math.dist(flat.true[:2], (3.6, -1.2)) < 0.05
+    assert flat.feedback().recoveries >= 1 and "DETOUR" in doings(flat)
+    assert flat.closest > CHASSIS
+
+
+def test_with_every_way_shut_it_waits_backs_off_tries_twice_and_says_so() -> None:
+    flat = Flat([KITCHEN_DOOR, STUDY_DOOR])
+    flat.ask("goto kitchen")
+    status = flat.run(180.0)
+    assert (status.status, status.code) == ("failed", "BLOCKED")
+    assert "after 2 retries" in status.detail
+    assert {"WAITING", "BACKING_OFF"} <= set(doings(flat))
+    assert flat.feedback().recoveries >= 2 and flat.feedback().code == "BLOCKED"
+    here = flat.true
+    for _ in range(40):
+        flat.step()
+    assert math.dist(here[:2], flat.true[:2]) < 0.01, "it stands"
+    assert flat.closest > CHASSIS
+
+
+def test_a_way_that_opens_while_it_waits_is_taken() -> None:
+    flat = Flat([KITCHEN_DOOR, STUDY_DOOR])
+    flat.ask("goto kitchen")
+    while "WAITING" not in doings(flat):
+        flat.step()
+    flat.boxes.clear()
+    assert flat.run(60.0).status == "arrived"
+
+
+def test_no_room_for_a_goal_that_the_map_itself_shuts_off() -> None:
+    flat = Flat()
+    flat.bus.send(topics.NAV_GOAL, m.NavGoal(id="c", x=6.0, y=3.5))
+    flat.step()
+    flat.step()
+    assert flat.feedback().code == "NO_PATH"
+
+
+def test_feedback_counts_down_to_the_goal() -> None:
+    flat = Flat()
+    flat.ask("goto kitchen")
+    flat.run(60.0)
+    rows = [msgspec.json.decode(f, type=m.NavigationFeedback) for f in flat.feedbacks]
+    left = [r.distance_remaining for r in rows if r.status == "navigating" and r.eta > 0]
+    assert len(left) > 5 and left[0] > 3.0 and left[-1] < 0.6
+    assert all(b < a + 0.3 for a, b in itertools.pairwise(left))
+
+
+# --- people
+def person(x: float, y: float, vx: float, vy: float) -> Mover:
+    return Mover(x, y, 0.2, 0.0, vx, vy, sightings=9)
+
+
+def costmap() -> Costmap:
+    return Costmap(SCENE, 0.05, 30.0)
+
+
+def test_nobody_in_the_way_changes_nothing() -> None:
+    here, target = (0.0, -1.2), (0.5, -1.2)
+    assert avoid(here, target, [], costmap(), 0.37) is None
+    assert avoid(here, target, [person(0.0, 1.2, 0.0, 0.6)], costmap(), 0.37) is None
+    assert avoid(here, target, [person(-1.5, -1.2, -0.6, 0.0)], costmap(), 0.37) is None
+
+
+def test_it_waits_for_one_who_crosses() -> None:
+    here, target = (0.0, -1.2), (0.5, -1.2)
+    spot = avoid(here, target, [person(0.85, -0.2, 0.0, -0.7)], costmap(), 0.37)
+    assert spot is not None and spot[0] < 0.1
+
+
+def test_it_steps_aside_from_one_who_comes_straight_on_and_not_into_furniture() -> None:
+    here, target, room = (0.0, -1.0), (0.5, -1.0), costmap()
+    for angle in np.linspace(-math.pi, math.pi, 12):
+        walker = person(
+            1.6 * math.cos(angle), -1.0 + 1.6 * math.sin(angle), -0.8 * math.cos(angle), -0.8 * math.sin(angle)
+        )
+        spot = avoid(here, target, [walker], room, 0.37)
+        assert spot is not None
+        assert math.dist(here, spot) > 0.2
+        assert room.line_clearance(here, spot) > 0.3
+
+
+def test_the_speed_of_a_walker_is_found_and_a_box_stays_a_box() -> None:
+    movers = Movers()
+    arc = np.linspace(-0.6, 0.6, 9)
+    for k in range(20):
+        walker = np.stack([2.0 - 0.2 * np.cos(arc), -1.0 + 0.06 * k + 0.2 * np.sin(arc)], 1)
+        box = np.stack([np.full(9, -1.5), np.linspace(-0.2, 0.2, 9)], 1)
+        movers.update(np.concatenate([walker, box]), (0.0, 0.0), 0.1 * k)
+    moving = movers.moving()
+    assert len(moving) == 1
+    assert (moving[0].vx, moving[0].vy) == pytest.approx((0.0, 0.6), abs=0.1)
+    movers.update(np.empty((0, 2)), (0.0, 0.0), 5.0)
+    assert movers.moving() == []
+
+
+def test_clusters_split_at_gaps_and_leave_out_walls() -> None:
+    wall = np.stack([np.linspace(-2, 2, 60), np.full(60, 3.0)], 1)
+    one = np.stack([np.linspace(1.0, 1.2, 5), np.full(5, 1.0)], 1)
+    two = np.stack([np.linspace(1.6, 1.8, 5), np.full(5, 1.0)], 1)
+    assert len(clusters(np.concatenate([one, two, wall]), (0.0, 0.0))) == 2
+
+
+# --- the search
+class Eyes:
+    """A perception that reports an object once it is in view and the robot has stood for a second."""
+
+    def __init__(self, flat: Flat, label: str, position: tuple[float, float, float] | None) -> None:
+        self._flat, self._label, self._position = flat, label, position
+        self._views = Views(SCENE, Camera())
+        self._still, self._last = 0, flat.true
+        MemoryIo(flat.bus, "perception", (), (topics.WORLD_OBJECTS,), scene=SCENE)
+
+    def step(self) -> None:
+        flat = self._flat
+        self._still = self._still + 1 if math.dist(self._last[:2], flat.true[:2]) < 0.005 else 0
+        self._last = flat.true
+        if self._position is None or self._still < 20:
+            return
+        near = np.hypot(*(self._views.points[:, :2] - self._position[:2]).T).argmin()
+        if self._views.visible(flat.true)[near]:
+            kind = self._label.split()[-1]
+            thing = m.WorldObject(
+                label=self._label, kind=kind, colour="", position=self._position, on="", id=self._label
+            )
+            flat.bus.send(topics.WORLD_OBJECTS, m.WorldObjects(t=flat.now, objects=[thing], source="perception"))
+
+
+def search(flat: Flat, eyes: Eyes, seconds: float) -> m.NavigationStatus:
+    until = flat.now + seconds
+    while flat.now < until and flat.status().status == "navigating":
+        flat.step()
+        eyes.step()
+    return flat.status()
+
+
+def test_an_object_that_nobody_knows_of_is_looked_for_and_stood_before() -> None:
+    flat = Flat()
+    mug = (-2.45, 3.1, 0.77)
+    eyes = Eyes(flat, "red mug", mug)
+    flat.ask("find red mug")
+    assert search(flat, eyes, 250.0).status == "arrived"
+    assert 0.4 < math.dist(flat.true[:2], mug[:2]) < 0.75
+    bearing = math.atan2(mug[1] - flat.true[1], mug[0] - flat.true[0])
+    assert abs(math.remainder(bearing - flat.true[2], math.tau)) < 0.1, "it faces the mug"
+
+
+def test_a_search_without_result_ends_after_every_surface_was_looked_at() -> None:
+    flat = Flat()
+    eyes = Eyes(flat, "red mug", None)
+    flat.ask("find red mug")
+    status = search(flat, eyes, 290.0)
+    assert (status.status, status.code) == ("failed", "NOT_FOUND")
+    share = int(status.detail.split(" show ")[1].split("%")[0])
+    assert share >= 90
+
+
+def test_a_search_has_a_time_limit() -> None:
+    flat = Flat(find_timeout=12.0)
+    eyes = Eyes(flat, "red mug", None)
+    flat.ask("find red mug")
+    status = search(flat, eyes, 60.0)
+    assert (status.status, status.code) == ("failed", "TIMEOUT")
+    assert 11.0 < flat.now < 15.0
+
+
+def test_the_second_search_starts_where_the_first_has_not_looked() -> None:
+    flat = Flat(find_timeout=30.0)
+    eyes = Eyes(flat, "red mug", None)
+    flat.ask("find red mug")
+    search(flat, eyes, 60.0)
+    looked = flat.service._memory.at > -math.inf
+    assert 0.05 < looked.mean() < 0.7
+    flat.ask("find blue mug", "a.2")
+    search(flat, eyes, 20.0)
+    again = flat.service._memory.at > 30.5
+    assert again.any() and (again & looked).sum() < 0.5 * again.sum()
+
+
+def test_without_eyes_it_goes_to_the_item_s_spot_or_the_default_one() -> None:
+    for item, spot in (("red mug", (1.0, 1.0)), ("banana", NavigationConfig().find_spot[:2])):
+        flat = Flat()
+        flat.ask(f"find {item}")
+        assert flat.run(60.0).status == "arrived"
+        assert math.dist(flat.true[:2], spot) < 0.05
+
+
+def test_views_do_not_look_through_walls_or_beyond_the_picture() -> None:
+    views = Views(SCENE, Camera())
+    table = np.hypot(*(views.points[:, :2] - (5.3, -0.75)).T) < 0.2
+    assert table.any()
+    assert views.visible((4.2, -0.75, 0.0))[table].all()
+    assert not views.visible((4.2, -0.75, math.pi))[table].any(), "behind it"
+    assert not views.visible((2.0, -2.0, 0.8))[table].any(), "in the next room"
+    shelf = np.hypot(*(views.points[:, :2] - (1.45, 1.74)).T) < 0.3
+    assert not views.visible((1.45, 3.0, -math.pi / 2))[shelf].any(), "behind the wall"
