@@ -111,7 +111,10 @@ class DashboardService:
         for health in io.drain(HEALTH):
             self._services.take(health)
         for chunk in io.drain(topics.AUDIO_OUT):
-            self._web.play(chunk.data, chunk.rate)
+            if len(chunk.data) % 2 or not 4000 <= chunk.rate <= 192000:
+                io.count_drop(topics.AUDIO_OUT.key, "not 16 bit samples at 4 to 192 kHz")
+            else:
+                self._web.play(chunk.data, chunk.rate)
 
     # --- from the visitors
     def _obey(self, now: float) -> None:
