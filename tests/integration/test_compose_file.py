@@ -103,7 +103,8 @@ class Containers:
         here = f"127.0.0.1:{self.port}"
         declared = self._compose[name].get("environment", {})
         mounted = {k: v.replace("router:7447", here) if isinstance(v, str) else v for k, v in declared.items()}
-        return {**mounted, "TIDYBOT_KEYS": str(self.keys / name)} if "TIDYBOT_KEYS" in mounted else mounted
+        ours = {"TIDYBOT_KEYS": self.keys / name, "TIDYBOT_STATE_DIR": self._logs / "data" / name}
+        return {**mounted, **{k: str(path) for k, path in ours.items() if k in mounted}}
 
     def make_keys(self) -> None:
         """What the container `keys` does, for the user that the tests run as."""
