@@ -25,11 +25,16 @@ class Line(msgspec.Struct, frozen=True):
 
 
 class Strike(msgspec.Struct, frozen=True):
-    """What happens to a service's process the first time the brain is in `state`: hung for `seconds`, 0: killed."""
+    """What happens the first time the brain is in `state`.
+
+    The service's process is killed, and started again after `back_after` seconds; or it hangs for `seconds`; or, with
+    `jump`, everybody's clock leaps ahead by so many seconds.
+    """
 
     service: str
     state: str
     seconds: float = 0.0
+    jump: float = 0.0
     back_after: float = 1.0
 
 

@@ -32,7 +32,11 @@ class Director:
         stack, state = self._stack, self._stack.state().state
         for strike in [s for s in self._waiting if s.state == state]:
             self._waiting.remove(strike)
-            if strike.seconds:
+            if strike.jump:
+                stack.jump(strike.jump)
+            elif strike.service not in stack.members:
+                continue
+            elif strike.seconds:
                 stack.hang(strike.service, strike.seconds)
             else:
                 stack.kill(strike.service)

@@ -3,6 +3,7 @@
 import tomllib
 from collections.abc import Callable
 from pathlib import Path
+from typing import Literal
 
 import msgspec
 import numpy as np
@@ -35,6 +36,9 @@ FAULTS = ("speech", "planning", "perception", "navigation", "grasp")
 NAMED = ("fetch", "misheard", "hallucination", "not_in_view", "blocked_path")
 DIALOGUES = ("misheard", "correction", "rejection", "low_confidence", "stop", "cancel", "silence")
 CHAOS_STATES = ("CONFIRMING", "PLANNING", "GROUNDING", "NAVIGATING", "GRABBING", "RETURNING", "RELEASING")
+HARM: tuple[Kind | Literal["kill", "hang", "jump"], ...] = (
+    "kill", "hang", "drop", "duplicate", "delay", "reorder", "jump",
+)  # fmt: skip
 CHAOS_SERVICES = ("speech", "planner", "perception", "camera", "navigation", "manipulation", "brain")
 
 Make = Callable[[int], Case]
@@ -215,23 +219,22 @@ def _receptacle(name: str, scene: Scene) -> Receptacle | None:
 
 
 def chaos(seed: int) -> Case:
-    """A service killed or hung in a state, or messages on one of its keys mistreated."""
+    """Service, state and harm in turn: the first 49 seeds kill each service in each state, the next 49 hang it."""
     scene, rng = load_scene("apartment"), _random(seed, 6)
     case = _fetch("chaos", seed, _pick(rng, scene, seed), scene)
     service = CHAOS_SERVICES[seed % len(CHAOS_SERVICES)]
     state = CHAOS_STATES[seed // len(CHAOS_SERVICES) % len(CHAOS_STATES)]
-    kinds: tuple[Kind, ...] = ("drop", "duplicate", "delay", "reorder")
-    kind = kinds[int(rng.integers(len(kinds)))]
-    how = ("kill", "hang", kind)[int(rng.integers(3))]
+    how = HARM[seed // (len(CHAOS_SERVICES) * len(CHAOS_STATES)) % len(HARM)]
     case.name, case.fault, case.honest, case.settings = f"{service} {state}", how, True, (VLA,)
     case.spoken = True
-    if how in ("kill", "hang"):
-        case.strikes = (Strike(service, state, 3.0 if how == "hang" else 0.0),)
+    if how == "kill" or how == "hang" or how == "jump":
+        hang, jump = (3.0 if how == "hang" else 0.0), (2.0 if how == "jump" else 0.0)
+        case.strikes = (Strike(service, state, hang, jump),)
     else:
         keys = KEYS[service]
         case.rules = (
             Rule(
-                service=service, key=keys[int(rng.integers(len(keys)))], kind=kind, skip=int(rng.integers(3)),
+                service=service, key=keys[int(rng.integers(len(keys)))], kind=how, skip=int(rng.integers(3)),
                 count=2, seconds=float(rng.uniform(0.5, 3.0)),
             ),
         )  # fmt: skip
@@ -250,4 +253,4 @@ KEYS = {
 SUITES: dict[str, Make] = {
     "fetch": fetch, "seed": named, "tidy": tidy, "faults": faults, "dialogue": dialogue, "chaos": chaos,
 }  # fmt: skip
-DEFAULT_SCENARIOS = {"seed": len(NAMED), "dialogue": len(DIALOGUES), "faults": len(FAULTS) * 2}
+DEFAULT_SCENARIOS = {"seed": len(NAMED), "dialogue": len(DIALOGUES), "faults": len(FAULTS) * 2, "chaos": 49}
