@@ -16,8 +16,10 @@ from services.navigation.relocalise import relocalise
 NEAR = 4.0
 EXPLAINED = 0.15
 MAX_RANGE = 1000.0
-# Shares of rays that the map explains: below BAD_FIT for DOUBT seconds the robot counts as lost.
-BAD_FIT, GOOD_FIT, BETTER, DOUBT, MIN_RAYS = 0.5, 0.6, 0.15, 1.0, 60
+# Shares of rays that the map explains: below BAD_FIT for DOUBT seconds the robot counts as lost, and if no better
+# place is found it goes on and asks again later, at last every MAX_DOUBT seconds.
+BAD_FIT, GOOD_FIT, BETTER, MIN_RAYS = 0.5, 0.6, 0.15, 60
+DOUBT, MAX_DOUBT = 1.0, 16.0
 FOUND = (0.1, 0.1, 0.05)
 
 
@@ -29,7 +31,7 @@ class Senses:
         self._field = distance_field(io.scene, config.lidar_height)
         home = io.scene.home
         self.localiser = Localiser(self._field, (home.x, home.y, home.theta))
-        self._good_at = 0.0
+        self._good_at, self._doubt_after = 0.0, DOUBT
         self._asked: Job[tuple[Pose2, float]] | None = None
         self._asked_from: Pose2 = (0.0, 0.0, 0.0)
         self.movers = Movers()
@@ -55,7 +57,8 @@ class Senses:
             self._look(scans[-1], odometry, late, now)
         x, y, theta = self.pose
         covariance = self.localiser.covariance.ravel().tolist()
-        io.publish(topics.POSE, m.PoseEstimate(t=now, x=x, y=y, theta=theta, covariance=covariance))
+        measured = odometry.t if odometry is not None else now
+        io.publish(topics.POSE, m.PoseEstimate(t=measured, x=x, y=y, theta=theta, covariance=covariance))
 
     def silence(self, now: float) -> float:
         """Seconds since the wheels last reported."""
@@ -92,7 +95,7 @@ class Senses:
     # --- lost
     @property
     def lost(self) -> bool:
-        """The scans have not fitted the map for a while."""
+        """The scans have not fitted the map for a while; a better place is being looked for."""
         return self._asked is not None
 
     def _doubt(self, seen: Array, now: float) -> None:
@@ -103,14 +106,15 @@ class Senses:
                 return
             pose, fit = self._asked.result()
             self._asked, self._good_at = None, now
+            self._doubt_after = min(2 * self._doubt_after, MAX_DOUBT)
             if fit > max(GOOD_FIT, localiser.fit + BETTER):
                 io.log.warning("localised anew", fit=round(fit, 2), before=round(localiser.fit, 2))
                 # The robot may have moved since the scan was taken.
                 localiser.place(compose(pose, compose(inverse(self._asked_from), localiser.pose)), FOUND)
                 localiser.correct(seen)
         elif localiser.fit > BAD_FIT:
-            self._good_at = now
-        elif now - self._good_at > DOUBT and len(seen) > MIN_RAYS:
+            self._good_at, self._doubt_after = now, DOUBT
+        elif now - self._good_at > self._doubt_after and len(seen) > MIN_RAYS:
             io.log.warning("lost", fit=round(localiser.fit, 2))
             self._asked_from = localiser.pose
             self._asked = io.submit(relocalise, self._field, seen, io.scene.low, io.scene.high, seconds=0.3)

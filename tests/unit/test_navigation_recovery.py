@@ -176,7 +176,7 @@ def test_an_object_that_nobody_knows_of_is_looked_for_and_stood_before() -> None
 
 
 def test_a_search_without_result_ends_after_every_surface_was_looked_at() -> None:
-    flat = Flat()
+    flat = Flat(find_timeout=300.0)
     eyes = Eyes(flat, "red mug", None)
     flat.ask("find red mug")
     status = search(flat, eyes, 290.0)
