@@ -68,6 +68,8 @@ class Mission(msgspec.Struct):
     outcome: Outcome | None = None
     plan: list[m.PlanStep] = []
     rejected: m.RejectedPlan | None = None
+    looked: list[m.PlanStep] = []
+    again: bool = False
     repeat: bool = False
     found: dict[str, m.ObjectPose] = {}
     at: str = ""

@@ -15,6 +15,7 @@ from services.brain.trees import drive_home, first_of, grab_failed, report_failu
 from services.brain.validate import is_destination
 from services.brain.vla_leaves import (
     Await,
+    Enough,
     Evidence,
     HearChoice,
     HearReply,
@@ -30,6 +31,7 @@ from services.brain.vla_leaves import (
 
 # Attempt 1 turns on the spot, the others go to where more can be seen.
 VIEWS = (2, 5, 9)
+LOOKS = 4
 
 
 def vla_tree(ctx: Context) -> Behaviour:
@@ -38,6 +40,7 @@ def vla_tree(ctx: Context) -> Behaviour:
         "do",
         When("confirm", confirm(ctx), lambda: needs_confirmation(ctx)),
         plan(ctx),
+        When("look first", look_first(ctx), lambda: ctx.mission.again),
         RunPlan("execute", ctx),
         Evidence("complete", ctx, lambda: "; ".join(map(in_words, ctx.mission.plan))),
         Say("report success", ctx, lambda: "Done."),
@@ -68,6 +71,12 @@ def confirm(ctx: Context) -> Behaviour:
 def plan(ctx: Context) -> Behaviour:
     retries = ctx.config.max_retry_attempts - 1
     return Attempts("plan and validate", ctx, Plan("plan", ctx), retries, again=lambda: not permanent(ctx))
+
+
+def look_first(ctx: Context) -> Behaviour:
+    """A plan that only goes and looks is carried out, and the command planned anew with what was seen."""
+    looked = sequence("look", RunPlan("go and look", ctx), plan(ctx), Enough("seen enough", ctx))
+    return Attempts("look and plan", ctx, looked, LOOKS - 1, again=lambda: ctx.mission.again and not permanent(ctx))
 
 
 def permanent(ctx: Context) -> bool:

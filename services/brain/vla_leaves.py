@@ -77,8 +77,9 @@ class Plan(Goal):
 
     def goal(self, goal_id: str) -> tuple[Topic[Any], m.Message]:
         ctx = self.ctx
+        mission = ctx.mission
         request = m.PlanRequest(
-            id=goal_id, command=ctx.mission.command, world=self._world(), rejected=ctx.mission.rejected
+            id=goal_id, command=mission.command, world=self._world(), rejected=mission.rejected, done=mission.looked
         )
         return topics.PLAN_REQUEST, request
 
@@ -93,7 +94,12 @@ class Plan(Goal):
         assert isinstance(plan, m.ActionPlan)
         reason = objection(plan.steps, self._world(), ctx.io.scene)
         if not reason:
-            ctx.mission.plan = plan.steps
+            ctx.mission.plan, ctx.mission.again = plan.steps, plan.again
+            if plan.again:
+                ctx.mission.looked = [*ctx.mission.looked, *plan.steps]
+            for step in plan.steps:
+                if step.action == "find" and step.text:
+                    ctx.mission.chosen.setdefault(step.object, step.text)
             ctx.note("plan accepted", "; ".join(map(in_words, plan.steps)), "planned")
             return Status.SUCCESS
         if not plan.steps and plan.detail:
@@ -107,6 +113,13 @@ class Plan(Goal):
         ctx = self.ctx
         world = ctx.io.latest(topics.WORLD_OBJECTS)
         return known_world(ctx.io.scene, [o.label for o in world.objects] if world else [], ctx.hand.holding)
+
+
+class Enough(Leaf):
+    """FAILURE as long as the latest plan only goes and looks."""
+
+    def update(self) -> Status:
+        return Status.FAILURE if self.ctx.mission.again else Status.SUCCESS
 
 
 def in_words(step: m.PlanStep) -> str:

@@ -74,7 +74,11 @@ def throw_away(draft: Draft, slots: Slots) -> None:
 
 
 def pick_up(draft: Draft, slots: Slots) -> None:
-    meant = one(draft, slots["thing"], prefer_held=True)
+    everything = things(draft, slots["thing"], prefer_held=True)
+    meant = everything[0]
+    if len(everything) > 1:
+        draft.collect([m.thing for m in everything])
+        return
     if meant.thing.held:
         draft.say(f"I am holding the {meant.thing.label} already.")
         draft.last = [meant.thing]

@@ -40,6 +40,7 @@ class Draft:
         self.spot: Spot | None = None
         self.moved = False
         self.effort = [0]
+        self.collecting: set[str] = set()
         self._found: set[str] = set()
 
     def fork(self) -> "Draft":
@@ -47,11 +48,12 @@ class Draft:
         other = Draft(self.world.copy(), self.vocabulary, self.config, self.choices.fork(), self.done)
         other.steps, other.last, other.spot = list(self.steps), list(self.last), self.spot
         other.moved, other._found, other.effort = self.moved, set(self._found), self.effort
+        other.collecting = set(self.collecting)
         return other
 
     def adopt(self, other: "Draft") -> None:
         self.world, self.steps, self.last, self.spot = other.world, other.steps, other.last, other.spot
-        self.moved, self._found = other.moved, other._found
+        self.moved, self._found, self.collecting = other.moved, other._found, other.collecting
         self.choices.taken = other.choices.taken
 
     # --- steps
@@ -80,8 +82,13 @@ class Draft:
             self.steps.append(PlanStep(action="find", object=thing.label, text=words))
             self.moved = True
 
+    def collect(self, things: list[Thing]) -> None:
+        """Several things at once, one after the other, once it is said where to; the hand holds one."""
+        self.last, self.collecting = things, {t.label for t in things}
+
     def take(self, thing: Thing, words: str = "") -> None:
         """Have it in the hand; what else is there is put down first."""
+        self.collecting.discard(thing.label)
         held = self.world.held
         if held is not None and held.label == thing.label:
             self.last = [held]
@@ -163,9 +170,9 @@ class Draft:
         if self.done is None:
             raise Refusal(reason)
         visited = {s.target for s in self.done if s.action == "navigate"}
-        steps = [PlanStep(action="navigate", target=r.name) for r in spots if r.name not in visited]
-        if steps:
-            raise LookFirst(steps)
+        there = [PlanStep(action="navigate", target=r.name) for r in spots if r.name not in visited]
+        if there:
+            raise LookFirst([step for going in there for step in (going, PlanStep(action="wait"))])
         seen = listed([f"the {r.name}" for r in spots])
         raise Refusal(f"I looked at {seen} and found nothing of the kind" if spots else reason)
 

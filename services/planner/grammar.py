@@ -91,6 +91,8 @@ def _steps(command: str, draft: Draft) -> list[PlanStep]:
     for number, sentence in enumerate(sentences):
         words = tuple(sentence.split())
         _whole(words, draft, alone=len(sentences) == 1, started=number > 0)
+    if draft.collecting:
+        raise Refusal("I can hold only one thing at a time")
     if not draft.steps:
         raise Refusal("there is nothing to do")
     return draft.steps

@@ -34,6 +34,14 @@ FORMS: tuple[tuple[Form, Action], ...] = tuple(
         ("(come | go | drive) [back] home", commands.come_back),
         ("(come | go | drive | get) (here | back | to me | back here | back to me | over here)", commands.come_back),
         ("return [home | here | to (start | me | base)] | come", commands.come_back),
+        ("(get | fetch | take | grab) <thing> and throw (it | them) away", commands.throw_away),
+        ("(get | fetch | take | grab) <thing> and put (it | them) away", commands.put_away),
+        (
+            "(get | fetch | take | grab) <thing> and (put | place | throw | drop | set) (it | them)"
+            " (in | into | inside | on top of | on | onto) <spot>",
+            commands.put,
+        ),
+        ("(get | fetch | take | grab) <thing> and (bring | take | carry) (it | them) to <spot>", commands.deliver),
         ("(go | drive | get | walk) and (get | fetch | bring | find) [me | us] <thing>", commands.fetch),
         ("go (get | fetch | bring) [me | us] <thing>", commands.fetch),
         ("(tidy | clean | clear) up [<spot>]", commands.tidy),

@@ -246,6 +246,42 @@ def test_saying_waiting_and_going_need_no_hand() -> None:
     assert "say On my way." in bench.texts(SPEECH)
 
 
+def test_a_plan_that_only_looks_is_followed_by_another_with_what_was_seen() -> None:
+    bench = asked("tidy up the table", enable_confirmation=False)
+    request = bench.next_goal(PLAN, 1)
+    assert request.done == []
+    look = [m.PlanStep(action="navigate", target="living table")]
+    bench.send(topics.ACTION_PLAN, m.ActionPlan(request_id=request.id, steps=look, again=True))
+    bench.step()
+    there = bench.nav(1)
+    assert there.goal == "goto living table"
+    bench.drove(there)
+    apple = m.WorldObject(label="apple", kind="apple", colour="red", position=(-1.5, -2.3, 0.55), on="living table")
+    bench.send(topics.WORLD_OBJECTS, m.WorldObjects(t=1.0, objects=[apple]))
+    request = bench.next_goal(PLAN, 2)
+    assert request.done == look and request.world.objects == ["apple"]
+    answer_plan(bench, 2, [m.PlanStep(action="say", text="The table is tidy already.")])
+    bench.until(lambda: "say The table is tidy already." in bench.texts(SPEECH))
+    bench.until(lambda: bench.state.last is not None)
+    assert bench.state.last is not None and bench.state.last.outcome == "delivered"
+
+
+def test_a_planner_that_only_ever_wants_to_look_is_not_followed_for_ever() -> None:
+    bench = asked("tidy up the table", enable_confirmation=False)
+    for count in range(1, 6):
+        request = bench.next_goal(PLAN, count)
+        look = [m.PlanStep(action="wait")]
+        bench.send(topics.ACTION_PLAN, m.ActionPlan(request_id=request.id, steps=look, again=True))
+        bench.step()
+    bench.until(lambda: bench.state.last is not None)
+    assert bench.state.last is not None and bench.state.last.outcome == "failed"
+
+
+def test_the_words_of_a_step_are_what_perception_is_asked_for() -> None:
+    bench = planned([m.PlanStep(action="find", object="mug", text="mug on the left")])
+    assert bench.next_goal(QUERY, 1).query == "mug on the left"
+
+
 def test_listening_is_shown_while_speech_takes_in_an_utterance() -> None:
     bench = bench_of()
     bench.send(topics.SPEECH_STATUS, m.SpeechStatus(state="transcribing"))
