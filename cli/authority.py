@@ -18,9 +18,9 @@ from cli.errors import CliError
 from common.access import ROUTER, Subject
 from common.clock import unix_time
 from common.keys import CA, CERT, KEY
-from common.router import standalone
+from common.router import client, standalone
 
-SUBJECTS, STANDALONE = "subjects.json", "router.json5"
+SUBJECTS, STANDALONE, CLIENT = "subjects.json", "router.json5", "client.json5"
 HOSTS = ("localhost", "127.0.0.1", "::1", "router")  # `router` is its name in the compose file
 SKEW = timedelta(days=1)  # robots without a battery clock start in the past
 
@@ -60,6 +60,8 @@ class Authority:
     def issue(self, subject: Subject, days: float, hosts: Iterable[str] = ()) -> None:
         """A key and a certificate for one subject; routers also serve, under the names of `hosts`.
 
+        A client gets a configuration file for plain Zenoh tools as well.
+
         Raises:
             CliError: the authority's key is not here.
         """
@@ -87,6 +89,9 @@ class Authority:
         write(folder / KEY, _pem(key))
         write(folder / CERT, made.public_bytes(serialization.Encoding.PEM))
         write(folder / CA, authority.public_bytes(serialization.Encoding.PEM))
+        if subject.role in ("operator", "observer"):
+            where = next((h for h in hosts if h not in hosts_of(())), "127.0.0.1")
+            write(folder / CLIENT, client(folder, f"tls/{where}:7447", subject.namespace).encode())
 
     def has(self, subject: Subject) -> bool:
         return (self.directory / subject.common_name / CERT).exists()

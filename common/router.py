@@ -122,21 +122,34 @@ def _secure(config: zenoh.Config, tls: dict[str, Any], allowed: Iterable[access.
 def standalone(folder: Path, allowed: Iterable[access.Subject]) -> str:
     """The router's whole configuration as one file, certificates included, for the official `zenohd`."""
     config = zenoh.Config.from_file(str(CONFIG))
-    ca, cert, key = (base64.b64encode((folder / n).read_bytes()).decode() for n in (CA, CERT, KEY))
-    tls = {
-        "root_ca_certificate_base64": ca,
-        "listen_certificate_base64": cert,
-        "listen_private_key_base64": key,
-        "connect_certificate_base64": cert,
-        "connect_private_key_base64": key,
-        "enable_mtls": True,
-        "verify_name_on_connect": True,
-    }
+    tls = _inside(folder)
+    tls |= {k.replace("connect_", "listen_"): v for k, v in tls.items() if k.startswith("connect_")}
     whole = {name: _json_of(config, name) for name in ("mode", "scouting", "timestamping")}
     link = {"tx": {"lease": _json_of(config, "transport/link/tx/lease")}, "protocols": ["tls"], "tls": tls}
     shared = {"enabled": _json_of(config, "transport/shared_memory/enabled")}
     whole |= {"transport": {"link": link, "shared_memory": shared}, "access_control": access.acl(allowed)}
     return msgspec.json.format(msgspec.json.encode(whole), indent=1).decode() + "\n"
+
+
+def client(folder: Path, endpoint: str, namespace: str) -> str:
+    """A whole configuration for any Zenoh tool (`zenoh --config FILE`), certificate included."""
+    config = zenoh.Config.from_file(str(CONFIG.with_name("client.json5")))
+    whole = {name: _json_of(config, name) for name in ("mode", "scouting")}
+    whole |= {"connect": {"endpoints": [endpoint]}, "namespace": namespace or None}
+    whole |= {"transport": {"link": {"protocols": ["tls"], "tls": _inside(folder)}}}
+    return msgspec.json.format(msgspec.json.encode(whole), indent=1).decode() + "\n"
+
+
+def _inside(folder: Path) -> dict[str, Any]:
+    """TLS settings with the certificates themselves instead of paths to them."""
+    ca, cert, key = (base64.b64encode((folder / n).read_bytes()).decode() for n in (CA, CERT, KEY))
+    return {
+        "root_ca_certificate_base64": ca,
+        "connect_certificate_base64": cert,
+        "connect_private_key_base64": key,
+        "enable_mtls": True,
+        "verify_name_on_connect": True,
+    }
 
 
 def _json_of(config: zenoh.Config, key: str) -> Any:

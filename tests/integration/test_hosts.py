@@ -24,7 +24,7 @@ pytestmark = [pytest.mark.slow, pytest.mark.timeout(900)]
 
 SCENE, THING = "minimal", "yellow block"
 SETTINGS = {"TIDYBOT__RUNTIME__SCENE": SCENE, "TIDYBOT__BRAIN__PIPELINE": "fetch", "TIDYBOT__BRAIN__SETTLE": "0.3"}
-PACED = ("camera", "perception", "navigation", "manipulation", "brain")
+PACED = ("camera", "perception", "navigation", "manipulation", "speech", "brain")
 MOVING, STILL, STOP_WITHIN, PARTITION = 0.25, 0.02, 0.5, 5.0
 
 

@@ -269,3 +269,14 @@ def test_a_robot_does_not_reach_into_another(guarded: Guarded) -> None:
         both()
         assert bus.fetch(ours, LAST)
     assert got == {("ours", "speech/status"), ("theirs", "speech/status")}
+
+
+def test_the_clients_file_is_all_that_a_plain_zenoh_tool_needs(guarded: Guarded) -> None:
+    config = zenoh.Config.from_file(str(guarded.keys / "operator" / "client.json5"))
+    config.insert_json5("connect/endpoints", f'["{guarded.connect}"]')
+    got: list[str] = []
+    with ExitStack() as stack:
+        brain = guarded.open(stack, "brain")
+        with zenoh.open(config) as session:
+            session.declare_subscriber("**", lambda s: got.append(str(s.key_expr)))
+            eventually(lambda: (brain.put(topics.BRAIN_STATE.key, "x"), got)[1], "the tool hears the brain")
