@@ -11,7 +11,7 @@ from common import codec, topics
 from common import messages as m
 from common.topics import Topic
 
-EPOCHS = {"epoch"}  # random for every start of a process
+EPOCHS = {"epoch", "world"}  # random for every start of a process
 TIMES = {"t", "seen_at", "started"}
 Timed = tuple[float, m.Message]
 

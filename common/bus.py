@@ -40,6 +40,7 @@ CACHE = 64
 HEARTBEAT = 0.25
 PROBE_AFTER, PROBE_PERIOD = 2.0, 30.0
 _TICK = struct.Struct("<q")
+_BAD_REQUEST = (ValueError, LookupError, TypeError, AttributeError, ArithmeticError, RecursionError, OSError)
 
 
 class BusError(ValueError):
@@ -364,8 +365,8 @@ class ZenohIo(IoBase):
             with query:
                 try:
                     query.reply(query.key_expr, handler(payload), encoding=codec.JSON)
-                except (ValueError, KeyError, TypeError) as error:
-                    self.count_drop(str(query.key_expr), str(error))
+                except _BAD_REQUEST as error:
+                    self.count_drop(str(query.key_expr), f"{type(error).__name__}: {error}")
                     query.reply_err(str(error))
 
 

@@ -12,7 +12,7 @@ from typing import IO, Any
 
 import msgspec
 from mcap.exceptions import McapError
-from mcap.records import Attachment, Channel, Chunk, DataEnd, Message, Metadata, Schema
+from mcap.records import Attachment, Channel, Chunk, Message, Metadata, Schema, Statistics
 from mcap.stream_reader import StreamReader, breakup_chunk
 from mcap.writer import CompressionType, Writer
 from zstandard import ZstdError
@@ -172,11 +172,15 @@ class Recording:
         try:
             for record in _records(file):
                 self._take(record)
-            file.seek(-len(MCAP0_MAGIC), 2)
-            if file.read() != MCAP0_MAGIC:
-                raise EOFError
+            if self._promised != (found := self._found()):
+                self.torn = f"{found} of {self._promised} messages"
         except _TORN as error:
-            self.torn = f"{type(error).__name__} after {sum(s.count for s in self.spans.values())} messages"
+            self.torn = f"{type(error).__name__} after {self._found()} messages"
+
+    _promised = -1
+
+    def _found(self) -> int:
+        return sum(span.count for span in self.spans.values())
 
     def _take(self, record: Any) -> None:
         if isinstance(record, Message):
@@ -185,6 +189,8 @@ class Recording:
             self._channels[record.id] = record
         elif isinstance(record, Metadata):
             self.facts[record.name] = record.metadata
+        elif isinstance(record, Statistics):
+            self._promised = record.message_count
         elif isinstance(record, Attachment):
             self.files[record.name] = record.data
 
@@ -220,12 +226,10 @@ def repair(source: Path, target: Path) -> int:
 
 
 def _records(file: IO[bytes]) -> Iterator[Any]:
-    """Records of the data section in file order, chunks opened and checked."""
+    """Records in file order, chunks opened and checked; the reader itself checks the magic at the end."""
     for record in StreamReader(file, emit_chunks=True, record_size_limit=2**30).records:
         if isinstance(record, Chunk):
             yield from breakup_chunk(record, validate_crc=True)
-        elif isinstance(record, DataEnd):
-            return
         elif not isinstance(record, Schema):
             yield record
 
