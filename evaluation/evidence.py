@@ -52,6 +52,7 @@ class Evidence(msgspec.Struct):
     hits: list[str] = []
     disturbed: list[str] = []
     driven: float = 0.0
+    standing: bool = False
     moved: list[str] = []
 
 
@@ -71,6 +72,7 @@ class Recorder:
     def see(self, look: Look) -> None:
         if self._first is None or self._last is None:
             self._first = self._last = look
+            self._recent = [look]
             self._marks = {n: ThingEvidence(n, thing.on) for n, thing in look.things.items()}
             return
         step = distance(look.base[:2], self._last.base[:2])
@@ -108,12 +110,13 @@ class Recorder:
             hits=hits,
             disturbed=[n for n in sorted(self._touched - wanted) if self._disturbed(n, first, last)],
             driven=round(self._driven, 3),
+            standing=distance(self._recent[0].base[:2], last.base[:2]) < STILL,
             moved=[n for n, t in last.things.items() if distance(t.position, first.things[n].position) > MOVED],
         )
 
     def _judge(self, want: Want, last: Look) -> ThingEvidence:
         mark, now = self._marks[want.thing], last.things[want.thing]
-        oldest = self._recent[0].things[want.thing] if self._recent else now
+        oldest = self._recent[0].things[want.thing]
         mark.on, mark.released = now.on, not now.held and not now.touched
         mark.at_rest = distance(oldest.position, now.position) < STILL
         mark.carried = round(mark.carried, 3)

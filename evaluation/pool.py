@@ -14,7 +14,7 @@ from common.clock import monotonic
 from evaluation.case import Case, Observed, Result
 from evaluation.verdict import judge
 
-WALL_LIMIT, START_LIMIT = 1800.0, 120.0
+WALL_LIMIT, START_LIMIT = 3600.0, 300.0
 Run = Callable[[Case, Callable[[float, str], None]], Result]
 
 

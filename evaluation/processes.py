@@ -29,7 +29,7 @@ from evaluation.scene_file import to_toml
 from evaluation.stack import paced_services
 from evaluation.verdict import judge
 
-WALL_LIMIT = 1500.0
+WALL_LIMIT = 3000.0
 
 
 class Ended(StopSignal):

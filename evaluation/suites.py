@@ -2,6 +2,7 @@
 
 import tomllib
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 from typing import Literal
 
@@ -63,6 +64,12 @@ def _wakes(settings: tuple[str, ...]) -> bool:
 
 
 # --- building blocks
+@cache
+def _flat() -> Scene:
+    """The shipped apartment, read once."""
+    return load_scene("apartment")
+
+
 def _random(seed: int, suite: int) -> np.random.Generator:
     return np.random.default_rng([seed, suite])
 
@@ -108,7 +115,7 @@ def hallucinated(plan: list[dict[str, str]]) -> tuple[Rule, ...]:
 # --- suites
 def fetch(seed: int) -> Case:
     """A random object, a random wording, typed or spoken."""
-    scene, rng = load_scene("apartment"), _random(seed, 1)
+    scene, rng = _flat(), _random(seed, 1)
     spec = _pick(rng, scene, seed)
     case = _fetch("fetch", seed, spec, scene, WORDINGS[int(rng.integers(len(WORDINGS)))])
     case.spoken = bool(rng.random() < 0.5)
@@ -117,7 +124,7 @@ def fetch(seed: int) -> Case:
 
 def named(seed: int) -> Case:
     """The contract's five scenarios, by the seed."""
-    scene, rng = load_scene("apartment"), _random(seed, 2)
+    scene, rng = _flat(), _random(seed, 2)
     name = NAMED[seed % len(NAMED)]
     if name == "not_in_view":
         spec = _pick(rng, scene, seed, not_room="living room")
@@ -138,7 +145,7 @@ def named(seed: int) -> Case:
 
 def faults(seed: int) -> Case:
     """One of the failure kinds, by the seed; recovering and honestly reporting both count."""
-    scene, rng = load_scene("apartment"), _random(seed, 3)
+    scene, rng = _flat(), _random(seed, 3)
     fault = FAULTS[seed % len(FAULTS)]
     spec = _pick(rng, scene, seed, room="kitchen" if fault == "navigation" else "")
     case = _fetch("faults", seed, spec, scene)
@@ -163,7 +170,7 @@ def faults(seed: int) -> Case:
 
 def dialogue(seed: int) -> Case:
     """What can happen between the command and the first movement, and a stop after it."""
-    scene, rng = load_scene("apartment"), _random(seed, 4)
+    scene, rng = _flat(), _random(seed, 4)
     name = DIALOGUES[seed % len(DIALOGUES)]
     spec = _pick(rng, scene, seed)
     wrong = f"bring me the {_other(rng, scene, spec).name}"
@@ -187,7 +194,7 @@ def dialogue(seed: int) -> Case:
 
 def tidy(seed: int) -> Case:
     """Four objects from the living table to where the rules of `config/planner.toml` want them."""
-    scene, rng = load_scene("apartment"), _random(seed, 5)
+    scene, rng = _flat(), _random(seed, 5)
     table = "living table"
     order = [scene.objects[int(i)] for i in rng.permutation(len(scene.objects))]
     chosen = [o for o in order if destination(o, scene) not in ("", table)][:4]
@@ -204,8 +211,7 @@ def tidy(seed: int) -> Case:
 
 def destination(spec: ObjectSpec, scene: Scene, path: Path | None = None) -> str:
     """Where an object belongs by the tidying rules: the first receptacle of the first rule; "" when none fits."""
-    rules = tomllib.loads((path or config_dir() / "planner.toml").read_text(encoding="utf-8")).get("tidy", [])
-    for rule in rules:
+    for rule in _rules(path or config_dir() / "planner.toml"):
         if spec.kind not in rule.get("kinds", [spec.kind]) or spec.colour not in rule.get("colours", [spec.colour]):
             continue
         for name in rule["to"]:
@@ -214,13 +220,19 @@ def destination(spec: ObjectSpec, scene: Scene, path: Path | None = None) -> str
     return ""
 
 
+@cache
+def _rules(path: Path) -> list[dict[str, list[str]]]:
+    found: list[dict[str, list[str]]] = tomllib.loads(path.read_text(encoding="utf-8")).get("tidy", [])
+    return found
+
+
 def _receptacle(name: str, scene: Scene) -> Receptacle | None:
     return scene.receptacle(name) or next((r for r in scene.receptacles if r.kind == name), None)
 
 
 def chaos(seed: int) -> Case:
     """Service, state and harm in turn: the first 49 seeds kill each service in each state, the next 49 hang it."""
-    scene, rng = load_scene("apartment"), _random(seed, 6)
+    scene, rng = _flat(), _random(seed, 6)
     case = _fetch("chaos", seed, _pick(rng, scene, seed), scene)
     service = CHAOS_SERVICES[seed % len(CHAOS_SERVICES)]
     state = CHAOS_STATES[seed // len(CHAOS_SERVICES) % len(CHAOS_STATES)]

@@ -56,7 +56,7 @@ def _outcome(case: Case, seen: Observed) -> Outcome:
     if case.expect == "nothing":
         return "declined" if untouched and evidence.driven < STOOD_STILL else "failed"
     if case.expect == "stopped":
-        return "stopped" if seen.stopped and not evidence.hits else "failed"
+        return "stopped" if seen.stopped and evidence.standing and not evidence.hits else "failed"
     if faultless(evidence):
         return "delivered"
     return "reported" if seen.claimed in ("failed", "cancelled") else "failed"
