@@ -80,13 +80,19 @@ class Mailbox(Generic[M]):
         if self._last is not None and self._decoded is None:
             try:
                 self._decoded = codec.decode(self.topic, self._last)
-                self._good = self._decoded
+                self._good, self._good_at = self._decoded, self.received_at
             except codec.DecodeError:
-                self._last = None
+                self._last, self.received_at = None, self._good_at
                 raise
         return self._decoded if self._decoded is not None else self._good
 
+    @property
+    def sound(self) -> bool:
+        """True when the newest payload was good; `newest` shows an older one otherwise."""
+        return self._decoded is not None
+
     _good: M | None = None
+    _good_at = float("-inf")
 
 
 class WorkerJob(Generic[R]):
@@ -158,7 +164,8 @@ class IoBase:
     def drain(self, topic: Topic[M]) -> list[M]:
         box: Mailbox[M] = self._boxes[topic.key]
         if topic.keep == "latest":
-            return [one] if box.take() and (one := self.latest(topic)) is not None else []
+            # A payload that is none must not bring the one before it a second time.
+            return [one] if box.take() and (one := self.latest(topic)) is not None and box.sound else []
         messages: list[M] = []
         for payload in box.take():
             try:
@@ -178,6 +185,9 @@ class IoBase:
             return box.newest()
 
     def age(self, topic: Topic[M], now: float) -> float:
+        # Decoded first: what is no message keeps nothing fresh.
+        if topic.keep == "latest":
+            self.latest(topic)
         return now - self._boxes[topic.key].received_at
 
     def _note_mission(self, message: m.Message) -> None:

@@ -55,6 +55,26 @@ def test_bad_payloads_are_counted_and_leave_the_last_good_value() -> None:
     assert io.drops == {"joint_states": 1, "brain/navigation_goal": 1}
 
 
+def test_a_bad_payload_neither_repeats_the_last_good_one_nor_keeps_it_fresh() -> None:
+    bus, io = make()
+    bus.send(topics.JOINT_STATES, joints(1.0))
+    io.begin(None, 1.0)
+    assert len(io.drain(topics.JOINT_STATES)) == 1
+    for asked_first in (False, True):
+        bus.put(topics.JOINT_STATES, b"\xff\xff")
+        io.begin(None, 2.0)
+        if asked_first:
+            io.latest(topics.JOINT_STATES)
+        assert io.drain(topics.JOINT_STATES) == []
+        assert io.age(topics.JOINT_STATES, 2.0) == 1.0
+        newest = io.latest(topics.JOINT_STATES)
+        assert newest is not None and newest.t == 1.0
+    bus.send(topics.JOINT_STATES, joints(3.0))
+    io.begin(None, 3.0)
+    assert [j.t for j in io.drain(topics.JOINT_STATES)] == [3.0]
+    assert io.age(topics.JOINT_STATES, 3.0) == 0.0
+
+
 def test_an_overfull_queue_drops_the_oldest_and_says_so() -> None:
     bus, io = make()
     for n in range(CAPACITY + 5):
