@@ -38,7 +38,7 @@ class Robot(Stack):
         self, scene: str = "apartment", seed: int = 0, settings: tuple[str, ...] = (), log_level: str = "error"
     ) -> None:
         settings = ("brain.pipeline=fetch", *settings)
-        super().__init__(scene, seed, settings, without=("camera", "planner", "perception"), log_level=log_level)
+        super().__init__(scene, seed, settings, without=("planner",), log_level=log_level)
 
 
 def fetch(robot: Robot, item: str, seed: int, patience: float = 400.0, speech: Any = None) -> Outcome:
