@@ -1,0 +1,136 @@
+"""Is a seed's run the same every time, in one process and with every process real?
+
+`python -m bench.determinism --seed 3 --runs memory,memory,processes,processes`; exit 1 when a trajectory differs.
+Prints a hash of all physics and joint states of each run and, of two that differ, the first message that does.
+"""
+
+import argparse
+import sys
+import tempfile
+import time
+import uuid
+from itertools import zip_longest
+from pathlib import Path
+
+import msgspec
+
+from bench.witness import Sight, Trace, WitnessService
+from cli.services import Service
+from cli.supervision import Supervision, free_port
+from cli.up import Plan, bring_up
+from evaluation.stack import Stack
+
+WALL_LIMIT = 1800.0
+
+
+def in_memory(args: argparse.Namespace) -> Trace:
+    """Every service in this process."""
+    robot = Stack(args.scene, args.seed, settings(args), without=tuple(args.without.split(",")))
+    try:
+        witness: WitnessService = robot.join(WitnessService)
+        while witness.trace is None:
+            robot.tick()
+        return witness.trace
+    finally:
+        robot.close()
+
+
+def in_processes(args: argparse.Namespace) -> Trace:
+    """`tidybot up --speed max` with the witness as one more participant.
+
+    Raises:
+        TimeoutError: the run did not end.
+    """
+    with tempfile.TemporaryDirectory(prefix="tidybot-determinism-") as name:
+        directory = Path(name)
+        trace = directory / "trace.json"
+        supervision = Supervision(directory / "run")
+        plan = Plan(
+            argparse.Namespace(
+                port=free_port(), namespace=f"twice-{uuid.uuid4().hex[:8]}", speed="max", only="",
+                without=f"{args.without},dashboard".strip(","), scene=args.scene, seed=args.seed, viewer=False,
+                set=[s for s in settings(args) if not s.startswith("witness.")],
+            )
+        )  # fmt: skip
+        plan.services = [*plan.services, Service("witness", "bench.witness")]
+        waited = ", ".join(f'"{s.name}"' for s in plan.services if s.paced)
+        own = {f"TIDYBOT__{k.upper().replace('.', '__')}": v for k, _, v in (s.partition("=") for s in settings(args))}
+        plan.environ = {
+            **plan.environ,
+            **{k: v for k, v in own.items() if k.startswith("TIDYBOT__WITNESS__")},
+            "TIDYBOT__WITNESS__TRACE": str(trace),
+            "TIDYBOT_STATE_DIR": str(directory / "state"),
+            "TIDYBOT__SIM__WAIT_FOR": f"[{waited}]",
+        }
+        try:
+            bring_up(supervision, plan, lambda text: None)
+            end = time.monotonic() + WALL_LIMIT
+            while not trace.exists():
+                if time.monotonic() > end:
+                    raise TimeoutError(f"no end within {WALL_LIMIT:.0f} s")
+                time.sleep(0.2)
+            return msgspec.json.decode(trace.read_bytes(), type=Trace)
+        finally:
+            supervision.stop()
+
+
+def settings(args: argparse.Namespace) -> tuple[str, ...]:
+    said = (f"witness.command={args.command}", f"witness.limit={args.limit}")
+    return ("brain.enable_confirmation=false", *said, *args.set)
+
+
+def first_difference(a: Trace, b: Trace) -> str:
+    """The first tick whose messages differ, and how."""
+
+    def by_tick(trace: Trace) -> dict[int, list[Sight]]:
+        found: dict[int, list[Sight]] = {}
+        for sight in trace.sights:
+            found.setdefault(sight.tick, []).append(sight)
+        return found
+
+    one, other = by_tick(a), by_tick(b)
+    for tick in sorted({*one, *other}):
+        pairs = zip_longest(one.get(tick, []), other.get(tick, []))
+        for x, y in pairs:
+            if x is None or y is None or (x.key, x.print) != (y.key, y.print):
+                return f"tick {tick}:\n    {_shown(x)}\n    {_shown(y)}"
+    return ""
+
+
+def _shown(sight: Sight | None) -> str:
+    return f"{sight.key} {sight.text}" if sight is not None else "nothing more"
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--runs", default="memory,memory,processes,processes")
+    parser.add_argument("--seed", type=int, default=3)
+    parser.add_argument("--scene", default="apartment")
+    parser.add_argument("--command", default="bring me the red mug")
+    parser.add_argument("--limit", type=float, default=300.0, metavar="S", help="robot time (default %(default)s)")
+    parser.add_argument("--without", default="", metavar="A,B", help="leave these services out")
+    parser.add_argument("--set", action="append", default=[], metavar="section.key=value")
+    args = parser.parse_args()
+    print(f"{'run':12} {'robot s':>8} {'wall s':>7} {'messages':>9}  {'hash':16}  outcome")
+    traces: list[Trace] = []
+    for kind in args.runs.split(","):
+        began = time.monotonic()
+        trace = in_memory(args) if kind == "memory" else in_processes(args)
+        traces.append(trace)
+        wall, seconds = time.monotonic() - began, trace.ticks / 100
+        row = f"{kind:12} {seconds:8.1f} {wall:7.1f} {len(trace.sights):9}  {trace.hash[:16]}  {trace.outcome}"
+        print(row, flush=True)
+    different = 0
+    for n, trace in enumerate(traces[1:], 2):
+        if where := first_difference(traces[0], trace):
+            moved = trace.hash != traces[0].hash
+            different += moved
+            print(f"run {n} differs from run 1 in its {'trajectory' if moved else 'messages only'}, first at {where}")
+    print(
+        "every trajectory is the same" if not different else f"{different} of {len(traces) - 1} differ from the first"
+    )
+    return int(different > 0)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
