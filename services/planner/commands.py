@@ -1,9 +1,8 @@
 """What each sentence form does to the draft of a plan. Pure."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 
 from common.scene import Receptacle
-from services.planner.config import Rule
 from services.planner.draft import Draft, Refusal
 from services.planner.forms import Slots
 from services.planner.phrases import PLURAL_PRONOUNS, PRONOUNS, Phrase, read
@@ -27,7 +26,7 @@ def fetch_named(draft: Draft, slots: Slots) -> None:
 def fetch(draft: Draft, slots: Slots) -> None:
     everything = things(draft, slots["thing"], prefer_held=True)
     for meant in everything:
-        _take(draft, meant)
+        take(draft, meant)
         draft.hand_over()
     draft.last = [m.thing for m in everything]
 
@@ -65,14 +64,6 @@ def put_near(draft: Draft, slots: Slots) -> None:
         _put(draft, meant, where)
 
 
-def put_away(draft: Draft, slots: Slots) -> None:
-    _sort(draft, things(draft, slots["thing"], prefer_held=True), draft.config.tidy)
-
-
-def throw_away(draft: Draft, slots: Slots) -> None:
-    _sort(draft, things(draft, slots["thing"], prefer_held=True), draft.config.throw)
-
-
 def pick_up(draft: Draft, slots: Slots) -> None:
     everything = things(draft, slots["thing"], prefer_held=True)
     meant = everything[0]
@@ -85,7 +76,7 @@ def pick_up(draft: Draft, slots: Slots) -> None:
         return
     if draft.world.held and any(s.action == "grasp" for s in draft.steps):
         raise Refusal("I can hold only one thing at a time")
-    _take(draft, meant)
+    take(draft, meant)
 
 
 def put_down(draft: Draft, slots: Slots) -> None:
@@ -109,25 +100,6 @@ def close_gripper(draft: Draft, slots: Slots) -> None:
     if (held := draft.world.held) is None:
         raise Refusal("I close my gripper only around a thing, so tell me what to pick up")
     draft.say(f"I am holding the {held.label}.")
-
-
-def tidy(draft: Draft, slots: Slots) -> None:
-    """Everything on a surface, in a room or in the whole flat goes where the rules say."""
-    where = _area(draft, slots)
-    surfaces = draft.vocabulary.surfaces() if where is None else _surfaces_of(draft, where)
-    name = "place" if where is None else where.name
-    names = {r.name for r in surfaces}
-    there = [t for t in draft.world.things if t.on in names and not t.held]
-    if not there:
-        draft.look_first(surfaces, f"I have not seen what lies on the {name} yet, so send me there first")
-    near = sorted(there, key=lambda t: (draft.world.distance(t), t.label))
-    _sort(draft, [Meant(t) for t in near], draft.config.tidy, quiet=True)
-    if not any(t.on != _now(draft, t.label) for t in there):
-        draft.say(f"The {name} is tidy already.")
-
-
-def _now(draft: Draft, label: str) -> str:
-    return next((t.on for t in draft.world.things if t.label == label), "")
 
 
 # --- moving itself
@@ -174,7 +146,7 @@ def refuse(reason: str) -> Action:
 
 
 # --- parts of the above
-def _take(draft: Draft, meant: Meant) -> None:
+def take(draft: Draft, meant: Meant) -> None:
     if meant.at is not None and not meant.thing.seen:
         draft.go(meant.at)
     draft.take(meant.thing, meant.words)
@@ -185,7 +157,7 @@ def _put(draft: Draft, meant: Meant, where: Receptacle) -> None:
         draft.say(f"The {meant.thing.label} is there already.")
         draft.last = [meant.thing]
         return
-    _take(draft, meant)
+    take(draft, meant)
     draft.place(where)
 
 
@@ -197,7 +169,7 @@ def _deliver(draft: Draft, everything: list[Meant], where: Spot) -> None:
         if where.room and draft.world.room_of(meant.thing) == where.name and not meant.thing.held:
             draft.say(f"The {meant.thing.label} is in the {where.name} already.")
             continue
-        _take(draft, meant)
+        take(draft, meant)
         if where.home:
             draft.hand_over()
         elif where.room:
@@ -206,19 +178,6 @@ def _deliver(draft: Draft, everything: list[Meant], where: Spot) -> None:
             draft.go(where)
             draft.release()
     draft.last = [m.thing for m in everything]
-
-
-def _sort(draft: Draft, everything: Iterable[Meant], rules: tuple[Rule, ...], quiet: bool = False) -> None:
-    """Each where its rule says; what is there already stays."""
-    moved = list(everything)
-    for meant in moved:
-        where = draft.destination(meant.thing, rules)
-        if meant.thing.on != where.name or meant.thing.held:
-            _take(draft, meant)
-            draft.place(where)
-        elif not quiet:
-            draft.say(f"The {meant.thing.label} is in its place already.")
-    draft.last = [m.thing for m in moved]
 
 
 def _surface(draft: Draft, slots: Slots) -> Receptacle:
@@ -238,26 +197,3 @@ def _surface(draft: Draft, slots: Slots) -> Receptacle:
         known = listed([r.name for r in draft.world.scene.receptacles], "or")
         raise Refusal(f"I cannot put things on the {where.name}, only on or in the {known}")
     return where.receptacle
-
-
-def _area(draft: Draft, slots: Slots) -> Spot | None:
-    words = slots.get("spot", ())
-    phrase = " ".join(w for w in words if w not in ("the", "my", "this", "whole", "entire", "all"))
-    if phrase in ("", "up", "flat", "apartment", "house", "home", "place", "everything", "mess"):
-        return None
-    if phrase in ("room", "here"):
-        x, y, _ = draft.world.pose
-        room = draft.world.scene.room_at(x, y)
-        return Spot(room.name, room=True) if room else None
-    where = spot(draft, words)
-    if where.receptacle is None and not where.room:
-        raise Refusal(f"I do not know how to tidy up the {where.name}")
-    return where
-
-
-def _surfaces_of(draft: Draft, where: Spot) -> list[Receptacle]:
-    if where.receptacle is None:
-        return draft.vocabulary.surfaces(where.name)
-    if where.receptacle.depth:
-        raise Refusal(f"I cannot empty the {where.name}")
-    return [where.receptacle]

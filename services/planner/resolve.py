@@ -1,20 +1,18 @@
 """Which things and which spots a phrase means, in the believed world. Pure."""
 
-import cmath
-import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 
 import msgspec
 
 from services.planner.draft import Draft, Refusal
 from services.planner.forms import Words
 from services.planner.phrases import PLURAL_PRONOUNS, PRONOUNS, Phrase, read
+from services.planner.relations import away, between, holds, is_near, spoken, superlative
 from services.planner.vocabulary import Spot, bare
 from services.planner.words import listed
 from services.planner.world import Thing
 
 MAX_QUESTION = 4
-NEAR = 1.5
 LONGEST_NAME = 4
 
 
@@ -73,7 +71,7 @@ def spot(draft: Draft, words: Words) -> Spot:
             raise Refusal(f"the {furniture or ' '.join(bare(words))} is no place that I can use")
         raise Refusal(f"I know no {' '.join(bare(words))}")
     if len(found) > 1 and wanted is not words:
-        return min(found, key=lambda s: _away(draft, s))
+        return min(found, key=lambda s: away(draft, s))
     if len(found) > 1:
         raise Refusal(f"I do not know which one you mean: {listed([f'the {s.name}' for s in found], 'or')}")
     return found[0]
@@ -148,16 +146,16 @@ def _related(draft: Draft, phrase: Phrase, seen: list[Thing], specs: list[Thing]
             draft.look_first(surfaces, f"I have seen no {phrase.singular} there yet")
         return [_unseen(draft, phrase, specs, place)]
     if phrase.relation == "near" and spots:
-        near = [t for t in seen if any(_is_near(draft, t, s) for s in spots)]
+        near = [t for t in seen if any(is_near(draft, t, s) for s in spots)]
         return _choose(draft, phrase, near, specs) if near else [_unseen(draft, phrase, specs, spots[0])]
     anchor = one(draft, phrase.anchor).thing
     placed = [t for t in seen if t.position and t.label != anchor.label]
     if anchor.position is None or not placed:
-        raise Refusal(f"I have not seen which {phrase.noun} is {_spoken(phrase.relation)} the {anchor.label}")
-    beside = [t for t in placed if _holds(draft, phrase.relation, t, anchor)]
+        raise Refusal(f"I have not seen which {phrase.noun} is {spoken(phrase.relation)} the {anchor.label}")
+    beside = [t for t in placed if holds(draft, phrase.relation, t, anchor)]
     if not beside:
-        raise Refusal(f"I see no {phrase.noun} {_spoken(phrase.relation)} the {anchor.label}")
-    return [Meant(min(beside, key=lambda t: _between(t, anchor)))] if phrase.count == 1 else [Meant(t) for t in beside]
+        raise Refusal(f"I see no {phrase.noun} {spoken(phrase.relation)} the {anchor.label}")
+    return [Meant(min(beside, key=lambda t: between(t, anchor)))] if phrase.count == 1 else [Meant(t) for t in beside]
 
 
 def _choose(draft: Draft, phrase: Phrase, seen: list[Thing], specs: list[Thing]) -> list[Meant]:
@@ -169,7 +167,7 @@ def _choose(draft: Draft, phrase: Phrase, seen: list[Thing], specs: list[Thing])
             draft.look_first(draft.vocabulary.surfaces(), f"I have seen no {phrase.singular} yet")
         return [_unseen(draft, phrase, specs, None)]
     if phrase.which and phrase.which != "other":
-        return [Meant(_superlative(draft, phrase, seen))]
+        return [Meant(superlative(draft, phrase, seen))]
     near = sorted(seen, key=lambda t: (not t.held, draft.world.distance(t), t.label))
     if phrase.count != 1:
         if phrase.count > len(near):
@@ -208,66 +206,3 @@ def _unseen(draft: Draft, phrase: Phrase, specs: list[Thing], at: Spot | None) -
         raise Refusal(f"I do not know which one you mean: {names}")
     kind = draft.choices.pick(kinds)
     return Meant(Thing(label=kind, kind=kind, seen=False), words, where)
-
-
-def _superlative(draft: Draft, phrase: Phrase, seen: Sequence[Thing]) -> Thing:
-    if phrase.which in ("biggest", "smallest"):
-        by_size = sorted(seen, key=lambda t: math.prod(t.size))
-        if math.isclose(math.prod(by_size[0].size), math.prod(by_size[-1].size), rel_tol=0.05) and len(seen) > 1:
-            raise Refusal(f"they are all of the same size: {listed([f'the {t.label}' for t in by_size])}")
-        return by_size[-1 if phrase.which == "biggest" else 0]
-    if phrase.which in ("nearest", "farthest"):
-        by_distance = sorted(seen, key=draft.world.distance)
-        return by_distance[0 if phrase.which == "nearest" else -1]
-    with_place = [t for t in seen if t.position]
-    sign = 1 if phrase.side == "right" else -1
-    placed = sorted(with_place, key=lambda t: sign * _bearing(draft, t, with_place))
-    if not placed:
-        raise Refusal(f"I have not seen which {phrase.noun} that is")
-    index = {"left": 0, "first": 0, "second": 1, "third": 2, "right": 0, "last": -1}[phrase.which]
-    if index >= len(placed):
-        raise Refusal(f"I see only {len(placed)} of them")
-    return placed[index]
-
-
-def _bearing(draft: Draft, thing: Thing, group: Sequence[Thing]) -> float:
-    """Angle to the left of the middle of a group, as the robot would see it from where it stands [rad]."""
-    x, y, _ = draft.world.pose
-    rays = [complex(t.position[0] - x, t.position[1] - y) for t in (thing, *group) if t.position]
-    middle = sum(ray / max(abs(ray), 1e-9) for ray in rays[1:])
-    return cmath.phase(rays[0] / middle) if abs(middle) > 1e-9 else cmath.phase(rays[0])
-
-
-def _holds(draft: Draft, relation: str, thing: Thing, anchor: Thing) -> bool:
-    if relation in ("left of", "right of"):
-        turn = _bearing(draft, thing, (thing, anchor)) - _bearing(draft, anchor, (thing, anchor))
-        return (turn > 0) == (relation == "left of")
-    if relation in ("behind", "front of"):
-        farther = draft.world.distance(thing) > draft.world.distance(anchor)
-        return farther == (relation == "behind")
-    return _between(thing, anchor) < 0.6 if relation == "near" else thing.on == anchor.label
-
-
-def _is_near(draft: Draft, thing: Thing, place: Spot) -> bool:
-    """On a surface or a step away from it, or from a standing place; in a room."""
-    if place.room:
-        return draft.world.room_of(thing) == place.name
-    where = draft.vocabulary.position(place)
-    if thing.on == place.name or where is None or thing.position is None:
-        return thing.on == place.name
-    return math.dist(where, thing.position[:2]) < NEAR
-
-
-def _between(a: Thing, b: Thing) -> float:
-    assert a.position is not None and b.position is not None
-    return math.dist(a.position, b.position)
-
-
-def _away(draft: Draft, place: Spot) -> float:
-    x, y, _ = draft.world.pose
-    where = draft.vocabulary.position(place)
-    return math.dist(where, (x, y)) if where else 0.0
-
-
-def _spoken(relation: str) -> str:
-    return {"front of": "in front of", "near": "near", "behind": "behind", "on": "on"}.get(relation, f"{relation}")

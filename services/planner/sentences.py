@@ -1,6 +1,6 @@
 """The sentence forms that are understood and what each does, in order of trial."""
 
-from services.planner import answers, commands
+from services.planner import answers, commands, tidying
 from services.planner.commands import Action
 from services.planner.forms import Form
 
@@ -34,8 +34,8 @@ FORMS: tuple[tuple[Form, Action], ...] = tuple(
         ("(come | go | drive) [back] home", commands.come_back),
         ("(come | go | drive | get) (here | back | to me | back here | back to me | over here)", commands.come_back),
         ("return [home | here | to (start | me | base)] | come", commands.come_back),
-        ("(get | fetch | take | grab) <thing> and throw (it | them) away", commands.throw_away),
-        ("(get | fetch | take | grab) <thing> and put (it | them) away", commands.put_away),
+        ("(get | fetch | take | grab) <thing> and throw (it | them) away", tidying.throw_away),
+        ("(get | fetch | take | grab) <thing> and put (it | them) away", tidying.put_away),
         (
             "(get | fetch | take | grab) <thing> and (put | place | throw | drop | set) (it | them)"
             " (in | into | inside | on top of | on | onto) <spot>",
@@ -44,9 +44,9 @@ FORMS: tuple[tuple[Form, Action], ...] = tuple(
         ("(get | fetch | take | grab) <thing> and (bring | take | carry) (it | them) to <spot>", commands.deliver),
         ("(go | drive | get | walk) and (get | fetch | bring | find) [me | us] <thing>", commands.fetch),
         ("go (get | fetch | bring) [me | us] <thing>", commands.fetch),
-        ("(tidy | clean | clear) up [<spot>]", commands.tidy),
-        ("(tidy | clean | clear) [<spot>] [up]", commands.tidy),
-        ("(clean | clear) <spot> off | empty <spot>", commands.tidy),
+        ("(tidy | clean | clear) up [<spot>]", tidying.tidy),
+        ("(tidy | clean | clear) [<spot>] [up]", tidying.tidy),
+        ("(clean | clear) <spot> off | empty <spot>", tidying.tidy),
         ("go [over | back] (to | into | in | near | towards) <spot>", commands.go),
         (
             "(drive | navigate | move | walk | return | head | come | roll) [over | back] (to | into | towards) <spot>",
@@ -62,13 +62,13 @@ FORMS: tuple[tuple[Form, Action], ...] = tuple(
             "(put | place | set | move | throw | toss | drop) <thing> (next to | near | beside | close to | by) <spot>",
             commands.put_near,
         ),
-        ("(throw | toss) <thing> (away | out)", commands.throw_away),
+        ("(throw | toss) <thing> (away | out)", tidying.throw_away),
         (
             "(throw | toss) (away | out) <thing> | get rid of <thing> | dispose of <thing> | trash <thing>",
-            commands.throw_away,
+            tidying.throw_away,
         ),
-        ("(put | tidy | clear | clean) away <thing> | (put | tidy | clear | clean) <thing> away", commands.put_away),
-        ("put <thing> (back | where it belongs | where they belong | in its place)", commands.put_away),
+        ("(put | tidy | clear | clean) away <thing> | (put | tidy | clear | clean) <thing> away", tidying.put_away),
+        ("put <thing> (back | where it belongs | where they belong | in its place)", tidying.put_away),
         ("(bring | take | carry | move | put | deliver) <thing> there", commands.deliver_there),
         ("(bring | fetch | get | give | hand | pass | grab | take | carry | find) (me | us) <thing>", commands.fetch),
         (
