@@ -10,7 +10,7 @@ import msgspec
 from cli.errors import CliError, checked
 from cli.link import Link, use_keys
 from cli.services import NAMES
-from cli.supervision import Supervision, run_dir
+from cli.supervision import WORLD, Supervision, run_dir
 from common import bus
 from common.clock import monotonic, sleep
 from common.keys import OFF
@@ -80,7 +80,9 @@ def restart(args: argparse.Namespace) -> int:
     supervision = Supervision(run_dir())
     checked(args.service, supervision.info().services, "service")
     before = next((r["epoch"] for r in rows(supervision) if r["name"] == args.service), "")
-    supervision.restart(args.service)
+    if args.fresh and args.service != "sim":
+        raise CliError(f"--fresh begins a new world: it goes with sim, not with {args.service}")
+    supervision.restart(args.service, forget=supervision.directory / WORLD if args.fresh else None)
     end = monotonic() + args.timeout
     while monotonic() < end:
         row = next(r for r in rows(supervision) if r["name"] == args.service)
@@ -147,6 +149,7 @@ def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") ->
     parser.set_defaults(run=ps)
     parser = commands.add_parser("restart", help="restart one service; the others go on")
     parser.add_argument("service")
+    parser.add_argument("--fresh", action="store_true", help="sim: begin a new world instead of going on with this one")
     parser.add_argument("--timeout", type=float, default=20.0, metavar="S", help="how long it may take [s]")
     parser.set_defaults(run=restart)
     parser = commands.add_parser("logs", help="what the services wrote")

@@ -34,6 +34,8 @@ STATES = {
     "UNKNOWN": "failed",
 }
 SOCKET_PATH_LIMIT = 100
+WATCHDOG = "watchdog"
+WORLD = "sim.checkpoint"
 
 
 class RunInfo(msgspec.Struct):
@@ -116,12 +118,13 @@ def render_config(directory: Path, services: Sequence[Service], connect: str) ->
         "[rpcinterface:tidybot]",
         "supervisor.rpcinterface_factory=cli.supervisord:make_rpc",
     ]
-    for order, service in enumerate(services):
-        command = [sys.executable, "-m", service.module]
-        if service.name == "router":
+    programs = [(service.name, service.module) for service in services]
+    for order, (name, module) in enumerate((*programs, (WATCHDOG, "cli.watchdog"))):
+        command = [sys.executable, "-m", module]
+        if name == "router":
             command += ["--listen", connect]
         lines += [
-            f"[program:{service.name}]",
+            f"[program:{name}]",
             f"command={path(shlex.join(command))}",
             f"priority={order + 1}",
             "autorestart=true",
@@ -132,7 +135,7 @@ def render_config(directory: Path, services: Sequence[Service], connect: str) ->
             "stopasgroup=true",
             "killasgroup=true",
             "redirect_stderr=true",
-            f"stdout_logfile={path(directory / 'logs' / (service.name + '.log'))}",
+            f"stdout_logfile={path(directory / 'logs' / (name + '.log'))}",
             "stdout_logfile_maxbytes=5MB",
             "stdout_logfile_backups=2",
         ]
@@ -153,7 +156,7 @@ class Supervision:
         """Start supervisord with these services; in the foreground it ends when this process does."""
         logs = self.directory / "logs"
         logs.mkdir(parents=True, exist_ok=True)
-        for name in ("supervisord", *(s.name for s in services)):
+        for name in ("supervisord", WATCHDOG, *(s.name for s in services)):
             (logs / f"{name}.log").unlink(missing_ok=True)
         config = self.directory / "supervisord.conf"
         config.write_text(render_config(self.directory, services, connect), encoding="utf-8")
@@ -161,6 +164,7 @@ class Supervision:
         environment = {**environ, "PYTHONPATH": _python_path(environ)}
         if not detach:
             environment["TIDYBOT_FOREGROUND_PARENT"] = str(os.getpid())
+        environment["TIDYBOT_RUN_DIR"] = str(self.directory)
         with (logs / "supervisord.err").open("wb") as errors:
             self.process = subprocess.Popen(
                 [sys.executable, "-m", "cli.supervisord", "-c", str(config)],
@@ -251,6 +255,8 @@ class Supervision:
         starts, exits = self.call("tidybot.starts"), self.call("tidybot.exits")
         found = []
         for row in self.call("supervisor.getAllProcessInfo"):
+            if row["name"] == WATCHDOG:
+                continue
             name, state = row["name"], STATES.get(row["statename"], "failed")
             detail = ""
             if name in exits and state != "running":
@@ -260,8 +266,8 @@ class Supervision:
         order = {name: i for i, name in enumerate(self.info().services)} if self.info() else {}
         return sorted(found, key=lambda p: order.get(p.name, 99))
 
-    def restart(self, name: str) -> None:
-        """Stop and start one process.
+    def restart(self, name: str, forget: Path | None = None) -> None:
+        """Stop and start one process; between the two a file that it would go on from can be forgotten.
 
         Raises:
             CliError: no such process, or it does not start.
@@ -270,6 +276,8 @@ class Supervision:
             raise CliError(f"{name} is not part of this run")
         with contextlib.suppress(CliError):
             self.call("supervisor.stopProcess", name)
+        if forget is not None:
+            forget.unlink(missing_ok=True)
         self.call("supervisor.startProcess", name, False)
 
     def info(self) -> "RunInfo":

@@ -44,7 +44,7 @@ class Plan:
         settings["TIDYBOT_CONNECT"], settings["TIDYBOT_NAMESPACE"] = self.connect, self.namespace
         settings["TIDYBOT_KEYS"] = self.keys or OFF
         settings["TIDYBOT_STATE_DIR"] = os.environ.get("TIDYBOT_STATE_DIR") or str(run_dir())
-        settings["TIDYBOT__BRAIN__RUN"] = uuid.uuid4().hex
+        settings["TIDYBOT__BRAIN__RUN"] = settings["TIDYBOT__SIM__RUN"] = uuid.uuid4().hex
         if args.scene:
             settings["TIDYBOT__RUNTIME__SCENE"] = args.scene
         if args.seed is not None:

@@ -403,11 +403,14 @@ class RobotDescription(Message):
 
 
 class SimStatus(Message):
+    """`epoch` names the process, `world` the layout that it simulates, which outlives the process."""
+
     state: Literal["running", "paused", "stopped"]
     speed: str = "realtime"
     epoch: str = ""
     scene: str = ""
     seed: int = 0
+    world: str = ""
     detail: str = ""
 
 

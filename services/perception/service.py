@@ -41,7 +41,7 @@ class PerceptionService:
     def __init__(self, config: PerceptionConfig, io: Io) -> None:
         self._config, self._io = config, io
         self._detector = load_detector(config.detector)(io.scene, config.max_range)
-        self._epoch = ""
+        self._world = ""
         self._forget()
         self._body: Job[Body] | None = None
         self._description: m.RobotDescription | None = None
@@ -76,11 +76,11 @@ class PerceptionService:
         for pose in io.drain(topics.POSE):
             self._poses.append((pose.t, (pose.x, pose.y, pose.theta)))
         status = io.latest(topics.SIM_STATUS)
-        if status is not None and status.epoch != self._epoch:
-            if self._epoch:
+        if status is not None and status.world != self._world:
+            if self._world:
                 self._forget()
-                io.log.info("another world", epoch=status.epoch)
-            self._epoch = status.epoch
+                io.log.info("another world", world=status.world)
+            self._world = status.world
         description = io.latest(topics.ROBOT_DESCRIPTION)
         if self._body is None and description is not None and description is not self._description:
             self._description = description

@@ -10,6 +10,9 @@ class SimConfig(Config, frozen=True):
     Wheel odometry: `slip` is the largest constant scale error, `veer` the largest constant turn [rad/m],
     `noise` a random walk [m and rad per sqrt(m)]. `obstacles`: tables, or names of the scene's; `none`: not even those
     that the scene places.
+
+    `run` names the run of the whole robot that this simulation belongs to: within one, a simulation that was killed
+    or restarted goes on with the same world; "" always begins anew.
     """
 
     speed: str = "realtime"
@@ -29,3 +32,4 @@ class SimConfig(Config, frozen=True):
     odometry_noise: float = 0.005
     obstacles: tuple[Obstacle | str, ...] | str = ()
     snapshot_dir: str = ""
+    run: str = ""

@@ -21,6 +21,10 @@ class WheelOdometry:
         self._veer = config.odometry_veer * float(rng.uniform(-1, 1))
         self._exact = not (config.odometry_slip or config.odometry_noise or config.odometry_veer)
 
+    def resume(self, true: Pose2, believed: Pose2) -> None:
+        """Go on from a known pose with what was believed there."""
+        self._true, self._believed = true, believed
+
     def update(self, true: Pose2) -> Pose2:
         """The believed pose after the robot has moved to `true`."""
         if self._exact:

@@ -86,6 +86,10 @@ class Physics:
     def grip(self, closed: float, effort: float) -> None:
         """Drive the fingers to `closed` (0..1) with at most `effort` newtons each."""
         self.data.ctrl[self.gripper_ctrl] = closed * robot.STROKE / 2
+        self.limit_effort(effort)
+
+    def limit_effort(self, effort: float) -> None:
+        """The most that each finger presses [N]; not part of MuJoCo's state."""
         self.model.actuator_forcerange[self.gripper_ctrl] = (-2 * effort, 2 * effort)
 
     def width(self) -> float:

@@ -12,7 +12,7 @@ from common import topics
 from common.io import Io
 from common.lockstep import DT
 from common.runtime import StartError
-from services.sim import robot, truth
+from services.sim import checkpoint, robot, truth
 from services.sim.arm import ArmDriver
 from services.sim.base import BaseDriver
 from services.sim.config import SimConfig
@@ -22,7 +22,8 @@ from services.sim.odometry import WheelOdometry
 from services.sim.physics import Physics
 from services.sim.viewer import Viewer
 
-SCAN_TICKS, STATE_TICKS = 10, 5
+SCAN_TICKS, STATE_TICKS, CHECKPOINT_TICKS = 10, 5, 50
+FULL_EFFORT = 40.0
 MAX_DISTANCE = 50.0
 _NAMES = list(robot.JOINT_NAMES)
 
@@ -59,7 +60,12 @@ class SimService:
         self._lidar = Lidar(self.physics.model, self.physics.lidar_site, config.lidar_noise, io.rng)
         self._viewer = Viewer(self.physics) if config.viewer else None
         self._tick = 0
-        self._begin(0.0)
+        self._model = checkpoint.fingerprint(self.physics.mjcf)
+        self._saved = io.state_dir / checkpoint.NAME if io.state_dir and config.run else None
+        self._unsaved = ""
+        self._begin()
+        if self._saved is not None and (state := checkpoint.load(self._saved, config.run, self._model)):
+            self._resume(state)
         io.serve(topics.SIM_TRUTH, self._answer_truth)
         io.serve(topics.SIM_RESET, self._answer_reset)
         io.serve(topics.SIM_PAUSE, self._answer_pause)
@@ -69,9 +75,10 @@ class SimService:
         """Speed as a factor of real time (None: as fast as possible) and the participants to wait for."""
         return self._speed, self._config.wait_for
 
-    def _begin(self, now: float) -> None:
+    def _begin(self) -> None:
         """Drivers and sensors of a world that has just been laid out."""
         config, io = self._config, self._io
+        self._world = io.new_id(io.epoch)
         home = io.scene.home
         pose = (home.x, home.y, home.theta)
         self._base = BaseDriver(config, pose)
@@ -79,7 +86,7 @@ class SimService:
         self._odometry = WheelOdometry(pose, config, self.physics.seed)
         self._believed = pose
         self._setpoint = np.array([*pose, *robot.HOME_ARM])
-        self.physics.grip(0.0, 40.0)
+        self._grip(0.0, FULL_EFFORT)
         self._reached: tuple[bool, str] = (False, "")
         physics = self.physics
         io.publish(topics.ROBOT_DESCRIPTION, m.RobotDescription(mjcf=robot.robot_mjcf()))
@@ -88,6 +95,49 @@ class SimService:
         io.publish(topics.GOAL_REACHED, m.GoalReached(reached=False))
         self._publish_status("running")
 
+    def _grip(self, closed: float, effort: float) -> None:
+        self._effort = effort
+        self.physics.grip(closed, effort)
+
+    def _resume(self, state: checkpoint.Checkpoint) -> None:
+        """Go on with a world that another process of this simulation has left: at rest, nothing commanded."""
+        physics = self.physics
+        physics.restore(np.frombuffer(state.physics))
+        self._tick, self._world, physics.seed = state.tick, state.world, state.seed
+        self.start_time = state.tick * DT
+        actual = physics.joints.copy()
+        x, y, yaw = (float(v) for v in actual[:3])
+        self._setpoint = np.array([*actual[:3], *state.setpoint[3:]])
+        self._base = BaseDriver(self._config, (x, y, yaw), stopped=state.stopped)
+        self._arm = ArmDriver(self._setpoint[3:], self._config.stream_timeout)
+        self._odometry.resume((x, y, yaw), state.odometry)
+        self._believed = state.odometry
+        self._effort = state.effort
+        physics.limit_effort(state.effort)
+        self._io.log.warning("the world goes on where it was", t=round(self.start_time, 2))
+        self._publish_status("stopped" if state.stopped else "running", "resumed")
+
+    def _save(self) -> None:
+        """Twice a second."""
+        if self._saved is None or self._tick % CHECKPOINT_TICKS:
+            return
+        state = checkpoint.Checkpoint(
+            run=self._config.run,
+            model=self._model,
+            seed=self.physics.seed,
+            tick=self._tick,
+            world=self._world,
+            physics=self.physics.snapshot().tobytes(),
+            setpoint=self._setpoint.tolist(),
+            odometry=self._believed,
+            effort=self._effort,
+            stopped=self._base.stopped,
+        )
+        why = checkpoint.save(self._saved, state)
+        if why and why != self._unsaved:
+            self._io.log.error("the world could not be saved; a restart would begin anew", reason=why)
+        self._unsaved = why
+
     def _publish_status(self, state: Any, detail: str = "") -> None:
         status = m.SimStatus(
             state=state,
@@ -95,6 +145,7 @@ class SimService:
             epoch=self._io.epoch,
             scene=self._io.scene.name,
             seed=self.physics.seed,
+            world=self._world,
             detail=detail,
         )
         self._io.publish(topics.SIM_STATUS, status)
@@ -116,6 +167,7 @@ class SimService:
         self._setpoint = after
         self._tick += 1
         self._publish(now + DT)
+        self._save()
         if self._viewer:
             self._viewer.sync()
 
@@ -154,7 +206,7 @@ class SimService:
             if not (0.0 <= grip.position <= 1.0 and grip.max_effort > 0.0):
                 io.count_drop(topics.GRIPPER_COMMAND.key, "position is 0..1, max_effort above 0")
             elif not self._base.stopped:
-                self.physics.grip(grip.position, min(grip.max_effort, 40.0))
+                self._grip(grip.position, min(grip.max_effort, FULL_EFFORT))
 
     def _publish(self, t: float) -> None:
         io, physics, data = self._io, self.physics, self.physics.data
@@ -206,7 +258,7 @@ class SimService:
     def _answer_reset(self, payload: bytes) -> bytes:
         wanted = msgspec.json.decode(payload or b"{}", type=Reset)
         self.physics.reseed(self.physics.seed if wanted.seed is None else wanted.seed)
-        self._begin(self._tick * DT)
+        self._begin()
         return msgspec.json.encode({"seed": self.physics.seed, "scene": self._io.scene.name})
 
     def _answer_snapshot(self, payload: bytes) -> bytes:

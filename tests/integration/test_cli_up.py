@@ -113,7 +113,7 @@ def test_up_shows_each_service_and_ctrl_c_leaves_nothing(run: Run) -> None:
 def test_kill_9_of_either_leaves_no_orphan(run: Run, victim: str) -> None:
     up = run.up("--only", "router,sim")
     read_until(up, "Ctrl-C")
-    assert len(run.processes()) == 4
+    assert len(run.processes()) == 5  # up, the supervisor, its watchdog and two services
     if victim == "up":
         up.kill()
     else:
@@ -146,6 +146,38 @@ def test_a_detached_run_is_commanded_by_the_other_commands(run: Run) -> None:
     assert wrong.returncode == 1 and "'brain'" in wrong.stderr
     assert run.command("down").returncode == 0
     assert run.processes() == []
+
+
+def test_a_frozen_service_is_ended_and_started_anew(run: Run) -> None:
+    assert run.detached("--only", "router,sim,brain").returncode == 0
+    for name in ("brain", "router"):
+        before = run.rows()[name]
+        os.kill(int(str(before["pid"])), signal.SIGSTOP)
+        eventually(lambda name=name: run.rows()[name]["restarts"] == 1 and run.rows()[name]["alive"], f"{name} is back")  # type: ignore[misc]
+        assert run.rows()[name]["pid"] != before["pid"]
+    assert "is ended" in (run.directory / "logs" / "watchdog.log").read_text()
+    run.command("down")
+    assert run.processes() == []
+
+
+def test_a_killed_simulation_goes_on_with_its_world(run: Run) -> None:
+    assert run.detached("--only", "router,sim", "--scene", "minimal").returncode == 0
+    moved = run.command("topic", "pub", "base/target_pose", '{"x": 0.15, "y": 0.0, "theta": 0.0, "id": "t"}')
+    assert moved.returncode == 0, moved.stderr
+
+    def x() -> float:
+        told = run.command("topic", "echo", "base/odom", "-n", "1").stdout.partition("{")[2]
+        return float(json.loads("{" + told)["x"]) if told else 0.0
+
+    eventually(lambda: x() > 0.1, "the base has moved")
+    before = run.rows()["sim"]
+    eventually(lambda: (run.directory / "sim.checkpoint").exists(), "the world is on disk")
+    os.kill(int(str(before["pid"])), signal.SIGKILL)
+    eventually(lambda: run.rows()["sim"]["restarts"] == 1 and run.rows()["sim"]["alive"], "the simulation is back")
+    assert x() > 0.05
+    assert run.command("restart", "sim", "--fresh").returncode == 0
+    eventually(lambda: abs(x()) < 0.05, "the world began anew")
+    run.command("down")
 
 
 def test_a_busy_port_is_said_before_anything_starts(run: Run) -> None:

@@ -1,0 +1,54 @@
+"""The world on disk, twice a second, so that a simulation that was killed goes on where it was."""
+
+import contextlib
+import hashlib
+from pathlib import Path
+
+import msgspec
+
+VERSION = 1
+NAME = "sim.checkpoint"
+
+
+class Checkpoint(msgspec.Struct):
+    """Everything that a world is made of: `physics` float64 bytes of MuJoCo's integration state, `setpoint` of base
+    and arm, `odometry` the believed pose. `run` and `model` say to which run and model it belongs."""
+
+    run: str
+    model: str
+    seed: int
+    tick: int
+    world: str
+    physics: bytes
+    setpoint: list[float]
+    odometry: tuple[float, float, float]
+    effort: float
+    stopped: bool
+    version: int = VERSION
+
+
+def fingerprint(mjcf: str) -> str:
+    """Names a model."""
+    return hashlib.sha256(mjcf.encode()).hexdigest()[:16]
+
+
+def save(path: Path, state: Checkpoint) -> str:
+    """Replace the file in one step; the reason when that was not possible."""
+    part = path.with_suffix(".part")
+    try:
+        part.write_bytes(msgspec.msgpack.encode(state))
+        part.replace(path)
+    except OSError as error:
+        with contextlib.suppress(OSError):
+            part.unlink()
+        return str(error)
+    return ""
+
+
+def load(path: Path, run: str, model: str) -> Checkpoint | None:
+    """The last state of this run and model, None when there is none or it cannot be read."""
+    try:
+        state = msgspec.msgpack.decode(path.read_bytes(), type=Checkpoint)
+    except (OSError, msgspec.DecodeError):
+        return None
+    return state if (state.version, state.run, state.model) == (VERSION, run, model) else None
