@@ -1,10 +1,8 @@
 """The examiner takes part in the lockstep like any service: plays the person, watches physics, ends the case."""
 
 from collections import deque
-from pathlib import Path
 from typing import Any
 
-import msgspec
 import numpy as np
 
 from common import messages as m
@@ -25,25 +23,21 @@ WAKE = "hey jarvis, "
 
 
 class ExaminerConfig(Config, frozen=True):
-    """`case` is the file with the scenario; "" when it is given directly."""
-
-    case: str = ""
+    """The examiner has no parameters: everything is in the case."""
 
 
 class Examiner:
-    """`done` once the case is over; then `observed` holds what was seen."""
+    """`done` once the case is over; then `observed` holds what was seen. `examiner_of` gives it its case."""
 
     NAME = "examiner"
     HZ = 20
     CONFIG = ExaminerConfig
     READS = (topics.SIM_MODEL, topics.SIM_STATE, topics.SIM_STATUS, topics.SPEECH_STATUS, topics.BRAIN_STATE)
     WRITES = (topics.SPEECH_TEXT, topics.AUDIO_PCM, topics.VOICE_COMMAND)
-    case: Case | None = None
+    case: Case
 
     def __init__(self, config: ExaminerConfig, io: Io) -> None:
-        case = self.case
-        self._case = case if case is not None else msgspec.json.decode(Path(config.case).read_bytes(), type=Case)
-        self._io = io
+        self._case, self._io = self.case, io
         manner: Manner = "reject" if self._case.name == "rejection" else "correct"
         manner = "silent" if self._case.silent else manner
         self._person = Person(self._case.command, self._case.thing, io.scene, manner)
@@ -189,5 +183,5 @@ class Examiner:
 
 
 def examiner_of(case: Case) -> Any:
-    """The examiner's class for this case, for a stack in this process."""
+    """The examiner's class for this case."""
     return type("Examiner", (Examiner,), {"case": case})

@@ -31,7 +31,7 @@ class Rule(msgspec.Struct, frozen=True, kw_only=True):
     chance: float = 1.0
     seconds: float = 1.0
     start: float = 0.0
-    until: float = float("inf")
+    until: float = 1e9
     match: dict[str, Any] = {}
     fields: dict[str, Any] = {}
 

@@ -23,6 +23,7 @@ def test_a_case_can_be_repeated_alone_and_sent_to_a_worker(suite: str) -> None:
     assert [c.seed for c in run] == list(range(7, 13))
     assert cases(suite, 1, 10)[0] == run[3]
     assert msgspec.msgpack.decode(msgspec.msgpack.encode(run[3]), type=Case) == run[3]
+    assert msgspec.json.decode(msgspec.json.encode(run[3]), type=Case) == run[3]
     assert all(c.lines and c.command for c in run)
 
 
