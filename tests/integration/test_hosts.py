@@ -60,7 +60,7 @@ class Mission:
         self._talk = Conversation(link, lambda state: print(f"{state.t:8.1f}  {state.state}  {state.detail}"))
         eventually(self._ready, "the robot takes commands", 120)
         link.send(topics.VOICE_COMMAND, m.VoiceCommand(text=f"bring me the {thing}"))
-        assert self._talk.accepted(30.0), self._talk.state
+        assert self._talk.accepted(180.0), self._talk.state
 
     def _ready(self) -> bool:
         self._talk.refresh()

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import zenoh
 
 from cli.authority import Authority, hosts_of
 from cli.main import main as tidybot
@@ -228,3 +229,31 @@ def test_a_stranger_on_another_machine_sees_nothing(tmp_path: Path, monkeypatch:
             del token
         assert set(got) <= {""}, "nobody drives the base; a certificate of speech may stop the robot"
         assert got, "and it does"
+
+
+def test_a_certificate_that_the_router_does_not_list_opens_no_key(
+    closed: Site, ours: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A client that was removed from the list keeps its certificate, and has no use for it."""
+    Authority(ours).issue(Subject(name="mallory", role="operator"), days=1)
+    monkeypatch.setenv("TIDYBOT_KEYS", str(ours))
+    heard: list[str] = []
+    with (
+        bus.session(closed.connect, name="operator", patience=40) as operator,
+        bus.session(closed.connect, name="speech", patience=40) as speech,
+        bus.session(closed.connect, name="mallory", patience=40) as mallory,
+    ):
+        for name, session in (("operator", operator), ("mallory", mallory)):
+            elsewhere = zenoh.Locality.REMOTE
+            session.declare_subscriber("**", lambda s, name=name: heard.append(name), allowed_origin=elsewhere)
+        speech.declare_subscriber(topics.SPEECH_TEXT.key, lambda s: heard.append(s.payload.to_string()))
+
+        def talk() -> bool:
+            mallory.put(topics.SPEECH_TEXT.key, "from mallory")
+            speech.put(topics.SPEECH_STATUS.key, "status")
+            operator.put(topics.SPEECH_TEXT.key, "from operator")
+            return {"operator", "from operator"} <= set(heard)
+
+        eventually(talk, "the others talk")
+        eventually(lambda: talk() and heard.count("from operator") > 5, "and go on talking")
+        assert not {"mallory", "from mallory"} & set(heard)
