@@ -35,6 +35,7 @@ def contents(draft: Draft, slots: Slots) -> None:
     else:
         there = [t for t in draft.world.things if not t.held and draft.world.room_of(t) == place.name]
         look = draft.vocabulary.surfaces(place.name)
+    draft.look_at(look)
     if not there:
         draft.look_first(look, f"I have seen nothing there so far, so I would have to go to the {place.name} first")
     where = "in" if place.receptacle is None or place.receptacle.depth else "on"

@@ -58,7 +58,7 @@ def _named(step: PlanStep, world: World, vocabulary: Vocabulary) -> PlanStep:
     thing, target = step.object, step.target
     match step.action:
         case "find" | "grasp":
-            return msgspec.structs.replace(step, object=_thing(thing or target, world, vocabulary), target="")
+            return msgspec.structs.replace(step, object=_thing(thing or target, world, vocabulary), target="", text="")
         case "place":
             receptacle = world.scene.receptacle(normal(target or thing))
             if receptacle is None:

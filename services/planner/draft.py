@@ -165,14 +165,22 @@ class Draft:
         return list(dict.fromkeys(found))
 
     # --- looking first
+    def look_at(self, spots: list[Receptacle]) -> None:
+        """Have a look there before anything else, unless that was done or the sender would not ask again."""
+        visited = {s.target for s in self.done or () if s.action == "navigate"}
+        there = [PlanStep(action="navigate", target=r.name) for r in spots if r.name not in visited]
+        if there and self.done is not None:
+            raise LookFirst([step for going in there for step in (going, PlanStep(action="wait"))])
+
     def look_first(self, spots: list[Receptacle], reason: str) -> None:
-        """Go and look there, unless that was done or the sender would not ask again; `reason` is what is missing."""
+        """As `look_at`, where nothing is known so far; `reason` is what is missing.
+
+        Raises:
+            Refusal: nobody would ask again, or a look has shown nothing.
+        """
         if self.done is None:
             raise Refusal(reason)
-        visited = {s.target for s in self.done if s.action == "navigate"}
-        there = [PlanStep(action="navigate", target=r.name) for r in spots if r.name not in visited]
-        if there:
-            raise LookFirst([step for going in there for step in (going, PlanStep(action="wait"))])
+        self.look_at(spots)
         seen = listed([f"the {r.name}" for r in spots])
         raise Refusal(f"I looked at {seen} and found nothing of the kind" if spots else reason)
 

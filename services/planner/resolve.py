@@ -138,11 +138,13 @@ def _related(draft: Draft, phrase: Phrase, seen: list[Thing], specs: list[Thing]
     if phrase.relation == "on" and spots:
         names = {s.name for s in spots}
         there = [t for t in seen if t.on in names or (any(s.room for s in spots) and draft.world.room_of(t) in names)]
+        place = spots[0]
+        surfaces = [place.receptacle] if place.receptacle else draft.vocabulary.surfaces(place.name)
+        if phrase.count == 0:
+            draft.look_at(surfaces)
         if there:
             return _choose(draft, phrase, there, specs)
-        place = spots[0]
         if phrase.count != 1 or phrase.sense.every:
-            surfaces = [place.receptacle] if place.receptacle else draft.vocabulary.surfaces(place.name)
             draft.look_first(surfaces, f"I have seen no {phrase.singular} there yet")
         return [_unseen(draft, phrase, specs, place)]
     if phrase.relation == "near" and spots:

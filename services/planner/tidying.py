@@ -26,6 +26,7 @@ def tidy(draft: Draft, slots: Slots) -> None:
     name = "place" if where is None else where.name
     names = {r.name for r in surfaces}
     there = [t for t in draft.world.things if t.on in names and not t.held]
+    draft.look_at(surfaces)
     if not there:
         draft.look_first(surfaces, f"I have not seen what lies on the {name} yet, so send me there first")
     near = sorted(there, key=lambda t: (draft.world.distance(t), t.label))

@@ -18,7 +18,7 @@ from common.scene import load_scene
 from services.planner import llm
 from services.planner.config import PlannerConfig
 from services.planner.service import GRACE, PlannerService
-from tests.support import eventually, free_port
+from tests.support import Site, eventually, free_port
 
 SCENE = load_scene("apartment")
 MUG = [
@@ -316,6 +316,22 @@ def test_in_lockstep_the_answer_comes_at_its_tick(endpoint: Endpoint) -> None:
         assert not node.plans
     node.step(0.1)
     assert msgspec.json.decode(node.plans[0], type=m.ActionPlan).source == "llm"
+
+
+def test_the_real_process_asks_the_endpoint(endpoint: Endpoint, here: Site) -> None:
+    endpoint.answers = [plans(*MUG)]
+    here.start(
+        "services.planner", TIDYBOT_CLOCK="wall", TIDYBOT__PLANNER__BACKEND="llm",
+        TIDYBOT__PLANNER__LLM_URL=endpoint.url, TIDYBOT__PLANNER__LLM_TIMEOUT="100",
+    )  # fmt: skip
+    with here.session() as session:
+        here.wait_alive(session, "planner")
+        heard: list[dict[str, Any]] = []
+        kept = session.declare_subscriber("action_plan", lambda s: heard.append(json.loads(s.payload.to_string())))
+        session.put("plan_request", json.dumps({"id": "m.1", "command": "bring me the red mug"}))
+        eventually(lambda: heard, "a plan", patience=120)
+        kept.undeclare()
+    assert (heard[0]["request_id"], heard[0]["source"]) == ("m.1", "llm")
 
 
 def test_without_the_client_the_service_says_what_to_install(

@@ -1,5 +1,7 @@
 """What the embedded planner makes of sentences in a small believed world; every plan passes the brain's own checks."""
 
+from pathlib import Path
+
 import pytest
 
 from common import config
@@ -322,6 +324,11 @@ def test_a_sender_that_asks_again_gets_a_look_first() -> None:
     assert not after.again and text(after).startswith("find green can")
     empty = ask(command, objects=far, done=look.steps)
     assert not empty.steps and "found nothing" in empty.detail
+    known = ask("tidy up the living room", done=[])
+    assert known.again, "what is known may not be all that is there"
+    assert ask("put everything on the living table in the bin", done=[]).again
+    assert ask("what is on the living table", done=[]).again
+    assert not ask("bring me the red mug", done=[]).again
     both = ask("bring me the apple and then tidy up the bookshelf", done=[])
     assert both.again and text(both) == "navigate bookshelf; wait", "it looks before it moves anything"
 
@@ -356,3 +363,13 @@ def test_objects_without_a_survey_are_known_by_name() -> None:
     plan = grammar.plan("bring me the mug", believed(SCENE, told, []), CONFIG)
     assert text(plan) == bring("red mug")
     assert text(grammar.plan("bring me the strange thing", believed(SCENE, told, []), CONFIG)) == bring("strange thing")
+
+
+def test_the_page_of_commands_is_true() -> None:
+    page = (Path(__file__).parents[2] / "docs" / "COMMANDS.md").read_text(encoding="utf-8")
+    rows = [
+        [cell.strip() for cell in line.strip("|").split("|")] for line in page.splitlines() if line.startswith("| ")
+    ]
+    assert len(rows) > 20
+    for command, expected in rows[1:]:
+        assert text(ask(command)) == expected
