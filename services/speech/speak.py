@@ -1,5 +1,6 @@
 """Text to speech: Hibari's bundled voice, on the bus as `audio/out` and on speakers where there are any."""
 
+import re
 from typing import Any
 
 import numpy as np
@@ -8,6 +9,7 @@ from common.runtime import StartError
 from services.speech.audio import RATE, Samples, resample
 
 MAX_CHARACTERS = 400
+LONG_NUMBER = re.compile(r"\d{7,}")
 
 
 class Voice:
@@ -20,8 +22,14 @@ class Voice:
 
     def speak(self, text: str) -> Samples:
         """16 kHz samples of the spoken text, with a short silence after it."""
-        audio = np.asarray(self._voice(text[:MAX_CHARACTERS], seed=0), dtype=np.float32)
-        return np.concatenate([resample(audio * 32000, self._rate), np.zeros(RATE // 5, np.int16)])
+        # The voice stumbles over numbers beyond its words for thousands and millions: digit by digit then.
+        words = LONG_NUMBER.sub(lambda found: " ".join(found[0]), text[:MAX_CHARACTERS])
+        pause = np.zeros(RATE // 5, np.int16)
+        try:
+            audio = np.asarray(self._voice(words, seed=0), dtype=np.float32)
+        except (LookupError, ValueError, TypeError, ArithmeticError, RecursionError):
+            return pause  # a text that the library cannot pronounce must not silence the robot for good
+        return np.concatenate([resample(audio * 32000, self._rate), pause])
 
 
 class Speakers:
