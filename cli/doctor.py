@@ -7,13 +7,19 @@ import platform
 import shutil
 import sys
 from collections.abc import Iterator
+from datetime import datetime
 from importlib import metadata
 from pathlib import Path
 
 import msgspec
 
+from cli.authority import Authority
 from cli.errors import CliError
 from cli.supervision import ROOT, Supervision, port_is_free, run_dir
+from common import keys
+from common.clock import unix_time
+
+EXPIRES_SOON = 30  # days
 
 
 class Finding(msgspec.Struct):
@@ -97,6 +103,27 @@ def port() -> Iterator[Finding]:
         )
 
 
+def certificates() -> Iterator[Finding]:
+    """Keys, and when the first of them expires."""
+    try:
+        found = keys.directory()
+    except keys.KeysError as error:
+        yield Finding("error", "keys", str(error))
+        return
+    if found is None:
+        yield Finding("ok", "keys", "none: the robot is open to this machine only", "")
+        return
+    rows = sorted(Authority(found).rows(), key=lambda row: row.expires)
+    if not rows:
+        yield Finding("ok", "keys", str(found))
+        return
+    first = rows[0]
+    days = (datetime.fromisoformat(first.expires).timestamp() - unix_time()) / 86400
+    state = f"{len(rows)} in {found}; {first.name}'s is the first to expire, on {first.expires[:10]}"
+    level = "error" if days < 0 else "note" if days < EXPIRES_SOON else "ok"
+    yield Finding(level, "keys", state, "" if level == "ok" else "tidybot keys --force")
+
+
 def listener(port: int) -> str:
     """`name (pid N)` of the process that listens on a TCP port; "" where that cannot be seen."""
     inodes = set()
@@ -136,7 +163,7 @@ def machine() -> Iterator[Finding]:
 
 
 def doctor(args: argparse.Namespace) -> int:
-    findings = [f for look in (python, packages, graphics, audio, port, machine) for f in look()]
+    findings = [f for look in (python, packages, graphics, audio, port, certificates, machine) for f in look()]
     if args.json:
         print(msgspec.json.encode(findings).decode())
     else:
