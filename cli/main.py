@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 from cli import (
+    conform,
     control,
     demo,
     doctor,
@@ -64,6 +65,7 @@ def parser() -> argparse.ArgumentParser:
         replay,
         doctor,
         keys,
+        conform,
         demo,
         evaluate,
     ):
