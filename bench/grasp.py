@@ -68,9 +68,16 @@ class Bench:
         for _ in range(30):
             self.world.advance()
 
+    def _seen(self) -> m.ObjectRef:
+        """What a perception without error would say of the object."""
+        placed, spec = self.sim.physics.placements[0], self.spec
+        return m.ObjectRef(
+            label=spec.name, kind=spec.kind, position=placed.position, orientation=yaw_quat(placed.yaw), size=spec.size
+        )
+
     def run(self, text: str, goal_id: str, patience: float = 60.0) -> m.ManipulationStatus:
         """Send a goal and step the world until it ends."""
-        self.bus.send(topics.MANIPULATION_GOAL, m.ManipulationGoal(goal=text, id=goal_id))
+        self.bus.send(topics.MANIPULATION_GOAL, m.ManipulationGoal(goal=text, id=goal_id, object=self._seen()))
         for _ in range(round(patience * 100)):
             self.world.advance()
             status = msgspec.json.decode(self.bus.last[topics.MANIPULATION_STATUS.key], type=m.ManipulationStatus)

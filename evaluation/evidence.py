@@ -38,6 +38,7 @@ class ThingEvidence(msgspec.Struct):
     lifted: bool = False
     carried: float = 0.0
     dropped: bool = False
+    drops: int = 0
     on: str = ""
     at_rest: bool = False
     released: bool = False
@@ -87,8 +88,13 @@ class Recorder:
             risen = now.position[2] - self._first.things[name].position[2]
             mark.lifted = mark.lifted or (now.held and risen > LIFTED)
             mark.carried += step if now.held else 0.0
-            mark.dropped = mark.dropped or (now.on == "floor" and mark.started_on != "floor")
-            mark.dropped = mark.dropped or (before.held and not now.touched and not now.on)
+            if now.held and not before.held:
+                # What slipped and was picked up again is judged by the carry that followed.
+                mark.dropped = False
+            fell = now.on == "floor" and mark.started_on != "floor"
+            if not mark.dropped and (fell or (before.held and not now.touched and not now.on)):
+                mark.dropped = True
+                mark.drops += 1
         self._last = look
         self._recent = [x for x in self._recent if x.t >= look.t - REST] + [look]
 

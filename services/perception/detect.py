@@ -18,14 +18,17 @@ from services.perception.segment import Piece
 from services.perception.view import Mask, View
 
 SHAPE_SCALE, HEIGHT_SCALE, COLOUR_SCALE = 0.0035, 0.010, 0.07
-WORST = 3.2
+WORST, SOUND = 3.2, 2.0
 STRANGE_CONFIDENCE = 0.45
 STRANGE_KINDS: tuple[ObjectKind, ...] = ("can", "box")
 
 
 @dataclass(frozen=True)
 class Detection:
-    """An object in frame map: `position` is its centre, `size` its full extent, `yaw` about z; `on` its surface."""
+    """An object in frame map: `position` is its centre, `size` its full extent, `yaw` about z; `on` its surface.
+
+    `whole`: all of it was in view, so that the position can be trusted.
+    """
 
     label: str
     kind: str
@@ -37,6 +40,7 @@ class Detection:
     on: str
     distance: float
     known: bool = True
+    whole: bool = True
 
 
 class Detector(Protocol):
@@ -95,6 +99,7 @@ class ClassicalDetector:
             confidence=confidence * (0.55 + 0.45 * pixels) * (0.6 if piece.cut else 1.0),
             on=piece.surface.name,
             distance=_distance(view, fit),
+            whole=not piece.cut and score < SOUND,
         )
 
     def _score(

@@ -17,6 +17,7 @@ MOVED = 0.05
 HELD_RANGE = 0.12
 SURE = 0.55
 TRUST = 4.0
+PARTIAL = 0.1
 EDGE_PIXELS = 30
 LOOK_RANGE = 2.5
 SEEN_THROUGH = 0.04
@@ -34,6 +35,7 @@ class Track:
     seen_at: float
     weight: float
     best: float = 0.0
+    whole: bool = False
     scores: dict[tuple[str, str, str], float] = field(default_factory=dict)
     misses: int = 0
     sightings: int = 0
@@ -139,9 +141,13 @@ class Memory:
 
 
 def _see(track: Track, d: Detection, now: float) -> None:
-    weight = 1.0 / max(0.2, d.distance) ** 2 * (0.3 if d.confidence < SURE else 1.0)
+    weight = 1.0 / max(0.2, d.distance) ** 2 * (0.3 if d.confidence < SURE else 1.0) * (1.0 if d.whole else PARTIAL)
     shift = math.hypot(d.position[0] - track.position[0], d.position[1] - track.position[1])
-    if shift > MOVED or track.weight == 0.0 or weight > track.weight:
+    if shift > MOVED and not d.whole and track.whole:
+        # Seen in part it seems to stand elsewhere; only a whole view moves what was seen whole.
+        share = 0.0
+    elif shift > MOVED or track.weight == 0.0 or weight > track.weight:
+        track.whole = d.whole
         track.weight = track.best = weight
         share = 1.0
     else:
@@ -149,7 +155,8 @@ def _see(track: Track, d: Detection, now: float) -> None:
         share = weight / track.weight
     old, new = np.array(track.position), np.array(d.position)
     x, y, z = (float(v) for v in old + share * (new - old))
-    track.position, track.yaw, track.on = (x, y, z), d.yaw, d.on
+    track.position, track.on = (x, y, z), d.on
+    track.yaw = d.yaw if share else track.yaw
     track.seen_at, track.misses, track.sightings = now, 0, track.sightings + 1
     key = (d.label, d.kind, d.colour)
     # Close looks count more, and old mistakes fade.

@@ -28,6 +28,7 @@ JOINED_EXTENT = 0.17
 MAX_EXTENT = 0.30
 WALL_MARGIN = 0.035
 FLOOR_MARGIN = 0.10
+RIM, NEARER, HIDDEN = 3, 0.03, 0.06
 FLOOR_RANGE = 2.2
 
 
@@ -41,7 +42,10 @@ class Surface:
 
 @dataclass(frozen=True)
 class Piece:
-    """One thing on a surface: its pixels (rows, columns) and their points (n, 3) in frame map."""
+    """One thing on a surface: its pixels (rows, columns) and their points (n, 3) in frame map.
+
+    `cut`: the picture's edge or something nearer hides a part of it.
+    """
 
     surface: Surface
     rows: NDArray[np.intp]
@@ -189,8 +193,22 @@ def _join(view: View, surface: Surface, parts: list[tuple[NDArray[np.intp], NDAr
         rows = np.concatenate([parts[k][0] for k in members])
         columns = np.concatenate([parts[k][1] for k in members])
         cut = bool(rows.min() <= 1 or columns.min() <= 1 or rows.max() >= h - 2 or columns.max() >= w - 2)
+        cut = cut or _is_hidden(view, rows, columns)
         found.append(Piece(surface, rows, columns, np.concatenate([clouds[k] for k in members]), cut))
     return found
+
+
+def _is_hidden(view: View, rows: NDArray[np.intp], columns: NDArray[np.intp]) -> bool:
+    """True when something nearer, such as the robot's own arm, covers a part of the piece."""
+    top, left = max(0, int(rows.min()) - RIM), max(0, int(columns.min()) - RIM)
+    window = (slice(top, int(rows.max()) + RIM + 1), slice(left, int(columns.max()) + RIM + 1))
+    depth = view.depth[window]
+    mask = np.zeros(depth.shape, bool)
+    mask[rows - top, columns - left] = True
+    rim = ndimage.binary_dilation(mask, iterations=RIM) & ~mask
+    nearest = float(view.depth[rows, columns].min())
+    nearer = rim & (depth > 0) & (depth < nearest - NEARER)
+    return bool(np.count_nonzero(nearer) > HIDDEN * np.count_nonzero(rim))
 
 
 def _gap(a: NDArray[np.float64], b: NDArray[np.float64]) -> float:

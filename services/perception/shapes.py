@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 Segment = tuple[tuple[float, float], tuple[float, float]]
 SAMPLE = 160
 ROBUST = 0.004
-MUG_WALL, BOWL_LEAN = 0.004, 0.55
+MUG_WALL, BOWL_WALL, BOWL_LEAN = 0.004, 0.006, 0.55
 NECK, NECK_FROM = 0.014, 0.72
 
 
@@ -40,7 +40,8 @@ def profile(kind: ObjectKind, size: Vec3) -> list[Segment]:
         return [((r, 0), (r, h)), ((inner, 0.008), (inner, h)), ((inner, h), (r, h)), ((0, 0.008), (inner, 0.008))]
     if kind == "bowl":
         base = r - h * math.tan(BOWL_LEAN)
-        return [((base, 0), (r, h)), ((0, 0.010), (base, 0.010))]
+        wall = BOWL_WALL / math.cos(BOWL_LEAN)
+        return [((base, 0), (r, h)), ((base - wall, 0), (r - wall, h)), ((0, 0.010), (base, 0.010))]
     if kind == "bottle":
         shoulder = NECK_FROM * h
         return [

@@ -15,16 +15,21 @@ def _geom(spec: ObjectSpec, shape: str, share: float, rgba: tuple[float, ...] | 
     return f'<geom {shape} mass="{spec.mass * share:.5f}" rgba="{colour}" group="{GROUP}" {_CONTACT} conaffinity="3"/>'
 
 
-def _ring(spec: ObjectSpec, radius: float, half: float, z: float, thickness: float, lean: float, share: float) -> str:
-    """A wall of boxes around the z axis; `lean` tilts each outward."""
-    width = radius * math.tan(math.pi / _WALLS) * 1.02
+def _ring(
+    spec: ObjectSpec, radius: float, half: float, z: float, thickness: float, lean: float, share: float, widest: float
+) -> str:
+    """A wall of boxes around the z axis, closed up to the radius `widest`; `lean` tilts each outward."""
+    width = widest * math.tan(math.pi / _WALLS) * 1.02
     parts = []
     for k in range(_WALLS):
         a = 2 * math.pi * k / _WALLS
         r = radius - thickness
+        # First the tilt about the wall's own y axis, then the turn about the object's z axis.
+        ca, sa, cl, sl = math.cos(a / 2), math.sin(a / 2), math.cos(lean / 2), math.sin(lean / 2)
+        quat = f"{ca * cl:.6f} {-sa * sl:.6f} {ca * sl:.6f} {sa * cl:.6f}"
         shape = (
             f'type="box" size="{thickness} {width:.5f} {half}" pos="{r * math.cos(a):.5f} {r * math.sin(a):.5f} {z}" '
-            f'euler="0 {lean} {a:.5f}"'
+            f'quat="{quat}"'
         )
         parts.append(_geom(spec, shape, share / _WALLS))
     return "".join(parts)
@@ -41,7 +46,7 @@ def _mug(spec: ObjectSpec) -> str:
             f"{r + 0.022} 0 {-h * 0.20} {r - 0.002} 0 {-h * 0.28}",
         )
     )
-    return _ring(spec, r, h / 2, 0.0, 0.002, 0.0, 0.68) + bottom + handle
+    return _ring(spec, r, h / 2, 0.0, 0.002, 0.0, 0.68, r) + bottom + handle
 
 
 def _bowl(spec: ObjectSpec) -> str:
@@ -50,7 +55,7 @@ def _bowl(spec: ObjectSpec) -> str:
     base_r = r - h * math.tan(lean)
     bottom = _geom(spec, f'type="cylinder" size="{base_r + 0.004} 0.005" pos="0 0 {-h / 2 + 0.005}"', 0.3)
     half = h / 2 / math.cos(lean)
-    return _ring(spec, (r + base_r) / 2, half, 0.0, 0.003, lean, 0.7) + bottom
+    return _ring(spec, (r + base_r) / 2, half, 0.0, 0.003, lean, 0.7, r) + bottom
 
 
 def _bottle(spec: ObjectSpec) -> str:
