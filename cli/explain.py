@@ -25,9 +25,9 @@ def told(record: dict[str, Any]) -> str:
         shown = entry["state"] if entry["state"] != state else ""
         state = entry["state"]
         word = WORDS.get(entry["kind"], entry["kind"])
-        text = f"{word}: {entry['cause']}" if word else entry["cause"]
-        if entry["evidence"]:
-            text += f" - {entry['evidence']}"
+        cause = entry["cause"] if entry["cause"] != state else ""
+        text = f"{word}: {cause}" if word else cause
+        text = " - ".join(part for part in (text, entry["evidence"]) if part)
         head = f"{max(0.0, entry['t'] - began):8.1f} s  {shown:11}  "
         lines += textwrap.wrap(text, WIDTH, initial_indent=head, subsequent_indent=" " * len(head)) or [head.rstrip()]
     lines.append("")

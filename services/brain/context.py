@@ -146,7 +146,7 @@ class Context:
 
     def fail(self, failure: Failure) -> None:
         self.mission.failure = failure
-        self.note(f"failed: {failure.stage}", failure.reason, "failed")
+        self.note(failure.stage.lower(), failure.reason, "failed")
         self.io.log.warning("step failed", stage=failure.stage, code=failure.code, detail=failure.detail)
 
     def finish(self, outcome: Outcome, reason: str) -> None:
@@ -154,7 +154,7 @@ class Context:
         mission = self.mission
         mission.outcome = outcome
         self.last = m.MissionOutcome(id=mission.id, command=mission.command, outcome=outcome, reason=reason, t=self.now)
-        self.note(outcome, reason, "did" if outcome == "delivered" else "failed")
+        self.note(outcome, reason, "did" if outcome == "delivered" else "note")
         self.journal.end(mission, outcome, reason, self.now)
         self.save()
         self.io.log.info("mission ended", outcome=outcome, reason=reason)

@@ -156,7 +156,7 @@ class Look(Goal):
         ctx.mission.found[self._thing] = pose
         x, y, z = pose.position
         evidence = f"{pose.label} at ({x:.2f}, {y:.2f}, {z:.2f}), confidence {pose.confidence:.2f}"
-        ctx.note(f"found {self._thing}", evidence)
+        ctx.note(f"found {self._thing}", evidence, "saw")
         return Status.SUCCESS
 
 
