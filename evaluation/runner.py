@@ -14,7 +14,7 @@ from common.lockstep import DT
 from evaluation.case import Case, Observed, Result, Strike
 from evaluation.examiner import Examiner, examiner_of
 from evaluation.faults import faulty
-from evaluation.stack import Stack, paced_services
+from evaluation.stack import Stack
 from evaluation.verdict import judge
 
 Progress = Callable[[float, str], None]
@@ -98,10 +98,10 @@ def _swaps(case: Case) -> dict[str, Any]:
 
 
 def idle_services(case: Case) -> tuple[str, ...]:
-    """The fetch pipeline asks no camera, planner or perception for anything."""
+    """The fetch pipeline asks the planner for nothing."""
     if not any("pipeline=fetch" in s for s in case.settings):
         return ()
-    return tuple(n for n in ("camera", "planner", "perception") if n in paced_services())
+    return ("planner",)
 
 
 def timeline(query: Callable[[bytes], bytes | None]) -> list[str]:
