@@ -41,7 +41,9 @@ class Bench:
         self.bus, clock = MemoryBus(), ManualClock()
         sim_io = MemoryIo(self.bus, "sim", SimService.READS, SimService.WRITES, scene=alone, seed=seed, clock=clock)
         sim_io.out_stamp = -1
-        self.sim = SimService(SimConfig(), sim_io)
+        # No navigation corrects the odometry here.
+        exact = SimConfig(odometry_slip=0.0, odometry_veer=0.0, odometry_noise=0.0)
+        self.sim = SimService(exact, sim_io)
         self.world = InProcess(self.sim, sim_io, clock)
         io = MemoryIo(
             self.bus, "manipulation", ManipulationService.READS, ManipulationService.WRITES, scene=alone, seed=seed,

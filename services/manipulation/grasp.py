@@ -11,6 +11,7 @@ from services.manipulation.arm_model import Array, Pose
 
 MAX_WIDTH = 0.076
 HANDLE_CONE = math.radians(40)
+BOWL_LEAN, BOWL_WALL, RIM_DEPTH = 0.55, 0.006, 0.012
 
 
 @dataclass(frozen=True)
@@ -123,18 +124,18 @@ def _flat(target: Target, facing: float, tilts: Sequence[float], height: float) 
 
 
 def _rim(target: Target, facing: float) -> list[Grasp]:
-    """Fingers on either side of a bowl's wall, at the rim towards the robot first."""
+    """Fingers on either side of a bowl's wall at the rim, along its slope: the near side first."""
     x, y, _ = target.position
-    radius = target.size[0] / 2 - 0.012
-    height = target.size[2] - 0.012
+    height = target.size[2] - RIM_DEPTH
+    radius = target.size[0] / 2 - RIM_DEPTH * math.tan(BOWL_LEAN) - BOWL_WALL / 2
     found = []
-    for turn in (180.0, 150.0, -150.0, 120.0, -120.0, 90.0, -90.0):
-        radial = facing + math.radians(turn)
-        point = np.array([x + radius * math.cos(radial), y + radius * math.sin(radial), target.bottom + height])
-        roll = math.remainder(radial - facing - math.pi / 2, math.pi)
-        for degrees in (90, 70):
-            rotation = approach_rotation(facing, math.radians(degrees), roll)
-            found.append(
-                Grasp(Pose(point, rotation), 0.012, height, math.radians(degrees), f"rim at {turn:+.0f}, {degrees} deg")
-            )
+    for degrees in (65, 72, 58, 80, 90):
+        tilt = math.radians(degrees)
+        for turn in (0.0, 25.0, -25.0, 50.0, -50.0):
+            azimuth = facing + math.radians(turn)
+            point = np.array([x - radius * math.cos(azimuth), y - radius * math.sin(azimuth), target.bottom + height])
+            for roll in (math.pi / 2, -math.pi / 2):
+                rotation = approach_rotation(azimuth, tilt, roll)
+                name = f"rim at {turn:+.0f}, {degrees} deg, {'palm up' if roll < 0 else 'palm down'}"
+                found.append(Grasp(Pose(point, rotation), BOWL_WALL, height, tilt, name))
     return found
