@@ -22,6 +22,7 @@ from evaluation.stack import service_class
 from tests.support import Site, eventually, free_port, site
 
 BURST = 100
+START_LIMIT = 300.0
 # What is well-formed here is a lie nobody can tell from the truth; only what is malformed must be refused.
 TRUSTED = {topics.SIM_CLOCK.key, topics.LOCKSTEP_ACK.key}
 QUERIES = (topics.SIM_TRUTH, topics.SIM_RESET, topics.SIM_SNAPSHOT, topics.BRAIN_MISSIONS)
@@ -47,7 +48,9 @@ class Storm:
         for service in SERVICES:
             if service.name in self.names:
                 self.processes[service.name] = self.here.start(service.module, **extra)
-        self.here.wait_alive(self.session, *self.names)
+        for name in self.names:
+            key = topics.ALIVE_KEY.format(name=name)
+            eventually(lambda key=key: list(self.session.liveliness().get(key)), f"{name} is alive", START_LIMIT)
 
     def learn(self) -> None:
         """Take what the robot says now as examples to vary."""
