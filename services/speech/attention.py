@@ -1,6 +1,7 @@
 """What is heard, cut into utterances, each recognised under the grammar that its setting asks for."""
 
 from collections import deque
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from common.io import Io, Job
@@ -10,7 +11,7 @@ from services.speech.dialogue import Setting, scope
 from services.speech.recognise import Ear, Heard, Scope
 from services.speech.segment import Segment, Segmenter
 
-GAP = 0.1
+GAP, LOADING = 0.1, 0.5
 
 
 @dataclass(frozen=True)
@@ -27,11 +28,14 @@ class Hearing:
 class Attention:
     """`push` sound, `take` what was understood. The wake word opens a window for the utterance after it."""
 
-    def __init__(self, config: SpeechConfig, io: Io, ear: Job[Ear]) -> None:
-        self._config, self._io, self._ear = config, io, ear
+    def __init__(self, config: SpeechConfig, io: Io, load: Callable[[], Ear]) -> None:
+        self._config, self._io, self._load = config, io, load
+        self._ear: Job[Ear] | None = None
         self._segmenter = Segmenter(
             config.end_silence, config.max_utterance, config.interrupt_pause, config.interrupt_longest, config.wake_word
         )
+        if config.preload:
+            self._ear = io.submit(load, seconds=LOADING)
         if not io.lockstep:
             self._segmenter.load()
         self._setting = Setting()
@@ -62,10 +66,10 @@ class Attention:
         """Close the window: a command was given."""
         self._awake_until, self._closed = float("-inf"), now
 
-    def interrupted(self) -> None:
-        """Somebody said stop or cancel: the rest of it means nothing more."""
-        self._hearings.clear()
-        self._done = True
+    def settle(self, hearing: Hearing) -> None:
+        """What this utterance asked for is done: the rest of it means nothing more."""
+        self._hearings = deque(h for h in self._hearings if h.began != hearing.began)
+        self._done = self._done or hearing.began == self._began
 
     def push(
         self, parts: list[tuple[Samples, bool]], now: float, speaking: bool, listening: bool, key: tuple[str, int]
@@ -122,6 +126,8 @@ class Attention:
             longest = (config.interrupt_longest + config.end_silence) * RATE
             if known or (asked == "interrupt" and (segment.examined or len(segment.samples) > longest)):
                 return
+        if self._ear is None:
+            self._ear = self._io.submit(self._load, seconds=LOADING)
         ear, samples = self._ear, segment.samples
         seconds = config.interrupt_seconds if asked == "interrupt" else config.recognition_seconds
         job = self._io.submit(lambda: ear.result().hear(samples, asked), seconds=seconds)

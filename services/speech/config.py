@@ -8,15 +8,20 @@ from common.config import Config
 class SpeechConfig(Config, frozen=True):
     """`commands` are the patterns of the grammar; the lists extend the scene's vocabulary. Times in seconds.
 
-    `wake_window`: how long after the wake word a command may begin. `interrupt_pause`: the pause after a short
-    utterance at which it is already examined for "stop" and "cancel"; `interrupt_longest`: how short.
+    `tempo_weight` and `rare` (what a word costs) weigh sentences that sound alike. `wake_window`:
+    how long after the wake word a command may begin. `interrupt_pause`: the pause after a short utterance at which it
+    is already examined for "stop" and "cancel"; `interrupt_longest`: how short. `preload`: load the models at start
+    rather than when somebody speaks.
     """
 
     recogniser: Literal["moonshine", "pocketsphinx"] = "moonshine"
     listen_timeout: float = 60.0
     accept_score: float = -0.7
     ask_score: float = -1.5
-    beam: int = 8
+    beam: int = 16
+    preload: bool = True
+    tempo_weight: float = 1.0
+    rare: dict[str, float] = {}
     end_silence: float = 0.6
     max_utterance: float = 12.0
     typed_memory: float = 30.0

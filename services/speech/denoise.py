@@ -11,12 +11,13 @@ from numpy.typing import NDArray
 Array = NDArray[np.float32]
 WINDOW, HOP = 512, 128
 SMOOTHING = 0.96
-FLOOR = 0.1
+FLOOR = 0.3
 MIN_NOISE_FRAMES = 8
+MIN_NOISE = 2048
 _HANN = np.sqrt(np.hanning(WINDOW + 1)[:-1])
 
 
-def reduce_noise(audio: Array, speech: tuple[int, int], floor: float = FLOOR, over: float = 1.0) -> Array:
+def reduce_noise(audio: Array, speech: tuple[int, int], floor: float = FLOOR) -> Array:
     """`audio` (n,) with the noise that is heard outside of `speech` (first and last sample) taken out of all of it."""
     if len(audio) < 2 * WINDOW:
         return audio
@@ -28,7 +29,7 @@ def reduce_noise(audio: Array, speech: tuple[int, int], floor: float = FLOOR, ov
     start = np.arange(count) * HOP - WINDOW
     whole = (start >= 0) & (start + WINDOW <= len(audio))
     quiet = whole & ((start + WINDOW <= speech[0]) | (start >= speech[1]))
-    noise = noise_power(power[whole], power[quiet]) * over
+    noise = noise_power(power[whole], power[quiet])
     clean = np.empty_like(spectrum)
     before = np.zeros(power.shape[1])
     for k in range(count):
@@ -43,6 +44,16 @@ def reduce_noise(audio: Array, speech: tuple[int, int], floor: float = FLOOR, ov
         out[k * HOP : k * HOP + WINDOW] += frames[k]
     found: Array = (out[WINDOW : WINDOW + len(audio)] * (2 * HOP / WINDOW)).astype(np.float32)
     return found
+
+
+def noise_ratio(audio: Array, speech: tuple[int, int]) -> float:
+    """Speech to noise [dB] from the loudness in and outside of `speech`; infinite when nothing is outside."""
+    outside = np.concatenate([audio[: speech[0]], audio[speech[1] :]]).astype(np.float64)
+    inside = audio[speech[0] : speech[1]].astype(np.float64)
+    noise = float(np.mean(outside**2)) if len(outside) >= MIN_NOISE else 0.0
+    if noise <= 0:
+        return float("inf")
+    return 10 * float(np.log10(max(float(np.mean(inside**2)) - noise, 1e-12) / noise))
 
 
 def noise_power(every: NDArray[np.float64], quiet: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -5,6 +5,7 @@ the `moonshine-cpp` wheel (MIT).
 """
 
 import importlib.util
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -22,7 +23,7 @@ LAYERS, HEADS, WIDTH = 8, 8, 52
 TOKENS_PER_SECOND = 6.5
 BREADTH = 10.0
 RATE = 16000
-_SILENT = set(".,?!;:'\"-")
+_SILENT = set('.,?!;:"-')
 
 
 @dataclass(frozen=True)
@@ -116,15 +117,9 @@ class Vocabulary:
             elif character in _SILENT:
                 self._collect(child, state, numbers, states)
 
-    def text(self, numbers: list[int]) -> str:
-        """Tokens joined to the words of the grammar; a character that it does not have is silent."""
-        state, kept = self.grammar.start, []
-        for character in "".join(self.tokens[n] for n in numbers).lower():
-            after = self.grammar.step(state, character)
-            if after:
-                state = after
-                kept.append(character)
-        return "".join(kept).strip()
+    def letters(self, number: int) -> str:
+        """What a token adds to a sentence of the grammar, which has no punctuation."""
+        return "".join(c for c in self.tokens[number].lower() if c not in _SILENT)
 
 
 class Moonshine:
@@ -139,7 +134,6 @@ class Moonshine:
         self._encoder, self._decoder = networks(threads)
         self._outputs = [o.name for o in self._decoder.get_outputs()]
         self._beam = beam
-        self._expected: dict[tuple[int, ...], float] = {}
         self.tokens = read_tokens(folder / "tokenizer.bin")
 
     def encode(self, renditions: Array) -> "Utterance":
@@ -161,53 +155,43 @@ class Moonshine:
             scores, cache = self._next(utterance.hidden, [best], cache)
         return Decoded("".join(self.tokens[n] for n in numbers).strip(), total, (*numbers, EOS))
 
-    def best(self, utterance: "Utterance", vocabulary: Vocabulary) -> list[Decoded]:
-        """Different sentences of the grammar, the likeliest first; empty when none fits into the length."""
+    def best(self, utterance: "Utterance", vocabulary: Vocabulary, cost: Callable[[str], float]) -> list[Decoded]:
+        """Different sentences of the grammar, the likeliest first; empty when none fits into the length.
+
+        `cost` of a whole sentence is taken from its log-probability. Of beginnings that read the same only the best is
+        kept, so that the beam is not filled with spellings ("Stop", "stop.", "stop,").
+        """
         grammar = vocabulary.grammar
         scores, cache = self._first(utterance.hidden)
         renditions = len(utterance.hidden)
-        beams: list[tuple[float, list[int], State]] = [(0.0, [], grammar.start)]
-        finished: list[tuple[float, list[int]]] = []
+        beams = [Beginning(0.0, (), grammar.start, "")]
+        finished: dict[str, tuple[float, Decoded]] = {}
+        leader = -np.inf
         for _ in range(utterance.limit):
-            options: list[tuple[float, int, int, State]] = []
-            for row, (total, numbers, state) in enumerate(beams):
-                if numbers and grammar.is_final(state):
-                    finished.append((total + float(scores[row, EOS]), numbers))
-                allowed, after = vocabulary.allowed(state)
-                if len(allowed):
-                    values = scores[row, allowed]
-                    for k in np.argsort(values)[::-1][: self._beam]:
-                        options.append((total + float(values[k]), row, int(allowed[k]), after[int(k)]))
-            options = sorted(options, key=lambda o: -o[0])[: self._beam]
-            best = max((f[0] for f in finished), default=-np.inf)
-            options = [o for o in options if o[0] > max(best, options[0][0]) - BREADTH]
-            if not options:
+            options: dict[str, tuple[Beginning, int]] = {}
+            for row, beam in enumerate(beams):
+                if beam.text and grammar.is_final(beam.state):
+                    total = beam.total + float(scores[row, EOS])
+                    worth = total - cost(beam.text.strip())
+                    if beam.text not in finished or worth > finished[beam.text][0]:
+                        finished[beam.text] = worth, Decoded(beam.text.strip(), total, (*beam.numbers, EOS))
+                        leader = max(leader, worth)
+                allowed, after = vocabulary.allowed(beam.state)
+                values = scores[row, allowed]
+                for k in np.argsort(values)[::-1][: 2 * self._beam]:
+                    number, total = int(allowed[k]), beam.total + float(values[k])
+                    text = beam.text + vocabulary.letters(number)
+                    if text not in options or total > options[text][0].total:
+                        options[text] = Beginning(total, (*beam.numbers, number), after[int(k)], text), row
+            kept = sorted(options.values(), key=lambda o: -o[0].total)[: self._beam]
+            kept = [o for o in kept if o[0].total > max(leader, kept[0][0].total) - BREADTH]
+            if not kept:
                 break
-            rows = [row for _, row, _, _ in options]
-            beams = [(total, [*beams[row][1], number], state) for total, row, number, state in options]
-            kept = [row * renditions + r for row in rows for r in range(renditions)]
-            cache = {name: value[kept] for name, value in cache.items()}
-            scores, cache = self._next(utterance.hidden, [b[1][-1] for b in beams], cache)
-        found: dict[str, Decoded] = {}
-        for total, numbers in sorted(finished, key=lambda f: -f[0]):
-            text = vocabulary.text(numbers)
-            found.setdefault(text, Decoded(text, total, (*numbers, EOS)))
-        return list(found.values())
-
-    def expected(self, sentences: list[Decoded]) -> list[float]:
-        """Log-probability of each sentence when nothing at all is heard: what the model expects people to say."""
-        new = [s.numbers for s in sentences if s.numbers not in self._expected]
-        if new:
-            length = max(map(len, new))
-            inputs = np.full((len(new), length), EOS, np.int64)
-            for row, numbers in enumerate(new):
-                inputs[row, : len(numbers)] = (BOS, *numbers[:-1])
-            deaf = np.zeros((len(new), 1, HEADS * WIDTH), np.float32)
-            found = self._decoder.run(["logits"], self._opening(deaf, inputs))[0]
-            scores = _log_probabilities(found)
-            for row, numbers in enumerate(new):
-                self._expected[numbers] = float(sum(scores[row, i, n] for i, n in enumerate(numbers)))
-        return [self._expected[s.numbers] for s in sentences]
+            beams = [beam for beam, _ in kept]
+            rows = [row * renditions + r for _, row in kept for r in range(renditions)]
+            cache = {name: value[rows] for name, value in cache.items()}
+            scores, cache = self._next(utterance.hidden, [beam.numbers[-1] for beam in beams], cache)
+        return [found for _, found in sorted(finished.values(), key=lambda f: -f[0])]
 
     # --- the network
     def _first(self, hidden: Array) -> tuple[Array, dict[str, Array]]:
@@ -251,6 +235,16 @@ def _log_probabilities(logits: NDArray[Any]) -> Array:
     shifted -= shifted.max(axis=-1, keepdims=True)
     found: Array = shifted - np.log(np.exp(shifted).sum(axis=-1, keepdims=True))
     return found
+
+
+@dataclass(frozen=True)
+class Beginning:
+    """A beginning of a sentence: its log-probability, its tokens, the grammar's state after it, what it reads."""
+
+    total: float
+    numbers: tuple[int, ...]
+    state: State
+    text: str
 
 
 @dataclass(frozen=True)

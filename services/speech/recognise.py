@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from common.scene import Scene
 from services.speech.config import SpeechConfig
+from services.speech.denoise import noise_ratio, reduce_noise
 from services.speech.grammar import Grammar, vocabulary
 from services.speech.vad import RATE, VoiceDetector, speech_span
 
@@ -18,6 +19,9 @@ Verdict = Literal["accept", "ask", "reject", "silence"]
 Scope = Literal["command", "woken", "interrupt"]
 BEFORE, AFTER = 0.2, 0.6
 MIN_SAMPLES = 4000
+NOISY = 20.0  # [dB]
+# How long sentences take by voice detection: fitted to the voices of the corpus, whose spread is a third of this.
+PAUSES, SECONDS_PER_CHARACTER, TEMPO_SPREAD = 0.35, 0.045, 0.25
 
 
 @dataclass(frozen=True)
@@ -30,13 +34,22 @@ class Heard:
     free: str = ""
 
 
+@dataclass(frozen=True)
+class Sound:
+    """An utterance ready for recognition: 16 kHz samples (renditions, n) in -1..1, the recording first, and how many
+    `seconds` of it are speech."""
+
+    renditions: Array
+    seconds: float
+
+
 class Recogniser(Protocol):
-    """Turns 16 kHz samples in -1..1 (n,) that contain speech into a command.
+    """Turns an utterance into a command.
 
     `scope` is the grammar: a command, a command after the wake word or the wake word alone, or stop and cancel only.
     """
 
-    def hear(self, audio: Array, scope: Scope) -> Heard: ...
+    def hear(self, sound: Sound, scope: Scope) -> Heard: ...
 
 
 class MoonshineRecogniser:
@@ -49,19 +62,28 @@ class MoonshineRecogniser:
         self._model = Moonshine(config.beam)
         self._words = {scope: Vocabulary(self._model.tokens, grammar) for scope, grammar in grammars.items()}
 
-    def hear(self, audio: Array, scope: Scope) -> Heard:
-        utterance = self._model.encode(audio[np.newaxis])
+    def hear(self, sound: Sound, scope: Scope) -> Heard:
+        config = self._config
+        utterance = self._model.encode(sound.renditions)
         free = self._model.free(utterance)
-        found = self._model.best(utterance, self._words[scope])
+        found = self._model.best(utterance, self._words[scope], lambda text: cost(text, sound.seconds, config))
         if not found:
             return Heard("", "reject", 0.0, free.text)
         command = found[0]
         score = (command.log_probability - free.log_probability) / command.tokens
-        confidence = confidence_of(score, self._config)
-        if score >= self._config.accept_score:
+        confidence = confidence_of(score, config)
+        if score >= config.accept_score:
             return Heard(command.text, "accept", confidence, free.text)
-        verdict: Verdict = "ask" if score >= self._config.ask_score else "reject"
+        verdict: Verdict = "ask" if score >= config.ask_score else "reject"
         return Heard(command.text, verdict, confidence, free.text)
+
+
+def cost(text: str, seconds: float, config: SpeechConfig) -> float:
+    """What speaks against a sentence however it sounds: words that people hardly use to a robot, and a length that
+    does not fit the time that it took."""
+    rare = sum(config.rare.get(word, 0.0) for word in text.split())
+    usual = PAUSES + SECONDS_PER_CHARACTER * len(text)
+    return rare + config.tempo_weight * (math.log(max(seconds, 0.05) / usual) / TEMPO_SPREAD) ** 2 / 2
 
 
 def confidence_of(score: float, config: SpeechConfig) -> float:
@@ -121,19 +143,26 @@ def without_wake(text: str, phrases: Iterable[str]) -> str:
     return text
 
 
-def prepare(audio: Array, detector: VoiceDetector) -> Array | None:
-    """The part with speech and a little around it, at full scale; None when nobody speaks."""
+def prepare(audio: Array, detector: VoiceDetector) -> Sound | None:
+    """The part with speech and a little around it, at full scale; with noise, also without it. None: nobody speaks."""
     span = speech_span(audio, detector)
     if span is None:
         return None
+    renditions = [audio]
+    if noise_ratio(audio, span) < NOISY:
+        renditions.append(reduce_noise(audio, span))
     start, end = max(0, span[0] - int(BEFORE * RATE)), min(len(audio), span[1] + int(AFTER * RATE))
-    part = audio[start:end]
-    peak = float(np.abs(part).max())
-    if peak < 1e-4 or len(part) < MIN_SAMPLES:
+    missing = max(0, span[1] + int(AFTER * RATE) - end)
+    if end - start < MIN_SAMPLES:
         return None
-    missing = span[1] + int(AFTER * RATE) - end
-    scaled = part * (0.95 / peak)
-    return np.concatenate([scaled, np.zeros(missing, np.float32)]) if missing > 0 else scaled
+    scaled = []
+    for rendition in renditions:
+        part = rendition[start:end]
+        peak = float(np.abs(part).max())
+        if peak < 1e-4:
+            return None
+        scaled.append(np.pad(part * np.float32(0.95 / peak), (0, missing)))
+    return Sound(np.stack(scaled), (span[1] - span[0]) / RATE)
 
 
 class Ear:
@@ -151,8 +180,8 @@ class Ear:
 
     def hear(self, samples: NDArray[np.int16], scope: Scope = "command") -> Heard:
         """What 16 kHz int16 samples (n,) say."""
-        audio = prepare(samples.astype(np.float32) / np.float32(32768), self._detector)
-        if audio is None:
+        sound = prepare(samples.astype(np.float32) / np.float32(32768), self._detector)
+        if sound is None:
             return Heard("", "silence", 0.0)
-        heard = self._recogniser.hear(audio, scope)
+        heard = self._recogniser.hear(sound, scope)
         return replace(heard, text=without_wake(heard.text, self._wake))

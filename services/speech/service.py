@@ -8,7 +8,7 @@ import numpy as np
 
 from common import messages as m
 from common import topics
-from common.io import Io, Job
+from common.io import Io
 from common.runtime import StartError
 from services.speech.attention import Attention, Hearing
 from services.speech.audio import RATE, AudioError, Samples, read_wav, resample
@@ -42,8 +42,7 @@ class SpeechService:
         except (GrammarError, AudioError) as error:
             raise StartError(f"speech: {error}") from None
         self._microphone = Microphone() if config.microphone else None
-        ear: Job[Ear] = io.submit(Ear, config, io.scene, found, seconds=0.5)
-        self._attention = Attention(config, io, ear)
+        self._attention = Attention(config, io, lambda: Ear(config, io.scene, found))
         self._mouth = Mouth(io, config.speakers, config.synthesis_seconds)
         self._goal = m.SpeechGoal(goal="")
         self._seen: set[tuple[str, int]] = set()
@@ -152,6 +151,8 @@ class SpeechService:
         setting = replace(setting, listening=setting.listening and same)
         found = act(heard, self._interrupts.of(heard.text), hearing.scope, setting)
         self._io.log.debug("utterance", text=heard.text, free=heard.free, verdict=heard.verdict, act=found)
+        if found in ("stop", "cancel", "answer"):
+            self._attention.settle(hearing)
         if found in ("stop", "cancel"):
             self._interrupt(found, heard.confidence, now)
         elif found == "answer":
@@ -177,7 +178,6 @@ class SpeechService:
         """Somebody said stop or cancel: be silent and tell the brain; a stop goes to the motors directly."""
         self._mouth.stop()
         self._attention.sleep(now)
-        self._attention.interrupted()
         if word == "stop":
             self._io.publish(topics.ROBOT_STOP, m.RobotStop(reason="somebody said stop", source=self.NAME))
         if self._listening:

@@ -1,13 +1,12 @@
 """PocketSphinx with a JSGF grammar: the light fallback recogniser. It hears commands in other speech too: confirm."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from common.runtime import StartError
 from common.scene import Scene
 from services.speech.config import SpeechConfig
 from services.speech.grammar import vocabulary
-from services.speech.recognise import Heard, Scope, patterns
+from services.speech.recognise import Heard, Scope, Sound, patterns
 
 
 def jsgf(config: SpeechConfig, scene: Scene, scope: Scope = "command") -> str:
@@ -37,10 +36,10 @@ class SphinxRecogniser:
         for scope in scopes:
             self._decoder.add_jsgf_string(scope, jsgf(config, scene, scope))
 
-    def hear(self, audio: NDArray[np.float32], scope: Scope) -> Heard:
+    def hear(self, sound: Sound, scope: Scope) -> Heard:
         self._decoder.activate_search(scope)
         self._decoder.start_utt()
-        self._decoder.process_raw((audio * 32000).astype(np.int16).tobytes(), full_utt=True)
+        self._decoder.process_raw((sound.renditions[0] * 32000).astype(np.int16).tobytes(), full_utt=True)
         self._decoder.end_utt()
         found = self._decoder.hyp()
         if found is None or not found.hypstr:

@@ -185,7 +185,8 @@ def test_an_answer_begun_just_before_the_brain_listens_counts(robot: Robot, said
 
 def test_a_recognition_for_a_goal_that_was_cancelled_is_dropped(robot: Robot, said: dict[str, Samples]) -> None:
     robot.ask("listen", "a.1")
-    robot.hear(said["bring me the red mug"][: -RATE // 5], after=0.1)
+    robot.hear(said["bring me the red mug"][: -RATE // 2], after=0.1)
+    assert robot.states()[-1] == "transcribing"
     robot.ask("cancel", "a.2")
     robot.step(2.0)
     assert not robot.results and not robot.commands
