@@ -10,7 +10,7 @@ import numpy as np
 from services.manipulation.arm_model import Array, Pose
 
 MAX_WIDTH = 0.076
-HANDLE_CONE = math.radians(40)
+HANDLE_CONE = math.radians(50)
 BOWL_LEAN, BOWL_WALL, RIM_DEPTH = 0.55, 0.006, 0.012
 
 

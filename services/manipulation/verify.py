@@ -7,6 +7,7 @@ from services.manipulation.config import ManipulationConfig
 
 HOLDING_FORCE = 3.0
 OPEN_WIDTH = 0.080
+TOO_WIDE = 0.006
 
 
 @dataclass(frozen=True)
@@ -37,4 +38,7 @@ def judge(
         return "SLIPPED"
     if nominal > 0 and grip.width < nominal * 0.4:
         return "SLIPPED"
+    if nominal > 0 and grip.width > nominal + TOO_WIDE:
+        # On a handle or a rim, not around the body.
+        return "EMPTY_GRASP" if at_close is None else "SLIPPED"
     return ""

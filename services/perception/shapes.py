@@ -17,7 +17,7 @@ from common.scene import ObjectKind, Vec3
 Array = NDArray[np.float64]
 Segment = tuple[tuple[float, float], tuple[float, float]]
 SAMPLE = 160
-ROBUST = 0.004
+ROBUST, STRAY = 0.004, 0.007
 MUG_WALL, BOWL_WALL, BOWL_LEAN = 0.004, 0.006, 0.55
 NECK, NECK_FROM = 0.014, 0.72
 
@@ -90,18 +90,22 @@ def fit(kind: ObjectKind, size: Vec3, points: Array, floor: float, camera: Array
     yaws = (0.0, 0.5, 1.0, 1.5) if size[0] == size[1] else (0.0, 0.5, 1.0, 1.5, 2.0, 2.5)
     start = middle + away * 0.25 * max(size[0], size[1])
 
-    def residuals(p: Array) -> Array:
-        return distances(kind, size, used, floor, p[0], p[1], p[2] if boxy else 0.0)
+    def off(p: Array, points: Array) -> Array:
+        return distances(kind, size, points, floor, p[0], p[1], p[2] if boxy else 0.0)
 
     # Only the better starts of a box are followed to the end.
     starts = sorted(
         (np.array([*start, yaw]) if boxy else start for yaw in (yaws if boxy else (0.0,))),
-        key=lambda p: float(np.minimum(residuals(p), 0.02).mean()),
+        key=lambda p: float(np.minimum(off(p, used), 0.02).mean()),
     )[:2]
     best = min(
-        (least_squares(residuals, p, loss="soft_l1", f_scale=ROBUST, max_nfev=15) for p in starts),
+        (least_squares(off, p, args=(used,), loss="soft_l1", f_scale=ROBUST, max_nfev=15) for p in starts),
         key=lambda found: float(found.cost),
     )
+    # Once more without what the shape does not have, such as a mug's handle.
+    own = used[off(best.x, used) < STRAY]
+    if len(own) > len(used) // 2:
+        best = least_squares(off, best.x, args=(own,), loss="soft_l1", f_scale=ROBUST / 2, max_nfev=10)
     x, y = float(best.x[0]), float(best.x[1])
     yaw = float(best.x[2]) if boxy else 0.0
     left = np.minimum(distances(kind, size, used, floor, x, y, yaw), 0.02)
