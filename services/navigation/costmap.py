@@ -15,6 +15,8 @@ _PAD = 0.3
 _EXPLAINED = 0.12
 # Farther than this from something seen nobody cares [m].
 _REACH = 0.8
+# Something seen for longer than _LASTING stands there, other things are forgotten after _BRIEF [s].
+_LASTING, _BRIEF = 2.0, 4.0
 BIN_WALL = 0.02
 
 
@@ -30,6 +32,7 @@ class Costmap:
         self.static = self._rasterise(scene)
         self.static_distance = self._distance_to(self.static, resolution)
         self._seen_at = np.full(self.shape, -np.inf)
+        self._first_at = np.full(self.shape, np.inf)
         self._distance: Array | None = self.static_distance
         self.version = 0
         reach = math.ceil(_REACH / resolution)
@@ -126,7 +129,9 @@ class Costmap:
         if not new.any() and not before.any():
             return
         self._clear(pose, angles, np.where(hit, ranges, range_max), now)
-        self._seen_at[rows[new], columns[new]] = now
+        marked = rows[new], columns[new]
+        self._seen_at[marked] = now
+        self._first_at[marked] = np.minimum(self._first_at[marked], now)
         after = self._seen_at > -np.inf
         if (after != before).any():
             self._distance = None if after.any() else self.static_distance
@@ -142,9 +147,24 @@ class Costmap:
         bearing = np.arctan2(y, x) - pose[2] - angles[0]
         ray = np.round(np.mod(bearing, 2 * math.pi) / step).astype(int) % len(angles)
         passed = reach[ray] > np.hypot(x, y) + 0.15
-        old = now - self._seen_at[rows, columns] > self._memory
-        gone = passed | old
+        seen_at = self._seen_at[rows, columns]
+        # What was there for a moment only was walking by.
+        lasting = seen_at - self._first_at[rows, columns] > _LASTING
+        old = now - seen_at > np.where(lasting, self._memory, min(_BRIEF, self._memory))
+        self._drop(rows, columns, passed | old)
+
+    def _drop(self, rows: NDArray[np.intp], columns: NDArray[np.intp], gone: Grid) -> None:
         self._seen_at[rows[gone], columns[gone]] = -np.inf
+        self._first_at[rows[gone], columns[gone]] = np.inf
+
+    def doubt(self, now: float, age: float) -> None:
+        """Forget what has been out of sight for `age` seconds: it may be gone."""
+        rows, columns = np.nonzero(self._seen_at > -np.inf)
+        gone = now - self._seen_at[rows, columns] > age
+        if gone.any():
+            self._drop(rows, columns, gone)
+            self._distance = None
+            self.version += 1
 
     def seen_within(self, points: Array, radius: float) -> Grid:
         """Which points (n, 2) have something within `radius` that the static map does not put there."""

@@ -19,6 +19,7 @@ PROGRESS = 0.05
 TRAIL_STEP, TRAIL = 0.05, 40
 DETOUR_PAUSE = 4.0
 SHORTER = 0.85
+OUT_OF_SIGHT = 3.0
 
 
 class Ended(Exception):
@@ -260,6 +261,7 @@ class Drive:
         self.recoveries += 1
         self.doing = "BACKING_OFF"
         self._blocked_since = None
+        self._map.doubt(now, OUT_OF_SIGHT)
         self._back_to = (*self._retreat(pose), pose[2])
         self._backing_until = now + self._config.back_off_time
 

@@ -18,7 +18,8 @@ TURN_RADIUS = 0.2
 # One end point counts as known to this [m]: more than its noise, since neighbours err together.
 SIGMA = 0.03
 STEPS = 6
-JUMP = 0.5
+# Farther than this beyond what its speed allows, odometry has not moved but started anew [m, m/s].
+JUMP, TOP_SPEED = 0.1, 1.0
 START = (0.02, 0.02, 0.02)
 UNKNOWN = (0.3, 0.3, 0.2)
 FLOOR = np.square([0.001, 0.001, 0.0007])
@@ -39,8 +40,11 @@ class Localiser:
         """Start anew from a guess."""
         self.pose, self.covariance = pose, np.diag(np.square(spread))
 
-    def predict(self, odometry: Pose2) -> Pose2:
-        """Move with the wheels; odometry that jumps has restarted and is taken as a new guess in the map."""
+    def predict(self, odometry: Pose2, elapsed: float = 1.0) -> Pose2:
+        """Move with the wheels; odometry that jumps has restarted and is taken as a new guess in the map.
+
+        `elapsed` is what the odometry's own clock says has passed [s].
+        """
         if self._odometry is None:
             self._odometry = odometry
             at_home = math.dist(odometry[:2], self._home[:2]) < START[0]
@@ -50,7 +54,7 @@ class Localiser:
             return self.pose
         dx, dy, turn = compose(inverse(self._odometry), odometry)
         self._odometry = odometry
-        if math.hypot(dx, dy) > JUMP:
+        if elapsed < 0.0 or math.hypot(dx, dy) > JUMP + TOP_SPEED * elapsed:
             self.place(odometry, UNKNOWN)
             return self.pose
         c, s = math.cos(self.pose[2]), math.sin(self.pose[2])

@@ -13,7 +13,7 @@ MIN_POINTS, MAX_EXTENT = 3, 1.0
 # A person seen from the front: the middle lies this far behind the surface [m].
 DEPTH = 0.12
 POSITION_GAIN, SPEED_GAIN = 0.5, 0.25
-MIN_SPEED, MAX_SPEED = 0.15, 2.0
+MIN_SPEED, MAX_SPEED = 0.2, 2.0
 MIN_SIGHTINGS, MAX_SILENCE = 4, 0.6
 
 

@@ -16,6 +16,7 @@ from services.navigation.relocalise import relocalise
 NEAR = 4.0
 EXPLAINED = 0.15
 MAX_RANGE = 1000.0
+MAX_VALUE = 1e9
 # Shares of rays that the map explains: below BAD_FIT for DOUBT seconds the robot counts as lost, and if no better
 # place is found it goes on and asks again later, at last every MAX_DOUBT seconds.
 BAD_FIT, GOOD_FIT, BETTER, MIN_RAYS = 0.5, 0.6, 0.15, 60
@@ -36,28 +37,35 @@ class Senses:
         self._asked_from: Pose2 = (0.0, 0.0, 0.0)
         self.movers = Movers()
         self.pose: Pose2 | None = None
+        self._odometry: m.Odometry | None = None
+        self._measured = 0.0
         self.points: Array | None = None
+        self._layout = (0, 0.0, 0.0)
         self._angles: Array = np.empty(0)
         self._directions: Array = np.empty((0, 2))
 
     def step(self, now: float) -> None:
         io = self._io
-        odometry = io.latest(topics.ODOMETRY)
-        scans = io.drain(topics.SCAN)
+        for o in io.drain(topics.ODOMETRY):
+            if _sane(o.t, o.x, o.y, o.theta, o.vx, o.vy, o.omega):
+                self._odometry = o
+            else:
+                io.count_drop(topics.ODOMETRY.key, "not a finite pose and velocity")
+        scans, odometry = io.drain(topics.SCAN), self._odometry
         if odometry is not None:
-            believed = (odometry.x, odometry.y, odometry.theta)
+            believed: Pose2 | None = (odometry.x, odometry.y, odometry.theta)
         else:
-            joints = _from_joints(io.latest(topics.JOINT_STATES))
-            if joints is None:
-                return
-            believed = joints
-        self.pose = self.localiser.predict(believed)
+            believed = _from_joints(io.latest(topics.JOINT_STATES))
+        if believed is None:
+            return
+        measured = odometry.t if odometry is not None else now
+        self.pose = self.localiser.predict(believed, measured - self._measured)
+        self._measured = measured
         if scans:
             late = max(0.0, min(odometry.t - scans[-1].t, 0.1)) if odometry else 0.0
             self._look(scans[-1], odometry, late, now)
         x, y, theta = self.pose
         covariance = self.localiser.covariance.ravel().tolist()
-        measured = odometry.t if odometry is not None else now
         io.publish(topics.POSE, m.PoseEstimate(t=measured, x=x, y=y, theta=theta, covariance=covariance))
 
     def silence(self, now: float) -> float:
@@ -65,14 +73,17 @@ class Senses:
         return min(self._io.age(topics.ODOMETRY, now), self._io.age(topics.JOINT_STATES, now))
 
     def _look(self, scan: m.LaserScan, odometry: m.Odometry | None, late: float, now: float) -> None:
-        if not scan.ranges or len(scan.ranges) % 4:
-            self._io.count_drop(topics.SCAN.key, "ranges are 32 bit floats")
+        if len(scan.ranges) < 8 or len(scan.ranges) % 4:
+            self._io.count_drop(topics.SCAN.key, "ranges are at least two 32 bit floats")
             return
         ranges = np.frombuffer(scan.ranges, "<f4").astype(np.float64)
-        if not (np.abs(ranges) <= MAX_RANGE).all():
-            self._io.count_drop(topics.SCAN.key, "ranges are finite and within a kilometre")
+        described = _sane(scan.t, scan.x, scan.y, scan.angle_min, scan.range_min, scan.range_max)
+        if not described or not 0.0 < scan.angle_increment < 1.0 or not (np.abs(ranges) <= MAX_RANGE).all():
+            self._io.count_drop(topics.SCAN.key, "not the ranges of a lidar")
             return
-        if len(self._angles) != len(ranges):
+        layout = len(ranges), scan.angle_min, scan.angle_increment
+        if self._layout != layout:
+            self._layout = layout
             self._angles = np.asarray(scan.angle_min + np.arange(len(ranges)) * scan.angle_increment, np.float64)
             self._directions = np.stack([np.cos(self._angles), np.sin(self._angles)], axis=1)
         hit = (ranges <= scan.range_max) & (ranges > scan.range_min)
@@ -120,6 +131,10 @@ class Senses:
             self._asked = io.submit(relocalise, self._field, seen, io.scene.low, io.scene.high, seconds=0.3)
 
 
+def _sane(*values: float) -> bool:
+    return all(abs(v) <= MAX_VALUE for v in values)
+
+
 def _transformed(frame: Pose2, points: Array) -> Array:
     """Points (n, 2) of `frame` in its parent."""
     c, s = np.cos(frame[2]), np.sin(frame[2])
@@ -133,6 +148,7 @@ def _from_joints(joints: m.JointStates | None) -> Pose2 | None:
         return None
     found = dict(zip(joints.name, joints.position, strict=False))
     try:
-        return found["base_x"], found["base_y"], found["base_yaw"]
+        pose = found["base_x"], found["base_y"], found["base_yaw"]
     except KeyError:
         return None
+    return pose if _sane(*pose) else None
