@@ -1,5 +1,7 @@
 """Plans by a language model behind an OpenAI-compatible chat endpoint. Runs in the worker."""
 
+import asyncio
+import importlib
 import importlib.util
 import re
 from collections.abc import Callable
@@ -16,6 +18,7 @@ from services.planner.prompt import messages, schema
 from services.planner.vocabulary import Vocabulary
 from services.planner.world import World
 
+POLL = 0.05
 _FENCE = re.compile(r"^\s*```(?:json)?\s*(.*?)\s*```\s*$", re.DOTALL)
 
 
@@ -34,14 +37,20 @@ def installed() -> bool:
     return importlib.util.find_spec("openai") is not None
 
 
+class Call:
+    """One question under way. `cancelled` may be set from another thread and ends it within POLL seconds."""
+
+    def __init__(self) -> None:
+        self.cancelled = False
+
+
 class Llm:
-    """One client; importing it takes a second or more, so that is done in the worker as well."""
+    """Asks the endpoint of the configuration."""
 
     def __init__(self, config: PlannerConfig, clock: Callable[[], float] = monotonic) -> None:
         self._config, self._clock = config, clock
-        self._client: Any = None
 
-    def plan(self, command: str, world: World, rejected: list[RejectedPlan]) -> Reply:
+    def plan(self, command: str, world: World, rejected: list[RejectedPlan], call: Call) -> Reply:
         """A checked plan, or one without steps and with the model's reason.
 
         A plan that cannot be carried out goes back with the reason, as often as `llm_tries` and `llm_timeout` allow.
@@ -54,10 +63,10 @@ class Llm:
         end = self._clock() + config.llm_timeout
         wrong = ""
         for _ in range(max(1, config.llm_tries)):
-            left = end - self._clock()
-            if left <= 0:
-                raise LlmError(f"timed out after {wrong}" if wrong else "timed out")
-            said = self._complete(talk, form, left)
+            try:
+                said = asyncio.run(self._complete(talk, form, end, call))
+            except TimeoutError:
+                raise LlmError(f"timed out after {wrong}" if wrong else "timed out") from None
             try:
                 reply = msgspec.json.decode(_FENCE.sub(r"\1", said), type=Reply)
                 reply.steps = checked(reply.steps, world, vocabulary, config.max_steps)
@@ -74,29 +83,36 @@ class Llm:
         raise LlmError(wrong)
 
     def open(self) -> None:
-        """Import the client before the first request needs it."""
+        """Import the client before the first request needs it: that takes a second or more."""
+        importlib.import_module("openai")
+
+    async def _complete(self, talk: list[dict[str, str]], form: dict[str, Any], end: float, call: Call) -> str:
+        """The words of the answer; TimeoutError at `end`, whatever has arrived by then."""
+        asked = asyncio.ensure_future(self._ask(talk, form))
+        while not asked.done():
+            if call.cancelled or self._clock() >= end:
+                asked.cancel()
+                await asyncio.wait({asked}, timeout=1.0)
+                raise TimeoutError
+            await asyncio.wait({asked}, timeout=POLL)
+        return asked.result()
+
+    async def _ask(self, talk: list[dict[str, str]], form: dict[str, Any]) -> str:
         import openai
 
-        if self._client is None:
-            config = self._config
-            self._client = openai.OpenAI(base_url=config.llm_url, api_key=config.llm_key or "none", max_retries=0)
-
-    def _complete(self, talk: list[dict[str, str]], form: dict[str, Any], timeout: float) -> str:
-        import openai
-
-        self.open()
-        wanted = {"type": "json_schema", "json_schema": {"name": "plan", "schema": form, "strict": True}}
+        config = self._config
+        wanted: Any = {"type": "json_schema", "json_schema": {"name": "plan", "schema": form, "strict": True}}
+        asked: Any = talk
         try:
-            answer = self._client.chat.completions.create(
-                model=self._config.llm_model,
-                messages=talk,
-                response_format=wanted,
-                extra_body=self._config.llm_options,
-                timeout=timeout,
-            )
+            async with openai.AsyncOpenAI(
+                base_url=config.llm_url, api_key=config.llm_key or "none", max_retries=0, timeout=config.llm_timeout
+            ) as client:
+                answer = await client.chat.completions.create(
+                    model=config.llm_model, messages=asked, response_format=wanted, extra_body=config.llm_options
+                )
             return answer.choices[0].message.content or ""
         except openai.APITimeoutError:
-            raise LlmError("timed out") from None
+            raise TimeoutError from None
         except openai.APIStatusError as error:
             raise LlmError(f"status {error.status_code}") from None
         except openai.APIConnectionError:

@@ -11,7 +11,7 @@ from common.io import Io, Job
 from common.runtime import StartError
 from services.planner import grammar
 from services.planner.config import PlannerConfig
-from services.planner.llm import Llm, LlmError, Reply, installed
+from services.planner.llm import Call, Llm, LlmError, Reply, installed
 from services.planner.world import World, believed
 
 T = TypeVar("T")
@@ -26,6 +26,8 @@ class Pending(msgspec.Struct):
     world: World
     rejected: list[m.RejectedPlan]
     due: float
+    call: Call
+    job: Job[Reply]
 
 
 class PlannerService:
@@ -41,7 +43,6 @@ class PlannerService:
         if config.backend == "llm" and not installed():
             raise StartError("planner.backend = llm needs the openai package: pip install 'tidybot-zenoh[llm]'")
         self._config, self._io = config, io
-        self._job: Job[Reply] | None = None
         self._llm: Llm | None = None
         if config.backend == "llm":
             self._llm = Llm(config)
@@ -62,32 +63,35 @@ class PlannerService:
     def _take(self, request: m.PlanRequest, now: float) -> None:
         """Only the newest request counts: a sender has one outstanding."""
         rejected, world = self._rejections(request), self._world(request, now)
-        self._pending = None
         if self._llm is None:
             self._publish(request, self._by_grammar(request, world, rejected))
-        elif self._job is not None and not self._job.poll(now):
-            self._publish(request, self._by_grammar(request, world, rejected, "the language model is busy"))
-        else:
-            seconds = self._config.llm_seconds
-            self._job = self._io.submit(self._llm.plan, request.command, world, rejected, seconds=seconds)
-            self._pending = Pending(request, world, rejected, now + self._config.llm_timeout + GRACE)
+            return
+        self.close()
+        call, seconds = Call(), self._config.llm_seconds
+        job = self._io.submit(self._llm.plan, request.command, world, rejected, call, seconds=seconds)
+        self._pending = Pending(request, world, rejected, now + self._config.llm_timeout + GRACE, call, job)
 
     def _poll(self, now: float) -> None:
-        if self._job is None:
+        pending = self._pending
+        if pending is None:
             return
-        pending, ready = self._pending, self._job.poll(now)
-        if pending is not None and (ready or (now > pending.due and not self._io.lockstep)):
-            self._pending = None
-            self._publish(pending.request, self._outcome(pending, self._job if ready else None))
-        if ready:
-            self._job = None
+        ready = pending.job.poll(now)
+        if ready or (now > pending.due and not self._io.lockstep):
+            self.close()
+            self._publish(pending.request, self._outcome(pending, ready))
 
-    def _outcome(self, pending: Pending, job: Job[Reply] | None) -> m.ActionPlan:
+    def close(self) -> None:
+        """Let go of the question under way."""
+        if self._pending is not None:
+            self._pending.call.cancelled = True
+            self._pending = None
+
+    def _outcome(self, pending: Pending, ready: bool) -> m.ActionPlan:
         """The model's plan; the grammar's where the model failed or knows none."""
         try:
-            if job is None:
+            if not ready:
                 raise LlmError("timed out")
-            reply = job.result()
+            reply = pending.job.result()
         except LlmError as error:
             return self._by_grammar(pending.request, pending.world, pending.rejected, f"llm: {error}")
         plan = m.ActionPlan(request_id=pending.request.id, steps=reply.steps, source="llm", detail=reply.detail)

@@ -261,38 +261,48 @@ def test_a_late_answer_is_not_waited_for(endpoint: Endpoint) -> None:
     assert (actions(plan), plan.source) == (GRAMMAR, "grammar (llm: timed out)")
 
 
-def test_a_dripping_answer_ends_at_the_deadline_and_the_next_request_does_not_wait(endpoint: Endpoint) -> None:
-    endpoint.answers = [endpoint.drips]
+def test_a_dripping_answer_ends_at_the_deadline(endpoint: Endpoint) -> None:
+    endpoint.answers = [endpoint.drips, plans(*MUG)]
+    node = Node(endpoint, llm_timeout=0.5)
+    assert node.ask().source == "grammar (llm: timed out)"
+
+
+def test_a_blocked_worker_does_not_hold_up_the_answer(endpoint: Endpoint, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(llm.Llm, "open", lambda self: endpoint.over.wait(30))
+    endpoint.answers = [plans(*MUG)]
     node = Node(endpoint, llm_timeout=5.0)
     node.request()
     node.step()
-    eventually(lambda: endpoint.requests, "the request is under way")
     node.step(5.0)
     assert not node.plans
     node.step(GRACE + 0.1)
     assert node.wait().source == "grammar (llm: timed out)"
-    node.request(request_id="m.2")
-    assert node.wait(2).source == "grammar (the language model is busy)"
+    assert not endpoint.requests
 
 
-def test_a_newer_request_replaces_the_older(endpoint: Endpoint) -> None:
-    first = threading.Event()
-
-    def waits(handler: BaseHTTPRequestHandler) -> None:
-        first.wait(30)
-        plans(*MUG)(handler)
-
-    endpoint.answers = [waits]
+def test_a_newer_request_replaces_the_older_and_does_not_wait_for_it(endpoint: Endpoint) -> None:
+    endpoint.answers = [endpoint.hangs, plans(*MUG)]
     node = Node(endpoint)
     node.request()
     node.step()
     eventually(lambda: endpoint.requests, "the request is under way")
     node.request("bring me the apple", "m.2")
     plan = node.wait()
-    assert (plan.request_id, plan.steps[0].object) == ("m.2", "apple")
-    first.set()
-    eventually(lambda: node.step() or node.service._job is None, "the old answer is thrown away")
+    assert (plan.request_id, plan.source) == ("m.2", "llm")
     assert len(node.plans) == 1
+
+
+def test_the_end_of_the_process_does_not_wait_for_an_answer(endpoint: Endpoint) -> None:
+    endpoint.answers = [endpoint.hangs]
+    node = Node(endpoint)
+    node.request()
+    node.step()
+    eventually(lambda: endpoint.requests, "the request is under way")
+    pending = node.service._pending
+    assert pending is not None
+    node.service.close()
+    with pytest.raises(llm.LlmError, match="timed out"):
+        pending.job._future.result(timeout=10)
 
 
 def test_the_same_request_twice_is_asked_once(endpoint: Endpoint) -> None:
