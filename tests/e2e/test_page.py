@@ -46,12 +46,12 @@ def robot(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     settings = ["--scene", "minimal", "--speed", "0.5", "--set", "dashboard.port=0", "--set", "dashboard.frame_rate=3"]
     up = [*command, "up", "--detach", "--port", str(port), *settings]
     try:
-        done = subprocess.run(up, env=environ, cwd=ROOT, capture_output=True, text=True, timeout=120)
+        done = subprocess.run(up, env=environ, cwd=ROOT, capture_output=True, text=True, timeout=300)
         assert done.returncode == 0, done.stdout + done.stderr
         assert "page " in done.stdout
         yield f"tcp/127.0.0.1:{port}"
     finally:
-        subprocess.run([*command, "down"], env=environ, cwd=ROOT, capture_output=True, timeout=60)
+        subprocess.run([*command, "down"], env=environ, cwd=ROOT, capture_output=True, timeout=180)
 
 
 @pytest.fixture(scope="module")

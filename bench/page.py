@@ -1,0 +1,78 @@
+"""What the operator's page costs during a mission: alone, with one and with three viewers, and with one that hangs."""
+
+import asyncio
+import contextlib
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from typing import Any
+
+import psutil
+import viser
+from aiohttp import ClientSession
+
+from tests.support import free_port
+
+SECONDS = 20.0
+
+
+async def watching(url: str, heard: list[int], hang: bool) -> None:
+    """A viewer's stream: counts its messages, or reads nothing."""
+    protocol = f"viser-v{viser.__version__}"
+    async with (
+        ClientSession() as session,
+        session.ws_connect(f"{url}view", protocols=[protocol], max_msg_size=0) as socket,
+    ):
+        if hang:
+            # aiohttp stops reading from the socket once its buffer is full.
+            await asyncio.sleep(3600)
+        async for _ in socket:
+            heard[0] += 1
+
+
+async def measure(name: str, url: str, pid: int, viewers: int, hung: int) -> None:
+    counts = [[0] for _ in range(viewers)]
+    tasks = [asyncio.create_task(watching(url, heard, False)) for heard in counts]
+    tasks += [asyncio.create_task(watching(url, [0], True)) for _ in range(hung)]
+    await asyncio.sleep(3.0)
+    process, before = psutil.Process(pid), [heard[0] for heard in counts]
+    spent = sum(process.cpu_times()[:2])
+    await asyncio.sleep(SECONDS)
+    cpu = (sum(process.cpu_times()[:2]) - spent) / SECONDS
+    rates = [(heard[0] - b) / SECONDS for heard, b in zip(counts, before, strict=True)]
+    for task in tasks:
+        task.cancel()
+        with contextlib.suppress(asyncio.CancelledError):
+            await task
+    told = ", ".join(f"{rate:.0f}" for rate in rates) or "-"
+    print(f"{name:34} {100 * cpu:5.1f} % of a core   frames a second: {told}", flush=True)
+
+
+def main() -> None:
+    with tempfile.TemporaryDirectory() as run_dir:
+        environment = {**os.environ, "TIDYBOT_RUN_DIR": run_dir}
+
+        def tidybot(*words: str) -> str:
+            command = [sys.executable, "-m", "cli.main", *words]
+            return subprocess.run(command, env=environment, capture_output=True, text=True, check=True).stdout
+
+        told = tidybot("up", "--detach", "--port", str(free_port()), "--set", "dashboard.port=0")
+        try:
+            url = next(word for word in told.split() if word.startswith("http://"))
+            rows: list[dict[str, Any]] = json.loads(tidybot("ps", "--json"))
+            pid = next(int(row["pid"]) for row in rows if row["name"] == "dashboard")
+            tidybot("say", "bring me the red mug, please")
+            for name, viewers, hung in (
+                ("nobody looks", 0, 0), ("one viewer", 1, 0), ("three viewers", 3, 0), ("three, and one hangs", 3, 1),
+            ):  # fmt: skip
+                asyncio.run(measure(name, url, pid, viewers, hung))
+            rows = json.loads(tidybot("ps", "--json"))
+            print(f"{'resident':34} {next(row['rss_mb'] for row in rows if row['name'] == 'dashboard'):5.0f} MB")
+        finally:
+            tidybot("down")
+
+
+if __name__ == "__main__":
+    main()
