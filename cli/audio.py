@@ -38,7 +38,7 @@ def read_wav(path: Path) -> NDArray[np.int16]:
             raw = file.readframes(frames)
     except FileNotFoundError:
         raise CliError(f"{path}: no such file") from None
-    except (OSError, EOFError, wave.Error) as error:
+    except (OSError, EOFError, wave.Error, struct.error, RuntimeError) as error:  # RuntimeError: a seek beyond the end
         raise CliError(f"{path}: not a PCM WAV file ({str(error) or 'it ends too early'})") from None
     if frames == 0:
         raise CliError(f"{path}: contains no sound")

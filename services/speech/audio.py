@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 RATE = 16000
+MIN_RATE, MAX_RATE = 4000, 192000
 Samples = NDArray[np.int16]
 
 
@@ -29,7 +30,7 @@ def read_wav(path: Path) -> Samples:
             raw = file.readframes(frames)
     except FileNotFoundError:
         raise AudioError(f"{path}: no such file") from None
-    except (wave.Error, EOFError, struct.error) as error:
+    except (wave.Error, EOFError, struct.error, RuntimeError) as error:  # RuntimeError: a seek beyond a chunk's end
         raise AudioError(f"{path}: not a PCM WAV file ({error or 'it ends too early'})") from None
     except OSError as error:
         raise AudioError(f"{path}: {error.strerror}") from None
@@ -37,6 +38,8 @@ def read_wav(path: Path) -> Samples:
         raise AudioError(f"{path}: the recording is empty")
     if len(raw) < frames * channels * width:
         raise AudioError(f"{path}: truncated, {len(raw)} of {frames * channels * width} bytes")
+    if not MIN_RATE <= rate <= MAX_RATE:
+        raise AudioError(f"{path}: {rate} samples a second; {MIN_RATE} to {MAX_RATE} are expected")
     if width not in (1, 2, 4):
         raise AudioError(f"{path}: samples of {8 * width} bit; 16 bit is expected")
     if width == 2:
