@@ -2,12 +2,13 @@
 
 import math
 
+import msgspec
 import pytest
 
 from common.messages import PlanStep
 from common.scene import load_scene
-from services.brain.dialogue import corrected, reply
-from services.brain.search import next_place, turned
+from services.brain.dialogue import chosen, corrected, reply
+from services.brain.search import Lookout
 from services.brain.validate import known_world, objection
 
 SCENE = load_scene("apartment")
@@ -73,17 +74,50 @@ def test_correction_changes_the_object_only() -> None:
     assert corrected("bring me the red mug", "bring me the apple", SCENE) == "bring me the apple"
 
 
-def test_turning_three_times_comes_round() -> None:
-    pose = (1.0, 2.0, 0.3)
-    for _ in range(3):
-        pose = turned(pose, 1)
-        assert -math.pi <= pose[2] <= math.pi
-    assert pose == pytest.approx((1.0, 2.0, 0.3))
+LOOKOUT = Lookout(SCENE)
+HOME = (0.0, 0.0, 0.0)
 
 
-def test_search_visits_every_place_once() -> None:
-    visited: list[str] = []
-    while (place := next_place((0.0, 0.0, 0.0), SCENE, visited)) is not None:
-        visited.append(place.name)
-    assert sorted(visited) == sorted([SCENE.home.name, *(p.name for p in SCENE.places)])
-    assert visited[0] == SCENE.home.name
+def test_the_tour_shows_every_surface_and_ends() -> None:
+    visited: list[tuple[float, float, float]] = []
+    at = HOME
+    while (view := LOOKOUT.next(at, visited)) is not None:
+        assert view not in visited
+        visited.append(view)
+        at = view
+    assert len(visited) < 20
+    assert LOOKOUT.covered(visited).mean() > 0.97
+
+
+def test_every_view_shows_something_new() -> None:
+    first = LOOKOUT.next(HOME, [])
+    assert first is not None
+    second = LOOKOUT.next(first, [first])
+    assert second is not None
+    assert LOOKOUT.covered([first, second]).sum() > LOOKOUT.covered([first]).sum() > 0
+
+
+def test_turning_stays_on_the_spot_and_ends() -> None:
+    pose, visited = (0.9, -1.4, 0.0), []
+    while (view := LOOKOUT.turns(pose, visited)) is not None:
+        assert view[:2] == pose[:2]
+        visited.append(view)
+    assert 1 <= len(visited) <= 12
+
+
+def test_walls_hide_what_is_behind_them() -> None:
+    alone = SCENE.receptacle("study shelf")
+    assert alone is not None
+    # From the living room the shelf is 2.4 m away, behind the wall between.
+    hidden = Lookout(msgspec.structs.replace(SCENE, receptacles=(alone,)))
+    assert not hidden.covered([(1.3, 1.9, math.pi / 2)]).any()
+    assert hidden.covered([(1.3, 2.6, math.pi / 2)]).any()
+
+
+def test_a_choice_is_the_one_that_the_words_single_out() -> None:
+    options = ["blue mug", "red mug"]
+    assert chosen("the red one", options) == "red mug"
+    assert chosen("blue", options) == "blue mug"
+    assert chosen("the second one please", options) == "red mug"
+    assert chosen("the mug", options) is None
+    assert chosen("the green one", options) is None
