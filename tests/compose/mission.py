@@ -37,7 +37,7 @@ def carry_out(
     while talk.closed():
         assert monotonic() < end, talk.closed()
         talk.refresh()
-    link.send(topics.VOICE_COMMAND, m.VoiceCommand(text=f"bring me the {thing}"))
+    link.send(topics.VOICE_COMMAND, m.VoiceCommand(text=f"bring me the {thing}", confirmed=True))
     assert talk.accepted(20.0), f"not accepted: {talk.state}"
     outcome = talk.outcome(timeout, idle)
     assert not pending, f"never came to {list(pending)}: {outcome}"
