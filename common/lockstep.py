@@ -37,7 +37,8 @@ def period_of(hz: float) -> int:
 class Barrier:
     """Who takes part, how often each is due, and whose acknowledgement is missing.
 
-    `next_ack(timeout)` returns the next (name, tick, period) or None; a tick of -1 joins.
+    `next_ack(timeout)` returns the next (name, tick, period) or None; a tick of -1 joins, and so does any other of one
+    that does not take part.
     """
 
     AGAIN = 1.0
@@ -99,11 +100,13 @@ class Barrier:
         if ack is None:
             return False
         name, tick, period = ack
-        if tick < 0:
+        if tick < 0 or name not in self._acked:
+            # Whoever acknowledges takes part: a process that came back never saw the clock stand still.
             self.periods[name] = max(1, period)
             self._acked[name] = self._tick
-        elif name in self._acked:
-            self._acked[name] = max(self._acked[name], tick)
+        else:
+            # A tick that is not reached yet was one of an earlier simulation.
+            self._acked[name] = max(self._acked[name], min(tick, self._tick))
         return True
 
     def _leave(self, name: str, why: str) -> None:

@@ -102,6 +102,27 @@ def test_a_participant_that_never_joins_is_reported() -> None:
     assert reports == ["lockstep starts without ghost"]
 
 
+def test_a_process_that_was_started_again_takes_part_again() -> None:
+    gate, reports = barrier([("a", -1, 1), ("a", 1, 1)], ("a",))
+    gate.assemble()
+    gate.wait(1, lambda _: False, lambda: None)
+    gate.wait(2, lambda _: True, lambda: None)
+    assert gate.periods == {} and len(reports) == 1
+    gate, _ = barrier([("a", 7, 5)])
+    gate.wait(7, lambda _: False, lambda: None)
+    gate.drain()
+    assert gate.periods == {"a": 5}
+
+
+def test_ticks_of_an_earlier_simulation_do_not_count_as_done() -> None:
+    gate, reports = barrier([("a", 9000, 1), ("a", 9000, 1)], ("a",))
+    gate.assemble()
+    assert gate.periods == {"a": 1} and not reports
+    gate.drain()
+    gate.wait(1, lambda _: False, lambda: None)
+    assert reports == ["a left the lockstep: no answer to tick 1 in 0 s"]
+
+
 @pytest.mark.parametrize("hz", [0.3, 30, 1000])
 def test_a_rate_must_divide_the_tick_rate(hz: float) -> None:
     with pytest.raises(ValueError, match="does not divide"):
