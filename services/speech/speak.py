@@ -9,6 +9,7 @@ from common.runtime import StartError
 from services.speech.audio import RATE, Samples, resample
 
 MAX_CHARACTERS = 400
+MAX_DIGITS = 20
 LONG_NUMBER = re.compile(r"\d{7,}")
 
 
@@ -23,7 +24,7 @@ class Voice:
     def speak(self, text: str) -> Samples:
         """16 kHz samples of the spoken text, with a short silence after it."""
         # The voice stumbles over numbers beyond its words for thousands and millions: digit by digit then.
-        words = LONG_NUMBER.sub(lambda found: " ".join(found[0]), text[:MAX_CHARACTERS])
+        words = LONG_NUMBER.sub(lambda found: " ".join(found[0][:MAX_DIGITS]), text[:MAX_CHARACTERS])
         pause = np.zeros(RATE // 5, np.int16)
         try:
             audio = np.asarray(self._voice(words, seed=0), dtype=np.float32)
