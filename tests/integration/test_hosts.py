@@ -145,6 +145,7 @@ def robot(site: Site, link: Link, namespace: str, seed: int) -> Iterator[None]:
     with bus.session(site.connect, namespace, name="speech", patience=60) as ears:
         # Commands are typed: somebody who is there is all of speech that a mission needs.
         kept = ears.liveliness().declare_token(topics.ALIVE_KEY.format(name="speech"))
+        ears.declare_subscriber(topics.SPEECH_GOAL.key, lambda sample: None)
         eventually(lambda: {"sim", *PACED} <= link.alive(), f"{namespace} is alive", 120)
         yield
         kept.undeclare()
