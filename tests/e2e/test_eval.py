@@ -18,6 +18,7 @@ from evaluation.evidence import Want
 from evaluation.faults import Rule
 from tests.support import ROOT, eventually
 
+pytestmark = pytest.mark.timeout(600)
 FETCH = ("brain.pipeline=fetch",)
 ENVIRON = {k: v for k, v in os.environ.items() if not k.startswith("TIDYBOT")}
 
@@ -38,9 +39,10 @@ def untimed(result: Result) -> dict[str, object]:
 
 
 def test_a_seed_repeats_with_all_its_evidence() -> None:
-    first, second = (runner.run(case_of(2, "green can")) for _ in range(2))
-    assert first.outcome == "delivered", first.evidence
-    assert first.evidence["things"][0]["carried"] > 0.5  # type: ignore[index]
+    """To the last digit; the first seconds of a mission are enough to differ in."""
+    first, second = (runner.run(case_of(2, "green can", limit=20.0)) for _ in range(2))
+    assert first.outcome == "timeout"
+    assert float(str(first.evidence["driven"])) > 0.5
     assert untimed(first) == untimed(second)
 
 
@@ -48,6 +50,7 @@ def test_a_gripper_that_does_not_close_is_noticed_and_tried_again() -> None:
     rule = Rule(service="manipulation", key="gripper_command", kind="drop", match={"position": 1.0})
     result = runner.run(case_of(2, "yellow block", rules=(rule,)))
     assert result.delivered, result.evidence
+    assert result.evidence["things"][0]["carried"] > 0.5  # type: ignore[index]
     always = msgspec.structs.replace(rule, count=1000)
     lame = runner.run(case_of(2, "yellow block", rules=(always,)))
     assert (lame.outcome, lame.evidence["claimed"]) == ("reported", "failed")
@@ -91,10 +94,15 @@ def test_ctrl_c_keeps_what_is_done_and_leaves_nothing_behind(tmp_path: Path) -> 
         words, cwd=ROOT, env=ENVIRON, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, start_new_session=True
     )
     family = psutil.Process(process.pid)
-    eventually(lambda: len(family.children(recursive=True)) >= 2, "the workers run")
-    children = family.children(recursive=True)
-    os.killpg(process.pid, signal.SIGINT)
-    text = process.communicate(timeout=60)[0].decode()
+    try:
+        eventually(lambda: len(family.children(recursive=True)) >= 2, "the workers run", patience=240)
+        children = family.children(recursive=True)
+        os.killpg(process.pid, signal.SIGINT)
+        text = process.communicate(timeout=120)[0].decode()
+    finally:
+        if process.poll() is None:
+            os.killpg(process.pid, signal.SIGKILL)
+            process.wait()
     assert process.returncode == 130, text
     assert "interrupted" in text
     assert json.loads(out.read_text())["suite"] == "fetch"
