@@ -1,7 +1,6 @@
 """One goal under way: choose a pose, plan, follow, wait out or go around what blocks, give up in time."""
 
 import math
-from collections import deque
 from collections.abc import Sequence
 
 from common import messages as m
@@ -12,11 +11,11 @@ from services.navigation.costmap import Array, Costmap
 from services.navigation.follow import Carrot, Follower
 from services.navigation.movers import Mover
 from services.navigation.planner import PathPlanner, Point
+from services.navigation.trail import Trail
 
 REPLAN_PERIOD = 1.0
 FEEDBACK_PERIOD = 1.0
 PROGRESS = 0.05
-TRAIL_STEP, TRAIL = 0.05, 40
 DETOUR_PAUSE = 4.0
 SHORTER = 0.85
 OUT_OF_SIGHT = 3.0
@@ -57,7 +56,7 @@ class Drive:
         self._blocked_since: float | None = None
         self._backing_until: float | None = None
         self._back_to: Pose2 = (0.0, 0.0, 0.0)
-        self._trail: deque[Point] = deque(maxlen=TRAIL)
+        self._trail = Trail()
         self._new_path: list[Point] | None = None
         self._feedback_at = -math.inf
         self._detour_at = -math.inf
@@ -110,8 +109,7 @@ class Drive:
             self._begin(pose, now)
         if now > self._deadline:
             raise Ended("failed", "TIMEOUT", f"not there after {now - self._started:.0f} s")
-        if not self._trail or math.dist(self._trail[-1], pose[:2]) > TRAIL_STEP:
-            self._trail.append((pose[0], pose[1]))
+        self._trail.add(pose)
         target = self._go_on(pose, points, now)
         if target is None:
             return None
@@ -262,19 +260,9 @@ class Drive:
         self.doing = "BACKING_OFF"
         self._blocked_since = None
         self._map.doubt(now, OUT_OF_SIGHT)
-        self._back_to = (*self._retreat(pose), pose[2])
+        config = self._config
+        self._back_to = self._trail.retreat(pose, self._map, config.footprint_radius, config.back_off)
         self._backing_until = now + self._config.back_off_time
-
-    def _retreat(self, pose: Pose2) -> Point:
-        """The farthest point of the trail that is not too far and free all the way; else where it stands."""
-        here = best = (pose[0], pose[1])
-        for point in reversed(self._trail):
-            if math.dist(point, here) > self._config.back_off:
-                break
-            if self._map.line_clearance(here, point) < self._config.footprint_radius:
-                break
-            best = point
-        return best
 
     def _back(self, pose: Pose2, now: float) -> m.BaseTarget | None:
         assert self._backing_until is not None
