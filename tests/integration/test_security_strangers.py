@@ -188,6 +188,7 @@ def visit(machine: Machine, label: str, endpoint: str, tls: dict[str, Any]) -> d
     return told
 
 
+@pytest.mark.slow
 def test_a_stranger_on_another_machine_sees_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with network(tmp_path) as net:
         keys = tmp_path / "keys"
