@@ -8,7 +8,7 @@ from services.planner.draft import Draft, Refusal
 from services.planner.forms import Words
 from services.planner.phrases import PLURAL_PRONOUNS, PRONOUNS, Phrase, read
 from services.planner.relations import away, between, holds, is_near, spoken, superlative
-from services.planner.vocabulary import Spot, bare
+from services.planner.vocabulary import DETERMINERS, Spot, bare
 from services.planner.words import listed
 from services.planner.world import Thing
 
@@ -79,7 +79,7 @@ def spot(draft: Draft, words: Words) -> Spot:
 
 def unknown(draft: Draft, words: Words, noun: str) -> str:
     """Why a phrase means nothing, with what there is instead."""
-    if len(noun.split()) > LONGEST_NAME:
+    if len(noun.split()) > LONGEST_NAME or DETERMINERS & set(noun.split()):
         return f"I do not understand {' '.join(words)!r}"
     *front, last = noun.split() or [""]
     known = draft.vocabulary.noun(last)

@@ -54,6 +54,11 @@ FORMS: tuple[tuple[Form, Action], ...] = tuple(
         ),
         ("(approach | look at) <spot>", commands.go),
         (
+            "(put | set | lay) (down <thing> | <thing> down) (in | into | inside | on top of | on | onto | at) <spot>"
+            " | leave <thing> (in | on | at) <spot>",
+            commands.put,
+        ),
+        (
             "put (down | back down) <thing> | put <thing> [back] down | set down <thing> | set <thing> down",
             commands.put_down,
         ),
@@ -64,7 +69,8 @@ FORMS: tuple[tuple[Form, Action], ...] = tuple(
         ),
         ("(throw | toss) <thing> (away | out)", tidying.throw_away),
         (
-            "(throw | toss) (away | out) <thing> | get rid of <thing> | dispose of <thing> | trash <thing>",
+            "(throw | toss) (away | out) <thing> | (get rid | dispose) of <thing>"
+            " | (trash | discard | recycle) <thing>",
             tidying.throw_away,
         ),
         ("(put | tidy | clear | clean) away <thing> | (put | tidy | clear | clean) <thing> away", tidying.put_away),
@@ -93,6 +99,7 @@ FORMS: tuple[tuple[Form, Action], ...] = tuple(
         ("(find | search for | look for | locate | show me) <thing>", commands.find),
         ("(bring | fetch | get | give | hand | pass | collect | gather) <thing>", commands.fetch),
         ("(i | we) (want | need | would like | 'd like) <thing> | i'd like <thing>", commands.fetch),
+        ("(put | place | set) <thing>", commands.refuse("you did not say where to put it")),
         (
             "(open | close | shut | lock | unlock) <words>",
             commands.refuse("I cannot open or close doors, drawers or lids"),

@@ -12,9 +12,10 @@ _LEAD = re.compile(
 )
 _TAIL = re.compile(
     r"(?:\s+(?:please|right now|now|quickly|at once|for me|for us|thanks|thank you|will you|would you|if you can|robot|"
-    r"jarvis|again))+$"
+    r"jarvis|again|and))+$"
 )
-_PART = re.compile(r"\s*[,;.!?]+\s*(?:and\s+)?(?:then\s+)?|\s+(?:and\s+)?(?:then|after that|afterwards)\s+")
+_PART = re.compile(r"\s*[;.!?]+\s*(?:and\s+)?(?:then\s+)?|,?\s+(?:and\s+)?(?:then|after that|afterwards),?\s+")
+_COMMA = re.compile(r"\s*,[\s,]*(?:and\s+)?")
 _IS = re.compile(r"\b(what|where|who|there|that|it)'s\b")
 _SAY = re.compile(r"^(?:say|announce)\s+(.+)$")
 
@@ -36,9 +37,14 @@ def parts(text: str) -> list[str]:
         saying = _SAY.match(_LEAD.sub("", whole))
         cut = None if saying else _PART.search(whole)
         head, whole = (whole, "") if cut is None else (whole[: cut.start()], whole[cut.end() :])
-        if bare := polite(head):
+        if bare := polite(head if saying else _listed(head)):
             found.append(bare)
     return found
+
+
+def _listed(text: str) -> str:
+    """A comma is an "and": `the mug, the can and the ball`; but `no, the red mug` is one answer."""
+    return re.sub(r"^no and ", "no ", _COMMA.sub(" and ", text.strip(" ,")))
 
 
 def polite(text: str) -> str:
