@@ -125,6 +125,7 @@ def drive(
             f"for {contact['seconds']:.2f} s"
         )
     tally.ms += [1000 * s for s in robot.timed.seconds]
+    print(f"  {tally.name}, seed {seed}: {tally.right}/{tally.drives} right, {tally.touches} touches", flush=True)
 
 
 def main() -> int:

@@ -10,7 +10,7 @@ from common import topics
 from common.clock import ManualClock
 from common.geometry import Pose2, compose, inverse, wrap
 from common.memory import MemoryBus, MemoryIo
-from common.scene import load_scene
+from common.scene import Scene, load_scene
 from services.navigation.config import NavigationConfig
 from services.navigation.floorplan import Rectangle, rectangles
 from services.navigation.service import NavigationService
@@ -22,19 +22,17 @@ SPEED, TURN = 0.5, 1.5
 
 def cast(pose: Pose2, boxes: list[Rectangle]) -> np.ndarray:
     """Ranges (360,) to rectangles, an oracle beside the distance field; 11: nothing hit."""
-    ranges = np.full(360, 11.0)
-    for x, y, sx, sy, yaw in boxes:
-        c, s = math.cos(yaw), math.sin(yaw)
-        turn = np.array([[c, -s], [s, c]])
-        start = (np.array(pose[:2]) - (x, y)) @ turn
-        a = ANGLES + pose[2]
-        way = np.stack([np.cos(a), np.sin(a)], 1) @ turn
-        way[np.abs(way) < 1e-9] = 1e-9
-        one, two = (-np.array([sx, sy]) / 2 - start) / way, (np.array([sx, sy]) / 2 - start) / way
-        enters, leaves = np.minimum(one, two).max(axis=1), np.maximum(one, two).min(axis=1)
-        hit = (enters < leaves) & (enters > 0)
-        ranges[hit] = np.minimum(ranges[hit], enters[hit])
-    return ranges
+    x, y, sx, sy, yaw = np.array(boxes).T[:, :, None]
+    c, s = np.cos(yaw), np.sin(yaw)
+    dx, dy, a = pose[0] - x, pose[1] - y, (ANGLES + pose[2])[None, :]
+    start = np.stack([c * dx + s * dy, c * dy - s * dx])
+    way = np.stack([np.cos(a - yaw), np.sin(a - yaw)])
+    way[np.abs(way) < 1e-9] = 1e-9
+    half = np.stack([sx, sy]) / 2
+    one, two = (-half - start) / way, (half - start) / way
+    enters, leaves = np.minimum(one, two).max(axis=0), np.maximum(one, two).min(axis=0)
+    hit = (enters < leaves) & (enters > 0)
+    return np.where(hit, enters, 11.0).min(axis=0)
 
 
 def ends(ranges: np.ndarray) -> np.ndarray:
@@ -45,16 +43,16 @@ def ends(ranges: np.ndarray) -> np.ndarray:
 class Flat:
     """The navigation service in the apartment; `boxes` is what its map does not have, `wheels` its odometry."""
 
-    def __init__(self, boxes: list[Rectangle] | None = None, **parameters: object) -> None:
-        self.boxes = boxes or []
+    def __init__(self, boxes: list[Rectangle] | None = None, scene: Scene = SCENE, **parameters: object) -> None:
+        self.boxes, self.scene = boxes or [], scene
         self.bus, self.clock = MemoryBus(), ManualClock()
         reads, writes = NavigationService.READS, NavigationService.WRITES
-        self.io = MemoryIo(self.bus, "navigation", reads, writes, scene=SCENE, clock=self.clock)
+        self.io = MemoryIo(self.bus, "navigation", reads, writes, scene=scene, clock=self.clock)
         self.service = NavigationService(msgspec.convert(parameters, NavigationConfig), self.io)
         self.feedbacks = self.bus.tap(topics.NAVIGATION_FEEDBACK)
         self._targets = self.bus.tap(topics.BASE_TARGET)
         self._stops = self.bus.tap(topics.CMD_VEL)
-        self._plan = rectangles(SCENE, 0.2)
+        self._plan = rectangles(scene, 0.2)
         self.true: Pose2 = (0.0, 0.0, 0.0)
         self.wheels: Pose2 = (0.0, 0.0, 0.0)
         self._target: m.BaseTarget | None = None

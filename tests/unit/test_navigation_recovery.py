@@ -8,6 +8,7 @@ import pytest
 from common import messages as m
 from common import topics
 from common.memory import MemoryIo
+from common.scene import load_scene
 from services.navigation.avoid import avoid
 from services.navigation.config import Camera, NavigationConfig
 from services.navigation.costmap import Costmap
@@ -137,9 +138,9 @@ class Eyes:
 
     def __init__(self, flat: Flat, label: str, position: tuple[float, float, float] | None) -> None:
         self._flat, self._label, self._position = flat, label, position
-        self._views = Views(SCENE, Camera())
+        self._views = Views(flat.scene, Camera())
         self._still, self._last = 0, flat.true
-        MemoryIo(flat.bus, "perception", (), (topics.WORLD_OBJECTS,), scene=SCENE)
+        MemoryIo(flat.bus, "perception", (), (topics.WORLD_OBJECTS,), scene=flat.scene)
 
     def step(self) -> None:
         flat = self._flat
@@ -176,10 +177,10 @@ def test_an_object_that_nobody_knows_of_is_looked_for_and_stood_before() -> None
 
 
 def test_a_search_without_result_ends_after_every_surface_was_looked_at() -> None:
-    flat = Flat(find_timeout=300.0)
+    flat = Flat(scene=load_scene("minimal"))
     eyes = Eyes(flat, "red mug", None)
     flat.ask("find red mug")
-    status = search(flat, eyes, 290.0)
+    status = search(flat, eyes, 160.0)
     assert (status.status, status.code) == ("failed", "NOT_FOUND")
     share = int(status.detail.split(" show ")[1].split("%")[0])
     assert share >= 90
@@ -195,15 +196,15 @@ def test_a_search_has_a_time_limit() -> None:
 
 
 def test_the_second_search_starts_where_the_first_has_not_looked() -> None:
-    flat = Flat(find_timeout=30.0)
+    flat = Flat(find_timeout=14.0)
     eyes = Eyes(flat, "red mug", None)
     flat.ask("find red mug")
-    search(flat, eyes, 60.0)
+    search(flat, eyes, 30.0)
     looked = flat.service._memory.at > -math.inf
     assert 0.05 < looked.mean() < 0.7
     flat.ask("find blue mug", "a.2")
-    search(flat, eyes, 20.0)
-    again = flat.service._memory.at > 30.5
+    search(flat, eyes, 12.0)
+    again = flat.service._memory.at > 14.5
     assert again.any() and (again & looked).sum() < 0.5 * again.sum()
 
 
