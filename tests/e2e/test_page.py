@@ -5,15 +5,19 @@ import os
 import shutil
 import subprocess
 import sys
+import wave
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
 
+import numpy as np
 import pytest
 
 from cli.link import Link
 from common import bus, topics
+from services.dashboard.config import DashboardConfig
+from services.dashboard.web import Sound, Web
 from tests.support import ROOT, eventually, free_port
 
 playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
@@ -110,6 +114,38 @@ def visitor(browser: Any, link: Link) -> Iterator[Visitor]:
         yield opened
     finally:
         opened.page.close()
+
+
+def test_the_microphone_arrives_as_16_khz_samples(browser: Any) -> None:
+    """Without a robot: what the browser's fake microphone plays against what comes out of the page's server."""
+    with wave.open(str(VOICE)) as file:
+        spoken = np.frombuffer(file.readframes(file.getnframes()), "<i2").astype(float)
+        assert file.getframerate() == 16000
+    web = Web(DashboardConfig(port=0))
+    try:
+        window = Visitor(browser, web.url)
+        button = window.page.locator("#talk")
+        button.dispatch_event("pointerdown")
+        window.wait("document.getElementById('talk').textContent === 'Talking'")
+        pieces: list[bytes] = []
+        while sum(map(len, pieces)) < 2 * 2 * len(spoken):
+            event = web.inbox.get(timeout=60)
+            assert isinstance(event, Sound)
+            pieces.append(event.data)
+        button.dispatch_event("pointerup")
+        while (event := web.inbox.get(timeout=60)) != Sound(b""):
+            assert isinstance(event, Sound)
+        window.page.close()
+    finally:
+        web.close()
+    assert {len(piece) for piece in pieces} == {3200}
+    heard = np.frombuffer(b"".join(pieces), "<i2").astype(float)
+    # The loudness over time must be that of the recording, wherever the player was when the button went down.
+    step = 160
+    loudness = [np.sqrt(np.mean(x[: len(x) // step * step].reshape(-1, step) ** 2, axis=1)) for x in (heard, spoken)]
+    a, b = loudness[0] - loudness[0].mean(), loudness[1] - loudness[1].mean()
+    likeness = np.correlate(a, b, "valid") / (np.linalg.norm(b) * np.sqrt(np.convolve(a**2, np.ones(len(b)), "valid")))
+    assert likeness.max() > 0.8
 
 
 def sim_state(link: Link) -> str:
