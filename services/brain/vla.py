@@ -186,19 +186,12 @@ def approach(ctx: Context, thing: str) -> Behaviour:
 def grasp(ctx: Context, thing: str) -> Behaviour:
     """Approach if needed and grab; after a failed grab look again, drive up again, grab again."""
     near = When("near it", approach(ctx, thing), lambda: ctx.mission.at != thing)
-    closer = Look("look closer", ctx, thing)
     grab = Grab("grab", ctx, lambda: label_of(ctx, thing), lambda: reference(ctx, thing))
-    there = first_of(
-        "at the object",
-        sequence("go and look", near, closer),
-        sequence("search again", find(ctx, thing), approach(ctx, thing), Look("look closer", ctx, thing)),
-    )
-    first = sequence(f"grasp {thing}", there, grab, Settle("settle", ctx))
+    first = sequence(f"grasp {thing}", near, grab, Settle("settle", ctx))
     again = sequence(
         "look and grab again",
         find(ctx, thing),
         approach(ctx, thing),
-        Look("look closer", ctx, thing),
         Grab("grab", ctx, lambda: label_of(ctx, thing), lambda: reference(ctx, thing)),
         Settle("settle", ctx),
     )

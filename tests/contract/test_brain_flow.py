@@ -96,7 +96,7 @@ def scripted(here: Site, joints: bool = True, **parameters: str) -> Iterator[Pee
         keys = (SPEECH, NAVIGATION, MANIPULATION, "brain/state", "system_status")
         subscribers = [session.declare_subscriber(key, peer.receive) for key in keys]
         changes = {f"TIDYBOT__BRAIN__{k.upper()}": v for k, v in parameters.items()}
-        process = here.start("services.brain", TIDYBOT_CLOCK="wall", **changes)
+        process = here.start("services.brain", TIDYBOT_CLOCK="wall", TIDYBOT__BRAIN__PIPELINE="fetch", **changes)
         here.wait_alive(session, "brain")
         if joints:
             peer.put("joint_states", **JOINTS)
@@ -148,7 +148,7 @@ def test_waits_for_joint_states_and_answers_a_late_get(here: Site) -> None:
 
 def test_waits_for_somebody_who_hears_speech_goals(here: Site) -> None:
     with here.session() as session:
-        here.start("services.brain", TIDYBOT_CLOCK="wall")
+        here.start("services.brain", TIDYBOT_CLOCK="wall", TIDYBOT__BRAIN__PIPELINE="fetch")
         here.wait_alive(session, "brain")
         session.put("joint_states", json.dumps(JOINTS))
         eventually(lambda: shown_state(session)["detail"] == "waiting for speech", "the brain waits for speech")

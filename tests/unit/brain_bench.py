@@ -29,7 +29,7 @@ class Bench:
         self.io = MemoryIo(
             self.bus, "brain", BrainService.READS, BrainService.WRITES, scene=scene, lockstep=False, log_level="error"
         )
-        self.brain = BrainService(config or BrainConfig(), self.io)
+        self.brain = BrainService(config or BrainConfig(pipeline="fetch"), self.io)
         if joints:
             self.send(topics.JOINT_STATES, JOINTS)
 
