@@ -190,7 +190,7 @@ def test_an_absent_object_is_reported_after_three_attempts() -> None:
     see(bench, 1, found=False)
     count = 0
     while True:
-        bench.until(lambda: bench.state.state == "ERROR" or len(bench.sent(VIEW)) > count)
+        bench.until(lambda n=count: bench.state.state == "ERROR" or len(bench.sent(VIEW)) > n)  # type: ignore[misc]
         if bench.state.state == "ERROR":
             break
         count += 1
