@@ -56,7 +56,8 @@ class MoonshineRecogniser:
     """Moonshine under the grammar."""
 
     def __init__(self, config: SpeechConfig, grammars: dict[Scope, Grammar]) -> None:
-        from services.speech.moonshine import Moonshine, Vocabulary
+        from services.speech.moonshine import Moonshine
+        from services.speech.tokens import Vocabulary
 
         self._config = config
         self._model = Moonshine(config.beam)

@@ -2,6 +2,7 @@
 
 from collections import deque
 from dataclasses import replace
+from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
@@ -41,6 +42,8 @@ class SpeechService:
             self._recording: Samples | None = read_wav(Path(config.wav)) if config.wav else None
         except (GrammarError, AudioError) as error:
             raise StartError(f"speech: {error}") from None
+        if config.wake_word and not find_spec("pyopen_wakeword"):
+            raise StartError("speech.wake_word needs pyopen-wakeword; install it, or set speech.wake_word = false")
         self._microphone = Microphone() if config.microphone else None
         self._attention = Attention(config, io, lambda: Ear(config, io.scene, found))
         self._mouth = Mouth(io, config.speakers, config.synthesis_seconds)

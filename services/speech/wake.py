@@ -17,10 +17,11 @@ class WakeWord:
     def __init__(self) -> None:
         try:
             from pyopen_wakeword import Model, OpenWakeWord, OpenWakeWordFeatures
+
+            self._features = OpenWakeWordFeatures.from_builtin()
+            self._model = OpenWakeWord.from_builtin(Model.HEY_JARVIS)
         except (ImportError, OSError) as error:
             raise StartError(f"speech.wake_word needs pyopen-wakeword and glibc 2.35: {error}") from None
-        self._features = OpenWakeWordFeatures.from_builtin()
-        self._model = OpenWakeWord.from_builtin(Model.HEY_JARVIS)
         self._rest = np.zeros(0, np.int16)
         self.score = 0.0
         self._features.new_audio_samples = MEMORY  # of silence; it would begin with 8 s, of which it uses 2
