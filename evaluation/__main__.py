@@ -96,7 +96,7 @@ def _run(
     with Board(console, len(todo)) as board:
         try:
             with interruptible():
-                for said in evaluate(todo, jobs, run):
+                for said in evaluate(todo, jobs, run, gentle=as_processes):
                     if isinstance(said, Progressed):
                         board.show(said)
                     else:

@@ -3,6 +3,8 @@
 import multiprocessing
 import os
 import signal
+import tempfile
+import traceback
 from collections import deque
 from collections.abc import Callable, Iterator
 from multiprocessing.connection import Connection, wait
@@ -27,18 +29,29 @@ class Progressed(msgspec.Struct):
     state: str
 
 
-def work(run: Run, pipe: "Connection[Any, Any]") -> None:
+def work(run: Run, pipe: "Connection[Any, Any]", scratch: str, gentle: bool) -> None:
     """A worker's life: cases in, results and progress out, until the pipe closes."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    signal.signal(signal.SIGTERM, _leave)
+    signal.signal(signal.SIGTERM, _leave if gentle else _drop)
     os.environ.setdefault("OMP_NUM_THREADS", "1")
+    tempfile.tempdir = scratch
+    status = 1
     try:
         while True:
             case = msgspec.msgpack.decode(pipe.recv_bytes(), type=Case)
             result = run(case, lambda t, state: pipe.send_bytes(msgspec.msgpack.encode((t, state))))
             pipe.send_bytes(msgspec.msgpack.encode(result))
     except (EOFError, BrokenPipeError):
-        return
+        status = 0
+    except Exception:
+        traceback.print_exc()
+    finally:
+        # Not through the interpreter's own end: threads of the speech and picture libraries do not survive it.
+        os._exit(status)
+
+
+def _drop(number: int, frame: object) -> None:
+    os._exit(128 + number)
 
 
 def _leave(number: int, frame: object) -> None:
@@ -48,8 +61,8 @@ def _leave(number: int, frame: object) -> None:
 class Worker:
     """One spawned process and the case it has."""
 
-    def __init__(self, number: int, run: Run) -> None:
-        self.number, self._run = number, run
+    def __init__(self, number: int, run: Run, scratch: str, gentle: bool) -> None:
+        self.number, self._work = number, (run, scratch, gentle)
         self.case: Case | None = None
         self.started, self.begun = 0.0, False
         self._start()
@@ -57,7 +70,8 @@ class Worker:
     def _start(self) -> None:
         context = multiprocessing.get_context("spawn")
         self.pipe, theirs = context.Pipe()
-        self._process = context.Process(target=work, args=(self._run, theirs), daemon=False)
+        run, scratch, gentle = self._work
+        self._process = context.Process(target=work, args=(run, theirs, scratch, gentle), daemon=False)
         self._process.start()
         theirs.close()
 
@@ -101,14 +115,26 @@ class Worker:
             self._process.join()
 
 
-def evaluate(cases: list[Case], jobs: int, run: Run, limit: float = WALL_LIMIT) -> Iterator[Result | Progressed]:
-    """Results as they come, and progress between them. `limit` is wall time for one case [s]."""
+def evaluate(
+    cases: list[Case], jobs: int, run: Run, limit: float = WALL_LIMIT, gentle: bool = False
+) -> Iterator[Result | Progressed]:
+    """Results as they come, and progress between them.
+
+    `limit` is wall time for one case [s]. `gentle`: a worker that must end has processes of its own to end first.
+    """
+    with tempfile.TemporaryDirectory(prefix="tidybot-eval-") as scratch:
+        yield from _evaluate(cases, jobs, run, limit, scratch, gentle)
+
+
+def _evaluate(
+    cases: list[Case], jobs: int, run: Run, limit: float, scratch: str, gentle: bool
+) -> Iterator[Result | Progressed]:
     waiting = deque(cases)
-    workers = [Worker(n, run) for n in range(max(1, min(jobs, len(cases))))]
+    workers: list[Worker] = []
     try:
-        for worker in workers:
-            if waiting:
-                worker.give(waiting.popleft())
+        for number in range(min(max(jobs, 1), len(cases))):
+            workers.append(Worker(number, run, scratch, gentle))
+            workers[-1].give(waiting.popleft())
         while busy := [w for w in workers if w.case is not None]:
             ready = set(wait([w.pipe for w in busy], timeout=1.0))
             for worker in busy:

@@ -55,7 +55,7 @@ class Ended(StopSignal):
 def run(case: Case, progress: Progress = lambda t, state: None) -> Result:
     """Run and judge one case. A process that does not come up ends it as `crashed`."""
     began = monotonic()
-    directory = Path(tempfile.mkdtemp(prefix="tidybot-eval-"))
+    directory = Path(tempfile.mkdtemp(prefix="case-"))
     supervision = Supervision(directory / "run")
     try:
         if case.strikes:

@@ -49,7 +49,7 @@ class Director:
 def run(case: Case, progress: Progress = lambda t, state: None) -> Result:
     """Run and judge one case. What a service raises ends the case as `crashed`."""
     began = monotonic()
-    with tempfile.TemporaryDirectory(prefix="tidybot-eval-") as state_dir:
+    with tempfile.TemporaryDirectory(prefix="case-") as state_dir:
         return _run(case, progress, began, Path(state_dir) if case.strikes else None)
 
 
