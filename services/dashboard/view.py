@@ -129,7 +129,7 @@ class View:
 
     # --- what it senses and believes
     def scan(self, scan: m.LaserScan, base: Pose2, visible: bool) -> None:
-        ranges = np.frombuffer(scan.ranges, "<f4").astype(np.float64)
+        ranges = np.frombuffer(scan.ranges[: len(scan.ranges) // 4 * 4], "<f4").astype(np.float64)
         angles = scan.angle_min + np.arange(len(ranges)) * scan.angle_increment + base[2]
         seen = np.isfinite(ranges) & (ranges > scan.range_min) & (ranges < scan.range_max)
         cos, sin = np.cos(base[2]), np.sin(base[2])

@@ -85,8 +85,10 @@ class ManipulationService:
                 self._io.count_drop(topics.ROBOT_DESCRIPTION.key, f"not a robot with our joints: {error}")
 
     def _read_joints(self, states: m.JointStates) -> None:
+        if len(states.position) < len(states.name):
+            return
         if self._indices is None or self._indices[0] != states.name:
-            if not {*ARM, "gripper"} <= set(states.name) or len(states.position) < len(states.name):
+            if not {*ARM, "gripper"} <= set(states.name):
                 return
             order = {name: i for i, name in enumerate(states.name)}
             self._indices = states.name, [order[j] for j in ARM], order["gripper"]
