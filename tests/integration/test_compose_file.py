@@ -176,7 +176,7 @@ def test_a_mission_survives_a_killed_and_a_restarted_navigation(
         containers.start(name)
     with bus.session(containers.connect, patience=60) as session:
         link = Link(session, containers.connect)
-        eventually(lambda: set(NODES) <= link.alive(), f"all of {NODES} are alive")
+        eventually(lambda: set(NODES) <= link.alive(), f"all of {NODES} are alive", 120)
         disturb = {
             "NAVIGATING": lambda: containers.kill("navigation"),
             "RETURNING": lambda: containers.restart("navigation"),
