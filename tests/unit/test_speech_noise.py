@@ -1,0 +1,89 @@
+"""Taking out noise, weighing sentences, and reading the recogniser's file; without any network."""
+
+import numpy as np
+
+from common import config
+from services.speech.config import SpeechConfig
+from services.speech.denoise import noise_power, noise_ratio, reduce_noise
+from services.speech.recognise import confidence_of, cost
+from services.speech.unpack import _field, _fields, with_named_graphs
+from tests.support import ROOT
+
+CONFIG = config.load("speech", SpeechConfig, ROOT / "config", {})
+RATE = 16000
+SPAN = (8000, 24000)
+
+
+def syllables() -> np.ndarray:
+    """Half a second of silence, a second of tone bursts, half a second of silence."""
+    t = np.arange(2 * RATE) / RATE
+    bursts = np.sin(2 * np.pi * 440 * t) * (np.sin(2 * np.pi * 4 * t) > 0)
+    return np.where((t > 0.5) & (t < 1.5), 0.3 * bursts, 0.0).astype(np.float32)
+
+
+def ratio(sound: np.ndarray, clean: np.ndarray) -> float:
+    gain = float(np.dot(sound, clean) / np.dot(clean, clean))
+    return 10 * float(np.log10(np.sum((gain * clean) ** 2) / np.sum((sound - gain * clean) ** 2)))
+
+
+def test_noise_is_reduced_and_what_is_clean_stays() -> None:
+    clean = syllables()
+    noise = np.random.default_rng(0).normal(0, 0.05, len(clean)).astype(np.float32)
+    assert ratio(reduce_noise(clean + noise, SPAN), clean) > ratio(clean + noise, clean) + 5
+    assert ratio(reduce_noise(clean, SPAN), clean) > 30
+    short = clean[:500]
+    assert np.array_equal(reduce_noise(short, (0, 500)), short)
+
+
+def test_the_noise_is_known_from_the_pauses_or_else_from_the_quietest_moments() -> None:
+    rng = np.random.default_rng(1)
+    frames = rng.exponential(3.0, (400, 8))
+    frames[:100] += 1000.0
+    known = noise_power(frames, frames[100:])
+    assert np.allclose(known, 3.0, rtol=0.2)
+    guessed = noise_power(frames, frames[:0])
+    assert np.all((guessed > 2.0) & (guessed < 6.0))
+
+
+def test_speech_to_noise_is_measured() -> None:
+    clean = syllables()
+    noise = np.random.default_rng(2).normal(0, 1, len(clean)).astype(np.float32)
+    for wanted in (0.0, 10.0, 20.0):
+        loud = float(np.mean(clean[SPAN[0] : SPAN[1]] ** 2))
+        mixed = clean + noise * np.float32(np.sqrt(loud * 10 ** (-wanted / 10)))
+        assert abs(noise_ratio(mixed, SPAN) - wanted) < 1.0
+    assert noise_ratio(clean, (0, len(clean))) == float("inf")
+
+
+def test_a_sentence_that_does_not_fit_its_time_costs_more() -> None:
+    long, short = "pick up the blue cup", "yes"
+    assert cost(long, 1.25, CONFIG) < 1.0 < 5.0 < cost(short, 1.25, CONFIG)
+    assert cost(short, 0.5, CONFIG) < 1.0 < 5.0 < cost(long, 0.5, CONFIG)
+
+
+def test_rare_words_cost() -> None:
+    assert cost("go to my kitchen", 1.1, CONFIG) > cost("go to the kitchen", 1.1, CONFIG)
+
+
+def test_confidence_falls_with_the_likelihood_ratio() -> None:
+    scores = [confidence_of(s, CONFIG) for s in (0.5, 0.0, CONFIG.accept_score, CONFIG.ask_score, -5.0)]
+    assert scores[:2] == [1.0, 1.0] and scores[2] == 0.5 and scores[2] > scores[3] > scores[4] > 0.0
+
+
+def test_graphs_in_branches_get_the_name_that_the_format_demands() -> None:
+    inner = _field(1, _field(4, b"Add"))
+    branch = _field(1, b"then_branch") + _field(6, inner)
+    node = _field(4, b"If") + _field(5, branch)
+    other = _field(4, b"Mul") + _field(5, _field(1, b"axis"))
+    model = b"\x08\x0a" + _field(7, _field(1, node) + _field(1, other) + _field(2, b"main"))
+    named = with_named_graphs(model)
+    graph = {n: v for n, _, v in _fields(named)}[7]
+    assert graph is not None
+    nodes = [v for n, _, v in _fields(graph) if n == 1]
+    assert nodes[1] == other and nodes[0] != node
+    assert nodes[0] is not None
+    attribute = next(v for n, _, v in _fields(nodes[0]) if n == 5)
+    assert attribute is not None
+    body = next(v for n, _, v in _fields(attribute) if n == 6)
+    assert body is not None and [n for n, _, _ in _fields(body)] == [1, 2]
+    assert named[:2] == model[:2]
