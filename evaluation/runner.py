@@ -19,6 +19,7 @@ from evaluation.verdict import judge
 
 Progress = Callable[[float, str], None]
 REPORT = 2.0
+OURS = tuple(str(Path(__file__).parents[1] / name) for name in ("common", "services", "evaluation"))
 
 
 class Director:
@@ -88,7 +89,7 @@ def _until_over(stack: Stack, examiner: Examiner, case: Case, progress: Progress
 
 def _words(error: Exception) -> str:
     """What was raised, and where in our code."""
-    frames = [f for f in traceback.extract_tb(error.__traceback__) if "site-packages" not in f.filename]
+    frames = [f for f in traceback.extract_tb(error.__traceback__) if f.filename.startswith(OURS)]
     where = f" at {Path(frames[-1].filename).name}:{frames[-1].lineno}" if frames else ""
     return f"{type(error).__name__}: {error}{where}"
 

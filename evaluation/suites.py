@@ -1,27 +1,28 @@
 """The suites: a seed in, a scenario out. Case i of a run has the seed `seed + i` and can be repeated alone."""
 
-import tomllib
 from collections.abc import Callable
-from functools import cache
-from pathlib import Path
-from typing import Literal
 
 import msgspec
-import numpy as np
 
 from common.config import config_dir, load
-from common.scene import ObjectSpec, Receptacle, Scene, load_scene
-from evaluation.case import Case, Line, Strike
+from evaluation.blocks import (
+    VLA,
+    WORDINGS,
+    destination,
+    fetch_case,
+    flat,
+    hallucinated,
+    misheard_as,
+    other,
+    pick,
+    random,
+)
+from evaluation.case import Case, Line
+from evaluation.chaos import CHAOS_SERVICES, CHAOS_STATES, chaos
 from evaluation.evidence import Want
-from evaluation.faults import Kind, Rule
+from evaluation.faults import Rule
 from services.brain.config import BrainConfig
-from services.sim.layout import place_objects
 
-VLA = "brain.pipeline=vla"
-WORDINGS = (
-    "bring me the {}", "fetch me the {}", "get me the {}", "give me the {}", "hand me the {}", "bring the {} to me",
-    "please bring me the {}", "get me the {} please",
-)  # fmt: skip
 SHELVES = ("kitchen table", "counter", "bookshelf", "dresser", "bedside table", "study shelf", "desk")
 CRATE = 'sim.obstacles=[{name="crate",kind="box",size=[0.5,0.9,0.9],position=[2.5,-0.75]}]'  # in the kitchen's door
 WALKER = (
@@ -36,11 +37,6 @@ IMPOSSIBLE: tuple[list[dict[str, str]], ...] = (
 FAULTS = ("speech", "planning", "perception", "navigation", "grasp")
 NAMED = ("fetch", "misheard", "hallucination", "not_in_view", "blocked_path")
 DIALOGUES = ("misheard", "correction", "rejection", "low_confidence", "stop", "cancel", "silence")
-CHAOS_STATES = ("CONFIRMING", "PLANNING", "GROUNDING", "NAVIGATING", "GRABBING", "RETURNING", "RELEASING")
-HARM: tuple[Kind | Literal["kill", "hang", "jump"], ...] = (
-    "kill", "hang", "drop", "duplicate", "delay", "reorder", "jump",
-)  # fmt: skip
-CHAOS_SERVICES = ("speech", "planner", "perception", "camera", "navigation", "manipulation", "brain")
 
 Make = Callable[[int], Case]
 
@@ -63,79 +59,29 @@ def _wakes(settings: tuple[str, ...]) -> bool:
     return (chosen[-1] if chosen else load("brain", BrainConfig, config_dir(), {}).pipeline) == "vla"
 
 
-# --- building blocks
-@cache
-def _flat() -> Scene:
-    """The shipped apartment, read once."""
-    return load_scene("apartment")
-
-
-def _random(seed: int, suite: int) -> np.random.Generator:
-    return np.random.default_rng([seed, suite])
-
-
-def _pick(rng: np.random.Generator, scene: Scene, seed: int, room: str = "", not_room: str = "") -> ObjectSpec:
-    """A random object of the seed's layout, in or out of a room."""
-    placed = place_objects(scene, seed)
-
-    def where(p: tuple[float, float, float]) -> str:
-        found = scene.room_at(p[0], p[1])
-        return found.name if found else ""
-
-    fitting = [p.spec for p in placed if (not room or where(p.position) == room) and where(p.position) != not_room]
-    pool = fitting or [p.spec for p in placed]
-    return pool[int(rng.integers(len(pool)))]
-
-
-def _other(rng: np.random.Generator, scene: Scene, spec: ObjectSpec) -> ObjectSpec:
-    """What the object can be mistaken for: one of the same kind or colour."""
-    alike = [o for o in scene.objects if o is not spec and (o.kind == spec.kind or o.colour == spec.colour)]
-    pool = alike or [o for o in scene.objects if o is not spec]
-    return pool[int(rng.integers(len(pool)))]
-
-
-def _fetch(suite: str, seed: int, spec: ObjectSpec, scene: Scene, wording: str = WORDINGS[0]) -> Case:
-    command = wording.format(spec.name)
-    return Case(
-        suite=suite, seed=seed, name="fetch", command=command, lines=(Line(command),), thing=spec.name,
-        wants=(Want(spec.name, (scene.delivery,)),),
-    )  # fmt: skip
-
-
-def misheard_as(command: str, confidence: float = 0.85) -> tuple[Rule, ...]:
-    """What recognition makes of the person's first command."""
-    said = {"text": command, "confidence": confidence, "confirmed": False}
-    return (Rule(service="speech", key="voice_command", kind="edit", fields=said),)
-
-
-def hallucinated(plan: list[dict[str, str]]) -> tuple[Rule, ...]:
-    return (Rule(service="planner", key="action_plan", kind="edit", fields={"steps": plan, "source": "fault"}),)
-
-
-# --- suites
 def fetch(seed: int) -> Case:
     """A random object, a random wording, typed or spoken."""
-    scene, rng = _flat(), _random(seed, 1)
-    spec = _pick(rng, scene, seed)
-    case = _fetch("fetch", seed, spec, scene, WORDINGS[int(rng.integers(len(WORDINGS)))])
+    scene, rng = flat(), random(seed, 1)
+    spec = pick(rng, scene, seed)
+    case = fetch_case("fetch", seed, spec, scene, WORDINGS[int(rng.integers(len(WORDINGS)))])
     case.spoken = bool(rng.random() < 0.5)
     return case
 
 
 def named(seed: int) -> Case:
     """The contract's five scenarios, by the seed."""
-    scene, rng = _flat(), _random(seed, 2)
+    scene, rng = flat(), random(seed, 2)
     name = NAMED[seed % len(NAMED)]
     if name == "not_in_view":
-        spec = _pick(rng, scene, seed, not_room="living room")
+        spec = pick(rng, scene, seed, not_room="living room")
     elif name == "blocked_path":
-        spec = _pick(rng, scene, seed, room="kitchen")
+        spec = pick(rng, scene, seed, room="kitchen")
     else:
-        spec = _pick(rng, scene, seed)
-    case = _fetch("seed", seed, spec, scene)
+        spec = pick(rng, scene, seed)
+    case = fetch_case("seed", seed, spec, scene)
     case.name, case.settings, case.spoken = name, (VLA,), True
     if name == "misheard":
-        case.fault, case.rules = "speech", misheard_as(f"bring me the {_other(rng, scene, spec).name}")
+        case.fault, case.rules = "speech", misheard_as(f"bring me the {other(rng, scene, spec).name}")
     elif name == "hallucination":
         case.fault, case.rules = "planning", hallucinated(IMPOSSIBLE[seed % len(IMPOSSIBLE)])
     elif name == "blocked_path":
@@ -145,15 +91,15 @@ def named(seed: int) -> Case:
 
 def faults(seed: int) -> Case:
     """One of the failure kinds, by the seed; recovering and honestly reporting both count."""
-    scene, rng = _flat(), _random(seed, 3)
+    scene, rng = flat(), random(seed, 3)
     fault = FAULTS[seed % len(FAULTS)]
-    spec = _pick(rng, scene, seed, room="kitchen" if fault == "navigation" else "")
-    case = _fetch("faults", seed, spec, scene)
+    spec = pick(rng, scene, seed, room="kitchen" if fault == "navigation" else "")
+    case = fetch_case("faults", seed, spec, scene)
     case.name = case.fault = fault
     case.settings, case.honest = (VLA,), True
     if fault == "speech":
         case.spoken = True
-        case.rules = misheard_as(f"bring me the {_other(rng, scene, spec).name}", float(rng.uniform(0.5, 0.95)))
+        case.rules = misheard_as(f"bring me the {other(rng, scene, spec).name}", float(rng.uniform(0.5, 0.95)))
     elif fault == "planning":
         case.rules = hallucinated(IMPOSSIBLE[int(rng.integers(len(IMPOSSIBLE)))])
         if rng.random() < 0.3:
@@ -170,11 +116,11 @@ def faults(seed: int) -> Case:
 
 def dialogue(seed: int) -> Case:
     """What can happen between the command and the first movement, and a stop after it."""
-    scene, rng = _flat(), _random(seed, 4)
+    scene, rng = flat(), random(seed, 4)
     name = DIALOGUES[seed % len(DIALOGUES)]
-    spec = _pick(rng, scene, seed)
-    wrong = f"bring me the {_other(rng, scene, spec).name}"
-    case = _fetch("dialogue", seed, spec, scene)
+    spec = pick(rng, scene, seed)
+    wrong = f"bring me the {other(rng, scene, spec).name}"
+    case = fetch_case("dialogue", seed, spec, scene)
     case.name, case.settings, case.spoken = name, (VLA,), True
     if name == "misheard":
         case.rules = misheard_as(wrong)
@@ -194,7 +140,7 @@ def dialogue(seed: int) -> Case:
 
 def tidy(seed: int) -> Case:
     """Four objects from the living table to where the rules of `config/planner.toml` want them."""
-    scene, rng = _flat(), _random(seed, 5)
+    scene, rng = flat(), random(seed, 5)
     table = "living table"
     order = [scene.objects[int(i)] for i in rng.permutation(len(scene.objects))]
     chosen = [o for o in order if destination(o, scene) not in ("", table)][:4]
@@ -209,60 +155,12 @@ def tidy(seed: int) -> Case:
     )  # fmt: skip
 
 
-def destination(spec: ObjectSpec, scene: Scene, path: Path | None = None) -> str:
-    """Where an object belongs by the tidying rules: the first receptacle of the first rule; "" when none fits."""
-    for rule in _rules(path or config_dir() / "planner.toml"):
-        if spec.kind not in rule.get("kinds", [spec.kind]) or spec.colour not in rule.get("colours", [spec.colour]):
-            continue
-        for name in rule["to"]:
-            if found := _receptacle(name, scene):
-                return found.name
-    return ""
-
-
-@cache
-def _rules(path: Path) -> list[dict[str, list[str]]]:
-    found: list[dict[str, list[str]]] = tomllib.loads(path.read_text(encoding="utf-8")).get("tidy", [])
-    return found
-
-
-def _receptacle(name: str, scene: Scene) -> Receptacle | None:
-    return scene.receptacle(name) or next((r for r in scene.receptacles if r.kind == name), None)
-
-
-def chaos(seed: int) -> Case:
-    """Service, state and harm in turn: the first 49 seeds kill each service in each state, the next 49 hang it."""
-    scene, rng = _flat(), _random(seed, 6)
-    case = _fetch("chaos", seed, _pick(rng, scene, seed), scene)
-    service = CHAOS_SERVICES[seed % len(CHAOS_SERVICES)]
-    state = CHAOS_STATES[seed // len(CHAOS_SERVICES) % len(CHAOS_STATES)]
-    how = HARM[seed // (len(CHAOS_SERVICES) * len(CHAOS_STATES)) % len(HARM)]
-    case.name, case.fault, case.honest, case.settings = f"{service} {state}", how, True, (VLA,)
-    case.spoken = True
-    if how == "kill" or how == "hang" or how == "jump":
-        hang, jump = (3.0 if how == "hang" else 0.0), (2.0 if how == "jump" else 0.0)
-        case.strikes = (Strike(service, state, hang, jump),)
-    else:
-        keys = KEYS[service]
-        case.rules = (
-            Rule(
-                service=service, key=keys[int(rng.integers(len(keys)))], kind=how, skip=int(rng.integers(3)),
-                count=2, seconds=float(rng.uniform(0.5, 3.0)),
-            ),
-        )  # fmt: skip
-    return case
-
-
-KEYS = {
-    "speech": ("voice_command", "brain/speech_result", "speech/status"),
-    "planner": ("action_plan",),
-    "perception": ("object_pose", "world/objects"),
-    "camera": ("camera/head/rgbd", "camera/wrist/rgbd"),
-    "navigation": ("brain/navigation_status", "base/target_pose", "navigation_feedback"),
-    "manipulation": ("brain/manipulation_status", "gripper_command"),
-    "brain": ("brain/navigation_goal", "brain/manipulation_goal", "plan_request", "object_query"),
-}
 SUITES: dict[str, Make] = {
     "fetch": fetch, "seed": named, "tidy": tidy, "faults": faults, "dialogue": dialogue, "chaos": chaos,
 }  # fmt: skip
-DEFAULT_SCENARIOS = {"seed": len(NAMED), "dialogue": len(DIALOGUES), "faults": len(FAULTS) * 2, "chaos": 49}
+DEFAULT_SCENARIOS = {
+    "seed": len(NAMED),
+    "dialogue": len(DIALOGUES),
+    "faults": len(FAULTS) * 2,
+    "chaos": len(CHAOS_SERVICES) * len(CHAOS_STATES),
+}

@@ -7,11 +7,13 @@ from common import topics
 from common.codec import decode, encode
 from common.config import config_dir, load, overrides
 from common.scene import load_scene
+from evaluation.blocks import destination
 from evaluation.case import Case
+from evaluation.chaos import CHAOS_SERVICES
 from evaluation.faults import Rule
 from evaluation.scene_file import to_toml
 from evaluation.stack import service_class
-from evaluation.suites import CHAOS_SERVICES, DIALOGUES, FAULTS, NAMED, SUITES, cases, destination
+from evaluation.suites import DIALOGUES, FAULTS, NAMED, SUITES, cases
 from services.sim.layout import place_objects
 
 SCENE = load_scene("apartment")
