@@ -50,7 +50,7 @@ def drive(seed: int, seconds: float, settings: tuple[str, ...]) -> tuple[list[Er
     goals += [r.name for r in robot.scene.receptacles if r.approach and r.name != robot.scene.delivery]
     estimate, still, wheels = Errors("navigation/pose"), Errors("the same, at rest at goals"), Errors("base/odom")
     travelled, failed, last = 0.0, 0, robot.base()
-    status = robot.status()
+    status, told = robot.status(), 0.0
     while robot.now < seconds:
         if status.status != "navigating":
             failed += status.status == "failed"
@@ -63,6 +63,11 @@ def drive(seed: int, seconds: float, settings: tuple[str, ...]) -> tuple[list[Er
         wheels.add(robot.odometry(), true)
         if status.status == "arrived":
             still.add(pose, true)
+        if robot.now - told >= 60.0:
+            told = robot.now
+            print(
+                f"  {told:.0f} s: {estimate.rms()[0] * 100:.2f} cm, wheels {wheels.rms()[0] * 100:.1f} cm", flush=True
+            )
     print(f"seed {seed}: {robot.number} goals, {failed} failed, {travelled:.0f} m in {robot.now:.0f} s")
     return [estimate, still, wheels], robot
 
