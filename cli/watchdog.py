@@ -20,7 +20,8 @@ from common.clock import monotonic, unix_time
 from common.keys import OFF
 from common.process import StopSignal, die_with_parent
 
-FROZEN, STUCK = 2.0, 15.0
+# In lockstep a step may wait for slow work, such as the first picture on a busy machine.
+FROZEN, STUCK = 2.0, 60.0
 LOOK = 0.25
 
 
