@@ -61,12 +61,13 @@ class PlannerService:
 
     # --- the language model
     def _take(self, request: m.PlanRequest, now: float) -> None:
-        """Only the newest request counts: a sender has one outstanding."""
+        """Only the newest request counts: a sender has one outstanding. A model is asked once enough was seen."""
         rejected, world = self._rejections(request), self._world(request, now)
-        if self._llm is None:
-            self._publish(request, self._by_grammar(request, world, rejected))
-            return
         self.close()
+        plan = self._by_grammar(request, world, rejected)
+        if self._llm is None or plan.again:
+            self._publish(request, plan)
+            return
         call, seconds = Call(), self._config.llm_seconds
         job = self._io.submit(self._llm.plan, request.command, world, rejected, call, seconds=seconds)
         self._pending = Pending(request, world, rejected, now + self._config.llm_timeout + GRACE, call, job)

@@ -93,6 +93,8 @@ def believed(
     held = _canonical(told.held, scene)
     things: list[Thing] = []
     for o in objects:
+        if not o.label:
+            continue
         spec = named.get(_canonical(o.label, scene))
         in_hand = bool(held) and _canonical(o.label, scene) == held and not any(t.held for t in things)
         things.append(

@@ -305,6 +305,16 @@ def test_the_end_of_the_process_does_not_wait_for_an_answer(endpoint: Endpoint) 
         pending.job._future.result(timeout=10)
 
 
+def test_a_look_comes_before_the_model_is_asked(endpoint: Endpoint) -> None:
+    endpoint.answers = [plans(*MUG)]
+    node = Node(endpoint)
+    node.request("tidy up the table", done=[])
+    look = node.wait()
+    assert look.again and look.steps[0].target == "living table" and not endpoint.requests
+    node.request("tidy up the table", "m.2", done=look.steps)
+    assert node.wait(2).source == "llm"
+
+
 def test_the_same_request_twice_is_asked_once(endpoint: Endpoint) -> None:
     endpoint.answers = [plans(*MUG)]
     node = Node(endpoint)
