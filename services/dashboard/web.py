@@ -31,7 +31,7 @@ PAGE = Path(__file__).parent / "page"
 VIEW = Path(viser.__file__).parent / "client" / "build" / "index.html"
 KEY_HEADER = "X-Tidybot-Page"
 SEND_QUEUE = 100
-PATIENCE = 10.0
+OPENING, CLOSING = 60.0, 2.0
 MAX_CHUNK = 64 * 1024
 VIEW_LIMIT = 8 * 2**20
 # The view under the other name of this machine is another site to a browser, which draws it in another process: however
@@ -98,7 +98,7 @@ class Web:
         self._view_page = VIEW.read_text(encoding="utf-8").replace(
             "<head>", '<head><script src="/page/keys.js"></script>', 1
         )
-        self._runner = self._in_loop(self._start())
+        self._runner = self._in_loop(self._start(), OPENING)
 
     # --- the service's side; any thread
     def say(self, kind: str, message: object) -> None:
@@ -117,12 +117,12 @@ class Web:
 
     def close(self) -> None:
         with contextlib.suppress(TimeoutError):
-            self._in_loop(self._end())
+            self._in_loop(self._end(), CLOSING)
         self.viser.stop()
 
-    def _in_loop(self, work: Any) -> Any:
+    def _in_loop(self, work: Any, limit: float) -> Any:
         future: Future[Any] = asyncio.run_coroutine_threadsafe(work, self._loop)
-        return future.result(PATIENCE)
+        return future.result(limit)
 
     # --- the loop's side
     async def _start(self) -> web.AppRunner:

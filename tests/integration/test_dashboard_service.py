@@ -1,0 +1,172 @@
+"""The page's service on a memory bus with a real web server: what is drawn, and what is asked of the cameras."""
+
+from collections.abc import Iterator
+from math import pi
+
+import numpy as np
+import pytest
+
+from common import codec, topics
+from common import messages as m
+from common.memory import MemoryBus, MemoryIo
+from common.scene import load_scene
+from services.dashboard.config import DashboardConfig
+from services.dashboard.service import HEALTH, DashboardService
+from services.dashboard.web import Click, Web
+from services.sim.physics import Physics
+from services.sim.robot import HOME_ARM, JOINT_NAMES
+from tests.support import eventually
+
+MJCF = Physics(load_scene("minimal"), 0, ()).mjcf
+MUG = m.WorldObject(
+    label="red mug", kind="mug", colour="red", position=(2.0, 0.1, 0.65), size=(0.07, 0.07, 0.1), seen_at=9.0, id="1"
+)
+
+
+class Page:
+    """The service and its clock."""
+
+    def __init__(self) -> None:
+        self.bus = MemoryBus()
+        reads, writes = DashboardService.READS, DashboardService.WRITES
+        scene = load_scene("minimal")
+        self.io = MemoryIo(self.bus, "dashboard", reads, writes, scene=scene, lockstep=False)
+        self.service = DashboardService(DashboardConfig(port=0), self.io)
+        self.asked = self.bus.tap(topics.CAMERA_REQUEST)
+        self.now = 100.0
+
+    def step(self, seconds: float = 0.03) -> None:
+        self.now += seconds
+        self.io.begin(None, self.now)
+        self.service.step(self.now)
+
+    def joints(self, t: float, width: float = 0.085, **moved: float) -> None:
+        values = dict(zip(JOINT_NAMES, (0.0, 0.0, 0.0, *HOME_ARM, width), strict=True)) | moved
+        zeros = [0.0] * len(values)
+        self.bus.send(
+            topics.JOINT_STATES,
+            m.JointStates(t=t, name=list(values), position=list(values.values()), velocity=zeros, effort=zeros),
+        )
+
+    def node(self, ending: str) -> object:
+        nodes = self.service._view._nodes
+        return next(node for path, node in nodes.items() if path.endswith(ending))
+
+
+@pytest.fixture
+def page() -> Iterator[Page]:
+    opened = Page()
+    try:
+        yield opened
+    finally:
+        opened.service.close()
+
+
+@pytest.fixture
+def drawn(page: Page, monkeypatch: pytest.MonkeyPatch) -> Page:
+    """With somebody who looks, and the model on the screen."""
+    monkeypatch.setattr(Web, "watched", True)
+    page.bus.send(topics.SIM_MODEL, m.SimModel(scene="minimal", seed=0, epoch="e", mjcf=MJCF))
+    page.joints(10.0)
+
+    def there() -> bool:
+        page.step()
+        return bool(page.service._view.drawing.links)
+
+    eventually(there, "the model is drawn")
+    return page
+
+
+def test_the_robot_is_drawn_where_it_believes_to_be(drawn: Page) -> None:
+    base = drawn.node("/base")
+    drawn.joints(10.1, base_x=1.0)
+    drawn.step()
+    assert base.position[:2] == pytest.approx((1.0, 0.0))  # type: ignore[attr-defined]
+    drawn.bus.send(topics.POSE, m.PoseEstimate(t=10.2, x=0.5, y=-0.4, theta=pi / 2))
+    drawn.step()
+    assert base.position[:2] == pytest.approx((0.5, -0.4))  # type: ignore[attr-defined]
+    assert np.abs(base.wxyz) == pytest.approx([np.sqrt(0.5), 0, 0, np.sqrt(0.5)])  # type: ignore[attr-defined]
+
+
+def test_the_fingers_are_as_far_apart_as_the_gripper_says(drawn: Page) -> None:
+    for width in (0.085, 0.02, 0.0):
+        drawn.joints(11.0 + width, width=width)
+        drawn.step(0.04)
+        left, right = drawn.node("/left_finger"), drawn.node("/right_finger")
+        apart = left.position[1] - right.position[1]  # type: ignore[attr-defined]
+        assert apart == pytest.approx(width, abs=1e-3)
+
+
+def test_objects_come_go_and_turn_into_ghosts(drawn: Page) -> None:
+    def show(*objects: m.WorldObject, t: float = 10.0) -> None:
+        drawn.bus.send(topics.WORLD_OBJECTS, m.WorldObjects(t=t, objects=list(objects)))
+        drawn.joints(t)
+        drawn.step(0.04)
+
+    view = drawn.service._view
+    show(MUG, t=10.0)
+    solid = view._objects["1"][0]
+    assert solid.opacity is None
+    assert tuple(solid.position) == pytest.approx(MUG.position)
+    show(MUG, t=60.0)
+    assert view._objects["1"][0].opacity is not None
+    show(t=61.0)
+    assert view._objects == {}
+
+
+def test_cameras_are_asked_only_while_somebody_looks(page: Page, monkeypatch: pytest.MonkeyPatch) -> None:
+    for _ in range(100):
+        page.step()
+    assert page.asked == []
+    monkeypatch.setattr(Web, "watched", True)
+    for _ in range(100):
+        page.step()
+    requests = [codec.decode(topics.CAMERA_REQUEST, payload) for payload in page.asked]
+    assert {r.camera for r in requests} == {"head"}, "the wrist's pictures are not wanted unless its box is ticked"
+    assert 5 <= len(requests) <= 7, "twice a second"
+
+
+def test_a_picture_with_too_few_pixels_is_counted(page: Page, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Web, "watched", True)
+    page.bus.send(
+        topics.HEAD_RGBD,
+        m.Rgbd(
+            t=1.0, id="a", camera="head", width=9999, height=9999, fx=1.0, fy=1.0, cx=1.0, cy=1.0,
+            position=(0.0, 0.0, 0.0), orientation=(1.0, 0.0, 0.0, 0.0), rgb=b"123", depth=b"12",
+        ),
+    )  # fmt: skip
+    page.step()
+    assert page.io.drops[topics.HEAD_RGBD.key] == 1
+
+
+def test_a_model_that_is_none_is_counted_and_a_later_one_is_drawn(drawn: Page) -> None:
+    drawn.bus.send(topics.SIM_MODEL, m.SimModel(scene="x", seed=0, epoch="f", mjcf="<mujoco><nonsense/></mujoco>"))
+
+    def counted() -> bool:
+        drawn.step()
+        return drawn.io.drops[topics.SIM_MODEL.key] > 0
+
+    eventually(counted, "the bad model is counted")
+    assert drawn.service._view.drawing.links, "the old one stays"
+
+
+def test_clicks_obey_the_check_box(drawn: Page) -> None:
+    goals = drawn.bus.tap(topics.NAV_GOAL)
+    drawn.bus.send(topics.BRAIN_STATE, m.BrainState(state="LISTENING"))
+    click = Click(np.array([-1.0, 1.0, 3.0]), np.array([0.0, 0.0, -1.0]))
+    drawn.service._web.inbox.put(click)
+    drawn.step()
+    assert len(goals) == 1
+    drawn.service._panels._clicks.value = False
+    drawn.service._web.inbox.put(click)
+    drawn.step()
+    assert len(goals) == 1
+
+
+def test_services_are_listed_from_their_health(page: Page) -> None:
+    health = m.Health(name="sim", epoch="a", t=0.0, uptime=1.0, hz=100.0, drops=3, rss_mb=80.0, pid=1)
+    page.bus.send(HEALTH, health)
+    page.step(2.0)
+    shown = page.service._panels._texts["services"]
+    assert "sim" in shown
+    assert "gone" in shown, "its token is not there"
