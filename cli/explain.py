@@ -26,7 +26,7 @@ def told(record: dict[str, Any]) -> str:
         state = entry["state"]
         word = WORDS.get(entry["kind"], entry["kind"])
         cause = entry["cause"] if entry["cause"] != state else ""
-        text = f"{word}: {cause}" if word else cause
+        text = f"{word}: {cause}" if word and not cause.startswith(f"{word}: ") else cause
         text = " - ".join(part for part in (text, entry["evidence"]) if part)
         head = f"{max(0.0, entry['t'] - began):8.1f} s  {shown:11}  "
         lines += textwrap.wrap(text, WIDTH, initial_indent=head, subsequent_indent=" " * len(head)) or [head.rstrip()]

@@ -1,0 +1,45 @@
+"""What `tidybot missions` and `tidybot explain` print of a record."""
+
+from typing import Any
+
+from cli.explain import WIDTH, told
+from cli.missions import listed
+
+RECORD: dict[str, Any] = {
+    "id": "mission-1", "command": "bring me the red mug", "started": 10.0, "outcome": "failed",
+    "reason": "NO_WAY: blocked", "ended": 75.5, "steps": 4, "date": 1.8e9,
+    "entries": [
+        {"t": 10.0, "state": "LISTENING", "cause": "heard: bring me the red mug", "evidence": "confidence 0.93",
+         "kind": "heard"},
+        {"t": 10.1, "state": "NAVIGATING", "cause": "find red mug", "evidence": "", "kind": "state"},
+        {"t": 75.0, "state": "NAVIGATING", "cause": "navigating", "evidence": "blocked " * 40, "kind": "failed"},
+        {"t": 75.5, "state": "ERROR", "cause": "ERROR", "evidence": "NO_WAY", "kind": "state"},
+    ],
+}  # fmt: skip
+
+
+def test_a_timeline_counts_from_the_start_and_names_each_state_once() -> None:
+    lines = told(RECORD).splitlines()
+    assert lines[0].startswith("mission mission-1: 'bring me the red mug', begun 20")
+    assert lines[2] == "     0.0 s  LISTENING    heard: bring me the red mug - confidence 0.93"
+    assert lines[3] == "     0.1 s  NAVIGATING   find red mug"
+    assert lines[4].startswith("    65.0 s               FAILED: navigating - blocked")
+    assert all(len(line) <= WIDTH for line in lines)
+    assert lines[-1] == "failed after 65.5 s, 4 goals: NO_WAY: blocked"
+    assert [line.count("NAVIGATING") for line in lines[2:]].count(1) == 1
+    # A cause that only names the state is not said again.
+    assert any(line.endswith("ERROR        NO_WAY") for line in lines)
+
+
+def test_a_mission_under_way_has_no_end_yet() -> None:
+    record = {**RECORD, "outcome": None, "reason": "", "ended": 0.0, "entries": []}
+    assert told(record).splitlines()[-1] == "under way"
+    assert "under way" in listed([record]) and " s " not in listed([record]).partition("under way")[2].strip()[:3]
+
+
+def test_missions_are_one_line_each() -> None:
+    done = {**RECORD, "id": "mission-22", "outcome": "delivered", "reason": ""}
+    first, second = listed([RECORD, done]).splitlines()
+    assert first.index("failed") == second.index("delivered")
+    assert "65.5 s" in first and first.endswith("bring me the red mug  (NO_WAY: blocked)")
+    assert listed([]) == ""
