@@ -26,7 +26,7 @@ M = TypeVar("M", bound=m.Message)
 R = TypeVar("R")
 UNSTAMPED = -(2**62)
 CAPACITY = 1024
-WORKER_LIMIT = 120.0
+WORKER_LIMIT = 600.0
 _EPSILON = 1e-6
 
 
