@@ -123,7 +123,7 @@ class Node:
         self.bus = MemoryBus()
         reads, writes = PlannerService.READS, PlannerService.WRITES
         self.io = MemoryIo(self.bus, "planner", reads, writes, scene=SCENE, lockstep=lockstep)
-        config = PlannerConfig(**{"backend": "llm", "llm_url": endpoint.url, "llm_timeout": 20.0, **changes})
+        config = PlannerConfig(**{"backend": "llm", "llm_url": endpoint.url, "llm_timeout": 100.0, **changes})
         self.service = PlannerService(config, self.io)
         self.plans = self.bus.tap(topics.ACTION_PLAN)
         self.tick = 0
@@ -143,7 +143,7 @@ class Node:
             self.step()
             return len(self.plans) >= number
 
-        eventually(answered, "a plan")
+        eventually(answered, "a plan", patience=120)
         return msgspec.json.decode(self.plans[number - 1], type=m.ActionPlan)
 
     def ask(self, **fields: Any) -> m.ActionPlan:
