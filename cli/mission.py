@@ -162,7 +162,8 @@ def say(args: argparse.Namespace) -> int:
             text = " ".join(args.text)
             link.send(topics.VOICE_COMMAND, typed(text, "cli"))
             why = talk.closed()
-            mission_id = talk.accepted(ACCEPT)
+            # While it still reports on the last mission it keeps the command for after that.
+            mission_id = talk.accepted(ACCEPT if why else KEPT)
             why = "" if mission_id else why or "the brain started no mission from it"
         record: dict[str, object] = {"accepted": bool(mission_id), "mission_id": mission_id}
         if not mission_id:

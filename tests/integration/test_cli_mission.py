@@ -18,10 +18,10 @@ __all__ = ["run"]
 
 @pytest.mark.timeout(400)
 def test_commands_by_text_and_by_recording_end_as_physics_says(run: Run, tmp_path: Path) -> None:
-    done = run.detached("--without", "camera", "--speed", "max", "--seed", "1")
+    done = run.detached("--without", "dashboard", "--speed", "max", "--seed", "1")
     assert done.returncode == 0, done.stderr
-    listening = run.command("status", "--wait", "LISTENING", "--timeout", "30", "--json")
-    assert listening.returncode == 0 and json.loads(listening.stdout)["mission"] is None
+    waiting = run.command("status", "--wait", "WAITING", "--timeout", "30", "--json")
+    assert waiting.returncode == 0 and json.loads(waiting.stdout)["mission"] is None
     # What is no command starts nothing that succeeds.
     refused = run.command("say", "--json", "--wait", "bring me the moon", timeout=120)
     assert refused.returncode == 1
@@ -33,9 +33,13 @@ def test_commands_by_text_and_by_recording_end_as_physics_says(run: Run, tmp_pat
     for name in ("empty.wav", "short.wav"):
         broken = run.command("say", "--wav", str(tmp_path / name))
         assert broken.returncode == 1 and name in broken.stderr and "Traceback" not in broken.stderr
-    heard = run.command("say", "--wav", VOICE, "--wait", "--json", timeout=300)
-    record = json.loads(heard.stdout)
-    assert heard.returncode == 0, heard
+    assert run.command("status", "--wait", "WAITING", "--timeout", "60").returncode == 0
+    heard = run.command("say", "--wav", VOICE, "--json", timeout=120)
+    assert heard.returncode == 0 and json.loads(heard.stdout)["accepted"], heard
+    assert run.command("status", "--wait", "CONFIRMING", "--timeout", "30").returncode == 0
+    answered = run.command("say", "yes", "--wait", "--json", timeout=300)
+    record = json.loads(answered.stdout)
+    assert answered.returncode == 0, answered
     assert record["accepted"] and record["mission_id"] and record["outcome"] == "delivered"
     truth = json.loads(run.command("status", "--json").stdout)
     assert truth["last"]["id"] == record["mission_id"] and "red mug" in truth["last"]["command"]
@@ -64,7 +68,16 @@ def test_transcribe_reads_good_files_and_names_bad_ones(run: Run, tmp_path: Path
 def test_the_demo_delivers_and_leaves_nothing_behind(run: Run, tmp_path: Path) -> None:
     done = run.command("demo", "--speed", "max", "--out", str(tmp_path / "demo.png"), timeout=360)
     assert done.returncode == 0, done.stdout + done.stderr
-    for word in ("LISTENING", "NAVIGATING", "GRABBING", "RETURNING", "RELEASING", "COMPLETED", "DELIVERED"):
+    for word in (
+        "CONFIRMING",
+        "PLANNING",
+        "GROUNDING",
+        "NAVIGATING",
+        "GRABBING",
+        "RETURNING",
+        "RELEASING",
+        "DELIVERED",
+    ):
         assert word in done.stdout
     assert (tmp_path / "demo.png").stat().st_size > 5000, done.stdout
     assert run.processes() == []
@@ -85,7 +98,7 @@ def test_an_interrupted_demo_leaves_nothing(run: Run) -> None:
         line, env=run.environ, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
     )
     run.opened.append(demo)
-    read_until(demo, "NAVIGATING")
+    read_until(demo, "GROUNDING")
     demo.send_signal(signal.SIGTERM)
     assert demo.wait(30) != 0
     eventually(lambda: not run.processes(), "every process has ended")
