@@ -16,7 +16,7 @@ from common import topics
 from common.clock import monotonic
 
 OPEN = ("WAITING", "LISTENING", "COMPLETED", "ERROR")
-ACCEPT, HEAR, LISTEN = 5.0, 60.0, 90.0
+ACCEPT, KEPT, HEAR, LISTEN = 5.0, 30.0, 60.0, 90.0
 Show = Callable[[m.BrainState], None]
 
 
