@@ -47,6 +47,7 @@ class Board:
             self._console.print(f"  ... {now}", highlight=False)
 
     def finished(self, result: Result, timeline: bool) -> None:
+        self._at = {w: at for w, at in self._at.items() if not at.startswith(f"{result.seed}:")}
         self._bar.advance(self._task)
         self._bar.print(report.line(result), highlight=False)
         if timeline:
