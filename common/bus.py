@@ -334,8 +334,8 @@ class ZenohIo(IoBase):
             self.drops[str(sample.key_expr)] += 1
             self.log.debug("dropped", key=str(sample.key_expr), reason=str(error))
             return
-        if health.name in self._peers:
-            self._peers[health.name] = health.epoch
+        # Also without a token: that of a dead process may be lost after its successor's was announced.
+        self._peers[health.name] = health.epoch
 
     def peer(self, name: str) -> str | None:
         return self._peers.get(name)
