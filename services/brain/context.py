@@ -43,6 +43,7 @@ class Context:
         self._again_at = 0.0
         self.stopped: str | None = None
         self.command: m.VoiceCommand | None = None
+        self.reply: m.SpeechResult | None = None
         self.listen_after = 0.0
         self.speaking: m.SpeechStatus | None = None
         self.last = _outcome(journal)

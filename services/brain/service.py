@@ -164,9 +164,8 @@ class BrainService:
                 ctx.command = command if words in RETURN else None
             elif words in STOP | CANCEL:
                 ctx.command = None
-            elif ctx.state == "CONFIRMING" and ctx.speech.outstanding:
-                heard = m.SpeechResult(text=command.text, confidence=command.confidence)
-                ctx.speech.offer("", 0, Answer("ok", message=heard))
+            elif ctx.state == "CONFIRMING":
+                ctx.reply = m.SpeechResult(text=command.text, confidence=command.confidence)
             elif ctx.state in ("WAITING", "LISTENING", "COMPLETED", "ERROR"):
                 ctx.command = command
             else:

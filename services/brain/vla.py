@@ -7,7 +7,8 @@ from py_trees.common import Status
 from py_trees.composites import Sequence
 
 from common.messages import PlanStep
-from services.brain.behaviours import Do, Leaf, Say, Settle
+from services.brain.asking import HearChoice, HearReply, Question, question, which
+from services.brain.behaviours import Leaf, Say, Settle
 from services.brain.context import Context
 from services.brain.decorators import Attempts, When
 from services.brain.robot import Drive, Grab, Ready, Release
@@ -17,16 +18,12 @@ from services.brain.vla_leaves import (
     Await,
     Enough,
     Evidence,
-    HearChoice,
-    HearReply,
     Look,
     NotFound,
     Plan,
     TakeView,
     in_words,
-    question,
     reference,
-    which,
 )
 
 # Attempt 1 turns on the spot, the others go to where more can be seen.
@@ -60,8 +57,7 @@ def confirm(ctx: Context) -> Behaviour:
     """Ask, hear yes, no or a correction; after no, ask for the command again."""
     ask = sequence(
         "ask",
-        Do("confirming", ctx, lambda: ctx.enter("CONFIRMING", question(ctx))),
-        Say("question", ctx, lambda: question(ctx)),
+        Question("question", ctx, lambda: question(ctx)),
         HearReply("hear reply", ctx),
     )
     rounds = 2 * ctx.config.max_retry_attempts - 1
@@ -162,8 +158,7 @@ def clarify(ctx: Context, thing: str) -> Behaviour:
     """Ask which of several things was meant, and look for that one."""
     ask = sequence(
         "ask which",
-        Do("asking", ctx, lambda: ctx.enter("CONFIRMING", which(ctx))),
-        Say("which", ctx, lambda: which(ctx)),
+        Question("which", ctx, lambda: which(ctx)),
         HearChoice("hear choice", ctx, thing),
         Look("look for the one meant", ctx, thing),
     )

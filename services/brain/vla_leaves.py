@@ -1,4 +1,4 @@
-"""Leaves of the VLA pipeline: hear and confirm, plan, look."""
+"""Leaves of the VLA pipeline: hear, plan, look."""
 
 from collections.abc import Callable
 from typing import Any
@@ -11,7 +11,6 @@ from common import topics
 from common.topics import Topic
 from services.brain.behaviours import Goal, Leaf
 from services.brain.context import Context
-from services.brain.dialogue import chosen, corrected, reply
 from services.brain.goals import Answer
 from services.brain.mission import Failure
 from services.brain.robot import take_command
@@ -30,43 +29,6 @@ class Await(Leaf):
             ctx.enter("LISTENING" if hearing else "WAITING")
             return Status.RUNNING
         return Status.SUCCESS
-
-
-class HearReply(Goal):
-    """The person's answer to a question; SUCCESS once the command stands."""
-
-    def __init__(self, name: str, ctx: Context) -> None:
-        super().__init__(name, ctx, ctx.speech, state="CONFIRMING", timeout=ctx.config.answer_timeout)
-
-    def goal(self, goal_id: str) -> tuple[Topic[Any], m.Message]:
-        return topics.SPEECH_GOAL, m.SpeechGoal(goal="listen", id=goal_id)
-
-    def step(self) -> str:
-        return question(self.ctx)
-
-    def spoken(self) -> str:
-        return "I did not hear an answer."
-
-    def done(self, answer: Answer) -> Status:
-        mission, heard = self.ctx.mission, answer.message
-        assert isinstance(heard, m.SpeechResult)
-        kind, rest = reply(heard.text)
-        self.ctx.note(f"reply: {kind}", heard.text, "heard")
-        self.feedback_message = kind
-        if kind == "cancel":
-            return self.give_up(Failure("CONFIRMING", "CANCELLED", spoken="All right, I will do nothing."))
-        if kind == "yes" and not mission.repeat:
-            return Status.SUCCESS
-        if kind == "correction":
-            mission.command = rest if mission.repeat else corrected(mission.command, rest, self.ctx.io.scene)
-            mission.repeat = False
-        elif kind == "no":
-            mission.repeat = True
-        return self.give_up(Failure("CONFIRMING", "NOT_CONFIRMED", spoken="I did not understand what I should do."))
-
-
-def question(ctx: Context) -> str:
-    return "Please say it again." if ctx.mission.repeat else f"Did you say {ctx.mission.command}?"
 
 
 class Plan(Goal):
@@ -158,42 +120,6 @@ class Look(Goal):
         evidence = f"{pose.label} at ({x:.2f}, {y:.2f}, {z:.2f}), confidence {pose.confidence:.2f}"
         ctx.note(f"found {self._thing}", evidence, "saw")
         return Status.SUCCESS
-
-
-class HearChoice(Goal):
-    """Which of several things was meant; SUCCESS once the answer names one of them."""
-
-    def __init__(self, name: str, ctx: Context, thing: str) -> None:
-        super().__init__(name, ctx, ctx.speech, state="CONFIRMING", timeout=ctx.config.answer_timeout)
-        self._thing = thing
-
-    def goal(self, goal_id: str) -> tuple[Topic[Any], m.Message]:
-        return topics.SPEECH_GOAL, m.SpeechGoal(goal="listen", id=goal_id)
-
-    def step(self) -> str:
-        return which(self.ctx)
-
-    def spoken(self) -> str:
-        return f"I do not know which {self._thing} you mean."
-
-    def done(self, answer: Answer) -> Status:
-        mission, heard = self.ctx.mission, answer.message
-        assert isinstance(heard, m.SpeechResult)
-        kind, rest = reply(heard.text)
-        if kind == "cancel":
-            return self.give_up(Failure("CONFIRMING", "CANCELLED", spoken="All right, I will do nothing."))
-        label = chosen(rest, mission.options)
-        if label is None:
-            return self.give_up(Failure("CONFIRMING", "NOT_CONFIRMED", heard.text, self.spoken()))
-        mission.chosen[self._thing] = label
-        self.ctx.note(f"meant: {label}", heard.text)
-        return Status.SUCCESS
-
-
-def which(ctx: Context) -> str:
-    """The question between several things."""
-    *some, last = [f"the {name}" for name in ctx.mission.options]
-    return f"Do you mean {', '.join(some)} or {last}?"
 
 
 class TakeView(Goal):

@@ -183,6 +183,7 @@ class DashboardService:
             "detail": state.detail if state is not None else "",
             "command": state.command if state is not None else "",
             "asking": state is not None and state.state == "CONFIRMING",
+            "question": state.step if state is not None and state.state == "CONFIRMING" else "",
             "stopped": sim is not None and sim.state == "stopped",
             "listening": speech is not None and speech.state == "listening",
             "sim": self._io.peer("sim") is not None,

@@ -38,6 +38,10 @@ def drive(here: Site, session: Any) -> None:
     eventually(arrived, "the base has arrived", PATIENCE)
 
 
+def navigation_seen(file: Path) -> bool:
+    return any(row.key == topics.ALIVE_KEY.format(name="navigation") for row in Recording(file).rows)
+
+
 @pytest.mark.timeout(600)
 def test_a_recorded_run_is_whole_and_replays_to_the_same_outputs(here: Site) -> None:
     file, killed = here.log_dir / "run.mcap", here.log_dir / "killed.mcap"
@@ -52,7 +56,10 @@ def test_a_recorded_run_is_whole_and_replays_to_the_same_outputs(here: Site) -> 
         for name in ("sim", "navigation"):
             here.start(f"services.{name}", **lockstep)
         here.wait_alive(session, "sim", "navigation")
+        # The goals of a service are recorded once its token is seen.
+        eventually(lambda: all(navigation_seen(path) for path in (file, killed)), "both recorders listen", PATIENCE)
         drive(here, session)
+        eventually(lambda: len(Recording(killed).rows) > 100, "the one to be killed has written", PATIENCE)
         recorders[1].kill()
         recorders[0].send_signal(signal.SIGINT)
         said = recorders[0].communicate(timeout=PATIENCE)[0]

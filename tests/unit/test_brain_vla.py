@@ -131,6 +131,18 @@ def test_cancel_as_an_answer_is_no_error() -> None:
     assert "ERROR" not in bench.states()
 
 
+def test_an_answer_during_the_question_counts_and_cuts_it_short() -> None:
+    bench = asked()
+    assert bench.texts(SPEECH) == ["say Did you say bring me the red mug?"]
+    bench.send(topics.VOICE_COMMAND, m.VoiceCommand(text="no, the blue bottle", confidence=1.0))
+    bench.step()
+    bench.until(lambda: len(bench.texts(SPEECH)) == 3)
+    assert bench.texts(SPEECH)[1:] == ["cancel", "say Did you say bring me the blue bottle?"]
+    bench.send(topics.VOICE_COMMAND, m.VoiceCommand(text="yes", confidence=1.0))
+    assert bench.next_goal(PLAN, 1).command == "bring me the blue bottle"
+    assert "listen" not in bench.texts(SPEECH)
+
+
 def test_a_typed_yes_counts() -> None:
     bench = asked()
     bench.until(lambda: "listen" in bench.texts(SPEECH))

@@ -41,7 +41,7 @@ function show(s) {
   $("stop").classList.toggle("braked", s.stopped);
   $("resume").hidden = !s.stopped;
   $("ask").hidden = !s.asking;
-  $("question").textContent = s.asking ? s.detail || "Is that right?" : "";
+  $("question").textContent = s.question || "Is that right?";
   $("talk").classList.toggle("on", s.listening);
   if (!s.sim) link("no simulation or robot", false);
   else if (live.readyState === WebSocket.OPEN) link("connected", false);

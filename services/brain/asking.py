@@ -1,0 +1,117 @@
+"""Leaves that ask the person something. An answer counts from the first word of the question on."""
+
+from collections.abc import Callable
+from typing import Any
+
+from py_trees.common import Status
+
+from common import messages as m
+from common import topics
+from common.topics import Topic
+from services.brain.behaviours import Goal, Say
+from services.brain.context import Context
+from services.brain.dialogue import chosen, corrected, reply
+from services.brain.goals import Answer
+from services.brain.mission import Failure
+
+
+class Question(Say):
+    """Says the question; an answer that is given meanwhile cuts it short."""
+
+    def __init__(self, name: str, ctx: Context, text: Callable[[], str]) -> None:
+        super().__init__(name, ctx, text)
+        self._asked = text
+
+    def initialise(self) -> None:
+        self.ctx.reply = None
+        self.ctx.enter("CONFIRMING", self._asked())
+        super().initialise()
+
+    def update(self) -> Status:
+        if self.ctx.reply is None:
+            return super().update()
+        self.ctx.tell(self.ctx.speech, topics.SPEECH_GOAL, "cancel")
+        return Status.SUCCESS
+
+
+class Hear(Goal):
+    """Listens for the answer, unless it came while the question was being said."""
+
+    def __init__(self, name: str, ctx: Context) -> None:
+        super().__init__(name, ctx, ctx.speech, state="CONFIRMING", timeout=ctx.config.answer_timeout)
+
+    def update(self) -> Status:
+        given, self.ctx.reply = self.ctx.reply, None
+        if given is None:
+            return super().update()
+        if self.channel.outstanding:
+            self.channel.abandon()
+            self.ctx.tell(self.channel, topics.SPEECH_GOAL, "cancel")
+        return self.done(Answer("ok", message=given))
+
+    def goal(self, goal_id: str) -> tuple[Topic[Any], m.Message]:
+        return topics.SPEECH_GOAL, m.SpeechGoal(goal="listen", id=goal_id)
+
+
+class HearReply(Hear):
+    """The person's answer to "did you say"; SUCCESS once the command stands."""
+
+    def step(self) -> str:
+        return question(self.ctx)
+
+    def spoken(self) -> str:
+        return "I did not hear an answer."
+
+    def done(self, answer: Answer) -> Status:
+        mission, heard = self.ctx.mission, answer.message
+        assert isinstance(heard, m.SpeechResult)
+        kind, rest = reply(heard.text)
+        self.ctx.note(f"reply: {kind}", heard.text, "heard")
+        self.feedback_message = kind
+        if kind == "cancel":
+            return self.give_up(Failure("CONFIRMING", "CANCELLED", spoken="All right, I will do nothing."))
+        if kind == "yes" and not mission.repeat:
+            return Status.SUCCESS
+        if kind == "correction":
+            mission.command = rest if mission.repeat else corrected(mission.command, rest, self.ctx.io.scene)
+            mission.repeat = False
+        elif kind == "no":
+            mission.repeat = True
+        return self.give_up(Failure("CONFIRMING", "NOT_CONFIRMED", spoken="I did not understand what I should do."))
+
+
+class HearChoice(Hear):
+    """Which of several things was meant; SUCCESS once the answer names one of them."""
+
+    def __init__(self, name: str, ctx: Context, thing: str) -> None:
+        super().__init__(name, ctx)
+        self._thing = thing
+
+    def step(self) -> str:
+        return which(self.ctx)
+
+    def spoken(self) -> str:
+        return f"I do not know which {self._thing} you mean."
+
+    def done(self, answer: Answer) -> Status:
+        mission, heard = self.ctx.mission, answer.message
+        assert isinstance(heard, m.SpeechResult)
+        kind, rest = reply(heard.text)
+        if kind == "cancel":
+            return self.give_up(Failure("CONFIRMING", "CANCELLED", spoken="All right, I will do nothing."))
+        label = chosen(rest, mission.options)
+        if label is None:
+            return self.give_up(Failure("CONFIRMING", "NOT_CONFIRMED", heard.text, self.spoken()))
+        mission.chosen[self._thing] = label
+        self.ctx.note(f"meant: {label}", heard.text)
+        return Status.SUCCESS
+
+
+def question(ctx: Context) -> str:
+    return "Please say it again." if ctx.mission.repeat else f"Did you say {ctx.mission.command}?"
+
+
+def which(ctx: Context) -> str:
+    """The question between several things."""
+    *some, last = [f"the {name}" for name in ctx.mission.options]
+    return f"Do you mean {', '.join(some)} or {last}?"
