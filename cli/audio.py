@@ -8,7 +8,6 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import resample_poly
 
 from cli.errors import CliError
 from cli.link import Link, Watch
@@ -50,6 +49,8 @@ def read_wav(path: Path) -> NDArray[np.int16]:
         raise CliError(f"{path}: {size >> 20} MB; a command lasts seconds")
     mono = np.frombuffer(raw, "<i2").reshape(-1, channels).mean(axis=1)
     if rate != RATE:
+        from scipy.signal import resample_poly  # half a second of loading that no other command needs
+
         common = gcd(rate, RATE)
         mono = resample_poly(mono, RATE // common, rate // common)
     samples: NDArray[np.int16] = np.clip(np.rint(mono), -32768, 32767).astype(np.int16)
