@@ -1,5 +1,6 @@
 """Structured logs: one line a record on stderr, and the same record as a message for `log/<service>`."""
 
+import contextlib
 import sys
 from collections.abc import Callable
 from typing import Any
@@ -48,7 +49,9 @@ class Logger:
             fields = {"mission": self.mission, **fields}
         now = self._clock.now()
         if self._stderr:
-            print(render(now, level, self._service, event, fields), file=sys.stderr, flush=True)
+            # A full disk behind it, or a reader that has gone, is no reason to stop working.
+            with contextlib.suppress(OSError):
+                print(render(now, level, self._service, event, fields), file=sys.stderr, flush=True)
         if self._sink is not None:
             plain: dict[str, object] = {
                 k: v if isinstance(v, (str, int, float, bool)) else str(v) for k, v in fields.items()

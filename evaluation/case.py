@@ -25,17 +25,21 @@ class Line(msgspec.Struct, frozen=True):
 
 
 class Strike(msgspec.Struct, frozen=True):
-    """What happens the first time the brain is in `state`.
+    """What happens `after` seconds from when the brain was first in `state`.
 
-    The service's process is killed, and started again after `back_after` seconds; or it hangs for `seconds`; or, with
-    `jump`, everybody's clock leaps ahead by so many seconds.
+    The service's process is killed, and started again after `back_after` seconds; or it hangs for `seconds`. The
+    simulation goes on from its checkpoint. `router`: nobody hears anybody for `seconds`. `host`: with `jump`,
+    everybody's clock leaps ahead by so many seconds; with `full` the disk takes nothing more for so many. A service
+    named with `full` is killed while it does.
     """
 
     service: str
     state: str
     seconds: float = 0.0
     jump: float = 0.0
+    full: float = 0.0
     back_after: float = 1.0
+    after: float = 0.0
 
 
 class Case(msgspec.Struct, kw_only=True):
@@ -67,7 +71,10 @@ class Case(msgspec.Struct, kw_only=True):
 
 
 class Observed(msgspec.Struct, kw_only=True):
-    """What the examiner saw of one case, before it is judged."""
+    """What the examiner saw of one case, before it is judged.
+
+    `struck`: when a fault hit [s of robot time]; `recovery`: seconds from then until the mission's next step.
+    """
 
     evidence: Evidence = msgspec.field(default_factory=Evidence)
     claimed: str = "none"
@@ -79,6 +86,8 @@ class Observed(msgspec.Struct, kw_only=True):
     stage: str = ""
     robot_seconds: float = 0.0
     shortest: float = 0.0
+    struck: float | None = None
+    recovery: float | None = None
     crash: str = ""
 
 

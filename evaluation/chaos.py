@@ -1,45 +1,103 @@
-"""The suite of harm: services killed and hung in every state, messages mistreated on their keys, clocks that jump."""
+"""The suite of harm: every service killed and hung in every state, its messages mistreated, the host out of order."""
 
-from typing import Literal
+from collections.abc import Sequence
+
+import msgspec
 
 from evaluation.blocks import VLA, fetch_case, flat, pick, random
 from evaluation.case import Case, Strike
 from evaluation.faults import Kind, Rule
 
 CHAOS_STATES = ("CONFIRMING", "PLANNING", "GROUNDING", "NAVIGATING", "GRABBING", "RETURNING", "RELEASING")
-HARM: tuple[Kind | Literal["kill", "hang", "jump"], ...] = (
-    "kill", "hang", "drop", "duplicate", "delay", "reorder", "jump",
-)  # fmt: skip
-CHAOS_SERVICES = ("speech", "planner", "perception", "camera", "navigation", "manipulation", "brain")
-KEYS = {
-    "speech": ("voice_command", "brain/speech_result", "speech/status"),
-    "planner": ("action_plan",),
-    "perception": ("object_pose", "world/objects"),
-    "camera": ("camera/head/rgbd", "camera/wrist/rgbd"),
-    "navigation": ("brain/navigation_status", "base/target_pose", "navigation_feedback"),
-    "manipulation": ("brain/manipulation_status", "gripper_command"),
-    "brain": ("brain/navigation_goal", "brain/manipulation_goal", "plan_request", "object_query"),
+CHAOS_SERVICES = ("speech", "planner", "perception", "camera", "navigation", "manipulation", "brain", "sim")
+MISTREATED: tuple[Kind, ...] = ("drop", "duplicate", "delay", "reorder")
+FAULTS = ("kill", "hang", "router loss", "disk full", "disk full, kill", "clock jump", *MISTREATED)
+CHATTY = frozenset({
+    "speech/status", "world/objects", "camera/head/rgbd", "camera/wrist/rgbd", "brain/manipulation_status",
+    "navigation_feedback", "joint_states", "scan", "base/odom",
+})  # fmt: skip
+"""Keys with more than two messages in a state, of which not only the first are worth hitting."""
+MOMENTS = {"CONFIRMING": 3.0, "PLANNING": 0.2, "GROUNDING": 0.4, "NAVIGATING": 4.0, "GRABBING": 10.0,
+           "RETURNING": 6.0, "RELEASING": 6.0}  # fmt: skip
+"""How long into a state [s] harm can come: about as long as the state usually lasts."""
+TRAFFIC: dict[tuple[str, str], tuple[str, ...]] = {
+    ("speech", "CONFIRMING"): ("brain/speech_result", "speech/status"),
+    ("planner", "PLANNING"): ("action_plan",),
+    ("perception", "GROUNDING"): ("object_pose",),
+    ("camera", "GROUNDING"): ("camera/head/rgbd",),
+    ("navigation", "NAVIGATING"): ("brain/navigation_status", "base/target_pose", "navigation_feedback"),
+    ("navigation", "RETURNING"): ("brain/navigation_status", "base/target_pose", "navigation_feedback"),
+    ("manipulation", "GRABBING"): ("brain/manipulation_status", "gripper_command"),
+    ("manipulation", "RELEASING"): ("brain/manipulation_status", "gripper_command"),
+    ("brain", "CONFIRMING"): ("brain/speech_goal",),
+    ("brain", "PLANNING"): ("plan_request",),
+    ("brain", "GROUNDING"): ("object_query",),
+    ("brain", "NAVIGATING"): ("brain/navigation_goal",),
+    ("brain", "GRABBING"): ("brain/manipulation_goal",),
+    ("brain", "RETURNING"): ("brain/navigation_goal",),
+    ("brain", "RELEASING"): ("brain/manipulation_goal",),
+    ("sim", "NAVIGATING"): ("base/odom", "scan", "base/goal_reached"),
+    ("sim", "GRABBING"): ("joint_states",),
+    ("sim", "RETURNING"): ("base/odom", "scan", "base/goal_reached"),
+    ("sim", "RELEASING"): ("joint_states",),
 }
+"""What a service says in a state: only that can be dropped, doubled, late or out of order there."""
+
+
+class Cell(msgspec.Struct, frozen=True):
+    """One square of the matrix."""
+
+    service: str
+    state: str
+    fault: str
+
+
+def _cells() -> tuple[Cell, ...]:
+    def all_of(fault: str, services: Sequence[str]) -> list[Cell]:
+        return [Cell(service, state, fault) for state in CHAOS_STATES for service in services]
+
+    found = all_of("kill", CHAOS_SERVICES)
+    # A simulation that hangs stops the time that all others follow: nothing happens.
+    found += all_of("hang", [s for s in CHAOS_SERVICES if s != "sim"])
+    found += all_of("router loss", ["router"]) + all_of("disk full", ["host"])
+    found += all_of("disk full, kill", ["brain"]) + all_of("clock jump", ["host"])
+    found += [Cell(service, state, kind) for service, state in TRAFFIC for kind in MISTREATED]
+    return tuple(found)
+
+
+CELLS = _cells()
 
 
 def chaos(seed: int) -> Case:
-    """Service, state and harm in turn: the first 49 seeds kill each service in each state, the next 49 hang it."""
+    """Cell after cell: the first 56 seeds kill each service in each state, the next 49 hang it; then the rest."""
+    cell = CELLS[seed % len(CELLS)]
     scene, rng = flat(), random(seed, 6)
-    case = fetch_case("chaos", seed, pick(rng, scene, seed), scene)
-    service = CHAOS_SERVICES[seed % len(CHAOS_SERVICES)]
-    state = CHAOS_STATES[seed // len(CHAOS_SERVICES) % len(CHAOS_STATES)]
-    how = HARM[seed // (len(CHAOS_SERVICES) * len(CHAOS_STATES)) % len(HARM)]
-    case.name, case.fault, case.honest, case.settings = f"{service} {state}", how, True, (VLA,)
-    case.spoken = True
-    if how == "kill" or how == "hang" or how == "jump":
-        hang, jump = (3.0 if how == "hang" else 0.0), (2.0 if how == "jump" else 0.0)
-        case.strikes = (Strike(service, state, hang, jump),)
-    else:
-        keys = KEYS[service]
-        case.rules = (
-            Rule(
-                service=service, key=keys[int(rng.integers(len(keys)))], kind=how, skip=int(rng.integers(3)),
-                count=2, seconds=float(rng.uniform(0.5, 3.0)),
-            ),
-        )  # fmt: skip
+    # What lies near makes a short mission: it is the harm that counts here, not the search.
+    near = scene.room_at(scene.home.x, scene.home.y)
+    case = fetch_case("chaos", seed, pick(rng, scene, seed, room=near.name if near else ""), scene)
+    case.name, case.fault, case.honest, case.settings = f"{cell.service} {cell.state}", cell.fault, True, (VLA,)
+    case.spoken = cell.service == "speech" or cell.state == "CONFIRMING"
+    moment = round(float(rng.uniform(0.0, MOMENTS[cell.state])), 2)
+    strike = Strike(cell.service, cell.state, after=moment)
+    match cell.fault:
+        case "kill":
+            case.strikes = (strike,)
+        case "hang":
+            case.strikes = (msgspec.structs.replace(strike, seconds=3.0),)
+        case "router loss":
+            case.strikes = (msgspec.structs.replace(strike, seconds=5.0),)
+        case "disk full" | "disk full, kill":
+            case.strikes = (msgspec.structs.replace(strike, full=30.0),)
+        case "clock jump":
+            case.strikes = (msgspec.structs.replace(strike, jump=2.0),)
+        case kind:
+            keys = TRAFFIC[cell.service, cell.state]
+            key = keys[int(rng.integers(len(keys)))]
+            skip, seconds = int(rng.integers(3)) if key in CHATTY else 0, float(rng.uniform(0.5, 3.0))
+            case.rules = (
+                Rule(
+                    service=cell.service, key=key, kind=msgspec.convert(kind, Kind), skip=skip, count=2,
+                    seconds=seconds, state=cell.state,
+                ),
+            )  # fmt: skip
     return case

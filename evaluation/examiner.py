@@ -53,6 +53,7 @@ class Examiner:
         self._ended_at: float | None = None
         self._quiet_since = 0.0
         self._when: dict[str, float] = {}
+        self._at = self._struck_at = ("", "")
         self.observed = Observed()
         self.done = False
 
@@ -107,10 +108,13 @@ class Examiner:
             if not seen.states or seen.states[-1] != state.state:
                 seen.states.append(state.state)
             self._when.setdefault(state.state, now)
-            if state.state not in (*OPEN, *OVER, "IDLE"):
+            self._progress(state, now)
+            # A brain that has been restarted is IDLE with its mission until it has looked at the world.
+            resuming = state.state == "IDLE" and bool(state.mission_id)
+            if resuming or state.state not in (*OPEN, *OVER, "IDLE"):
                 self._active, self._ended_at = True, None
-                seen.stage = state.state
-            if state.state in (*OPEN, "IDLE") and self._active:
+                seen.stage = seen.stage if resuming else state.state
+            elif state.state in (*OPEN, "IDLE") and self._active:
                 self._active, self._ended_at = False, now
                 self._when.setdefault("ended", now)
             if state.last is not None:
@@ -118,6 +122,20 @@ class Examiner:
             self._quiet_since = now
         if self._when.keys() & set(OPEN):
             self._when.setdefault("ready", now)
+
+    def struck(self, now: float) -> None:
+        """A fault hits now; the first counts."""
+        if self.observed.struck is None:
+            self.observed.struck, self._struck_at = round(now, 2), self._at
+
+    def _progress(self, state: m.BrainState, now: float) -> None:
+        """Recovered is a mission that has come to another step than the one in which it was struck."""
+        self._at = state.state, state.step
+        seen = self.observed
+        if seen.struck is None or seen.recovery is not None or state.state == "IDLE":
+            return
+        if self._at != self._struck_at:
+            seen.recovery = round(now - seen.struck, 2)
 
     # --- the person
     def _talk(self, now: float) -> None:

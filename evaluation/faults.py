@@ -10,6 +10,7 @@ import msgspec
 import numpy as np
 
 from common import messages as m
+from common import topics
 from common.topics import Topic
 
 Kind = Literal["drop", "duplicate", "delay", "reorder", "edit"]
@@ -20,7 +21,7 @@ class Rule(msgspec.Struct, frozen=True, kw_only=True):
 
     Of those between robot times `start` and `until` whose fields equal `match`, the first `skip` pass, the next
     `count` are hit with probability `chance`. `delay` holds them for `seconds`; `reorder` lets the next one overtake;
-    `edit` replaces `fields`.
+    `edit` replaces `fields`. With a `state` it holds only while the brain says that it is in it.
     """
 
     service: str
@@ -32,6 +33,7 @@ class Rule(msgspec.Struct, frozen=True, kw_only=True):
     seconds: float = 1.0
     start: float = 0.0
     until: float = 1e9
+    state: str = ""
     match: dict[str, Any] = {}
     fields: dict[str, Any] = {}
 
@@ -52,6 +54,8 @@ class FaultyIo:
         self._late: list[tuple[float, Topic[Any], m.Message]] = []
         self._overtaken: dict[str, tuple[Topic[Any], m.Message]] = {}
         self._now = 0.0
+        self.state = ""
+        self.hit_at: float | None = None
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._io, name)
@@ -65,6 +69,8 @@ class FaultyIo:
             self._io.publish(topic, message)
 
     def publish(self, topic: Topic[Any], message: m.Message) -> None:
+        if isinstance(message, m.BrainState):
+            self.state = message.state
         rule = self._rule(topic, message)
         overtaken = self._overtaken.pop(topic.key, None)
         match rule.kind if rule else "":
@@ -89,13 +95,16 @@ class FaultyIo:
 
     def _rule(self, topic: Topic[Any], message: m.Message) -> Rule | None:
         for number, rule in enumerate(self._rules):
-            if rule.key != topic.key or not rule.applies(message, self._now):
+            if rule.key != topic.key or (rule.state and rule.state != self.state):
+                continue
+            if not rule.applies(message, self._now):
                 continue
             self._seen[number] += 1
             if self._seen[number] <= rule.skip or self._hits[number] >= rule.count:
                 continue
             if rule.chance >= 1.0 or self._rng.random() < rule.chance:
                 self._hits[number] += 1
+                self.hit_at = self._now if self.hit_at is None else self.hit_at
                 self._io.log.warning("fault injected", key=topic.key, kind=rule.kind)
                 return rule
         return None
@@ -107,13 +116,20 @@ def faulty(kind: Any, rules: tuple[Rule, ...]) -> Any:
     if not mine:
         return kind
 
+    told = topics.BRAIN_STATE
+    listens = any(r.state for r in mine) and told not in kind.WRITES
+
     class Faulty(kind):  # type: ignore[misc]
+        READS = (*kind.READS, told) if listens and told not in kind.READS else kind.READS
+
         def __init__(self, config: Any, io: Any) -> None:
             self.door = FaultyIo(io, mine)
             super().__init__(config, self.door)
 
         def step(self, now: float) -> None:
             self.door.release(now)
+            state = self.door.latest(told) if listens else None
+            self.door.state = state.state if state is not None else self.door.state
             super().step(now)
 
     Faulty.__name__ = Faulty.__qualname__ = f"Faulty{kind.__name__}"

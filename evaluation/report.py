@@ -8,6 +8,7 @@ from rich.console import Console
 from rich.table import Table
 
 from evaluation.case import Result
+from evaluation.matrix import chaos_tables
 
 STYLES = {
     "delivered": "green", "declined": "green", "stopped": "green", "reported": "yellow", "false_success": "bold red",
@@ -65,10 +66,10 @@ def show(console: Console, report: dict[str, Any], results: Sequence[Result]) ->
             seeds = " ".join(str(r.seed) for r in results if r.cause == name)
             causes.add_row(name, str(number), f"seeds {seeds}")
         console.print(causes)
-    if report["suite"] in ("faults", "chaos"):
+    if report["suite"] == "faults":
         console.print(by_fault(results))
     if report["suite"] == "chaos":
-        console.print(matrix(results))
+        console.print(chaos_tables(results))
 
 
 def by_fault(results: Sequence[Result]) -> Table:
@@ -80,25 +81,6 @@ def by_fault(results: Sequence[Result]) -> Table:
         mean = sum(r.sim_seconds for r in rows) / len(rows)
         table.add_row(fault, *(str(n) for n in (len(rows), good, told, len(rows) - good - told)), f"{mean:.0f}")
     return table
-
-
-def matrix(results: Sequence[Result]) -> Table:
-    """Service x state: delivered, + honestly reported, - lost."""
-    cells: dict[tuple[str, str], list[Result]] = {}
-    for result in results:
-        service, _, state = result.name.partition(" ")
-        cells.setdefault((service, state), []).append(result)
-    states = list(dict.fromkeys(state for _, state in cells))
-    table = Table("service", *states, title="delivered + reported - lost", title_justify="left")
-    for service in dict.fromkeys(service for service, _ in cells):
-        table.add_row(service, *(_cell(cells.get((service, state), [])) for state in states))
-    return table
-
-
-def _cell(rows: Sequence[Result]) -> str:
-    good, told = sum(r.delivered for r in rows), sum(r.outcome == "reported" for r in rows)
-    lost = len(rows) - good - told
-    return f"{good or ''}{f' +{told}' if told else ''}{f' [red]-{lost}[/]' if lost else ''}".strip()
 
 
 def _things(result: Result) -> list[dict[str, Any]]:

@@ -25,23 +25,44 @@ OURS = tuple(str(Path(__file__).parents[1] / name) for name in ("common", "servi
 class Director:
     """Does the strikes of a case when the brain is in their states."""
 
-    def __init__(self, stack: Stack, strikes: tuple[Strike, ...]) -> None:
-        self._stack, self._waiting = stack, list(strikes)
+    def __init__(
+        self, stack: Stack, strikes: tuple[Strike, ...], struck: Callable[[float], None] = lambda now: None
+    ) -> None:
+        self._stack, self._waiting, self._struck = stack, list(strikes), struck
         self._back: list[tuple[float, str]] = []
+        self._since: dict[str, float] = {}
 
     def step(self) -> None:
         stack, state = self._stack, self._stack.state().state
-        for strike in [s for s in self._waiting if s.state == state]:
+        self._since.setdefault(state, stack.now)
+        due = [s for s in self._waiting if stack.now >= self._since.get(s.state, float("inf")) + s.after]
+        for strike in due:
             self._waiting.remove(strike)
-            if strike.jump:
-                stack.jump(strike.jump)
-            elif strike.service not in stack.members:
-                continue
-            elif strike.seconds:
-                stack.hang(strike.service, strike.seconds)
-            else:
-                stack.kill(strike.service)
-                self._back.append((stack.now + strike.back_after, strike.service))
+            self._struck(stack.now)
+            self._strike(strike)
+        for service, _ in stack.members.values():
+            if (at := getattr(getattr(service, "door", None), "hit_at", None)) is not None:
+                self._struck(at)
+        self._start_again()
+
+    def _strike(self, strike: Strike) -> None:
+        stack = self._stack
+        if strike.jump:
+            stack.jump(strike.jump)
+        if strike.full:
+            stack.fill_disk(strike.full)
+        if strike.service == "router":
+            stack.cut(strike.seconds)
+        elif strike.service == "sim":
+            stack.restart_sim()
+        elif strike.service in stack.members and strike.seconds:
+            stack.hang(strike.service, strike.seconds)
+        elif strike.service in stack.members:
+            stack.kill(strike.service)
+            self._back.append((stack.now + strike.back_after, strike.service))
+
+    def _start_again(self) -> None:
+        stack = self._stack
         for row in [r for r in self._back if r[0] <= stack.now]:
             self._back.remove(row)
             stack.start(row[1])
@@ -76,11 +97,11 @@ def _run(case: Case, progress: Progress, began: float, state_dir: Path | None) -
 
 
 def _until_over(stack: Stack, examiner: Examiner, case: Case, progress: Progress) -> None:
-    director = Director(stack, case.strikes)
+    director = Director(stack, case.strikes, examiner.struck)
     due = 0.0
     while not examiner.done:
         stack.tick()
-        if case.strikes and round(stack.now / DT) % 5 == 0:
+        if case.fault and round(stack.now / DT) % 5 == 0:
             director.step()
         if stack.now >= due:
             due = stack.now + REPORT

@@ -14,8 +14,9 @@ from common import config, topics
 from common import messages as m
 from common.clock import ManualClock
 from common.lockstep import DT, InProcess
-from common.memory import MemoryBus, MemoryIo
+from common.memory import MemoryIo
 from common.scene import Scene, load_scene
+from evaluation.harm import CutBus, FullDisk
 from services.camera.render import choose
 
 Swap = Callable[[Any], Any]
@@ -44,8 +45,9 @@ def paced_services() -> tuple[str, ...]:
 class Stack:
     """A simulation and the services around it. `advance` makes time pass; nothing else does.
 
-    `kill`, `hang` and `start` do to a service object what signals and the supervisor do to its process. What services
-    keep on disk goes to `state_dir`, None: nowhere.
+    `kill`, `hang` and `start` do to a service object what signals and the supervisor do to its process; `restart_sim`,
+    `cut`, `fill_disk` and `jump` are the other things that can happen. What services keep on disk goes to `state_dir`,
+    None: nowhere.
     """
 
     def __init__(
@@ -61,13 +63,16 @@ class Stack:
     ) -> None:
         self.scene = load_scene(scene) if isinstance(scene, str) else scene
         self.seed, self._log_level, self._state_dir = seed, log_level, state_dir
-        self._changes = config.overrides({}, settings)
+        kept = ("sim.run=stack", "brain.run=stack") if state_dir else ()
+        self._changes = config.overrides({}, (*kept, *settings))
         self._swaps = dict(swaps or {})
         # One process, one GL library, chosen before anything imports MuJoCo.
         choose("auto")
-        self.bus, self._clock = MemoryBus(), ManualClock()
+        self.bus, self._clock = CutBus(), ManualClock()
         self.members: dict[str, tuple[Any, MemoryIo]] = {}
         self._hung: list[tuple[float, str]] = []
+        self._cut_until = self._full_until = float("inf")
+        self._disk = FullDisk()
         self.starts: dict[str, int] = {}
         self.sim, sim_io = self._make(service_class("sim"))
         self.world = InProcess(self.sim, sim_io, self._clock)
@@ -115,8 +120,36 @@ class Stack:
         self.world.remove(self.members[name][0])
         self._hung.append((self.now + seconds, name))
 
+    def restart_sim(self) -> None:
+        """As SIGKILL of the simulation and its successor: the world goes on from its checkpoint, and so does time."""
+        self.bus.detach(self._sim_io)
+        self._sim_io.shutdown()
+        self.sim, self._sim_io = self._make(service_class("sim"))
+        self.world = InProcess(self.sim, self._sim_io, self._clock)
+        self.world.tick = round(self.sim.start_time / DT)
+        self._clock.advance(self.world.tick * DT - self.now)
+        hung = {name for _, name in self._hung}
+        for name, (service, io) in self.members.items():
+            if name not in hung:
+                self.world.add(service, io)
+
+    def cut(self, seconds: float) -> None:
+        """The router is away: nobody hears anybody, not even the clock, while the world goes on."""
+        observers = [io for name, (_, io) in self.members.items() if name not in paced_services()]
+        self.bus.outsiders, self.bus.away = observers, True
+        self._cut_until = self.now + seconds
+        for name in self.members:
+            if name in paced_services():
+                self.hang(name, seconds)
+
+    def fill_disk(self, seconds: float) -> None:
+        """Nothing more goes onto any disk."""
+        self._disk.full(True)
+        self._full_until = self.now + seconds
+
     def close(self) -> None:
         """End every service; worker threads and contexts go with them."""
+        self._disk.full(False)
         for service, io in [*self.members.values(), (self.sim, self._sim_io)]:
             if hasattr(service, "close"):
                 service.close()
@@ -130,6 +163,12 @@ class Stack:
 
     def tick(self) -> float:
         """10 ms of the world and of every service that is due."""
+        if self.now >= self._cut_until:
+            self._cut_until = float("inf")
+            self.bus.back()
+        if self.now >= self._full_until:
+            self._full_until = float("inf")
+            self._disk.full(False)
         for row in [r for r in self._hung if r[0] <= self.now]:
             self._hung.remove(row)
             if row[1] in self.members:

@@ -28,7 +28,7 @@ def judge(case: Case, seen: Observed, wall_seconds: float) -> Result:
         "name": case.name, "fault": case.fault, "expected": case.expect, "met": met, "claimed": seen.claimed,
         "reason": seen.reason, **msgspec.to_builtins(seen.evidence), "shortest": seen.shortest, "spl": share,
         "sim_seconds": seen.robot_seconds, "wall_seconds": round(wall_seconds, 1), "states": seen.states,
-        "said": seen.said,
+        "said": seen.said, "struck": seen.struck, "recovery": seen.recovery,
     }  # fmt: skip
     return Result(
         seed=case.seed, command=case.command, outcome=outcome, evidence=details,

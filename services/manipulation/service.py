@@ -8,7 +8,7 @@ from common import messages as m
 from common import topics
 from common.geometry import Pose2
 from common.io import Io, Job
-from services.manipulation import routines
+from services.manipulation import rescue, routines
 from services.manipulation.config import ManipulationConfig
 from services.manipulation.object_source import ObjectSource
 from services.manipulation.plan import Planner
@@ -155,15 +155,14 @@ class ManipulationService:
         if holds(robot.grip, self._config):
             label = robot.held.label if robot.held else ""
             if not label or not wanted or label == wanted or goal.attempt > 1:
-                return f"already holding {label or 'something'}: width {robot.grip.width * 1000:.1f} mm"
+                return (yield from self._with_planner(rescue.bring_up(robot, goal.object)))
             raise Failure("HAND_FULL", f"the {label} is in the gripper")
         return (yield from self._with_planner(routines.grab(robot, goal, self._looked_for)))
 
     def _release(self) -> Steps[str]:
         robot = self._robot
         if not holds(robot.grip, self._config):
-            yield from robot.move_gripper(0.0)
-            return "nothing was held, the gripper is open"
+            return (yield from self._with_planner(rescue.fold(robot)))
         return (yield from self._with_planner(routines.place(robot, "")))
 
     def _place(self, where: str) -> Steps[str]:

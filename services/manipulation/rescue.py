@@ -1,0 +1,77 @@
+"""Going on where a former process or a stop left the arm: a full hand comes to the carry pose, an empty one home."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from common.messages import ObjectRef
+from services.manipulation.arm_model import Array, Obstacle
+from services.manipulation.plan import CARRY, Held, PlanError, Planner
+from services.manipulation.routines import Failure, Robot, Steps, go_home
+from services.manipulation.surroundings import obstacles
+from services.manipulation.verify import holds
+
+NEAR = 0.15
+USUAL_SIZE = (0.06, 0.06, 0.10)
+
+
+def at_carry(planner: Planner, joints: Array) -> bool:
+    """The arm is folded already."""
+    return any(float(np.abs(planner.arm.nearest_turn(c, joints) - joints).max()) < NEAR for c in CARRY)
+
+
+def in_hand(planner: Planner, joints: Array, width: float, wanted: ObjectRef | None) -> Held:
+    """What is in the gripper as far as can be said: the wanted object, standing upright, taken at half its height."""
+    size = wanted.size if wanted is not None and min(wanted.size) > 0 else USUAL_SIZE
+    label, kind = (wanted.label, wanted.kind) if wanted is not None else ("object", "")
+    rotation = planner.arm.pose(joints).rotation
+    return Held(label or "object", kind, rotation, np.array([0.0, 0.0, size[2] / 2]), size, width, 0.0)
+
+
+def out_of_there(planner: Planner, held: Held, now: Array, around: Sequence[Obstacle], lift: float) -> list[Array]:
+    """Straight up first, then to a carry pose.
+
+    Raises:
+        PlanError: BLOCKED.
+    """
+    planner.arm.hold(None)
+    here = planner.arm.pose(now)
+    for height in (lift, lift / 2):
+        up = planner.straight(now, here, here.moved(np.array([0.0, 0.0, height])))
+        if up is None:
+            continue
+        try:
+            return [*up, *planner.carry(held, up[-1], around)]
+        except PlanError:
+            continue
+    return planner.carry(held, now, around)
+
+
+def bring_up(robot: Robot, wanted: ObjectRef | None) -> Steps[str]:
+    """Lift and fold in what the hand was found to hold. Returns the evidence; SLIPPED, BLOCKED when that fails."""
+    planner, config = robot.planner, robot.config
+    label = robot.held.label if robot.held else ""
+    if planner is not None and not at_carry(planner, robot.joints):
+        held = robot.held or in_hand(planner, robot.joints, robot.grip.width, wanted)
+        around = obstacles(robot.io.scene, robot.base, robot.source.objects(), without=held.label)
+        robot.phase = "retract"
+        path = yield from robot.work(out_of_there, planner, held, robot.joints.copy(), around, config.lift_height)
+        yield from robot.follow(path, config.joint_speed * 0.5)
+        yield from robot.wait(0.2)
+        if not holds(robot.grip, config):
+            robot.held = None
+            raise Failure("SLIPPED", f"the {held.label} was lost on the way to the carry pose")
+        robot.held = held
+        robot.source.remember(held.label, None, "", robot.now)
+    return f"already holding {label or 'something'}: width {robot.grip.width * 1000:.1f} mm"
+
+
+def fold(robot: Robot) -> Steps[str]:
+    """Open an empty hand and take the arm back, if there is a way."""
+    yield from robot.move_gripper(0.0)
+    if robot.planner is not None and not at_carry(robot.planner, robot.joints):
+        try:
+            yield from go_home(robot)
+        except Failure as failure:
+            robot.io.log.warning("the arm stays where it is", code=failure.code, detail=failure.detail)
+    return "nothing was held, the gripper is open"
