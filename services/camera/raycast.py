@@ -6,7 +6,6 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-NEAR = 0.02
 FAR = 30.0
 CHUNK = 16384
 _TAKES_NORMAL = "normal" in (mujoco.mj_multiRay.__doc__ or "")
@@ -37,17 +36,15 @@ def render(
     rays = directions(rotation, fovy, width, height)
     count = len(rays)
     distance, geom, normal = np.empty(count), np.empty(count, np.int32), np.zeros((count, 3))
-    # Rays start a little ahead so that the camera's own case is not in the picture.
-    origin = position - NEAR * rotation[:, 2]
     groups = np.array([1, 1, 1, 1, 0, 0], np.uint8)
     for a in range(0, count, CHUNK):
         b = min(count, a + CHUNK)
         part, ids, normals = np.empty(b - a), np.empty(b - a, np.int32), np.zeros((b - a) * 3)
         middle = (ids, part, normals) if _TAKES_NORMAL else (ids, part)
-        mujoco.mj_multiRay(model, data, origin, rays[a:b].reshape(-1), groups, 1, -1, *middle, b - a, FAR)
+        mujoco.mj_multiRay(model, data, position, rays[a:b].reshape(-1), groups, 1, -1, *middle, b - a, FAR)
         distance[a:b], geom[a:b], normal[a:b] = part, ids, normals.reshape(-1, 3)
     seen = (distance >= 0) & (distance < FAR)
-    depth = np.where(seen, distance * (rays @ -rotation[:, 2]) + NEAR, 0.0).reshape(height, width)
+    depth = np.where(seen, distance * (rays @ -rotation[:, 2]), 0.0).reshape(height, width)
     colours = np.where(model.geom_matid[:, np.newaxis] >= 0, [0.70, 0.64, 0.56, 1.0], model.geom_rgba)[:, :3] * 255
     light = 0.55 + 0.45 * np.abs(normal @ _LIGHT) if _TAKES_NORMAL else np.full(count, 0.85)
     rgb = np.where(seen[:, np.newaxis], colours[geom] * light[:, np.newaxis], _SKY)

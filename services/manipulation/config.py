@@ -7,6 +7,8 @@ class ManipulationConfig(Config, frozen=True):
     """Lengths in metres, speeds in rad/s or m/s, forces in newtons, times in seconds.
 
     A sighting of the object is good for `fresh` seconds; a newer one is waited for at most `look_patience`.
+    With the hand in front of it the wrist camera's sighting is waited for `aim_patience`; a shift between
+    `aim_least` and `aim_most` corrects the grasp.
     """
 
     max_candidates: int = 4
@@ -25,3 +27,6 @@ class ManipulationConfig(Config, frozen=True):
     settle: float = 0.3
     fresh: float = 1.5
     look_patience: float = 3.0
+    aim_patience: float = 1.0
+    aim_least: float = 0.002
+    aim_most: float = 0.03

@@ -6,7 +6,6 @@ from typing import Literal
 from services.manipulation.config import ManipulationConfig
 
 HOLDING_FORCE = 3.0
-OPEN_WIDTH = 0.080
 TOO_WIDE = 0.006
 
 
@@ -28,13 +27,14 @@ def judge(
 ) -> Literal["", "EMPTY_GRASP", "SLIPPED"]:
     """The failure code of a grasp on something `nominal` metres wide; "" when it is good.
 
-    `at_close` is the width when the fingers had closed: after the lift it must not have changed.
+    `at_close` is the width when the fingers had closed: after the lift it must not have changed. A `nominal` of 0 is
+    a rim of unknown slope, which turns between the fingers as its weight comes on them.
     """
     if grip.width <= config.empty_width:
         return "SLIPPED" if at_close is not None and at_close > config.empty_width else "EMPTY_GRASP"
     if grip.force <= HOLDING_FORCE:
         return "EMPTY_GRASP" if at_close is None else "SLIPPED"
-    if at_close is not None and abs(grip.width - at_close) > config.slip_width:
+    if nominal > 0 and at_close is not None and abs(grip.width - at_close) > config.slip_width:
         return "SLIPPED"
     if nominal > 0 and grip.width < nominal * 0.4:
         return "SLIPPED"
