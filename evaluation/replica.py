@@ -9,11 +9,11 @@ import mujoco
 import numpy as np
 
 from common import messages as m
+from common.robot import pads, subtree
 from common.scene import ObjectSpec, Scene
 from services.sim.objects import body_name
 from services.sim.truth import support
 
-GRIPPER = ("gripper", "left_finger", "right_finger")
 PENETRATION = 0.0005
 
 
@@ -52,8 +52,8 @@ class Replica:
         self._owner = np.full(model.ngeom, -1)
         for number, body in enumerate(self._body.values()):
             self._owner[model.geom_bodyid == body] = number
-        self._gripper = {model.body(n).id for n in GRIPPER}
-        self._pads = {model.geom(f"{side}_pad").id for side in ("left", "right")}
+        self._gripper = subtree(model, "gripper")
+        self._pads = pads(model)
         self._base_at = [model.joint(j).qposadr[0] for j in ("base_x", "base_y", "base_yaw")]
         self._floor = model.geom("floor").id
 
@@ -80,7 +80,7 @@ class Replica:
             x, y, z = (float(v) for v in data.xpos[body])
             up = data.xmat[body].reshape(3, 3)[2]
             reach = sum(abs(float(u)) * s / 2 for u, s in zip(up, spec.size, strict=True))
-            held = robot[name] >= self._pads and name not in other
+            held = all(robot[name] & side for side in self._pads) and name not in other
             things[name] = Thing(
                 position=(x, y, z),
                 tilt=math.acos(max(-1.0, min(1.0, float(up[2])))),

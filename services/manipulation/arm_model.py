@@ -10,12 +10,13 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from common.robot import ARM, Hand, arm_forward, arm_limits, home_arm
+
 Array = NDArray[np.float64]
-ARM = tuple(f"joint_{i}" for i in range(1, 8))
-HOME = np.array([0.0, -0.34906585, 3.14159265, -2.54818071, 0.0, -0.87266463, 1.57079633])
 BOXES = 24
 FAR = 50.0
-OPEN = 0.0
+# What the open fingers leave free beside the thing they go around [m].
+FINGER_ROOM = 0.009
 
 
 @dataclass(frozen=True)
@@ -58,10 +59,12 @@ class ArmModel:
         self.data: Any = mujoco.MjData(self.model)
         self.qpos_at = np.array([self.model.joint(j).qposadr[0] for j in ARM])
         self.dof_at = np.array([self.model.joint(j).dofadr[0] for j in ARM])
-        self.low, self.high = self.model.jnt_range[[self.model.joint(j).id for j in ARM]].T
-        free = self.model.jnt_limited[[self.model.joint(j).id for j in ARM]] == 0
-        self.low, self.high = np.where(free, -np.inf, self.low), np.where(free, np.inf, self.high)
-        self.unlimited = free
+        self.low, self.high = arm_limits(self.model)
+        self.unlimited = np.isinf(self.low)
+        self.home = home_arm(self.model)
+        mujoco.mj_kinematics(self.model, self.data)
+        self.forward = arm_forward(self.model, self.data)
+        self.widest = Hand(self.model).open - FINGER_ROOM
         self.pinch = self.model.site("pinch").id
         self._held = self.model.geom("held").id
         self._boxes = [self.model.geom(f"box_{i}").id for i in range(BOXES)]
@@ -97,6 +100,17 @@ class ArmModel:
         if geom != self._held:
             # The broad phase looks at the body's bounding volume, which the compiler sized.
             self.model.bvh_aabb[self.model.body_bvhadr[self.model.geom_bodyid[geom]]] = (0, 0, 0, *half)
+
+    def hand_geoms(self) -> list[str | int]:
+        """What of the arm must keep away from things: the palm and the last links, without the fingers."""
+        model = self.model
+        bodies = [model.body("gripper").id, *(int(model.jnt_bodyid[model.joint(ARM[j]).id]) for j in (6, 5, 3))]
+        return [g for b in bodies for g in range(model.ngeom) if model.geom_bodyid[g] == b and g != self._held]
+
+    def deck_geoms(self) -> list[str | int]:
+        """The upper side of the base."""
+        model = self.model
+        return [g for g in range(model.ngeom) if model.geom(g).name.startswith("deck")]
 
     def place(self, q: Array) -> None:
         """Set the arm and compute kinematics."""

@@ -9,7 +9,6 @@ import numpy as np
 
 from services.manipulation.arm_model import Array, Pose
 
-MAX_WIDTH = 0.076
 HANDLE_CONE = math.radians(50)
 BOWL_LEAN, BOWL_WALL, RIM_DEPTH = 0.55, 0.006, 0.012
 
@@ -53,9 +52,16 @@ def approach_rotation(azimuth: float, tilt: float, roll: float = 0.0) -> Array:
     return np.stack([c * x - s * y, s * x + c * y, z], axis=1)
 
 
-def candidates(target: Target) -> list[Grasp]:
-    """Grasps in the order to try them; empty when nothing of the object fits between the fingers."""
-    facing = math.atan2(target.position[1], target.position[0] - 0.12)
+def candidates(target: Target, forward: float, widest: float) -> list[Grasp]:
+    """Grasps in the order to try them; empty when nothing of the object fits between the fingers.
+
+    `forward`: where the arm stands on the base [m]; `widest`: what fits into the hand [m].
+    """
+    return [g for g in _candidates(target, forward) if g.width <= widest]
+
+
+def _candidates(target: Target, forward: float) -> list[Grasp]:
+    facing = math.atan2(target.position[1], target.position[0] - forward)
     if target.kind == "mug":
         return _round(target, facing, (40, 55, 25), handle=True)
     if target.kind in ("can", "bottle"):
@@ -79,8 +85,6 @@ def _make(target: Target, height: float, azimuth: float, tilt: float, roll: floa
 
 def _round(target: Target, facing: float, tilts: Sequence[float], handle: bool) -> list[Grasp]:
     width = max(target.size[0], target.size[1])
-    if width > MAX_WIDTH:
-        return []
     height = target.size[2] * (0.42 if target.kind == "bottle" else 0.55)
     if target.kind in ("apple", "ball"):
         height = target.size[2] / 2
@@ -110,7 +114,7 @@ def _flat(target: Target, facing: float, tilts: Sequence[float], height: float) 
             face = target.yaw + quarter * math.pi / 2
             width = target.size[1] if quarter % 2 == 0 else target.size[0]
             off = math.remainder(face - facing, 2 * math.pi)
-            if width <= MAX_WIDTH and abs(off) < math.radians(80 if degrees < 60 else 181):
+            if abs(off) < math.radians(80 if degrees < 60 else 181):
                 options.append((abs(off), face, width))
         for off, face, width in sorted(options):
             name = f"{degrees:.0f} deg on faces at {math.degrees(off):.0f}"

@@ -6,13 +6,13 @@ from collections.abc import Iterable
 import mink
 import numpy as np
 
-from services.manipulation.arm_model import ARM, HOME, ArmModel, Array, Pose
+from common.robot import ARM
+from services.manipulation.arm_model import ArmModel, Array, Pose
 
 ITERATIONS = 60
 DT = 0.25
 POSITION_TOLERANCE, ANGLE_TOLERANCE = 0.0015, 0.02
 CLEARANCE = 0.005
-_HAND = ("palm", "knuckles", "bracelet_link", "spherical_wrist_2_link", "forearm_link")
 _SPEED = dict.fromkeys(ARM[:4], 2.0) | dict.fromkeys(ARM[4:], 2.5)
 _STALL = 1e-4
 
@@ -32,10 +32,10 @@ class InverseKinematics:
             mink.ConfigurationLimit(model),
             mink.VelocityLimit(model, {k: np.array([v]) for k, v in _SPEED.items()}),
         ]
-        surroundings = [f"box_{i}" for i in range(3)] + ["deck"]
+        surroundings: list[str | int] = [*(f"box_{i}" for i in range(3)), *arm.deck_geoms()]
         self._avoid = mink.CollisionAvoidanceLimit(
             model,
-            geom_pairs=[(list(_HAND), surroundings)],
+            geom_pairs=[(arm.hand_geoms(), surroundings)],
             minimum_distance_from_collisions=CLEARANCE,
             collision_detection_distance=0.05,
         )
@@ -84,10 +84,10 @@ class InverseKinematics:
 
 def seeds(arm: ArmModel, target: Pose, now: Array) -> list[Array]:
     """Starting points: here, home turned to the target, and elbows to either side."""
-    turn = math.atan2(target.position[1], target.position[0] - 0.12)
+    turn = math.atan2(target.position[1], target.position[0] - arm.forward)
     found = [now]
     for lean, elbow, wrist in ((-0.35, -2.2, -0.9), (0.4, -1.9, -0.6), (0.6, -1.2, -1.2), (0.3, -2.3, 0.9)):
-        q = HOME.copy()
+        q = arm.home.copy()
         q[0], q[1], q[3], q[5] = turn, lean, elbow, wrist
         found.append(q)
     return found

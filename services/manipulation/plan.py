@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from services.manipulation.arm_model import HOME, ArmModel, Array, Obstacle, Pose
+from services.manipulation.arm_model import ArmModel, Array, Obstacle, Pose
 from services.manipulation.grasp import Grasp, Target, candidates
 from services.manipulation.ik import InverseKinematics, seeds
 from services.manipulation.trajectory import connect
@@ -15,9 +15,7 @@ MAX_JUMP = 0.6
 HELD_SHRINK = 0.008
 TRANSIT_MARGIN = 0.02
 # Close to the body; for long things the hand is turned or tips up so that they stay clear of the arm.
-CARRY = tuple(
-    HOME + np.array([0, 0, 0, 0, 0, tip, turn]) for tip in (0.0, 0.4, 0.8) for turn in (0.0, np.pi / 2, -np.pi / 2)
-)
+_CARRY = tuple((tip, turn) for tip in (0.0, 0.4, 0.8) for turn in (0.0, np.pi / 2, -np.pi / 2))
 
 
 class PlanError(Exception):
@@ -82,7 +80,12 @@ class Planner:
     def __init__(self, robot_mjcf: str, seed: int) -> None:
         self.arm = ArmModel(robot_mjcf)
         self.ik = InverseKinematics(self.arm)
+        self.carries = tuple(self.arm.home + np.array([0, 0, 0, 0, 0, tip, turn]) for tip, turn in _CARRY)
         self._seed = seed
+
+    def candidates(self, target: Target) -> list[Grasp]:
+        """Every grasp that this hand could try."""
+        return candidates(target, self.arm.forward, self.arm.widest)
 
     def grab(
         self,
@@ -99,10 +102,10 @@ class Planner:
         Raises:
             PlanError: UNREACHABLE.
         """
-        distance = float(np.hypot(target.position[0] - 0.12, target.position[1]))
+        distance = float(np.hypot(target.position[0] - self.arm.forward, target.position[1]))
         if distance > reach:
             raise PlanError("UNREACHABLE", f"{target.label} is {distance:.2f} m from the arm, reach is {reach:.2f} m")
-        options = [g for g in candidates(target) if g.name not in skip]
+        options = [g for g in self.candidates(target) if g.name not in skip]
         if not options:
             raise PlanError("UNREACHABLE", f"no grasp left to try on {target.label}")
         failures: dict[str, int] = {}
@@ -175,7 +178,7 @@ class Planner:
 
     def _to_carry(self, start: Array, rng: np.random.Generator) -> list[Array] | None:
         """A path to the first carry pose where the held object is clear of the arm."""
-        for carry in CARRY:
+        for carry in self.carries:
             goal = self.arm.nearest_turn(carry, start)
             if not self.arm.collides(goal):
                 path = connect(self.arm, start, goal, rng)
@@ -224,7 +227,7 @@ class Planner:
         # Straight down has no azimuth of its own: the hand's x axis points away from the robot there.
         level = approach if np.hypot(approach[0], approach[1]) > 0.2 else held.rotation[:, 0]
         was = np.arctan2(level[1], level[0])
-        delta = np.arctan2(spot[1], spot[0] - 0.12) - was + turn
+        delta = np.arctan2(spot[1], spot[0] - arm.forward) - was + turn
         c, s = np.cos(delta), np.sin(delta)
         spin = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1.0]])
         target = Pose(np.array([*spot, height]) + spin @ held.offset, spin @ held.rotation)
@@ -253,7 +256,7 @@ class Planner:
         back = self.straight(down[-1], target, target.moved(away))
         if back is None:
             return "no way back"
-        home = connect(arm, back[-1], arm.nearest_turn(HOME, back[-1]), rng)
+        home = connect(arm, back[-1], arm.nearest_turn(arm.home, back[-1]), rng)
         if home is None:
             return "no path home"
         return PlacePlan(there, [high, *down], [down[-1], *back], home, spot)
@@ -262,7 +265,7 @@ class Planner:
         """A path to the carry pose; straight where nothing better is found."""
         self.arm.hold(None)
         self.arm.set_obstacles(around)
-        goal = self.arm.nearest_turn(HOME, now)
+        goal = self.arm.nearest_turn(self.arm.home, now)
         return connect(self.arm, now, goal, np.random.default_rng(self._seed)) or [now, goal]
 
     def pose(self, q: Array) -> Pose:

@@ -6,7 +6,7 @@ import numpy as np
 
 from common.messages import ObjectRef
 from services.manipulation.arm_model import Array, Obstacle
-from services.manipulation.plan import CARRY, Held, PlanError, Planner
+from services.manipulation.plan import Held, PlanError, Planner
 from services.manipulation.routines import Failure, Robot, Steps, go_home
 from services.manipulation.surroundings import obstacles
 from services.manipulation.verify import holds
@@ -17,7 +17,7 @@ USUAL_SIZE = (0.06, 0.06, 0.10)
 
 def at_carry(planner: Planner, joints: Array) -> bool:
     """The arm is folded already."""
-    return any(float(np.abs(planner.arm.nearest_turn(c, joints) - joints).max()) < NEAR for c in CARRY)
+    return any(float(np.abs(planner.arm.nearest_turn(c, joints) - joints).max()) < NEAR for c in planner.carries)
 
 
 def in_hand(planner: Planner, joints: Array, width: float, wanted: ObjectRef | None) -> Held:

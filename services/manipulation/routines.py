@@ -10,7 +10,7 @@ from common import topics
 from common.geometry import Pose2, compose
 from common.io import Io
 from common.messages import WorldObject
-from services.manipulation.arm_model import HOME, Array, Obstacle
+from services.manipulation.arm_model import Array, Obstacle
 from services.manipulation.config import ManipulationConfig
 from services.manipulation.grasp import approach_rotation
 from services.manipulation.object_source import ObjectSource
@@ -41,8 +41,8 @@ class Robot:
     def __init__(self, config: ManipulationConfig, io: Io, source: ObjectSource) -> None:
         self.config, self.io, self.source = config, io, source
         self.now = 0.0
-        self.joints: Array = HOME.copy()
-        self.grip = Grip(0.085, 0.0)
+        self.joints: Array = np.zeros(7)
+        self.grip = Grip(0.0, 0.0)
         self.base: Pose2 = (0.0, 0.0, 0.0)
         self.phase = ""
         self.held: Held | None = None

@@ -3,14 +3,15 @@
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import ConvexHull
 
 from common.geometry import Array, Pose2
+from common.robot import ARM, Hand
 from services.perception.view import Mask, View
 
 STEP = 4
 REACH = 1.1
 MARGIN = 0.025
-ARM = tuple(f"joint_{i}" for i in range(1, 8))
 
 
 class Body:
@@ -20,15 +21,16 @@ class Body:
         self._model = mujoco.MjModel.from_xml_string(mjcf)
         self._data = mujoco.MjData(self._model)
         self._arm = [self._model.joint(name).qposadr[0] for name in ARM]
-        self._fingers = [self._model.joint(f"{side}_finger").qposadr[0] for side in ("left", "right")]
-        self._stroke = float(self._model.joint("left_finger").range[1])
+        self._hand = Hand(self._model)
+        self._fingers = [self._model.joint(name).qposadr[0] for name in self._hand.joints]
+        self._faces = {g: _faces(self._model, g) for g in range(self._model.ngeom) if _is_mesh(self._model, g)}
         self._solid = [g for g in range(self._model.ngeom) if self._model.geom_type[g] != mujoco.mjtGeom.mjGEOM_PLANE]
 
     def pose(self, arm: Array, width: float) -> None:
         """Take the arm's joint angles (7,) and the gripper's width [m]."""
         self._data.qpos[:] = 0.0
         self._data.qpos[self._arm] = arm
-        self._data.qpos[self._fingers] = np.clip(self._stroke - width / 2, 0.0, self._stroke)
+        self._data.qpos[self._fingers] = self._hand.posture(width)
         mujoco.mj_kinematics(self._model, self._data)
 
     def hand(self, base: Pose2) -> tuple[float, float, float]:
@@ -55,9 +57,26 @@ class Body:
         best = np.full(len(points), np.inf)
         for g in self._solid:
             rotation = self._data.geom_xmat[g].reshape(3, 3)
-            local = np.abs((points - self._data.geom_xpos[g]) @ rotation)
-            best = np.minimum(best, _outside(local, int(self._model.geom_type[g]), self._model.geom_size[g]))
+            local = (points - self._data.geom_xpos[g]) @ rotation
+            if g in self._faces:
+                normals, offsets = self._faces[g]
+                best = np.minimum(best, np.maximum((local @ normals.T + offsets).max(axis=1), 0.0))
+            else:
+                size = self._model.geom_size[g]
+                best = np.minimum(best, _outside(np.abs(local), int(self._model.geom_type[g]), size))
         return best
+
+
+def _is_mesh(model: mujoco.MjModel, geom: int) -> bool:
+    return bool(model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_MESH)
+
+
+def _faces(model: mujoco.MjModel, geom: int) -> tuple[Array, Array]:
+    """Outward normals (k, 3) and offsets (k,) of a mesh's convex hull: inside, every normal @ point + offset <= 0."""
+    mesh = int(model.geom_dataid[geom])
+    first, count = int(model.mesh_vertadr[mesh]), int(model.mesh_vertnum[mesh])
+    planes = ConvexHull(model.mesh_vert[first : first + count]).equations
+    return planes[:, :3], planes[:, 3]
 
 
 def _outside(local: Array, kind: int, size: NDArray[np.float64]) -> Array:

@@ -10,8 +10,9 @@ from common import messages as m
 from common import topics
 from common.geometry import Array, Pose2, wrap
 from common.io import Io, Job
+from common.robot import ARM
 from common.runtime import StartError
-from services.perception.body import ARM, Body
+from services.perception.body import Body
 from services.perception.config import PerceptionConfig
 from services.perception.detect import ClassicalDetector, Detection, Detector
 from services.perception.ground import Grounding, ground

@@ -7,13 +7,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 JUMP = 0.6
-_LIMITS = np.array([np.inf, 2.24, np.inf, 2.57, np.inf, 2.09, np.inf])
+Array = NDArray[np.float64]
 
 
 class ArmDriver:
-    """Moves the set-point (7,) linearly to each commanded one within its period."""
+    """Moves the set-point (7,) linearly to each commanded one within its period; `limits` lowest and highest angles."""
 
-    def __init__(self, position: NDArray[np.float64], timeout: float) -> None:
+    def __init__(self, position: Array, timeout: float, limits: tuple[Array, Array]) -> None:
+        self._low, self._high = limits
         self._position, self._goal = position.copy(), position.copy()
         self._left, self._timeout, self._heard = 0.0, timeout, -math.inf
 
@@ -22,18 +23,18 @@ class ArmDriver:
         goal: Any = np.array(position)
         if goal.shape != (7,) or not np.isfinite(goal).all() or not 0 < period <= 1.0:
             return "a set-point is 7 finite angles and a period of at most 1 s"
-        if (np.abs(goal) > _LIMITS).any():
+        if (goal < self._low).any() or (goal > self._high).any():
             return "set-point beyond a joint limit"
         if np.abs(goal - self._position).max() > JUMP:
             return f"set-point jumps by more than {JUMP} rad"
         self._goal, self._left, self._heard = goal, period, now
         return ""
 
-    def halt(self, actual: NDArray[np.float64]) -> None:
+    def halt(self, actual: Array) -> None:
         """Hold the measured position."""
         self._position, self._goal, self._left = actual.copy(), actual.copy(), 0.0
 
-    def advance(self, now: float, dt: float) -> NDArray[np.float64]:
+    def advance(self, now: float, dt: float) -> Array:
         """The set-point after `dt` seconds."""
         if now - self._heard > self._timeout:
             self._left, self._goal = 0.0, self._position

@@ -7,6 +7,8 @@ from common.scene import Obstacle
 class SimConfig(Config, frozen=True):
     """`speed` is `realtime`, a factor, or `max`; `wait_for` names the participants that lockstep waits for.
 
+    `robot`: `tidybot`, or `menagerie:stanford_tidybot` for the official model.
+
     Wheel odometry: `slip` is the largest constant scale error, `veer` the largest constant turn [rad/m],
     `noise` a random walk [m and rad per sqrt(m)]. `obstacles`: tables, or names of the scene's; `none`: not even those
     that the scene places.
@@ -16,6 +18,7 @@ class SimConfig(Config, frozen=True):
     """
 
     speed: str = "realtime"
+    robot: str = "tidybot"
     wait_for: tuple[str, ...] = ()
     viewer: bool = False
     max_speed: float = 0.5

@@ -6,10 +6,13 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from common.robot import ARM, BASE, arm_limits, pads, subtree
 from common.scene import Obstacle, Scene
-from services.sim import objects, robot
+from services.sim import objects
 from services.sim.contacts import Contacts
+from services.sim.fingers import fingers, view
 from services.sim.layout import Placement, place_objects
+from services.sim.model import Robot, own
 from services.sim.obstacles import Obstacles, body_xml
 from services.sim.world import world_mjcf
 
@@ -21,32 +24,33 @@ _STATE = mujoco.mjtState.mjSTATE_INTEGRATION
 class Physics:
     """One world; `advance` runs 10 ms of it at 500 Hz."""
 
-    def __init__(self, scene: Scene, seed: int, obstacles: tuple[Obstacle, ...] = ()) -> None:
-        self.scene, self.seed = scene, seed
+    def __init__(
+        self, scene: Scene, seed: int, obstacles: tuple[Obstacle, ...] = (), robot: Robot | None = None
+    ) -> None:
+        self.scene, self.seed, self.robot = scene, seed, robot or own()
         self.placements: list[Placement] = place_objects(scene, seed)
-        self.mjcf = world_mjcf(scene, self.placements, "".join(map(body_xml, obstacles)))
+        self.mjcf = world_mjcf(scene, self.placements, "".join(map(body_xml, obstacles)), self.robot)
         self.model: Any = mujoco.MjModel.from_xml_string(self.mjcf)
         self.model.opt.enableflags |= mujoco.mjtEnableBit.mjENBL_SLEEP
         self.data: Any = mujoco.MjData(self.model)
         model = self.model
-        joints = ("base_x", "base_y", "base_yaw", *robot.ARM_JOINTS)
+        joints = (*BASE, *ARM)
         self.qpos_at = np.array([model.joint(j).qposadr[0] for j in joints])
         self.qvel_at = np.array([model.joint(j).dofadr[0] for j in joints])
-        self.finger_qpos = np.array([model.joint(f"{s}_finger").qposadr[0] for s in ("left", "right")])
-        self.finger_qvel = np.array([model.joint(f"{s}_finger").dofadr[0] for s in ("left", "right")])
         self.ctrl_at = np.array([model.actuator(j).id for j in joints])
         self.gripper_ctrl = model.actuator("gripper").id
         # Live views: looking an array up on MjData and indexing it by a list cost more than a physics step.
-        self.joints = _view(self.data.qpos, self.qpos_at)
-        self.rates = _view(self.data.qvel, self.qvel_at)
-        self.fingers = _view(self.data.qpos, self.finger_qpos)
-        self.finger_rates = _view(self.data.qvel, self.finger_qvel)
-        self.forces = _view(self.data.actuator_force, np.append(self.ctrl_at, self.gripper_ctrl))
-        self._ctrl = _view(self.data.ctrl, self.ctrl_at)
+        self.joints = view(self.data.qpos, self.qpos_at)
+        self.rates = view(self.data.qvel, self.qvel_at)
+        self.forces = view(self.data.actuator_force, np.append(self.ctrl_at, self.gripper_ctrl))
+        self._ctrl = view(self.data.ctrl, self.ctrl_at)
         self.lidar_site = model.site("lidar").id
-        self.pads = tuple(model.geom(f"{s}_pad").id for s in ("left", "right"))
+        self.pads = pads(model)
+        self.fingers = fingers(model, self.data)
+        self.home_arm = self.robot.home
+        self.arm_limits = arm_limits(model)
         self.bodies = {p.spec.name: model.body(objects.body_name(p.spec)).id for p in self.placements}
-        self.gripper_bodies = {model.body(n).id for n in ("gripper", "left_finger", "right_finger")}
+        self.gripper_bodies = subtree(model, "gripper")
         self.robot_bodies = {b for b in range(model.nbody) if model.body_rootid[b] == model.body("base").id}
         self.contacts = Contacts(self.model, self.robot_bodies)
         self.obstacles = Obstacles(obstacles, self.model)
@@ -55,7 +59,7 @@ class Physics:
     def reset(self) -> None:
         """The layout of the seed, the robot at home, everything at rest."""
         mujoco.mj_resetData(self.model, self.data)
-        home = (self.scene.home.x, self.scene.home.y, self.scene.home.theta, *robot.HOME_ARM)
+        home = (self.scene.home.x, self.scene.home.y, self.scene.home.theta, *self.home_arm)
         self.data.qpos[self.qpos_at] = home
         self.data.ctrl[self.ctrl_at] = home
         for p in self.placements:
@@ -85,26 +89,26 @@ class Physics:
 
     def grip(self, closed: float, effort: float) -> None:
         """Drive the fingers to `closed` (0..1) with at most `effort` newtons each."""
-        self.data.ctrl[self.gripper_ctrl] = closed * robot.STROKE / 2
+        low, high = self.model.actuator_ctrlrange[self.gripper_ctrl].tolist()
+        self.data.ctrl[self.gripper_ctrl] = low + closed * (high - low)
         self.limit_effort(effort)
 
     def limit_effort(self, effort: float) -> None:
         """The most that each finger presses [N]; not part of MuJoCo's state."""
-        self.model.actuator_forcerange[self.gripper_ctrl] = (-2 * effort, 2 * effort)
+        most = effort * self.fingers.per_newton
+        self.model.actuator_forcerange[self.gripper_ctrl] = (-most, most)
 
     def width(self) -> float:
         """Distance between the pads [m]."""
-        left, right = self.fingers.tolist()
-        return float(robot.STROKE - left - right)
+        return self.fingers.width()
 
     def width_rate(self) -> float:
         """How fast the pads move apart [m/s]."""
-        left, right = self.finger_rates.tolist()
-        return float(-left - right)
+        return self.fingers.rate()
 
     def finger_force(self) -> float:
         """Closing force of one finger [N]."""
-        return float(self.forces[-1] / 2)
+        return float(self.forces[-1] / self.fingers.per_newton)
 
     def snapshot(self) -> NDArray[np.float64]:
         """The full integration state."""
@@ -116,11 +120,3 @@ class Physics:
         """Back to a snapshot of the same model."""
         mujoco.mj_setState(self.model, self.data, state, _STATE)
         mujoco.mj_forward(self.model, self.data)
-
-
-def _view(array: Any, at: NDArray[np.int64]) -> NDArray[np.float64]:
-    """The entries `at` of an array of MjData, which must lie side by side, as a view that stays current."""
-    if (np.diff(at) != 1).any():
-        raise ValueError("the robot's joints and actuators must come first in the model, in order")
-    found: NDArray[np.float64] = array[at[0] : at[-1] + 1]
-    return found

@@ -165,4 +165,5 @@ def robot_mjcf() -> str:
 <contact>{rows}</contact>
 {actuators_xml()}
 {equality_xml()}
+<keyframe><key name="home" qpos="0 0 0 {" ".join(map(repr, HOME_ARM))} 0 0"/></keyframe>
 </mujoco>"""

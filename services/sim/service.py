@@ -11,21 +11,23 @@ from common import messages as m
 from common import topics
 from common.io import Io
 from common.lockstep import DT
+from common.robot import ARM, BASE
 from common.runtime import StartError
-from services.sim import checkpoint, robot, truth
+from services.sim import checkpoint, truth
 from services.sim.arm import ArmDriver
 from services.sim.base import BaseDriver
 from services.sim.config import SimConfig
 from services.sim.lidar import RANGE_MAX, RANGE_MIN, RAYS, Lidar
+from services.sim.menagerie import RobotError
+from services.sim.model import Robot, load_robot
 from services.sim.obstacles import chosen
 from services.sim.odometry import WheelOdometry
 from services.sim.physics import Physics
 from services.sim.viewer import Viewer
 
 SCAN_TICKS, STATE_TICKS, CHECKPOINT_TICKS = 10, 5, 50
-FULL_EFFORT = 40.0
 MAX_DISTANCE = 50.0
-_NAMES = list(robot.JOINT_NAMES)
+_NAMES = [*BASE, *ARM, "gripper"]
 
 
 class Pause(msgspec.Struct):
@@ -56,7 +58,7 @@ class SimService:
         self._speed = _speed(config.speed)
         self.paused = False
         self.start_time = 0.0
-        self.physics = Physics(io.scene, io.seed, chosen(io.scene, config.obstacles))
+        self.physics = Physics(io.scene, io.seed, chosen(io.scene, config.obstacles), _robot(config.robot))
         self._lidar = Lidar(self.physics.model, self.physics.lidar_site, config.lidar_noise, io.rng)
         self._viewer = Viewer(self.physics) if config.viewer else None
         self._tick = 0
@@ -82,14 +84,14 @@ class SimService:
         home = io.scene.home
         pose = (home.x, home.y, home.theta)
         self._base = BaseDriver(config, pose)
-        self._arm = ArmDriver(np.array(robot.HOME_ARM), config.stream_timeout)
+        self._arm = ArmDriver(np.array(self.physics.home_arm), config.stream_timeout, self.physics.arm_limits)
         self._odometry = WheelOdometry(pose, config, self.physics.seed)
         self._believed = pose
-        self._setpoint = np.array([*pose, *robot.HOME_ARM])
-        self._grip(0.0, FULL_EFFORT)
+        self._setpoint = np.array([*pose, *self.physics.home_arm])
+        self._grip(0.0, self.physics.fingers.force)
         self._reached: tuple[bool, str] = (False, "")
         physics = self.physics
-        io.publish(topics.ROBOT_DESCRIPTION, m.RobotDescription(mjcf=robot.robot_mjcf()))
+        io.publish(topics.ROBOT_DESCRIPTION, m.RobotDescription(mjcf=physics.robot.mjcf))
         model = m.SimModel(scene=io.scene.name, seed=physics.seed, epoch=io.epoch, mjcf=physics.mjcf)
         io.publish(topics.SIM_MODEL, model)
         io.publish(topics.GOAL_REACHED, m.GoalReached(reached=False))
@@ -109,7 +111,7 @@ class SimService:
         x, y, yaw = (float(v) for v in actual[:3])
         self._setpoint = np.array([*actual[:3], *state.setpoint[3:]])
         self._base = BaseDriver(self._config, (x, y, yaw), stopped=state.stopped)
-        self._arm = ArmDriver(self._setpoint[3:], self._config.stream_timeout)
+        self._arm = ArmDriver(self._setpoint[3:], self._config.stream_timeout, physics.arm_limits)
         self._odometry.resume((x, y, yaw), state.odometry)
         self._believed = state.odometry
         self._effort = state.effort
@@ -206,7 +208,7 @@ class SimService:
             if not (0.0 <= grip.position <= 1.0 and grip.max_effort > 0.0):
                 io.count_drop(topics.GRIPPER_COMMAND.key, "position is 0..1, max_effort above 0")
             elif not self._base.stopped:
-                self._grip(grip.position, min(grip.max_effort, FULL_EFFORT))
+                self._grip(grip.position, min(grip.max_effort, self.physics.fingers.force))
 
     def _publish(self, t: float) -> None:
         io, physics, data = self._io, self.physics, self.physics.data
@@ -276,6 +278,13 @@ class SimService:
 
 def _sane(value: float) -> bool:
     return math.isfinite(value) and abs(value) <= MAX_DISTANCE
+
+
+def _robot(name: str) -> Robot:
+    try:
+        return load_robot(name)
+    except RobotError as error:
+        raise StartError(f"sim.robot: {error}") from None
 
 
 def _speed(text: str) -> float | None:

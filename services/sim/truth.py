@@ -31,8 +31,8 @@ def touching(physics: Physics) -> tuple[dict[str, set[int]], dict[str, bool]]:
 def holding(physics: Physics) -> str | None:
     """The object that both pads touch and nothing else supports."""
     robot, other = touching(physics)
-    pads = set(physics.pads)
-    return next((n for n, geoms in robot.items() if pads <= geoms and not other[n]), None)
+    left, right = physics.pads
+    return next((n for n, geoms in robot.items() if left & geoms and right & geoms and not other[n]), None)
 
 
 def support(scene: Scene, x: float, y: float, bottom: float) -> str:

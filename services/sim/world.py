@@ -4,8 +4,9 @@ import math
 from collections.abc import Sequence
 
 from common.scene import BIN_WALL, BODY_INSET, LEG, LEG_INSET, Receptacle, Scene
-from services.sim import objects, robot
+from services.sim import objects
 from services.sim.layout import Placement
+from services.sim.model import Robot, own
 
 STATIC = 'contype="1" conaffinity="3"'
 _WOOD, _WHITE, _STEEL = "0.62 0.46 0.32 1", "0.90 0.89 0.86 1", "0.72 0.74 0.76 1"
@@ -85,8 +86,9 @@ def _receptacle(r: Receptacle) -> str:
     return _cabinet(r, _WHITE if r.kind == "counter" else _WOOD, _STEEL if r.kind == "counter" else _WOOD)
 
 
-def world_mjcf(scene: Scene, placements: Sequence[Placement], mocap: str = "") -> str:
-    """The complete model. `mocap` adds bodies of moving obstacles."""
+def world_mjcf(scene: Scene, placements: Sequence[Placement], mocap: str = "", robot: Robot | None = None) -> str:
+    """The complete model. `mocap` adds bodies of moving obstacles; `robot` None is our own."""
+    robot = robot or own()
     lights = "".join(
         f'<light pos="{(r.low[0] + r.high[0]) / 2} {(r.low[1] + r.high[1]) / 2} 3.5" dir="0 0 -1" '
         'diffuse="0.35 0.35 0.34" specular="0.05 0.05 0.05" castshadow="false"/>'
@@ -109,16 +111,15 @@ def world_mjcf(scene: Scene, placements: Sequence[Placement], mocap: str = "") -
   <texture name="sky" type="skybox" builtin="gradient" rgb1=".75 .82 .90" rgb2=".95 .96 .98" width="64" height="64"/>
   <texture name="floor" type="2d" builtin="checker" rgb1=".72 .66 .58" rgb2=".68 .62 .54" width="128" height="128"/>
   <material name="floor" texture="floor" texrepeat="{extent[0]:.0f} {extent[1]:.0f}"/>
-</asset>
+{robot.assets}</asset>
 <worldbody>
   {lights}
   <geom name="floor" type="plane" pos="{center[0]} {center[1]} 0" size="{extent[0] / 2} {extent[1] / 2} 0.1"
         material="floor" {STATIC}/>
   {_walls(scene)}{_furniture(scene)}{"".join(_receptacle(r) for r in scene.receptacles)}
-  {robot.body_xml()}
+  {robot.body}
   {bodies}
   {mocap}
 </worldbody>
-{robot.actuators_xml()}
-{robot.equality_xml()}
+{robot.rest}
 </mujoco>"""

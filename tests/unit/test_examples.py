@@ -78,6 +78,6 @@ def test_every_kind_has_a_body_a_grasp_and_a_shape(kind: ObjectKind) -> None:
     spec = ObjectSpec(name="x", kind=kind, colour="red", size=size, mass=0.2, rgba=(1.0, 0.0, 0.0, 1.0))
     assert "<geom" in geoms(spec)
     target = Target(label="x", kind=kind, size=size, position=(0.6, 0.0, 0.6), yaw=0.0)
-    assert candidates(target)
+    assert candidates(target, forward=0.12, widest=0.076)
     if kind not in ("box", "block"):
         assert profile(kind, size)

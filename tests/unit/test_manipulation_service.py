@@ -10,9 +10,9 @@ from common import messages as m
 from common import topics
 from common.memory import MemoryBus, MemoryIo
 from common.scene import load_scene
-from services.manipulation.arm_model import HOME, ArmModel, Obstacle, Pose
+from services.manipulation.arm_model import ArmModel, Obstacle, Pose
 from services.manipulation.config import ManipulationConfig
-from services.manipulation.grasp import MAX_WIDTH, Target, approach_rotation, candidates
+from services.manipulation.grasp import Target, approach_rotation, candidates
 from services.manipulation.ik import InverseKinematics, seeds
 from services.manipulation.service import ManipulationService
 from services.manipulation.trajectory import connect, free_line, timed
@@ -21,6 +21,7 @@ from services.sim.robot import HOME_ARM, JOINT_NAMES, robot_mjcf
 
 SCENE = load_scene("minimal")
 CONFIG = ManipulationConfig()
+FORWARD, WIDEST = 0.12, 0.076
 
 
 @pytest.fixture(scope="module")
@@ -29,19 +30,20 @@ def arm() -> ArmModel:
 
 
 def test_home_is_the_simulations_and_touches_nothing(arm: ArmModel) -> None:
-    assert pytest.approx(HOME_ARM) == HOME
-    assert not arm.collides(HOME)
-    assert arm.pose(HOME).position[0] < 0.36
+    assert pytest.approx(HOME_ARM) == arm.home
+    assert (arm.forward, arm.widest) == (pytest.approx(FORWARD), pytest.approx(WIDEST))
+    assert not arm.collides(arm.home)
+    assert arm.pose(arm.home).position[0] < 0.36
 
 
 def test_boxes_and_a_held_object_are_seen_by_the_collision_check(arm: ArmModel) -> None:
-    tip = arm.pose(HOME).position
+    tip = arm.pose(arm.home).position
     arm.set_obstacles([Obstacle((float(tip[0]), float(tip[1]), float(tip[2])), (0.1, 0.1, 0.1))])
-    assert arm.collides(HOME)
+    assert arm.collides(arm.home)
     arm.set_obstacles([Obstacle((float(tip[0]), float(tip[1]), float(tip[2]) - 0.16), (0.1, 0.1, 0.1))])
-    assert not arm.collides(HOME)
+    assert not arm.collides(arm.home)
     arm.hold(np.array([0.03, 0.03, 0.12]), np.zeros(3))
-    assert arm.collides(HOME), "the held object reaches down to the box"
+    assert arm.collides(arm.home), "the held object reaches down to the box"
     arm.hold(None)
     arm.set_obstacles(())
 
@@ -54,7 +56,7 @@ def test_inverse_kinematics_finds_reachable_poses_to_the_millimetre(arm: ArmMode
         tilt, turn = rng.uniform(0.3, 1.57), rng.uniform(-0.5, 0.5)
         position = np.array([rng.uniform(0.45, 0.7), rng.uniform(-0.2, 0.2), rng.uniform(0.45, 0.7)])
         target = Pose(position, approach_rotation(turn, tilt))
-        q = solver.solve(target, seeds(arm, target, HOME))
+        q = solver.solve(target, seeds(arm, target, arm.home))
         if q is not None:
             solved += 1
             found = arm.pose(q)
@@ -68,10 +70,10 @@ def test_inverse_kinematics_finds_reachable_poses_to_the_millimetre(arm: ArmMode
 def test_every_kind_has_grasps_that_fit_the_gripper(kind: str) -> None:
     spec = next(o for o in load_scene("apartment").objects if o.kind == kind)
     target = Target(spec.name, kind, (0.6, 0.05, 0.6 + spec.size[2] / 2), 0.4, spec.size)
-    found = candidates(target)
+    found = candidates(target, FORWARD, WIDEST)
     assert len(found) >= 3
     for grasp in found:
-        assert grasp.width <= MAX_WIDTH
+        assert grasp.width <= WIDEST
         assert np.allclose(grasp.pose.rotation.T @ grasp.pose.rotation, np.eye(3), atol=1e-9)
         assert np.linalg.det(grasp.pose.rotation) == pytest.approx(1.0)
         assert grasp.pose.rotation[2, 2] < 0.05, "no approach from below"
@@ -81,36 +83,36 @@ def test_every_kind_has_grasps_that_fit_the_gripper(kind: str) -> None:
 def test_a_block_is_gripped_on_its_faces_from_above() -> None:
     for yaw in np.linspace(-3, 3, 13):
         target = Target("block", "block", (0.6, 0.0, 0.625), float(yaw), (0.05, 0.05, 0.05))
-        closing = candidates(target)[0].pose.rotation[:, 1]
+        closing = candidates(target, FORWARD, WIDEST)[0].pose.rotation[:, 1]
         off = math.remainder(math.atan2(closing[1], closing[0]) - yaw, math.pi / 2)
         assert abs(off) < 1e-6
 
 
 def test_what_is_too_wide_has_no_grasp() -> None:
-    assert candidates(Target("crate", "box", (0.6, 0.0, 0.7), 0.0, (0.2, 0.2, 0.2))) == []
+    assert candidates(Target("crate", "box", (0.6, 0.0, 0.7), 0.0, (0.2, 0.2, 0.2)), FORWARD, WIDEST) == []
 
 
 def test_paths_go_around_boxes(arm: ArmModel) -> None:
-    goal = HOME.copy()
+    goal = arm.home.copy()
     goal[0] = 1.5
-    middle = HOME.copy()
+    middle = arm.home.copy()
     middle[0] = 0.75
     tip = arm.pose(middle).position
     arm.set_obstacles([Obstacle((float(tip[0]), float(tip[1]), float(tip[2]) - 0.02), (0.08, 0.08, 0.06))])
-    assert not free_line(arm.collides, HOME, goal)
-    path = connect(arm, HOME, goal, np.random.default_rng(0))
-    assert path is not None and path[0] is HOME and np.allclose(path[-1], goal)
+    assert not free_line(arm.collides, arm.home, goal)
+    path = connect(arm, arm.home, goal, np.random.default_rng(0))
+    assert path is not None and path[0] is arm.home and np.allclose(path[-1], goal)
     for a, b in itertools.pairwise(path):
         assert free_line(arm.collides, a, b)
     arm.set_obstacles(())
 
 
 @pytest.mark.parametrize("scale", [0.001, 0.05, 0.4, 2.0])
-def test_trajectories_keep_speed_and_acceleration_and_end_where_they_should(scale: float) -> None:
-    path = [HOME, HOME + scale]
+def test_trajectories_keep_speed_and_acceleration_and_end_where_they_should(arm: ArmModel, scale: float) -> None:
+    path = [arm.home, arm.home + scale]
     samples = timed(path, 1.0, 2.5, 0.02)
     assert np.allclose(samples[-1], path[-1])
-    speed = np.diff(np.vstack([HOME, samples]), axis=0) / 0.02
+    speed = np.diff(np.vstack([arm.home, samples]), axis=0) / 0.02
     assert np.abs(speed).max() <= 1.0 + 1e-6
     assert np.abs(np.diff(speed[:-1], axis=0)).max(initial=0.0) / 0.02 <= 2.5 + 1e-6
 

@@ -1,0 +1,81 @@
+"""What a robot's MJCF says about its arm and gripper: limits, carry pose, mount, and the fingers of a width."""
+
+from typing import Any
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+ARM = tuple(f"joint_{i}" for i in range(1, 8))
+BASE = ("base_x", "base_y", "base_yaw")
+HOME = "home"
+SIDES = ("left", "right")
+# A gripper whose fingers do not simply slide says where its joints stand for a few widths, widest first.
+HAND_JOINTS, HAND_WIDTHS, HAND_POSTURES, HAND_LENGTHS = "hand_joints", "hand_widths", "hand_postures", "hand_lengths"
+
+
+def arm_limits(model: Any) -> tuple[Array, Array]:
+    """Lowest and highest angles (7,) of the arm, infinite where a joint turns freely."""
+    ids = [model.joint(j).id for j in ARM]
+    low, high = model.jnt_range[ids].T
+    free = model.jnt_limited[ids] == 0
+    return np.where(free, -np.inf, low), np.where(free, np.inf, high)
+
+
+def home_arm(model: Any) -> Array:
+    """The carry pose (7,): the arm in keyframe `home`.
+
+    Raises:
+        KeyError: the model has none.
+    """
+    at = [model.joint(j).qposadr[0] for j in ARM]
+    return np.array(model.key(HOME).qpos[at])
+
+
+def arm_forward(model: Any, data: Any) -> float:
+    """How far in front of the base's middle the arm's first joint stands [m]; `data` with all joints at zero."""
+    return float(data.xanchor[model.joint(ARM[0]).id][0])
+
+
+def subtree(model: Any, name: str) -> set[int]:
+    """The bodies of the model that `name` carries, itself included."""
+    top = model.body(name).id
+    found = {top}
+    for body in range(top + 1, model.nbody):
+        if int(model.body_parentid[body]) in found:
+            found.add(body)
+    return found
+
+
+def pads(model: Any) -> tuple[frozenset[int], frozenset[int]]:
+    """The geoms of the left and of the right finger that touch what is gripped."""
+    names = [model.geom(g).name for g in range(model.ngeom)]
+    left, right = (frozenset(g for g, n in enumerate(names) if n.startswith(f"{side}_pad")) for side in SIDES)
+    return left, right
+
+
+class Hand:
+    """The gripper's joints as a function of the width between its pads [m]."""
+
+    def __init__(self, model: Any) -> None:
+        self.table: tuple[Array, Array, Array] | None = None
+        text = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_TEXT, HAND_JOINTS)
+        if text >= 0:
+            at, size = model.text_adr[text], model.text_size[text]
+            self.joints = tuple(bytes(model.text_data[at : at + size]).rstrip(b"\0").decode().split())
+            widths, lengths = (np.array(model.numeric(n).data) for n in (HAND_WIDTHS, HAND_LENGTHS))
+            postures = np.array(model.numeric(HAND_POSTURES).data).reshape(len(widths), len(self.joints))
+            self.table = widths, lengths, postures
+            self.open = float(widths[0])
+        else:
+            self.joints = tuple(f"{side}_finger" for side in SIDES)
+            self._top = float(model.joint(self.joints[0]).range[1])
+            self.open = 2 * self._top
+
+    def posture(self, width: float) -> Array:
+        """Joint positions, in the order of `joints`."""
+        if self.table is None:
+            return np.full(2, np.clip(self._top - width / 2, 0.0, self._top))
+        widths, _, postures = self.table
+        return np.array([np.interp(width, widths[::-1], column[::-1]) for column in postures.T])

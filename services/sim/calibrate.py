@@ -1,0 +1,149 @@
+"""What an adapted model does not say in so many words, measured on it: the gripper's travel, the pinch point, and
+which of its parts touch each other however the arm stands."""
+
+import itertools
+import xml.etree.ElementTree as ET
+from collections import Counter
+from typing import Any
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from common.robot import (
+    ARM,
+    BASE,
+    HAND_JOINTS,
+    HAND_LENGTHS,
+    HAND_POSTURES,
+    HAND_WIDTHS,
+    arm_limits,
+    home_arm,
+    pads,
+    subtree,
+)  # fmt: skip
+
+Array = NDArray[np.float64]
+STEPS, SETTLE = 11, 1500
+SAMPLES, ALWAYS = 150, 0.6
+DECK = 0.10
+
+
+def load(root: ET.Element) -> tuple[Any, Any]:
+    """The model in its keyframe `home`."""
+    model: Any = mujoco.MjModel.from_xml_string(ET.tostring(root, encoding="unicode"))
+    data: Any = mujoco.MjData(model)
+    data.qpos[[model.joint(j).qposadr[0] for j in ARM]] = home_arm(model)
+    mujoco.mj_forward(model, data)
+    return model, data
+
+
+def measure_hand(root: ET.Element) -> None:
+    """Close the gripper step by step: note widths and postures, put the site `pinch` between the pads."""
+    model, data = load(root)
+    model.opt.gravity[:] = 0.0
+    model.opt.timestep, model.opt.integrator = 0.002, mujoco.mjtIntegrator.mjINT_IMPLICITFAST
+    model.opt.cone, model.opt.impratio = mujoco.mjtCone.mjCONE_ELLIPTIC, 10
+    for name in (*BASE, *ARM):
+        data.ctrl[model.actuator(name).id] = data.qpos[model.joint(name).qposadr[0]]
+    hand = subtree(model, "gripper")
+    joints = [j for j in range(model.njnt) if int(model.jnt_bodyid[j]) in hand]
+    gripper = model.actuator("gripper").id
+    low, high = model.actuator_ctrlrange[gripper]
+    widths, lengths, postures, places = [], [], [], []
+    axis = np.zeros(3)
+    for closed in np.linspace(0.0, 1.0, STEPS):
+        data.ctrl[gripper] = low + closed * (high - low)
+        mujoco.mj_step(model, data, SETTLE)
+        mujoco.mj_kinematics(model, data)
+        left, right = (np.mean([data.geom_xpos[g] for g in side], axis=0) for side in pads(model))
+        if not axis.any():
+            axis = (left - right) / np.linalg.norm(left - right)
+        widths.append(max(0.0, _gap(model, data, axis)))
+        lengths.append(float(data.actuator_length[gripper]))
+        postures.append([float(data.qpos[model.jnt_qposadr[j]]) for j in joints])
+        places.append((left + right) / 2)
+    _place_pinch(root, model, data, places[STEPS // 2], axis)
+    # Where nothing is left to close, more travel says nothing.
+    keep = [0] + [i for i in range(1, STEPS) if widths[i] < widths[i - 1] - 1e-4]
+    custom = ET.SubElement(root, "custom")
+    for name, values in ((HAND_WIDTHS, widths), (HAND_LENGTHS, lengths), (HAND_POSTURES, postures)):
+        flat = np.ravel([values[i] for i in keep])
+        ET.SubElement(custom, "numeric", name=name, data=" ".join(f"{v:.6g}" for v in flat))
+    ET.SubElement(custom, "text", name=HAND_JOINTS, data=" ".join(model.joint(j).name for j in joints))
+
+
+def _gap(model: Any, data: Any, axis: Array) -> float:
+    """Free space between the pads along `axis`, which points from right to left."""
+    faces = []
+    for side, sign in zip(pads(model), (1.0, -1.0), strict=True):
+        ends = []
+        for g in side:
+            turn, box = data.geom_xmat[g].reshape(3, 3), model.geom_aabb[g]
+            middle = data.geom_xpos[g] + turn @ box[:3]
+            ends.append(sign * float(middle @ axis) - float(np.abs(turn.T @ axis) @ box[3:]))
+        faces.append(sign * min(ends))
+    return faces[0] - faces[1]
+
+
+def _place_pinch(root: ET.Element, model: Any, data: Any, place: Array, closing: Array) -> None:
+    """z along the approach as the model has it, y along the closing direction from right to left."""
+    site = model.site("pinch")
+    body = int(model.site_bodyid[site.id])
+    turn = data.xmat[body].reshape(3, 3)
+    z = data.site_xmat[site.id].reshape(3, 3)[:, 2]
+    y = closing - (closing @ z) * z
+    y /= np.linalg.norm(y)
+    quat = np.empty(4)
+    mujoco.mju_mat2Quat(quat, (turn.T @ np.stack([np.cross(y, z), y, z], axis=1)).reshape(-1))
+    element = next(e for e in root.iter("site") if e.get("name") == "pinch")
+    element.set("pos", " ".join(f"{v:.9g}" for v in turn.T @ (place - data.xpos[body])))
+    element.set("quat", " ".join(f"{v:.9g}" for v in quat))
+
+
+def name_deck(root: ET.Element) -> None:
+    """The upper parts of the base, which the hand must not come down on, are called deck."""
+    model, data = load(root)
+    mount = float(data.xanchor[model.joint(ARM[0]).id][2])
+    elements = next(b for b in root.iter("body") if b.get("name") == "base").findall("geom")
+    base = model.body("base").id
+    first = int(model.body_geomadr[base])
+    count = itertools.count()
+    for number, element in enumerate(elements):
+        turn, box = data.geom_xmat[first + number].reshape(3, 3), model.geom_aabb[first + number]
+        middle, half = data.geom_xpos[first + number] + turn @ box[:3], np.abs(turn) @ box[3:]
+        wide = min(half[0], half[1]) > DECK / 2
+        if wide and middle[2] + half[2] > mount - 4 * DECK:
+            n = next(count)
+            element.set("name", f"deck_{n}" if n else "deck")
+
+
+def exclude_neighbours(root: ET.Element) -> None:
+    """For planning the robot collides with itself, but for parts that touch at home or nearly always."""
+    for geom in root.iter("geom"):
+        if geom.get("contype") == "2":
+            geom.set("conaffinity", "3")
+    model, data = load(root)
+    low, high = arm_limits(model)
+    low, high = np.maximum(low, -np.pi), np.minimum(high, np.pi)
+    at = [model.joint(j).qposadr[0] for j in ARM]
+    rng = np.random.default_rng(0)
+    seen: Counter[tuple[str, str]] = Counter()
+    for number in range(SAMPLES):
+        if number:
+            data.qpos[at] = rng.uniform(low, high)
+        mujoco.mj_kinematics(model, data)
+        mujoco.mj_collision(model, data)
+        pairs = {tuple(sorted(model.geom_bodyid[list(c)].tolist())) for c in data.contact.geom[: data.ncon]}
+        for a, b in pairs:
+            seen[model.body(a).name, model.body(b).name] += SAMPLES if number == 0 else 1
+    hand = [model.body(b).name for b in sorted(subtree(model, "gripper"))]
+    wrist = [model.body(int(model.jnt_bodyid[model.joint(j).id])).name for j in ARM[-2:]]
+    always = {pair for pair, times in seen.items() if times > ALWAYS * SAMPLES}
+    always |= set(itertools.combinations(hand, 2)) | set(itertools.product(wrist, hand))
+    contact = root.find("contact")
+    contact = ET.SubElement(root, "contact") if contact is None else contact
+    known = {frozenset((e.get("body1"), e.get("body2"))) for e in contact.findall("exclude")}
+    for a, b in sorted(always):
+        if a != b and frozenset((a, b)) not in known:
+            ET.SubElement(contact, "exclude", body1=a, body2=b)
