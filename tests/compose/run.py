@@ -7,6 +7,8 @@ import socket
 import sys
 import tempfile
 import time
+import urllib.error
+import urllib.request
 from collections.abc import Callable
 from pathlib import Path
 
@@ -19,6 +21,7 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 PROJECT, IMAGE, BASE = "tidybot-test", "tidybot-zenoh:dev", "tidybot-base"
 NODES = ("sim", "camera", "navigation", "manipulation", "speech", "planner", "perception", "brain", "dashboard")
 SPEED = "2"
+TOKEN = "a-token-for-this-test"
 
 
 def free_port() -> int:
@@ -32,6 +35,7 @@ class Stack:
 
     def __init__(self, engine: Engine, port: int, keys: Path) -> None:
         self.engine, self.port, self.keys = engine, port, keys
+        self.page = free_port()
         paced = ", ".join(f'"{n}"' for n in NODES if n not in ("sim", "dashboard"))
         self._environ = {
             **engine.environ,
@@ -42,6 +46,8 @@ class Stack:
             "TIDYBOT_SPEED": SPEED,
             "TIDYBOT_LOCKSTEP": "true",
             "TIDYBOT_WAIT_FOR": f"[{paced}]",
+            "TIDYBOT_PAGE_PORT": str(self.page),
+            "TIDYBOT_PAGE_TOKEN": TOKEN,
         }
 
     def compose(self, *words: str, timeout: float = 300) -> str:
@@ -92,7 +98,34 @@ def build(engine: Engine) -> None:
     began = time.monotonic()
     arguments = ["--build-arg", f"BASE_IMAGE={BASE}", "--build-arg", "APT_PACKAGES="]
     engine.docker("build", "--network", "host", *arguments, "-t", IMAGE, ROOT, timeout=1500)
-    note(f"built in {time.monotonic() - began:.0f} s")
+    size = int(engine.docker("image", "inspect", "--format", "{{.Size}}", IMAGE))
+    base = int(engine.docker("image", "inspect", "--format", "{{.Size}}", BASE))
+    note(f"built in {time.monotonic() - began:.0f} s, {size / 1e6:.0f} MB, {base / 1e6:.0f} MB of it the base image")
+
+
+def confined(stack: Stack) -> None:
+    """No node is root, can become it, or can change its image."""
+    for name in NODES:
+        user = stack.compose("exec", "-T", name, "id", "-u").strip()
+        assert user == "10001", f"{name} runs as user {user}"
+        script = "touch /app/x 2>/dev/null || touch /opt/x 2>/dev/null || touch /etc/x 2>/dev/null || echo refused"
+        assert stack.compose("exec", "-T", name, "sh", "-c", script).strip() == "refused", f"{name} can write its image"
+    note("every node is user 10001 on a read-only file system")
+
+
+def page_is_served(stack: Stack) -> None:
+    """With the token only."""
+    address = f"http://127.0.0.1:{stack.page}/"
+    opener = urllib.request.build_opener(urllib.request.HTTPCookieProcessor())
+    with opener.open(f"{address}?token={TOKEN}", timeout=20) as answer:
+        assert b"<html" in answer.read().lower()
+    try:
+        urllib.request.urlopen(address, timeout=20).close()
+    except urllib.error.HTTPError as error:
+        assert error.code in (401, 403), error.code
+    else:
+        raise AssertionError("the page is served without its token")
+    note("the page is served")
 
 
 def mission(stack: Stack) -> None:
@@ -109,8 +142,10 @@ def mission(stack: Stack) -> None:
         verdict = carry_out(link, "red mug", disturb, timeout=600)
         assert verdict.delivered, verdict.why
         note(f"delivered: {verdict.why}")
-    wait_until(stack.healthy, "every healthcheck says healthy", 120)
+    wait_until(stack.healthy, "every healthcheck says healthy", 180)
     note("every container healthy")
+    confined(stack)
+    page_is_served(stack)
 
 
 def main() -> int:
