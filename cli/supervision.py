@@ -165,6 +165,7 @@ class Supervision:
         if not detach:
             environment["TIDYBOT_FOREGROUND_PARENT"] = str(os.getpid())
         environment["TIDYBOT_RUN_DIR"] = str(self.directory)
+        environment["TIDYBOT__DASHBOARD__SUPERVISOR"] = str(socket_path(self.directory))
         with (logs / "supervisord.err").open("wb") as errors:
             self.process = subprocess.Popen(
                 [sys.executable, "-m", "cli.supervisord", "-c", str(config)],

@@ -42,9 +42,9 @@ READS: dict[str, tuple[Topic[Any], ...]] = {
         t.MANIPULATION_STATUS, t.SIM_STATUS,
     ),
     "dashboard": (
-        t.SIM_MODEL, t.SIM_STATUS, t.JOINT_STATES, t.POSE, t.SCAN, t.NAV_PATH, t.WORLD_OBJECTS, t.BRAIN_STATE,
-        t.BRAIN_TREE, t.ACTION_PLAN, t.SPEECH_GOAL, t.SPEECH_RESULT, t.SPEECH_STATUS, t.NAVIGATION_STATUS,
-        t.MANIPULATION_STATUS, t.HEAD_RGBD, t.WRIST_RGBD, t.AUDIO_OUT,
+        t.SIM_MODEL, t.SIM_STATUS, t.JOINT_STATES, t.POSE, t.SCAN, t.NAV_PATH, t.COSTMAP, t.GRASPS, t.ARM_COMMAND,
+        t.WORLD_OBJECTS, t.BRAIN_STATE, t.BRAIN_TREE, t.ACTION_PLAN, t.SPEECH_GOAL, t.SPEECH_RESULT, t.SPEECH_STATUS,
+        t.NAVIGATION_STATUS, t.MANIPULATION_STATUS, t.HEAD_RGBD, t.WRIST_RGBD, t.AUDIO_OUT,
     ),
 }  # fmt: skip
 
@@ -61,6 +61,7 @@ SERVES: dict[str, str] = {
     t.SIM_SNAPSHOT: "sim",
     t.SIM_TRUTH: "sim",
 }
+ASKS: dict[str, tuple[str, ...]] = {"dashboard": (t.BRAIN_MISSIONS,)}
 CHANGING = (t.SIM_RESET, t.SIM_PAUSE, t.SIM_SNAPSHOT)
 
 ALL_HEALTH, ALL_ALIVE = t.HEALTH_KEY.format(name="*"), t.ALIVE_KEY.format(name="*")
@@ -115,7 +116,7 @@ def _service(name: str) -> Grants:
         puts=(*(topic.key for topic in written), health, t.LOG_KEY.format(name=name)),
         reads=(*(topic.key for topic in read), ALL_HEALTH, ALL_ALIVE),
         answers=(*(topic.key for topic in written if topic.latched), health, *served),
-        asks=(*(topic.key for topic in read), ALL_HEALTH),
+        asks=(*(topic.key for topic in read), ALL_HEALTH, *ASKS.get(name, ())),
         tokens=(alive,),
     )
 

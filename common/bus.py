@@ -26,7 +26,7 @@ from common import messages as m
 from common.access import OPERATOR
 from common.clock import Clock, monotonic, unix_time
 from common.io import Handler
-from common.iobase import UNSTAMPED, IoBase
+from common.iobase import UNSTAMPED, IoBase, WorkerJob
 from common.scene import Scene
 from common.topics import Topic
 
@@ -356,6 +356,9 @@ class ZenohIo(IoBase):
     # --- queries
     def serve(self, key: str, handler: Handler) -> None:
         self._kept.append(self._session.declare_queryable(key, lambda query: self._queries.put((handler, query))))
+
+    def ask(self, key: str, request: bytes = b"") -> WorkerJob[bytes | None]:
+        return self.submit(lambda: next(iter(fetch(self._session, key, request).values()), None))
 
     def answer_queries(self) -> None:
         """Run the handlers of waiting queries, in the calling thread."""

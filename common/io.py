@@ -66,6 +66,9 @@ class Io(Protocol):
     def serve(self, key: str, handler: Handler) -> None:
         """Answer zenoh `get` on `key`; the handler runs in the service's thread before a step."""
 
+    def ask(self, key: str, request: bytes = b"") -> Job[bytes | None]:
+        """What a zenoh `get` on the key answers first, asked in the worker; None when nobody does."""
+
     def peer(self, name: str) -> str | None:
         """The epoch of a live peer process, "" while unknown, None when its token is gone."""
 

@@ -210,6 +210,9 @@ class IoBase:
     def serve(self, key: str, handler: Handler) -> None:
         raise NotImplementedError
 
+    def ask(self, key: str, request: bytes = b"") -> WorkerJob[bytes | None]:
+        raise NotImplementedError
+
     def peer(self, name: str) -> str | None:
         raise NotImplementedError
 

@@ -7,7 +7,7 @@ from common import codec
 from common import messages as m
 from common.clock import ManualClock
 from common.io import Handler
-from common.iobase import UNSTAMPED, IoBase, Mailbox
+from common.iobase import UNSTAMPED, IoBase, Mailbox, WorkerJob
 from common.scene import Scene
 from common.topics import Topic
 
@@ -101,6 +101,10 @@ class MemoryIo(IoBase):
 
     def serve(self, key: str, handler: Handler) -> None:
         self._bus.handlers[key] = handler
+
+    def ask(self, key: str, request: bytes = b"") -> WorkerJob[bytes | None]:
+        answer = self._bus.get(key, request)
+        return self.submit(lambda: answer)
 
     def peer(self, name: str) -> str | None:
         other = self._bus.ios.get(name)

@@ -314,7 +314,10 @@ class RobotStop(Message):
 
 
 class RobotResume(Message):
+    """Releases the brake. `go_on`: the brain also takes up the mission that the stop has cut short."""
+
     source: str = ""
+    go_on: bool = False
 
 
 class CmdVel(Message):
@@ -376,6 +379,41 @@ class NavPath(Message):
 
     t: float
     points: list[tuple[float, float]]
+    goal_id: str = ""
+
+
+class Costmap(Message):
+    """Room for the base's centre, for viewers: clearance of `width` x `height` cells of `resolution` [m].
+
+    `cells` is zlib of uint8, row by row from the south-west corner (`x`, `y`): 0 occupied, 255 for `far` [m] or more.
+    """
+
+    t: float
+    x: float
+    y: float
+    resolution: float
+    width: int
+    height: int
+    far: float
+    cells: bytes
+
+
+class GraspCandidate(Message):
+    """Pose of the pinch point (z: approach, y: across the fingers) and width there [m], in frame map."""
+
+    name: str
+    position: Vec3
+    orientation: Quat
+    width: float
+    state: Literal["open", "failed", "chosen"] = "open"
+
+
+class GraspCandidates(Message):
+    """What manipulation considers for the object that it is about to grab, in the order it tries, for viewers."""
+
+    t: float
+    object: str
+    candidates: list[GraspCandidate]
     goal_id: str = ""
 
 

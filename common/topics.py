@@ -85,6 +85,8 @@ JOINT_STATES = _stream("joint_states", m.JointStates, "sim", rate=100.0, latched
 ODOMETRY = _stream("base/odom", m.Odometry, "sim", rate=100.0, latched=True)
 POSE = _stream("navigation/pose", m.PoseEstimate, "navigation", rate=20.0, binary=False, latched=True)
 NAV_PATH = _event("navigation/path", m.NavPath, "navigation")
+COSTMAP = _stream("navigation/costmap", m.Costmap, "navigation", rate=1.0)
+GRASPS = _event("manipulation/grasps", m.GraspCandidates, "manipulation")
 SCAN = _stream("scan", m.LaserScan, "sim", rate=10.0, latched=True)
 ROBOT_STOP = _goal("robot/stop", m.RobotStop, "*", "speech", text="reason", latched=False)
 ROBOT_RESUME = _goal("robot/resume", m.RobotResume, "*", text="source", latched=False)

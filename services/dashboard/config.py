@@ -8,7 +8,8 @@ class DashboardConfig(Config, frozen=True):
 
     On a `host` other than loopback every visitor needs `token`; an empty one is made up at the start and printed.
     `frame_rate` is how often what moves is drawn [Hz], `camera_rate` how often a watched camera is asked for a
-    picture [Hz]; objects not seen for `ghost_after` seconds are drawn as ghosts.
+    picture [Hz]; objects not seen for `ghost_after` seconds are drawn as ghosts. `supervisor` is the control socket
+    of `tidybot up`, for the restart buttons.
     """
 
     host: str = "127.0.0.1"
@@ -20,3 +21,4 @@ class DashboardConfig(Config, frozen=True):
     camera_width: int = 320
     camera_height: int = 240
     ghost_after: float = 20.0
+    supervisor: str = ""

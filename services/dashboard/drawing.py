@@ -1,11 +1,12 @@
-"""MJCF as meshes: the flat, the robot's links with the joints that move them, and the shapes of the objects."""
+"""MJCF as meshes: the flat, the robot's links with the joints that move them, and the shapes of the objects.
+
+MuJoCo and trimesh are imported when the first model is drawn: the page is open before that.
+"""
 
 from dataclasses import dataclass, field
 from typing import Any
 
-import mujoco
 import numpy as np
-import trimesh
 from numpy.typing import NDArray
 
 from common.geometry import matrix_quat, quat_matrix
@@ -16,6 +17,7 @@ HIDDEN_GROUP = 4
 # Walls are cut off here, so that one can look into the rooms.
 CUT = 1.0
 SEE_THROUGH = "wall"
+_FREE, _HINGE = 0, 3  # mjtJoint
 
 
 @dataclass(frozen=True)
@@ -78,6 +80,8 @@ def draw(mjcf: str) -> Drawing:
     Raises:
         ValueError: not a model.
     """
+    import mujoco
+
     model: Any = mujoco.MjModel.from_xml_string(mjcf)
     data: Any = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
@@ -107,14 +111,14 @@ def draw(mjcf: str) -> Drawing:
 def _free(model: Any, body: int) -> bool:
     root = int(model.body_rootid[body])
     first = int(model.body_jntadr[root])
-    return first >= 0 and int(model.jnt_type[first]) == int(mujoco.mjtJoint.mjJNT_FREE)
+    return first >= 0 and int(model.jnt_type[first]) == _FREE
 
 
 def _link(model: Any, body: int, mesh: Mesh | None) -> Link:
     first, count = int(model.body_jntadr[body]), int(model.body_jntnum[body])
     joints = []
     for j in range(first, first + count):
-        kind = "hinge" if int(model.jnt_type[j]) == int(mujoco.mjtJoint.mjJNT_HINGE) else "slide"
+        kind = "hinge" if int(model.jnt_type[j]) == _HINGE else "slide"
         axis, anchor = model.jnt_axis[j].copy(), model.jnt_pos[j].copy()
         joints.append(Joint(model.joint(j).name, kind, axis, anchor, float(model.jnt_range[j][1])))
     parent = "" if model.body(body).name == ROBOT_BODY else model.body(int(model.body_parentid[body])).name
@@ -136,6 +140,9 @@ def _cameras(model: Any, roots: list[str]) -> list[Camera]:
 
 def _geom(model: Any, g: int) -> Mesh:
     """A geom in its body's frame."""
+    import mujoco
+    import trimesh
+
     kinds, size = mujoco.mjtGeom, model.geom_size[g]
     kind = kinds(int(model.geom_type[g]))
     if kind == kinds.mjGEOM_BOX:
@@ -214,33 +221,3 @@ def _about(axis: Array, angle: float) -> Array:
 def quaternion(turn: Array) -> tuple[float, float, float, float]:
     """(w, x, y, z)."""
     return matrix_quat(turn)
-
-
-def fallback(kind: str, size: tuple[float, float, float], colour: str) -> Mesh:
-    """An object that no model shows: a shape of its kind, size and colour."""
-    x, y, z = (max(s, 0.02) for s in size)
-    if kind in ("apple", "ball", "sphere"):
-        shape = trimesh.creation.icosphere(subdivisions=2)
-        shape.apply_scale([x / 2, y / 2, z / 2])
-    elif kind in ("mug", "can", "bottle", "bowl", "cup"):
-        shape = trimesh.creation.cylinder(radius=(x + y) / 4, height=z, sections=24)
-    else:
-        shape = trimesh.creation.box(extents=[x, y, z])
-    vertices = np.asarray(shape.vertices, dtype=np.float64)
-    rgb = np.array(COLOURS.get(colour, (0.6, 0.6, 0.62)))
-    return Mesh(vertices, np.asarray(shape.faces, dtype=np.int64), np.tile(rgb, (len(vertices), 1)))
-
-
-COLOURS = {
-    "red": (0.80, 0.12, 0.12),
-    "green": (0.12, 0.55, 0.20),
-    "blue": (0.15, 0.30, 0.80),
-    "yellow": (0.92, 0.78, 0.12),
-    "orange": (0.95, 0.50, 0.10),
-    "white": (0.92, 0.92, 0.90),
-    "black": (0.10, 0.10, 0.11),
-    "brown": (0.45, 0.30, 0.18),
-    "grey": (0.55, 0.55, 0.57),
-    "purple": (0.50, 0.25, 0.60),
-    "pink": (0.92, 0.55, 0.66),
-}

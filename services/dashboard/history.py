@@ -1,7 +1,7 @@
 """What the page remembers of the last minutes: who said what, how the services are, curves."""
 
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -51,6 +51,35 @@ class Transcript:
         verb, _, words = goal.goal.strip().partition(" ")
         if verb == "say":
             self.add(t, "said", words)
+
+
+Path = tuple[str, ...]
+"""A node of the tree: names from the root, each with its place among its siblings."""
+
+
+def places(node: m.TreeNode, path: Path = ()) -> Iterator[tuple[Path, m.TreeNode]]:
+    """Every child of a node, and theirs."""
+    for n, child in enumerate(node.children):
+        place = (*path, f"{n} {child.name}")
+        yield place, child
+        yield from places(child, place)
+
+
+class Reasons:
+    """The last words of each node of the tree: (time, status, detail)."""
+
+    def __init__(self) -> None:
+        self.last: dict[Path, tuple[float, str, str]] = {}
+
+    def take(self, tree: m.TreeSnapshot) -> None:
+        now = dict(places(tree.root))
+        self.last = {place: said for place, said in self.last.items() if place in now}
+        for place, node in now.items():
+            said = (node.status, node.detail)
+            # A node that is only reset keeps saying why it ended.
+            reset = node.status == "INVALID" and place in self.last
+            if node.detail and not reset and self.last.get(place, (0.0, "", ""))[1:] != said:
+                self.last[place] = (tree.t, *said)
 
 
 @dataclass(frozen=True)

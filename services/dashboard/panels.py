@@ -38,12 +38,16 @@ class Panels:
             for name in CAMERAS:
                 self._wanted[name] = gui.add_checkbox(f"{name} camera", initial_value=name == "head")
                 self._images[name] = gui.add_image(blank, jpeg_quality=75, format="jpeg")
+        with tabs.add_tab("Look back"):
+            self._html["missions"] = gui.add_html("")
         with tabs.add_tab("Health"):
             self._html["services"] = gui.add_html("")
         self._plot_tab = tabs.add_tab("Plots")
         with tabs.add_tab("View"):
             self._follow = gui.add_checkbox("follow the robot", initial_value=False)
             self._scan = gui.add_checkbox("lidar", initial_value=True)
+            self._costmap = gui.add_checkbox("costmap", initial_value=True)
+            self._grasps = gui.add_checkbox("grasp candidates", initial_value=True)
             self._labels = gui.add_checkbox("names of the objects", initial_value=True)
             self._clicks = gui.add_checkbox(
                 "clicks command the robot",
@@ -54,6 +58,8 @@ class Panels:
 
     follow = property(lambda self: bool(self._follow.value))
     scan = property(lambda self: bool(self._scan.value))
+    costmap = property(lambda self: bool(self._costmap.value))
+    grasps = property(lambda self: bool(self._grasps.value))
     labels = property(lambda self: bool(self._labels.value))
     clicks = property(lambda self: bool(self._clicks.value))
 

@@ -2,6 +2,8 @@
 
 import sys
 from functools import partial
+from math import degrees
+from typing import Any
 
 from common import messages as m
 from common import topics
@@ -9,21 +11,25 @@ from common.geometry import Pose2
 from common.io import Io, Job
 from common.runtime import StartError
 from common.topics import Topic
-from services.dashboard import markup
+from services.dashboard import markup, timeline
+from services.dashboard.cameras import Cameras
+from services.dashboard.care import Care
 from services.dashboard.commands import Commands
 from services.dashboard.config import DashboardConfig
+from services.dashboard.door import PageError
 from services.dashboard.drawing import Drawing, draw
-from services.dashboard.history import Curves, Jitter, Services, Transcript
-from services.dashboard.overlay import marked
-from services.dashboard.panels import CAMERAS, Panels
+from services.dashboard.history import Curves, Jitter, Reasons, Services, Transcript
+from services.dashboard.layers import Layers
+from services.dashboard.panels import Panels
 from services.dashboard.picking import pick
+from services.dashboard.tracking import FRESH, arm_error, off_path
 from services.dashboard.view import View
-from services.dashboard.web import Click, PageError, Sound, Web, Words
+from services.dashboard.web import Asked, Click, Sound, Web, Words
 
 HEALTH = Topic(key=topics.HEALTH_KEY.format(name="*"), type=m.Health, writers=("*",), recover=False)
-PICTURES = {"head": topics.HEAD_RGBD, "wrist": topics.WRIST_RGBD}
 SLOW, PLOT = 0.25, 0.5
-ANSWER_LIMIT = 3.0
+GRABBING = ("reach", "aim", "grasp")
+OFF_PATH, OFF_ARM = "base [cm]", "arm [deg]"
 
 
 class DashboardService:
@@ -35,9 +41,9 @@ class DashboardService:
     CONFIG = DashboardConfig
     READS = (
         topics.SIM_MODEL, topics.SIM_STATUS, topics.JOINT_STATES, topics.POSE, topics.SCAN, topics.NAV_PATH,
-        topics.WORLD_OBJECTS, topics.BRAIN_STATE, topics.BRAIN_TREE, topics.ACTION_PLAN, topics.SPEECH_GOAL,
-        topics.SPEECH_RESULT, topics.SPEECH_STATUS, topics.NAVIGATION_STATUS, topics.MANIPULATION_STATUS,
-        topics.HEAD_RGBD, topics.WRIST_RGBD, topics.AUDIO_OUT, HEALTH,
+        topics.COSTMAP, topics.GRASPS, topics.ARM_COMMAND, topics.WORLD_OBJECTS, topics.BRAIN_STATE, topics.BRAIN_TREE,
+        topics.ACTION_PLAN, topics.SPEECH_GOAL, topics.SPEECH_RESULT, topics.SPEECH_STATUS, topics.NAVIGATION_STATUS,
+        topics.MANIPULATION_STATUS, topics.HEAD_RGBD, topics.WRIST_RGBD, topics.AUDIO_OUT, HEALTH,
     )  # fmt: skip
     WRITES = (
         topics.VOICE_COMMAND, topics.ROBOT_STOP, topics.ROBOT_RESUME, topics.NAV_GOAL, topics.CAMERA_REQUEST,
@@ -50,14 +56,18 @@ class DashboardService:
             self._web = Web(config)
         except PageError as error:
             raise StartError(str(error)) from None
-        self._view = View(self._web.viser)
+        self._view, self._layers = View(self._web.viser), Layers(self._web.viser)
         self._panels = Panels(self._web.viser, config.camera_width, config.camera_height)
+        self._cameras = Cameras(config, io, self._panels)
         self._transcript, self._services, self._jitter = Transcript(), Services(), Jitter()
+        self._reasons = Reasons()
+        self._care = Care(io, config.supervisor, lambda words: self._transcript.add(self._t, "robot", words))
         self._commands = Commands(io, self._transcript)
         self._speed, self._force = Curves(("base",)), Curves(("gripper",))
-        self._late = Curves(("late",))
+        self._late, self._off = Curves(("late",)), Curves((OFF_PATH, OFF_ARM))
         for curves, title, unit, top in (
             (self._speed, "base speed", "m/s", 0.6),
+            (self._off, "tracking error", "cm, deg", 5.0),
             (self._force, "gripper force", "N", 50.0),
             (self._late, "loop jitter", "ms", 60.0),
         ):
@@ -67,8 +77,10 @@ class DashboardService:
         self._base: Pose2 = (0.0, 0.0, 0.0)
         self._t = 0.0
         self._moved = self._slow_at = self._plot_at = float("-inf")
-        self._asked: dict[str, float] = {}
+        self._way: list[tuple[float, float]] = []
+        self._seen_grasps: tuple[object, bool] = (None, False)
         self._told: object = None
+        self._tree: m.TreeNode | None = None
         io.publish(topics.PAGE_STATUS, m.PageStatus(url=self._web.url))
         io.log.info("page", url=self._web.url)
         # The token is for eyes at this terminal only, not for the log on the bus.
@@ -79,6 +91,7 @@ class DashboardService:
         self._obey(now)
         self._redraw_model(now)
         watched = self._web.watched
+        self._care.step(now, watched)
         if now - self._moved >= (0.9 / self._config.frame_rate if watched else 1.0):
             self._moved = now
             with self._web.viser.atomic():
@@ -87,7 +100,7 @@ class DashboardService:
             self._slow_at = now
             self._refresh(now)
         if watched:
-            self._look(now)
+            self._cameras.look(now, self._base)
             if now - self._plot_at >= PLOT:
                 self._plot_at = now
                 self._panels.redraw()
@@ -104,6 +117,10 @@ class DashboardService:
             self._speed.add(now, base=speed)
             self._force.add(now, gripper=abs(effort.get("gripper", 0.0)))
             self._late.add(now, late=1000 * self._jitter.late(t, now))
+            command = io.latest(topics.ARM_COMMAND) if io.age(topics.ARM_COMMAND, now) < FRESH else None
+            angles = dict(zip(joints.name, joints.position, strict=False))
+            off = {OFF_PATH: 100 * self._off_path(), OFF_ARM: degrees(arm_error(command, angles))}
+            self._off.add(now, **off)
         for goal in io.drain(topics.SPEECH_GOAL):
             self._transcript.goal(t, goal)
         for result in io.drain(topics.SPEECH_RESULT):
@@ -116,12 +133,21 @@ class DashboardService:
             else:
                 self._web.play(chunk.data, chunk.rate)
 
+    def _off_path(self) -> float:
+        """How far the base is from its path [m], while it drives along one."""
+        driving = self._io.latest(topics.NAVIGATION_STATUS)
+        return off_path(self._way, self._base) if driving is not None and driving.status == "navigating" else 0.0
+
     # --- from the visitors
     def _obey(self, now: float) -> None:
         state = self._io.latest(topics.BRAIN_STATE)
         while not self._web.inbox.empty():
             event = self._web.inbox.get_nowait()
-            if isinstance(event, Words):
+            if isinstance(event, Asked):
+                self._care.mission(event.mission, partial(self._show_mission, event))
+            elif isinstance(event, Words) and event.do == "restart":
+                self._care.restart(event.text)
+            elif isinstance(event, Words):
                 self._commands.words(event.do, event.text, self._t)
             elif isinstance(event, Sound):
                 self._commands.sound(event.data, self._t)
@@ -130,6 +156,9 @@ class DashboardService:
                 objects = world.objects if world is not None else []
                 picked = pick(event.origin, event.direction, self._view.drawing.flat, objects)
                 self._commands.picked(picked, self._base, state, self._t)
+
+    def _show_mission(self, asked: Asked, record: dict[str, Any] | None) -> None:
+        self._web.answer(asked, timeline.page(record) if record is not None else "")
 
     # --- to the visitors
     def _redraw_model(self, now: float) -> None:
@@ -157,9 +186,24 @@ class DashboardService:
         for scan in io.drain(topics.SCAN):
             view.scan(scan, self._base, panels.scan)
         for path in io.drain(topics.NAV_PATH):
+            self._way = path.points
             view.path(path.points)
+        self._overlay()
         if (world := io.latest(topics.WORLD_OBJECTS)) is not None:
             view.objects(world.objects, self._t, self._config.ghost_after, panels.labels)
+
+    def _overlay(self) -> None:
+        """What navigation and manipulation think."""
+        try:
+            self._layers.costmap(self._io.latest(topics.COSTMAP), self._panels.costmap)
+        except ValueError as error:
+            self._io.count_drop(topics.COSTMAP.key, str(error))
+        found, doing = self._io.latest(topics.GRASPS), self._io.latest(topics.MANIPULATION_STATUS)
+        under_way = doing is not None and doing.status == "executing" and doing.phase in GRABBING
+        shown = (found, under_way and self._panels.grasps)
+        if shown != self._seen_grasps:
+            self._seen_grasps = shown
+            self._layers.grasps(*shown)
 
     def _refresh(self, now: float) -> None:
         io, panels = self._io, self._panels
@@ -170,9 +214,15 @@ class DashboardService:
         if self._transcript.changed:
             self._transcript.changed = False
             panels.text("transcript", markup.transcript(self._transcript.lines))
-        for tree in io.drain(topics.BRAIN_TREE)[-1:]:
-            panels.text("tree", markup.tree(tree.root))
-        panels.text("services", markup.services(self._services.rows(lambda name: io.peer(name) is not None)))
+        for tree in io.drain(topics.BRAIN_TREE):
+            self._reasons.take(tree)
+            self._tree = tree.root
+        if self._tree is not None:
+            panels.text("tree", markup.tree(self._tree, self._reasons.last))
+        rows = self._services.rows(lambda name: io.peer(name) is not None)
+        panels.text("services", markup.services(rows, self._care.restartable, self._care.why))
+        if self._care.missions is not None:
+            panels.text("missions", markup.missions(self._care.missions))
         self._tell(state)
 
     def _tell(self, state: m.BrainState | None) -> None:
@@ -192,26 +242,6 @@ class DashboardService:
         if told != self._told:
             self._told = told
             self._web.say("state", told)
-
-    # --- cameras
-    def _look(self, now: float) -> None:
-        """Ask a camera only while somebody looks, and not again before it has answered."""
-        config, world = self._config, self._io.latest(topics.WORLD_OBJECTS)
-        for name in CAMERAS:
-            for image in self._io.drain(PICTURES[name]):
-                pixels = marked(image, self._base, world.objects if world is not None else [])
-                if pixels is None:
-                    self._io.count_drop(PICTURES[name].key, "not as many pixels as it says")
-                    continue
-                self._panels.picture(name, pixels)
-                self._asked[name] = min(self._asked.get(name, now), now - 1.0 / config.camera_rate + 0.05)
-            waiting = self._asked.get(name, float("-inf"))
-            if self._panels.wanted(name) and now - waiting >= (1.0 / config.camera_rate):
-                request = m.CameraRequest(
-                    id=self._io.new_id("page"), camera=name, width=config.camera_width, height=config.camera_height
-                )
-                self._asked[name] = now
-                self._io.publish(topics.CAMERA_REQUEST, request)
 
     def close(self) -> None:
         self._web.close()

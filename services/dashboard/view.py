@@ -3,14 +3,13 @@
 from typing import Any
 
 import numpy as np
-import trimesh
 import viser
 from numpy.typing import NDArray
 
 from common import messages as m
 from common.geometry import Pose2
-from services.dashboard import drawing
 from services.dashboard.drawing import Drawing, Mesh, posture, quaternion
+from services.dashboard.shapes import fallback
 
 Array = NDArray[np.float64]
 EYE, LOOK = (-3.4, -4.2, 4.6), (0.8, -0.2, 0.3)
@@ -86,6 +85,8 @@ class View:
             self._paths = paths
 
     def _mesh(self, name: str, mesh: Mesh) -> Any:
+        import trimesh
+
         colours = np.concatenate([mesh.colours, np.ones((len(mesh.colours), 1))], axis=1)
         # Faces must not share corners, or light would be smeared over the edges of boxes.
         order = mesh.faces.reshape(-1)
@@ -178,7 +179,7 @@ class View:
             self._looks[name] = (*look, (one.position, one.orientation))
 
     def _object(self, name: str, one: m.WorldObject, ghost: bool, labels: bool) -> tuple[Any, ...]:
-        mesh = self.drawing.objects.get(one.label) or drawing.fallback(one.kind, one.size, one.colour)
+        mesh = self.drawing.objects.get(one.label) or fallback(one.kind, one.size, one.colour)
         path = f"/objects/{name}"
         body = self._scene.add_mesh_simple(
             path,

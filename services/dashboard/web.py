@@ -9,8 +9,7 @@ import asyncio
 import contextlib
 import queue
 import secrets
-import socket
-from collections.abc import Awaitable, Callable, Iterator
+from collections.abc import Awaitable, Callable
 from concurrent.futures import Future
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,19 +18,17 @@ from typing import Any
 import msgspec
 import numpy as np
 import viser
-import websockets.asyncio.server
 from aiohttp import ClientSession, WSMsgType, web
 from numpy.typing import NDArray
-from websockets.http11 import Request, Response
 
 from services.dashboard import access
 from services.dashboard.config import DashboardConfig
+from services.dashboard.door import KEY_HEADER, PageError, guarded, listen
 
 PAGE = Path(__file__).parent / "page"
 VIEW = Path(viser.__file__).parent / "client" / "build" / "index.html"
-KEY_HEADER = "X-Tidybot-Page"
 SEND_QUEUE = 100
-OPENING, CLOSING = 60.0, 2.0
+OPENING, CLOSING, ANSWER = 60.0, 2.0, 8.0
 MAX_CHUNK = 64 * 1024
 VIEW_LIMIT = 8 * 2**20
 # The view under the other name of this machine is another site to a browser, which draws it in another process: however
@@ -46,7 +43,7 @@ POLICY = (
 
 
 class Words(msgspec.Struct, frozen=True):
-    """What a visitor did: `do` is stop, resume, say, yes or no; `text` goes with say."""
+    """What a visitor did: `do` is stop, resume, say, yes, no or restart; `text` goes with say and restart."""
 
     do: str
     text: str = ""
@@ -66,11 +63,15 @@ class Click:
     direction: NDArray[np.float64]
 
 
-Event = Words | Sound | Click
+@dataclass(frozen=True)
+class Asked:
+    """A visitor asks for a mission's page; `answer` of `Web` gives it."""
+
+    mission: str
+    answer: "asyncio.Future[str]"
 
 
-class PageError(RuntimeError):
-    """The page cannot be served as configured; says why."""
+Event = Words | Sound | Click | Asked
 
 
 class Web:
@@ -81,13 +82,13 @@ class Web:
             self._token = access.token_for(config.host, config.token)
         except ValueError as error:
             raise PageError(str(error)) from None
-        self._socket = _listen(config)
+        self._socket = listen(config)
         self.port: int = self._socket.getsockname()[1]
         self.inbox: queue.SimpleQueue[Event] = queue.SimpleQueue()
         self._visitors: dict[web.WebSocketResponse, asyncio.Queue[str | bytes]] = {}
         self._last: dict[str, str] = {}
         self._secret = secrets.token_urlsafe(24)
-        with _guarded(self._secret):
+        with guarded(self._secret):
             self.viser = viser.ViserServer(host="127.0.0.1", port=0, label="tidybot", verbose=False)
         self._loop = self.viser.get_event_loop()
         self.viser.scene.on_click()(self._clicked)  # type: ignore[arg-type]
@@ -110,6 +111,10 @@ class Web:
         """Let every page play int16 samples."""
         self._loop.call_soon_threadsafe(self._spread, rate.to_bytes(4, "little") + samples)
 
+    def answer(self, asked: Asked, page: str) -> None:
+        """Give a visitor the page that was asked for; "" for none."""
+        self._loop.call_soon_threadsafe(_settle, asked.answer, page)
+
     @property
     def watched(self) -> bool:
         """True while a browser has the 3-D view open."""
@@ -131,6 +136,7 @@ class Web:
         app.router.add_get("/view", self._view)
         app.router.add_get("/view/", self._view)
         app.router.add_get("/live", self._live)
+        app.router.add_get("/mission/{id}", self._mission)
         app.router.add_static("/page", PAGE)
         # A connector belongs to the loop that it is made in.
         self._inner = ClientSession()
@@ -196,6 +202,16 @@ class Web:
         await outer.close()
         return outer
 
+    async def _mission(self, request: web.Request) -> web.StreamResponse:
+        """A mission's timeline, from the brain's journal."""
+        asked = Asked(request.match_info["id"], asyncio.get_running_loop().create_future())
+        self.inbox.put(asked)
+        with contextlib.suppress(TimeoutError):
+            page = await asyncio.wait_for(asked.answer, ANSWER)
+            if page:
+                return web.Response(text=page, content_type="text/html")
+        raise web.HTTPNotFound(text="The brain tells of no such mission.\n")
+
     async def _live(self, request: web.Request) -> web.StreamResponse:
         """What the page itself needs: the state to it; words and sound from it."""
         socket = web.WebSocketResponse(heartbeat=10.0, max_msg_size=MAX_CHUNK, compress=False)
@@ -238,6 +254,11 @@ class Web:
                     visitor._req.transport.abort()
 
 
+def _settle(future: "asyncio.Future[str]", page: str) -> None:
+    if not future.done():
+        future.set_result(page)
+
+
 async def _send(socket: web.WebSocketResponse, outbox: "asyncio.Queue[str | bytes]") -> None:
     while True:
         message = await outbox.get()
@@ -254,49 +275,3 @@ async def _pass(source: Any, sink: Any) -> None:
             await sink.send_bytes(message.data)
         elif message.type is WSMsgType.TEXT:
             await sink.send_str(message.data)
-
-
-def _listen(config: DashboardConfig) -> socket.socket:
-    """A listening socket on the configured port or one of the next.
-
-    Raises:
-        PageError: none can be had.
-    """
-    ports = [config.port] if config.port == 0 else range(config.port, config.port + max(1, config.port_tries))
-    family = socket.AF_INET6 if ":" in config.host else socket.AF_INET
-    why = ""
-    for port in ports:
-        opened = socket.socket(family, socket.SOCK_STREAM)
-        opened.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        try:
-            opened.bind((config.host, port))
-            opened.listen(64)
-            opened.setblocking(False)
-            return opened
-        except (OSError, OverflowError) as error:
-            opened.close()
-            why = str(error)
-    raise PageError(
-        f"dashboard: no port of {config.host}:{config.port} and the {config.port_tries - 1} after it is free ({why}); "
-        "choose another with `--set dashboard.port=N`"
-    )
-
-
-@contextlib.contextmanager
-def _guarded(secret: str) -> Iterator[None]:
-    """Inside, viser's server is made such that it answers only to requests with our key in the header."""
-    serve: Any = websockets.asyncio.server.serve
-
-    def with_key(handler: Any, *where: Any, **options: Any) -> Any:
-        def check(connection: Any, request: Request) -> Response | None:
-            if request.headers.get(KEY_HEADER) != secret:
-                return connection.respond(403, "")  # type: ignore[no-any-return]
-            return None
-
-        return serve(handler, *where, **{**options, "process_request": check})
-
-    websockets.asyncio.server.serve = with_key  # type: ignore[misc,assignment]
-    try:
-        yield
-    finally:
-        websockets.asyncio.server.serve = serve  # type: ignore[misc]

@@ -2,11 +2,14 @@
 from above for low ones, at the rim for bowls. Angles were measured in simulation for a 85 mm parallel gripper."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
+from common import messages as m
+from common.geometry import Pose2, matrix_quat, quat_matrix, yaw_quat
 from services.manipulation.arm_model import Array, Pose
 
 HANDLE_CONE = math.radians(50)
@@ -75,6 +78,30 @@ def _candidates(target: Target, forward: float) -> list[Grasp]:
         return _rim(target, facing)
     tilts = (90, 65, 45, 30) if target.size[2] < 0.09 else (15, 30, 45)
     return _flat(target, facing, tilts, target.size[2] / 2)
+
+
+def shown(
+    target: Target,
+    options: Iterable[Grasp],
+    base: Pose2,
+    now: float,
+    failed: Iterable[str],
+    chosen: str,
+    goal_id: str,
+) -> m.GraspCandidates:
+    """Every candidate in frame map, for viewers."""
+    turn, lost = quat_matrix(yaw_quat(base[2])), set(failed)
+    found = []
+    for one in options:
+        x, y, z = (float(v) for v in turn @ one.pose.position + np.array([base[0], base[1], 0.0]))
+        state: Literal["open", "failed", "chosen"] = "failed" if one.name in lost else "open"
+        found.append(
+            m.GraspCandidate(
+                name=one.name, position=(x, y, z), orientation=matrix_quat(turn @ one.pose.rotation), width=one.width,
+                state="chosen" if one.name == chosen else state,
+            )
+        )  # fmt: skip
+    return m.GraspCandidates(t=now, object=target.label, candidates=found, goal_id=goal_id)
 
 
 def _make(target: Target, height: float, azimuth: float, tilt: float, roll: float, width: float, name: str) -> Grasp:

@@ -12,7 +12,7 @@ from common.io import Io
 from common.messages import WorldObject
 from services.manipulation.arm_model import Array, Obstacle
 from services.manipulation.config import ManipulationConfig
-from services.manipulation.grasp import approach_rotation
+from services.manipulation.grasp import approach_rotation, shown
 from services.manipulation.object_source import ObjectSource
 from services.manipulation.plan import GrabPlan, Held, PlacePlan, PlanError, Planner
 from services.manipulation.surroundings import obstacles, spots, target_of
@@ -129,6 +129,8 @@ def grab(robot: Robot, goal: m.ManipulationGoal, wanted: str) -> Steps[str]:
             )  # fmt: skip
         except Failure as failure:
             raise (failure if not tried else last) from None
+        options, name = planner.candidates(target), plan.grasp.name
+        robot.io.publish(topics.GRASPS, shown(target, options, robot.base, robot.now, tried, name, goal.id))
         tried.add(plan.grasp.name)
         robot.io.log.info("grasp chosen", object=found.label, grasp=plan.grasp.name)
         try:

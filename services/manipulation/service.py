@@ -29,7 +29,7 @@ class ManipulationService:
         topics.MANIPULATION_GOAL, topics.NAVIGATION_GOAL, topics.JOINT_STATES, topics.POSE, topics.ODOMETRY,
         topics.WORLD_OBJECTS, topics.ROBOT_DESCRIPTION, topics.ROBOT_STOP,
     )  # fmt: skip
-    WRITES = (topics.MANIPULATION_STATUS, topics.ARM_COMMAND, topics.GRIPPER_COMMAND)
+    WRITES = (topics.MANIPULATION_STATUS, topics.ARM_COMMAND, topics.GRIPPER_COMMAND, topics.GRASPS)
 
     def __init__(self, config: ManipulationConfig, io: Io) -> None:
         self._config, self._io = config, io

@@ -1,11 +1,13 @@
 """Where the base can be: the scene's static map, what the lidar sees beyond it, and the distance to either."""
 
 import math
+import zlib
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from common import messages as m
 from common.geometry import Pose2
 from common.scene import Scene
 
@@ -18,6 +20,7 @@ _REACH = 0.8
 # Something seen for longer than _LASTING stands there, other things are forgotten after _BRIEF [s].
 _LASTING, _BRIEF = 2.0, 4.0
 BIN_WALL = 0.02
+_FAR = 1.0  # the clearance [m] beyond which viewers see no difference
 
 
 class Costmap:
@@ -81,6 +84,15 @@ class Costmap:
                 np.minimum(part, disc[shift : shift + part.shape[0], aside : aside + part.shape[1]], out=part)
             self._distance = grid
         return self._distance
+
+    def picture(self, now: float) -> m.Costmap:
+        """The clearance of every cell, for viewers."""
+        cells = np.minimum(self.distance * (255 / _FAR), 255).astype(np.uint8)
+        height, width = self.shape
+        return m.Costmap(
+            t=now, x=self.origin[0], y=self.origin[1], resolution=self.resolution, width=width, height=height,
+            far=_FAR, cells=zlib.compress(cells.tobytes(), 1),
+        )  # fmt: skip
 
     # --- cells
     def cell(self, x: float, y: float) -> tuple[int, int]:

@@ -30,7 +30,7 @@ class NavigationService:
     )  # fmt: skip
     WRITES = (
         topics.NAVIGATION_STATUS, topics.NAVIGATION_FEEDBACK, topics.BASE_TARGET, topics.POSE, topics.NAV_PATH,
-        topics.CMD_VEL,
+        topics.CMD_VEL, topics.COSTMAP,
     )  # fmt: skip
 
     def __init__(self, config: NavigationConfig, io: Io) -> None:
@@ -47,6 +47,7 @@ class NavigationService:
         self._recoveries = 0
         self._told = (0, "")
         self._now = 0.0
+        self._shown = -1
         self._from_brain = True
         self._status = m.NavigationStatus(status="idle")
         io.publish(topics.NAVIGATION_STATUS, self._status)
@@ -54,6 +55,10 @@ class NavigationService:
     def step(self, now: float) -> None:
         io, self._now = self._io, now
         self._senses.step(now)
+        if int(now) != self._shown:
+            self._shown = int(now)
+            if io.matched(topics.COSTMAP):
+                io.publish(topics.COSTMAP, self._map.picture(now))
         if io.drain(topics.ROBOT_STOP) and self._busy:
             self._finish(Ended("failed", "STOPPED", "robot/stop"))
         for goal in io.drain(topics.NAVIGATION_GOAL):

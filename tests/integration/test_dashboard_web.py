@@ -18,8 +18,9 @@ from common import topics
 from common.memory import MemoryBus, MemoryIo
 from common.scene import load_scene
 from services.dashboard.config import DashboardConfig
+from services.dashboard.door import PageError
 from services.dashboard.service import DashboardService
-from services.dashboard.web import PageError, Sound, Web, Words
+from services.dashboard.web import Sound, Web, Words
 from tests.support import eventually
 
 TOKEN = "a token for these tests"

@@ -5,7 +5,7 @@ import pytest
 
 from common import messages as m
 from services.dashboard import markup
-from services.dashboard.history import Curves, Jitter, Services, Transcript
+from services.dashboard.history import Curves, Jitter, Reasons, Services, Transcript
 
 
 def health(name: str, epoch: str, **more: object) -> m.Health:
@@ -106,3 +106,31 @@ def test_mission_panel_names_state_step_time_and_plan() -> None:
     for word in ("NAVIGATING", "fetch it", "find mug", "7 s", "<li>find red mug</li>", "executing lift"):
         assert word in text
     assert "not been heard" in markup.mission(None, 0.0, [], None, None)
+
+
+def grown(status: str, detail: str) -> m.TreeSnapshot:
+    leaf = m.TreeNode(name="look", type="Leaf", status=status, detail=detail)
+    branch = m.TreeNode(name="search", type="Sequence", status=status, children=[leaf])
+    part = m.TreeNode(name="fetch", type="Sequence", status="RUNNING", children=[branch])
+    return m.TreeSnapshot(t=7.0, root=m.TreeNode(name="root", type="Selector", status="RUNNING", children=[part]))
+
+
+def test_a_node_that_was_reset_still_tells_its_last_reason() -> None:
+    reasons = Reasons()
+    reasons.take(grown("RUNNING", "turning"))
+    reasons.take(grown("FAILURE", "no <mug> in sight"))
+    later = grown("INVALID", "")
+    later.t = 30.0
+    reasons.take(later)
+    shown = markup.tree(later.root, reasons.last)
+    assert "no &lt;mug&gt; in sight (7 s)" in shown
+    assert "turning" not in shown
+    assert "look" not in markup.tree(later.root, {}), "what was never reached stays folded"
+
+
+def test_reasons_of_nodes_that_are_gone_are_forgotten() -> None:
+    reasons = Reasons()
+    reasons.take(grown("FAILURE", "why"))
+    root = m.TreeNode(name="root", type="Selector", status="RUNNING")
+    reasons.take(m.TreeSnapshot(t=8.0, root=root))
+    assert reasons.last == {}

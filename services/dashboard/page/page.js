@@ -60,7 +60,11 @@ $("say").onsubmit = (event) => {
 
 // keys.js, here and in the view, says when the space bar was pressed.
 window.addEventListener("message", (event) => {
-  if (event.data === "stop" && (event.source === window || event.source === $("view").contentWindow)) act("stop");
+  if (event.source !== window && event.source !== $("view").contentWindow) return;
+  if (event.data === "stop") act("stop");
+  else if (event.data && event.data.restart && confirm(`Restart ${event.data.restart}? A mission goes on afterwards.`)) {
+    act("restart", event.data.restart);
+  }
 });
 
 // --- microphone

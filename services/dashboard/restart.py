@@ -1,0 +1,65 @@
+"""Restarting a process, as `tidybot restart` does it: over the socket of the supervisor that `tidybot up` started."""
+
+import http.client
+import xmlrpc.client
+from pathlib import Path
+from typing import Any
+
+HIDDEN = ("watchdog",)
+OURSELVES = "dashboard"
+NOBODY = (
+    "Restart buttons need the supervisor of `tidybot up`, which is not reachable from here; in compose restart with "
+    "`docker compose restart SERVICE`."
+)
+
+
+class Refused(Exception):
+    """The supervisor is not there or does not do it; says why."""
+
+
+class Supervisor:
+    """For the worker thread: every call may take seconds."""
+
+    def __init__(self, socket: str) -> None:
+        self._socket = socket
+
+    def names(self) -> tuple[str, ...]:
+        """The processes that can be restarted; empty when no supervisor answers."""
+        try:
+            rows = self._call("supervisor.getAllProcessInfo")
+        except Refused:
+            return ()
+        return tuple(str(row["name"]) for row in rows if row["name"] not in HIDDEN)
+
+    def restart(self, name: str) -> None:
+        """Stop and start one process. It does not come back from stopping itself: that is left to the supervisor.
+
+        Raises:
+            Refused: no such process, or it does not start.
+        """
+        if name not in self.names():
+            raise Refused(f"{name[:40]!r} is not part of this run")
+        if name == OURSELVES:
+            self._call("supervisor.signalProcess", name, "TERM")
+            return
+        try:
+            self._call("supervisor.stopProcess", name)
+        except Refused as refused:
+            if "NOT_RUNNING" not in str(refused):
+                raise
+        self._call("supervisor.startProcess", name, False)
+
+    def _call(self, method: str, *args: Any) -> Any:
+        if not self._socket or not Path(self._socket).exists():
+            raise Refused(NOBODY)
+        from supervisor.xmlrpc import SupervisorTransport
+
+        transport = SupervisorTransport(None, None, serverurl=f"unix://{self._socket}")
+        try:
+            return getattr(xmlrpc.client.ServerProxy("http://127.0.0.1", transport=transport), method)(*args)
+        except xmlrpc.client.Fault as fault:
+            raise Refused(fault.faultString) from None
+        except (OSError, http.client.HTTPException, xmlrpc.client.ProtocolError) as error:
+            raise Refused(f"the supervisor does not answer: {error}") from None
+        finally:
+            transport.close()
