@@ -1,4 +1,4 @@
-"""`tidybot stop`, `resume`: the robot's brake, which the simulation itself holds."""
+"""`tidybot stop`, `resume`: the robot's brake, which the simulation itself holds, and the mission that it cut short."""
 
 import argparse
 from typing import Any
@@ -17,17 +17,31 @@ def stop(args: argparse.Namespace) -> int:
         watch = Watch(link, topics.SIM_STATUS)
         link.send(topics.ROBOT_STOP, m.RobotStop(reason=args.reason, source="tidybot"))
         _confirm(watch, "stopped")
-    print("stopped; `tidybot resume` releases the brake")
+    print("stopped; `tidybot resume` goes on with the mission, `tidybot resume --cancel` only releases the brake")
     return 0
 
 
 def resume(args: argparse.Namespace) -> int:
     with linked(args) as link:
-        watch = Watch(link, topics.SIM_STATUS)
-        link.send(topics.ROBOT_RESUME, m.RobotResume(source="tidybot"))
+        before = link.latest(topics.BRAIN_STATE)
+        last = before.last if before is not None else None
+        left = last is not None and last.outcome == "cancelled" and last.reason.startswith("stopped")
+        watch, states = Watch(link, topics.SIM_STATUS), Watch(link, topics.BRAIN_STATE)
+        link.send(topics.ROBOT_RESUME, m.RobotResume(source="tidybot", go_on=not args.cancel))
         _confirm(watch, "running")
-    print("running")
+        command = _taken_up(states) if left and not args.cancel else ""
+    print(f"running; goes on with {command!r}" if command else "running; no mission is under way")
     return 0
+
+
+def _taken_up(states: "Watch[m.BrainState]") -> str:
+    """The command of the mission that the brain goes on with; "" when it does not."""
+    end = monotonic() + CONFIRM
+    while monotonic() < end:
+        state = states.next(0.2)
+        if state is not None and state.mission_id:
+            return state.command
+    return ""
 
 
 def _confirm(watch: "Watch[m.SimStatus]", state: str) -> None:
@@ -50,6 +64,7 @@ def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") ->
     parser.add_argument("reason", nargs="?", default="operator")
     add_options(parser)
     parser.set_defaults(run=stop)
-    parser = commands.add_parser("resume", help="release the brake")
+    parser = commands.add_parser("resume", help="release the brake and go on with the mission that was stopped")
+    parser.add_argument("--cancel", action="store_true", help="only release the brake; the mission stays cancelled")
     add_options(parser)
     parser.set_defaults(run=resume)

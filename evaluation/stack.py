@@ -1,5 +1,6 @@
 """The whole robot in one process: the real services on the in-memory bus, in lockstep."""
 
+import gc
 import importlib
 import json
 from collections.abc import Callable, Mapping
@@ -114,6 +115,12 @@ class Stack:
         self.world.remove(service)
         self.bus.detach(io)
         io.shutdown()
+        handlers = self.bus.handlers
+        for key in [k for k, h in handlers.items() if getattr(h, "__self__", None) is service]:
+            del handlers[key]
+        del service, io
+        # What a process had open is closed by the system.
+        gc.collect()
 
     def hang(self, name: str, seconds: float) -> None:
         """As SIGSTOP and, later, SIGCONT: its mail piles up meanwhile."""

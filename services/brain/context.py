@@ -95,14 +95,25 @@ class Context:
     # --- the journal
     def save(self, closed: bool = False) -> None:
         """Put on disk how the mission stands, if that has changed; before anything of it is said to others."""
-        mission = self.mission
-        if not mission.command:
+        if not self.mission.command:
             return
+        state = self.standing(closed)
+        body = msgspec.json.encode(state)
+        if body == self._saved or (body == self._refused and self.now < self._again_at and not closed):
+            return
+        self._located(state)
+        if self.journal.save(state):
+            self._saved = body
+        else:
+            self._refused, self._again_at = body, self.now + SAVE_AGAIN
+
+    def standing(self, closed: bool = False) -> Checkpoint:
+        """How the mission stands."""
         path = path_to(self.at) if self.at is not None else []
         if path != self._path:
             self._path, self.resumes = path, 0
-        state = Checkpoint(
-            mission=mission,
+        return Checkpoint(
+            mission=self.mission,
             hand=msgspec.structs.replace(self.hand, empty_since=None),
             path=path,
             sent=[sent for channel in self.channels if (sent := channel.sent())],
@@ -110,15 +121,16 @@ class Context:
             closed=closed,
             resumes=self.resumes,
         )
-        body = msgspec.json.encode(state)
-        if body == self._saved or (body == self._refused and self.now < self._again_at and not closed):
-            return
+
+    def _located(self, state: Checkpoint) -> None:
         here = self.io.latest(topics.POSE)
         state.t, state.base = self.now, (here.x, here.y, here.theta) if here else None
-        if self.journal.save(state):
-            self._saved = body
-        else:
-            self._refused, self._again_at = body, self.now + SAVE_AGAIN
+
+    def bookmark(self) -> Checkpoint:
+        """A copy of how the mission stands that nothing changes any more."""
+        state = self.standing()
+        self._located(state)
+        return msgspec.json.decode(msgspec.json.encode(state), type=Checkpoint)
 
     def placed(self, at: Behaviour, resumes: int) -> None:
         """A mission has been taken up again at this node."""

@@ -80,7 +80,7 @@ class Journal(Protocol):
     def begin(self, mission: Mission) -> None: ...
 
     def resume(self, mission: Mission) -> None:
-        """Go on with a mission that an earlier process began."""
+        """Go on with a mission that an earlier process began, or that had been ended by a stop."""
 
     def note(self, mission_id: str, entry: Entry) -> object: ...
 
@@ -122,8 +122,11 @@ class MemoryJournal:
         self._records[record.id] = record
 
     def resume(self, mission: Mission) -> None:
-        if mission.id not in self._records:
+        record = self._records.get(mission.id)
+        if record is None:
             self.begin(mission)
+        else:
+            record.outcome, record.reason, record.ended = None, "", 0.0
 
     def note(self, mission_id: str, entry: Entry) -> bool:
         """True if there was room for it."""

@@ -5,16 +5,17 @@ from py_trees.common import Status
 
 from common import messages as m
 from common import topics
+from common.clock import unix_time
 from common.io import Io
 from services.brain.config import BrainConfig
 from services.brain.context import Context
 from services.brain.goals import Answer, Channel, Word
 from services.brain.intent import CANCEL, RETURN, STOP, normal
-from services.brain.journal import Journal
+from services.brain.journal import Checkpoint, Journal
 from services.brain.mission import Failure, fingers_hold
-from services.brain.resume import Resumption
 from services.brain.snapshot import Signature, signature, snapshot, tip
 from services.brain.store import open_journal
+from services.brain.take_up import Resumption, cut_short
 from services.brain.trees import fetch_tree
 from services.brain.vla import vla_tree
 
@@ -64,6 +65,7 @@ class BrainService:
         self._shown: Signature | None = None
         self._ticks = 0
         self._sim_stopped = False
+        self._cut_short: Checkpoint | None = None
         self._resumption = self._left_behind()
         io.serve(topics.BRAIN_MISSIONS, self._answer_missions)
 
@@ -77,6 +79,8 @@ class BrainService:
         self._receive_stops()
         self._receive_commands()
         if self._resumption is not None and self._resumption.step():
+            if self._resumption.put_off:
+                self._cut_short = cut_short(self._resumption.left, ctx.mission, ctx.hand)
             self._resumption = None
         if self._resumption is None:
             self.tree.tick_once()
@@ -148,10 +152,33 @@ class BrainService:
                 ctx.stopped = (ctx.stopped or status.detail) if stopped else None
         for stop in io.drain(topics.ROBOT_STOP):
             ctx.stopped = stop.reason
-        for _ in io.drain(topics.ROBOT_RESUME):
+        resumes = io.drain(topics.ROBOT_RESUME)
+        if resumes:
             ctx.stopped = None
         if ctx.stopped is not None and ctx.state != "IDLE":
-            self._interrupt("stopped" + (f": {ctx.stopped}" if ctx.stopped else ""))
+            self._stop("stopped" + (f": {ctx.stopped}" if ctx.stopped else ""))
+        elif ctx.stopped is None and any(r.go_on for r in resumes):
+            self._go_on()
+
+    def _stop(self, reason: str) -> None:
+        """Interrupt, and keep what is needed to go on when somebody asks for it."""
+        left = self.context.bookmark() if self.context.mission.active else None
+        self._interrupt(reason)
+        if left is not None:
+            self._cut_short = cut_short(left, self.context.mission, self.context.hand)
+
+    def _go_on(self) -> None:
+        """Take up what a stop has cut short, unless something else has begun meanwhile."""
+        ctx, left = self.context, self._cut_short
+        self._cut_short = None
+        if left is None or ctx.mission.active or self._resumption is not None:
+            self._io.log.info("no mission to go on with")
+            return
+        if ctx.speech.outstanding:
+            ctx.tell(ctx.speech, topics.SPEECH_GOAL, "cancel")
+        self.tree.stop(Status.INVALID)
+        left.date = unix_time()
+        self._resumption = Resumption(ctx, self.tree, left)
 
     def _receive_commands(self) -> None:
         ctx = self.context

@@ -3,6 +3,7 @@
 import sqlite3
 from collections import deque
 from collections.abc import Callable, Sequence
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
@@ -13,32 +14,10 @@ from common.io import Io
 from services.brain.config import BrainConfig
 from services.brain.journal import ENTRIES_KEPT, KEPT, Checkpoint, Entry, Journal, MemoryJournal, Record
 from services.brain.mission import Mission, Outcome
+from services.brain.schema import BEGIN, CHECKPOINT, END, ENTRY, FIELDS, MIGRATIONS, TRIM
 
 KEY = "journal"
-WAITING_KEPT, MISSIONS_KEPT = 5000, 5000
-MIGRATIONS: tuple[tuple[str, ...], ...] = (
-    (
-        "create table missions (number integer primary key autoincrement, id text not null unique,"
-        " command text not null, started real not null, outcome text, reason text not null default '',"
-        " ended real not null default 0, steps integer not null default 0, date real not null)",
-        "create table entries (number integer primary key autoincrement, mission text not null, t real not null,"
-        " state text not null, cause text not null, evidence text not null, kind text not null)",
-        "create index entries_by_mission on entries (mission, number)",
-        "create table checkpoint (one integer primary key check (one = 1), body blob not null)",
-        "create table boots (number integer primary key autoincrement, date real not null)",
-    ),
-)
-"""Statements that bring a file from version n to n + 1; `PRAGMA user_version` holds n. Only ever appended to."""
-
-_FIELDS = "id, command, started, outcome, reason, ended, steps, date"
-_BEGIN = f"insert or ignore into missions ({_FIELDS}) values (?, ?, ?, ?, ?, ?, ?, ?)"
-_END = "update missions set command = ?, outcome = ?, reason = ?, ended = ?, steps = ? where id = ?"
-_ENTRY = "insert into entries (mission, t, state, cause, evidence, kind) values (?, ?, ?, ?, ?, ?)"
-_CHECKPOINT = "insert or replace into checkpoint (one, body) values (1, ?)"
-_TRIM = (
-    f"delete from missions where number <= (select max(number) from missions) - {MISSIONS_KEPT}",
-    "delete from entries where mission not in (select id from missions)",
-)
+WAITING_KEPT = 5000
 _Op = tuple[str, tuple[Any, ...]]
 
 
@@ -76,22 +55,25 @@ class SqliteJournal:
         self._memory.begin(mission)
         record = self._memory.mission(mission.id)
         assert record is not None
-        self._waiting.append((_BEGIN, _values(record)))
+        self._waiting.append((BEGIN, _values(record)))
 
     def resume(self, mission: Mission) -> None:
         record = self.mission(mission.id)
         if record is None:
             self.begin(mission)
-        else:
-            self._memory.keep(record)
+            return
+        if record.outcome is not None:
+            self._waiting.append((END, (mission.command, None, "", 0.0, mission.goals, mission.id)))
+        self._memory.keep(record)
+        self._memory.resume(mission)
 
     def note(self, mission_id: str, entry: Entry) -> None:
         if self._memory.note(mission_id, entry):
-            self._waiting.append((_ENTRY, _entry(mission_id, entry)))
+            self._waiting.append((ENTRY, _entry(mission_id, entry)))
 
     def end(self, mission: Mission, outcome: Outcome, reason: str, t: float) -> None:
         self._memory.end(mission, outcome, reason, t)
-        self._waiting.append((_END, (mission.command, outcome, reason, t, mission.goals, mission.id)))
+        self._waiting.append((END, (mission.command, outcome, reason, t, mission.goals, mission.id)))
 
     def save(self, checkpoint: Checkpoint) -> bool:
         checkpoint.date = self._clock()
@@ -99,7 +81,7 @@ class SqliteJournal:
         try:
             db = self._opened()
             db.execute("begin immediate")
-            for statement, values in (*self._waiting, (_CHECKPOINT, (body,))):
+            for statement, values in (*self._waiting, (CHECKPOINT, (body,))):
                 db.execute(statement, values)
             db.execute("commit")
         except (sqlite3.Error, OSError, Unusable) as error:
@@ -132,14 +114,14 @@ class SqliteJournal:
             return None
 
     def missions(self) -> list[Record]:
-        rows = self._rows(f"select {_FIELDS} from missions order by number desc limit ?", KEPT)
+        rows = self._rows(f"select {FIELDS} from missions order by number desc limit ?", KEPT)
         # What the disk has refused, this process still knows.
         found = {**{row[0]: Record(*row) for row in reversed(rows)}, **{r.id: r for r in self._memory.missions()}}
         return list(found.values())
 
     def mission(self, mission_id: str) -> Record | None:
         own = self._memory.mission(mission_id)
-        rows = [] if own else self._rows(f"select {_FIELDS} from missions where id = ?", mission_id)
+        rows = [] if own else self._rows(f"select {FIELDS} from missions where id = ?", mission_id)
         if not rows:
             return own
         of = "select t, state, cause, evidence, kind from entries where mission = ? order by number limit ?"
@@ -147,7 +129,7 @@ class SqliteJournal:
         return msgspec.structs.replace(Record(*rows[0]), entries=entries)
 
     def last(self) -> Record | None:
-        rows = self._rows(f"select {_FIELDS} from missions where outcome is not null order by number desc limit 1")
+        rows = self._rows(f"select {FIELDS} from missions where outcome is not null order by number desc limit 1")
         return self._memory.last() or (Record(*rows[0]) if rows else None)
 
     def _rows(self, statement: str, *values: Any) -> list[Any]:
@@ -155,6 +137,15 @@ class SqliteJournal:
             return self._opened().execute(statement, values).fetchall()
         except (sqlite3.Error, OSError, Unusable) as error:
             self._refused(error)
+            return self._rows_only_read(statement, values)
+
+    def _rows_only_read(self, statement: str, values: tuple[Any, ...]) -> list[Any]:
+        """From a file on a disk without room: a single user's index of the log can do without a file."""
+        try:
+            with closing(sqlite3.connect(f"{self.path.absolute().as_uri()}?mode=rw", timeout=0.2, uri=True)) as db:
+                db.execute("pragma locking_mode = exclusive")
+                return db.execute(statement, values).fetchall()
+        except sqlite3.Error:
             return []
 
     # --- the file
@@ -180,7 +171,7 @@ class SqliteJournal:
                 raise Unusable(f"damaged: {health}")
             if self._migrate(db) == 0:
                 self._tell_all(db)
-            for statement in _TRIM:
+            for statement in TRIM:
                 db.execute(statement)
             boot = "insert or ignore into boots (number, date) values (?, ?)"
             started = db.execute(boot, (self.boot or None, self._clock())).lastrowid
@@ -208,8 +199,8 @@ class SqliteJournal:
         """Into a new file: what this process knows."""
         db.execute("begin immediate")
         for record in self._memory.records():
-            db.execute(_BEGIN, _values(record))
-            db.executemany(_ENTRY, [_entry(record.id, entry) for entry in record.entries])
+            db.execute(BEGIN, _values(record))
+            db.executemany(ENTRY, [_entry(record.id, entry) for entry in record.entries])
         db.execute("commit")
         self._waiting.clear()
 

@@ -1,5 +1,7 @@
 """The journal on disk: what was saved is there after anything that happens to the process, the file or the disk."""
 
+import os
+import resource
 import sqlite3
 import subprocess
 import sys
@@ -295,3 +297,27 @@ def test_where_the_journal_is_kept(tmp_path: Path) -> None:
     one.state_dir = None
     journal = open_journal(BrainConfig(journal=str(tmp_path / "other.db")), one)
     assert isinstance(journal, SqliteJournal) and (tmp_path / "other.db").exists()
+
+
+def test_what_a_killed_brain_left_is_read_from_a_disk_without_room(path: Path) -> None:
+    """To open the file for writing takes room, to know where the mission stands must not."""
+    script = (
+        "import os, sys; from pathlib import Path; from tests.unit.test_brain_store import *\n"
+        "told(opened(Path(sys.argv[1])), 'm-1'); os.kill(os.getpid(), 9)"
+    )
+    done = subprocess.run([sys.executable, "-c", script, str(path)], cwd=ROOT, env={**os.environ, "PYTHONPATH": "."})
+    assert done.returncode == -9
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (0, hard))
+    try:
+        journal = SqliteJournal(path, io())
+        left, missions = journal.checkpoint(), journal.missions()
+        refused = journal.save(Checkpoint(Mission("m-1"), Hand()))
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+    assert left is not None and left.mission.id == "m-1" and [r.id for r in missions] == ["m-1"]
+    assert not refused and journal.errors > 0
+    assert journal.save(Checkpoint(left.mission, Hand(holding="red mug")))
+    journal.close()
+    again = opened(path).checkpoint()
+    assert again is not None and again.hand.holding == "red mug"

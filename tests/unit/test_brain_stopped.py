@@ -1,0 +1,115 @@
+"""A stop ends the mission; a resume that asks for it goes on with it after a look at the world, any other does not."""
+
+from pathlib import Path
+
+import pytest
+
+from common import messages as m
+from common import topics
+from tests.unit.brain_world import World
+from tests.unit.test_brain_resume import PIPELINES, STATES, begun, delivered_once, finished
+
+
+def stop(world: World) -> None:
+    """As the simulation and the peers take it: all that was under way is dropped."""
+    world.bus.send(topics.ROBOT_STOP, m.RobotStop(reason="button"))
+    world.bus.send(topics.SIM_STATUS, m.SimStatus(state="stopped", detail="button"))
+    for peer in world.peers.values():
+        peer.job = None
+    world.step(3.0)
+    assert world.state.state == "IDLE" and world.outcome == "cancelled"
+
+
+def resume(world: World, go_on: bool) -> None:
+    world.bus.send(topics.SIM_STATUS, m.SimStatus(state="running"))
+    world.bus.send(topics.ROBOT_RESUME, m.RobotResume(go_on=go_on))
+
+
+@pytest.mark.parametrize(("pipeline", "state"), [(p, s) for p in PIPELINES for s in STATES[p]])
+def test_stopped_in_each_state_it_goes_on(pipeline: str, state: str, tmp_path: Path) -> None:
+    world = begun(pipeline, tmp_path / "j.db")
+    world.until(lambda: world.state.state == state)
+    mission = world.state.mission_id
+    world.step(0.3)
+    stop(world)
+    resume(world, go_on=True)
+    world.until(lambda: world.state.mission_id == mission)
+    world.until(lambda: world.outcome == "delivered")
+    finished(world)
+    delivered_once(world)
+    assert world.state.last is not None and world.state.last.id == mission
+
+
+@pytest.mark.parametrize("pipeline", PIPELINES)
+def test_a_plain_resume_only_releases(pipeline: str, tmp_path: Path) -> None:
+    world = begun(pipeline, tmp_path / "j.db")
+    world.until(lambda: world.state.state == "RETURNING")
+    stop(world)
+    drives = list(world.drives)
+    resume(world, go_on=False)
+    world.step(10.0)
+    assert world.outcome == "cancelled" and world.drives == drives and world.held
+    # Who thinks better of it later may still go on.
+    resume(world, go_on=True)
+    world.until(lambda: world.outcome == "delivered")
+    delivered_once(world)
+
+
+def test_a_hand_that_closed_just_before_the_stop_is_noticed_by_the_grab_itself(tmp_path: Path) -> None:
+    world = begun("vla", tmp_path / "j.db")
+    world.until(lambda: world.state.state == "GRABBING")
+    stop(world)
+    world.held, world.item_at = "red mug", "hand"
+    resume(world, go_on=True)
+    world.until(lambda: world.outcome == "delivered")
+    assert (world.grabs, world.releases, world.drives) == (0, 1, ["item", "home"]), world.timeline()
+
+
+def test_what_fell_while_stopped_is_fetched_again(tmp_path: Path) -> None:
+    world = begun("fetch", tmp_path / "j.db")
+    world.until(lambda: world.state.state == "RELEASING")
+    stop(world)
+    world.held, world.item_at = "", "item"
+    resume(world, go_on=True)
+    world.until(lambda: world.outcome == "delivered")
+    assert (world.grabs, world.releases, world.item_at) == (2, 1, "home"), world.timeline()
+
+
+def test_a_mission_that_was_called_off_is_not_gone_on_with(tmp_path: Path) -> None:
+    world = begun("fetch", tmp_path / "j.db")
+    world.until(lambda: world.state.state == "RETURNING")
+    world.bus.send(topics.VOICE_COMMAND, m.VoiceCommand(text="cancel"))
+    world.step(1.0)
+    drives = list(world.drives)
+    resume(world, go_on=True)
+    world.step(8.0)
+    assert world.outcome == "cancelled" and world.drives == drives
+
+
+def test_stopped_while_the_brain_was_down_it_goes_on_when_asked(tmp_path: Path) -> None:
+    world = begun("vla", tmp_path / "j.db")
+    world.until(lambda: world.state.state == "RETURNING")
+    world.kill_brain()
+    world.bus.send(topics.SIM_STATUS, m.SimStatus(state="stopped", detail="button"))
+    world.step(1.0)
+    world.start_brain()
+    world.step(5.0)
+    assert world.state.state == "IDLE" and world.outcome == "cancelled"
+    resume(world, go_on=True)
+    world.until(lambda: world.outcome == "delivered")
+    delivered_once(world)
+
+
+def test_the_journal_tells_of_both(tmp_path: Path) -> None:
+    world = begun("fetch", tmp_path / "j.db")
+    world.until(lambda: world.state.state == "NAVIGATING")
+    stop(world)
+    resume(world, go_on=True)
+    world.until(lambda: world.outcome == "delivered")
+    story = world.timeline()
+    assert "stopped: button" in story and "resumed" in story
+    finished(world)
+    world.kill_brain()
+    world.start_brain()
+    world.step(1.0)
+    assert world.state.last is not None and world.state.last.outcome == "delivered"
