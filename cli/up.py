@@ -49,6 +49,8 @@ class Plan:
             settings["TIDYBOT__RUNTIME__SCENE"] = args.scene
         if args.seed is not None:
             settings["TIDYBOT__RUNTIME__SEED"] = str(args.seed)
+        if getattr(args, "robot", None):
+            settings["TIDYBOT__SIM__ROBOT"] = args.robot
         if args.viewer:
             settings["TIDYBOT__SIM__VIEWER"] = "true"
         settings["TIDYBOT__SIM__SPEED"] = self.speed
@@ -316,5 +318,6 @@ def add_start_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--speed", default="realtime", metavar="realtime|N|max", help="other than realtime: lockstep")
     parser.add_argument("--scene", help="a shipped scene's name or a path")
     parser.add_argument("--seed", type=int, help="object layout and noise")
+    parser.add_argument("--robot", metavar="NAME", help="tidybot, or menagerie:stanford_tidybot (docs/EXTENDING.md)")
     parser.add_argument("--set", action="append", default=[], metavar="section.key=value", help="override a parameter")
     parser.add_argument("--viewer", action="store_true", help="open a window on the simulation")

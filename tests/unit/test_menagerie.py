@@ -1,0 +1,236 @@
+"""A robot of MuJoCo Menagerie in place of our own; a stand-in of ours has the official one's names."""
+
+from pathlib import Path
+
+import mujoco
+import numpy as np
+import pytest
+
+from common import codec, topics
+from common import messages as m
+from common.memory import MemoryBus, MemoryIo
+from common.robot import Hand
+from common.runtime import StartError
+from common.scene import load_scene
+from services.manipulation.arm_model import ArmModel, Pose
+from services.manipulation.ik import InverseKinematics, seeds
+from services.perception.body import Body
+from services.sim import menagerie
+from services.sim.config import SimConfig
+from services.sim.model import Robot, load_robot
+from services.sim.service import SimService
+from tests import standin
+
+NAME = "menagerie:stanford_tidybot"
+SCENE = load_scene("minimal")
+
+
+@pytest.fixture(scope="module")
+def root(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return standin.write(tmp_path_factory.mktemp("menagerie"))
+
+
+@pytest.fixture(scope="module")
+def robot(root: Path) -> Robot:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv(menagerie.ROOT, str(root))
+        load_robot.cache_clear()
+        return load_robot(NAME)
+
+
+class Sim:
+    """The simulation of the stand-in, ticked by hand."""
+
+    def __init__(self) -> None:
+        self.bus = MemoryBus()
+        reads, writes = SimService.READS, SimService.WRITES
+        self.io = MemoryIo(self.bus, "sim", reads, writes, scene=SCENE)
+        self.service = SimService(SimConfig(robot=NAME, odometry_slip=0, odometry_veer=0, odometry_noise=0), self.io)
+        self.ticks = 0
+
+    def run(self, seconds: float) -> m.JointStates:
+        for _ in range(round(seconds * 100)):
+            self.ticks += 1
+            self.io.begin(self.ticks, self.ticks * 0.01)
+            self.service.step(self.ticks * 0.01)
+        states: m.JointStates = codec.decode(topics.JOINT_STATES, self.bus.last["joint_states"])
+        return states
+
+
+@pytest.fixture
+def sim(robot: Robot) -> Sim:
+    return Sim()
+
+
+def test_limits_mount_carry_pose_and_opening_come_from_the_model(robot: Robot) -> None:
+    arm = ArmModel(robot.mjcf)
+    assert np.allclose(arm.home, standin.RETRACT)
+    assert arm.forward == pytest.approx(0.0), "the stand-in's arm stands in the middle of its base"
+    assert arm.high[[1, 3, 5]].tolist() == [2.24, 2.57, 2.09]
+    assert arm.unlimited.tolist() == [True, False, True, False, True, False, True]
+    assert 0.07 < arm.widest < 0.08
+    assert not arm.collides(arm.home)
+
+
+def test_inverse_kinematics_reaches_and_keeps_its_limits(robot: Robot) -> None:
+    arm = ArmModel(robot.mjcf)
+    solver = InverseKinematics(arm)
+    rng = np.random.default_rng(3)
+    for _ in range(8):
+        q = arm.home + rng.uniform(-0.5, 0.5, 7)
+        wanted = arm.pose(np.clip(q, arm.low, arm.high))
+        found = solver.solve(wanted, [arm.home, *seeds(arm, wanted, arm.home)])
+        assert found is not None
+        assert np.linalg.norm(arm.pose(found).position - wanted.position) < 0.002
+        assert (found >= arm.low - 1e-6).all() and (found <= arm.high + 1e-6).all()
+
+
+def test_the_pinch_point_lies_between_the_pads_and_looks_along_the_approach(robot: Robot) -> None:
+    model = mujoco.MjModel.from_xml_string(robot.mjcf)
+    data = mujoco.MjData(model)
+    hand = Hand(model)
+    data.qpos[[model.joint(j).qposadr[0] for j in hand.joints]] = hand.posture(hand.open / 2)
+    mujoco.mj_kinematics(model, data)
+    pads = {s: np.mean([data.geom(f"{s}_pad{i}").xpos for i in (0, 1)], axis=0) for s in ("left", "right")}
+    pinch = data.site("pinch")
+    axes = pinch.xmat.reshape(3, 3)
+    assert np.linalg.norm((pads["left"] + pads["right"]) / 2 - pinch.xpos) < 0.004
+    across = pads["left"] - pads["right"]
+    assert across @ axes[:, 1] == pytest.approx(np.linalg.norm(across), rel=1e-3)
+    assert np.linalg.norm(across) == pytest.approx(hand.open / 2 + 0.008, abs=0.001), "two pads of 8 mm"
+    palm = data.body("gripper").xpos
+    assert (pinch.xpos - palm) @ axes[:, 2] > 0.1
+
+
+def test_the_base_drives_and_says_so(sim: Sim) -> None:
+    home = SCENE.home
+    sim.bus.send(topics.BASE_TARGET, m.BaseTarget(x=home.x - 0.3, y=home.y, theta=home.theta + 0.5, id="there"))
+    states = sim.run(3.0)
+    reached = codec.decode(topics.GOAL_REACHED, sim.bus.last["base/goal_reached"])
+    assert (reached.reached, reached.target_id) == (True, "there")
+    assert states.position[:3] == pytest.approx([home.x - 0.3, home.y, home.theta + 0.5], abs=0.03)
+
+
+def test_the_arm_follows_and_refuses_what_its_joints_cannot(sim: Sim) -> None:
+    q = np.array(standin.RETRACT)
+    for _ in range(60):
+        q = q + np.array([0.005, 0.01, 0, 0, 0, 0.01, 0])
+        sim.bus.send(topics.ARM_COMMAND, m.ArmCommand(position=q.tolist(), period=0.02))
+        states = sim.run(0.02)
+    assert states.position[3:10] == pytest.approx(q.tolist(), abs=0.05)
+    beyond = q.copy()
+    beyond[5] = 2.2
+    sim.bus.send(topics.ARM_COMMAND, m.ArmCommand(position=beyond.tolist(), period=0.02))
+    sim.run(0.05)
+    assert sim.io.drops["arm/command"] == 1
+
+
+def test_the_gripper_closes_on_its_own_travel(sim: Sim) -> None:
+    states = sim.run(0.1)
+    assert states.position[-1] == pytest.approx(0.0838, abs=0.002)
+    sim.bus.send(topics.GRIPPER_COMMAND, m.GripperCommand(position=1.0, max_effort=25.0))
+    assert sim.run(1.0).position[-1] < 0.002
+    sim.bus.send(topics.GRIPPER_COMMAND, m.GripperCommand(position=0.5, max_effort=25.0))
+    assert 0.03 < sim.run(1.0).position[-1] < 0.05
+
+
+def test_perception_knows_this_body(robot: Robot) -> None:
+    body = Body(robot.mjcf)
+    body.pose(np.array(standin.RETRACT), 0.04)
+    hand = np.array(body.hand((0.0, 0.0, 0.0)))
+    arm = ArmModel(robot.mjcf)
+    pose: Pose = arm.pose(np.array(standin.RETRACT))
+    assert np.allclose(hand, pose.position, atol=1e-6)
+    # Base box of 0.5 x 0.48 x 0.24 m from 0.08 m upwards: a mesh in the stand-in.
+    points = np.array([[0.26, 0.0, 0.2], [0.2, 0.2, 0.2], [0.5, 0.0, 0.2], [0.0, 0.0, 0.02]])
+    assert body._distance(points)[:3] == pytest.approx([0.01, 0.0, 0.25], abs=1e-4)
+
+
+def test_the_world_shows_the_robot_with_our_names(sim: Sim) -> None:
+    described = codec.decode(topics.SIM_MODEL, sim.bus.last["sim/model"])
+    model = mujoco.MjModel.from_xml_string(described.mjcf)
+    for camera in ("head", "wrist"):
+        assert model.camera(camera).id >= 0
+    assert model.body("base").mass[0] == pytest.approx(60.0)
+    assert model.camera("wrist").fovy[0] == pytest.approx(42.0)
+    assert [model.joint(i).name for i in range(3)] == ["base_x", "base_y", "base_yaw"]
+
+
+@pytest.mark.parametrize(
+    ("left_out", "named"),
+    [
+        ('<joint name="joint_th"/>', None),
+        ('<key name="retract"', "key retract"),
+        ('name="pinch_site"', "site pinch_site"),
+        ('name="fingers_actuator"', "actuator fingers_actuator"),
+    ],
+)
+def test_a_model_that_lacks_something_is_refused_by_name(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, left_out: str, named: str | None
+) -> None:
+    standin.write(tmp_path)
+    path = tmp_path / "stanford_tidybot" / "tidybot.xml"
+    path.write_text(path.read_text().replace(left_out, left_out.replace('name="', 'name="not_')))
+    monkeypatch.setenv(menagerie.ROOT, str(tmp_path))
+    load_robot.cache_clear()
+    with pytest.raises(menagerie.RobotError) as refused:
+        load_robot(NAME)
+    assert str(path) in str(refused.value)
+    if named:
+        assert f"lacks {named}" in str(refused.value) and "stanford_tidybot.toml" in str(refused.value)
+
+
+def test_a_model_under_another_file_name_is_found(tmp_path: Path) -> None:
+    standin.write(tmp_path, file="my_tidybot.xml")
+    folder = tmp_path / "stanford_tidybot"
+    assert menagerie._below(folder, "tidybot.xml") == folder / "my_tidybot.xml"
+
+
+@pytest.mark.parametrize(
+    ("name", "root", "cure"),
+    [
+        ("menagerie:stanford_tidybot", "empty", "Set MENAGERIE_ROOT"),
+        ("menagerie:stanford_tidybot", None, "pip install mujoco-menagerie"),
+        ("menagerie:unitree_go2", None, "known: menagerie:stanford_tidybot"),
+        ("r2d2", None, "expected tidybot or menagerie:"),
+    ],
+)
+def test_what_is_not_there_is_said_with_the_cure(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, root: str | None, cure: str
+) -> None:
+    monkeypatch.setattr(menagerie, "PACKAGE", "no_such_package")
+    monkeypatch.delenv(menagerie.ROOT, raising=False)
+    if root is not None:
+        monkeypatch.setenv(menagerie.ROOT, str(tmp_path))
+    load_robot.cache_clear()
+    io = MemoryIo(MemoryBus(), "sim", SimService.READS, SimService.WRITES, scene=SCENE)
+    with pytest.raises(StartError) as refused:
+        SimService(SimConfig(robot=name), io)
+    assert cure in str(refused.value)
+
+
+class Package:
+    """The part of `mujoco_menagerie` that is used."""
+
+    class MenagerieError(Exception): ...
+
+    def __init__(self, folder: Path | None) -> None:
+        self._folder = folder
+
+    def get(self, name: str) -> "Package":
+        assert name == "stanford_tidybot"
+        return self
+
+    def xml(self, entry: str) -> Path:
+        if self._folder is None:
+            raise self.MenagerieError("no network")
+        return self._folder / f"{entry}.xml"
+
+
+def test_the_package_is_asked_when_no_root_is_set(root: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv(menagerie.ROOT, raising=False)
+    monkeypatch.setattr(menagerie.importlib, "import_module", lambda name: Package(root / "stanford_tidybot"))
+    assert menagerie.find("stanford_tidybot", "tidybot.xml").is_file()
+    monkeypatch.setattr(menagerie.importlib, "import_module", lambda name: Package(None))
+    with pytest.raises(menagerie.RobotError, match="no network"):
+        menagerie.find("stanford_tidybot", "tidybot.xml")
