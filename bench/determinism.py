@@ -1,7 +1,8 @@
 """Is a seed's run the same every time, in one process and with every process real?
 
 `python -m bench.determinism --seed 3 --runs memory,memory,processes,processes`; exit 1 when a trajectory differs.
-Prints a hash of all physics and joint states of each run and, of two that differ, the first message that does.
+Prints a hash of all physics and joint states of each run and, of two that differ, the first message that does. With
+`--faults` messages are dropped, doubled, late and out of order, by the same seed.
 """
 
 import argparse
@@ -9,23 +10,34 @@ import sys
 import tempfile
 import time
 import uuid
+from collections.abc import Sequence
+from functools import partial
 from itertools import zip_longest
 from pathlib import Path
+from typing import TypeVar
 
 import msgspec
+import numpy as np
 
 from bench.witness import Sight, Trace, WitnessService
 from cli.services import Service
 from cli.supervision import Supervision, free_port
 from cli.up import Plan, bring_up
+from evaluation.case import Case
+from evaluation.chaos import MISTREATED, TRAFFIC
+from evaluation.faults import Rule, faulty
+from evaluation.node import CASE
 from evaluation.stack import Stack
 
-WALL_LIMIT = 1800.0
+T = TypeVar("T")
+WALL_LIMIT, NODE = 1800.0, "evaluation.node"
 
 
 def in_memory(args: argparse.Namespace) -> Trace:
     """Every service in this process."""
-    robot = Stack(args.scene, args.seed, settings(args), without=tuple(args.without.split(",")))
+    harm = rules(args)
+    swaps = {rule.service: partial(faulty, rules=harm) for rule in harm}
+    robot = Stack(args.scene, args.seed, settings(args), without=tuple(args.without.split(",")), swaps=swaps)
     try:
         witness: WitnessService = robot.join(WitnessService)
         while witness.trace is None:
@@ -52,7 +64,12 @@ def in_processes(args: argparse.Namespace) -> Trace:
                 set=[s for s in settings(args) if not s.startswith("witness.")],
             )
         )  # fmt: skip
-        plan.services = [*plan.services, Service("witness", "bench.witness")]
+        harm = rules(args)
+        harmed = {rule.service for rule in harm}
+        services = [msgspec.structs.replace(s, module=NODE) if s.name in harmed else s for s in plan.services]
+        plan.services = [*services, Service("witness", "bench.witness")]
+        case = directory / "case.json"
+        case.write_bytes(msgspec.json.encode(case_of(args, harm)))
         waited = ", ".join(f'"{s.name}"' for s in plan.services if s.paced)
         own = {f"TIDYBOT__{k.upper().replace('.', '__')}": v for k, _, v in (s.partition("=") for s in settings(args))}
         plan.environ = {
@@ -60,6 +77,7 @@ def in_processes(args: argparse.Namespace) -> Trace:
             **{k: v for k, v in own.items() if k.startswith("TIDYBOT__WITNESS__")},
             "TIDYBOT__WITNESS__TRACE": str(trace),
             "TIDYBOT_STATE_DIR": str(directory / "state"),
+            CASE: str(case),
             "TIDYBOT__SIM__WAIT_FOR": f"[{waited}]",
         }
         try:
@@ -72,6 +90,30 @@ def in_processes(args: argparse.Namespace) -> Trace:
             return msgspec.json.decode(trace.read_bytes(), type=Trace)
         finally:
             supervision.stop()
+
+
+def rules(args: argparse.Namespace) -> tuple[Rule, ...]:
+    """With `--faults`: for each kind of harm one key of every service that is run."""
+    if not args.faults:
+        return ()
+    rng = np.random.default_rng([args.seed, 14])
+    without = args.without.split(",")
+
+    def one_of(several: Sequence[T]) -> T:
+        return several[int(rng.integers(len(several)))]
+
+    return tuple(
+        Rule(
+            service=service, key=one_of(keys), kind=one_of(MISTREATED), skip=int(rng.integers(2)), count=2, chance=0.7,
+            seconds=float(rng.uniform(0.2, 1.0)),
+        )
+        for (service, _), keys in TRAFFIC.items()
+        if service not in without and service not in ("sim", "speech")
+    )  # fmt: skip
+
+
+def case_of(args: argparse.Namespace, harm: tuple[Rule, ...]) -> Case:
+    return Case(suite="determinism", seed=args.seed, name="harm", command=args.command, lines=(), rules=harm)
 
 
 def settings(args: argparse.Namespace) -> tuple[str, ...]:
@@ -109,8 +151,11 @@ def main() -> int:
     parser.add_argument("--command", default="bring me the red mug")
     parser.add_argument("--limit", type=float, default=300.0, metavar="S", help="robot time (default %(default)s)")
     parser.add_argument("--without", default="", metavar="A,B", help="leave these services out")
+    parser.add_argument("--faults", action="store_true", help="with messages mistreated, by the seed")
     parser.add_argument("--set", action="append", default=[], metavar="section.key=value")
     args = parser.parse_args()
+    for rule in rules(args):
+        print(f"{rule.kind:9} {rule.service}: {rule.key}, {rule.count} after {rule.skip}")
     print(f"{'run':12} {'robot s':>8} {'wall s':>7} {'messages':>9}  {'hash':16}  outcome")
     traces: list[Trace] = []
     for kind in args.runs.split(","):

@@ -19,7 +19,7 @@ from common import clock
 
 PR_SET_PDEATHSIG = 1
 BAD_CONFIGURATION = 2
-CRASHES, WITHIN = 5, 60.0
+CRASHES, WITHIN = int(os.environ.get("TIDYBOT_CRASHES", "5")), 60.0
 starts: Counter[str] = Counter()
 
 

@@ -10,8 +10,13 @@ from evaluation.faults import Kind, Rule
 
 CHAOS_STATES = ("CONFIRMING", "PLANNING", "GROUNDING", "NAVIGATING", "GRABBING", "RETURNING", "RELEASING")
 CHAOS_SERVICES = ("speech", "planner", "perception", "camera", "navigation", "manipulation", "brain", "sim")
+EVERY = "every one"
 MISTREATED: tuple[Kind, ...] = ("drop", "duplicate", "delay", "reorder")
 FAULTS = ("kill", "hang", "router loss", "disk full", "disk full, kill", "clock jump", *MISTREATED)
+HARM: dict[str, dict[str, float]] = {
+    "hang": {"seconds": 3.0}, "router loss": {"seconds": 5.0}, "disk full": {"full": 30.0},
+    "disk full, kill": {"full": 30.0}, "clock jump": {"jump": 2.0},
+}  # fmt: skip
 CHATTY = frozenset({
     "speech/status", "world/objects", "camera/head/rgbd", "camera/wrist/rgbd", "brain/manipulation_status",
     "navigation_feedback", "joint_states", "scan", "base/odom",
@@ -62,6 +67,8 @@ def _cells() -> tuple[Cell, ...]:
     found += all_of("router loss", ["router"]) + all_of("disk full", ["host"])
     found += all_of("disk full, kill", ["brain"]) + all_of("clock jump", ["host"])
     found += [Cell(service, state, kind) for service, state in TRAFFIC for kind in MISTREATED]
+    found += [Cell(service, EVERY, "kill") for service in CHAOS_SERVICES]
+    found += [Cell("router", EVERY, "router loss"), Cell("host", EVERY, "clock jump")]
     return tuple(found)
 
 
@@ -69,7 +76,10 @@ CELLS = _cells()
 
 
 def chaos(seed: int) -> Case:
-    """Cell after cell: the first 56 seeds kill each service in each state, the next 49 hang it; then the rest."""
+    """Cell after cell: the first 56 seeds kill each service in each state, the next 49 hang it; then the rest.
+
+    The last ten strike in every state of one mission.
+    """
     cell = CELLS[seed % len(CELLS)]
     scene, rng = flat(), random(seed, 6)
     # What lies near makes a short mission: it is the harm that counts here, not the search.
@@ -77,19 +87,14 @@ def chaos(seed: int) -> Case:
     case = fetch_case("chaos", seed, pick(rng, scene, seed, room=near.name if near else ""), scene)
     case.name, case.fault, case.honest, case.settings = f"{cell.service} {cell.state}", cell.fault, True, (VLA,)
     case.spoken = cell.service == "speech" or cell.state == "CONFIRMING"
-    moment = round(float(rng.uniform(0.0, MOMENTS[cell.state])), 2)
-    strike = Strike(cell.service, cell.state, after=moment)
     match cell.fault:
-        case "kill":
-            case.strikes = (strike,)
-        case "hang":
-            case.strikes = (msgspec.structs.replace(strike, seconds=3.0),)
-        case "router loss":
-            case.strikes = (msgspec.structs.replace(strike, seconds=5.0),)
-        case "disk full" | "disk full, kill":
-            case.strikes = (msgspec.structs.replace(strike, full=30.0),)
-        case "clock jump":
-            case.strikes = (msgspec.structs.replace(strike, jump=2.0),)
+        case "kill" | "hang" | "router loss" | "disk full" | "disk full, kill" | "clock jump":
+            states = CHAOS_STATES if cell.state == EVERY else (cell.state,)
+            moments = [round(float(rng.uniform(0.0, MOMENTS[state])), 2) for state in states]
+            case.strikes = tuple(
+                Strike(cell.service, state, after=moment, **HARM.get(cell.fault, {}))
+                for state, moment in zip(states, moments, strict=True)
+            )
         case kind:
             keys = TRAFFIC[cell.service, cell.state]
             key = keys[int(rng.integers(len(keys)))]
