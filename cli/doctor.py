@@ -2,6 +2,7 @@
 
 import argparse
 import ctypes.util
+import importlib.util
 import os
 import platform
 import shutil
@@ -20,6 +21,9 @@ from common import keys
 from common.clock import unix_time
 
 EXPIRES_SOON = 30  # days
+PAGE_PORT = 8080
+ROOM = 500  # MB
+ROBOT = "stanford_tidybot"
 
 
 class Finding(msgspec.Struct):
@@ -97,25 +101,34 @@ def port() -> Iterator[Finding]:
     elif port_is_free(7447):
         yield Finding("ok", "port 7447", "free")
     else:
-        who = listener(7447)
-        yield Finding(
-            "note", "port 7447", f"in use{' by ' + who if who else ''}", "stop that program, or tidybot up --port 7448"
-        )
+        yield busy(7447, "tidybot up --port 7448")
+    if pid is None and not port_is_free(PAGE_PORT):
+        yield busy(PAGE_PORT, "nothing: the page takes the next free port, and `tidybot up` says which")
+
+
+def busy(port: int, otherwise: str) -> Finding:
+    who = listener(port)
+    stop = f"kill {who.rsplit(' ', 1)[-1].rstrip(')')}, or " if who else ""
+    return Finding("note", f"port {port}", f"in use{' by ' + who if who else ''}", f"{stop}{otherwise}")
 
 
 def certificates() -> Iterator[Finding]:
-    """Keys, and when the first of them expires."""
+    """Keys, whether they can be used, and when the first of them expires."""
     try:
         found = keys.directory()
     except keys.KeysError as error:
-        yield Finding("error", "keys", str(error))
+        what, _, cure = str(error).partition("; ")
+        yield Finding("error", "keys", what, cure.partition("`")[2].partition("`")[0] or "tidybot keys")
         return
     if found is None:
         yield Finding("ok", "keys", "none: the robot is open to this machine only", "")
         return
-    rows = sorted(Authority(found).rows(), key=lambda row: row.expires)
-    if not rows:
-        yield Finding("ok", "keys", str(found))
+    there = Authority(found)
+    rows = sorted(there.rows(), key=lambda row: row.expires)
+    broken = {s.common_name for s in there.subjects()} - {row.name for row in rows}
+    if broken or not rows:
+        state = f"cannot be read: {', '.join(sorted(broken))}" if broken else f"{found} holds no certificate"
+        yield Finding("error", "keys", state, f"tidybot keys --dir {found} --force")
         return
     first = rows[0]
     days = (datetime.fromisoformat(first.expires).timestamp() - unix_time()) / 86400
@@ -154,16 +167,34 @@ def machine() -> Iterator[Finding]:
         usable = os.access(directory, os.W_OK)
     except OSError:
         usable = False
-    fix = "" if usable else "TIDYBOT_RUN_DIR=<a directory of yours>"
+    fix = "" if usable else "export TIDYBOT_RUN_DIR=$HOME/tidybot-run"
     yield Finding("ok" if usable else "error", "run directory", str(directory), fix)
+    if usable and (room := shutil.disk_usage(directory).free / 1e6) < ROOM:
+        fix = f"rm -r {directory}/logs   (or TIDYBOT_RUN_DIR on another disk)"
+        yield Finding("note", "disk", f"{room:.0f} MB left for journal, logs and recordings", fix)
     docker = shutil.which("docker")
     engine = docker is not None and Path("/var/run/docker.sock").exists()
     state = "client and engine" if engine else "client, no engine" if docker else "none (only for `docker compose`)"
-    yield Finding("ok" if engine else "note", "docker", state)
+    fix = "" if engine else "systemctl start docker" if docker else "apt-get install docker.io docker-compose"
+    yield Finding("ok" if engine else "note", "docker", state, fix)
+
+
+def robots() -> Iterator[Finding]:
+    """The official model for `--robot menagerie:stanford_tidybot`."""
+    root = os.environ.get("MENAGERIE_ROOT", "")
+    if root:
+        there = any((Path(root).expanduser() / ROBOT).glob("*.xml"))
+        fix = "" if there else f"export MENAGERIE_ROOT=<the folder that holds {ROBOT}/>"
+        yield Finding("ok" if there else "note", "official model", f"{root}/{ROBOT}{'' if there else ': none'}", fix)
+    elif importlib.util.find_spec("mujoco_menagerie"):
+        yield Finding("ok", "official model", "from the mujoco-menagerie package")
+    else:
+        fix = ".venv/bin/pip install mujoco-menagerie   (or MENAGERIE_ROOT=<a checkout>)"
+        yield Finding("note", "official model", f"none (only for --robot menagerie:{ROBOT})", fix)
 
 
 def doctor(args: argparse.Namespace) -> int:
-    findings = [f for look in (python, packages, graphics, audio, port, certificates, machine) for f in look()]
+    findings = [f for look in (python, packages, graphics, audio, port, certificates, machine, robots) for f in look()]
     if args.json:
         print(msgspec.json.encode(findings).decode())
     else:
