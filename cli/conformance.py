@@ -64,20 +64,35 @@ def scan(driver: Driver) -> None:
 
 
 def description(driver: Driver) -> None:
-    """robot/description (latched): MJCF with the joints of joint_states."""
+    """robot/description (latched): MJCF of arm and gripper, with the carry pose as keyframe `home`."""
     found = driver.link.latest(topics.ROBOT_DESCRIPTION)
     if found is None:
         raise Unmet("nobody answers a get")
+    if lacks := missing_in(found.mjcf):
+        raise Unmet(lacks)
+
+
+def missing_in(mjcf: str) -> str:
+    """What a description lacks for inverse kinematics, collision checks and masks in pictures; "" if nothing."""
     import mujoco
 
+    from common.robot import ARM, HOME, SIDES, Hand, pads
+
     try:
-        model = mujoco.MjModel.from_xml_string(found.mjcf)
+        model = mujoco.MjModel.from_xml_string(mjcf)
     except ValueError as error:
-        raise Unmet(f"MuJoCo cannot read it: {error}") from None
-    names = {model.joint(i).name for i in range(model.njnt)}
-    missing = [name for name in ARM if name not in names]
-    if missing:
-        raise Unmet(f"joints missing: {', '.join(missing)}")
+        return f"MuJoCo cannot read it: {error}"
+    kinds = mujoco.mjtObj
+    wanted = [(kinds.mjOBJ_JOINT, "joint", name) for name in ARM]
+    wanted += [(kinds.mjOBJ_BODY, "body", "base"), (kinds.mjOBJ_BODY, "body", "gripper")]
+    wanted += [(kinds.mjOBJ_SITE, "site", "pinch"), (kinds.mjOBJ_KEY, "keyframe", HOME)]
+    missing = [f"{what} {name}" for kind, what, name in wanted if mujoco.mj_name2id(model, kind, name) < 0]
+    missing += [f"geom {side}_pad" for side, found in zip(SIDES, pads(model), strict=True) if not found]
+    try:
+        Hand(model)
+    except (KeyError, ValueError):
+        missing.append("joints left_finger and right_finger")
+    return f"missing: {', '.join(missing)}" if missing else ""
 
 
 def latched(driver: Driver) -> None:

@@ -14,6 +14,7 @@ from cli.drivers import Driver, Unmet
 from cli.link import Link
 from common import codec, topics
 from common import messages as m
+from services.sim.robot import robot_mjcf
 from tests.support import Site, eventually
 
 
@@ -138,3 +139,20 @@ def test_a_driver_that_does_not_obey_fails_each_command(here: Site) -> None:
                 conformance.stop(driver)
         finally:
             puppet.close()
+
+
+@pytest.mark.parametrize(
+    ("was", "becomes", "lacks"),
+    [
+        ("", "", ""),
+        ("<worldbody>", "<world>", "MuJoCo cannot read it"),
+        ('<key name="home"', '<key name="rest"', "keyframe home"),
+        ('<site name="pinch"', '<site name="tool"', "site pinch"),
+        ('name="left_pad"', 'name="left_tip"', "geom left_pad"),
+    ],
+)
+def test_a_description_must_say_what_planning_needs(was: str, becomes: str, lacks: str) -> None:
+    mjcf = robot_mjcf()
+    assert was in mjcf
+    found = conformance.missing_in(mjcf.replace(was, becomes) if was else mjcf)
+    assert lacks in found if lacks else not found
