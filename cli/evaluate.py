@@ -47,6 +47,7 @@ def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") ->
     parser.add_argument("--processes", action="store_true", help="every service a process, as with `tidybot up`")
     parser.add_argument("--pipeline", choices=("fetch", "vla"), default="", help="where the suite leaves it open")
     parser.add_argument("--json", metavar="FILE", help="write the report there, - for standard output")
+    parser.add_argument("--html", metavar="FILE", help="write a report with plots and pictures of failures, one file")
     parser.add_argument("--timeline", action="store_true", help="print each case's mission log")
     parser.add_argument(
         "--at-least", type=float, default=0.0, metavar="SHARE", help="exit 1 when fewer did as expected"

@@ -1,7 +1,9 @@
 """`tidybot explain ID`: one mission as a timeline: what was heard, planned, seen and done, and why it failed."""
 
 import argparse
+import importlib
 import textwrap
+from pathlib import Path
 from typing import Any
 
 import msgspec
@@ -47,6 +49,11 @@ def explain(args: argparse.Namespace) -> int:
             if not known:
                 raise CliError("there has been no mission yet")
             raise CliError(f"no mission {args.id!r}{near(args.id, known)}; `tidybot missions` lists all")
+    if args.html:
+        page: str = importlib.import_module("services.dashboard.timeline").page(record)
+        args.html.write_text(page, encoding="utf-8")
+        print(args.html)
+        return 0
     print(msgspec.json.encode(record).decode() if args.json else told(record))
     return 0
 
@@ -55,5 +62,6 @@ def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") ->
     parser = commands.add_parser("explain", help="one mission as a timeline, and why it failed")
     parser.add_argument("id", nargs="?", default="last", help="a mission's id, or last (the default)")
     parser.add_argument("--json", action="store_true")
+    parser.add_argument("--html", type=Path, metavar="FILE", help="write the timeline as a picture, one HTML file")
     add_options(parser)
     parser.set_defaults(run=explain)

@@ -7,6 +7,7 @@ import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
+from cli import lookback
 from cli.comparison import Timed, Verdict, compare, decoded
 from cli.errors import CliError, checked
 from cli.player import Player, service_class
@@ -109,6 +110,11 @@ def replay(args: argparse.Namespace) -> int:
         if args.repair:
             print(f"{repair(args.file, args.repair)} messages into {args.repair}")
             return 0
+        if args.view:
+            return lookback.view(args.file, args.port, args.at)
+        if args.export:
+            lookback.export(args.file, args.export, args.mission)
+            return 0
         if args.info or not args.service:
             return info(args.file)
         with tempfile.TemporaryDirectory(prefix="tidybot-replay-") as workspace:
@@ -159,6 +165,14 @@ def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") ->
     parser.add_argument("--info", action="store_true", help="summarise the file (the default without --service)")
     parser.add_argument("--service", metavar="NAME", help="replay to this service; exit 1 when its outputs differ")
     parser.add_argument("--repair", type=Path, metavar="OUT", help="write what a torn file holds into a whole one")
+    parser.add_argument("--view", action="store_true", help="the operator's page on it, with a time slider")
+    parser.add_argument("--port", type=int, default=8080, help="of that page (default %(default)s)")
+    parser.add_argument("--at", type=float, metavar="S", help="begin there, paused [s of robot time]")
+    parser.add_argument(
+        "--export", type=Path, metavar="OUT",
+        help="one mission as a recording (.mcap), a film (.mp4, .webp, .gif) or its timeline (.html)",
+    )  # fmt: skip
+    parser.add_argument("--mission", default="last", metavar="ID", help="which one (default: the last)")
     parser.add_argument("--tolerance", type=float, default=1e-9, metavar="X", help="for numbers (default %(default)s)")
     parser.add_argument(
         "--slack", type=float, metavar="S",

@@ -12,7 +12,7 @@ from cli.main import FAILED, INTERRUPTED, parser
 from cli.up import Stopped, interruptible
 from common.clock import monotonic
 from common.config import ConfigError
-from evaluation import processes, report, runner
+from evaluation import html_report, processes, report, runner
 from evaluation.case import Case, Result
 from evaluation.pool import Progressed, evaluate
 from evaluation.suites import DEFAULT_SCENARIOS, cases
@@ -80,6 +80,9 @@ def main(argv: list[str]) -> int:
             print(text)
         else:
             Path(args.json).write_text(text + "\n", encoding="utf-8")
+    if args.html:
+        Path(args.html).write_text(html_report.render(found, results), encoding="utf-8")
+        console.print(f"report: {args.html}")
     if len(results) < count:
         console.print(f"[yellow]interrupted after {len(results)} of {count} scenarios[/]")
         return INTERRUPTED

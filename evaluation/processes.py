@@ -24,6 +24,7 @@ from common.scene import load_scene
 from evaluation.case import Case, Observed, Result
 from evaluation.examiner import Examiner, ExaminerConfig, examiner_of
 from evaluation.node import CASE
+from evaluation.picture import last_picture
 from evaluation.runner import REPORT, Progress, idle_services, timeline
 from evaluation.scene_file import to_toml
 from evaluation.stack import paced_services
@@ -84,6 +85,8 @@ def _run(case: Case, directory: Path, supervision: Supervision, progress: Progre
                 examiner.abort(clock.now(), f"no end within {WALL_LIMIT:.0f} s of wall time")
             result = judge(case, examiner.observed, monotonic() - began)
             result.evidence["timeline"] = timeline(partial(_ask, session))
+            if not result.met:
+                result.evidence["picture"] = last_picture(partial(_value, session))
         finally:
             process.close()
     return result
@@ -91,6 +94,10 @@ def _run(case: Case, directory: Path, supervision: Supervision, progress: Progre
 
 def _ask(session: Any, payload: bytes) -> bytes | None:
     return next(iter(bus.fetch(session, topics.BRAIN_MISSIONS, payload).values()), None)
+
+
+def _value(session: Any, key: str) -> bytes | None:
+    return next(iter(bus.fetch(session, key).values()), None)
 
 
 def _plan(case: Case, directory: Path) -> Plan:

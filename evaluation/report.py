@@ -28,10 +28,15 @@ def record(suite: str, results: Sequence[Result], wall_seconds: float) -> dict[s
         "sim_seconds": round(sum(r.sim_seconds for r in rows), 1),
         "wall_seconds": round(wall_seconds, 1),
         "cases": [
-            {"seed": r.seed, "command": r.command, "outcome": r.outcome, "evidence": r.evidence, "cause": r.cause}
+            {"seed": r.seed, "command": r.command, "outcome": r.outcome, "evidence": _words(r), "cause": r.cause}
             for r in rows
         ],
     }
+
+
+def _words(result: Result) -> dict[str, object]:
+    """The evidence without the picture, which is for the eye."""
+    return {k: v for k, v in result.evidence.items() if k != "picture"}
 
 
 def line(result: Result) -> str:

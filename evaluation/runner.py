@@ -14,6 +14,7 @@ from common.lockstep import DT
 from evaluation.case import Case, Observed, Result, Strike
 from evaluation.examiner import Examiner, examiner_of
 from evaluation.faults import faulty
+from evaluation.picture import last_picture
 from evaluation.stack import Stack
 from evaluation.verdict import judge
 
@@ -91,6 +92,8 @@ def _run(case: Case, progress: Progress, began: float, state_dir: Path | None) -
             examiner.abort(stack.now, _words(error))
         result = judge(case, examiner.observed, monotonic() - began)
         result.evidence["timeline"] = timeline(partial(stack.bus.get, topics.BRAIN_MISSIONS))
+        if not result.met:
+            result.evidence["picture"] = last_picture(stack.bus.get)
         return result
     finally:
         stack.close()

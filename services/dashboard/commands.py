@@ -26,6 +26,10 @@ class Commands:
         self._sound = b""
         self._sent = 0
 
+    def take_notes(self, transcript: Transcript) -> None:
+        """From now on, what visitors do is noted there."""
+        self._transcript = transcript
+
     def words(self, do: str, text: str, t: float) -> None:
         """A button was pressed or a line typed; what is unknown is counted."""
         if do == "stop":

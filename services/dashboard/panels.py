@@ -63,6 +63,9 @@ class Panels:
     labels = property(lambda self: bool(self._labels.value))
     clicks = property(lambda self: bool(self._clicks.value))
 
+    def command_by_clicks(self, wanted: bool) -> None:
+        self._clicks.value = wanted  # type: ignore[misc]
+
     def wanted(self, camera: str) -> bool:
         """A visitor wants to see this camera's pictures."""
         return bool(self._wanted[camera].value)

@@ -145,10 +145,8 @@ class DashboardService:
             event = self._web.inbox.get_nowait()
             if isinstance(event, Asked):
                 self._care.mission(event.mission, partial(self._show_mission, event))
-            elif isinstance(event, Words) and event.do == "restart":
-                self._care.restart(event.text)
             elif isinstance(event, Words):
-                self._commands.words(event.do, event.text, self._t)
+                self._said(event)
             elif isinstance(event, Sound):
                 self._commands.sound(event.data, self._t)
             elif isinstance(event, Click) and self._panels.clicks:
@@ -156,6 +154,12 @@ class DashboardService:
                 objects = world.objects if world is not None else []
                 picked = pick(event.origin, event.direction, self._view.drawing.flat, objects)
                 self._commands.picked(picked, self._base, state, self._t)
+
+    def _said(self, words: Words) -> None:
+        if words.do == "restart":
+            self._care.restart(words.text)
+        else:
+            self._commands.words(words.do, words.text, self._t)
 
     def _show_mission(self, asked: Asked, record: dict[str, Any] | None) -> None:
         self._web.answer(asked, timeline.page(record) if record is not None else "")

@@ -18,6 +18,7 @@ function connect() {
     if (event.data instanceof ArrayBuffer) { play(event.data); return; }
     const { kind, value } = JSON.parse(event.data);
     if (kind === "state") show(value);
+    else if (kind === "tape") showTape(value);
   };
 }
 
@@ -61,7 +62,7 @@ $("say").onsubmit = (event) => {
 // keys.js, here and in the view, says when the space bar was pressed.
 window.addEventListener("message", (event) => {
   if (event.source !== window && event.source !== $("view").contentWindow) return;
-  if (event.data === "stop") act("stop");
+  if (event.data === "stop") act(!$("tape").hidden ? (tape.playing ? "pause" : "play") : "stop");
   else if (event.data && event.data.restart && confirm(`Restart ${event.data.restart}? A mission goes on afterwards.`)) {
     act("restart", event.data.restart);
   }
@@ -132,4 +133,5 @@ function play(buffer) {
 // Browsers let a page sound only after the visitor has done something.
 window.addEventListener("pointerdown", () => { speaker = speaker || new AudioContext(); speaker.resume(); }, { once: true });
 
+setUpTape(act);
 connect();

@@ -1,0 +1,36 @@
+"""A picture of how a case ended, for the gallery of failures."""
+
+import base64
+import io
+from collections.abc import Callable
+
+from PIL import Image
+
+from common import codec, topics
+from services.camera.render import Renderer, View
+
+WIDTH, HEIGHT = 420, 300
+Get = Callable[[str], bytes | None]
+
+
+def last_picture(get: Get) -> str:
+    """The world as it is now, around the robot: a JPEG in base64; "" when there is no simulation.
+
+    Cast by rays, so that it neither needs nor disturbs a GL context. `get` answers like a zenoh `get`.
+    """
+    model, state = get(topics.SIM_MODEL.key), get(topics.SIM_STATE.key)
+    if not model or not state:
+        return ""
+    seen = codec.decode(topics.SIM_STATE, state)
+    renderer = Renderer(codec.decode(topics.SIM_MODEL, model).mjcf, "raycast")
+    try:
+        renderer.load(seen.qpos, seen.mocap)
+        x, y = (float(v) for v in renderer.data.body("base").xpos[:2])
+        picture = renderer.picture(View((x, y, 0.5), 3.2, 225.0, -38.0), WIDTH, HEIGHT)
+    except (ValueError, KeyError):
+        return ""
+    finally:
+        renderer.close()
+    file = io.BytesIO()
+    Image.fromarray(picture).save(file, "JPEG", quality=80)
+    return base64.b64encode(file.getvalue()).decode("ascii")

@@ -1,0 +1,195 @@
+"""Looking back: missions told from a recording, their timeline as a picture, a mission cut out, the page on a tape."""
+
+import itertools
+import re
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import pytest
+from PIL import Image
+
+from cli import film, lookback
+from cli.errors import CliError
+from common import codec, topics
+from common import messages as m
+from common.lockstep import DT
+from common.memory import MemoryBus
+from common.recording import Recorder, Recording
+from common.scene import load_scene
+from common.topics import Topic
+from services.dashboard import story, timeline
+from services.dashboard.playback import Tape, TapeIo, wanted_keys
+from services.sim.physics import Physics
+from services.sim.robot import HOME_ARM, JOINT_NAMES
+
+
+def write(path: Path, *, failed: bool = False) -> Path:
+    """30 s of a robot: a mission from 5 to 20 s, and another that is under way when the recording ends."""
+    physics = Physics(load_scene("minimal"), 0, ())
+    recorder = Recorder(path)
+
+    def put(t: float, topic: Topic[Any], message: m.Message) -> None:
+        recorder.write(topic.key, codec.encode(topic, message), t, 1000.0 + t, round(t / DT))
+
+    def state(t: float, name: Any, mission: str = "", **more: Any) -> None:
+        put(t, topics.BRAIN_STATE, m.BrainState(state=name, t=t, mission_id=mission, **more))
+
+    recorder.note("run", {"scene": "minimal", "seed": "0"})
+    put(0.0, topics.SIM_MODEL, m.SimModel(scene="minimal", seed=0, epoch="e", mjcf=physics.mjcf))
+    recorder.presence("sim", True, 0.0, 1000.0)
+    for n in range(300):
+        t = n / 10
+        values = (t / 10, 0.0, 0.0, *HOME_ARM, 0.085)
+        zeros = [0.0] * len(values)
+        joints = m.JointStates(t=t, name=list(JOINT_NAMES), position=list(values), velocity=zeros, effort=zeros)
+        put(t, topics.JOINT_STATES, joints)
+        physics.data.qpos[0] = t / 10
+        put(t, topics.SIM_STATE, m.SimState(t=t, tick=n * 10, epoch="e", qpos=physics.data.qpos.tobytes()))
+    state(1.0, "WAITING")
+    put(5.0, topics.VOICE_COMMAND, m.VoiceCommand(text="bring me the <mug>"))
+    state(5.0, "PLANNING", "m-1", command="bring me the <mug>", started=5.0)
+    state(8.0, "NAVIGATING", "m-1", command="bring me the <mug>", started=5.0)
+    put(10.0, topics.SPEECH_GOAL, m.SpeechGoal(goal="say here I come"))
+    if failed:
+        broken = m.NavigationStatus(status="failed", goal_id="m-1.1", code="BLOCKED", detail="a chair")
+        put(12.0, topics.NAVIGATION_STATUS, broken)
+    last = m.MissionOutcome(id="m-1", command="bring me the <mug>", outcome="failed" if failed else "delivered", t=20.0)
+    state(20.0, "ERROR" if failed else "COMPLETED", "m-1", command="bring me the <mug>", started=5.0, last=last)
+    state(22.0, "WAITING", "", last=last)
+    state(25.0, "PLANNING", "m-2", command="tidy up", started=25.0, last=last)
+    recorder.close()
+    return path
+
+
+@pytest.fixture(scope="module")
+def recording(tmp_path_factory: pytest.TempPathFactory) -> Recording:
+    return Recording(write(tmp_path_factory.mktemp("tape") / "run.mcap", failed=True))
+
+
+def test_missions_are_told_from_the_topics_alone(recording: Recording) -> None:
+    first, second = story.missions(recording.rows)
+    assert (first["id"], first["outcome"], first["started"], first["ended"]) == ("m-1", "failed", 5.0, 20.0)
+    assert 20.0 <= first["until"] < 22.1
+    assert (second["id"], second["outcome"]) == ("m-2", None)
+    kinds = [(e["kind"], e["cause"]) for e in first["entries"] if e["kind"] != "state"]
+    assert kinds == [("note", "said “here I come”"), ("failed", "base: BLOCKED")]
+
+
+def test_bands_cover_the_mission_without_gaps(recording: Recording) -> None:
+    record = story.missions(recording.rows)[0]
+    bands = timeline.spans(record["entries"], 5.0, 20.0)
+    assert [b[0] for b in bands] == ["PLANNING", "NAVIGATING", "ERROR"][: len(bands)]
+    assert bands[0][1] == 0.0 and bands[-1][2] == 15.0
+    assert all(a[2] == b[1] for a, b in itertools.pairwise(bands))
+
+
+def test_the_timeline_escapes_words_and_loads_nothing(recording: Recording) -> None:
+    page = timeline.page(story.missions(recording.rows)[0])
+    assert "<mug>" not in page and "&lt;mug&gt;" in page
+    assert "base: BLOCKED" in page
+    assert all(link.startswith("data:") for link in re.findall(r'(?:src|href)="([^"]*)"', page))
+
+
+@pytest.mark.parametrize(
+    "entries", [[], [{"t": 5.0, "state": "PLANNING", "cause": "", "evidence": "", "kind": "state"}]]
+)
+def test_a_mission_that_just_began_has_a_timeline(entries: list[Any]) -> None:
+    record = {
+        "id": "x", "command": "go", "started": 5.0, "outcome": None, "reason": "", "ended": 0.0, "steps": 0,
+        "entries": entries,
+    }  # fmt: skip
+    assert "under way" in timeline.page(record)
+
+
+def test_a_mission_is_cut_out_with_what_was_known_before(recording: Recording, tmp_path: Path) -> None:
+    target = tmp_path / "one.mcap"
+    lookback.export(recording.path, target, "m-1", say=lambda text: None)
+    cut = Recording(target)
+    assert not cut.torn
+    assert cut.facts["run"]["scene"] == "minimal"
+    assert len(cut.of(topics.SIM_MODEL.key)) == 1
+    moves = [row.t for row in cut.of(topics.JOINT_STATES.key)]
+    assert moves[0] >= 3.0 and moves[-1] <= 24.1
+    assert [r["id"] for r in story.missions(cut.rows)] == ["m-1"]
+    assert any(row.key == "service/sim/alive" for row in cut.rows)
+
+
+def test_what_cannot_be_exported_is_said(recording: Recording, tmp_path: Path) -> None:
+    with pytest.raises(CliError, match="m-1, m-2"):
+        lookback.export(recording.path, tmp_path / "x.mcap", "m-3")
+    with pytest.raises(CliError, match="what kind of file"):
+        lookback.export(recording.path, tmp_path / "x.avi", "last")
+    with pytest.raises(CliError, match="itself"):
+        lookback.export(recording.path, recording.path, "m-1")
+
+
+@pytest.mark.parametrize("kind", [".webp", ".gif"])
+def test_a_film_has_a_picture_for_every_moment(
+    recording: Recording, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, kind: str
+) -> None:
+    monkeypatch.setattr(film, "WIDTH", 64)
+    monkeypatch.setattr(film, "HEIGHT", 48)
+    monkeypatch.setattr(film, "LONGEST", 4)
+    target = tmp_path / f"one{kind}"
+    lookback.export(recording.path, target, "m-1", say=lambda text: None)
+    with Image.open(target) as opened:
+        assert opened.size == (64, 48 + film.BAR)
+        assert 4 <= opened.n_frames <= 6  # type: ignore[attr-defined]
+
+
+def test_captions_follow_the_mission(recording: Recording) -> None:
+    record = story.missions(recording.rows)[0]
+    assert film.caption(record, 6.0)[0] == "PLANNING"
+    assert film.caption(record, 12.5) == ("NAVIGATING", "base: BLOCKED")
+
+
+def tape_of(recording: Recording) -> tuple[Tape, TapeIo]:
+    bus = MemoryBus()
+    io = TapeIo(bus, story.missions(recording.rows))
+    return Tape(recording, bus, io), io
+
+
+def test_the_tape_shows_what_was_newest_at_any_time(recording: Recording) -> None:
+    tape, io = tape_of(recording)
+
+    def seen() -> tuple[float, str]:
+        io.begin(None, 1.0)
+        joints, state = io.latest(topics.JOINT_STATES), io.latest(topics.BRAIN_STATE)
+        return (joints.t if joints is not None else -1.0, state.state if state is not None else "")
+
+    tape.seek(15.05)
+    assert seen() == (15.0, "NAVIGATING")
+    tape.play(6.0)
+    assert seen() == (21.0, "ERROR")
+    tape.seek(0.5)
+    assert seen() == (0.5, ""), "nothing is left of what comes later"
+    tape.seek(1e9)
+    assert tape.at == tape.last
+    assert seen()[0] == pytest.approx(29.9)
+    assert io.peer("sim") == "" and io.peer("brain") is None
+
+
+def test_speech_until_then_comes_back_with_a_jump(recording: Recording) -> None:
+    tape, _ = tape_of(recording)
+    assert [row.key for row in tape.seek(15.0)] == [topics.SPEECH_GOAL.key]
+    assert tape.seek(9.0) == []
+
+
+def test_the_tape_answers_for_the_journal(recording: Recording) -> None:
+    _, io = tape_of(recording)
+
+    def asked(request: bytes) -> Any:
+        job = io.ask(topics.BRAIN_MISSIONS, request)
+        while not job.poll(0.0):
+            pass
+        return msgspec.json.decode(job.result() or b"null")
+
+    assert [row["id"] for row in asked(b"")] == ["m-1", "m-2"]
+    assert asked(b'{"id": "m-1"}')["entries"]
+    assert asked(b'{"id": "m-9"}') is None
+    io.shutdown()
+
+
+def test_the_page_reads_what_the_story_needs() -> None:
+    assert wanted_keys() >= story.TOLD
