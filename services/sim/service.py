@@ -249,7 +249,7 @@ class SimService:
 
     # --- queries
     def _answer_truth(self, payload: bytes) -> bytes:
-        now = self.start_time + self._tick * DT
+        now = self._tick * DT
         return msgspec.json.encode(truth.report(self.physics, now, self._io.epoch))
 
     def _answer_pause(self, payload: bytes) -> bytes:

@@ -1,0 +1,175 @@
+"""The harm that chaos does to a robot in one process, its cells, and the table of what came of them."""
+
+import itertools
+from collections.abc import Iterator
+from io import StringIO
+from pathlib import Path
+
+import msgspec
+import pytest
+from rich.console import Console
+
+from common import messages as m
+from common import topics
+from common.clock import ManualClock
+from common.memory import MemoryBus, MemoryIo
+from evaluation.case import Case, Line, Observed, Result, Strike
+from evaluation.chaos import CELLS, CHAOS_SERVICES, CHAOS_STATES, EVERY, MISTREATED, TRAFFIC, chaos
+from evaluation.evidence import Evidence, ThingEvidence
+from evaluation.examiner import Examiner, ExaminerConfig, examiner_of
+from evaluation.faults import Rule, faulty
+from evaluation.matrix import cell, chaos_tables, tally
+from evaluation.runner import Director
+from evaluation.stack import Stack
+from evaluation.verdict import judge
+from tests.unit.test_eval_faults import SCENE, Counter, _decoded
+from tests.unit.test_eval_stack import OTHERS, go, status
+
+
+@pytest.fixture
+def stack(tmp_path: Path) -> Iterator[Stack]:
+    """The small flat with navigation alone, and a disk."""
+    opened = Stack("minimal", without=OTHERS, state_dir=tmp_path)
+    opened.advance(0.3)
+    yield opened
+    opened.close()
+
+
+# --- the host
+def test_a_killed_simulation_goes_on_with_its_world(stack: Stack) -> None:
+    go(stack, "a.1")
+    stack.advance(1.8)
+    now, base, epoch = stack.now, stack.truth()["base"], stack._sim_io.epoch
+    stack.restart_sim()
+    assert now - 0.5 <= stack.now <= now and stack._sim_io.epoch != epoch
+    assert stack.truth()["base"] == pytest.approx(base, abs=0.5) and stack.truth()["base"] != [0.0, 0.0, 0.0]
+    stack.advance(0.1)
+    assert stack.truth()["t"] == pytest.approx(stack.now)
+    stack.advance(12.0)
+    assert (status(stack).goal_id, status(stack).status) == ("a.1", "arrived")
+
+
+def test_without_a_router_nobody_hears_and_nothing_of_weight_is_lost(stack: Stack) -> None:
+    go(stack, "b.1")
+    stack.advance(0.5)
+    said = stack.bus.tap(topics.NAVIGATION_STATUS)
+    stack.cut(1.0)
+    before = stack.now
+    go(stack, "b.2")
+    go(stack, "b.3")
+    stack.advance(0.9)
+    assert not said, "navigation stands still without the clock"
+    assert stack.truth()["t"] == pytest.approx(before + 0.9), "the world does not"
+    stack.advance(0.4)
+    ids = [i for i, _ in itertools.groupby(msgspec.json.decode(s, type=m.NavigationStatus).goal_id for s in said)]
+    assert ids[-1] == "b.3" and "b.2" in ids, "both came, in order"
+
+
+def test_a_full_disk_takes_nothing_until_there_is_room(stack: Stack, tmp_path: Path) -> None:
+    stack.fill_disk(0.6)
+    with pytest.raises(OSError, match="too large"):
+        (tmp_path / "note").write_text("x")
+    stack.advance(0.65)
+    (tmp_path / "note").write_text("x")
+    assert not (tmp_path / "sim.checkpoint").exists()
+    stack.advance(0.6)
+    assert (tmp_path / "sim.checkpoint").exists()
+
+
+def test_harm_comes_at_its_moment_and_is_told(stack: Stack) -> None:
+    told: list[float] = []
+    director = Director(
+        stack, (Strike("navigation", "GRABBING", after=0.5), Strike("router", "RELEASING")), told.append
+    )
+    stack.bus.send(topics.BRAIN_STATE, m.BrainState(state="GRABBING"))
+    director.step()
+    began = stack.now
+    stack.advance(0.3)
+    director.step()
+    assert "navigation" in stack.members and not told
+    stack.advance(0.3)
+    director.step()
+    assert "navigation" not in stack.members and told == pytest.approx([began + 0.6])
+
+
+# --- messages
+def test_a_rule_for_a_state_holds_in_that_state_only() -> None:
+    bus, clock = MemoryBus(), ManualClock()
+    rule = Rule(service="navigation", key=topics.NAVIGATION_STATUS.key, kind="drop", count=99, state="GRABBING")
+    kind = faulty(Counter, (rule,))
+    tap = bus.tap(topics.NAVIGATION_STATUS)
+    io = MemoryIo(bus, "navigation", kind.READS, kind.WRITES, scene=SCENE, clock=clock)
+    service = kind(None, io)
+    for n, state in enumerate(("NAVIGATING", "NAVIGATING", "GRABBING", "GRABBING", "RETURNING"), 1):
+        bus.send(topics.BRAIN_STATE, m.BrainState(state=state))  # type: ignore[arg-type]
+        clock.advance(0.1)
+        io.begin(n, clock.now())
+        service.step(clock.now())
+    assert [_decoded(p).detail for p in tap] == ["1", "2", "5"]
+    assert service.door.hit_at == pytest.approx(0.3)
+
+
+# --- cells
+def test_every_service_is_killed_in_every_state() -> None:
+    kills = {(c.service, c.state) for c in CELLS if c.fault == "kill" and c.state != EVERY}
+    assert kills == set(itertools.product(CHAOS_SERVICES, CHAOS_STATES))
+    assert {c.fault for c in CELLS} >= {"hang", "router loss", "disk full", "clock jump", *MISTREATED}
+    for (service, state), keys in TRAFFIC.items():
+        assert service in CHAOS_SERVICES and state in CHAOS_STATES
+        for key in keys:
+            assert {service, "*"} & {*topics.BY_KEY[key].writers}, key
+    for seed, found in enumerate(CELLS):
+        case = chaos(seed)
+        assert case.name == f"{found.service} {found.state}" and case.fault == found.fault
+        assert bool(case.strikes) != bool(case.rules)
+        assert len(case.strikes) == (len(CHAOS_STATES) if found.state == EVERY else not case.rules)
+
+
+# --- the examiner's clock
+def test_recovered_is_the_next_step_of_the_mission() -> None:
+    case = Case(suite="chaos", seed=0, name="brain NAVIGATING", command="fetch", lines=(Line("fetch"),))
+    bus, clock = MemoryBus(), ManualClock()
+    examiner: Examiner = examiner_of(case)(
+        ExaminerConfig(), MemoryIo(bus, "examiner", Examiner.READS, Examiner.WRITES, scene=SCENE, clock=clock)
+    )
+
+    def show(state: str, step: str, mission: str = "m-1") -> None:
+        bus.send(topics.BRAIN_STATE, m.BrainState(state=state, step=step, mission_id=mission))  # type: ignore[arg-type]
+        clock.advance(1.0)
+        examiner._io.begin(round(clock.now()), clock.now())
+        examiner._follow(clock.now())
+
+    show("NAVIGATING", "go")
+    examiner.struck(1.5)
+    show("IDLE", "", mission="")
+    show("IDLE", "")
+    assert examiner._active, "a mission that is being taken up has not ended"
+    show("NAVIGATING", "go")
+    assert examiner.observed.recovery is None
+    show("GRABBING", "grab")
+    show("RETURNING", "return")
+    assert (examiner.observed.struck, examiner.observed.recovery) == (1.5, 3.5)
+
+
+# --- the table
+def result(seed: int, delivered: bool, struck: float | None = 3.0, claimed: str = "failed", drops: int = 0) -> Result:
+    thing = ThingEvidence("mug", "table", delivered=delivered, drops=drops)
+    case = Case(suite="chaos", seed=seed, name="brain GRABBING", command="x", lines=(), fault="kill", honest=True)
+    seen = Observed(
+        evidence=Evidence(things=[thing]), claimed="delivered" if delivered else claimed, ended=True, struck=struck,
+        recovery=2.0 if delivered and struck else None,
+    )  # fmt: skip
+    return judge(case, seen, 1.0)
+
+
+def test_what_came_of_it_is_counted() -> None:
+    rows = [result(0, True), result(1, False), result(2, False, claimed="delivered", drops=1), result(3, True, None)]
+    found = tally(rows)
+    assert (found.recovered, found.reported, found.lost, found.missed) == (1, 1, 1, 1)
+    assert (found.dropped, found.lies, found.seconds) == (1, 1, [2.0])
+    assert "1/0/0" in cell(rows[:1]) and "2.0 s" in cell(rows[:1])
+    assert "no hit" in cell(rows[3:]) and cell([]) == ""
+    console = Console(record=True, width=160, file=StringIO())
+    console.print(chaos_tables(rows))
+    text = console.export_text()
+    assert "brain" in text and "GRABBING" in text and "1/1/1" in text and "false success" in text
