@@ -21,6 +21,8 @@ SHOVED = 0.06
 TIPPED = math.radians(35)
 MOVED = 0.25
 ROLLS = ("apple", "ball")
+FALL = 1.0
+"""Time [s] that a thing let go above a bin may take to lie in it."""
 
 
 class Want(msgspec.Struct, frozen=True):
@@ -60,8 +62,11 @@ class Evidence(msgspec.Struct):
 class Recorder:
     """Takes looks in the order of time."""
 
-    def __init__(self, wants: tuple[Want, ...], kinds: Mapping[str, str]) -> None:
+    def __init__(self, wants: tuple[Want, ...], kinds: Mapping[str, str], bins: frozenset[str] = frozenset()) -> None:
+        """`bins`: the receptacles into which things are let fall."""
         self._wants, self._kinds = wants, kinds
+        self._bins = {w.thing: bins & set(w.goals) for w in wants}
+        self._let_go: dict[str, float] = {}
         self._first: Look | None = None
         self._last: Look | None = None
         self._recent: list[Look] = []
@@ -92,8 +97,10 @@ class Recorder:
                 # What slipped and was picked up again is judged by the carry that followed.
                 mark.dropped = False
             fell = now.on == "floor" and mark.started_on != "floor"
+            if mark.dropped and now.on in self._bins.get(name, ()) and look.t - self._let_go[name] < FALL:
+                mark.dropped, mark.drops = False, mark.drops - 1
             if not mark.dropped and (fell or (before.held and not now.touched and not now.on)):
-                mark.dropped = True
+                mark.dropped, self._let_go[name] = True, look.t
                 mark.drops += 1
         self._last = look
         self._recent = [x for x in self._recent if x.t >= look.t - REST] + [look]

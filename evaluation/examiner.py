@@ -42,7 +42,8 @@ class Examiner:
         manner = "silent" if self._case.silent else manner
         self._person = Person(self._case.command, self._case.thing, io.scene, manner)
         kinds = {o.name: o.kind for o in io.scene.objects}
-        self._recorder = Recorder(self._case.wants, kinds)
+        bins = frozenset(r.name for r in io.scene.receptacles if r.depth)
+        self._recorder = Recorder(self._case.wants, kinds, bins)
         self._replica: Replica | None = None
         self._lines = deque(self._case.lines)
         self._due: deque[tuple[float, str]] = deque()

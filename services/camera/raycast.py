@@ -6,6 +6,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+NEAR = 0.02
 FAR = 30.0
 CHUNK = 16384
 _TAKES_NORMAL = "normal" in (mujoco.mj_multiRay.__doc__ or "")
@@ -23,6 +24,22 @@ def directions(rotation: NDArray[np.float64], fovy: float, width: int, height: i
     return turned
 
 
+def _cast(
+    model: Any, data: Any, origin: NDArray[np.float64], rays: NDArray[np.float64], exclude: int = -1
+) -> tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.float64]]:
+    """Distance (n,), -1 for nothing, geom (n,) and normal (n, 3) along unit rays (n, 3); `exclude`: a body's number."""
+    count = len(rays)
+    distance, geom, normal = np.empty(count), np.empty(count, np.int32), np.zeros((count, 3))
+    groups = np.array([1, 1, 1, 1, 0, 0], np.uint8)
+    for a in range(0, count, CHUNK):
+        b = min(count, a + CHUNK)
+        part, ids, normals = np.empty(b - a), np.empty(b - a, np.int32), np.zeros((b - a) * 3)
+        middle = (ids, part, normals) if _TAKES_NORMAL else (ids, part)
+        mujoco.mj_multiRay(model, data, origin, rays[a:b].reshape(-1), groups, 1, exclude, *middle, b - a, FAR)
+        distance[a:b], geom[a:b], normal[a:b] = part, ids, normals.reshape(-1, 3)
+    return distance, geom, normal
+
+
 def render(
     model: Any,
     data: Any,
@@ -31,21 +48,20 @@ def render(
     fovy: float,
     width: int,
     height: int,
+    body: int = -1,
 ) -> tuple[NDArray[np.uint8], NDArray[np.float64]]:
-    """RGB (height, width, 3) and depth (height, width) [m] along the optical axis, 0 where nothing is seen."""
+    """RGB (height, width, 3) and depth (height, width) [m] along the optical axis, 0 where nothing is seen.
+
+    `body`: the one the camera is built into, whose case does not hide the view.
+    """
     rays = directions(rotation, fovy, width, height)
-    count = len(rays)
-    distance, geom, normal = np.empty(count), np.empty(count, np.int32), np.zeros((count, 3))
-    groups = np.array([1, 1, 1, 1, 0, 0], np.uint8)
-    for a in range(0, count, CHUNK):
-        b = min(count, a + CHUNK)
-        part, ids, normals = np.empty(b - a), np.empty(b - a, np.int32), np.zeros((b - a) * 3)
-        middle = (ids, part, normals) if _TAKES_NORMAL else (ids, part)
-        mujoco.mj_multiRay(model, data, position, rays[a:b].reshape(-1), groups, 1, -1, *middle, b - a, FAR)
-        distance[a:b], geom[a:b], normal[a:b] = part, ids, normals.reshape(-1, 3)
+    distance, geom, normal = _cast(model, data, position, rays)
+    case = (distance >= 0) & (distance < NEAR)
+    if body >= 0 and case.any():
+        distance[case], geom[case], normal[case] = _cast(model, data, position, rays[case], body)
     seen = (distance >= 0) & (distance < FAR)
     depth = np.where(seen, distance * (rays @ -rotation[:, 2]), 0.0).reshape(height, width)
     colours = np.where(model.geom_matid[:, np.newaxis] >= 0, [0.70, 0.64, 0.56, 1.0], model.geom_rgba)[:, :3] * 255
-    light = 0.55 + 0.45 * np.abs(normal @ _LIGHT) if _TAKES_NORMAL else np.full(count, 0.85)
+    light = 0.55 + 0.45 * np.abs(normal @ _LIGHT) if _TAKES_NORMAL else np.full(len(rays), 0.85)
     rgb = np.where(seen[:, np.newaxis], colours[geom] * light[:, np.newaxis], _SKY)
     return np.clip(rgb, 0, 255).astype(np.uint8).reshape(height, width, 3), depth

@@ -89,7 +89,8 @@ class Renderer:
 
             rotation = self.data.cam_xmat[number].reshape(3, 3)
             fovy = float(self.model.cam_fovy[number])
-            return render(self.model, self.data, self.data.cam_xpos[number], rotation, fovy, width, height)
+            body = int(self.model.cam_bodyid[number])
+            return render(self.model, self.data, self.data.cam_xpos[number], rotation, fovy, width, height, body)
         gl = self._context(width, height)
         gl.update_scene(self.data, camera, self._option)
         rgb = gl.render().copy()

@@ -141,12 +141,12 @@ def _flat(target: Target, facing: float, tilts: Sequence[float], height: float) 
             face = target.yaw + quarter * math.pi / 2
             width = target.size[1] if quarter % 2 == 0 else target.size[0]
             off = math.remainder(face - facing, 2 * math.pi)
-            if abs(off) < math.radians(80 if degrees < 60 else 181):
+            if abs(off) < math.radians(181 if degrees == 90 else 105):
                 options.append((abs(off), face, width))
         for off, face, width in sorted(options):
             name = f"{degrees:.0f} deg on faces at {math.degrees(off):.0f}"
-            if degrees >= 60:
-                # From above any azimuth will do: face the robot's way and turn the fingers instead.
+            if degrees == 90:
+                # From straight above any azimuth will do: face the robot's way and turn the fingers instead.
                 roll = math.remainder(face - facing, math.pi)
                 found.append(_make(target, height, facing, tilt, roll, width, name))
             else:

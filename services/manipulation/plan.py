@@ -1,7 +1,7 @@
 """Plans a whole grab or placement: inverse kinematics for candidates, collision-free paths between the phases."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from services.manipulation.trajectory import connect
 CARTESIAN_STEP = 0.02
 MAX_JUMP = 0.6
 HELD_SHRINK = 0.008
-TRANSIT_MARGIN = 0.02
+TRANSIT_MARGINS = (0.02, 0.01, 0.005)
 # Close to the body; for long things the hand is turned or tips up so that they stay clear of the arm.
 _CARRY = tuple((tip, turn) for tip in (0.0, 0.4, 0.8) for turn in (0.0, np.pi / 2, -np.pi / 2))
 
@@ -47,9 +47,9 @@ class Held:
         return np.maximum(half, 0.004), center
 
 
-def inflated(around: Sequence[Obstacle]) -> list[Obstacle]:
+def inflated(around: Sequence[Obstacle], margin: float) -> list[Obstacle]:
     """The boxes grown by the margin kept in transit."""
-    grow = 2 * TRANSIT_MARGIN
+    grow = 2 * margin
     return [Obstacle(o.center, (o.size[0] + grow, o.size[1] + grow, o.size[2] + grow), o.yaw) for o in around]
 
 
@@ -156,11 +156,29 @@ class Planner:
             return "no path to the carry pose"
         return GrabPlan(grasp, there, [at, *back][::-1], [at, *up], away, held)
 
+    def refine(self, plan: GrabPlan, shift: tuple[float, float], approach: float, lift: float) -> GrabPlan:
+        """The same grasp of an object that stands `shift` [m] (x, y in the base frame) from where it was planned.
+
+        Raises:
+            PlanError: UNREACHABLE.
+        """
+        grasp = replace(plan.grasp, pose=plan.grasp.pose.moved(np.array([*shift, 0.0])))
+        self.arm.hold(None)
+        at = self.ik.solve(grasp.pose, [plan.insert[-1]])
+        if at is not None:
+            back = self.straight(at, grasp.pose, grasp.pose.moved(-approach * grasp.pose.rotation[:, 2]))
+            up = self.straight(at, grasp.pose, grasp.pose.moved(np.array([0.0, 0.0, lift])))
+            if back is not None and up is not None and not any(self.arm.collides(q) for q in (at, *back)):
+                return replace(plan, grasp=grasp, insert=[at, *back][::-1], lift=[at, *up])
+        raise PlanError("UNREACHABLE", "the corrected grasp is out of reach")
+
     def _surround(self, around: Sequence[Obstacle], end: Array) -> None:
-        """Boxes with the transit margin, or as they are where the path must end closer to them."""
-        self.arm.set_obstacles(inflated(around))
-        if self.arm.collides(end):
-            self.arm.set_obstacles(around)
+        """Boxes with the widest transit margin that leaves `end` free, or as they are."""
+        for margin in TRANSIT_MARGINS:
+            self.arm.set_obstacles(inflated(around, margin))
+            if not self.arm.collides(end):
+                return
+        self.arm.set_obstacles(around)
 
     def carry(self, held: Held, now: Array, around: Sequence[Obstacle]) -> list[Array]:
         """A path to a carry pose with the object in hand, from wherever the arm is.
@@ -256,6 +274,7 @@ class Planner:
         back = self.straight(down[-1], target, target.moved(away))
         if back is None:
             return "no way back"
+        self._surround(around, back[-1])
         home = connect(arm, back[-1], arm.nearest_turn(arm.home, back[-1]), rng)
         if home is None:
             return "no path home"
@@ -264,7 +283,7 @@ class Planner:
     def to_home(self, now: Array, around: Sequence[Obstacle]) -> list[Array]:
         """A path to the carry pose; straight where nothing better is found."""
         self.arm.hold(None)
-        self.arm.set_obstacles(around)
+        self._surround(around, now)
         goal = self.arm.nearest_turn(self.arm.home, now)
         return connect(self.arm, now, goal, np.random.default_rng(self._seed)) or [now, goal]
 

@@ -1,5 +1,6 @@
 """The sequences of manipulation as generators: each `yield` is one step of robot time, a `Failure` ends the goal."""
 
+import math
 from collections.abc import Callable, Generator, Sequence
 from typing import Any, TypeVar
 
@@ -118,7 +119,6 @@ def grab(robot: Robot, goal: m.ManipulationGoal, wanted: str) -> Steps[str]:
     last = Failure("UNREACHABLE", "no grasp tried")
     for _ in range(config.max_candidates):
         found = yield from _sighted(robot, goal, wanted, since)
-        since = robot.now
         robot.phase = "reach"
         target = target_of(found, robot.base, robot.io.scene)
         around = obstacles(robot.io.scene, robot.base, robot.source.objects(), without=found.label)
@@ -134,7 +134,7 @@ def grab(robot: Robot, goal: m.ManipulationGoal, wanted: str) -> Steps[str]:
         tried.add(plan.grasp.name)
         robot.io.log.info("grasp chosen", object=found.label, grasp=plan.grasp.name)
         try:
-            return (yield from _execute_grab(robot, plan))
+            return (yield from _execute_grab(robot, plan, goal, found))
         except Failure as failure:
             if failure.code not in ("EMPTY_GRASP", "SLIPPED", "BLOCKED"):
                 raise
@@ -146,6 +146,8 @@ def grab(robot: Robot, goal: m.ManipulationGoal, wanted: str) -> Steps[str]:
             robot.held = None
             yield from robot.move_gripper(0.0)
             yield from go_home(robot)
+            # What was seen while the hand was at work may have been half hidden by it.
+            since = robot.now
     raise last
 
 
@@ -163,10 +165,37 @@ def _sighted(robot: Robot, goal: m.ManipulationGoal, wanted: str, since: float) 
         yield
 
 
-def _execute_grab(robot: Robot, plan: GrabPlan) -> Steps[str]:
+def _aimed(robot: Robot, plan: GrabPlan, goal: m.ManipulationGoal, found: WorldObject) -> Steps[GrabPlan]:
+    """The plan corrected by what the wrist camera sees from in front of the object, or as it was."""
+    config, since = robot.config, robot.now
+    if not robot.io.peer("perception"):
+        return plan
+    robot.phase = "aim"
+    seen: WorldObject | None = None
+    while seen is None and robot.now - since < config.aim_patience:
+        yield
+        closer = robot.source.resolve(goal, found.label, robot.base, since)
+        seen = closer if closer is not None and closer.label == found.label and closer.seen_at >= since else None
+    if seen is None:
+        return plan
+    was, new = (target_of(o, robot.base, robot.io.scene).position for o in (found, seen))
+    shift = new[0] - was[0], new[1] - was[1]
+    if not config.aim_least <= math.hypot(*shift) <= config.aim_most:
+        return plan
+    robot.io.log.info("aim corrected", object=found.label, by_mm=round(1000 * math.hypot(*shift), 1))
+    try:
+        return (yield from robot.work(
+            _planner(robot).refine, plan, shift, config.approach_distance, config.lift_height
+        ))  # fmt: skip
+    except Failure:
+        return plan
+
+
+def _execute_grab(robot: Robot, plan: GrabPlan, goal: m.ManipulationGoal, found: WorldObject) -> Steps[str]:
     config = robot.config
     yield from robot.move_gripper(0.0)
     yield from robot.follow(plan.reach, config.joint_speed)
+    plan = yield from _aimed(robot, plan, goal, found)
     yield from robot.follow(plan.insert, config.joint_speed * 0.6)
     robot.phase = "grasp"
     yield from robot.move_gripper(1.0)
@@ -208,7 +237,6 @@ def place(robot: Robot, where: str) -> Steps[str]:
     planner, scene = _planner(robot), robot.io.scene
     held = robot.held or _unknown(robot)
     robot.phase = "place"
-    around = obstacles(scene, robot.base, robot.source.objects(), without=held.label, margin=0.0)
     footprint = max(held.size[0], held.size[1])
     known = [o for o in robot.source.objects() if o.label != held.label]
     names = [where] if where else [scene.delivery, *(r.name for r in scene.receptacles if not r.depth)]
@@ -229,12 +257,22 @@ def place(robot: Robot, where: str) -> Steps[str]:
     last = Failure("UNREACHABLE", "nothing within reach")
     for name, free, surface, drop in choices:
         try:
-            plan = yield from robot.work(planner.place, held, free, surface, drop, around, robot.joints.copy())
+            plan = yield from robot.work(
+                planner.place, held, free, surface, drop, _around(robot, held, name), robot.joints.copy()
+            )
         except Failure as failure:
             last = failure
             continue
         return (yield from _execute_place(robot, plan, held, name, surface))
     raise last
+
+
+def _around(robot: Robot, held: Held, where: str) -> list[Obstacle]:
+    """What the arm must not touch while it puts something down; what lies in a bin may be covered."""
+    r = robot.io.scene.receptacle(where)
+    inside = where if r is not None and r.depth else None
+    objects = [o for o in robot.source.objects() if o.on != inside]
+    return obstacles(robot.io.scene, robot.base, objects, without=held.label, margin=0.0)
 
 
 def _execute_place(robot: Robot, plan: PlacePlan, held: Held, name: str, surface: float) -> Steps[str]:
@@ -250,9 +288,15 @@ def _execute_place(robot: Robot, plan: PlacePlan, held: Held, name: str, surface
     robot.held = None
     if robot.grip.width < min(0.08, held.width + 0.004):
         raise Failure("STUCK", f"the gripper opened to {robot.grip.width * 1000:.0f} mm only")
-    yield from robot.follow(plan.retreat, config.joint_speed * 0.5)
     robot.phase = "retract"
-    yield from robot.follow(plan.home, config.joint_speed)
+    try:
+        yield from robot.follow(plan.retreat, config.joint_speed * 0.5)
+        yield from robot.follow(plan.home, config.joint_speed)
+    except Failure as failure:
+        # The object stands; another way home from here.
+        robot.io.log.warning("on the way home", code=failure.code, detail=failure.detail)
+        robot.forget_command()
+        yield from go_home(robot)
     x, y, _ = compose(robot.base, (*plan.spot, 0.0))
     robot.source.remember(held.label, (x, y, surface + held.size[2] / 2), name, robot.now)
     return f"{held.label} on the {name}, gripper open at {robot.grip.width * 1000:.0f} mm"

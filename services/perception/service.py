@@ -3,6 +3,7 @@
 import importlib
 import math
 from collections import deque
+from typing import Literal
 
 import numpy as np
 
@@ -16,7 +17,7 @@ from services.perception.body import Body
 from services.perception.config import PerceptionConfig
 from services.perception.detect import ClassicalDetector, Detection, Detector
 from services.perception.ground import Grounding, ground
-from services.perception.memory import Memory
+from services.perception.memory import SURE, Memory
 from services.perception.view import View, view_of
 
 HISTORY = 100
@@ -25,6 +26,11 @@ HELD_FORCE = 5.0
 MOVING = 0.02
 HAND_RANGE = 0.35
 CLEAR = ("", "start", "look")
+# The hand is in front of the thing and waits for what its own camera sees.
+AIM = "aim"
+REFINED = 0.05
+ROUND = ("apple", "ball", "bottle", "can", "mug")
+PICTURES = {"head": topics.HEAD_RGBD, "wrist": topics.WRIST_RGBD}
 
 
 class PerceptionService:
@@ -151,15 +157,16 @@ class PerceptionService:
         here = self._poses[-1][1]
         resting = self._looked_from is not None and _near(self._looked_from[0], here) and self._looked_from[1] == phase
         period = config.idle_period if resting else config.period
-        if self._query is None and now - self._asked_at < period:
+        if self._query is None and now - self._asked_at < period and phase != AIM:
             return
         self._looked_from = here, phase
         self._picture, self._asked_at = self._io.new_id("picture"), now
-        request = m.CameraRequest(id=self._picture, camera="head", width=config.width, height=config.height)
+        camera: Literal["head", "wrist"] = "wrist" if phase == AIM and self._query is None else "head"
+        request = m.CameraRequest(id=self._picture, camera=camera, width=config.width, height=config.height)
         self._io.publish(topics.CAMERA_REQUEST, request)
 
     def _receive(self, now: float) -> None:
-        for image in self._io.drain(topics.HEAD_RGBD):
+        for image in (image for topic in PICTURES.values() for image in self._io.drain(topic)):
             base = self._pose_at(image.t)
             if image.id != self._picture or base is None:
                 continue
@@ -167,7 +174,7 @@ class PerceptionService:
             try:
                 view = view_of(image, base)
             except ValueError as error:
-                self._io.count_drop(topics.HEAD_RGBD.key, str(error))
+                self._io.count_drop(PICTURES[image.camera].key, str(error))
                 continue
             body = self._robot(now) if self._joints else None
             if body is not None:
@@ -179,12 +186,20 @@ class PerceptionService:
 
     def _see(self, job: Job[tuple[View, list[Detection]]], now: float) -> None:
         view, detections = job.result()
-        if self._working() not in CLEAR and self._hand is not None:
+        if view.camera == "wrist":
+            detections = [d for d in detections if self._refines(d)]
+        elif self._working() not in CLEAR and self._hand is not None:
             # Half hidden by the hand, a thing looks like another.
             detections = [d for d in detections if math.dist(d.position, self._hand) > HAND_RANGE]
         seen = self._memory.look(view, detections, view.t)
         self._show(now, bool(seen))
         self._answer(seen)
+
+    def _refines(self, d: Detection) -> bool:
+        """True for what the wrist camera may say of a thing: where it is more exactly, and of round things from any
+        part of them."""
+        known = any(o.label == d.label and math.dist(o.position, d.position) < REFINED for o in self._shown)
+        return known and (d.kind in ROUND or (d.whole and d.confidence >= SURE))
 
     def _show(self, now: float, seen: bool = False) -> None:
         """Publish what is believed when it has changed or was `seen` again."""

@@ -46,7 +46,7 @@ def _base() -> str:
         _geom('name="deck" type="box" size="0.24 0.25 0.012" pos="0 0 0.332"', 2, "0.85 0.55 0.12 1"),
         _geom('name="arm_riser" type="cylinder" size="0.07 0.026" pos="0.12 0 0.369"', 2, "0.30 0.31 0.33 1"),
         _geom('name="mast" type="capsule" fromto="-0.17 0 0.34 -0.17 0 1.28" size="0.022"', 2, "0.30 0.31 0.33 1"),
-        _geom('name="head" type="box" size="0.035 0.075 0.03" pos="-0.155 0 1.30"', 1, "0.10 0.11 0.13 1"),
+        _geom('name="head" type="box" size="0.035 0.075 0.03" pos="-0.16 0 1.30"', 1, "0.10 0.11 0.13 1"),
         _geom('name="lidar_case" type="cylinder" size="0.04 0.02" pos="0.21 0 0.345"', 1, "0.08 0.08 0.09 1", False),
     ]
     for n, (x, y) in enumerate(((0.17, 0.18), (0.17, -0.18), (-0.17, 0.18), (-0.17, -0.18))):

@@ -40,6 +40,26 @@ def test_ray_cast_depth_and_colours_are_those_of_the_scene() -> None:
     assert rgb[30, 40].argmax() == 0 and rgb[2, 2].argmax() == 1
 
 
+@pytest.mark.parametrize("case", [0.0, 0.01])
+def test_ray_cast_points_lie_where_they_are_also_close_and_off_the_axis(case: float) -> None:
+    """A slanted view of the floor from 20 cm, from inside a case or without one."""
+    box = f'<geom type="box" size="{case} {case} {case}"/>' if case else ""
+    camera = f'<body name="hand" pos="0.3 0.1 0.2">{box}<camera name="near" euler="40 10 0" fovy="70"/></body>'
+    model = mujoco.MjModel.from_xml_string(TINY.replace("</worldbody>", camera + "</worldbody>"))
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    camera_id, width, height = model.camera("near").id, 64, 48
+    eye, rotation = data.cam_xpos[camera_id], data.cam_xmat[camera_id].reshape(3, 3)
+    body = int(model.cam_bodyid[camera_id])
+    rgb, depth = raycast.render(model, data, eye, rotation, 70.0, width, height, body)
+    focal = height / 2 / math.tan(math.radians(35))
+    u, v = np.meshgrid(np.arange(width) + 0.5 - width / 2, np.arange(height) + 0.5 - height / 2)
+    points = eye + (np.stack([u / focal, -v / focal, -np.ones_like(u)], axis=-1) * depth[..., None]) @ rotation.T
+    floor = (depth > 0) & (rgb.argmax(axis=-1) == 1)
+    assert floor.sum() > 200
+    assert np.abs(points[floor][:, 2]).max() < 1e-6
+
+
 class Node:
     """The service on a memory bus, rendering by ray casting."""
 

@@ -47,6 +47,16 @@ def test_lifted_carried_and_at_rest_is_delivered() -> None:
     assert (found.hits, found.disturbed, found.moved) == ([], [], ["mug"])
 
 
+@pytest.mark.parametrize(("bins", "later", "drops"), [({"tray"}, 0.4, 0), (set(), 0.4, 1), ({"tray"}, 2.0, 1)])
+def test_a_thing_may_fall_into_the_bin_it_belongs_to(bins: set[str], later: float, drops: int) -> None:
+    falling = changed(HELD, held=False, touched=False)
+    recorder = Recorder((WANT,), {"mug": "mug"}, frozenset(bins))
+    for one in [*GOOD[:5], look(4.5, falling), look(4.5 + later, ON_TRAY), look(9.0, ON_TRAY)]:
+        recorder.see(one)
+    mug = recorder.conclude().things[0]
+    assert (mug.drops, mug.delivered) == (drops, not drops)
+
+
 @pytest.mark.parametrize(
     ("looks", "why"),
     [
