@@ -38,7 +38,7 @@ class Panels:
             for name in CAMERAS:
                 self._wanted[name] = gui.add_checkbox(f"{name} camera", initial_value=name == "head")
                 self._images[name] = gui.add_image(blank, jpeg_quality=75, format="jpeg")
-        with tabs.add_tab("Look back"):
+        with tabs.add_tab("Past"):
             self._html["missions"] = gui.add_html("")
         with tabs.add_tab("Health"):
             self._html["services"] = gui.add_html("")

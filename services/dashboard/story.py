@@ -15,6 +15,8 @@ TOLD = {
     )
 }  # fmt: skip
 Record = dict[str, Any]
+ASKED = 5.0
+"""Words this long [s] before a mission are what it was asked for with."""
 
 
 def decoded(row: Row) -> m.Message | None:
@@ -36,16 +38,23 @@ def missions(rows: Iterable[Row]) -> list[Record]:
     """
     found: dict[str, Record] = {}
     at: Record | None = None
-    state = ""
+    state, doing = "", ("", "")
+    heard: tuple[float, tuple[str, str, str]] | None = None
     for row in rows:
         message = decoded(row) if row.key in TOLD else None
         if isinstance(message, m.BrainState):
-            at = _follow(found, at, message, row.t)
-            if at is not None and message.state != state:
+            before, at = at, _follow(found, at, message, row.t)
+            if at is not None and at is not before and heard is not None and row.t - heard[0] < ASKED:
+                # The words that began it came before it had a name.
+                at["entries"].append(_entry(max(heard[0], at["started"]), message.state, *heard[1]))
+            if at is not None and (message.state, message.step) != doing:
                 at["entries"].append(_entry(row.t, message.state, message.step, message.detail, "state"))
-            state = message.state
-        elif message is not None and at is not None and (said := _told(message)) is not None:
-            at["entries"].append(_entry(row.t, state, *said))
+            state, doing = message.state, (message.state, message.step)
+        elif message is not None and (said := _told(message)) is not None:
+            if at is not None:
+                at["entries"].append(_entry(row.t, state, *said))
+            elif said[2] == "heard":
+                heard = row.t, said
         if at is not None:
             at["until"] = row.t
     return list(found.values())
@@ -86,7 +95,9 @@ def _told(message: m.Message) -> tuple[str, str, str] | None:
         steps = ", ".join(" ".join(w for w in (s.action, s.object, s.target) if w) for s in message.steps)
         return f"plan: {steps}", message.source, "planned"
     if isinstance(message, m.ObjectPose):
-        return (f"{message.label} seen", f"confidence {message.confidence:.2f}", "saw") if message.found else None
+        if not message.found:
+            return "not found", message.detail, "failed"
+        return f"{message.label} seen", f"confidence {message.confidence:.2f}", "saw"
     if isinstance(message, (m.NavigationStatus, m.ManipulationStatus)):
         who = "base" if isinstance(message, m.NavigationStatus) else "arm"
         if message.status == "failed":

@@ -72,7 +72,7 @@ def picture(record: dict[str, Any]) -> str:
     entries = record["entries"]
     began = float(record["started"])
     last = max((float(e["t"]) for e in entries), default=began)
-    ended = max(float(record["ended"]), last) if record["outcome"] else last
+    ended = max(float(record["ended"] if record["outcome"] else record.get("until", last)), last)
     length = max(ended - began, 1.0)
 
     def x(seconds: float) -> float:

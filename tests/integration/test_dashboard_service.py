@@ -1,7 +1,12 @@
 """The page's service on a memory bus with a real web server: what is drawn, and what is asked of the cameras."""
 
+import json
+import urllib.error
+import urllib.request
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from math import pi
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -9,15 +14,18 @@ import pytest
 from common import codec, topics
 from common import messages as m
 from common.memory import MemoryBus, MemoryIo
+from common.recording import Recorder, RecordingError
 from common.scene import load_scene
 from services.dashboard.config import DashboardConfig
+from services.dashboard.playback import opened
 from services.dashboard.service import HEALTH, DashboardService
-from services.dashboard.web import Click, Web
+from services.dashboard.web import Click, Web, Words
 from services.sim.physics import Physics
 from services.sim.robot import HOME_ARM, JOINT_NAMES
 from tests.support import eventually
 
 MJCF = Physics(load_scene("minimal"), 0, ()).mjcf
+SIM_MODEL = m.SimModel(scene="minimal", seed=0, epoch="e", mjcf=MJCF)
 MUG = m.WorldObject(
     label="red mug", kind="mug", colour="red", position=(2.0, 0.1, 0.65), size=(0.07, 0.07, 0.1), seen_at=9.0, id="1"
 )
@@ -170,3 +178,78 @@ def test_services_are_listed_from_their_health(page: Page) -> None:
     shown = page.service._panels._texts["services"]
     assert "sim" in shown
     assert "gone" in shown, "its token is not there"
+
+
+def test_a_mission_has_a_page(page: Page) -> None:
+    record = {
+        "id": "m-1", "command": "bring me the <mug>", "started": 1.0, "outcome": "delivered", "reason": "",
+        "ended": 9.0, "steps": 3, "date": 0.0, "entries": [],
+    }  # fmt: skip
+    page.bus.handlers[topics.BRAIN_MISSIONS] = lambda asked: json.dumps(record if b"m-1" in asked else None).encode()
+
+    def get(name: str) -> tuple[int, str]:
+        address = f"http://127.0.0.1:{page.service._web.port}/mission/{name}"
+        with ThreadPoolExecutor(1) as visitor:
+            answer = visitor.submit(urllib.request.urlopen, address, timeout=10)
+
+            def come() -> bool:
+                page.step()
+                return answer.done()
+
+            eventually(come, "the page has come")
+            try:
+                with answer.result() as opened:
+                    return opened.status, opened.read().decode()
+            except urllib.error.HTTPError as error:
+                with error:
+                    return error.code, ""
+
+    code, text = get("m-1")
+    assert code == 200
+    assert "bring me the &lt;mug&gt;" in text and "<svg" in text
+    assert get("m-2")[0] == 404
+
+
+def test_a_recording_is_seen_on_the_page_and_nothing_of_it_commands_a_robot(tmp_path: Path) -> None:
+    path = tmp_path / "run.mcap"
+    recorder = Recorder(path)
+    recorder.write("sim/model", codec.encode(topics.SIM_MODEL, SIM_MODEL), 0.0, 0.0)
+    for n in range(101):
+        values = (n / 100, 0.0, 0.0, *HOME_ARM, 0.085)
+        zeros = [0.0] * len(values)
+        joints = m.JointStates(t=n / 10, name=list(JOINT_NAMES), position=list(values), velocity=zeros, effort=zeros)
+        recorder.write("joint_states", codec.encode(topics.JOINT_STATES, joints), n / 10, n / 10)
+    recorder.close()
+    film = opened(path, DashboardConfig(port=0))
+    try:
+        now = [0.0]
+
+        def drawn() -> bool:
+            now[0] += 0.5
+            film.frame(now[0], 0.0)
+            return bool(film._view.drawing.links)
+
+        eventually(drawn, "the model is drawn")
+        stops = film._deck._bus.tap(topics.ROBOT_STOP)
+        for words in (Words("stop"), Words("say", "bring me the mug"), Words("pause"), Words("seek", "7.3")):
+            film._web.inbox.put(words)
+        film.frame(now[0] + 2, 0.0)
+        film.frame(now[0] + 4, 0.5)
+        base = next(node for name, node in film._view._nodes.items() if name.endswith("/base"))
+        assert base.position[0] == pytest.approx(0.73)
+        assert stops == []
+        film._web.inbox.put(Words("play"))
+        film.frame(now[0] + 6, 0.0)
+        film.frame(now[0] + 8, 1.5)
+        assert base.position[0] == pytest.approx(0.88)
+        film.frame(now[0] + 10, 60.0)
+        assert film._tape.at == 10.0 and not film._playing
+    finally:
+        film.close()
+
+
+def test_a_recording_without_a_robot_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "empty.mcap"
+    Recorder(path).close()
+    with pytest.raises(RecordingError, match="nothing to see"):
+        opened(path, DashboardConfig(port=0))

@@ -73,7 +73,7 @@ def test_missions_are_told_from_the_topics_alone(recording: Recording) -> None:
     assert 20.0 <= first["until"] < 22.1
     assert (second["id"], second["outcome"]) == ("m-2", None)
     kinds = [(e["kind"], e["cause"]) for e in first["entries"] if e["kind"] != "state"]
-    assert kinds == [("note", "said “here I come”"), ("failed", "base: BLOCKED")]
+    assert kinds == [("heard", "heard “bring me the <mug>”"), ("note", "said “here I come”"), ("failed", "base: BLOCKED")]
 
 
 def test_bands_cover_the_mission_without_gaps(recording: Recording) -> None:
