@@ -14,8 +14,10 @@ import pytest
 from common.scene import load_scene
 from evaluation import runner
 from evaluation.case import Case, Line, Result
+from evaluation.chaos import CELLS, CHAOS_SERVICES, EVERY, Cell
 from evaluation.evidence import Want
 from evaluation.faults import Rule
+from evaluation.suites import cases
 from tests.support import ROOT, eventually
 
 pytestmark = pytest.mark.timeout(600)
@@ -68,17 +70,58 @@ def test_a_service_that_raises_ends_its_case_as_crashed(skip: int) -> None:
     assert "status" in result.cause
 
 
+def harmed(seed: int) -> Result:
+    return runner.run(cases("chaos", 1, seed)[0])
+
+
+def check(result: Result) -> None:
+    """Recovered or honestly reported; nothing dropped, no success claimed that is none."""
+    evidence = result.evidence
+    things = evidence["things"]
+    assert result.outcome in ("delivered", "reported"), (result.cause, evidence)
+    assert isinstance(things, list) and not any(t["drops"] for t in things), evidence
+    assert result.outcome == "delivered" or evidence["reason"], evidence
+
+
+def test_a_brain_killed_in_every_state_of_one_mission_delivers() -> None:
+    result = harmed(CELLS.index(Cell("brain", EVERY, "kill")))
+    check(result)
+    assert result.delivered and isinstance(result.evidence["recovery"], float)
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(1800)
+@pytest.mark.parametrize("service", [s for s in CHAOS_SERVICES if s != "brain"])
+def test_each_service_killed_in_every_state_of_one_mission(service: str) -> None:
+    check(harmed(CELLS.index(Cell(service, EVERY, "kill"))))
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(1800)
+@pytest.mark.parametrize("seed", range(3, len(CELLS), 10))
+def test_a_tenth_of_the_matrix(seed: int) -> None:
+    check(harmed(seed))
+
+
 def command(*words: str) -> list[str]:
     return [sys.executable, "-m", "cli.main", "eval", *words]
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(900)
-def test_in_one_process_and_as_processes_a_seed_ends_the_same(tmp_path: Path) -> None:
+@pytest.mark.timeout(1800)
+@pytest.mark.parametrize(
+    "suite",
+    [
+        ["--suite", "fetch", "--seed", "1", "--pipeline", "fetch"],
+        ["--suite", "seed", "--seed", "0"],
+        ["--suite", "seed", "--seed", "1"],
+    ],
+)
+def test_in_one_process_and_as_processes_a_seed_ends_the_same(suite: list[str], tmp_path: Path) -> None:
     reports = []
     for n, mode in enumerate(([], ["--processes"])):
         out = tmp_path / f"{n}.json"
-        words = command("-n", "1", "--seed", "1", "--pipeline", "fetch", "--json", str(out), *mode)
+        words = command("-n", "1", *suite, "--json", str(out), *mode)
         assert subprocess.run(words, cwd=ROOT, env=ENVIRON, capture_output=True).returncode == 0
         reports.append(json.loads(out.read_text()))
     cases = [r["cases"][0] for r in reports]
