@@ -4,12 +4,15 @@ MuJoCo and trimesh are imported when the first model is drawn: the page is open 
 """
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from common.geometry import matrix_quat, quat_matrix
+
+if TYPE_CHECKING:
+    from common.robot import Hand
 
 Array = NDArray[np.float64]
 ROBOT_BODY = "base"
@@ -31,13 +34,12 @@ class Mesh:
 
 @dataclass(frozen=True)
 class Joint:
-    """`kind` hinge or slide; `axis`, `anchor` in the body's frame; `top` is the upper end of its range."""
+    """`kind` hinge or slide; `axis`, `anchor` in the body's frame."""
 
     name: str
     kind: str
     axis: Array
     anchor: Array
-    top: float
 
 
 @dataclass(frozen=True)
@@ -72,6 +74,7 @@ class Drawing:
     links: tuple[Link, ...] = ()
     cameras: tuple[Camera, ...] = ()
     objects: dict[str, Mesh] = field(default_factory=dict)
+    hand: "Hand | None" = None
 
 
 def draw(mjcf: str) -> Drawing:
@@ -81,6 +84,8 @@ def draw(mjcf: str) -> Drawing:
         ValueError: not a model.
     """
     import mujoco
+
+    from common.robot import Hand
 
     model: Any = mujoco.MjModel.from_xml_string(mjcf)
     data: Any = mujoco.MjData(model)
@@ -105,7 +110,11 @@ def draw(mjcf: str) -> Drawing:
                 see_through = model.geom(g).name.startswith(SEE_THROUGH)
                 mesh = moved(_geom(model, g), place, turn)
                 (walls if see_through else flat).append(cut(mesh, CUT) if see_through else mesh)
-    return Drawing(joined(flat), joined(walls), tuple(links), tuple(_cameras(model, roots)), objects)
+    try:
+        hand = Hand(model)
+    except KeyError:
+        hand = None
+    return Drawing(joined(flat), joined(walls), tuple(links), tuple(_cameras(model, roots)), objects, hand)
 
 
 def _free(model: Any, body: int) -> bool:
@@ -120,7 +129,7 @@ def _link(model: Any, body: int, mesh: Mesh | None) -> Link:
     for j in range(first, first + count):
         kind = "hinge" if int(model.jnt_type[j]) == _HINGE else "slide"
         axis, anchor = model.jnt_axis[j].copy(), model.jnt_pos[j].copy()
-        joints.append(Joint(model.joint(j).name, kind, axis, anchor, float(model.jnt_range[j][1])))
+        joints.append(Joint(model.joint(j).name, kind, axis, anchor))
     parent = "" if model.body(body).name == ROBOT_BODY else model.body(int(model.body_parentid[body])).name
     rotation = quat_matrix(tuple(model.body_quat[body]))
     return Link(model.body(body).name, parent, model.body_pos[body].copy(), rotation, tuple(joints), mesh)

@@ -99,11 +99,11 @@ class View:
     def pose(self, joints: dict[str, float], base: Pose2, width: float) -> None:
         """Put the links where the joints say; `base` in frame map, `width` of the gripper [m]."""
         q = {**joints, "base_x": base[0], "base_y": base[1], "base_yaw": base[2]}
+        if self.drawing.hand is not None:
+            q |= zip(self.drawing.hand.joints, self.drawing.hand.posture(width).tolist(), strict=True)
         for link in self.drawing.links:
             if not link.joints:
                 continue
-            if link.name.endswith("_finger"):
-                q[link.joints[0].name] = link.joints[0].top - width / 2
             path = self._paths[link.name]
             place, turn = posture(link, q)
             before = self._at[path]

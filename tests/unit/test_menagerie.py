@@ -12,6 +12,7 @@ from common.memory import MemoryBus, MemoryIo
 from common.robot import Hand
 from common.runtime import StartError
 from common.scene import load_scene
+from services.dashboard.drawing import draw
 from services.manipulation.arm_model import ArmModel, Pose
 from services.manipulation.ik import InverseKinematics, seeds
 from services.perception.body import Body
@@ -144,6 +145,18 @@ def test_perception_knows_this_body(robot: Robot) -> None:
     # Base box of 0.5 x 0.48 x 0.24 m from 0.08 m upwards: a mesh in the stand-in.
     points = np.array([[0.26, 0.0, 0.2], [0.2, 0.2, 0.2], [0.5, 0.0, 0.2], [0.0, 0.0, 0.02]])
     assert body._distance(points)[:3] == pytest.approx([0.01, 0.0, 0.25], abs=1e-4)
+
+
+def test_the_page_draws_its_fingers_where_physics_has_them(sim: Sim) -> None:
+    drawing = draw(codec.decode(topics.SIM_MODEL, sim.bus.last["sim/model"]).mjcf)
+    sim.bus.send(topics.GRIPPER_COMMAND, m.GripperCommand(position=0.6, max_effort=25.0))
+    width = sim.run(1.0).position[-1]
+    assert drawing.hand is not None
+    told = dict(zip(drawing.hand.joints, drawing.hand.posture(width), strict=True))
+    model, data = sim.service.physics.model, sim.service.physics.data
+    assert len(told) == 4
+    for name, value in told.items():
+        assert data.qpos[model.joint(name).qposadr[0]] == pytest.approx(value, abs=0.01)
 
 
 def test_the_world_shows_the_robot_with_our_names(sim: Sim) -> None:
