@@ -7,6 +7,7 @@ from py_trees.behaviour import Behaviour
 
 from common import messages as m
 from common import topics
+from common.clock import unix_time
 from common.io import Io
 from common.topics import Topic
 from services.brain.config import BrainConfig
@@ -38,6 +39,7 @@ class Context:
         self.lookout = lookout(io.scene)
         self.at: Behaviour | None = None
         self.resumes = 0
+        self.put_off: Checkpoint | None = None
         self._path: list[Place] = []
         self._saved = self._refused = b""
         self._again_at = 0.0
@@ -120,6 +122,7 @@ class Context:
             run=self.config.run,
             closed=closed,
             resumes=self.resumes,
+            put_off=self.put_off,
         )
 
     def _located(self, state: Checkpoint) -> None:
@@ -130,6 +133,7 @@ class Context:
         """A copy of how the mission stands that nothing changes any more."""
         state = self.standing()
         self._located(state)
+        state.date = unix_time()
         return msgspec.json.decode(msgspec.json.encode(state), type=Checkpoint)
 
     def placed(self, at: Behaviour, resumes: int) -> None:
@@ -153,6 +157,7 @@ class Context:
         mission = self.mission
         mission.confirmed = confirmed
         mission.command, mission.confidence, mission.started = text, confidence, self.now
+        self.put_off = None
         self.journal.begin(mission)
         self.note(f"{source}: {text}", f"confidence {confidence:.2f}", "heard")
         self.save()

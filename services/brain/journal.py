@@ -53,7 +53,8 @@ class Checkpoint(msgspec.Struct):
     """All that a new process needs to go on: `path` leads to the leaf at work, `sent` are the goals under way.
 
     `run`: the run of the robot in which it was written. `closed`: the process ended in order, not by a crash.
-    `resumes`: times the mission was taken up since it last advanced. `date` is Unix time.
+    `resumes`: times the mission was taken up since it last advanced. `date` is Unix time. `put_off`: how the mission
+    stood that a stop has cut short, for a resume that asks to go on with it.
     """
 
     mission: Mission
@@ -66,6 +67,7 @@ class Checkpoint(msgspec.Struct):
     run: str = ""
     closed: bool = False
     resumes: int = 0
+    put_off: "Checkpoint | None" = None
 
 
 class Journal(Protocol):

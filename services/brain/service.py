@@ -11,7 +11,7 @@ from services.brain.config import BrainConfig
 from services.brain.context import Context
 from services.brain.goals import Answer, Channel, Word
 from services.brain.intent import CANCEL, RETURN, STOP, normal
-from services.brain.journal import Checkpoint, Journal
+from services.brain.journal import Journal
 from services.brain.mission import Failure, fingers_hold
 from services.brain.snapshot import Signature, signature, snapshot, tip
 from services.brain.store import open_journal
@@ -65,7 +65,6 @@ class BrainService:
         self._shown: Signature | None = None
         self._ticks = 0
         self._sim_stopped = False
-        self._cut_short: Checkpoint | None = None
         self._resumption = self._left_behind()
         io.serve(topics.BRAIN_MISSIONS, self._answer_missions)
 
@@ -80,7 +79,7 @@ class BrainService:
         self._receive_commands()
         if self._resumption is not None and self._resumption.step():
             if self._resumption.put_off:
-                self._cut_short = cut_short(self._resumption.left, ctx.mission, ctx.hand)
+                ctx.put_off = cut_short(self._resumption.left, ctx.mission, ctx.hand)
             self._resumption = None
         if self._resumption is None:
             self.tree.tick_once()
@@ -109,7 +108,7 @@ class BrainService:
         record = self._journal.mission(left.mission.id)
         if left.mission.active and (record is None or record.outcome is None):
             return Resumption(self.context, self.tree, left)
-        self.context.hand = left.hand
+        self.context.hand, self.context.put_off = left.hand, left.put_off
         return None
 
     # --- answers of the peers
@@ -165,19 +164,20 @@ class BrainService:
         left = self.context.bookmark() if self.context.mission.active else None
         self._interrupt(reason)
         if left is not None:
-            self._cut_short = cut_short(left, self.context.mission, self.context.hand)
+            self.context.put_off = cut_short(left, self.context.mission, self.context.hand)
 
     def _go_on(self) -> None:
         """Take up what a stop has cut short, unless something else has begun meanwhile."""
-        ctx, left = self.context, self._cut_short
-        self._cut_short = None
+        ctx, left = self.context, self.context.put_off
+        ctx.put_off = None
         if left is None or ctx.mission.active or self._resumption is not None:
             self._io.log.info("no mission to go on with")
             return
         if ctx.speech.outstanding:
             ctx.tell(ctx.speech, topics.SPEECH_GOAL, "cancel")
         self.tree.stop(Status.INVALID)
-        left.date = unix_time()
+        if left.run and left.run == ctx.config.run:
+            left.date = unix_time()  # as long as the robot is up it may stand as long as people like
         self._resumption = Resumption(ctx, self.tree, left)
 
     def _receive_commands(self) -> None:

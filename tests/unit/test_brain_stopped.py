@@ -113,3 +113,33 @@ def test_the_journal_tells_of_both(tmp_path: Path) -> None:
     world.start_brain()
     world.step(1.0)
     assert world.state.last is not None and world.state.last.outcome == "delivered"
+
+
+@pytest.mark.parametrize("pipeline", PIPELINES)
+def test_a_brain_that_dies_while_stopped_still_knows(pipeline: str, tmp_path: Path) -> None:
+    world = begun(pipeline, tmp_path / "j.db")
+    world.until(lambda: world.state.state == "RETURNING")
+    mission = world.state.mission_id
+    stop(world)
+    world.kill_brain()
+    world.start_brain()
+    world.step(3.0)
+    assert world.outcome == "cancelled" and not world.state.mission_id
+    resume(world, go_on=True)
+    world.until(lambda: world.outcome == "delivered")
+    delivered_once(world)
+    assert world.state.last is not None and world.state.last.id == mission
+
+
+def test_a_new_command_takes_the_place_of_what_was_put_off(tmp_path: Path) -> None:
+    world = begun("fetch", tmp_path / "j.db")
+    world.until(lambda: world.state.state == "NAVIGATING")
+    stop(world)
+    resume(world, go_on=False)
+    world.until(lambda: world.state.state in ("WAITING", "LISTENING"))
+    world.bus.send(topics.VOICE_COMMAND, m.VoiceCommand(text="come back", confirmed=True))
+    world.until(lambda: world.outcome == "delivered")
+    grabs = world.grabs
+    resume(world, go_on=True)
+    world.step(10.0)
+    assert world.grabs == grabs and world.state.state in ("WAITING", "LISTENING")
