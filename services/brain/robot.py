@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from typing import Any
 
+import msgspec
 from py_trees.common import Status
 
 from common import messages as m
@@ -14,6 +15,8 @@ from services.brain.goals import Answer
 from services.brain.mission import Failure
 
 Text = Callable[[], str]
+# The hand is empty that should have held something.
+LOST = ("LOST_OBJECT", "NOT_HOLDING", "SLIPPED")
 
 
 class Drive(Goal):
@@ -105,11 +108,15 @@ class Release(Manipulate):
     def update(self) -> Status:
         ctx, hand = self.ctx, self.ctx.hand
         if self._sent_at is None and not self.channel.taken_up and hand.lost(ctx.now):
-            label = hand.holding
-            hand.released(ctx.now)
-            ctx.fail(Failure(ctx.state, "LOST_OBJECT", "the fingers are empty", f"I lost the {label} on the way."))
-            return Status.FAILURE
+            return self.give_up(Failure(ctx.state, "LOST_OBJECT", "the fingers are empty"))
         return super().update()
+
+    def give_up(self, failure: Failure) -> Status:
+        label = self.ctx.hand.holding
+        if failure.code in LOST:
+            self.ctx.hand.released(self.ctx.now)
+            failure = msgspec.structs.replace(failure, spoken=f"I lost the {label or 'object'} on the way.")
+        return super().give_up(failure)
 
     def done(self, answer: Answer) -> Status:
         self.ctx.hand.released(self.ctx.now)

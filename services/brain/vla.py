@@ -1,6 +1,6 @@
 """The VLA pipeline as a tree: listen, confirm, plan, then the plan's steps, each with its fallbacks, then report."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
@@ -11,7 +11,7 @@ from services.brain.asking import HearChoice, HearReply, Question, question, whi
 from services.brain.behaviours import Leaf, Say, Settle
 from services.brain.context import Context
 from services.brain.decorators import Attempts, When
-from services.brain.robot import Drive, Grab, Ready, Release
+from services.brain.robot import LOST, Drive, Grab, Ready, Release
 from services.brain.trees import drive_home, first_of, grab_failed, report_failure, sequence
 from services.brain.validate import is_destination
 from services.brain.vla_leaves import (
@@ -90,7 +90,10 @@ class RunPlan(Sequence):
     def unfold(self) -> None:
         """Build the children; a restarted brain does so to find its place among them."""
         self.remove_all_children()
-        self.add_children([step_tree(self._ctx, step) for step in self._ctx.mission.plan])
+        carried = ""
+        for step in self._ctx.mission.plan:
+            carried = step.object if step.action == "grasp" else carried
+            self.add_child(step_tree(self._ctx, step, carried))
 
     def tick(self) -> Iterator[Behaviour]:
         if self.status != Status.RUNNING:
@@ -98,8 +101,8 @@ class RunPlan(Sequence):
         yield from super().tick()
 
 
-def step_tree(ctx: Context, step: PlanStep) -> Behaviour:
-    """One step with its own recovery; the next goal comes a settle later."""
+def step_tree(ctx: Context, step: PlanStep, carried: str) -> Behaviour:
+    """One step with its own recovery; the next goal comes a settle later. `carried`: what was grasped last."""
     name = in_words(step)
     match step.action:
         case "find":
@@ -114,10 +117,12 @@ def step_tree(ctx: Context, step: PlanStep) -> Behaviour:
             return grasp(ctx, step.object)
         case "place":
             there = When("go there", go_and_settle(ctx, step.target), lambda: ctx.mission.at != step.target)
-            release = Release("place", ctx, lambda: f"place {step.target}")
-            return sequence(name, there, release, Settle("settle", ctx))
+            back = go_and_settle(ctx, step.target)
+            put = put_down(ctx, carried, back, lambda name: Release(name, ctx, lambda: f"place {step.target}"))
+            return sequence(name, there, put, Settle("settle", ctx))
         case "release":
-            return sequence(name, Release("release", ctx), Settle("settle", ctx))
+            home = sequence("back", drive_home(ctx), Settle("settle", ctx))
+            return sequence(name, put_down(ctx, carried, home, lambda name: Release(name, ctx)), Settle("settle", ctx))
         case "say":
             return Say(name, ctx, lambda: step.text)
         case "wait":
@@ -195,6 +200,20 @@ def grasp(ctx: Context, thing: str) -> Behaviour:
     if not ctx.config.grab_retries:
         return first
     return first_of(f"grasp: {thing}", first, When("grab failed", regrasp, lambda: grab_failed(ctx), Status.FAILURE))
+
+
+def put_down(ctx: Context, thing: str, back: Behaviour, release: Callable[[str], Behaviour]) -> Behaviour:
+    """Release; what was lost on the way is looked for, picked up again and brought `back`."""
+    if not thing:
+        return release("put down")
+    again = sequence("fetch it again", find(ctx, thing), grasp(ctx, thing), back, release("put down at last"))
+    once = When("lost on the way", again, lambda: lost(ctx), Status.FAILURE)
+    return first_of(f"put down {thing}", release("put down"), once)
+
+
+def lost(ctx: Context) -> bool:
+    failure = ctx.mission.failure
+    return failure is not None and failure.code in LOST
 
 
 def go_to(ctx: Context, where: str) -> Behaviour:

@@ -151,6 +151,48 @@ def test_a_typed_yes_counts() -> None:
     bench.next_goal(PLAN, 1)
 
 
+def test_what_was_lost_on_the_way_is_fetched_again() -> None:
+    bench = planned()
+    see(bench, 1)
+    bench.drove(bench.nav(1))
+    bench.did(bench.manip(1))
+    bench.drove(bench.nav(2))
+    for attempt in range(BrainConfig().release_retries + 1):
+        bench.did(bench.manip(2 + attempt), "failed", "NOT_HOLDING")
+    see(bench, 2)
+    bench.drove(bench.nav(3))
+    bench.did(bench.manip(3 + BrainConfig().release_retries))
+    bench.drove(bench.nav(4))
+    bench.did(bench.manip(4 + BrainConfig().release_retries))
+    bench.until(lambda: bench.states()[-1] == "WAITING")
+    assert bench.texts(NAV) == ["find red mug", "return_to_start"] * 2
+    assert bench.texts(MANIP)[-2:] == ["grab", "release"]
+    last = bench.state.last
+    assert last is not None and last.outcome == "delivered"
+
+
+def test_a_loss_that_cannot_be_mended_is_no_longer_held() -> None:
+    bench = planned()
+    see(bench, 1)
+    bench.drove(bench.nav(1))
+    bench.did(bench.manip(1))
+    bench.drove(bench.nav(2))
+    for attempt in range(BrainConfig().release_retries + 1):
+        bench.did(bench.manip(2 + attempt), "failed", "NOT_HOLDING")
+    count = 2
+    while bench.state.state != "ERROR":
+        if len(bench.sent(QUERY)) >= count:
+            see(bench, count, found=False)
+            count += 1
+        views = bench.sent(VIEW)
+        if views and bench.state.step.startswith("search"):
+            bench.send(
+                topics.NAVIGATION_FEEDBACK, m.NavigationFeedback(status="failed", goal_id=views[-1].id, code="NO_PATH")
+            )
+        bench.step()
+    assert "holding" not in bench.state.detail
+
+
 def test_an_impossible_plan_is_rejected_with_the_reason_and_replanned() -> None:
     bench = planned([m.PlanStep(action="grasp", object="sofa")])
     request = bench.next_goal(PLAN, 2)
