@@ -6,6 +6,7 @@ name are alternatives, a line without a name is a sentence.
 
 import re
 from collections.abc import Iterable, Mapping
+from copy import copy
 
 from common.scene import Scene
 
@@ -34,14 +35,24 @@ class Grammar:
         self._edges: list[dict[str, list[int]]] = []
         self._silent: list[list[int]] = []
         self._words: dict[tuple[int, str], int] = {}
-        start, self._final = self._node(), self._node()
+        self._first, self._final = self._node(), self._node()
         self._depth = 0
         for sentence in sentences:
-            self._parse(sentence, start, self._final)
+            self._parse(sentence, self._first, self._final)
         self._steps: dict[tuple[State, str], State] = {}
-        self.start: State = self._closure({start})
+        self.start: State = self._closure({self._first})
         if self.accepts(""):
             raise GrammarError("the grammar accepts silence: a pattern is wholly optional")
+
+    def introduced(self, phrases: Iterable[str]) -> "Grammar":
+        """The same sentences after one of the phrases, or one of the phrases alone. It shares the automaton."""
+        first, after = self._node(), self._node()
+        for phrase in phrases:
+            self._parse(phrase, first, after)
+        self._silent[after] += [self._first, self._final]
+        found = copy(self)
+        found.start = self._closure({first})
+        return found
 
     # --- walking
     def step(self, state: State, character: str) -> State:

@@ -14,12 +14,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from services.speech.decoder import Decoder
 from services.speech.grammar import State
 from services.speech.tokens import BOS, EOS, Vocabulary, read_tokens
-from services.speech.unpack import session
+from services.speech.weights import unpacked
 
 Array = NDArray[np.float32]
-LAYERS, HEADS, WIDTH = 8, 8, 52
 TOKENS_PER_SECOND = 6.5
 BREADTH = 10.0
 RATE = 16000
@@ -52,14 +52,14 @@ def models() -> Path:
 
 
 @cache
-def networks(threads: int) -> tuple[Any, Any]:
-    """Sessions of encoder and decoder, shared by all that live in one process."""
+def networks(threads: int) -> tuple[Any, Decoder]:
+    """Encoder and decoder, shared by all that live in one process."""
     folder = models()
-    return session(folder / "encoder_model.ort", threads), session(folder / "decoder_model_merged.ort", threads)
+    return unpacked(folder / "encoder_model.ort", threads), Decoder(folder / "decoder_model_merged.ort", threads)
 
 
 class Moonshine:
-    """One encoder and one decoder session; not for use by several threads at once.
+    """One encoder and one decoder; not for use by several threads at once.
 
     An utterance may be given in several renditions of equal length (as recorded, noise taken out): their token
     probabilities are averaged, so that a word must be plausible in all of them.
@@ -68,18 +68,21 @@ class Moonshine:
     def __init__(self, beam: int = 8, threads: int = 1) -> None:
         folder = models()
         self._encoder, self._decoder = networks(threads)
-        self._outputs = [o.name for o in self._decoder.get_outputs()]
         self._beam = beam
         self.tokens = read_tokens(folder / "tokenizer.bin")
 
     def encode(self, renditions: Array) -> "Utterance":
         """16 kHz samples (renditions, n) of one utterance, ready for decoding."""
         hidden = self._encoder.run(None, {"input_values": renditions.astype(np.float32)})[0]
-        return Utterance(hidden, max(2, int(renditions.shape[1] / RATE * TOKENS_PER_SECOND) + 2))
+        return Utterance(
+            self._decoder.heard(hidden),
+            len(renditions),
+            max(2, int(renditions.shape[1] / RATE * TOKENS_PER_SECOND) + 2),
+        )
 
     def free(self, utterance: "Utterance") -> Decoded:
         """The transcription without any grammar."""
-        scores, cache = self._first(utterance.hidden)
+        scores, past = self._decoder.step(utterance.heard, self._decoder.nothing(utterance.renditions), [0], [BOS])
         numbers: list[int] = []
         total = 0.0
         for _ in range(utterance.limit):
@@ -88,7 +91,7 @@ class Moonshine:
             if best == EOS:
                 break
             numbers.append(best)
-            scores, cache = self._next(utterance.hidden, [best], cache)
+            scores, past = self._decoder.step(utterance.heard, past, [0], [best])
         return Decoded("".join(self.tokens[n] for n in numbers).strip(), total, (*numbers, EOS))
 
     def best(self, utterance: "Utterance", vocabulary: Vocabulary, cost: Callable[[str], float]) -> list[Decoded]:
@@ -98,8 +101,7 @@ class Moonshine:
         kept, so that the beam is not filled with spellings ("Stop", "stop.", "stop,").
         """
         grammar = vocabulary.grammar
-        scores, cache = self._first(utterance.hidden)
-        renditions = len(utterance.hidden)
+        scores, past = self._decoder.step(utterance.heard, self._decoder.nothing(utterance.renditions), [0], [BOS])
         beams = [Beginning(0.0, (), grammar.start, "")]
         finished: dict[str, tuple[float, Decoded]] = {}
         leader = -np.inf
@@ -124,53 +126,24 @@ class Moonshine:
             if not kept:
                 break
             beams = [beam for beam, _ in kept]
-            rows = [row * renditions + r for _, row in kept for r in range(renditions)]
-            cache = {name: value[rows] for name, value in cache.items()}
-            scores, cache = self._next(utterance.hidden, [beam.numbers[-1] for beam in beams], cache)
+            rows, last = [row for _, row in kept], [beam.numbers[-1] for beam in beams]
+            scores, past = self._decoder.step(utterance.heard, past, rows, last)
         return [found for _, found in sorted(finished.values(), key=lambda f: -f[0])]
 
-    # --- the network
-    def _first(self, hidden: Array) -> tuple[Array, dict[str, Array]]:
-        feeds = self._opening(hidden, np.full((len(hidden), 1), BOS, np.int64))
-        return self._run(feeds, {}, len(hidden))
-
-    def _opening(self, hidden: Array, inputs: NDArray[np.int64]) -> dict[str, Any]:
-        """What the decoder takes when it has no memory yet."""
-        feeds: dict[str, Any] = {"encoder_hidden_states": hidden, "use_cache_branch": np.array([False])}
-        feeds["input_ids"] = inputs
-        empty = np.zeros((0, HEADS, 1, WIDTH), np.float32)
-        for layer in range(LAYERS):
-            for side in ("decoder", "encoder"):
-                for what in ("key", "value"):
-                    feeds[f"past_key_values.{layer}.{side}.{what}"] = empty
-        return feeds
-
-    def _next(self, hidden: Array, last: list[int], cache: dict[str, Array]) -> tuple[Array, dict[str, Array]]:
-        renditions = len(hidden)
-        feeds: dict[str, Any] = {
-            "input_ids": np.repeat(np.array(last, np.int64), renditions)[:, np.newaxis],
-            "encoder_hidden_states": np.tile(hidden, (len(last), 1, 1)),
-            "use_cache_branch": np.array([True]),
-            **cache,
-        }
-        return self._run(feeds, cache, renditions)
-
-    def _run(self, feeds: dict[str, Any], cache: dict[str, Array], renditions: int) -> tuple[Array, dict[str, Array]]:
-        found = dict(zip(self._outputs, self._decoder.run(None, feeds), strict=True))
-        scores = _log_probabilities(found.pop("logits")[:, -1])
-        kept = {}
-        for name, value in found.items():
-            past = name.replace("present", "past_key_values")
-            # Only the first step fills the encoder's part; later steps return it empty.
-            kept[past] = cache[past] if cache and ".encoder." in name else value
-        return scores.reshape(-1, renditions, scores.shape[1]).mean(axis=1), kept
-
-
-def _log_probabilities(logits: NDArray[Any]) -> Array:
-    shifted = logits.astype(np.float64)
-    shifted -= shifted.max(axis=-1, keepdims=True)
-    found: Array = shifted - np.log(np.exp(shifted).sum(axis=-1, keepdims=True))
-    return found
+    def log_probabilities(self, utterance: "Utterance", sentences: list[Decoded]) -> list[float]:
+        """How likely each sentence is for these renditions, as it was spelt before."""
+        totals = [0.0] * len(sentences)
+        past, before = self._decoder.nothing(utterance.renditions), [0] * len(sentences)
+        alive = list(range(len(sentences)))
+        last = [BOS] * len(alive)
+        for i in range(max(s.tokens for s in sentences)):
+            scores, past = self._decoder.step(utterance.heard, past, before, last)
+            for row, k in enumerate(alive):
+                totals[k] += float(scores[row, sentences[k].numbers[i]])
+            before = [row for row, k in enumerate(alive) if sentences[k].tokens > i + 1]
+            alive = [alive[row] for row in before]
+            last = [sentences[k].numbers[i] for k in alive]
+        return totals
 
 
 @dataclass(frozen=True)
@@ -185,7 +158,8 @@ class Beginning:
 
 @dataclass(frozen=True)
 class Utterance:
-    """What the encoder made of the renditions (r, frames, width), and the most tokens it can hold."""
+    """What the encoder made of the renditions, how many they are, and the most tokens it can hold."""
 
-    hidden: Array
+    heard: dict[str, Array]
+    renditions: int
     limit: int

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from typing import Literal, Protocol
+from typing import TYPE_CHECKING, Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,8 +11,12 @@ from numpy.typing import NDArray
 from common.scene import Scene
 from services.speech.config import SpeechConfig
 from services.speech.denoise import noise_ratio, reduce_noise
-from services.speech.grammar import Grammar, vocabulary
+from services.speech.grammar import Grammar, spoken, vocabulary
 from services.speech.vad import RATE, VoiceDetector, speech_span
+from services.speech.weights import return_memory
+
+if TYPE_CHECKING:
+    from services.speech.moonshine import Decoded
 
 Array = NDArray[np.float32]
 Verdict = Literal["accept", "ask", "reject", "silence"]
@@ -20,6 +24,8 @@ Scope = Literal["command", "woken", "interrupt"]
 BEFORE, AFTER = 0.2, 0.6
 MIN_SAMPLES = 4000
 NOISY = 20.0  # [dB]
+PACES = (16 / 15, 15 / 16)
+CANDIDATES, HOPELESS = 6, 8.0
 # How long sentences take by voice detection: fitted to the voices of the corpus, whose spread is a third of this.
 PAUSES, SECONDS_PER_CHARACTER, TEMPO_SPREAD = 0.35, 0.045, 0.25
 
@@ -41,6 +47,13 @@ class Sound:
 
     renditions: Array
     seconds: float
+
+    def paced(self) -> Array:
+        """Renditions at other paces (with their pitch), filled with silence to one length: the recording faster, and
+        slower without its noise, or else itself."""
+        found = [paced(self.renditions[k], factor) for k, factor in zip((0, -1), PACES, strict=True)]
+        longest = max(map(len, found))
+        return np.stack([np.pad(f, (0, longest - len(f))) for f in found])
 
 
 class Recogniser(Protocol):
@@ -70,13 +83,35 @@ class MoonshineRecogniser:
         found = self._model.best(utterance, self._words[scope], lambda text: cost(text, sound.seconds, config))
         if not found:
             return Heard("", "reject", 0.0, free.text)
-        command = found[0]
-        score = (command.log_probability - free.log_probability) / command.tokens
+        command, score = self._judged(found[:CANDIDATES], free, sound)
         confidence = confidence_of(score, config)
         if score >= config.accept_score:
             return Heard(command.text, "accept", confidence, free.text)
         verdict: Verdict = "ask" if score >= config.ask_score else "reject"
         return Heard(command.text, verdict, confidence, free.text)
+
+    def _judged(self, found: list["Decoded"], free: "Decoded", sound: Sound) -> tuple["Decoded", float]:
+        """The likeliest sentence, and its likelihood ratio per token to the free transcription.
+
+        Where they differ both were chosen to fit even the noise of the renditions that they were found in. So all are
+        judged again by others, in which the same noise sounds different to the network.
+        """
+        best = found[0]
+        if spoken(free.text) == best.text:
+            return best, (best.log_probability - free.log_probability) / best.tokens
+        hopeless = best.log_probability - cost(best.text, sound.seconds, self._config) - HOPELESS
+        found = [f for f in found if f.log_probability - cost(f.text, sound.seconds, self._config) >= hopeless]
+        *totals, freely = self._model.log_probabilities(self._model.encode(sound.paced()), [*found, free])
+        worth = [t - cost(f.text, sound.seconds, self._config) for t, f in zip(totals, found, strict=True)]
+        k = int(np.argmax(worth))
+        return found[k], (totals[k] - freely) / found[k].tokens
+
+
+def paced(samples: Array, factor: float) -> Array:
+    """Samples (n,) played `factor` times as fast, with all that they contain."""
+    length = round(len(samples) / factor)
+    found: Array = (np.fft.irfft(np.fft.rfft(samples), length) / factor).astype(np.float32)
+    return found
 
 
 def cost(text: str, seconds: float, config: SpeechConfig) -> float:
@@ -110,8 +145,9 @@ def grammars(config: SpeechConfig, scene: Scene) -> dict[Scope, Grammar]:
         GrammarError: a pattern that cannot be used.
     """
     words = vocabulary(scene, config.objects, config.places, config.colours)
-    scopes: tuple[Scope, ...] = ("command", "woken", "interrupt")
-    return {scope: Grammar(patterns(config, scope), words) for scope in scopes}
+    commands = Grammar(patterns(config, "command"), words)
+    interrupts = Grammar(patterns(config, "interrupt"), {})
+    return {"command": commands, "woken": commands.introduced(config.wake), "interrupt": interrupts}
 
 
 def _is_part(line: str) -> bool:
@@ -185,4 +221,5 @@ class Ear:
         if sound is None:
             return Heard("", "silence", 0.0)
         heard = self._recogniser.hear(sound, scope)
+        return_memory()
         return replace(heard, text=without_wake(heard.text, self._wake))

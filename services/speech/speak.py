@@ -1,12 +1,14 @@
 """Text to speech: Hibari's bundled voice, on the bus as `audio/out` and on speakers where there are any."""
 
 import re
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from common.runtime import StartError
 from services.speech.audio import RATE, Samples, resample
+from services.speech.weights import return_memory, session
 
 MAX_CHARACTERS = 400
 MAX_DIGITS = 20
@@ -20,6 +22,8 @@ class Voice:
         from hibari import SAMPLE_RATE, Hibari
 
         self._voice, self._rate = Hibari(threads=1), int(SAMPLE_RATE)
+        self._voice.sess = session(Path(self._voice.model_path), 1)  # its own keeps the space of the longest sentence
+        return_memory()
 
     def speak(self, text: str) -> Samples:
         """16 kHz samples of the spoken text, with a short silence after it."""

@@ -1,4 +1,4 @@
-"""Taking out noise, weighing sentences, and reading the recogniser's file; without any network."""
+"""Taking out noise and weighing sentences; without any network."""
 
 import numpy as np
 
@@ -6,7 +6,6 @@ from common import config
 from services.speech.config import SpeechConfig
 from services.speech.denoise import noise_power, noise_ratio, reduce_noise
 from services.speech.recognise import confidence_of, cost
-from services.speech.unpack import _field, _fields, with_named_graphs
 from tests.support import ROOT
 
 CONFIG = config.load("speech", SpeechConfig, ROOT / "config", {})
@@ -68,22 +67,3 @@ def test_rare_words_cost() -> None:
 def test_confidence_falls_with_the_likelihood_ratio() -> None:
     scores = [confidence_of(s, CONFIG) for s in (0.5, 0.0, CONFIG.accept_score, CONFIG.ask_score, -5.0)]
     assert scores[:2] == [1.0, 1.0] and scores[2] == 0.5 and scores[2] > scores[3] > scores[4] > 0.0
-
-
-def test_graphs_in_branches_get_the_name_that_the_format_demands() -> None:
-    inner = _field(1, _field(4, b"Add"))
-    branch = _field(1, b"then_branch") + _field(6, inner)
-    node = _field(4, b"If") + _field(5, branch)
-    other = _field(4, b"Mul") + _field(5, _field(1, b"axis"))
-    model = b"\x08\x0a" + _field(7, _field(1, node) + _field(1, other) + _field(2, b"main"))
-    named = with_named_graphs(model)
-    graph = {n: v for n, _, v in _fields(named)}[7]
-    assert graph is not None
-    nodes = [v for n, _, v in _fields(graph) if n == 1]
-    assert nodes[1] == other and nodes[0] != node
-    assert nodes[0] is not None
-    attribute = next(v for n, _, v in _fields(nodes[0]) if n == 5)
-    assert attribute is not None
-    body = next(v for n, _, v in _fields(attribute) if n == 6)
-    assert body is not None and [n for n, _, _ in _fields(body)] == [1, 2]
-    assert named[:2] == model[:2]

@@ -1,0 +1,85 @@
+"""Writing networks with packed weights, and the decoder that is written anew against the one that ships."""
+
+import numpy as np
+import pytest
+
+from services.speech import protobuf as pb
+from services.speech.grammar import Grammar
+from services.speech.moonshine import models, networks
+from services.speech.speak import Voice
+from services.speech.tokens import BOS
+from services.speech.weights import BLOCK, Net, session
+
+HEADS, LAYERS, WIDTH = 8, 8, 52
+
+
+def test_tensors_come_back_as_they_were_written() -> None:
+    for values in (
+        np.arange(6, dtype=np.float32).reshape(2, 3),
+        np.array([-3, 4], np.int64),
+        np.zeros((0, 2), np.int8),
+    ):
+        name, found = pb.array(pb.tensor("weights", values))
+        assert name == "weights" and found.dtype == values.dtype and np.array_equal(found, values)
+        assert found.shape == values.shape
+
+
+def test_fields_are_read_and_what_is_no_message_is_refused() -> None:
+    message = pb.field(3, 300) + pb.field(200, "words") + b"\x0d1234"
+    assert [(n, v if isinstance(v, int) else v and bytes(v)) for n, _, v in pb.fields(message)] == [
+        (3, 300), (200, b"words"), (1, None),
+    ]  # fmt: skip
+    assert b"".join(bytes(raw) for _, raw, _ in pb.fields(message)) == message
+    assert pb.texts(message, 200) == ["words"] and pb.texts(message, 4) == []
+    with pytest.raises(ValueError, match="wire type 3"):
+        list(pb.fields(b"\x0b"))
+
+
+def test_packed_weights_multiply_as_unpacked_ones() -> None:
+    rng = np.random.default_rng(0)
+    q = rng.integers(-128, 128, (2 * BLOCK, 24)).astype(np.int8)
+    scale, zero = np.array([0.02], np.float32), -7
+    added = -zero * scale
+    x = rng.normal(size=(3, 2 * BLOCK)).astype(np.float32)
+    net = Net()
+    doubled = net.op("Add", "x", "x")
+    net.times(doubled, (q, scale, added), output="y")
+    (found,) = net.session({"x": (np.float32, 2)}, ["y"], 1).run(None, {"x": x})
+    wanted = 2 * x @ (q * scale + added)
+    assert np.abs(found - wanted).max() < 0.02 * np.abs(wanted).max()
+
+
+def test_a_grammar_after_the_wake_word_shares_the_commands() -> None:
+    commands = Grammar(["go [home]", "stop"], {})
+    woken = commands.introduced(["hey jarvis", "robot"])
+    for said in ("hey jarvis", "hey jarvis go home", "robot stop", "robot go"):
+        assert woken.accepts(said) and not commands.accepts(said)
+    assert not any(woken.accepts(said) for said in ("go", "stop", "", "hey", "hey jarvis robot", "go hey jarvis"))
+    assert commands.accepts("go") and commands.accepts("go home") and not commands.accepts("")
+
+
+@pytest.mark.slow
+def test_the_decoder_finds_what_the_shipped_one_finds() -> None:
+    shipped = session(models() / "decoder_model_merged.ort", 1)
+    names = [o.name for o in shipped.get_outputs()]
+    encoder, decoder = networks(1)
+    sound = Voice().speak("bring me the red mug").astype(np.float32) / np.float32(32768)
+    hidden = encoder.run(None, {"input_values": np.stack([sound, sound[::-1]])})[0]
+    heard, past = decoder.heard(hidden), decoder.nothing(2)
+    sequences, rows = np.array([[BOS, 518, 29915, 263], [BOS, 2803, 592, 278]]), [0, 0]
+    for length in range(1, sequences.shape[1] + 1):
+        scores, past = decoder.step(heard, past, rows, list(sequences[:, length - 1]))
+        rows = [0, 1]
+    empty = np.zeros((0, HEADS, 1, WIDTH), np.float32)
+    feeds = {
+        f"past_key_values.{k}.{side}.{what}": empty
+        for k in range(LAYERS) for side in ("decoder", "encoder") for what in ("key", "value")
+    }  # fmt: skip
+    feeds |= {"use_cache_branch": np.array([False])}
+    for row, sequence in enumerate(sequences):
+        feeds |= {"encoder_hidden_states": hidden, "input_ids": np.tile(sequence, (2, 1))}
+        logits = dict(zip(names, shipped.run(None, feeds), strict=True))["logits"][:, -1]
+        wanted = (logits - np.log(np.exp(logits).sum(axis=1, keepdims=True))).mean(axis=0)
+        likely = np.argsort(wanted)[-50:]
+        assert np.abs(np.exp(scores[row][likely]) - np.exp(wanted[likely])).max() < 0.05
+        assert np.abs(scores[row][likely] - wanted[likely]).max() < 0.5
