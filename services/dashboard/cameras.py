@@ -17,12 +17,16 @@ class Cameras:
     def __init__(self, config: DashboardConfig, io: Io, panels: Panels) -> None:
         self._config, self._io, self._panels = config, io, panels
         self._asked: dict[str, float] = {}
+        self._shown: dict[str, float] = {}
 
     def look(self, now: float, base: Pose2) -> None:
         """Show what came, and ask again; not before a camera has answered."""
         config, world = self._config, self._io.latest(topics.WORLD_OBJECTS)
         for name in CAMERAS:
-            for image in self._io.drain(PICTURES[name]):
+            # Others ask for pictures, too, and more often than a person needs to see one.
+            due = now - self._shown.get(name, float("-inf")) >= 0.9 / config.camera_rate
+            for image in self._io.drain(PICTURES[name]) if due and self._panels.wanted(name) else ():
+                self._shown[name] = now
                 pixels = marked(image, base, world.objects if world is not None else [])
                 if pixels is None:
                     self._io.count_drop(PICTURES[name].key, "not as many pixels as it says")

@@ -4,6 +4,7 @@ MuJoCo and trimesh are imported when the first model is drawn: the page is open 
 """
 
 from dataclasses import dataclass, field
+from math import cos, sin, sqrt
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -221,10 +222,19 @@ def posture(link: Link, q: dict[str, float]) -> tuple[Array, Array]:
 
 
 def _about(axis: Array, angle: float) -> Array:
-    """Rotation matrix (3, 3); Rodrigues."""
-    x, y, z = axis / np.linalg.norm(axis)
-    k = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-    return np.asarray(np.eye(3) + np.sin(angle) * k + (1 - np.cos(angle)) * (k @ k))
+    """Rotation matrix (3, 3); Rodrigues, in plain numbers: it is asked for every joint of every frame."""
+    x, y, z = axis.tolist()
+    length = sqrt(x * x + y * y + z * z)
+    x, y, z = x / length, y / length, z / length
+    s, c = sin(angle), cos(angle)
+    d = 1 - c
+    return np.array(
+        [
+            [c + x * x * d, x * y * d - z * s, x * z * d + y * s],
+            [y * x * d + z * s, c + y * y * d, y * z * d - x * s],
+            [z * x * d - y * s, z * y * d + x * s, c + z * z * d],
+        ]
+    )
 
 
 def quaternion(turn: Array) -> tuple[float, float, float, float]:

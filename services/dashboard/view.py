@@ -28,6 +28,7 @@ class View:
         self._objects: dict[str, Any] = {}
         self._looks: dict[str, tuple[object, ...]] = {}
         self._at: dict[str, tuple[Array, Array]] = {}
+        self._values: dict[str, list[float]] = {}
         self._scan: Any = None
         self._path: Any = None
         self._followed: dict[int, Pose2] = {}
@@ -45,7 +46,7 @@ class View:
         with self._server.atomic():
             for node in (*self._nodes.values(), *(n for nodes in self._objects.values() for n in nodes)):
                 node.remove()
-            for each in (self._nodes, self._objects, self._looks, self._at):
+            for each in (self._nodes, self._objects, self._looks, self._at, self._values):
                 each.clear()
             if found.flat is not None:
                 self._nodes["flat"] = self._mesh("/flat", found.flat)
@@ -105,6 +106,11 @@ class View:
             if not link.joints:
                 continue
             path = self._paths[link.name]
+            values = [q.get(joint.name, 0.0) for joint in link.joints]
+            drawn = self._values.get(path)
+            if drawn is not None and max(abs(a - b) for a, b in zip(values, drawn, strict=True)) < STILL:
+                continue
+            self._values[path] = values
             place, turn = posture(link, q)
             before = self._at[path]
             if np.abs(place - before[0]).max() > STILL:
