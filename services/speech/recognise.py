@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from common.scene import Scene
 from services.speech.config import SpeechConfig
 from services.speech.denoise import noise_ratio, reduce_noise
-from services.speech.grammar import Grammar, spoken, vocabulary
+from services.speech.grammar import Grammar, vocabulary
+from services.speech.judge import cost, judged, paced
 from services.speech.vad import RATE, VoiceDetector, speech_span
 from services.speech.weights import return_memory
 
@@ -25,9 +26,6 @@ BEFORE, AFTER = 0.2, 0.6
 MIN_SAMPLES = 4000
 NOISY = 20.0  # [dB]
 PACES = (16 / 15, 15 / 16)
-CANDIDATES, HOPELESS = 6, 8.0
-# How long sentences take by voice detection: fitted to the voices of the corpus, whose spread is a third of this.
-PAUSES, SECONDS_PER_CHARACTER, TEMPO_SPREAD = 0.35, 0.045, 0.25
 
 
 @dataclass(frozen=True)
@@ -80,46 +78,22 @@ class MoonshineRecogniser:
         config = self._config
         utterance = self._model.encode(sound.renditions)
         free = self._model.free(utterance)
-        found = self._model.best(utterance, self._words[scope], lambda text: cost(text, sound.seconds, config))
+
+        def weigh(text: str) -> float:
+            return cost(text, sound.seconds, config)
+
+        found = self._model.best(utterance, self._words[scope], weigh)
         if not found:
             return Heard("", "reject", 0.0, free.text)
-        command, score = self._judged(found[:CANDIDATES], free, sound)
+        command, score = judged(found, free, weigh, lambda these: self._again(these, sound))
         confidence = confidence_of(score, config)
         if score >= config.accept_score:
             return Heard(command.text, "accept", confidence, free.text)
         verdict: Verdict = "ask" if score >= config.ask_score else "reject"
         return Heard(command.text, verdict, confidence, free.text)
 
-    def _judged(self, found: list["Decoded"], free: "Decoded", sound: Sound) -> tuple["Decoded", float]:
-        """The likeliest sentence, and its likelihood ratio per token to the free transcription.
-
-        Where they differ both were chosen to fit even the noise of the renditions that they were found in. So all are
-        judged again by others, in which the same noise sounds different to the network.
-        """
-        best = found[0]
-        if spoken(free.text) == best.text:
-            return best, (best.log_probability - free.log_probability) / best.tokens
-        hopeless = best.log_probability - cost(best.text, sound.seconds, self._config) - HOPELESS
-        found = [f for f in found if f.log_probability - cost(f.text, sound.seconds, self._config) >= hopeless]
-        *totals, freely = self._model.log_probabilities(self._model.encode(sound.paced()), [*found, free])
-        worth = [t - cost(f.text, sound.seconds, self._config) for t, f in zip(totals, found, strict=True)]
-        k = int(np.argmax(worth))
-        return found[k], (totals[k] - freely) / found[k].tokens
-
-
-def paced(samples: Array, factor: float) -> Array:
-    """Samples (n,) played `factor` times as fast, with all that they contain."""
-    length = round(len(samples) / factor)
-    found: Array = (np.fft.irfft(np.fft.rfft(samples), length) / factor).astype(np.float32)
-    return found
-
-
-def cost(text: str, seconds: float, config: SpeechConfig) -> float:
-    """What speaks against a sentence however it sounds: words that people hardly use to a robot, and a length that
-    does not fit the time that it took."""
-    rare = sum(config.rare.get(word, 0.0) for word in text.split())
-    usual = PAUSES + SECONDS_PER_CHARACTER * len(text)
-    return rare + config.tempo_weight * (math.log(max(seconds, 0.05) / usual) / TEMPO_SPREAD) ** 2 / 2
+    def _again(self, sentences: list["Decoded"], sound: Sound) -> list[float]:
+        return self._model.log_probabilities(self._model.encode(sound.paced()), sentences)
 
 
 def confidence_of(score: float, config: SpeechConfig) -> float:

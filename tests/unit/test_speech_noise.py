@@ -1,11 +1,14 @@
 """Taking out noise and weighing sentences; without any network."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from common import config
 from services.speech.config import SpeechConfig
 from services.speech.denoise import noise_power, noise_ratio, reduce_noise
-from services.speech.recognise import confidence_of, cost
+from services.speech.judge import CANDIDATES, cost, judged, paced
+from services.speech.recognise import Sound, confidence_of
 from tests.support import ROOT
 
 CONFIG = config.load("speech", SpeechConfig, ROOT / "config", {})
@@ -67,3 +70,54 @@ def test_rare_words_cost() -> None:
 def test_confidence_falls_with_the_likelihood_ratio() -> None:
     scores = [confidence_of(s, CONFIG) for s in (0.5, 0.0, CONFIG.accept_score, CONFIG.ask_score, -5.0)]
     assert scores[:2] == [1.0, 1.0] and scores[2] == 0.5 and scores[2] > scores[3] > scores[4] > 0.0
+
+
+@dataclass(frozen=True)
+class Said:
+    text: str
+    log_probability: float
+    tokens: int = 4
+
+
+FOUND = [Said("bring me the red glass", -6.0), Said("bring me the red mug", -7.0), Said("go home", -30.0)]
+FREE = Said("Bring me the red mask.", -3.0)
+
+
+def test_what_is_uncertain_is_judged_again_and_may_turn_out_otherwise() -> None:
+    asked: list[Said] = []
+
+    def again(sentences: list[Said]) -> list[float]:
+        asked.extend(sentences)
+        return [-9.0, -6.0, -4.0]
+
+    assert judged(FOUND, FREE, lambda text: 0.0, again) == (FOUND[1], -0.5)
+    assert asked == [FOUND[0], FOUND[1], FREE]
+    assert judged(FOUND, FREE, lambda text: 5.0 * ("mug" in text), again) == (FOUND[0], -1.25)
+
+
+def test_only_the_best_are_judged_again_and_nothing_where_there_is_no_doubt() -> None:
+    many = [Said(f"sentence {k}", -6.0 - k / 10) for k in range(3 * CANDIDATES)]
+    sizes: list[int] = []
+
+    def again(sentences: list[Said]) -> list[float]:
+        sizes.append(len(sentences))
+        return [s.log_probability for s in sentences]
+
+    assert judged(many, FREE, lambda text: 0.0, again)[0] == many[0]
+    assert sizes == [CANDIDATES + 1]
+    sure = Said("Bring me the red glass!", -5.0)
+    assert judged(FOUND, sure, lambda text: 0.0, again) == (FOUND[0], -0.25)
+    assert len(sizes) == 1
+
+
+def test_another_pace_changes_length_and_pitch_alike() -> None:
+    t = np.arange(RATE) / RATE
+    tone = (0.3 * np.sin(2 * np.pi * 440 * t)).astype(np.float32)
+    fast = paced(tone, 16 / 15)
+    assert len(fast) == RATE * 15 // 16
+    assert abs(float(np.argmax(np.abs(np.fft.rfft(fast)))) * RATE / len(fast) - 440 * 16 / 15) < 2.0
+    assert abs(float(np.abs(fast[1000:-1000]).max()) - 0.3) < 0.01
+    both = Sound(np.stack([tone, np.zeros_like(tone)]), 0.5).paced()
+    assert both.shape == (2, RATE * 16 // 15 + 1) and both[0].any() and not both[1].any()
+    alone = Sound(tone[None], 0.5).paced()
+    assert len(alone) == 2 and alone[0].any() and alone[1].any()
