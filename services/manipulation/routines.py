@@ -286,7 +286,7 @@ def _execute_place(robot: Robot, plan: PlacePlan, held: Held, name: str, surface
     robot.phase = "release"
     yield from robot.move_gripper(0.0)
     robot.held = None
-    if robot.grip.width < min(0.08, held.width + 0.004):
+    if robot.grip.width < min(_planner(robot).arm.widest, held.width) + 0.004:
         raise Failure("STUCK", f"the gripper opened to {robot.grip.width * 1000:.0f} mm only")
     robot.phase = "retract"
     try:

@@ -22,6 +22,7 @@ class Body:
         self._data = mujoco.MjData(self._model)
         self._arm = [self._model.joint(name).qposadr[0] for name in ARM]
         self._hand = Hand(self._model)
+        self.open = self._hand.open
         self._fingers = [self._model.joint(name).qposadr[0] for name in self._hand.joints]
         self._faces = {g: _faces(self._model, g) for g in range(self._model.ngeom) if _is_mesh(self._model, g)}
         self._solid = [g for g in range(self._model.ngeom) if self._model.geom_type[g] != mujoco.mjtGeom.mjGEOM_PLANE]

@@ -21,7 +21,8 @@ from services.perception.memory import SURE, Memory
 from services.perception.view import View, view_of
 
 HISTORY = 100
-HELD_WIDTH = (0.003, 0.080)
+# Fingers that stand neither closed nor open hold something [m].
+CLOSED, PLAY = 0.003, 0.005
 HELD_FORCE = 5.0
 MOVING = 0.02
 HAND_RANGE = 0.35
@@ -103,11 +104,11 @@ class PerceptionService:
         arm = np.array([found[name][0] for name in ARM])
         width, force = found["gripper"]
         self._joints.append((joints.t, arm, width))
-        holding = HELD_WIDTH[0] < width < HELD_WIDTH[1] and abs(force) > HELD_FORCE
         body = self._robot(now) if self._poses and self._detecting is None else None
         if body is not None:
             body.pose(arm, width)
             self._hand = body.hand(self._poses[-1][1])
+            holding = CLOSED < width < body.open - PLAY and abs(force) > HELD_FORCE
             self._memory.carry(self._hand, holding, now)
             self._show(now)
 
