@@ -71,7 +71,7 @@ class Stack:
         choose("auto")
         self.bus, self._clock = CutBus(), ManualClock()
         self.members: dict[str, tuple[Any, MemoryIo]] = {}
-        self._hung: list[tuple[float, str]] = []
+        self._hung: dict[str, float] = {}
         self._cut_until = self._full_until = float("inf")
         self._disk = FullDisk()
         self.starts: dict[str, int] = {}
@@ -107,11 +107,14 @@ class Stack:
         service, io = self._make(kind)
         self.members[kind.NAME] = service, io
         self.world.add(service, io)
+        if self.bus.away and kind.NAME in paced_services():
+            self.hang(kind.NAME, self._cut_until - self.now)
         return service
 
     def kill(self, name: str) -> None:
         """As SIGKILL: it neither reads nor writes any more, and what it knew is gone."""
         service, io = self.members.pop(name)
+        self._hung.pop(name, None)
         self.world.remove(service)
         self.bus.detach(io)
         io.shutdown()
@@ -125,7 +128,7 @@ class Stack:
     def hang(self, name: str, seconds: float) -> None:
         """As SIGSTOP and, later, SIGCONT: its mail piles up meanwhile."""
         self.world.remove(self.members[name][0])
-        self._hung.append((self.now + seconds, name))
+        self._hung[name] = max(self.now + seconds, self._hung.get(name, 0.0))
 
     def restart_sim(self) -> None:
         """As SIGKILL of the simulation and its successor: the world goes on from its checkpoint, and so does time."""
@@ -135,9 +138,8 @@ class Stack:
         self.world = InProcess(self.sim, self._sim_io, self._clock)
         self.world.tick = round(self.sim.start_time / DT)
         self._clock.advance(self.world.tick * DT - self.now)
-        hung = {name for _, name in self._hung}
         for name, (service, io) in self.members.items():
-            if name not in hung:
+            if name not in self._hung:
                 self.world.add(service, io)
 
     def cut(self, seconds: float) -> None:
@@ -176,10 +178,9 @@ class Stack:
         if self.now >= self._full_until:
             self._full_until = float("inf")
             self._disk.full(False)
-        for row in [r for r in self._hung if r[0] <= self.now]:
-            self._hung.remove(row)
-            if row[1] in self.members:
-                self.world.add(*self.members[row[1]])
+        for name in [n for n, until in self._hung.items() if until <= self.now]:
+            del self._hung[name]
+            self.world.add(*self.members[name])
         return self.world.advance()
 
     def jump(self, seconds: float) -> None:

@@ -65,6 +65,22 @@ def test_without_a_router_nobody_hears_and_nothing_of_weight_is_lost(stack: Stac
     assert ids[-1] == "b.3" and "b.2" in ids, "both came, in order"
 
 
+def test_who_is_killed_while_it_hangs_comes_back_once(stack: Stack) -> None:
+    stack.hang("navigation", 0.5)
+    stack.cut(0.8)
+    stack.advance(0.2)
+    stack.kill("navigation")
+    stack.start("navigation")
+    stack.advance(0.3)
+    assert status(stack).status == "idle" and not stack.bus.get(topics.NAV_PATH.key), "without a router it does not run"
+    stack.advance(1.0)
+    steps: list[float] = []
+    service = stack.members["navigation"][0]
+    service.step = steps.append
+    stack.advance(0.5)
+    assert len(steps) == len(set(steps)) == 0.5 * service.HZ
+
+
 def test_a_full_disk_takes_nothing_until_there_is_room(stack: Stack, tmp_path: Path) -> None:
     stack.fill_disk(0.6)
     with pytest.raises(OSError, match="too large"):
