@@ -15,6 +15,7 @@ import msgspec
 from common.clock import monotonic
 from evaluation.case import Case, Observed, Result
 from evaluation.verdict import judge
+from services.camera.render import offer
 
 WALL_LIMIT, START_LIMIT = 3600.0, 300.0
 Run = Callable[[Case, Callable[[float, str], None]], Result]
@@ -129,6 +130,9 @@ def evaluate(
 def _evaluate(
     cases: list[Case], jobs: int, run: Run, limit: float, scratch: str, gentle: bool
 ) -> Iterator[Result | Progressed]:
+    if not os.environ.get("MUJOCO_GL"):
+        # The workers import MuJoCo before they could choose.
+        offer("auto")
     waiting = deque(cases)
     workers: list[Worker] = []
     try:

@@ -45,6 +45,11 @@ def choose(wanted: str) -> str:
     if "mujoco" in sys.modules:
         given = os.environ.get("MUJOCO_GL", "")
         return given if given in ("egl", "osmesa") and wanted in ("auto", given) else "raycast"
+    return offer(wanted)
+
+
+def offer(wanted: str) -> str:
+    """Settle on a backend for this process, if it has not imported MuJoCo yet, and for those it starts."""
     backend = wanted if wanted != "auto" else next(b for b in BACKENDS if works(b))
     os.environ["MUJOCO_GL"] = "disable" if backend == "raycast" else backend
     if backend != "raycast":
