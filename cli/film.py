@@ -52,6 +52,7 @@ def frames(recording: Recording, record: dict[str, Any], begin: float, end: floa
     render = importlib.import_module("services.camera.render")
     model = codec.decode(topics.SIM_MODEL, models[-1].payload)
     renderer = render.Renderer(model.mjcf, "auto")
+    looking = importlib.import_module("services.camera.outlook")
     pace = max(FASTER / RATE, (end - begin) / LONGEST)
     azimuth = 225.0
     try:
@@ -59,8 +60,9 @@ def frames(recording: Recording, record: dict[str, Any], begin: float, end: floa
             t = begin + n * pace
             state = codec.decode(topics.SIM_STATE, rows[max(0, bisect_right(times, t) - 1)].payload)
             renderer.load(state.qpos, state.mocap)
-            x, y = (float(v) for v in renderer.data.body("base").xpos[:2])
-            picture = renderer.picture(render.View((x, y, 0.45), 3.4, azimuth, -38.0), WIDTH, HEIGHT)
+            view = looking.outlook(renderer, azimuth)
+            azimuth = view.azimuth
+            picture = renderer.picture(view, WIDTH, HEIGHT)
             yield captioned(picture, *caption(record, t), t - float(record["started"]))
             if sys.stderr.isatty():
                 print(f"\r\033[K  {t - begin:.0f} of {end - begin:.0f} s", end="", file=sys.stderr, flush=True)

@@ -3,6 +3,7 @@
 import importlib
 import re
 from collections.abc import Callable, Iterator
+from math import inf
 from typing import Any
 
 import msgspec
@@ -30,6 +31,7 @@ class ReplayIo(MemoryIo):
 
     def __init__(self, *args: Any, ids: Iterator[str], peers: Iterator[tuple[float, str, str | None]], **kw: Any):
         self.outputs: list[tuple[float, str, bytes]] = []
+        self.first: dict[str, float] = {}
         self._known_ids = ids
         self._changes, self._next = peers, next(peers, None)
         self._present: dict[str, str] = {}
@@ -48,6 +50,10 @@ class ReplayIo(MemoryIo):
                 self._present[who] = epoch or self._present.get(who, "")
             self._next = next(self._changes, None)
         return self._present.get(name)
+
+    def matched(self, topic: Topic[Any]) -> bool:
+        """Somebody looked at a stream from its first recorded message on."""
+        return topic.keep != "latest" or self.clock.now() > self.first.get(topic.key, inf) - DT / 2
 
     def new_id(self, prefix: str) -> str:
         return next(self._known_ids, None) or super().new_id(prefix)
@@ -75,6 +81,7 @@ class Player:
             self.bus, kind.NAME, kind.READS, kind.WRITES, scene=scene, seed=seed, clock=self.clock, log_level="error",
             ids=iter(() if self.lockstep else self._ids()), peers=_peers(recording),
         )  # fmt: skip
+        self.io.first = {key: span.first for key, span in recording.spans.items()}
         if first > 2 * period_of(kind.HZ):  # the recording starts in the middle of a run
             self.io.tick = first - 1
         self._sim = hasattr(kind, "pace")

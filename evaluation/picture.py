@@ -7,7 +7,8 @@ from collections.abc import Callable
 from PIL import Image
 
 from common import codec, topics
-from services.camera.render import Renderer, View
+from services.camera.outlook import outlook
+from services.camera.render import Renderer
 
 WIDTH, HEIGHT = 420, 300
 Get = Callable[[str], bytes | None]
@@ -25,8 +26,7 @@ def last_picture(get: Get) -> str:
     renderer = Renderer(codec.decode(topics.SIM_MODEL, model).mjcf, "raycast")
     try:
         renderer.load(seen.qpos, seen.mocap)
-        x, y = (float(v) for v in renderer.data.body("base").xpos[:2])
-        picture = renderer.picture(View((x, y, 0.5), 3.2, 225.0, -38.0), WIDTH, HEIGHT)
+        picture = renderer.picture(outlook(renderer), WIDTH, HEIGHT)
     except (ValueError, KeyError):
         return ""
     finally:

@@ -103,3 +103,11 @@ def test_no_key_hides_behind_another() -> None:
         granted = access.grants(Subject(name=name))
         assert not [k for k in (*granted.puts, *granted.answers, *granted.tokens) if "*" in k]
         assert {k for k in granted.reads if "*" in k} == {access.ALL_HEALTH, access.ALL_ALIVE}
+
+
+def test_only_the_page_may_ask_for_the_missions_and_it_answers_for_nobody() -> None:
+    asking = {name for name in SERVICES if topics.BRAIN_MISSIONS in access.grants(Subject(name=name)).asks}
+    assert asking == {"dashboard"}
+    granted = access.grants(Subject(name="dashboard"))
+    assert not set(granted.asks) & {*access.CHANGING, topics.SIM_TRUTH}
+    assert topics.BRAIN_MISSIONS not in granted.answers

@@ -1,13 +1,22 @@
 """The evaluation's HTML report: stages by physics, honest intervals, nothing from outside, nothing unescaped."""
 
+import base64
+import io
 import re
 from typing import Any
 
+import numpy as np
 import pytest
+from PIL import Image
 
+from common import codec, topics
+from common import messages as m
+from common.scene import load_scene
 from evaluation import html_report, report
 from evaluation.case import Result
 from evaluation.html_stages import by_stage, reached, wilson
+from evaluation.picture import HEIGHT, WIDTH, last_picture
+from services.sim.physics import Physics
 
 
 def result(seed: int, stage: int, command: str = "bring me the red mug", **more: Any) -> Result:
@@ -75,3 +84,19 @@ def test_the_picture_is_not_in_the_json() -> None:
 
 def test_a_run_without_cases_makes_a_page() -> None:
     assert "0 of 0" in html_report.render(report.record("fetch", [], 0.0), [])
+
+
+def test_the_last_picture_is_of_the_world_as_it_ended() -> None:
+    physics = Physics(load_scene("minimal"), 0, ())
+    model = m.SimModel(scene="minimal", seed=0, epoch="e", mjcf=physics.mjcf)
+    state = m.SimState(t=1.0, tick=100, epoch="e", qpos=physics.data.qpos.tobytes())
+    known = {
+        topics.SIM_MODEL.key: codec.encode(topics.SIM_MODEL, model),
+        topics.SIM_STATE.key: codec.encode(topics.SIM_STATE, state),
+    }
+    picture = Image.open(io.BytesIO(base64.b64decode(last_picture(known.get))))
+    assert picture.size == (WIDTH, HEIGHT)
+    assert np.asarray(picture).std() > 10, "something is in it"
+    assert last_picture({}.get) == ""
+    known[topics.SIM_STATE.key] = codec.encode(topics.SIM_STATE, m.SimState(t=1.0, tick=1, epoch="e", qpos=bytes(8)))
+    assert last_picture(known.get) == "", "a state of another model"
