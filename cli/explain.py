@@ -51,7 +51,10 @@ def explain(args: argparse.Namespace) -> int:
             raise CliError(f"no mission {args.id!r}{near(args.id, known)}; `tidybot missions` lists all")
     if args.html:
         page: str = importlib.import_module("services.dashboard.timeline").page(record)
-        args.html.write_text(page, encoding="utf-8")
+        try:
+            args.html.write_text(page, encoding="utf-8")
+        except OSError as error:
+            raise CliError(f"{args.html}: {error.strerror}") from None
         print(args.html)
         return 0
     print(msgspec.json.encode(record).decode() if args.json else told(record))

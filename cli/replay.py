@@ -113,7 +113,10 @@ def replay(args: argparse.Namespace) -> int:
         if args.view:
             return lookback.view(args.file, args.port, args.at)
         if args.export:
-            lookback.export(args.file, args.export, args.mission)
+            try:
+                lookback.export(args.file, args.export, args.mission)
+            except OSError as error:
+                raise CliError(f"{args.export}: {error.strerror or error}") from None
             return 0
         if args.info or not args.service:
             return info(args.file)
