@@ -234,7 +234,8 @@ def _close(recorder: Recorder) -> None:
             f"{recorder.path}: {error.strerror}; `tidybot replay {recorder.path} --repair` saves it"
         ) from None
     if not recorder.counts:
-        print(f"nothing was heard; {recorder.path} is empty", file=sys.stderr)
+        recorder.path.unlink(missing_ok=True)
+        print("nothing was heard; no file is kept", file=sys.stderr)
 
 
 def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
