@@ -65,6 +65,10 @@ def main(argv: list[str]) -> int:
             "tidybot: processes are killed and hung as objects of one process; leave --processes out", file=sys.stderr
         )
         return FAILED
+    for target in (args.json, args.html):
+        if target and target != "-" and not Path(target).resolve().parent.is_dir():
+            print(f"tidybot: {target}: no such directory", file=sys.stderr)
+            return FAILED
     count = args.scenarios or DEFAULT_SCENARIOS.get(args.suite, 10)
     try:
         todo = cases(args.suite, count, args.seed, tuple(args.set), args.pipeline)
