@@ -7,7 +7,7 @@ import numpy as np
 from common.messages import ObjectRef
 from services.manipulation.arm_model import Array, Obstacle
 from services.manipulation.plan import Held, PlanError, Planner
-from services.manipulation.routines import Failure, Robot, Steps, go_home
+from services.manipulation.robot import Failure, Robot, Steps, go_home
 from services.manipulation.surroundings import obstacles
 from services.manipulation.verify import holds
 

@@ -8,11 +8,11 @@ from common import messages as m
 from common import topics
 from common.geometry import Pose2
 from common.io import Io, Job
-from services.manipulation import rescue, routines
+from services.manipulation import placing, rescue, routines
 from services.manipulation.config import ManipulationConfig
 from services.manipulation.object_source import ObjectSource
 from services.manipulation.plan import Planner
-from services.manipulation.routines import Failure, Robot, Steps
+from services.manipulation.robot import Failure, Robot, Steps, go_home
 from services.manipulation.verify import Grip, holds
 
 ARM = tuple(f"joint_{i}" for i in range(1, 8))
@@ -140,7 +140,7 @@ class ManipulationService:
         if verb == "place" and rest:
             return self._place(rest)
         if verb == "home" and not rest:
-            return self._with_planner(routines.go_home(robot))
+            return self._with_planner(go_home(robot))
         return None
 
     def _with_planner(self, steps: Steps[str]) -> Steps[str]:
@@ -163,7 +163,7 @@ class ManipulationService:
         robot = self._robot
         if not holds(robot.grip, self._config):
             return (yield from self._with_planner(rescue.fold(robot)))
-        return (yield from self._with_planner(routines.place(robot, "")))
+        return (yield from self._with_planner(placing.place(robot, "")))
 
     def _place(self, where: str) -> Steps[str]:
         robot = self._robot
@@ -172,7 +172,7 @@ class ManipulationService:
             raise Failure("UNKNOWN_PLACE", f"no receptacle {where!r}; known: {known}")
         if not holds(robot.grip, self._config):
             raise Failure("NOT_HOLDING", "nothing is in the gripper")
-        return (yield from self._with_planner(routines.place(robot, where)))
+        return (yield from self._with_planner(placing.place(robot, where)))
 
     # --- running
     def _advance(self, now: float) -> None:

@@ -1,0 +1,92 @@
+"""Setting down what is held: on a receptacle, or wherever there is room; the hand opens only when it stands."""
+
+import numpy as np
+
+from common.geometry import compose
+from services.manipulation.arm_model import Obstacle
+from services.manipulation.grasp import approach_rotation
+from services.manipulation.plan import Held, PlacePlan
+from services.manipulation.robot import Failure, Robot, Steps, go_home, planner_of
+from services.manipulation.surroundings import obstacles, spots
+
+FLOOR_SPOTS = ((0.60, 0.0), (0.60, 0.2), (0.60, -0.2))
+DROP = 0.004
+BIN_DROP = 0.06
+
+
+def place(robot: Robot, where: str) -> Steps[str]:
+    """Set the held object down on a receptacle, or with "" on the delivery surface or whatever is in reach."""
+    planner, scene = planner_of(robot), robot.io.scene
+    held = robot.held or _unknown(robot)
+    robot.phase = "place"
+    footprint = max(held.size[0], held.size[1])
+    known = [o for o in robot.source.objects() if o.label != held.label]
+    names = [where] if where else [scene.delivery, *(r.name for r in scene.receptacles if not r.depth)]
+    choices: list[tuple[str, list[tuple[float, float]], float, float]] = []
+    for name in dict.fromkeys(names):
+        r = scene.receptacle(name)
+        if r is None:
+            continue
+        taken = [] if r.depth else known
+        surface, drop = (r.depth, BIN_DROP) if r.depth else (r.center[2], DROP)
+        free = spots(r, robot.base, footprint if not r.depth else max(r.size), taken)
+        if free:
+            choices.append((r.name, free, surface, drop))
+    if not where:
+        choices.append(("floor", list(FLOOR_SPOTS), 0.0, DROP))
+    if not choices:
+        raise Failure("UNREACHABLE", f"no free spot of the {where} is within reach from here")
+    last = Failure("UNREACHABLE", "nothing within reach")
+    for name, free, surface, drop in choices:
+        try:
+            plan = yield from robot.work(
+                planner.place, held, free, surface, drop, _around(robot, held, name), robot.joints.copy()
+            )
+        except Failure as failure:
+            last = failure
+            continue
+        return (yield from _execute_place(robot, plan, held, name, surface))
+    raise last
+
+
+def _around(robot: Robot, held: Held, where: str) -> list[Obstacle]:
+    """What the arm must not touch while it puts something down; what lies in a bin may be covered."""
+    r = robot.io.scene.receptacle(where)
+    inside = where if r is not None and r.depth else None
+    objects = [o for o in robot.source.objects() if o.on != inside]
+    return obstacles(robot.io.scene, robot.base, objects, without=held.label, margin=0.0)
+
+
+def _execute_place(robot: Robot, plan: PlacePlan, held: Held, name: str, surface: float) -> Steps[str]:
+    config = robot.config
+    yield from robot.follow(plan.reach, config.joint_speed * 0.8)
+    if robot.grip.width <= config.empty_width:
+        robot.held = None
+        raise Failure("SLIPPED", f"the {held.label} was lost on the way")
+    yield from robot.follow(plan.lower, config.joint_speed * 0.4)
+    yield from robot.wait(0.2)
+    robot.phase = "release"
+    yield from robot.move_gripper(0.0)
+    robot.held = None
+    if robot.grip.width < min(planner_of(robot).arm.widest, held.width) + 0.004:
+        raise Failure("STUCK", f"the gripper opened to {robot.grip.width * 1000:.0f} mm only")
+    robot.phase = "retract"
+    try:
+        yield from robot.follow(plan.retreat, config.joint_speed * 0.5)
+        yield from robot.follow(plan.home, config.joint_speed)
+    except Failure as failure:
+        # The object stands; another way home from here.
+        robot.io.log.warning("on the way home", code=failure.code, detail=failure.detail)
+        robot.forget_command()
+        yield from go_home(robot)
+    x, y, _ = compose(robot.base, (*plan.spot, 0.0))
+    robot.source.remember(held.label, (x, y, surface + held.size[2] / 2), name, robot.now)
+    return f"{held.label} on the {name}, gripper open at {robot.grip.width * 1000:.0f} mm"
+
+
+def _unknown(robot: Robot) -> Held:
+    """Something is in the gripper that a former process grasped: assume it hangs straight down from the hand."""
+    name = next((o.label for o in robot.source.objects() if o.held), "object")
+    size = next((o.size for o in robot.source.objects() if o.held), (0.06, 0.06, 0.10))
+    offset = np.array([0.0, 0.0, size[2] / 2])
+    return Held(name, "", approach_rotation(0.0, np.pi / 2), offset, size, robot.grip.width, 0.0)

@@ -1,0 +1,119 @@
+"""The arm as the sequences see and move it; each `yield` is one step of robot time, a `Failure` ends the goal."""
+
+from collections.abc import Callable, Generator, Sequence
+from typing import Any, TypeVar
+
+import numpy as np
+
+from common import messages as m
+from common import topics
+from common.geometry import Pose2
+from common.io import Io
+from services.manipulation.arm_model import Array
+from services.manipulation.config import ManipulationConfig
+from services.manipulation.object_source import ObjectSource
+from services.manipulation.plan import Held, PlanError, Planner
+from services.manipulation.surroundings import obstacles
+from services.manipulation.trajectory import timed
+from services.manipulation.verify import Grip
+
+T = TypeVar("T")
+Steps = Generator[None, None, T]
+DT = 0.02
+
+
+class Failure(Exception):
+    """The goal failed; `code` is the status code."""
+
+    def __init__(self, code: str, detail: str) -> None:
+        super().__init__(detail)
+        self.code, self.detail = code, detail
+
+
+class Robot:
+    """What the sequences see and move: joint angles, gripper, base pose, and the streams to the drivers."""
+
+    def __init__(self, config: ManipulationConfig, io: Io, source: ObjectSource) -> None:
+        self.config, self.io, self.source = config, io, source
+        self.now = 0.0
+        self.joints: Array = np.zeros(7)
+        self.grip = Grip(0.0, 0.0)
+        self.base: Pose2 = (0.0, 0.0, 0.0)
+        self.phase = ""
+        self.held: Held | None = None
+        self.planner: Planner | None = None
+        self._command: Array | None = None
+        self._late = 0
+
+    # --- motion
+    def follow(self, path: Sequence[Array], speed: float) -> Steps[None]:
+        """Stream a joint path and wait until the arm has come to rest at its end."""
+        start = self._command if self._command is not None else self.joints
+        points = [start, *path] if np.abs(start - path[0]).max() > 1e-3 else list(path)
+        for q in timed(points, speed, self.config.joint_acceleration, DT):
+            self._stream(q)
+            yield
+            self._check_blocked(q)
+        for _ in range(round(self.config.settle / DT)):
+            self._stream(points[-1])
+            yield
+            if np.abs(self.joints - points[-1]).max() < 0.01:
+                break
+        self._command = None
+
+    def _stream(self, q: Array) -> None:
+        self._command = q
+        self.io.publish(topics.ARM_COMMAND, m.ArmCommand(position=q.tolist(), period=DT, t=self.now))
+
+    def _check_blocked(self, q: Array) -> None:
+        error = np.abs(self.joints - q)
+        # The servos lag behind a moving set-point; only a lasting error means that something is in the way.
+        self._late = self._late + 1 if error.max() > self.config.blocked_error else 0
+        if self._late > 15:
+            self._late = 0
+            worst = int(error.argmax())
+            raise Failure("BLOCKED", f"joint_{worst + 1} is {error[worst]:.2f} rad behind")
+
+    def forget_command(self) -> None:
+        """The arm was stopped or moved by somebody else."""
+        self._command, self._late = None, 0
+
+    def move_gripper(self, closed: float) -> Steps[None]:
+        """Open or close and wait until the width has settled."""
+        effort = self.config.grip_effort
+        self.io.publish(topics.GRIPPER_COMMAND, m.GripperCommand(position=closed, max_effort=effort))
+        still, last = 0, self.grip.width
+        for n in range(round(1.5 / DT)):
+            yield
+            still = still + 1 if abs(self.grip.width - last) < 2e-4 else 0
+            last = self.grip.width
+            if still >= 8 and n > 15:
+                return
+
+    def wait(self, seconds: float) -> Steps[None]:
+        for _ in range(round(seconds / DT)):
+            yield
+
+    def work(self, fn: Callable[..., T], *args: Any) -> Steps[T]:
+        """Run slow work in the worker and wait for it."""
+        job = self.io.submit(fn, *args, seconds=self.config.planning_seconds)
+        while not job.poll(self.now):
+            yield
+        try:
+            return job.result()
+        except PlanError as error:
+            raise Failure(error.code, str(error)) from None
+
+
+def go_home(robot: Robot) -> Steps[str]:
+    """The carry pose, by a path around what is known."""
+    around = obstacles(robot.io.scene, robot.base, robot.source.objects(), margin=0.0)
+    path = yield from robot.work(planner_of(robot).to_home, robot.joints.copy(), around)
+    yield from robot.follow(path, robot.config.joint_speed)
+    return "arm at home"
+
+
+def planner_of(robot: Robot) -> Planner:
+    if robot.planner is None:
+        raise Failure("NO_ROBOT", "no robot/description was received; is the simulation or the arm's driver up?")
+    return robot.planner
