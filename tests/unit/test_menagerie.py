@@ -6,6 +6,7 @@ import mujoco
 import numpy as np
 import pytest
 
+from cli import conformance
 from common import codec, topics
 from common import messages as m
 from common.memory import MemoryBus, MemoryIo
@@ -71,6 +72,7 @@ def test_limits_mount_carry_pose_and_opening_come_from_the_model(robot: Robot) -
     assert arm.unlimited.tolist() == [True, False, True, False, True, False, True]
     assert 0.07 < arm.widest < 0.08
     assert not arm.collides(arm.home)
+    assert conformance.missing_in(robot.mjcf) == ""
 
 
 def test_inverse_kinematics_reaches_and_keeps_its_limits(robot: Robot) -> None:
