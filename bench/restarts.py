@@ -26,7 +26,7 @@ from cli.supervision import Supervision, free_port
 from cli.up import Plan, bring_up
 from common import bus
 
-PATIENCE, CALM = 180.0, 8.0
+PATIENCE, CALM, TRIES = 180.0, 8.0, 10
 HALVES = (("speech", "planner", "perception", "camera"), ("sim", "navigation", "manipulation", "brain", "dashboard"))
 HANDLES, SHARE, MEGABYTES = 4, 0.2, 25.0
 """What a survivor may hold more of at the end: handles; of its memory a share, and so many MB."""
@@ -77,7 +77,15 @@ class Robot:
         return self.tokens <= self.link.alive() and all(n in health and health[n].pid == now[n] for n in names)
 
     def count(self) -> Count:
-        """Look at everything of this run on the host."""
+        """Look at everything of this run on the host; once more when one of them ended meanwhile."""
+        for _ in range(TRIES):
+            try:
+                return self._count()
+            except psutil.NoSuchProcess:
+                time.sleep(1.0)
+        return self._count()
+
+    def _count(self) -> Count:
         parent = psutil.Process(self.supervision.pid())
         tree = [parent, *parent.children(recursive=True)]
         found = Count(processes=len(tree), tokens=sorted(self.link.alive()))

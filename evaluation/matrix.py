@@ -49,7 +49,10 @@ def tally(results: Sequence[Result]) -> Tally:
 def chaos_tables(results: Sequence[Result]) -> Group:
     """One table a fault, services by states, and one of all faults."""
     faults = list(dict.fromkeys(_fault(r) for r in results))
-    return Group(*(_by_state(f, [r for r in results if _fault(r) == f]) for f in faults), _summary(faults, results))
+    head = "recovered / honest error / lost, and seconds of robot time from the fault to the mission's next step"
+    return Group(
+        head, *(_by_state(f, [r for r in results if _fault(r) == f]) for f in faults), _summary(faults, results)
+    )
 
 
 def _fault(result: Result) -> str:
@@ -62,8 +65,7 @@ def _by_state(fault: str, results: Sequence[Result]) -> Table:
         service, _, state = result.name.partition(" ")
         cells.setdefault((service, state), []).append(result)
     states = list(dict.fromkeys(state for _, state in cells))
-    title = f"{fault}: recovered / honest error / lost, seconds to the next step"
-    table = Table("service", *states, title=title, title_justify="left")
+    table = Table("service", *states, title=fault, title_justify="left")
     for service in dict.fromkeys(service for service, _ in cells):
         table.add_row(service, *(cell(cells.get((service, state), [])) for state in states))
     return table
