@@ -7,6 +7,7 @@ import tempfile
 import traceback
 from collections import deque
 from collections.abc import Callable, Iterator
+from functools import cache
 from multiprocessing.connection import Connection, wait
 from typing import Any
 
@@ -15,7 +16,7 @@ import msgspec
 from common.clock import monotonic
 from evaluation.case import Case, Observed, Result
 from evaluation.verdict import judge
-from services.camera.render import offer
+from services.camera.render import BACKENDS, environment, works
 
 WALL_LIMIT, START_LIMIT = 3600.0, 300.0
 Run = Callable[[Case, Callable[[float, str], None]], Result]
@@ -59,6 +60,11 @@ def _leave(number: int, frame: object) -> None:
     raise SystemExit(128 + number)
 
 
+@cache
+def _backend() -> str:
+    return next(b for b in BACKENDS if works(b))
+
+
 class Worker:
     """One spawned process and the case it has."""
 
@@ -73,7 +79,13 @@ class Worker:
         self.pipe, theirs = context.Pipe()
         run, scratch, gentle = self._work
         self._process = context.Process(target=work, args=(run, theirs, scratch, gentle), daemon=False)
+        kept = dict(os.environ)
+        if not os.environ.get("MUJOCO_GL"):
+            # It imports MuJoCo before it could choose.
+            os.environ |= environment(_backend())
         self._process.start()
+        for name in os.environ.keys() - kept.keys():
+            del os.environ[name]
         theirs.close()
 
     def give(self, case: Case) -> None:
@@ -130,9 +142,6 @@ def evaluate(
 def _evaluate(
     cases: list[Case], jobs: int, run: Run, limit: float, scratch: str, gentle: bool
 ) -> Iterator[Result | Progressed]:
-    if not os.environ.get("MUJOCO_GL"):
-        # The workers import MuJoCo before they could choose.
-        offer("auto")
     waiting = deque(cases)
     workers: list[Worker] = []
     try:

@@ -31,10 +31,14 @@ def works(backend: str) -> bool:
     """True when MuJoCo can render with that GL library; tried in a process of its own, since failures can crash."""
     if backend == "raycast":
         return True
-    environment = {**os.environ, "MUJOCO_GL": backend, "PYOPENGL_PLATFORM": backend}
     command = [sys.executable, "-c", _PROBE]
     try:
-        return subprocess.run(command, env=environment, capture_output=True, timeout=PROBE_SECONDS).returncode == 0
+        return (
+            subprocess.run(
+                command, env={**os.environ, **environment(backend)}, capture_output=True, timeout=PROBE_SECONDS
+            ).returncode
+            == 0
+        )
     except subprocess.TimeoutExpired:
         return False
 
@@ -45,16 +49,16 @@ def choose(wanted: str) -> str:
     if "mujoco" in sys.modules:
         given = os.environ.get("MUJOCO_GL", "")
         return given if given in ("egl", "osmesa") and wanted in ("auto", given) else "raycast"
-    return offer(wanted)
-
-
-def offer(wanted: str) -> str:
-    """Settle on a backend for this process, if it has not imported MuJoCo yet, and for those it starts."""
     backend = wanted if wanted != "auto" else next(b for b in BACKENDS if works(b))
-    os.environ["MUJOCO_GL"] = "disable" if backend == "raycast" else backend
-    if backend != "raycast":
-        os.environ["PYOPENGL_PLATFORM"] = backend
+    os.environ |= environment(backend)
     return backend
+
+
+def environment(backend: str) -> dict[str, str]:
+    """What tells MuJoCo in a new process to render with a backend."""
+    if backend == "raycast":
+        return {"MUJOCO_GL": "disable"}
+    return {"MUJOCO_GL": backend, "PYOPENGL_PLATFORM": backend}
 
 
 class Renderer:

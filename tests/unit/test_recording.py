@@ -219,9 +219,10 @@ def run_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def play(path: Path, service: str, *settings: str) -> int:
-    args = argparse.Namespace(
-        file=path, service=service, info=False, repair=None, tolerance=1e-9, slack=None, set=list(settings)
-    )
+    parser = argparse.ArgumentParser()
+    replay.register(parser.add_subparsers())
+    settings = tuple(word for setting in settings for word in ("--set", setting))
+    args = parser.parse_args(["replay", str(path), "--service", service, *settings])
     return replay.replay(args)
 
 
