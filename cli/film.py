@@ -4,11 +4,14 @@ The camera's renderer draws it, without any GL library if need be. Films are ani
 where PyAV is installed.
 """
 
+import base64
 import importlib
+import io
 import sys
 from bisect import bisect_right
 from collections.abc import Iterator
 from fractions import Fraction
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -24,6 +27,7 @@ WIDTH, HEIGHT = 480, 360
 RATE, FASTER, LONGEST = 10.0, 4.0, 300
 """Pictures a second, robot seconds a second, pictures in all (longer missions run faster)."""
 BAR = 40
+KEY_FRAMES, KEY_SIZE = 8, (320, 220)
 Picture = NDArray[np.uint8]
 
 
@@ -41,37 +45,76 @@ def make(recording: Recording, record: dict[str, Any], target: Path, begin: floa
     pictures[0].save(target, save_all=True, append_images=pictures[1:], duration=round(1000 / RATE), loop=0, **options)
 
 
+class Scenery:
+    """The recorded world, drawn at any time.
+
+    Raises:
+        CliError: the recording has no physics.
+    """
+
+    def __init__(self, recording: Recording) -> None:
+        models = recording.of(topics.SIM_MODEL.key)
+        self._path = recording.path
+        self._rows = [row for row in recording.of(topics.SIM_STATE.key) if not row.junk]
+        self.times = [row.t for row in self._rows]
+        if not models or not self._rows:
+            raise CliError(f"{recording.path}: no sim/model and sim/state in it, so there is nothing to see")
+        render = importlib.import_module("services.camera.render")
+        self._renderer = render.Renderer(codec.decode(topics.SIM_MODEL, models[-1].payload).mjcf, "auto")
+        self._outlook = importlib.import_module("services.camera.outlook").outlook
+        self._azimuth = 225.0
+
+    def at(self, t: float, width: int, height: int) -> Picture:
+        """The robot from a side that is free, (height, width, 3)."""
+        row = self._rows[max(0, bisect_right(self.times, t) - 1)]
+        try:
+            state = codec.decode(topics.SIM_STATE, row.payload)
+            self._renderer.load(state.qpos, state.mocap)
+        except (ValueError, codec.DecodeError) as error:
+            raise CliError(f"{self._path}: {error}") from None
+        view = self._outlook(self._renderer, self._azimuth)
+        self._azimuth = view.azimuth
+        picture: Picture = self._renderer.picture(view, width, height)
+        return picture
+
+    def close(self) -> None:
+        self._renderer.close()
+
+
 def frames(recording: Recording, record: dict[str, Any], begin: float, end: float) -> Iterator[Picture]:
     """Captioned pictures (HEIGHT + BAR, WIDTH, 3) at equal distances of robot time."""
-    models = recording.of(topics.SIM_MODEL.key)
-    rows = [row for row in recording.of(topics.SIM_STATE.key) if not row.junk]
-    times = [row.t for row in rows]
-    end = min(end, times[-1]) if times else begin
-    if not models or end <= begin:
-        raise CliError(f"{recording.path}: no sim/model and sim/state in it, so there is nothing to film")
-    render = importlib.import_module("services.camera.render")
-    model = codec.decode(topics.SIM_MODEL, models[-1].payload)
-    renderer = render.Renderer(model.mjcf, "auto")
-    looking = importlib.import_module("services.camera.outlook")
-    pace = max(FASTER / RATE, (end - begin) / LONGEST)
-    azimuth = 225.0
+    scenery = Scenery(recording)
     try:
-        for n in range(int((end - begin) / pace) + 1):
+        begin, end = max(begin, scenery.times[0]), min(end, scenery.times[-1])
+        pace = max(FASTER / RATE, (end - begin) / LONGEST)
+        for n in range(max(0, int((end - begin) / pace)) + 1):
             t = begin + n * pace
-            state = codec.decode(topics.SIM_STATE, rows[max(0, bisect_right(times, t) - 1)].payload)
-            renderer.load(state.qpos, state.mocap)
-            view = looking.outlook(renderer, azimuth)
-            azimuth = view.azimuth
-            picture = renderer.picture(view, WIDTH, HEIGHT)
-            yield captioned(picture, *caption(record, t), t - float(record["started"]))
+            yield captioned(scenery.at(t, WIDTH, HEIGHT), *caption(record, t), t - float(record["started"]))
             if sys.stderr.isatty():
                 print(f"\r\033[K  {t - begin:.0f} of {end - begin:.0f} s", end="", file=sys.stderr, flush=True)
-    except ValueError as error:
-        raise CliError(f"{recording.path}: {error}") from None
     finally:
-        renderer.close()
+        scenery.close()
         if sys.stderr.isatty():
             print("\r\033[K", end="", file=sys.stderr)
+
+
+def key_frames(recording: Recording, record: dict[str, Any]) -> list[tuple[float, str, str]]:
+    """(seconds since the mission began, caption, JPEG in base64) at the end of each state and at each fault."""
+    entries = record["entries"]
+    changes = [(a, b) for a, b in pairwise(entries) if a["state"] != b["state"] or b["kind"] == "failed"]
+    moments = [(b["t"], b["cause"] if b["kind"] == "failed" else f"{a['state']} ends") for a, b in changes]
+    moments.append((float(record["until"]), str(record["outcome"] or "the recording ends")))
+    step = max(1, -(-len(moments) // KEY_FRAMES))
+    scenery, found = Scenery(recording), []
+    try:
+        for t, words in moments[::-step][::-1]:
+            file = io.BytesIO()
+            Image.fromarray(scenery.at(t, *KEY_SIZE)).save(file, "JPEG", quality=80)
+            shown = base64.b64encode(file.getvalue()).decode("ascii")
+            found.append((t - float(record["started"]), words, shown))
+    finally:
+        scenery.close()
+    return found
 
 
 def caption(record: dict[str, Any], t: float) -> tuple[str, str]:

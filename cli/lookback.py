@@ -1,7 +1,6 @@
 """What `tidybot replay` makes of a recording: a page with a time slider, a mission cut out, a film, a timeline."""
 
 import importlib
-import math
 import os
 import sys
 from collections.abc import Callable, Iterator
@@ -80,7 +79,10 @@ def export(path: Path, target: Path, wanted: str, say: Callable[[str], None] = p
     begin, end = span_of(record)
     target.parent.mkdir(parents=True, exist_ok=True)
     if target.suffix in PAGES:
-        page: str = importlib.import_module("services.dashboard.timeline").page(record)
+        from cli import film
+
+        seen = film.key_frames(recording, record) if recording.of(topics.SIM_STATE.key) else []
+        page: str = importlib.import_module("services.dashboard.timeline").page(record, seen)
         target.write_text(page, encoding="utf-8")
     elif target.suffix == ".mcap":
         _write(recording, target, begin, end)
@@ -88,12 +90,8 @@ def export(path: Path, target: Path, wanted: str, say: Callable[[str], None] = p
         # Pillow and NumPy are not for every command to load.
         from cli import film
 
-        film.make(recording, record, target, max(begin, _first(recording)), end)
+        film.make(recording, record, target, begin, end)
     say(f"{target}  mission {record['id']} “{record['command']}”  {target.stat().st_size / 1e6:.1f} MB")
-
-
-def _first(recording: Recording) -> float:
-    return min((row.t for row in recording.rows if row.key == topics.SIM_STATE.key), default=math.inf)
 
 
 def _write(recording: Recording, target: Path, begin: float, end: float) -> None:

@@ -27,6 +27,8 @@ svg { width: 100%; height: auto; display: block; } svg text { font: 11px system-
 table { border-collapse: collapse; width: 100%; } td, th { text-align: left; padding: 3px 8px; vertical-align: top; }
 tr { border-top: 1px solid #e9ecef; } td.t { text-align: right; white-space: nowrap; color: #868e96; }
 .chip { border-radius: 4px; padding: 0 6px; font-size: 12px; white-space: nowrap; }
+.frames { display: grid; grid-template-columns: repeat(auto-fill, minmax(220px, 1fr)); gap: 10px; margin-top: 12px; }
+.frames figure { margin: 0; font-size: 12px; }
 .failed td { background: #fff5f5; } img { max-width: 100%; border-radius: 4px; }
 """
 
@@ -39,8 +41,8 @@ def document(title: str, body: str, style: str = "") -> str:
     )
 
 
-def page(record: dict[str, Any]) -> str:
-    """The page of one mission."""
+def page(record: dict[str, Any], frames: Iterable[tuple[float, str, str]] = ()) -> str:
+    """The page of one mission; `frames` are (seconds since it began, caption, JPEG in base64)."""
     outcome = record.get("outcome") or "under way"
     colour = {"delivered": "good", "under way": "faint"}.get(outcome, "bad")
     reason = f": {escape(str(record['reason']))}" if record.get("reason") else ""
@@ -49,9 +51,19 @@ def page(record: dict[str, Any]) -> str:
         f"<h1>“{escape(str(record['command']))}”</h1>"
         f'<div><span class="{colour}">{escape(outcome)}</span>{took}{reason} '
         f'<span class="faint">mission {escape(str(record["id"]))}</span></div>'
-        f"{picture(record)}<h2>What happened</h2>{table(record)}"
+        f"{picture(record)}{strip(frames)}<h2>What happened</h2>{table(record)}"
     )
     return document(f"{record['command']}: {outcome}", body)
+
+
+def strip(frames: Iterable[tuple[float, str, str]]) -> str:
+    """Key frames side by side."""
+    shown = "".join(
+        f'<figure><img alt="{escape(words)}" src="data:image/jpeg;base64,{jpeg}">'
+        f'<figcaption><span class="faint">{t:.1f} s</span> {escape(words)}</figcaption></figure>'
+        for t, words, jpeg in frames
+    )
+    return f'<div class="frames">{shown}</div>' if shown else ""
 
 
 def spans(entries: Sequence[dict[str, Any]], began: float, ended: float) -> list[tuple[str, float, float]]:

@@ -73,7 +73,11 @@ def test_missions_are_told_from_the_topics_alone(recording: Recording) -> None:
     assert 20.0 <= first["until"] < 22.1
     assert (second["id"], second["outcome"]) == ("m-2", None)
     kinds = [(e["kind"], e["cause"]) for e in first["entries"] if e["kind"] != "state"]
-    assert kinds == [("heard", "heard “bring me the <mug>”"), ("note", "said “here I come”"), ("failed", "base: BLOCKED")]
+    assert kinds == [
+        ("heard", "heard “bring me the <mug>”"),
+        ("note", "said “here I come”"),
+        ("failed", "base: BLOCKED"),
+    ]
 
 
 def test_bands_cover_the_mission_without_gaps(recording: Recording) -> None:
@@ -193,3 +197,18 @@ def test_the_tape_answers_for_the_journal(recording: Recording) -> None:
 
 def test_the_page_reads_what_the_story_needs() -> None:
     assert wanted_keys() >= story.TOLD
+
+
+def test_a_timeline_from_a_recording_has_key_frames(
+    recording: Recording, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(film, "KEY_SIZE", (32, 24))
+    target = tmp_path / "one.html"
+    lookback.export(recording.path, target, "m-1", say=lambda text: None)
+    page = target.read_text()
+    assert page.count("data:image/jpeg;base64,") == 4, "two states end, a fault, the outcome"
+    assert "PLANNING ends" in page and "base: BLOCKED" in page
+    monkeypatch.setattr(film, "KEY_FRAMES", 2)
+    frames = film.key_frames(recording, story.missions(recording.rows)[0])
+    assert len(frames) == 2
+    assert frames[-1][1] == "failed", "how it ended is always shown"
