@@ -76,7 +76,8 @@ class Senses:
         if len(scan.ranges) < 8 or len(scan.ranges) % 4:
             self._io.count_drop(topics.SCAN.key, "ranges are at least two 32 bit floats")
             return
-        ranges = np.frombuffer(scan.ranges, "<f4").astype(np.float64)
+        with np.errstate(invalid="ignore"):
+            ranges = np.frombuffer(scan.ranges, "<f4").astype(np.float64)
         described = _sane(scan.t, scan.x, scan.y, scan.angle_min, scan.range_min, scan.range_max)
         if not described or not 0.0 < scan.angle_increment < 1.0 or not (np.abs(ranges) <= MAX_RANGE).all():
             self._io.count_drop(topics.SCAN.key, "not the ranges of a lidar")
