@@ -11,7 +11,7 @@ from services.speech.config import SpeechConfig
 from services.speech.grammar import spoken
 
 Array = NDArray[np.float32]
-CANDIDATES, HOPELESS = 6, 8.0
+CANDIDATES, HOPELESS, PLAUSIBLE = 6, 8.0, -1.2
 # How long sentences take by voice detection: fitted to the voices of the corpus, whose spread is a third of this.
 PAUSES, SECONDS_PER_CHARACTER, TEMPO_SPREAD = 0.35, 0.045, 0.25
 
@@ -45,7 +45,11 @@ def judged(
     rivals = [f for f in found[:CANDIDATES] if f.log_probability - weigh(f.text) >= least]
     *totals, freely = again([*rivals, free])
     k = int(np.argmax([total - weigh(rival.text) for total, rival in zip(totals, rivals, strict=True)]))
-    return rivals[k], (totals[k] - freely) / rivals[k].tokens
+    command = rivals[k]
+    first = (command.log_probability - free.log_probability) / command.tokens
+    score = (totals[k] - weigh(command.text) - freely) / command.tokens
+    # What is far from any command has a free transcription that fits its own rendition only, and so none the other.
+    return command, score if first >= PLAUSIBLE else min(score, first)
 
 
 def paced(samples: Array, factor: float) -> Array:

@@ -95,6 +95,15 @@ def test_what_is_uncertain_is_judged_again_and_may_turn_out_otherwise() -> None:
     assert judged(FOUND, FREE, lambda text: 5.0 * ("mug" in text), again) == (FOUND[0], -1.25)
 
 
+def test_other_speech_is_no_command_because_its_transcription_does_not_hold() -> None:
+    stop = Said("stop", -13.0, 2)
+    free = Said("Let's talk market letter today", -8.0, 7)
+    assert judged([stop], free, lambda text: 0.0, lambda these: [-9.0, -30.0]) == (stop, -2.5)
+    near = Said("stop", -10.0, 2)
+    assert judged([near], free, lambda text: 0.0, lambda these: [-9.0, -9.0]) == (near, 0.0)
+    assert judged([near], free, lambda text: 20.0, lambda these: [-9.0, -9.0]) == (near, -10.0)
+
+
 def test_only_the_best_are_judged_again_and_nothing_where_there_is_no_doubt() -> None:
     many = [Said(f"sentence {k}", -6.0 - k / 10) for k in range(3 * CANDIDATES)]
     sizes: list[int] = []
