@@ -58,6 +58,10 @@ class Life:
         last = stack.state().last
         outcome = last.outcome if last is not None and last != before else "timeout"
         self.told[outcome] = self.told.get(outcome, 0) + 1
+        if outcome != "delivered":
+            print(
+                f"  {command}: {outcome}{f', {last.reason}' if last is not None and last != before else ''}", flush=True
+            )
         if outcome == "delivered" and on(stack, thing) != goal:
             self.false += 1
             print(f"  {command}: reported delivered, but it is on {on(stack, thing) or 'nothing'}", flush=True)
