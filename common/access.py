@@ -165,7 +165,8 @@ def _rules(subject: Subject, robots: list[str]) -> list[dict[str, Any]]:
     listening = ("declare_subscriber", "declare_liveliness_subscriber", "liveliness_query")
     parts = (
         ("publishes", ("put", "delete"), ("ingress",), puts),
-        ("is matched", ("declare_subscriber",), ("egress",), puts),
+        # A subscription may be wider than the key, as that to everybody's health is; only what is asked for is sent.
+        ("is matched", ("declare_subscriber",), ("egress",), below(EVERYTHING)),
         ("answers", ("declare_queryable",), ("ingress",), (*answers, *caches)),
         ("replies", ("reply",), ("ingress",), (*answers, *puts)),
         # A question may be wider than the key; it only comes to who may declare that it answers.

@@ -57,7 +57,7 @@ def may_ask(subject: str) -> set[str]:
     if subject == "looker":
         changing = {topics.SIM_RESET, topics.SIM_PAUSE, topics.SIM_SNAPSHOT}
         return set(KEYS) - changing - {f"log/{n}" for n in SERVICES}
-    return may_read(subject)
+    return may_read(subject) | ({topics.BRAIN_MISSIONS} if subject == "dashboard" else set())
 
 
 def may_answer(subject: str) -> set[str]:
@@ -225,6 +225,17 @@ def test_a_question_to_many_reaches_all_of_them(guarded: Guarded) -> None:
             session = guarded.open(stack, asking)
             everybody = {f"service/{n}/health" for n in SERVICES if n != asking}
             eventually(lambda s=session, e=everybody: e <= set(bus.fetch(s, "service/*/health")), f"{asking} hears")
+
+
+def test_a_wide_subscription_is_served_by_a_publisher_that_sends_only_what_is_wanted(guarded: Guarded) -> None:
+    got: list[str] = []
+    with ExitStack() as stack:
+        brain, navigation = guarded.open(stack, "brain"), guarded.open(stack, "navigation")
+        brain.declare_subscriber("service/*/health", lambda s: got.append(s.payload.to_string()))
+        publisher = navigation.declare_publisher("service/navigation/health")
+        eventually(lambda: publisher.matching_status.matching, "the publisher hears of the subscription")
+        publisher.put("well")
+        eventually(lambda: got == ["well"], "health arrives")
 
 
 def test_a_certificate_shows_only_itself_as_alive(guarded: Guarded) -> None:
