@@ -2,9 +2,10 @@
 
 import importlib
 import re
+from collections import defaultdict, deque
 from collections.abc import Callable, Iterator
 from math import inf
-from typing import Any
+from typing import Any, TypeVar
 
 import msgspec
 
@@ -19,6 +20,8 @@ from common.recording import Recording, Row
 from common.scene import Scene
 from common.topics import Topic
 
+M = TypeVar("M", bound=m.Message)
+UNRECORDED = 50  # ticks: what was heard that long before the next recorded message came before the recorder
 ANY_ID = re.compile(r"[A-Za-z]+-[0-9a-f]{8}$")
 
 
@@ -72,9 +75,10 @@ class Player:
         self.kind, self.recording = kind, recording
         self.lockstep = recording.facts.get("run", {}).get("lockstep") == "true"
         self.bus, self.clock = MemoryBus(), ManualClock()
+        name = kind.NAME
+        self._acks = [a for a in _messages(recording, "sim/ack", m.LockstepAck) if a.name == name and a.tick >= 0]
         self._ticks = self._due()
-        inputs = {t.key for t in kind.READS}
-        self._rows = [r for r in recording.rows if r.key in inputs]
+        self._rows = self._inputs()
         first = self._ticks[0] if self._ticks else 0
         self.clock.advance(max(0, first - 1) * DT if first > 1 else 0.0)
         self.io = ReplayIo(
@@ -96,25 +100,38 @@ class Player:
 
     @property
     def exact(self) -> bool:
-        """Every input carries the tick it was published in, so the replay sees each in the same step as the run did."""
+        """Every input has its tick, or the step that heard it is known: the replay sees each in the same step."""
         return self.lockstep and all(row.tick is not None for row in self._rows)
 
     def _due(self) -> list[int]:
         """The ticks in which the recorded process stepped."""
-        name, recording = self.kind.NAME, self.recording
+        recording = self.recording
         if self.lockstep and not hasattr(self.kind, "pace"):
-            acks = (
-                msgspec.json.decode(row.payload, type=m.LockstepAck) for row in recording.of("sim/ack") if not row.junk
-            )
-            return sorted({ack.tick for ack in acks if ack.name == name and ack.tick >= 0})
-        clocks = [
-            msgspec.json.decode(row.payload, type=m.SimClockTick) for row in recording.of("sim/clock") if not row.junk
-        ]
+            return sorted({ack.tick for ack in self._acks})
+        clocks = _messages(recording, "sim/clock", m.SimClockTick)
         ticks = sorted({c.tick if c.tick >= 0 else round(c.t / DT) for c in clocks})
         if not ticks and recording.rows:
             ticks = list(range(round(recording.rows[0].t / DT), round(recording.rows[-1].t / DT) + 1))
         period = period_of(self.kind.HZ)
         return [tick for tick in ticks if tick % period == 0]
+
+    def _inputs(self) -> list[Row]:
+        """What the service reads, in the order of its ticks; what a client put has the tick before its hearing."""
+        steps: dict[str, deque[int]] = defaultdict(deque)
+        for tick, heard in sorted({ack.tick: ack.heard for ack in self._acks}.items()):
+            for key in heard:
+                steps[key].append(tick - 1)
+        reads, rows = {t.key for t in self.kind.READS}, []
+        for row in self.recording.rows:
+            if row.key not in reads:
+                continue
+            if row.tick is None:
+                waiting = steps[row.key]
+                while waiting and waiting[0] < self._stamp(row) - UNRECORDED:
+                    waiting.popleft()
+                row = msgspec.structs.replace(row, tick=waiting.popleft() if waiting else None)
+            rows.append(row)
+        return sorted(rows, key=self._stamp)
 
     def _ids(self) -> Iterator[str]:
         """Ids that the recorded process made up, in the order they first appeared."""
@@ -157,6 +174,10 @@ class Player:
         if hasattr(self.service, "close"):
             self.service.close()
         self.io.shutdown()
+
+
+def _messages(recording: Recording, key: str, kind: type[M]) -> list[M]:
+    return [msgspec.json.decode(row.payload, type=kind) for row in recording.of(key) if not row.junk]
 
 
 def _peers(recording: Recording) -> Iterator[tuple[float, str, str | None]]:

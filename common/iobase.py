@@ -50,14 +50,13 @@ class Mailbox(Generic[M]):
             self.overflow += 1
         self._inbox.append((stamp, payload))
 
-    def open(self, tick: int | None, now: float) -> None:
-        """Make visible what may be seen by the step of `tick` (None: everything)."""
-        inbox = self._inbox
-        if not inbox:
-            return
+    def open(self, tick: int | None, now: float) -> int:
+        """Make visible what may be seen by the step of `tick` (None: everything); how many of it had no stamp."""
+        inbox, unstamped = self._inbox, 0
         latest_only = self.topic.keep == "latest"
         while inbox and (tick is None or inbox[0][0] < tick):
-            payload = inbox.popleft()[1]
+            stamp, payload = inbox.popleft()
+            unstamped += stamp == UNSTAMPED
             self.received_at = now
             self._last, self._decoded = payload, None
             if latest_only:
@@ -66,6 +65,7 @@ class Mailbox(Generic[M]):
                 self._ready.append(payload)
             else:
                 self.overflow += 1
+        return unstamped
 
     def take(self) -> list[bytes]:
         ready, self._ready = self._ready, []
@@ -141,6 +141,7 @@ class IoBase:
         self._boxes: dict[str, Mailbox[Any]] = {t.key: Mailbox(t, lockstep) for t in reads}
         self._open_order = tuple(self._boxes.values())
         self.fresh = False
+        self.heard: list[str] = []
         self._writes = {t.key for t in writes}
         self._worker: ThreadPoolExecutor | None = None
         self._ids = 0
@@ -148,15 +149,17 @@ class IoBase:
 
     # --- reading
     def begin(self, tick: int | None, now: float) -> None:
-        """Start a step: what was published before `tick` becomes visible."""
+        """Start a step: what was published before `tick` becomes visible; `heard`: the keys of what had no stamp."""
         if tick is not None:
             self.tick = tick
         self.fresh = False
+        self.heard.clear()
         for box in self._open_order:
             if not box.waiting:
                 continue
             self.fresh = True
-            box.open(tick if self.lockstep else None, now)
+            unstamped = box.open(tick if self.lockstep else None, now)
+            self.heard += [box.topic.key] * unstamped
             if box.overflow:
                 lost, box.overflow = box.overflow, 0
                 self.count_drop(box.topic.key, f"{lost} messages over the queue limit", lost)

@@ -462,12 +462,16 @@ class SimClockTick(Message):
 
 
 class LockstepAck(Message):
-    """Participant `name` has finished `tick` (tick -1: joins) and is due every `period` ticks."""
+    """Participant `name` has finished `tick` (tick -1: joins) and is due every `period` ticks.
+
+    `heard`: the keys of messages without a tick, from clients, that the step saw first, one entry for each.
+    """
 
     name: str
     tick: int
     period: int
     epoch: str = ""
+    heard: list[str] = []
 
 
 class CameraRequest(Message):

@@ -122,7 +122,7 @@ class Process:
         )
 
         def acknowledge(tick: int) -> None:
-            ack = m.LockstepAck(name=self._kind.NAME, tick=tick, period=period)
+            ack = m.LockstepAck(name=self._kind.NAME, tick=tick, period=period, heard=self.io.heard)
             acks.put(codec.encode(topics.LOCKSTEP_ACK, ack))
 
         done = -1
