@@ -7,7 +7,6 @@ import tempfile
 import traceback
 from collections import deque
 from collections.abc import Callable, Iterator
-from functools import cache
 from multiprocessing.connection import Connection, wait
 from typing import Any
 
@@ -16,7 +15,7 @@ import msgspec
 from common.clock import monotonic
 from evaluation.case import Case, Observed, Result
 from evaluation.verdict import judge
-from services.camera.render import BACKENDS, environment, works
+from services.camera.render import best, environment
 
 WALL_LIMIT, START_LIMIT = 3600.0, 300.0
 Run = Callable[[Case, Callable[[float, str], None]], Result]
@@ -60,11 +59,6 @@ def _leave(number: int, frame: object) -> None:
     raise SystemExit(128 + number)
 
 
-@cache
-def _backend() -> str:
-    return next(b for b in BACKENDS if works(b))
-
-
 class Worker:
     """One spawned process and the case it has."""
 
@@ -82,7 +76,7 @@ class Worker:
         kept = dict(os.environ)
         if not os.environ.get("MUJOCO_GL"):
             # It imports MuJoCo before it could choose.
-            os.environ |= environment(_backend())
+            os.environ |= environment(best())
         self._process.start()
         for name in os.environ.keys() - kept.keys():
             del os.environ[name]

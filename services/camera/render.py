@@ -4,6 +4,7 @@ import os
 import subprocess
 import sys
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -43,13 +44,19 @@ def works(backend: str) -> bool:
         return False
 
 
+@cache
+def best() -> str:
+    """The best backend of this machine."""
+    return next(b for b in BACKENDS if works(b))
+
+
 def choose(wanted: str) -> str:
     """The backend to use. MuJoCo settles on its GL library when it is first imported: before that `wanted` counts,
     after that only what the environment said then, or ray casting."""
     if "mujoco" in sys.modules:
         given = os.environ.get("MUJOCO_GL", "")
         return given if given in ("egl", "osmesa") and wanted in ("auto", given) else "raycast"
-    backend = wanted if wanted != "auto" else next(b for b in BACKENDS if works(b))
+    backend = wanted if wanted != "auto" else best()
     os.environ |= environment(backend)
     return backend
 

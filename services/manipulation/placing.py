@@ -5,7 +5,7 @@ import numpy as np
 from common.geometry import compose
 from services.manipulation.arm_model import Obstacle
 from services.manipulation.grasp import approach_rotation
-from services.manipulation.plan import Held, PlacePlan
+from services.manipulation.plan import USUAL_SIZE, Held, PlacePlan
 from services.manipulation.robot import Failure, Robot, Steps, go_home, planner_of
 from services.manipulation.surroundings import obstacles, spots
 
@@ -87,6 +87,6 @@ def _execute_place(robot: Robot, plan: PlacePlan, held: Held, name: str, surface
 def _unknown(robot: Robot) -> Held:
     """Something is in the gripper that a former process grasped: assume it hangs straight down from the hand."""
     name = next((o.label for o in robot.source.objects() if o.held), "object")
-    size = next((o.size for o in robot.source.objects() if o.held), (0.06, 0.06, 0.10))
+    size = next((o.size for o in robot.source.objects() if o.held), USUAL_SIZE)
     offset = np.array([0.0, 0.0, size[2] / 2])
     return Held(name, "", approach_rotation(0.0, np.pi / 2), offset, size, robot.grip.width, 0.0)

@@ -26,6 +26,9 @@ class PlanError(Exception):
         self.code = code
 
 
+USUAL_SIZE = (0.06, 0.06, 0.10)  # of something in the hand that nobody described [m]
+
+
 @dataclass(frozen=True)
 class Held:
     """What is in the gripper: the pose it was grasped with, relative to the object's underside centre."""

@@ -6,13 +6,12 @@ import numpy as np
 
 from common.messages import ObjectRef
 from services.manipulation.arm_model import Array, Obstacle
-from services.manipulation.plan import Held, PlanError, Planner
+from services.manipulation.plan import USUAL_SIZE, Held, PlanError, Planner
 from services.manipulation.robot import Failure, Robot, Steps, go_home
 from services.manipulation.surroundings import obstacles
 from services.manipulation.verify import holds
 
 NEAR = 0.15
-USUAL_SIZE = (0.06, 0.06, 0.10)
 
 
 def at_carry(planner: Planner, joints: Array) -> bool:

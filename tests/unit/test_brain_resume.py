@@ -36,6 +36,16 @@ def delivered_once(world: World) -> None:
     assert (world.grabs, world.releases, world.held, world.item_at) == (1, 1, "", "home"), world.timeline()
 
 
+def stopped_while_down(world: World, why: str, seconds: float) -> None:
+    """The brain dies on the way home, the robot is stopped, the brain comes back for so many seconds."""
+    world.until(lambda: world.state.state == "RETURNING")
+    world.kill_brain()
+    world.bus.send(topics.SIM_STATUS, m.SimStatus(state="stopped", detail=why))
+    world.step(1.0)
+    world.start_brain()
+    world.step(seconds)
+
+
 @pytest.mark.parametrize("pipeline", PIPELINES)
 def test_without_a_kill_it_is_delivered(pipeline: str, tmp_path: Path) -> None:
     world = begun(pipeline, tmp_path / "j.db")
@@ -177,12 +187,7 @@ def test_a_failed_mission_is_over_and_the_hand_stays_known(tmp_path: Path) -> No
 @pytest.mark.parametrize("pipeline", PIPELINES)
 def test_a_robot_stopped_while_the_brain_was_down_stays_stopped(pipeline: str, tmp_path: Path) -> None:
     world = begun(pipeline, tmp_path / "j.db")
-    world.until(lambda: world.state.state == "RETURNING")
-    world.kill_brain()
-    world.bus.send(topics.SIM_STATUS, m.SimStatus(state="stopped", detail="a hand on the button"))
-    world.step(1.0)
-    world.start_brain()
-    world.step(20.0)
+    stopped_while_down(world, "a hand on the button", 20.0)
     assert world.state.state == "IDLE" and "stopped" in world.state.detail
     assert world.outcome == "cancelled" and "holding the red mug" in (
         world.state.last.reason if world.state.last else ""

@@ -7,7 +7,7 @@ import pytest
 from common import messages as m
 from common import topics
 from tests.unit.brain_world import World
-from tests.unit.test_brain_resume import PIPELINES, STATES, begun, delivered_once, finished
+from tests.unit.test_brain_resume import PIPELINES, STATES, begun, delivered_once, finished, stopped_while_down
 
 
 def stop(world: World) -> None:
@@ -23,6 +23,12 @@ def stop(world: World) -> None:
 def resume(world: World, go_on: bool) -> None:
     world.bus.send(topics.SIM_STATUS, m.SimStatus(state="running"))
     world.bus.send(topics.ROBOT_RESUME, m.RobotResume(go_on=go_on))
+
+
+def go_on(world: World) -> None:
+    """Resume, and come to the mission's end."""
+    resume(world, go_on=True)
+    world.until(lambda: world.outcome == "delivered")
 
 
 @pytest.mark.parametrize(("pipeline", "state"), [(p, s) for p in PIPELINES for s in STATES[p]])
@@ -50,8 +56,7 @@ def test_a_plain_resume_only_releases(pipeline: str, tmp_path: Path) -> None:
     world.step(10.0)
     assert world.outcome == "cancelled" and world.drives == drives and world.held
     # Who thinks better of it later may still go on.
-    resume(world, go_on=True)
-    world.until(lambda: world.outcome == "delivered")
+    go_on(world)
     delivered_once(world)
 
 
@@ -60,8 +65,7 @@ def test_a_hand_that_closed_just_before_the_stop_is_noticed_by_the_grab_itself(t
     world.until(lambda: world.state.state == "GRABBING")
     stop(world)
     world.held, world.item_at = "red mug", "hand"
-    resume(world, go_on=True)
-    world.until(lambda: world.outcome == "delivered")
+    go_on(world)
     assert (world.grabs, world.releases, world.drives) == (0, 1, ["item", "home"]), world.timeline()
 
 
@@ -70,8 +74,7 @@ def test_what_fell_while_stopped_is_fetched_again(tmp_path: Path) -> None:
     world.until(lambda: world.state.state == "RELEASING")
     stop(world)
     world.held, world.item_at = "", "item"
-    resume(world, go_on=True)
-    world.until(lambda: world.outcome == "delivered")
+    go_on(world)
     assert (world.grabs, world.releases, world.item_at) == (2, 1, "home"), world.timeline()
 
 
@@ -88,15 +91,9 @@ def test_a_mission_that_was_called_off_is_not_gone_on_with(tmp_path: Path) -> No
 
 def test_stopped_while_the_brain_was_down_it_goes_on_when_asked(tmp_path: Path) -> None:
     world = begun("vla", tmp_path / "j.db")
-    world.until(lambda: world.state.state == "RETURNING")
-    world.kill_brain()
-    world.bus.send(topics.SIM_STATUS, m.SimStatus(state="stopped", detail="button"))
-    world.step(1.0)
-    world.start_brain()
-    world.step(5.0)
+    stopped_while_down(world, "button", 5.0)
     assert world.state.state == "IDLE" and world.outcome == "cancelled"
-    resume(world, go_on=True)
-    world.until(lambda: world.outcome == "delivered")
+    go_on(world)
     delivered_once(world)
 
 
@@ -104,8 +101,7 @@ def test_the_journal_tells_of_both(tmp_path: Path) -> None:
     world = begun("fetch", tmp_path / "j.db")
     world.until(lambda: world.state.state == "NAVIGATING")
     stop(world)
-    resume(world, go_on=True)
-    world.until(lambda: world.outcome == "delivered")
+    go_on(world)
     story = world.timeline()
     assert "stopped: button" in story and "resumed" in story
     finished(world)
@@ -125,8 +121,7 @@ def test_a_brain_that_dies_while_stopped_still_knows(pipeline: str, tmp_path: Pa
     world.start_brain()
     world.step(3.0)
     assert world.outcome == "cancelled" and not world.state.mission_id
-    resume(world, go_on=True)
-    world.until(lambda: world.outcome == "delivered")
+    go_on(world)
     delivered_once(world)
     assert world.state.last is not None and world.state.last.id == mission
 

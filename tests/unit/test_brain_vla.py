@@ -151,7 +151,8 @@ def test_a_typed_yes_counts() -> None:
     bench.next_goal(PLAN, 1)
 
 
-def test_what_was_lost_on_the_way_is_fetched_again() -> None:
+def lost_on_the_way() -> Bench:
+    """Every release said that the hand is empty."""
     bench = planned()
     see(bench, 1)
     bench.drove(bench.nav(1))
@@ -159,6 +160,11 @@ def test_what_was_lost_on_the_way_is_fetched_again() -> None:
     bench.drove(bench.nav(2))
     for attempt in range(BrainConfig().release_retries + 1):
         bench.did(bench.manip(2 + attempt), "failed", "NOT_HOLDING")
+    return bench
+
+
+def test_what_was_lost_on_the_way_is_fetched_again() -> None:
+    bench = lost_on_the_way()
     see(bench, 2)
     bench.drove(bench.nav(3))
     bench.did(bench.manip(3 + BrainConfig().release_retries))
@@ -172,13 +178,7 @@ def test_what_was_lost_on_the_way_is_fetched_again() -> None:
 
 
 def test_a_loss_that_cannot_be_mended_is_no_longer_held() -> None:
-    bench = planned()
-    see(bench, 1)
-    bench.drove(bench.nav(1))
-    bench.did(bench.manip(1))
-    bench.drove(bench.nav(2))
-    for attempt in range(BrainConfig().release_retries + 1):
-        bench.did(bench.manip(2 + attempt), "failed", "NOT_HOLDING")
+    bench = lost_on_the_way()
     count = 2
     while bench.state.state != "ERROR":
         if len(bench.sent(QUERY)) >= count:
