@@ -72,30 +72,31 @@ class ClassicalDetector:
         height = float(np.percentile(piece.points[:, 2], 98)) - piece.surface.height
         scored = sorted(
             (
-                (score, spec, fit)
+                (score, spec, size, fit)
                 for spec in self._scene.objects
-                for score, fit in self._score(view, piece, spec, rgb, height)
+                for size in _stances(spec)
+                for score, fit in self._score(view, piece, spec, size, rgb, height)
             ),
             key=lambda row: row[0],
         )
         if not scored or scored[0][0] > WORST:
             return self._strange(view, piece, rgb, height)
-        score, spec, fit = scored[0]
-        second = scored[1][0] if len(scored) > 1 else WORST
+        score, spec, size, fit = scored[0]
+        second = next((rival for rival, other, *_ in scored if other is not spec), WORST)
         # Sure when the fit is good and nothing else in the house comes close.
         confidence = math.exp(-0.5 * (score / 2.2) ** 2) * (1 - math.exp(-2.0 * (second - score) - 0.4))
         pixels = min(1.0, len(piece.rows) / 120)
         yaw = fit.yaw
         if spec.kind == "mug":
-            yaw = shapes.handle_yaw(spec.size, piece.points, fit.x, fit.y, view.position)
-        position = (fit.x, fit.y, piece.surface.height + spec.size[2] / 2)
+            yaw = shapes.handle_yaw(size, piece.points, fit.x, fit.y, view.position)
+        position = (fit.x, fit.y, piece.surface.height + size[2] / 2)
         return Detection(
             label=spec.name,
             kind=spec.kind,
             colour=spec.colour,
             position=position,
             yaw=yaw,
-            size=spec.size,
+            size=size,
             confidence=confidence * (0.55 + 0.45 * pixels) * (0.6 if piece.cut else 1.0),
             on=piece.surface.name,
             distance=_distance(view, fit),
@@ -103,16 +104,16 @@ class ClassicalDetector:
         )
 
     def _score(
-        self, view: View, piece: Piece, spec: ObjectSpec, rgb: Array, height: float
+        self, view: View, piece: Piece, spec: ObjectSpec, size: Vec3, rgb: Array, height: float
     ) -> list[tuple[float, shapes.Fit]]:
         """How badly a thing explains the piece, in standard deviations; empty when it is out of the question."""
         off = colour.difference(rgb, spec.rgba) / COLOUR_SCALE
-        tall = abs(height - spec.size[2]) / HEIGHT_SCALE
+        tall = abs(height - size[2]) / HEIGHT_SCALE
         if piece.cut:
             tall = min(tall, 1.0)
         if off > WORST or tall > WORST:
             return []
-        fit = shapes.fit(spec.kind, spec.size, piece.points, piece.surface.height, view.position)
+        fit = shapes.fit(spec.kind, size, piece.points, piece.surface.height, view.position, not piece.cut)
         return [(math.sqrt((fit.residual / SHAPE_SCALE) ** 2 + tall**2 + off**2), fit)]
 
     def _strange(self, view: View, piece: Piece, rgb: Array, height: float) -> Detection | None:
@@ -137,6 +138,12 @@ class ClassicalDetector:
             distance=_distance(view, fit),
             known=False,
         )
+
+
+def _stances(spec: ObjectSpec) -> list[Vec3]:
+    """The extents of a thing as it stands, and of a box that lies on one of its sides."""
+    x, y, z = spec.size
+    return list(dict.fromkeys([(x, y, z), (y, z, x), (z, x, y)])) if spec.kind == "box" else [spec.size]
 
 
 def _distance(view: View, fit: shapes.Fit) -> float:

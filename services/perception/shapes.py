@@ -20,6 +20,8 @@ SAMPLE = 160
 ROBUST, STRAY = 0.004, 0.007
 MUG_WALL, BOWL_WALL, BOWL_LEAN = 0.004, 0.006, 0.55
 NECK, NECK_FROM = 0.014, 0.72
+EDGE_WEIGHT = 3.0
+_CORNERS = np.array([(1, 1), (1, -1), (-1, 1), (-1, -1)])
 
 
 @dataclass(frozen=True)
@@ -80,30 +82,57 @@ def distances(kind: ObjectKind, size: Vec3, points: Array, floor: float, x: floa
     return _from_segments(np.hypot(dx, dy), z, profile(kind, size))
 
 
-def fit(kind: ObjectKind, size: Vec3, points: Array, floor: float, camera: Array) -> Fit:
-    """Place a shape on the surface of height `floor` so that it explains `points` (n, 3), seen from `camera` (3,)."""
+def _bearings(points: Array, camera: Array, ahead: float) -> Array:
+    """The leftmost and the rightmost of points (n, 2), seen from `camera`, about the bearing `ahead` [rad]."""
+    bearings = np.arctan2(points[:, 1] - camera[1], points[:, 0] - camera[0]) - ahead
+    bearings = np.remainder(bearings + math.pi, 2 * math.pi) - math.pi
+    return np.array([bearings.min(), bearings.max()])
+
+
+def _corners(size: Vec3, x: float, y: float, yaw: float) -> Array:
+    c, s = math.cos(yaw), math.sin(yaw)
+    return np.asarray(_CORNERS * np.array(size[:2]) / 2 @ np.array([[c, s], [-s, c]]) + np.array([x, y]))
+
+
+def fit(kind: ObjectKind, size: Vec3, points: Array, floor: float, camera: Array, whole: bool = True) -> Fit:
+    """Place a shape on the surface of height `floor` so that it explains `points` (n, 3), seen from `camera` (3,).
+
+    `whole`: nothing hides a part of it, so that a box must end where its points do.
+    """
     used = points[:: max(1, len(points) // SAMPLE)]
     middle = used[:, :2].mean(axis=0)
     away = middle - camera[:2]
     away /= max(1e-6, float(np.linalg.norm(away)))
     boxy = kind in ("block", "box")
     yaws = (0.0, 0.5, 1.0, 1.5) if size[0] == size[1] else (0.0, 0.5, 1.0, 1.5, 2.0, 2.5)
-    start = middle + away * 0.25 * max(size[0], size[1])
+    # A box of unequal sides also ends where its points do, or its far side would be free.
+    ends = whole and boxy and size[0] != size[1]
+    ahead, scale = math.atan2(away[1], away[0]), EDGE_WEIGHT * float(np.linalg.norm(middle - camera[:2]))
+    edges = _bearings(points, camera, ahead) if ends else None
 
     def off(p: Array, points: Array) -> Array:
-        return distances(kind, size, points, floor, p[0], p[1], p[2] if boxy else 0.0)
+        apart = distances(kind, size, points, floor, p[0], p[1], p[2] if boxy else 0.0)
+        if edges is None:
+            return apart
+        past = _bearings(_corners(size, p[0], p[1], p[2]), camera, ahead) - edges
+        return np.append(apart, scale * past)
 
-    # Only the better starts of a box are followed to the end.
-    starts = sorted(
-        (np.array([*start, yaw]) if boxy else start for yaw in (yaws if boxy else (0.0,))),
-        key=lambda p: float(np.minimum(off(p, used), 0.02).mean()),
-    )[:2]
+    def badness(p: Array) -> float:
+        apart = np.minimum(np.abs(off(p, used)), 0.02)
+        return float(apart[: len(used)].mean() + apart[len(used) :].sum() / EDGE_WEIGHT)
+
+    if boxy:
+        # Only the better starts of a box are followed to the end.
+        turned = [(yaw, abs(math.cos(yaw - ahead)) * size[0] + abs(math.sin(yaw - ahead)) * size[1]) for yaw in yaws]
+        starts = sorted((np.array([*middle + away * 0.4 * deep, yaw]) for yaw, deep in turned), key=badness)[:2]
+    else:
+        starts = [middle + away * 0.25 * size[0]]
     best = min(
         (least_squares(off, p, args=(used,), loss="soft_l1", f_scale=ROBUST, max_nfev=15) for p in starts),
         key=lambda found: float(found.cost),
     )
     # Once more without what the shape does not have, such as a mug's handle.
-    own = used[off(best.x, used) < STRAY]
+    own = used[off(best.x, used)[: len(used)] < STRAY]
     if len(own) > len(used) // 2:
         best = least_squares(off, best.x, args=(own,), loss="soft_l1", f_scale=ROBUST / 2, max_nfev=10)
     x, y = float(best.x[0]), float(best.x[1])

@@ -112,6 +112,42 @@ def test_a_shape_is_placed_from_the_half_that_is_seen(kind: str, size: tuple[flo
         assert abs(math.remainder(fit.yaw - yaw, math.pi)) < 0.05
 
 
+@pytest.mark.parametrize("yaw", [0.0, 0.1, 0.75, 1.45, 1.57, 2.3])
+@pytest.mark.parametrize("size", [(0.06, 0.08, 0.13), (0.13, 0.06, 0.08)])
+def test_a_box_of_which_one_face_is_seen_ends_where_its_points_do(size: tuple[float, float, float], yaw: float) -> None:
+    rng = np.random.default_rng(2)
+    middle, camera = np.array([0.3, -0.2, 0.7 + size[2] / 2]), np.array([-1.4, -0.2, 1.3])
+    turn = np.array([[math.cos(yaw), -math.sin(yaw), 0.0], [math.sin(yaw), math.cos(yaw), 0.0], [0.0, 0.0, 1.0]])
+    faces = []
+    for axis in range(3):
+        for side in (-0.5, 0.5):
+            normal = turn[:, axis] * side
+            points = rng.uniform(-0.5, 0.5, (400, 3))
+            points[:, axis] = side
+            if (camera - middle - normal * size[axis]) @ normal > 0.05:
+                faces.append(middle + points * np.array(size) @ turn.T)
+    fit = shapes.fit("box", size, np.concatenate(faces), 0.7, camera)
+    assert math.hypot(fit.x - middle[0], fit.y - middle[1]) < 0.003
+    assert abs(math.remainder(fit.yaw - yaw, math.pi)) < 0.05
+
+
+@pytest.mark.parametrize("side", ["x", "y"])
+def test_a_box_that_was_knocked_over_is_still_that_box(side: str) -> None:
+    _, placements, model, data = world(8)
+    box = next(p for p in placements if p.spec.name == "white box")
+    height = box.spec.size[0 if side == "y" else 1]
+    top = box.position[2] - box.spec.size[2] / 2
+    address = model.joint("white_box").qposadr[0]  # type: ignore[attr-defined]
+    stood = data.qpos[address : address + 7].copy()  # type: ignore[attr-defined]
+    half = math.sqrt(0.5)
+    data.qpos[address + 2] = top + height / 2  # type: ignore[attr-defined]
+    data.qpos[address + 3 : address + 7] = (half, half, 0, 0) if side == "x" else (half, 0, half, 0)  # type: ignore[attr-defined]
+    found = {d.label: d for d in detect(before(8, "desk")[0], 8)}
+    data.qpos[address : address + 7] = stood  # type: ignore[attr-defined]
+    assert math.dist(found["white box"].position, (*box.position[:2], top + height / 2)) < 0.015
+    assert found["white box"].size[2] == height and sorted(found["white box"].size) == sorted(box.spec.size)
+
+
 def test_a_can_explains_a_mug_worse_than_a_mug_does() -> None:
     size = (0.074, 0.074, 0.095)
     angle = np.linspace(0, 2 * math.pi, 200)
