@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 BACKENDS = ("egl", "osmesa", "raycast")
 PROBE_SECONDS = 20.0
+FAR = 25.0
 _PROBE = (
     "import mujoco; m = mujoco.MjModel.from_xml_string('<mujoco/>'); d = mujoco.MjData(m); "
     "mujoco.mj_forward(m, d); r = mujoco.Renderer(m, 8, 8); r.update_scene(d); r.render(); r.close()"
@@ -107,13 +108,10 @@ class Renderer:
             fovy = float(self.model.cam_fovy[number])
             body = int(self.model.cam_bodyid[number])
             return render(self.model, self.data, self.data.cam_xpos[number], rotation, fovy, width, height, body)
-        gl = self._context(width, height)
-        gl.update_scene(self.data, camera, self._option)
-        rgb = gl.render().copy()
-        gl.enable_depth_rendering()
-        depth = gl.render().astype(np.float64)
-        gl.disable_depth_rendering()
-        return rgb, np.where(depth < 25.0, depth, 0.0)
+        fixed = self._mujoco.MjvCamera()
+        fixed.type, fixed.fixedcamid = self._mujoco.mjtCamera.mjCAMERA_FIXED, number
+        rgb, depth = self._offscreen(width, height).render(self.data, fixed, self._option)
+        return rgb, np.where(depth < FAR, depth, 0.0).astype(np.float64)
 
     def picture(self, view: View, width: int, height: int) -> NDArray[np.uint8]:
         """RGB (height, width, 3) of a free view."""
@@ -125,9 +123,7 @@ class Renderer:
         camera = self._mujoco.MjvCamera()
         camera.lookat[:], camera.distance = view.lookat, view.distance
         camera.azimuth, camera.elevation = view.azimuth, view.elevation
-        gl = self._context(width, height)
-        gl.update_scene(self.data, camera, self._option)
-        image: NDArray[np.uint8] = gl.render().copy()
+        image: NDArray[np.uint8] = self._offscreen(width, height).render(self.data, camera, self._option)[0]
         return image
 
     def optical_pose(self, camera: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -137,12 +133,14 @@ class Renderer:
         position = turn.T @ (self.data.cam_xpos[number] - self.data.xpos[base])
         return position, turn.T @ self.data.cam_xmat[number].reshape(3, 3) @ np.diag([1.0, -1.0, -1.0])
 
-    def _context(self, width: int, height: int) -> Any:
+    def _offscreen(self, width: int, height: int) -> Any:
         if (width, height) not in self._gl:
+            from services.camera.offscreen import Offscreen
+
             self.close()
             self.model.vis.global_.offwidth = max(width, self.model.vis.global_.offwidth)
             self.model.vis.global_.offheight = max(height, self.model.vis.global_.offheight)
-            self._gl[width, height] = self._mujoco.Renderer(self.model, height, width)
+            self._gl[width, height] = Offscreen(self.model, width, height)
         return self._gl[width, height]
 
     def close(self) -> None:

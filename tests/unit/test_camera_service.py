@@ -1,4 +1,7 @@
 import math
+import os
+import subprocess
+import sys
 
 import msgspec
 import mujoco
@@ -10,13 +13,13 @@ from common import topics
 from common.geometry import quat_matrix
 from common.memory import MemoryBus, MemoryIo
 from common.scene import load_scene
-from services.camera import raycast
+from services.camera import raycast, render
 from services.camera.config import CameraConfig
 from services.camera.service import CameraService
 from services.sim.physics import Physics
 from services.sim.robot import HEAD_CAMERA, HEAD_FOVY, HEAD_PITCH
 
-TINY = """<mujoco><worldbody>
+TINY = """<mujoco><visual><quality offsamples="0"/></visual><worldbody>
 <geom type="plane" size="5 5 .1" rgba="0 1 0 1"/>
 <geom type="box" size=".2 .2 .25" pos="0 0 .25" rgba="1 0 0 1"/>
 <camera name="down" pos="0 0 2" xyaxes="1 0 0 0 1 0" fovy="60"/>
@@ -38,6 +41,29 @@ def test_ray_cast_depth_and_colours_are_those_of_the_scene() -> None:
     assert depth[30, 40] == pytest.approx(1.5, abs=0.002), "the box's top"
     assert depth[2, 2] == pytest.approx(2.0, abs=0.002), "the floor, along the optical axis"
     assert rgb[30, 40].argmax() == 0 and rgb[2, 2].argmax() == 1
+
+
+ONE_PASS = f"""
+import mujoco, numpy
+from services.camera.render import Renderer
+ours = Renderer('''{TINY}''', "auto")
+ours.load(ours.data.qpos.tobytes(), b"")
+rgb, depth = ours.rgbd("down", 80, 60)
+theirs = mujoco.Renderer(ours.model, 60, 80)
+theirs.update_scene(ours.data, "down")
+assert ours.backend != "raycast" and numpy.array_equal(rgb, theirs.render())
+theirs.enable_depth_rendering()
+assert numpy.array_equal(depth, theirs.render())
+assert abs(depth[30, 40] - 1.5) < 0.002 and abs(depth[2, 2] - 2.0) < 0.002
+"""
+
+
+def test_colour_and_depth_of_one_pass_are_those_of_two() -> None:
+    backend = next((b for b in ("egl", "osmesa") if render.works(b)), None)
+    if backend is None:
+        pytest.skip("no GL library works here")
+    run = [sys.executable, "-c", ONE_PASS]
+    subprocess.run(run, env=os.environ | render.environment(backend), check=True, timeout=60)
 
 
 @pytest.mark.parametrize("case", [0.0, 0.01])
