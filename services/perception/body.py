@@ -48,24 +48,30 @@ class Body:
         local = np.stack([c * dx + s * dy, c * dy - s * dx, coarse[..., 2]], axis=-1)
         near = (np.hypot(local[..., 0], local[..., 1]) < REACH) & (view.depth[::STEP, ::STEP] > 0)
         own = np.zeros(near.shape, bool)
-        own[near] = self._distance(local[near]) < MARGIN
+        own[near] = self._touched(local[near])
         h, w = view.shape
         full: Mask = np.repeat(np.repeat(own, STEP, axis=0), STEP, axis=1)[:h, :w]
         return full
 
-    def _distance(self, points: Array) -> Array:
-        """Distance [m] of points (n, 3) in the base frame from the body's geoms."""
-        best = np.full(len(points), np.inf)
-        for g in self._solid:
-            rotation = self._data.geom_xmat[g].reshape(3, 3)
-            local = (points - self._data.geom_xpos[g]) @ rotation
-            if g in self._faces:
-                normals, offsets = self._faces[g]
-                best = np.minimum(best, np.maximum((local @ normals.T + offsets).max(axis=1), 0.0))
-            else:
-                size = self._model.geom_size[g]
-                best = np.minimum(best, _outside(np.abs(local), int(self._model.geom_type[g]), size))
-        return best
+    def _touched(self, points: Array) -> Mask:
+        """Which of the points (n, 3) in the base frame are within MARGIN of the body's geoms."""
+        touched = np.zeros(len(points), bool)
+        centres, reaches = self._data.geom_xpos[self._solid], self._model.geom_rbound[self._solid] + MARGIN
+        apart = (points**2).sum(axis=1)[:, None] - 2 * points @ centres.T + (centres**2).sum(axis=1)
+        # A geom is near the points within its bounding sphere only; the last digits of `apart` are not to be trusted.
+        around = apart < (reaches + 1e-6) ** 2
+        for n, g in enumerate(self._solid):
+            few = np.flatnonzero(around[:, n])
+            touched[few] |= self._distance(points[few], g) < MARGIN
+        return touched
+
+    def _distance(self, points: Array, g: int) -> Array:
+        """Distance [m] of points (n, 3) in the base frame from a geom."""
+        local = (points - self._data.geom_xpos[g]) @ self._data.geom_xmat[g].reshape(3, 3)
+        if g in self._faces:
+            normals, offsets = self._faces[g]
+            return np.asarray(np.maximum((local @ normals.T + offsets).max(axis=1), 0.0))
+        return _outside(np.abs(local), int(self._model.geom_type[g]), self._model.geom_size[g])
 
 
 def _is_mesh(model: mujoco.MjModel, geom: int) -> bool:

@@ -32,18 +32,20 @@ class View:
         return h, w
 
     @cached_property
-    def rays(self) -> NDArray[np.float32]:
-        """Directions (h, w, 3) in frame map, of length 1 along the optical axis."""
+    def points(self) -> NDArray[np.float32]:
+        """Where each pixel's surface is (h, w, 3) in frame map; meaningless where depth is 0. x, y and z each lie
+        together in memory."""
         h, w = self.shape
         u = (np.arange(w, dtype=np.float32) + 0.5 - self.middle[0]) / self.focal[0]
         v = (np.arange(h, dtype=np.float32) + 0.5 - self.middle[1]) / self.focal[1]
-        r = self.rotation.astype(np.float32)
-        return u[None, :, None] * r[:, 0] + v[:, None, None] * r[:, 1] + r[:, 2]
-
-    @cached_property
-    def points(self) -> NDArray[np.float32]:
-        """Where each pixel's surface is (h, w, 3) in frame map; meaningless where depth is 0."""
-        return self.rays * self.depth[..., None] + self.position.astype(np.float32)
+        rotation, position = self.rotation.astype(np.float32), self.position.astype(np.float32)
+        planes = np.empty((3, h, w), np.float32)
+        for plane, (right, down, ahead), start in zip(planes, rotation, position, strict=True):
+            np.add(u * right, (v * down)[:, None], out=plane)
+            plane += ahead
+            plane *= self.depth
+            plane += start
+        return np.moveaxis(planes, 0, -1)
 
     def project(self, points: Array) -> Array:
         """Pixel u, v and depth (n, 3) of points (n, 3) in frame map; depth <= 0 is behind the camera."""
