@@ -35,15 +35,15 @@ class Commands:
         if do == "stop":
             self._io.publish(topics.ROBOT_STOP, m.RobotStop(reason="stop button", source=SOURCE))
             self._transcript.add(t, "typed", "STOP")
-        elif do == "resume":
-            self._io.publish(topics.ROBOT_RESUME, m.RobotResume(source=SOURCE))
-            self._transcript.add(t, "typed", "resume")
+        elif do in ("resume", "go on"):
+            self._io.publish(topics.ROBOT_RESUME, m.RobotResume(source=SOURCE, go_on=do == "go on"))
+            self._transcript.add(t, "typed", "release" if do == "resume" else do)
         elif do in ("yes", "no"):
             self.say(do, t)
         elif do == "say" and text.strip():
             self.say(text.strip()[:500], t)
         else:
-            self._io.count_drop("page", f"{do!r}: expected stop, resume, yes, no or say with words")
+            self._io.count_drop("page", f"{do!r}: expected stop, resume, go on, yes, no or say with words")
 
     def say(self, text: str, t: float) -> None:
         """A person typed it, so nobody needs to ask whether it was heard right."""

@@ -6,6 +6,7 @@ from typing import Any
 from urllib.parse import quote
 
 from common import messages as m
+from services.dashboard.bar import under_way
 from services.dashboard.history import Line, Path, Row
 
 COLOURS = {"RUNNING": "#1c7ed6", "SUCCESS": "#2b8a3e", "FAILURE": "#c92a2a", "INVALID": "#adb5bd"}
@@ -67,8 +68,7 @@ def mission(
     if state is None:
         return block(f'<span style="color:{FAINT}">The brain has not been heard yet.</span>')
     rows = [f'<b style="font-size:15px">{escape(state.state)}</b> {escape(state.detail)}']
-    ended = state.last.id if state.last else ""
-    if state.command and state.mission_id not in ("", ended):
+    if under_way(state):
         rows.append(f"“{escape(state.command)}”")
         rows.append(f"step <b>{escape(state.step)}</b>, {max(0.0, now - state.started):.0f} s since the command")
     plan = [f"<li>{_step(s, state.step)}</li>" for s in steps]
@@ -81,7 +81,8 @@ def mission(
     if state.last is not None:
         colour = GOOD if state.last.outcome == "delivered" else BAD
         text = f"{state.last.command}: {state.last.outcome}"
-        why = f" ({state.last.reason})" if state.last.reason else ""
+        reason = state.last.reason
+        why = f" {reason}" if reason.startswith("(") else f" ({reason})" if reason else ""
         rows.append(f'last: <span style="color:{colour}">{escape(text + why)}</span>')
     return block("".join(f"<div>{row}</div>" for row in rows))
 

@@ -42,7 +42,8 @@ class Panels:
             self._html["missions"] = gui.add_html("")
         with tabs.add_tab("Health"):
             self._html["services"] = gui.add_html("")
-        self._plot_tab = tabs.add_tab("Plots")
+            # Not in a tab of their own: one more would put the row of tabs into two lines.
+            self._plots_below = gui.add_folder("plots")
         with tabs.add_tab("View"):
             self._follow = gui.add_checkbox("follow the robot", initial_value=False)
             self._scan = gui.add_checkbox("lidar", initial_value=True)
@@ -84,7 +85,7 @@ class Panels:
         colours = ("#1c7ed6", "#e8590c")
         series = [uplot.Series(label="s")]
         series += [uplot.Series(label=n, stroke=c, width=2) for n, c in zip(curves.names, colours, strict=False)]
-        with self._plot_tab:
+        with self._plots_below:
             chart = self._gui.add_uplot(
                 curves.arrays(),
                 tuple(series),

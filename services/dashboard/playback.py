@@ -23,10 +23,10 @@ from common.runtime import StartError
 from common.scene import load_scene
 from services.dashboard import story
 from services.dashboard.config import DashboardConfig
+from services.dashboard.events import Words
 from services.dashboard.history import Transcript
 from services.dashboard.service import HEALTH, DashboardService
 from services.dashboard.timeline import STATES, spans
-from services.dashboard.web import Words
 
 FRAME = 1 / 30
 SPEEDS = (0.5, 1.0, 2.0, 4.0, 8.0)

@@ -12,19 +12,21 @@ from common.io import Io, Job
 from common.runtime import StartError
 from common.topics import Topic
 from services.dashboard import markup, timeline
+from services.dashboard.bar import bar
 from services.dashboard.cameras import Cameras
 from services.dashboard.care import Care
 from services.dashboard.commands import Commands
 from services.dashboard.config import DashboardConfig
 from services.dashboard.door import PageError
 from services.dashboard.drawing import Drawing, draw
+from services.dashboard.events import Asked, Click, Sound, Words
 from services.dashboard.history import Curves, Jitter, Reasons, Services, Transcript
 from services.dashboard.layers import Layers
 from services.dashboard.panels import Panels
 from services.dashboard.picking import pick
 from services.dashboard.tracking import FRESH, arm_error, off_path
 from services.dashboard.view import View
-from services.dashboard.web import Asked, Click, Sound, Web, Words
+from services.dashboard.web import Web
 
 HEALTH = Topic(key=topics.HEALTH_KEY.format(name="*"), type=m.Health, writers=("*",), recover=False)
 SLOW, PLOT = 0.25, 0.5
@@ -232,16 +234,9 @@ class DashboardService:
     def _tell(self, state: m.BrainState | None) -> None:
         """The bar at the top of the page."""
         sim, speech = self._io.latest(topics.SIM_STATUS), self._io.latest(topics.SPEECH_STATUS)
-        told = {
-            "state": state.state if state is not None else "",
-            "detail": state.detail if state is not None else "",
-            "command": state.command if state is not None else "",
-            "asking": state is not None and state.state == "CONFIRMING",
-            "question": state.step if state is not None and state.state == "CONFIRMING" else "",
-            "stopped": sim is not None and sim.state == "stopped",
+        told = bar(state, sim, self._t) | {
             "listening": speech is not None and speech.state == "listening",
             "sim": self._io.peer("sim") is not None,
-            "last": state.last if state is not None else None,
         }
         if told != self._told:
             self._told = told

@@ -11,26 +11,24 @@ import queue
 import secrets
 from collections.abc import Awaitable, Callable
 from concurrent.futures import Future
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import msgspec
 import numpy as np
 import viser
-from aiohttp import ClientSession, WSMsgType, web
-from numpy.typing import NDArray
+from aiohttp import ClientSession, web
 
 from services.dashboard import access
 from services.dashboard.config import DashboardConfig
-from services.dashboard.door import KEY_HEADER, PageError, guarded, listen
+from services.dashboard.door import PageError, guarded, listen
+from services.dashboard.events import Asked, Click, Event
+from services.dashboard.stream import passed_on
+from services.dashboard.visitors import MAX_CHUNK, Visitors
 
 PAGE = Path(__file__).parent / "page"
 VIEW = Path(viser.__file__).parent / "client" / "build" / "index.html"
-SEND_QUEUE = 100
 OPENING, CLOSING, ANSWER = 60.0, 2.0, 8.0
-MAX_CHUNK = 64 * 1024
-VIEW_LIMIT = 8 * 2**20
 # The view under the other name of this machine is another site to a browser, which draws it in another process: however
 # slow the drawing is, the stop button answers.
 OTHER_NAME = {"127.0.0.1": "localhost", "localhost": "127.0.0.1"}
@@ -40,38 +38,6 @@ POLICY = (
     "script-src 'self' 'unsafe-inline' 'unsafe-eval' blob: data:; worker-src 'self' blob: data:; "
     "connect-src 'self' ws: wss: data: blob:; frame-src 'self' {us}; frame-ancestors 'self' {us}"
 )
-
-
-class Words(msgspec.Struct, frozen=True):
-    """What a visitor did: `do` is stop, resume, say, yes, no or restart; `text` goes with say and restart."""
-
-    do: str
-    text: str = ""
-
-
-class Sound(msgspec.Struct, frozen=True):
-    """A piece of what a visitor's microphone heard: int16 at 16 kHz; an empty one ends it."""
-
-    data: bytes
-
-
-@dataclass(frozen=True)
-class Click:
-    """A visitor clicked in the 3-D view: the ray below the pointer, in frame map."""
-
-    origin: NDArray[np.float64]
-    direction: NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class Asked:
-    """A visitor asks for a mission's page; `answer` of `Web` gives it."""
-
-    mission: str
-    answer: "asyncio.Future[str]"
-
-
-Event = Words | Sound | Click | Asked
 
 
 class Web:
@@ -85,8 +51,7 @@ class Web:
         self._socket = listen(config)
         self.port: int = self._socket.getsockname()[1]
         self.inbox: queue.SimpleQueue[Event] = queue.SimpleQueue()
-        self._visitors: dict[web.WebSocketResponse, asyncio.Queue[str | bytes]] = {}
-        self._last: dict[str, str] = {}
+        self._visitors = Visitors(self.inbox.put)
         self._secret = secrets.token_urlsafe(24)
         with guarded(self._secret):
             self.viser = viser.ViserServer(host="127.0.0.1", port=0, label="tidybot", verbose=False)
@@ -105,11 +70,11 @@ class Web:
     def say(self, kind: str, message: object) -> None:
         """Tell every page; the newest of each kind is also told to a page that opens later."""
         text = msgspec.json.encode({"kind": kind, "value": message}).decode()
-        self._loop.call_soon_threadsafe(self._tell, kind, text)
+        self._loop.call_soon_threadsafe(self._visitors.tell, kind, text)
 
     def play(self, samples: bytes, rate: int) -> None:
         """Let every page play int16 samples."""
-        self._loop.call_soon_threadsafe(self._spread, rate.to_bytes(4, "little") + samples)
+        self._loop.call_soon_threadsafe(self._visitors.spread, rate.to_bytes(4, "little") + samples)
 
     def answer(self, asked: Asked, page: str) -> None:
         """Give a visitor the page that was asked for; "" for none."""
@@ -135,7 +100,7 @@ class Web:
         app.router.add_get("/", self._page)
         app.router.add_get("/view", self._view)
         app.router.add_get("/view/", self._view)
-        app.router.add_get("/live", self._live)
+        app.router.add_get("/live", self._visitors.serve)
         app.router.add_get("/mission/{id}", self._mission)
         app.router.add_static("/page", PAGE)
         # A connector belongs to the loop that it is made in.
@@ -146,9 +111,7 @@ class Web:
         return runner
 
     async def _end(self) -> None:
-        for visitor in list(self._visitors):
-            with contextlib.suppress(ConnectionError, TimeoutError):
-                await asyncio.wait_for(visitor.close(), 0.5)
+        await self._visitors.close()
         await self._inner.close()
         await self._runner.cleanup()
 
@@ -183,24 +146,9 @@ class Web:
 
     async def _view(self, request: web.Request) -> web.StreamResponse:
         """viser's page, or its stream when a WebSocket is asked for."""
-        if request.headers.get("Upgrade", "").lower() != "websocket":
-            return web.Response(text=self._view_page, content_type="text/html")
-        wanted = [p.strip() for p in request.headers.get("Sec-WebSocket-Protocol", "").split(",") if p.strip()]
-        outer = web.WebSocketResponse(protocols=wanted, heartbeat=20.0, compress=False, max_msg_size=VIEW_LIMIT)
-        await outer.prepare(request)
-        address = f"ws://127.0.0.1:{self.viser.get_port()}/"
-        async with self._inner.ws_connect(
-            address, protocols=wanted, headers={KEY_HEADER: self._secret}, max_msg_size=0, compress=0
-        ) as inner:
-            ways = [asyncio.ensure_future(_pass(outer, inner)), asyncio.ensure_future(_pass(inner, outer))]
-            try:
-                await asyncio.wait(ways, return_when=asyncio.FIRST_COMPLETED)
-            finally:
-                for way in ways:
-                    way.cancel()
-                await asyncio.gather(*ways, return_exceptions=True)
-        await outer.close()
-        return outer
+        if request.headers.get("Upgrade", "").lower() == "websocket":
+            return await passed_on(request, self._inner, self.viser.get_port(), self._secret)
+        return web.Response(text=self._view_page, content_type="text/html")
 
     async def _mission(self, request: web.Request) -> web.StreamResponse:
         """A mission's timeline, from the brain's journal."""
@@ -212,66 +160,10 @@ class Web:
                 return web.Response(text=page, content_type="text/html")
         raise web.HTTPNotFound(text="The brain tells of no such mission.\n")
 
-    async def _live(self, request: web.Request) -> web.StreamResponse:
-        """What the page itself needs: the state to it; words and sound from it."""
-        socket = web.WebSocketResponse(heartbeat=10.0, max_msg_size=MAX_CHUNK, compress=False)
-        await socket.prepare(request)
-        outbox: asyncio.Queue[str | bytes] = asyncio.Queue(SEND_QUEUE)
-        for text in self._last.values():
-            outbox.put_nowait(text)
-        self._visitors[socket] = outbox
-        sender = asyncio.ensure_future(_send(socket, outbox))
-        try:
-            async for message in socket:
-                if message.type is WSMsgType.BINARY:
-                    self.inbox.put(Sound(message.data))
-                elif message.type is WSMsgType.TEXT:
-                    with contextlib.suppress(msgspec.DecodeError):
-                        self.inbox.put(msgspec.json.decode(message.data, type=Words))
-        finally:
-            self._visitors.pop(socket, None)
-            sender.cancel()
-            await asyncio.gather(sender, return_exceptions=True)
-            # A microphone that goes with its page must not leave half a sentence open.
-            self.inbox.put(Sound(b""))
-        return socket
-
     async def _clicked(self, event: viser.SceneClickEvent) -> None:
         self.inbox.put(Click(np.array(event.ray_origin), np.array(event.ray_direction)))
-
-    def _tell(self, kind: str, text: str) -> None:
-        self._last[kind] = text
-        self._spread(text)
-
-    def _spread(self, message: str | bytes) -> None:
-        for visitor, outbox in list(self._visitors.items()):
-            try:
-                outbox.put_nowait(message)
-            except asyncio.QueueFull:
-                # A browser that hangs loses its connection, and nobody else notices; it opens a new one by itself.
-                self._visitors.pop(visitor, None)
-                if visitor._req is not None and visitor._req.transport is not None:
-                    visitor._req.transport.abort()
 
 
 def _settle(future: "asyncio.Future[str]", page: str) -> None:
     if not future.done():
         future.set_result(page)
-
-
-async def _send(socket: web.WebSocketResponse, outbox: "asyncio.Queue[str | bytes]") -> None:
-    while True:
-        message = await outbox.get()
-        if isinstance(message, str):
-            await socket.send_str(message)
-        else:
-            await socket.send_bytes(message)
-
-
-async def _pass(source: Any, sink: Any) -> None:
-    """Frames from one WebSocket to another until either closes."""
-    async for message in source:
-        if message.type is WSMsgType.BINARY:
-            await sink.send_bytes(message.data)
-        elif message.type is WSMsgType.TEXT:
-            await sink.send_str(message.data)

@@ -17,9 +17,10 @@ from common.memory import MemoryBus, MemoryIo
 from common.recording import Recorder, RecordingError
 from common.scene import load_scene
 from services.dashboard.config import DashboardConfig
+from services.dashboard.events import Click, Words
 from services.dashboard.playback import opened
 from services.dashboard.service import HEALTH, DashboardService
-from services.dashboard.web import Click, Web, Words
+from services.dashboard.web import Web
 from services.sim.physics import Physics
 from services.sim.robot import HOME_ARM, JOINT_NAMES
 from tests.support import eventually

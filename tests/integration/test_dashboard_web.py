@@ -19,8 +19,9 @@ from common.memory import MemoryBus, MemoryIo
 from common.scene import load_scene
 from services.dashboard.config import DashboardConfig
 from services.dashboard.door import PageError
+from services.dashboard.events import Sound, Words
 from services.dashboard.service import DashboardService
-from services.dashboard.web import Sound, Web, Words
+from services.dashboard.web import Web
 from tests.support import eventually
 
 TOKEN = "a token for these tests"
@@ -213,13 +214,13 @@ def test_stop_on_the_page_is_a_stop_on_the_bus_within_one_step() -> None:
     stops = bus.tap(topics.ROBOT_STOP)
     service = DashboardService(DashboardConfig(port=0), io)
     try:
-        bus.send(topics.BRAIN_STATE, m.BrainState(state="CONFIRMING", detail="Did you say mug?"))
+        bus.send(topics.BRAIN_STATE, m.BrainState(state="CONFIRMING", step="Did you say mug?"))
         bus.send(topics.SIM_STATUS, m.SimStatus(state="stopped"))
         io.begin(None, 0.0)
         service.step(0.0)
         with talk(service._web) as page:
             told = json.loads(page.recv(timeout=10))["value"]
-            assert (told["asking"], told["stopped"], told["detail"]) == (True, True, "Did you say mug?")
+            assert (told["asking"], told["stopped"], told["question"]) == (True, True, "Did you say mug?")
             page.send(json.dumps({"do": "stop"}))
             eventually(lambda: not service._web.inbox.empty(), "the stop has arrived")
             io.begin(None, 0.03)

@@ -46,7 +46,8 @@ def test_stop_and_resume(desk: Desk) -> None:
     assert [s.source for s in desk.sent(topics.ROBOT_STOP)] == ["page"]
     assert desk.sent(topics.ROBOT_RESUME) == []
     desk.commands.words("resume", "", 2.0)
-    assert len(desk.sent(topics.ROBOT_RESUME)) == 1
+    desk.commands.words("go on", "", 3.0)
+    assert [(r.source, r.go_on) for r in desk.sent(topics.ROBOT_RESUME)] == [("page", False), ("page", True)]
 
 
 def test_typed_words_are_a_command_that_needs_no_question(desk: Desk) -> None:

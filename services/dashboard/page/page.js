@@ -33,14 +33,25 @@ function send(message) {
 }
 const act = (what, text = "") => send(JSON.stringify({ do: what, text }));
 
+const since = (s) => (s < 60 ? `${s} s` : `${Math.floor(s / 60)}:${String(s % 60).padStart(2, "0")} min`);
+
 function show(s) {
   document.body.dataset.state = s.state;
   $("state").textContent = s.stopped ? "STOPPED" : s.state || "no brain";
-  const last = s.last && !s.detail ? `${s.last.command}: ${s.last.outcome}` : "";
-  $("detail").textContent = s.detail || last;
-  document.body.dataset.outcome = s.last ? s.last.outcome : "";
+  const { mission, last } = s;
+  // While a mission is under way it is what counts; how the last one ended is told between missions.
+  const doing = mission ? [`“${mission.command}”`, mission.step, since(mission.seconds), s.detail] : [];
+  const ended = !mission && !s.detail && last ? `${last.command}: ${last.outcome}` : "";
+  const idle = s.stopped && s.left ? `“${s.left}” was cut short` : s.detail || ended;
+  $("detail").textContent = mission ? doing.filter(Boolean).join(" · ") : idle;
+  $("now").title = $("detail").textContent;
+  document.body.dataset.outcome = last ? last.outcome : "";
   $("stop").classList.toggle("braked", s.stopped);
+  $("goon").hidden = !s.stopped || !s.left;
+  $("goon").title = `Release the brake and go on with “${s.left}”`;
   $("resume").hidden = !s.stopped;
+  $("resume").textContent = s.left ? "Release only" : "Release";
+  $("resume").title = "Release the brake; nothing is gone on with";
   $("ask").hidden = !s.asking;
   $("question").textContent = s.question || "Is that right?";
   $("talk").classList.toggle("on", s.listening);
@@ -49,6 +60,7 @@ function show(s) {
 }
 
 $("stop").onclick = () => act("stop");
+$("goon").onclick = () => act("go on");
 $("resume").onclick = () => act("resume");
 $("yes").onclick = () => act("yes");
 $("no").onclick = () => act("no");

@@ -6,7 +6,7 @@ function showTape(now) {
   const at = (id) => document.getElementById(id);
   if (at("tape").hidden) {
     at("tape").hidden = false;
-    for (const id of ["stop", "resume", "ask", "say", "talk", "voice"]) at(id).closest("label, form, div, button").classList.add("gone");
+    for (const id of ["stop", "goon", "resume", "ask", "say", "talk", "voice"]) at(id).closest("label, form, div, button").classList.add("gone");
     at("scrub").min = now.first;
     at("scrub").max = now.last;
     const share = (t) => (100 * (Math.min(Math.max(t, now.first), now.last) - now.first)) / Math.max(now.last - now.first, 0.1);

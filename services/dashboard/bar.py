@@ -1,0 +1,45 @@
+"""What the bar at the top of the page tells: the mission under way; between missions how the last one ended."""
+
+from typing import Any
+
+from common import messages as m
+
+STOPPED = ("stopped", "the robot was stopped")
+"""How the brain begins, in its reason or after the stage, what it says of a mission that a stop has cut short."""
+
+
+def under_way(state: m.BrainState | None) -> bool:
+    """A mission is being worked on."""
+    if state is None or not state.command:
+        return False
+    return state.mission_id not in ("", state.last.id if state.last is not None else "")
+
+
+def left_off(state: m.BrainState | None) -> str:
+    """The command of the mission that a stop has cut short and that can be gone on with; "" when there is none."""
+    if state is None or state.last is None or under_way(state):
+        return ""
+    last = state.last
+    said = last.reason.removeprefix("(RESTART: CANCELLED: ")
+    return last.command if last.outcome == "cancelled" and said.startswith(STOPPED) else ""
+
+
+def bar(state: m.BrainState | None, sim: m.SimStatus | None, t: float) -> dict[str, Any]:
+    """Of what brain and sim say at robot time `t`, what belongs there; plain values for JSON."""
+    asking = state is not None and state.state == "CONFIRMING"
+    busy = under_way(state)
+    mission: dict[str, Any] | None = None
+    if state is not None and busy:
+        # A question has its own place, beside the buttons that answer it.
+        step = "" if asking else state.step
+        mission = {"command": state.command, "step": step, "seconds": max(0, int(t - state.started))}
+    return {
+        "state": state.state if state is not None else "",
+        "detail": state.detail if state is not None else "",
+        "mission": mission,
+        "last": state.last if state is not None and not busy else None,
+        "asking": asking,
+        "question": state.step if state is not None and asking else "",
+        "stopped": sim is not None and sim.state == "stopped",
+        "left": left_off(state),
+    }

@@ -1,0 +1,74 @@
+"""What the bar at the top of the page tells, and when a mission can be gone on with."""
+
+import json
+
+import msgspec
+import pytest
+
+from common import messages as m
+from services.brain.mission import Failure
+from services.dashboard.bar import bar, left_off, under_way
+
+CANCELLED = m.MissionOutcome(id="m-1", command="bring me the mug", outcome="cancelled", reason="stopped: stop button")
+DELIVERED = m.MissionOutcome(id="m-1", command="bring me the mug", outcome="delivered")
+
+
+def state(name: m.BrainStateName, mission: str = "", last: m.MissionOutcome | None = None, **more: str) -> m.BrainState:
+    command = "fetch the can" if mission else ""
+    return m.BrainState(state=name, mission_id=mission, command=command, started=10.0, last=last, **more)
+
+
+def test_a_mission_under_way_hides_how_the_last_one_ended() -> None:
+    shown = bar(state("NAVIGATING", "m-2", CANCELLED, step="find can"), None, 27.9)
+    assert shown["mission"] == {"command": "fetch the can", "step": "find can", "seconds": 17}
+    assert shown["last"] is None
+    assert shown["left"] == ""
+
+
+@pytest.mark.parametrize("last", [CANCELLED, DELIVERED])
+def test_between_missions_the_last_one_is_told(last: m.MissionOutcome) -> None:
+    for now in (state("LISTENING", last=last), state("COMPLETED", "m-1", last)):
+        shown = bar(now, None, 30.0)
+        assert (shown["mission"], shown["last"]) == (None, last)
+
+
+def test_the_question_is_told_once() -> None:
+    shown = bar(state("CONFIRMING", "m-2", step="Did you say fetch the can?"), None, 12.0)
+    assert (shown["asking"], shown["question"]) == (True, "Did you say fetch the can?")
+    assert shown["mission"] == {"command": "fetch the can", "step": "", "seconds": 2}
+
+
+def test_what_is_not_known_is_empty() -> None:
+    shown = bar(None, None, 0.0)
+    assert shown["state"] == shown["detail"] == ""
+    assert not shown["stopped"] and not under_way(None)
+    assert bar(None, m.SimStatus(state="stopped"), 0.0)["stopped"]
+    # A robot whose clock began anew has not been at it for minus some seconds.
+    assert bar(state("NAVIGATING", "m-2"), None, 1.0)["mission"]["seconds"] == 0
+    assert json.loads(msgspec.json.encode(shown))["last"] is None
+
+
+def ended(outcome: str, reason: str) -> m.MissionOutcome:
+    return msgspec.convert({"id": "m-1", "command": "go", "outcome": outcome, "reason": reason}, m.MissionOutcome)
+
+
+def cut(detail: str) -> str:
+    return Failure("RESTART", "CANCELLED", detail).reason
+
+
+@pytest.mark.parametrize(
+    ("last", "can"),
+    [
+        (ended("cancelled", "stopped"), True),
+        (ended("cancelled", "stopped: stop button; holding the red mug"), True),
+        (ended("cancelled", cut("the robot was stopped before it could go on")), True),
+        (ended("cancelled", cut("the robot was shut down")), False),
+        (ended("cancelled", "asked to stop"), False),
+        (ended("failed", "stopped"), False),
+        (ended("delivered", ""), False),
+        (None, False),
+    ],
+)  # fmt: skip
+def test_only_what_a_stop_has_cut_short_is_gone_on_with(last: m.MissionOutcome | None, can: bool) -> None:
+    assert bool(left_off(state("IDLE", last=last))) is can
+    assert left_off(state("NAVIGATING", "m-2", last)) == ""
