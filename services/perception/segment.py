@@ -54,27 +54,68 @@ class Piece:
     cut: bool
 
 
+Box = tuple[float, float, float, float, float]
+
+
+@dataclass(frozen=True)
+class _Cloud:
+    """Some pixels of a view (n,), counted row by row, with their points."""
+
+    pixels: NDArray[np.intp]
+    x: NDArray[np.float32]
+    y: NDArray[np.float32]
+    z: NDArray[np.float32]
+
+    def kept(self, chosen: NDArray[np.bool_]) -> "_Cloud":
+        return _Cloud(self.pixels[chosen], self.x[chosen], self.y[chosen], self.z[chosen])
+
+    def inside(self, box: Box) -> NDArray[np.bool_]:
+        """Which of the pixels (n,) lie in a rectangle on the floor plan, at any height."""
+        x, y, yaw, sx, sy = box
+        c, s = math.cos(yaw), math.sin(yaw)
+        dx, dy = self.x - np.float32(x), self.y - np.float32(y)
+        found: NDArray[np.bool_] = (np.abs(c * dx + s * dy) < sx / 2) & (np.abs(c * dy - s * dx) < sy / 2)
+        return found
+
+    def outside(self, boxes: Sequence[Box]) -> "_Cloud":
+        """Those that lie in none of the rectangles."""
+        rest = self
+        for box in boxes:
+            if len(rest.pixels) and rest._may_meet(box) and (inside := rest.inside(box)).any():
+                rest = rest.kept(~inside)
+        return rest
+
+    def _may_meet(self, box: Box) -> bool:
+        x, y, _, sx, sy = box
+        radius = math.hypot(sx, sy) / 2 + 0.001
+        return bool(
+            self.x.min() < x + radius
+            and self.x.max() > x - radius
+            and self.y.min() < y + radius
+            and self.y.max() > y - radius
+        )
+
+
 def pieces(view: View, scene: Scene, max_range: float, robot: Mask | None = None) -> list[Piece]:
     """The things that stand on the surfaces of the scene. `robot` marks the pixels that show the robot itself."""
-    z = view.points[..., 2]
-    usable = (view.depth > 0.05) & (view.depth < max_range)
+    near = _Nearby(scene, float(view.position[0]), float(view.position[1]), max_range)
+    x, y, z = (plane.reshape(-1) for plane in np.moveaxis(view.points, -1, 0))
+    highest = max([0.0, *(r.center[2] for r in near.receptacles)]) + MAX_HEIGHT
+    lowest = min([CLEARANCE, *(r.center[2] - PLANE_SEARCH for r in near.receptacles)])
+    depth = view.depth.reshape(-1)
+    usable = (depth > 0.05) & (depth < max_range) & (z > lowest) & (z < highest)
     if robot is not None:
-        usable &= ~robot
-    eye = view.position
-    near = _Nearby(scene, float(eye[0]), float(eye[1]), max_range)
+        usable &= ~robot.reshape(-1)
+    pixels = np.flatnonzero(usable)
+    cloud = _Cloud(pixels, x[pixels], y[pixels], z[pixels])
     found: list[Piece] = []
     for r in near.receptacles:
         low, high = r.center[2] - PLANE_SEARCH, r.center[2] + MAX_HEIGHT
-        pixels = np.flatnonzero(usable & (z > low) & (z < high))
-        pixels = pixels[_in_box(view, pixels, *_box_of(r, -0.012))]
-        found += _on(view, Surface(r.name, r.center[2]), pixels, near)
-    pixels = np.flatnonzero(usable & (z > CLEARANCE) & (z < MAX_HEIGHT) & (view.depth < FLOOR_RANGE))
-    for box in near.boxes:
-        pixels = pixels[~_in_box(view, pixels, *box)]
-    return found + _on(view, Surface("", 0.0), pixels, near)
-
-
-Box = tuple[float, float, float, float, float]
+        level = cloud.kept((cloud.z > low) & (cloud.z < high))
+        over = level.kept(level.inside(_box_of(r, -0.012)))
+        found += _on(view, Surface(r.name, r.center[2]), over, near)
+    floor = cloud.kept((cloud.z > CLEARANCE) & (cloud.z < MAX_HEIGHT) & (depth[pixels] < FLOOR_RANGE))
+    return found + _on(view, Surface("", 0.0), floor.outside(near.boxes), near)
 
 
 def _box_of(r: Receptacle, margin: float) -> Box:
@@ -106,20 +147,9 @@ class _Nearby:
                 self.boxes.append(box)
 
 
-def _in_box(
-    view: View, pixels: NDArray[np.intp], x: float, y: float, yaw: float, sx: float, sy: float
-) -> NDArray[np.bool_]:
-    """Which of the pixels (n,) lie in a rectangle on the floor plan, at any height."""
-    c, s = math.cos(yaw), math.sin(yaw)
-    points = view.points.reshape(-1, 3)[pixels]
-    dx, dy = points[:, 0] - np.float32(x), points[:, 1] - np.float32(y)
-    inside: NDArray[np.bool_] = (np.abs(c * dx + s * dy) < sx / 2) & (np.abs(c * dy - s * dx) < sy / 2)
-    return inside
-
-
-def _on(view: View, expected: Surface, pixels: NDArray[np.intp], near: _Nearby) -> list[Piece]:
+def _on(view: View, expected: Surface, cloud: _Cloud, near: _Nearby) -> list[Piece]:
     """Pieces above one surface, its height measured where enough of it is visible."""
-    z = view.points[..., 2].reshape(-1)[pixels]
+    z = cloud.z
     level = z[np.abs(z - expected.height) < PLANE_SEARCH] if expected.name else z[:0]
     surface = expected
     if len(level) >= MIN_PLANE:
@@ -127,9 +157,7 @@ def _on(view: View, expected: Surface, pixels: NDArray[np.intp], near: _Nearby) 
         peak = int(heights.argmax())
         level = level[np.abs(level - (edges[peak] + edges[peak + 1]) / 2) < 0.006]
         surface = Surface(expected.name, float(np.median(level)))
-    above = pixels[(z > surface.height + CLEARANCE) & (z < surface.height + MAX_HEIGHT)]
-    for box in near.walls:
-        above = above[~_in_box(view, above, *box)]
+    above = cloud.kept((z > surface.height + CLEARANCE) & (z < surface.height + MAX_HEIGHT)).outside(near.walls).pixels
     if len(above) < MIN_PIXELS:
         return []
     rows, columns = np.unravel_index(above, view.shape)
@@ -138,18 +166,20 @@ def _on(view: View, expected: Surface, pixels: NDArray[np.intp], near: _Nearby) 
     mask = np.zeros((window[0].stop - top, window[1].stop - left), bool)
     mask[rows - top, columns - left] = True
     labels = ndimage.label(_cut(mask, view.depth[window]))[0]
+    boxes = ndimage.find_objects(labels)
     parts = []
-    for n, box in enumerate(ndimage.find_objects(labels), 1):
-        part_rows, part_columns = np.nonzero(labels[box] == n)
-        if len(part_rows) >= MIN_PIXELS // 3:
-            parts.append((part_rows + box[0].start + top, part_columns + box[1].start + left))
+    for n in np.flatnonzero(np.bincount(labels[mask], minlength=1)[1:] >= MIN_PIXELS // 3):
+        box = boxes[n]
+        part_rows, part_columns = np.nonzero(labels[box] == n + 1)
+        parts.append((part_rows + box[0].start + top, part_columns + box[1].start + left))
     return [p for p in _join(view, surface, parts) if len(p.rows) >= MIN_PIXELS and _is_thing(p)]
 
 
 def _is_thing(piece: Piece) -> bool:
     """Neither as wide as furniture nor reaching up like a wall."""
+    wide, deep, _ = np.ptp(piece.points, axis=0)
     top = float(piece.points[:, 2].max()) - piece.surface.height
-    return _extent([piece.points]) < MAX_EXTENT and top < MAX_HEIGHT - 0.01
+    return bool(max(wide, deep) < MAX_EXTENT and top < MAX_HEIGHT - 0.01)
 
 
 def _cut(mask: Mask, depth: NDArray[np.float32]) -> Mask:
@@ -167,29 +197,26 @@ def _cut(mask: Mask, depth: NDArray[np.float32]) -> Mask:
     return kept
 
 
-def _extent(parts: Sequence[NDArray[np.float64]]) -> float:
-    low = np.min([p[:, :2].min(axis=0) for p in parts], axis=0)
-    high = np.max([p[:, :2].max(axis=0) for p in parts], axis=0)
-    return float((high - low).max())
-
-
 def _join(view: View, surface: Surface, parts: list[tuple[NDArray[np.intp], NDArray[np.intp]]]) -> list[Piece]:
     """Parts of one thing, such as the two sides of a mug's rim or a bottle's cap, stand in the same spot."""
     clouds = [view.points[rows, columns].astype(np.float64) for rows, columns in parts]
-    groups = list(range(len(parts)))
+    low = np.array([c[:, :2].min(axis=0) for c in clouds])
+    high = np.array([c[:, :2].max(axis=0) for c in clouds])
+    groups = np.arange(len(parts))
     order = sorted(range(len(parts)), key=lambda i: -len(clouds[i]))
     for n, i in enumerate(order):
+        # The samples are at least as far apart as their bounds.
         for j in order[n + 1 :]:
-            if groups[i] == groups[j]:
+            if groups[i] == groups[j] or max(*(low[i] - high[j]), *(low[j] - high[i])) >= JOIN:
                 continue
-            members = [k for k in range(len(parts)) if groups[k] in (groups[i], groups[j])]
-            if _extent([clouds[k] for k in members]) < JOINED_EXTENT and _gap(clouds[i], clouds[j]) < JOIN:
-                old, new = groups[j], groups[i]
-                groups = [new if g == old else g for g in groups]
+            members = (groups == groups[i]) | (groups == groups[j])
+            extent = (high[members].max(axis=0) - low[members].min(axis=0)).max()
+            if extent < JOINED_EXTENT and _gap(clouds[i], clouds[j]) < JOIN:
+                groups[groups == groups[j]] = groups[i]
     found = []
     h, w = view.shape
-    for group in sorted(set(groups)):
-        members = [k for k in range(len(parts)) if groups[k] == group]
+    for group in np.unique(groups):
+        members = np.flatnonzero(groups == group)
         rows = np.concatenate([parts[k][0] for k in members])
         columns = np.concatenate([parts[k][1] for k in members])
         cut = bool(rows.min() <= 1 or columns.min() <= 1 or rows.max() >= h - 2 or columns.max() >= w - 2)
