@@ -8,7 +8,7 @@ class ManipulationConfig(Config, frozen=True):
 
     A sighting of the object is good for `fresh` seconds; a newer one is waited for at most `look_patience`.
     With the hand in front of it the wrist camera's sighting is waited for `aim_patience`; a shift between
-    `aim_least` and `aim_most` corrects the grasp.
+    `aim_least` and `aim_most` corrects the grasp, more, or a turn of a flat-sided thing by `aim_turn` [rad], plans anew.
     """
 
     max_candidates: int = 4
@@ -30,3 +30,4 @@ class ManipulationConfig(Config, frozen=True):
     aim_patience: float = 1.0
     aim_least: float = 0.002
     aim_most: float = 0.03
+    aim_turn: float = 0.15

@@ -9,8 +9,12 @@ from services.manipulation.arm_model import Obstacle
 from services.manipulation.grasp import shown
 from services.manipulation.plan import GrabPlan, Held
 from services.manipulation.robot import Failure, Robot, Steps, go_home, planner_of
-from services.manipulation.surroundings import obstacles, target_of
+from services.manipulation.surroundings import obstacles, target_of, turned
 from services.manipulation.verify import holds, judge
+
+
+MISTAKEN = "MISTAKEN"
+FLAT_SIDED = ("box", "block")
 
 
 def grab(robot: Robot, goal: m.ManipulationGoal, wanted: str) -> Steps[str]:
@@ -38,6 +42,11 @@ def grab(robot: Robot, goal: m.ManipulationGoal, wanted: str) -> Steps[str]:
         try:
             return (yield from _execute_grab(robot, plan, goal, found))
         except Failure as failure:
+            if failure.code == MISTAKEN:
+                robot.io.log.info("aim mistaken", detail=failure.detail, grasp=plan.grasp.name)
+                tried.discard(plan.grasp.name)
+                since, last = robot.now - config.fresh, failure
+                continue
             if failure.code not in ("EMPTY_GRASP", "SLIPPED", "BLOCKED"):
                 raise
             last = failure
@@ -68,7 +77,11 @@ def _sighted(robot: Robot, goal: m.ManipulationGoal, wanted: str, since: float) 
 
 
 def _aimed(robot: Robot, plan: GrabPlan, goal: m.ManipulationGoal, found: WorldObject) -> Steps[GrabPlan]:
-    """The plan corrected by what the wrist camera sees from in front of the object, or as it was."""
+    """The plan corrected by what the wrist camera sees from in front of the object, or as it was.
+
+    Raises:
+        Failure: MISTAKEN, it was planned for a place or a side that is not the object's.
+    """
     config, since = robot.config, robot.now
     if not robot.io.peer("perception"):
         return plan
@@ -80,11 +93,14 @@ def _aimed(robot: Robot, plan: GrabPlan, goal: m.ManipulationGoal, found: WorldO
         seen = closer if closer is not None and closer.label == found.label and closer.seen_at >= since else None
     if seen is None:
         return plan
-    was, new = (target_of(o, robot.base, robot.io.scene).position for o in (found, seen))
-    shift = new[0] - was[0], new[1] - was[1]
-    if not config.aim_least <= math.hypot(*shift) <= config.aim_most:
+    was, new = (target_of(o, robot.base, robot.io.scene) for o in (found, seen))
+    shift = new.position[0] - was.position[0], new.position[1] - was.position[1]
+    off, turn = math.hypot(*shift), turned(was, new) if found.kind in FLAT_SIDED else 0.0
+    if off > config.aim_most or turn > config.aim_turn:
+        raise Failure(MISTAKEN, f"{found.label} is {1000 * off:.0f} mm and {math.degrees(turn):.0f} deg from there")
+    if off < config.aim_least:
         return plan
-    robot.io.log.info("aim corrected", object=found.label, by_mm=round(1000 * math.hypot(*shift), 1))
+    robot.io.log.info("aim corrected", object=found.label, by_mm=round(1000 * off, 1))
     try:
         return (yield from robot.work(
             planner_of(robot).refine, plan, shift, config.approach_distance, config.lift_height

@@ -26,6 +26,12 @@ def target_of(found: WorldObject, base: Pose2, scene: Scene) -> Target:
     return Target(found.label, found.kind, (x, y, z), yaw, found.size)
 
 
+def turned(was: Target, new: Target) -> float:
+    """The angle [rad] between two poses of a thing with flat sides; equal sides are not told apart."""
+    alike = math.isclose(new.size[0], new.size[1])
+    return abs(math.remainder(new.yaw - was.yaw, math.pi / 2 if alike else math.pi))
+
+
 def _box(base: Pose2, center: tuple[float, float, float], size: tuple[float, float, float], yaw: float) -> Obstacle:
     x, y, turn = compose(inverse(base), (center[0], center[1], yaw))
     return Obstacle((x, y, center[2]), size, turn)

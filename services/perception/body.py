@@ -3,6 +3,7 @@
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
+from scipy import ndimage
 from scipy.spatial import ConvexHull
 
 from common.geometry import Array, Pose2
@@ -49,6 +50,8 @@ class Body:
         near = (np.hypot(local[..., 0], local[..., 1]) < REACH) & (view.depth[::STEP, ::STEP] > 0)
         own = np.zeros(near.shape, bool)
         own[near] = self._touched(local[near])
+        # An edge may run between two of the pixels that were looked at.
+        own = ndimage.binary_dilation(own, np.ones((3, 3)))
         h, w = view.shape
         full: Mask = np.repeat(np.repeat(own, STEP, axis=0), STEP, axis=1)[:h, :w]
         return full

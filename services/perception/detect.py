@@ -27,7 +27,7 @@ STRANGE_KINDS: tuple[ObjectKind, ...] = ("can", "box")
 class Detection:
     """An object in frame map: `position` is its centre, `size` its full extent, `yaw` about z; `on` its surface.
 
-    `whole`: all of it was in view, so that the position can be trusted.
+    `whole`: all of it was in view, so that the position can be trusted; `share`: about how much of it was.
     """
 
     label: str
@@ -41,6 +41,7 @@ class Detection:
     distance: float
     known: bool = True
     whole: bool = True
+    share: float = 1.0
 
 
 class Detector(Protocol):
@@ -101,6 +102,7 @@ class ClassicalDetector:
             on=piece.surface.name,
             distance=_distance(view, fit),
             whole=not piece.cut and score < SOUND,
+            share=min(1.0, len(piece.rows) / _pixels(view, position, size)),
         )
 
     def _score(
@@ -144,6 +146,12 @@ def _stances(spec: ObjectSpec) -> list[Vec3]:
     """The extents of a thing as it stands, and of a box that lies on one of its sides."""
     x, y, z = spec.size
     return list(dict.fromkeys([(x, y, z), (y, z, x), (z, x, y)])) if spec.kind == "box" else [spec.size]
+
+
+def _pixels(view: View, position: Vec3, size: Vec3) -> float:
+    """How many pixels a thing of that size covers from the front when nothing hides it."""
+    scale = view.focal[0] / math.dist(position, view.position)
+    return scale * scale * min(size[0], size[1]) * size[2]
 
 
 def _distance(view: View, fit: shapes.Fit) -> float:

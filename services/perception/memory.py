@@ -18,6 +18,7 @@ HELD_RANGE = 0.12
 SURE = 0.55
 TRUST = 4.0
 PARTIAL = 0.1
+POORER = 0.5
 EDGE_PIXELS = 30
 LOOK_RANGE = 2.5
 SEEN_THROUGH = 0.04
@@ -141,10 +142,11 @@ class Memory:
 
 
 def _see(track: Track, d: Detection, now: float) -> None:
-    weight = 1.0 / max(0.2, d.distance) ** 2 * (0.3 if d.confidence < SURE else 1.0) * (1.0 if d.whole else PARTIAL)
+    weight = 1.0 / max(0.2, d.distance) ** 2 * (0.3 if d.confidence < SURE else 1.0)
+    weight *= 1.0 if d.whole else PARTIAL * d.share**2
     shift = math.hypot(d.position[0] - track.position[0], d.position[1] - track.position[1])
-    if shift > MOVED and not d.whole and track.whole:
-        # Seen in part it seems to stand elsewhere; only a whole view moves what was seen whole.
+    if shift > MOVED and not d.whole and (track.whole or weight < POORER * track.best):
+        # Seen in part it seems to stand elsewhere; only a view as good moves what was seen better.
         share = 0.0
     elif shift > MOVED or track.weight == 0.0 or weight > track.weight:
         track.whole = d.whole
@@ -156,7 +158,7 @@ def _see(track: Track, d: Detection, now: float) -> None:
     old, new = np.array(track.position), np.array(d.position)
     x, y, z = (float(v) for v in old + share * (new - old))
     track.position, track.on = (x, y, z), d.on
-    track.yaw = d.yaw if share else track.yaw
+    track.yaw = d.yaw if share and weight >= POORER * track.best else track.yaw
     track.seen_at, track.misses, track.sightings = now, 0, track.sightings + 1
     key = (d.label, d.kind, d.colour)
     # Close looks count more, and old mistakes fade.

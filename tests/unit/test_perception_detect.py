@@ -29,14 +29,14 @@ def world(seed: int) -> tuple[Scene, list[Placement], object, object]:
     return scene, placements, model, mujoco.MjData(model)
 
 
-def view(seed: int, x: float, y: float, theta: float) -> View:
-    """What the head camera of a robot at (x, y, theta) sees."""
+def view(seed: int, x: float, y: float, theta: float, camera: str = "head") -> View:
+    """What a camera of a robot at (x, y, theta) sees."""
     _, _, model, data = world(seed)
     for name, value in zip(robot.JOINT_NAMES[:10], (x, y, theta, *robot.HOME_ARM), strict=True):
         data.qpos[model.joint(name).qposadr[0]] = value  # type: ignore[attr-defined]
     mujoco.mj_kinematics(model, data)
     mujoco.mj_camlight(model, data)
-    number = model.camera("head").id  # type: ignore[attr-defined]
+    number = model.camera(camera).id  # type: ignore[attr-defined]
     rotation = data.cam_xmat[number].reshape(3, 3)  # type: ignore[attr-defined]
     rgb, depth = render(model, data, data.cam_xpos[number], rotation, FOVY, WIDTH, HEIGHT)  # type: ignore[attr-defined]
     focal = HEIGHT / 2 / math.tan(math.radians(FOVY) / 2)
@@ -93,6 +93,17 @@ def test_what_stands_before_the_camera_is_named_and_placed(seed: int) -> None:
 def test_an_empty_floor_and_the_robot_itself_are_nothing() -> None:
     seen = view(0, 0.9, -1.4, math.pi)
     assert [d for d in detect(seen, 0) if not d.on] == []
+
+
+@pytest.mark.parametrize("camera", ["head", "wrist"])
+def test_no_edge_of_the_body_is_left_in_the_picture(camera: str) -> None:
+    seen = view(0, 0.0, 0.0, 0.0, camera)
+    body = Body(robot.robot_mjcf())
+    body.pose(np.array(robot.HOME_ARM), 0.085)
+    points = seen.points.reshape(-1, 3).astype(np.float64)
+    close = np.flatnonzero(np.hypot(points[:, 0], points[:, 1]) < 1.0)
+    own = close[np.min([body._distance(points[close], g) for g in body._solid], axis=0) < 0.002]
+    assert len(own) > 300 and body.mask(seen, (0.0, 0.0, 0.0)).reshape(-1)[own].all()
 
 
 @pytest.mark.parametrize(
