@@ -28,7 +28,7 @@ JOINED_EXTENT = 0.17
 MAX_EXTENT = 0.30
 WALL_MARGIN = 0.035
 FLOOR_MARGIN = 0.10
-RIM, NEARER, HIDDEN = 3, 0.03, 0.06
+RIM, NEARER, HIDDEN, HIDDEN_END = 3, 0.03, 0.06, 0.25
 FLOOR_RANGE = 2.2
 
 
@@ -44,7 +44,7 @@ class Surface:
 class Piece:
     """One thing on a surface: its pixels (rows, columns) and their points (n, 3) in frame map.
 
-    `cut`: the picture's edge or something nearer hides a part of it.
+    `cut`: the picture's edge or something nearer hides a part of it; `ends`: its right and its left end are in view.
     """
 
     surface: Surface
@@ -52,6 +52,7 @@ class Piece:
     columns: NDArray[np.intp]
     points: NDArray[np.float64]
     cut: bool
+    ends: tuple[bool, bool]
 
 
 Box = tuple[float, float, float, float, float]
@@ -104,8 +105,8 @@ def pieces(view: View, scene: Scene, max_range: float, robot: Mask | None = None
     lowest = min([CLEARANCE, *(r.center[2] - PLANE_SEARCH for r in near.receptacles)])
     depth = view.depth.reshape(-1)
     usable = (depth > 0.05) & (depth < max_range) & (z > lowest) & (z < highest)
-    if robot is not None:
-        usable &= ~robot.reshape(-1)
+    own = robot if robot is not None else np.zeros(view.shape, bool)
+    usable &= ~own.reshape(-1)
     pixels = np.flatnonzero(usable)
     cloud = _Cloud(pixels, x[pixels], y[pixels], z[pixels])
     found: list[Piece] = []
@@ -113,9 +114,9 @@ def pieces(view: View, scene: Scene, max_range: float, robot: Mask | None = None
         low, high = r.center[2] - PLANE_SEARCH, r.center[2] + MAX_HEIGHT
         level = cloud.kept((cloud.z > low) & (cloud.z < high))
         over = level.kept(level.inside(_box_of(r, -0.012)))
-        found += _on(view, Surface(r.name, r.center[2]), over, near)
+        found += _on(view, Surface(r.name, r.center[2]), over, near, own)
     floor = cloud.kept((cloud.z > CLEARANCE) & (cloud.z < MAX_HEIGHT) & (depth[pixels] < FLOOR_RANGE))
-    return found + _on(view, Surface("", 0.0), floor.outside(near.boxes), near)
+    return found + _on(view, Surface("", 0.0), floor.outside(near.boxes), near, own)
 
 
 def _box_of(r: Receptacle, margin: float) -> Box:
@@ -147,7 +148,7 @@ class _Nearby:
                 self.boxes.append(box)
 
 
-def _on(view: View, expected: Surface, cloud: _Cloud, near: _Nearby) -> list[Piece]:
+def _on(view: View, expected: Surface, cloud: _Cloud, near: _Nearby, own: Mask) -> list[Piece]:
     """Pieces above one surface, its height measured where enough of it is visible."""
     z = cloud.z
     level = z[np.abs(z - expected.height) < PLANE_SEARCH] if expected.name else z[:0]
@@ -172,7 +173,7 @@ def _on(view: View, expected: Surface, cloud: _Cloud, near: _Nearby) -> list[Pie
         box = boxes[n]
         part_rows, part_columns = np.nonzero(labels[box] == n + 1)
         parts.append((part_rows + box[0].start + top, part_columns + box[1].start + left))
-    return [p for p in _join(view, surface, parts) if len(p.rows) >= MIN_PIXELS and _is_thing(p)]
+    return [p for p in _join(view, surface, parts, own) if len(p.rows) >= MIN_PIXELS and _is_thing(p)]
 
 
 def _is_thing(piece: Piece) -> bool:
@@ -197,7 +198,9 @@ def _cut(mask: Mask, depth: NDArray[np.float32]) -> Mask:
     return kept
 
 
-def _join(view: View, surface: Surface, parts: list[tuple[NDArray[np.intp], NDArray[np.intp]]]) -> list[Piece]:
+def _join(
+    view: View, surface: Surface, parts: list[tuple[NDArray[np.intp], NDArray[np.intp]]], own: Mask
+) -> list[Piece]:
     """Parts of one thing, such as the two sides of a mug's rim or a bottle's cap, stand in the same spot."""
     clouds = [view.points[rows, columns].astype(np.float64) for rows, columns in parts]
     low = np.array([c[:, :2].min(axis=0) for c in clouds])
@@ -219,14 +222,15 @@ def _join(view: View, surface: Surface, parts: list[tuple[NDArray[np.intp], NDAr
         members = np.flatnonzero(groups == group)
         rows = np.concatenate([parts[k][0] for k in members])
         columns = np.concatenate([parts[k][1] for k in members])
-        cut = bool(rows.min() <= 1 or columns.min() <= 1 or rows.max() >= h - 2 or columns.max() >= w - 2)
-        cut = cut or _is_hidden(view, rows, columns)
-        found.append(Piece(surface, rows, columns, np.concatenate([clouds[k] for k in members]), cut))
+        covered = _covered(view, rows, columns, own)
+        ends = not covered[2] and int(columns.max()) < w - 2, not covered[1] and int(columns.min()) > 1
+        cut = bool(covered[0] or rows.min() <= 1 or rows.max() >= h - 2 or not all(ends))
+        found.append(Piece(surface, rows, columns, np.concatenate([clouds[k] for k in members]), cut, ends))
     return found
 
 
-def _is_hidden(view: View, rows: NDArray[np.intp], columns: NDArray[np.intp]) -> bool:
-    """True when something nearer, such as the robot's own arm, covers a part of the piece."""
+def _covered(view: View, rows: NDArray[np.intp], columns: NDArray[np.intp], own: Mask) -> tuple[bool, bool, bool]:
+    """Whether something nearer, or the robot itself (`own`), covers a part of the piece, its left, its right end."""
     top, left = max(0, int(rows.min()) - RIM), max(0, int(columns.min()) - RIM)
     window = (slice(top, int(rows.max()) + RIM + 1), slice(left, int(columns.max()) + RIM + 1))
     depth = view.depth[window]
@@ -234,8 +238,17 @@ def _is_hidden(view: View, rows: NDArray[np.intp], columns: NDArray[np.intp]) ->
     mask[rows - top, columns - left] = True
     rim = ndimage.binary_dilation(mask, iterations=RIM) & ~mask
     nearest = float(view.depth[rows, columns].min())
-    nearer = rim & (depth > 0) & (depth < nearest - NEARER)
-    return bool(np.count_nonzero(nearer) > HIDDEN * np.count_nonzero(rim))
+    nearer = rim & (own[window] | (depth > 0) & (depth < nearest - NEARER))
+    first, last = int(columns.min()) - left, int(columns.max()) - left
+
+    def much(part: slice, share: float) -> bool:
+        return bool(np.count_nonzero(nearer[:, part]) > share * np.count_nonzero(rim[:, part]))
+
+    return (
+        much(slice(None), HIDDEN),
+        much(slice(0, first + RIM), HIDDEN_END),
+        much(slice(last + 1 - RIM, None), HIDDEN_END),
+    )
 
 
 def _gap(a: NDArray[np.float64], b: NDArray[np.float64]) -> float:
