@@ -2,7 +2,6 @@
 
 import sys
 from functools import partial
-from math import degrees
 from typing import Any
 
 from common import messages as m
@@ -20,18 +19,18 @@ from services.dashboard.config import DashboardConfig
 from services.dashboard.door import PageError
 from services.dashboard.drawing import Drawing, draw
 from services.dashboard.events import Asked, Click, Sound, Words
-from services.dashboard.history import Curves, Jitter, Reasons, Services, Transcript
+from services.dashboard.history import Reasons, Services, Transcript
 from services.dashboard.layers import Layers
 from services.dashboard.panels import Panels
 from services.dashboard.picking import pick
-from services.dashboard.tracking import FRESH, arm_error, off_path
+from services.dashboard.plots import Plots
+from services.dashboard.tracking import FRESH, off_path
 from services.dashboard.view import View
 from services.dashboard.web import Web
 
 HEALTH = Topic(key=topics.HEALTH_KEY.format(name="*"), type=m.Health, writers=("*",), recover=False)
 SLOW, PLOT = 0.25, 0.5
 GRABBING = ("reach", "aim", "grasp")
-OFF_PATH, OFF_ARM = "base [cm]", "arm [deg]"
 
 
 class DashboardService:
@@ -61,27 +60,20 @@ class DashboardService:
         self._view, self._layers = View(self._web.viser), Layers(self._web.viser)
         self._panels = Panels(self._web.viser, config.camera_width, config.camera_height)
         self._cameras = Cameras(config, io, self._panels)
-        self._transcript, self._services, self._jitter = Transcript(), Services(), Jitter()
-        self._reasons = Reasons()
+        self._transcript, self._services, self._reasons = Transcript(), Services(), Reasons()
         self._care = Care(io, config.supervisor, lambda words: self._transcript.add(self._t, "robot", words))
         self._commands = Commands(io, self._transcript)
-        self._speed, self._force = Curves(("base",)), Curves(("gripper",))
-        self._late, self._off = Curves(("late",)), Curves((OFF_PATH, OFF_ARM))
-        for curves, title, unit, top in (
-            (self._speed, "base speed", "m/s", 0.6),
-            (self._off, "tracking error", "cm, deg", 5.0),
-            (self._force, "gripper force", "N", 50.0),
-            (self._late, "loop jitter", "ms", 60.0),
-        ):
-            self._panels.plot(curves, title, unit, top)
+        self._plots = Plots(self._panels)
         self._mjcf = ""
         self._drawn: Job[Drawing] | None = None
         self._base: Pose2 = (0.0, 0.0, 0.0)
         self._t = 0.0
-        self._moved = self._slow_at = self._plot_at = float("-inf")
+        self._move_at = self._slow_at = self._plot_at = float("-inf")
         self._way: list[tuple[float, float]] = []
         self._seen_grasps: tuple[object, bool] = (None, False)
         self._told: object = None
+        self._world: m.WorldObjects | None = None
+        self._ghosts_at = float("-inf")
         self._tree: m.TreeNode | None = None
         io.publish(topics.PAGE_STATUS, m.PageStatus(url=self._web.url))
         io.log.info("page", url=self._web.url)
@@ -94,10 +86,18 @@ class DashboardService:
         self._redraw_model(now)
         watched = self._web.watched
         self._care.step(now, watched)
-        if now - self._moved >= (0.9 / self._config.frame_rate if watched else 1.0):
-            self._moved = now
+        if watched or now >= self._move_at:
+            # All that is new goes out at once: each message of its own would wake the web server and every visitor.
             with self._web.viser.atomic():
-                self._move(now)
+                self._draw(now, watched)
+
+    def _draw(self, now: float, watched: bool) -> None:
+        period = 1 / self._config.frame_rate if watched else 1.0
+        self._move_at = min(self._move_at, now + period)
+        if now >= self._move_at:
+            # From when it was due, not from now: steps that do not fit the period must not make frames rarer.
+            self._move_at = max(self._move_at + period, now)
+            self._move(now)
         if now - self._slow_at >= (SLOW if watched else 1.0):
             self._slow_at = now
             self._refresh(now)
@@ -113,16 +113,8 @@ class DashboardService:
         joints = io.latest(topics.JOINT_STATES)
         if joints is not None and joints.t != t:
             self._t = t = joints.t
-            velocity = dict(zip(joints.name, joints.velocity, strict=False))
-            effort = dict(zip(joints.name, joints.effort, strict=False))
-            speed = (velocity.get("base_x", 0.0) ** 2 + velocity.get("base_y", 0.0) ** 2) ** 0.5
-            self._speed.add(now, base=speed)
-            self._force.add(now, gripper=abs(effort.get("gripper", 0.0)))
-            self._late.add(now, late=1000 * self._jitter.late(t, now))
             command = io.latest(topics.ARM_COMMAND) if io.age(topics.ARM_COMMAND, now) < FRESH else None
-            angles = dict(zip(joints.name, joints.position, strict=False))
-            off = {OFF_PATH: 100 * self._off_path(), OFF_ARM: degrees(arm_error(command, angles))}
-            self._off.add(now, **off)
+            self._plots.take(now, joints, command, self._off_path())
         for goal in io.drain(topics.SPEECH_GOAL):
             self._transcript.goal(t, goal)
         for result in io.drain(topics.SPEECH_RESULT):
@@ -195,7 +187,9 @@ class DashboardService:
             self._way = path.points
             view.path(path.points)
         self._overlay()
-        if (world := io.latest(topics.WORLD_OBJECTS)) is not None:
+        world = io.latest(topics.WORLD_OBJECTS)
+        if world is not None and (world is not self._world or now >= self._ghosts_at):
+            self._world, self._ghosts_at = world, now + SLOW
             view.objects(world.objects, self._t, self._config.ghost_after, panels.labels)
 
     def _overlay(self) -> None:

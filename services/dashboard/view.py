@@ -211,8 +211,3 @@ def _rgb(mesh: Mesh) -> tuple[int, int, int]:
     colours, counts = np.unique(np.round(mesh.colours * 255).astype(int), axis=0, return_counts=True)
     r, g, b = (int(v) for v in colours[int(np.argmax(counts))])
     return r, g, b
-
-
-def base_in_map(pose: m.PoseEstimate | None, odometry: Pose2 | None) -> Pose2 | None:
-    """Where to draw the base: navigation's estimate, or odometry while there is none."""
-    return (pose.x, pose.y, pose.theta) if pose is not None else odometry
