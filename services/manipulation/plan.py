@@ -274,9 +274,8 @@ class Planner:
             return "no path"
         tilted = abs(approach[2]) < 0.85
         away = -0.10 * target.rotation[:, 2] if tilted else np.array([0.0, 0.0, 0.12])
-        back = self.straight(down[-1], target, target.moved(away))
-        if back is None:
-            return "no way back"
+        # Where the arm is stretched already it leaves the way it came.
+        back = self.straight(down[-1], target, target.moved(away)) or [*down[-2::-1], high]
         self._surround(around, back[-1])
         home = connect(arm, back[-1], arm.nearest_turn(arm.home, back[-1]), rng)
         if home is None:
