@@ -12,7 +12,6 @@ from services.manipulation.robot import Failure, Robot, Steps, go_home, planner_
 from services.manipulation.surroundings import obstacles, target_of, turned
 from services.manipulation.verify import holds, judge
 
-
 MISTAKEN = "MISTAKEN"
 FLAT_SIDED = ("box", "block")
 
