@@ -10,6 +10,7 @@ from common import messages as m
 from common import topics
 from common.memory import MemoryBus, MemoryIo
 from common.scene import load_scene
+from evaluation.stack import Stack
 from services.manipulation.arm_model import ArmModel, Obstacle, Pose
 from services.manipulation.config import ManipulationConfig
 from services.manipulation.grasp import Target, approach_rotation, candidates
@@ -17,6 +18,7 @@ from services.manipulation.ik import InverseKinematics, seeds
 from services.manipulation.service import ManipulationService
 from services.manipulation.trajectory import connect, free_line, timed
 from services.manipulation.verify import Grip, holds, judge
+from services.perception.config import PerceptionConfig
 from services.sim.robot import HOME_ARM, JOINT_NAMES, robot_mjcf
 
 SCENE = load_scene("minimal")
@@ -273,10 +275,47 @@ def test_friction_carries_an_object_from_the_table_to_the_tray(item: str) -> Non
     assert robot.truth()["holding"] is None
 
 
-def wait(robot: Robot, topic: topics.Topic[m.Message], goal_id: str, patience: float) -> dict[str, str]:
+def wait(robot: Stack, topic: topics.Topic[m.Message], goal_id: str, patience: float) -> dict[str, str]:
     for _ in range(round(patience * 10)):
         robot.advance(0.1)
         status: dict[str, str] = msgspec.json.decode(robot.bus.last[topic.key])
         if status["goal_id"] == goal_id and status["status"] in ("arrived", "done", "failed"):
             return status
     raise AssertionError(f"{goal_id} did not end within {patience:.0f} s of robot time")
+
+
+class Mistaken:
+    """A perception that sees a thing turned by 45 degrees until the wrist camera is in front of it."""
+
+    NAME, HZ, CONFIG = "perception", 10, PerceptionConfig
+    READS, WRITES = (topics.MANIPULATION_STATUS,), (topics.WORLD_OBJECTS,)
+    truth: m.WorldObject
+
+    def __init__(self, config: PerceptionConfig, io: MemoryIo) -> None:
+        self._io = io
+
+    def step(self, now: float) -> None:
+        status = self._io.latest(topics.MANIPULATION_STATUS)
+        w, x, y, z = self.truth.orientation
+        turn = 0.0 if status is not None and status.phase not in ("", "start", "look", "reach") else math.pi / 8
+        seen = (w * math.cos(turn) - z * math.sin(turn), x, y, z * math.cos(turn) + w * math.sin(turn))
+        found = msgspec.structs.replace(self.truth, orientation=seen, seen_at=now)
+        self._io.publish(topics.WORLD_OBJECTS, m.WorldObjects(t=now, objects=[found], source="perception"))
+
+
+def test_a_grasp_aimed_at_the_wrong_side_is_planned_anew_from_in_front_of_the_object() -> None:
+    stack = Stack("minimal", seed=4, without=("planner", "brain", "speech", "camera", "perception"))
+    block = stack.truth()["objects"]["yellow block"]
+    Mistaken.truth = m.WorldObject(
+        label="yellow block", kind="block", colour="yellow", position=tuple(block["position"]),
+        orientation=tuple(block["quaternion"]), size=(0.05, 0.05, 0.05), on="table", confidence=1.0, id="object-1",
+    )  # fmt: skip
+    stack.join(Mistaken)
+    stack.advance(0.5)
+    stack.bus.put(topics.NAVIGATION_GOAL, b'{"goal": "find yellow block", "id": "t.1"}')
+    wait(stack, topics.NAVIGATION_STATUS, "t.1", 30.0)
+    plans = stack.bus.tap(topics.GRASPS)
+    stack.bus.put(topics.MANIPULATION_GOAL, b'{"goal": "grab", "id": "t.2"}')
+    grabbed = wait(stack, topics.MANIPULATION_STATUS, "t.2", 40.0)
+    assert grabbed["status"] == "done" and stack.truth()["holding"] == "yellow block", grabbed
+    assert len(plans) == 2, "planned once for what the head camera saw, once for what the wrist camera did"
