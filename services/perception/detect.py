@@ -120,13 +120,13 @@ class ClassicalDetector:
 
     def _strange(self, view: View, piece: Piece, rgb: Array, height: float) -> Detection | None:
         """A thing that is not of the household, by its measured size."""
+        if piece.cut or len(piece.rows) < 2 * segment.MIN_PIXELS:
+            return None
         low, high = piece.points[:, :2].min(axis=0), piece.points[:, :2].max(axis=0)
         width = float(np.clip(np.max(high - low), 0.02, 0.25))
         size = (width, width, max(0.02, height))
         fits = [shapes.fit(k, size, piece.points, piece.surface.height, view.position) for k in STRANGE_KINDS]
         fit = min(fits, key=lambda f: f.residual)
-        if piece.cut or len(piece.rows) < 2 * segment.MIN_PIXELS:
-            return None
         word = colour.name(rgb)
         return Detection(
             label=f"{word} thing",

@@ -5,14 +5,14 @@ height is known, so that two or three numbers are sought; the residual says how 
 """
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import least_squares
 
 from common.scene import ObjectKind, Vec3
+from services.perception.solve import solve
 
 Array = NDArray[np.float64]
 Segment = tuple[tuple[float, float], tuple[float, float]]
@@ -21,7 +21,9 @@ ROBUST, STRAY = 0.004, 0.007
 MUG_WALL, BOWL_WALL, BOWL_LEAN = 0.004, 0.006, 0.55
 NECK, NECK_FROM = 0.014, 0.72
 EDGE_WEIGHT = 3.0
-_CORNERS = np.array([(1, 1), (1, -1), (-1, 1), (-1, -1)])
+TRIES = 15
+TINY = 1e-12
+_CORNERS = ((1, 1), (1, -1), (-1, 1), (-1, -1))
 
 
 @dataclass(frozen=True)
@@ -55,43 +57,79 @@ def profile(kind: ObjectKind, size: Vec3) -> list[Segment]:
     return [((r, 0), (r, h)), ((r, h), (0, h))]
 
 
-def _from_segments(rho: Array, z: Array, segments: Sequence[Segment]) -> Array:
-    best = np.full(len(rho), np.inf)
-    for (r0, z0), (r1, z1) in segments:
-        dr, dz = r1 - r0, z1 - z0
-        t = np.clip(((rho - r0) * dr + (z - z0) * dz) / (dr * dr + dz * dz), 0.0, 1.0)
-        best = np.minimum(best, np.hypot(rho - r0 - t * dr, z - z0 - t * dz))
-    return best
+@cache
+def _outline(kind: ObjectKind, size: Vec3) -> Array:
+    """Starts and directions (radius, height) of the outline's segments (4, k, 1)."""
+    ends = np.array(profile(kind, size)).transpose(1, 2, 0)[..., None]
+    return np.concatenate([ends[0], ends[1] - ends[0]])
 
 
-def _from_box(local: Array, z: Array, size: Vec3) -> Array:
-    outside = np.abs(np.stack([local[:, 0], local[:, 1], z - size[2] / 2], axis=1)) - np.array(size) / 2
-    distance = np.linalg.norm(np.maximum(outside, 0.0), axis=1) + np.minimum(outside.max(axis=1), 0.0)
-    return np.asarray(np.abs(distance))
+def _from_outline(rho: Array, z: Array, outline: Array) -> tuple[Array, Array]:
+    """Distance (n,) of points at radius `rho` and height `z`, and how it grows with the radius."""
+    r0, z0, dr, dz = outline
+    across, up = rho - r0, z - z0
+    t = np.minimum(np.maximum((across * dr + up * dz) / (dr * dr + dz * dz), 0.0), 1.0)
+    across, up = across - t * dr, up - t * dz
+    squared = across * across + up * up
+    nearest = squared.argmin(axis=0), np.arange(len(rho))
+    distance = np.sqrt(squared[nearest])
+    return distance, across[nearest] / np.maximum(distance, TINY)
+
+
+def _from_box(local: Array, size: Vec3) -> tuple[Array, Array]:
+    """Distance (n,) of points (3, n) in the box's frame from its surface, and its gradient (3, n)."""
+    outside = np.abs(local) - np.array(size)[:, None] / 2
+    past, deep = np.maximum(outside, 0.0), outside.max(axis=0)
+    far = np.sqrt((past * past).sum(axis=0))
+    # Out of the box it grows away from the nearest point, within it towards the middle.
+    gradient = np.where(far > 0, past / np.maximum(far, TINY), np.where(outside == deep, -1.0, 0.0)) * np.sign(local)
+    return np.where(far > 0, far, -deep), gradient
+
+
+def _apart(kind: ObjectKind, size: Vec3, points: Array, floor: float, p: Array) -> tuple[Array, Array]:
+    """Distance (n,) of points (n, 3) from a shape that stands at p = (x, y, yaw) or (x, y), and its slopes (n, k)."""
+    dx, dy, z = points[:, 0] - p[0], points[:, 1] - p[1], points[:, 2] - floor
+    if kind in ("block", "box"):
+        c, s = math.cos(p[2]), math.sin(p[2])
+        x, y = c * dx + s * dy, c * dy - s * dx
+        distance, (gx, gy, _) = _from_box(np.stack([x, y, z - size[2] / 2]), size)
+        return distance, np.stack([s * gy - c * gx, -s * gx - c * gy, gx * y - gy * x], axis=1)
+    if kind in ("apple", "ball"):
+        r = size[0] / 2
+        far = np.sqrt(dx * dx + dy * dy + (z - r) ** 2)
+        distance, growth = np.abs(far - r), np.sign(far - r) / np.maximum(far, TINY)
+    else:
+        rho = np.hypot(dx, dy)
+        distance, growth = _from_outline(rho, z, _outline(kind, size))
+        growth = growth / np.maximum(rho, TINY)
+    return distance, np.stack([-dx * growth, -dy * growth], axis=1)
 
 
 def distances(kind: ObjectKind, size: Vec3, points: Array, floor: float, x: float, y: float, yaw: float) -> Array:
     """Distance [m] of each point (n, 3) from the surface of a shape that stands at (x, y) on height `floor`."""
-    dx, dy, z = points[:, 0] - x, points[:, 1] - y, points[:, 2] - floor
-    if kind in ("block", "box"):
-        c, s = math.cos(yaw), math.sin(yaw)
-        return _from_box(np.stack([c * dx + s * dy, c * dy - s * dx], axis=1), z, size)
-    if kind in ("apple", "ball"):
-        r = size[0] / 2
-        return np.abs(np.sqrt(dx * dx + dy * dy + (z - r) ** 2) - r)
-    return _from_segments(np.hypot(dx, dy), z, profile(kind, size))
+    return _apart(kind, size, points, floor, np.array([x, y, yaw]))[0]
 
 
-def _bearings(points: Array, camera: Array, ahead: float) -> Array:
+def _span(points: Array, camera: Array, ahead: float) -> Array:
     """The leftmost and the rightmost of points (n, 2), seen from `camera`, about the bearing `ahead` [rad]."""
     bearings = np.arctan2(points[:, 1] - camera[1], points[:, 0] - camera[0]) - ahead
     bearings = np.remainder(bearings + math.pi, 2 * math.pi) - math.pi
     return np.array([bearings.min(), bearings.max()])
 
 
-def _corners(size: Vec3, x: float, y: float, yaw: float) -> Array:
-    c, s = math.cos(yaw), math.sin(yaw)
-    return np.asarray(_CORNERS * np.array(size[:2]) / 2 @ np.array([[c, s], [-s, c]]) + np.array([x, y]))
+def _ends(size: Vec3, p: Array, camera: Array, ahead: float) -> tuple[Array, Array]:
+    """Bearings (2,) of the leftmost and the rightmost corner of a box at p = (x, y, yaw), and their slopes (2, 3)."""
+    c, s = math.cos(p[2]), math.sin(p[2])
+    x, y = float(p[0] - camera[0]), float(p[1] - camera[1])
+    corners = []
+    for a, b in _CORNERS:
+        dx, dy = (c * a * size[0] - s * b * size[1]) / 2, (s * a * size[0] + c * b * size[1]) / 2
+        u, v = x + dx, y + dy
+        squared = u * u + v * v
+        bearing = math.remainder(math.atan2(v, u) - ahead, 2 * math.pi)
+        corners.append((bearing, -v / squared, u / squared, (dx * u + dy * v) / squared))
+    outer = np.array([min(corners), max(corners)])
+    return outer[:, 0], outer[:, 1:]
 
 
 def fit(kind: ObjectKind, size: Vec3, points: Array, floor: float, camera: Array, whole: bool = True) -> Fit:
@@ -108,17 +146,17 @@ def fit(kind: ObjectKind, size: Vec3, points: Array, floor: float, camera: Array
     # A box of unequal sides also ends where its points do, or its far side would be free.
     ends = whole and boxy and size[0] != size[1]
     ahead, scale = math.atan2(away[1], away[0]), EDGE_WEIGHT * float(np.linalg.norm(middle - camera[:2]))
-    edges = _bearings(points, camera, ahead) if ends else None
+    edges = _span(points, camera, ahead) if ends else None
 
-    def off(p: Array, points: Array) -> Array:
-        apart = distances(kind, size, points, floor, p[0], p[1], p[2] if boxy else 0.0)
+    def off(p: Array, points: Array) -> tuple[Array, Array]:
+        apart, slopes = _apart(kind, size, points, floor, p)
         if edges is None:
-            return apart
-        past = _bearings(_corners(size, p[0], p[1], p[2]), camera, ahead) - edges
-        return np.append(apart, scale * past)
+            return apart, slopes
+        corners, turns = _ends(size, p, camera, ahead)
+        return np.append(apart, scale * (corners - edges)), np.concatenate([slopes, scale * turns])
 
     def badness(p: Array) -> float:
-        apart = np.minimum(np.abs(off(p, used)), 0.02)
+        apart = np.minimum(np.abs(off(p, used)[0]), 0.02)
         return float(apart[: len(used)].mean() + apart[len(used) :].sum() / EDGE_WEIGHT)
 
     if boxy:
@@ -127,16 +165,13 @@ def fit(kind: ObjectKind, size: Vec3, points: Array, floor: float, camera: Array
         starts = sorted((np.array([*middle + away * 0.4 * deep, yaw]) for yaw, deep in turned), key=badness)[:2]
     else:
         starts = [middle + away * 0.25 * size[0]]
-    best = min(
-        (least_squares(off, p, args=(used,), loss="soft_l1", f_scale=ROBUST, max_nfev=15) for p in starts),
-        key=lambda found: float(found.cost),
-    )
+    best = min((solve(lambda p: off(p, used), p, ROBUST, TRIES) for p in starts), key=lambda found: found[1])[0]
     # Once more without what the shape does not have, such as a mug's handle.
-    own = used[off(best.x, used)[: len(used)] < STRAY]
+    own = used[off(best, used)[0][: len(used)] < STRAY]
     if len(own) > len(used) // 2:
-        best = least_squares(off, best.x, args=(own,), loss="soft_l1", f_scale=ROBUST / 2, max_nfev=10)
-    x, y = float(best.x[0]), float(best.x[1])
-    yaw = float(best.x[2]) if boxy else 0.0
+        best = solve(lambda p: off(p, own), best, ROBUST / 2, TRIES)[0]
+    x, y = float(best[0]), float(best[1])
+    yaw = float(best[2]) if boxy else 0.0
     left = np.minimum(distances(kind, size, used, floor, x, y, yaw), 0.02)
     return Fit(x, y, math.remainder(yaw, math.pi), float(left.mean()))
 

@@ -1,0 +1,71 @@
+"""The solver against SciPy's, and the slopes of the shapes against differences."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.optimize import least_squares
+
+from common.geometry import Array
+from common.scene import ObjectKind, Vec3
+from services.perception import shapes
+from services.perception.solve import solve
+
+SIZES: dict[ObjectKind, Vec3] = {
+    "mug": (0.074, 0.074, 0.095), "bowl": (0.14, 0.14, 0.06), "bottle": (0.066, 0.066, 0.22),
+    "can": (0.066, 0.066, 0.115), "ball": (0.066, 0.066, 0.066), "apple": (0.072, 0.072, 0.072),
+    "block": (0.05, 0.05, 0.05), "box": (0.06, 0.08, 0.13),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_circle_among_strays_is_where_scipy_finds_it(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    angle = rng.uniform(0, 2.5, 120)
+    ring = np.stack([0.4 + 0.05 * np.cos(angle), -0.2 + 0.05 * np.sin(angle)], axis=1) + rng.normal(0, 0.001, (120, 2))
+    ring[:15] += rng.uniform(-0.03, 0.03, (15, 2))
+
+    def circle(p: Array) -> tuple[Array, Array]:
+        apart = ring - p[:2]
+        far = np.linalg.norm(apart, axis=1)
+        return far - p[2], np.column_stack([-apart / far[:, None], -np.ones(len(far))])
+
+    start = np.array([*ring.mean(axis=0), 0.03])
+    found, cost = solve(circle, start, 0.004, 40)
+    theirs = least_squares(lambda p: circle(p)[0], start, loss="soft_l1", f_scale=0.004)
+    assert np.abs(found - theirs.x).max() < 2e-5
+    assert cost == pytest.approx(theirs.cost, rel=1e-4)
+    assert np.hypot(found[0] - 0.4, found[1] + 0.2) < 0.002
+
+
+def test_what_no_residual_depends_on_stays_where_it_was() -> None:
+    def flat(p: Array) -> tuple[Array, Array]:
+        return np.array([p[0] - 2.0, p[0] - 2.0]), np.array([[1.0, 0.0], [1.0, 0.0]])
+
+    found, _ = solve(flat, np.array([1.0, 5.0]), 1.0, 40)
+    assert found == pytest.approx([2.0, 5.0], abs=1e-5)
+
+
+@pytest.mark.parametrize("kind", SIZES)
+def test_slopes_of_a_shape_are_the_differences_of_its_distances(kind: ObjectKind) -> None:
+    rng = np.random.default_rng(2)
+    size, p = SIZES[kind], np.array([0.3, -0.2, 0.4])[: 3 if kind in ("block", "box") else 2]
+    cloud = rng.uniform(-0.09, 0.09, (400, 3)) + np.array([0.3, -0.2, 0.7 + size[2] / 2])
+    apart, slopes = shapes._apart(kind, size, cloud, 0.7, p)
+    near = apart > 1e-4  # on the surface itself distances have a kink
+    for k in range(len(p)):
+        step = np.eye(len(p))[k] * 1e-7
+        ahead, behind = (shapes._apart(kind, size, cloud, 0.7, q)[0] for q in (p + step, p - step))
+        wrong = np.abs((ahead - behind) / 2e-7 - slopes[:, k])[near] > 1e-4
+        assert np.count_nonzero(wrong) <= 2, "edges, where two faces are equally near"
+
+
+def test_ends_of_a_box_turn_with_it() -> None:
+    size, camera, p = (0.06, 0.08, 0.13), np.array([-0.8, 0.1, 1.3]), np.array([0.3, -0.2, 0.4])
+    bearings, slopes = shapes._ends(size, p, camera, -0.2)
+    assert bearings[0] < bearings[1]
+    wide = math.hypot(*size[:2]) / math.hypot(1.1, 0.3)
+    assert 0.06 / 1.2 < bearings[1] - bearings[0] < wide
+    for k in range(3):
+        ahead = shapes._ends(size, p + np.eye(3)[k] * 1e-6, camera, -0.2)[0]
+        assert (ahead - bearings) / 1e-6 == pytest.approx(slopes[:, k], abs=1e-3)
