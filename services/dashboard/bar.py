@@ -9,10 +9,11 @@ STOPPED = ("stopped", "the robot was stopped")
 
 
 def under_way(state: m.BrainState | None) -> bool:
-    """A mission is being worked on."""
-    if state is None or not state.command:
+    """A mission is being worked on; one that was gone on with has the name of the one that was cut short."""
+    if state is None or not state.mission_id:
         return False
-    return state.mission_id not in ("", state.last.id if state.last is not None else "")
+    ended = state.state in ("COMPLETED", "ERROR")
+    return not (ended and state.last is not None and state.last.id == state.mission_id)
 
 
 def left_off(state: m.BrainState | None) -> str:

@@ -78,7 +78,7 @@ def mission(
         if status is not None:
             words = (status.status, getattr(status, "phase", ""), status.code, status.detail)
             rows.append(f"{name}: {escape(' '.join(w for w in words if w))}")
-    if state.last is not None:
+    if state.last is not None and not (under_way(state) and state.last.id == state.mission_id):
         colour = GOOD if state.last.outcome == "delivered" else BAD
         text = f"{state.last.command}: {state.last.outcome}"
         reason = state.last.reason

@@ -6,6 +6,7 @@ from typing import Any
 from common import codec, topics
 from common import messages as m
 from common.recording import Row
+from services.dashboard.bar import under_way
 
 TOLD = {
     t.key
@@ -62,15 +63,20 @@ def missions(rows: Iterable[Row]) -> list[Record]:
 
 def _follow(found: dict[str, Record], at: Record | None, state: m.BrainState, t: float) -> Record | None:
     """The mission that goes on after this state; its end is noted."""
-    last = state.last
-    if last is not None and last.id in found and found[last.id]["outcome"] is None:
+    last, name, on = state.last, state.mission_id, under_way(state)
+    gone_on = on and last is not None and last.id == name
+    if last is not None and last.id in found and found[last.id]["outcome"] is None and not gone_on:
         record = found[last.id]
         record |= {"outcome": last.outcome, "reason": last.reason, "ended": t, "command": last.command}
-    name = state.mission_id
-    if not name or (name in found and found[name]["outcome"] is not None):
+        if last.outcome == "cancelled":
+            # It may be gone on with; what lies between is none of it.
+            record["entries"].append(_entry(t, state.state, last.outcome, last.reason, "note"))
+    if on and name in found:
+        found[name] |= {"outcome": None, "reason": "", "ended": 0.0}
+    elif not name or name in found:
         # What is said of a mission just after it ended belongs to it.
         return at if at is not None and state.state in ("COMPLETED", "ERROR") else None
-    if name not in found and last is not None and last.id == name:
+    elif last is not None and last.id == name and not on:
         return None
     if name not in found:
         found[name] = {

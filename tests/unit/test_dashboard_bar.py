@@ -7,6 +7,7 @@ import pytest
 
 from common import messages as m
 from services.brain.mission import Failure
+from services.dashboard import markup
 from services.dashboard.bar import bar, left_off, under_way
 
 CANCELLED = m.MissionOutcome(id="m-1", command="bring me the mug", outcome="cancelled", reason="stopped: stop button")
@@ -23,6 +24,14 @@ def test_a_mission_under_way_hides_how_the_last_one_ended() -> None:
     assert shown["mission"] == {"command": "fetch the can", "step": "find can", "seconds": 17}
     assert shown["last"] is None
     assert shown["left"] == ""
+
+
+def test_a_mission_that_was_gone_on_with_is_under_way_again() -> None:
+    again = state("GROUNDING", CANCELLED.id, CANCELLED, step="look for can")
+    shown = bar(again, None, 40.0)
+    assert shown["mission"] == {"command": "fetch the can", "step": "look for can", "seconds": 30}
+    assert (shown["last"], shown["left"]) == (None, "")
+    assert "cancelled" not in markup.mission(again, 40.0, [], None, None)
 
 
 @pytest.mark.parametrize("last", [CANCELLED, DELIVERED])

@@ -15,7 +15,7 @@ from common import codec, topics
 from common import messages as m
 from common.lockstep import DT
 from common.memory import MemoryBus
-from common.recording import Recorder, Recording
+from common.recording import Recorder, Recording, Row
 from common.scene import load_scene
 from common.topics import Topic
 from services.dashboard import story, timeline
@@ -78,6 +78,29 @@ def test_missions_are_told_from_the_topics_alone(recording: Recording) -> None:
         ("note", "said “here I come”"),
         ("failed", "base: BLOCKED"),
     ]
+
+
+def test_a_mission_that_was_stopped_and_gone_on_with_is_one_mission() -> None:
+    def row(t: float, name: Any, mission: str = "", last: m.MissionOutcome | None = None) -> Row:
+        state = m.BrainState(state=name, mission_id=mission, command="go" if mission else "", started=5.0, last=last)
+        return Row(topics.BRAIN_STATE.key, codec.encode(topics.BRAIN_STATE, state), t, 1000.0 + t)
+
+    cut = m.MissionOutcome(id="m-1", command="go", outcome="cancelled", reason="stopped")
+    done = m.MissionOutcome(id="m-1", command="go", outcome="delivered")
+    rows = [row(5, "NAVIGATING", "m-1"), row(8, "IDLE", last=cut)]
+    (stopped,) = story.missions(rows)
+    assert (stopped["outcome"], stopped["reason"], stopped["ended"]) == ("cancelled", "stopped", 8.0)
+    rows.append(row(20, "NAVIGATING", "m-1", cut))
+    (going,) = story.missions(rows)
+    assert (going["outcome"], going["reason"]) == (None, "")
+    rows += [row(30, "COMPLETED", "m-1", done), row(31, "WAITING", last=done)]
+    (record,) = story.missions(rows)
+    assert (record["outcome"], record["ended"]) == ("delivered", 30.0)
+    bands = timeline.spans(record["entries"], 5.0, 30.0)
+    assert bands[:3] == [("NAVIGATING", 0.0, 3.0), ("IDLE", 3.0, 15.0), ("NAVIGATING", 15.0, 25.0)]
+    # A recording that begins afterwards knows of it what comes then.
+    assert [r["outcome"] for r in story.missions(rows[2:])] == ["delivered"]
+    assert story.missions(rows[3:]) == []
 
 
 def test_bands_cover_the_mission_without_gaps(recording: Recording) -> None:
