@@ -115,7 +115,7 @@ class ClassicalDetector:
             tall = min(tall, 1.0)
         if off > WORST or tall > WORST:
             return []
-        fit = shapes.fit(spec.kind, size, piece.points, piece.surface.height, view.position, not piece.cut)
+        fit = shapes.fit(spec.kind, size, piece.points, piece.surface.height, view.position, piece.ends)
         return [(math.sqrt((fit.residual / SHAPE_SCALE) ** 2 + tall**2 + off**2), fit)]
 
     def _strange(self, view: View, piece: Piece, rgb: Array, height: float) -> Detection | None:

@@ -15,13 +15,14 @@ from common.scene import ObjectKind, Vec3
 from services.perception.solve import solve
 
 Array = NDArray[np.float64]
+Ends = tuple[bool, bool]
 Segment = tuple[tuple[float, float], tuple[float, float]]
 SAMPLE = 160
 ROBUST, STRAY = 0.004, 0.007
 MUG_WALL, BOWL_WALL, BOWL_LEAN = 0.004, 0.006, 0.55
 NECK, NECK_FROM = 0.014, 0.72
 EDGE_WEIGHT = 3.0
-TRIES = 15
+TRIES, SETTLED = 15, 0.001
 TINY = 1e-12
 _CORNERS = ((1, 1), (1, -1), (-1, 1), (-1, -1))
 
@@ -132,10 +133,10 @@ def _ends(size: Vec3, p: Array, camera: Array, ahead: float) -> tuple[Array, Arr
     return outer[:, 0], outer[:, 1:]
 
 
-def fit(kind: ObjectKind, size: Vec3, points: Array, floor: float, camera: Array, whole: bool = True) -> Fit:
+def fit(kind: ObjectKind, size: Vec3, points: Array, floor: float, camera: Array, ends: Ends = (True, True)) -> Fit:
     """Place a shape on the surface of height `floor` so that it explains `points` (n, 3), seen from `camera` (3,).
 
-    `whole`: nothing hides a part of it, so that a box must end where its points do.
+    `ends`: nothing hides its right or its left end, so that a box must end there where its points do.
     """
     used = points[:: max(1, len(points) // SAMPLE)]
     middle = used[:, :2].mean(axis=0)
@@ -144,28 +145,34 @@ def fit(kind: ObjectKind, size: Vec3, points: Array, floor: float, camera: Array
     boxy = kind in ("block", "box")
     yaws = (0.0, 0.5, 1.0, 1.5) if size[0] == size[1] else (0.0, 0.5, 1.0, 1.5, 2.0, 2.5)
     # A box of unequal sides also ends where its points do, or its far side would be free.
-    ends = whole and boxy and size[0] != size[1]
+    free = np.array(ends) & (boxy and size[0] != size[1])
     ahead, scale = math.atan2(away[1], away[0]), EDGE_WEIGHT * float(np.linalg.norm(middle - camera[:2]))
-    edges = _span(points, camera, ahead) if ends else None
+    edges = _span(points, camera, ahead) if free.any() else None
 
     def off(p: Array, points: Array) -> tuple[Array, Array]:
         apart, slopes = _apart(kind, size, points, floor, p)
         if edges is None:
             return apart, slopes
         corners, turns = _ends(size, p, camera, ahead)
-        return np.append(apart, scale * (corners - edges)), np.concatenate([slopes, scale * turns])
+        return np.append(apart, scale * (corners - edges)[free]), np.concatenate([slopes, scale * turns[free]])
 
     def badness(p: Array) -> float:
         apart = np.minimum(np.abs(off(p, used)[0]), 0.02)
         return float(apart[: len(used)].mean() + apart[len(used) :].sum() / EDGE_WEIGHT)
 
     if boxy:
-        # Only the better starts of a box are followed to the end.
         turned = [(yaw, abs(math.cos(yaw - ahead)) * size[0] + abs(math.sin(yaw - ahead)) * size[1]) for yaw in yaws]
-        starts = sorted((np.array([*middle + away * 0.4 * deep, yaw]) for yaw, deep in turned), key=badness)[:2]
+        starts = sorted((np.array([*middle + away * 0.4 * deep, yaw]) for yaw, deep in turned), key=badness)
     else:
         starts = [middle + away * 0.25 * size[0]]
-    best = min((solve(lambda p: off(p, used), p, ROBUST, TRIES) for p in starts), key=lambda found: found[1])[0]
+    best, cost = starts[0], math.inf
+    for tried, begin in enumerate(starts):
+        # A box may settle on the wrong side: more of its starts are followed until one explains the points.
+        if tried >= 2 and cost < len(used) * SETTLED**2:
+            break
+        then, new = solve(lambda p: off(p, used), begin, ROBUST, TRIES)
+        if new < cost:
+            best, cost = then, new
     # Once more without what the shape does not have, such as a mug's handle.
     own = used[off(best, used)[0][: len(used)] < STRAY]
     if len(own) > len(used) // 2:

@@ -123,7 +123,7 @@ def test_a_shape_is_placed_from_the_half_that_is_seen(kind: str, size: tuple[flo
         assert abs(math.remainder(fit.yaw - yaw, math.pi)) < 0.05
 
 
-@pytest.mark.parametrize("yaw", [0.0, 0.1, 0.75, 1.45, 1.57, 2.3])
+@pytest.mark.parametrize("yaw", [0.0, 0.1, 0.75, 1.45, 1.57, 2.07, 2.3])
 @pytest.mark.parametrize("size", [(0.06, 0.08, 0.13), (0.13, 0.06, 0.08)])
 def test_a_box_of_which_one_face_is_seen_ends_where_its_points_do(size: tuple[float, float, float], yaw: float) -> None:
     rng = np.random.default_rng(2)
@@ -140,6 +140,17 @@ def test_a_box_of_which_one_face_is_seen_ends_where_its_points_do(size: tuple[fl
     fit = shapes.fit("box", size, np.concatenate(faces), 0.7, camera)
     assert math.hypot(fit.x - middle[0], fit.y - middle[1]) < 0.003
     assert abs(math.remainder(fit.yaw - yaw, math.pi)) < 0.05
+
+
+def test_a_hidden_end_of_a_box_is_not_where_its_points_end() -> None:
+    size, camera = (0.06, 0.08, 0.13), np.array([-1.0, 0.0, 1.3])
+    across, up = np.meshgrid(np.linspace(-0.03, 0.03, 40), np.linspace(0.0, 0.13, 40))
+    face = np.stack([np.zeros(1600), across.ravel(), 0.7 + up.ravel()], axis=1)
+    left = face[face[:, 1] > 0.0]
+    fit = shapes.fit("box", size, left, 0.7, camera, (False, True))
+    assert abs(math.remainder(fit.yaw, math.pi / 2)) < 0.05
+    front, side = (0.08, 0.06) if abs(math.sin(fit.yaw)) > 0.5 else (0.06, 0.08)
+    assert math.hypot(fit.x - front / 2, fit.y - (0.03 - side / 2)) < 0.004
 
 
 @pytest.mark.parametrize("side", ["x", "y"])
