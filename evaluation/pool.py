@@ -18,6 +18,8 @@ from evaluation.verdict import judge
 from services.camera.render import best, environment
 
 WALL_LIMIT, START_LIMIT = 3600.0, 300.0
+# GL and speech libraries keep some 50 MB of every world that a process has seen.
+CASES_OF_A_PROCESS = 12
 Run = Callable[[Case, Callable[[float, str], None]], Result]
 
 
@@ -78,11 +80,16 @@ class Worker:
             # It imports MuJoCo before it could choose.
             os.environ |= environment(best())
         self._process.start()
+        self._given = 0
         for name in os.environ.keys() - kept.keys():
             del os.environ[name]
         theirs.close()
 
     def give(self, case: Case) -> None:
+        if self._given == CASES_OF_A_PROCESS:
+            self.end()
+            self._start()
+        self._given += 1
         self.case, self.started, self.begun = case, monotonic(), False
         self.pipe.send_bytes(msgspec.msgpack.encode(case))
 

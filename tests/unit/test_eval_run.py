@@ -8,7 +8,7 @@ import pytest
 from rich.console import Console
 
 from cli.main import main, parser
-from evaluation import report
+from evaluation import pool, report
 from evaluation.case import Case, Line, Observed, Result
 from evaluation.pool import Progressed, evaluate
 from evaluation.verdict import judge
@@ -24,7 +24,7 @@ def case_of(seed: int, name: str = "fine") -> Case:
 
 def pretend(case: Case, progress: Callable[[float, str], None]) -> Result:
     """A case without a robot."""
-    progress(1.0, "WAITING")
+    progress(1.0, str(os.getpid()) if case.name == "pid" else "WAITING")
     if case.name == "dies":
         os._exit(7)
     while case.name == "hangs":
@@ -45,6 +45,14 @@ def test_a_worker_that_dies_costs_its_case_only() -> None:
 def test_a_case_without_end_is_given_up() -> None:
     said = [r for r in evaluate([case_of(0, "hangs"), case_of(1)], 1, pretend, limit=3.0) if isinstance(r, Result)]
     assert [r.outcome for r in said] == ["crashed", "reported"]
+
+
+def test_a_worker_is_renewed_after_so_many_cases(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(pool, "CASES_OF_A_PROCESS", 2)
+    said = list(evaluate([case_of(n, "pid") for n in range(3)], 1, pretend))
+    first, second, third = (p.state for p in said if isinstance(p, Progressed))
+    assert first == second != third
+    assert [r.outcome for r in said if isinstance(r, Result)] == ["reported"] * 3
 
 
 def test_the_report_is_that_of_the_contract() -> None:
