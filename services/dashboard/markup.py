@@ -70,7 +70,8 @@ def mission(
     rows = [f'<b style="font-size:15px">{escape(state.state)}</b> {escape(state.detail)}']
     if under_way(state):
         rows.append(f"“{escape(state.command)}”")
-        rows.append(f"step <b>{escape(state.step)}</b>, {max(0.0, now - state.started):.0f} s since the command")
+        step = f"step <b>{escape(state.step)}</b>, " if state.step else ""
+        rows.append(f"{step}{max(0.0, now - state.started):.0f} s since the command")
     plan = [f"<li>{_step(s, state.step)}</li>" for s in steps]
     if plan:
         rows.append(f'plan<ol style="margin:0;padding-left:1.6em">{"".join(plan)}</ol>')

@@ -40,7 +40,7 @@ function show(s) {
   $("state").textContent = s.stopped ? "STOPPED" : s.state || "no brain";
   const { mission, last } = s;
   // While a mission is under way it is what counts; how the last one ended is told between missions.
-  const doing = mission ? [`“${mission.command}”`, mission.step, since(mission.seconds), s.detail] : [];
+  const doing = mission ? [`“${mission.command}”`, since(mission.seconds), mission.step, s.detail] : [];
   const ended = !mission && !s.detail && last ? `${last.command}: ${last.outcome}` : "";
   const idle = s.stopped && s.left ? `“${s.left}” was cut short` : s.detail || ended;
   $("detail").textContent = mission ? doing.filter(Boolean).join(" · ") : idle;
