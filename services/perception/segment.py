@@ -5,16 +5,15 @@ surface, inside its edges and not too tall is kept, cut where the depth jumps, a
 spot are joined again.
 """
 
-import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from common.scene import Receptacle, Scene
-from services.perception.view import Mask, View
+from common.scene import Scene
+from services.perception.plan import Cloud, Nearby, box_of, corners, inside
+from services.perception.view import Mask, View, Window
 
 CLEARANCE = 0.008
 MAX_HEIGHT = 0.30
@@ -26,8 +25,6 @@ JUMP_PER_METRE = 0.012
 JOIN = 0.02
 JOINED_EXTENT = 0.17
 MAX_EXTENT = 0.30
-WALL_MARGIN = 0.035
-FLOOR_MARGIN = 0.10
 RIM, NEARER, HIDDEN, HIDDEN_END = 3, 0.03, 0.06, 0.25
 FLOOR_RANGE = 2.2
 
@@ -55,100 +52,31 @@ class Piece:
     ends: tuple[bool, bool]
 
 
-Box = tuple[float, float, float, float, float]
-
-
-@dataclass(frozen=True)
-class _Cloud:
-    """Some pixels of a view (n,), counted row by row, with their points."""
-
-    pixels: NDArray[np.intp]
-    x: NDArray[np.float32]
-    y: NDArray[np.float32]
-    z: NDArray[np.float32]
-
-    def kept(self, chosen: NDArray[np.bool_]) -> "_Cloud":
-        return _Cloud(self.pixels[chosen], self.x[chosen], self.y[chosen], self.z[chosen])
-
-    def inside(self, box: Box) -> NDArray[np.bool_]:
-        """Which of the pixels (n,) lie in a rectangle on the floor plan, at any height."""
-        x, y, yaw, sx, sy = box
-        c, s = math.cos(yaw), math.sin(yaw)
-        dx, dy = self.x - np.float32(x), self.y - np.float32(y)
-        found: NDArray[np.bool_] = (np.abs(c * dx + s * dy) < sx / 2) & (np.abs(c * dy - s * dx) < sy / 2)
-        return found
-
-    def outside(self, boxes: Sequence[Box]) -> "_Cloud":
-        """Those that lie in none of the rectangles."""
-        rest = self
-        for box in boxes:
-            if len(rest.pixels) and rest._may_meet(box) and (inside := rest.inside(box)).any():
-                rest = rest.kept(~inside)
-        return rest
-
-    def _may_meet(self, box: Box) -> bool:
-        x, y, _, sx, sy = box
-        radius = math.hypot(sx, sy) / 2 + 0.001
-        return bool(
-            self.x.min() < x + radius
-            and self.x.max() > x - radius
-            and self.y.min() < y + radius
-            and self.y.max() > y - radius
-        )
-
-
 def pieces(view: View, scene: Scene, max_range: float, robot: Mask | None = None) -> list[Piece]:
     """The things that stand on the surfaces of the scene. `robot` marks the pixels that show the robot itself."""
-    near = _Nearby(scene, float(view.position[0]), float(view.position[1]), max_range)
-    x, y, z = (plane.reshape(-1) for plane in np.moveaxis(view.points, -1, 0))
-    highest = max([0.0, *(r.center[2] for r in near.receptacles)]) + MAX_HEIGHT
-    lowest = min([CLEARANCE, *(r.center[2] - PLANE_SEARCH for r in near.receptacles)])
-    depth = view.depth.reshape(-1)
-    usable = (depth > 0.05) & (depth < max_range) & (z > lowest) & (z < highest)
+    near = Nearby(scene, float(view.position[0]), float(view.position[1]), max_range)
     own = robot if robot is not None else np.zeros(view.shape, bool)
-    usable &= ~own.reshape(-1)
-    pixels = np.flatnonzero(usable)
-    cloud = _Cloud(pixels, x[pixels], y[pixels], z[pixels])
+    usable = (view.depth > 0.05) & (view.depth < max_range) & ~own
     found: list[Piece] = []
     for r in near.receptacles:
-        low, high = r.center[2] - PLANE_SEARCH, r.center[2] + MAX_HEIGHT
-        level = cloud.kept((cloud.z > low) & (cloud.z < high))
-        over = level.kept(level.inside(_box_of(r, -0.012)))
+        box, low, high = box_of(r, -0.012), r.center[2] - PLANE_SEARCH, r.center[2] + MAX_HEIGHT
+        window = view.window(corners(box, low, high))
+        x, y, _ = np.moveaxis(view.points[window], -1, 0)
+        over = _between(view, usable[window] & inside(x, y, box), low, high, window)
         found += _on(view, Surface(r.name, r.center[2]), over, near, own)
-    floor = cloud.kept((cloud.z > CLEARANCE) & (cloud.z < MAX_HEIGHT) & (depth[pixels] < FLOOR_RANGE))
+    floor = _between(view, usable & (view.depth < FLOOR_RANGE), CLEARANCE, MAX_HEIGHT, view.everywhere)
     return found + _on(view, Surface("", 0.0), floor.outside(near.boxes), near, own)
 
 
-def _box_of(r: Receptacle, margin: float) -> Box:
-    return r.center[0], r.center[1], r.yaw, r.size[0] + 2 * margin, r.size[1] + 2 * margin
+def _between(view: View, usable: Mask, low: float, high: float, window: Window) -> Cloud:
+    """The usable pixels of a window whose points are between two heights."""
+    x, y, z = np.moveaxis(view.points[window], -1, 0)
+    rows, columns = np.nonzero(usable & (z > low) & (z < high))
+    pixels = (rows + window[0].start) * view.shape[1] + columns + window[1].start
+    return Cloud(pixels, x[rows, columns], y[rows, columns], z[rows, columns])
 
 
-class _Nearby:
-    """What of the floor plan a view can show: surfaces, wall strips, and the floor that furniture takes."""
-
-    def __init__(self, scene: Scene, x: float, y: float, reach: float) -> None:
-        def close(box: Box) -> bool:
-            return math.hypot(box[0] - x, box[1] - y) < reach + math.hypot(box[3], box[4]) / 2
-
-        self.receptacles = [r for r in scene.receptacles if close(_box_of(r, 0.0))]
-        self.walls: list[Box] = []
-        self.boxes: list[Box] = []
-        for wall in scene.walls:
-            dx, dy = wall.end[0] - wall.start[0], wall.end[1] - wall.start[1]
-            mx, my = (wall.start[0] + wall.end[0]) / 2, (wall.start[1] + wall.end[1]) / 2
-            length, yaw = math.hypot(dx, dy), math.atan2(dy, dx)
-            for margin, into in ((WALL_MARGIN, self.walls), (FLOOR_MARGIN, self.boxes)):
-                width = wall.thickness + 2 * margin
-                if close((mx, my, yaw, length + width, width)):
-                    into.append((mx, my, yaw, length + width, width))
-        self.boxes += [b for r in scene.receptacles if close(b := _box_of(r, FLOOR_MARGIN))]
-        for f in scene.furniture:
-            box = (f.center[0], f.center[1], f.yaw, f.size[0] + 2 * FLOOR_MARGIN, f.size[1] + 2 * FLOOR_MARGIN)
-            if close(box):
-                self.boxes.append(box)
-
-
-def _on(view: View, expected: Surface, cloud: _Cloud, near: _Nearby, own: Mask) -> list[Piece]:
+def _on(view: View, expected: Surface, cloud: Cloud, near: Nearby, own: Mask) -> list[Piece]:
     """Pieces above one surface, its height measured where enough of it is visible."""
     z = cloud.z
     level = z[np.abs(z - expected.height) < PLANE_SEARCH] if expected.name else z[:0]

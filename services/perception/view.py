@@ -1,5 +1,6 @@
 """An RGB-D image with where it was taken from, as points in frame map. Pure."""
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -10,6 +11,9 @@ from common.geometry import Array, Pose2, quat_matrix
 from common.messages import Rgbd
 
 Mask = NDArray[np.bool_]
+# Rows and columns
+Window = tuple[slice, slice]
+NEAR = 0.05
 
 
 @dataclass(frozen=True)
@@ -30,6 +34,10 @@ class View:
     def shape(self) -> tuple[int, int]:
         h, w = self.depth.shape
         return h, w
+
+    @property
+    def everywhere(self) -> Window:
+        return slice(0, self.shape[0]), slice(0, self.shape[1])
 
     @cached_property
     def points(self) -> NDArray[np.float32]:
@@ -54,6 +62,21 @@ class View:
         u = local[:, 0] / z * self.focal[0] + self.middle[0]
         v = local[:, 1] / z * self.focal[1] + self.middle[1]
         return np.stack([u, v, local[:, 2]], axis=1)
+
+    def window(self, points: Array) -> Window:
+        """Rows and columns in which anything between the points (n, 3) in frame map is seen."""
+        u, v, z = self.project(points).T
+        if z.max() <= 0.0:
+            return slice(0, 0), slice(0, 0)
+        if z.min() < NEAR:
+            return self.everywhere
+        h, w = self.shape
+        return _span(v, h), _span(u, w)
+
+
+def _span(values: Array, size: int) -> slice:
+    low, high = math.floor(values.min()) - 1, math.ceil(values.max()) + 2
+    return slice(min(max(low, 0), size), min(max(high, 0), size))
 
 
 def view_of(image: Rgbd, base: Pose2) -> View:
