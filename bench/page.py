@@ -118,8 +118,11 @@ async def measure(name: str, url: str, robot: Robot, seconds: float, viewers: in
     await asyncio.sleep(SETTLE)
     lost, before = robot.health().drops, [heard[0] for heard in counts]
     began, clock, spent = time.monotonic(), robot.clock(), robot.cpu()
+    each: list[float] = []
     while (left := began + seconds - time.monotonic()) > 0:
-        await asyncio.sleep(min(5.0, left))
+        at, heard = time.monotonic(), counts[0][0] if counts else 0
+        await asyncio.sleep(min(2.0, left))
+        each.append(((counts[0][0] if counts else 0) - heard) / (time.monotonic() - at))
         states.append(robot.keep_busy())
     passed = time.monotonic() - began
     cpu, ran, now = (robot.cpu() - spent) / passed, (robot.clock() - clock) / passed, robot.health()
@@ -127,7 +130,8 @@ async def measure(name: str, url: str, robot: Robot, seconds: float, viewers: in
     for task in tasks:
         task.cancel()
     await asyncio.gather(*tasks, return_exceptions=True)
-    told = ", ".join(f"{rate:.0f}" for rate in rates) or "-"
+    # Nothing is sent of a robot that stands still, so the best two seconds are told as well.
+    told = ", ".join(f"{rate:.0f}" for rate in rates) + f" (up to {max(each):.0f})" if rates else "-"
     on = sum(state not in READY for state in states) / len(states)
     print(f"{name:22} {100 * cpu:5.1f} % of a core   loop {now.hz:4.1f} Hz   lost {now.drops - lost:3}   "
           f"robot {ran:4.2f} x, {100 * on:3.0f} % on missions   frames a second: {told}", flush=True)  # fmt: skip

@@ -41,8 +41,9 @@ function show(s) {
   const { mission, last } = s;
   // While a mission is under way it is what counts; how the last one ended is told between missions.
   const doing = mission ? [`“${mission.command}”`, since(mission.seconds), mission.step, s.detail] : [];
-  const ended = !mission && !s.detail && last ? `${last.command}: ${last.outcome}` : "";
-  const idle = s.stopped && s.left ? `“${s.left}” was cut short` : s.detail || ended;
+  const ended = !mission && last ? `${last.command}: ${last.outcome}` : "";
+  const told = s.state === "COMPLETED" ? ended || s.detail : s.detail || ended;
+  const idle = s.stopped && s.left ? `“${s.left}” was cut short` : told;
   $("detail").textContent = mission ? doing.filter(Boolean).join(" · ") : idle;
   $("now").title = $("detail").textContent;
   document.body.dataset.outcome = last ? last.outcome : "";
