@@ -8,7 +8,9 @@ import urllib.request
 from collections.abc import Iterator
 from http.client import HTTPResponse
 
+import numpy as np
 import pytest
+import viser
 from websockets.exceptions import InvalidStatus
 from websockets.sync.client import ClientConnection, connect
 from websockets.typing import Origin, Subprotocol
@@ -162,14 +164,42 @@ def test_a_page_that_hangs_is_dropped_and_the_others_hear_everything(web: Web) -
 
 
 def test_the_view_is_passed_on_with_its_stream(web: Web) -> None:
-    import viser
-
     protocol = Subprotocol(f"viser-v{viser.__version__}")
     address = f"ws://127.0.0.1:{web.port}/view"
     with connect(address, subprotocols=[protocol], proxy=None, max_size=None) as view:
         assert view.subprotocol == protocol
         assert isinstance(view.recv(timeout=10), bytes)
     eventually(lambda: not web.watched, "the visitor has gone")
+
+
+def test_a_view_that_hangs_holds_up_nobody(web: Web) -> None:
+    protocol = Subprotocol(f"viser-v{viser.__version__}")
+    with socket.create_connection(("127.0.0.1", web.port)) as hung:
+        _beside_one_that_hangs(web, hung, protocol)
+    eventually(lambda: not web.watched and not web.viser._websock_server._live_connections, "both have gone")
+
+
+def _beside_one_that_hangs(web: Web, hung: socket.socket, protocol: Subprotocol) -> None:
+    hung.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+    hung.sendall(
+        f"GET /view HTTP/1.1\r\nHost: 127.0.0.1:{web.port}\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
+        f"Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n"
+        f"Sec-WebSocket-Protocol: {protocol}\r\n\r\n".encode()
+    )
+    cursors = web.viser._websock_server._broadcast_buffer.generator_cursors
+    eventually(lambda: len(cursors) == 1, "the one that hangs is in")
+    with connect(f"ws://127.0.0.1:{web.port}/view", subprotocols=[protocol], proxy=None, max_size=None) as view:
+        eventually(lambda: len(cursors) == 2, "both are in")
+        # More than all buffers on the way hold; the other must have each piece before the next is sent.
+        cloud = web.viser.scene.add_point_cloud("/cloud", np.zeros((1, 3), np.float32), (0, 0, 0))
+        for n in range(50):
+            points = np.full((120_000, 3), n + 1, np.float32)
+            cloud.points = points
+            while points.astype(np.float16).tobytes() not in view.recv(timeout=10):  # type: ignore[operator]
+                pass
+        behind, ahead = sorted(cursors.values())
+        assert behind < ahead, "the one that hangs was really held up"
+        cloud.remove()
 
 
 def test_visers_own_port_answers_nobody(web: Web) -> None:
