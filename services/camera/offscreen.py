@@ -40,7 +40,10 @@ class Offscreen:
         offset = np.float32(0.5) * (far + near) / (far - near) - np.float32(0.5)
         scale = np.float32(far * near) / (far - near)
         # float32 would lose millimetres far away.
-        return np.asarray(scale / (z.astype(np.float64) + offset), np.float32)
+        metres = z.astype(np.float64)
+        metres += offset
+        np.divide(scale, metres, out=metres)
+        return metres.astype(np.float32)
 
     def close(self) -> None:
         """Free the GL context, in the thread that made it."""

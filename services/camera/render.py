@@ -13,6 +13,8 @@ from numpy.typing import NDArray
 BACKENDS = ("egl", "osmesa", "raycast")
 PROBE_SECONDS = 20.0
 FAR = 25.0
+# A group of geoms that is never drawn
+HIDDEN = 5
 _PROBE = (
     "import mujoco; m = mujoco.MjModel.from_xml_string('<mujoco/>'); d = mujoco.MjData(m); "
     "mujoco.mj_forward(m, d); r = mujoco.Renderer(m, 8, 8); r.update_scene(d); r.render(); r.close()"
@@ -110,8 +112,21 @@ class Renderer:
             return render(self.model, self.data, self.data.cam_xpos[number], rotation, fovy, width, height, body)
         fixed = self._mujoco.MjvCamera()
         fixed.type, fixed.fixedcamid = self._mujoco.mjtCamera.mjCAMERA_FIXED, number
+        groups = self.model.geom_group.copy()
+        self.model.geom_group[~self._in_sight(number, width / height)] = HIDDEN
         rgb, depth = self._offscreen(width, height).render(self.data, fixed, self._option)
-        return rgb, np.where(depth < FAR, depth, 0.0).astype(np.float64)
+        self.model.geom_group[:] = groups
+        depth[depth >= FAR] = 0.0
+        return rgb, depth.astype(np.float64)
+
+    def _in_sight(self, camera: int, aspect: float) -> NDArray[np.bool_]:
+        """The geoms (n,) whose bounding sphere reaches into a camera's view; GL without a GPU is slow to find out."""
+        model, data = self.model, self.data
+        x, y, z = ((data.geom_xpos - data.cam_xpos[camera]) @ data.cam_xmat[camera].reshape(3, 3)).T
+        up = np.tan(np.radians(model.cam_fovy[camera]) / 2)
+        side, radius = up * aspect, model.geom_rbound
+        seen = (np.abs(x) < radius * np.hypot(1, side) - z * side) & (np.abs(y) < radius * np.hypot(1, up) - z * up)
+        return np.asarray(seen | (radius == 0), bool)
 
     def picture(self, view: View, width: int, height: int) -> NDArray[np.uint8]:
         """RGB (height, width, 3) of a free view."""
