@@ -93,8 +93,8 @@ def _apart(kind: ObjectKind, size: Vec3, points: Array, floor: float, p: Array) 
     if kind in ("block", "box"):
         c, s = math.cos(p[2]), math.sin(p[2])
         x, y = c * dx + s * dy, c * dy - s * dx
-        distance, (gx, gy, _) = _from_box(np.stack([x, y, z - size[2] / 2]), size)
-        return distance, np.stack([s * gy - c * gx, -s * gx - c * gy, gx * y - gy * x], axis=1)
+        distance, (gx, gy, _) = _from_box(np.array([x, y, z - size[2] / 2]), size)
+        return distance, np.array([s * gy - c * gx, -s * gx - c * gy, gx * y - gy * x]).T
     if kind in ("apple", "ball"):
         r = size[0] / 2
         far = np.sqrt(dx * dx + dy * dy + (z - r) ** 2)
@@ -103,7 +103,7 @@ def _apart(kind: ObjectKind, size: Vec3, points: Array, floor: float, p: Array) 
         rho = np.hypot(dx, dy)
         distance, growth = _from_outline(rho, z, _outline(kind, size))
         growth = growth / np.maximum(rho, TINY)
-    return distance, np.stack([-dx * growth, -dy * growth], axis=1)
+    return distance, np.array([-dx * growth, -dy * growth]).T
 
 
 def distances(kind: ObjectKind, size: Vec3, points: Array, floor: float, x: float, y: float, yaw: float) -> Array:
