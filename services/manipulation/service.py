@@ -10,6 +10,7 @@ from common.geometry import Pose2
 from common.io import Io, Job
 from services.manipulation import placing, rescue, routines
 from services.manipulation.config import ManipulationConfig
+from services.manipulation.memo import HandMemo
 from services.manipulation.object_source import ObjectSource
 from services.manipulation.plan import Planner
 from services.manipulation.robot import Failure, Robot, Steps, go_home
@@ -35,6 +36,7 @@ class ManipulationService:
         self._config, self._io = config, io
         self._source = ObjectSource(io.scene)
         self._robot = Robot(config, io, self._source)
+        self._memo = HandMemo(io.state_dir, lambda why: io.log.warning("not kept what is in the hand", reason=why))
         self._loading: Job[Planner] | None = None
         self._description: m.RobotDescription | None = None
         self._steps: Steps[str] | None = None
@@ -60,6 +62,8 @@ class ManipulationService:
             self._take(goal, now)
         if self._steps is not None:
             self._advance(now)
+        if self._indices is not None:
+            self._memo.keep(robot.held, robot.grip.width)
 
     # --- sensing
     def _sense(self, now: float) -> None:
@@ -87,15 +91,18 @@ class ManipulationService:
     def _read_joints(self, states: m.JointStates) -> None:
         if len(states.position) < len(states.name):
             return
+        first = self._indices is None
         if self._indices is None or self._indices[0] != states.name:
             if not {*ARM, "gripper"} <= set(states.name):
                 return
             order = {name: i for i, name in enumerate(states.name)}
             self._indices = states.name, [order[j] for j in ARM], order["gripper"]
-        _, arm, gripper = self._indices
-        self._robot.joints = np.array([states.position[i] for i in arm])
+        robot, (_, arm, gripper) = self._robot, self._indices
+        robot.joints = np.array([states.position[i] for i in arm])
         effort = states.effort[gripper] if len(states.effort) > gripper else 0.0
-        self._robot.grip = Grip(states.position[gripper], effort)
+        robot.grip = Grip(states.position[gripper], effort)
+        if first and holds(robot.grip, self._config):
+            robot.held = self._memo.recall(robot.grip.width, self._config.slip_width)
 
     def _base(self, now: float) -> Pose2:
         pose = self._io.latest(topics.POSE)

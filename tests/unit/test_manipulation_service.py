@@ -1,5 +1,6 @@
 import itertools
 import math
+from pathlib import Path
 
 import msgspec
 import numpy as np
@@ -143,10 +144,11 @@ def test_an_open_hand_holds_nothing() -> None:
 class Node:
     """The service on a memory bus with joint states that a test sends."""
 
-    def __init__(self, description: bool = True) -> None:
+    def __init__(self, description: bool = True, state_dir: Path | None = None) -> None:
         self.bus = MemoryBus()
         reads, writes = ManipulationService.READS, ManipulationService.WRITES
         self.io = MemoryIo(self.bus, "manipulation", reads, writes, scene=SCENE)
+        self.io.state_dir = state_dir
         self.service = ManipulationService(CONFIG, self.io)
         self.tick = 0
         self.width, self.force = 0.085, 0.0
