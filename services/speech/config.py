@@ -16,7 +16,7 @@ class SpeechConfig(Config, frozen=True):
 
     recogniser: Literal["moonshine", "pocketsphinx"] = "moonshine"
     listen_timeout: float = 60.0
-    accept_score: float = -0.7
+    accept_score: float = -1.0
     ask_score: float = -1.5
     beam: int = 16
     preload: bool = True
