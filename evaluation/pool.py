@@ -7,6 +7,7 @@ import tempfile
 import traceback
 from collections import deque
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from multiprocessing.connection import Connection, wait
 from typing import Any
 
@@ -61,6 +62,19 @@ def _leave(number: int, frame: object) -> None:
     raise SystemExit(128 + number)
 
 
+@contextmanager
+def _held_back() -> Iterator[None]:
+    """Ctrl-C waits: a process that is being started would be nobody's."""
+    came: list[int] = []
+    before = signal.signal(signal.SIGINT, lambda number, frame: came.append(number))
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+        if came:
+            signal.raise_signal(signal.SIGINT)
+
+
 class Worker:
     """One spawned process and the case it has."""
 
@@ -79,7 +93,8 @@ class Worker:
         if not os.environ.get("MUJOCO_GL"):
             # It imports MuJoCo before it could choose.
             os.environ |= environment(best())
-        self._process.start()
+        with _held_back():
+            self._process.start()
         self._given = 0
         for name in os.environ.keys() - kept.keys():
             del os.environ[name]
@@ -147,7 +162,8 @@ def _evaluate(
     workers: list[Worker] = []
     try:
         for number in range(min(max(jobs, 1), len(cases))):
-            workers.append(Worker(number, run, scratch, gentle))
+            with _held_back():
+                workers.append(Worker(number, run, scratch, gentle))
             workers[-1].give(waiting.popleft())
         while busy := [w for w in workers if w.case is not None]:
             ready = set(wait([w.pipe for w in busy], timeout=1.0))
