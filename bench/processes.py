@@ -1,5 +1,10 @@
-"""The robot as processes: seconds to ready, resident memory, and a mission in lockstep; the peer is one process."""
+"""The robot as processes: seconds to ready, resident memory, and a mission in lockstep; the peer is one process.
 
+Memory is told as each process counts it, with the libraries that several share in every one, and in proportion, where
+what n processes share counts 1/n for each: that is what the whole takes.
+"""
+
+import argparse
 import json
 import os
 import subprocess
@@ -8,6 +13,8 @@ import tempfile
 import time
 from typing import Any
 
+import psutil  # type: ignore[import-untyped]
+
 from bench.mission import Robot, fetch
 from tests.support import free_port
 
@@ -15,6 +22,7 @@ ITEM = "red mug"
 
 
 def main() -> None:
+    argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter).parse_args()
     with tempfile.TemporaryDirectory() as run_dir:
         environment = {**os.environ, "TIDYBOT_RUN_DIR": run_dir}
 
@@ -31,13 +39,15 @@ def main() -> None:
             tidybot("say", f"bring me the {ITEM}", "--wait")
             speed = (_clock(tidybot) - before) / (time.perf_counter() - started)
             rows: list[dict[str, Any]] = json.loads(tidybot("ps", "--json"))
+            shares = {row["name"]: psutil.Process(row["pid"]).memory_full_info().pss / 1e6 for row in rows}
         finally:
             tidybot("down")
     alone = fetch(Robot(seed=0), ITEM, 0)
     print(f"{'up to ready':34} {ready:8.1f} s")
     for row in rows:
-        print(f"{'resident, ' + row['name']:34} {row['rss_mb']:8.0f} MB")
-    print(f"{'resident, all':34} {sum(row['rss_mb'] for row in rows):8.0f} MB")
+        print(f"{'resident, ' + row['name']:34} {row['rss_mb']:8.0f} MB  {shares[row['name']]:8.0f} in proportion")
+    total = sum(row["rss_mb"] for row in rows)
+    print(f"{'resident, all':34} {total:8.0f} MB  {sum(shares.values()):8.0f} in proportion")
     print(f"{'fetch in lockstep, processes':34} {speed:8.1f} x real time")
     print(f"{'fetch in lockstep, one process':34} {alone.robot_seconds / alone.wall_seconds:8.1f} x real time")
 
