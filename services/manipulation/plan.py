@@ -274,13 +274,27 @@ class Planner:
             return "no path"
         tilted = abs(approach[2]) < 0.85
         away = -0.10 * target.rotation[:, 2] if tilted else np.array([0.0, 0.0, 0.12])
-        # Where the arm is stretched already it leaves the way it came.
-        back = self.straight(down[-1], target, target.moved(away)) or [*down[-2::-1], high]
-        self._surround(around, back[-1])
+        stands = Obstacle((*spot, height + held.size[2] / 2), held.size, held.yaw + delta)
+        beside = [*around[:14], stands, *around[14:]]
+        back = self._leave(target, away, [*down[-2::-1], high], down[-1], beside)
+        if back is None:
+            return "no way back"
+        self._surround(beside, back[-1])
         home = connect(arm, back[-1], arm.nearest_turn(arm.home, back[-1]), rng)
         if home is None:
             return "no path home"
         return PlacePlan(there, [high, *down], [down[-1], *back], home, spot)
+
+    def _leave(
+        self, target: Pose, away: Array, as_it_came: list[Array], at: Array, beside: Sequence[Obstacle]
+    ) -> list[Array] | None:
+        """Off what was put down: by `away`, by a part of it, or where the arm is stretched the way it came."""
+        self.arm.set_obstacles(beside)
+        for share in (1.0, 0.6):
+            path = self.straight(at, target, target.moved(share * away))
+            if path is not None and not self.arm.collides(path[-1]):
+                return path
+        return None if self.arm.collides(as_it_came[-1]) else as_it_came
 
     def to_home(self, now: Array, around: Sequence[Obstacle]) -> list[Array]:
         """A path to the carry pose; straight where nothing better is found."""
