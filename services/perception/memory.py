@@ -145,8 +145,8 @@ def _see(track: Track, d: Detection, now: float) -> None:
     weight = 1.0 / max(0.2, d.distance) ** 2 * (0.3 if d.confidence < SURE else 1.0)
     weight *= 1.0 if d.whole else PARTIAL * d.share**2
     shift = math.hypot(d.position[0] - track.position[0], d.position[1] - track.position[1])
-    if shift > MOVED and not d.whole and (track.whole or weight < POORER * track.best):
-        # Seen in part it seems to stand elsewhere; only a view as good moves what was seen better.
+    if shift > MOVED and not d.whole and track.whole:
+        # Seen in part it seems to stand elsewhere; only a whole view moves what was seen whole.
         share = 0.0
     elif shift > MOVED or track.weight == 0.0 or weight > track.weight:
         track.whole = d.whole
@@ -161,8 +161,8 @@ def _see(track: Track, d: Detection, now: float) -> None:
     track.yaw = d.yaw if share and weight >= POORER * track.best else track.yaw
     track.seen_at, track.misses, track.sightings = now, 0, track.sightings + 1
     key = (d.label, d.kind, d.colour)
-    # Close looks count more, and old mistakes fade.
-    evidence = d.confidence * min(2.0, 1.5 / max(0.3, d.distance))
+    # Close looks count more, slivers less, and old mistakes fade.
+    evidence = d.confidence * min(2.0, 1.5 / max(0.3, d.distance)) * (1.0 if d.whole else d.share)
     track.scores = {k: v * 0.9 for k, v in track.scores.items()}
     track.scores[key] = track.scores.get(key, 0.0) + evidence
     if track.name == key:
