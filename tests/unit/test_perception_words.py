@@ -112,9 +112,9 @@ def test_looks_add_up_and_nearer_ones_count_more() -> None:
 def test_a_sliver_of_a_thing_neither_moves_nor_doubles_what_was_seen_whole() -> None:
     memory = Memory(SCENE, 3, 0.6)
     memory.look(empty_view(), [detection("yellow bowl", 4.0, 1.0, 0.97, distance=1.2)], 0.0)
-    for aside in (0.04, 0.13):
+    for t, aside in ((1.0, 0.04), (2.0, 0.13)):
         sliver = replace(detection("yellow bowl", 4.0 + aside, 1.0, 0.5, distance=0.7), whole=False, share=0.03)
-        memory.look(empty_view(), [sliver], 1.0)
+        memory.look(empty_view(), [sliver], t)
     bowl = next(o for o in memory.objects() if o.label == "yellow bowl")
     assert math.dist(bowl.position[:2], (4.0, 1.0)) < 0.002
 
