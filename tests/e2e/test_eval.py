@@ -130,6 +130,14 @@ def test_in_one_process_and_as_processes_a_seed_ends_the_same(suite: list[str], 
     assert cases[0]["evidence"]["spl"] == pytest.approx(cases[1]["evidence"]["spl"], abs=0.02)
 
 
+def is_tracker(process: psutil.Process) -> bool:
+    """Python's own watcher of shared resources: it ends when it notices that its parent has."""
+    try:
+        return "resource_tracker" in " ".join(process.cmdline())
+    except psutil.Error:
+        return False
+
+
 def test_ctrl_c_keeps_what_is_done_and_leaves_nothing_behind(tmp_path: Path) -> None:
     out = tmp_path / "report.json"
     words = command("-n", "50", "--jobs", "2", "--pipeline", "fetch", "--json", str(out))
@@ -140,6 +148,7 @@ def test_ctrl_c_keeps_what_is_done_and_leaves_nothing_behind(tmp_path: Path) -> 
     try:
         eventually(lambda: len(family.children(recursive=True)) >= 2, "the workers run", patience=240)
         children = family.children(recursive=True)
+        trackers = [c for c in children if is_tracker(c)]
         os.killpg(process.pid, signal.SIGINT)
         text = process.communicate(timeout=120)[0].decode()
     finally:
@@ -149,4 +158,5 @@ def test_ctrl_c_keeps_what_is_done_and_leaves_nothing_behind(tmp_path: Path) -> 
     assert process.returncode == 130, text
     assert "interrupted" in text
     assert json.loads(out.read_text())["suite"] == "fetch"
-    assert not [c for c in children if c.is_running() and c.status() != "zombie"]
+    assert not [c for c in children if c not in trackers and c.is_running() and c.status() != "zombie"]
+    assert not psutil.wait_procs(trackers, timeout=20)[1]
