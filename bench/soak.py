@@ -56,12 +56,11 @@ class Life:
             if state.last is not None and state.last != before and state.state in ("WAITING", "LISTENING"):
                 break
         last = stack.state().last
-        outcome = last.outcome if last is not None and last != before else "timeout"
+        ended = last if last != before else None
+        outcome = ended.outcome if ended else "timeout"
         self.told[outcome] = self.told.get(outcome, 0) + 1
         if outcome != "delivered":
-            print(
-                f"  {command}: {outcome}{f', {last.reason}' if last is not None and last != before else ''}", flush=True
-            )
+            print(f"  {command}: {outcome}{f', {ended.reason}' if ended else ''}", flush=True)
         if outcome == "delivered" and on(stack, thing) != goal:
             self.false += 1
             print(f"  {command}: reported delivered, but it is on {on(stack, thing) or 'nothing'}", flush=True)

@@ -7,6 +7,7 @@ from pathlib import Path
 import msgspec
 import numpy as np
 
+from common import files
 from services.manipulation.plan import Held
 
 NAME, VERSION = "hand", 1
@@ -39,20 +40,20 @@ class HandMemo:
         if self._path is None or (self._settled and held is self._kept):
             return
         self._kept, self._settled = held, True
-        try:
-            if held is None:
-                self._path.unlink(missing_ok=True)
-                return
+        why = ""
+        if held is not None:
             rotation, offset = held.rotation.tolist(), held.offset.tolist()
             memo = Memo(held.label, held.kind, rotation, offset, held.size, held.width, held.yaw, closed)
-            self._path.parent.mkdir(parents=True, exist_ok=True)
-            part = self._path.with_suffix(".part")
-            part.write_bytes(msgspec.msgpack.encode(memo))
-            part.replace(self._path)
-        except OSError as error:
             with contextlib.suppress(OSError):
+                self._path.parent.mkdir(parents=True, exist_ok=True)
+            why = files.replace(self._path, msgspec.msgpack.encode(memo))
+        if held is None or why:
+            try:
                 self._path.unlink(missing_ok=True)
-            self._report(f"{self._path}: {error.strerror}")
+            except OSError as error:
+                why = why or str(error)
+        if why:
+            self._report(why)
 
     def recall(self, width: float, within: float) -> Held | None:
         """What a former process held, when the fingers are still where it closed them [m]."""

@@ -8,6 +8,7 @@ import numpy as np
 from services.manipulation.arm_model import ArmModel, Array, Obstacle, Pose
 from services.manipulation.grasp import Grasp, Target, candidates
 from services.manipulation.ik import InverseKinematics, seeds
+from services.manipulation.surroundings import with_thing
 from services.manipulation.trajectory import connect
 
 CARTESIAN_STEP = 0.02
@@ -142,7 +143,7 @@ class Planner:
             return "no straight lift"
         if any(arm.collides(q) for q in back):
             return "approach collides"
-        self._surround([*around[:14], own, *around[14:]], back[-1])
+        self._surround(with_thing(around, own), back[-1])
         there = connect(arm, now, back[-1], rng)
         if there is None:
             return "no path to the pre-grasp"
@@ -275,7 +276,7 @@ class Planner:
         tilted = abs(approach[2]) < 0.85
         away = -0.10 * target.rotation[:, 2] if tilted else np.array([0.0, 0.0, 0.12])
         stands = Obstacle((*spot, height + held.size[2] / 2), held.size, held.yaw + delta)
-        beside = [*around[:14], stands, *around[14:]]
+        beside = with_thing(around, stands)
         back = self._leave(target, away, [*down[-2::-1], high], down[-1], beside)
         if back is None:
             return "no way back"

@@ -1,7 +1,7 @@
 """What stands around the robot, as boxes in the base frame, from the scene's furniture and the known objects."""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from services.manipulation.grasp import Target
 RANGE = 1.4
 SLAB = 0.14
 MARGIN = 0.01
+MOST_FURNITURE = 14
 
 
 def target_of(found: WorldObject, base: Pose2, scene: Scene) -> Target:
@@ -77,7 +78,12 @@ def obstacles(
             target = target_of(o, base, scene)
             size = (o.size[0] + 2 * margin, o.size[1] + 2 * margin, o.size[2] + margin)
             things.append(Obstacle(target.position, size, target.yaw))
-    return near[:14] + sorted((t for t in things if _near(t) < RANGE), key=_near)
+    return near[:MOST_FURNITURE] + sorted((t for t in things if _near(t) < RANGE), key=_near)
+
+
+def with_thing(around: Sequence[Obstacle], thing: Obstacle) -> list[Obstacle]:
+    """One thing more, after the furniture and before the other things."""
+    return [*around[:MOST_FURNITURE], thing, *around[MOST_FURNITURE:]]
 
 
 def spots(r: Receptacle, base: Pose2, footprint: float, taken: Iterable[WorldObject]) -> list[tuple[float, float]]:

@@ -1,10 +1,11 @@
 """The world on disk, twice a second, so that a simulation that was killed goes on where it was."""
 
-import contextlib
 import hashlib
 from pathlib import Path
 
 import msgspec
+
+from common import files
 
 VERSION = 1
 NAME = "sim.checkpoint"
@@ -34,15 +35,7 @@ def fingerprint(mjcf: str) -> str:
 
 def save(path: Path, state: Checkpoint) -> str:
     """Replace the file in one step; the reason when that was not possible."""
-    part = path.with_suffix(".part")
-    try:
-        part.write_bytes(msgspec.msgpack.encode(state))
-        part.replace(path)
-    except OSError as error:
-        with contextlib.suppress(OSError):
-            part.unlink()
-        return str(error)
-    return ""
+    return files.replace(path, msgspec.msgpack.encode(state))
 
 
 def load(path: Path, run: str, model: str) -> Checkpoint | None:
