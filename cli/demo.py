@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from cli.audio import Player, padded, read_wav
-from cli.errors import CliError, near
+from cli.errors import CliError, near, port_number
 from cli.link import Link, Watch
 from cli.mission import ACCEPT, Conversation, speak_into, typed
 from cli.robot import query_truth
@@ -233,7 +233,7 @@ def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") ->
     parser.add_argument("--wav", type=Path, metavar="FILE", help="another recording of the command")
     parser.add_argument("--typed", action="store_true", help="type the command instead of playing a recording")
     parser.add_argument("--without", default="", metavar="A,B", help="leave these services out")
-    parser.add_argument("--port", type=int, default=0, help="default: 7447, or a free one when that is in use")
+    parser.add_argument("--port", type=port_number, default=0, help="default: 7447, or a free one if in use")
     parser.add_argument("--timeout", type=float, default=900.0, metavar="S", help="wall time (default %(default)s)")
     parser.add_argument("--out", type=Path, default=OUT / "demo.png", metavar="FILE", help="the picture")
     parser.set_defaults(run=demo)

@@ -1,5 +1,6 @@
 """Errors that the command line shows as one line, and suggestions for mistyped words."""
 
+import argparse
 from collections.abc import Iterable
 from difflib import get_close_matches
 
@@ -27,3 +28,14 @@ def checked(word: str, known: Iterable[str], what: str) -> str:
     if word not in known:
         raise CliError(f"no {what} {word!r}{near(word, known)}")
     return word
+
+
+def port_number(text: str) -> int:
+    """The type of a `--port` option.
+
+    Raises:
+        argparse.ArgumentTypeError: not a port that a program can listen on.
+    """
+    if not text.isdecimal() or not 0 < int(text) < 65536:
+        raise argparse.ArgumentTypeError(f"{text!r}: expected 1 to 65535")
+    return int(text)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from cli import lookback
 from cli.comparison import Timed, Verdict, compare, decoded
-from cli.errors import CliError, checked
+from cli.errors import CliError, checked, port_number
 from cli.player import Player, service_class
 from cli.services import NAMES
 from common import config, topics
@@ -169,7 +169,7 @@ def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") ->
     parser.add_argument("--service", metavar="NAME", help="replay to this service; exit 1 when its outputs differ")
     parser.add_argument("--repair", type=Path, metavar="OUT", help="write what a torn file holds into a whole one")
     parser.add_argument("--view", action="store_true", help="the operator's page on it, with a time slider")
-    parser.add_argument("--port", type=int, default=8080, help="of that page (default %(default)s)")
+    parser.add_argument("--port", type=port_number, default=8080, help="of that page (default %(default)s)")
     parser.add_argument("--at", type=float, metavar="S", help="begin there, paused [s of robot time]")
     parser.add_argument(
         "--export", type=Path, metavar="OUT",

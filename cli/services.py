@@ -4,18 +4,20 @@ import msgspec
 
 
 class Service(msgspec.Struct, frozen=True):
-    """A process `python -m <module>`. `paced`: follows the simulation in lockstep. `token`: shows itself on the bus."""
+    """A process `python -m <module>`. `paced`: follows the simulation in lockstep. `token`: shows itself on the bus.
+    `renders`: with OpenGL; the others do not load it."""
 
     name: str
     module: str
     paced: bool = True
     token: bool = True
+    renders: bool = False
 
 
 SERVICES = (
     Service("router", "services.router", paced=False, token=False),
     Service("sim", "services.sim", paced=False),
-    Service("camera", "services.camera"),
+    Service("camera", "services.camera", renders=True),
     Service("navigation", "services.navigation"),
     Service("manipulation", "services.manipulation"),
     Service("speech", "services.speech"),

@@ -118,9 +118,9 @@ def render_config(directory: Path, services: Sequence[Service], connect: str) ->
         "[rpcinterface:tidybot]",
         "supervisor.rpcinterface_factory=cli.supervisord:make_rpc",
     ]
-    programs = [(service.name, service.module) for service in services]
-    for order, (name, module) in enumerate((*programs, (WATCHDOG, "cli.watchdog"))):
-        command = [sys.executable, "-m", module]
+    watchdog = Service(WATCHDOG, "cli.watchdog")
+    for order, service in enumerate((*services, watchdog)):
+        name, command = service.name, [sys.executable, "-m", service.module]
         if name == "router":
             command += ["--listen", connect]
         lines += [
@@ -139,6 +139,8 @@ def render_config(directory: Path, services: Sequence[Service], connect: str) ->
             "stdout_logfile_maxbytes=5MB",
             "stdout_logfile_backups=2",
         ]
+        if not service.renders:
+            lines.append("environment=MUJOCO_GL=disable")
     return "\n".join(lines) + "\n"
 
 

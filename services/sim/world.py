@@ -20,6 +20,11 @@ def _box(name: str, center: Sequence[float], size: Sequence[float], rgba: str, y
     return f'<geom name="{name}" type="box" pos="{pos}" size="{half}" euler="0 0 {yaw}" rgba="{rgba}" {STATIC}/>'
 
 
+def _apart(box: str) -> str:
+    """In a body of its own: one large body around everything would have to be searched for every link of the robot."""
+    return f"<body>{box}</body>"
+
+
 def _walls(scene: Scene) -> str:
     parts = []
     for n, wall in enumerate(scene.walls):
@@ -27,7 +32,7 @@ def _walls(scene: Scene) -> str:
         length = math.hypot(dx, dy) + wall.thickness
         center = ((wall.start[0] + wall.end[0]) / 2, (wall.start[1] + wall.end[1]) / 2, wall.height / 2)
         size = (length, wall.thickness, wall.height)
-        parts.append(_box(f"wall_{n}", center, size, "0.86 0.84 0.80 1", math.atan2(dy, dx)))
+        parts.append(_apart(_box(f"wall_{n}", center, size, "0.86 0.84 0.80 1", math.atan2(dy, dx))))
     return "".join(parts)
 
 
@@ -35,7 +40,7 @@ def _furniture(scene: Scene) -> str:
     parts = []
     for box in scene.furniture:
         rgba = " ".join(f"{v:g}" for v in box.rgba)
-        parts.append(_box(box.name.replace(" ", "_"), box.center, box.size, rgba, box.yaw))
+        parts.append(_apart(_box(box.name.replace(" ", "_"), box.center, box.size, rgba, box.yaw)))
     return "".join(parts)
 
 

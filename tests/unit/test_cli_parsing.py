@@ -100,6 +100,15 @@ def test_the_generated_configuration_has_one_program_a_service(tmp_path: Path) -
     assert "--listen tcp/127.0.0.1:7001" in parsed["program:router"]["command"]
     assert "--listen" not in parsed["program:brain"]["command"]
     assert "100%% run" in parsed["program:brain"]["stdout_logfile"]
+    assert {s.name for s in SERVICES if "environment" not in parsed[f"program:{s.name}"]} == {"camera"}
+
+
+@pytest.mark.parametrize("port", ["0", "-1", "65536", "http"])
+def test_a_port_that_is_none_is_refused_at_once(port: str, capsys: pytest.CaptureFixture[str]) -> None:
+    for command in (["up"], ["demo"], ["replay", "run.mcap"]):
+        with pytest.raises(SystemExit):
+            main.main([*command, f"--port={port}"])
+        assert "expected 1 to 65535" in capsys.readouterr().err
 
 
 def test_a_long_run_directory_still_has_a_usable_socket(tmp_path: Path) -> None:
