@@ -44,10 +44,9 @@ class Robot(Stack):
 def fetch(robot: Robot, item: str, seed: int, patience: float = 400.0, speech: Any = None) -> Outcome:
     """Ask for an item and step until the brain has reported; `speech` is 16 kHz audio, else the words are typed."""
     outcome = Outcome(seed, item)
-    started = time.perf_counter()
     while robot.state().state != "LISTENING":
         robot.tick()
-    begin = robot.now
+    begin, started = robot.now, time.perf_counter()
     height = robot.truth()["objects"][item]["position"][2]
     if speech is None:
         robot.bus.send(topics.SPEECH_TEXT, m.TypedText(text=f"bring me the {item}"))

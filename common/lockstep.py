@@ -87,6 +87,10 @@ class Barrier:
                 elif now - started > self._limit:
                     self._leave(name, f"{name} left the lockstep: no answer to tick {tick} in {self._limit:.0f} s")
 
+    def awaits(self, tick: int) -> bool:
+        """True when somebody is due at `tick`."""
+        return any(tick % period == 0 for period in self.periods.values())
+
     def drain(self) -> None:
         """Take every acknowledgement that has already arrived."""
         while self._take(0.0):
