@@ -19,7 +19,7 @@ def plain(key: str, payload: bytes) -> Any:
         try:
             return shortened(fields(codec.decode_as(kind, payload, text)))
         except codec.DecodeError as error:
-            return {"undecodable": str(error), "payload": foreign(payload)}
+            return {"undecodable": str(error), "payload": shortened(foreign(payload))}
     return shortened(foreign(payload))
 
 
@@ -42,6 +42,8 @@ def fields(value: Any) -> Any:
         return [fields(v) for v in value]
     if isinstance(value, dict):
         return {str(k): fields(v) for k, v in value.items()}
+    if isinstance(value, msgspec.msgpack.Ext):
+        return value.data
     return value
 
 
@@ -50,12 +52,12 @@ def foreign(payload: bytes) -> Any:
     if payload[:1] in (b"{", b"[", b'"') or payload[:1].isdigit():
         try:
             return msgspec.json.decode(payload)
-        except msgspec.DecodeError:
+        except (ValueError, RecursionError):
             pass
     if payload and payload[0] >= 0x80:
         try:
             return fields(msgspec.msgpack.decode(payload))
-        except (msgspec.DecodeError, UnicodeDecodeError):
+        except (ValueError, RecursionError):
             pass
     try:
         text = payload.decode()

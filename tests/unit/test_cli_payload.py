@@ -2,7 +2,7 @@
 
 import msgspec
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from cli import topic, tree, verdict
@@ -38,6 +38,11 @@ def test_a_payload_of_the_wrong_kind_says_so() -> None:
     assert "undecodable" in shown and shown["payload"] == {"t": "late"}
 
 
+# A JSON string that is no UTF-8; an extension type; too deep for JSON and for MessagePack.
+@example(topics.ODOMETRY.key, b'"\x80"')
+@example(topics.ODOMETRY.key, b"\xd4\x01\x02")
+@example(topics.ODOMETRY.key, b"[" * 100_000)
+@example(topics.ODOMETRY.key, b"\x91" * 100_000)
 @given(st.sampled_from(sorted(topics.BY_KEY)), st.binary(max_size=200))
 def test_no_payload_breaks_the_decoder(key: str, payload: bytes) -> None:
     msgspec.json.decode(decode(key, payload))
