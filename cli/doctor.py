@@ -2,6 +2,7 @@
 
 import argparse
 import ctypes.util
+import importlib
 import importlib.util
 import os
 import platform
@@ -67,9 +68,10 @@ def packages() -> Iterator[Finding]:
 
 def graphics() -> Iterator[Finding]:
     fix = "apt-get install libegl1 libgl1-mesa-dri   (or libosmesa6)"
-    found = [name for name, library in (("EGL", "EGL"), ("OSMesa", "OSMesa")) if ctypes.util.find_library(library)]
-    if found:
-        yield Finding("ok", "camera GL", ", ".join(found))
+    # A library that is there may still not render: the camera's own choice tells, by trying.
+    best = importlib.import_module("services.camera.render").best()
+    if best != "raycast":
+        yield Finding("ok", "camera GL", f"{best} renders")
     else:
         yield Finding("note", "camera GL", "none: cameras use ray casting (slower, plain colours)", fix)
     if os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"):

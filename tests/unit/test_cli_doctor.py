@@ -14,6 +14,7 @@ import pytest
 from cli import doctor
 from cli.authority import Authority
 from cli.errors import CliError
+from services.camera import render
 
 
 @pytest.fixture(autouse=True)
@@ -29,6 +30,7 @@ def test_everything_that_is_not_well_has_a_fix(
     """A machine that lacks whatever a machine can lack."""
     version = metadata.version
     monkeypatch.setattr(doctor.ctypes.util, "find_library", lambda name: None)
+    monkeypatch.setattr(render, "best", lambda: "raycast")
     monkeypatch.setattr(shutil, "which", lambda name: None)
     monkeypatch.setattr(shutil, "disk_usage", lambda path: SimpleNamespace(free=10e6))
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
