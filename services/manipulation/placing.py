@@ -67,9 +67,10 @@ def _execute_place(robot: Robot, plan: PlacePlan, held: Held, name: str, surface
     yield from robot.wait(0.2)
     robot.phase = "release"
     yield from robot.move_gripper(0.0)
-    robot.held = None
     if robot.grip.width < min(planner_of(robot).arm.widest, held.width) + 0.004:
+        # Held as before, for whoever tries again.
         raise Failure("STUCK", f"the gripper opened to {robot.grip.width * 1000:.0f} mm only")
+    robot.held = None
     robot.phase = "retract"
     try:
         yield from robot.follow(plan.retreat, config.joint_speed * 0.5)

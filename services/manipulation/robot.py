@@ -20,6 +20,7 @@ from services.manipulation.verify import Grip
 T = TypeVar("T")
 Steps = Generator[None, None, T]
 DT = 0.02
+GRIPPER_TICKS = 5
 
 
 class Failure(Exception):
@@ -79,11 +80,12 @@ class Robot:
         self._command, self._late = None, 0
 
     def move_gripper(self, closed: float) -> Steps[None]:
-        """Open or close and wait until the width has settled."""
-        effort = self.config.grip_effort
-        self.io.publish(topics.GRIPPER_COMMAND, m.GripperCommand(position=closed, max_effort=effort))
+        """Open or close and wait until the width has settled. Said again and again: one lost command costs nothing."""
+        command = m.GripperCommand(position=closed, max_effort=self.config.grip_effort)
         still, last = 0, self.grip.width
         for n in range(round(1.5 / DT)):
+            if n % GRIPPER_TICKS == 0:
+                self.io.publish(topics.GRIPPER_COMMAND, command)
             yield
             still = still + 1 if abs(self.grip.width - last) < 2e-4 else 0
             last = self.grip.width

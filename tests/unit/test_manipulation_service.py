@@ -256,8 +256,8 @@ def test_release_with_an_empty_hand_just_opens_it() -> None:
     assert msgspec.json.decode(grips[-1])["position"] == 0.0
 
 
-@pytest.mark.parametrize("item", ["yellow block", "red mug", "green can"])
-def test_friction_carries_an_object_from_the_table_to_the_tray(item: str) -> None:
+def brought(item: str) -> Stack:
+    """A robot that has grasped an item and carried it to the tray."""
     robot = Robot("minimal", seed=4)
     robot.advance(0.5)
     base = robot.sim.physics.bodies[item]
@@ -270,10 +270,34 @@ def test_friction_carries_an_object_from_the_table_to_the_tray(item: str) -> Non
     assert robot.sim.physics.data.xpos[base][2] > 0.4
     robot.bus.put(topics.NAVIGATION_GOAL, b'{"goal": "return_to_start", "id": "t.3"}')
     wait(robot, topics.NAVIGATION_STATUS, "t.3", 30.0)
-    robot.bus.put(topics.MANIPULATION_GOAL, b'{"goal": "release", "id": "t.4"}')
-    released = wait(robot, topics.MANIPULATION_STATUS, "t.4", 40.0)
+    return robot
+
+
+def release(robot: Stack, goal_id: str) -> dict[str, str]:
+    robot.bus.put(topics.MANIPULATION_GOAL, f'{{"goal": "release", "id": "{goal_id}"}}'.encode())
+    return wait(robot, topics.MANIPULATION_STATUS, goal_id, 40.0)
+
+
+@pytest.mark.parametrize("item", ["yellow block", "red mug"])
+def test_friction_carries_an_object_from_the_table_to_the_tray(item: str) -> None:
+    robot = brought(item)
+    released = release(robot, "t.4")
     assert released["status"] == "done", released
     assert robot.truth()["objects"][item]["on"] == "delivery tray"
+    assert robot.truth()["holding"] is None
+
+
+def test_fingers_that_did_not_open_hold_the_same_thing_for_the_next_try(monkeypatch: pytest.MonkeyPatch) -> None:
+    robot = brought("green can")
+    told = robot.bus.tap(topics.GRIPPER_COMMAND)
+    with monkeypatch.context() as stuck:
+        stuck.setattr(robot.sim, "_grip", lambda closed, effort: None)
+        assert release(robot, "t.4")["code"] == "STUCK"
+    assert len(told) > 2, "one lost command would not have mattered"
+    assert release(robot, "t.5")["status"] == "done"
+    can = robot.truth()["objects"]["green can"]
+    _, x, y, _ = can["quaternion"]
+    assert can["on"] == "delivery tray" and math.hypot(x, y) < 0.05, "it stands"
     assert robot.truth()["holding"] is None
 
 
