@@ -41,7 +41,7 @@ class Director:
             self._waiting.remove(strike)
             self._struck(stack.now)
             self._strike(strike)
-        for service, _ in stack.members.values():
+        for service in (stack.sim, *(s for s, _ in stack.members.values())):
             if (at := getattr(getattr(service, "door", None), "hit_at", None)) is not None:
                 self._struck(at)
         self._start_again()

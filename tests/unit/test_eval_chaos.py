@@ -109,6 +109,20 @@ def test_harm_comes_at_its_moment_and_is_told(stack: Stack) -> None:
 
 
 # --- messages
+@pytest.mark.parametrize("service", ["sim", "navigation"])
+def test_a_message_that_is_hit_is_told(service: str) -> None:
+    topic = topics.ODOMETRY if service == "sim" else topics.NAVIGATION_STATUS
+    rule = Rule(service=service, key=topic.key, kind="drop")
+    opened = Stack("minimal", without=OTHERS, swaps={service: lambda kind: faulty(kind, (rule,))})
+    opened.bus.send(topics.BRAIN_STATE, m.BrainState(state="NAVIGATING"))
+    told: list[float] = []
+    director = Director(opened, (), told.append)
+    opened.advance(0.5)
+    director.step()
+    opened.close()
+    assert told
+
+
 def test_a_rule_for_a_state_holds_in_that_state_only() -> None:
     bus, clock = MemoryBus(), ManualClock()
     rule = Rule(service="navigation", key=topics.NAVIGATION_STATUS.key, kind="drop", count=99, state="GRABBING")
