@@ -31,7 +31,7 @@ CLEAR = ("", "start", "look")
 AIM = "aim"
 REFINED = 0.05
 ROUND = ("apple", "ball", "bottle", "can", "mug")
-PICTURES = {"head": topics.HEAD_RGBD, "wrist": topics.WRIST_RGBD}
+PICTURES = (topics.HEAD_RGBD, topics.WRIST_RGBD)
 
 
 class PerceptionService:
@@ -167,15 +167,15 @@ class PerceptionService:
         self._io.publish(topics.CAMERA_REQUEST, request)
 
     def _receive(self, now: float) -> None:
-        for image in (image for topic in PICTURES.values() for image in self._io.drain(topic)):
+        for key, image in ((t.key, image) for t in PICTURES for image in self._io.drain(t)):
             base = self._pose_at(image.t)
-            if image.id != self._picture or base is None:
+            if not self._picture or image.id != self._picture or base is None:
                 continue
             self._picture = ""
             try:
                 view = view_of(image, base)
             except ValueError as error:
-                self._io.count_drop(PICTURES[image.camera].key, str(error))
+                self._io.count_drop(key, str(error))
                 continue
             body = self._robot(now) if self._joints else None
             if body is not None:
