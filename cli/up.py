@@ -304,7 +304,9 @@ def run(args: argparse.Namespace) -> int:
 def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
     parser = commands.add_parser("up", help="start every service and a router; Ctrl-C stops all")
     add_start_options(parser)
-    parser.add_argument("--port", type=port_number, default=7447, help="the router's port (default %(default)s)")
+    parser.add_argument(
+        "--port", type=port_number, default=7447, help="the router's port on 127.0.0.1 (default %(default)s)"
+    )
     parser.add_argument("--namespace", metavar="NAME", help="all keys of this robot go below this name")
     parser.add_argument("--keys", nargs="?", const="", metavar="DIR", help="insist on certificates (default: if there)")
     parser.add_argument("--detach", "-d", action="store_true", help="return when ready; `tidybot down` stops it")

@@ -89,7 +89,7 @@ class Barrier:
 
     def awaits(self, tick: int) -> bool:
         """True when somebody is due at `tick`."""
-        return any(tick % period == 0 for period in self.periods.values())
+        return bool(self._late(tick))
 
     def drain(self) -> None:
         """Take every acknowledgement that has already arrived."""

@@ -278,7 +278,7 @@ def release(robot: Stack, goal_id: str) -> dict[str, str]:
     return wait(robot, topics.MANIPULATION_STATUS, goal_id, 40.0)
 
 
-@pytest.mark.parametrize("item", ["yellow block", "red mug"])
+@pytest.mark.parametrize("item", ["yellow block", "red mug", "green can"])
 def test_friction_carries_an_object_from_the_table_to_the_tray(item: str) -> None:
     robot = brought(item)
     released = release(robot, "t.4")
