@@ -161,7 +161,8 @@ class Player:
             else:
                 now = tick * DT
             self.clock.advance(tick * DT - self.clock.now())
-            self.io.begin(tick, now)
+            # In lockstep the simulation works out a tick while the others are at the one before.
+            self.io.begin(tick - 1 if self._sim and self.lockstep else tick, now)
             self.service.step(now)
             progress(now)
         return self.io.outputs

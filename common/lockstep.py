@@ -2,7 +2,8 @@
 
 `Barrier` is the simulation's side over any transport; `InProcess` steps the same service objects in one process.
 Tick k is the robot time k * DT. The simulation publishes the state of tick k, then `sim/clock` k; participants due at
-k step and acknowledge; then the simulation advances to k + 1.
+k step and acknowledge; then comes `sim/clock` k + 1. While they step the simulation already works out the state of
+k + 1, from what was sent before k: a command reaches the world one tick after it was sent, as over any field bus.
 """
 
 from collections.abc import Callable, Iterable
@@ -139,7 +140,7 @@ class InProcess:
         """One tick of the world and of every service due; returns the new robot time."""
         sim_io = self._sim_io
         tick, now = self.tick, self.tick * DT
-        sim_io.begin(tick + 1, now)
+        sim_io.begin(tick, now)
         sim_io.out_stamp = tick
         self._sim.step(now)
         self.tick = tick = tick + 1

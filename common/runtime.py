@@ -163,13 +163,16 @@ class Process:
             barrier.assemble(self._keep_alive)
         tick = round(getattr(self.service, "start_time", 0.0) / DT)
         pacer = Pacer(DT, speed) if speed else None
+        message = b""
         while not self._stop.is_set():
             if self.service.paused:
                 self.housekeeping()
                 self._stop.wait(0.02)
                 continue
             io.out_tick = tick
-            self.step(tick + 1, tick * DT)
+            self.step(tick, tick * DT)
+            if lockstep and message:
+                barrier.wait(tick, self._gone, partial(now_out.put, message))
             tick += 1
             clock.set(tick * DT)
             message = codec.encode(
@@ -177,8 +180,6 @@ class Process:
             )
             barrier.drain()
             (lazy_out if lockstep and not barrier.awaits(tick) else now_out).put(message)
-            if lockstep:
-                barrier.wait(tick, self._gone, partial(now_out.put, message))
             if pacer:
                 pacer.wait()
             self.housekeeping()

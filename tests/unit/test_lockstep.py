@@ -41,8 +41,10 @@ class World:
 
     def __init__(self, io: MemoryIo) -> None:
         self.io = io
+        self.seen: list[tuple[int, str]] = []
 
     def step(self, now: float) -> None:
+        self.seen += [(round(now * 100), goal.goal) for goal in self.io.drain(topics.NAVIGATION_GOAL)]
         self.io.publish(topics.GOAL_REACHED, m.GoalReached(reached=True, target_id=str(round(now * 100) + 1)))
 
 
@@ -52,8 +54,9 @@ def run(talker_first: bool) -> list[tuple[int, str]]:
     def io(name: str, reads: tuple, writes: tuple) -> MemoryIo:
         return MemoryIo(bus, name, reads, writes, scene=SCENE, clock=clock)
 
-    sim_io = io("sim", (), (topics.GOAL_REACHED,))
-    world = InProcess(World(sim_io), sim_io, clock)
+    sim_io = io("sim", (topics.NAVIGATION_GOAL,), (topics.GOAL_REACHED,))
+    sim = World(sim_io)
+    world = InProcess(sim, sim_io, clock)
     relay_io = io("relay", (topics.NAVIGATION_GOAL, topics.GOAL_REACHED), ())
     talker_io = io("talker", (), (topics.NAVIGATION_GOAL,))
     relay, talker = Relay(relay_io), Talker(talker_io)
@@ -64,6 +67,7 @@ def run(talker_first: bool) -> list[tuple[int, str]]:
     latest = relay_io.latest(topics.GOAL_REACHED)
     assert latest is not None
     assert latest.target_id == "6", "the state of a tick is visible to the steps of that tick"
+    assert sim.seen == relay.seen, "the world is worked out while the others step: it hears no sooner than they"
     return relay.seen
 
 
