@@ -28,11 +28,23 @@ $(STAMP): requirements.lock pyproject.toml
 demo: setup ## "bring me the red mug", from a recording to the delivery; ARGS='--speed max --seed 3'
 	$(BIN)/tidybot demo $(ARGS)
 
+# Tests without processes of their own share the cores; the others run one at a time. 5: ARGS chose none of them.
+PYTEST := $(BIN)/python -m pytest -q
+TOGETHER := -n logical --maxprocesses 4 --dist worksteal tests/unit tests/e2e/in_process
+ALONE := tests/contract tests/integration tests/e2e --ignore tests/e2e/in_process
+
+define run_tests
+@status=0; \
+$(PYTEST) $(TOGETHER) $(1) $(ARGS) || [ $$? = 5 ] || status=1; \
+$(PYTEST) $(ALONE) $(1) $(ARGS) || [ $$? = 5 ] || status=1; \
+exit $$status
+endef
+
 test: setup ## every test but the slow ones
-	$(BIN)/python -m pytest -q -m 'not slow' $(ARGS)
+	$(call run_tests,-m 'not slow')
 
 test-all: setup ## the slow ones too
-	$(BIN)/python -m pytest -q $(ARGS)
+	$(call run_tests,)
 
 check: setup ## lint, format, types, imports
 	$(BIN)/ruff check .

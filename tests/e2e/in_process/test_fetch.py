@@ -9,7 +9,7 @@ from bench.mission import Outcome, Robot, fetch
 from common import topics
 from services.speech.audio import read_wav
 
-VOICE = Path(__file__).parents[2] / "docs" / "audio" / "bring_me_the_red_mug.wav"
+VOICE = Path(__file__).parents[3] / "docs" / "audio" / "bring_me_the_red_mug.wav"
 FLOW = ["LISTENING", "NAVIGATING", "GRABBING", "RETURNING", "RELEASING", "COMPLETED", "LISTENING"]
 
 
