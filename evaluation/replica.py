@@ -56,6 +56,10 @@ class Replica:
         self._pads = pads(model)
         self._base_at = [model.joint(j).qposadr[0] for j in ("base_x", "base_y", "base_yaw")]
         self._floor = model.geom("floor").id
+        starts = [model.joint(body_name(o)).qposadr[0] for o in self._specs]
+        self._poses_at = np.array(starts, dtype=int).reshape(-1, 1) + np.arange(7)
+        self._poses = np.full(self._poses_at.shape, np.nan)
+        self._things: dict[str, Thing] = {}
 
     def look(self, state: m.SimState) -> Look:
         """Poses and contacts of a published state.
@@ -73,9 +77,16 @@ class Replica:
         mujoco.mj_kinematics(model, data)
         mujoco.mj_collision(model, data)
         robot, other, hits = self._contacts()
+        poses = qpos[self._poses_at]
+        moved = (poses != self._poses).any(axis=1).tolist()
+        self._poses = poses
         things = {}
-        for spec in self._specs:
+        for spec, elsewhere in zip(self._specs, moved, strict=True):
             name = spec.name
+            before = self._things.get(name)
+            if not (elsewhere or before is None or before.touched or robot[name]):
+                things[name] = before  # most things lie still most of the time
+                continue
             body = self._body[name]
             x, y, z = (float(v) for v in data.xpos[body])
             up = data.xmat[body].reshape(3, 3)[2]
@@ -88,6 +99,7 @@ class Replica:
                 held=held,
                 touched=any(int(model.geom_bodyid[g]) in self._gripper for g in robot[name]),
             )
+        self._things = things
         pushed = frozenset(n for n, geoms in robot.items() if geoms)
         base = tuple(float(v) for v in data.qpos[self._base_at])
         return Look(state.t, (base[0], base[1], base[2]), things, tuple(hits), pushed)
