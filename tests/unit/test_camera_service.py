@@ -11,13 +11,13 @@ import pytest
 from common import messages as m
 from common import topics
 from common.geometry import quat_matrix
-from common.memory import MemoryBus, MemoryIo
 from common.scene import load_scene
 from services.camera import raycast, render
 from services.camera.config import CameraConfig
 from services.camera.service import CameraService
 from services.sim.physics import Physics
 from services.sim.robot import HEAD_CAMERA, HEAD_FOVY, HEAD_PITCH
+from tests.node import Node
 
 TINY = """<mujoco><visual><quality offsamples="0"/></visual><worldbody>
 <geom type="plane" size="5 5 .1" rgba="0 1 0 1"/>
@@ -86,17 +86,13 @@ def test_ray_cast_points_lie_where_they_are_also_close_and_off_the_axis(case: fl
     assert np.abs(points[floor][:, 2]).max() < 1e-6
 
 
-class Node:
-    """The service on a memory bus, rendering by ray casting."""
+class Lens(Node):
+    """The service, rendering by ray casting."""
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setenv("MUJOCO_GL", "")
-        self.bus = MemoryBus()
-        reads, writes = CameraService.READS, CameraService.WRITES
-        self.io = MemoryIo(self.bus, "camera", reads, writes, scene=load_scene("minimal"))
-        self.service = CameraService(CameraConfig(backend="raycast"), self.io)
+        super().__init__(CameraService, CameraConfig(backend="raycast"), load_scene("minimal"))
         self.images = self.bus.tap(topics.HEAD_RGBD)
-        self.tick = 0
 
     def state(self, physics: Physics) -> None:
         model = m.SimModel(scene="minimal", seed=0, epoch="e", mjcf=physics.mjcf)
@@ -111,16 +107,14 @@ class Node:
 
     def step(self) -> None:
         for _ in range(5):
-            self.tick += 10
-            self.io.clock.advance(0.1)  # type: ignore[attr-defined]
-            self.io.begin(self.tick, self.tick / 100)
-            self.service.step(self.tick / 100)
+            self.later()
+            self.run()
 
 
 def test_an_image_carries_intrinsics_and_the_pose_of_its_frame(
     physics: Physics, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    node = Node(monkeypatch)
+    node = Lens(monkeypatch)
     node.state(physics)
     node.ask()
     image = msgspec.msgpack.decode(node.images[-1], type=m.Rgbd)
@@ -141,14 +135,14 @@ def test_an_image_carries_intrinsics_and_the_pose_of_its_frame(
 def test_impossible_requests_are_counted(
     fields: dict[str, object], physics: Physics, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    node = Node(monkeypatch)
+    node = Lens(monkeypatch)
     node.state(physics)
     node.ask(**fields)
     assert node.io.drops["camera/request"] == 1 and not node.images
 
 
 def test_a_request_before_the_first_state_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:
-    node = Node(monkeypatch)
+    node = Lens(monkeypatch)
     node.ask()
     assert node.io.drops["camera/request"] == 1 and not node.images
 
@@ -156,7 +150,7 @@ def test_a_request_before_the_first_state_is_counted(monkeypatch: pytest.MonkeyP
 def test_a_state_of_another_model_is_counted_and_the_next_one_works(
     physics: Physics, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    node = Node(monkeypatch)
+    node = Lens(monkeypatch)
     node.state(physics)
     node.bus.send(topics.SIM_STATE, m.SimState(t=1.0, tick=1, epoch="e", qpos=b"\0" * 16))
     node.ask()

@@ -8,7 +8,7 @@ import pytest
 from services.manipulation.grasp import approach_rotation
 from services.manipulation.memo import HandMemo
 from services.manipulation.plan import Held
-from tests.unit.test_manipulation_service import Node
+from tests.unit.test_manipulation_service import Arm
 
 BOTTLE = Held(
     "green bottle", "bottle", approach_rotation(0.3, 0.2), np.array([0.0, 0.01, 0.084]), (0.064, 0.064, 0.2), 0.064, 0.1
@@ -51,11 +51,11 @@ def test_where_nothing_can_be_written_it_says_so_and_goes_on(tmp_path: Path, tol
 
 def test_a_fresh_process_knows_what_the_hand_holds(tmp_path: Path, told: list[str]) -> None:
     HandMemo(tmp_path, told.append).keep(BOTTLE, 0.0638)
-    node = Node(state_dir=tmp_path)
+    node = Arm(state_dir=tmp_path)
     node.width, node.force = 0.0636, 25.0
     node.step(0.1)
     assert node.ask("grab", "a.2").detail.startswith("already holding green bottle")
     assert (tmp_path / "hand").exists()
-    other = Node(state_dir=tmp_path)
+    other = Arm(state_dir=tmp_path)
     other.step(0.1)
     assert not (tmp_path / "hand").exists(), "an open hand holds nothing"

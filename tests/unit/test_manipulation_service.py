@@ -9,7 +9,7 @@ import pytest
 from bench.mission import Robot
 from common import messages as m
 from common import topics
-from common.memory import MemoryBus, MemoryIo
+from common.memory import MemoryIo
 from common.scene import load_scene
 from evaluation.stack import Stack
 from services.manipulation.arm_model import ArmModel, Obstacle, Pose
@@ -21,6 +21,7 @@ from services.manipulation.trajectory import connect, free_line, timed
 from services.manipulation.verify import Grip, holds, judge
 from services.perception.config import PerceptionConfig
 from services.sim.robot import HOME_ARM, JOINT_NAMES, robot_mjcf
+from tests.node import Node
 
 SCENE = load_scene("minimal")
 CONFIG = ManipulationConfig()
@@ -141,24 +142,18 @@ def test_an_open_hand_holds_nothing() -> None:
     assert holds(Grip(0.05, 25.0), CONFIG)
 
 
-class Node:
-    """The service on a memory bus with joint states that a test sends."""
+class Arm(Node):
+    """The service with joint states that a test sends."""
 
     def __init__(self, description: bool = True, state_dir: Path | None = None) -> None:
-        self.bus = MemoryBus()
-        reads, writes = ManipulationService.READS, ManipulationService.WRITES
-        self.io = MemoryIo(self.bus, "manipulation", reads, writes, scene=SCENE)
-        self.io.state_dir = state_dir
-        self.service = ManipulationService(CONFIG, self.io)
-        self.tick = 0
+        super().__init__(ManipulationService, CONFIG, SCENE, state_dir=state_dir)
         self.width, self.force = 0.085, 0.0
         if description:
             self.bus.send(topics.ROBOT_DESCRIPTION, m.RobotDescription(mjcf=robot_mjcf()))
 
     def step(self, seconds: float = 0.02, joints: bool = True) -> None:
         for _ in range(max(1, round(seconds / 0.02))):
-            self.tick += 2
-            now = self.tick * 0.01
+            now = self.later()
             if joints:
                 position = [0.0, 0.0, 0.0, *HOME_ARM, self.width]
                 effort = [0.0] * 10 + [self.force]
@@ -166,9 +161,7 @@ class Node:
                     t=now, name=list(JOINT_NAMES), position=position, velocity=[0.0] * 11, effort=effort
                 )
                 self.bus.send(topics.JOINT_STATES, state)
-            self.io.clock.advance(now - self.io.clock.now())  # type: ignore[attr-defined]
-            self.io.begin(self.tick, now)
-            self.service.step(now)
+            self.run()
 
     def ask(self, text: str, goal_id: str = "a.1", seconds: float = 2.0, **more: object) -> m.ManipulationStatus:
         goal = m.ManipulationGoal(goal=text, id=goal_id, **more)  # type: ignore[arg-type]
@@ -177,7 +170,7 @@ class Node:
         return self.status()
 
     def status(self) -> m.ManipulationStatus:
-        return msgspec.json.decode(self.bus.last["brain/manipulation_status"], type=m.ManipulationStatus)
+        return self.last(topics.MANIPULATION_STATUS)
 
 
 def ref(x: float) -> m.ObjectRef:
@@ -196,24 +189,24 @@ def ref(x: float) -> m.ObjectRef:
     ],
 )
 def test_what_cannot_be_done_fails_with_a_code_and_a_reason(text: str, code: str) -> None:
-    status = Node().ask(text)
+    status = Arm().ask(text)
     assert (status.status, status.code, status.goal_id, status.attempt) == ("failed", code, "a.1", 1)
     assert status.detail
 
 
 def test_an_object_out_of_reach_is_refused_with_the_distance() -> None:
-    status = Node().ask("grab", object=ref(2.4))
+    status = Arm().ask("grab", object=ref(2.4))
     assert (status.status, status.code) == ("failed", "UNREACHABLE")
     assert "2.28 m" in status.detail
 
 
 def test_without_a_robot_description_a_grab_fails_within_seconds() -> None:
-    status = Node(description=False).ask("grab", seconds=4.0, object=ref(0.6))
+    status = Arm(description=False).ask("grab", seconds=4.0, object=ref(0.6))
     assert (status.status, status.code) == ("failed", "NO_ROBOT")
 
 
 def test_silent_joint_states_end_the_goal() -> None:
-    node = Node()
+    node = Arm()
     node.step(1.0)
     node.bus.send(topics.MANIPULATION_GOAL, m.ManipulationGoal(goal="grab", id="a.1", object=ref(0.62)))
     node.step(2.0, joints=False)
@@ -221,7 +214,7 @@ def test_silent_joint_states_end_the_goal() -> None:
 
 
 def test_a_stop_ends_the_goal_and_the_stream() -> None:
-    node = Node()
+    node = Arm()
     node.step(1.0)
     assert node.ask("grab", object=ref(0.62), seconds=1.5).status == "executing"
     node.bus.put(topics.ROBOT_STOP, b"enough")
@@ -233,7 +226,7 @@ def test_a_stop_ends_the_goal_and_the_stream() -> None:
 
 
 def test_the_same_goal_twice_is_answered_and_not_run_again() -> None:
-    node = Node()
+    node = Arm()
     node.ask("place table")
     tap = node.bus.tap(topics.MANIPULATION_STATUS)
     node.ask("place table")
@@ -241,7 +234,7 @@ def test_the_same_goal_twice_is_answered_and_not_run_again() -> None:
 
 
 def test_grab_with_something_in_the_hand_looks_before_it_acts() -> None:
-    node = Node()
+    node = Arm()
     node.width, node.force = 0.066, 25.0
     node.step(0.1)
     status = node.ask("grab", "a.2")
@@ -249,7 +242,7 @@ def test_grab_with_something_in_the_hand_looks_before_it_acts() -> None:
 
 
 def test_release_with_an_empty_hand_just_opens_it() -> None:
-    node = Node()
+    node = Arm()
     grips = node.bus.tap(topics.GRIPPER_COMMAND)
     status = node.ask("release")
     assert status.status == "done" and "nothing was held" in status.detail

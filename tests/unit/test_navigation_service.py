@@ -8,7 +8,6 @@ import pytest
 from common import messages as m
 from common import topics
 from common.geometry import quat_yaw
-from common.memory import MemoryBus, MemoryIo
 from common.scene import load_scene
 from services.navigation.config import NavigationConfig
 from services.navigation.costmap import Costmap
@@ -17,6 +16,7 @@ from services.navigation.planner import PathPlanner
 from services.navigation.service import NavigationService
 from services.navigation.standoff import poses_for
 from services.sim.layout import place_objects
+from tests.node import Node
 
 SCENE = load_scene("apartment")
 CONFIG = NavigationConfig()
@@ -105,26 +105,21 @@ def test_the_follower_stops_before_what_the_lidar_sees() -> None:
     assert not beside.blocked
 
 
-class Node:
-    """The service on a memory bus, with a base that a test moves."""
+class Pilot(Node):
+    """The service, with a base that a test moves."""
 
     def __init__(self) -> None:
-        self.bus = MemoryBus()
-        reads, writes = NavigationService.READS, NavigationService.WRITES
-        self.io = MemoryIo(self.bus, "navigation", reads, writes, scene=SCENE, lockstep=False)
-        self.service = NavigationService(CONFIG, self.io)
+        super().__init__(NavigationService, CONFIG, SCENE, lockstep=False)
         self.targets = self.bus.tap(topics.BASE_TARGET)
-        self.now = 0.0
         self.pose = (0.0, 0.0, 0.0)
 
     def step(self, seconds: float = 0.05, odometry: bool = True) -> None:
         for _ in range(max(1, round(seconds / 0.05))):
-            self.now += 0.05
+            self.later()
             if odometry:
                 x, y, theta = self.pose
                 self.bus.send(topics.ODOMETRY, m.Odometry(t=self.now, x=x, y=y, theta=theta))
-            self.io.begin(None, self.now)
-            self.service.step(self.now)
+            self.run()
 
     def ask(self, text: str, goal_id: str = "a.1", attempt: int = 1) -> m.NavigationStatus:
         self.bus.send(topics.NAVIGATION_GOAL, m.NavigationGoal(goal=text, id=goal_id, attempt=attempt))
@@ -132,7 +127,7 @@ class Node:
         return self.status()
 
     def status(self) -> m.NavigationStatus:
-        return msgspec.json.decode(self.bus.last["brain/navigation_status"], type=m.NavigationStatus)
+        return self.last(topics.NAVIGATION_STATUS)
 
     def target(self) -> m.BaseTarget:
         return msgspec.json.decode(self.targets[-1], type=m.BaseTarget)
@@ -148,13 +143,13 @@ class Node:
     ],
 )
 def test_what_cannot_be_done_fails_with_a_code_and_a_reason(goal: str, code: str) -> None:
-    status = Node().ask(goal)
+    status = Pilot().ask(goal)
     assert (status.status, status.code, status.goal_id, status.attempt) == ("failed", code, "a.1", 1)
     assert status.detail
 
 
 def test_arrived_comes_only_from_the_base() -> None:
-    node = Node()
+    node = Pilot()
     assert node.ask("find the red mug").status == "navigating"
     node.pose = (1.0, 1.0, 0.0)
     node.step(0.5)
@@ -170,7 +165,7 @@ def test_arrived_comes_only_from_the_base() -> None:
 
 
 def test_an_object_that_was_seen_counts_before_the_places_file() -> None:
-    node = Node()
+    node = Pilot()
     mug = place_objects(SCENE, 0)[0]
     seen = m.WorldObject(
         label="red mug", kind="mug", colour="red", position=mug.position, size=mug.spec.size, on=mug.on
@@ -183,7 +178,7 @@ def test_an_object_that_was_seen_counts_before_the_places_file() -> None:
 
 
 def test_the_same_goal_twice_runs_once_and_is_answered() -> None:
-    node = Node()
+    node = Pilot()
     node.ask("goto kitchen")
     tap = node.bus.tap(topics.NAVIGATION_STATUS)
     paths = node.bus.tap(topics.NAV_PATH)
@@ -193,7 +188,7 @@ def test_the_same_goal_twice_runs_once_and_is_answered() -> None:
 
 
 def test_a_new_goal_replaces_the_old_one_and_stop_holds() -> None:
-    node = Node()
+    node = Pilot()
     node.ask("goto kitchen", "a.1")
     assert node.ask("goto bedroom", "a.2").goal_id == "a.2"
     stopped = node.ask("stop", "a.3")
@@ -204,7 +199,7 @@ def test_a_new_goal_replaces_the_old_one_and_stop_holds() -> None:
 
 
 def test_silent_odometry_ends_the_goal() -> None:
-    node = Node()
+    node = Pilot()
     node.ask("goto kitchen")
     node.step(1.0, odometry=False)
     assert (node.status().status, node.status().code) == ("failed", "NO_ODOMETRY")
@@ -219,14 +214,14 @@ def test_silent_odometry_ends_the_goal() -> None:
     ],
 )
 def test_a_bad_pose_is_refused(pose: m.NavGoal) -> None:
-    node = Node()
+    node = Pilot()
     node.service._take(pose.id, 1, "", pose)
     feedback = msgspec.json.decode(node.bus.last["navigation_feedback"], type=m.NavigationFeedback)
     assert (feedback.status, feedback.code) == ("failed", "BAD_POSE")
 
 
 def test_a_goal_inside_furniture_has_no_path() -> None:
-    node = Node()
+    node = Pilot()
     node.bus.send(topics.NAV_GOAL, m.NavGoal(id="c", x=6.0, y=3.5))
     node.step(0.2)
     feedback = msgspec.json.decode(node.bus.last["navigation_feedback"], type=m.NavigationFeedback)

@@ -5,27 +5,23 @@ import pytest
 
 from common import config, topics
 from common import messages as m
-from common.memory import MemoryBus, MemoryIo
 from common.scene import load_scene
 from services.planner.config import PlannerConfig
 from services.planner.service import REMEMBERED, PlannerService
+from tests.node import Node
 
 SCENE = load_scene("apartment")
 CONFIG = config.load("planner", PlannerConfig, config.DEFAULT_DIR, {})
 
 
-class Node:
+class Desk(Node):
     def __init__(self) -> None:
-        self.bus = MemoryBus()
-        self.io = MemoryIo(self.bus, "planner", PlannerService.READS, PlannerService.WRITES, scene=SCENE)
-        self.service = PlannerService(CONFIG, self.io)
+        super().__init__(PlannerService, CONFIG, SCENE)
         self.plans = self.bus.tap(topics.ACTION_PLAN)
-        self.tick = 0
 
     def step(self) -> None:
-        self.tick += 10
-        self.io.begin(self.tick, self.tick / 100)
-        self.service.step(self.tick / 100)
+        self.later()
+        self.run()
 
     def ask(self, command: str, request_id: str = "m.1", **fields: object) -> m.ActionPlan:
         request = msgspec.convert({"id": request_id, "command": command, **fields}, m.PlanRequest)
@@ -46,7 +42,7 @@ def mugs(*rows: tuple[str, tuple[float, float, float]]) -> m.WorldObjects:
 
 
 def test_what_was_seen_and_where_the_robot_stands_decide_which_one_is_meant() -> None:
-    node = Node()
+    node = Desk()
     node.bus.send(topics.WORLD_OBJECTS, mugs(("red", (4.0, -3.1, 0.8)), ("white", (4.8, -3.1, 0.8))))
     node.bus.send(topics.POSE, m.PoseEstimate(t=1.0, x=4.4, y=-2.3, theta=-1.6))
     assert targets(node.ask("bring me the mug on the left", "m.1"))[0] == "white mug"
@@ -57,19 +53,19 @@ def test_what_was_seen_and_where_the_robot_stands_decide_which_one_is_meant() ->
 
 
 def test_the_request_says_what_is_held() -> None:
-    plan = Node().ask("put it on the desk", world={"held": "red cup"})
+    plan = Desk().ask("put it on the desk", world={"held": "red cup"})
     assert [(s.action, s.object, s.target) for s in plan.steps] == [("place", "red mug", "desk")]
 
 
 def test_the_same_request_twice_gets_the_same_plan() -> None:
-    node = Node()
+    node = Desk()
     first = node.ask("bring me the red mug")
     assert node.ask("bring me the apple") == first
     assert len(node.plans) == 2
 
 
 def test_every_rejected_plan_of_a_mission_is_remembered() -> None:
-    node, command, seen = Node(), "take the red mug to the living room", []
+    node, command, seen = Desk(), "take the red mug to the living room", []
     plan = node.ask(command, "m.1")
     for number in range(2, 5):
         if not plan.steps:
@@ -84,7 +80,7 @@ def test_every_rejected_plan_of_a_mission_is_remembered() -> None:
 
 
 def test_its_memory_is_bounded() -> None:
-    node = Node()
+    node = Desk()
     rejected = {"steps": [], "reason": "step 1: no"}
     for number in range(REMEMBERED + 10):
         node.ask("bring me the apple", f"m{number}.1", rejected=rejected)
@@ -92,7 +88,7 @@ def test_its_memory_is_bounded() -> None:
 
 
 def test_a_request_that_does_not_decode_is_counted() -> None:
-    node = Node()
+    node = Desk()
     node.bus.put(topics.PLAN_REQUEST, b'{"command": "bring me the apple"}')
     node.bus.put(topics.PLAN_REQUEST, b"bring me the apple")
     node.step()
@@ -103,5 +99,5 @@ def test_a_request_that_does_not_decode_is_counted() -> None:
     "command", ["\x00\x01", "'" * 300, "and and and", "the the the", "é ü ß", "put", "all of", "it"]
 )
 def test_odd_words_are_refused(command: str) -> None:
-    plan = Node().ask(command)
+    plan = Desk().ask(command)
     assert not plan.steps and plan.detail

@@ -8,7 +8,6 @@ import pytest
 
 from common import config, topics
 from common import messages as m
-from common.memory import MemoryBus, MemoryIo
 from common.runtime import StartError
 from common.scene import load_scene
 from services.speech.audio import RATE, AudioError, read_wav, write_wav
@@ -17,6 +16,7 @@ from services.speech.grammar import Grammar, GrammarError, vocabulary
 from services.speech.moonshine import Vocabulary
 from services.speech.service import SpeechService
 from services.speech.vad import Endpointer
+from tests.node import Node
 
 ROOT = Path(__file__).parents[2]
 VOICE = ROOT / "docs" / "audio" / "bring_me_the_red_mug.wav"
@@ -134,24 +134,17 @@ def test_empty_and_truncated_recordings_are_named(tmp_path: Path) -> None:
         read_wav(path)
 
 
-class Node:
-    """The service on a memory bus in lockstep."""
+class Listener(Node):
+    """The service, to which a test talks."""
 
     def __init__(self, **changes: object) -> None:
-        self.bus = MemoryBus()
-        reads, writes = SpeechService.READS, SpeechService.WRITES
-        self.io = MemoryIo(self.bus, "speech", reads, writes, scene=SCENE)
-        self.service = SpeechService(msgspec.structs.replace(CONFIG, **changes), self.io)
+        super().__init__(SpeechService, msgspec.structs.replace(CONFIG, **changes), SCENE)
         self.results = self.bus.tap(topics.SPEECH_RESULT)
-        self.tick = 0
 
     def step(self, seconds: float = 0.1) -> None:
         for _ in range(max(1, round(seconds * 10))):
-            self.tick += 10
-            now = self.tick / 100
-            self.io.clock.advance(now - self.io.clock.now())  # type: ignore[attr-defined]
-            self.io.begin(self.tick, now)
-            self.service.step(now)
+            self.later()
+            self.run()
 
     def ask(self, text: str, goal_id: str = "a.1") -> None:
         self.bus.send(topics.SPEECH_GOAL, m.SpeechGoal(goal=text, id=goal_id))
@@ -160,34 +153,34 @@ class Node:
     def play(self, samples: np.ndarray) -> None:
         for n, start in enumerate(range(0, len(samples), 1600)):
             data = samples[start : start + 1600].tobytes()
-            self.bus.send(topics.AUDIO_PCM, m.AudioChunk(t=self.tick / 100, data=data, seq=n))
+            self.bus.send(topics.AUDIO_PCM, m.AudioChunk(t=self.now, data=data, seq=n))
             self.step()
 
-    def last(self) -> m.SpeechResult:
+    def result(self) -> m.SpeechResult:
         return msgspec.json.decode(self.results[-1], type=m.SpeechResult)
 
     def state(self) -> str:
-        return msgspec.json.decode(self.bus.last["speech/status"], type=m.SpeechStatus).state
+        return self.last(topics.SPEECH_STATUS).state
 
 
 def test_a_recorded_command_is_understood_and_noise_is_not() -> None:
-    node = Node()
+    node = Listener()
     node.ask("listen", "a.1")
     assert node.state() == "listening"
     node.play(np.concatenate([np.zeros(RATE // 2, np.int16), read_wav(VOICE), np.zeros(RATE, np.int16)]))
     node.step(1.0)
-    heard = node.last()
+    heard = node.result()
     assert (heard.text, heard.goal_id) == ("bring me the red mug", "a.1")
     assert heard.confidence > 0.5
     node.ask("listen", "a.2")
     noise = np.random.default_rng(0).normal(0, 3000, RATE * 3).astype(np.int16)
     node.play(noise)
     node.step(2.0)
-    assert node.last().goal_id == "a.1", "noise is no speech"
+    assert node.result().goal_id == "a.1", "noise is no speech"
 
 
 def test_the_robot_understands_its_own_voice() -> None:
-    node = Node()
+    node = Listener()
     spoken = node.bus.tap(topics.AUDIO_OUT)
     node.ask("say go to the kitchen", "a.1")
     node.step(5.0)
@@ -198,24 +191,24 @@ def test_the_robot_understands_its_own_voice() -> None:
     audio = np.concatenate([np.frombuffer(c.data, "<i2") for c in chunks])
     node.play(np.concatenate([audio, np.zeros(RATE, np.int16)]))
     node.step(1.0)
-    assert node.last().text == "go to the kitchen"
+    assert node.result().text == "go to the kitchen"
 
 
 def test_silence_is_an_error_after_the_timeout() -> None:
-    node = Node(listen_timeout=5.0)
+    node = Listener(listen_timeout=5.0)
     node.ask("listen")
     node.play(np.zeros(RATE * 4, np.int16))
     assert not node.results
     node.step(2.0)
-    assert (node.last().text, node.last().code) == ("ERROR", "TIMEOUT")
+    assert (node.result().text, node.result().code) == ("ERROR", "TIMEOUT")
 
 
 def test_typed_words_count_and_wait_for_the_next_listen() -> None:
-    node = Node()
+    node = Listener()
     node.bus.put(topics.SPEECH_TEXT, b"Bring me the blue mug!")
     node.step()
     node.ask("listen")
-    assert (node.last().text, node.last().confidence) == ("bring me the blue mug", 1.0)
+    assert (node.result().text, node.result().confidence) == ("bring me the blue mug", 1.0)
     node.bus.put(topics.SPEECH_TEXT, b"too old")
     node.step(CONFIG.typed_memory + 1)
     node.ask("listen", "a.2")
@@ -223,16 +216,16 @@ def test_typed_words_count_and_wait_for_the_next_listen() -> None:
 
 
 def test_cancel_ends_listening_and_an_unknown_goal_is_answered() -> None:
-    node = Node()
+    node = Listener()
     node.ask("listen", "a.1")
     node.ask("cancel", "a.2")
     assert node.state() == "idle" and not node.results
     node.ask("sing", "a.3")
-    assert (node.last().text, node.last().code, node.last().goal_id) == ("ERROR", "UNKNOWN_GOAL", "a.3")
+    assert (node.result().text, node.result().code, node.result().goal_id) == ("ERROR", "UNKNOWN_GOAL", "a.3")
 
 
 def test_the_same_goal_twice_gets_the_same_answer() -> None:
-    node = Node()
+    node = Listener()
     node.bus.put(topics.SPEECH_TEXT, b"stop")
     node.ask("listen")
     node.ask("listen")
@@ -241,7 +234,7 @@ def test_the_same_goal_twice_gets_the_same_answer() -> None:
 
 
 def test_odd_audio_is_counted() -> None:
-    node = Node()
+    node = Listener()
     node.ask("listen")
     node.bus.send(topics.AUDIO_PCM, m.AudioChunk(t=0.0, data=b"\x00"))
     node.bus.send(topics.AUDIO_PCM, m.AudioChunk(t=0.0, data=b"\x00\x00", rate=1))
@@ -251,4 +244,4 @@ def test_odd_audio_is_counted() -> None:
 
 def test_a_missing_recording_stops_the_start_with_a_reason(tmp_path: Path) -> None:
     with pytest.raises(StartError, match="no such file"):
-        Node(wav=str(tmp_path / "nothing.wav"))
+        Listener(wav=str(tmp_path / "nothing.wav"))
