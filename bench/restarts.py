@@ -189,6 +189,8 @@ def run(robot: Robot, restarts: int, seconds: float) -> int:
         try:
             while len(times) < restarts and time.monotonic() < end:
                 times.append(robot.kill(half))
+                if len(times) % 50 == 0:
+                    print(f"  {len(times)} of {restarts} times {', '.join(half)}", file=sys.stderr, flush=True)
         except TimeoutError as error:
             wrong.append(str(error))
         after = settled(robot, half, before)
