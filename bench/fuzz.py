@@ -24,7 +24,7 @@ from tests.support import Site, eventually, free_port, site
 BURST = 100
 START_LIMIT = 300.0
 # What is well-formed here is a lie nobody can tell from the truth; only what is malformed must be refused.
-TRUSTED = {topics.SIM_CLOCK.key, topics.LOCKSTEP_ACK.key}
+TRUSTED = {t.key for t in (*topics.CLOCKS, topics.LOCKSTEP_ACK)}
 QUERIES = (topics.SIM_TRUTH, topics.SIM_RESET, topics.SIM_SNAPSHOT, topics.BRAIN_MISSIONS)
 CALM = {"TIDYBOT__BRAIN__ENABLE_CONFIRMATION": "false", "TIDYBOT__RUNTIME__LOG_LEVEL": "warning"}
 

@@ -18,7 +18,13 @@ from common.lockstep import DT
 from common.runtime import main
 
 RANDOM = ("epoch", "world")  # of the process, not of the run
-UNTRACED = {"sim/clock", "sim/ack", "camera/head/rgbd", "camera/wrist/rgbd", "page/status", "robot/description"}
+UNTRACED = {t.key for t in topics.CLOCKS} | {
+    "sim/ack",
+    "camera/head/rgbd",
+    "camera/wrist/rgbd",
+    "page/status",
+    "robot/description",
+}
 SHOWN = 400
 
 

@@ -44,8 +44,9 @@ class Listener:
         self.inbox: queue.SimpleQueue[Arrival] = queue.SimpleQueue()
         self.tokens: queue.SimpleQueue[tuple[str, bool]] = queue.SimpleQueue()
         self._gated: dict[str, Any] = {}
-        gated = {t.key for t in READERS}
-        self._kept = [bus.subscribe(session, t, self._receive) for t in topics.TABLE if t.key not in gated]
+        # The slower clocks say nothing that `sim/clock` does not.
+        others = {t.key for t in (*READERS, *topics.SLOWER_CLOCKS.values())}
+        self._kept = [bus.subscribe(session, t, self._receive) for t in topics.TABLE if t.key not in others]
         self._kept += [bus.listen(session, key, self._receive) for key in ("service/*/health", "log/*")]
         self._kept.append(bus.watch_tokens(session, lambda name, alive: self.tokens.put((name, alive))))
 

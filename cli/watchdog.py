@@ -22,6 +22,8 @@ from common.process import StopSignal, die_with_parent
 
 # In lockstep a step may wait for slow work, such as the first picture on a busy machine.
 FROZEN, STUCK = 2.0, 60.0
+# One that still gets at the processor now and then is starved by others, not frozen.
+IDLE = 1.0
 LOOK = 0.25
 
 
@@ -31,16 +33,20 @@ class Pulse:
     def __init__(self) -> None:
         self._heard: dict[str, tuple[int, float]] = {}
         self._frozen: dict[int, float] = {}
+        self._at_work: dict[str, tuple[int, float, float]] = {}
 
     def hear(self, name: str, pid: int, now: float) -> None:
         """A health record came."""
         self._heard[name] = pid, now
 
-    def hangs(self, name: str, pid: int, token: bool, stopped: bool, now: float) -> str:
+    def hangs(self, name: str, pid: int, token: bool, stopped: bool, worked: float, now: float) -> str:
         """Why the process `pid` of a service counts as hung; "" while it does not.
 
-        `token`: its liveliness token is there; `stopped`: the system says that it was stopped by a signal.
+        `token`: its liveliness token is there; `stopped`: the system says that it was stopped by a signal;
+        `worked`: processor time it has had [s].
         """
+        if self._at_work.get(name, ())[:2] != (pid, worked):
+            self._at_work[name] = pid, worked, now
         if not stopped:
             self._frozen.pop(pid, None)
         elif now - self._frozen.setdefault(pid, now) >= FROZEN:
@@ -50,19 +56,18 @@ class Pulse:
         if known != pid:
             return ""
         silent = now - last
-        if not token and silent >= FROZEN:
+        if not token and silent >= FROZEN and now - self._at_work[name][2] >= IDLE:
             return f"frozen: no token, silent for {silent:.1f} s"
         return f"stuck: silent for {silent:.1f} s" if silent >= STUCK else ""
 
 
-def is_stopped(pid: int) -> bool:
-    """True when a signal has stopped the process."""
+def look(pid: int) -> tuple[bool, float]:
+    """Whether a signal has stopped the process, and the processor time it has had [s]."""
     try:
-        return (
-            Path(f"/proc/{pid}/stat").read_text(encoding="ascii", errors="replace").rpartition(")")[2].split()[0] == "T"
-        )
-    except (OSError, IndexError):
-        return False
+        words = Path(f"/proc/{pid}/stat").read_text(encoding="ascii", errors="replace").rpartition(")")[2].split()
+        return words[0] == "T", (int(words[11]) + int(words[12])) / os.sysconf("SC_CLK_TCK")
+    except (OSError, IndexError, ValueError):
+        return False, 0.0
 
 
 def watch(supervision: Supervision, stop: StopSignal) -> None:
@@ -85,7 +90,7 @@ def watch(supervision: Supervision, stop: StopSignal) -> None:
             alive = link.alive()
             for p in processes:
                 here = p.name in alive or p.name not in tokens
-                if why := pulse.hangs(p.name, p.pid, here, is_stopped(p.pid), now):
+                if why := pulse.hangs(p.name, p.pid, here, *look(p.pid), now):
                     _end(supervision, p, why)
         kept.undeclare()
 

@@ -109,7 +109,7 @@ def _service(name: str) -> Grants:
         read.append(t.LOCKSTEP_ACK)
     else:
         written.append(t.LOCKSTEP_ACK)
-        read.append(t.SIM_CLOCK)
+        read += t.CLOCKS
     health, alive = t.HEALTH_KEY.format(name=name), t.ALIVE_KEY.format(name=name)
     served = (k for k, server in SERVES.items() if server == name)
     return Grants(

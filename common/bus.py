@@ -8,7 +8,6 @@ plain `get`. Callbacks only enqueue: they run in Zenoh's receiving thread, one a
 import queue
 import struct
 import sys
-from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Future
 from concurrent.futures import wait as futures_wait
@@ -146,8 +145,8 @@ def session(
             why = _trouble(connect, shown)
             if why and wait is None:
                 raise BusError(why)
-            if why:
-                print(f"{name}: {why}", file=sys.stderr, flush=True)
+            why = why or f"waiting for a router at {connect}; `python -m services.router` starts one"
+            print(f"{name}: {why}", file=sys.stderr, flush=True)
         if wait is None:
             futures_wait([opening], 0.05)
         elif wait(0.05):
@@ -371,62 +370,6 @@ class ZenohIo(IoBase):
                 except _BAD_REQUEST as error:
                     self.count_drop(str(query.key_expr), f"{type(error).__name__}: {error}")
                     query.reply_err(str(error))
-
-
-class ClockListener:
-    """Ticks of `sim/clock` that a participant is due at."""
-
-    def __init__(self, opened: zenoh.Session, period: int, drops: Counter[str]) -> None:
-        self._drops = drops
-        self._ticks: queue.SimpleQueue[m.SimClockTick] = queue.SimpleQueue()
-        self._period = period
-        self.seen = float("-inf")
-        self._kept = listen(opened, topics.SIM_CLOCK.key, self._receive)
-
-    def _receive(self, sample: zenoh.Sample) -> None:
-        try:
-            tick = codec.decode(topics.SIM_CLOCK, sample.payload.to_bytes())
-        except codec.DecodeError:
-            self._drops[topics.SIM_CLOCK.key] += 1
-            return
-        if tick.tick < 0:
-            tick.tick = round(tick.t * 100)
-        if tick.tick % self._period == 0:
-            self._ticks.put(tick)
-
-    def next(self, timeout: float, newest: bool) -> m.SimClockTick | None:
-        """The next due tick, or with `newest` the last of those waiting; None after `timeout` seconds."""
-        try:
-            tick = self._ticks.get(timeout=timeout)
-        except queue.Empty:
-            return None
-        while newest and not self._ticks.empty():
-            tick = self._ticks.get()
-        self.seen = monotonic()
-        return tick
-
-
-class AckCollector:
-    """Acknowledgements on `sim/ack`, for the simulation's barrier."""
-
-    def __init__(self, opened: zenoh.Session, drops: Counter[str]) -> None:
-        self._drops = drops
-        self._acks: queue.SimpleQueue[tuple[str, int, int]] = queue.SimpleQueue()
-        self._kept = listen(opened, topics.LOCKSTEP_ACK.key, self._receive)
-
-    def _receive(self, sample: zenoh.Sample) -> None:
-        try:
-            ack = codec.decode(topics.LOCKSTEP_ACK, sample.payload.to_bytes())
-        except codec.DecodeError:
-            self._drops[topics.LOCKSTEP_ACK.key] += 1
-            return
-        self._acks.put((ack.name, ack.tick, ack.period))
-
-    def next(self, timeout: float) -> tuple[str, int, int] | None:
-        try:
-            return self._acks.get(timeout=timeout) if timeout > 0 else self._acks.get_nowait()
-        except queue.Empty:
-            return None
 
 
 def _seconds(timestamp: zenoh.Timestamp) -> float:

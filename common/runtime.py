@@ -18,6 +18,7 @@ from common.iobase import health_of
 from common.lockstep import DT, Barrier, period_of
 from common.process import SILENCE, StopSignal, die_with_parent, limit_silence, rss_mb
 from common.scene import Scene, SceneError, load_scene
+from common.ticks import AckCollector, ClockListener, ClockSpeaker
 
 HEALTH_PERIOD = 1.0
 MAX_CONSECUTIVE_ERRORS = 10
@@ -115,7 +116,7 @@ class Process:
     def run_on_sim_clock(self, clock: SimClock) -> None:
         """Follow `sim/clock`; in lockstep, join, and acknowledge every due tick."""
         period = period_of(self._kind.HZ)
-        listener = bus.ClockListener(self._session, period, self.io.drops)
+        listener = ClockListener(self._session, period, self.io.drops)
         lockstep = self.io.lockstep
         acks = self._session.declare_publisher(
             topics.LOCKSTEP_ACK.key, congestion_control=zenoh.CongestionControl.BLOCK, express=True
@@ -149,21 +150,15 @@ class Process:
     def run_simulation(self, clock: SimClock, speed: float | None, wait_for: tuple[str, ...]) -> None:
         """The simulation's own loop: it makes the time that the others follow. `speed` None: as fast as possible."""
         lockstep, io = self.io.lockstep, self.io
-        acks = bus.AckCollector(self._session, self.io.drops)
-        # A tick that nobody waits for may share a packet with the next one.
-        now_out, lazy_out = (
-            self._session.declare_publisher(
-                topics.SIM_CLOCK.key, congestion_control=zenoh.CongestionControl.BLOCK, express=express
-            )
-            for express in (True, False)
-        )
+        acks = AckCollector(self._session, self.io.drops)
+        speaker = ClockSpeaker(self._session)
         barrier = Barrier(acks.next, wait_for, report=lambda text: io.log.warning(text))
         if lockstep:
             io.log.info("waiting for participants", names=",".join(wait_for))
             barrier.assemble(self._keep_alive)
         tick = round(getattr(self.service, "start_time", 0.0) / DT)
         pacer = Pacer(DT, speed) if speed else None
-        message = b""
+        said: m.SimClockTick | None = None
         while not self._stop.is_set():
             if self.service.paused:
                 self.housekeeping()
@@ -171,15 +166,13 @@ class Process:
                 continue
             io.out_tick = tick
             self.step(tick, tick * DT)
-            if lockstep and message:
-                barrier.wait(tick, self._gone, partial(now_out.put, message))
+            if lockstep and said:
+                barrier.wait(tick, self._gone, partial(speaker.say, said))
             tick += 1
             clock.set(tick * DT)
-            message = codec.encode(
-                topics.SIM_CLOCK, m.SimClockTick(t=tick * DT, tick=tick, epoch=io.epoch, lockstep=lockstep)
-            )
+            said = m.SimClockTick(t=tick * DT, tick=tick, epoch=io.epoch, lockstep=lockstep)
             barrier.drain()
-            (lazy_out if lockstep and not barrier.awaits(tick) else now_out).put(message)
+            speaker.say(said, not lockstep or barrier.awaits(tick))
             if pacer:
                 pacer.wait()
             self.housekeeping()

@@ -95,7 +95,19 @@ ROBOT_DESCRIPTION = _event("robot/description", m.RobotDescription, "sim")
 SIM_STATE = _stream("sim/state", m.SimState, "sim", rate=20.0, latched=True)
 SIM_MODEL = _event("sim/model", m.SimModel, "sim")
 SIM_STATUS = _event("sim/status", m.SimStatus, "sim")
-SIM_CLOCK = Topic(key="sim/clock", type=m.SimClockTick, writers=("sim",), rate=100.0, binary=True, recover=False)
+
+
+def _clock(key: str, rate: float) -> Topic[m.SimClockTick]:
+    return Topic(key=key, type=m.SimClockTick, writers=("sim",), rate=rate, binary=True, recover=False)
+
+
+SIM_CLOCK = _clock("sim/clock", 100.0)
+SIM_CLOCK_50HZ = _clock("sim/clock/50hz", 50.0)
+SIM_CLOCK_20HZ = _clock("sim/clock/20hz", 20.0)
+SIM_CLOCK_10HZ = _clock("sim/clock/10hz", 10.0)
+SLOWER_CLOCKS = {2: SIM_CLOCK_50HZ, 5: SIM_CLOCK_20HZ, 10: SIM_CLOCK_10HZ}
+"""By the period of whoever is due at their ticks: a process is not woken for those of others."""
+CLOCKS = (SIM_CLOCK, *SLOWER_CLOCKS.values())
 LOCKSTEP_ACK = Topic(key="sim/ack", type=m.LockstepAck, writers=("*",), binary=True, recover=False)
 
 CAMERA_REQUEST = _goal("camera/request", m.CameraRequest, "perception", "*", latched=False)

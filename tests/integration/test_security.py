@@ -24,6 +24,7 @@ QUESTIONS = {
     topics.SIM_TRUTH: "sim",
 }  # fmt: skip
 KEYS = [t.key for t in topics.TABLE] + [k.format(n) for n in SERVICES for k in PER_SERVICE] + list(QUESTIONS)
+CLOCKS = {t.key for t in topics.CLOCKS}
 SUBJECTS = (*SERVICES, "operator", "looker")
 
 
@@ -38,17 +39,17 @@ def may_write(subject: str) -> set[str]:
         return set()
     if subject == "operator":
         return {t.key for t in topics.TABLE if "*" in t.writers}
-    clock = topics.SIM_CLOCK if subject == "sim" else topics.LOCKSTEP_ACK
+    clocks = CLOCKS if subject == "sim" else {topics.LOCKSTEP_ACK.key}
     own = {t.key for t in topics.TABLE if subject in t.writers} | {t.key for t in kind(subject).WRITES}
-    return own | {clock.key} | {k.format(subject) for k in PER_SERVICE}
+    return own | clocks | {k.format(subject) for k in PER_SERVICE}
 
 
 def may_read(subject: str) -> set[str]:
     if subject in ("operator", "looker"):
         return set(KEYS)
-    clock = topics.LOCKSTEP_ACK if subject == "sim" else topics.SIM_CLOCK
+    clocks = {topics.LOCKSTEP_ACK.key} if subject == "sim" else CLOCKS
     read = {t.key for t in kind(subject).READS if t.key in topics.BY_KEY}
-    return read | {clock.key} | {f"service/{n}/health" for n in SERVICES}
+    return read | clocks | {f"service/{n}/health" for n in SERVICES}
 
 
 def may_ask(subject: str) -> set[str]:
