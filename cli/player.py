@@ -22,7 +22,7 @@ from common.topics import Topic
 
 M = TypeVar("M", bound=m.Message)
 UNRECORDED = 50  # ticks: what was heard that long before the next recorded message came before the recorder
-ANY_ID = re.compile(r"[A-Za-z]+-[0-9a-f]{8}$")
+RANDOM_ID, SEEDED_ID = re.compile(r"[A-Za-z]+-[0-9a-f]{8}$"), re.compile(r"[A-Za-z]+(-[0-9]+)+$")
 
 
 class Alive(msgspec.Struct):
@@ -30,12 +30,17 @@ class Alive(msgspec.Struct):
 
 
 class ReplayIo(MemoryIo):
-    """Collects what the service publishes; knows its peers and, outside lockstep, its ids from the recording."""
+    """Collects what the service publishes; knows its peers and its ids from the recording.
 
-    def __init__(self, *args: Any, ids: Iterator[str], peers: Iterator[tuple[float, str, str | None]], **kw: Any):
+    `ids`: in the order they were made; `seeded`: they end as the seed says, after lockstep.
+    """
+
+    def __init__(
+        self, *args: Any, ids: list[str], seeded: bool, peers: Iterator[tuple[float, str, str | None]], **kw: Any
+    ) -> None:
         self.outputs: list[tuple[float, str, bytes]] = []
         self.first: dict[str, float] = {}
-        self._known_ids = ids
+        self._known_ids, self._seeded = ids, seeded
         self._changes, self._next = peers, next(peers, None)
         self._present: dict[str, str] = {}
         super().__init__(*args, **kw)
@@ -59,7 +64,11 @@ class ReplayIo(MemoryIo):
         return topic.keep != "latest" or self.clock.now() > self.first.get(topic.key, inf) - DT / 2
 
     def new_id(self, prefix: str) -> str:
-        return next(self._known_ids, None) or super().new_id(prefix)
+        if not self._seeded:
+            return self._known_ids.pop(0) if self._known_ids else super().new_id(prefix)
+        made = super().new_id(prefix)
+        tail = made.removeprefix(prefix)
+        return next((i for i in self._known_ids if i.startswith(f"{prefix}-") and i.endswith(tail)), made)
 
 
 def service_class(name: str) -> Any:
@@ -83,7 +92,7 @@ class Player:
         self.clock.advance(max(0, first - 1) * DT if first > 1 else 0.0)
         self.io = ReplayIo(
             self.bus, kind.NAME, kind.READS, kind.WRITES, scene=scene, seed=seed, clock=self.clock, log_level="error",
-            ids=iter(() if self.lockstep else self._ids()), peers=_peers(recording),
+            ids=list(self._ids()), seeded=self.lockstep, peers=_peers(recording),
         )  # fmt: skip
         self.io.first = {key: span.first for key, span in recording.spans.items()}
         if first > 2 * period_of(kind.HZ):  # the recording starts in the middle of a run
@@ -110,6 +119,9 @@ class Player:
             return sorted({ack.tick for ack in self._acks})
         clocks = _messages(recording, "sim/clock", m.SimClockTick)
         ticks = sorted({c.tick if c.tick >= 0 else round(c.t / DT) for c in clocks})
+        states = recording.of(topics.JOINT_STATES.key)
+        if ticks and states and self.lockstep and states[-1].tick == ticks[-1]:
+            ticks.append(ticks[-1] + 1)  # worked out already when the recorder stopped
         if not ticks and recording.rows:
             ticks = list(range(round(recording.rows[0].t / DT), round(recording.rows[-1].t / DT) + 1))
         period = period_of(self.kind.HZ)
@@ -135,7 +147,7 @@ class Player:
 
     def _ids(self) -> Iterator[str]:
         """Ids that the recorded process made up, in the order they first appeared."""
-        seen: set[str] = set()
+        pattern, seen = SEEDED_ID if self.lockstep else RANDOM_ID, set[str]()
         writes = {t.key for t in self.kind.WRITES}
         for row in self.recording.rows:
             if row.key in writes and not row.junk:
@@ -144,7 +156,7 @@ class Player:
                     continue
                 for field in ("mission_id", "id", "goal_id"):
                     word = str(found.get(field, "")).split(".")[0]
-                    if ANY_ID.match(word) and word not in seen:
+                    if pattern.match(word) and word not in seen:
                         seen.add(word)
                         yield word
 

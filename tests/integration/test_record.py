@@ -72,10 +72,12 @@ def test_a_recorded_run_is_whole_and_replays_to_the_same_outputs(here: Site) -> 
     assert ticks == list(range(ticks[0], ticks[-1] + 1)), "in lockstep no message is lost"
     goals = [json.loads(row.payload)["id"] for row in whole.of("nav_goal")]
     assert goals == ["m.1"]
-    replayed = tidybot(here, "replay", str(file), "--service", "navigation", "--set", "runtime.scene=minimal")
-    shown = replayed.communicate(timeout=PATIENCE)[0]
-    assert replayed.returncode == 0, shown
-    assert "differing" not in shown and "base/target_pose" in shown and "times within 0 s" in shown
+    settings = ("--set", "runtime.scene=minimal", "--set", "sim.speed=max")
+    for service, output in (("navigation", "base/target_pose"), ("sim", "joint_states")):
+        replayed = tidybot(here, "replay", str(file), "--service", service, *settings)
+        shown = replayed.communicate(timeout=PATIENCE)[0]
+        assert replayed.returncode == 0, shown
+        assert "differing" not in shown and output in shown and "times within 0 s" in shown
     assert "torn" in tidybot(here, "replay", str(killed), "--info").communicate(timeout=PATIENCE)[0]
 
 
