@@ -43,6 +43,11 @@ class Node:
         self.io.begin(self.tick, self.now)
         self.service.step(self.now)
 
+    def step(self) -> None:
+        """The next step, with nothing sent before it."""
+        self.later()
+        self.run()
+
     def last(self, topic: Topic[M]) -> M:
         """The newest message on a latched topic."""
         return codec.decode(topic, self.bus.last[topic.key])

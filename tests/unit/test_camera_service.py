@@ -107,8 +107,7 @@ class Lens(Node):
 
     def step(self) -> None:
         for _ in range(5):
-            self.later()
-            self.run()
+            super().step()
 
 
 def test_an_image_carries_intrinsics_and_the_pose_of_its_frame(

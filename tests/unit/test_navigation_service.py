@@ -216,7 +216,7 @@ def test_silent_odometry_ends_the_goal() -> None:
 def test_a_bad_pose_is_refused(pose: m.NavGoal) -> None:
     node = Pilot()
     node.service._take(pose.id, 1, "", pose)
-    feedback = msgspec.json.decode(node.bus.last["navigation_feedback"], type=m.NavigationFeedback)
+    feedback = node.last(topics.NAVIGATION_FEEDBACK)
     assert (feedback.status, feedback.code) == ("failed", "BAD_POSE")
 
 
@@ -224,7 +224,7 @@ def test_a_goal_inside_furniture_has_no_path() -> None:
     node = Pilot()
     node.bus.send(topics.NAV_GOAL, m.NavGoal(id="c", x=6.0, y=3.5))
     node.step(0.2)
-    feedback = msgspec.json.decode(node.bus.last["navigation_feedback"], type=m.NavigationFeedback)
+    feedback = node.last(topics.NAVIGATION_FEEDBACK)
     assert (feedback.goal_id, feedback.status, feedback.code) == ("c", "failed", "NO_PATH")
 
 

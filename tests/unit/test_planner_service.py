@@ -19,10 +19,6 @@ class Desk(Node):
         super().__init__(PlannerService, CONFIG, SCENE)
         self.plans = self.bus.tap(topics.ACTION_PLAN)
 
-    def step(self) -> None:
-        self.later()
-        self.run()
-
     def ask(self, command: str, request_id: str = "m.1", **fields: object) -> m.ActionPlan:
         request = msgspec.convert({"id": request_id, "command": command, **fields}, m.PlanRequest)
         self.bus.send(topics.PLAN_REQUEST, request)

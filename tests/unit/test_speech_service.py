@@ -143,8 +143,7 @@ class Listener(Node):
 
     def step(self, seconds: float = 0.1) -> None:
         for _ in range(max(1, round(seconds * 10))):
-            self.later()
-            self.run()
+            super().step()
 
     def ask(self, text: str, goal_id: str = "a.1") -> None:
         self.bus.send(topics.SPEECH_GOAL, m.SpeechGoal(goal=text, id=goal_id))
