@@ -107,6 +107,13 @@ class Player:
         """Robot time covered."""
         return (self._ticks[-1] - self._ticks[0]) * DT if self._ticks else 0.0
 
+    def covers(self, row: Row) -> bool:
+        """Whether the recorder heard the step that gave this output to its end; without a tick it is a client's."""
+        if not self.lockstep:
+            return True
+        last = (self._ticks[-1] if self._ticks else 0) - self._sim
+        return row.tick is not None and row.tick <= last
+
     @property
     def exact(self) -> bool:
         """Every input has its tick, or the step that heard it is known: the replay sees each in the same step."""
@@ -119,9 +126,6 @@ class Player:
             return sorted({ack.tick for ack in self._acks})
         clocks = _messages(recording, "sim/clock", m.SimClockTick)
         ticks = sorted({c.tick if c.tick >= 0 else round(c.t / DT) for c in clocks})
-        states = recording.of(topics.JOINT_STATES.key)
-        if ticks and states and self.lockstep and states[-1].tick == ticks[-1]:
-            ticks.append(ticks[-1] + 1)  # worked out already when the recorder stopped
         if not ticks and recording.rows:
             ticks = list(range(round(recording.rows[0].t / DT), round(recording.rows[-1].t / DT) + 1))
         period = period_of(self.kind.HZ)

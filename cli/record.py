@@ -45,10 +45,13 @@ class Listener:
         self.tokens: queue.SimpleQueue[tuple[str, bool]] = queue.SimpleQueue()
         self._gated: dict[str, Any] = {}
         # The slower clocks say nothing that `sim/clock` does not.
-        others = {t.key for t in (*READERS, *topics.SLOWER_CLOCKS.values())}
+        marks = (topics.SIM_CLOCK, topics.LOCKSTEP_ACK)
+        others = {t.key for t in (*READERS, *topics.SLOWER_CLOCKS.values(), *marks)}
         self._kept = [bus.subscribe(session, t, self._receive) for t in topics.TABLE if t.key not in others]
         self._kept += [bus.listen(session, key, self._receive) for key in ("service/*/health", "log/*")]
         self._kept.append(bus.watch_tokens(session, lambda name, alive: self.tokens.put((name, alive))))
+        # What says that a step is over, last here and first in `close`: of a step so recorded, everything was heard.
+        self._marks = [bus.subscribe(session, t, self._receive) for t in marks]
 
     def _receive(self, sample: Any) -> None:
         self.inbox.put((str(sample.key_expr), sample.payload.to_bytes(), bus.tick_of(sample), bus.sent_at(sample)))
@@ -62,7 +65,7 @@ class Listener:
                 self._gated.pop(topic.key).undeclare()
 
     def close(self) -> None:
-        for subscriber in (*self._kept, *self._gated.values()):
+        for subscriber in (*self._marks, *self._kept, *self._gated.values()):
             subscriber.undeclare()
 
 
