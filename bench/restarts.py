@@ -97,6 +97,7 @@ class Robot:
             sockets = p.net_connections(kind="tcp")
             found.listening += sum(c.status == psutil.CONN_LISTEN for c in sockets)
             found.connections += sum(c.status == psutil.CONN_ESTABLISHED for c in sockets)
+            found.connections += len(p.net_connections(kind="unix"))
             found.half_closed += sum(c.status in (psutil.CONN_CLOSE_WAIT, psutil.CONN_FIN_WAIT2) for c in sockets)
             name = labels.get(p.pid, "watchdog" if "cli.watchdog" in p.cmdline() else "child")
             found.handles[name] = found.handles.get(name, 0) + p.num_fds()

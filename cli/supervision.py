@@ -4,6 +4,7 @@ import contextlib
 import hashlib
 import http.client
 import os
+import re
 import shlex
 import signal
 import socket
@@ -34,6 +35,7 @@ STATES = {
     "UNKNOWN": "failed",
 }
 SOCKET_PATH_LIMIT = 100
+ROUTER_SOCKET, ENDPOINT_PATH = "router.sock", re.compile(r"[\w./-]+", re.ASCII)
 WATCHDOG = "watchdog"
 WORLD = "sim.checkpoint"
 
@@ -94,6 +96,14 @@ def socket_path(directory: Path) -> Path:
     return Path(tempfile.gettempdir()) / f"tidybot-{os.getuid()}-{digest}.sock"
 
 
+def endpoints(directory: Path, services: Sequence[Service], connect: str) -> str:
+    """What the run's router listens on and its processes connect to: a socket of their own costs less than TCP."""
+    path = str(directory / ROUTER_SOCKET)
+    usable = len(path) <= SOCKET_PATH_LIMIT and ENDPOINT_PATH.fullmatch(path)
+    ours = connect.startswith("tcp/") and any(s.name == "router" for s in services)
+    return f"unixsock-stream/{path},{connect}" if ours and usable else connect
+
+
 def render_config(directory: Path, services: Sequence[Service], connect: str) -> str:
     """The supervisord configuration of one run."""
 
@@ -122,7 +132,7 @@ def render_config(directory: Path, services: Sequence[Service], connect: str) ->
     for order, service in enumerate((*services, watchdog)):
         name, command = service.name, [sys.executable, "-m", service.module]
         if name == "router":
-            command += ["--listen", connect]
+            command += ["--listen", endpoints(directory, services, connect)]
         lines += [
             f"[program:{name}]",
             f"command={path(shlex.join(command))}",
@@ -167,6 +177,7 @@ class Supervision:
         if not detach:
             environment["TIDYBOT_FOREGROUND_PARENT"] = str(os.getpid())
         environment["TIDYBOT_RUN_DIR"] = str(self.directory)
+        environment["TIDYBOT_CONNECT"] = endpoints(self.directory, services, connect)
         environment["TIDYBOT__DASHBOARD__SUPERVISOR"] = str(socket_path(self.directory))
         with (logs / "supervisord.err").open("wb") as errors:
             self.process = subprocess.Popen(
@@ -215,7 +226,7 @@ class Supervision:
         return _alive(pid)
 
     def _forget(self) -> None:
-        for name in ("run.json", "supervisord.pid"):
+        for name in ("run.json", "supervisord.pid", ROUTER_SOCKET, f"{ROUTER_SOCKET}.lock"):
             (self.directory / name).unlink(missing_ok=True)
         socket_path(self.directory).unlink(missing_ok=True)
 

@@ -38,7 +38,7 @@ READS: dict[str, tuple[Topic[Any], ...]] = {
     ),
     "planner": (t.PLAN_REQUEST, t.WORLD_OBJECTS, t.POSE),
     "perception": (
-        t.OBJECT_QUERY, t.HEAD_RGBD, t.WRIST_RGBD, t.POSE, t.ODOMETRY, t.JOINT_STATES, t.ROBOT_DESCRIPTION,
+        t.OBJECT_QUERY, t.HEAD_RGBD, t.WRIST_RGBD, t.POSE, t.JOINT_STATES, t.ROBOT_DESCRIPTION,
         t.MANIPULATION_STATUS, t.SIM_STATUS,
     ),
     "dashboard": (

@@ -41,7 +41,7 @@ class PerceptionService:
     HZ = 10
     CONFIG = PerceptionConfig
     READS = (
-        topics.OBJECT_QUERY, topics.HEAD_RGBD, topics.WRIST_RGBD, topics.POSE, topics.ODOMETRY, topics.JOINT_STATES,
+        topics.OBJECT_QUERY, topics.HEAD_RGBD, topics.WRIST_RGBD, topics.POSE, topics.JOINT_STATES,
         topics.ROBOT_DESCRIPTION, topics.MANIPULATION_STATUS, topics.SIM_STATUS,
     )  # fmt: skip
     WRITES = (topics.OBJECT_POSE, topics.WORLD_OBJECTS, topics.CAMERA_REQUEST)

@@ -4,6 +4,7 @@ import argparse
 import configparser
 import json
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -101,6 +102,19 @@ def test_the_generated_configuration_has_one_program_a_service(tmp_path: Path) -
     assert "--listen" not in parsed["program:brain"]["command"]
     assert "100%% run" in parsed["program:brain"]["stdout_logfile"]
     assert {s.name for s in SERVICES if "environment" not in parsed[f"program:{s.name}"]} == {"camera"}
+
+
+def test_the_processes_of_a_run_reach_its_router_through_a_socket_where_that_can_be(tmp_path: Path) -> None:
+    def endpoints(directory: Path, connect: str = "tcp/127.0.0.1:7001", services: Any = SERVICES) -> str:
+        return supervision.endpoints(directory, services, connect)
+
+    near = Path("/run/tidybot")
+    assert endpoints(near) == "unixsock-stream//run/tidybot/router.sock,tcp/127.0.0.1:7001"
+    assert near.name in supervision.render_config(near, SERVICES, "tcp/127.0.0.1:7001").split("--listen")[1].split()[0]
+    # Keys need TLS, another router has no socket of ours, Zenoh cuts a path at # and ?, and a long one is no address.
+    assert endpoints(near, "tls/127.0.0.1:7001") == "tls/127.0.0.1:7001"
+    assert endpoints(near, services=[s for s in SERVICES if s.name != "router"]) == "tcp/127.0.0.1:7001"
+    assert endpoints(near / "a#b") == endpoints(near / ("x" * 120)) == "tcp/127.0.0.1:7001"
 
 
 @pytest.mark.parametrize("port", ["0", "-1", "65536", "http"])
