@@ -11,6 +11,7 @@ from statistics import median
 
 from common import bus, codec, topics
 from common import messages as m
+from common.zenoh_io import Publisher
 from tests.support import Site, site
 
 ROUNDS = 1000
@@ -21,7 +22,7 @@ PING, PONG = topics.NAVIGATION_GOAL, topics.NAVIGATION_STATUS
 def echo(connect: str, namespace: str, raw: bool) -> None:
     """The other side: answers until it is ended."""
     with bus.session(connect, namespace) as session:
-        publisher = session.declare_publisher("raw/pong") if raw else bus.Publisher(session, PONG)
+        publisher = session.declare_publisher("raw/pong") if raw else Publisher(session, PONG)
 
         def answer(payload: bytes) -> None:
             if raw:
@@ -49,7 +50,7 @@ def rounds(here: Site, raw: bool) -> list[float]:
             arrived.set()
 
         session.declare_subscriber("raw/pong" if raw else PONG.key, lambda s: receive(s.payload.to_bytes()))
-        publisher = session.declare_publisher("raw/ping") if raw else bus.Publisher(session, PING)
+        publisher = session.declare_publisher("raw/ping") if raw else Publisher(session, PING)
         payload = codec.encode(PING, m.NavigationGoal(goal="find red mug", id="m.1"))
 
         def send(n: int) -> None:

@@ -20,9 +20,10 @@ import msgspec
 import numpy as np
 
 from bench.witness import Sight, Trace, WitnessService
+from cli.plan import Plan
 from cli.services import Service
 from cli.supervision import Supervision, free_port
-from cli.up import Plan, bring_up
+from cli.up import bring_up
 from evaluation.case import Case
 from evaluation.chaos import MISTREATED, TRAFFIC
 from evaluation.faults import Rule, faulty

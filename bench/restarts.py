@@ -21,9 +21,10 @@ import msgspec
 import psutil  # type: ignore[import-untyped]
 
 from cli.link import Link
+from cli.plan import Plan
 from cli.services import SERVICES
 from cli.supervision import Supervision, free_port
-from cli.up import Plan, bring_up
+from cli.up import bring_up
 from common import bus
 
 PATIENCE, CALM, TRIES = 180.0, 8.0, 10

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from cli.errors import CliError
 from cli.link import Link, Watch
-from common import codec, topics
+from common import bus, codec, topics
 from common import messages as m
 from common.clock import monotonic
 from common.lockstep import DT
@@ -21,7 +21,6 @@ CHUNK = 0.1
 LEAD_IN, TRAILING = 0.3, 1.5
 EAR = "ear"
 _PERIOD = round(CHUNK / DT)
-_TICK = struct.Struct("<q")
 
 
 def read_wav(path: Path) -> NDArray[np.int16]:
@@ -101,7 +100,7 @@ class Player:
                     last = sent == len(self._chunks) - 1
                     at = (start + sent * _PERIOD) * DT
                     chunk = m.AudioChunk(t=at, data=self._chunks[sent], rate=RATE, seq=sent, end=last, addressed=True)
-                    stamp = _TICK.pack(tick.tick) if tick.lockstep else None
+                    stamp = bus.TICK.pack(tick.tick) if tick.lockstep else None
                     out.put(codec.encode(topics.AUDIO_PCM, chunk), attachment=stamp)
                     sent += 1
                     progress(at)

@@ -13,9 +13,11 @@ from cli.audio import Player, padded, read_wav
 from cli.errors import CliError, near, port_number
 from cli.link import Link, Watch
 from cli.mission import ACCEPT, Conversation, speak_into, typed
+from cli.plan import Plan, add_start_options
+from cli.programs import ROOT
 from cli.robot import query_truth
-from cli.supervision import ROOT, Supervision, free_port, port_is_free, run_dir
-from cli.up import Plan, Stopped, add_start_options, bring_up, check_free, interruptible, state_line
+from cli.supervision import Supervision, free_port, port_is_free, run_dir
+from cli.up import Stopped, bring_up, check_free, interruptible, state_line
 from cli.verdict import Verdict, Witness
 from common import bus, topics
 from common import messages as m

@@ -17,7 +17,8 @@ import msgspec
 
 from cli.authority import Authority
 from cli.errors import CliError
-from cli.supervision import ROOT, Supervision, port_is_free, run_dir
+from cli.programs import ROOT
+from cli.supervision import Supervision, port_is_free, run_dir
 from common import keys
 from common.clock import unix_time
 

@@ -5,7 +5,7 @@ import os
 import sys
 
 from cli.errors import checked
-from cli.supervision import ROOT
+from cli.programs import ROOT
 
 SUITES = ("seed", "fetch", "tidy", "faults", "dialogue", "chaos")
 EXAMPLES = """examples:

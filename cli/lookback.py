@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from cli.errors import CliError, near
-from cli.supervision import ROOT
+from cli.programs import ROOT
 from common import topics
 from common.recording import Recorder, Recording, Row
 

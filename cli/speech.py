@@ -6,7 +6,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from cli.supervision import ROOT
+from cli.programs import ROOT
 
 MODULE = "services.speech.transcribe"
 

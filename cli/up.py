@@ -2,22 +2,20 @@
 
 import argparse
 import contextlib
-import os
 import signal
-import uuid
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from types import FrameType
 
-from cli.errors import CliError, checked, port_number
-from cli.link import Link, Watch, use_keys
-from cli.services import NAMES, SECTIONS, SERVICES, Service
-from cli.supervision import ROOT, RunInfo, Supervision, port_is_free, run_dir, socket_path
-from common import bus, config, keys, topics
+from cli.errors import CliError, port_number
+from cli.link import Link, Watch
+from cli.plan import Plan, add_start_options
+from cli.programs import ROOT, socket_path
+from cli.services import NAMES
+from cli.supervision import Supervision, port_is_free, run_dir
+from common import bus, topics
 from common import messages as m
-from common.access import OPERATOR, ROUTER
-from common.clock import monotonic, sleep, unix_time
-from common.keys import OFF
+from common.clock import monotonic, sleep
 
 READY_LIMIT = 120.0
 EXTRA = {"camera", "dashboard"}  # the brain starts missions without these
@@ -25,110 +23,6 @@ EXTRA = {"camera", "dashboard"}  # the brain starts missions without these
 
 class Stopped(Exception):
     """The user, or the system, asked us to end."""
-
-
-class Plan:
-    """What is to be started, checked before anything starts.
-
-    Raises:
-        CliError: an unknown service or section, a bad speed, a busy port.
-    """
-
-    def __init__(self, args: argparse.Namespace) -> None:
-        self.port, self.namespace = args.port, args.namespace or os.environ.get("TIDYBOT_NAMESPACE", "")
-        self.speed = _speed(args.speed)
-        self.services = _selection(args.only, args.without)
-        self.keys = certificates(getattr(args, "keys", OFF), self.names, self.namespace)
-        self.connect = f"{'tls' if self.keys else 'tcp'}/127.0.0.1:{self.port}"
-        settings = {"OMP_NUM_THREADS": "1", "PYTHONUNBUFFERED": "1"}
-        settings["TIDYBOT_CONNECT"], settings["TIDYBOT_NAMESPACE"] = self.connect, self.namespace
-        settings["TIDYBOT_KEYS"] = self.keys or OFF
-        settings["TIDYBOT_STATE_DIR"] = os.environ.get("TIDYBOT_STATE_DIR") or str(run_dir())
-        settings["TIDYBOT__BRAIN__RUN"] = settings["TIDYBOT__SIM__RUN"] = uuid.uuid4().hex
-        if args.scene:
-            settings["TIDYBOT__RUNTIME__SCENE"] = args.scene
-        if args.seed is not None:
-            settings["TIDYBOT__RUNTIME__SEED"] = str(args.seed)
-        if getattr(args, "robot", None):
-            settings["TIDYBOT__SIM__ROBOT"] = args.robot
-        if args.viewer:
-            settings["TIDYBOT__SIM__VIEWER"] = "true"
-        settings["TIDYBOT__SIM__SPEED"] = self.speed
-        if self.speed != "realtime":
-            paced = [f'"{s.name}"' for s in self.services if s.paced]
-            settings["TIDYBOT__RUNTIME__LOCKSTEP"] = "true"
-            settings["TIDYBOT__SIM__WAIT_FOR"] = f"[{', '.join(paced)}]"
-        settings |= _overrides(args.set)
-        self.environ = {**os.environ, **settings}
-
-    @property
-    def names(self) -> list[str]:
-        return [s.name for s in self.services]
-
-    def info(self) -> RunInfo:
-        return RunInfo(
-            connect=self.connect,
-            namespace=self.namespace,
-            speed=self.speed,
-            services=self.names,
-            started=unix_time(),
-            keys=self.keys,
-            settings={k: v for k, v in self.environ.items() if k.startswith(config.PREFIX)},
-        )
-
-
-def _speed(text: str) -> str:
-    if text in ("realtime", "max"):
-        return text
-    with contextlib.suppress(ValueError):
-        if float(text) > 0:
-            return text
-    raise CliError(f"--speed {text}: expected realtime, max or a positive factor such as 4")
-
-
-def certificates(option: str | None, names: Sequence[str], namespace: str) -> str:
-    """The keys that everything is to use, every certificate looked at; "" for none.
-
-    Raises:
-        CliError: keys asked for that are not there, or one that cannot be used.
-    """
-    try:
-        given = {"TIDYBOT_KEYS": option} if option else os.environ
-        found = keys.directory(given)
-        if found is None:
-            if option == "":
-                raise CliError(f"no keys in {keys.default_directory()}; `tidybot keys` makes them")
-            use_keys(OFF)
-            return ""
-        from common.certificate import Identity
-
-        for name in (*names, OPERATOR):
-            where = namespace if name != ROUTER else ""
-            Identity(keys.folder(found, name, where), name, where)
-    except keys.KeysError as error:
-        raise CliError(str(error)) from None
-    use_keys(str(found))
-    return str(found)
-
-
-def _selection(only: str, without: str) -> list[Service]:
-    chosen = [checked(n, NAMES, "service") for n in only.split(",") if n] or list(NAMES)
-    dropped = [checked(n, NAMES, "service") for n in without.split(",") if n]
-    return [s for s in SERVICES if s.name in chosen and s.name not in dropped]
-
-
-def _overrides(settings: Sequence[str]) -> dict[str, str]:
-    try:
-        config.overrides({}, settings)
-    except config.ConfigError as error:
-        raise CliError(str(error)) from None
-    environ = {}
-    for setting in settings:
-        left, _, value = setting.partition("=")
-        section, _, key = left.strip().partition(".")
-        checked(section, SECTIONS, "section")
-        environ[f"{config.PREFIX}{section.upper()}__{key.upper()}"] = value
-    return environ
 
 
 @contextmanager
@@ -313,13 +207,3 @@ def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") ->
     parser.add_argument("--only", default="", metavar="A,B", help=f"start only these of {', '.join(NAMES)}")
     parser.add_argument("--without", default="", metavar="A,B", help="start all but these")
     parser.set_defaults(run=run)
-
-
-def add_start_options(parser: argparse.ArgumentParser) -> None:
-    """Options that `up` and `demo` share."""
-    parser.add_argument("--speed", default="realtime", metavar="realtime|N|max", help="other than realtime: lockstep")
-    parser.add_argument("--scene", help="a shipped scene's name or a path")
-    parser.add_argument("--seed", type=int, help="object layout and noise")
-    parser.add_argument("--robot", metavar="NAME", help="tidybot, or menagerie:stanford_tidybot (docs/EXTENDING.md)")
-    parser.add_argument("--set", action="append", default=[], metavar="section.key=value", help="override a parameter")
-    parser.add_argument("--viewer", action="store_true", help="open a window on the simulation")

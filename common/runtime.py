@@ -19,6 +19,7 @@ from common.lockstep import DT, Barrier, period_of
 from common.process import SILENCE, StopSignal, die_with_parent, limit_silence, rss_mb
 from common.scene import Scene, SceneError, load_scene
 from common.ticks import AckCollector, ClockListener, ClockSpeaker
+from common.zenoh_io import ZenohIo
 
 HEALTH_PERIOD = 1.0
 MAX_CONSECUTIVE_ERRORS = 10
@@ -45,7 +46,7 @@ class Process:
         state_dir: Path,
     ) -> None:
         self._kind, self._session, self._clock, self._stop = kind, opened, clock, stop
-        self.io = bus.ZenohIo(
+        self.io = ZenohIo(
             opened,
             kind.NAME,
             kind.READS,

@@ -13,9 +13,10 @@ from typing import Any
 import msgspec
 
 from cli.errors import CliError
+from cli.plan import Plan
 from cli.services import SERVICES, Service
 from cli.supervision import Supervision, free_port
-from cli.up import Plan, bring_up
+from cli.up import bring_up
 from common import bus, config, topics
 from common.clock import SimClock, monotonic
 from common.process import StopSignal

@@ -11,6 +11,7 @@ import zenoh
 
 from common import bus, codec, topics
 from common import messages as m
+from common.zenoh_io import Publisher
 from tests.support import Site, eventually
 
 STATUS = topics.NAVIGATION_STATUS.key
@@ -76,7 +77,7 @@ def test_goals_survive_a_router_outage_in_order(here: Site) -> None:
     start_echo(here)
     with here.session() as session:
         here.wait_alive(session, "echo")
-        goals = bus.Publisher(session, topics.NAVIGATION_GOAL)
+        goals = Publisher(session, topics.NAVIGATION_GOAL)
         with heard(session, STATUS) as got:
 
             def ask(text: str) -> None:
@@ -98,7 +99,7 @@ def test_goals_survive_a_router_outage_in_order(here: Site) -> None:
 
 def test_a_goal_from_before_the_start_is_not_acted_on(here: Site) -> None:
     with here.session() as session:
-        goals = bus.Publisher(session, topics.NAVIGATION_GOAL)
+        goals = Publisher(session, topics.NAVIGATION_GOAL)
         goals.put(codec.encode(topics.NAVIGATION_GOAL, m.NavigationGoal(goal="old", id="m.1")), None)
         with heard(session, STATUS) as got:
             start_echo(here)

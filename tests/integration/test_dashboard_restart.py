@@ -4,8 +4,9 @@ from pathlib import Path
 
 import pytest
 
+from cli.programs import socket_path
 from cli.services import SERVICES
-from cli.supervision import RunInfo, Supervision, free_port, socket_path, stopping
+from cli.supervision import RunInfo, Supervision, free_port, stopping
 from services.dashboard.restart import Refused, Supervisor
 from tests.support import eventually
 

@@ -9,8 +9,9 @@ from typing import Any
 import pytest
 
 from cli.link import Link
+from cli.plan import Plan
 from cli.supervision import Supervision
-from cli.up import Plan, bring_up
+from cli.up import bring_up
 from common import bus, topics
 from common import messages as m
 from tests.support import eventually, free_port

@@ -13,6 +13,7 @@ from cli.main import main as tidybot
 from common import bus, probe, topics
 from common.access import Subject
 from common.certificate import Identity
+from common.zenoh_io import Publisher
 from tests.network import Machine, network
 from tests.support import Site, eventually, free_port
 
@@ -200,7 +201,7 @@ def test_a_stranger_on_another_machine_sees_nothing(tmp_path: Path, monkeypatch:
         with bus.session(f"tls/{net.door}:7447", name="sim", patience=40) as session:
             session.declare_subscriber(topics.BASE_TARGET.key, lambda s: got.append(s.payload.to_string()))
             session.declare_subscriber(topics.ROBOT_STOP.key, lambda s: got.append(s.payload.to_string()))
-            state = bus.Publisher(session, topics.SIM_STATUS)
+            state = Publisher(session, topics.SIM_STATUS)
             state.put(b'{"state": "running"}', None)
             token = session.liveliness().declare_token("service/sim/alive")
             address = f"{net.one.address}:7447"

@@ -8,13 +8,14 @@ from typing import Any
 
 import pytest
 
-from cli import main, supervision, up
-from cli.errors import CliError
+from cli import main, programs, supervision
+from cli import plan as plans
+from cli.errors import CliError, checked
 from cli.services import NAMES, SERVICES
 
 
-def plan(*words: str) -> up.Plan:
-    return up.Plan(main.parser().parse_args(["up", *words]))
+def plan(*words: str) -> plans.Plan:
+    return plans.Plan(main.parser().parse_args(["up", *words]))
 
 
 @pytest.mark.parametrize(
@@ -94,7 +95,7 @@ def test_only_and_without_choose_in_the_order_of_the_table() -> None:
 
 def test_the_generated_configuration_has_one_program_a_service(tmp_path: Path) -> None:
     directory = tmp_path / "100% run"
-    text = supervision.render_config(directory, SERVICES, "tcp/127.0.0.1:7001")
+    text = programs.render_config(directory, SERVICES, "tcp/127.0.0.1:7001")
     parsed = configparser.RawConfigParser()
     parsed.read_string(text)
     assert [s for s in parsed.sections() if s.startswith("program:")] == [f"program:{n}" for n in (*NAMES, "watchdog")]
@@ -106,11 +107,11 @@ def test_the_generated_configuration_has_one_program_a_service(tmp_path: Path) -
 
 def test_the_processes_of_a_run_reach_its_router_through_a_socket_where_that_can_be(tmp_path: Path) -> None:
     def endpoints(directory: Path, connect: str = "tcp/127.0.0.1:7001", services: Any = SERVICES) -> str:
-        return supervision.endpoints(directory, services, connect)
+        return programs.endpoints(directory, services, connect)
 
     near = Path("/run/tidybot")
     assert endpoints(near) == "unixsock-stream//run/tidybot/router.sock,tcp/127.0.0.1:7001"
-    assert near.name in supervision.render_config(near, SERVICES, "tcp/127.0.0.1:7001").split("--listen")[1].split()[0]
+    assert near.name in programs.render_config(near, SERVICES, "tcp/127.0.0.1:7001").split("--listen")[1].split()[0]
     # Keys need TLS, another router has no socket of ours, Zenoh cuts a path at # and ?, and a long one is no address.
     assert endpoints(near, "tls/127.0.0.1:7001") == "tls/127.0.0.1:7001"
     assert endpoints(near, services=[s for s in SERVICES if s.name != "router"]) == "tcp/127.0.0.1:7001"
@@ -127,9 +128,9 @@ def test_a_port_that_is_none_is_refused_at_once(port: str, capsys: pytest.Captur
 
 def test_a_long_run_directory_still_has_a_usable_socket(tmp_path: Path) -> None:
     deep = tmp_path / ("x" * 120)
-    assert len(str(supervision.socket_path(deep))) <= supervision.SOCKET_PATH_LIMIT
-    assert supervision.socket_path(deep) != supervision.socket_path(tmp_path / ("y" * 120))
-    assert supervision.socket_path(Path("/run/x")).parent == Path("/run/x")
+    assert len(str(programs.socket_path(deep))) <= programs.SOCKET_PATH_LIMIT
+    assert programs.socket_path(deep) != programs.socket_path(tmp_path / ("y" * 120))
+    assert programs.socket_path(Path("/run/x")).parent == Path("/run/x")
 
 
 def test_the_run_directory_can_be_named() -> None:
@@ -148,5 +149,5 @@ def test_a_command_without_a_run_says_so(
 
 def test_checked_words() -> None:
     with pytest.raises(CliError, match="known: a, b"):
-        up.checked("zzz", ("a", "b"), "letter")
+        checked("zzz", ("a", "b"), "letter")
     assert isinstance(main.parser(), argparse.ArgumentParser)

@@ -1,0 +1,187 @@
+"""`ZenohIo`, the `Io` of a process of its own, and the publisher that gives each topic its delivery.
+
+Callbacks only enqueue: they run in Zenoh's receiving thread, one after the other in the order of arrival.
+"""
+
+import queue
+from collections.abc import Iterable
+from typing import Any
+
+import msgspec
+import zenoh
+from zenoh import ext, handlers
+
+from common import bus, codec, topics
+from common import messages as m
+from common.clock import Clock, unix_time
+from common.io import Handler
+from common.iobase import CAPACITY, UNSTAMPED, IoBase, Mailbox, WorkerJob
+from common.scene import Scene
+from common.topics import Topic
+
+HEARTBEAT = 0.25
+_BAD_REQUEST = (ValueError, LookupError, TypeError, AttributeError, ArithmeticError, RecursionError, OSError)
+
+
+class Publisher:
+    """Sends one topic with the delivery that the table declares; in lockstep streams lose nothing either."""
+
+    def __init__(self, opened: zenoh.Session, topic: Topic[Any], lossless: bool = False) -> None:
+        self._matching = opened.declare_publisher(topic.key)
+        self.last: bytes | None = None
+        encoding = codec.encoding_of(topic)
+        self._out: Any
+        if topic.keep == "latest":
+            control = zenoh.CongestionControl.BLOCK if lossless else zenoh.CongestionControl.DROP
+            self._out = opened.declare_publisher(topic.key, encoding=encoding, congestion_control=control)
+        elif not topic.recover:
+            self._out = opened.declare_publisher(
+                topic.key, encoding=encoding, congestion_control=zenoh.CongestionControl.BLOCK, express=True
+            )
+        else:
+            self._out = ext.declare_advanced_publisher(
+                opened,
+                topic.key,
+                encoding=encoding,
+                congestion_control=zenoh.CongestionControl.BLOCK,
+                cache=ext.CacheConfig(bus.CACHE),
+                sample_miss_detection=ext.MissDetectionConfig(heartbeat=None, sporadic_heartbeat=HEARTBEAT),
+                publisher_detection=True,
+            )
+        if topic.latched:
+            self._queryable = opened.declare_queryable(topic.key, self._answer)
+        self._key, self._encoding = topic.key, encoding
+
+    def _answer(self, query: zenoh.Query) -> None:
+        with query:
+            if self.last is not None:
+                query.reply(self._key, self.last, encoding=self._encoding)
+
+    def put(self, payload: bytes, tick: int | None) -> None:
+        self.last = payload
+        self._out.put(payload, attachment=None if tick is None else bus.TICK.pack(tick))
+
+    @property
+    def matched(self) -> bool:
+        return bool(self._matching.matching_status.matching)  # type: ignore[attr-defined]
+
+
+class ZenohIo(IoBase):
+    """`Io` over a Zenoh session."""
+
+    def __init__(
+        self,
+        opened: zenoh.Session,
+        name: str,
+        reads: Iterable[Topic[Any]],
+        writes: Iterable[Topic[Any]],
+        *,
+        scene: Scene,
+        seed: int,
+        lockstep: bool,
+        clock: Clock,
+        log_level: str = "info",
+    ) -> None:
+        reads, writes = tuple(reads), tuple(writes)
+        self._session = opened
+        self._log_publisher: Any = opened.declare_publisher(topics.LOG_KEY.format(name=name), encoding=codec.JSON)
+        super().__init__(
+            name, reads, writes, scene=scene, seed=seed, lockstep=lockstep, clock=clock, log_level=log_level
+        )
+        self._started = unix_time()
+        self.out_tick: int | None = None
+        self._peers: dict[str, str] = {}
+        self._queries: queue.SimpleQueue[tuple[Handler, zenoh.Query]] = queue.SimpleQueue()
+        self._kept: list[Any] = []
+        self._streams: list[tuple[Any, Mailbox[Any]]] = []
+        self._publishers = {t.key: Publisher(opened, t, lossless=lockstep) for t in writes}
+        for topic in reads:
+            self._subscribe(topic)
+        self._kept.append(bus.watch_tokens(opened, self._on_token))
+        self._kept.append(bus.listen(opened, topics.HEALTH_KEY.format(name="*"), self._on_health))
+
+    def _subscribe(self, topic: Topic[Any]) -> None:
+        box = self._boxes[topic.key]
+        if topic.keep == "latest":
+            # A stream waits outside Python until the next step: to call into it for every sample costs twice as much.
+            waiting: Any = handlers.RingChannel(CAPACITY if self.lockstep else 1)
+            self._streams.append((self._session.declare_subscriber(topic.key, waiting), box))
+            if topic.latched:
+                self._session.get(topic.key, lambda reply: _keep(box, reply.ok) if reply.ok is not None else None)
+            return
+        started, stale_key = self._started, f"{topic.key} (stale)"
+
+        def receive(sample: zenoh.Sample) -> None:
+            if topic.command and bus.sent_at(sample) < started:
+                self.drops[stale_key] += 1
+                return
+            _keep(box, sample)
+
+        self._kept.append(bus.subscribe(self._session, topic, receive))
+
+    def begin(self, tick: int | None, now: float) -> None:
+        for stream, box in self._streams:
+            taken = 0
+            while (sample := stream.try_recv()) is not None:
+                _keep(box, sample)
+                taken += 1
+            if taken == CAPACITY:
+                box.overflow += 1
+        super().begin(tick, now)
+
+    # --- peers
+    def _on_token(self, name: str, alive: bool) -> None:
+        if alive:
+            self._peers.setdefault(name, "")
+        else:
+            self._peers.pop(name, None)
+
+    def _on_health(self, sample: zenoh.Sample) -> None:
+        try:
+            health = codec.decode_as(m.Health, sample.payload.to_bytes())
+        except codec.DecodeError as error:
+            self.drops[str(sample.key_expr)] += 1
+            self.log.debug("dropped", key=str(sample.key_expr), reason=str(error))
+            return
+        # Also without a token: that of a dead process may be lost after its successor's was announced.
+        self._peers[health.name] = health.epoch
+
+    def peer(self, name: str) -> str | None:
+        return self._peers.get(name)
+
+    def matched(self, topic: Topic[Any]) -> bool:
+        return self._publishers[topic.key].matched
+
+    # --- sending
+    def _send(self, topic: Topic[Any], payload: bytes) -> None:
+        tick = None
+        if self.lockstep:
+            tick = self.tick if self.out_tick is None else self.out_tick
+        self._publishers[topic.key].put(payload, tick)
+
+    def _send_log(self, record: m.LogRecord) -> None:
+        self._log_publisher.put(msgspec.json.encode(record))
+
+    # --- queries
+    def serve(self, key: str, handler: Handler) -> None:
+        self._kept.append(self._session.declare_queryable(key, lambda query: self._queries.put((handler, query))))
+
+    def ask(self, key: str, request: bytes = b"") -> WorkerJob[bytes | None]:
+        return self.submit(lambda: next(iter(bus.fetch(self._session, key, request).values()), None))
+
+    def answer_queries(self) -> None:
+        """Run the handlers of waiting queries, in the calling thread."""
+        while not self._queries.empty():
+            handler, query = self._queries.get()
+            payload = query.payload.to_bytes() if query.payload is not None else b""
+            with query:
+                try:
+                    query.reply(query.key_expr, handler(payload), encoding=codec.JSON)
+                except _BAD_REQUEST as error:
+                    self.count_drop(str(query.key_expr), f"{type(error).__name__}: {error}")
+                    query.reply_err(str(error))
+
+
+def _keep(box: Mailbox[Any], sample: zenoh.Sample) -> None:
+    tick = bus.tick_of(sample)
+    box.put(sample.payload.to_bytes(), UNSTAMPED if tick is None else tick)
