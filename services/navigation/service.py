@@ -12,6 +12,7 @@ from services.navigation.places import Places, load_places
 from services.navigation.planner import PathPlanner
 from services.navigation.search import Search
 from services.navigation.senses import Senses
+from services.navigation.stood import Stood
 from services.navigation.tour import Memory
 from services.navigation.views import views_of
 
@@ -40,6 +41,7 @@ class NavigationService:
         self._planner = PathPlanner(self._map, config.footprint_radius + config.clearance, config.inflation)
         self._senses = Senses(config, io, self._map)
         self._memory = Memory(views_of(io.scene, config.camera))
+        self._stood = Stood()
         self._drive: Drive | None = None
         self._search: Search | None = None
         self._seen: set[tuple[str, int]] = set()
@@ -106,6 +108,7 @@ class NavigationService:
         """Raises `Ended` for an unknown goal or place."""
         verb, _, rest = text.partition(" ")
         rest = rest.strip()
+        self._stood.sent(rest if verb == "find" else "")
         if pose is not None:
             self._go(self._goals.pose(pose))
         elif text == "return_to_start":
@@ -118,13 +121,16 @@ class NavigationService:
             raise Ended("failed", "UNKNOWN_GOAL", f"{text!r}: expected find, goto, return_to_start or stop")
 
     def _find(self, item: str) -> None:
-        if choices := self._goals.seen(item, self._objects()):
+        if choices := self._before(item):
             self._go(choices)
         elif self._io.peer(PERCEPTION) is not None:
             self._io.log.info("search", item=item)
             self._search = Search(item, self._memory, self._config, self._now)
         else:
             self._go(self._goals.spot(item))
+
+    def _before(self, item: str) -> Choices:
+        return self._stood.apart(self._status.goal_id, self._goals.seen(item, self._objects()))
 
     def _objects(self) -> list[m.WorldObject]:
         reported = self._io.latest(topics.WORLD_OBJECTS)
@@ -139,7 +145,7 @@ class NavigationService:
     # --- searching
     def _look_for(self, search: Search, now: float) -> None:
         """One step of a search; raises `Ended` when it is over without result."""
-        if choices := self._goals.seen(search.item, self._objects()):
+        if choices := self._before(search.item):
             self._io.log.info("found", item=search.item, views=search.tour.looked)
             self._search = None
             self._leave(self._drive)
@@ -201,6 +207,8 @@ class NavigationService:
         drive, self._search = self._drive, None
         self._leave(drive)
         self._drive = None
+        if ended.status == "arrived":
+            self._stood.arrived(self._status.goal_id, self._senses.pose)
         if ended.status == "failed" and drive is not None and self._senses.pose is not None:
             self._hold()
         self._report(ended.status, ended.code, ended.detail)

@@ -12,7 +12,7 @@ from common.scene import load_scene
 from services.navigation.config import NavigationConfig
 from services.navigation.costmap import Costmap
 from services.navigation.follow import Follower
-from services.navigation.planner import PathPlanner
+from services.navigation.planner import PathPlanner, Point
 from services.navigation.service import NavigationService
 from services.navigation.standoff import poses_for
 from services.sim.layout import place_objects
@@ -164,17 +164,46 @@ def test_arrived_comes_only_from_the_base() -> None:
     assert node.status().status == "arrived"
 
 
-def test_an_object_that_was_seen_counts_before_the_places_file() -> None:
-    node = Pilot()
-    mug = place_objects(SCENE, 0)[0]
+def sighted() -> tuple[Pilot, Point]:
+    """A robot that knows where the red mug is."""
+    node, mug = Pilot(), place_objects(SCENE, 0)[0]
     seen = m.WorldObject(
         label="red mug", kind="mug", colour="red", position=mug.position, size=mug.spec.size, on=mug.on
     )
     node.bus.send(topics.WORLD_OBJECTS, m.WorldObjects(t=0.0, objects=[seen]))
+    return node, mug.position[:2]
+
+
+def test_an_object_that_was_seen_counts_before_the_places_file() -> None:
+    node, mug = sighted()
     node.ask("find red cup")
     path = msgspec.json.decode(node.bus.last["navigation/path"], type=m.NavPath)
     assert path.goal_id == "a.1"
-    assert math.dist(path.points[-1], mug.position[:2]) < 1.0
+    assert math.dist(path.points[-1], mug) < 1.0
+
+
+def test_asked_again_before_the_same_thing_it_stands_somewhere_else() -> None:
+    node, mug = sighted()
+
+    def stand(text: str, goal_id: str, attempt: int = 1) -> Point:
+        """Where the goal ends; the base goes there at once."""
+        node.ask(text, goal_id, attempt)
+        end = msgspec.json.decode(node.bus.last["navigation/path"], type=m.NavPath).points[-1]
+        node.pose = (*end, math.atan2(mug[1] - end[1], mug[0] - end[0]))
+        node.step(0.5)
+        node.bus.send(topics.GOAL_REACHED, m.GoalReached(reached=True, target_id=node.target().id))
+        node.step()
+        assert node.status().status == "arrived"
+        return node.pose[:2]
+
+    first = stand("find red mug", "a.1")
+    assert math.dist(stand("find red mug", "a.1", 2), first) < 0.03, "the same wish, said again"
+    second = stand("find red mug", "a.2")
+    third = stand("find red mug", "a.3")
+    assert min(math.dist(second, first), math.dist(third, first), math.dist(third, second)) > 0.08
+    assert all(math.dist(p, mug) < 0.8 for p in (second, third)), "still in reach"
+    stand("goto kitchen", "a.4")
+    assert math.dist(stand("find red mug", "a.5"), first) < 0.25, "what was tried is forgotten on the way"
 
 
 def test_the_same_goal_twice_runs_once_and_is_answered() -> None:
