@@ -20,8 +20,8 @@ from common import config
 from common.scene import load_scene
 from services.speech.audio import RATE, read_wav
 from services.speech.config import SpeechConfig
+from services.speech.ear import without_wake
 from services.speech.grammar import spoken
-from services.speech.recognise import without_wake
 from services.speech.transcribe import Reader
 
 ROWS = (

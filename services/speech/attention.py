@@ -8,7 +8,8 @@ from common.io import Io, Job
 from services.speech.audio import RATE, Samples
 from services.speech.config import SpeechConfig
 from services.speech.dialogue import Setting, scope
-from services.speech.recognise import Ear, Heard, Scope
+from services.speech.ear import Ear
+from services.speech.recognise import Heard, Scope
 from services.speech.segment import Segment, Segmenter
 
 GAP, LOADING = 0.1, 0.5

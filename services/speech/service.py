@@ -15,9 +15,10 @@ from services.speech.attention import Attention, Hearing
 from services.speech.audio import RATE, AudioError, Samples, read_wav, resample
 from services.speech.config import SpeechConfig
 from services.speech.dialogue import act
+from services.speech.ear import Ear
 from services.speech.grammar import GrammarError, spoken
 from services.speech.mouth import CHUNK, Mouth
-from services.speech.recognise import Ear, Heard, Interrupts, grammars
+from services.speech.recognise import Heard, Interrupts, grammars
 from services.speech.speak import Microphone
 
 _FAILURES = {"silence": "NO_SPEECH", "ask": "UNCERTAIN", "reject": "NO_COMMAND"}

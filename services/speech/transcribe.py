@@ -12,8 +12,9 @@ from common.runtime import BAD_CONFIGURATION, StartError
 from common.scene import Scene, SceneError, load_scene
 from services.speech.audio import AudioError, Samples, read_wav
 from services.speech.config import SpeechConfig
+from services.speech.ear import Ear
 from services.speech.grammar import GrammarError
-from services.speech.recognise import Ear, Heard, grammars
+from services.speech.recognise import Heard, grammars
 from services.speech.wake import WakeWord
 
 

@@ -5,7 +5,8 @@ import pytest
 from common import config
 from services.speech.config import SpeechConfig
 from services.speech.dialogue import Setting, act, scope
-from services.speech.recognise import Heard, Interrupts, without_wake
+from services.speech.ear import without_wake
+from services.speech.recognise import Heard, Interrupts
 from tests.support import ROOT
 
 CONFIG = config.load("speech", SpeechConfig, ROOT / "config", {})
