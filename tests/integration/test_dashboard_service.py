@@ -44,7 +44,7 @@ class Page:
         self.asked = self.bus.tap(topics.CAMERA_REQUEST)
         self.now = 100.0
 
-    def step(self, seconds: float = 0.03) -> None:
+    def step(self, seconds: float = 0.04) -> None:  # longer than a frame: what is new is drawn
         self.now += seconds
         self.io.begin(None, self.now)
         self.service.step(self.now)
@@ -100,7 +100,7 @@ def test_the_robot_is_drawn_where_it_believes_to_be(drawn: Page) -> None:
 def test_the_fingers_are_as_far_apart_as_the_gripper_says(drawn: Page) -> None:
     for width in (0.085, 0.02, 0.0):
         drawn.joints(11.0 + width, width=width)
-        drawn.step(0.04)
+        drawn.step()
         left, right = drawn.node("/left_finger"), drawn.node("/right_finger")
         apart = left.position[1] - right.position[1]  # type: ignore[attr-defined]
         assert apart == pytest.approx(width, abs=1e-3)
@@ -110,7 +110,7 @@ def test_objects_come_go_and_turn_into_ghosts(drawn: Page) -> None:
     def show(*objects: m.WorldObject, t: float = 10.0) -> None:
         drawn.bus.send(topics.WORLD_OBJECTS, m.WorldObjects(t=t, objects=list(objects)))
         drawn.joints(t)
-        drawn.step(0.04)
+        drawn.step()
 
     view = drawn.service._view
     show(MUG, t=10.0)
@@ -124,11 +124,11 @@ def test_objects_come_go_and_turn_into_ghosts(drawn: Page) -> None:
 
 
 def test_cameras_are_asked_only_while_somebody_looks(page: Page, monkeypatch: pytest.MonkeyPatch) -> None:
-    for _ in range(100):
+    for _ in range(75):
         page.step()
     assert page.asked == []
     monkeypatch.setattr(Web, "watched", True)
-    for _ in range(100):
+    for _ in range(75):
         page.step()
     requests = [codec.decode(topics.CAMERA_REQUEST, payload) for payload in page.asked]
     assert {r.camera for r in requests} == {"head"}, "the wrist's pictures are not wanted unless its box is ticked"
