@@ -100,7 +100,7 @@ class Player:
                     last = sent == len(self._chunks) - 1
                     at = (start + sent * _PERIOD) * DT
                     chunk = m.AudioChunk(t=at, data=self._chunks[sent], rate=RATE, seq=sent, end=last, addressed=True)
-                    stamp = bus.TICK.pack(tick.tick) if tick.lockstep else None
+                    stamp = bus.stamp(tick.tick if tick.lockstep else None)
                     out.put(codec.encode(topics.AUDIO_PCM, chunk), attachment=stamp)
                     sent += 1
                     progress(at)

@@ -111,8 +111,12 @@ class Player:
         """Whether the recorder heard the step that gave this output to its end; without a tick it is a client's."""
         if not self.lockstep:
             return True
-        last = (self._ticks[-1] if self._ticks else 0) - self._sim
-        return row.tick is not None and row.tick <= last
+        last = self._ticks[-1] if self._ticks else 0
+        return row.tick is not None and row.tick <= self._stamp_at(last)
+
+    def _stamp_at(self, tick: int) -> int:
+        """The tick that outputs of a step carry: the simulation's step makes the state of the next one."""
+        return tick - 1 if self._sim else tick
 
     @property
     def exact(self) -> bool:
@@ -172,13 +176,11 @@ class Player:
             while waiting is not None and self._stamp(waiting) < tick:
                 self.bus.put(topics.BY_KEY[waiting.key], waiting.payload, self._stamp(waiting))
                 waiting = next(rows, None)
-            if self._sim:
-                self.io.out_stamp, now = tick - 1, (tick - 1) * DT
-            else:
-                now = tick * DT
+            self.io.out_stamp = stamp = self._stamp_at(tick)
+            now = stamp * DT
             self.clock.advance(tick * DT - self.clock.now())
             # In lockstep the simulation works out a tick while the others are at the one before.
-            self.io.begin(tick - 1 if self._sim and self.lockstep else tick, now)
+            self.io.begin(stamp if self.lockstep else tick, now)
             self.service.step(now)
             progress(now)
         return self.io.outputs

@@ -33,7 +33,7 @@ DEFAULT_CONNECT = "tcp/127.0.0.1:7447"
 DEFAULT_SECURE = "tls/127.0.0.1:7447"
 CACHE = 64
 PROBE_AFTER, PROBE_PERIOD = 2.0, 30.0
-TICK = struct.Struct("<q")  # a lockstep tick, as the attachment of a sample
+_TICK = struct.Struct("<q")
 
 
 class BusError(ValueError):
@@ -205,10 +205,15 @@ def watch_tokens(opened: zenoh.Session, changed: Callable[[str, bool], None]) ->
     return opened.liveliness().declare_subscriber(topics.ALIVE_KEY.format(name="*"), _in_order(receive), history=True)
 
 
+def stamp(tick: int | None) -> bytes | None:
+    """The attachment that says in which lockstep tick a sample is published; `tick_of` reads it."""
+    return None if tick is None else _TICK.pack(tick)
+
+
 def tick_of(sample: zenoh.Sample) -> int | None:
     """The lockstep tick in which a sample was published, None where it carries none."""
     raw = sample.attachment.to_bytes() if sample.attachment is not None else b""
-    return int(TICK.unpack(raw)[0]) if len(raw) == TICK.size else None
+    return int(_TICK.unpack(raw)[0]) if len(raw) == _TICK.size else None
 
 
 def sent_at(sample: zenoh.Sample) -> float:

@@ -1,7 +1,4 @@
-"""`ZenohIo`, the `Io` of a process of its own, and the publisher that gives each topic its delivery.
-
-Callbacks only enqueue: they run in Zenoh's receiving thread, one after the other in the order of arrival.
-"""
+"""`ZenohIo`, the `Io` of a process of its own, and the publisher that gives each topic its delivery."""
 
 import queue
 from collections.abc import Iterable
@@ -59,7 +56,7 @@ class Publisher:
 
     def put(self, payload: bytes, tick: int | None) -> None:
         self.last = payload
-        self._out.put(payload, attachment=None if tick is None else bus.TICK.pack(tick))
+        self._out.put(payload, attachment=bus.stamp(tick))
 
     @property
     def matched(self) -> bool:

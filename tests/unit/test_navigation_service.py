@@ -177,7 +177,7 @@ def sighted() -> tuple[Pilot, Point]:
 def test_an_object_that_was_seen_counts_before_the_places_file() -> None:
     node, mug = sighted()
     node.ask("find red cup")
-    path = msgspec.json.decode(node.bus.last["navigation/path"], type=m.NavPath)
+    path = node.last(topics.NAV_PATH)
     assert path.goal_id == "a.1"
     assert math.dist(path.points[-1], mug) < 1.0
 
@@ -188,7 +188,7 @@ def test_asked_again_before_the_same_thing_it_stands_somewhere_else() -> None:
     def stand(text: str, goal_id: str, attempt: int = 1) -> Point:
         """Where the goal ends; the base goes there at once."""
         node.ask(text, goal_id, attempt)
-        end = msgspec.json.decode(node.bus.last["navigation/path"], type=m.NavPath).points[-1]
+        end = node.last(topics.NAV_PATH).points[-1]
         node.pose = (*end, math.atan2(mug[1] - end[1], mug[0] - end[0]))
         node.step(0.5)
         node.bus.send(topics.GOAL_REACHED, m.GoalReached(reached=True, target_id=node.target().id))
