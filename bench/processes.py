@@ -39,15 +39,14 @@ def main() -> None:
             tidybot("say", f"bring me the {ITEM}", "--wait")
             speed = (_clock(tidybot) - before) / (time.perf_counter() - started)
             rows: list[dict[str, Any]] = json.loads(tidybot("ps", "--json"))
-            shares = {row["name"]: psutil.Process(row["pid"]).memory_full_info().pss / 1e6 for row in rows}
+            taken = {row["name"]: psutil.Process(row["pid"]).memory_full_info() for row in rows}
         finally:
             tidybot("down")
     alone = fetch(Robot(seed=0), ITEM, 0)
     print(f"{'up to ready':34} {ready:8.1f} s")
-    for row in rows:
-        print(f"{'resident, ' + row['name']:34} {row['rss_mb']:8.0f} MB  {shares[row['name']]:8.0f} in proportion")
-    total = sum(row["rss_mb"] for row in rows)
-    print(f"{'resident, all':34} {total:8.0f} MB  {sum(shares.values()):8.0f} in proportion")
+    taken["all"] = taken["router"]._make(map(sum, zip(*taken.values(), strict=True)))
+    for name, memory in taken.items():
+        print(f"{'resident, ' + name:34} {memory.rss / 1e6:8.0f} MB  {memory.pss / 1e6:8.0f} in proportion")
     print(f"{'fetch in lockstep, processes':34} {speed:8.1f} x real time")
     print(f"{'fetch in lockstep, one process':34} {alone.robot_seconds / alone.wall_seconds:8.1f} x real time")
 

@@ -9,15 +9,16 @@ from services.speech.audio import RATE, Samples
 from services.speech.speak import Speakers, Voice
 
 CHUNK = RATE // 10
+LOADING = 0.2  # [s] of robot time
 
 
 class Mouth:
-    """Synthesis runs in the worker; the voice is loaded when first used."""
+    """Synthesis runs in the worker; the voice is loaded at once with `preload`, else when first used."""
 
-    def __init__(self, io: Io, speakers: bool, seconds: float) -> None:
+    def __init__(self, io: Io, speakers: bool, seconds: float, preload: bool = False) -> None:
         self._io, self._seconds = io, seconds
         self._speakers = Speakers() if speakers else None
-        self._voice: Job[Voice] | None = None
+        self._voice: Job[Voice] | None = io.submit(Voice, seconds=LOADING) if preload else None
         self._synthesis: Job[Samples] | None = None
         self._sound = np.zeros(0, np.int16)
         self._sequence = 0
@@ -28,7 +29,7 @@ class Mouth:
         self.stop()
         self.saying = text
         if self._voice is None:
-            self._voice = self._io.submit(Voice, seconds=0.2)
+            self._voice = self._io.submit(Voice, seconds=LOADING)
 
     def step(self, now: float) -> bool:
         """True when the last of it has been said in this step."""

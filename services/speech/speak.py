@@ -23,6 +23,7 @@ class Voice:
 
         self._voice, self._rate = Hibari(threads=1), int(SAMPLE_RATE)
         self._voice.sess = session(Path(self._voice.model_path), 1)  # its own keeps the space of the longest sentence
+        self.speak("ready")  # the lexicon loads with the first word
         return_memory()
 
     def speak(self, text: str) -> Samples:

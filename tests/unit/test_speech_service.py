@@ -8,6 +8,7 @@ import pytest
 
 from common import config, topics
 from common import messages as m
+from common.memory import MemoryIo
 from common.runtime import StartError
 from common.scene import load_scene
 from services.speech.audio import RATE, AudioError, read_wav, write_wav
@@ -15,6 +16,7 @@ from services.speech.config import SpeechConfig
 from services.speech.grammar import Grammar, GrammarError, vocabulary
 from services.speech.moonshine import Vocabulary
 from services.speech.service import SpeechService
+from services.speech.speak import Voice
 from services.speech.vad import Endpointer
 from tests.node import Node
 
@@ -191,6 +193,16 @@ def test_the_robot_understands_its_own_voice() -> None:
     node.play(np.concatenate([audio, np.zeros(RATE, np.int16)]))
     node.step(1.0)
     assert node.result().text == "go to the kitchen"
+
+
+@pytest.mark.parametrize(("preload", "lockstep", "loaded"), [(True, False, 1), (True, True, 0), (False, False, 0)])
+def test_the_voice_is_there_before_its_first_word_where_somebody_waits_for_it(
+    preload: bool, lockstep: bool, loaded: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    begun: list[object] = []
+    monkeypatch.setattr(MemoryIo, "submit", lambda io, work, *given, seconds=0.0: begun.append(work))
+    Node(SpeechService, msgspec.structs.replace(CONFIG, preload=preload), SCENE, lockstep=lockstep)
+    assert begun.count(Voice) == loaded
 
 
 def test_silence_is_an_error_after_the_timeout() -> None:
