@@ -8,7 +8,7 @@ import msgspec
 import numpy as np
 
 from common import files
-from services.manipulation.plan import Held
+from services.manipulation.held import Held
 
 NAME, VERSION = "hand", 1
 

@@ -5,7 +5,8 @@ import numpy as np
 from common.geometry import compose
 from services.manipulation.arm_model import Obstacle
 from services.manipulation.grasp import approach_rotation
-from services.manipulation.plan import USUAL_SIZE, Held, PlacePlan
+from services.manipulation.held import USUAL_SIZE, Held
+from services.manipulation.plan_place import PlacePlan, plan_place
 from services.manipulation.robot import Failure, Robot, Steps, go_home, planner_of
 from services.manipulation.surroundings import obstacles, spots
 
@@ -40,7 +41,7 @@ def place(robot: Robot, where: str) -> Steps[str]:
     for name, free, surface, drop in choices:
         try:
             plan = yield from robot.work(
-                planner.place, held, free, surface, drop, _around(robot, held, name), robot.joints.copy()
+                plan_place, planner, held, free, surface, drop, _around(robot, held, name), robot.joints.copy()
             )
         except Failure as failure:
             last = failure

@@ -6,7 +6,8 @@ import numpy as np
 
 from common.messages import ObjectRef
 from services.manipulation.arm_model import Array, Obstacle
-from services.manipulation.plan import USUAL_SIZE, Held, PlanError, Planner
+from services.manipulation.held import USUAL_SIZE, Held
+from services.manipulation.plan import PlanError, Planner
 from services.manipulation.robot import Failure, Robot, Steps, go_home
 from services.manipulation.surroundings import obstacles
 from services.manipulation.verify import holds

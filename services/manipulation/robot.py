@@ -11,8 +11,9 @@ from common.geometry import Pose2
 from common.io import Io
 from services.manipulation.arm_model import Array
 from services.manipulation.config import ManipulationConfig
+from services.manipulation.held import Held
 from services.manipulation.object_source import ObjectSource
-from services.manipulation.plan import Held, PlanError, Planner
+from services.manipulation.plan import PlanError, Planner
 from services.manipulation.surroundings import obstacles
 from services.manipulation.trajectory import timed
 from services.manipulation.verify import Grip

@@ -7,7 +7,8 @@ from common import topics
 from common.messages import WorldObject
 from services.manipulation.arm_model import Obstacle
 from services.manipulation.grasp import shown
-from services.manipulation.plan import GrabPlan, Held
+from services.manipulation.held import Held
+from services.manipulation.plan_grab import GrabPlan, plan_grab, refine
 from services.manipulation.robot import Failure, Robot, Steps, go_home, planner_of
 from services.manipulation.surroundings import obstacles, target_of, turned
 from services.manipulation.verify import holds, judge
@@ -29,7 +30,7 @@ def grab(robot: Robot, goal: m.ManipulationGoal, wanted: str) -> Steps[str]:
         around = obstacles(robot.io.scene, robot.base, robot.source.objects(), without=found.label)
         try:
             plan = yield from robot.work(
-                planner.grab, target, around, robot.joints.copy(), config.approach_distance, config.lift_height,
+                plan_grab, planner, target, around, robot.joints.copy(), config.approach_distance, config.lift_height,
                 config.reach, frozenset(tried),
             )  # fmt: skip
         except Failure as failure:
@@ -102,7 +103,7 @@ def _aimed(robot: Robot, plan: GrabPlan, goal: m.ManipulationGoal, found: WorldO
     robot.io.log.info("aim corrected", object=found.label, by_mm=round(1000 * off, 1))
     try:
         return (yield from robot.work(
-            planner_of(robot).refine, plan, shift, config.approach_distance, config.lift_height
+            refine, planner_of(robot), plan, shift, config.approach_distance, config.lift_height
         ))  # fmt: skip
     except Failure:
         return plan

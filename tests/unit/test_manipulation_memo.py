@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from services.manipulation.grasp import approach_rotation
+from services.manipulation.held import Held
 from services.manipulation.memo import HandMemo
-from services.manipulation.plan import Held
 from tests.unit.test_manipulation_service import Arm
 
 BOTTLE = Held(
