@@ -2,28 +2,21 @@
 
 import importlib
 import math
-from collections import deque
 from typing import Literal
-
-import numpy as np
 
 from common import messages as m
 from common import topics
-from common.geometry import Array, Pose2, wrap
+from common.geometry import Pose2, wrap
 from common.io import Io, Job
-from common.robot import ARM
 from common.runtime import StartError
 from services.perception.body import Body
 from services.perception.config import PerceptionConfig
 from services.perception.detect import ClassicalDetector, Detection, Detector
 from services.perception.ground import Grounding, ground
 from services.perception.memory import SURE, Memory
+from services.perception.posture import Posture
 from services.perception.view import View, view_of
 
-HISTORY = 100
-# Fingers that stand neither closed nor open hold something [m].
-CLOSED, PLAY = 0.003, 0.005
-HELD_FORCE = 5.0
 MOVING = 0.02
 HAND_RANGE = 0.35
 CLEAR = ("", "start", "look")
@@ -51,10 +44,7 @@ class PerceptionService:
         self._detector = load_detector(config.detector)(io.scene, config.max_range)
         self._world = ""
         self._forget()
-        self._body: Job[Body] | None = None
-        self._description: m.RobotDescription | None = None
-        self._poses: deque[tuple[float, Pose2]] = deque(maxlen=HISTORY)
-        self._joints: deque[tuple[float, Array, float]] = deque(maxlen=20)
+        self._posture = Posture(io)
         self._hand: tuple[float, float, float] | None = None
         self._picture = ""
         self._asked_at = -1e9
@@ -80,67 +70,21 @@ class PerceptionService:
 
     # --- the robot
     def _sense(self, now: float) -> None:
-        io = self._io
-        for pose in io.drain(topics.POSE):
-            self._poses.append((pose.t, (pose.x, pose.y, pose.theta)))
+        io, posture = self._io, self._posture
+        felt = posture.feel()
         status = io.latest(topics.SIM_STATUS)
         if status is not None and status.world != self._world:
             if self._world:
                 self._forget()
                 io.log.info("another world", world=status.world)
             self._world = status.world
-        description = io.latest(topics.ROBOT_DESCRIPTION)
-        if self._body is None and description is not None and description is not self._description:
-            self._description = description
-            self._body = io.submit(Body, description.mjcf, seconds=0.2)
-        joints = io.latest(topics.JOINT_STATES)
-        if (
-            joints is None
-            or not {*ARM, "gripper"} <= set(joints.name)
-            or min(len(joints.position), len(joints.effort)) < len(joints.name)
-        ):
-            return
-        found = dict(zip(joints.name, zip(joints.position, joints.effort, strict=False), strict=False))
-        arm = np.array([found[name][0] for name in ARM])
-        width, force = found["gripper"]
-        self._joints.append((joints.t, arm, width))
-        body = self._robot(now) if self._poses and self._detecting is None else None
-        if body is not None:
-            body.pose(arm, width)
-            self._hand = body.hand(self._poses[-1][1])
-            holding = CLOSED < width < body.open - PLAY and abs(force) > HELD_FORCE
-            self._memory.carry(self._hand, holding, now)
+        base = posture.base
+        # While a picture is looked at, the model belongs to the worker.
+        body = posture.body(now) if felt and base is not None and self._detecting is None else None
+        if body is not None and base is not None:
+            self._hand = body.hand(base)
+            self._memory.carry(self._hand, posture.holds(body), now)
             self._show(now)
-
-    def _robot(self, now: float) -> Body | None:
-        """The robot's model once it is loaded."""
-        if self._body is None or not self._body.poll(now):
-            return None
-        try:
-            return self._body.result()
-        except (ValueError, KeyError) as error:
-            self._io.count_drop(topics.ROBOT_DESCRIPTION.key, f"not a robot with our joints: {error}")
-            self._body = None
-            return None
-
-    def _pose_at(self, t: float) -> Pose2 | None:
-        """The base's pose at robot time `t`, between the two estimates around it."""
-        if not self._poses:
-            return None
-        before = [p for p in self._poses if p[0] <= t]
-        after = [p for p in self._poses if p[0] > t]
-        if not before or not after:
-            return (before[-1] if before else after[0])[1]
-        (t0, a), (t1, b) = before[-1], after[0]
-        s = (t - t0) / (t1 - t0)
-        return a[0] + s * (b[0] - a[0]), a[1] + s * (b[1] - a[1]), wrap(a[2] + s * wrap(b[2] - a[2]))
-
-    def _turning(self) -> float:
-        """How fast the base turned over the last estimates [rad/s]."""
-        if len(self._poses) < 4:
-            return 0.0
-        (t0, a), (t1, b) = self._poses[-4], self._poses[-1]
-        return abs(wrap(b[2] - a[2])) / max(t1 - t0, 1e-3)
 
     def _working(self) -> str:
         """The phase of the manipulation under way, "" when the arm rests."""
@@ -152,10 +96,10 @@ class PerceptionService:
         """Request the next picture when one is due."""
         config = self._config
         waiting = bool(self._picture) and now - self._asked_at < config.picture_timeout
-        if waiting or self._detecting is not None or not self._poses or self._turning() > config.max_turn:
+        here = self._posture.base
+        if waiting or self._detecting is not None or here is None or self._posture.turning() > config.max_turn:
             return
         phase = self._working()
-        here = self._poses[-1][1]
         resting = self._looked_from is not None and _near(self._looked_from[0], here) and self._looked_from[1] == phase
         period = config.idle_period if resting else config.period
         if self._query is None and now - self._asked_at < period and phase != AIM:
@@ -168,7 +112,7 @@ class PerceptionService:
 
     def _receive(self, now: float) -> None:
         for key, image in ((t.key, image) for t in PICTURES for image in self._io.drain(t)):
-            base = self._pose_at(image.t)
+            base = self._posture.base_at(image.t)
             if not self._picture or image.id != self._picture or base is None:
                 continue
             self._picture = ""
@@ -177,10 +121,7 @@ class PerceptionService:
             except ValueError as error:
                 self._io.count_drop(key, str(error))
                 continue
-            body = self._robot(now) if self._joints else None
-            if body is not None:
-                _, arm, width = min(self._joints, key=lambda row: abs(row[0] - image.t))
-                body.pose(arm, width)
+            body = self._posture.body(now, image.t)
             self._detecting = self._io.submit(
                 detect, self._detector, view, base, body, seconds=self._config.detection_seconds
             )
@@ -238,7 +179,7 @@ class PerceptionService:
         self._io.publish(topics.OBJECT_POSE, answer)
 
     def _ground(self, words: str) -> Grounding:
-        base = self._poses[-1][1] if self._poses else (0.0, 0.0, 0.0)
+        base = self._posture.base or (0.0, 0.0, 0.0)
         return ground(words, self._memory.objects(), self._io.scene, base, self._config.synonyms)
 
 

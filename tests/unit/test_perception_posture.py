@@ -1,0 +1,83 @@
+"""Where the robot knows its base and arm to be, now and when a picture was taken."""
+
+import math
+
+import pytest
+
+from common import messages as m
+from common import topics
+from common.clock import ManualClock
+from common.memory import MemoryBus, MemoryIo
+from common.robot import ARM
+from common.scene import load_scene
+from services.perception.posture import Posture
+from services.perception.service import PerceptionService
+from services.sim.robot import robot_mjcf
+
+
+class Robot:
+    """What the drivers and navigation say to perception."""
+
+    def __init__(self) -> None:
+        self.bus, self.now = MemoryBus(), 0.0
+        kind = PerceptionService
+        self.io = MemoryIo(
+            self.bus, kind.NAME, kind.READS, kind.WRITES, scene=load_scene("minimal"), clock=ManualClock()
+        )
+        self.posture = Posture(self.io)
+        self.bus.send(topics.ROBOT_DESCRIPTION, m.RobotDescription(mjcf=robot_mjcf()))
+
+    def feel(self, x: float, shoulder: float, width: float = 0.0, force: float = 0.0) -> bool:
+        """A tenth of a second later the base is at `x`, heading at x rad, and the second joint at `shoulder`."""
+        self.now += 0.1
+        angles = [0.0, shoulder, *[0.0] * 5]
+        joints = m.JointStates(
+            t=self.now, name=[*ARM, "gripper"], position=[*angles, width], velocity=[0.0] * 8,
+            effort=[0.0] * 7 + [force],
+        )  # fmt: skip
+        self.bus.send(topics.JOINT_STATES, joints)
+        self.bus.send(topics.POSE, m.PoseEstimate(t=self.now, x=x, y=0.0, theta=x))
+        self.io.begin(round(100 * self.now), self.now)
+        return self.posture.feel()
+
+    def hand(self, t: float | None = None) -> tuple[float, float, float]:
+        body = self.posture.body(self.now + 1.0, t)
+        assert body is not None
+        return body.hand((0.0, 0.0, 0.0))
+
+
+@pytest.fixture
+def robot() -> Robot:
+    return Robot()
+
+
+def test_the_arm_is_as_it_was_felt_last_or_when_a_picture_was_taken(robot: Robot) -> None:
+    assert robot.posture.body(0.0) is None and robot.posture.base is None
+    seen = []
+    for shoulder in (0.0, 0.5, 1.0):
+        assert robot.feel(0.0, shoulder)
+        seen.append(robot.hand())
+    assert math.dist(seen[0], seen[2]) > 0.2
+    assert [robot.hand(t) for t in (0.0, 0.21, 0.3)] == seen
+
+
+def test_the_base_is_between_the_estimates_around_a_picture(robot: Robot) -> None:
+    for x in (0.0, 0.1, 0.2, 0.4):
+        robot.feel(x, 0.0)
+    assert robot.posture.base == (0.4, 0.0, 0.4)
+    assert robot.posture.base_at(0.35) == pytest.approx((0.3, 0.0, 0.3))
+    assert robot.posture.base_at(9.0) == (0.4, 0.0, 0.4) and robot.posture.base_at(0.0) == (0.0, 0.0, 0.0)
+    assert robot.posture.turning() == pytest.approx(0.4 / 0.3)
+
+
+@pytest.mark.parametrize(("width", "force", "holds"), [(0.05, 30.0, True), (0.05, 0.0, False), (0.001, 30.0, False)])
+def test_fingers_hold_what_keeps_them_apart(robot: Robot, width: float, force: float, holds: bool) -> None:
+    robot.feel(0.0, 0.0, width, force)
+    body = robot.posture.body(1.0)
+    assert body is not None and robot.posture.holds(body) is holds
+
+
+def test_joints_of_another_robot_are_none(robot: Robot) -> None:
+    robot.bus.send(topics.JOINT_STATES, m.JointStates(t=0.0, name=["wheel"], position=[0.0], velocity=[], effort=[]))
+    robot.io.begin(1, 0.01)
+    assert not robot.posture.feel() and robot.posture.body(1.0) is None
