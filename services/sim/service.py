@@ -11,23 +11,20 @@ from common import messages as m
 from common import topics
 from common.io import Io
 from common.lockstep import DT
-from common.robot import ARM, BASE
 from common.runtime import StartError
 from services.sim import checkpoint, truth
 from services.sim.arm import ArmDriver
 from services.sim.base import BaseDriver
 from services.sim.config import SimConfig
-from services.sim.lidar import RANGE_MAX, RANGE_MIN, RAYS, Lidar
 from services.sim.menagerie import RobotError
 from services.sim.model import Robot, load_robot
 from services.sim.obstacles import chosen
-from services.sim.odometry import WheelOdometry
 from services.sim.physics import Physics
+from services.sim.sensors import Sensors
 from services.sim.viewer import Viewer
 
 SCAN_TICKS, STATE_TICKS, CHECKPOINT_TICKS = 10, 5, 50
 MAX_DISTANCE = 50.0
-_NAMES = [*BASE, *ARM, "gripper"]
 
 
 class Pause(msgspec.Struct):
@@ -59,7 +56,6 @@ class SimService:
         self.paused = False
         self.start_time = 0.0
         self.physics = Physics(io.scene, io.seed, chosen(io.scene, config.obstacles), _robot(config.robot))
-        self._lidar = Lidar(self.physics.model, self.physics.lidar_site, config.lidar_noise, io.rng)
         self._viewer = Viewer(self.physics) if config.viewer else None
         self._tick = 0
         self._model = checkpoint.fingerprint(self.physics.mjcf)
@@ -85,8 +81,7 @@ class SimService:
         pose = (home.x, home.y, home.theta)
         self._base = BaseDriver(config, pose)
         self._arm = ArmDriver(np.array(self.physics.home_arm), config.stream_timeout, self.physics.arm_limits)
-        self._odometry = WheelOdometry(pose, config, self.physics.seed)
-        self._believed = pose
+        self.sensors = Sensors(self.physics, config, io, pose)
         self._setpoint = np.array([*pose, *self.physics.home_arm])
         self._grip(0.0, self.physics.fingers.force)
         self._reached: tuple[bool, str] = (False, "")
@@ -112,8 +107,7 @@ class SimService:
         self._setpoint = np.array([*actual[:3], *state.setpoint[3:]])
         self._base = BaseDriver(self._config, (x, y, yaw), stopped=state.stopped)
         self._arm = ArmDriver(self._setpoint[3:], self._config.stream_timeout, physics.arm_limits)
-        self._odometry.resume((x, y, yaw), state.odometry)
-        self._believed = state.odometry
+        self.sensors.resume((x, y, yaw), state.odometry)
         self._effort = state.effort
         physics.limit_effort(state.effort)
         self._io.log.warning("the world goes on where it was", t=round(self.start_time, 2))
@@ -131,7 +125,7 @@ class SimService:
             world=self._world,
             physics=self.physics.snapshot().tobytes(),
             setpoint=self._setpoint.tolist(),
-            odometry=self._believed,
+            odometry=self.sensors.believed,
             effort=self._effort,
             stopped=self._base.stopped,
         )
@@ -159,7 +153,7 @@ class SimService:
         physics = self.physics
         x, y, yaw, *_ = physics.joints.tolist()
         after = np.empty(10)
-        after[:3] = self._base.advance((x, y, yaw), self._believed, now, DT)
+        after[:3] = self._base.advance((x, y, yaw), self.sensors.believed, now, DT)
         after[3:] = self._arm.advance(now, DT)
         physics.obstacles.advance(physics.data, (x, y), DT)
         moving = bool((after != self._setpoint).any()) or physics.obstacles.moving
@@ -211,36 +205,14 @@ class SimService:
                 self._grip(grip.position, min(grip.max_effort, self.physics.fingers.force))
 
     def _publish(self, t: float) -> None:
-        io, physics, data = self._io, self.physics, self.physics.data
-        arm = physics.joints.tolist()
-        actual = (arm[0], arm[1], arm[2])
-        ox, oy, oyaw = self._believed = self._odometry.update(actual)
-        cos, sin = math.cos(actual[2]), math.sin(actual[2])
-        velocity = physics.rates.tolist()
-        vx, vy, omega = velocity[:3]
-        odometry = m.Odometry(t=t, x=ox, y=oy, theta=oyaw, vx=cos * vx + sin * vy, vy=cos * vy - sin * vx, omega=omega)
-        io.publish(topics.ODOMETRY, odometry)
-        io.publish(
-            topics.JOINT_STATES,
-            m.JointStates(
-                t=t,
-                name=_NAMES,
-                position=[ox, oy, oyaw, *arm[3:], physics.width()],
-                velocity=[*velocity, physics.width_rate()],
-                effort=[*physics.forces[:-1].tolist(), physics.finger_force()],
-            ),
-        )
-        reached = (self._base.reached((ox, oy, oyaw)), self._base.target_id)
+        io, data = self._io, self.physics.data
+        self.sensors.feel(t)
+        reached = (self._base.reached(self.sensors.believed), self._base.target_id)
         if reached != self._reached:
             self._reached = reached
             io.publish(topics.GOAL_REACHED, m.GoalReached(reached=reached[0], target_id=reached[1]))
         if self._tick % SCAN_TICKS == 0:
-            ranges = self._lidar.scan(physics.model, data)
-            increment = 2 * math.pi / RAYS
-            scan = m.LaserScan(
-                t=t, ranges=ranges.tobytes(), angle_increment=increment, range_min=RANGE_MIN, range_max=RANGE_MAX
-            )
-            io.publish(topics.SCAN, scan)
+            self.sensors.scan(t)
         if self._tick % STATE_TICKS == 0:
             state = m.SimState(
                 t=t, tick=self._tick, epoch=io.epoch, qpos=data.qpos.tobytes(), mocap=data.mocap_pos.tobytes()

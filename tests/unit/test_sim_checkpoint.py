@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from common import codec, topics
 from common import messages as m
-from common import topics
 from common.clock import ManualClock
 from common.lockstep import DT
 from common.memory import MemoryBus, MemoryIo
@@ -66,9 +66,12 @@ def test_the_world_keeps_its_name_and_odometry_and_the_process_does_not(tmp_path
     first, second = driven(tmp_path), Sim(tmp_path)
     old, new = (s.io.epoch for s in (first, second))
     assert old != new
-    statuses = [m.SimStatus(**__import__("json").loads(s.bus.last[topics.SIM_STATUS.key])) for s in (first, second)]
+    statuses = [codec.decode(topics.SIM_STATUS, s.bus.last[topics.SIM_STATUS.key]) for s in (first, second)]
     assert statuses[0].world == statuses[1].world
-    assert np.allclose(second.service._believed, second.service._odometry.update(tuple(second.world[:3])))
+    sensors = second.service.sensors
+    believed = sensors.believed
+    sensors.feel(0.0)
+    assert np.allclose(believed, sensors.believed)
 
 
 def test_a_stop_outlives_the_process(tmp_path: Path) -> None:

@@ -1,0 +1,60 @@
+"""What the robot measures of its world: wheels, joints and lidar, as their drivers publish it."""
+
+import math
+
+from common import messages as m
+from common import topics
+from common.geometry import Pose2
+from common.io import Io
+from common.robot import ARM, BASE
+from services.sim.config import SimConfig
+from services.sim.lidar import RANGE_MAX, RANGE_MIN, RAYS, Lidar
+from services.sim.odometry import WheelOdometry
+from services.sim.physics import Physics
+
+_NAMES = [*BASE, *ARM, "gripper"]
+
+
+class Sensors:
+    """`believed` is where the wheels say that the base is."""
+
+    def __init__(self, physics: Physics, config: SimConfig, io: Io, start: Pose2) -> None:
+        self._physics, self._io = physics, io
+        self._odometry = WheelOdometry(start, config, physics.seed)
+        self._lidar = Lidar(physics.model, physics.lidar_site, config.lidar_noise, io.rng)
+        self.believed = start
+
+    def resume(self, true: Pose2, believed: Pose2) -> None:
+        """Go on from a known pose with what was believed there."""
+        self._odometry.resume(true, believed)
+        self.believed = believed
+
+    def feel(self, t: float) -> None:
+        """Odometry and joint states."""
+        io, physics = self._io, self._physics
+        arm = physics.joints.tolist()
+        actual = (arm[0], arm[1], arm[2])
+        x, y, yaw = self.believed = self._odometry.update(actual)
+        cos, sin = math.cos(actual[2]), math.sin(actual[2])
+        velocity = physics.rates.tolist()
+        vx, vy, omega = velocity[:3]
+        odometry = m.Odometry(t=t, x=x, y=y, theta=yaw, vx=cos * vx + sin * vy, vy=cos * vy - sin * vx, omega=omega)
+        io.publish(topics.ODOMETRY, odometry)
+        io.publish(
+            topics.JOINT_STATES,
+            m.JointStates(
+                t=t,
+                name=_NAMES,
+                position=[x, y, yaw, *arm[3:], physics.width()],
+                velocity=[*velocity, physics.width_rate()],
+                effort=[*physics.forces[:-1].tolist(), physics.finger_force()],
+            ),
+        )
+
+    def scan(self, t: float) -> None:
+        """One turn of the lidar."""
+        ranges = self._lidar.scan(self._physics.model, self._physics.data)
+        scan = m.LaserScan(
+            t=t, ranges=ranges.tobytes(), angle_increment=2 * math.pi / RAYS, range_min=RANGE_MIN, range_max=RANGE_MAX
+        )
+        self._io.publish(topics.SCAN, scan)
