@@ -1,6 +1,7 @@
 """Is a seed's run the same every time, in one process and with every process real?
 
 `python -m bench.determinism --seed 3 --runs memory,memory,processes,processes`; exit 1 when a trajectory differs.
+Pictures are cast; with MUJOCO_GL=egl, or osmesa, in the environment they are drawn, and it is faster.
 Prints a hash of all physics and joint states of each run and, of two that differ, the first message that does. With
 `--faults` messages are dropped, doubled, late and out of order, by the same seed.
 """
@@ -29,6 +30,7 @@ from evaluation.chaos import MISTREATED, TRAFFIC
 from evaluation.faults import Rule, faulty
 from evaluation.node import CASE
 from evaluation.stack import Stack
+from services.camera.render import choose
 
 T = TypeVar("T")
 WALL_LIMIT, NODE = 1800.0, "evaluation.node"
@@ -119,7 +121,8 @@ def case_of(args: argparse.Namespace, harm: tuple[Rule, ...]) -> Case:
 
 def settings(args: argparse.Namespace) -> tuple[str, ...]:
     said = (f"witness.command={args.command}", f"witness.limit={args.limit}")
-    return ("brain.enable_confirmation=false", *said, *args.set)
+    # All draw with what this process can draw with: pictures of two libraries differ in their last bits.
+    return ("brain.enable_confirmation=false", f"camera.backend={choose('auto')}", *said, *args.set)
 
 
 def first_difference(a: Trace, b: Trace) -> str:

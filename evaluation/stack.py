@@ -65,7 +65,8 @@ class Stack:
         self.scene = load_scene(scene) if isinstance(scene, str) else scene
         self.seed, self._log_level, self._state_dir = seed, log_level, state_dir
         kept = ("sim.run=stack", "brain.run=stack") if state_dir else ()
-        self._changes = config.overrides({}, (*kept, *settings))
+        # Many a run never hears or says anything.
+        self._changes = config.overrides({}, ("speech.preload=false", *kept, *settings))
         self._swaps = dict(swaps or {})
         # One process, one GL library, chosen before anything imports MuJoCo.
         choose("auto")

@@ -11,7 +11,7 @@ class SpeechConfig(Config, frozen=True):
     `tempo_weight` and `rare` (what a word costs) weigh sentences that sound alike. `wake_window`:
     how long after the wake word a command may begin. `interrupt_pause`: the pause after a short utterance at which it
     is already examined for "stop" and "cancel"; `interrupt_longest`: how short. `preload`: load the models at start
-    rather than when somebody speaks (in lockstep, where nobody waits, those for hearing only).
+    rather than when somebody speaks.
     """
 
     recogniser: Literal["moonshine", "pocketsphinx"] = "moonshine"

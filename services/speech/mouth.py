@@ -9,7 +9,6 @@ from services.speech.audio import RATE, Samples
 from services.speech.speak import Speakers, Voice
 
 CHUNK = RATE // 10
-LOADING = 0.2  # [s] of robot time
 
 
 class Mouth:
@@ -18,7 +17,7 @@ class Mouth:
     def __init__(self, io: Io, speakers: bool, seconds: float, preload: bool = False) -> None:
         self._io, self._seconds = io, seconds
         self._speakers = Speakers() if speakers else None
-        self._voice: Job[Voice] | None = io.submit(Voice, seconds=LOADING) if preload else None
+        self._voice: Job[Voice] | None = io.submit(Voice, seconds=seconds) if preload else None
         self._synthesis: Job[Samples] | None = None
         self._sound = np.zeros(0, np.int16)
         self._sequence = 0
@@ -27,18 +26,13 @@ class Mouth:
     def say(self, text: str) -> None:
         """Begin; what was being said is broken off."""
         self.stop()
+        voice = self._voice = self._voice or self._io.submit(Voice, seconds=self._seconds)
         self.saying = text
-        if self._voice is None:
-            self._voice = self._io.submit(Voice, seconds=LOADING)
+        self._synthesis = self._io.submit(lambda: voice.result().speak(text), seconds=self._seconds)
 
     def step(self, now: float) -> bool:
         """True when the last of it has been said in this step."""
-        if not self.saying or self._voice is None:
-            return False
         if self._synthesis is None:
-            if self._voice.poll(now):
-                voice, text = self._voice, self.saying
-                self._synthesis = self._io.submit(lambda: voice.result().speak(text), seconds=self._seconds)
             return False
         if not len(self._sound):
             if not self._synthesis.poll(now):

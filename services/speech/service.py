@@ -47,7 +47,7 @@ class SpeechService:
             raise StartError("speech.wake_word needs pyopen-wakeword; install it, or set speech.wake_word = false")
         self._microphone = Microphone() if config.microphone else None
         self._attention = Attention(config, io, lambda: Ear(config, io.scene, found))
-        self._mouth = Mouth(io, config.speakers, config.synthesis_seconds, config.preload and not io.lockstep)
+        self._mouth = Mouth(io, config.speakers, config.synthesis_seconds, config.preload)
         self._goal = m.SpeechGoal(goal="")
         self._seen: set[tuple[str, int]] = set()
         self._answers: dict[tuple[str, int], m.SpeechResult] = {}

@@ -18,7 +18,7 @@ from services.speech.speak import Voice
 from tests.support import ROOT
 
 SCENE = load_scene("apartment")
-CONFIG = config.load("speech", SpeechConfig, ROOT / "config", {})
+CONFIG = config.load("speech", SpeechConfig, ROOT / "config", config.overrides({}, ["speech.preload=false"]))
 BREATH, PAUSE = np.zeros(RATE // 2, np.int16), np.zeros(RATE, np.int16)
 SENTENCES = (
     "hey jarvis", "hey jarvis, bring me the red mug", "hey jarvis, the weather is nice today", "hey jarvis, stop",
