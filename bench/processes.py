@@ -39,16 +39,22 @@ def main() -> None:
             tidybot("say", f"bring me the {ITEM}", "--wait")
             speed = (_clock(tidybot) - before) / (time.perf_counter() - started)
             rows: list[dict[str, Any]] = json.loads(tidybot("ps", "--json"))
-            taken = {row["name"]: psutil.Process(row["pid"]).memory_full_info() for row in rows}
+            taken = {row["name"]: _memory(row["pid"]) for row in rows}
         finally:
             tidybot("down")
     alone = fetch(Robot(seed=0), ITEM, 0)
     print(f"{'up to ready':34} {ready:8.1f} s")
-    taken["all"] = taken["router"]._make(map(sum, zip(*taken.values(), strict=True)))
-    for name, memory in taken.items():
-        print(f"{'resident, ' + name:34} {memory.rss / 1e6:8.0f} MB  {memory.pss / 1e6:8.0f} in proportion")
+    rss, pss = zip(*taken.values(), strict=True)
+    for name, (counted, share) in {**taken, "all": (sum(rss), sum(pss))}.items():
+        print(f"{'resident, ' + name:34} {counted:8.0f} MB  {share:8.0f} in proportion")
     print(f"{'fetch in lockstep, processes':34} {speed:8.1f} x real time")
     print(f"{'fetch in lockstep, one process':34} {alone.robot_seconds / alone.wall_seconds:8.1f} x real time")
+
+
+def _memory(pid: int) -> tuple[float, float]:
+    """What a process takes with all that it shares, and in proportion [MB]."""
+    info = psutil.Process(pid).memory_full_info()
+    return info.rss / 1e6, info.pss / 1e6
 
 
 def _clock(tidybot: Any) -> float:

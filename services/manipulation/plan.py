@@ -1,6 +1,7 @@
 """Collision-free motions of the arm, with and without something in the hand: what grabbing and placing are made of."""
 
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 
@@ -29,6 +30,11 @@ def inflated(around: Sequence[Obstacle], margin: float) -> list[Obstacle]:
     """The boxes grown by the margin kept in transit."""
     grow = 2 * margin
     return [Obstacle(o.center, (o.size[0] + grow, o.size[1] + grow, o.size[2] + grow), o.yaw) for o in around]
+
+
+def counted(reasons: Iterable[str]) -> str:
+    """`no IK x3, grasp collides x1`."""
+    return ", ".join(f"{why} x{n}" for why, n in Counter(reasons).items())
 
 
 class Planner:

@@ -9,7 +9,7 @@ from services.manipulation.arm_model import Array, Obstacle
 from services.manipulation.grasp import Grasp, Target
 from services.manipulation.held import Held
 from services.manipulation.ik import seeds
-from services.manipulation.plan import PlanError, Planner
+from services.manipulation.plan import PlanError, Planner, counted
 from services.manipulation.surroundings import with_thing
 from services.manipulation.trajectory import connect
 
@@ -47,13 +47,13 @@ def plan_grab(
     options = [g for g in planner.candidates(target) if g.name not in skip]
     if not options:
         raise PlanError("UNREACHABLE", f"no grasp left to try on {target.label}")
-    failures: dict[str, int] = {}
+    failures: list[str] = []
     for grasp in options:
         plan = _try_grab(planner, target, grasp, around, now, approach, lift)
         if isinstance(plan, GrabPlan):
             return plan
-        failures[plan] = failures.get(plan, 0) + 1
-    reasons = ", ".join(f"{why} x{n}" for why, n in failures.items())
+        failures.append(plan)
+    reasons = counted(failures)
     raise PlanError("UNREACHABLE", f"no reachable grasp of {target.label} at {distance:.2f} m: {reasons}")
 
 

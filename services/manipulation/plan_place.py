@@ -8,7 +8,7 @@ import numpy as np
 from services.manipulation.arm_model import Array, Obstacle, Pose
 from services.manipulation.held import Held
 from services.manipulation.ik import seeds
-from services.manipulation.plan import PlanError, Planner
+from services.manipulation.plan import PlanError, Planner, counted
 from services.manipulation.surroundings import with_thing
 from services.manipulation.trajectory import connect
 
@@ -39,14 +39,14 @@ def plan_place(
         PlanError: UNREACHABLE.
     """
     rng = planner.rng()
-    failures: dict[str, int] = {}
+    failures: list[str] = []
     for spot in spots[:10]:
         for turn in (0.0, 0.5, -0.5, 1.0, -1.0, 2.0, -2.0, np.pi):
             plan = _try_place(planner, held, spot, surface + drop, turn, around, now, rng)
             if isinstance(plan, PlacePlan):
                 return plan
-            failures[plan] = failures.get(plan, 0) + 1
-    reasons = ", ".join(f"{why} x{n}" for why, n in failures.items()) or "no free spot within reach"
+            failures.append(plan)
+    reasons = counted(failures) or "no free spot within reach"
     raise PlanError("UNREACHABLE", f"cannot put {held.label} there: {reasons}")
 
 

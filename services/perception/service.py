@@ -80,8 +80,10 @@ class PerceptionService:
             self._world = status.world
         base = posture.base
         # While a picture is looked at, the model belongs to the worker.
-        body = posture.body(now) if felt and base is not None and self._detecting is None else None
-        if body is not None and base is not None:
+        if not felt or base is None or self._detecting is not None:
+            return
+        body = posture.body(now)
+        if body is not None:
             self._hand = body.hand(base)
             self._memory.carry(self._hand, posture.holds(body), now)
             self._show(now)

@@ -11,11 +11,11 @@ _TURN_RADIUS = 0.2
 
 
 class WheelOdometry:
-    """Believes it starts at `start`; its errors are those of the seed. All three parameters 0: exact."""
+    """Has `believed` the base at `start`; its errors are those of the seed. All three parameters 0: exact."""
 
     def __init__(self, start: Pose2, config: SimConfig, seed: int) -> None:
         rng = self._rng = np.random.default_rng([seed, 11])
-        self._true, self._believed = start, start
+        self._true, self.believed = start, start
         self._noise = config.odometry_noise
         self._scale = 1.0 + config.odometry_slip * rng.uniform(-1, 1, 3)
         self._veer = config.odometry_veer * float(rng.uniform(-1, 1))
@@ -23,19 +23,20 @@ class WheelOdometry:
 
     def resume(self, true: Pose2, believed: Pose2) -> None:
         """Go on from a known pose with what was believed there."""
-        self._true, self._believed = true, believed
+        self._true, self.believed = true, believed
 
     def update(self, true: Pose2) -> Pose2:
         """The believed pose after the robot has moved to `true`."""
         if self._exact:
-            return true[0], true[1], wrap(true[2])
+            self.believed = true[0], true[1], wrap(true[2])
+            return self.believed
         dx, dy, turn = compose(inverse(self._true), true)
         self._true = true
         moved = math.hypot(dx, dy) + _TURN_RADIUS * abs(turn)
         if moved < 1e-7:
-            return self._believed
+            return self.believed
         ex, ey, eturn = self._rng.normal(0.0, self._noise * math.sqrt(moved), 3).tolist()
         a, b, c = self._scale.tolist()
         step = dx * a + ex, dy * b + ey, turn * c + self._veer * moved + eturn
-        self._believed = compose(self._believed, step)
-        return self._believed
+        self.believed = compose(self.believed, step)
+        return self.believed

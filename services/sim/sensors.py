@@ -16,25 +16,19 @@ _NAMES = [*BASE, *ARM, "gripper"]
 
 
 class Sensors:
-    """`believed` is where the wheels say that the base is."""
+    """`odometry` knows where the wheels believe the base to be."""
 
     def __init__(self, physics: Physics, config: SimConfig, io: Io, start: Pose2) -> None:
         self._physics, self._io = physics, io
-        self._odometry = WheelOdometry(start, config, physics.seed)
+        self.odometry = WheelOdometry(start, config, physics.seed)
         self._lidar = Lidar(physics.model, physics.lidar_site, config.lidar_noise, io.rng)
-        self.believed = start
-
-    def resume(self, true: Pose2, believed: Pose2) -> None:
-        """Go on from a known pose with what was believed there."""
-        self._odometry.resume(true, believed)
-        self.believed = believed
 
     def feel(self, t: float) -> None:
         """Odometry and joint states."""
         io, physics = self._io, self._physics
         arm = physics.joints.tolist()
         actual = (arm[0], arm[1], arm[2])
-        x, y, yaw = self.believed = self._odometry.update(actual)
+        x, y, yaw = self.odometry.update(actual)
         cos, sin = math.cos(actual[2]), math.sin(actual[2])
         velocity = physics.rates.tolist()
         vx, vy, omega = velocity[:3]

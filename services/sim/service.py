@@ -107,7 +107,7 @@ class SimService:
         self._setpoint = np.array([*actual[:3], *state.setpoint[3:]])
         self._base = BaseDriver(self._config, (x, y, yaw), stopped=state.stopped)
         self._arm = ArmDriver(self._setpoint[3:], self._config.stream_timeout, physics.arm_limits)
-        self.sensors.resume((x, y, yaw), state.odometry)
+        self.sensors.odometry.resume((x, y, yaw), state.odometry)
         self._effort = state.effort
         physics.limit_effort(state.effort)
         self._io.log.warning("the world goes on where it was", t=round(self.start_time, 2))
@@ -125,7 +125,7 @@ class SimService:
             world=self._world,
             physics=self.physics.snapshot().tobytes(),
             setpoint=self._setpoint.tolist(),
-            odometry=self.sensors.believed,
+            odometry=self.sensors.odometry.believed,
             effort=self._effort,
             stopped=self._base.stopped,
         )
@@ -153,7 +153,7 @@ class SimService:
         physics = self.physics
         x, y, yaw, *_ = physics.joints.tolist()
         after = np.empty(10)
-        after[:3] = self._base.advance((x, y, yaw), self.sensors.believed, now, DT)
+        after[:3] = self._base.advance((x, y, yaw), self.sensors.odometry.believed, now, DT)
         after[3:] = self._arm.advance(now, DT)
         physics.obstacles.advance(physics.data, (x, y), DT)
         moving = bool((after != self._setpoint).any()) or physics.obstacles.moving
@@ -207,7 +207,7 @@ class SimService:
     def _publish(self, t: float) -> None:
         io, data = self._io, self.physics.data
         self.sensors.feel(t)
-        reached = (self._base.reached(self.sensors.believed), self._base.target_id)
+        reached = (self._base.reached(self.sensors.odometry.believed), self._base.target_id)
         if reached != self._reached:
             self._reached = reached
             io.publish(topics.GOAL_REACHED, m.GoalReached(reached=reached[0], target_id=reached[1]))

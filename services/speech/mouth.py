@@ -17,7 +17,7 @@ class Mouth:
     def __init__(self, io: Io, speakers: bool, seconds: float, preload: bool = False) -> None:
         self._io, self._seconds = io, seconds
         self._speakers = Speakers() if speakers else None
-        self._voice: Job[Voice] | None = io.submit(Voice, seconds=seconds) if preload else None
+        self._voice: Job[Voice] | None = io.submit(Voice) if preload else None
         self._synthesis: Job[Samples] | None = None
         self._sound = np.zeros(0, np.int16)
         self._sequence = 0
@@ -26,7 +26,7 @@ class Mouth:
     def say(self, text: str) -> None:
         """Begin; what was being said is broken off."""
         self.stop()
-        voice = self._voice = self._voice or self._io.submit(Voice, seconds=self._seconds)
+        voice = self._voice = self._voice or self._io.submit(Voice)
         self.saying = text
         self._synthesis = self._io.submit(lambda: voice.result().speak(text), seconds=self._seconds)
 

@@ -1,44 +1,48 @@
 """Where the robot knows its base and arm to be, now and when a picture was taken."""
 
 import math
+from typing import Any
 
 import pytest
 
 from common import messages as m
 from common import topics
-from common.clock import ManualClock
-from common.memory import MemoryBus, MemoryIo
 from common.robot import ARM
 from common.scene import load_scene
 from services.perception.posture import Posture
 from services.perception.service import PerceptionService
 from services.sim.robot import robot_mjcf
+from tests.node import Node
 
 
-class Robot:
+class Feeling(PerceptionService):
+    """Perception with its eyes shut."""
+
+    def __init__(self, config: None, io: Any) -> None:
+        self.posture = Posture(io)
+
+    def step(self, now: float) -> None:
+        self.felt = self.posture.feel()
+
+
+class Robot(Node):
     """What the drivers and navigation say to perception."""
 
     def __init__(self) -> None:
-        self.bus, self.now = MemoryBus(), 0.0
-        kind = PerceptionService
-        self.io = MemoryIo(
-            self.bus, kind.NAME, kind.READS, kind.WRITES, scene=load_scene("minimal"), clock=ManualClock()
-        )
-        self.posture = Posture(self.io)
+        super().__init__(Feeling, None, load_scene("minimal"))
+        self.posture: Posture = self.service.posture
         self.bus.send(topics.ROBOT_DESCRIPTION, m.RobotDescription(mjcf=robot_mjcf()))
 
     def feel(self, x: float, shoulder: float, width: float = 0.0, force: float = 0.0) -> bool:
         """A tenth of a second later the base is at `x`, heading at x rad, and the second joint at `shoulder`."""
-        self.now += 0.1
-        angles = [0.0, shoulder, *[0.0] * 5]
+        t, angles = self.later(), [0.0, shoulder, *[0.0] * 5]
         joints = m.JointStates(
-            t=self.now, name=[*ARM, "gripper"], position=[*angles, width], velocity=[0.0] * 8,
-            effort=[0.0] * 7 + [force],
-        )  # fmt: skip
+            t=t, name=[*ARM, "gripper"], position=[*angles, width], velocity=[0.0] * 8, effort=[0.0] * 7 + [force]
+        )
         self.bus.send(topics.JOINT_STATES, joints)
-        self.bus.send(topics.POSE, m.PoseEstimate(t=self.now, x=x, y=0.0, theta=x))
-        self.io.begin(round(100 * self.now), self.now)
-        return self.posture.feel()
+        self.bus.send(topics.POSE, m.PoseEstimate(t=t, x=x, y=0.0, theta=x))
+        self.run()
+        return bool(self.service.felt)
 
     def hand(self, t: float | None = None) -> tuple[float, float, float]:
         body = self.posture.body(self.now + 1.0, t)
@@ -79,5 +83,5 @@ def test_fingers_hold_what_keeps_them_apart(robot: Robot, width: float, force: f
 
 def test_joints_of_another_robot_are_none(robot: Robot) -> None:
     robot.bus.send(topics.JOINT_STATES, m.JointStates(t=0.0, name=["wheel"], position=[0.0], velocity=[], effort=[]))
-    robot.io.begin(1, 0.01)
-    assert not robot.posture.feel() and robot.posture.body(1.0) is None
+    robot.step()
+    assert not robot.service.felt and robot.posture.body(1.0) is None

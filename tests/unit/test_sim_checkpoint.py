@@ -69,9 +69,9 @@ def test_the_world_keeps_its_name_and_odometry_and_the_process_does_not(tmp_path
     statuses = [codec.decode(topics.SIM_STATUS, s.bus.last[topics.SIM_STATUS.key]) for s in (first, second)]
     assert statuses[0].world == statuses[1].world
     sensors = second.service.sensors
-    believed = sensors.believed
+    believed = sensors.odometry.believed
     sensors.feel(0.0)
-    assert np.allclose(believed, sensors.believed)
+    assert np.allclose(believed, sensors.odometry.believed)
 
 
 def test_a_stop_outlives_the_process(tmp_path: Path) -> None:
