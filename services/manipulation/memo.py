@@ -11,6 +11,8 @@ from common import files
 from services.manipulation.held import Held
 
 NAME, VERSION = "hand", 1
+RELEASED = "released"
+"""File with the id of the goal for which the fingers were last opened."""
 
 
 class Memo(msgspec.Struct):
@@ -28,12 +30,34 @@ class Memo(msgspec.Struct):
 
 
 class HandMemo:
-    """The file in `directory`; None: what is held is not kept."""
+    """What is held, and for which goal the fingers were last opened: files in `directory`; None: only in memory."""
 
     def __init__(self, directory: Path | None, report: Callable[[str], None]) -> None:
         self._path, self._report = directory / NAME if directory else None, report
+        self._released_path = directory / RELEASED if directory else None
+        self._released: str | None = None
         self._kept: Held | None = None
         self._settled = False
+
+    def release(self, goal_id: str) -> None:
+        """Write, before the fingers open, for which goal they do."""
+        if goal_id == self._released:
+            return
+        self._released = goal_id
+        if self._released_path is not None:
+            with contextlib.suppress(OSError):
+                self._released_path.parent.mkdir(parents=True, exist_ok=True)
+            if why := files.replace(self._released_path, goal_id.encode()):
+                self._report(why)
+
+    def released(self) -> str:
+        """The goal for which the fingers were last opened, by this or a former process; "" if none is known."""
+        if self._released is None:
+            self._released = ""
+            if self._released_path is not None:
+                with contextlib.suppress(OSError, UnicodeDecodeError):
+                    self._released = self._released_path.read_text(encoding="utf-8")
+        return self._released
 
     def keep(self, held: Held | None, closed: float) -> None:
         """Write what is held now, where it has changed."""

@@ -66,7 +66,7 @@ def bring_up(robot: Robot, wanted: ObjectRef | None) -> Steps[str]:
     return f"already holding {label or 'something'}: width {robot.grip.width * 1000:.1f} mm"
 
 
-def fold(robot: Robot) -> Steps[str]:
+def fold(robot: Robot) -> Steps[None]:
     """Open an empty hand and take the arm back, if there is a way."""
     yield from robot.move_gripper(0.0)
     if robot.planner is not None and not at_carry(robot.planner, robot.joints):
@@ -74,4 +74,3 @@ def fold(robot: Robot) -> Steps[str]:
             yield from go_home(robot)
         except Failure as failure:
             robot.io.log.warning("the arm stays where it is", code=failure.code, detail=failure.detail)
-    return "nothing was held, the gripper is open"

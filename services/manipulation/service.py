@@ -13,11 +13,13 @@ from services.manipulation.config import ManipulationConfig
 from services.manipulation.memo import HandMemo
 from services.manipulation.object_source import ObjectSource
 from services.manipulation.plan import Planner
-from services.manipulation.robot import Failure, Robot, Steps, go_home
+from services.manipulation.robot import Failure, Robot, Steps, T, go_home
 from services.manipulation.verify import Grip, holds
 
 ARM = tuple(f"joint_{i}" for i in range(1, 8))
 DESCRIPTION_PATIENCE = 3.0
+LETTING_GO = "release"
+"""The phase of placing in which the fingers open."""
 
 
 class ManipulationService:
@@ -150,7 +152,7 @@ class ManipulationService:
             return self._with_planner(go_home(robot))
         return None
 
-    def _with_planner(self, steps: Steps[str]) -> Steps[str]:
+    def _with_planner(self, steps: Steps[T]) -> Steps[T]:
         """Wait for the robot's description first, for a while."""
         while self._robot.planner is None and self._robot.now - (self._waiting_since or 0.0) < DESCRIPTION_PATIENCE:
             yield
@@ -169,8 +171,15 @@ class ManipulationService:
     def _release(self) -> Steps[str]:
         robot = self._robot
         if not holds(robot.grip, self._config):
-            return (yield from self._with_planner(rescue.fold(robot)))
+            yield from self._with_planner(rescue.fold(robot))
+            if self._let_go():
+                return "put down by an earlier attempt, the gripper is open"
+            raise Failure("LOST_OBJECT", "nothing was held, the gripper is open")
         return (yield from self._with_planner(placing.place(robot, "")))
+
+    def _let_go(self) -> bool:
+        """An earlier attempt of this goal has opened the fingers over its place."""
+        return bool(self._goal.id) and self._memo.released() == self._goal.id
 
     def _place(self, where: str) -> Steps[str]:
         robot = self._robot
@@ -178,6 +187,9 @@ class ManipulationService:
             known = ", ".join(r.name for r in self._io.scene.receptacles)
             raise Failure("UNKNOWN_PLACE", f"no receptacle {where!r}; known: {known}")
         if not holds(robot.grip, self._config):
+            if self._let_go():
+                yield from self._with_planner(rescue.fold(robot))
+                return "put down by an earlier attempt, the gripper is open"
             raise Failure("NOT_HOLDING", "nothing is in the gripper")
         return (yield from self._with_planner(placing.place(robot, where)))
 
@@ -201,6 +213,8 @@ class ManipulationService:
             self._end(failure)
         else:
             if self._robot.phase != phase:
+                if self._robot.phase == LETTING_GO:
+                    self._memo.release(self._goal.id)
                 self._publish("executing", self._robot.phase)
 
     def _end(self, failure: Failure) -> None:

@@ -16,6 +16,7 @@ from services.manipulation.arm_model import ArmModel, Obstacle, Pose
 from services.manipulation.config import ManipulationConfig
 from services.manipulation.grasp import Target, approach_rotation, candidates
 from services.manipulation.ik import InverseKinematics, seeds
+from services.manipulation.memo import HandMemo
 from services.manipulation.service import ManipulationService
 from services.manipulation.trajectory import connect, free_line, timed
 from services.manipulation.verify import Grip, holds, judge
@@ -241,12 +242,20 @@ def test_grab_with_something_in_the_hand_looks_before_it_acts() -> None:
     assert status.status == "done" and "already holding" in status.detail
 
 
-def test_release_with_an_empty_hand_just_opens_it() -> None:
-    node = Arm()
+def test_release_with_an_empty_hand_opens_it_and_says_that_the_object_is_lost(tmp_path: Path) -> None:
+    node = Arm(state_dir=tmp_path)
     grips = node.bus.tap(topics.GRIPPER_COMMAND)
     status = node.ask("release")
-    assert status.status == "done" and "nothing was held" in status.detail
+    assert (status.status, status.code) == ("failed", "LOST_OBJECT") and "nothing was held" in status.detail
     assert msgspec.json.decode(grips[-1])["position"] == 0.0
+    assert Arm(state_dir=tmp_path).ask("release", attempt=2).code == "LOST_OBJECT", "a restart changes nothing"
+
+
+@pytest.mark.parametrize("goal", ["release", "place table"])
+def test_what_an_earlier_attempt_put_down_is_not_lost(goal: str, tmp_path: Path) -> None:
+    HandMemo(tmp_path, lambda why: None).release("a.1")
+    assert Arm(state_dir=tmp_path).ask(goal, attempt=2).status == "done"
+    assert Arm(state_dir=tmp_path).ask(goal, "a.2").code in ("LOST_OBJECT", "NOT_HOLDING")
 
 
 def brought(item: str) -> Stack:
@@ -278,6 +287,12 @@ def test_friction_carries_an_object_from_the_table_to_the_tray(item: str) -> Non
     assert released["status"] == "done", released
     assert robot.truth()["objects"][item]["on"] == "delivery tray"
     assert robot.truth()["holding"] is None
+    robot.bus.put(topics.MANIPULATION_GOAL, b'{"goal": "release", "id": "t.4"}')
+    assert wait(robot, topics.MANIPULATION_STATUS, "t.4", 5.0)["status"] == "done", "the same goal is not run twice"
+    robot.bus.put(topics.MANIPULATION_GOAL, b'{"goal": "release", "id": "t.4", "attempt": 2}')
+    robot.advance(3.0)
+    again = msgspec.json.decode(robot.bus.last[topics.MANIPULATION_STATUS.key])
+    assert (again["status"], again["attempt"]) == ("done", 2)
 
 
 def test_fingers_that_did_not_open_hold_the_same_thing_for_the_next_try(monkeypatch: pytest.MonkeyPatch) -> None:
