@@ -8,6 +8,8 @@ from common import codec, topics
 from common import messages as m
 
 SHOWN_BYTES, SHOWN_ITEMS = 24, 400
+STATE_FIELD = {topics.SYSTEM_STATUS.key: "state", topics.BRAIN_STATE.key: "state", topics.SIM_STATUS.key: "state"}
+"""Keys that carry a state and take no bare text: the field with its name."""
 
 
 def plain(key: str, payload: bytes) -> Any:
@@ -84,3 +86,13 @@ def shortened(value: Any) -> Any:
 def line(key: str, payload: bytes) -> str:
     """The payload as one line of JSON."""
     return msgspec.json.encode(plain(key, payload)).decode()
+
+
+def word(key: str, payload: bytes) -> str:
+    """The one field that says it all where the key's message has such a field, else `line`."""
+    value = plain(key, payload)
+    name = bare(key)
+    field = STATE_FIELD.get(name) or (topics.BY_KEY[name].text if name in topics.BY_KEY else "")
+    if field and isinstance(value, dict) and isinstance(value.get(field), str):
+        return str(value[field])
+    return line(key, payload)

@@ -15,6 +15,9 @@ from common.access import OPERATOR, ROUTER
 from common.clock import unix_time
 from common.keys import OFF
 
+PIPELINES = ("fetch", "vla")
+"""The values of `brain.pipeline`: the eight-state system flow, or voice, plan, vision and action."""
+
 
 class Plan:
     """What is to be started, checked before anything starts.
@@ -40,6 +43,8 @@ class Plan:
             settings["TIDYBOT__RUNTIME__SEED"] = str(args.seed)
         if getattr(args, "robot", None):
             settings["TIDYBOT__SIM__ROBOT"] = args.robot
+        if getattr(args, "pipeline", None):
+            settings["TIDYBOT__BRAIN__PIPELINE"] = args.pipeline
         if args.viewer:
             settings["TIDYBOT__SIM__VIEWER"] = "true"
         settings["TIDYBOT__SIM__SPEED"] = self.speed
@@ -125,6 +130,7 @@ def add_start_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--speed", default="realtime", metavar="realtime|N|max", help="other than realtime: lockstep")
     parser.add_argument("--scene", help="a shipped scene's name or a path")
     parser.add_argument("--seed", type=int, help="object layout and noise")
+    parser.add_argument("--pipeline", choices=PIPELINES, help="the brain's flow (default: brain.toml's, else vla)")
     parser.add_argument("--robot", metavar="NAME", help="tidybot, or menagerie:stanford_tidybot (docs/EXTENDING.md)")
     parser.add_argument("--set", action="append", default=[], metavar="section.key=value", help="override a parameter")
     parser.add_argument("--viewer", action="store_true", help="open a window on the simulation")

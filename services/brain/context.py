@@ -76,6 +76,9 @@ class Context:
             self.shown = before
             return
         self._publish_state()
+        was, is_now = SYSTEM_STATE[before.state], SYSTEM_STATE[state]
+        if was != is_now:
+            self.io.log.info(f"State: {was} -> {is_now}")
         if before.state != state or before.step != step:
             self.note(cause or step or state, detail, "state")
             self.io.log.info(

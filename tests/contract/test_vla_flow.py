@@ -1,8 +1,10 @@
 """The real brain process in `pipeline = "vla"` against a scripted peer of plain zenoh and JSON."""
 
 import json
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager
+from itertools import pairwise
 from typing import Any
 
 import zenoh
@@ -80,6 +82,11 @@ def scripted(here: Site, **parameters: str) -> Iterator[Peer]:
             subscriber.undeclare()
 
 
+def logged(here: Site) -> list[tuple[str, str]]:
+    """The transitions in the brain's log."""
+    return re.findall(r"State: (\w+) -> (\w+)", here.log("services.brain"))
+
+
 def test_voice_to_action_with_a_correction_and_a_replan(here: Site) -> None:
     with scripted(here, settle="0.2") as peer:
         peer.session.put("voice_command", "bring me the blue mug")
@@ -104,10 +111,12 @@ def test_voice_to_action_with_a_correction_and_a_replan(here: Site) -> None:
         peer.did(peer.next("brain/manipulation_goal", goal="release"))
         peer.speech("say Done.")
         eventually(lambda: peer.system[-1] == "IDLE", "back to waiting")
-        assert peer.system[peer.system.index("LISTENING") :] == [
+        states = [
             "LISTENING", "PLANNING", "GROUNDING", "NAVIGATING", "EXECUTING", "NAVIGATING", "EXECUTING",
             "SUCCESS", "IDLE",
         ]  # fmt: skip
+        assert peer.system[peer.system.index("LISTENING") :] == states
+        assert logged(here) == list(pairwise(["IDLE", *states]))
 
 
 def test_search_and_alternative_path(here: Site) -> None:

@@ -7,8 +7,9 @@ from importlib.metadata import entry_points
 from pathlib import Path
 
 import pytest
+import zenoh
 
-from common import bus, topics
+from common import codec, topics
 from common import messages as m
 from tests.support import Site
 
@@ -24,20 +25,27 @@ def test_the_zenoh_command_prints_messagepack_through_it(here: Site) -> None:
     command = Path(sys.executable).parent / "zenoh"
     if not command.exists() and shutil.which("zenoh") is None:
         pytest.skip("zenoh-cli is not installed")
-    if not entry_points(group="zenoh_cli.codecs.decoders", name="tidybot"):
+    if not entry_points(group="zenoh_cli.codecs.decoders", name="tidybot-text"):
         pytest.skip("the project itself is not installed in this environment")
     with here.session() as session:
-        io_key = topics.ODOMETRY.key
-        payload = m.Odometry(t=2.0, x=1.5, y=0.0, theta=0.0)
+        odometry = codec.encode(topics.ODOMETRY, m.Odometry(t=2.0, x=1.5, y=0.0, theta=0.0))
+        status = codec.encode(topics.SYSTEM_STATUS, m.SystemStatus(state="GROUNDING", mission_id="m1"))
+        assert '"x":1.5' in got(here, session, command, topics.ODOMETRY.key, odometry, "tidybot")
+        assert '"mission_id":"m1"' in got(here, session, command, topics.SYSTEM_STATUS.key, status, "tidybot")
+        bare = got(here, session, command, topics.SYSTEM_STATUS.key, status, "tidybot-text")
+    assert "GROUNDING" in bare and "mission_id" not in bare
 
-        def answer(query: object) -> None:
-            with query:  # type: ignore[attr-defined]
-                query.reply(io_key, bus.codec.encode(topics.ODOMETRY, payload))  # type: ignore[attr-defined]
 
-        kept = session.declare_queryable(io_key, answer)
-        words = ["--mode", "client", "--connect", here.connect, "get", "-s", f"{here.namespace}/{io_key}"]
-        done = subprocess.run(
-            [str(command), *words, "--decoder", "tidybot"], capture_output=True, text=True, timeout=30
-        )
-        kept.undeclare()
-    assert '"x":1.5' in done.stdout, done
+def got(here: Site, session: zenoh.Session, command: Path, key: str, payload: bytes, decoder: str) -> str:
+    """What `zenoh get` prints of a key that answers with this payload."""
+
+    def answer(query: zenoh.Query) -> None:
+        with query:
+            query.reply(key, payload)
+
+    kept = session.declare_queryable(key, answer)
+    words = ["--mode", "client", "--connect", here.connect, "get", "-s", f"{here.namespace}/{key}"]
+    done = subprocess.run([str(command), *words, "--decoder", decoder], capture_output=True, text=True, timeout=30)
+    kept.undeclare()
+    assert done.returncode == 0, done
+    return done.stdout

@@ -35,6 +35,7 @@ def plan(*words: str) -> plans.Plan:
         (["topic", "pub", "base/target_pose", "x=far", "y=0", "theta=0"], "base/target_pose carries BaseTarget"),
         (["topic", "pub", "brain/**", "x"], "not one topic"),
         (["demo", "--object", "red mugg"], "'red mug'"),
+        (["up", "--pipeline", "fecth"], "'fetch', 'vla'"),
         (["status", "--wait", "NAVIGATNG"], "'NAVIGATING'"),
     ],
 )
@@ -79,13 +80,16 @@ def test_another_speed_than_realtime_means_lockstep_with_every_paced_service() -
 
 
 def test_options_become_the_environment_of_the_services() -> None:
-    words = ("--scene", "minimal", "--seed", "7", "--set", "brain.settle=2.5", "--port", "7999", "--namespace", "kit")
+    words = ("--scene", "minimal", "--seed", "7", "--set", "brain.settle=2.5", "--port", "7999", "--namespace", "kit",
+             "--pipeline", "fetch")  # fmt: skip
     environ = plan(*words).environ
     assert environ["TIDYBOT__RUNTIME__SCENE"] == "minimal"
     assert environ["TIDYBOT__RUNTIME__SEED"] == "7"
     assert environ["TIDYBOT__BRAIN__SETTLE"] == "2.5"
     assert environ["TIDYBOT_CONNECT"] == "tcp/127.0.0.1:7999"
     assert environ["TIDYBOT_NAMESPACE"] == "kit"
+    assert environ["TIDYBOT__BRAIN__PIPELINE"] == "fetch"
+    assert "TIDYBOT__BRAIN__PIPELINE" not in plan().environ
 
 
 def test_only_and_without_choose_in_the_order_of_the_table() -> None:

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from cli import topic, tree, verdict
 from cli.errors import CliError
 from cli.payload import line
-from cli.zenoh_decoder import decode
+from cli.zenoh_decoder import decode, decode_text
 from common import codec, topics
 from common import messages as m
 
@@ -24,6 +24,27 @@ def test_json_messagepack_and_text_all_print_as_json() -> None:
 def test_a_namespace_before_the_key_does_not_hide_its_type() -> None:
     odom = codec.encode(topics.ODOMETRY, m.Odometry(t=1.5, x=1.0, y=2.0, theta=0.5))
     assert msgspec.json.decode(decode("kitchen-bot/base/odom", odom))["x"] == 1.0
+
+
+@pytest.mark.parametrize(
+    ("topic", "message", "shown"),
+    [
+        (topics.SYSTEM_STATUS, m.SystemStatus(state="GROUNDING", detail="look"), "GROUNDING"),
+        (topics.BRAIN_STATE, m.BrainState(state="WAITING"), "WAITING"),
+        (topics.NAVIGATION_STATUS, m.NavigationStatus(status="arrived", goal_id="g1"), "arrived"),
+        (topics.SPEECH_GOAL, m.SpeechGoal(goal="listen", id="g1"), "listen"),
+    ],
+)
+def test_who_asks_for_text_gets_the_bare_word(topic: topics.Topic[m.Message], message: m.Message, shown: str) -> None:
+    payload = codec.encode(topic, message)
+    assert decode_text(f"kitchen-bot/{topic.key}", payload) == shown
+    assert msgspec.json.decode(decode(topic.key, payload))
+
+
+def test_what_is_no_single_word_stays_json() -> None:
+    assert decode_text("base/goal_reached", b'{"reached": true}').startswith('{"reached":true')
+    assert "undecodable" in decode_text("system_status", b'{"state": 3}')
+    assert decode_text("some/key", b"plain words") == '"plain words"'
 
 
 def test_keys_of_others_print_too() -> None:
