@@ -3,17 +3,21 @@
 import argparse
 import os
 import sys
+from pathlib import Path
 
-from cli.errors import checked
+from cli.errors import CliError, checked
 from cli.programs import ROOT
 
-SUITES = ("seed", "fetch", "tidy", "faults", "dialogue", "chaos")
+SUITES = ("seed", "fetch", "tidy", "faults", "dialogue", "chaos", "commands", "spoken")
 EXAMPLES = """examples:
   tidybot eval --suite seed                                  the five scenarios of the VLA contract, with their logs
   tidybot eval --suite fetch --scenarios 100 --seed 7 --jobs 2
   tidybot eval --suite fetch --scenarios 1 --seed 42 --timeline   repeat the case of seed 42
   tidybot eval --suite tidy --json tidy.json
   tidybot eval --suite fetch --scenarios 3 --processes       the same seeds with every service a process
+  tidybot eval --suite commands                              every line of docs/COMMANDS.md, judged by its effect
+  tidybot eval --suite spoken -n 20 --voices DIR --snr 10    recordings with a manifest.tsv, from sound to delivery
+  tidybot eval -n 1000 --cluster tcp://HOST:8786             on the workers of a Dask scheduler; local: some here
 
 Case i has the seed SEED + i. Success is what physics shows: lifted, carried in the hand, at rest in the goal region,
 no furniture hit, nothing else knocked over. Exit status 0 when every case was run, 130 after Ctrl-C."""
@@ -22,6 +26,10 @@ no furniture hit, nothing else knocked over. Exit status 0 when every case was r
 def evaluate(args: argparse.Namespace) -> int:
     """Become `python -m evaluation` with the same words."""
     checked(args.suite, SUITES, "suite")
+    if (args.voices or args.snr is not None) and args.suite != "spoken":
+        raise CliError("--voices and --snr are for --suite spoken")
+    if args.cluster and args.cluster != "local" and not args.cluster.startswith(("tcp://", "tls://")):
+        raise CliError(f"--cluster {args.cluster}: expected tcp://HOST:PORT of a Dask scheduler, or local")
     words = sys.argv[sys.argv.index("eval") + 1 :]
     path = os.pathsep.join(p for p in (str(ROOT), os.environ.get("PYTHONPATH", "")) if p)
     environment = {"OMP_NUM_THREADS": "1", **os.environ, "PYTHONPATH": path}
@@ -35,6 +43,13 @@ def _positive(text: str) -> int:
     return number
 
 
+def _level(text: str) -> float:
+    level = float(text)
+    if not -20.0 <= level <= 80.0:
+        raise argparse.ArgumentTypeError(f"{text}: expected -20 to 80 dB")
+    return level
+
+
 def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
     parser = commands.add_parser(
         "eval", help="random scenarios at full speed, judged by physics", epilog=EXAMPLES,
@@ -44,6 +59,11 @@ def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") ->
     parser.add_argument("--scenarios", "-n", type=_positive, metavar="N", help="how many (default: the suite's own)")
     parser.add_argument("--seed", type=int, default=0, metavar="S", help="of the first case (default %(default)s)")
     parser.add_argument("--jobs", "-j", type=_positive, default=1, metavar="J", help="worker processes")
+    parser.add_argument(
+        "--cluster", metavar="ADDRESS", help="a Dask scheduler such as tcp://HOST:8786; `local` starts J workers here"
+    )
+    parser.add_argument("--voices", type=Path, metavar="DIR", help="recordings and manifest.tsv for the suite spoken")
+    parser.add_argument("--snr", type=_level, metavar="DB", help="signal-to-noise ratio of the suite spoken (20)")
     parser.add_argument("--processes", action="store_true", help="every service a process, as with `tidybot up`")
     parser.add_argument("--pipeline", choices=("fetch", "vla"), default="", help="where the suite leaves it open")
     parser.add_argument("--json", metavar="FILE", help="write the report there, - for standard output")

@@ -1,6 +1,9 @@
 """`python -m evaluation`, which `tidybot eval` becomes: the options are declared in `cli/evaluate.py`."""
 
+import argparse
 import sys
+from collections.abc import Generator
+from contextlib import closing
 from pathlib import Path
 
 import msgspec
@@ -12,9 +15,10 @@ from cli.main import FAILED, INTERRUPTED, parser
 from cli.up import Stopped, interruptible
 from common.clock import monotonic
 from common.config import ConfigError
-from evaluation import html_report, processes, report, runner
+from evaluation import cluster, html_report, pool, processes, report, runner
 from evaluation.case import Case, Result
-from evaluation.pool import Progressed, evaluate
+from evaluation.lane import Run
+from evaluation.pool import Progressed, Repeated, Said
 from evaluation.suites import DEFAULT_SCENARIOS, cases
 
 PERIOD = 30.0
@@ -28,7 +32,7 @@ class Board:
         columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
         self._bar = Progress(*columns, TextColumn("{task.fields[now]}"), console=console, transient=True)
         self._task: TaskID = self._bar.add_task("scenarios", total=total, now="")
-        self._at: dict[int, str] = {}
+        self._at: dict[str, str] = {}
         self._console, self._due = console, monotonic() + PERIOD
 
     def __enter__(self) -> "Board":
@@ -45,6 +49,9 @@ class Board:
         if not self._console.is_terminal and monotonic() >= self._due:
             self._due = monotonic() + PERIOD
             self._console.print(f"  ... {now}", highlight=False)
+
+    def repeated(self, lost: Repeated) -> None:
+        self._bar.print(f"[yellow]{lost.case.seed:>5} is run again: {lost.why}[/]", highlight=False)
 
     def finished(self, result: Result, timeline: bool) -> None:
         self._at = {w: at for w, at in self._at.items() if not at.startswith(f"{result.seed}:")}
@@ -71,8 +78,8 @@ def main(argv: list[str]) -> int:
             return FAILED
     count = args.scenarios or DEFAULT_SCENARIOS.get(args.suite, 10)
     try:
-        todo = cases(args.suite, count, args.seed, tuple(args.set), args.pipeline)
-        results, seconds = _run(todo, args.jobs, args.processes, args.timeline or args.suite == "seed", console)
+        todo = cases(args.suite, count, args.seed, tuple(args.set), args.pipeline, args.voices, args.snr)
+        results, seconds = _run(todo, args, console)
     except (CliError, ConfigError) as error:
         print(f"tidybot: {error}", file=sys.stderr)
         return FAILED
@@ -94,25 +101,32 @@ def main(argv: list[str]) -> int:
     return 0 if met >= args.at_least * count else FAILED
 
 
-def _run(
-    todo: list[Case], jobs: int, as_processes: bool, timeline: bool, console: Console
-) -> tuple[list[Result], float]:
+def _run(todo: list[Case], args: argparse.Namespace, console: Console) -> tuple[list[Result], float]:
     """The results so far, also after an interruption, and the wall time [s]."""
     results: list[Result] = []
     began = monotonic()
-    run = processes.run if as_processes else runner.run
+    run = processes.run if args.processes else runner.run
+    timeline = args.timeline or args.suite == "seed"
     with Board(console, len(todo)) as board:
         try:
-            with interruptible():
-                for said in evaluate(todo, jobs, run, gentle=as_processes):
+            with interruptible(), closing(_evaluate(todo, args, run)) as running:
+                for said in running:
                     if isinstance(said, Progressed):
                         board.show(said)
+                    elif isinstance(said, Repeated):
+                        board.repeated(said)
                     else:
                         results.append(said)
                         board.finished(said, timeline)
         except Stopped:
             pass
     return results, monotonic() - began
+
+
+def _evaluate(todo: list[Case], args: argparse.Namespace, run: Run) -> Generator[Said, None, None]:
+    if not args.cluster:
+        return pool.evaluate(todo, args.jobs, run)
+    return cluster.evaluate(todo, args.cluster, args.jobs, run)
 
 
 if __name__ == "__main__":

@@ -5,11 +5,14 @@ from typing import Literal
 import msgspec
 
 from common.scene import Scene
+from evaluation.effects import Effect, Shown
 from evaluation.evidence import Evidence, Want
 from evaluation.faults import Rule
 
-Expect = Literal["delivered", "nothing", "stopped"]
-Outcome = Literal["delivered", "declined", "stopped", "reported", "failed", "false_success", "timeout", "crashed"]
+Expect = Literal["delivered", "nothing", "stopped", "shown"]
+Outcome = Literal[
+    "delivered", "declined", "stopped", "shown", "reported", "failed", "false_success", "timeout", "crashed"
+]
 Cause = str
 
 
@@ -22,6 +25,18 @@ class Line(msgspec.Struct, frozen=True):
     text: str
     when: str = "ready"
     after: float = 0.0
+
+
+class Speaker(msgspec.Struct, frozen=True):
+    """Who speaks: recordings of sentences (16 kHz int16 samples), the robot's own voice at `pace` for all others.
+
+    `room`: echoes and the hum of a room in place of white noise.
+    """
+
+    name: str = ""
+    recordings: dict[str, bytes] = {}
+    pace: float = 1.0
+    room: bool = False
 
 
 class Strike(msgspec.Struct, frozen=True):
@@ -45,7 +60,8 @@ class Strike(msgspec.Struct, frozen=True):
 class Case(msgspec.Struct, kw_only=True):
     """`lines` are what the person says, `thing` what they really want, `expect` what physics should show.
 
-    Without a `scene` it is the shipped flat. `honest`: a spoken, published failure counts as well as a delivery.
+    `shown`: all that is wanted is delivered and all `effects` are seen. Without a `scene` it is the shipped flat.
+    `honest`: a spoken, published failure counts as well as a delivery.
     `wake`: a command that opens a dialogue starts with the wake word. `silent`: the person answers no question.
     """
 
@@ -55,6 +71,7 @@ class Case(msgspec.Struct, kw_only=True):
     command: str
     lines: tuple[Line, ...]
     wants: tuple[Want, ...] = ()
+    effects: tuple[Effect, ...] = ()
     thing: str = ""
     expect: Expect = "delivered"
     honest: bool = False
@@ -62,6 +79,7 @@ class Case(msgspec.Struct, kw_only=True):
     wake: bool = False
     silent: bool = False
     noise: float | None = None
+    speaker: Speaker = Speaker()
     fault: str = ""
     rules: tuple[Rule, ...] = ()
     strikes: tuple[Strike, ...] = ()
@@ -73,10 +91,13 @@ class Case(msgspec.Struct, kw_only=True):
 class Observed(msgspec.Struct, kw_only=True):
     """What the examiner saw of one case, before it is judged.
 
-    `struck`: when a fault hit [s of robot time]; `recovery`: seconds from then until the mission's next step.
+    `wrong`: things in the hand that nobody asked for. `struck`: when a fault hit [s of robot time]; `recovery`:
+    seconds from then until the mission's next step.
     """
 
     evidence: Evidence = msgspec.field(default_factory=Evidence)
+    shown: list[Shown] = []
+    wrong: list[str] = []
     claimed: str = "none"
     reason: str = ""
     ended: bool = False

@@ -10,6 +10,7 @@ from common import topics
 from common.config import Config
 from common.io import Io, Job
 from evaluation.case import Case, Line, Observed
+from evaluation.effects import Watcher
 from evaluation.evidence import Recorder
 from evaluation.person import Manner, Person
 from evaluation.replica import Replica
@@ -44,6 +45,7 @@ class Examiner:
         kinds = {o.name: o.kind for o in io.scene.objects}
         bins = frozenset(r.name for r in io.scene.receptacles if r.depth)
         self._recorder = Recorder(self._case.wants, kinds, bins)
+        self._watcher = Watcher(self._case.effects, io.scene)
         self._replica: Replica | None = None
         self._lines = deque(self._case.lines)
         self._due: deque[tuple[float, str]] = deque()
@@ -88,6 +90,7 @@ class Examiner:
                 shortest = FloorPlan(io.scene).mission(look.base, errands)
                 self.observed.shortest = round(shortest, 3) if np.isfinite(shortest) else 0.0
             self._recorder.see(look)
+            self._watcher.see(look)
         for status in io.drain(topics.SIM_STATUS):
             self.observed.stopped |= status.state == "stopped"
 
@@ -97,6 +100,7 @@ class Examiner:
             if status.state == "speaking" and status.detail != self._saying:
                 self._saying = status.detail
                 self.observed.said.append(status.detail)
+                self._watcher.hear(status.detail)
             elif status.state != "speaking" and self._saying:
                 answer, self._saying = self._person.answer(self._saying), ""
                 self._quiet_since = now
@@ -142,6 +146,8 @@ class Examiner:
     def _talk(self, now: float) -> None:
         while self._lines and self._reached(self._lines[0], now):
             line = self._lines.popleft()
+            if line.when == "ended":
+                self._person.wish(line.text)
             self._due.append((now, line.text))
         if self._sound:
             self._play(now)
@@ -171,7 +177,7 @@ class Examiner:
             io.publish(topics.SPEECH_TEXT, m.TypedText(text=text))
             return
         words = WAKE + text if opening else text
-        self._voice = io.submit(utter, words, self._case.noise, self._case.seed, seconds=0.2)
+        self._voice = io.submit(utter, words, self._case.noise, self._case.seed, self._case.speaker, seconds=0.2)
 
     def _play(self, now: float) -> None:
         part = self._sound.popleft()
@@ -197,7 +203,11 @@ class Examiner:
 
     def _conclude(self, now: float) -> None:
         seen = self.observed
+        seen.shown = self._watcher.conclude()
+        asked = {w.thing for w in self._case.wants} | {n for e in self._case.effects for n in (e.what, e.other)}
+        seen.wrong = sorted(self._watcher.lifted - asked)
         seen.evidence, seen.robot_seconds = self._recorder.conclude(), round(now, 2)
+        seen.evidence.disturbed = [n for n in seen.evidence.disturbed if n not in asked]
         seen.ended = seen.ended or now <= self._case.limit
 
 

@@ -35,6 +35,10 @@ class Person:
         self._command, self._thing, self._scene, self._manner = command, thing, scene, manner
         self.answers = 0
 
+    def wish(self, command: str) -> None:
+        """From now on this is what was said, and meant."""
+        self._command, self.answers = command, 0
+
     def answer(self, sentence: str) -> str:
         """What to say to a sentence of the robot's; "" for nothing."""
         if self._manner == "silent" or self.answers >= PATIENCE:

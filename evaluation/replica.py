@@ -9,7 +9,7 @@ import mujoco
 import numpy as np
 
 from common import messages as m
-from common.robot import pads, subtree
+from common.robot import Hand, pads, subtree
 from common.scene import ObjectSpec, Scene
 from services.sim.objects import body_name
 from services.sim.truth import support
@@ -28,13 +28,14 @@ class Thing(msgspec.Struct, frozen=True):
 
 
 class Look(msgspec.Struct, frozen=True):
-    """The world at robot time `t`. `hits`: (part of the robot, what it touches, depth [m])."""
+    """The world at robot time `t`. `hits`: (part of the robot, what it touches, depth [m]); `opening`: of the hand."""
 
     t: float
     base: tuple[float, float, float]
     things: dict[str, Thing]
     hits: tuple[tuple[str, str, float], ...]
     pushed: frozenset[str] = frozenset()
+    opening: float = 0.0
 
 
 class Replica:
@@ -54,6 +55,10 @@ class Replica:
             self._owner[model.geom_bodyid == body] = number
         self._gripper = subtree(model, "gripper")
         self._pads = pads(model)
+        hand = Hand(model)
+        self._fingers_at = [model.joint(j).qposadr[0] for j in hand.joints]
+        self._widths = np.linspace(0.0, hand.open, round(1000 * hand.open) + 1)
+        self._postures = np.array([hand.posture(float(w)) for w in self._widths])
         self._base_at = [model.joint(j).qposadr[0] for j in ("base_x", "base_y", "base_yaw")]
         self._floor = model.geom("floor").id
         starts = [model.joint(body_name(o)).qposadr[0] for o in self._specs]
@@ -102,7 +107,9 @@ class Replica:
         self._things = things
         pushed = frozenset(n for n, geoms in robot.items() if geoms)
         base = tuple(float(v) for v in data.qpos[self._base_at])
-        return Look(state.t, (base[0], base[1], base[2]), things, tuple(hits), pushed)
+        apart = np.square(self._postures - qpos[self._fingers_at]).sum(axis=1)
+        opening = float(self._widths[int(np.argmin(apart))])
+        return Look(state.t, (base[0], base[1], base[2]), things, tuple(hits), pushed, opening)
 
     def _contacts(self) -> tuple[dict[str, set[int]], set[str], list[tuple[str, str, float]]]:
         """Per object the robot's geoms that touch it; the objects that anything else touches; the robot's hits."""

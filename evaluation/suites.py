@@ -1,6 +1,8 @@
 """The suites: a seed in, a scenario out. Case i of a run has the seed `seed + i` and can be repeated alone."""
 
 from collections.abc import Callable
+from functools import partial
+from pathlib import Path
 
 import msgspec
 
@@ -19,8 +21,10 @@ from evaluation.blocks import (
 )
 from evaluation.case import Case, Line
 from evaluation.chaos import CHAOS_SERVICES, CHAOS_STATES, chaos
+from evaluation.commands import ALL, commands
 from evaluation.evidence import Want
 from evaluation.faults import Rule
+from evaluation.spoken import HERE, MANIFEST, read_corpus, spoken
 from services.brain.config import BrainConfig
 
 SHELVES = ("kitchen table", "counter", "bookshelf", "dresser", "bedside table", "study shelf", "desk")
@@ -41,12 +45,27 @@ DIALOGUES = ("misheard", "correction", "rejection", "low_confidence", "stop", "c
 Make = Callable[[int], Case]
 
 
-def cases(suite: str, scenarios: int, seed: int, settings: tuple[str, ...] = (), pipeline: str = "") -> list[Case]:
-    """The scenarios of a run; `settings` are added to each, `pipeline` where the suite leaves the brain's open."""
+def cases(
+    suite: str,
+    scenarios: int,
+    seed: int,
+    settings: tuple[str, ...] = (),
+    pipeline: str = "",
+    voices: Path | None = None,
+    snr: float | None = None,
+) -> list[Case]:
+    """The scenarios of a run; `settings` are added to each, `pipeline` where the suite leaves the brain's open.
+
+    `voices` is a directory of recordings for the suite `spoken`, `snr` its signal-to-noise ratio [dB].
+    """
     chosen = (f"brain.pipeline={pipeline}",) if pipeline else ()
+    make = SUITES[suite]
+    if suite == "spoken":
+        voices = voices or (HERE if (HERE / MANIFEST).exists() else None)
+        make = partial(spoken, corpus=read_corpus(voices) if voices else None, snr=snr)
     found = []
     for n in range(scenarios):
-        case = SUITES[suite](seed + n)
+        case = make(seed + n)
         own = case.settings if any(s.startswith("brain.pipeline=") for s in case.settings) else chosen + case.settings
         effective = own + settings
         found.append(msgspec.structs.replace(case, settings=effective, wake=_wakes(effective)))
@@ -157,10 +176,12 @@ def tidy(seed: int) -> Case:
 
 SUITES: dict[str, Make] = {
     "fetch": fetch, "seed": named, "tidy": tidy, "faults": faults, "dialogue": dialogue, "chaos": chaos,
+    "commands": commands, "spoken": spoken,
 }  # fmt: skip
 DEFAULT_SCENARIOS = {
     "seed": len(NAMED),
     "dialogue": len(DIALOGUES),
     "faults": len(FAULTS) * 2,
     "chaos": len(CHAOS_SERVICES) * len(CHAOS_STATES),
+    "commands": len(ALL),
 }

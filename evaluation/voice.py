@@ -1,15 +1,23 @@
-"""The person's voice: sentences as 16 kHz samples, with a breath before and silence after, in a noisy room if asked."""
+"""The person's voice: sentences as 16 kHz samples, a breath before and silence after, in a noisy room if asked."""
 
 from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.signal import fftconvolve
 
+from evaluation.case import Speaker
 from services.speech.speak import Voice
 
 RATE = 16000
 LEAD, TAIL = 0.3, 1.2
+WAKE, GAP = "hey jarvis", 0.25
+"""The wake word as it is recorded alone, and the pause [s] between it and a command recorded alone."""
+ECHO, DIRECT = 0.3, 12.0
+"""Reverberation of a furnished living room: decay by 60 dB in 0.3 s (ISO 3382-2 finds 0.3 to 0.6 s), and the level of
+the direct sound over the echoes at one metre [dB]."""
 Samples = NDArray[np.int16]
+Floats = NDArray[np.float64]
 
 
 @cache
@@ -22,13 +30,61 @@ def _sentence(text: str) -> Samples:
     return _voice().speak(text)
 
 
-def utter(text: str, noise: float | None = None, seed: int = 0) -> Samples:
-    """Samples (n,); `noise` is the signal-to-noise ratio [dB] of white noise over the whole."""
+def utter(text: str, noise: float | None = None, seed: int = 0, speaker: Speaker | None = None) -> Samples:
+    """Samples (n,); `noise` is the signal-to-noise ratio [dB] over the whole.
+
+    White noise, or with `speaker.room` the hum of a room (1/f) and its echoes.
+    """
+    speaker = speaker or Speaker()
     quiet = np.zeros(round(LEAD * RATE), np.int16), np.zeros(round(TAIL * RATE), np.int16)
-    speech = _sentence(text)
+    speech = _spoken(text, speaker)
     whole = np.concatenate((quiet[0], speech, quiet[1]))
-    if noise is None:
+    if noise is None and not speaker.room:
         return whole
-    loudness = float(np.sqrt(np.mean(np.square(speech.astype(np.float64)))))
-    hiss = np.random.default_rng([seed, 29]).normal(0.0, loudness * 10 ** (-noise / 20), len(whole))
-    return np.clip(whole + hiss, -32768, 32767).astype(np.int16)
+    rng = np.random.default_rng([seed, 29])
+    sound = _reverberant(whole, rng) if speaker.room else whole.astype(np.float64)
+    if noise is not None:
+        loudness = float(np.sqrt(np.mean(np.square(speech.astype(np.float64)))))
+        hiss = _hum(len(whole), rng) if speaker.room else rng.normal(0.0, 1.0, len(whole))
+        sound = sound + loudness * 10 ** (-noise / 20) * hiss
+    return np.clip(sound, -32768, 32767).astype(np.int16)
+
+
+def _spoken(text: str, speaker: Speaker) -> Samples:
+    """The recording of the sentence, or of the wake word and of the rest; else the robot's own voice at a pace."""
+    recorded = {_key(k): np.frombuffer(v, "<i2").astype(np.int16) for k, v in speaker.recordings.items()}
+    words = _key(text)
+    if words in recorded:
+        return recorded[words]
+    rest = words.removeprefix(WAKE).strip()
+    if rest != words and rest in recorded and WAKE in recorded:
+        return np.concatenate((recorded[WAKE], np.zeros(round(GAP * RATE), np.int16), recorded[rest]))
+    said = _sentence(text)
+    if speaker.pace == 1.0:
+        return said
+    at = np.arange(0, len(said) - 1, speaker.pace)
+    paced: Samples = np.interp(at, np.arange(len(said)), said).astype(np.int16)
+    return paced
+
+
+def _key(text: str) -> str:
+    return " ".join("".join(c if c.isalnum() or c == "'" else " " for c in text.lower()).split())
+
+
+def _reverberant(samples: Samples, rng: np.random.Generator) -> Floats:
+    """Through a room: the direct sound and a tail of noise that decays exponentially."""
+    t = np.arange(round(ECHO * RATE)) / RATE
+    tail = rng.normal(0.0, 1.0, len(t)) * 10 ** (-3 * t / ECHO)
+    tail *= 10 ** (-DIRECT / 20) / np.sqrt(np.sum(np.square(tail)))
+    tail[0] = 1.0
+    heard: Floats = fftconvolve(samples.astype(np.float64), tail)[: len(samples)]
+    return heard
+
+
+def _hum(count: int, rng: np.random.Generator) -> Floats:
+    """Noise (n,) with a spectrum of 1/f from 20 Hz, root mean square 1: fans, fridge, street."""
+    spectrum = np.fft.rfft(rng.normal(0.0, 1.0, count))
+    frequency = np.maximum(np.fft.rfftfreq(count, 1 / RATE), 20.0)
+    noise = np.fft.irfft(spectrum / np.sqrt(frequency), count)
+    scaled: Floats = noise / np.sqrt(np.mean(np.square(noise)))
+    return scaled

@@ -1,5 +1,6 @@
 """What the robot says about what it has seen. Pure."""
 
+from common.messages import PlanStep
 from services.planner.draft import Draft, Refusal
 from services.planner.forms import Slots
 from services.planner.phrases import Phrase, read
@@ -65,6 +66,7 @@ def where(draft: Draft, slots: Slots) -> None:
         elif thing.seen and (thing.position or thing.on):
             draft.say(f"The {thing.label} is {place_of(draft, thing)}.")
         else:
+            draft.search_first([PlanStep(action="find", object=thing.label, text=meant.words)])
             draft.find(thing, meant.words)
             draft.say(f"I have found the {thing.label}.")
         draft.last = [thing]
@@ -73,6 +75,21 @@ def where(draft: Draft, slots: Slots) -> None:
             _place(draft, slots)
             return
         raise Refusal(unknown(draft, slots["thing"], phrase))
+
+
+def found(draft: Draft) -> None:
+    """Who only asked to find things is told where they are, once they were looked for."""
+    if draft.done is None:
+        return
+    draft.search_first(draft.steps)
+    told: list[Thing] = []
+    for step in draft.steps:
+        alike = [t for t in draft.world.things if t.seen and not t.held and step.object in (t.label, t.kind)]
+        told += [max(alike, key=lambda t: t.seen_at)] if alike else []
+    if told and len(told) == len(draft.steps):
+        draft.steps.clear()
+        for thing in told:
+            draft.say(f"The {thing.label} is {place_of(draft, thing)}.")
 
 
 def _all_meant(draft: Draft, slots: Slots) -> list[Meant]:

@@ -172,6 +172,11 @@ class Draft:
         if there and self.done is not None:
             raise LookFirst([step for going in there for step in (going, PlanStep(action="wait"))])
 
+    def search_first(self, searches: list[PlanStep]) -> None:
+        """Find things before anything is said of them, unless that was done or the sender would not ask again."""
+        if self.done is not None and not any(s.action == "find" for s in self.done):
+            raise LookFirst(searches)
+
     def look_first(self, spots: list[Receptacle], reason: str) -> None:
         """As `look_at`, where nothing is known so far; `reason` is what is missing.
 

@@ -4,6 +4,7 @@ import re
 from collections.abc import Sequence
 
 from common.messages import ActionPlan, PlanStep, RejectedPlan
+from services.planner import answers
 from services.planner.choices import Choices, every
 from services.planner.commands import Action
 from services.planner.config import PlannerConfig
@@ -95,6 +96,8 @@ def _steps(command: str, draft: Draft) -> list[PlanStep]:
         raise Refusal("I can hold only one thing at a time")
     if not draft.steps:
         raise Refusal("there is nothing to do")
+    if all(step.action == "find" for step in draft.steps):
+        answers.found(draft)
     return draft.steps
 
 

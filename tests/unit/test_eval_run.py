@@ -3,14 +3,17 @@
 import os
 from collections.abc import Callable
 from io import StringIO
+from pathlib import Path
 
+import msgspec
+import psutil
 import pytest
 from rich.console import Console
 
 from cli.main import main, parser
-from evaluation import pool, report
+from evaluation import lane, report
 from evaluation.case import Case, Line, Observed, Result
-from evaluation.pool import Progressed, evaluate
+from evaluation.pool import Progressed, Repeated, evaluate
 from evaluation.verdict import judge
 
 FIELDS = [
@@ -25,7 +28,10 @@ def case_of(seed: int, name: str = "fine") -> Case:
 def pretend(case: Case, progress: Callable[[float, str], None]) -> Result:
     """A case without a robot."""
     progress(1.0, str(os.getpid()) if case.name == "pid" else "WAITING")
-    if case.name == "dies":
+    marker = Path(case.command)
+    if case.name == "dies" or (case.name == "dies once" and not marker.exists()):
+        if case.name == "dies once":
+            marker.touch()
         os._exit(7)
     while case.name == "hangs":
         pass
@@ -43,14 +49,35 @@ def test_a_worker_that_dies_costs_its_case_only() -> None:
 
 
 def test_a_case_without_end_is_given_up() -> None:
-    said = [r for r in evaluate([case_of(0, "hangs"), case_of(1)], 1, pretend, limit=3.0) if isinstance(r, Result)]
-    assert [r.outcome for r in said] == ["crashed", "reported"]
+    said = list(evaluate([case_of(0, "hangs"), case_of(1)], 1, pretend, limit=3.0))
+    assert [r.outcome for r in said if isinstance(r, Result)] == ["crashed", "reported"]
+    assert [(r.case.seed, r.why) for r in said if isinstance(r, Repeated)] == [(0, "no result within 3 s of wall time")]
+
+
+def test_a_process_that_says_nothing_is_hung() -> None:
+    said = list(evaluate([case_of(0, "hangs")], 1, pretend, silence=2.0))
+    assert [r.cause for r in said if isinstance(r, Result)] == ["crash: no sign of life for 2 s, in each of 2 attempts"]
+
+
+def test_a_worker_that_dies_once_costs_a_repeat(tmp_path: Path) -> None:
+    case = msgspec.structs.replace(case_of(0, "dies once"), command=str(tmp_path / "died"))
+    said = list(evaluate([case], 1, pretend))
+    assert [r.outcome for r in said if isinstance(r, Result)] == ["reported"]
+    assert ["status 7" in r.why for r in said if isinstance(r, Repeated)] == [True]
+
+
+def test_a_run_that_is_left_ends_its_workers() -> None:
+    run = evaluate([case_of(0, "hangs"), case_of(1, "hangs")], 2, pretend)
+    assert isinstance(next(run), Progressed)
+    run.close()
+    children = [p for p in psutil.Process().children(recursive=True) if "evaluation.lane" in p.cmdline()]
+    assert not children
 
 
 def test_a_worker_is_renewed_after_so_many_cases(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(pool, "CASES_OF_A_PROCESS", 2)
+    monkeypatch.setattr(lane, "CASES_OF_A_PROCESS", 2)
     said = list(evaluate([case_of(n, "pid") for n in range(3)], 1, pretend))
-    first, second, third = (p.state for p in said if isinstance(p, Progressed))
+    first, second, third = (p.state for p in said if isinstance(p, Progressed) and p.t)
     assert first == second != third
     assert [r.outcome for r in said if isinstance(r, Result)] == ["reported"] * 3
 

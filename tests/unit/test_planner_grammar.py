@@ -343,6 +343,21 @@ def test_a_sender_that_asks_again_gets_a_look_first() -> None:
     assert both.again and text(both) == "navigate bookshelf; wait", "it looks before it moves anything"
 
 
+@pytest.mark.parametrize("command", ["where is the apple", "find the apple"])
+def test_what_nobody_has_seen_is_looked_for_and_then_told(command: str) -> None:
+    first = ask(command, objects=WORLD[:2], done=[])
+    assert first.again and text(first) == "find apple"
+    after = ask(command, done=first.steps)
+    assert not after.again and text(after) == "say The apple is on the kitchen table."
+
+
+def test_where_one_of_several_is_told_of_the_one_that_was_found() -> None:
+    first = ask("find a mug", objects=[], done=[])
+    assert first.again and text(first) == "find mug"
+    after = ask("find a mug", objects=WORLD[2:3], done=first.steps)
+    assert text(after) == "say The blue mug is on the counter in the kitchen."
+
+
 def test_a_long_plan_is_refused() -> None:
     command = ", then ".join(["bring me the red mug"] * 20)
     assert "too much at once" in ask(command).detail

@@ -1,0 +1,211 @@
+"""What a command should bring about beside objects delivered: places reached, answers that are true, a thing in hand.
+
+Pure: samples of the world and sentences of the robot in, effects shown or not out. No claim of the robot enters.
+"""
+
+import math
+import re
+from typing import Literal
+
+import msgspec
+
+from common.scene import Receptacle, Scene
+from evaluation.person import plain
+from evaluation.replica import Look, distance
+
+Kind = Literal[
+    "visits", "ends", "says", "tells where", "tells what is on", "tells what it sees", "holds", "beside", "rests",
+    "hand", "still", "stands", "left alone",
+]  # fmt: skip
+AT_PLACE = 0.5
+"""Distance [m] from a named standing pose that counts as there: half the diagonal of the base, 0.57 x 0.53 m, more."""
+AT_FURNITURE = 1.0
+"""Distance [m] from the edge of a surface that counts as at it: the reach of the arm."""
+STOOD, STOOD_FOR = 0.02, 0.5
+"""Drift [m] over a time [s] that counts as standing; a base that drives through covers 0.1 m and more."""
+BESIDE = 0.40
+"""Distance [m] between the middles of two things that people call next to each other on a table of 1.2 m."""
+MOVED = 0.03
+"""Displacement [m] of an object that counts as moved; contact noise at rest is below 1 mm."""
+DRIVEN = 0.3
+"""Path [m] of the base in a command that should not move it; a turn on the spot to look around is allowed."""
+HAND_OPEN, HAND_CLOSED = 0.075, 0.015
+"""Gap between the pads [m]: the hand's full opening is 0.085, closed on nothing 0."""
+
+
+class Effect(msgspec.Struct, frozen=True):
+    """One thing to be seen in physics or heard. `what` is a place, a thing, a surface or words; `other` an anchor."""
+
+    kind: Kind
+    what: str = ""
+    other: str = ""
+
+    def __str__(self) -> str:
+        return " ".join(w for w in (self.kind, self.what, self.other) if w)
+
+
+class Shown(msgspec.Struct):
+    """An effect and whether it was shown; `why` not."""
+
+    effect: str
+    shown: bool
+    why: str = ""
+
+
+class Watcher:
+    """Takes samples of the world and sentences in the order of time."""
+
+    def __init__(self, effects: tuple[Effect, ...], scene: Scene) -> None:
+        self._effects, self._scene = effects, scene
+        self._first: Look | None = None
+        self._last: Look | None = None
+        self._rest: Look | None = None
+        self._stood: list[tuple[float, float]] = []
+        self._driven = 0.0
+        self._said: list[tuple[str, Look | None]] = []
+        self.lifted: set[str] = set()
+
+    def see(self, look: Look) -> None:
+        self._first = self._first or look
+        self._driven += distance(look.base[:2], self._last.base[:2]) if self._last else 0.0
+        if self._rest is None or distance(look.base[:2], self._rest.base[:2]) > STOOD:
+            self._rest = look
+        elif look.t - self._rest.t >= STOOD_FOR:
+            here = self._rest.base[:2]
+            if not self._stood or distance(here, self._stood[-1]) > STOOD:
+                self._stood.append(here)
+        self.lifted |= {name for name, thing in look.things.items() if thing.held}
+        self._last = look
+
+    def hear(self, sentence: str) -> None:
+        """The robot says this now; what it says of the world has to be true now."""
+        self._said.append((plain(sentence), self._last))
+
+    def conclude(self) -> list[Shown]:
+        return [Shown(str(e), not (why := self._objection(e)), why) for e in self._effects]
+
+    def _objection(self, effect: Effect) -> str:
+        first, last = self._first, self._last
+        if first is None or last is None:
+            return "the simulation showed nothing"
+        match effect.kind:
+            case "visits":
+                there = any(at(self._scene, effect.what, *spot) for spot in self._stood)
+                return "" if there else f"never stood at the {effect.what}"
+            case "ends":
+                standing = self._rest is not None and last.t - self._rest.t >= STOOD_FOR
+                if standing and at(self._scene, effect.what, *last.base[:2]):
+                    return ""
+                return f"ended at ({last.base[0]:.1f}, {last.base[1]:.1f}), not at the {effect.what}"
+            case "holds":
+                held = [n for n, thing in last.things.items() if thing.held]
+                return (
+                    "" if held == [effect.what] else f"holds {' and '.join(held) or 'nothing'}, not the {effect.what}"
+                )
+            case "rests":
+                now = last.things[effect.what]
+                return "" if now.on not in ("", "floor") and not now.touched else f"the {effect.what} is not put down"
+            case "beside":
+                return self._apart(last, effect.what, effect.other)
+            case "hand":
+                wide = last.opening
+                good = wide >= HAND_OPEN if effect.what == "open" else wide <= HAND_CLOSED
+                return "" if good else f"the hand is {1000 * wide:.0f} mm open, not {effect.what}"
+            case "stands":
+                standing = self._rest is not None and last.t - self._rest.t >= STOOD_FOR
+                return "" if standing else "the base still drives"
+            case "left alone":
+                moved = distance(last.things[effect.what].position, first.things[effect.what].position)
+                return "" if moved <= MOVED else f"moved the {effect.what} by {moved:.2f} m"
+            case "still":
+                return self._motion(first, last)
+            case _:
+                return self._spoken(effect)
+
+    def _apart(self, last: Look, name: str, anchor: str) -> str:
+        one, two = last.things[name], last.things[anchor]
+        apart = distance(one.position[:2], two.position[:2])
+        if one.on != two.on:
+            return f"the {name} is on {one.on or 'nothing'}, the {anchor} on {two.on or 'nothing'}"
+        return "" if apart <= BESIDE else f"the {name} stands {apart:.2f} m from the {anchor}"
+
+    def _motion(self, first: Look, last: Look) -> str:
+        for name, now in last.things.items():
+            if distance(now.position, first.things[name].position) > MOVED:
+                return f"moved the {name}"
+        return "" if self._driven <= DRIVEN else f"drove {self._driven:.1f} m"
+
+    # --- words
+    def _spoken(self, effect: Effect) -> str:
+        reasons = [self._untrue(effect, words, look) for words, look in self._said]
+        if "" in reasons:
+            return ""
+        told = [r for r in reasons if r is not None]
+        return (
+            told[-1]
+            if told
+            else f"never said {effect.what or 'what it sees'}"
+            if effect.kind == "says"
+            else (f"no answer: {effect}")
+        )
+
+    def _untrue(self, effect: Effect, words: str, look: Look | None) -> str | None:
+        """Why the sentence is untrue, "" when it answers truly, None when it is about other things."""
+        if effect.kind == "says":
+            return "" if plain(effect.what) in words else None
+        # A question of the robot's and its report at the end are no answers.
+        if look is None or words.startswith(("did you say", "do you mean")):
+            return None
+        found = mentions(words, self._scene)
+        things = [n for what, n in found if what == "thing"]
+        surfaces = [n for what, n in found if what == "surface"]
+        match effect.kind:
+            case "tells where":
+                if effect.what not in things:
+                    return None
+                really = look.things[effect.what].on
+                good = set(surfaces) == {really}
+                return "" if good else f"said {words!r}, it is on the {really or 'hand'}"
+            case "tells what is on":
+                if effect.what not in surfaces:
+                    return None
+                there = {n for n, thing in look.things.items() if thing.on == effect.what}
+                return (
+                    "" if set(things) == there else f"said {words!r}, there is {', '.join(sorted(there)) or 'nothing'}"
+                )
+            case _:
+                if not things or not surfaces:
+                    return "" if "seen nothing" in words or "see nothing" in words else None
+                for number, (what, name) in enumerate(found):
+                    where = next((n for w, n in found[number:] if w == "surface"), "")
+                    if what == "thing" and look.things[name].on != where:
+                        return f"said the {name} is on the {where}, it is on the {look.things[name].on}"
+                return ""
+
+
+def at(scene: Scene, name: str, x: float, y: float) -> bool:
+    """Is the point at a place, in a room or before a surface of that name (or alias)?"""
+    places = [p for p in (scene.home, *scene.places) if name == p.name or name in p.aliases]
+    if any(math.hypot(p.x - x, p.y - y) <= AT_PLACE for p in places):
+        return True
+    room = scene.room_at(x, y)
+    if room is not None and (name == room.name or name in room.aliases):
+        return True
+    receptacle = scene.receptacle(name)
+    return receptacle is not None and _edge(receptacle, x, y) <= AT_FURNITURE
+
+
+def _edge(r: Receptacle, x: float, y: float) -> float:
+    """Distance [m] of a point from the rectangle of a surface."""
+    c, s = math.cos(r.yaw), math.sin(r.yaw)
+    dx, dy = x - r.center[0], y - r.center[1]
+    u, v = abs(c * dx + s * dy) - r.size[0] / 2, abs(c * dy - s * dx) - r.size[1] / 2
+    return math.hypot(max(u, 0.0), max(v, 0.0))
+
+
+def mentions(words: str, scene: Scene) -> list[tuple[str, str]]:
+    """(`thing` or `surface`, name) in the order in which a plain sentence names them."""
+    names = {plain(n): ("thing", o.name) for o in scene.objects for n in (o.name,)}
+    names |= {plain(n): ("surface", r.name) for r in scene.receptacles for n in (r.name,)}
+    alternatives = "|".join(re.escape(n) for n in sorted(names, key=len, reverse=True))
+    return [names[found[0]] for found in re.finditer(rf"\b(?:{alternatives})\b", words)]

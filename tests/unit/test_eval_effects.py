@@ -1,0 +1,175 @@
+"""Effects of commands from samples of the world and sentences, and the page of commands against the suite."""
+
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import pytest
+
+from common.scene import load_scene
+from evaluation.case import Case, Line, Observed
+from evaluation.commands import ALL, TALKS, TASKS, commands
+from evaluation.effects import Effect, Shown, Watcher, at
+from evaluation.evidence import Evidence, ThingEvidence, Want
+from evaluation.replica import Look, Thing
+from evaluation.verdict import judge
+
+SCENE = load_scene("apartment")
+APPLE = Thing(position=(5.0, -0.7, 0.76), tilt=0.0, on="kitchen table", held=False, touched=False)
+MUG = Thing(position=(4.5, -3.1, 0.81), tilt=0.0, on="counter", held=False, touched=False)
+HELD = Thing(position=(0.5, 0.0, 0.9), tilt=0.0, on="", held=True, touched=True)
+HOME, KITCHEN = (0.0, 0.0), (3.6, -1.2)
+
+
+def look(t: float, base: tuple[float, float] = HOME, mug: Thing = MUG, apple: Thing = APPLE, **more: Any) -> Look:
+    return Look(t, (*base, 0.0), {"red mug": mug, "apple": apple}, (), opening=more.get("opening", 0.085))
+
+
+def still(base: tuple[float, float], start: float, **more: Any) -> list[Look]:
+    return [look(start + 0.1 * n, base, **more) for n in range(8)]
+
+
+def why(effect: Effect, *seen: Look | str) -> str:
+    watcher = Watcher((effect,), SCENE)
+    for one in seen:
+        if isinstance(one, str):
+            watcher.hear(one)
+        else:
+            watcher.see(one)
+    shown = watcher.conclude()[0]
+    assert shown.shown == (not shown.why)
+    return shown.why
+
+
+def test_places() -> None:
+    there_and_back = [*still(HOME, 0.0), *still(KITCHEN, 5.0), *still(HOME, 9.0)]
+    assert why(Effect("visits", "kitchen"), *there_and_back) == why(Effect("ends", "home"), *there_and_back) == ""
+    assert "not at the kitchen" in why(Effect("ends", "kitchen"), *there_and_back)
+    through = [*still(HOME, 0.0), look(2.0, KITCHEN), *still(HOME, 4.0)]
+    assert "never stood" in why(Effect("visits", "kitchen"), *through)
+    assert "not at the home" in why(Effect("ends", "home"), *still(KITCHEN, 0.0), look(2.0, HOME))
+    assert "drives" in why(Effect("stands"), *still(HOME, 0.0), look(2.0, KITCHEN))
+    assert why(Effect("stands"), look(0.0, KITCHEN), *still(HOME, 4.0)) == ""
+
+
+@pytest.mark.parametrize(
+    ("name", "point", "there"),
+    [
+        ("counter", (4.4, -2.3), True), ("counter", (4.4, -1.7), False), ("lounge", (0.0, 1.0), True),
+        ("sofa", (-1.4, 0.2), True), ("sofa", (-0.5, 0.2), False), ("dock", (0.1, 0.1), True),
+    ],
+)  # fmt: skip
+def test_what_counts_as_at_a_place(name: str, point: tuple[float, float], there: bool) -> None:
+    assert at(SCENE, name, *point) == there
+
+
+def test_the_hand_and_what_it_holds() -> None:
+    assert why(Effect("holds", "red mug"), look(0.0), look(1.0, mug=HELD)) == ""
+    assert "holds apple" in why(Effect("holds", "red mug"), look(0.0), look(1.0, apple=HELD))
+    assert "holds nothing" in why(Effect("holds", "red mug"), look(0.0, mug=HELD), look(1.0))
+    assert why(Effect("hand", "open"), look(0.0)) == why(Effect("hand", "closed"), look(0.0, opening=0.0)) == ""
+    assert "40 mm" in why(Effect("hand", "closed"), look(0.0, opening=0.04))
+    assert why(Effect("rests", "red mug"), look(0.0, mug=HELD), look(1.0)) == ""
+    assert "not put down" in why(Effect("rests", "red mug"), look(0.0), look(1.0, mug=HELD))
+
+
+def test_beside_is_on_the_same_surface_and_near() -> None:
+    beside = Effect("beside", "red mug", "apple")
+    near = msgspec.structs.replace(APPLE, position=(5.2, -0.7, 0.77))
+    far = msgspec.structs.replace(APPLE, position=(5.7, -0.4, 0.77))
+    assert why(beside, look(0.0), look(1.0, mug=near)) == ""
+    assert "0.76 m" in why(beside, look(0.0), look(1.0, mug=far))
+    assert "counter" in why(beside, look(0.0), look(1.0))
+
+
+def test_nothing_moves() -> None:
+    shoved = msgspec.structs.replace(MUG, position=(4.54, -3.1, 0.81))
+    assert why(Effect("still"), *still(HOME, 0.0)) == ""
+    assert why(Effect("still"), look(0.0), look(1.0, mug=shoved)) == "moved the red mug"
+    assert "drove" in why(Effect("still"), look(0.0), look(1.0, KITCHEN), look(2.0, HOME))
+    assert why(Effect("left alone", "apple"), look(0.0), look(1.0, mug=shoved)) == ""
+    assert "0.04 m" in why(Effect("left alone", "red mug"), look(0.0), look(1.0, mug=shoved))
+
+
+@pytest.mark.parametrize(
+    ("effect", "sentence", "reason"),
+    [
+        (Effect("tells where", "apple"), "The apple is on the kitchen table.", ""),
+        (Effect("tells where", "apple"), "The apple is on the counter.", "it is on the kitchen table"),
+        (Effect("tells where", "apple"), "I have found the apple.", "it is on the kitchen table"),
+        (Effect("tells where", "apple"), "The red mug is on the counter.", "no answer"),
+        (Effect("tells what is on", "counter"), "A red mug is on the counter.", ""),
+        (Effect("tells what is on", "counter"), "An apple and a red mug are on the counter.", "there is red mug"),
+        (Effect("tells what it sees"), "I see an apple on the kitchen table and a red mug on the counter.", ""),
+        (Effect("tells what it sees"), "I see an apple and a red mug on the counter in the kitchen.", "the apple"),
+        (Effect("tells what it sees"), "I have seen nothing that I know yet.", ""),
+        (Effect("tells what it sees"), "Did you say what do you see?", "no answer"),
+        (Effect("says", "I know no banana"), "I cannot do that: I know no banana.", ""),
+        (Effect("says", "I know no banana"), "Done.", "never said"),
+    ],
+)
+def test_answers_have_to_be_true_in_physics(effect: Effect, sentence: str, reason: str) -> None:
+    found = why(effect, look(0.0), sentence)
+    assert (reason in found) if reason else not found, found
+
+
+def verdict(shown: bool, claimed: str, **more: Any) -> Any:
+    case = Case(
+        suite="commands", seed=0, name="command", command="go to the kitchen", lines=(Line("go"),), expect="shown",
+        effects=(Effect("ends", "kitchen"),), wants=more.get("wants", ()),
+    )  # fmt: skip
+    evidence = Evidence(things=[ThingEvidence("mug", "table", delivered=True)] if case.wants else [])
+    seen = Observed(
+        evidence=more.get("evidence", evidence), shown=[Shown("ends kitchen", shown, "" if shown else "ended at home")],
+        claimed=claimed, ended=True, wrong=more.get("wrong", []),
+    )  # fmt: skip
+    return judge(case, seen, 1.0)
+
+
+def test_the_verdict_counts_effects_and_no_claims() -> None:
+    assert (verdict(True, "delivered").outcome, verdict(True, "none").met) == ("shown", True)
+    assert verdict(False, "delivered").outcome == "false_success"
+    silent = verdict(False, "none")
+    assert (silent.outcome, silent.met, silent.cause) == ("failed", False, "effect: ended at home")
+    assert verdict(False, "failed").outcome == "reported"
+    assert verdict(True, "delivered", wants=(Want("mug", ("tray",)),)).delivered
+    hit = verdict(True, "none", evidence=Evidence(hits=["arm on a wall, 9 mm"]))
+    assert (hit.met, hit.cause) == (False, "contact")
+    wrong = verdict(True, "none", wrong=["apple"])
+    assert (wrong.met, wrong.cause) == (False, "wrong thing: apple")
+
+
+# --- the suite
+def page() -> dict[str, str]:
+    text = (Path(__file__).parents[2] / "docs" / "COMMANDS.md").read_text(encoding="utf-8")
+    rows = [[c.strip() for c in line.strip("|").split("|")] for line in text.splitlines() if line.startswith("| ")]
+    return dict(map(tuple, rows[1:]))
+
+
+def test_every_command_of_the_page_has_an_effect() -> None:
+    told = {task.said: commands(seed) for seed, task in enumerate(TASKS)}
+    planned = page()
+    assert len(planned) > 20
+    assert not [said for said in planned if said not in told], "evaluation/commands.py has no effect for them"
+    assert not [said for said in told if said not in planned], "docs/COMMANDS.md does not have them"
+    assert not [said for said, task in told.items() if not task.wants and not task.effects]
+    for said, plan in planned.items():
+        carries = "place" in plan or "release" in plan
+        assert bool(told[said].wants) == carries, f"{said}: {plan}"
+        if plan.startswith("no: "):
+            assert Effect("says", plan.removeprefix("no: ")) in told[said].effects
+
+
+def test_effects_name_what_is_in_their_scene() -> None:
+    for seed, task in enumerate(ALL):
+        case = commands(seed)
+        assert case.scene is not None and case.command == task.said
+        things, surfaces = {o.name for o in case.scene.objects}, {r.name for r in case.scene.receptacles}
+        assert {w.thing for w in case.wants} <= things
+        assert {g for w in case.wants for g in w.goals} <= surfaces
+        for effect in case.effects:
+            if effect.kind in ("holds", "beside", "rests", "left alone", "tells where"):
+                assert {effect.what, effect.other} - {""} <= things
+            if effect.kind in ("visits", "ends"):
+                assert at(case.scene, effect.what, *HOME) or at(case.scene, effect.what, *KITCHEN)
+    assert {line.text for task in TALKS for line in task.then} >= {"stop", "cancel", "come here"}
