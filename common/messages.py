@@ -28,7 +28,10 @@ class Message(msgspec.Struct, kw_only=True):
 
 
 class ObjectRef(Message):
-    """What manipulation is told about the object to grab: `position` is its centre, `size` full extent."""
+    """What manipulation is told about the object to grab: `position` is its centre, `size` full extent.
+
+    `tilt` as in `WorldObject`.
+    """
 
     label: str
     position: Vec3
@@ -36,10 +39,15 @@ class ObjectRef(Message):
     size: Vec3 = (0.0, 0.0, 0.0)
     kind: str = ""
     frame: str = "map"
+    tilt: float = 0.0
 
 
 class WorldObject(Message):
-    """An object the robot knows of. `on` names its receptacle, `seen_at` is the time of the evidence."""
+    """An object the robot knows of. `on` names its receptacle, `seen_at` is the time of the evidence.
+
+    `tilt` [rad]: angle of its own upward axis to the vertical, 0 when it stands. Of what lies on its side, the first
+    extent of `size` is along that axis, which points along the yaw of `orientation`.
+    """
 
     label: str
     kind: str
@@ -52,6 +60,7 @@ class WorldObject(Message):
     seen_at: float = 0.0
     held: bool = False
     id: str = ""
+    tilt: float = 0.0
 
 
 class WorldObjects(Message):
@@ -254,12 +263,19 @@ class ActionPlan(Message):
 
 
 class ObjectQuery(Message):
+    """`since` [s]: only what a picture taken at that robot time or later shows counts, and the picture is wanted."""
+
     id: str
     query: str
+    since: float = 0.0
 
 
 class ObjectPose(Message):
-    """The answer to a query. `candidates` names the objects that match when several do and none is chosen."""
+    """The answer to a query. `candidates` names the objects that match when several do and none is chosen.
+
+    `seen_at`: when a picture last showed the object; `on` names its receptacle, "" the floor or not known; `tilt` as
+    in `WorldObject`. `picture`: a JPEG of the view behind the answer, for queries with `since`.
+    """
 
     query_id: str
     found: bool
@@ -272,6 +288,9 @@ class ObjectPose(Message):
     seen_at: float = 0.0
     detail: str = ""
     candidates: list[str] = []
+    on: str = ""
+    tilt: float = 0.0
+    picture: bytes = b""
 
 
 class NavGoal(Message):

@@ -6,6 +6,7 @@ measured size and its nearest kind, with little confidence.
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -13,12 +14,14 @@ import numpy as np
 
 from common.geometry import Array
 from common.scene import ObjectKind, ObjectSpec, Scene, Vec3
-from services.perception import colour, segment, shapes
+from services.perception import colour, segment, shapes, toppled
 from services.perception.segment import Piece
 from services.perception.view import Mask, View
 
 SHAPE_SCALE, HEIGHT_SCALE, COLOUR_SCALE = 0.0035, 0.010, 0.07
 WORST, SOUND = 3.2, 2.0
+LYING = math.pi / 2
+"""Tilt [rad] of what lies on its side."""
 STRANGE_CONFIDENCE = 0.45
 STRANGE_KINDS: tuple[ObjectKind, ...] = ("can", "box")
 
@@ -27,7 +30,9 @@ STRANGE_KINDS: tuple[ObjectKind, ...] = ("can", "box")
 class Detection:
     """An object in frame map: `position` is its centre, `size` its full extent, `yaw` about z; `on` its surface.
 
-    `whole`: all of it was in view, so that the position can be trusted; `share`: about how much of it was.
+    `tilt`: angle [rad] of its own axis to the vertical. Of what lies on its side the first extent is along that axis,
+    which points along `yaw`. `whole`: all of it was in view, so that the position can be trusted; `share`: about how
+    much of it was.
     """
 
     label: str
@@ -42,6 +47,25 @@ class Detection:
     known: bool = True
     whole: bool = True
     share: float = 1.0
+    tilt: float = 0.0
+
+
+@dataclass(frozen=True)
+class Stance:
+    """How a thing may rest on a surface: its full extents there, and the tilt [rad] of its own axis."""
+
+    size: Vec3
+    tilt: float = 0.0
+
+
+@dataclass(frozen=True)
+class Guess:
+    """A thing of the household in one stance that may explain a piece; `score` in standard deviations."""
+
+    score: float
+    spec: ObjectSpec
+    stance: Stance
+    fit: shapes.Fit
 
 
 class Detector(Protocol):
@@ -71,24 +95,21 @@ class ClassicalDetector:
     def _explain(self, view: View, piece: Piece) -> Detection | None:
         rgb = colour.typical(view.rgb[piece.rows, piece.columns])
         height = float(np.percentile(piece.points[:, 2], 98)) - piece.surface.height
-        scored = sorted(
-            (
-                (score, spec, size, fit)
-                for spec in self._scene.objects
-                for size in _stances(spec)
-                for score, fit in self._score(view, piece, spec, size, rgb, height)
-            ),
-            key=lambda row: row[0],
-        )
-        if not scored or scored[0][0] > WORST:
+        guesses = self._guesses(view, piece, rgb, height, _stances)
+        if not guesses or guesses[0].score > SOUND:
+            # Nothing stands there that explains it well.
+            more = self._guesses(view, piece, rgb, height, _toppled)
+            guesses = sorted([*guesses, *more], key=lambda g: g.score)
+        if not guesses or guesses[0].score > WORST:
             return self._strange(view, piece, rgb, height)
-        score, spec, size, fit = scored[0]
-        second = next((rival for rival, other, *_ in scored if other is not spec), WORST)
+        best = guesses[0]
+        score, spec, size, fit = best.score, best.spec, best.stance.size, best.fit
+        second = next((rival.score for rival in guesses if rival.spec is not spec), WORST)
         # Sure when the fit is good and nothing else in the house comes close.
         confidence = math.exp(-0.5 * (score / 2.2) ** 2) * (1 - math.exp(-2.0 * (second - score) - 0.4))
         pixels = min(1.0, len(piece.rows) / 120)
         yaw = fit.yaw
-        if spec.kind == "mug":
+        if spec.kind == "mug" and not best.stance.tilt:
             yaw = shapes.handle_yaw(size, piece.points, fit.x, fit.y, view.position)
         position = (fit.x, fit.y, piece.surface.height + size[2] / 2)
         return Detection(
@@ -103,20 +124,26 @@ class ClassicalDetector:
             distance=_distance(view, fit),
             whole=not piece.cut and score < SOUND,
             share=min(1.0, len(piece.rows) / _pixels(view, position, size)),
+            tilt=best.stance.tilt,
         )
 
-    def _score(
-        self, view: View, piece: Piece, spec: ObjectSpec, size: Vec3, rgb: Array, height: float
-    ) -> list[tuple[float, shapes.Fit]]:
-        """How badly a thing explains the piece, in standard deviations; empty when it is out of the question."""
-        off = colour.difference(rgb, spec.rgba) / COLOUR_SCALE
-        tall = abs(height - size[2]) / HEIGHT_SCALE
-        if piece.cut:
-            tall = min(tall, 1.0)
-        if off > WORST or tall > WORST:
-            return []
-        fit = shapes.fit(spec.kind, size, piece.points, piece.surface.height, view.position, piece.ends)
-        return [(math.sqrt((fit.residual / SHAPE_SCALE) ** 2 + tall**2 + off**2), fit)]
+    def _guesses(
+        self, view: View, piece: Piece, rgb: Array, height: float, stances: Callable[[ObjectSpec], list[Stance]]
+    ) -> list[Guess]:
+        """What may explain the piece, the best first."""
+        found = []
+        for spec in self._scene.objects:
+            # In standard deviations.
+            off = colour.difference(rgb, spec.rgba) / COLOUR_SCALE
+            for stance in stances(spec) if off <= WORST else ():
+                tall = _too_tall(spec, stance, height) / HEIGHT_SCALE
+                if piece.cut:
+                    tall = min(tall, 1.0)
+                if tall <= WORST:
+                    fit = _fit(spec, stance, view, piece)
+                    score = math.sqrt((fit.residual / SHAPE_SCALE) ** 2 + tall**2 + off**2)
+                    found.append(Guess(score, spec, stance, fit))
+        return sorted(found, key=lambda g: g.score)
 
     def _strange(self, view: View, piece: Piece, rgb: Array, height: float) -> Detection | None:
         """A thing that is not of the household, by its measured size."""
@@ -142,10 +169,35 @@ class ClassicalDetector:
         )
 
 
-def _stances(spec: ObjectSpec) -> list[Vec3]:
-    """The extents of a thing as it stands, and of a box that lies on one of its sides."""
+def _stances(spec: ObjectSpec) -> list[Stance]:
+    """A thing as it stands, and a box on one of its sides."""
     x, y, z = spec.size
-    return list(dict.fromkeys([(x, y, z), (y, z, x), (z, x, y)])) if spec.kind == "box" else [spec.size]
+    if spec.kind != "box":
+        return [Stance(spec.size)]
+    return [Stance(size, 0.0 if size[2] == z else LYING) for size in dict.fromkeys([(x, y, z), (y, z, x), (z, x, y)])]
+
+
+def _toppled(spec: ObjectSpec) -> list[Stance]:
+    """A round thing on its side, or upside down."""
+    found = [Stance(toppled.extents(spec.size), LYING)] if spec.kind in toppled.ROLLS_OVER else []
+    return found + ([Stance(spec.size, math.pi)] if spec.kind in ("mug", "bowl") else [])
+
+
+def _too_tall(spec: ObjectSpec, stance: Stance, height: float) -> float:
+    """How far [m] a measured height is from a stance's."""
+    low = high = stance.size[2]
+    if stance.tilt == LYING and spec.kind in toppled.ROLLS_OVER:
+        low, high = toppled.heights(spec.kind, spec.size)
+    return max(low - height, height - high, 0.0)
+
+
+def _fit(spec: ObjectSpec, stance: Stance, view: View, piece: Piece) -> shapes.Fit:
+    floor, camera = piece.surface.height, view.position
+    if stance.tilt == math.pi:
+        return toppled.fit_upside_down(spec.kind, spec.size, piece.points, floor, camera)
+    if stance.tilt and spec.kind in toppled.ROLLS_OVER:
+        return toppled.fit(spec.kind, spec.size, piece.points, floor, camera)
+    return shapes.fit(spec.kind, stance.size, piece.points, floor, camera, piece.ends)
 
 
 def _pixels(view: View, position: Vec3, size: Vec3) -> float:

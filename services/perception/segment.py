@@ -82,7 +82,7 @@ def _on(view: View, expected: Surface, cloud: Cloud, near: Nearby, own: Mask) ->
     level = z[np.abs(z - expected.height) < PLANE_SEARCH] if expected.name else z[:0]
     surface = expected
     if len(level) >= MIN_PLANE:
-        heights, edges = np.histogram(level, bins=25)
+        heights, edges = np.histogram(level.astype(np.float64), bins=25)
         peak = int(heights.argmax())
         level = level[np.abs(level - (edges[peak] + edges[peak + 1]) / 2) < 0.006]
         surface = Surface(expected.name, float(np.median(level)))

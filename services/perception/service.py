@@ -4,6 +4,8 @@ import importlib
 import math
 from typing import Literal
 
+import msgspec
+
 from common import messages as m
 from common import topics
 from common.geometry import Pose2, wrap
@@ -14,6 +16,7 @@ from services.perception.config import PerceptionConfig
 from services.perception.detect import ClassicalDetector, Detection, Detector
 from services.perception.ground import Grounding, ground
 from services.perception.memory import SURE, Memory
+from services.perception.picture import jpeg
 from services.perception.posture import Posture
 from services.perception.view import View, view_of
 
@@ -137,7 +140,7 @@ class PerceptionService:
             detections = [d for d in detections if math.dist(d.position, self._hand) > HAND_RANGE]
         seen = self._memory.look(view, detections, view.t)
         self._show(now, bool(seen))
-        self._answer(seen)
+        self._answer(seen, view)
 
     def _refines(self, d: Detection) -> bool:
         """True for what the wrist camera may say of a thing: where it is more exactly, and of round things from any
@@ -163,26 +166,28 @@ class PerceptionService:
         # A picture that is under way was not taken for this question.
         self._query, self._pictures, self._picture = query, 0, ""
 
-    def _answer(self, seen: set[str]) -> None:
+    def _answer(self, seen: set[str], view: View) -> None:
         query = self._query
-        if query is None:
+        if query is None or view.t < query.since:
             return
         self._pictures += 1
-        result = self._ground(query.query)
+        result = self._ground(query)
         found = result.found
         if found is None and not result.candidates and self._pictures < self._config.query_pictures:
             return
         if found is not None and found.id not in seen and self._pictures < self._config.query_pictures:
             return
         self._query = None
-        answer = _pose_answer(query, result)
-        self._answers[query.id] = answer
+        answer = _pose_answer(query, result, jpeg(view) if query.since else b"")
+        # Kept for a query that is sent again, without what costs memory.
+        self._answers[query.id] = msgspec.structs.replace(answer, picture=b"")
         self._io.log.info("asked", query=query.query, found=answer.label, detail=answer.detail)
         self._io.publish(topics.OBJECT_POSE, answer)
 
-    def _ground(self, words: str) -> Grounding:
+    def _ground(self, query: m.ObjectQuery) -> Grounding:
         base = self._posture.base or (0.0, 0.0, 0.0)
-        return ground(words, self._memory.objects(), self._io.scene, base, self._config.synonyms)
+        objects = self._memory.objects(query.since or -math.inf)
+        return ground(query.query, objects, self._io.scene, base, self._config.synonyms)
 
 
 def detect(detector: Detector, view: View, base: Pose2, body: Body | None) -> tuple[View, list[Detection]]:
@@ -208,14 +213,15 @@ def load_detector(name: str) -> type[Detector]:
     return found
 
 
-def _pose_answer(query: m.ObjectQuery, result: Grounding) -> m.ObjectPose:
+def _pose_answer(query: m.ObjectQuery, result: Grounding, picture: bytes) -> m.ObjectPose:
     found = result.found
     if found is None:
-        return m.ObjectPose(query_id=query.id, found=False, detail=result.reason, candidates=result.candidates)
+        detail, candidates = result.reason, result.candidates
+        return m.ObjectPose(query_id=query.id, found=False, detail=detail, candidates=candidates, picture=picture)
     return m.ObjectPose(
         query_id=query.id, found=True, label=found.label, confidence=found.confidence, position=found.position,
         orientation=found.orientation, size=found.size, seen_at=found.seen_at,
-        detail=f"on the {found.on}" if found.on else "",
+        detail=f"on the {found.on}" if found.on else "", on=found.on, tilt=found.tilt, picture=picture,
     )  # fmt: skip
 
 
@@ -226,4 +232,4 @@ def _near(a: Pose2, b: Pose2) -> bool:
 def _outline(o: m.WorldObject) -> tuple[object, ...]:
     """What others care about: a change below 2 mm is none."""
     x, y, z = (round(v / 0.002) for v in o.position)
-    return o.id, o.label, o.on, o.held, x, y, z
+    return o.id, o.label, o.on, o.held, round(o.tilt, 1), x, y, z
