@@ -1,11 +1,13 @@
-"""One service on a memory bus, stepped by hand."""
+"""One service on a memory bus, stepped by hand: the harness of every test that runs a service without processes."""
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeVar
 
 from common import codec
 from common import messages as m
 from common.clock import ManualClock
+from common.lockstep import DT, period_of
 from common.memory import MemoryBus, MemoryIo
 from common.scene import Scene
 from common.topics import Topic
@@ -14,28 +16,50 @@ M = TypeVar("M", bound=m.Message)
 
 
 class Node:
-    """The tests of a service add what its peers would send and what they ask."""
+    """A service class made with its configuration; `feed` is what its peers send before each step.
+
+    Args:
+        lockstep: as with `--speed max`, where jobs of the worker end at a robot time of their own.
+        bus: one that the test shares among several nodes.
+        tick: of the moment before the first step, 10 ms each.
+    """
 
     def __init__(
-        self, kind: Any, config: Any, scene: Scene, *, lockstep: bool = True, state_dir: Path | None = None
+        self,
+        kind: Any,
+        config: Any,
+        scene: Scene,
+        *,
+        lockstep: bool = True,
+        bus: MemoryBus | None = None,
+        tick: int = 0,
+        seed: int = 0,
+        state_dir: Path | None = None,
     ) -> None:
-        self.bus, self.clock = MemoryBus(), ManualClock()
+        self.bus = bus or MemoryBus()
+        self.tick, self.period = tick, period_of(kind.HZ)
+        self.clock = ManualClock(max(0, tick) * DT)
+        self._published = {topic.key: self.bus.tap(topic) for topic in kind.WRITES}
+        self._decoded: dict[str, list[Any]] = {}
         self.io = MemoryIo(
-            self.bus, kind.NAME, kind.READS, kind.WRITES, scene=scene, clock=self.clock, lockstep=lockstep
+            self.bus, kind.NAME, kind.READS, kind.WRITES, scene=scene, seed=seed, clock=self.clock, lockstep=lockstep
         )
         self.io.state_dir = state_dir
         self.service = kind(config, self.io)
-        self.tick, self._period = 0, round(100 / kind.HZ)
 
+    # --- time
     @property
     def now(self) -> float:
         """Robot time [s]."""
-        return self.tick / 100
+        return self.tick * DT
 
-    def later(self) -> float:
-        """Robot time of the next step: what is sent from now on is of that moment."""
-        self.tick += self._period
+    def later(self, seconds: float | None = None) -> float:
+        """Robot time of the next step, one period on or as told: what is sent from now on is of that moment."""
+        self.tick += self.period if seconds is None else round(seconds / DT)
         return self.now
+
+    def feed(self) -> None:
+        """What peers send before each step, at `now`."""
 
     def run(self) -> None:
         """The step."""
@@ -43,10 +67,40 @@ class Node:
         self.io.begin(self.tick, self.now)
         self.service.step(self.now)
 
-    def step(self) -> None:
-        """The next step, with nothing sent before it."""
-        self.later()
-        self.run()
+    def step(self, seconds: float = 0.0, fed: bool = True) -> None:
+        """Every step of so many seconds, at least one; with `fed` False the peers are silent."""
+        for _ in range(max(1, round(seconds / (self.period * DT)))):
+            self.later()
+            if fed:
+                self.feed()
+            self.run()
+
+    def until(self, probe: Callable[[], Any], limit: float = 400.0) -> float:
+        """Step until the probe holds, or fail after `limit` robot seconds; returns the robot seconds that took."""
+        start = self.now
+        while not probe():
+            assert self.now - start < limit, f"did not happen in {limit:.0f} s of robot time: {self.why()}"
+            self.step()
+        return self.now - start
+
+    def why(self) -> str:
+        """What a test that waited in vain should know."""
+        return ""
+
+    # --- what comes and goes
+    def send(self, topic: Topic[M], message: M) -> None:
+        """A message of a peer."""
+        self.bus.send(topic, message)
+
+    def count(self, topic: Topic[Any]) -> int:
+        """How many messages the service has published there."""
+        return len(self._published[topic.key])
+
+    def sent(self, topic: Topic[M]) -> list[M]:
+        """Every message that the service has published there."""
+        decoded = self._decoded.setdefault(topic.key, [])
+        decoded += [codec.decode(topic, payload) for payload in self._published[topic.key][len(decoded) :]]
+        return decoded.copy()
 
     def last(self, topic: Topic[M]) -> M:
         """The newest message on a latched topic."""

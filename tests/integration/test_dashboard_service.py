@@ -13,7 +13,6 @@ import pytest
 
 from common import codec, topics
 from common import messages as m
-from common.memory import MemoryBus, MemoryIo
 from common.recording import Recorder, RecordingError
 from common.scene import load_scene
 from services.dashboard.config import DashboardConfig
@@ -23,6 +22,7 @@ from services.dashboard.service import HEALTH, DashboardService
 from services.dashboard.web import Web
 from services.sim.physics import Physics
 from services.sim.robot import HOME_ARM, JOINT_NAMES
+from tests.node import Node
 from tests.support import eventually
 
 MJCF = Physics(load_scene("minimal"), 0, ()).mjcf
@@ -32,22 +32,15 @@ MUG = m.WorldObject(
 )
 
 
-class Page:
+class Page(Node):
     """The service and its clock."""
 
     def __init__(self) -> None:
-        self.bus = MemoryBus()
-        reads, writes = DashboardService.READS, DashboardService.WRITES
-        scene = load_scene("minimal")
-        self.io = MemoryIo(self.bus, "dashboard", reads, writes, scene=scene, lockstep=False)
-        self.service = DashboardService(DashboardConfig(port=0), self.io)
-        self.asked = self.bus.tap(topics.CAMERA_REQUEST)
-        self.now = 100.0
+        super().__init__(DashboardService, DashboardConfig(port=0), load_scene("minimal"), lockstep=False, tick=10_000)
 
-    def step(self, seconds: float = 0.04) -> None:  # longer than a frame: what is new is drawn
-        self.now += seconds
-        self.io.begin(None, self.now)
-        self.service.step(self.now)
+    def step(self, seconds: float = 0.04, fed: bool = True) -> None:  # longer than a frame: what is new is drawn
+        self.later(seconds)
+        self.run()
 
     def joints(self, t: float, width: float = 0.085, **moved: float) -> None:
         values = dict(zip(JOINT_NAMES, (0.0, 0.0, 0.0, *HOME_ARM, width), strict=True)) | moved
@@ -126,11 +119,11 @@ def test_objects_come_go_and_turn_into_ghosts(drawn: Page) -> None:
 def test_cameras_are_asked_only_while_somebody_looks(page: Page, monkeypatch: pytest.MonkeyPatch) -> None:
     for _ in range(75):
         page.step()
-    assert page.asked == []
+    assert page.count(topics.CAMERA_REQUEST) == 0
     monkeypatch.setattr(Web, "watched", True)
     for _ in range(75):
         page.step()
-    requests = [codec.decode(topics.CAMERA_REQUEST, payload) for payload in page.asked]
+    requests = page.sent(topics.CAMERA_REQUEST)
     assert {r.camera for r in requests} == {"head"}, "the wrist's pictures are not wanted unless its box is ticked"
     assert 5 <= len(requests) <= 7, "twice a second"
 

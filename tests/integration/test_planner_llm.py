@@ -12,12 +12,12 @@ import pytest
 
 from common import messages as m
 from common import topics
-from common.memory import MemoryBus, MemoryIo
 from common.runtime import StartError
 from common.scene import load_scene
 from services.planner import llm
 from services.planner.config import PlannerConfig
 from services.planner.service import GRACE, PlannerService
+from tests.node import Node
 from tests.support import Site, eventually, free_port
 
 SCENE = load_scene("apartment")
@@ -61,7 +61,7 @@ class Endpoint:
         self.answers: list[Answer] = []
         self.requests: list[dict[str, Any]] = []
         self.over = threading.Event()
-        self.nodes: list[Node] = []
+        self.nodes: list[Desk] = []
         endpoint = self
 
         class Handler(BaseHTTPRequestHandler):
@@ -116,35 +116,28 @@ def endpoint(monkeypatch: pytest.MonkeyPatch) -> Iterator[Endpoint]:
         opened.close()
 
 
-class Node:
-    """The service on a memory bus; robot time stands still unless a test moves it."""
+class Desk(Node):
+    """The service; robot time stands still unless a test moves it."""
 
     def __init__(self, endpoint: Endpoint, lockstep: bool = False, **changes: Any) -> None:
-        self.bus = MemoryBus()
-        reads, writes = PlannerService.READS, PlannerService.WRITES
-        self.io = MemoryIo(self.bus, "planner", reads, writes, scene=SCENE, lockstep=lockstep)
         config = PlannerConfig(**{"backend": "llm", "llm_url": endpoint.url, "llm_timeout": 100.0, **changes})
-        self.service = PlannerService(config, self.io)
-        self.plans = self.bus.tap(topics.ACTION_PLAN)
-        self.tick = 0
+        super().__init__(PlannerService, config, SCENE, lockstep=lockstep)
         endpoint.nodes.append(self)
 
     def request(self, command: str = "bring me the red mug", request_id: str = "m.1", **fields: Any) -> None:
         self.bus.send(topics.PLAN_REQUEST, m.PlanRequest(id=request_id, command=command, **fields))
 
-    def step(self, seconds: float = 0.0) -> None:
-        self.tick += 10
-        self.io.clock.advance(seconds)  # type: ignore[attr-defined]
-        self.io.begin(self.tick, self.io.clock.now())
-        self.service.step(self.io.clock.now())
+    def step(self, seconds: float = 0.0, fed: bool = True) -> None:
+        self.later(seconds)
+        self.run()
 
     def wait(self, number: int = 1) -> m.ActionPlan:
         def answered() -> bool:
             self.step()
-            return len(self.plans) >= number
+            return self.count(topics.ACTION_PLAN) >= number
 
         eventually(answered, "a plan", patience=120)
-        return msgspec.json.decode(self.plans[number - 1], type=m.ActionPlan)
+        return self.sent(topics.ACTION_PLAN)[number - 1]
 
     def ask(self, **fields: Any) -> m.ActionPlan:
         self.request(**fields)
@@ -157,7 +150,7 @@ def actions(plan: m.ActionPlan) -> list[str]:
 
 def test_a_good_answer_is_the_plan(endpoint: Endpoint) -> None:
     endpoint.answers = [plans(*MUG)]
-    node = Node(endpoint, llm_key="secret", llm_model="tiny", llm_options={"temperature": 0})
+    node = Desk(endpoint, llm_key="secret", llm_model="tiny", llm_options={"temperature": 0})
     plan = node.ask(command="desk, the mug must go")
     assert (plan.source, actions(plan), plan.steps[2].target) == ("llm", ["find", "grasp", "place"], "desk")
     request = endpoint.requests[-1]
@@ -169,7 +162,7 @@ def test_a_good_answer_is_the_plan(endpoint: Endpoint) -> None:
 
 def test_the_schema_asks_for_our_actions_and_names_only(endpoint: Endpoint) -> None:
     endpoint.answers = [plans(*MUG)]
-    Node(endpoint).ask(world=m.KnownWorld(objects=["strange thing"]))
+    Desk(endpoint).ask(world=m.KnownWorld(objects=["strange thing"]))
     form = endpoint.requests[0]["response_format"]
     assert form["type"] == "json_schema" and form["json_schema"]["strict"] is True
     schema = form["json_schema"]["schema"]
@@ -208,14 +201,14 @@ def test_the_schema_asks_for_our_actions_and_names_only(endpoint: Endpoint) -> N
 )
 def test_the_grammar_steps_in_and_says_why(endpoint: Endpoint, answer: Answer, why: str) -> None:
     endpoint.answers = [answer]
-    plan = Node(endpoint).ask()
+    plan = Desk(endpoint).ask()
     assert actions(plan) == GRAMMAR
     assert plan.source.startswith(f"grammar (llm: {why}"), plan.source
 
 
 def test_an_impossible_plan_goes_back_with_the_reason_once(endpoint: Endpoint) -> None:
     endpoint.answers = [plans({"action": "grasp", "object": "sofa"}), plans(*MUG)]
-    plan = Node(endpoint).ask()
+    plan = Desk(endpoint).ask()
     assert plan.source == "llm" and len(endpoint.requests) == 2
     assert "I know no sofa" in endpoint.requests[1]["messages"][-1]["content"]
 
@@ -227,7 +220,7 @@ def test_odd_spellings_become_the_names_of_the_scene(endpoint: Endpoint) -> None
             ' {"action": "navigate", "target": "office"}, {"action": "place", "target": "worktop"}]}\n```'
         )
     ]
-    plan = Node(endpoint).ask()
+    plan = Desk(endpoint).ask()
     assert plan.source == "llm"
     assert [s.object or s.target for s in plan.steps] == ["red mug", "red mug", "study", "counter"]
 
@@ -235,7 +228,7 @@ def test_odd_spellings_become_the_names_of_the_scene(endpoint: Endpoint) -> None
 def test_a_rejected_plan_is_told_and_not_accepted_again(endpoint: Endpoint) -> None:
     steps = [msgspec.convert(s, m.PlanStep) for s in MUG]
     endpoint.answers = [plans(*MUG)]
-    plan = Node(endpoint).ask(rejected=m.RejectedPlan(steps=steps, reason="step 3: the desk is full"))
+    plan = Desk(endpoint).ask(rejected=m.RejectedPlan(steps=steps, reason="step 3: the desk is full"))
     assert plan.source == "grammar (llm: the rejected plan again: step 3: the desk is full)"
     assert actions(plan) == GRAMMAR
     told = json.loads(endpoint.requests[0]["messages"][1]["content"])
@@ -244,37 +237,37 @@ def test_a_rejected_plan_is_told_and_not_accepted_again(endpoint: Endpoint) -> N
 
 def test_what_the_model_declines_is_planned_by_the_grammar_if_it_can(endpoint: Endpoint) -> None:
     endpoint.answers = [plans(detail="I am only a small model")]
-    plan = Node(endpoint).ask()
+    plan = Desk(endpoint).ask()
     assert (actions(plan), plan.source) == (GRAMMAR, "grammar (llm: I am only a small model)")
-    plan = Node(endpoint).ask(command="sing a song about mugs")
+    plan = Desk(endpoint).ask(command="sing a song about mugs")
     assert (plan.steps, plan.source, plan.detail) == ([], "llm", "I am only a small model")
 
 
 def test_nobody_listens(endpoint: Endpoint) -> None:
-    plan = Node(endpoint, llm_url=f"http://127.0.0.1:{free_port()}/v1").ask()
+    plan = Desk(endpoint, llm_url=f"http://127.0.0.1:{free_port()}/v1").ask()
     assert (actions(plan), plan.source) == (GRAMMAR, "grammar (llm: no connection)")
 
 
 def test_a_late_answer_is_not_waited_for(endpoint: Endpoint) -> None:
     endpoint.answers = [endpoint.hangs]
-    plan = Node(endpoint, llm_timeout=0.2).ask()
+    plan = Desk(endpoint, llm_timeout=0.2).ask()
     assert (actions(plan), plan.source) == (GRAMMAR, "grammar (llm: timed out)")
 
 
 def test_a_dripping_answer_ends_at_the_deadline(endpoint: Endpoint) -> None:
     endpoint.answers = [endpoint.drips, plans(*MUG)]
-    node = Node(endpoint, llm_timeout=0.5)
+    node = Desk(endpoint, llm_timeout=0.5)
     assert node.ask().source == "grammar (llm: timed out)"
 
 
 def test_a_blocked_worker_does_not_hold_up_the_answer(endpoint: Endpoint, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(llm.Llm, "open", lambda self: endpoint.over.wait(30))
     endpoint.answers = [plans(*MUG)]
-    node = Node(endpoint, llm_timeout=5.0)
+    node = Desk(endpoint, llm_timeout=5.0)
     node.request()
     node.step()
     node.step(5.0)
-    assert not node.plans
+    assert not node.count(topics.ACTION_PLAN)
     node.step(GRACE + 0.1)
     assert node.wait().source == "grammar (llm: timed out)"
     assert not endpoint.requests
@@ -282,32 +275,30 @@ def test_a_blocked_worker_does_not_hold_up_the_answer(endpoint: Endpoint, monkey
 
 def test_a_newer_request_replaces_the_older_and_does_not_wait_for_it(endpoint: Endpoint) -> None:
     endpoint.answers = [endpoint.hangs, plans(*MUG)]
-    node = Node(endpoint)
+    node = Desk(endpoint)
     node.request()
     node.step()
     eventually(lambda: endpoint.requests, "the request is under way")
     node.request("bring me the apple", "m.2")
     plan = node.wait()
     assert (plan.request_id, plan.source) == ("m.2", "llm")
-    assert len(node.plans) == 1
+    assert node.count(topics.ACTION_PLAN) == 1
 
 
 def test_the_end_of_the_process_does_not_wait_for_an_answer(endpoint: Endpoint) -> None:
     endpoint.answers = [endpoint.hangs]
-    node = Node(endpoint)
+    node = Desk(endpoint)
     node.request()
     node.step()
     eventually(lambda: endpoint.requests, "the request is under way")
-    pending = node.service._pending
-    assert pending is not None
     node.service.close()
-    with pytest.raises(llm.LlmError, match="timed out"):
-        pending.job._future.result(timeout=10)
+    free = node.io.submit(lambda: True)
+    eventually(lambda: free.poll(node.now), "the one worker has let go of the question", patience=10)
 
 
 def test_a_look_comes_before_the_model_is_asked(endpoint: Endpoint) -> None:
     endpoint.answers = [plans(*MUG)]
-    node = Node(endpoint)
+    node = Desk(endpoint)
     node.request("tidy up the table", done=[])
     look = node.wait()
     assert look.again and look.steps[0].target == "living table" and not endpoint.requests
@@ -317,7 +308,7 @@ def test_a_look_comes_before_the_model_is_asked(endpoint: Endpoint) -> None:
 
 def test_the_same_request_twice_is_asked_once(endpoint: Endpoint) -> None:
     endpoint.answers = [plans(*MUG)]
-    node = Node(endpoint)
+    node = Desk(endpoint)
     node.request()
     node.step()
     node.request()
@@ -329,13 +320,13 @@ def test_the_same_request_twice_is_asked_once(endpoint: Endpoint) -> None:
 
 def test_in_lockstep_the_answer_comes_at_its_tick(endpoint: Endpoint) -> None:
     endpoint.answers = [plans(*MUG)]
-    node = Node(endpoint, lockstep=True, llm_seconds=0.5)
+    node = Desk(endpoint, lockstep=True, llm_seconds=0.5)
     node.request()
     for _ in range(5):
         node.step(0.1)
-        assert not node.plans
+        assert not node.count(topics.ACTION_PLAN)
     node.step(0.1)
-    assert msgspec.json.decode(node.plans[0], type=m.ActionPlan).source == "llm"
+    assert node.sent(topics.ACTION_PLAN)[0].source == "llm"
 
 
 def test_the_real_process_asks_the_endpoint(endpoint: Endpoint, here: Site) -> None:
@@ -359,5 +350,5 @@ def test_without_the_client_the_service_says_what_to_install(
 ) -> None:
     monkeypatch.setattr("services.planner.service.installed", lambda: False)
     with pytest.raises(StartError, match=r"tidybot-zenoh\[llm\]"):
-        Node(endpoint)
+        Desk(endpoint)
     assert llm.installed()

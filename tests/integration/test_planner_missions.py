@@ -1,18 +1,18 @@
 """The real brain and the real planner through whole commands; the other peers keep a small world of many objects."""
 
-from typing import Any
-
 import msgspec
 import pytest
 
 from common import config, topics
 from common import messages as m
+from common.lockstep import DT
 from common.memory import MemoryBus, MemoryIo
 from common.scene import load_scene
 from services.brain.config import BrainConfig
 from services.brain.service import BrainService
 from services.planner.config import PlannerConfig
 from services.planner.service import PlannerService
+from tests.node import Node
 
 SCENE = load_scene("apartment")
 PLANNER = config.load("planner", PlannerConfig, config.DEFAULT_DIR, {})
@@ -40,13 +40,12 @@ class World:
         for name in ("navigation", "manipulation", "perception", "speech"):
             MemoryIo(self.bus, name, (), (), scene=SCENE, lockstep=False)
         brain = BrainConfig(pipeline="vla", enable_confirmation=False, settle=0.1)
-        self.nodes = [self._node(BrainService, brain), self._node(PlannerService, PLANNER)]
+        self.nodes = [
+            Node(kind, config, SCENE, bus=self.bus, lockstep=False, tick=round(self.now / DT))
+            for kind, config in ((BrainService, brain), (PlannerService, PLANNER))
+        ]
         self.plans = self.bus.tap(topics.ACTION_PLAN)
         self._show()
-
-    def _node(self, kind: Any, parameters: Any) -> tuple[Any, MemoryIo]:
-        io = MemoryIo(self.bus, kind.NAME, kind.READS, kind.WRITES, scene=SCENE, lockstep=False)
-        return kind(parameters, io), io
 
     def do(self, command: str, limit: float = 600.0) -> m.MissionOutcome:
         """Say a command and wait for the end of its mission."""
@@ -74,9 +73,9 @@ class World:
         for topic in self.goals:
             for goal in self.io.drain(topic):
                 getattr(self, "_" + topic.key.rpartition("/")[2])(goal)
-        for service, io in self.nodes:
-            io.begin(None, self.now)
-            service.step(self.now)
+        for node in self.nodes:
+            node.later(PERIOD)
+            node.run()
 
     # --- the peers
     def _navigation_goal(self, goal: m.NavigationGoal) -> None:

@@ -4,12 +4,14 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from common import codec, topics
 from common import messages as m
-from common import topics
+from common.lockstep import DT
 from common.memory import MemoryBus, MemoryIo
 from common.scene import load_scene
 from services.brain.config import BrainConfig
 from services.brain.service import BrainService
+from tests.node import Node
 
 SCENE = load_scene("apartment")
 ITEM = "red mug"
@@ -183,27 +185,28 @@ class World:
         for kind in PEERS:
             peer = kind(self)
             self.peers[peer.name] = peer
-        self.brain: BrainService | None = None
-        self.io: MemoryIo | None = None
+        self.node: Node | None = None
         self.start_brain()
 
     def start_brain(self, lockstep: bool = False) -> None:
-        reads, writes = BrainService.READS, BrainService.WRITES
-        self.io = MemoryIo(self.bus, "brain", reads, writes, scene=SCENE, lockstep=lockstep)
-        self.brain = BrainService(self.config, self.io)
+        self.node = Node(BrainService, self.config, SCENE, bus=self.bus, lockstep=lockstep, tick=round(self.now / DT))
+
+    @property
+    def brain(self) -> BrainService | None:
+        return self.node and self.node.service
 
     def kill_brain(self) -> None:
-        assert self.io is not None and self.brain is not None
-        self.bus.detach(self.io)
-        self.brain._journal.close()  # as the system does with the files of a dead process
-        self.brain = self.io = None
+        assert self.node is not None
+        self.bus.detach(self.node.io)
+        self.node.service.context.journal.close()  # as the system does with the files of a dead process
+        self.node = None
 
     def end_brain(self) -> None:
         """As SIGTERM does."""
-        assert self.io is not None and self.brain is not None
-        self.brain.close()
-        self.bus.detach(self.io)
-        self.brain = self.io = None
+        assert self.node is not None
+        self.node.service.close()
+        self.bus.detach(self.node.io)
+        self.node = None
 
     def restart(self, name: str) -> None:
         """A peer forgets all it knew."""
@@ -217,9 +220,8 @@ class World:
             for peer in self.peers.values():
                 peer.step(self.now)
             self._publish()
-            if self.brain is not None and self.io is not None:
-                self.io.begin(None, self.now)
-                self.brain.step(self.now)
+            if self.node is not None:
+                self.node.step()
 
     def _publish(self) -> None:
         width, force = (0.04, 25.0) if self.held else (0.085, 0.0)
@@ -237,10 +239,7 @@ class World:
     # --- what came of it
     @property
     def state(self) -> m.BrainState:
-        from common import codec
-
-        last: m.BrainState = codec.decode(topics.BRAIN_STATE, self.states[-1])
-        return last
+        return codec.decode(topics.BRAIN_STATE, self.states[-1])
 
     @property
     def outcome(self) -> str:
@@ -249,6 +248,7 @@ class World:
     def timeline(self) -> str:
         if self.brain is None:
             return ""
-        record = self.brain._journal.last() or next(iter(self.brain._journal.missions()[-1:]), None)
-        whole = self.brain._journal.mission(record.id) if record else None
+        journal = self.brain.context.journal
+        record = journal.last() or next(iter(journal.missions()[-1:]), None)
+        whole = journal.mission(record.id) if record else None
         return "\n".join(f"{e.t:7.2f} {e.state:10} {e.cause} | {e.evidence}" for e in whole.entries) if whole else ""

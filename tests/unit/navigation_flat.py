@@ -7,13 +7,12 @@ import numpy as np
 
 from common import messages as m
 from common import topics
-from common.clock import ManualClock
 from common.geometry import Pose2, compose, inverse, wrap
-from common.memory import MemoryBus, MemoryIo
 from common.scene import Scene, load_scene
 from services.navigation.config import NavigationConfig
 from services.navigation.floorplan import Rectangle, rectangles
 from services.navigation.service import NavigationService
+from tests.node import Node
 
 SCENE = load_scene("apartment")
 ANGLES = -math.pi + np.arange(360) * math.radians(1)
@@ -40,15 +39,12 @@ def ends(ranges: np.ndarray) -> np.ndarray:
     return np.stack([np.cos(ANGLES[hit]), np.sin(ANGLES[hit])], 1) * ranges[hit, None]
 
 
-class Flat:
+class Flat(Node):
     """The navigation service in the apartment; `boxes` is what its map does not have, `wheels` its odometry."""
 
     def __init__(self, boxes: list[Rectangle] | None = None, scene: Scene = SCENE, **parameters: object) -> None:
         self.boxes, self.scene = boxes or [], scene
-        self.bus, self.clock = MemoryBus(), ManualClock()
-        reads, writes = NavigationService.READS, NavigationService.WRITES
-        self.io = MemoryIo(self.bus, "navigation", reads, writes, scene=scene, clock=self.clock)
-        self.service = NavigationService(msgspec.convert(parameters, NavigationConfig), self.io)
+        super().__init__(NavigationService, msgspec.convert(parameters, NavigationConfig), scene)
         self.feedbacks = self.bus.tap(topics.NAVIGATION_FEEDBACK)
         self._targets = self.bus.tap(topics.BASE_TARGET)
         self._stops = self.bus.tap(topics.CMD_VEL)
@@ -57,17 +53,10 @@ class Flat:
         self.wheels: Pose2 = (0.0, 0.0, 0.0)
         self._target: m.BaseTarget | None = None
         self._reached = ""
-        self.tick = 0
         self.closest = math.inf
 
-    @property
-    def now(self) -> float:
-        return self.tick * 0.01
-
-    def step(self) -> None:
-        """50 ms: the base moves, the sensors report, navigation steps."""
-        self.tick += 5
-        self.clock.advance(0.05)
+    def feed(self) -> None:
+        """50 ms: the base moves, the sensors report."""
         self._drive(0.05)
         x, y, theta = self.wheels
         self.bus.send(topics.ODOMETRY, m.Odometry(t=self.now, x=x, y=y, theta=theta))
@@ -76,8 +65,6 @@ class Flat:
             seen = ranges[ranges < 10.0]
             self.closest = min(self.closest, float(seen.min()))
             self.bus.send(topics.SCAN, m.LaserScan(t=self.now, ranges=ranges.astype("<f4").tobytes()))
-        self.io.begin(self.tick, self.now)
-        self.service.step(self.now)
 
     def _drive(self, dt: float) -> None:
         for payload in self._targets:
@@ -102,7 +89,7 @@ class Flat:
         self.bus.send(topics.NAVIGATION_GOAL, m.NavigationGoal(goal=text, id=goal_id))
         self.step()
 
-    def run(self, seconds: float) -> m.NavigationStatus:
+    def finish(self, seconds: float) -> m.NavigationStatus:
         """Step until the goal has ended, or for so long."""
         until = self.now + seconds
         while self.now < until and self.status().status == "navigating":
@@ -110,7 +97,7 @@ class Flat:
         return self.status()
 
     def status(self) -> m.NavigationStatus:
-        return msgspec.json.decode(self.bus.last["brain/navigation_status"], type=m.NavigationStatus)
+        return self.last(topics.NAVIGATION_STATUS)
 
     def feedback(self) -> m.NavigationFeedback:
-        return msgspec.json.decode(self.bus.last["navigation_feedback"], type=m.NavigationFeedback)
+        return self.last(topics.NAVIGATION_FEEDBACK)

@@ -280,7 +280,6 @@ def test_ids_never_come_again(tmp_path: Path) -> None:
     meant: dict[str, str] = {}
     for _ in range(4):
         world = World("fetch", path)
-        assert world.io is not None
         taps = [world.bus.tap(t) for t in (topics.SPEECH_GOAL, topics.NAVIGATION_GOAL, topics.MANIPULATION_GOAL)]
         world.kill_brain()
         world.start_brain(lockstep=True)

@@ -22,7 +22,8 @@ from evaluation.matrix import cell, chaos_tables, tally
 from evaluation.runner import Director
 from evaluation.stack import Stack
 from evaluation.verdict import judge
-from tests.unit.test_eval_faults import SCENE, Counter, _decoded
+from tests.node import Node
+from tests.unit.test_eval_faults import SCENE, Counter
 from tests.unit.test_eval_stack import OTHERS, go, status
 
 
@@ -124,19 +125,13 @@ def test_a_message_that_is_hit_is_told(service: str) -> None:
 
 
 def test_a_rule_for_a_state_holds_in_that_state_only() -> None:
-    bus, clock = MemoryBus(), ManualClock()
     rule = Rule(service="navigation", key=topics.NAVIGATION_STATUS.key, kind="drop", count=99, state="GRABBING")
-    kind = faulty(Counter, (rule,))
-    tap = bus.tap(topics.NAVIGATION_STATUS)
-    io = MemoryIo(bus, "navigation", kind.READS, kind.WRITES, scene=SCENE, clock=clock)
-    service = kind(None, io)
-    for n, state in enumerate(("NAVIGATING", "NAVIGATING", "GRABBING", "GRABBING", "RETURNING"), 1):
-        bus.send(topics.BRAIN_STATE, m.BrainState(state=state))  # type: ignore[arg-type]
-        clock.advance(0.1)
-        io.begin(n, clock.now())
-        service.step(clock.now())
-    assert [_decoded(p).detail for p in tap] == ["1", "2", "5"]
-    assert service.door.hit_at == pytest.approx(0.3)
+    node = Node(faulty(Counter, (rule,)), None, SCENE)
+    for state in ("NAVIGATING", "NAVIGATING", "GRABBING", "GRABBING", "RETURNING"):
+        node.send(topics.BRAIN_STATE, m.BrainState(state=state))  # type: ignore[arg-type]
+        node.step()
+    assert [status.detail for status in node.sent(topics.NAVIGATION_STATUS)] == ["1", "2", "5"]
+    assert node.service.door.hit_at == pytest.approx(0.3)
 
 
 # --- cells

@@ -6,11 +6,10 @@ import pytest
 
 from common import messages as m
 from common import topics
-from common.clock import ManualClock
 from common.io import Io
-from common.memory import MemoryBus, MemoryIo
 from common.scene import Place, Scene
 from evaluation.faults import Kind, Rule, faulty
+from tests.node import Node
 
 SCENE = Scene(name="empty", low=(-1, -1), high=(1, 1), home=Place(name="home", x=0, y=0))
 STATUS = topics.NAVIGATION_STATUS
@@ -33,21 +32,10 @@ class Counter:
 
 def said(steps: int, *rules: Rule, seed: int = 0) -> list[str]:
     """The details that got through, step numbers at 10 Hz."""
-    bus, clock = MemoryBus(), ManualClock()
-    tap = bus.tap(STATUS)
-    io = MemoryIo(bus, "navigation", (), (STATUS,), scene=SCENE, seed=seed, clock=clock)
-    service: Any = faulty(Counter, rules)(None, io)
-    for n in range(steps):
-        clock.advance(0.1)
-        io.begin(n, clock.now())
-        service.step(clock.now())
-    return [m_.detail for m_ in map(_decoded, tap)]
-
-
-def _decoded(payload: bytes) -> m.NavigationStatus:
-    from common import codec
-
-    return codec.decode(STATUS, payload)
+    node = Node(faulty(Counter, rules), None, SCENE, seed=seed)
+    for _ in range(steps):
+        node.step()
+    return [status.detail for status in node.sent(STATUS)]
 
 
 def rule(kind: Kind, **more: Any) -> Rule:

@@ -5,35 +5,25 @@ import math
 import pytest
 
 from common import codec, topics
-from common.clock import ManualClock
-from common.lockstep import InProcess
-from common.memory import MemoryBus, MemoryIo
 from common.scene import load_scene
 from evaluation.replica import Look, Replica
 from evaluation.shortest import FloorPlan
-from services.sim.config import SimConfig
-from services.sim.service import SimService
 from services.sim.truth import report
+from tests.simulation import Simulation
 
 APARTMENT = load_scene("apartment")
 
 
-class World:
-    """The simulation alone."""
+class World(Simulation):
+    """The simulation and its replica."""
 
     def __init__(self, scene: str, seed: int) -> None:
-        self.scene = load_scene(scene)
-        self.bus, clock = MemoryBus(), ManualClock()
-        io = MemoryIo(self.bus, "sim", SimService.READS, SimService.WRITES, scene=self.scene, seed=seed, clock=clock)
-        io.out_stamp = -1
-        self.sim = SimService(SimConfig(), io)
-        self.world = InProcess(self.sim, io, clock)
-        self.replica = Replica(codec.decode(topics.SIM_MODEL, self.bus.last["sim/model"]).mjcf, self.scene)
+        super().__init__(scene, seed)
+        self.replica = Replica(self.last(topics.SIM_MODEL).mjcf, self.io.scene)
 
     def look(self) -> Look:
-        for _ in range(5):
-            self.world.advance()
-        return self.replica.look(codec.decode(topics.SIM_STATE, self.bus.last["sim/state"]))
+        self.step(0.05)
+        return self.replica.look(self.last(topics.SIM_STATE))
 
 
 @pytest.mark.parametrize("seed", [0, 5])

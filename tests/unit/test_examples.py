@@ -10,9 +10,8 @@ import numpy as np
 import pytest
 
 from bench.mission import Robot, fetch
-from common import codec, config, topics
+from common import config, topics
 from common import messages as m
-from common.memory import MemoryBus, MemoryIo
 from common.scene import ObjectKind, ObjectSpec, load_scene
 from examples.odometer import DISTANCE, OdometerConfig, OdometerService
 from services.brain.validate import known_world
@@ -22,28 +21,26 @@ from services.planner import grammar
 from services.planner.config import PlannerConfig
 from services.planner.world import believed
 from services.sim.objects import geoms
+from tests.node import Node
 
 TEA = str(Path(__file__).parents[2] / "examples" / "tea.toml")
 RULE = '[[tidy]]\nkinds = ["can"]\ncolours = ["orange"]\nto = ["tea shelf"]\n\n'
 
 
 def test_the_odometer_adds_up_a_circle() -> None:
-    bus = MemoryBus()
-    reads, writes = OdometerService.READS, OdometerService.WRITES
-    io = MemoryIo(bus, "odometer", reads, writes, scene=load_scene("minimal"))
-    told = bus.tap(DISTANCE)
-    service = OdometerService(OdometerConfig(report_every=0.5), io)
+    node = Node(OdometerService, OdometerConfig(report_every=0.5), load_scene("minimal"))
     for n in range(201):
         a = 2 * pi * n / 200
-        bus.send(topics.ODOMETRY, m.Odometry(t=n * 0.05, x=cos(a), y=sin(a), theta=0.0))
-        io.begin(n + 1, n * 0.05)
-        service.step(n * 0.05)
-    reports = [codec.decode(DISTANCE, payload).metres for payload in told]
+        node.send(topics.ODOMETRY, m.Odometry(t=n * 0.05, x=cos(a), y=sin(a), theta=0.0))
+        node.later(0.05)
+        node.run()
+    reports = [report.metres for report in node.sent(DISTANCE)]
     assert len(reports) == 12
     assert reports == sorted(reports)
     assert reports[-1] == pytest.approx(6.0, abs=0.1)
 
 
+@pytest.mark.slow
 @pytest.mark.timeout(600)
 def test_a_tea_tin_of_ones_own_is_fetched() -> None:
     robot = Robot(TEA, seed=1, settings=("brain.pipeline=fetch",))

@@ -152,17 +152,11 @@ class Arm(Node):
         if description:
             self.bus.send(topics.ROBOT_DESCRIPTION, m.RobotDescription(mjcf=robot_mjcf()))
 
-    def step(self, seconds: float = 0.02, joints: bool = True) -> None:
-        for _ in range(max(1, round(seconds / 0.02))):
-            now = self.later()
-            if joints:
-                position = [0.0, 0.0, 0.0, *HOME_ARM, self.width]
-                effort = [0.0] * 10 + [self.force]
-                state = m.JointStates(
-                    t=now, name=list(JOINT_NAMES), position=position, velocity=[0.0] * 11, effort=effort
-                )
-                self.bus.send(topics.JOINT_STATES, state)
-            self.run()
+    def feed(self) -> None:
+        position = [0.0, 0.0, 0.0, *HOME_ARM, self.width]
+        effort = [0.0] * 10 + [self.force]
+        state = m.JointStates(t=self.now, name=list(JOINT_NAMES), position=position, velocity=[0.0] * 11, effort=effort)
+        self.bus.send(topics.JOINT_STATES, state)
 
     def ask(self, text: str, goal_id: str = "a.1", seconds: float = 2.0, **more: object) -> m.ManipulationStatus:
         goal = m.ManipulationGoal(goal=text, id=goal_id, **more)  # type: ignore[arg-type]
@@ -210,7 +204,7 @@ def test_silent_joint_states_end_the_goal() -> None:
     node = Arm()
     node.step(1.0)
     node.bus.send(topics.MANIPULATION_GOAL, m.ManipulationGoal(goal="grab", id="a.1", object=ref(0.62)))
-    node.step(2.0, joints=False)
+    node.step(2.0, fed=False)
     assert (node.status().status, node.status().code) == ("failed", "STALE_STATE")
 
 
@@ -280,7 +274,12 @@ def release(robot: Stack, goal_id: str) -> dict[str, str]:
     return wait(robot, topics.MANIPULATION_STATUS, goal_id, 40.0)
 
 
-@pytest.mark.parametrize("item", ["yellow block", "red mug", "green can"])
+SLOW = pytest.mark.slow
+
+
+@pytest.mark.parametrize(
+    "item", ["red mug", pytest.param("yellow block", marks=SLOW), pytest.param("green can", marks=SLOW)]
+)
 def test_friction_carries_an_object_from_the_table_to_the_tray(item: str) -> None:
     robot = brought(item)
     released = release(robot, "t.4")
@@ -295,6 +294,7 @@ def test_friction_carries_an_object_from_the_table_to_the_tray(item: str) -> Non
     assert (again["status"], again["attempt"]) == ("done", 2)
 
 
+@pytest.mark.slow
 def test_fingers_that_did_not_open_hold_the_same_thing_for_the_next_try(monkeypatch: pytest.MonkeyPatch) -> None:
     robot = brought("green can")
     told = robot.bus.tap(topics.GRIPPER_COMMAND)

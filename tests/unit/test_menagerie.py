@@ -22,6 +22,7 @@ from services.sim.config import SimConfig
 from services.sim.model import Robot, load_robot
 from services.sim.service import SimService
 from tests import standin
+from tests.simulation import Simulation
 
 NAME = "menagerie:stanford_tidybot"
 SCENE = load_scene("minimal")
@@ -40,23 +41,15 @@ def robot(root: Path) -> Robot:
         return load_robot(NAME)
 
 
-class Sim:
-    """The simulation of the stand-in, ticked by hand."""
+class Sim(Simulation):
+    """The simulation of the stand-in."""
 
     def __init__(self) -> None:
-        self.bus = MemoryBus()
-        reads, writes = SimService.READS, SimService.WRITES
-        self.io = MemoryIo(self.bus, "sim", reads, writes, scene=SCENE)
-        self.service = SimService(SimConfig(robot=NAME, odometry_slip=0, odometry_veer=0, odometry_noise=0), self.io)
-        self.ticks = 0
+        super().__init__(SCENE, robot=NAME, odometry_slip=0, odometry_veer=0, odometry_noise=0)
 
-    def run(self, seconds: float) -> m.JointStates:
-        for _ in range(round(seconds * 100)):
-            self.ticks += 1
-            self.io.begin(self.ticks, self.ticks * 0.01)
-            self.service.step(self.ticks * 0.01)
-        states: m.JointStates = codec.decode(topics.JOINT_STATES, self.bus.last["joint_states"])
-        return states
+    def after(self, seconds: float) -> m.JointStates:
+        self.step(seconds)
+        return self.last(topics.JOINT_STATES)
 
 
 @pytest.fixture
@@ -108,7 +101,7 @@ def test_the_pinch_point_lies_between_the_pads_and_looks_along_the_approach(robo
 def test_the_base_drives_and_says_so(sim: Sim) -> None:
     home = SCENE.home
     sim.bus.send(topics.BASE_TARGET, m.BaseTarget(x=home.x - 0.3, y=home.y, theta=home.theta + 0.5, id="there"))
-    states = sim.run(3.0)
+    states = sim.after(3.0)
     reached = codec.decode(topics.GOAL_REACHED, sim.bus.last["base/goal_reached"])
     assert (reached.reached, reached.target_id) == (True, "there")
     assert states.position[:3] == pytest.approx([home.x - 0.3, home.y, home.theta + 0.5], abs=0.03)
@@ -119,22 +112,22 @@ def test_the_arm_follows_and_refuses_what_its_joints_cannot(sim: Sim) -> None:
     for _ in range(60):
         q = q + np.array([0.005, 0.01, 0, 0, 0, 0.01, 0])
         sim.bus.send(topics.ARM_COMMAND, m.ArmCommand(position=q.tolist(), period=0.02))
-        states = sim.run(0.02)
+        states = sim.after(0.02)
     assert states.position[3:10] == pytest.approx(q.tolist(), abs=0.05)
     beyond = q.copy()
     beyond[5] = 2.2
     sim.bus.send(topics.ARM_COMMAND, m.ArmCommand(position=beyond.tolist(), period=0.02))
-    sim.run(0.05)
+    sim.after(0.05)
     assert sim.io.drops["arm/command"] == 1
 
 
 def test_the_gripper_closes_on_its_own_travel(sim: Sim) -> None:
-    states = sim.run(0.1)
+    states = sim.after(0.1)
     assert states.position[-1] == pytest.approx(0.0838, abs=0.002)
     sim.bus.send(topics.GRIPPER_COMMAND, m.GripperCommand(position=1.0, max_effort=25.0))
-    assert sim.run(1.0).position[-1] < 0.002
+    assert sim.after(1.0).position[-1] < 0.002
     sim.bus.send(topics.GRIPPER_COMMAND, m.GripperCommand(position=0.5, max_effort=25.0))
-    assert 0.03 < sim.run(1.0).position[-1] < 0.05
+    assert 0.03 < sim.after(1.0).position[-1] < 0.05
 
 
 def test_perception_knows_this_body(robot: Robot) -> None:
@@ -153,7 +146,7 @@ def test_perception_knows_this_body(robot: Robot) -> None:
 def test_the_page_draws_its_fingers_where_physics_has_them(sim: Sim) -> None:
     drawing = draw(codec.decode(topics.SIM_MODEL, sim.bus.last["sim/model"]).mjcf)
     sim.bus.send(topics.GRIPPER_COMMAND, m.GripperCommand(position=0.6, max_effort=25.0))
-    width = sim.run(1.0).position[-1]
+    width = sim.after(1.0).position[-1]
     assert drawing.hand is not None
     told = dict(zip(drawing.hand.joints, drawing.hand.posture(width), strict=True))
     model, data = sim.service.physics.model, sim.service.physics.data

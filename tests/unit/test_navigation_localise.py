@@ -1,21 +1,21 @@
 import math
 
-import msgspec
 import numpy as np
 import pytest
 
 from common import messages as m
 from common import topics
-from common.clock import ManualClock
 from common.geometry import Pose2, compose, inverse, wrap
-from common.memory import MemoryBus, MemoryIo
-from common.scene import Scene, load_scene
+from common.io import Io
+from common.scene import load_scene
 from services.navigation.config import NavigationConfig
 from services.navigation.costmap import Costmap
 from services.navigation.floorplan import REACH, DistanceField, Rectangle, distance_field, rectangles
 from services.navigation.localise import Localiser
 from services.navigation.relocalise import relocalise
 from services.navigation.senses import Senses
+from services.navigation.service import NavigationService
+from tests.node import Node
 from tests.unit.navigation_flat import cast, ends
 
 SCENE = load_scene("apartment")
@@ -108,30 +108,34 @@ def test_targets_go_out_in_the_frame_of_the_wheels() -> None:
     assert compose((0.9, 2.1, 0.4), compose(inverse((1.0, 2.0, 0.5)), sent)) == pytest.approx(target)
 
 
-class Ear:
-    """Senses on a memory bus with a robot whose wheels lie."""
+class Hearing:
+    """The senses as a service of their own."""
 
-    def __init__(self, scene: Scene = SCENE) -> None:
-        self.bus, config = MemoryBus(), NavigationConfig()
-        reads = (topics.ODOMETRY, topics.JOINT_STATES, topics.SCAN)
-        self.clock = ManualClock()
-        self.io = MemoryIo(self.bus, "navigation", reads, (topics.POSE,), scene=scene, clock=self.clock)
-        self.senses = Senses(config, self.io, Costmap(scene, config.resolution, 4.0))
-        self.now = 0.0
+    NAME, HZ = NavigationService.NAME, NavigationService.HZ
+    READS, WRITES = (topics.ODOMETRY, topics.JOINT_STATES, topics.SCAN), (topics.POSE,)
+
+    def __init__(self, config: NavigationConfig, io: Io) -> None:
+        self.senses = Senses(config, io, Costmap(io.scene, config.resolution, 4.0))
+        self.step = self.senses.step
+
+
+class Ear(Node):
+    """Senses with a robot whose wheels lie."""
+
+    def __init__(self) -> None:
+        super().__init__(Hearing, NavigationConfig(), SCENE)
+        self.senses: Senses = self.service.senses
 
     def feel(self, wheels: Pose2, ranges: np.ndarray | None, scan_age: float = 0.0, **velocity: float) -> None:
-        self.now += 0.05
-        self.clock.advance(0.05)
+        self.later()
         x, y, theta = wheels
-        self.bus.send(topics.ODOMETRY, m.Odometry(t=self.now, x=x, y=y, theta=theta, **velocity))
+        self.send(topics.ODOMETRY, m.Odometry(t=self.now, x=x, y=y, theta=theta, **velocity))
         if ranges is not None:
-            payload = ranges.astype("<f4").tobytes()
-            self.bus.send(topics.SCAN, m.LaserScan(t=self.now - scan_age, ranges=payload))
-        self.io.begin(round(self.now * 100), self.now)
-        self.senses.step(self.now)
+            self.send(topics.SCAN, m.LaserScan(t=self.now - scan_age, ranges=ranges.astype("<f4").tobytes()))
+        self.run()
 
     def pose(self) -> m.PoseEstimate:
-        return msgspec.json.decode(self.bus.last["navigation/pose"], type=m.PoseEstimate)
+        return self.last(topics.POSE)
 
 
 def test_the_pose_on_the_bus_follows_the_truth_while_the_wheels_drift() -> None:
@@ -165,8 +169,7 @@ def test_a_base_without_odometry_is_placed_by_its_joints() -> None:
         t=0.0, name=["base_x", "base_y", "base_yaw"], position=[0.3, -0.2, 0.1], velocity=[], effort=[]
     )
     ear.bus.send(topics.JOINT_STATES, joints)
-    ear.io.begin(10, 0.1)
-    ear.senses.step(0.1)
+    ear.step()
     assert (ear.pose().x, ear.pose().y, ear.pose().theta) == pytest.approx((0.3, -0.2, 0.1))
 
 

@@ -110,16 +110,11 @@ class Pilot(Node):
 
     def __init__(self) -> None:
         super().__init__(NavigationService, CONFIG, SCENE, lockstep=False)
-        self.targets = self.bus.tap(topics.BASE_TARGET)
         self.pose = (0.0, 0.0, 0.0)
 
-    def step(self, seconds: float = 0.05, odometry: bool = True) -> None:
-        for _ in range(max(1, round(seconds / 0.05))):
-            self.later()
-            if odometry:
-                x, y, theta = self.pose
-                self.bus.send(topics.ODOMETRY, m.Odometry(t=self.now, x=x, y=y, theta=theta))
-            self.run()
+    def feed(self) -> None:
+        x, y, theta = self.pose
+        self.bus.send(topics.ODOMETRY, m.Odometry(t=self.now, x=x, y=y, theta=theta))
 
     def ask(self, text: str, goal_id: str = "a.1", attempt: int = 1) -> m.NavigationStatus:
         self.bus.send(topics.NAVIGATION_GOAL, m.NavigationGoal(goal=text, id=goal_id, attempt=attempt))
@@ -130,7 +125,7 @@ class Pilot(Node):
         return self.last(topics.NAVIGATION_STATUS)
 
     def target(self) -> m.BaseTarget:
-        return msgspec.json.decode(self.targets[-1], type=m.BaseTarget)
+        return self.sent(topics.BASE_TARGET)[-1]
 
 
 @pytest.mark.parametrize(
@@ -222,29 +217,29 @@ def test_a_new_goal_replaces_the_old_one_and_stop_holds() -> None:
     assert node.ask("goto bedroom", "a.2").goal_id == "a.2"
     stopped = node.ask("stop", "a.3")
     assert (stopped.status, stopped.code) == ("idle", "STOPPED")
-    count = len(node.targets)
+    count = node.count(topics.BASE_TARGET)
     node.step(0.5)
-    assert len(node.targets) == count
+    assert node.count(topics.BASE_TARGET) == count
 
 
 def test_silent_odometry_ends_the_goal() -> None:
     node = Pilot()
     node.ask("goto kitchen")
-    node.step(1.0, odometry=False)
+    node.step(1.0, fed=False)
     assert (node.status().status, node.status().code) == ("failed", "NO_ODOMETRY")
 
 
 @pytest.mark.parametrize(
     "pose",
     [
-        m.NavGoal(id="c", x=math.nan, y=0.0),
         m.NavGoal(id="c", x=99.0, y=0.0),
         m.NavGoal(id="c", x=0.5, y=0.5, frame="moon"),
     ],
 )
 def test_a_bad_pose_is_refused(pose: m.NavGoal) -> None:
     node = Pilot()
-    node.service._take(pose.id, 1, "", pose)
+    node.send(topics.NAV_GOAL, pose)
+    node.step()
     feedback = node.last(topics.NAVIGATION_FEEDBACK)
     assert (feedback.status, feedback.code) == ("failed", "BAD_POSE")
 

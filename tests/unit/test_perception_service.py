@@ -1,6 +1,5 @@
 """What the perception makes of pictures that are none, or not its own."""
 
-import msgspec
 import pytest
 
 from common import messages as m
@@ -16,14 +15,11 @@ class Eyes(Node):
 
     def __init__(self) -> None:
         super().__init__(PerceptionService, PerceptionConfig(), load_scene("minimal"))
-        asked = self.bus.tap(topics.CAMERA_REQUEST)
-        while not asked:
-            self.step()
-        self.asked = msgspec.json.decode(asked[-1], type=m.CameraRequest)
+        self.until(lambda: self.count(topics.CAMERA_REQUEST))
+        self.asked = self.sent(topics.CAMERA_REQUEST)[-1]
 
-    def step(self) -> None:
-        self.bus.send(topics.POSE, m.PoseEstimate(t=self.later(), x=0.0, y=0.0, theta=0.0))
-        self.run()
+    def feed(self) -> None:
+        self.send(topics.POSE, m.PoseEstimate(t=self.now, x=0.0, y=0.0, theta=0.0))
 
     def show(self, picture_id: str, camera: str, pixels: int) -> None:
         image = m.Rgbd(

@@ -17,13 +17,12 @@ CONFIG = config.load("planner", PlannerConfig, config.DEFAULT_DIR, {})
 class Desk(Node):
     def __init__(self) -> None:
         super().__init__(PlannerService, CONFIG, SCENE)
-        self.plans = self.bus.tap(topics.ACTION_PLAN)
 
     def ask(self, command: str, request_id: str = "m.1", **fields: object) -> m.ActionPlan:
         request = msgspec.convert({"id": request_id, "command": command, **fields}, m.PlanRequest)
         self.bus.send(topics.PLAN_REQUEST, request)
         self.step()
-        plan = msgspec.json.decode(self.plans[-1], type=m.ActionPlan)
+        plan = self.sent(topics.ACTION_PLAN)[-1]
         assert plan.request_id == request_id
         return plan
 
@@ -57,7 +56,7 @@ def test_the_same_request_twice_gets_the_same_plan() -> None:
     node = Desk()
     first = node.ask("bring me the red mug")
     assert node.ask("bring me the apple") == first
-    assert len(node.plans) == 2
+    assert node.count(topics.ACTION_PLAN) == 2
 
 
 def test_every_rejected_plan_of_a_mission_is_remembered() -> None:
@@ -88,7 +87,7 @@ def test_a_request_that_does_not_decode_is_counted() -> None:
     node.bus.put(topics.PLAN_REQUEST, b'{"command": "bring me the apple"}')
     node.bus.put(topics.PLAN_REQUEST, b"bring me the apple")
     node.step()
-    assert node.io.drops["plan_request"] == 2 and not node.plans
+    assert node.io.drops["plan_request"] == 2 and not node.count(topics.ACTION_PLAN)
 
 
 @pytest.mark.parametrize(

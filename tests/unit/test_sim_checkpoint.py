@@ -7,34 +7,19 @@ import pytest
 
 from common import codec, topics
 from common import messages as m
-from common.clock import ManualClock
 from common.lockstep import DT
-from common.memory import MemoryBus, MemoryIo
 from common.scene import load_scene
 from services.sim import checkpoint
-from services.sim.config import SimConfig
-from services.sim.service import SimService
+from tests.simulation import Simulation
 
 SCENE = load_scene("minimal")
 
 
-class Sim:
-    """A simulation process: its service, its bus and its time."""
+class Sim(Simulation):
+    """A simulation process."""
 
-    def __init__(self, directory: Path, run: str = "a", seed: int = 1) -> None:
-        self.bus = MemoryBus()
-        self.io = MemoryIo(
-            self.bus, "sim", SimService.READS, SimService.WRITES, scene=SCENE, seed=seed, clock=ManualClock()
-        )
-        self.io.state_dir = directory
-        self.service = SimService(SimConfig(run=run), self.io)
-        self.tick = round(self.service.start_time / DT)
-
-    def advance(self, ticks: int) -> None:
-        for _ in range(ticks):
-            self.io.begin(self.tick + 1, self.tick * DT)
-            self.service.step(self.tick * DT)
-            self.tick += 1
+    def __init__(self, directory: Path, run: str = "a") -> None:
+        super().__init__(SCENE, seed=1, state_dir=directory, run=run)
 
     @property
     def world(self) -> np.ndarray:  # type: ignore[type-arg]
@@ -45,7 +30,7 @@ def driven(directory: Path) -> Sim:
     sim = Sim(directory)
     sim.bus.send(topics.BASE_TARGET, m.BaseTarget(x=0.2, y=0.1, theta=0.3, id="t"))
     sim.bus.send(topics.GRIPPER_COMMAND, m.GripperCommand(position=1.0, max_effort=20.0))
-    sim.advance(149)
+    sim.step(1.49)
     return sim
 
 
@@ -53,10 +38,10 @@ def test_it_goes_on_at_most_half_a_second_back_at_rest(tmp_path: Path) -> None:
     first = driven(tmp_path)
     second = Sim(tmp_path)
     assert 0 <= first.tick - second.tick <= 50
-    assert second.service.start_time == second.tick * DT
+    assert second.service.start_time == (second.tick + 1) * DT
     before = second.world
     assert abs(before[0]) > 0.02
-    second.advance(100)
+    second.step(1.0)
     # Nobody has commanded it since: base and arm hold, the fingers stay shut.
     assert np.abs(second.world[:10] - before[:10]).max() < 0.01
     assert second.service.physics.width() < 0.003
@@ -77,11 +62,11 @@ def test_the_world_keeps_its_name_and_odometry_and_the_process_does_not(tmp_path
 def test_a_stop_outlives_the_process(tmp_path: Path) -> None:
     first = driven(tmp_path)
     first.bus.send(topics.ROBOT_STOP, m.RobotStop(reason="test"))
-    first.advance(60)
+    first.step(0.6)
     second = Sim(tmp_path)
     second.bus.send(topics.BASE_TARGET, m.BaseTarget(x=1.0, y=0.0, theta=0.0, id="u"))
     before = second.world[:3]
-    second.advance(50)
+    second.step(0.5)
     assert np.abs(second.world[:3] - before).max() < 0.01
 
 
@@ -92,11 +77,11 @@ def test_without_a_whole_file_of_this_run_it_begins_anew(torn: bytes | None, tmp
     if torn is not None:
         path.write_bytes(torn or path.read_bytes()[:100])
     second = Sim(tmp_path, run="a" if torn is not None else "b")
-    assert second.tick == 0
+    assert second.service.start_time == 0
     assert abs(second.world[0]) < 0.01
 
 
 def test_a_full_disk_is_logged_and_the_world_goes_on(tmp_path: Path) -> None:
     sim = Sim(tmp_path / "missing")
-    sim.advance(120)
-    assert sim.tick == 120
+    sim.step(1.2)
+    assert sim.tick + 1 == 120

@@ -1,4 +1,3 @@
-import json
 import math
 from pathlib import Path
 
@@ -8,43 +7,27 @@ import pytest
 
 from common import config, topics
 from common import messages as m
-from common.clock import ManualClock
-from common.lockstep import InProcess
-from common.memory import MemoryBus, MemoryIo
 from common.runtime import StartError
 from common.scene import SCENES, Obstacle, load_scene
 from services.sim.base import BaseDriver
 from services.sim.config import SimConfig
 from services.sim.obstacles import DISTANCE, Walker, chosen
 from services.sim.odometry import WheelOdometry
-from services.sim.service import SimService
+from tests.simulation import Simulation
 
 APARTMENT = load_scene("apartment")
 EXACT = {"odometry_slip": 0.0, "odometry_veer": 0.0, "odometry_noise": 0.0}
 
 
-class World:
-    """The simulation alone, with obstacles."""
+class World(Simulation):
+    """With obstacles, and sensors without error."""
 
-    def __init__(self, *obstacles: Obstacle, **parameters: object) -> None:
-        self.bus, clock = MemoryBus(), ManualClock()
-        self.io = MemoryIo(self.bus, "sim", SimService.READS, SimService.WRITES, scene=APARTMENT, clock=clock)
-        self.io.out_stamp = -1
-        settings = msgspec.convert({"lidar_noise": 0.0, **EXACT, **parameters}, SimConfig)
-        self.sim = SimService(msgspec.structs.replace(settings, obstacles=obstacles), self.io)
-        self.loop = InProcess(self.sim, self.io, clock)
-
-    def run(self, seconds: float) -> None:
-        for _ in range(round(seconds * 100)):
-            self.loop.advance()
-
-    def truth(self) -> dict[str, object]:
-        answer: dict[str, object] = json.loads(self.bus.get("sim/truth") or b"{}")
-        return answer
+    def __init__(self, *obstacles: Obstacle) -> None:
+        super().__init__(APARTMENT, lidar_noise=0.0, obstacles=obstacles, **EXACT)
 
     def seen(self, bearing: float) -> float:
         """What the lidar measures at `bearing` from the robot's nose."""
-        scan = msgspec.msgpack.decode(self.bus.last["scan"], type=m.LaserScan)
+        scan = self.last(topics.SCAN)
         ray = round((bearing - scan.angle_min) / scan.angle_increment)
         return float(np.frombuffer(scan.ranges, "<f4")[ray])
 
@@ -55,7 +38,7 @@ def walker(**fields: object) -> Walker:
 
 def test_the_lidar_sees_a_box_and_truth_tells_where_it_is() -> None:
     world = World(Obstacle(name="crate", kind="box", position=(0.0, -1.0), size=(0.4, 0.4, 0.5)))
-    world.run(0.2)
+    world.step(0.2)
     assert world.seen(-math.pi / 2) == pytest.approx(0.8, abs=0.01)
     assert world.truth()["obstacles"] == {
         "crate": {"kind": "box", "position": [0.0, -1.0, 0.25], "size": [0.4, 0.4, 0.5]}
@@ -64,7 +47,7 @@ def test_the_lidar_sees_a_box_and_truth_tells_where_it_is() -> None:
 
 def test_a_box_too_low_for_the_lidar_is_not_seen() -> None:
     world = World(Obstacle(name="mat", kind="box", position=(0.0, -1.0), size=(0.4, 0.4, 0.1)))
-    world.run(0.2)
+    world.step(0.2)
     assert world.seen(-math.pi / 2) > 1.5
 
 
@@ -114,12 +97,12 @@ def test_a_polite_one_waits_before_the_robot_and_may_always_step_back() -> None:
 
 def test_contacts_are_kept_until_the_next_reset() -> None:
     world = World(Obstacle(name="crate", kind="box", position=(0.0, -0.75), size=(0.6, 0.4, 0.5)))
-    world.run(0.3)
+    world.step(0.3)
     assert world.truth()["contacts"] == []
     world.bus.send(topics.BASE_TARGET, m.BaseTarget(x=0.0, y=-0.5, theta=0.0, id="a"))
-    world.run(1.5)
+    world.step(1.5)
     world.bus.send(topics.BASE_TARGET, m.BaseTarget(x=0.0, y=0.2, theta=0.0, id="b"))
-    world.run(1.5)
+    world.step(1.5)
     contacts = world.truth()["contacts"]
     assert [(c["robot"], c["thing"], c["kind"]) for c in contacts] == [("base", "crate", "obstacle")]  # type: ignore
     assert 0.3 < contacts[0]["first"] < contacts[0]["last"] < 2.5  # type: ignore[index]
@@ -130,10 +113,10 @@ def test_contacts_are_kept_until_the_next_reset() -> None:
 def test_furniture_and_walls_count_as_contacts_the_floor_and_objects_do_not() -> None:
     world = World()
     world.bus.send(topics.BASE_TARGET, m.BaseTarget(x=-0.4, y=0.4, theta=0.0, id="a"))
-    world.run(3.0)
+    world.step(3.0)
     assert world.truth()["contacts"] == []
     world.bus.send(topics.BASE_TARGET, m.BaseTarget(x=-2.4, y=0.4, theta=0.0, id="b"))
-    world.run(5.0)
+    world.step(5.0)
     assert {(c["thing"], c["kind"]) for c in world.truth()["contacts"]} == {("sofa_seat", "furniture")}  # type: ignore
 
 

@@ -8,44 +8,21 @@ import pytest
 
 from common import messages as m
 from common import topics
-from common.clock import ManualClock
-from common.lockstep import InProcess
-from common.memory import MemoryBus, MemoryIo
 from common.runtime import StartError
 from common.scene import SCENES, SceneError, load_scene
-from services.sim.config import SimConfig
 from services.sim.layout import place_objects
 from services.sim.robot import JOINT_NAMES
-from services.sim.service import SimService
 from services.sim.truth import inside
+from tests.simulation import Simulation
 
 
-class World:
-    """The simulation alone on a memory bus."""
-
-    def __init__(self, scene: str = "minimal", seed: int = 0, **parameters: object) -> None:
-        self.bus, clock = MemoryBus(), ManualClock()
-        self.io = MemoryIo(
-            self.bus, "sim", SimService.READS, SimService.WRITES, scene=load_scene(scene), seed=seed, clock=clock
-        )
-        self.io.out_stamp = -1
-        self.sim = SimService(msgspec.convert(parameters, SimConfig), self.io)
-        self.loop = InProcess(self.sim, self.io, clock)
-
-    def run(self, seconds: float) -> None:
-        for _ in range(round(seconds * 100)):
-            self.loop.advance()
-
+class World(Simulation):
     def speed(self) -> float:
         physics = self.sim.physics
         return float(np.hypot(*physics.data.qvel[physics.qvel_at[:2]]))
 
-    def truth(self) -> dict[str, object]:
-        answer: dict[str, object] = json.loads(self.bus.get("sim/truth") or b"{}")
-        return answer
-
     def reached(self) -> m.GoalReached:
-        return msgspec.json.decode(self.bus.last["base/goal_reached"], type=m.GoalReached)
+        return self.last(topics.GOAL_REACHED)
 
 
 def test_layouts_repeat_for_a_seed_and_stand_on_reachable_free_spots() -> None:
@@ -67,7 +44,7 @@ def test_layouts_repeat_for_a_seed_and_stand_on_reachable_free_spots() -> None:
 @pytest.mark.parametrize("seed", range(3))
 def test_objects_stay_where_they_were_put(seed: int) -> None:
     world = World("apartment", seed)
-    world.run(2.0)
+    world.step(2.0)
     for name, found in world.truth()["objects"].items():  # type: ignore[attr-defined]
         placed = next(p for p in world.sim.physics.placements if p.spec.name == name)
         assert math.dist(found["position"], placed.position) < 0.01, name
@@ -87,7 +64,7 @@ def test_the_base_runs_to_its_target_within_limits_and_says_so() -> None:
     world.bus.send(topics.BASE_TARGET, m.BaseTarget(x=0.2, y=1.1, theta=1.0, id="a"))
     fastest = 0.0
     for _ in range(800):
-        world.run(0.01)
+        world.step(0.01)
         fastest = max(fastest, world.speed())
         if world.reached() == m.GoalReached(reached=True, target_id="a"):
             break
@@ -99,22 +76,22 @@ def test_the_base_runs_to_its_target_within_limits_and_says_so() -> None:
 def test_stop_brakes_at_once_and_holds_until_resume() -> None:
     world = World("apartment")
     world.bus.send(topics.BASE_TARGET, m.BaseTarget(x=-1.2, y=-1.2, theta=0.0, id="a"))
-    world.run(1.2)
+    world.step(1.2)
     before = world.speed()
     assert before > 0.4
     world.bus.put(topics.ROBOT_STOP, b"enough")
-    world.run(0.06)
+    world.step(0.06)
     assert world.speed() < before / 2
-    world.run(0.24)
+    world.step(0.24)
     assert world.speed() < 0.01
     world.bus.send(topics.BASE_TARGET, m.BaseTarget(x=-1.2, y=-1.2, theta=0.0, id="b"))
-    world.run(0.5)
+    world.step(0.5)
     assert world.speed() < 0.01, "commands are ignored while stopped"
     world.bus.put(topics.ROBOT_RESUME, b"me")
-    world.run(0.5)
+    world.step(0.5)
     assert world.speed() < 0.01, "nothing from before resumes by itself"
     world.bus.send(topics.BASE_TARGET, m.BaseTarget(x=-1.2, y=-1.2, theta=0.0, id="c"))
-    world.run(1.0)
+    world.step(1.0)
     assert world.speed() > 0.2
 
 
@@ -122,16 +99,16 @@ def test_a_silent_velocity_stream_means_hold() -> None:
     world = World("apartment")
     for _ in range(10):
         world.bus.send(topics.CMD_VEL, m.CmdVel(vx=0.0, vy=0.3, omega=0.0))
-        world.run(0.1)
+        world.step(0.1)
     assert world.speed() > 0.2
-    world.run(0.7)
+    world.step(0.7)
     assert world.speed() < 0.01
 
 
 def test_joint_states_name_every_joint_at_100_hz() -> None:
     world = World()
     tap = world.bus.tap(topics.JOINT_STATES)
-    world.run(0.5)
+    world.step(0.5)
     assert len(tap) == 50
     state = msgspec.msgpack.decode(tap[-1], type=m.JointStates)
     assert tuple(state.name) == JOINT_NAMES
@@ -142,7 +119,7 @@ def test_joint_states_name_every_joint_at_100_hz() -> None:
 def test_the_lidar_sees_walls_and_not_the_robot() -> None:
     world = World()
     tap = world.bus.tap(topics.SCAN)
-    world.run(0.2)
+    world.step(0.2)
     scan = msgspec.msgpack.decode(tap[-1], type=m.LaserScan)
     ranges = np.frombuffer(scan.ranges, "<f4")
     angles = scan.angle_min + np.arange(len(ranges)) * scan.angle_increment
@@ -166,7 +143,7 @@ def test_impossible_commands_are_counted_and_move_nothing(topic: topics.Topic[m.
     world = World()
     before = world.sim.physics.data.qpos[:10].copy()
     world.bus.send(topic, message)
-    world.run(0.3)
+    world.step(0.3)
     assert world.io.drops[topic.key] == 1
     assert world.sim.physics.data.qpos[:10] == pytest.approx(before, abs=1e-3)
 
@@ -179,8 +156,8 @@ def test_the_arm_follows_its_stream_and_holds_when_it_ends() -> None:
         goal = start.copy()
         goal[0] += 0.01 * (step + 1)
         world.bus.send(topics.ARM_COMMAND, m.ArmCommand(position=goal.tolist(), period=0.02))
-        world.run(0.02)
-    world.run(1.0)
+        world.step(0.02)
+    world.step(1.0)
     assert physics.data.qpos[physics.qpos_at[3]] - start[0] == pytest.approx(0.5, abs=0.02)
 
 
@@ -198,12 +175,12 @@ def test_queries_reset_pause_and_save() -> None:
 def test_a_snapshot_restores_the_whole_state(tmp_path: Path) -> None:
     world = World(snapshot_dir=str(tmp_path))
     world.bus.send(topics.BASE_TARGET, m.BaseTarget(x=-0.5, y=0.3, theta=0.5, id="a"))
-    world.run(1.0)
+    world.step(1.0)
     saved = json.loads(world.bus.get("sim/snapshot") or b"{}")
     assert Path(saved["path"]).stat().st_size == saved["bytes"]
     state = np.load(saved["path"])
     before = world.sim.physics.data.qpos.copy()
-    world.run(0.5)
+    world.step(0.5)
     world.sim.physics.restore(state)
     assert np.array_equal(world.sim.physics.data.qpos, before)
 

@@ -8,13 +8,13 @@ import pytest
 
 from common import config, topics
 from common import messages as m
-from common.memory import MemoryBus, MemoryIo
 from common.scene import load_scene
 from services.speech.audio import RATE, Samples
 from services.speech.config import SpeechConfig
 from services.speech.segment import Segment, Segmenter
 from services.speech.service import SpeechService
 from services.speech.speak import Voice
+from tests.node import Node
 from tests.support import ROOT
 
 SCENE = load_scene("apartment")
@@ -32,27 +32,16 @@ def said() -> dict[str, Samples]:
     return {text: np.concatenate([BREATH, voice.speak(text), PAUSE]) for text in SENTENCES}
 
 
-class Robot:
-    """The service on a memory bus in lockstep, and what it published."""
+class Robot(Node):
+    """The service in lockstep, and what it published."""
 
     def __init__(self, **changes: object) -> None:
-        self.bus = MemoryBus()
-        self.io = MemoryIo(self.bus, "speech", SpeechService.READS, SpeechService.WRITES, scene=SCENE)
+        super().__init__(SpeechService, msgspec.structs.replace(CONFIG, **changes), SCENE)
         self.commands = self.bus.tap(topics.VOICE_COMMAND)
         self.stops = self.bus.tap(topics.ROBOT_STOP)
         self.results = self.bus.tap(topics.SPEECH_RESULT)
         self.sound = self.bus.tap(topics.AUDIO_OUT)
         self.statuses = self.bus.tap(topics.SPEECH_STATUS)
-        self.service = SpeechService(msgspec.structs.replace(CONFIG, **changes), self.io)
-        self.tick = 0
-
-    def step(self, seconds: float = 0.1) -> None:
-        for _ in range(max(1, round(seconds * 10))):
-            self.tick += 10
-            now = self.tick / 100
-            self.io.clock.advance(now - self.io.clock.now())  # type: ignore[attr-defined]
-            self.io.begin(self.tick, now)
-            self.service.step(now)
 
     def ask(self, text: str, goal_id: str) -> None:
         self.bus.send(topics.SPEECH_GOAL, m.SpeechGoal(goal=text, id=goal_id))
@@ -61,7 +50,7 @@ class Robot:
     def hear(self, samples: Samples, addressed: bool = False, after: float = 1.0) -> None:
         for start in range(0, len(samples), RATE // 10):
             data = samples[start : start + RATE // 10].tobytes()
-            self.bus.send(topics.AUDIO_PCM, m.AudioChunk(t=self.tick / 100, data=data, addressed=addressed))
+            self.bus.send(topics.AUDIO_PCM, m.AudioChunk(t=self.now, data=data, addressed=addressed))
             self.step()
         self.step(after)
 
@@ -111,6 +100,7 @@ def test_speech_to_somebody_else_is_ignored(robot: Robot, said: dict[str, Sample
     assert robot.states() == ["idle"]
 
 
+@pytest.mark.slow
 def test_nonsense_after_the_wake_word_is_said_so_and_the_ear_stays_open(robot: Robot, said: dict[str, Samples]) -> None:
     robot.hear(said["hey jarvis, the weather is nice today"])
     assert not robot.commands
@@ -159,6 +149,7 @@ def test_while_the_robot_speaks_only_stop_and_cancel_are_heard(robot: Robot, sai
     assert not any(msgspec.msgpack.decode(p, type=m.AudioChunk).end for p in robot.sound), "in mid-sentence"
 
 
+@pytest.mark.slow
 def test_the_brain_listening_needs_no_wake_word_and_gets_the_answer(robot: Robot, said: dict[str, Samples]) -> None:
     robot.ask("listen", "a.1")
     robot.hear(said["yes"])
@@ -174,6 +165,7 @@ def test_the_brain_listening_needs_no_wake_word_and_gets_the_answer(robot: Robot
     assert robot.answered()[3:] == ["stop"] and robot.commanded() == ["stop"] and len(robot.stops) == 1
 
 
+@pytest.mark.slow
 def test_an_answer_begun_just_before_the_brain_listens_counts(robot: Robot, said: dict[str, Samples]) -> None:
     sound = said["bring me the red mug"]
     half = RATE + RATE // 10
@@ -183,6 +175,7 @@ def test_an_answer_begun_just_before_the_brain_listens_counts(robot: Robot, said
     assert robot.answered() == ["bring me the red mug"]
 
 
+@pytest.mark.slow
 def test_a_recognition_for_a_goal_that_was_cancelled_is_dropped(robot: Robot, said: dict[str, Samples]) -> None:
     robot.ask("listen", "a.1")
     robot.hear(said["bring me the red mug"][: -RATE // 2], after=0.1)
@@ -197,6 +190,7 @@ def test_push_to_talk_needs_no_wake_word(robot: Robot, said: dict[str, Samples])
     assert robot.commanded() == ["bring me the red mug"]
 
 
+@pytest.mark.slow
 def test_without_wake_word_everything_is_meant_for_the_robot(said: dict[str, Samples]) -> None:
     robot = Robot(wake_word=False)
     robot.hear(said["bring me the red mug"])
@@ -210,6 +204,7 @@ def test_typed_stop_works_at_any_time(robot: Robot) -> None:
     assert len(robot.stops) == 1 and robot.commanded() == ["stop"]
 
 
+@pytest.mark.slow
 def test_the_same_sound_gives_the_same_messages(said: dict[str, Samples]) -> None:
     outcomes = []
     for _ in range(2):

@@ -141,11 +141,6 @@ class Listener(Node):
 
     def __init__(self, **changes: object) -> None:
         super().__init__(SpeechService, msgspec.structs.replace(CONFIG, **changes), SCENE)
-        self.results = self.bus.tap(topics.SPEECH_RESULT)
-
-    def step(self, seconds: float = 0.1) -> None:
-        for _ in range(max(1, round(seconds * 10))):
-            super().step()
 
     def ask(self, text: str, goal_id: str = "a.1") -> None:
         self.bus.send(topics.SPEECH_GOAL, m.SpeechGoal(goal=text, id=goal_id))
@@ -158,7 +153,7 @@ class Listener(Node):
             self.step()
 
     def result(self) -> m.SpeechResult:
-        return msgspec.json.decode(self.results[-1], type=m.SpeechResult)
+        return self.sent(topics.SPEECH_RESULT)[-1]
 
     def state(self) -> str:
         return self.last(topics.SPEECH_STATUS).state
@@ -209,7 +204,7 @@ def test_silence_is_an_error_after_the_timeout() -> None:
     node = Listener(listen_timeout=5.0)
     node.ask("listen")
     node.play(np.zeros(RATE * 4, np.int16))
-    assert not node.results
+    assert not node.count(topics.SPEECH_RESULT)
     node.step(2.0)
     assert (node.result().text, node.result().code) == ("ERROR", "TIMEOUT")
 
@@ -230,7 +225,7 @@ def test_cancel_ends_listening_and_an_unknown_goal_is_answered() -> None:
     node = Listener()
     node.ask("listen", "a.1")
     node.ask("cancel", "a.2")
-    assert node.state() == "idle" and not node.results
+    assert node.state() == "idle" and not node.count(topics.SPEECH_RESULT)
     node.ask("sing", "a.3")
     assert (node.result().text, node.result().code, node.result().goal_id) == ("ERROR", "UNKNOWN_GOAL", "a.3")
 
@@ -240,7 +235,8 @@ def test_the_same_goal_twice_gets_the_same_answer() -> None:
     node.bus.put(topics.SPEECH_TEXT, b"stop")
     node.ask("listen")
     node.ask("listen")
-    assert len(node.results) == 2 and node.results[0] == node.results[1]
+    first, second = node.sent(topics.SPEECH_RESULT)
+    assert first == second
     assert node.state() == "idle"
 
 
