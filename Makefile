@@ -4,10 +4,12 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.ready
 export OMP_NUM_THREADS = 1
+# Every service process would compile the same modules again.
+unexport PYTHONDONTWRITEBYTECODE
 PIP := $(BIN)/python -m pip --disable-pip-version-check
 ARGS ?=
 
-.PHONY: help setup demo test test-all check test-compose bench lock wheels clean
+.PHONY: help setup demo test test-slow test-all check test-compose bench lock wheels clean
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 16
@@ -28,23 +30,26 @@ $(STAMP): requirements.lock pyproject.toml
 demo: setup ## "bring me the red mug", from a recording to the delivery; ARGS='--speed max --seed 3'
 	$(BIN)/tidybot demo $(ARGS)
 
-# Tests without processes of their own share the cores; the others run one at a time. 5: ARGS chose none of them.
+# Two groups, one after the other: what runs in the test's own process, by test; what starts processes of its own, by
+# file (a router port and a namespace each, robots shared within a file). 5: ARGS chose none of them.
 PYTEST := $(BIN)/python -m pytest -q
 TOGETHER := -n logical --maxprocesses 4 --dist worksteal tests/unit tests/e2e/in_process
-ALONE := tests/contract tests/integration tests/e2e --ignore tests/e2e/in_process
+APART := -n 2 --dist loadfile --no-loadscope-reorder tests/e2e tests/integration tests/contract --ignore tests/e2e/in_process
 
 define run_tests
 @status=0; \
 $(PYTEST) $(TOGETHER) $(1) $(ARGS) || [ $$? = 5 ] || status=1; \
-$(PYTEST) $(ALONE) $(1) $(ARGS) || [ $$? = 5 ] || status=1; \
+$(PYTEST) $(APART) $(1) $(ARGS) || [ $$? = 5 ] || status=1; \
 exit $$status
 endef
 
-test: setup ## every test but the slow ones
+test: setup ## every layer in some minutes: all tests but the slow ones
 	$(call run_tests,-m 'not slow')
 
-test-all: setup ## the slow ones too
-	$(call run_tests,)
+test-slow: setup ## the others: whole missions, matrices, machines in network namespaces
+	$(call run_tests,-m slow)
+
+test-all: test test-slow ## everything
 
 check: setup ## lint, format, types, imports
 	$(BIN)/ruff check .

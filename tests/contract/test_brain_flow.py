@@ -158,7 +158,12 @@ def test_waits_for_somebody_who_hears_speech_goals(here: Site) -> None:
         subscriber.undeclare()
 
 
-@pytest.mark.parametrize("failure", [b"ERROR", b'"ERROR"', b'{"text": "ERROR"}'])
+SLOW = pytest.mark.slow
+
+
+@pytest.mark.parametrize(
+    "failure", [b"ERROR", pytest.param(b'"ERROR"', marks=SLOW), pytest.param(b'{"text": "ERROR"}', marks=SLOW)]
+)
 def test_five_seconds_before_listening_again(here: Site, failure: bytes) -> None:
     with scripted(here) as peer:
         peer.goal(1, "listen")

@@ -214,6 +214,7 @@ def test_the_space_bar_stops_from_inside_the_view(visitor: Visitor, link: Link) 
     eventually(lambda: sim_state(link) == "running", "the brake is released")
 
 
+@pytest.mark.slow
 def test_a_command_by_microphone(visitor: Visitor, link: Link) -> None:
     page = visitor.page
     visitor.until("WAITING|LISTENING")

@@ -162,17 +162,18 @@ def test_an_error_in_a_step_is_logged_and_survived(here: Site) -> None:
         eventually(lambda: health(session).last_error == "step failed", "the error is in the health record")
 
 
-@pytest.mark.parametrize(
-    ("args", "extra", "expected"),
-    [
-        (["--set", "echo.wrod=x"], {}, "unknown key 'wrod'"),
-        ([], {"TIDYBOT__ECHO__WORD": "[1]"}, "Expected `str`"),
-        ([], {"TIDYBOT_CLOCK": "sundial"}, "expected sim or wall"),
-        ([], {"TIDYBOT_CONNECT": "nonsense"}, "nonsense"),
-        (["--set", "runtime.scene=castle"], {}, "no scene file"),
-        (["--set", "runtime.log_level=loud"], {}, "Invalid enum value 'loud'"),
-    ],
+SLOW = pytest.mark.slow
+WRONG = (
+    (["--set", "echo.wrod=x"], {}, "unknown key 'wrod'"),
+    ([], {"TIDYBOT_CONNECT": "nonsense"}, "nonsense"),
+    pytest.param([], {"TIDYBOT__ECHO__WORD": "[1]"}, "Expected `str`", marks=SLOW),
+    pytest.param([], {"TIDYBOT_CLOCK": "sundial"}, "expected sim or wall", marks=SLOW),
+    pytest.param(["--set", "runtime.scene=castle"], {}, "no scene file", marks=SLOW),
+    pytest.param(["--set", "runtime.log_level=loud"], {}, "Invalid enum value 'loud'", marks=SLOW),
 )
+
+
+@pytest.mark.parametrize(("args", "extra", "expected"), WRONG)
 def test_a_bad_configuration_ends_with_status_2_and_a_reason(
     here: Site, args: list[str], extra: dict[str, str], expected: str
 ) -> None:

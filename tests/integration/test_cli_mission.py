@@ -16,6 +16,7 @@ VOICE = "docs/audio/bring_me_the_red_mug.wav"
 __all__ = ["run"]
 
 
+@pytest.mark.slow
 @pytest.mark.timeout(400)
 def test_commands_by_text_and_by_recording_end_as_physics_says(run: Run, tmp_path: Path) -> None:
     done = run.detached("--without", "dashboard", "--speed", "max", "--seed", "1")
@@ -65,8 +66,9 @@ def test_transcribe_reads_good_files_and_names_bad_ones(run: Run, tmp_path: Path
 
 
 @pytest.mark.timeout(400)
-def test_the_demo_delivers_and_leaves_nothing_behind(run: Run, tmp_path: Path) -> None:
-    done = run.command("demo", "--speed", "max", "--out", str(tmp_path / "demo.png"), timeout=360)
+@pytest.mark.parametrize("scene", ["minimal", pytest.param("apartment", marks=pytest.mark.slow)])
+def test_the_demo_delivers_and_leaves_nothing_behind(run: Run, tmp_path: Path, scene: str) -> None:
+    done = run.command("demo", "--scene", scene, "--speed", "max", "--out", str(tmp_path / "demo.png"), timeout=360)
     assert done.returncode == 0, done.stdout + done.stderr
     for word in (
         "CONFIRMING",
@@ -84,6 +86,7 @@ def test_the_demo_delivers_and_leaves_nothing_behind(run: Run, tmp_path: Path) -
     assert not list(run.directory.glob("demo-*"))
 
 
+@pytest.mark.slow
 def test_a_demo_that_runs_out_of_time_says_so_and_leaves_nothing(run: Run) -> None:
     words = ("demo", "--without", "camera", "--typed", "--timeout", "1")
     done = run.command(*words, timeout=120)

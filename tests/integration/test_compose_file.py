@@ -165,6 +165,7 @@ def containers(compose: dict[str, Any], tmp_path: Path) -> Iterator[Containers]:
         opened.close()
 
 
+@pytest.mark.slow
 @pytest.mark.timeout(400)
 def test_a_mission_survives_a_killed_and_a_restarted_navigation(
     containers: Containers, monkeypatch: pytest.MonkeyPatch

@@ -85,6 +85,7 @@ def robot(tmp_path: Path, request: pytest.FixtureRequest) -> Iterator[Watched]:
         opened.close()
 
 
+@pytest.mark.slow
 @pytest.mark.timeout(900)
 @pytest.mark.parametrize("robot", ["fetch", "vla"], indirect=True)
 def test_a_brain_killed_in_every_state_brings_the_object_all_the_same(robot: Watched) -> None:

@@ -28,6 +28,7 @@ def untimed(result: Result) -> dict[str, object]:
     return {k: v for k, v in result.evidence.items() if k != "wall_seconds"}
 
 
+@pytest.mark.slow
 def test_a_seed_repeats_with_all_its_evidence() -> None:
     """To the last digit; the first seconds of a mission are enough to differ in."""
     first, second = (runner.run(case_of(2, "green can", limit=20.0)) for _ in range(2))
@@ -36,6 +37,7 @@ def test_a_seed_repeats_with_all_its_evidence() -> None:
     assert untimed(first) == untimed(second)
 
 
+@pytest.mark.slow
 def test_a_gripper_that_does_not_close_is_noticed_and_tried_again() -> None:
     rule = Rule(service="manipulation", key="gripper_command", kind="drop", match={"position": 1.0})
     result = runner.run(case_of(2, "yellow block", rules=(rule,)))

@@ -26,6 +26,7 @@ def test_a_recorded_voice_brings_the_mug_home() -> None:
     assert seen(outcome) == FLOW
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("seed", "item"), [(3, "apple"), (2, "blue bottle"), (10, "yellow block")])
 def test_other_things_are_brought_as_well(seed: int, item: str) -> None:
     robot = Robot(seed=seed)
