@@ -4,6 +4,7 @@ import argparse
 import os
 import sys
 import traceback
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -23,11 +24,14 @@ from common.zenoh_io import ZenohIo
 
 HEALTH_PERIOD = 1.0
 MAX_CONSECUTIVE_ERRORS = 10
+STALLED = 1.0
+"""Wall time [s] without a tick after which a service is told that robot time stands still: a hundred ticks."""
 BAD_CONFIGURATION = 2
 
 
 # A class with NAME, HZ, CONFIG, READS, WRITES, a constructor (config, io) and `step(now)`, which drains, decides,
-# publishes and never blocks; `now` is robot time [s]. The simulation also has `paused`, `start_time` and `pace()`.
+# publishes and never blocks; `now` is robot time [s]. With `stalled(seconds)` it is also told, some ten times a second,
+# for how long robot time has stood still [s of wall time]. The simulation also has `paused`, `start_time` and `pace()`.
 ServiceClass = type[Any]
 
 
@@ -93,8 +97,12 @@ class Process:
         """One step behind the guard: an unexpected error is logged and counted, many in a row end the process."""
         self.io.begin(tick, now)
         self.io.answer_queries()
+        self._guarded(self.service.step, now)
+        self._steps += 1
+
+    def _guarded(self, act: Callable[[float], None], value: float) -> None:
         try:
-            self.service.step(now)
+            act(value)
             self._errors = 0
         except Exception as error:
             self._errors += 1
@@ -102,7 +110,6 @@ class Process:
             self.io.log.error("step failed", error=f"{type(error).__name__}: {error}", where=where)
             if self._errors >= MAX_CONSECUTIVE_ERRORS:
                 raise
-        self._steps += 1
 
     # --- loops
     def run_on_wall_clock(self) -> None:
@@ -127,6 +134,8 @@ class Process:
             ack = m.LockstepAck(name=self._kind.NAME, tick=tick, period=period, heard=self.io.heard)
             acks.put(codec.encode(topics.LOCKSTEP_ACK, ack))
 
+        stalled: Callable[[float], None] | None = getattr(self.service, "stalled", None)
+        began = monotonic()
         done = -1
         epoch = ""
         joined_at = float("-inf")
@@ -134,6 +143,8 @@ class Process:
             tick = listener.next(0.1, newest=not lockstep)
             if tick is None:
                 self.housekeeping()
+                if stalled is not None and (silent := monotonic() - max(began, listener.seen)) > STALLED:
+                    self._guarded(stalled, silent)
                 if lockstep and monotonic() - max(joined_at, listener.seen) > 1.0:
                     acknowledge(-1 if done < 0 else done)
                     joined_at = monotonic()

@@ -4,6 +4,7 @@ import os
 import socket
 import subprocess
 import sys
+import threading
 import time
 import uuid
 from collections.abc import Callable, Iterator
@@ -37,6 +38,26 @@ def eventually(probe: Callable[[], T], what: str, patience: float = PATIENCE) ->
         if time.monotonic() > end:
             raise AssertionError(f"did not happen within {patience:.0f} s: {what}")
         time.sleep(0.02)
+
+
+class Pulse(threading.Thread):
+    """Puts one payload on a key every 50 ms, as a driver's stream, from `start` to `stop`; not while `silent`."""
+
+    def __init__(self, opened: zenoh.Session, key: str, payload: str) -> None:
+        super().__init__(daemon=True)
+        self._publisher, self._payload = opened.declare_publisher(key), payload
+        self._ended = threading.Event()
+        self.silent = False
+
+    def run(self) -> None:
+        while not self._ended.wait(0.05):
+            if not self.silent:
+                self._publisher.put(self._payload)
+
+    def stop(self) -> None:
+        self._ended.set()
+        self.join()
+        self._publisher.undeclare()
 
 
 class Site:

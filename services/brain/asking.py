@@ -16,22 +16,38 @@ from services.brain.mission import Failure
 
 
 class Question(Say):
-    """Says the question; an answer that is given meanwhile cuts it short."""
+    """Says the question, not before the pause that a speech failure costs is over; an answer cuts both short."""
 
     def __init__(self, name: str, ctx: Context, text: Callable[[], str]) -> None:
         super().__init__(name, ctx, text)
         self._asked = text
+        self._asking = False
 
     def initialise(self) -> None:
-        self.ctx.reply = None
+        ctx = self.ctx
+        self._asking = ctx.now >= ctx.listen_after
+        if self._asking:
+            ctx.reply = None
+            self._ask()
+        else:
+            ctx.enter("CONFIRMING", self._asked(), "pause after a speech failure")
+
+    def _ask(self) -> None:
+        self._asking = True
         self.ctx.enter("CONFIRMING", self._asked())
         super().initialise()
 
     def update(self) -> Status:
-        if self.ctx.reply is None:
-            return super().update()
-        self.ctx.tell(self.ctx.speech, topics.SPEECH_GOAL, "cancel")
-        return Status.SUCCESS
+        ctx = self.ctx
+        if ctx.reply is not None:
+            if self._asking:
+                ctx.tell(ctx.speech, topics.SPEECH_GOAL, "cancel")
+            return Status.SUCCESS
+        if not self._asking:
+            if ctx.now < ctx.listen_after:
+                return Status.RUNNING
+            self._ask()
+        return super().update()
 
 
 class Hear(Goal):
@@ -52,6 +68,16 @@ class Hear(Goal):
     def goal(self, goal_id: str) -> tuple[Topic[Any], m.Message]:
         return topics.SPEECH_GOAL, m.SpeechGoal(goal="listen", id=goal_id)
 
+    def give_up(self, failure: Failure) -> Status:
+        """Speech has failed: the same pause before it listens again as in the fetch pipeline."""
+        self.ctx.listen_after = self.ctx.now + self.ctx.config.speech_retry_delay
+        return super().give_up(failure)
+
+    def refuse(self, code: str, detail: str, spoken: str) -> Status:
+        """Speech has worked, but what was heard is not the answer."""
+        self.ctx.fail(Failure("CONFIRMING", code, detail, spoken))
+        return Status.FAILURE
+
 
 class HearReply(Hear):
     """The person's answer to "did you say"; SUCCESS once the command stands."""
@@ -69,7 +95,7 @@ class HearReply(Hear):
         self.ctx.note(f"reply: {kind}", heard.text, "heard")
         self.feedback_message = kind
         if kind == "cancel":
-            return self.give_up(Failure("CONFIRMING", "CANCELLED", spoken="All right, I will do nothing."))
+            return self.refuse("CANCELLED", "", "All right, I will do nothing.")
         if kind == "yes" and not mission.repeat:
             return Status.SUCCESS
         if kind == "correction":
@@ -77,7 +103,7 @@ class HearReply(Hear):
             mission.repeat = False
         elif kind == "no":
             mission.repeat = True
-        return self.give_up(Failure("CONFIRMING", "NOT_CONFIRMED", spoken="I did not understand what I should do."))
+        return self.refuse("NOT_CONFIRMED", "", "I did not understand what I should do.")
 
 
 class HearChoice(Hear):
@@ -98,10 +124,10 @@ class HearChoice(Hear):
         assert isinstance(heard, m.SpeechResult)
         kind, rest = reply(heard.text)
         if kind == "cancel":
-            return self.give_up(Failure("CONFIRMING", "CANCELLED", spoken="All right, I will do nothing."))
+            return self.refuse("CANCELLED", "", "All right, I will do nothing.")
         label = chosen(rest, mission.options)
         if label is None:
-            return self.give_up(Failure("CONFIRMING", "NOT_CONFIRMED", heard.text, self.spoken()))
+            return self.refuse("NOT_CONFIRMED", heard.text, self.spoken())
         mission.chosen[self._thing] = label
         self.ctx.note(f"meant: {label}", heard.text)
         return Status.SUCCESS

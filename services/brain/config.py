@@ -8,6 +8,8 @@ from common.config import Config
 class BrainConfig(Config, frozen=True):
     """`settle` follows every arrival and every finished manipulation; a limit of n retries means n + 1 tries.
 
+    A mission is suspended while `joint_states` stay away; after `heartbeat_patience` seconds (ten times what a killed
+    simulation needs to come back on a busy machine) it ends in ERROR.
     `journal` is relative to the process's state directory; "" keeps missions in memory only. A mission whose brain
     was killed is resumed within `resume_within` seconds of wall time. `run` names the run of the whole robot that
     this brain belongs to: within one, a mission outlives also an orderly restart.
@@ -19,6 +21,7 @@ class BrainConfig(Config, frozen=True):
     confirm_below: float = 0.8
     settle: float = 1.0
     speech_retry_delay: float = 5.0
+    heartbeat_patience: float = 60.0
     listen_timeout: float = 60.0
     listen_grace: float = 1.0
     answer_timeout: float = 15.0

@@ -12,6 +12,7 @@ from common.io import Io
 from common.topics import Topic
 from services.brain.config import BrainConfig
 from services.brain.goals import Channel
+from services.brain.heartbeat import Heartbeat
 from services.brain.journal import Checkpoint, Entry, Journal, Kind, Place
 from services.brain.mission import SYSTEM_STATE, Failure, Hand, Mission, Outcome
 from services.brain.search import lookout
@@ -26,6 +27,7 @@ class Context:
     def __init__(self, config: BrainConfig, io: Io, journal: Journal) -> None:
         self.config, self.io, self.journal = config, io, journal
         self.now = 0.0
+        self.heartbeat = Heartbeat(io)
         self.speech = Channel(io, "speech")
         self.navigation = Channel(io, "navigation")
         self.manipulation = Channel(io, "manipulation")
@@ -158,6 +160,7 @@ class Context:
     def accept(self, text: str, confidence: float, source: str, confirmed: bool = False) -> None:
         """The mission begins with this command."""
         mission = self.mission
+        self.reply = None
         mission.confirmed = confirmed
         mission.command, mission.confidence, mission.started = text, confidence, self.now
         self.put_off = None

@@ -131,7 +131,7 @@ class Release(Manipulate):
 
 
 class Ready(Leaf):
-    """IDLE until joint states flow, speech is there, and the robot is not stopped."""
+    """IDLE until fresh joint states flow, speech is there, and the robot is not stopped."""
 
     def update(self) -> Status:
         ctx = self.ctx
@@ -139,7 +139,7 @@ class Ready(Leaf):
             missing = (
                 f"stopped ({ctx.stopped}); waiting for robot/resume" if ctx.stopped else "waiting for robot/resume"
             )
-        elif ctx.io.latest(topics.JOINT_STATES) is None:
+        elif not ctx.heartbeat.fresh(ctx.now):
             missing = "waiting for joint_states"
         elif not ctx.mission.active and not ctx.io.matched(topics.SPEECH_GOAL):
             missing = "waiting for speech"

@@ -69,6 +69,20 @@ class BrainService:
         io.serve(topics.BRAIN_MISSIONS, self._answer_missions)
 
     def step(self, now: float) -> None:
+        self.context.heartbeat.stalled = 0.0
+        self._step(now)
+
+    def stalled(self, seconds: float) -> None:
+        """Robot time has stood still for `seconds` of wall time: a step at the same moment if the simulation is gone.
+
+        With its token there it pauses or waits for a participant; with nobody there this process is cut off itself.
+        """
+        ctx, peer = self.context, self._io.peer
+        if peer("sim") is None and any(peer(channel.peer) is not None for channel in ctx.channels):
+            ctx.heartbeat.stalled = seconds
+            self._step(ctx.now)
+
+    def _step(self, now: float) -> None:
         ctx = self.context
         ctx.now = now
         for channel in ctx.channels:
@@ -77,6 +91,7 @@ class BrainService:
         self._receive_answers()
         self._receive_stops()
         self._receive_commands()
+        self._watch_heartbeat()
         if self._resumption is not None and self._resumption.step():
             if self._resumption.put_off:
                 ctx.put_off = cut_short(self._resumption.left, ctx.mission, ctx.hand)
@@ -110,6 +125,28 @@ class BrainService:
             return Resumption(self.context, self.tree, left)
         self.context.hand, self.context.put_off = left.hand, left.put_off
         return None
+
+    # --- the robot's body
+    def _watch_heartbeat(self) -> None:
+        """Without joint states nothing goes on: a mission is suspended, what waits for a command returns to IDLE."""
+        ctx = self.context
+        if self._resumption is not None or ctx.heartbeat.fresh(ctx.now):
+            return
+        if ctx.mission.active:
+            self._suspend()
+        elif ctx.state not in ("IDLE", "COMPLETED", "ERROR"):
+            self._interrupt("no joint_states")
+
+    def _suspend(self) -> None:
+        """Stop base and arm as far as anybody hears it, and take the mission up again when joint states return."""
+        ctx = self.context
+        left = ctx.bookmark()
+        self._io.log.error("joint_states lost: the mission is suspended", state=ctx.state, step=ctx.shown.step)
+        ctx.quiet()
+        self.tree.stop(Status.INVALID)
+        self._resumption = Resumption(
+            ctx, self.tree, cut_short(left, ctx.mission, ctx.hand), why="joint_states lost: base and arm told to stop"
+        )
 
     # --- answers of the peers
     def _receive_answers(self) -> None:

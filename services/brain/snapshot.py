@@ -62,6 +62,23 @@ def path_to(node: Behaviour) -> list[Place]:
     return path[::-1]
 
 
+def path_by_name(root: Behaviour, *names: str) -> list[Place]:
+    """The way down from the root along children of these names.
+
+    Raises:
+        Moved: one of them is not there.
+    """
+    path: list[Place] = []
+    node = root
+    for name in names:
+        index = next((i for i, child in enumerate(node.children) if child.name == name), None)
+        if index is None:
+            raise Moved(f"no {name!r} below {node.name!r}")
+        path.append(Place(index, name))
+        node = node.children[index]
+    return path
+
+
 def put(root: Behaviour, path: Sequence[Place]) -> Behaviour:
     """Make the next tick begin at the end of the path, as if all before it had just been done; the node there.
 

@@ -9,7 +9,7 @@ from services.brain.context import Context
 from services.brain.journal import Checkpoint
 from services.brain.mission import Failure, Hand, Mission, fingers_hold
 from services.brain.resume import Decision, Seen, apply, decide, refusal
-from services.brain.snapshot import Moved, put
+from services.brain.snapshot import Moved, path_by_name, put
 
 LOOK = 0.6
 PEER_PATIENCE = 3.0
@@ -24,11 +24,15 @@ def cut_short(left: Checkpoint, ended: Mission, hand: Hand) -> Checkpoint:
 
 
 class Resumption:
-    """Stands in for the tree until the mission has been taken up, or ended because it cannot be."""
+    """Stands in for the tree until the mission has been taken up, or ended because it cannot be.
 
-    def __init__(self, ctx: Context, root: Behaviour, left: Checkpoint) -> None:
-        self._ctx, self._root, self.left = ctx, root, left
+    `why` it has to be: for the timeline. Joint states that stay away longer than `heartbeat_patience` end it in ERROR.
+    """
+
+    def __init__(self, ctx: Context, root: Behaviour, left: Checkpoint, why: str = "brain restarted") -> None:
+        self._ctx, self._root, self.left, self._why = ctx, root, left, why
         self._since: float | None = None
+        self._waiting: float | None = None
         self._told = self.put_off = False
         self._felt: set[bool | None] = set()
         ctx.mission, ctx.hand = left.mission, left.hand
@@ -39,7 +43,7 @@ class Resumption:
                 if channel.peer == sent.peer:
                     channel.take_up(sent)
         self._refused = refusal(left, ctx.config, unix_time())
-        ctx.io.log.warning("mission found", mission=ctx.mission.id, command=ctx.mission.command)
+        ctx.io.log.warning("mission to resume", mission=ctx.mission.id, command=ctx.mission.command, why=why)
 
     def step(self) -> bool:
         """True once the tree may be ticked."""
@@ -52,10 +56,10 @@ class Resumption:
         joints = ctx.io.latest(topics.JOINT_STATES)
         if not self._told:
             self._told = True
-            ctx.note("brain restarted", f"at {' > '.join(p.name for p in self.left.path) or 'the start'}")
-        if joints is None:
-            ctx.enter("IDLE", detail="resuming: waiting for joint_states")
-            return False
+            ctx.note(self._why, f"at {' > '.join(p.name for p in self.left.path) or 'the start'}")
+        if joints is None or not ctx.heartbeat.fresh(ctx.now):
+            return self._wait()
+        self._waiting = None
         ctx.enter("IDLE", detail="resuming: looking at the world")
         self._since = ctx.now if self._since is None else self._since
         self._felt.add(fingers_hold(joints))
@@ -68,6 +72,24 @@ class Resumption:
             self._end(Failure("RESTART", "CANCELLED", "the robot was stopped before it could go on"))
         else:
             self._go_on()
+        return True
+
+    def _wait(self) -> bool:
+        """For joint states, as long as patience lasts; what was seen before does not count any more."""
+        ctx, patience = self._ctx, self._ctx.config.heartbeat_patience
+        ctx.enter("IDLE", detail="resuming: waiting for joint_states")
+        self._since = None
+        self._felt.clear()
+        if self._waiting is None or ctx.heartbeat.paused:
+            self._waiting = ctx.now
+        if max(ctx.now - self._waiting, ctx.heartbeat.stalled) <= patience:
+            return False
+        self._call_off()
+        ctx.fail(
+            Failure("HEARTBEAT", "NO_JOINT_STATES", f"none for {patience:.0f} s", "I have lost contact with my motors.")
+        )
+        self.put_off = True
+        put(self._root, path_by_name(self._root, "mission", "report failure"))
         return True
 
     def _go_on(self) -> None:

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 import zenoh
 
-from tests.support import Site, eventually
+from tests.support import Pulse, Site, eventually
 
 SPEECH, NAVIGATION, MANIPULATION = "brain/speech_goal", "brain/navigation_goal", "brain/manipulation_goal"
 READ_BY_BRAIN = (
@@ -27,6 +27,7 @@ class Peer:
 
     def __init__(self, session: zenoh.Session) -> None:
         self.session = session
+        self.joints = Pulse(session, "joint_states", json.dumps(JOINTS))
         self.seen: list[Seen] = []
         self.sent_at: list[float] = []
 
@@ -99,8 +100,9 @@ def scripted(here: Site, joints: bool = True, **parameters: str) -> Iterator[Pee
         process = here.start("services.brain", TIDYBOT_CLOCK="wall", TIDYBOT__BRAIN__PIPELINE="fetch", **changes)
         here.wait_alive(session, "brain")
         if joints:
-            peer.put("joint_states", **JOINTS)
+            peer.joints.start()
         yield peer
+        peer.joints.stop()
         assert process.poll() is None, here.log("services.brain")
         for subscriber in subscribers:
             subscriber.undeclare()
@@ -142,19 +144,40 @@ def test_waits_for_joint_states_and_answers_a_late_get(here: Site) -> None:
         assert shown_state(peer.session)["state"] == "IDLE"
         time.sleep(1.0)
         assert peer.goals() == []
-        peer.put("joint_states", **JOINTS)
+        peer.joints.start()
         peer.goal(1, "listen")
+
+
+def test_lost_joint_states_stop_base_and_arm_and_the_mission_goes_on_with_them(here: Site) -> None:
+    with scripted(here) as peer:
+        _, listen = peer.goal(1, "listen")
+        peer.heard(listen, "red mug")
+        _, find = peer.goal(2, "find red mug")
+        peer.joints.silent = True
+        eventually(lambda: len(peer.goals()) >= 4, f"base and arm are told to stop; so far {peer.texts()}")
+        assert {(key, fields["goal"]) for _, key, fields in peer.goals()[2:4]} == {
+            (NAVIGATION, "stop"), (MANIPULATION, "stop"),
+        }  # fmt: skip
+        held = peer.state_is("IDLE")
+        assert held["mission_id"] == find["id"].rpartition(".")[0] and "waiting for joint_states" in held["detail"]
+        peer.drove(find)
+        peer.joints.silent = False
+        _, again = peer.goal(5, "find red mug")
+        assert again["id"] != find["id"]
+        peer.drove(again)
+        peer.goal(6, "grab")
 
 
 def test_waits_for_somebody_who_hears_speech_goals(here: Site) -> None:
     with here.session() as session:
         here.start("services.brain", TIDYBOT_CLOCK="wall", TIDYBOT__BRAIN__PIPELINE="fetch")
         here.wait_alive(session, "brain")
-        session.put("joint_states", json.dumps(JOINTS))
-        eventually(lambda: shown_state(session)["detail"] == "waiting for speech", "the brain waits for speech")
         peer = Peer(session)
+        peer.joints.start()
+        eventually(lambda: shown_state(session)["detail"] == "waiting for speech", "the brain waits for speech")
         subscriber = session.declare_subscriber(SPEECH, peer.receive)
         peer.goal(1, "listen")
+        peer.joints.stop()
         subscriber.undeclare()
 
 

@@ -2,6 +2,7 @@
 
 import json
 import re
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from itertools import pairwise
@@ -9,7 +10,7 @@ from typing import Any
 
 import zenoh
 
-from tests.support import Site, eventually
+from tests.support import Pulse, Site, eventually
 
 GOALS = (
     "brain/speech_goal", "brain/navigation_goal", "brain/manipulation_goal", "nav_goal", "plan_request", "object_query",
@@ -28,6 +29,7 @@ class Peer:
 
     def __init__(self, session: zenoh.Session) -> None:
         self.session = session
+        self.joints = Pulse(session, "joint_states", json.dumps(JOINTS))
         self.goals: list[tuple[str, dict[str, Any]]] = []
         self.system: list[str] = []
 
@@ -69,7 +71,7 @@ def scripted(here: Site, **parameters: str) -> Iterator[Peer]:
         changes = {f"TIDYBOT__BRAIN__{k.upper()}": v for k, v in parameters.items()}
         process = here.start("services.brain", TIDYBOT_CLOCK="wall", TIDYBOT__BRAIN__PIPELINE="vla", **changes)
         here.wait_alive(session, "brain")
-        peer.put("joint_states", **JOINTS)
+        peer.joints.start()
 
         def waits() -> bool:
             replies = list(session.get("brain/state", timeout=2.0))
@@ -77,6 +79,7 @@ def scripted(here: Site, **parameters: str) -> Iterator[Peer]:
 
         eventually(waits, "the brain waits for a command")
         yield peer
+        peer.joints.stop()
         assert process.poll() is None, here.log("services.brain")
         for subscriber in subscribers:
             subscriber.undeclare()
@@ -133,3 +136,31 @@ def test_search_and_alternative_path(here: Site) -> None:
             peer.drove(drive, "failed", code="BLOCKED")
         peer.speech("say I could not reach the red mug.")
         assert "ERROR" in peer.system and "SUCCESS" not in peer.system
+
+
+def test_speech_that_fails_is_asked_again_after_five_seconds(here: Site) -> None:
+    with scripted(here, settle="0.2") as peer:
+        peer.session.put("voice_command", "bring me the red mug")
+        peer.speech("say Did you say bring me the red mug?")
+        listen = peer.speech("listen")
+        peer.put("brain/speech_result", text="ERROR", goal_id=listen["id"], attempt=1)
+        failed = time.monotonic()
+        peer.speech("say Did you say bring me the red mug?")
+        assert time.monotonic() - failed >= 5.0
+        peer.speech("listen")
+
+
+def test_joint_states_that_stay_away_end_the_mission_in_a_spoken_error(here: Site) -> None:
+    with scripted(here, settle="0.2", enable_confirmation="false", heartbeat_patience="1.0") as peer:
+        peer.session.put("voice_command", "bring me the red mug")
+        request = peer.next("plan_request")
+        peer.joints.silent = True
+        eventually(lambda: len(peer.goals) == 2, "base and arm are told to stop")
+        stops = {(key, fields["goal"]) for key, fields in peer.goals}
+        assert stops == {("brain/navigation_goal", "stop"), ("brain/manipulation_goal", "stop")}
+        peer.goals.clear()
+        peer.put("action_plan", request_id=request["id"], steps=FETCH)
+        peer.speech("say I have lost contact with my motors.")
+        eventually(lambda: peer.system[-2:] == ["ERROR", "IDLE"], "it waits for joint_states")
+        assert logged(here)[-2:] == [("IDLE", "ERROR"), ("ERROR", "IDLE")]
+        assert peer.goals == []

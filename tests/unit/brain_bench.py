@@ -18,14 +18,25 @@ START = 10_000
 
 
 class Bench(Node):
-    """Steps the brain at 20 Hz; `sent(topic)` and `states()` are what peers saw."""
+    """Steps the brain at 20 Hz; `sent(topic)` and `states()` are what peers saw.
+
+    `joints`: what the robot's body reports before every step; None: it is silent.
+    """
 
     def __init__(self, config: BrainConfig | None = None, joints: bool = True) -> None:
         scene = load_scene("apartment")
         super().__init__(BrainService, config or BrainConfig(pipeline="fetch"), scene, lockstep=False, tick=START)
         self.brain: BrainService = self.service
-        if joints:
-            self.send(topics.JOINT_STATES, JOINTS)
+        self.joints: m.JointStates | None = JOINTS if joints else None
+
+    def feed(self) -> None:
+        if self.joints is not None:
+            self.bus.send(topics.JOINT_STATES, self.joints)
+
+    def send(self, topic: Topic[M], message: M) -> None:
+        if isinstance(message, m.JointStates):
+            self.joints = message
+        super().send(topic, message)
 
     def why(self) -> str:
         return f"state {self.state.state}, step {self.state.step!r}"

@@ -169,7 +169,10 @@ SPOTS = {"home": 0.0, "item": 3.0, "elsewhere": 6.0}
 
 
 class World:
-    """One object, a hand, a base that is at `home`, `item`, `elsewhere` or under way ("")."""
+    """One object, a hand, a base that is at `home`, `item`, `elsewhere` or under way ("").
+
+    `silent`: the simulation is gone.
+    """
 
     def __init__(self, pipeline: Any, path: Path | None = None, **parameters: Any) -> None:
         self.bus, self.now, self.pipeline = MemoryBus(), 100.0, pipeline
@@ -179,7 +182,7 @@ class World:
         self.drives: list[str] = []
         self.said: list[str] = []
         self.grabs = self.releases = 0
-        self.asked = False
+        self.asked = self.silent = False
         self.states = self.bus.tap(topics.BRAIN_STATE)
         self.peers: dict[str, Peer] = {}
         for kind in PEERS:
@@ -224,6 +227,8 @@ class World:
                 self.node.step()
 
     def _publish(self) -> None:
+        if self.silent:
+            return
         width, force = (0.04, 25.0) if self.held else (0.085, 0.0)
         joints = m.JointStates(t=self.now, name=["gripper"], position=[width], velocity=[0.0], effort=[force])
         self.bus.send(topics.JOINT_STATES, joints)
