@@ -18,6 +18,7 @@ COPY common common
 COPY config config
 COPY cli cli
 COPY evaluation evaluation
+COPY judge judge
 COPY services services
 COPY docs/audio docs/audio
 RUN pip install --no-cache-dir --no-deps --no-build-isolation $offline -e . && python -m compileall -q /app \

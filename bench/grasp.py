@@ -20,10 +20,10 @@ from common.clock import ManualClock
 from common.geometry import compose, inverse, yaw_quat
 from common.lockstep import InProcess
 from common.memory import MemoryBus, MemoryIo
-from common.scene import ObjectSpec, Scene, load_scene
+from common.scene import ObjectSpec, Scene, body_name, load_scene
 from services.manipulation.config import ManipulationConfig
 from services.manipulation.service import ManipulationService
-from services.sim import objects, truth
+from services.sim import truth
 from services.sim.config import SimConfig
 from services.sim.service import SimService
 
@@ -59,7 +59,7 @@ class Bench:
         was = tuple(float(v) for v in data.qpos[physics.qpos_at[:3]])
         data.qpos[physics.qpos_at[:3]] = base
         if held:
-            at = physics.model.body(objects.body_name(self.spec)).jntadr[0]
+            at = physics.model.body(body_name(self.spec)).jntadr[0]
             at = physics.model.jnt_qposadr[at]
             x, y, yaw = compose(base, compose(inverse(was), (data.qpos[at], data.qpos[at + 1], 0.0)))
             turned = np.empty(4)

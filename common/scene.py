@@ -18,6 +18,8 @@ Vec2 = tuple[float, float]
 Vec3 = tuple[float, float, float]
 Rgba = tuple[float, float, float, float]
 ObjectKind = Literal["mug", "can", "bottle", "apple", "block", "box", "bowl", "ball"]
+NO_UPRIGHT: frozenset[str] = frozenset({"apple", "ball", "block"})
+"""Kinds that have no upright: what rolls, and cubes. Every other kind stands or has been toppled."""
 ReceptacleKind = Literal["table", "counter", "shelf", "bin", "tray", "sink"]
 # How furniture is built: a table's legs and how far inside the top's edge they stand, how far a cabinet's body stays
 # behind its top, the thickness of a bin's walls [m].
@@ -101,6 +103,11 @@ class ObjectSpec(_Strict, frozen=True):
     rgba: Rgba
     aliases: tuple[str, ...] = ()
     on: str = ""
+
+
+def body_name(spec: ObjectSpec) -> str:
+    """The body of an object in the simulation's model."""
+    return spec.name.replace(" ", "_")
 
 
 class Obstacle(_Strict, frozen=True):

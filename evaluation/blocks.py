@@ -9,8 +9,8 @@ import numpy as np
 from common.config import config_dir
 from common.scene import ObjectSpec, Receptacle, Scene, load_scene
 from evaluation.case import Case, Line
-from evaluation.evidence import Want
 from evaluation.faults import Rule
+from judge.evidence import Want
 from services.sim.layout import place_objects
 
 VLA = "brain.pipeline=vla"

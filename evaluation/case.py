@@ -5,9 +5,11 @@ from typing import Literal
 import msgspec
 
 from common.scene import Scene
-from evaluation.effects import Effect, Shown
-from evaluation.evidence import Evidence, Want
 from evaluation.faults import Rule
+from judge.claims import Claim
+from judge.effects import Effect, Shown
+from judge.evidence import Evidence, Want
+from judge.goal import Goal
 
 Expect = Literal["delivered", "nothing", "stopped", "shown"]
 Outcome = Literal[
@@ -20,11 +22,13 @@ class Line(msgspec.Struct, frozen=True):
     """Something the person says unasked.
 
     `when` is `ready`, `ended` (after a mission) or a state of the brain; `after` seconds of robot time pass first.
+    `goal` is what this line's own mission should bring about, against which its claims are held; None: the case's.
     """
 
     text: str
     when: str = "ready"
     after: float = 0.0
+    goal: Goal | None = None
 
 
 class Speaker(msgspec.Struct, frozen=True):
@@ -60,8 +64,9 @@ class Strike(msgspec.Struct, frozen=True):
 class Case(msgspec.Struct, kw_only=True):
     """`lines` are what the person says, `thing` what they really want, `expect` what physics should show.
 
-    `shown`: all that is wanted is delivered and all `effects` are seen. Without a `scene` it is the shipped flat.
-    `honest`: a spoken, published failure counts as well as a delivery.
+    `shown`: all that is wanted is delivered and all `effects` are seen. `wants` and `effects` are as things should be
+    at the end. Without a `scene` it is the shipped flat. `honest`: a spoken, published failure counts as well as a
+    delivery.
     `wake`: a command that opens a dialogue starts with the wake word. `silent`: the person answers no question.
     """
 
@@ -87,17 +92,32 @@ class Case(msgspec.Struct, kw_only=True):
     scene: Scene | None = None
     limit: float = 600.0
 
+    @property
+    def goal(self) -> Goal:
+        """What should be so at the end."""
+        return Goal(self.wants, self.effects)
+
+    def goal_of(self, line: Line) -> Goal:
+        """What a claim after this line is held against; none is true where nothing should be done."""
+        if line.goal is not None:
+            return line.goal
+        return self.goal if self.expect in ("delivered", "shown") else Goal()
+
 
 class Observed(msgspec.Struct, kw_only=True):
     """What the examiner saw of one case, before it is judged.
 
-    `wrong`: things in the hand that nobody asked for. `struck`: when a fault hit [s of robot time]; `recovery`:
+    `claimed`: the last outcome; `claims`: every success announced at any time, held against physics as it was then;
+    `shortfall`: what is not as the case wants it at the end. `wrong`: things in the hand that nobody asked for.
+    `struck`: when a fault hit [s of robot time]; `recovery`:
     seconds from then until the mission's next step.
     """
 
     evidence: Evidence = msgspec.field(default_factory=Evidence)
     shown: list[Shown] = []
     wrong: list[str] = []
+    claims: list[Claim] = []
+    shortfall: str = "nothing was seen"
     claimed: str = "none"
     reason: str = ""
     ended: bool = False
@@ -113,7 +133,7 @@ class Observed(msgspec.Struct, kw_only=True):
 
 
 class Result(msgspec.Struct, kw_only=True):
-    """One row of the report."""
+    """One row of the report. `false_claims`: missions of which a success was claimed that physics did not show."""
 
     seed: int
     command: str
@@ -123,6 +143,7 @@ class Result(msgspec.Struct, kw_only=True):
     name: str = ""
     delivered: bool = False
     met: bool = False
+    false_claims: int = 0
     spl: float = 0.0
     sim_seconds: float = 0.0
     wall_seconds: float = 0.0

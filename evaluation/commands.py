@@ -10,8 +10,9 @@ import msgspec
 from common.scene import Scene
 from evaluation.blocks import VLA, flat
 from evaluation.case import Case, Line
-from evaluation.effects import Effect
-from evaluation.evidence import Want
+from judge.effects import Effect
+from judge.evidence import Want
+from judge.goal import Goal
 from services.sim.layout import place_objects
 
 LAID = {
@@ -26,13 +27,15 @@ SECONDS = 900.0
 class Task(msgspec.Struct, frozen=True):
     """What is said and what must come of it.
 
-    `then` are further lines (text, when, seconds after) as in `evaluation.case.Line`; `thing` is what the person names
+    `first` is what the command itself must bring about, where what follows undoes it; None: all of it. `then` are
+    further lines (text, when, seconds after) as in `evaluation.case.Line`; `thing` is what the person names
     when the robot asks which; `laid` lays some of the things elsewhere.
     """
 
     said: str
     wants: tuple[Want, ...] = ()
     effects: tuple[Effect, ...] = ()
+    first: Goal | None = None
     then: tuple[Line, ...] = ()
     thing: str = ""
     laid: dict[str, str] = {}
@@ -81,13 +84,23 @@ TASKS: tuple[Task, ...] = (
 )
 """The lines of docs/COMMANDS.md, in its order where it has them."""
 
+IN_HAND = Goal(effects=(Effect("holds", "red mug"),))
 TALKS: tuple[Task, ...] = (
-    Task("pick up the red mug", (_on("red mug", "counter"),), then=(Line("put it on the counter", "ended"),)),
-    Task("pick up the red mug", effects=(Effect("rests", "red mug"),), then=(Line("put it down", "ended"),)),
-    Task("go to the kitchen", effects=(Effect("visits", "kitchen"), HOME), then=(Line("come here", "ended"),)),
+    Task(
+        "pick up the red mug", (_on("red mug", "counter"),), first=IN_HAND,
+        then=(Line("put it on the counter", "ended"),),
+    ),
+    Task(
+        "pick up the red mug", effects=(Effect("rests", "red mug"),), first=IN_HAND,
+        then=(Line("put it down", "ended"),),
+    ),
+    Task(
+        "go to the kitchen", effects=(Effect("visits", "kitchen"), HOME),
+        first=Goal(effects=(Effect("ends", "kitchen"),)), then=(Line("come here", "ended"),),
+    ),
     Task("bring me the red mug", effects=LEFT_OFF, then=(Line("stop", "NAVIGATING", 2.0),)),
     Task("bring me the red mug", effects=LEFT_OFF, then=(Line("cancel", "NAVIGATING", 2.0),)),
-)
+)  # fmt: skip
 """Follow-ups, stop and cancel."""
 ALL = TASKS + TALKS
 
@@ -101,7 +114,8 @@ def case_of(task: Task, seed: int) -> Case:
     scene = scene_of({**LAID, **task.laid})
     wants = task.wants if task.said != LEFT else (_on(_left(scene, seed, "green can", "red can"), TRAY),)
     return Case(
-        suite="commands", seed=seed, name="command", command=task.said, lines=(Line(task.said), *task.then),
+        suite="commands", seed=seed, name="command", command=task.said,
+        lines=(Line(task.said, goal=task.first), *task.then),
         thing=task.thing or (wants[0].thing if len(wants) == 1 else ""), wants=wants, effects=task.effects,
         expect="shown", settings=(VLA,), scene=scene, limit=SECONDS,
     )  # fmt: skip

@@ -10,16 +10,17 @@ from common import topics
 from common.config import Config
 from common.io import Io, Job
 from evaluation.case import Case, Line, Observed
-from evaluation.effects import Watcher
-from evaluation.evidence import Recorder
 from evaluation.person import Manner, Person
-from evaluation.replica import Replica
 from evaluation.shortest import FloorPlan
 from evaluation.voice import RATE, Samples, utter
+from judge.evidence import Look
+from judge.observer import Observer
 
 OPEN = ("WAITING", "LISTENING")
 OVER = ("COMPLETED", "ERROR")
-REACTION, SETTLE, QUIET = 0.5, 2.0, 40.0
+REACTION, QUIET = 0.5, 40.0
+WATCH = 10.0
+"""Robot time [s] that physics is watched on after the mission (issue 13): what was put down badly falls meanwhile."""
 WAKE = "hey jarvis, "
 
 
@@ -33,7 +34,10 @@ class Examiner:
     NAME = "examiner"
     HZ = 20
     CONFIG = ExaminerConfig
-    READS = (topics.SIM_MODEL, topics.SIM_STATE, topics.SIM_STATUS, topics.SPEECH_STATUS, topics.BRAIN_STATE)
+    READS = (
+        topics.SIM_MODEL, topics.SIM_STATE, topics.SIM_STATUS, topics.SPEECH_STATUS, topics.BRAIN_STATE,
+        topics.SYSTEM_STATUS,
+    )  # fmt: skip
     WRITES = (topics.SPEECH_TEXT, topics.AUDIO_PCM, topics.VOICE_COMMAND)
     case: Case
 
@@ -42,11 +46,8 @@ class Examiner:
         manner: Manner = "reject" if self._case.name == "rejection" else "correct"
         manner = "silent" if self._case.silent else manner
         self._person = Person(self._case.command, self._case.thing, io.scene, manner)
-        kinds = {o.name: o.kind for o in io.scene.objects}
-        bins = frozenset(r.name for r in io.scene.receptacles if r.depth)
-        self._recorder = Recorder(self._case.wants, kinds, bins)
-        self._watcher = Watcher(self._case.effects, io.scene)
-        self._replica: Replica | None = None
+        self._observer = Observer(io.scene)
+        self._begun = False
         self._lines = deque(self._case.lines)
         self._due: deque[tuple[float, str]] = deque()
         self._voice: Job[Samples] | None = None
@@ -65,7 +66,7 @@ class Examiner:
             return
         self._watch(now)
         self._listen(now)
-        if not self._recorder.ready:
+        if not self._observer.ready:
             return
         self._follow(now)
         self._talk(now)
@@ -75,24 +76,24 @@ class Examiner:
 
     # --- physics
     def _watch(self, now: float) -> None:
-        io = self._io
-        model = io.latest(topics.SIM_MODEL)
-        if self._replica is None and model is not None:
-            self._replica = Replica(model.mjcf, io.scene)
-        if self._replica is None:
+        io, observer = self._io, self._observer
+        if (model := io.latest(topics.SIM_MODEL)) is None:
             return
+        observer.model(model)
         for state in io.drain(topics.SIM_STATE):
-            look = self._replica.look(state)
-            if not self._recorder.ready:
-                errands = [
-                    (look.things[w.thing].position[:2], look.things[w.thing].on, w.goals[0]) for w in self._case.wants
-                ]
-                shortest = FloorPlan(io.scene).mission(look.base, errands)
-                self.observed.shortest = round(shortest, 3) if np.isfinite(shortest) else 0.0
-            self._recorder.see(look)
-            self._watcher.see(look)
+            first = not observer.ready
+            look = observer.world(state)
+            if first and look is not None:
+                self.observed.shortest = self._shortest(look)
         for status in io.drain(topics.SIM_STATUS):
             self.observed.stopped |= status.state == "stopped"
+
+    def _shortest(self, look: Look) -> float:
+        """The shortest way [m] of a base that runs all errands; 0 where there is none."""
+        wants = self._case.wants
+        errands = [(look.things[w.thing].position[:2], look.things[w.thing].on, w.goals[0]) for w in wants]
+        found = FloorPlan(self._io.scene).mission(look.base, errands)
+        return round(found, 3) if np.isfinite(found) else 0.0
 
     # --- the robot's words and states
     def _listen(self, now: float) -> None:
@@ -100,7 +101,7 @@ class Examiner:
             if status.state == "speaking" and status.detail != self._saying:
                 self._saying = status.detail
                 self.observed.said.append(status.detail)
-                self._watcher.hear(status.detail)
+                self._observer.sentence(now, status.detail)
             elif status.state != "speaking" and self._saying:
                 answer, self._saying = self._person.answer(self._saying), ""
                 self._quiet_since = now
@@ -109,7 +110,10 @@ class Examiner:
 
     def _follow(self, now: float) -> None:
         seen = self.observed
+        for status in self._io.drain(topics.SYSTEM_STATUS):
+            self._observer.status(now, status)
         for state in self._io.drain(topics.BRAIN_STATE):
+            self._observer.brain(now, state)
             if not seen.states or seen.states[-1] != state.state:
                 seen.states.append(state.state)
             self._when.setdefault(state.state, now)
@@ -148,6 +152,10 @@ class Examiner:
             line = self._lines.popleft()
             if line.when == "ended":
                 self._person.wish(line.text)
+            if not self._begun:
+                self._begun = True
+                self._observer.begin()
+            self._observer.expect(self._case.goal_of(line))
             self._due.append((now, line.text))
         if self._sound:
             self._play(now)
@@ -193,7 +201,7 @@ class Examiner:
             return False
         self.observed.ended = self._ended_at is not None
         if self._ended_at is not None:
-            return now >= self._ended_at + SETTLE
+            return now >= self._ended_at + WATCH
         return "ready" in self._when and not self._active and now >= self._quiet_since + QUIET
 
     def abort(self, now: float, why: str) -> None:
@@ -203,11 +211,10 @@ class Examiner:
 
     def _conclude(self, now: float) -> None:
         seen = self.observed
-        seen.shown = self._watcher.conclude()
-        asked = {w.thing for w in self._case.wants} | {n for e in self._case.effects for n in (e.what, e.other)}
-        seen.wrong = sorted(self._watcher.lifted - asked)
-        seen.evidence, seen.robot_seconds = self._recorder.conclude(), round(now, 2)
-        seen.evidence.disturbed = [n for n in seen.evidence.disturbed if n not in asked]
+        observer, goal = self._observer, self._case.goal
+        seen.evidence, seen.shown = observer.conclude(goal), observer.shown(goal)
+        seen.claims, seen.shortfall, seen.wrong = observer.claims, observer.shortfall(goal), observer.wrong()
+        seen.robot_seconds = round(now, 2)
         seen.ended = seen.ended or now <= self._case.limit
 
 

@@ -5,7 +5,9 @@ from html import escape
 from typing import Any
 
 from evaluation.case import Result
-from evaluation.html_stages import bars, by_stage, strip, wilson
+from evaluation.html_stages import bars, by_stage, strip
+from evaluation.report import rates
+from evaluation.statistics import share
 from services.dashboard.timeline import document
 
 STYLE = """
@@ -22,7 +24,7 @@ def render(report: dict[str, Any], results: Sequence[Result]) -> str:
     failed = [r for r in rows if not r.met]
     parts = [
         f"<h1>tidybot eval, suite {escape(report['suite'])}</h1>",
-        _summary(report, rows),
+        _summary(report),
         "<h2>Success by stage</h2><p class='faint'>Whiskers: 95 % Wilson intervals of the true share.</p>",
         bars([*by_stage(rows), ("as expected", sum(r.met for r in rows), len(rows))]),
         "<h2>Robot time of a case</h2>",
@@ -36,7 +38,7 @@ def render(report: dict[str, Any], results: Sequence[Result]) -> str:
     ]
     if report["by_cause"]:
         causes = "".join(
-            f"<tr><td>{escape(cause)}</td><td>{number}</td><td>"
+            f"<tr><td>{escape(cause)}</td><td>{share(number, len(rows))}</td><td>"
             f"{' '.join(str(r.seed) for r in rows if r.cause == cause)}</td></tr>"
             for cause, number in report["by_cause"].items()
         )
@@ -47,12 +49,11 @@ def render(report: dict[str, Any], results: Sequence[Result]) -> str:
     return document(f"tidybot eval {report['suite']}", "\n".join(parts), STYLE)
 
 
-def _summary(report: dict[str, Any], rows: Sequence[Result]) -> str:
-    low, high = wilson(report["delivered"], len(rows))
+def _summary(report: dict[str, Any]) -> str:
     wall = max(report["wall_seconds"], 0.1)
     facts = {
-        "delivered, by physics": f"{report['delivered']} of {len(rows)} (95 %: {100 * low:.0f} to {100 * high:.0f} %)",
-        "false success claims": str(report["false_success"]),
+        **rates(report),
+        "bar": f"{100 * report['bar']:.0f} % as expected: {'met' if report['passed'] else 'not met'}",
         "path efficiency (SPL)": f"{report['spl']:.2f}",
         "robot time": f"{report['sim_seconds']:.0f} s, {report['sim_seconds'] / wall:.1f} x real time",
         "wall time": f"{report['wall_seconds']:.0f} s",
@@ -77,15 +78,16 @@ def _figure(result: Result) -> str:
     )
 
 
-_HEAD = "<tr><th>seed</th><th>case</th><th>command</th><th>outcome</th><th>robot s</th><th>SPL</th><th>cause</th></tr>"
+COLUMNS = ("seed", "case", "command", "outcome", "false claims", "robot s", "SPL", "cause")
+_HEAD = f"<tr>{''.join(f'<th>{c}</th>' for c in COLUMNS)}</tr>"
 
 
 def _row(result: Result) -> str:
     colour = "good" if result.met else "bad"
     return (
         f"<tr><td>{result.seed}</td><td>{escape(result.name)}</td><td>{escape(result.command)}</td>"
-        f'<td class="{colour}">{escape(result.outcome)}</td><td>{result.sim_seconds:.1f}</td><td>{result.spl:.2f}</td>'
-        f"<td>{escape(result.cause)}</td></tr>"
+        f'<td class="{colour}">{escape(result.outcome)}</td><td>{result.false_claims}</td>'
+        f"<td>{result.sim_seconds:.1f}</td><td>{result.spl:.2f}</td><td>{escape(result.cause)}</td></tr>"
     )
 
 

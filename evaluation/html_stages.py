@@ -2,25 +2,14 @@
 
 from collections.abc import Sequence
 from html import escape
-from math import sqrt
 from typing import Any
 
 from evaluation.case import Result
+from evaluation.statistics import share, wilson
 
-Z = 1.96
 BUSY = {"PLANNING", "GROUNDING", "NAVIGATING", "GRABBING", "RETURNING", "RELEASING"}
 CARRIED = 0.3
 STAGES = ("understood", "at the object", "lifted", "carried", "delivered")
-
-
-def wilson(good: int, count: int, z: float = Z) -> tuple[float, float]:
-    """The interval of the true share, 95 % for z = 1.96; (0, 1) without cases. E. B. Wilson, JASA 22 (1927)."""
-    if not count:
-        return 0.0, 1.0
-    share, square = good / count, z * z
-    centre = (share + square / (2 * count)) / (1 + square / count)
-    reach = z * sqrt(share * (1 - share) / count + square / (4 * count * count)) / (1 + square / count)
-    return max(0.0, centre - reach), min(1.0, centre + reach)
 
 
 def reached(result: Result) -> dict[str, bool]:
@@ -50,16 +39,16 @@ def bars(rows: Sequence[tuple[str, int, int]], width: int = 640) -> str:
     parts = []
     for n, (name, good, count) in enumerate(rows):
         low, high = wilson(good, count)
-        share, y = (good / count if count else 0.0), n * line + 6
+        part, y = (good / count if count else 0.0), n * line + 6
         middle, begin, end = y + 11, left + span * low, left + span * high
         parts.append(
             f'<text x="{left - 8}" y="{middle + 4}" text-anchor="end">{escape(name)}</text>'
             f'<rect x="{left}" y="{y}" width="{span}" height="22" fill="#f1f3f5"/>'
-            f'<rect x="{left}" y="{y}" width="{span * share:.1f}" height="22" fill="#69db7c"/>'
+            f'<rect x="{left}" y="{y}" width="{span * part:.1f}" height="22" fill="#69db7c"/>'
             f'<path d="M{begin:.1f} {middle}H{end:.1f}M{begin:.1f} {middle - 5}v10M{end:.1f} {middle - 5}v10" '
             'stroke="#212529" stroke-width="1.5" fill="none"/>'
             f'<text x="{left + span + 8}" y="{middle + 4}">'
-            f"{good} of {count} ({100 * low:.0f} to {100 * high:.0f} %)</text>"
+            f"{share(good, count)}</text>"
         )
     return _svg(width, len(rows) * line + 8, parts, "success by stage")
 

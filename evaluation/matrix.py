@@ -8,10 +8,14 @@ from rich.console import Group
 from rich.table import Table
 
 from evaluation.case import Result
+from evaluation.statistics import percent
 
 
 class Tally(msgspec.Struct):
-    """Cases by what came of them; `missed`: the fault never hit. `seconds` of robot time to the mission's next step."""
+    """Cases by what came of them; `missed`: the fault never hit; `lies`: false claims.
+
+    `seconds` of robot time to the mission's next step.
+    """
 
     recovered: int = 0
     reported: int = 0
@@ -34,7 +38,7 @@ def tally(results: Sequence[Result]) -> Tally:
         things = evidence.get("things", [])
         fell = any(t["drops"] for t in things) if isinstance(things, list) else False
         found.dropped += fell
-        found.lies += r.outcome == "false_success"
+        found.lies += r.false_claims
         if evidence.get("struck") is None and (r.delivered or r.outcome == "reported"):
             found.missed += 1
             continue
@@ -84,7 +88,7 @@ def cell(results: Sequence[Result]) -> str:
 
 
 def _summary(faults: Sequence[str], results: Sequence[Result]) -> Table:
-    heads = ("fault", "hit", "recovered", "honest error", "lost", "no hit", "dropped", "false success")
+    heads = ("fault", "hit", "recovered", "honest error", "lost", "no hit", "dropped", "false claims")
     table = Table(*heads, "mean s", "max s", title="all faults", title_justify="left")
     for fault in [*faults, "all"]:
         found = tally([r for r in results if fault in ("all", _fault(r))])
@@ -94,6 +98,7 @@ def _summary(faults: Sequence[str], results: Sequence[Result]) -> Table:
 
 def _numbers(found: Tally) -> tuple[str, ...]:
     times: list[Any] = found.seconds
-    counts = (found.hit, found.recovered, found.reported, found.lost, found.missed, found.dropped, found.lies)
+    shares = (f"{n} ({percent(n, found.hit)})" for n in (found.recovered, found.reported, found.lost))
     mean = f"{sum(times) / len(times):.1f}" if times else ""
-    return (*(str(n) for n in counts), mean, f"{max(times):.1f}" if times else "")
+    rest = (str(n) for n in (found.missed, found.dropped, found.lies))
+    return (str(found.hit), *shares, *rest, mean, f"{max(times):.1f}" if times else "")

@@ -7,6 +7,7 @@ import re
 from typing import Literal
 
 from common.scene import Scene
+from judge.words import plain
 
 Manner = Literal["correct", "reject", "silent", "agree"]
 PATIENCE = 6
@@ -15,13 +16,6 @@ CORRECTIONS = ("no, the {}", "no, I said the {}", "the {}")
 _HEARD = re.compile(r"^did you say,?\s*(.+?)\??$", re.IGNORECASE)
 _AGAIN = re.compile(r"say (?:it|that) again|please repeat|did not (?:hear|understand|catch)|pardon|what did you", re.I)
 _WHICH = re.compile(r"^(?:which\b|do you mean|the .+ or the .+\?)", re.IGNORECASE)
-_FILLER = re.compile(r"\b(?:please|hey jarvis|jarvis|the|a|an|my|me|to)\b")
-
-
-def plain(text: str) -> str:
-    """The words that carry the meaning, for comparing two sentences."""
-    words = re.sub(r"[^a-z0-9' ]+", " ", text.lower())
-    return " ".join(_FILLER.sub(" ", words).split())
 
 
 class Person:

@@ -20,7 +20,7 @@ from evaluation.verdict import judge
 
 Progress = Callable[[float, str], None]
 REPORT = 2.0
-OURS = tuple(str(Path(__file__).parents[1] / name) for name in ("common", "services", "evaluation"))
+OURS = tuple(str(Path(__file__).parents[1] / name) for name in ("common", "services", "evaluation", "judge"))
 
 
 class Director:

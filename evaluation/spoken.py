@@ -13,8 +13,8 @@ from cli.errors import CliError
 from common.scene import Scene
 from evaluation.blocks import VLA, WORDINGS, flat, pick, random
 from evaluation.case import Case, Line, Speaker
-from evaluation.effects import Effect
-from evaluation.evidence import Want
+from judge.effects import Effect
+from judge.evidence import Want
 from services.speech.audio import AudioError, read_wav
 
 SNR = 20.0

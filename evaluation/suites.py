@@ -22,9 +22,9 @@ from evaluation.blocks import (
 from evaluation.case import Case, Line
 from evaluation.chaos import CHAOS_SERVICES, CHAOS_STATES, chaos
 from evaluation.commands import ALL, commands
-from evaluation.evidence import Want
 from evaluation.faults import Rule
 from evaluation.spoken import HERE, MANIFEST, read_corpus, spoken
+from judge.evidence import Want
 from services.brain.config import BrainConfig
 
 SHELVES = ("kitchen table", "counter", "bookshelf", "dresser", "bedside table", "study shelf", "desk")
@@ -185,3 +185,9 @@ DEFAULT_SCENARIOS = {
     "chaos": len(CHAOS_SERVICES) * len(CHAOS_STATES),
     "commands": len(ALL),
 }
+BARS = {
+    "fetch": 0.95, "seed": 1.0, "tidy": 0.9, "faults": 0.9, "dialogue": 1.0, "chaos": 0.95, "commands": 0.9,
+    "spoken": 0.8,
+}  # fmt: skip
+"""The share of cases that must end as expected: all where every case is a scenario of the contract or a dialogue,
+less where a random scene, voice or fault at a random moment may leave nothing to be done."""

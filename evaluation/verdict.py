@@ -5,7 +5,9 @@ import re
 import msgspec
 
 from evaluation.case import Case, Observed, Outcome, Result
-from evaluation.evidence import Evidence, spl
+from judge.claims import false_claims
+from judge.evidence import spl
+from judge.verdict import untouched
 
 STAGES = {
     "IDLE": "start", "WAITING": "speech", "LISTENING": "speech", "CONFIRMING": "speech", "UNDERSTANDING": "speech",
@@ -29,45 +31,38 @@ def judge(case: Case, seen: Observed, wall_seconds: float) -> Result:
         "reason": seen.reason, **msgspec.to_builtins(seen.evidence), "shortest": seen.shortest, "spl": share,
         "sim_seconds": seen.robot_seconds, "wall_seconds": round(wall_seconds, 1), "states": seen.states,
         "said": seen.said, "effects": msgspec.to_builtins(seen.shown), "wrong": seen.wrong,
-        "struck": seen.struck, "recovery": seen.recovery,
+        "struck": seen.struck, "recovery": seen.recovery, "shortfall": seen.shortfall,
+        "claims": msgspec.to_builtins(seen.claims), "crash": seen.crash,
     }  # fmt: skip
     return Result(
         seed=case.seed, command=case.command, outcome=outcome, evidence=details,
-        cause="" if met else cause(case, seen, outcome), name=case.name, delivered=delivered, met=met, spl=share,
-        sim_seconds=seen.robot_seconds, wall_seconds=wall_seconds,
+        cause="" if met else cause(case, seen, outcome), name=case.name, delivered=delivered, met=met,
+        false_claims=false_claims(seen.claims), spl=share, sim_seconds=seen.robot_seconds, wall_seconds=wall_seconds,
     )  # fmt: skip
 
 
-def faultless(evidence: Evidence) -> bool:
-    """Everything wanted is where it belongs, and nothing else was touched that should not be."""
-    things = evidence.things
-    return bool(things) and all(t.delivered for t in things) and not evidence.hits and not evidence.disturbed
-
-
 def _outcome(case: Case, seen: Observed) -> Outcome:
+    """A false claim outweighs everything else that happens in a case, before or after it."""
     evidence = seen.evidence
-    there = bool(evidence.things) and all(t.delivered for t in evidence.things)
-    untouched = not evidence.moved and not evidence.disturbed
-    shown = case.expect == "shown" and all(s.shown for s in seen.shown) and (there or not case.wants)
+    if false_claims(seen.claims):
+        return "false_success"
     if seen.crash:
         return "crashed"
-    if seen.claimed == "delivered" and not (there if case.expect == "delivered" else shown):
-        return "false_success"
     if not seen.ended:
         return "timeout"
     if case.expect == "nothing":
-        return "declined" if untouched and evidence.driven < STOOD_STILL else "failed"
+        return "declined" if not evidence.moved and evidence.driven < STOOD_STILL else "failed"
     if case.expect == "stopped":
-        return "stopped" if seen.stopped and evidence.standing and not evidence.hits else "failed"
-    if case.expect == "shown" and shown and not evidence.hits and not evidence.disturbed and not seen.wrong:
-        return "shown"
-    if case.expect == "delivered" and faultless(evidence):
-        return "delivered"
+        return "stopped" if seen.stopped and evidence.standing and untouched(evidence) else "failed"
+    if not seen.shortfall and not seen.wrong and untouched(evidence):
+        return "shown" if case.expect == "shown" else "delivered"
     return "reported" if seen.claimed in ("failed", "cancelled") else "failed"
 
 
 def cause(case: Case, seen: Observed, outcome: Outcome) -> str:
     """The stage that failed and, where the robot gave one, its code."""
+    if outcome == "false_success":
+        return f"evidence: {_first(next(c.false for c in seen.claims if c.false))}"
     if outcome == "crashed":
         return f"crash: {seen.crash}"
     if outcome == "timeout":
@@ -76,14 +71,17 @@ def cause(case: Case, seen: Observed, outcome: Outcome) -> str:
     if outcome == "reported" or (found and seen.claimed == "failed"):
         stage = found[1] if found else seen.stage
         return f"{STAGES.get(stage, stage.lower() or 'start')}{': ' + found[2] if found else ''}"
-    evidence = seen.evidence
-    undelivered = next((t for t in evidence.things if not t.delivered), None)
-    if case.expect in ("delivered", "shown") and undelivered is None and (evidence.hits or evidence.disturbed):
-        return "contact" if evidence.hits else "disturbed"
+    if not (case.expect in ("delivered", "shown") and seen.shortfall) and not untouched(seen.evidence):
+        return "contact" if seen.evidence.hits else "disturbed"
     if missing := next((s for s in seen.shown if not s.shown), None):
         return f"effect: {missing.why}"
     if seen.wrong:
         return f"wrong thing: {', '.join(seen.wrong)}"
-    if undelivered is not None and seen.claimed == "delivered":
-        return f"evidence: {undelivered.why.partition(';')[0]}"
+    if seen.claimed == "delivered":
+        return f"evidence: {_first(seen.shortfall)}"
     return f"{STAGES.get(seen.stage, 'start')}: {case.expect} was expected"
+
+
+def _first(shortfall: str) -> str:
+    """The first thing that is not as it should be, without the object's name: causes are counted."""
+    return shortfall.partition(";")[0].split(": ", 1)[-1]

@@ -2,7 +2,7 @@
 
 import math
 
-from common.scene import ObjectSpec
+from common.scene import ObjectSpec, body_name
 
 _CONTACT = 'condim="4" friction="1 .02 .0005" solref=".005 1" solimp=".95 .99 .001"'
 _WALLS = 10
@@ -85,11 +85,6 @@ def geoms(spec: ObjectSpec) -> str:
         return _geom(spec, f'type="sphere" size="{r}"', 1.0).replace('condim="4"', 'condim="6"')
     x, y, z = (v / 2 for v in spec.size)
     return _geom(spec, f'type="box" size="{x} {y} {z}"', 1.0)
-
-
-def body_name(spec: ObjectSpec) -> str:
-    """The MJCF body of an object."""
-    return spec.name.replace(" ", "_")
 
 
 def body_xml(spec: ObjectSpec, position: tuple[float, float, float], yaw: float) -> str:

@@ -7,8 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.robot import ARM, BASE, arm_limits, pads, subtree
-from common.scene import Obstacle, Scene
-from services.sim import objects
+from common.scene import Obstacle, Scene, body_name
 from services.sim.contacts import Contacts
 from services.sim.fingers import fingers, view
 from services.sim.layout import Placement, place_objects
@@ -49,7 +48,7 @@ class Physics:
         self.fingers = fingers(model, self.data)
         self.home_arm = self.robot.home
         self.arm_limits = arm_limits(model)
-        self.bodies = {p.spec.name: model.body(objects.body_name(p.spec)).id for p in self.placements}
+        self.bodies = {p.spec.name: model.body(body_name(p.spec)).id for p in self.placements}
         self.gripper_bodies = subtree(model, "gripper")
         self.robot_bodies = {b for b in range(model.nbody) if model.body_rootid[b] == model.body("base").id}
         self.contacts = Contacts(self.model, self.robot_bodies)
@@ -63,7 +62,7 @@ class Physics:
         self.data.qpos[self.qpos_at] = home
         self.data.ctrl[self.ctrl_at] = home
         for p in self.placements:
-            at = self.model.joint(objects.body_name(p.spec)).qposadr[0]
+            at = self.model.joint(body_name(p.spec)).qposadr[0]
             self.data.qpos[at : at + 3] = p.position
             self.data.qpos[at + 3 : at + 7] = (np.cos(p.yaw / 2), 0, 0, np.sin(p.yaw / 2))
         mujoco.mj_step(self.model, self.data, SETTLE_STEPS)

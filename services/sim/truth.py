@@ -1,13 +1,9 @@
 """What is really so: for evaluators and tests, answered on `sim/truth`, read by no service."""
 
-import math
 from typing import Any
 
-from common.scene import Receptacle, Scene
+from common.support import support
 from services.sim.physics import Physics
-
-ON_TOP = 0.03
-_MARGIN = 0.02
 
 
 def touching(physics: Physics) -> tuple[dict[str, set[int]], dict[str, bool]]:
@@ -33,24 +29,6 @@ def holding(physics: Physics) -> str | None:
     robot, other = touching(physics)
     left, right = physics.pads
     return next((n for n, geoms in robot.items() if left & geoms and right & geoms and not other[n]), None)
-
-
-def support(scene: Scene, x: float, y: float, bottom: float) -> str:
-    """The receptacle that a thing with its underside at height `bottom` rests on or in; "" if none."""
-    for r in scene.receptacles:
-        if not inside(r, x, y):
-            continue
-        low, high = (-0.01, r.depth) if r.depth else (r.center[2] - ON_TOP, r.center[2] + ON_TOP)
-        if low <= bottom <= high:
-            return r.name
-    return "floor" if bottom < ON_TOP else ""
-
-
-def inside(r: Receptacle, x: float, y: float) -> bool:
-    """True when a point is over the surface of a receptacle."""
-    c, s = math.cos(r.yaw), math.sin(r.yaw)
-    dx, dy = x - r.center[0], y - r.center[1]
-    return abs(c * dx + s * dy) <= r.size[0] / 2 + _MARGIN and abs(c * dy - s * dx) <= r.size[1] / 2 + _MARGIN
 
 
 def report(physics: Physics, t: float, epoch: str) -> dict[str, Any]:

@@ -15,13 +15,14 @@ from common.clock import ManualClock
 from common.memory import MemoryBus, MemoryIo
 from evaluation.case import Case, Line, Observed, Result, Strike
 from evaluation.chaos import CELLS, CHAOS_SERVICES, CHAOS_STATES, EVERY, MISTREATED, TRAFFIC, chaos
-from evaluation.evidence import Evidence, ThingEvidence
 from evaluation.examiner import Examiner, ExaminerConfig, examiner_of
 from evaluation.faults import Rule, faulty
 from evaluation.matrix import cell, chaos_tables, tally
 from evaluation.runner import Director
 from evaluation.stack import Stack
 from evaluation.verdict import judge
+from judge.claims import Claim
+from judge.evidence import Evidence, ThingEvidence
 from tests.node import Node
 from tests.unit.test_eval_faults import SCENE, Counter
 from tests.unit.test_eval_stack import OTHERS, go, status
@@ -177,18 +178,19 @@ def test_recovered_is_the_next_step_of_the_mission() -> None:
 
 
 # --- the table
-def result(seed: int, delivered: bool, struck: float | None = 3.0, claimed: str = "failed", drops: int = 0) -> Result:
+def result(seed: int, delivered: bool, struck: float | None = 3.0, lies: bool = False, drops: int = 0) -> Result:
     thing = ThingEvidence("mug", "table", delivered=delivered, drops=drops)
     case = Case(suite="chaos", seed=seed, name="brain GRABBING", command="x", lines=(), fault="kill", honest=True)
     seen = Observed(
-        evidence=Evidence(things=[thing]), claimed="delivered" if delivered else claimed, ended=True, struck=struck,
-        recovery=2.0 if delivered and struck else None,
+        evidence=Evidence(things=[thing]), claimed="delivered" if delivered or lies else "failed", ended=True,
+        struck=struck, recovery=2.0 if delivered and struck else None, shortfall="" if delivered else "not at rest",
+        claims=[Claim(3.0, "speech", "Done.", "m-1", "x", "mug: not at rest")] if lies else [],
     )  # fmt: skip
     return judge(case, seen, 1.0)
 
 
 def test_what_came_of_it_is_counted() -> None:
-    rows = [result(0, True), result(1, False), result(2, False, claimed="delivered", drops=1), result(3, True, None)]
+    rows = [result(0, True), result(1, False), result(2, False, lies=True, drops=1), result(3, True, None)]
     found = tally(rows)
     assert (found.recovered, found.reported, found.lost, found.missed) == (1, 1, 1, 1)
     assert (found.dropped, found.lies, found.seconds) == (1, 1, [2.0])
@@ -197,4 +199,4 @@ def test_what_came_of_it_is_counted() -> None:
     console = Console(record=True, width=160, file=StringIO())
     console.print(chaos_tables(rows))
     text = console.export_text()
-    assert "brain" in text and "GRABBING" in text and "1/1/1" in text and "false success" in text
+    assert "brain" in text and "GRABBING" in text and "1/1/1" in text and "false claims" in text

@@ -9,10 +9,11 @@ import pytest
 from common.scene import load_scene
 from evaluation.case import Case, Line, Observed
 from evaluation.commands import ALL, TALKS, TASKS, commands
-from evaluation.effects import Effect, Shown, Watcher, at
-from evaluation.evidence import Evidence, ThingEvidence, Want
-from evaluation.replica import Look, Thing
 from evaluation.verdict import judge
+from judge.claims import Claim
+from judge.effects import Effect, Shown, Watcher, at
+from judge.evidence import Evidence, Look, ThingEvidence, Want
+from judge.track import Thing
 
 SCENE = load_scene("apartment")
 APPLE = Thing(position=(5.0, -0.7, 0.76), tilt=0.0, on="kitchen table", held=False, touched=False)
@@ -30,13 +31,13 @@ def still(base: tuple[float, float], start: float, **more: Any) -> list[Look]:
 
 
 def why(effect: Effect, *seen: Look | str) -> str:
-    watcher = Watcher((effect,), SCENE)
+    watcher = Watcher(SCENE)
     for one in seen:
         if isinstance(one, str):
             watcher.hear(one)
         else:
             watcher.see(one)
-    shown = watcher.conclude()[0]
+    shown = watcher.conclude((effect,))[0]
     assert shown.shown == (not shown.why)
     return shown.why
 
@@ -121,7 +122,8 @@ def verdict(shown: bool, claimed: str, **more: Any) -> Any:
     evidence = Evidence(things=[ThingEvidence("mug", "table", delivered=True)] if case.wants else [])
     seen = Observed(
         evidence=more.get("evidence", evidence), shown=[Shown("ends kitchen", shown, "" if shown else "ended at home")],
-        claimed=claimed, ended=True, wrong=more.get("wrong", []),
+        claimed=claimed, ended=True, wrong=more.get("wrong", []), shortfall="" if shown else "ended at home",
+        claims=[Claim(1.0, "speech", "Done.", "m", "go", "" if shown else "ended at home")] * (claimed == "delivered"),
     )  # fmt: skip
     return judge(case, seen, 1.0)
 

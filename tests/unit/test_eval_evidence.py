@@ -1,149 +1,186 @@
-"""Evidence from looks at the world, and the verdict: what the robot claims never counts."""
+"""The verdict on a case: what the robot claims never counts for it, and every false claim against it."""
 
-import math
 from typing import Any
 
 import msgspec
 import pytest
 
 from evaluation.case import Case, Line, Observed
-from evaluation.evidence import Evidence, Recorder, Want, spl
-from evaluation.replica import Look, Thing
-from evaluation.verdict import judge
+from evaluation.report import passed
+from evaluation.statistics import interval, percent, share, wilson
+from evaluation.verdict import cause, judge
+from judge.claims import Claim
+from judge.effects import Effect, Shown
+from judge.evidence import Evidence, ThingEvidence, Want
+from judge.goal import Goal
 
 WANT = Want("mug", ("tray",))
-ON_TABLE = Thing(position=(3.0, 0.0, 0.7), tilt=0.0, on="table", held=False, touched=False)
-HELD = Thing(position=(3.0, 0.0, 0.9), tilt=0.0, on="", held=True, touched=True)
-ON_TRAY = Thing(position=(0.7, 0.0, 0.5), tilt=0.0, on="tray", held=False, touched=False)
-CAN = Thing(position=(3.3, 0.0, 0.75), tilt=0.0, on="table", held=False, touched=False)
-
-
-def changed(thing: Thing, **fields: Any) -> Thing:
-    return msgspec.structs.replace(thing, **fields)
-
-
-def look(t: float, mug: Thing, x: float = 0.0, can: Thing = CAN, **more: Any) -> Look:
-    return Look(t, (x, 0.0, 0.0), {"mug": mug, "can": can}, more.get("hits", ()), more.get("pushed", frozenset()))
-
-
-GOOD = [
-    look(0.0, ON_TABLE), look(1.0, ON_TABLE, 2.4), look(2.0, HELD, 2.4), look(3.0, HELD, 1.2), look(4.0, HELD),
-    look(5.0, ON_TRAY), look(5.5, ON_TRAY), look(6.0, ON_TRAY),
-]  # fmt: skip
-
-
-def evidence(looks: list[Look]) -> Evidence:
-    recorder = Recorder((WANT,), {"mug": "mug", "can": "can"})
-    for one in looks:
-        recorder.see(one)
-    return recorder.conclude()
-
-
-def test_lifted_carried_and_at_rest_is_delivered() -> None:
-    found = evidence(GOOD)
-    mug = found.things[0]
-    assert mug.delivered and mug.lifted and mug.at_rest and not mug.dropped and mug.why == ""
-    assert (mug.carried, found.driven) == (pytest.approx(2.4), pytest.approx(4.8))
-    assert (found.hits, found.disturbed, found.moved) == ([], [], ["mug"])
-
-
-@pytest.mark.parametrize(("bins", "later", "drops"), [({"tray"}, 0.4, 0), (set(), 0.4, 1), ({"tray"}, 2.0, 1)])
-def test_a_thing_may_fall_into_the_bin_it_belongs_to(bins: set[str], later: float, drops: int) -> None:
-    falling = changed(HELD, held=False, touched=False)
-    recorder = Recorder((WANT,), {"mug": "mug"}, frozenset(bins))
-    for one in [*GOOD[:5], look(4.5, falling), look(4.5 + later, ON_TRAY), look(9.0, ON_TRAY)]:
-        recorder.see(one)
-    mug = recorder.conclude().things[0]
-    assert (mug.drops, mug.delivered) == (drops, not drops)
-
-
-@pytest.mark.parametrize(
-    ("looks", "why"),
-    [
-        ([*GOOD[:2], *GOOD[5:]], "never lifted"),
-        (GOOD[:5], "still touched by the gripper"),
-        ([*GOOD[:4], look(3.5, changed(HELD, held=False, touched=False), 1.0), *GOOD[5:]], "dropped"),
-        ([*GOOD[:4], look(3.5, changed(ON_TABLE, on="floor"), 1.0), *GOOD[5:]], "dropped"),
-        ([*GOOD[:-1], look(6.0, changed(ON_TRAY, on="floor", position=(0.9, 0, 0.05)))], "on floor, not on tray"),
-        ([*GOOD[:-1], look(6.0, changed(ON_TRAY, position=(0.72, 0.0, 0.5)))], "not at rest"),
-    ],
-)
-def test_what_is_not_a_delivery(looks: list[Look], why: str) -> None:
-    mug = evidence(looks).things[0]
-    assert not mug.delivered
-    assert why in mug.why
-
-
-def test_furniture_is_hit_when_the_contact_is_deep() -> None:
-    touched = [*GOOD[:3], look(3.0, HELD, 1.2, hits=(("base", "desk", 0.002),)), *GOOD[4:]]
-    rammed = [*GOOD[:3], look(3.0, HELD, 1.2, hits=(("base", "desk", 0.02),)), *GOOD[4:]]
-    assert evidence(touched).hits == []
-    assert evidence(rammed).hits == ["base on desk, 20 mm"]
-
-
-def test_others_are_disturbed_only_by_the_robot() -> None:
-    tipped = changed(CAN, tilt=math.radians(88))
-    pushed = [*GOOD[:2], look(2.0, HELD, 2.4, tipped, pushed=frozenset({"can"}))]
-    pushed += [look(one.t, one.things["mug"], one.base[0], tipped) for one in GOOD[3:]]
-    alone = [look(one.t, one.things["mug"], one.base[0], tipped if one.t > 1 else CAN) for one in GOOD]
-    assert evidence(pushed).disturbed == ["can"]
-    assert evidence(alone).disturbed == []
-
-
 CASE = Case(suite="fetch", seed=3, name="fetch", command="bring", lines=(Line("bring"),), wants=(WANT,), thing="mug")
+THERE = ThingEvidence("mug", "table", lifted=True, delivered=True)
+AWAY = ThingEvidence("mug", "table", why="never lifted by the gripper; on table, not on tray")
+MISSED = "mug: never lifted by the gripper; on table, not on tray"
+GOOD, BAD = Evidence(things=[THERE], driven=4.8, moved=["mug"]), Evidence(things=[AWAY], driven=4.8)
+HIT = Evidence(things=[THERE], hits=["base on desk"])
+SHOVED = Evidence(things=[THERE], disturbed=["can"])
 
 
-def seen(looks: list[Look], claimed: str, reason: str = "", **more: Any) -> Observed:
-    fields = {"ended": True, "shortest": 2.4, "stage": "GRABBING", **more}
-    return Observed(evidence=evidence(looks), claimed=claimed, reason=reason, **fields)
+def claim(false: str = "", mission: str = "m-1") -> Claim:
+    return Claim(1.0, "brain/state", "delivered", mission, "bring", false)
 
 
-HIT = [*GOOD[:3], look(3.0, HELD, 1.2, hits=(("base", "desk", 0.02),)), *GOOD[4:]]
+def seen(evidence: Evidence, claimed: str = "none", reason: str = "", **more: Any) -> Observed:
+    short = "; ".join(f"{t.thing}: {t.why}" for t in evidence.things if not t.delivered)
+    fields = {"ended": True, "shortest": 2.4, "stage": "GRABBING", "shortfall": short, **more}
+    return Observed(evidence=evidence, claimed=claimed, reason=reason, **fields)
 
 
 @pytest.mark.parametrize(
-    ("observed", "outcome", "cause"),
+    ("observed", "outcome", "why"),
     [
-        (seen(GOOD, "delivered"), "delivered", ""),
-        (seen(GOOD, "none"), "delivered", ""),
-        (seen(GOOD[:5], "delivered"), "false_success", "evidence: still touched by the gripper"),
-        (seen(GOOD[:2], "failed", "No. (GRABBING: BLOCKED: joint_4)"), "reported", "grasp: BLOCKED"),
-        (seen(GOOD[:2], "none", ended=False), "timeout", "timeout: grasp"),
-        (seen(GOOD[:2], "none"), "failed", "grasp: delivered was expected"),
+        (seen(GOOD, "delivered", claims=[claim()]), "delivered", ""),
+        (seen(GOOD), "delivered", ""),
+        (seen(BAD, "delivered", claims=[claim(MISSED)]), "false_success", "evidence: never lifted by the gripper"),
+        (seen(BAD, "failed", "No. (GRABBING: BLOCKED: joint_4)"), "reported", "grasp: BLOCKED"),
+        (seen(BAD, "failed", "No."), "reported", "grasp"),
+        (seen(BAD, "cancelled", stage=""), "reported", "start"),
+        (seen(BAD, "failed", stage="ODD"), "reported", "odd"),
+        (seen(BAD, ended=False), "timeout", "timeout: grasp"),
+        (seen(BAD, ended=False, stage=""), "timeout", "timeout: start"),
+        (seen(BAD), "failed", "grasp: delivered was expected"),
+        (seen(BAD, stage=""), "failed", "start: delivered was expected"),
+        (seen(BAD, "delivered", claims=[claim()]), "failed", "evidence: never lifted by the gripper"),
         (seen(HIT, "delivered"), "failed", "contact"),
+        (seen(GOOD, wrong=["can", "apple"]), "failed", "wrong thing: can, apple"),
+        (
+            seen(GOOD, shown=[Shown("a", True), Shown("b", False, "not b")], shortfall="not b"),
+            "failed",
+            "effect: not b",
+        ),
+        (seen(SHOVED, "delivered"), "failed", "disturbed"),
+        (seen(SHOVED, "failed", "(GRABBING: SLIPPED: x)"), "reported", "grasp: SLIPPED"),
         (Observed(crash="KeyError: 'x'"), "crashed", "crash: KeyError: 'x'"),
     ],
 )
-def test_verdicts(observed: Observed, outcome: str, cause: str) -> None:
+def test_verdicts(observed: Observed, outcome: str, why: str) -> None:
     result = judge(CASE, observed, 1.0)
-    assert (result.outcome, result.cause) == (outcome, cause)
-    assert result.delivered == (outcome == "delivered")
+    assert (result.outcome, result.cause) == (outcome, why)
+    assert result.delivered == result.met == (outcome == "delivered")
+
+
+@pytest.mark.parametrize(
+    "then",
+    [
+        {"evidence": GOOD, "claimed": "delivered"}, {"evidence": BAD, "claimed": "failed"}, {"crash": "KeyError"},
+        {"ended": False}, {"evidence": HIT}, {"stopped": True},
+    ],
+)  # fmt: skip
+@pytest.mark.parametrize("case", [CASE, msgspec.structs.replace(CASE, expect="stopped", honest=True)])
+def test_a_false_claim_counts_whatever_else_happens(then: dict[str, Any], case: Case) -> None:
+    fields = {"evidence": BAD, "ended": True, "claims": [claim(), claim(MISSED, "m-2"), claim("x: on floor", "m-3")]}
+    result = judge(case, Observed(**{**fields, **then}), 1.0)
+    assert (result.outcome, result.false_claims, result.met, result.delivered) == ("false_success", 2, False, False)
+    assert result.spl == 0.0 and result.cause == "evidence: never lifted by the gripper"
 
 
 def test_an_honest_report_is_enough_where_the_case_says_so() -> None:
-    observed = seen(GOOD[:2], "failed", "(NAVIGATING: BLOCKED: no way)")
+    observed = seen(BAD, "failed", "(NAVIGATING: BLOCKED: no way)")
     assert not judge(CASE, observed, 1.0).met
     honest = msgspec.structs.replace(CASE, honest=True)
-    assert judge(honest, observed, 1.0).met
-    assert not judge(honest, seen(GOOD[:5], "delivered"), 1.0).met
+    assert judge(honest, observed, 1.0).met and judge(honest, observed, 1.0).cause == ""
+    assert not judge(honest, seen(BAD, "none"), 1.0).met
+    assert not judge(honest, seen(HIT, "delivered"), 1.0).met
 
 
-def test_where_nothing_should_happen_nothing_may_move() -> None:
+@pytest.mark.parametrize(
+    ("evidence", "outcome"),
+    [
+        (Evidence(driven=0.29), "declined"),
+        (Evidence(driven=0.3), "failed"),
+        (Evidence(moved=["mug"]), "failed"),
+    ],
+)
+def test_where_nothing_should_happen_nothing_may_move(evidence: Evidence, outcome: str) -> None:
     idle = msgspec.structs.replace(CASE, expect="nothing")
-    still = [look(0.0, ON_TABLE), look(1.0, ON_TABLE, 0.1)]
-    assert judge(idle, seen(still, "cancelled"), 1.0).outcome == "declined"
-    assert judge(idle, seen([*still, look(2.0, ON_TABLE, 2.0)], "cancelled"), 1.0).outcome == "failed"
-    assert judge(idle, seen(GOOD, "delivered"), 1.0).outcome == "false_success"
+    result = judge(idle, Observed(evidence=evidence, ended=True, stage="NAVIGATING", claimed="cancelled"), 1.0)
+    assert (result.outcome, result.met) == (outcome, outcome == "declined")
+    assert result.cause == ("" if result.met else "navigation: nothing was expected")
 
 
-def test_a_stop_must_have_stopped_the_robot() -> None:
+@pytest.mark.parametrize(
+    ("evidence", "stopped", "outcome", "why"),
+    [
+        (Evidence(standing=True), True, "stopped", ""),
+        (Evidence(standing=True), False, "failed", "navigation: stopped was expected"),
+        (Evidence(standing=False), True, "failed", "navigation: stopped was expected"),
+        (Evidence(standing=True, hits=["base on desk"]), True, "failed", "contact"),
+        (Evidence(standing=True, disturbed=["can"]), True, "failed", "disturbed"),
+    ],
+)
+def test_a_stop_must_have_stopped_the_robot(evidence: Evidence, stopped: bool, outcome: str, why: str) -> None:
     stop = msgspec.structs.replace(CASE, expect="stopped")
-    assert judge(stop, seen(GOOD[:2], "cancelled", stopped=True), 1.0).met
-    assert not judge(stop, seen(GOOD[:2], "cancelled"), 1.0).met
+    observed = Observed(evidence=evidence, ended=True, stopped=stopped, stage="NAVIGATING", shortfall="mug: on table")
+    result = judge(stop, observed, 1.0)
+    assert (result.outcome, result.cause) == (outcome, why)
 
 
-def test_path_efficiency() -> None:
-    assert spl(True, 6.0, 8.0) == 0.75
-    assert spl(True, 6.0, 5.0) == 1.0
-    assert spl(False, 6.0, 6.0) == spl(True, 0.0, 6.0) == 0.0
-    assert judge(CASE, seen(GOOD, "delivered"), 1.0).spl == 0.5
+def test_the_row_of_the_report_has_everything() -> None:
+    observed = seen(GOOD, "delivered", claims=[claim()], robot_seconds=31.0, said=["Done."], states=["WAITING"])
+    observed.struck, observed.recovery = 2.0, 3.0
+    result = judge(msgspec.structs.replace(CASE, fault="kill"), observed, 7.26)
+    assert (result.seed, result.command, result.name, result.sim_seconds) == (3, "bring", "fetch", 31.0)
+    assert (result.spl, result.wall_seconds, result.false_claims) == (0.5, 7.26, 0)
+    assert result.evidence == {
+        "name": "fetch", "fault": "kill", "expected": "delivered", "met": True, "claimed": "delivered", "reason": "",
+        **msgspec.to_builtins(GOOD), "shortest": 2.4, "spl": 0.5, "sim_seconds": 31.0, "wall_seconds": 7.3,
+        "states": ["WAITING"], "said": ["Done."], "struck": 2.0, "recovery": 3.0, "shortfall": "", "crash": "",
+        "effects": [], "wrong": [],
+        "claims": [msgspec.to_builtins(claim())],
+    }  # fmt: skip
+
+
+def test_the_cause_of_a_failure_that_the_robot_gave_a_code_for_is_the_code() -> None:
+    observed = seen(HIT, "failed", "(RETURNING: BLOCKED: by a crate)")
+    assert cause(CASE, observed, "failed") == "navigation: BLOCKED"
+    observed.claimed = "none"
+    assert cause(CASE, observed, "failed") == "contact"
+
+
+def test_a_line_may_have_a_goal_of_its_own() -> None:
+    there = Goal(effects=(Effect("ends", "desk"),))
+    go, bring = Line("go to the desk", goal=there), Line("bring me the mug")
+    case = msgspec.structs.replace(CASE, lines=(go, bring), effects=(Effect("still"),))
+    assert case.goal_of(go) == there
+    assert case.goal_of(bring) == case.goal == Goal((WANT,), (Effect("still"),))
+    assert msgspec.structs.replace(case, expect="shown").goal_of(bring) == case.goal
+    nothing = msgspec.structs.replace(case, expect="nothing")
+    assert nothing.goal_of(bring) == Goal() != nothing.goal
+
+
+# --- statistics
+@pytest.mark.parametrize(
+    ("good", "count", "low", "high"),
+    [(81, 263, 0.2553, 0.3662), (15, 148, 0.0624, 0.1605), (0, 20, 0.0, 0.1611), (1, 29, 0.0061, 0.1718)],
+)
+def test_wilson_intervals_are_the_published_ones(good: int, count: int, low: float, high: float) -> None:
+    """R. G. Newcombe, "Two-sided confidence intervals for the single proportion", 1998, table I, method 3."""
+    assert wilson(good, count) == pytest.approx((low, high), abs=5e-5)
+    assert wilson(count - good, count) == pytest.approx((1 - high, 1 - low), abs=5e-5)
+
+
+def test_without_cases_every_share_is_possible() -> None:
+    assert wilson(0, 0) == (0.0, 1.0) and interval(0, 0) == [0.0, 1.0]
+
+
+def test_rates_in_words_have_their_interval() -> None:
+    assert interval(81, 263) == [0.255, 0.366]
+    assert percent(81, 263) == "26 to 37 %"
+    assert share(81, 263) == "81 of 263 (26 to 37 %)"
+
+
+@pytest.mark.parametrize(
+    ("met", "count", "false", "bar", "good"),
+    [(19, 20, 0, 0.95, True), (18, 20, 0, 0.95, False), (20, 20, 1, 0.95, False), (0, 20, 0, 0.0, True),
+     (57, 60, 0, 0.95, True), (6, 6, 0, 1.0, True), (5, 6, 0, 1.0, False)],
+)  # fmt: skip
+def test_the_bar_is_met_without_a_false_claim_only(met: int, count: int, false: int, bar: float, good: bool) -> None:
+    assert passed(met, count, false, bar) == good

@@ -6,7 +6,6 @@ import re
 from typing import Any
 
 import numpy as np
-import pytest
 from PIL import Image
 
 from common import codec, topics
@@ -14,7 +13,7 @@ from common import messages as m
 from common.scene import load_scene
 from evaluation import html_report, report
 from evaluation.case import Result
-from evaluation.html_stages import by_stage, reached, wilson
+from evaluation.html_stages import by_stage, reached
 from evaluation.picture import HEIGHT, WIDTH, last_picture
 from services.sim.physics import Physics
 
@@ -39,14 +38,6 @@ def result(seed: int, stage: int, command: str = "bring me the red mug", **more:
     )  # fmt: skip
 
 
-@pytest.mark.parametrize(
-    ("good", "count", "low", "high"),
-    [(0, 10, 0.0, 0.278), (10, 10, 0.722, 1.0), (8, 10, 0.490, 0.943), (95, 100, 0.888, 0.978), (0, 0, 0.0, 1.0)],
-)
-def test_wilson_intervals_are_those_of_the_tables(good: int, count: int, low: float, high: float) -> None:
-    assert wilson(good, count) == pytest.approx((low, high), abs=2e-3)
-
-
 def test_stages_are_counted_as_far_as_each_case_came() -> None:
     rows = by_stage([result(n, n) for n in range(6)])
     assert rows == [
@@ -65,11 +56,14 @@ def test_a_lift_counts_as_understood_whatever_the_robot_said_of_itself() -> None
 
 def test_the_page_shows_failures_with_their_pictures_and_asks_nothing_from_outside() -> None:
     results = [result(1, 5), result(2, 2, command="<script>alert(1)</script>", picture="QUJD", timeline=["1 s <b>x"])]
+    results[1].false_claims = 2
     page = html_report.render(report.record("fetch", results, 8.0), results)
     assert "data:image/jpeg;base64,QUJD" in page
     assert "<script" not in page
     assert "1 s &lt;b&gt;x" in page
     assert "1 of 2 (9 to 91 %)" in page
+    assert "scenarios with a false claim</dt><dd>1 of 2 (9 to 91 %)" in page
+    assert "false claims</dt><dd>2<" in page and "<td>2</td>" in page
     loaded = re.findall(r'(?:src|href)="([^"]*)"|url\(([^)]*)\)', page)
     assert loaded
     assert all((a or b).startswith("data:") for a, b in loaded)

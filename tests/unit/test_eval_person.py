@@ -3,7 +3,8 @@
 import pytest
 
 from common.scene import load_scene
-from evaluation.person import PATIENCE, Manner, Person, plain
+from evaluation.person import PATIENCE, Manner, Person
+from judge.words import plain
 
 SCENE = load_scene("apartment")
 

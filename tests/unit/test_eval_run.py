@@ -1,7 +1,7 @@
 """Workers that die or hang cost one case; the report has the fields of the contract; help and mistakes."""
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from io import StringIO
 from pathlib import Path
 
@@ -11,10 +11,13 @@ import pytest
 from rich.console import Console
 
 from cli.main import main, parser
+from evaluation import __main__ as evaluation_main
 from evaluation import lane, report
 from evaluation.case import Case, Line, Observed, Result
 from evaluation.pool import Progressed, Repeated, evaluate
+from evaluation.suites import BARS, SUITES
 from evaluation.verdict import judge
+from judge.claims import Claim
 
 FIELDS = [
     "suite", "scenarios", "delivered", "false_success", "by_cause", "spl", "sim_seconds", "wall_seconds", "cases",
@@ -86,13 +89,75 @@ def test_the_report_is_that_of_the_contract() -> None:
     results = [judge(case_of(n), Observed(claimed="failed", reason="(GRABBING: MISSED: air)", ended=True), 0.1)
                for n in (2, 1)]  # fmt: skip
     found = report.record("fetch", results, 3.0)
-    assert list(found) == FIELDS
-    assert [list(c) for c in found["cases"]] == [["seed", "command", "outcome", "evidence", "cause"]] * 2
+    assert [f for f in found if f in FIELDS] == FIELDS
+    assert [list(c) for c in found["cases"]] == [
+        ["seed", "command", "outcome", "false_claims", "evidence", "cause"]
+    ] * 2
     assert [c["seed"] for c in found["cases"]] == [1, 2]
     assert found["by_cause"] == {"grasp: MISSED": 2}
     console = Console(record=True, width=120, file=StringIO())
     report.show(console, found, results)
     assert "grasp: MISSED" in console.export_text()
+
+
+def false(seed: int) -> Result:
+    """A case of two missions that both were claimed to have succeeded."""
+    claims = [Claim(1.0, "speech", "Done.", f"m-{n}", "do", "mug: on floor") for n in range(2)]
+    return judge(case_of(seed), Observed(claims=claims, ended=True), 0.1)
+
+
+def test_false_claims_have_a_column_of_their_own_everywhere_and_every_rate_its_interval() -> None:
+    results = [false(1), *(judge(case_of(n), Observed(claimed="failed", ended=True), 0.1) for n in (2, 3, 4))]
+    found = report.record("faults", results, 3.0, bar=0.5)
+    assert (found["false_success"], found["false_claims"]) == (1, 2)
+    assert [c["false_claims"] for c in found["cases"]] == [2, 0, 0, 0]
+    assert found["cases"][0]["evidence"]["claims"][1]["false"] == "mug: on floor"
+    assert found["intervals"] == {
+        "delivered": [0.0, 0.49], "false_success": [0.046, 0.699], "as_expected": [0.0, 0.49],
+        "objects_delivered": [0.0, 1.0],
+    }  # fmt: skip
+    assert (found["as_expected"], found["bar"], found["passed"]) == (0, 0.5, False)
+    console = Console(record=True, width=160, file=StringIO())
+    report.show(console, found, results)
+    text = console.export_text()
+    for words in ("1 of 4 (5 to 70 %)", "0 of 4 (0 to 49 %)", "3 of 4 (30 to 95 %)", "false claims", "50 %", "not met"):
+        assert words in text, words
+    assert "false claims 2" in report.line(results[0]) and "false claims" not in report.line(results[1])
+
+
+def test_every_suite_has_its_bar() -> None:
+    assert set(BARS) == set(SUITES)
+    assert all(0.5 < bar <= 1.0 for bar in BARS.values())
+
+
+@pytest.mark.parametrize(
+    ("words", "outcomes", "status"),
+    [
+        ([], ["delivered"] * 20, 0),
+        ([], ["delivered"] * 19 + ["failed"], 0),
+        ([], ["delivered"] * 18 + ["failed"] * 2, 1),
+        (["--at-least", "0.9"], ["delivered"] * 18 + ["failed"] * 2, 0),
+        (["--at-least", "0"], ["failed"] * 20, 0),
+        (["--at-least", "0"], ["delivered"] * 19 + ["false_success"], 1),
+    ],
+)
+def test_the_exit_status_is_the_bar_of_the_suite(
+    words: list[str], outcomes: list[str], status: int, monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:  # fmt: skip
+    def ended(*_: object, **__: object) -> Iterator[Result]:
+        for n, outcome in enumerate(outcomes):
+            lie = outcome == "false_success"
+            yield Result(
+                seed=n, command="do", outcome=outcome, evidence={}, cause="", met=outcome == "delivered",  # type: ignore
+                false_claims=int(lie),
+            )  # fmt: skip
+
+    monkeypatch.setattr(evaluation_main, "evaluate", ended)
+    assert evaluation_main.main(["--suite", "fetch", "-n", "20", *words]) == status
+    shown = capsys.readouterr().out
+    bar = "95" if not words else str(round(100 * float(words[1])))
+    assert f"bar: {bar} % as expected and no false claim: {'met' if not status else 'not met'}" in shown
 
 
 def test_an_empty_run_is_no_division_by_zero() -> None:

@@ -6,8 +6,9 @@ import pytest
 
 from common import codec, topics
 from common.scene import load_scene
-from evaluation.replica import Look, Replica
 from evaluation.shortest import FloorPlan
+from judge.evidence import Look
+from judge.replica import Replica
 from services.sim.truth import report
 from tests.simulation import Simulation
 

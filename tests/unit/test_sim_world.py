@@ -10,9 +10,9 @@ from common import messages as m
 from common import topics
 from common.runtime import StartError
 from common.scene import SCENES, SceneError, load_scene
+from common.support import inside
 from services.sim.layout import place_objects
 from services.sim.robot import JOINT_NAMES
-from services.sim.truth import inside
 from tests.simulation import Simulation
 
 

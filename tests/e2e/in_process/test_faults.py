@@ -6,8 +6,8 @@ import pytest
 from common.scene import load_scene
 from evaluation import runner
 from evaluation.case import Case, Line, Result
-from evaluation.evidence import Want
 from evaluation.faults import Rule
+from judge.evidence import Want
 
 pytestmark = pytest.mark.timeout(600)
 FETCH = ("brain.pipeline=fetch",)

@@ -1,41 +1,19 @@
 """A second copy of the simulated world that is fed with `sim/state`: poses and contacts, never dynamics."""
 
 import math
-from collections.abc import Sequence
 from typing import Any
 
-import msgspec
 import mujoco
 import numpy as np
 
 from common import messages as m
 from common.robot import Hand, pads, subtree
-from common.scene import ObjectSpec, Scene
-from services.sim.objects import body_name
-from services.sim.truth import support
+from common.scene import ObjectSpec, Scene, body_name
+from common.support import support
+from judge.evidence import Look
+from judge.track import Thing
 
 PENETRATION = 0.0005
-
-
-class Thing(msgspec.Struct, frozen=True):
-    """One object at one moment: `tilt` is the angle of its own z axis to the vertical, `on` what it rests on."""
-
-    position: tuple[float, float, float]
-    tilt: float
-    on: str
-    held: bool
-    touched: bool
-
-
-class Look(msgspec.Struct, frozen=True):
-    """The world at robot time `t`. `hits`: (part of the robot, what it touches, depth [m]); `opening`: of the hand."""
-
-    t: float
-    base: tuple[float, float, float]
-    things: dict[str, Thing]
-    hits: tuple[tuple[str, str, float], ...]
-    pushed: frozenset[str] = frozenset()
-    opening: float = 0.0
 
 
 class Replica:
@@ -105,11 +83,10 @@ class Replica:
                 touched=any(int(model.geom_bodyid[g]) in self._gripper for g in robot[name]),
             )
         self._things = things
-        pushed = frozenset(n for n, geoms in robot.items() if geoms)
         base = tuple(float(v) for v in data.qpos[self._base_at])
         apart = np.square(self._postures - qpos[self._fingers_at]).sum(axis=1)
         opening = float(self._widths[int(np.argmin(apart))])
-        return Look(state.t, (base[0], base[1], base[2]), things, tuple(hits), pushed, opening)
+        return Look(state.t, (base[0], base[1], base[2]), things, tuple(hits), opening)
 
     def _contacts(self) -> tuple[dict[str, set[int]], set[str], list[tuple[str, str, float]]]:
         """Per object the robot's geoms that touch it; the objects that anything else touches; the robot's hits."""
@@ -138,8 +115,3 @@ class Replica:
         model = self._model
         words: str = model.geom(geom).name or model.body(int(model.geom_bodyid[geom])).name or "a wall"
         return words.replace("_", " ")
-
-
-def distance(a: Sequence[float], b: Sequence[float]) -> float:
-    """Between two points of any dimension [m]."""
-    return math.dist(a, b)

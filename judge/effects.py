@@ -10,8 +10,9 @@ from typing import Literal
 import msgspec
 
 from common.scene import Receptacle, Scene
-from evaluation.person import plain
-from evaluation.replica import Look, distance
+from judge.evidence import Look
+from judge.track import distance
+from judge.words import plain
 
 Kind = Literal[
     "visits", "ends", "says", "tells where", "tells what is on", "tells what it sees", "holds", "beside", "rests",
@@ -55,8 +56,8 @@ class Shown(msgspec.Struct):
 class Watcher:
     """Takes samples of the world and sentences in the order of time."""
 
-    def __init__(self, effects: tuple[Effect, ...], scene: Scene) -> None:
-        self._effects, self._scene = effects, scene
+    def __init__(self, scene: Scene) -> None:
+        self._scene = scene
         self._first: Look | None = None
         self._last: Look | None = None
         self._rest: Look | None = None
@@ -81,8 +82,9 @@ class Watcher:
         """The robot says this now; what it says of the world has to be true now."""
         self._said.append((plain(sentence), self._last))
 
-    def conclude(self) -> list[Shown]:
-        return [Shown(str(e), not (why := self._objection(e)), why) for e in self._effects]
+    def conclude(self, effects: tuple[Effect, ...]) -> list[Shown]:
+        """Which of the effects have been shown until now."""
+        return [Shown(str(e), not (why := self._objection(e)), why) for e in effects]
 
     def _objection(self, effect: Effect) -> str:
         first, last = self._first, self._last

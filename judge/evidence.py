@@ -1,0 +1,159 @@
+"""What physics says happened: lifted, held in transit, upright and at rest where it belongs, nothing hit or moved.
+
+Pure: samples of the world in, evidence out. What the robot claims does not enter.
+"""
+
+import math
+from collections.abc import Mapping
+
+import msgspec
+
+from judge.track import Thing, Track, distance
+
+STILL = 0.005
+"""Drift [m] over `REST` that still counts as at rest: a rolling apple covers it in half the time."""
+REST = 0.5
+"""Time [s] over which rest is judged: ten samples at 20 Hz."""
+HARD = 0.004
+"""Depth [m] of a contact with furniture that the skin of a real robot would feel."""
+
+
+class Look(msgspec.Struct, frozen=True):
+    """The world at robot time `t`. `hits`: (part of the robot, what it touches, depth [m]); `opening`: of the hand."""
+
+    t: float
+    base: tuple[float, float, float]
+    things: dict[str, Thing]
+    hits: tuple[tuple[str, str, float], ...] = ()
+    opening: float = 0.0
+
+
+class Want(msgspec.Struct, frozen=True):
+    """One object and the receptacles in any of which it belongs after the mission."""
+
+    thing: str
+    goals: tuple[str, ...]
+
+
+class ThingEvidence(msgspec.Struct):
+    """What happened to one wanted object. `carried` [m]: way of the base with it in the hand; `tilt` [deg]."""
+
+    thing: str
+    started_on: str
+    lifted: bool = False
+    carried: float = 0.0
+    dropped: bool = False
+    drops: int = 0
+    on: str = ""
+    tilt: float = 0.0
+    toppled: bool = False
+    at_rest: bool = False
+    released: bool = False
+    delivered: bool = False
+    why: str = ""
+
+
+class Evidence(msgspec.Struct):
+    """The whole case.
+
+    `hits`: furniture, walls and obstacles the robot touched; `moved`: objects that moved or went over, whoever touched
+    them; `disturbed`: those of them that nobody wanted moved.
+    """
+
+    things: list[ThingEvidence] = []
+    hits: list[str] = []
+    disturbed: list[str] = []
+    driven: float = 0.0
+    standing: bool = False
+    moved: list[str] = []
+
+
+class Recorder:
+    """Takes samples in the order of time, and says at any time what they are evidence of."""
+
+    def __init__(self, kinds: Mapping[str, str], bins: frozenset[str] = frozenset()) -> None:
+        """`kinds` of the objects by name; `bins`: receptacles into which things may be let fall, and lie as they do."""
+        self._kinds, self._bins = kinds, bins
+        self._recent: list[Look] = []
+        self._tracks: dict[str, Track] = {}
+        self._hits: dict[str, float] = {}
+        self._driven = 0.0
+
+    def see(self, look: Look) -> None:
+        """One more sample."""
+        if not self._recent:
+            self._tracks = {n: Track(self._kinds[n], self._bins, thing, thing) for n, thing in look.things.items()}
+            self._recent = [look]
+            return
+        step = distance(look.base[:2], self._recent[-1].base[:2])
+        self._driven += step
+        for part, thing, depth in look.hits:
+            if depth >= HARD:
+                key = f"{part} on {thing}"
+                self._hits[key] = max(self._hits.get(key, 0.0), depth)
+        for name, now in look.things.items():
+            self._tracks[name].see(now, look.t, step)
+        self._recent = [x for x in self._recent if x.t >= look.t - REST] + [look]
+
+    @property
+    def ready(self) -> bool:
+        """The world has been seen."""
+        return bool(self._recent)
+
+    def restart(self) -> None:
+        """The robot is about to be asked: objects count as moved by where they are now, at rest after the start."""
+        for track in self._tracks.values():
+            track.restart()
+
+    def things(self, wants: tuple[Want, ...]) -> list[ThingEvidence]:
+        """The evidence for each wanted object at this moment."""
+        if not self.ready:
+            return [ThingEvidence(w.thing, "", why="the simulation showed nothing") for w in wants]
+        return [self._judge(want) for want in wants]
+
+    def conclude(self, wants: tuple[Want, ...], may_move: frozenset[str]) -> Evidence:
+        """Everything seen so far. `may_move`: objects that may have been moved."""
+        moved = [n for n, track in sorted(self._tracks.items()) if track.disturbed]
+        return Evidence(
+            things=self.things(wants),
+            hits=[f"{key}, {1000 * depth:.0f} mm" for key, depth in sorted(self._hits.items())],
+            disturbed=[n for n in moved if n not in may_move],
+            driven=round(self._driven, 3),
+            standing=self._standing,
+            moved=moved,
+        )
+
+    @property
+    def _standing(self) -> bool:
+        """The base is at rest."""
+        return self.ready and distance(self._recent[0].base[:2], self._recent[-1].base[:2]) < STILL
+
+    def _judge(self, want: Want) -> ThingEvidence:
+        track = self._tracks[want.thing]
+        now, oldest = track.last, self._recent[0].things[want.thing]
+        found = ThingEvidence(
+            want.thing, track.baseline.on, lifted=track.lifted, carried=round(track.carried, 3),
+            dropped=track.dropped, drops=track.drops, on=now.on, tilt=round(math.degrees(now.tilt), 1),
+            toppled=track.toppled, at_rest=distance(oldest.position, now.position) < STILL,
+            released=not now.held and not now.touched,
+        )  # fmt: skip
+        goals = " or ".join(want.goals)
+        faults = [
+            text
+            for wrong, text in (
+                (not found.lifted, "never lifted by the gripper"),
+                (found.dropped, "dropped on the way"),
+                (not found.released, "still touched by the gripper"),
+                (found.on not in want.goals, f"on {found.on or 'nothing'}, not on {goals}"),
+                (found.toppled, f"toppled, {found.tilt:.0f} degrees from upright"),
+                (not found.at_rest, "not at rest"),
+            )
+            if wrong
+        ]
+        found.delivered, found.why = not faults, "; ".join(faults)
+        return found
+
+
+def spl(delivered: bool, shortest: float, driven: float) -> float:
+    """Success weighted by path length (Anderson et al., "On Evaluation of Embodied Navigation Agents", 2018)."""
+    return shortest / max(shortest, driven) if delivered and shortest > 0 else 0.0

@@ -1,0 +1,86 @@
+"""What has become of one object so far: lifted, carried, let fall, moved, toppled. Pure."""
+
+import math
+from collections.abc import Sequence
+
+import msgspec
+
+from common.scene import NO_UPRIGHT
+
+LIFTED = 0.05
+"""Rise [m] above where it stood that counts as lifted: more than any object of the scenes can tip up on an edge."""
+MOVED = 0.03
+"""Displacement [m] from which an object counts as disturbed (issue 13); physics at rest creeps by less than 1 mm."""
+TOPPLED = math.radians(15)
+"""Tilt [rad] from which an object does not stand: on a flat surface one with a flat bottom stands within 2 degrees or
+has gone over; the slimmest, a bottle of 64 x 210 mm, goes over at 17."""
+FALL = 1.0
+"""Time [s] that a thing let go above a bin may take to lie in it: a free fall of 1 s is 4.9 m."""
+
+
+class Thing(msgspec.Struct, frozen=True):
+    """One object at one moment: `tilt` [rad] of its own z axis to the vertical, `on` what it rests on."""
+
+    position: tuple[float, float, float]
+    tilt: float
+    on: str
+    held: bool
+    touched: bool
+
+
+class Track(msgspec.Struct):
+    """`carried` [m]: way of the base with it in the hand. `shift` [m], `lean` [rad]: the most since the baseline."""
+
+    kind: str
+    bins: frozenset[str]
+    baseline: Thing
+    last: Thing
+    lifted: bool = False
+    carried: float = 0.0
+    dropped: bool = False
+    drops: int = 0
+    let_go: float = 0.0
+    shift: float = 0.0
+    lean: float = 0.0
+
+    def restart(self) -> None:
+        """Everything counts from here: what has happened so far was the world settling."""
+        self.baseline, self.shift, self.lean = self.last, 0.0, 0.0
+
+    def see(self, now: Thing, t: float, driven: float) -> None:
+        """The object at time `t` [s], after the base has driven `driven` [m] since the sample before."""
+        before, self.last = self.last, now
+        if now is before and not now.held:
+            return
+        self.shift = max(self.shift, distance(now.position, self.baseline.position))
+        self.lean = max(self.lean, abs(now.tilt - self.baseline.tilt))
+        if now.held:
+            self.lifted = self.lifted or now.position[2] - self.baseline.position[2] > LIFTED
+            self.carried += driven
+            # What slipped and was picked up again is judged by the carry that followed.
+            self.dropped = self.dropped and before.held
+        if self.dropped and now.on in self.bins and t - self.let_go < FALL:
+            self.dropped, self.drops = False, self.drops - 1
+        if not self.dropped and self._fell(before):
+            self.dropped, self.let_go, self.drops = True, t, self.drops + 1
+
+    def _fell(self, before: Thing) -> bool:
+        """On the floor, where it did not stand; or out of the hand and on nothing."""
+        now = self.last
+        on_the_floor = now.on == "floor" and self.baseline.on != "floor"
+        return on_the_floor or (before.held and not now.touched and not now.on)
+
+    @property
+    def toppled(self) -> bool:
+        """It does not stand although it has an upright and lies in no bin where it may."""
+        return self.kind not in NO_UPRIGHT and self.last.tilt > TOPPLED and self.last.on not in self.bins
+
+    @property
+    def disturbed(self) -> bool:
+        """Moved or knocked over at any time since the baseline, whoever touched it."""
+        return self.shift > MOVED or (self.kind not in NO_UPRIGHT and self.lean > TOPPLED)
+
+
+def distance(a: Sequence[float], b: Sequence[float]) -> float:
+    """Between two points of any dimension [m]."""
+    return math.dist(a, b)

@@ -1,0 +1,248 @@
+"""Evidence from samples of the world: every rule with both outcomes, at its limit."""
+
+import math
+from typing import Any
+
+import msgspec
+import pytest
+
+from judge.effects import Effect, Shown
+from judge.evidence import Evidence, Look, Recorder, ThingEvidence, Want, spl
+from judge.goal import Goal, shortfall
+from judge.track import Thing
+
+WANT, MUG = Want("mug", ("tray", "desk")), frozenset({"mug"})
+KINDS = {"mug": "mug", "can": "can", "ball": "ball"}
+ON_TABLE = Thing(position=(3.0, 0.0, 0.7), tilt=0.0, on="table", held=False, touched=False)
+HELD = Thing(position=(3.0, 0.0, 0.9), tilt=0.0, on="", held=True, touched=True)
+FALLING = Thing(position=(3.0, 0.0, 0.8), tilt=0.0, on="", held=False, touched=False)
+ON_TRAY = Thing(position=(0.7, 0.0, 0.5), tilt=0.0, on="tray", held=False, touched=False)
+CAN = Thing(position=(3.3, 0.0, 0.75), tilt=0.0, on="table", held=False, touched=False)
+BALL = Thing(position=(3.6, 0.0, 0.75), tilt=0.0, on="table", held=False, touched=False)
+
+
+def changed(thing: Thing, **fields: Any) -> Thing:
+    return msgspec.structs.replace(thing, **fields)
+
+
+def look(t: float, mug: Thing, x: float = 0.0, can: Thing = CAN, ball: Thing = BALL) -> Look:
+    return Look(t, (x, 0.0, 0.0), {"mug": mug, "can": can, "ball": ball})
+
+
+GOOD = [
+    look(0.0, ON_TABLE), look(1.0, ON_TABLE, 2.4), look(2.0, HELD, 2.4), look(3.0, HELD, 1.2), look(4.0, HELD),
+    look(5.0, ON_TRAY), look(5.5, ON_TRAY), look(6.0, ON_TRAY),
+]  # fmt: skip
+
+
+def recorder(looks: list[Look], bins: frozenset[str] = frozenset()) -> Recorder:
+    found = Recorder(KINDS, bins)
+    for one in looks:
+        found.see(one)
+    return found
+
+
+def evidence(looks: list[Look], bins: frozenset[str] = frozenset()) -> Evidence:
+    return recorder(looks, bins).conclude((WANT,), MUG)
+
+
+def mug(looks: list[Look], bins: frozenset[str] = frozenset()) -> ThingEvidence:
+    return evidence(looks, bins).things[0]
+
+
+def test_lifted_carried_upright_and_at_rest_is_delivered() -> None:
+    found = evidence(GOOD)
+    assert found == Evidence(
+        things=[
+            ThingEvidence(
+                "mug", "table", lifted=True, carried=2.4, on="tray", at_rest=True, released=True, delivered=True
+            )
+        ],
+        driven=4.8, standing=True, moved=["mug"],
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("looks", "why"),
+    [
+        ([*GOOD[:2], *GOOD[5:]], "never lifted by the gripper"),
+        (GOOD[:5], "still touched by the gripper; on nothing, not on tray or desk"),
+        ([*GOOD[:-1], look(6.0, changed(ON_TRAY, touched=True))], "still touched by the gripper"),
+        ([*GOOD[:4], look(3.5, FALLING, 1.0), *GOOD[5:]], "dropped on the way"),
+        ([*GOOD[:4], look(3.5, changed(ON_TABLE, on="floor"), 1.0), *GOOD[5:]], "dropped on the way"),
+        (
+            [*GOOD[:-1], look(6.0, changed(ON_TRAY, on="floor"))],
+            "dropped on the way; on floor, not on tray or desk",
+        ),
+        ([*GOOD[:-1], look(6.0, changed(ON_TRAY, on="table"))], "on table, not on tray or desk"),
+        ([*GOOD[:-1], look(6.0, changed(ON_TRAY, position=(0.72, 0.0, 0.5)))], "not at rest"),
+        ([], "the simulation showed nothing"),
+    ],
+)
+def test_what_is_not_a_delivery(looks: list[Look], why: str) -> None:
+    found = mug(looks)
+    assert not found.delivered and found.why == why
+
+
+@pytest.mark.parametrize(("rise", "lifted"), [(0.0499, False), (0.0501, True)])
+def test_lifted_is_five_centimetres_in_the_hand(rise: float, lifted: bool) -> None:
+    low = changed(HELD, position=(3.0, 0.0, 0.7 + rise))
+    assert mug([*GOOD[:2], look(2.0, low), *GOOD[5:]]).lifted == lifted
+    assert not mug([*GOOD[:2], look(2.0, changed(low, held=False)), *GOOD[5:]]).lifted
+
+
+def test_what_has_been_lifted_stays_so_and_is_carried_only_in_the_hand() -> None:
+    low = changed(HELD, position=(3.0, 0.0, 0.71))
+    found = mug([*GOOD[:4], look(4.0, low, 1.0), look(5.0, changed(low, held=False), 0.5), look(6.0, ON_TRAY)])
+    assert found.lifted and found.carried == 1.4
+
+
+@pytest.mark.parametrize(("drift", "at_rest"), [(0.0049, True), (0.0051, False)])
+def test_at_rest_is_less_than_five_millimetres_in_half_a_second(drift: float, at_rest: bool) -> None:
+    creeping = changed(ON_TRAY, position=(0.7 + drift, 0.0, 0.5))
+    assert mug([*GOOD[:6], look(5.5, creeping)]).at_rest == at_rest
+    assert mug([*GOOD[:6], look(5.51, creeping)]).at_rest, "half a second, not longer"
+
+
+# --- standing
+def test_a_mug_held_by_its_handle_and_let_go_lies_on_the_tray_and_is_not_delivered() -> None:
+    """The hand held the mug, whose body is 74 mm wide, by 78 mm; let go, it lay at 90 degrees, and all said so."""
+    askew = changed(HELD, tilt=math.radians(20))
+    lying = changed(ON_TRAY, tilt=math.radians(90), position=(0.7, 0.03, 0.49))
+    found = recorder([*GOOD[:2], look(2.0, askew, 2.4), look(4.0, askew), look(5.0, lying), look(6.0, lying)])
+    judged = found.conclude((WANT,), MUG).things[0]
+    assert judged.lifted and judged.at_rest and judged.released and judged.on == "tray"
+    assert not judged.delivered and judged.toppled and judged.tilt == 90.0
+    assert judged.why == "toppled, 90 degrees from upright"
+    assert shortfall([judged], []) == "mug: toppled, 90 degrees from upright"
+
+
+@pytest.mark.parametrize(("degrees", "toppled"), [(0, False), (14.9, False), (15.1, True), (90, True), (180, True)])
+def test_what_has_an_upright_must_stand(degrees: float, toppled: bool) -> None:
+    found = mug([*GOOD[:5], look(5.0, changed(ON_TRAY, tilt=math.radians(degrees)))])
+    assert (found.toppled, found.delivered) == (toppled, not toppled)
+    assert found.tilt == degrees
+
+
+def test_in_a_bin_it_may_lie_as_it_fell() -> None:
+    lying = [*GOOD[:5], look(5.0, changed(ON_TRAY, tilt=math.radians(90)))]
+    assert mug(lying, frozenset({"tray"})).delivered
+    assert not mug(lying, frozenset({"desk"})).delivered
+
+
+def test_what_rolls_has_no_upright() -> None:
+    rolled = changed(ON_TRAY, tilt=2.0)
+    ball_home = [look(one.t, ON_TABLE, one.base[0], CAN, one.things["mug"]) for one in GOOD]
+    ball_home[-1] = look(6.0, ON_TABLE, 0.0, CAN, rolled)
+    found = recorder(ball_home).things((Want("ball", ("tray",)),))[0]
+    assert found.delivered and found.tilt == pytest.approx(114.6)
+
+
+# --- dropping
+@pytest.mark.parametrize(
+    ("bins", "later", "drops"), [({"tray"}, 0.9, 0), (set(), 0.9, 1), ({"desk"}, 0.9, 1), ({"tray"}, 1.0, 1)]
+)
+def test_a_thing_may_fall_into_a_bin(bins: set[str], later: float, drops: int) -> None:
+    found = mug([*GOOD[:5], look(4.5, FALLING), look(4.5 + later, ON_TRAY), look(9.0, ON_TRAY)], frozenset(bins))
+    assert (found.drops, found.dropped, found.delivered) == (drops, bool(drops), not drops)
+
+
+def test_what_slipped_is_judged_by_the_carry_that_followed() -> None:
+    slipped = [*GOOD[:3], look(2.5, FALLING, 2.4), look(2.7, ON_TABLE, 2.4), *GOOD[3:]]
+    found = mug(slipped)
+    assert (found.drops, found.dropped, found.delivered) == (1, False, True)
+    twice = [*GOOD[:3], look(2.5, FALLING), look(2.6, FALLING), look(2.8, HELD), look(2.9, FALLING), look(3.0, HELD)]
+    assert mug([*twice, *GOOD[5:]]).drops == 2
+
+
+def test_set_down_is_not_dropped() -> None:
+    touched = changed(FALLING, touched=True)
+    assert mug([*GOOD[:5], look(4.5, touched), *GOOD[5:]]).drops == 0
+    assert mug([*GOOD[:5], look(4.5, changed(ON_TABLE, touched=False)), *GOOD[5:]]).drops == 0
+
+
+def test_what_stands_on_the_floor_has_not_fallen() -> None:
+    below = changed(ON_TABLE, on="floor")
+    assert mug([look(0.0, below), look(1.0, below), *GOOD[2:]]).delivered
+    assert mug([look(0.0, below), look(1.0, changed(below, position=(3.01, 0, 0.7))), *GOOD[2:]]).drops == 0
+
+
+# --- others
+@pytest.mark.parametrize(("shift", "moved"), [(0.029, False), (0.031, True)])
+def test_dominoes_count_whoever_touched_them(shift: float, moved: bool) -> None:
+    """For a moment is enough: what was put back had been taken away."""
+    shoved = look(2.0, HELD, 2.4, changed(CAN, position=(3.3 + shift, 0.0, 0.75)))
+    found = evidence([*GOOD[:2], shoved, *GOOD[3:]])
+    assert found.disturbed == (["can"] if moved else [])
+    assert found.moved == (["can", "mug"] if moved else ["mug"])
+
+
+@pytest.mark.parametrize(("degrees", "tipped"), [(14.9, False), (15.1, True), (90, True)])
+def test_what_went_over_is_disturbed(degrees: float, tipped: bool) -> None:
+    leaning = changed(CAN, tilt=math.radians(degrees))
+    turned = [look(one.t, one.things["mug"], one.base[0], leaning if one.t > 1 else CAN) for one in GOOD]
+    assert evidence(turned).disturbed == (["can"] if tipped else [])
+
+
+def test_a_ball_may_turn_on_the_spot() -> None:
+    turned = [*GOOD[:-1], look(6.0, ON_TRAY, ball=changed(BALL, tilt=1.5))]
+    assert evidence(turned).disturbed == []
+    assert evidence([*GOOD[:-1], look(6.0, ON_TRAY, ball=changed(BALL, position=(3.6, 0.04, 0.75)))]).disturbed
+
+
+def test_the_world_may_settle_until_the_robot_is_asked() -> None:
+    away, over = changed(BALL, position=(3.7, 0.0, 0.75)), changed(CAN, tilt=1.5)
+    found = recorder([look(0.0, ON_TABLE, can=CAN), look(0.5, ON_TABLE, 0.0, over, away)])
+    assert found.conclude((WANT,), MUG).disturbed == ["ball", "can"]
+    found.restart()
+    found.see(look(1.0, ON_TABLE, 0.0, over, away))
+    assert found.conclude((WANT,), MUG).disturbed == []
+    found.see(look(1.5, ON_TABLE, 0.0, CAN, BALL))
+    assert found.conclude((WANT,), MUG).disturbed == ["ball", "can"]
+
+
+def test_what_another_command_wanted_moved_is_not_disturbed() -> None:
+    moved = recorder([*GOOD[:-1], look(6.0, ON_TRAY, 0.0, changed(CAN, position=(1.0, 0.0, 0.75)))])
+    assert moved.conclude((WANT,), MUG).disturbed == ["can"]
+    assert moved.conclude((WANT,), frozenset({"mug", "can"})).disturbed == []
+
+
+@pytest.mark.parametrize(("depth", "hits"), [(0.0039, []), (0.004, ["base on desk, 4 mm"])])
+def test_furniture_is_hit_when_the_contact_is_deep(depth: float, hits: list[str]) -> None:
+    contact = Look(2.5, (2.4, 0.0, 0.0), GOOD[2].things, (("base", "desk", depth), ("base", "desk", depth / 2)))
+    assert evidence([*GOOD[:3], contact, *GOOD[3:]]).hits == hits
+
+
+@pytest.mark.parametrize(("drift", "standing"), [(0.0049, True), (0.0051, False)])
+def test_a_base_stands_that_is_at_rest(drift: float, standing: bool) -> None:
+    assert evidence([*GOOD, look(6.4, ON_TRAY, drift)]).standing == standing
+
+
+def test_without_a_sample_nothing_is_shown() -> None:
+    found = Recorder(KINDS)
+    assert not found.ready and not found.conclude((WANT,), MUG).standing
+    found.see(GOOD[0])
+    assert found.ready and found.conclude((WANT,), MUG).standing
+
+
+# --- goals
+def test_a_goal_is_held_against_physics() -> None:
+    things = recorder(GOOD).things((WANT, Want("can", ("desk",))))
+    assert shortfall(things[:1], []) == shortfall([], [Shown("still", True)]) == ""
+    assert shortfall([], []) == "nothing was wanted that could be done"
+    assert (
+        shortfall(things, [Shown("still", True), Shown("holds can", False, "holds nothing")])
+        == "can: never lifted by the gripper; on table, not on desk; holds nothing"
+    )
+
+
+def test_what_a_goal_speaks_of_may_be_moved() -> None:
+    assert Goal().things == frozenset()
+    goal = Goal((WANT,), (Effect("beside", "can", "ball"), Effect("still")))
+    assert goal.things == {"mug", "can", "ball"}
+
+
+def test_success_is_weighted_by_the_way() -> None:
+    assert spl(True, 2.0, 4.0) == 0.5
+    assert spl(True, 4.0, 2.0) == 1.0
+    assert spl(True, 0.0, 2.0) == spl(False, 2.0, 2.0) == 0.0
