@@ -294,21 +294,35 @@ class ObjectPose(Message):
 
 
 class NavGoal(Message):
-    id: str
+    """A standing pose [m, rad] to drive to; the answers come on `navigation_feedback`.
+
+    `object`: what the pose is for. A navigator that knows where the arm reaches it from may stand elsewhere before it.
+    """
+
     x: float
     y: float
     theta: float = 0.0
     frame: str = "map"
+    id: str = ""
     attempt: int = 1
+    object: ObjectRef | None = None
 
 
 class NavigationFeedback(Message):
+    """How a goal stands: `distance_remaining` [m], `eta` [s].
+
+    `recoveries` counts other paths taken or tried since the goal was sent; the sender of a goal that failed BLOCKED
+    adds to them only what is missing to two. An `attempt` of 0 is one that the navigator does not state.
+    """
+
     goal_id: str
     status: NavStatus
     distance_remaining: float = 0.0
     eta: float = 0.0
     recoveries: int = 0
     code: str = ""
+    attempt: int = 0
+    detail: str = ""
 
 
 class GripperCommand(Message):

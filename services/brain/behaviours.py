@@ -83,6 +83,10 @@ class Goal(Leaf):
     def done(self, answer: Answer) -> Status:
         return Status.SUCCESS
 
+    def spent(self, code: str) -> int:
+        """How many of the retries the peer has made itself before it failed."""
+        return 0
+
     def unfinished(self) -> None:
         """The goal was cut short or timed out: its effect on the world is unknown."""
 
@@ -167,9 +171,10 @@ class Goal(Leaf):
         return Status.RUNNING
 
     def _failed(self, code: str, detail: str) -> Status:
+        spent = self.spent(code)
         self.channel.abandon()
         failure = Failure(stage=self.state, code=code, detail=detail, spoken=self.spoken())
-        if self._tries < self._retries and not failure.permanent:
+        if self._tries + spent < self._retries and not failure.permanent:
             self._tries += 1
             self._again_at = self.ctx.now + self.ctx.config.settle
             self.feedback_message = f"retry {self._tries} of {self._retries} after {code}"

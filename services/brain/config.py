@@ -7,6 +7,7 @@ from common.config import Config
 
 class BrainConfig(Config, frozen=True):
     """`settle` follows every arrival and every finished manipulation; a limit of n retries means n + 1 tries.
+    `navigation_retries` counts what navigation has tried itself on a blocked way.
 
     A mission is suspended while `joint_states` stay away; after `heartbeat_patience` seconds (ten times what a killed
     simulation needs to come back on a busy machine) it ends in ERROR.

@@ -20,7 +20,11 @@ LOST = ("LOST_OBJECT", "NOT_HOLDING", "SLIPPED")
 
 
 class Drive(Goal):
-    """A navigation goal in words."""
+    """A navigation goal in words.
+
+    A way that is blocked is tried again on another path `navigation_retries` times in all: what navigation reports as
+    `recoveries` counts, only what is missing is made up for by further attempts.
+    """
 
     def __init__(self, name: str, ctx: Context, text: Text, spoken: Text, state: m.BrainStateName) -> None:
         config = ctx.config
@@ -33,6 +37,11 @@ class Drive(Goal):
             retries=config.navigation_retries,
         )
         self._text, self._spoken = text, spoken
+        self._recovered = 0
+
+    def initialise(self) -> None:
+        super().initialise()
+        self._recovered = 0
 
     def step(self) -> str:
         return self._text()
@@ -42,6 +51,13 @@ class Drive(Goal):
 
     def spoken(self) -> str:
         return self._spoken()
+
+    def spent(self, code: str) -> int:
+        told = self.ctx.io.latest(topics.NAVIGATION_FEEDBACK)
+        ours = told is not None and told.goal_id == self.channel.goal_id
+        if code == "BLOCKED" and told is not None and ours and told.attempt in (0, self.channel.attempt):
+            self._recovered += max(0, told.recoveries)
+        return self._recovered if code == "BLOCKED" else 0
 
     def give_up(self, failure: Failure) -> Status:
         if failure.code == "TIMEOUT":

@@ -10,6 +10,7 @@ from services.navigation.config import NavigationConfig
 from services.navigation.costmap import Array, Costmap
 from services.navigation.follow import Carrot, Follower
 from services.navigation.movers import Mover
+from services.navigation.patience import Patience
 from services.navigation.planner import PathPlanner, Point
 from services.navigation.trail import Trail
 
@@ -53,7 +54,8 @@ class Drive:
         self._planned_version = -1
         self._via = 0
         self._best, self._best_at = math.inf, now
-        self._blocked_since: float | None = None
+        self._patience = Patience()
+        self._movers: Sequence[Mover] = ()
         self._backing_until: float | None = None
         self._back_to: Pose2 = (0.0, 0.0, 0.0)
         self._trail = Trail()
@@ -110,6 +112,7 @@ class Drive:
         if now > self._deadline:
             raise Ended("failed", "TIMEOUT", f"not there after {now - self._started:.0f} s")
         self._trail.add(pose)
+        self._movers = movers
         target = self._go_on(pose, points, now)
         if target is None:
             return None
@@ -215,12 +218,11 @@ class Drive:
             if self.doing != "DETOUR" or now - self._detour_at > DETOUR_PAUSE:
                 self.doing = ""
         if carrot.blocked:
-            self._blocked_since = self._blocked_since or now
             self._best_at, self.doing = now, "WAITING"
-            if now - self._blocked_since > self._config.blocked_wait:
+            if self._patience.blocked((pose[0], pose[1]), self._movers, now) > self._config.blocked_wait:
                 self._recover(pose, now, "the way is blocked")
         else:
-            self._blocked_since = None
+            self._patience.clear()
             if now - self._best_at > self._config.no_progress:
                 self._recover(pose, now, "no progress")
 
@@ -235,11 +237,11 @@ class Drive:
     # --- recovery
     def _wait(self, pose: Pose2, now: float) -> m.BaseTarget:
         """No way at this moment: stand, look for one every second, lose patience in time."""
-        self._blocked_since = self._blocked_since or now
         self.doing = "WAITING"
+        blocked = self._patience.blocked((pose[0], pose[1]), self._movers, now)
         if now - self._planned_at > REPLAN_PERIOD and self._plan(pose, now):
-            self._blocked_since = None
-        elif now - self._blocked_since > self._config.blocked_wait:
+            self._patience.clear()
+        elif blocked > self._config.blocked_wait:
             self._recover(pose, now, "something stands in every way there")
         return self._hold_at(pose)
 
@@ -250,6 +252,8 @@ class Drive:
     def _recover(self, pose: Pose2, now: float, why: str) -> None:
         """Go back a little the way it came, then look for another path; after the retries report.
 
+        These are all the retries of a blocked way: whoever sent the goal adds none.
+
         Raises:
             Ended: BLOCKED.
         """
@@ -258,7 +262,7 @@ class Drive:
         self._retries += 1
         self.recoveries += 1
         self.doing = "BACKING_OFF"
-        self._blocked_since = None
+        self._patience.clear()
         self._map.doubt(now, OUT_OF_SIGHT)
         config = self._config
         self._back_to = self._trail.retreat(pose, self._map, config.footprint_radius, config.back_off)
@@ -271,5 +275,5 @@ class Drive:
             self._best, self._best_at = math.inf, now
             self._follower = None
             self._plan(pose, now)
-            self._blocked_since = None
+            self._patience.clear()
         return self._hold_at(self._back_to)

@@ -257,6 +257,13 @@ def test_failures_end_in_a_spoken_error_never_in_completed(here: Site) -> None:
             assert find["attempt"] == attempt
             peer.drove(find, "failed", code="BLOCKED")
         peer.goal(11, "say I could not reach the apple.")
+        _, listen = peer.goal(12, "listen")
+        peer.heard(listen, "apple")
+        _, find = peer.goal(13, "find apple")
+        # A navigator that has tried two other paths itself is not asked for a third.
+        peer.put("navigation_feedback", goal_id=find["id"], status="navigating", recoveries=2)
+        peer.drove(find, "failed", code="BLOCKED")
+        peer.goal(14, "say I could not reach the apple.")
 
 
 def test_noise_on_every_key_harms_nothing(here: Site) -> None:

@@ -13,6 +13,7 @@ from services.navigation.avoid import avoid
 from services.navigation.config import Camera, NavigationConfig
 from services.navigation.costmap import Costmap
 from services.navigation.movers import Mover, Movers, clusters
+from services.navigation.patience import Patience
 from services.navigation.views import Views
 from tests.unit.navigation_flat import SCENE, Flat
 
@@ -48,6 +49,20 @@ def test_with_every_way_shut_it_waits_backs_off_tries_twice_and_says_so() -> Non
         flat.step()
     assert math.dist(here[:2], flat.true[:2]) < 0.01, "it stands"
     assert flat.closest > CHASSIS
+
+
+def test_waiting_for_somebody_who_passes_costs_no_retry() -> None:
+    passer, here = person(1.0, 0.0, 0.0, 0.5), (0.0, 0.0)
+
+    def blocked(movers: list[Mover], seconds: float) -> float:
+        patience = Patience()
+        return max(patience.blocked(here, movers, 100.0 + 0.05 * n) for n in range(round(seconds / 0.05) + 1))
+
+    wait = NavigationConfig().blocked_wait
+    assert blocked([], 5.0) == pytest.approx(5.0)
+    assert blocked([person(9.0, 0.0, 0.0, 0.5)], 5.0) == pytest.approx(5.0), "far away"
+    assert blocked([passer], 18.0) < wait
+    assert blocked([passer], 30.0) > wait, "somebody who stays is in the way"
 
 
 def test_a_way_that_opens_while_it_waits_is_taken() -> None:
