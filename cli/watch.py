@@ -39,7 +39,7 @@ class Picture:
             t.key: Watch(link, t)
             for t in (
                 topics.BRAIN_STATE, topics.BRAIN_TREE, topics.ACTION_PLAN, topics.SIM_STATUS, topics.SPEECH_STATUS,
-                topics.SPEECH_GOAL, topics.SPEECH_RESULT, topics.VOICE_COMMAND, topics.NAVIGATION_STATUS,
+                topics.SPEECH_GOAL, topics.SPEECH_RESULT, topics.VOICE_COMMAND, topics.NAVIGATION_FEEDBACK,
                 topics.MANIPULATION_STATUS,
             )
         }  # fmt: skip
@@ -98,7 +98,7 @@ def mission(picture: Picture) -> Group:
     if plan is not None and state.pipeline == "vla":
         for n, step in enumerate(plan.steps, 1):
             rows.append(Text(f"  {n}. " + " ".join(w for w in (step.action, step.object, step.target, step.text) if w)))
-    for name, topic in (("base", topics.NAVIGATION_STATUS), ("arm", topics.MANIPULATION_STATUS)):
+    for name, topic in (("base", topics.NAVIGATION_FEEDBACK), ("arm", topics.MANIPULATION_STATUS)):
         status = picture.get(topic)
         if status is not None:
             words = (status.status, getattr(status, "phase", ""), status.code, status.detail)

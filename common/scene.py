@@ -72,6 +72,12 @@ class Receptacle(_Strict, frozen=True):
     spawn: bool = True
     colour: str = ""
 
+    def covers(self, x: float, y: float) -> bool:
+        """True when the point (x, y) [map] lies within the usable extent."""
+        c, s = math.cos(self.yaw), math.sin(self.yaw)
+        dx, dy = x - self.center[0], y - self.center[1]
+        return abs(c * dx + s * dy) <= self.size[0] / 2 and abs(c * dy - s * dx) <= self.size[1] / 2
+
 
 class Room(_Strict, frozen=True):
     """A named axis-aligned room between corners `low` and `high`."""
@@ -157,6 +163,10 @@ class Scene(_Strict, frozen=True):
     def object(self, name: str) -> ObjectSpec | None:
         """The object called `name` or by that alias, None if unknown."""
         return next((o for o in self.objects if name == o.name or name in o.aliases), None)
+
+    def surface_at(self, x: float, y: float) -> Receptacle | None:
+        """The receptacle whose usable surface is over or under the point (x, y)."""
+        return next((r for r in self.receptacles if r.covers(x, y)), None)
 
     def room_at(self, x: float, y: float) -> Room | None:
         """The room that contains the point (x, y)."""

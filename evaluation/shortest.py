@@ -8,11 +8,11 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse import csgraph
 
+from common.approach import poses_for
 from common.geometry import Pose2
 from common.scene import Receptacle, Scene
 from services.navigation.config import NavigationConfig
 from services.navigation.costmap import Costmap
-from services.navigation.standoff import poses_for
 
 Point = tuple[float, float]
 MAX_ORDERED = 5

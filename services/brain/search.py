@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.scene import Room, Scene
+from services.brain.floor import clearance
 
 View = tuple[float, float, float]
 Mask = NDArray[np.bool_]
@@ -138,19 +139,7 @@ class Lookout:
 
     def _free(self, x: float, y: float) -> bool:
         """Room for the robot to stand and turn."""
-        scene = self._scene
-        for wall in scene.walls:
-            if _to_segment(x, y, wall.start, wall.end) < BODY + wall.thickness / 2:
-                return False
-        boxes = [(b.center, b.size, b.yaw) for b in scene.furniture]
-        boxes += [(r.center, (*r.size, 0.0), r.yaw) for r in scene.receptacles]
-        for center, size, yaw in boxes:
-            c, s = math.cos(yaw), math.sin(yaw)
-            dx, dy = x - center[0], y - center[1]
-            u, v = abs(c * dx + s * dy) - size[0] / 2, abs(c * dy - s * dx) - size[1] / 2
-            if math.hypot(max(u, 0.0), max(v, 0.0)) < BODY:
-                return False
-        return scene.room_at(x, y) is not None
+        return clearance(self._scene, x, y) >= BODY and self._scene.room_at(x, y) is not None
 
 
 def _wrap(angle: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -177,9 +166,3 @@ def _crossed(
     u = ((a[0] - eye[0]) * d[:, 1] - (a[1] - eye[1]) * d[:, 0]) / safe
     crossed: Mask = (t > 0) & (t < 1) & (u >= 0) & (u <= 1)
     return crossed
-
-
-def _to_segment(x: float, y: float, a: tuple[float, float], b: tuple[float, float]) -> float:
-    dx, dy = b[0] - a[0], b[1] - a[1]
-    t = min(1.0, max(0.0, ((x - a[0]) * dx + (y - a[1]) * dy) / max(dx * dx + dy * dy, 1e-9)))
-    return math.hypot(x - a[0] - t * dx, y - a[1] - t * dy)

@@ -15,6 +15,7 @@ from services.brain.robot import LOST, Drive, Grab, Ready, Release
 from services.brain.trees import drive_home, first_of, grab_failed, report_failure, sequence
 from services.brain.validate import is_destination
 from services.brain.vla_leaves import (
+    Approach,
     Await,
     Enough,
     Evidence,
@@ -23,6 +24,7 @@ from services.brain.vla_leaves import (
     Plan,
     TakeView,
     in_words,
+    label_of,
     reference,
 )
 
@@ -172,14 +174,8 @@ def clarify(ctx: Context, thing: str) -> Behaviour:
 
 
 def approach(ctx: Context, thing: str) -> Behaviour:
-    """Drive to where the arm reaches the thing; navigation picks the pose."""
-    drive = Drive(
-        "approach",
-        ctx,
-        text=lambda: f"find {label_of(ctx, thing)}",
-        spoken=lambda: f"I could not reach the {thing}.",
-        state="NAVIGATING",
-    )
+    """Drive to where the arm reaches the thing."""
+    drive = Approach(ctx, thing)
     return sequence(f"approach {thing}", drive, Stand("there", ctx, thing), Settle("settle", ctx))
 
 
@@ -241,8 +237,3 @@ class Stand(Leaf):
     def update(self) -> Status:
         self.ctx.mission.at = self._where
         return Status.SUCCESS
-
-
-def label_of(ctx: Context, thing: str) -> str:
-    pose = ctx.mission.found.get(thing)
-    return (pose.label if pose else "") or thing

@@ -11,9 +11,10 @@ from common import topics
 from common.topics import Topic
 from services.brain.behaviours import Goal, Leaf
 from services.brain.context import Context
+from services.brain.floor import standing_pose
 from services.brain.goals import Answer
 from services.brain.mission import Failure
-from services.brain.robot import take_command
+from services.brain.robot import Drive, take_command
 from services.brain.search import View
 from services.brain.validate import known_world, objection
 
@@ -192,6 +193,38 @@ class Evidence(Leaf):
         ctx.finish("delivered", detail)
         ctx.enter("COMPLETED", detail=detail)
         return Status.SUCCESS
+
+
+class Approach(Drive):
+    """`nav_goal`: a standing pose before a thing that was found, with the thing for whoever knows a better stance."""
+
+    def __init__(self, ctx: Context, thing: str) -> None:
+        super().__init__(
+            "approach",
+            ctx,
+            text=lambda: f"find {label_of(ctx, thing)}",
+            spoken=lambda: f"I could not reach the {thing}.",
+            state="NAVIGATING",
+        )
+        self._thing = thing
+
+    def step(self) -> str:
+        return f"approach {label_of(self.ctx, self._thing)}"
+
+    def goal(self, goal_id: str) -> tuple[Topic[Any], m.Message]:
+        ctx, ref = self.ctx, reference(self.ctx, self._thing)
+        if ref is None or ref.frame != "map":
+            return super().goal(goal_id)  # nobody has said where in the map it is: navigation looks for it
+        here = ctx.io.latest(topics.POSE)
+        pose = (here.x, here.y, here.theta) if here else (0.0, 0.0, 0.0)
+        x, y, theta = standing_pose(ctx.io.scene, (ref.position[0], ref.position[1]), pose)
+        return topics.NAV_GOAL, m.NavGoal(id=goal_id, x=x, y=y, theta=theta, object=ref)
+
+
+def label_of(ctx: Context, thing: str) -> str:
+    """The name of a thing as perception has it."""
+    pose = ctx.mission.found.get(thing)
+    return (pose.label if pose else "") or thing
 
 
 def reference(ctx: Context, thing: str) -> m.ObjectRef | None:

@@ -61,7 +61,7 @@ def mission(
     state: m.BrainState | None,
     now: float,
     steps: Iterable[m.PlanStep],
-    navigation: m.NavigationStatus | None,
+    navigation: m.NavigationFeedback | None,
     manipulation: m.ManipulationStatus | None,
 ) -> str:
     """State, command, step, timers, plan, and what the legs and the arm are at."""

@@ -43,7 +43,7 @@ class DashboardService:
     READS = (
         topics.SIM_MODEL, topics.SIM_STATUS, topics.JOINT_STATES, topics.POSE, topics.SCAN, topics.NAV_PATH,
         topics.COSTMAP, topics.GRASPS, topics.ARM_COMMAND, topics.WORLD_OBJECTS, topics.BRAIN_STATE, topics.BRAIN_TREE,
-        topics.ACTION_PLAN, topics.SPEECH_GOAL, topics.SPEECH_RESULT, topics.SPEECH_STATUS, topics.NAVIGATION_STATUS,
+        topics.ACTION_PLAN, topics.SPEECH_GOAL, topics.SPEECH_RESULT, topics.SPEECH_STATUS, topics.NAVIGATION_FEEDBACK,
         topics.MANIPULATION_STATUS, topics.HEAD_RGBD, topics.WRIST_RGBD, topics.AUDIO_OUT, HEALTH,
     )  # fmt: skip
     WRITES = (
@@ -129,7 +129,7 @@ class DashboardService:
 
     def _off_path(self) -> float:
         """How far the base is from its path [m], while it drives along one."""
-        driving = self._io.latest(topics.NAVIGATION_STATUS)
+        driving = self._io.latest(topics.NAVIGATION_FEEDBACK)
         return off_path(self._way, self._base) if driving is not None and driving.status == "navigating" else 0.0
 
     # --- from the visitors
@@ -209,7 +209,7 @@ class DashboardService:
         io, panels = self._io, self._panels
         state, plan = io.latest(topics.BRAIN_STATE), io.latest(topics.ACTION_PLAN)
         steps = plan.steps if plan is not None and state is not None and state.pipeline == "vla" else []
-        navigation, manipulation = io.latest(topics.NAVIGATION_STATUS), io.latest(topics.MANIPULATION_STATUS)
+        navigation, manipulation = io.latest(topics.NAVIGATION_FEEDBACK), io.latest(topics.MANIPULATION_STATUS)
         panels.text("mission", markup.mission(state, self._t, steps, navigation, manipulation))
         if self._transcript.changed:
             self._transcript.changed = False

@@ -11,7 +11,7 @@ from services.dashboard.bar import under_way
 TOLD = {
     t.key
     for t in (
-        topics.BRAIN_STATE, topics.SPEECH_GOAL, topics.SPEECH_RESULT, topics.VOICE_COMMAND, topics.NAVIGATION_STATUS,
+        topics.BRAIN_STATE, topics.SPEECH_GOAL, topics.SPEECH_RESULT, topics.VOICE_COMMAND, topics.NAVIGATION_FEEDBACK,
         topics.MANIPULATION_STATUS, topics.ACTION_PLAN, topics.OBJECT_POSE,
     )
 }  # fmt: skip
@@ -104,8 +104,8 @@ def _told(message: m.Message) -> tuple[str, str, str] | None:
         if not message.found:
             return "not found", message.detail, "failed"
         return f"{message.label} seen", f"confidence {message.confidence:.2f}", "saw"
-    if isinstance(message, (m.NavigationStatus, m.ManipulationStatus)):
-        who = "base" if isinstance(message, m.NavigationStatus) else "arm"
+    if isinstance(message, (m.NavigationFeedback, m.ManipulationStatus)):
+        who = "base" if isinstance(message, m.NavigationFeedback) else "arm"
         if message.status == "failed":
             return f"{who}: {message.code}", message.detail, "failed"
         if message.status in ("arrived", "done"):

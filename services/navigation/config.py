@@ -1,5 +1,6 @@
 """Parameters of navigation."""
 
+from common.approach import EDGE_DISTANCE, STAND_OFF
 from common.config import Config
 
 
@@ -24,8 +25,8 @@ class NavigationConfig(Config, frozen=True):
     inflation: float = 0.65
     lookahead: float = 0.5
     corridor: float = 0.34
-    stand_off: float = 0.56
-    edge_distance: float = 0.40
+    stand_off: float = STAND_OFF
+    edge_distance: float = EDGE_DISTANCE
     obstacle_memory: float = 30.0
     blocked_wait: float = 4.0
     keep_off: float = 0.9

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from common import messages as m
+from common.approach import BIN_RIM
 from common.geometry import Pose2
 from common.scene import Scene
 
@@ -19,7 +20,6 @@ _EXPLAINED = 0.12
 _REACH = 0.8
 # Something seen for longer than _LASTING stands there, other things are forgotten after _BRIEF [s].
 _LASTING, _BRIEF = 2.0, 4.0
-BIN_WALL = 0.02
 _FAR = 1.0  # the clearance [m] beyond which viewers see no difference
 
 
@@ -53,7 +53,7 @@ class Costmap:
         boxes = [(f.center[0], f.center[1], f.size[0], f.size[1], f.yaw) for f in scene.furniture]
         # A table counts with its whole top: the lidar sees only its legs.
         for r in scene.receptacles:
-            rim = 2 * BIN_WALL if r.depth else 0.0
+            rim = 2 * BIN_RIM if r.depth else 0.0
             boxes.append((r.center[0], r.center[1], r.size[0] + rim, r.size[1] + rim, r.yaw))
         for wall in scene.walls:
             dx, dy = wall.end[0] - wall.start[0], wall.end[1] - wall.start[1]

@@ -3,15 +3,20 @@
 import math
 
 from common import messages as m
+from common.approach import poses_for
 from common.geometry import Pose2
 from common.scene import Receptacle, Scene
 from services.navigation.config import NavigationConfig
 from services.navigation.drive import Ended
 from services.navigation.places import Places
-from services.navigation.standoff import poses_for
 
 # Candidate poses, each with a penalty [m].
 Choices = list[tuple[float, Pose2]]
+
+SAME = 0.4
+"""An object reported within this of where a goal says that it is, is the goal's [m]: as far as a push moves one."""
+LAST_RESORT = 100.0
+"""Penalty of the pose that a goal gives when its object has others [m]: more than any way within a flat costs."""
 
 
 class Goals:
@@ -34,8 +39,11 @@ class Goals:
             return self.home()
         return self._before((place.center[0], place.center[1]), place)
 
-    def pose(self, goal: m.NavGoal) -> Choices:
-        """Raises `Ended` BAD_POSE."""
+    def pose(self, goal: m.NavGoal, objects: list[m.WorldObject]) -> Choices:
+        """The pose itself; with an object those before it and, when none of them can be reached, the pose.
+
+        Raises `Ended` BAD_POSE.
+        """
         if goal.frame != "map":
             raise Ended("failed", "BAD_POSE", f"frame {goal.frame!r}: only map is known")
         low, high = self._scene.low, self._scene.high
@@ -43,7 +51,19 @@ class Goals:
             raise Ended("failed", "BAD_POSE", "the pose is not finite")
         if not (low[0] <= goal.x <= high[0] and low[1] <= goal.y <= high[1]):
             raise Ended("failed", "BAD_POSE", f"({goal.x:.2f}, {goal.y:.2f}) is outside the map")
-        return [(0.0, (goal.x, goal.y, goal.theta))]
+        given = goal.x, goal.y, goal.theta
+        before = self._described(goal.object, objects) if goal.object is not None else []
+        return [*before, (LAST_RESORT if before else 0.0, given)]
+
+    def _described(self, ref: m.ObjectRef, objects: list[m.WorldObject]) -> Choices:
+        """Before the object of a goal, where it was reported last if that is near where the goal says."""
+        x, y, _ = ref.position
+        if ref.frame != "map" or not (math.isfinite(x) and math.isfinite(y)):
+            return []
+        for o in objects:
+            if o.label == ref.label and not o.held and math.dist((x, y), o.position[:2]) < SAME:
+                return self._before((o.position[0], o.position[1]), self._places.receptacle_of(o))
+        return self._before((x, y), self._scene.surface_at(x, y))
 
     def seen(self, item: str, objects: list[m.WorldObject]) -> Choices:
         """Before each object that the words can mean; empty when none is known."""
@@ -59,3 +79,8 @@ class Goals:
 
     def _before(self, point: tuple[float, float], receptacle: Receptacle | None) -> Choices:
         return poses_for(point, receptacle, self._config.stand_off, self._config.edge_distance)
+
+
+def in_words(pose: m.NavGoal | None) -> str:
+    """A goal on `nav_goal` for logs and reasons."""
+    return f"a pose before {pose.object.label}" if pose is not None and pose.object is not None else "a pose"

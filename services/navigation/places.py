@@ -1,6 +1,5 @@
 """Names to places: rooms, surfaces and poses of the scene, places and items of places.toml, objects that were seen."""
 
-import math
 import tomllib
 from pathlib import Path
 
@@ -88,10 +87,4 @@ class Places:
         """What an object stands on: as reported, else the surface under it."""
         if o.on:
             return self._scene.receptacle(o.on)
-        return next((r for r in self._scene.receptacles if _over(r, o.position[0], o.position[1])), None)
-
-
-def _over(r: Receptacle, x: float, y: float) -> bool:
-    c, s = math.cos(r.yaw), math.sin(r.yaw)
-    dx, dy = x - r.center[0], y - r.center[1]
-    return abs(c * dx + s * dy) <= r.size[0] / 2 and abs(c * dy - s * dx) <= r.size[1] / 2
+        return self._scene.surface_at(o.position[0], o.position[1])

@@ -7,7 +7,7 @@ from common.io import Io
 from services.navigation.config import NavigationConfig
 from services.navigation.costmap import Costmap
 from services.navigation.drive import Drive, Ended
-from services.navigation.goals import Choices, Goals
+from services.navigation.goals import Choices, Goals, in_words
 from services.navigation.places import Places, load_places
 from services.navigation.planner import PathPlanner
 from services.navigation.search import Search
@@ -67,7 +67,7 @@ class NavigationService:
             goal.id = goal.id or io.new_id("navigation")
             self._take(goal.id, goal.attempt, goal.goal.strip(), None)
         for pose in io.drain(topics.NAV_GOAL):
-            self._take(pose.id, pose.attempt, "", pose)
+            self._take(pose.id or io.new_id("navigation"), pose.attempt, "", pose)
         reached = io.drain(topics.GOAL_REACHED)
         try:
             if self._search is not None:
@@ -88,11 +88,11 @@ class NavigationService:
             return
         self._seen.add((goal_id, attempt))
         if self._busy:
-            self._finish(Ended("failed", "PREEMPTED", f"replaced by {text or 'a pose'}"))
+            self._finish(Ended("failed", "PREEMPTED", f"replaced by {text or in_words(pose)}"))
         self._from_brain = pose is None
         self._recoveries = 0
         self._status = m.NavigationStatus(status="navigating", goal_id=goal_id, attempt=attempt)
-        self._io.log.info("goal", goal=text or "pose", id=goal_id, attempt=attempt)
+        self._io.log.info("goal", goal=text or in_words(pose), id=goal_id, attempt=attempt)
         if text == "stop":
             self._hold()
             self._report("idle", "STOPPED", "the base holds")
@@ -108,9 +108,10 @@ class NavigationService:
         """Raises `Ended` for an unknown goal or place."""
         verb, _, rest = text.partition(" ")
         rest = rest.strip()
-        self._stood.sent(rest if verb == "find" else "")
+        named = pose.object.label if pose is not None and pose.object is not None else ""
+        self._stood.sent(rest if verb == "find" else named)
         if pose is not None:
-            self._go(self._goals.pose(pose))
+            self._go(self._stood.apart(self._status.goal_id, self._goals.pose(pose, self._objects())))
         elif text == "return_to_start":
             self._go(self._goals.home())
         elif verb == "goto" and rest:
@@ -241,5 +242,7 @@ class NavigationService:
             eta=drive.eta if drive else 0.0,
             recoveries=self._recoveries + (drive.recoveries if drive else 0),
             code=status.code or (drive.doing if drive else ""),
+            attempt=status.attempt,
+            detail=status.detail,
         )
         self._io.publish(topics.NAVIGATION_FEEDBACK, feedback)

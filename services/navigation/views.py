@@ -7,10 +7,11 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from common.approach import BIN_RIM
 from common.geometry import Pose2
 from common.scene import Receptacle, Scene
 from services.navigation.config import Camera
-from services.navigation.costmap import BIN_WALL, Array, Costmap
+from services.navigation.costmap import Array, Costmap
 from services.navigation.floorplan import Rectangle
 
 Seen = NDArray[np.bool_]
@@ -93,7 +94,7 @@ def _stands(r: Receptacle) -> list[Pose2]:
         count = max(1, math.ceil(length / ALONG) - 1)
         sides = (np.arange(count) - (count - 1) / 2) * ALONG
         for distance in DISTANCES:
-            out = edge + distance + (BIN_WALL if r.depth else 0.0)
+            out = edge + distance + (BIN_RIM if r.depth else 0.0)
             for side in sides.tolist():
                 lx, ly = (ax * out, side) if ax else (side, ay * out)
                 x, y = r.center[0] + c * lx - s * ly, r.center[1] + s * lx + c * ly

@@ -1,6 +1,7 @@
 """Each real process against a peer that knows only plain zenoh and JSON and plays all the others."""
 
 import json
+import math
 import random
 import signal
 from collections.abc import Callable
@@ -87,6 +88,27 @@ def test_navigation_drives_to_the_spot_and_waits_for_the_base(here: Site, odomet
         base.undeclare()
         if odometry != "none":
             feed()
+
+
+def test_navigation_takes_a_pose_and_answers_on_its_feedback(here: Site) -> None:
+    here.start("services.navigation", TIDYBOT_CLOCK="wall")
+    with here.session() as session:
+        here.wait_alive(session, "navigation")
+        peer = Peer(session, "navigation_feedback", "brain/navigation_status", "base/target_pose")
+        mug = {"label": "red mug", "position": [-1.5, -2.2, 0.55]}
+        feed = _odometry(peer, here, False)
+        base = obey(peer, False)
+        peer.put("nav_goal", id="m.1", attempt=1, x=-1.5, y=-1.6, theta=-1.5708, object=mug)
+        arrived = peer.wait("navigation_feedback", goal_id="m.1", status="arrived")
+        assert (arrived["attempt"], arrived["recoveries"], arrived["code"]) == (1, 0, "")
+        last = peer.heard["base/target_pose"][-1]
+        bearing = math.atan2(mug["position"][1] - last["y"], mug["position"][0] - last["x"])
+        assert abs(math.remainder(bearing - last["theta"], math.tau)) < 0.1, "it stands before the mug"
+        assert not [s for s in peer.heard["brain/navigation_status"] if s["goal_id"] == "m.1"]
+        peer.put("nav_goal", id="m.2", x=99.0, y=0.0)
+        assert peer.wait("navigation_feedback", goal_id="m.2", status="failed")["code"] == "BAD_POSE"
+        base.undeclare()
+        feed()
 
 
 def _arrivals(peer: Peer) -> list[dict[str, Any]]:

@@ -75,7 +75,7 @@ WIRE = {
     "object_pose": {
         "query_id", "found", "label", "confidence", "frame", "position", "orientation", "size", "seen_at",
     },
-    "nav_goal": {"id", "attempt", "frame", "x", "y", "theta"},
+    "nav_goal": {"id", "attempt", "frame", "x", "y", "theta", "object"},
     "navigation_feedback": {"goal_id", "status", "distance_remaining", "eta", "recoveries", "code"},
     "gripper_command": {"position", "max_effort"},
     "system_status": {"state", "mission_id", "detail"},

@@ -1,6 +1,7 @@
 """The real brain process in `pipeline = "vla"` against a scripted peer of plain zenoh and JSON."""
 
 import json
+import math
 import re
 import time
 from collections.abc import Iterator
@@ -16,6 +17,7 @@ GOALS = (
     "brain/speech_goal", "brain/navigation_goal", "brain/manipulation_goal", "nav_goal", "plan_request", "object_query",
 )  # fmt: skip
 JOINTS = {"t": 0.0, "name": ["base_x"], "position": [0.0], "velocity": [0.0], "effort": [0.0]}
+MUG_AT = [-1.5, -2.2, 0.55]
 FETCH = [
     {"action": "find", "object": "red mug"},
     {"action": "grasp", "object": "red mug"},
@@ -59,8 +61,21 @@ class Peer:
     def did(self, goal: dict[str, Any], status: str = "done", **more: Any) -> None:
         self.put("brain/manipulation_status", status=status, goal_id=goal["id"], attempt=goal["attempt"], **more)
 
+    def moved(self, goal: dict[str, Any], status: str = "arrived", **more: Any) -> None:
+        """As a navigator that knows `nav_goal` and `navigation_feedback` alone."""
+        self.put("navigation_feedback", goal_id=goal["id"], status=status, **more)
+
+    def stance(self, **expected: Any) -> dict[str, Any]:
+        """The next goal, a pose before the mug: free of the table and facing it."""
+        goal = self.next("nav_goal", frame="map", **expected)
+        assert (goal["object"]["label"], goal["object"]["position"]) == ("red mug", MUG_AT)
+        bearing = math.atan2(MUG_AT[1] - goal["y"], MUG_AT[0] - goal["x"])
+        assert abs(math.remainder(bearing - goal["theta"], math.tau)) < 0.01
+        assert 0.5 < math.dist((goal["x"], goal["y"]), MUG_AT[:2]) < 0.75
+        return goal
+
     def saw(self, query: dict[str, Any], found: bool = True) -> None:
-        self.put("object_pose", query_id=query["id"], found=found, label="red mug", position=[1.0, 2.0, 0.8])
+        self.put("object_pose", query_id=query["id"], found=found, label="red mug", position=MUG_AT)
 
 
 @contextmanager
@@ -106,9 +121,12 @@ def test_voice_to_action_with_a_correction_and_a_replan(here: Site) -> None:
         assert "sofa" in request["rejected"]["reason"]
         peer.put("action_plan", request_id=request["id"], steps=FETCH)
         peer.saw(peer.next("object_query", query="red mug"))
-        peer.drove(peer.next("brain/navigation_goal", goal="find red mug"))
+        stance = peer.stance(attempt=1)
+        peer.moved(stance, "navigating", distance_remaining=2.0, eta=5.0)
+        peer.moved({"id": "somebody.1"})
+        peer.moved(stance)
         grab = peer.next("brain/manipulation_goal", goal="grab")
-        assert (grab["object"]["label"], grab["object"]["position"]) == ("red mug", [1.0, 2.0, 0.8])
+        assert (grab["object"]["label"], grab["object"]["position"]) == ("red mug", MUG_AT)
         peer.did(grab)
         peer.drove(peer.next("brain/navigation_goal", goal="return_to_start"))
         peer.did(peer.next("brain/manipulation_goal", goal="release"))
@@ -131,9 +149,10 @@ def test_search_and_alternative_path(here: Site) -> None:
         view = peer.next("nav_goal", frame="map")
         peer.put("navigation_feedback", goal_id=view["id"], status="arrived")
         peer.saw(peer.next("object_query"))
-        for attempt in (1, 2, 3):
-            drive = peer.next("brain/navigation_goal", goal="find red mug", attempt=attempt)
-            peer.drove(drive, "failed", code="BLOCKED")
+        first = peer.stance(attempt=1)
+        peer.moved(first, "failed", code="BLOCKED", recoveries=1)
+        again = peer.stance(attempt=2, id=first["id"])
+        peer.moved(again, "failed", code="BLOCKED")
         peer.speech("say I could not reach the red mug.")
         assert "ERROR" in peer.system and "SUCCESS" not in peer.system
 

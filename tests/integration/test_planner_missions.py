@@ -91,6 +91,8 @@ class World:
         )
 
     def _nav_goal(self, goal: m.NavGoal) -> None:
+        if goal.object is not None:
+            self._navigation_goal(m.NavigationGoal(goal=f"find {goal.object.label}", id=goal.id))
         self.io.publish(topics.NAVIGATION_FEEDBACK, m.NavigationFeedback(goal_id=goal.id, status="arrived"))
 
     def _manipulation_goal(self, goal: m.ManipulationGoal) -> None:

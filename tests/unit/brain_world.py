@@ -67,13 +67,16 @@ class Peer:
 class Navigation(Peer):
     def __init__(self, world: "World") -> None:
         goals = (topics.NAVIGATION_GOAL, topics.NAV_GOAL)
-        super().__init__(world, "navigation", goals, (topics.NAVIGATION_STATUS, topics.POSE))
+        writes = topics.NAVIGATION_STATUS, topics.NAVIGATION_FEEDBACK, topics.POSE
+        super().__init__(world, "navigation", goals, writes)
 
     def take(self, goal: Any, now: float) -> None:
         text = getattr(goal, "goal", "")
         if text == "stop":
             return
         self.say(goal, "navigating")
+        about = getattr(goal, "object", None)
+        text = f"find {about.label}" if about is not None else text
         where = {"return_to_start": "home", f"find {ITEM}": "item"}.get(text, "elsewhere")
         self.world.place = "" if self.world.place != where else where
         self.run(goal, SECONDS["drive"], lambda: self.arrive(goal, where))
@@ -84,6 +87,10 @@ class Navigation(Peer):
         self.say(goal, "arrived")
 
     def say(self, goal: Any, status: m.NavStatus) -> None:
+        if isinstance(goal, m.NavGoal):
+            told = m.NavigationFeedback(status=status, goal_id=goal.id)
+            self.answer(goal, lambda: self.io.publish(topics.NAVIGATION_FEEDBACK, told))
+            return
         message = m.NavigationStatus(status=status, goal_id=goal.id, attempt=goal.attempt)
         self.answer(goal, lambda: self.io.publish(topics.NAVIGATION_STATUS, message))
 

@@ -77,8 +77,12 @@ class Disorder:
         good = self.random.random() < 0.85
         name = goal.id if self.random.random() < 0.9 else "somebody.9"
         if topic in (topics.NAVIGATION_GOAL, topics.NAV_GOAL) and text != "stop":
-            status = m.NavigationStatus(status="arrived" if good else "failed", goal_id=name, attempt=goal.attempt)
-            self.later(topics.NAVIGATION_STATUS, status)
+            status: m.NavStatus = "arrived" if good else "failed"
+            if topic == topics.NAV_GOAL:
+                self.later(topics.NAVIGATION_FEEDBACK, m.NavigationFeedback(status=status, goal_id=name))
+            else:
+                told = m.NavigationStatus(status=status, goal_id=name, attempt=goal.attempt)
+                self.later(topics.NAVIGATION_STATUS, told)
         elif topic == topics.MANIPULATION_GOAL and text != "stop":
             done = m.ManipulationStatus(status="done" if good else "failed", goal_id=name, attempt=goal.attempt)
             self.later(topics.MANIPULATION_STATUS, done)

@@ -1,15 +1,24 @@
 """The VLA tree with hand-driven peers: dialogue, planning, search, and every kind of recovery."""
 
+import math
 from typing import Any
+
+import pytest
 
 from common import messages as m
 from common import topics
+from common.approach import ROOM
+from common.scene import load_scene
 from services.brain.config import BrainConfig
+from services.brain.floor import clearance, standing_pose
+from services.sim.layout import place_objects
 from tests.unit.brain_bench import Bench
 
-SPEECH, NAV, MANIP, VIEW = topics.SPEECH_GOAL, topics.NAVIGATION_GOAL, topics.MANIPULATION_GOAL, topics.NAV_GOAL
+SPEECH, NAV, MANIP, POSE = topics.SPEECH_GOAL, topics.NAVIGATION_GOAL, topics.MANIPULATION_GOAL, topics.NAV_GOAL
+SCENE = load_scene("apartment")
 PLAN, QUERY = topics.PLAN_REQUEST, topics.OBJECT_QUERY
 MUG = {"object": "red mug"}
+MUG_AT = (-1.5, -2.3, 0.6)
 FETCH = [
     m.PlanStep(action="find", **MUG),
     m.PlanStep(action="grasp", **MUG),
@@ -48,9 +57,20 @@ def answer_plan(bench: Bench, count: int, steps: list[m.PlanStep], detail: str =
 def see(bench: Bench, count: int, found: bool = True) -> None:
     query = bench.next_goal(QUERY, count)
     assert query.query == "red mug"
-    position = (1.0, 2.0, 0.8)
-    bench.send(topics.OBJECT_POSE, m.ObjectPose(query_id=query.id, found=found, label="red mug", position=position))
+    bench.send(topics.OBJECT_POSE, m.ObjectPose(query_id=query.id, found=found, label="red mug", position=MUG_AT))
     bench.step()
+
+
+def approach(
+    bench: Bench, count: int, status: m.NavStatus = "arrived", code: str = "", recoveries: int = 0
+) -> m.NavGoal:
+    """Answer the pose number `count`, which must be one before the mug, as a navigator that only knows `nav_goal`."""
+    goal = bench.next_goal(POSE, count)
+    assert goal.object is not None and (goal.object.label, goal.object.position) == ("red mug", MUG_AT)
+    told = m.NavigationFeedback(goal_id=goal.id, status=status, code=code, recoveries=recoveries)
+    bench.send(topics.NAVIGATION_FEEDBACK, told)
+    bench.step()
+    return goal
 
 
 def reply(bench: Bench, text: str) -> None:
@@ -67,11 +87,11 @@ def test_the_contracts_sequence() -> None:
     reply(bench, "yes")
     answer_plan(bench, 1, FETCH)
     see(bench, 1)
-    bench.drove(bench.nav(1))
+    stance = approach(bench, 1)
     grab = bench.manip(1)
-    assert grab.object is not None and grab.object.position == (1.0, 2.0, 0.8)
+    assert grab.object is not None and grab.object.position == MUG_AT
     bench.did(grab)
-    bench.drove(bench.nav(2))
+    bench.drove(bench.nav(1))
     bench.did(bench.manip(2))
     bench.until(lambda: bench.states()[-1] == "WAITING")
     assert bench.states() == [
@@ -82,7 +102,8 @@ def test_the_contracts_sequence() -> None:
         "IDLE", "LISTENING", "PLANNING", "GROUNDING", "NAVIGATING", "EXECUTING", "SUCCESS",
     ]  # fmt: skip
     assert bench.texts(SPEECH) == ["say Did you say bring me the red mug?", "listen", "say Done."]
-    assert bench.texts(NAV) == ["find red mug", "return_to_start"]
+    assert [(g.x, g.y) for g in bench.sent(POSE)] == [(stance.x, stance.y)]
+    assert bench.texts(NAV) == ["return_to_start"]
     assert bench.texts(MANIP) == ["grab", "release"]
     last = bench.state.last
     assert last is not None and last.outcome == "delivered"
@@ -155,9 +176,9 @@ def lost_on_the_way() -> Bench:
     """Every release said that the hand is empty."""
     bench = planned()
     see(bench, 1)
-    bench.drove(bench.nav(1))
+    approach(bench, 1)
     bench.did(bench.manip(1))
-    bench.drove(bench.nav(2))
+    bench.drove(bench.nav(1))
     for attempt in range(BrainConfig().release_retries + 1):
         bench.did(bench.manip(2 + attempt), "failed", "NOT_HOLDING")
     return bench
@@ -166,12 +187,12 @@ def lost_on_the_way() -> Bench:
 def test_what_was_lost_on_the_way_is_fetched_again() -> None:
     bench = lost_on_the_way()
     see(bench, 2)
-    bench.drove(bench.nav(3))
+    approach(bench, 2)
     bench.did(bench.manip(3 + BrainConfig().release_retries))
-    bench.drove(bench.nav(4))
+    bench.drove(bench.nav(2))
     bench.did(bench.manip(4 + BrainConfig().release_retries))
     bench.until(lambda: bench.states()[-1] == "WAITING")
-    assert bench.texts(NAV) == ["find red mug", "return_to_start"] * 2
+    assert bench.texts(NAV) == ["return_to_start"] * 2 and len(bench.sent(POSE)) == 2
     assert bench.texts(MANIP)[-2:] == ["grab", "release"]
     last = bench.state.last
     assert last is not None and last.outcome == "delivered"
@@ -184,7 +205,7 @@ def test_a_loss_that_cannot_be_mended_is_no_longer_held() -> None:
         if len(bench.sent(QUERY)) >= count:
             see(bench, count, found=False)
             count += 1
-        views = bench.sent(VIEW)
+        views = bench.sent(POSE)
         if views and bench.state.step.startswith("search"):
             bench.send(
                 topics.NAVIGATION_FEEDBACK, m.NavigationFeedback(status="failed", goal_id=views[-1].id, code="NO_PATH")
@@ -201,7 +222,7 @@ def test_an_impossible_plan_is_rejected_with_the_reason_and_replanned() -> None:
     assert bench.sent(NAV) == []
     answer_plan(bench, 2, FETCH)
     see(bench, 1)
-    bench.nav(1)
+    bench.next_goal(POSE, 1)
 
 
 def test_three_impossible_plans_are_explained_aloud() -> None:
@@ -224,18 +245,18 @@ def test_search_turns_then_looks_from_elsewhere() -> None:
     bench = planned()
     bench.send(topics.POSE, m.PoseEstimate(t=0.0, x=1.0, y=0.5, theta=0.0))
     see(bench, 1, found=False)
-    turn = bench.next_goal(VIEW, 1)
+    turn = bench.next_goal(POSE, 1)
     assert (turn.x, turn.y) == (1.0, 0.5) and turn.theta > 1.0
     feedback = m.NavigationFeedback(goal_id=turn.id, status="arrived")
     bench.send(topics.NAVIGATION_FEEDBACK, feedback)
     see(bench, 2, found=False)
-    second = bench.next_goal(VIEW, 2)
+    second = bench.next_goal(POSE, 2)
     bench.drove(second, "failed", "BLOCKED")
-    third = bench.next_goal(VIEW, 3)
+    third = bench.next_goal(POSE, 3)
     assert (third.x, third.y) != (turn.x, turn.y)
     bench.drove(third)
     see(bench, 3)
-    bench.drove(bench.nav(1))
+    approach(bench, 4)
     bench.manip(1)
 
 
@@ -244,38 +265,36 @@ def test_an_absent_object_is_reported_after_three_attempts() -> None:
     see(bench, 1, found=False)
     count = 0
     while True:
-        bench.until(lambda n=count: bench.state.state == "ERROR" or len(bench.sent(VIEW)) > n)  # type: ignore[misc]
+        bench.until(lambda n=count: bench.state.state == "ERROR" or len(bench.sent(POSE)) > n)  # type: ignore[misc]
         if bench.state.state == "ERROR":
             break
         count += 1
-        bench.drove(bench.sent(VIEW)[-1])
+        bench.drove(bench.sent(POSE)[-1])
         see(bench, count + 1, found=False)
     # Turning on the spot twice, then two tours of what can be seen from elsewhere.
     assert 4 <= count <= 16
-    assert len({(g.x, g.y, g.theta) for g in bench.sent(VIEW)}) == count
+    assert len({(g.x, g.y, g.theta) for g in bench.sent(POSE)}) == count
     assert "NOT_FOUND" in bench.state.detail
     assert bench.texts(SPEECH)[-1] == "say I could not find the red mug."
 
 
 def test_a_failed_grab_looks_again_and_drives_up_again() -> None:
     bench = planned()
-    see(bench, 1)
-    bench.drove(bench.nav(1))
-    bench.did(bench.manip(1), "failed", "EMPTY_GRASP")
-    see(bench, 2)
-    bench.drove(bench.nav(2))
-    bench.did(bench.manip(2), "failed", "SLIPPED")
+    for count, code in ((1, "EMPTY_GRASP"), (2, "SLIPPED")):
+        see(bench, count)
+        approach(bench, count)
+        bench.did(bench.manip(count), "failed", code)
     see(bench, 3)
-    bench.drove(bench.nav(3))
+    approach(bench, 3)
     bench.did(bench.manip(3))
-    assert bench.nav(4).goal == "return_to_start"
+    assert bench.nav(1).goal == "return_to_start"
 
 
 def test_three_failed_grabs_are_an_error() -> None:
     bench = planned()
     for count in (1, 2, 3):
         see(bench, count)
-        bench.drove(bench.nav(count))
+        approach(bench, count)
         bench.did(bench.manip(count), "failed", "SLIPPED")
     assert bench.state.state == "ERROR"
     assert "COMPLETED" not in bench.states()
@@ -285,13 +304,50 @@ def test_place_drives_to_the_receptacle_once() -> None:
     bin_steps = [*FETCH[:2], m.PlanStep(action="navigate", target="bin"), m.PlanStep(action="place", target="bin")]
     bench = planned(bin_steps)
     see(bench, 1)
-    bench.drove(bench.nav(1))
+    approach(bench, 1)
     bench.did(bench.manip(1))
-    bench.drove(bench.nav(2))
+    bench.drove(bench.nav(1))
     bench.did(bench.manip(2))
-    assert bench.texts(NAV) == ["find red mug", "goto bin"]
+    assert bench.texts(NAV) == ["goto bin"]
     assert bench.texts(MANIP) == ["grab", "place bin"]
     bench.until(lambda: bench.state.state == "COMPLETED")
+
+
+@pytest.mark.parametrize(("recoveries", "attempts"), [(0, 3), (1, 2), (2, 1), (5, 1)])
+def test_a_blocked_way_is_tried_twice_more_in_all_whoever_tries(recoveries: int, attempts: int) -> None:
+    """What the navigator has tried itself counts; the sender makes up for the rest."""
+    bench = planned()
+    see(bench, 1)
+    sent = [approach(bench, n, "failed", "BLOCKED", recoveries if n == 1 else 0) for n in range(1, attempts + 1)]
+    bench.until(lambda: bench.state.state == "ERROR")
+    assert [g.attempt for g in bench.sent(POSE)] == list(range(1, attempts + 1)) == [g.attempt for g in sent]
+    assert len({g.id for g in sent}) == 1
+    bench.until(lambda: bench.texts(SPEECH)[-1] == "say I could not reach the red mug.")
+
+
+def test_retries_of_several_attempts_add_up_and_other_failures_are_counted_alone() -> None:
+    bench = planned()
+    see(bench, 1)
+    approach(bench, 1, "failed", "NO_SCAN", recoveries=2)
+    approach(bench, 2, "failed", "BLOCKED", recoveries=1)
+    bench.until(lambda: bench.state.state == "ERROR")
+    assert "BLOCKED" in bench.state.detail and len(bench.sent(POSE)) == 2
+
+
+def test_the_standing_pose_is_free_and_faces_the_thing() -> None:
+    """Any navigator could drive there: no part of the base is in furniture, a surface or a wall."""
+    for placed in (p for seed in range(20) for p in place_objects(SCENE, seed)):
+        x, y, _ = placed.position
+        pose = standing_pose(SCENE, (x, y), (0.0, 0.0, 0.0))
+        assert clearance(SCENE, pose[0], pose[1]) >= ROOM, f"{placed.spec.name} on {placed.on}"
+        assert math.dist(pose[:2], (x, y)) < 0.75
+        assert SCENE.room_at(pose[0], pose[1]) is SCENE.room_at(x, y)
+        assert abs(math.remainder(math.atan2(y - pose[1], x - pose[0]) - pose[2], math.tau)) < 0.01
+
+
+def test_the_robot_stands_on_its_own_side_of_what_lies_free() -> None:
+    for here in ((1.2, 0.0, 0.0), (-1.2, 0.0, 0.0)):
+        assert standing_pose(SCENE, (0.0, 0.0), here)[0] * here[0] > 0.0
 
 
 def test_saying_waiting_and_going_need_no_hand() -> None:
@@ -355,10 +411,10 @@ def test_listening_is_shown_while_speech_takes_in_an_utterance() -> None:
 def test_stop_cuts_any_step_short() -> None:
     bench = planned()
     see(bench, 1)
-    bench.nav(1)
+    bench.next_goal(POSE, 1)
     bench.send(topics.VOICE_COMMAND, m.VoiceCommand(text="stop"))
     bench.step(1.0)
     last = bench.state.last
     assert last is not None and last.outcome == "cancelled"
-    assert bench.texts(NAV) == ["find red mug", "stop"]
+    assert bench.texts(NAV) == ["stop"]
     assert bench.state.state == "WAITING"

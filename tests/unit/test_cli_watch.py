@@ -52,7 +52,9 @@ def test_a_mission_on_one_screen(picture: watch.Picture) -> None:
         ),
         topics.SIM_STATUS.key: m.SimStatus(state="stopped"),
         topics.ACTION_PLAN.key: m.ActionPlan(request_id="r", steps=[m.PlanStep(action="grasp", object="red mug")]),
-        topics.NAVIGATION_STATUS.key: m.NavigationStatus(status="failed", code="BLOCKED", detail="a chair"),
+        topics.NAVIGATION_FEEDBACK.key: m.NavigationFeedback(
+            goal_id="m.1", status="failed", code="BLOCKED", detail="a chair"
+        ),
         topics.BRAIN_TREE.key: m.TreeSnapshot(
             t=1.0,
             root=node(

@@ -90,7 +90,7 @@ def test_nothing_from_the_bus_becomes_html() -> None:
     services.take(health(evil, "a", last_error=evil))
     pages = (
         markup.tree(node(evil, "RUNNING", detail=evil)),
-        markup.mission(state, 1.0, steps, m.NavigationStatus(status="failed", detail=evil), None),
+        markup.mission(state, 1.0, steps, m.NavigationFeedback(goal_id="m.1", status="failed", detail=evil), None),
         markup.transcript(talk.lines),
         markup.services(services.rows(lambda name: True)),
     )

@@ -52,8 +52,8 @@ def write(path: Path, *, failed: bool = False) -> Path:
     state(8.0, "NAVIGATING", "m-1", command="bring me the <mug>", started=5.0)
     put(10.0, topics.SPEECH_GOAL, m.SpeechGoal(goal="say here I come"))
     if failed:
-        broken = m.NavigationStatus(status="failed", goal_id="m-1.1", code="BLOCKED", detail="a chair")
-        put(12.0, topics.NAVIGATION_STATUS, broken)
+        broken = m.NavigationFeedback(status="failed", goal_id="m-1.1", code="BLOCKED", detail="a chair")
+        put(12.0, topics.NAVIGATION_FEEDBACK, broken)
     last = m.MissionOutcome(id="m-1", command="bring me the <mug>", outcome="failed" if failed else "delivered", t=20.0)
     state(20.0, "ERROR" if failed else "COMPLETED", "m-1", command="bring me the <mug>", started=5.0, last=last)
     state(22.0, "WAITING", "", last=last)

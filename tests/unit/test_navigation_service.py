@@ -7,6 +7,7 @@ import pytest
 
 from common import messages as m
 from common import topics
+from common.approach import poses_for
 from common.geometry import quat_yaw
 from common.scene import load_scene
 from services.navigation.config import NavigationConfig
@@ -14,7 +15,6 @@ from services.navigation.costmap import Costmap
 from services.navigation.follow import Follower
 from services.navigation.planner import PathPlanner, Point
 from services.navigation.service import NavigationService
-from services.navigation.standoff import poses_for
 from services.sim.layout import place_objects
 from tests.node import Node
 
@@ -121,8 +121,17 @@ class Pilot(Node):
         self.step()
         return self.status()
 
+    def approach(self, position: m.Vec3, goal_id: str = "a.1", attempt: int = 1, at: Point = (1.0, 1.0)) -> None:
+        """Send a pose before the red mug."""
+        mug = m.ObjectRef(label="red mug", position=position)
+        self.bus.send(topics.NAV_GOAL, m.NavGoal(id=goal_id, attempt=attempt, x=at[0], y=at[1], object=mug))
+        self.step()
+
     def status(self) -> m.NavigationStatus:
         return self.last(topics.NAVIGATION_STATUS)
+
+    def feedback(self) -> m.NavigationFeedback:
+        return self.last(topics.NAVIGATION_FEEDBACK)
 
     def target(self) -> m.BaseTarget:
         return self.sent(topics.BASE_TARGET)[-1]
@@ -177,18 +186,22 @@ def test_an_object_that_was_seen_counts_before_the_places_file() -> None:
     assert math.dist(path.points[-1], mug) < 1.0
 
 
-def test_asked_again_before_the_same_thing_it_stands_somewhere_else() -> None:
+@pytest.mark.parametrize("posed", [False, True], ids=["find", "nav_goal"])
+def test_asked_again_before_the_same_thing_it_stands_somewhere_else(posed: bool) -> None:
     node, mug = sighted()
 
     def stand(text: str, goal_id: str, attempt: int = 1) -> Point:
         """Where the goal ends; the base goes there at once."""
-        node.ask(text, goal_id, attempt)
+        if posed and text == "find red mug":
+            node.approach((*mug, 0.6), goal_id, attempt)
+        else:
+            node.ask(text, goal_id, attempt)
         end = node.last(topics.NAV_PATH).points[-1]
         node.pose = (*end, math.atan2(mug[1] - end[1], mug[0] - end[0]))
         node.step(0.5)
         node.bus.send(topics.GOAL_REACHED, m.GoalReached(reached=True, target_id=node.target().id))
         node.step()
-        assert node.status().status == "arrived"
+        assert (node.feedback().goal_id, node.feedback().status) == (goal_id, "arrived")
         return node.pose[:2]
 
     first = stand("find red mug", "a.1")
@@ -199,6 +212,47 @@ def test_asked_again_before_the_same_thing_it_stands_somewhere_else() -> None:
     assert all(math.dist(p, mug) < 0.8 for p in (second, third)), "still in reach"
     stand("goto kitchen", "a.4")
     assert math.dist(stand("find red mug", "a.5"), first) < 0.25, "what was tried is forgotten on the way"
+
+
+def test_a_pose_before_an_object_leads_to_the_stance_that_find_takes() -> None:
+    ends = []
+    for posed in (False, True):
+        node, mug = sighted()
+        told = node.bus.tap(topics.NAVIGATION_STATUS)
+        if posed:
+            node.approach((mug[0] + 0.05, mug[1], 0.6))
+            assert not told, "the answers come on navigation_feedback"
+            assert (node.feedback().status, node.feedback().attempt) == ("navigating", 1)
+        else:
+            node.ask("find red mug")
+        ends.append(node.last(topics.NAV_PATH).points[-1])
+    assert ends[0] == ends[1]
+
+
+def test_the_pose_itself_is_taken_where_nothing_better_is_free_or_known() -> None:
+    node = Pilot()
+    walled_in = m.ObjectRef(label="red mug", position=(9.0, 9.0, 0.5))
+    odd = m.ObjectRef(label="red mug", position=(0.5, 0.5, 0.5), frame="base")
+    for number, ref in enumerate((walled_in, odd, None), 1):
+        node.bus.send(topics.NAV_GOAL, m.NavGoal(id=f"a.{number}", x=1.0, y=1.0, object=ref))
+        node.step()
+        end = node.last(topics.NAV_PATH)
+        assert (end.goal_id, end.points[-1]) == (f"a.{number}", pytest.approx((1.0, 1.0), abs=0.2))
+
+
+def test_a_pose_twice_runs_once_and_a_newer_one_replaces_it() -> None:
+    node, mug = sighted()
+    node.approach((*mug, 0.6))
+    paths, told = node.bus.tap(topics.NAV_PATH), node.bus.tap(topics.NAVIGATION_FEEDBACK)
+    node.approach((*mug, 0.6))
+    assert not paths
+    assert {(f["goal_id"], f["status"]) for f in map(msgspec.json.decode, told)} == {("a.1", "navigating")}
+    node.approach((*mug, 0.6), "a.2")
+    ended = [msgspec.json.decode(f, type=m.NavigationFeedback) for f in told]
+    assert [(f.goal_id, f.status, f.code) for f in ended if f.code] == [("a.1", "failed", "PREEMPTED")]
+    node.bus.put(topics.NAV_GOAL, b'{"x": 1.0, "y": 1.0}')
+    node.step()
+    assert node.feedback().goal_id.startswith("navigation"), "a goal without an id gets one"
 
 
 def test_the_same_goal_twice_runs_once_and_is_answered() -> None:

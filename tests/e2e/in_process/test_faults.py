@@ -49,12 +49,10 @@ def test_a_gripper_that_does_not_close_is_noticed_and_tried_again() -> None:
     assert lame.cause.startswith("grasp")
 
 
-@pytest.mark.parametrize("skip", [0, 1])
-def test_a_service_that_raises_ends_its_case_as_crashed(skip: int) -> None:
-    """At its start, or with its first status."""
-    rule = Rule(
-        service="navigation", key="brain/navigation_status", kind="edit", skip=skip, fields={"status": "flying"}
-    )  # fmt: skip
+@pytest.mark.parametrize("key", ["brain/navigation_status", "navigation_feedback"])
+def test_a_service_that_raises_ends_its_case_as_crashed(key: str) -> None:
+    """At its start, or with its first answer."""
+    rule = Rule(service="navigation", key=key, kind="edit", fields={"status": "flying"})
     result = runner.run(case_of(2, "green can", rules=(rule,)))
     assert result.outcome == "crashed"
     assert "status" in result.cause

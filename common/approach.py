@@ -1,12 +1,19 @@
-"""Standing poses from which the arm reaches an object or a surface."""
+"""Approach poses: where the base stands so that the arm reaches an object or a surface. Pure."""
 
 import math
 
 from common.geometry import Pose2
 from common.scene import Receptacle
-from services.navigation.costmap import BIN_WALL
-from services.navigation.planner import Point
 
+Point = tuple[float, float]
+STAND_OFF = 0.56
+"""From the base's centre to the object [m]: the middle of the arm's reach at table height (bench.grasp)."""
+EDGE_DISTANCE = 0.40
+"""From the base's centre to the edge it stands before [m]: the footprint's radius 0.37 and 3 cm to spare."""
+ROOM = 0.39
+"""Clearance that the base's centre needs [m]: the footprint's radius 0.37 and 2 cm, as navigation plans with."""
+BIN_RIM = 0.02
+"""Thickness of a bin's walls, which its `size` does not contain [m]: 15 mm and the play of the map's grid."""
 LATERAL = (0.0, 0.10, -0.10, 0.20, -0.20)
 RING = 16
 
@@ -17,7 +24,10 @@ def _local(r: Receptacle, x: float, y: float) -> Point:
 
 
 def poses_for(
-    target: Point, receptacle: Receptacle | None, stand_off: float, edge_distance: float
+    target: Point,
+    receptacle: Receptacle | None,
+    stand_off: float = STAND_OFF,
+    edge_distance: float = EDGE_DISTANCE,
 ) -> list[tuple[float, Pose2]]:
     """Candidate base poses that face `target`, each with a penalty [m] for how far from ideal it is.
 
@@ -35,7 +45,7 @@ def poses_for(
     for ax, ay in receptacle.approach:
         edge = receptacle.size[0] / 2 if ax else receptacle.size[1] / 2
         inset = max(0.0, edge - (lx * ax + ly * ay))
-        rim = BIN_WALL if receptacle.depth else 0.0
+        rim = BIN_RIM if receptacle.depth else 0.0
         distance = max(stand_off, inset + rim + edge_distance)
         ux, uy = c * ax - s * ay, s * ax + c * ay
         for side in LATERAL:
