@@ -21,6 +21,8 @@ BrainStateName = Literal[
 SystemStateName = Literal["IDLE", "LISTENING", "PLANNING", "GROUNDING", "NAVIGATING", "EXECUTING", "SUCCESS", "ERROR"]
 SpeechStateName = Literal["idle", "listening", "transcribing", "speaking"]
 StepAction = Literal["navigate", "find", "grasp", "place", "release", "say", "wait", "return"]
+GRIPPER = "gripper"
+"""The target of a step that only opens or closes the hand."""
 
 
 class Message(msgspec.Struct, kw_only=True):
@@ -236,10 +238,17 @@ class RejectedPlan(Message):
 
 
 class PlanStep(Message):
+    """One step of a plan. `grasp` and `release` with the target `gripper` close and open the hand around nothing."""
+
     action: StepAction
     object: str = ""
     target: str = ""
     text: str = ""
+
+    @property
+    def hand_alone(self) -> bool:
+        """A step of the gripper that needs no arm and names no object."""
+        return self.action in ("grasp", "release") and self.target == GRIPPER and not self.object
 
 
 class PlanRequest(Message):

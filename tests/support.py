@@ -41,18 +41,18 @@ def eventually(probe: Callable[[], T], what: str, patience: float = PATIENCE) ->
 
 
 class Pulse(threading.Thread):
-    """Puts one payload on a key every 50 ms, as a driver's stream, from `start` to `stop`; not while `silent`."""
+    """Puts its `payload` on a key every 50 ms, as a driver's stream, from `start` to `stop`; not while `silent`."""
 
     def __init__(self, opened: zenoh.Session, key: str, payload: str) -> None:
         super().__init__(daemon=True)
-        self._publisher, self._payload = opened.declare_publisher(key), payload
+        self._publisher, self.payload = opened.declare_publisher(key), payload
         self._ended = threading.Event()
         self.silent = False
 
     def run(self) -> None:
         while not self._ended.wait(0.05):
             if not self.silent:
-                self._publisher.put(self._payload)
+                self._publisher.put(self.payload)
 
     def stop(self) -> None:
         self._ended.set()

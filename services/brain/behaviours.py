@@ -141,7 +141,7 @@ class Goal(Leaf):
         ctx.enter(self.state, self.step())
         topic, message = self.goal(f"{ctx.mission.id}.{ctx.mission.goals + 1}")
         if not ctx.io.matched(topic):
-            if self.elapsed > ctx.config.peer_timeout:
+            if max(self.elapsed, self.channel.gone(ctx.now)) > ctx.config.peer_timeout:
                 return self._failed("NO_PEER", f"{self.channel.peer} does not answer")
             self.feedback_message = f"waiting for {self.channel.peer}"
             return Status.RUNNING

@@ -133,13 +133,17 @@ class Hand(msgspec.Struct):
         )
 
 
-def fingers_hold(joints: m.JointStates | None) -> bool | None:
-    """Do width [m] and force [N] of the gripper speak of an object between the pads? None: no gripper reported."""
+def gripper(joints: m.JointStates | None) -> tuple[float, float] | None:
+    """Width between the pads [m] and force [N] of the gripper; None: no gripper reported."""
     if joints is None or "gripper" not in joints.name:
         return None
     index = joints.name.index("gripper")
     if index >= len(joints.position):
         return None
-    width = joints.position[index]
-    effort = abs(joints.effort[index]) if index < len(joints.effort) else 0.0
-    return GRIPPER_EMPTY < width < GRIPPER_OPEN and effort > HOLDING_FORCE
+    return joints.position[index], abs(joints.effort[index]) if index < len(joints.effort) else 0.0
+
+
+def fingers_hold(joints: m.JointStates | None) -> bool | None:
+    """Do width and force of the gripper speak of an object between the pads? None: no gripper reported."""
+    grip = gripper(joints)
+    return None if grip is None else GRIPPER_EMPTY < grip[0] < GRIPPER_OPEN and grip[1] > HOLDING_FORCE

@@ -115,7 +115,7 @@ def earlier(plan: Sequence[PlanStep], k: int, change: Change) -> int:
         return next((j for j in range(k, -1, -1) if plan[j].action in ("return", "navigate")), k)
     if change == "moved":
         return k
-    grasps = [j for j, step in enumerate(plan) if step.action == "grasp"]
+    grasps = [j for j, step in enumerate(plan) if step.action == "grasp" and not step.hand_alone]
     grasp = max((j for j in grasps if j <= k), default=None) if change == "lost" else k
     if grasp is None:
         return k
@@ -130,6 +130,8 @@ def _about_to_grasp(path: list[Place], mission: Mission) -> tuple[str, list[Plac
     if plan is not None:
         for j in range(path[plan + 1].index, len(mission.plan) - 1):
             step = mission.plan[j]
+            if step.hand_alone:
+                continue
             if step.action == "grasp":
                 pose = mission.found.get(step.object)
                 return (pose.label if pose else "") or step.object, [*path[: plan + 1], Place(j + 1, "")]

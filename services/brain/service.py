@@ -50,6 +50,7 @@ class BrainService:
         topics.NAVIGATION_GOAL,
         topics.NAV_GOAL,
         topics.MANIPULATION_GOAL,
+        topics.GRIPPER_COMMAND,
         topics.PLAN_REQUEST,
         topics.OBJECT_QUERY,
         topics.BRAIN_STATE,

@@ -31,6 +31,8 @@ def objection(steps: Sequence[PlanStep], world: KnownWorld, scene: Scene) -> str
         reason = _objection(step, held, found, world, scene)
         if reason:
             return f"step {number}: {reason}"
+        if step.hand_alone:
+            continue
         if step.action == "find":
             found.add(_name(step.object, scene))
         elif step.action == "grasp":
@@ -42,6 +44,8 @@ def objection(steps: Sequence[PlanStep], world: KnownWorld, scene: Scene) -> str
 
 def _objection(step: PlanStep, held: str, found: set[str], world: KnownWorld, scene: Scene) -> str:
     match step.action:
+        case "grasp" | "release" if step.hand_alone:
+            return f"the hand holds the {held}, which has to be put down" if held else ""
         case "find":
             return _not_a_thing(step.object, world, scene)
         case "grasp":

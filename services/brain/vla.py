@@ -11,6 +11,7 @@ from services.brain.asking import HearChoice, HearReply, Question, question, whi
 from services.brain.behaviours import Leaf, Say, Settle
 from services.brain.context import Context
 from services.brain.decorators import Attempts, When
+from services.brain.hand import Gripper, let_go, open_hand
 from services.brain.robot import LOST, Drive, Grab, Ready, Release
 from services.brain.trees import drive_home, first_of, grab_failed, report_failure, sequence
 from services.brain.validate import is_destination
@@ -115,6 +116,8 @@ def step_tree(ctx: Context, step: PlanStep, carried: str) -> Behaviour:
                 return sequence(name, go_to(ctx, where), Settle("settle", ctx))
             unseen = When("find it", find(ctx, where), lambda: where not in ctx.mission.found)
             return sequence(name, unseen, approach(ctx, where))
+        case "grasp" if step.hand_alone:
+            return sequence(name, Gripper("close the hand", ctx, closed=True), Settle("settle", ctx))
         case "grasp":
             return grasp(ctx, step.object)
         case "place":
@@ -122,6 +125,10 @@ def step_tree(ctx: Context, step: PlanStep, carried: str) -> Behaviour:
             back = go_and_settle(ctx, step.target)
             put = put_down(ctx, carried, back, lambda name: Release(name, ctx, lambda: f"place {step.target}"))
             return sequence(name, there, put, Settle("settle", ctx))
+        case "release" if step.hand_alone:
+            return sequence(name, open_hand(ctx), Settle("settle", ctx))
+        case "release" if not carried:
+            return sequence(name, let_go(ctx), Settle("settle", ctx))
         case "release":
             home = sequence("back", drive_home(ctx), Settle("settle", ctx))
             return sequence(name, put_down(ctx, carried, home, lambda name: Release(name, ctx)), Settle("settle", ctx))

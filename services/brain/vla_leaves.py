@@ -184,8 +184,9 @@ class Evidence(Leaf):
 
     def update(self) -> Status:
         ctx, mission = self.ctx, self.ctx.mission
-        lets_go = any(s.action in ("place", "release") for s in mission.plan)
-        grasps = any(s.action == "grasp" for s in mission.plan)
+        steps = [s for s in mission.plan if not s.hand_alone]
+        lets_go = any(s.action in ("place", "release") for s in steps)
+        grasps = any(s.action == "grasp" for s in steps)
         if (grasps and not mission.grabbed) or (lets_go and not mission.released):
             ctx.fail(Failure("COMPLETED", "NO_EVIDENCE", spoken="I am not sure that it worked."))
             return Status.FAILURE

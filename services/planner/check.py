@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import msgspec
 
-from common.messages import PlanStep
+from common.messages import GRIPPER, PlanStep
 from services.planner.vocabulary import Vocabulary
 from services.planner.words import normal
 from services.planner.world import World
@@ -31,7 +31,9 @@ def checked(steps: Sequence[PlanStep], world: World, vocabulary: Vocabulary, max
             _in_order(step, held, found)
         except Impossible as impossible:
             raise Impossible(f"step {number}: {impossible}") from None
-        if step.action == "find":
+        if step.hand_alone:
+            pass
+        elif step.action == "find":
             found.add(step.object)
         elif step.action == "grasp":
             held = step.object
@@ -43,6 +45,9 @@ def checked(steps: Sequence[PlanStep], world: World, vocabulary: Vocabulary, max
 
 def _in_order(step: PlanStep, held: str, found: set[str]) -> None:
     match step.action:
+        case "grasp" | "release" if step.hand_alone:
+            if held:
+                raise Impossible(f"the hand holds the {held}")
         case "grasp" if held:
             raise Impossible(f"the hand already holds the {held}")
         case "grasp" if step.object not in found:
@@ -57,6 +62,8 @@ def _named(step: PlanStep, world: World, vocabulary: Vocabulary) -> PlanStep:
     """Aliases and odd spellings become the scene's names."""
     thing, target = step.object, step.target
     match step.action:
+        case "grasp" | "release" if step.hand_alone:
+            return PlanStep(action=step.action, target=GRIPPER)
         case "find" | "grasp":
             return msgspec.structs.replace(step, object=_thing(thing or target, world, vocabulary), target="", text="")
         case "place":

@@ -89,17 +89,18 @@ def put_down(draft: Draft, slots: Slots) -> None:
     draft.release()
 
 
-def let_go(draft: Draft, slots: Slots) -> None:
+def open_hand(draft: Draft, slots: Slots) -> None:
     if draft.world.held is None:
-        draft.say("My hand is empty.")
+        draft.hand_alone("release")
     else:
         draft.release()
 
 
-def close_gripper(draft: Draft, slots: Slots) -> None:
+def close_hand(draft: Draft, slots: Slots) -> None:
     if (held := draft.world.held) is None:
-        raise Refusal("I close my gripper only around a thing, so tell me what to pick up")
-    draft.say(f"I am holding the {held.label}.")
+        draft.hand_alone("grasp")
+    else:
+        draft.say(f"I am holding the {held.label}.")
 
 
 # --- moving itself

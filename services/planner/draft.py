@@ -1,8 +1,10 @@
 """A plan in the making: the steps so far and the world as they will have left it. Pure."""
 
+from typing import Literal
+
 import msgspec
 
-from common.messages import PlanStep
+from common.messages import GRIPPER, PlanStep
 from common.scene import Receptacle
 from services.planner.choices import Choices
 from services.planner.config import PlannerConfig, Rule
@@ -122,6 +124,10 @@ class Draft:
         self.world.put("")
         self._found.discard(held.label)
         self.last = [held]
+
+    def hand_alone(self, action: Literal["grasp", "release"]) -> None:
+        """Close or open the empty hand."""
+        self.steps.append(PlanStep(action=action, target=GRIPPER))
 
     def _held(self) -> Thing:
         held = self.world.held

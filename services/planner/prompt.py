@@ -4,7 +4,7 @@ from typing import Any
 
 import msgspec
 
-from common.messages import RejectedPlan, StepAction
+from common.messages import GRIPPER, RejectedPlan, StepAction
 from services.planner.config import PlannerConfig, Rule
 from services.planner.world import World
 
@@ -14,6 +14,7 @@ Actions: find (object), grasp (object), place (target: a receptacle), release (s
 navigate (target: a place, room or receptacle), say (text), wait. Unused fields are "".
 - A thing must be found before it is grasped; the hand holds one thing; place and release empty it.
 - Bringing something to the person is: find, grasp, return, release.
+- The empty hand alone is opened by release and closed by grasp, both with the target "gripper".
 - place drives to the receptacle by itself.
 - Use only names from the lists, letter by letter. Never invent objects, places or actions.
 - Questions are answered with say, from what is listed.
@@ -40,7 +41,7 @@ def schema(world: World) -> dict[str, Any]:
     root = parts.pop("Answer")
     fields = parts["Step"]["properties"]
     fields["object"] = {"type": "string", "enum": ["", *_objects(world)]}
-    fields["target"] = {"type": "string", "enum": ["", *_targets(world)]}
+    fields["target"] = {"type": "string", "enum": ["", *_targets(world), GRIPPER]}
     return {**root, "$defs": parts}
 
 

@@ -200,9 +200,13 @@ def test_the_planner_answers_a_plain_peer(here: Site) -> None:
         assert [(s["action"], s["object"] or s["target"]) for s in steps] == [
             ("place", "apple"), ("find", "blue mug"), ("grasp", "blue mug"), ("return", ""), ("release", ""),
         ]  # fmt: skip
-        peer.put("plan_request", id="m.4", command="dance with me")
-        assert "do not understand" in peer.wait("action_plan", request_id="m.4")["detail"]
-        assert json.loads(bus.fetch(session, "action_plan")["action_plan"])["request_id"] == "m.4"
+        for n, (command, action) in enumerate((("open your hand", "release"), ("close your hand", "grasp")), 4):
+            peer.put("plan_request", id=f"m.{n}", command=command)
+            (step,) = peer.wait("action_plan", request_id=f"m.{n}")["steps"]
+            assert (step["action"], step["object"], step["target"]) == (action, "", "gripper")
+        peer.put("plan_request", id="m.6", command="dance with me")
+        assert "do not understand" in peer.wait("action_plan", request_id="m.6")["detail"]
+        assert json.loads(bus.fetch(session, "action_plan")["action_plan"])["request_id"] == "m.6"
 
 
 def test_the_simulation_obeys_a_plain_peer(here: Site) -> None:

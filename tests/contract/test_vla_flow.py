@@ -34,11 +34,14 @@ class Peer:
         self.joints = Pulse(session, "joint_states", json.dumps(JOINTS))
         self.goals: list[tuple[str, dict[str, Any]]] = []
         self.system: list[str] = []
+        self.grips: list[float] = []
 
     def receive(self, sample: zenoh.Sample) -> None:
         key, fields = str(sample.key_expr), json.loads(sample.payload.to_bytes())
         if key == "system_status":
             self.system += [fields["state"]] if [fields["state"]] != self.system[-1:] else []
+        elif key == "gripper_command":
+            self.grips.append(fields["position"])
         else:
             self.goals.append((key, fields))
 
@@ -74,6 +77,17 @@ class Peer:
         assert 0.5 < math.dist((goal["x"], goal["y"]), MUG_AT[:2]) < 0.75
         return goal
 
+    def feel(self, width: float, force: float = 0.0) -> None:
+        """What joint_states tell of the gripper from now on."""
+        joints = {"t": 0.0, "name": ["gripper"], "position": [width], "velocity": [0.0], "effort": [force]}
+        self.joints.payload = json.dumps(joints)
+
+    def ask(self, command: str, *steps: dict[str, str]) -> None:
+        """A command, and the plan for it."""
+        self.session.put("voice_command", command)
+        request = self.next("plan_request", command=command)
+        self.put("action_plan", request_id=request["id"], steps=list(steps))
+
     def saw(self, query: dict[str, Any], found: bool = True) -> None:
         self.put("object_pose", query_id=query["id"], found=found, label="red mug", position=MUG_AT)
 
@@ -82,7 +96,9 @@ class Peer:
 def scripted(here: Site, **parameters: str) -> Iterator[Peer]:
     with here.session() as session:
         peer = Peer(session)
-        subscribers = [session.declare_subscriber(key, peer.receive) for key in (*GOALS, "system_status")]
+        subscribers = [
+            session.declare_subscriber(key, peer.receive) for key in (*GOALS, "system_status", "gripper_command")
+        ]
         changes = {f"TIDYBOT__BRAIN__{k.upper()}": v for k, v in parameters.items()}
         process = here.start("services.brain", TIDYBOT_CLOCK="wall", TIDYBOT__BRAIN__PIPELINE="vla", **changes)
         here.wait_alive(session, "brain")
@@ -183,3 +199,34 @@ def test_joint_states_that_stay_away_end_the_mission_in_a_spoken_error(here: Sit
         eventually(lambda: peer.system[-2:] == ["ERROR", "IDLE"], "it waits for joint_states")
         assert logged(here)[-2:] == [("IDLE", "ERROR"), ("ERROR", "IDLE")]
         assert peer.goals == []
+
+
+def test_the_gripper_alone_is_the_brains_own(here: Site) -> None:
+    with scripted(here, settle="0.2", enable_confirmation="false") as peer:
+        for command, action, position, width in (
+            ("open your hand", "release", 0.0, 0.085),
+            ("close your hand", "grasp", 1.0, 0.001),
+        ):
+            peer.feel(0.04)
+            peer.grips.clear()
+            peer.ask(command, {"action": action, "target": "gripper"})
+            eventually(lambda: len(peer.grips) > 3, "the command, again and again")
+            assert peer.goals == [] and peer.system[-1] == "EXECUTING", "no evidence yet"
+            peer.feel(width)
+            eventually(lambda: peer.goals, "joint_states have shown it")
+            assert set(peer.grips) == {position}
+            peer.speech("say Done.")
+            eventually(lambda: peer.system[-1] == "IDLE", "back to waiting")
+        peer.grips.clear()
+        peer.ask("open your hand", {"action": "release", "target": "gripper"})
+        eventually(lambda: peer.grips, "the command")
+        peer.speech("say I could not open my hand.")
+
+
+def test_a_full_hand_is_emptied_by_manipulation(here: Site) -> None:
+    with scripted(here, settle="0.2", enable_confirmation="false") as peer:
+        peer.feel(0.04, 25.0)
+        peer.ask("open your hand", {"action": "release", "target": "gripper"})
+        peer.did(peer.next("brain/manipulation_goal", goal="release"))
+        peer.speech("say Done.")
+        assert peer.grips == []

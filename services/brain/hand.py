@@ -1,0 +1,136 @@
+"""What the brain does with the gripper itself, by `gripper_command`: the empty hand, and letting go without an arm.
+
+Everything else that the gripper does belongs to a movement of the arm: manipulation sends the command on the brain's
+behalf.
+"""
+
+from py_trees.behaviour import Behaviour
+from py_trees.common import Status
+
+from common import messages as m
+from common import topics
+from services.brain.asking import Hear, Question
+from services.brain.behaviours import Leaf
+from services.brain.context import Context
+from services.brain.decorators import When
+from services.brain.dialogue import reply
+from services.brain.goals import Answer
+from services.brain.mission import GRIPPER_EMPTY, GRIPPER_OPEN, HOLDING_FORCE, Failure, fingers_hold, gripper
+from services.brain.robot import Release
+from services.brain.trees import first_of, sequence
+
+AGAIN = 0.2
+"""The command is repeated this often [s]: one that is lost costs nothing."""
+PATIENCE = 3.0
+"""Time for the fingers to get there [s]: twice what they need from end to end."""
+REST, STILL = 0.4, 2e-4
+"""Fingers whose width changed by less than STILL [m] for REST [s] stand; both as manipulation waits for a grasp."""
+SOMETHING = "object"
+"""The name of what a person puts between the closing fingers."""
+
+
+class Gripper(Leaf):
+    """Opens or closes the hand; SUCCESS when joint_states that came after the command show it, STUCK when none does."""
+
+    def __init__(self, name: str, ctx: Context, closed: bool) -> None:
+        super().__init__(name, ctx)
+        self._closed = closed
+        self._told_at = self._still_since = 0.0
+        self._width = -1.0
+        self._full = False
+
+    def initialise(self) -> None:
+        super().initialise()
+        self._told_at, self._still_since, self._width = -AGAIN, self.since, -1.0
+        self._full = in_hand(self.ctx)
+
+    def update(self) -> Status:
+        ctx = self.ctx
+        ctx.enter("GRABBING" if self._closed else "RELEASING", self.name)
+        if self.elapsed - self._told_at >= AGAIN:
+            self._told_at = self.elapsed
+            ctx.io.publish(topics.GRIPPER_COMMAND, m.GripperCommand(position=float(self._closed)))
+        grip = gripper(ctx.io.latest(topics.JOINT_STATES))
+        if grip is not None and ctx.io.age(topics.JOINT_STATES, ctx.now) < self.elapsed and self._there(*grip):
+            return self._done(*grip)
+        if self.elapsed < PATIENCE:
+            return Status.RUNNING
+        where = "joint_states tell of no gripper" if grip is None else f"the fingers are {grip[0] * 1000:.0f} mm apart"
+        verb = "close" if self._closed else "open"
+        ctx.fail(Failure(ctx.state, "STUCK", f"{where} after {PATIENCE:.0f} s", f"I could not {verb} my hand."))
+        return Status.FAILURE
+
+    def _there(self, width: float, force: float) -> bool:
+        if abs(width - self._width) > STILL:
+            self._width, self._still_since = width, self.ctx.now
+        if not self._closed:
+            return width >= GRIPPER_OPEN
+        stands = self.ctx.now - self._still_since >= REST
+        return width <= GRIPPER_EMPTY or (stands and width < GRIPPER_OPEN and force > HOLDING_FORCE)
+
+    def _done(self, width: float, force: float) -> Status:
+        ctx = self.ctx
+        if self._closed and width > GRIPPER_EMPTY:
+            ctx.hand.grabbed(SOMETHING)
+        else:
+            ctx.mission.released = ctx.mission.released or self._full
+            ctx.hand.released(ctx.now)
+        ctx.note("gripper: " + ("closed" if self._closed else "open"), f"{width * 1000:.1f} mm, {force:.0f} N", "did")
+        return Status.SUCCESS
+
+
+class HearYes(Hear):
+    """SUCCESS on a yes; whatever else is heard leaves the failure that the question was about."""
+
+    def spoken(self) -> str:
+        return ""
+
+    def done(self, answer: Answer) -> Status:
+        heard = answer.message
+        assert isinstance(heard, m.SpeechResult)
+        kind, _ = reply(heard.text)
+        self.ctx.note(f"reply: {kind}", heard.text, "heard")
+        return Status.SUCCESS if kind == "yes" else Status.FAILURE
+
+    def give_up(self, failure: Failure) -> Status:
+        before = self.ctx.mission.failure
+        status = super().give_up(failure)
+        self.ctx.mission.failure = before
+        return status
+
+
+def open_hand(ctx: Context) -> Behaviour:
+    """An empty hand opens; one that holds something sets it down first, as a release does."""
+    full = When("something is in it", let_go(ctx), lambda: in_hand(ctx), Status.FAILURE)
+    empty = When("it is empty", Gripper("open the hand", ctx, closed=False), lambda: not in_hand(ctx), Status.FAILURE)
+    return first_of("open", full, empty)
+
+
+def let_go(ctx: Context) -> Behaviour:
+    """Set down what is held; when nobody moves the arm any more, open the hand on a person's yes."""
+    ask = sequence(
+        "without the arm",
+        Question("shall I", ctx, lambda: offer(ctx)),
+        HearYes("hear yes", ctx),
+        Gripper("let go", ctx, closed=False),
+    )
+    return first_of(
+        "let go of it",
+        Release("put down", ctx),
+        When("the arm is gone", ask, lambda: arm_gone(ctx), Status.FAILURE),
+    )
+
+
+def offer(ctx: Context) -> str:
+    """The question before something is dropped."""
+    return f"My arm does not answer. Shall I open my hand and let the {ctx.hand.holding or SOMETHING} drop?"
+
+
+def in_hand(ctx: Context) -> bool:
+    """Something is believed or felt to be in the hand."""
+    return bool(ctx.hand.holding) or fingers_hold(ctx.io.latest(topics.JOINT_STATES)) is True
+
+
+def arm_gone(ctx: Context) -> bool:
+    failure = ctx.mission.failure
+    return failure is not None and failure.code == "NO_PEER" and in_hand(ctx)
