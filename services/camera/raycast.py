@@ -6,11 +6,13 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from services.camera.render import SKY
+
 NEAR = 0.02
 FAR = 30.0
 CHUNK = 16384
 _TAKES_NORMAL = "normal" in (mujoco.mj_multiRay.__doc__ or "")
-_SKY = np.array([200, 215, 232], np.float64)
+_SKY = np.array(SKY, np.float64)
 _LIGHT = np.array([0.3, -0.4, 0.87])
 
 

@@ -13,6 +13,8 @@ from numpy.typing import NDArray
 BACKENDS = ("egl", "osmesa", "raycast")
 PROBE_SECONDS = 20.0
 FAR = 25.0
+# What a camera sees where nothing is, a blue between those of the scenes' sky
+SKY = (200, 215, 232)
 # A group of geoms that is never drawn
 HIDDEN = 5
 _PROBE = (
@@ -114,9 +116,10 @@ class Renderer:
         fixed.type, fixed.fixedcamid = self._mujoco.mjtCamera.mjCAMERA_FIXED, number
         groups = self.model.geom_group.copy()
         self.model.geom_group[~self._in_sight(number, width / height)] = HIDDEN
-        rgb, depth = self._offscreen(width, height).render(self.data, fixed, self._option)
+        rgb, depth = self._offscreen(width, height).render(self.data, fixed, self._option, sky=False)
         self.model.geom_group[:] = groups
-        depth[depth >= FAR] = 0.0
+        empty = depth >= FAR
+        rgb[empty], depth[empty] = SKY, 0.0
         return rgb, depth.astype(np.float64)
 
     def _in_sight(self, camera: int, aspect: float) -> NDArray[np.bool_]:
