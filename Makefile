@@ -9,7 +9,7 @@ unexport PYTHONDONTWRITEBYTECODE
 PIP := $(BIN)/python -m pip --disable-pip-version-check
 ARGS ?=
 
-.PHONY: help setup demo test test-slow test-all check test-compose bench lock wheels clean
+.PHONY: help setup demo test test-slow test-all mutants check test-compose bench lock wheels clean
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 16
@@ -57,6 +57,9 @@ check: setup ## lint, format, types, imports
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
+mutants: setup ## what the tests of the pure modules do not notice; ARGS='validate access' for some
+	$(BIN)/python -m tests.mutants $(ARGS)
+
 test-compose: setup ## the compose file under a Docker engine of its own (root, Debian)
 	$(BIN)/python -m tests.compose.run $(ARGS)
 
@@ -66,7 +69,7 @@ bench: setup ## every benchmark, each prints a table
 lock: ## requirements.lock anew from pyproject.toml
 	rm -rf build/lock && $(PYTHON) -m venv build/lock
 	build/lock/bin/python -m pip install --quiet --upgrade pip setuptools wheel
-	build/lock/bin/python -m pip install --quiet --no-build-isolation -e '.[llm,video,test,check]'
+	build/lock/bin/python -m pip install --quiet --no-build-isolation -e '.[llm,video,test,mutants,check]'
 	{ echo "# made by \`make lock\`"; build/lock/bin/python -m pip freeze --exclude-editable; \
 	  build/lock/bin/python -m pip freeze --all | grep -E '^(setuptools|wheel)=='; } > requirements.lock.new
 	mv requirements.lock.new requirements.lock

@@ -111,3 +111,126 @@ def test_only_the_page_may_ask_for_the_missions_and_it_answers_for_nobody() -> N
     granted = access.grants(Subject(name="dashboard"))
     assert not set(granted.asks) & {*access.CHANGING, topics.SIM_TRUTH}
     assert topics.BRAIN_MISSIONS not in granted.answers
+
+
+# --- written out in full: what the router is told of one certificate of each sort
+def below(prefix: str, keys: str, deep: str = "") -> list[str]:
+    """Keys of a namespace, then those of advanced publishers below them."""
+    return [prefix + key for key in keys.split()] + [f"{prefix}{key}/@adv/**" for key in deep.split()]
+
+
+def row(name: str, messages: str, flows: str, keys: list[str], permission: str = "allow") -> dict[str, Any]:
+    return {
+        "id": name, "permission": permission, "messages": messages.split(), "flows": flows.split(), "key_exprs": keys,
+    }  # fmt: skip
+
+
+EVERY_MESSAGE = (
+    "put delete declare_subscriber query declare_queryable reply "
+    "liveliness_token liveliness_query declare_liveliness_subscriber"
+)
+LISTENING = "declare_subscriber declare_liveliness_subscriber liveliness_query"
+COMING = "put delete reply liveliness_token"
+CLOCKS = "sim/clock sim/clock/50hz sim/clock/20hz sim/clock/10hz"
+
+
+def test_the_rules_of_a_router() -> None:
+    made = access.acl([Subject(name="router", role="router")])
+    everything = ["**", "**/@adv/**", "@/**"]
+    assert made == {
+        "enabled": True,
+        "default_permission": "deny",
+        "rules": [row("router: everything", EVERY_MESSAGE, "ingress egress", everything)],
+        "subjects": [{"id": "router", "cert_common_names": ["router"]}],
+        "policies": [{"rules": ["router: everything"], "subjects": ["router"]}],
+    }
+
+
+def test_the_rules_of_a_service() -> None:
+    made = access.acl([Subject(name="planner", namespace="k")])
+    puts = "action_plan sim/ack service/planner/health log/planner"
+    asks = f"plan_request world/objects navigation/pose {CLOCKS} service/*/health"
+    reads = f"{asks} service/*/alive"
+    answers, name = "action_plan service/planner/health", "k/planner"
+    caches = below("k/", "", puts)
+    assert made["rules"] == [
+        row(f"{name}: publishes", "put delete", "ingress", below("k/", puts, puts)),
+        row(f"{name}: is matched", "declare_subscriber", "egress", ["k/**", "k/**/@adv/**"]),
+        row(f"{name}: answers", "declare_queryable", "ingress", below("k/", answers) + caches),
+        row(f"{name}: replies", "reply", "ingress", below("k/", f"{answers} sim/ack log/planner") + caches),
+        row(f"{name}: is asked", "query", "egress", ["k/**", "k/**/@adv/**"]),
+        row(f"{name}: is alive", "liveliness_token", "ingress", ["k/service/planner/alive", *caches]),
+        row(f"{name}: subscribes", LISTENING, "ingress", below("k/", reads, reads)),
+        row(f"{name}: receives", COMING, "egress", below("k/", reads, reads)),
+        row(f"{name}: asks", "query", "ingress", below("k/", asks, reads)),
+        row(f"{name}: finds", "declare_queryable", "egress", below("k/", asks, reads)),
+    ]
+    assert made["subjects"] == [{"id": name, "cert_common_names": [name]}]
+    assert made["policies"] == [{"rules": [r["id"] for r in made["rules"]], "subjects": [name]}]
+
+
+def test_the_rules_of_an_operator() -> None:
+    made = access.acl([Subject(name="op", role="operator", namespace="k")])
+    puts = " ".join(topic.key for topic in topics.TABLE if "*" in topic.writers)
+    assert {"voice_command", "robot/stop", "sim/ack"} <= set(puts.split())
+    everything, name, caches = ["k/**", "k/**/@adv/**"], "k/op", below("k/", "", puts)
+    assert made["rules"] == [
+        row(f"{name}: publishes", "put delete", "ingress", below("k/", puts, puts)),
+        row(f"{name}: is matched", "declare_subscriber", "egress", everything),
+        row(f"{name}: answers", "declare_queryable", "ingress", caches),
+        row(f"{name}: replies", "reply", "ingress", below("k/", puts, puts)),
+        row(f"{name}: is alive", "liveliness_token", "ingress", ["k/service/ear/alive", *caches]),
+        row(f"{name}: subscribes", LISTENING, "ingress", everything),
+        row(f"{name}: receives", COMING, "egress", everything),
+        row(f"{name}: asks", "query", "ingress", everything),
+        row(f"{name}: finds", "declare_queryable", "egress", everything),
+    ]
+
+
+def test_the_rules_of_an_observer_beside_another_robot() -> None:
+    others = [Subject(name="speech", namespace=n) for n in ("k", "m")]
+    made = access.acl([Subject(name="me", role="observer"), *others, Subject(name="router", role="router")])
+    asks = ["brain/missions", "sim/truth", *(topic.key for topic in topics.TABLE), "service/*/health"]
+    everything, name = ["**", "**/@adv/**"], "me"
+    denied = ["k/**", "m/**", "k/**/@adv/**", "m/**/@adv/**"]
+    assert rules(made, "me") == [
+        row(f"{name}: is matched", "declare_subscriber", "egress", everything),
+        row(f"{name}: subscribes", LISTENING, "ingress", everything),
+        row(f"{name}: receives", COMING, "egress", [*everything, *asks]),
+        row(f"{name}: asks", "query", "ingress", [*asks, "**/@adv/**"]),
+        row(f"{name}: finds", "declare_queryable", "egress", [*asks, "**/@adv/**"]),
+        row(f"{name}: other robots", EVERY_MESSAGE, "ingress egress", denied, "deny"),
+    ]
+
+
+def test_a_router_in_a_namespace_is_no_robot_to_be_denied() -> None:
+    made = access.acl([Subject(name="me", role="observer"), Subject(name="router", role="router", namespace="k")])
+    assert not [r for r in made["rules"] if r["permission"] == "deny"]
+
+
+def test_a_service_is_denied_nothing_of_robots_that_it_was_never_granted() -> None:
+    made = access.acl([Subject(name="speech"), Subject(name="speech", namespace="k")])
+    assert not [r for r in made["rules"] if r["permission"] == "deny"]
+
+
+def test_a_robot_below_another_in_name_is_its_own() -> None:
+    made = access.acl([Subject(name="op", role="operator", namespace="k/arm"), Subject(name="speech", namespace="k")])
+    assert not [r for r in rules(made, "k/arm/op") if r["permission"] == "deny"]
+
+
+def test_the_simulation_takes_acknowledgements_and_says_the_time() -> None:
+    sim, brain = (access.grants(Subject(name=name)) for name in ("sim", "brain"))
+    clocks = {topic.key for topic in topics.CLOCKS}
+    assert "sim/ack" in sim.reads and "sim/ack" not in sim.puts and not clocks & set(sim.reads)
+    assert {"sim/reset", "sim/pause", "sim/snapshot", "sim/truth"} <= set(sim.answers)
+    assert "sim/ack" in brain.puts and "sim/ack" not in brain.reads and clocks <= set(brain.reads)
+    assert "brain/missions" in brain.answers and "sim/truth" not in brain.answers
+
+
+def test_a_name_that_the_table_does_not_know_gets_its_health_and_the_time_only() -> None:
+    granted = access.grants(Subject(name="odometer"))
+    assert granted.puts == ("sim/ack", "service/odometer/health", "log/odometer")
+    assert granted.reads == (*CLOCKS.split(), "service/*/health", "service/*/alive")
+    assert granted.answers == ("service/odometer/health",)
+    assert granted.asks == (*CLOCKS.split(), "service/*/health")
+    assert granted.tokens == ("service/odometer/alive",)

@@ -83,3 +83,70 @@ def _sample(kind: object, samples: dict[type, object]) -> object:
 def test_the_wrong_type_for_a_topic_is_a_programming_error() -> None:
     with pytest.raises(TypeError, match="brain/state"):
         codec.encode(topics.BRAIN_STATE, m.GoalReached(reached=True))
+
+
+def refusal(topic: topics.Topic[m.Message], payload: bytes) -> str:
+    with pytest.raises(codec.DecodeError) as refused:
+        codec.decode(topic, payload)
+    assert refused.value.__cause__ is None, "the reason is enough"
+    return str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("payload", "reason"),
+    [
+        (b"", "empty payload"),
+        (b"a\x00b", "not printable text"),
+        (b"   ", "not printable text"),
+        (b'""', "not printable text"),
+        (b'" \\t"', "not printable text"),
+        (b"x" * (codec.MAX_TEXT_BYTES + 1), "payload of 65537 bytes is over the limit of 65536"),
+    ],
+)
+def test_the_reason_says_what_is_wrong_with_a_text(payload: bytes, reason: str) -> None:
+    assert refusal(topics.NAVIGATION_GOAL, payload) == reason
+
+
+@pytest.mark.parametrize("payload", [b'"hello"', b"[1]", b' \t\r\n"hello"'])
+def test_a_structure_is_an_object(payload: bytes) -> None:
+    assert refusal(topics.GOAL_REACHED, payload) == "not a JSON object"
+
+
+def test_what_is_no_number_is_named_in_either_form() -> None:
+    infinite = msgspec.msgpack.encode({"t": float("inf"), "x": 0.0, "y": 0.0, "theta": 0.0})
+    for payload in (infinite, b'{"t": 1e99, "x": 0.0, "y": 0.0, "theta": 0.0}'):
+        assert refusal(topics.ODOMETRY, payload) == "t is not a finite number of a sane size"
+
+
+def test_the_limit_is_for_texts_and_reached_by_the_longest_of_them() -> None:
+    longest = codec.decode(topics.NAVIGATION_GOAL, b"x" * codec.MAX_TEXT_BYTES)
+    assert len(longest.goal) == codec.MAX_TEXT_BYTES
+    sound = m.AudioChunk(t=0.0, data=bytes(2 * codec.MAX_TEXT_BYTES))
+    assert codec.decode(topics.AUDIO_PCM, codec.encode(topics.AUDIO_PCM, sound)) == sound
+
+
+def test_a_text_is_trimmed_inside_its_quotes_and_outside() -> None:
+    for payload in (b'" goto kitchen "', b'\n\t"goto kitchen"', b"\r goto kitchen \t"):
+        assert codec.decode(topics.NAVIGATION_GOAL, payload).goal == "goto kitchen"
+
+
+def test_an_object_may_have_any_white_space_before_it() -> None:
+    assert codec.decode(topics.GOAL_REACHED, b' \t\r\n{"reached": true}').reached is True
+
+
+def test_a_type_without_text_field_takes_no_bare_text_whatever_its_topic() -> None:
+    assert codec.decode_as(m.NavigationGoal, b"goto kitchen", "goal").goal == "goto kitchen"
+    with pytest.raises(codec.DecodeError):
+        codec.decode_as(m.NavigationGoal, b"goto kitchen")
+
+
+def test_the_encoding_is_told() -> None:
+    assert codec.encoding_of(topics.BRAIN_STATE) == "application/json"
+    assert codec.encoding_of(topics.HEAD_RGBD) == "application/msgpack"
+    assert codec.encode(topics.GOAL_REACHED, m.GoalReached(reached=True))[:1] == b"{"
+    assert codec.encode(topics.AUDIO_PCM, m.AudioChunk(t=0.0, data=b""))[:1] != b"{"
+
+
+def test_the_wrong_type_is_told_with_both_names() -> None:
+    with pytest.raises(TypeError, match=r"^brain/state carries BrainState, not GoalReached$"):
+        codec.encode(topics.BRAIN_STATE, m.GoalReached(reached=True))

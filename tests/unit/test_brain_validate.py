@@ -1,0 +1,125 @@
+"""Plans against the known world: what is possible passes, what is not is refused in words that can be spoken."""
+
+import msgspec
+import pytest
+
+from common.messages import KnownWorld, PlanStep
+from common.scene import ObjectSpec, Place, Receptacle, Room, Scene
+from services.brain.validate import GRIPPER_WIDTH, MAX_STEPS, is_destination, known_world, objection
+
+COLOUR = (1.0, 0.0, 0.0, 1.0)
+
+
+def spec(name: str, kind: str, width: float, *aliases: str) -> ObjectSpec:
+    size = (width, width, 0.3)
+    return msgspec.convert(
+        {"name": name, "kind": kind, "colour": "red", "size": size, "mass": 0.2, "rgba": COLOUR, "aliases": aliases},
+        ObjectSpec,
+    )
+
+
+SCENE = Scene(
+    name="small", low=(-1, -1), high=(1, 1), home=Place(name="home", x=0, y=0, aliases=("dock",)),
+    places=(Place(name="sofa", x=1, y=0, aliases=("couch",)), Place(name="hall", x=0, y=1)),
+    rooms=(
+        Room(name="hall", low=(0, 0), high=(1, 1)), Room(name="study", low=(-1, 0), high=(0, 1), aliases=("office",)),
+    ),
+    receptacles=(
+        Receptacle(name="desk", kind="table", center=(0, 0, 1), size=(1, 1), aliases=("bureau",)),
+        Receptacle(name="bin", kind="bin", center=(0, 0, 0), size=(1, 1), depth=0.4),
+    ),
+    objects=(
+        spec("red mug", "mug", GRIPPER_WIDTH, "red cup"), spec("crate", "box", GRIPPER_WIDTH + 0.001),
+        spec("red bowl", "bowl", 0.2),
+    ),
+)  # fmt: skip
+
+
+def find(thing: str) -> PlanStep:
+    return PlanStep(action="find", object=thing)
+
+
+def grasp(thing: str) -> PlanStep:
+    return PlanStep(action="grasp", object=thing)
+
+
+def place(target: str) -> PlanStep:
+    return PlanStep(action="place", target=target)
+
+
+def go(target: str = "", thing: str = "") -> PlanStep:
+    return PlanStep(action="navigate", target=target, object=thing)
+
+
+def say(text: str) -> PlanStep:
+    return PlanStep(action="say", text=text)
+
+
+RELEASE, RETURN, WAIT = PlanStep(action="release"), PlanStep(action="return"), PlanStep(action="wait")
+MUG = (find("red mug"), grasp("red mug"))
+
+
+@pytest.mark.parametrize(
+    ("steps", "held", "seen", "reason"),
+    [
+        ((*MUG, RETURN, RELEASE), "", (), ""),
+        ((find("red cup"), grasp("red mug"), place("bureau")), "", (), ""),
+        ((find("red mug"), grasp("red cup"), place("bin")), "", (), ""),
+        ((find("red bowl"), grasp("red bowl")), "", (), ""),
+        ((find("mug"), grasp("mug")), "", (), ""),
+        ((find("thimble"), grasp("thimble")), "", ("thimble",), ""),
+        ((*MUG, RELEASE, *MUG, place("desk"), *MUG), "", (), ""),
+        ((RELEASE,), "apple", (), ""),
+        ((place("desk"),), "apple", (), ""),
+        ((go("dock"), go("couch"), go("office"), go("bureau"), go("red mug"), go(thing="mug")), "", (), ""),
+        ((say("hello"), WAIT), "", (), ""),
+        ((WAIT,) * MAX_STEPS, "", (), ""),
+        ((), "", (), "the plan has no steps"),
+        ((WAIT,) * (MAX_STEPS + 1), "", (), "the plan has 61 steps"),
+        ((grasp("red mug"),), "", (), "step 1: the red mug must be found before it can be grasped"),
+        ((find("mug"), grasp("red mug")), "", (), "step 2: the red mug must be found before it can be grasped"),
+        ((find("red mug"), WAIT, grasp("crate")), "", (), "step 3: the crate must be found before it can be grasped"),
+        ((find("crate"), grasp("crate")), "", (), "step 2: the crate does not fit into the gripper"),
+        (MUG, "apple", (), "step 2: the hand already holds the apple"),
+        ((*MUG, *MUG), "", (), "step 4: the hand already holds the red mug"),
+        ((find("unicorn"),), "", (), "step 1: I know no unicorn that I could pick up"),
+        ((grasp("unicorn"),), "", (), "step 1: I know no unicorn that I could pick up"),
+        ((find(""),), "", (), "step 1: no object is named"),
+        ((grasp(""),), "", (), "step 1: no object is named"),
+        ((place("desk"),), "", (), "step 1: there is nothing in the hand to place"),
+        ((place("moon"),), "apple", (), "step 1: there is no moon to put things on"),
+        ((place(""),), "apple", (), "step 1: there is no place to put things on"),
+        ((place("desk"), place("desk")), "apple", (), "step 2: there is nothing in the hand to place"),
+        ((place("desk"), RELEASE), "apple", (), "step 2: there is nothing in the hand to release"),
+        ((RELEASE, RELEASE), "apple", (), "step 2: there is nothing in the hand to release"),
+        ((RELEASE,), "", (), "step 1: there is nothing in the hand to release"),
+        ((go("ballroom"),), "", (), "step 1: I know no ballroom"),
+        ((go("ballroom", "red mug"),), "", (), "step 1: I know no ballroom"),
+        ((go(),), "", (), "step 1: I know no "),
+        ((say(" "),), "", (), "step 1: there is nothing to say"),
+    ],
+)
+def test_the_first_step_that_cannot_be_done_is_named_with_the_reason(
+    steps: tuple[PlanStep, ...], held: str, seen: tuple[str, ...], reason: str
+) -> None:
+    assert objection(steps, known_world(SCENE, seen, held), SCENE) == reason
+
+
+def test_the_known_world_lists_each_name_once_in_the_order_of_the_scene() -> None:
+    assert known_world(SCENE, ["red mug", "crate", "red mug"], "apple") == KnownWorld(
+        objects=["red mug", "crate"],
+        places=["home", "sofa", "hall", "study"],
+        receptacles=["desk", "bin"],
+        held="apple",
+    )
+
+
+@pytest.mark.parametrize("name", ["home", "dock", "sofa", "couch", "hall", "study", "office", "desk", "bureau", "bin"])
+def test_places_rooms_and_receptacles_are_destinations(name: str) -> None:
+    assert is_destination(name, SCENE) is True
+    assert is_destination(f"no {name}", SCENE) is False
+
+
+def test_a_room_alone_or_its_other_name_is_a_destination() -> None:
+    rooms = msgspec.structs.replace(SCENE, places=(), receptacles=())
+    assert is_destination("study", rooms) and is_destination("office", rooms)
