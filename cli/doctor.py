@@ -19,13 +19,17 @@ from cli.authority import Authority
 from cli.errors import CliError
 from cli.programs import ROOT
 from cli.supervision import Supervision, port_is_free, run_dir
-from common import keys
+from common import config, keys
 from common.clock import unix_time
 
 EXPIRES_SOON = 30  # days
 PAGE_PORT = 8080
 ROOM = 500  # MB
 ROBOT = "stanford_tidybot"
+OLLAMA = "http://127.0.0.1:11434/v1"
+"""Where Ollama listens if it is not told otherwise."""
+SHOWN = 5
+"""Names of models in one line."""
 
 
 class Finding(msgspec.Struct):
@@ -196,8 +200,42 @@ def robots() -> Iterator[Finding]:
         yield Finding("note", "official model", f"none (only for --robot menagerie:{ROBOT})", fix)
 
 
+def language_model() -> Iterator[Finding]:
+    """Who plans with `planner.backend = "auto"`: the endpoint of the configuration, by the planner's own look."""
+    parameters = importlib.import_module("services.planner.config").PlannerConfig
+    endpoint = importlib.import_module("services.planner.endpoint")
+    what = "language model"
+    try:
+        planner = config.load("planner", parameters, config.config_dir(), config.overrides(os.environ, ()))
+    except config.ConfigError as error:
+        yield Finding("error", what, str(error), "correct planner.toml or the TIDYBOT__PLANNER__ variables")
+        return
+    if planner.backend == "grammar":
+        yield Finding("ok", what, "none wanted: planner.backend = grammar")
+        return
+    if not endpoint.installed():
+        fix = ".venv/bin/pip install 'tidybot-zenoh[llm]'"
+        level = "error" if planner.backend == "llm" else "note"
+        yield Finding(level, what, "the openai package is missing: the grammar plans", fix)
+    found = endpoint.look(planner.llm_url, planner.llm_key)
+    if not found.good:
+        other = endpoint.look(OLLAMA) if planner.llm_url != OLLAMA else found
+        fix = "start one there (docs/COMMANDS.md), or go on without"
+        if other.good:
+            fix = f"export TIDYBOT__PLANNER__LLM_URL={OLLAMA}   (Ollama answers there)"
+        yield Finding("note", what, f"{planner.llm_url}: {found.why}; the grammar plans", fix)
+        return
+    model = endpoint.model_of(planner.llm_model, found)
+    listed = ", ".join(found.models[:SHOWN]) + (", ..." if len(found.models) > SHOWN else "")
+    known = model in found.models or not found.models
+    fix = "" if known else f"export TIDYBOT__PLANNER__LLM_MODEL={found.models[0]}"
+    state = f"{planner.llm_url} answers; {model} plans" + (f" (of {listed})" if listed else "")
+    yield Finding("ok" if known else "note", what, state, fix)
+
+
 def doctor(args: argparse.Namespace) -> int:
-    findings = [f for look in (python, packages, graphics, audio, port, certificates, machine, robots) for f in look()]
+    looks = (python, packages, graphics, audio, port, certificates, machine, robots, language_model)
+    findings = [f for look in looks for f in look()]
     if args.json:
         print(msgspec.json.encode(findings).decode())
     else:

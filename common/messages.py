@@ -20,6 +20,7 @@ BrainStateName = Literal[
 ]  # fmt: skip
 SystemStateName = Literal["IDLE", "LISTENING", "PLANNING", "GROUNDING", "NAVIGATING", "EXECUTING", "SUCCESS", "ERROR"]
 SpeechStateName = Literal["idle", "listening", "transcribing", "speaking"]
+PlannerBackend = Literal["grammar", "llm"]
 StepAction = Literal["navigate", "find", "grasp", "place", "release", "say", "wait", "return"]
 GRIPPER = "gripper"
 """The target of a step that only opens or closes the hand."""
@@ -269,6 +270,15 @@ class ActionPlan(Message):
     source: str = ""
     detail: str = ""
     again: bool = False
+
+
+class PlannerStatus(Message):
+    """Who plans now: the `model` at `url`, or the grammar; `detail` says why there is no model."""
+
+    backend: PlannerBackend
+    model: str = ""
+    url: str = ""
+    detail: str = ""
 
 
 class ObjectQuery(Message):

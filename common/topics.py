@@ -69,6 +69,7 @@ AUDIO_OUT = Topic(key="audio/out", type=m.AudioChunk, writers=("speech",), binar
 VOICE_COMMAND = _goal("voice_command", m.VoiceCommand, "speech", "*", text="text", latched=False)
 PLAN_REQUEST = _goal("plan_request", m.PlanRequest, "brain")
 ACTION_PLAN = _event("action_plan", m.ActionPlan, "planner")
+PLANNER_STATUS = _event("planner/status", m.PlannerStatus, "planner")
 OBJECT_QUERY = _goal("object_query", m.ObjectQuery, "brain")
 OBJECT_POSE = _event("object_pose", m.ObjectPose, "perception")
 NAV_GOAL = _goal("nav_goal", m.NavGoal, "brain", "*")

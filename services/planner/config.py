@@ -14,12 +14,14 @@ class Rule(Config, frozen=True):
 
 
 class PlannerConfig(Config, frozen=True):
-    """`llm_tries` answers are asked for within `llm_timeout`; in lockstep they show after `llm_seconds`.
+    """`backend`: "auto" takes the language model while one answers at `llm_url`, else the grammar.
+
+    `llm_tries` answers are asked for within `llm_timeout`; in lockstep they show after `llm_seconds`.
 
     `tidy` and `throw` are tried in order; `groups` are words for several kinds, `mass` those of them
     that mean all there is. Times in seconds."""
 
-    backend: Literal["grammar", "llm"] = "grammar"
+    backend: Literal["auto", "grammar", "llm"] = "auto"
     tidy: tuple[Rule, ...] = ()
     throw: tuple[Rule, ...] = ()
     groups: dict[str, tuple[str, ...]] = {}

@@ -2,7 +2,6 @@
 
 import asyncio
 import importlib
-import importlib.util
 import re
 from collections.abc import Callable
 from typing import Any
@@ -19,6 +18,8 @@ from services.planner.vocabulary import Vocabulary
 from services.planner.world import World
 
 POLL = 0.05
+CONNECT = 1.0
+"""Limit for the connection [s of wall time], as for a look at the endpoint."""
 _FENCE = re.compile(r"^\s*```(?:json)?\s*(.*?)\s*```\s*$", re.DOTALL)
 
 
@@ -33,8 +34,13 @@ class LlmError(Exception):
     """No usable plan from the model: why, in a few words."""
 
 
-def installed() -> bool:
-    return importlib.util.find_spec("openai") is not None
+class NoAnswer(LlmError):
+    """Nobody was there, or not in time; other errors are about what was answered."""
+
+
+def prepare() -> None:
+    """Import the client before the first request needs it: that takes a second or more."""
+    importlib.import_module("openai")
 
 
 class Call:
@@ -56,7 +62,8 @@ class Llm:
         A plan that cannot be carried out goes back with the reason, as often as `llm_tries` and `llm_timeout` allow.
 
         Raises:
-            LlmError: no answer in time, no connection, no JSON of the right form, or nothing possible.
+            NoAnswer: no answer in time, no connection, an error of the server.
+            LlmError: no JSON of the right form, or nothing possible.
         """
         config, vocabulary = self._config, Vocabulary(world, self._config)
         talk, form = messages(command, world, config, rejected), schema(world)
@@ -66,7 +73,7 @@ class Llm:
             try:
                 said = asyncio.run(self._complete(talk, form, end, call))
             except TimeoutError:
-                raise LlmError(f"timed out after {wrong}" if wrong else "timed out") from None
+                raise NoAnswer(f"timed out after {wrong}" if wrong else "timed out") from None
             try:
                 reply = msgspec.json.decode(_FENCE.sub(r"\1", said), type=Reply)
                 reply.steps = checked(reply.steps, world, vocabulary, config.max_steps)
@@ -81,10 +88,6 @@ class Llm:
                 wrong = f"the rejected plan again: {again.reason}"
             talk = [*talk, {"role": "assistant", "content": said}, {"role": "user", "content": f"No: {wrong}"}]
         raise LlmError(wrong)
-
-    def open(self) -> None:
-        """Import the client before the first request needs it: that takes a second or more."""
-        importlib.import_module("openai")
 
     async def _complete(self, talk: list[dict[str, str]], form: dict[str, Any], end: float, call: Call) -> str:
         """The words of the answer; TimeoutError at `end`, whatever has arrived by then."""
@@ -101,11 +104,13 @@ class Llm:
         import openai
 
         config = self._config
+        # Who is not there is not waited for: a connection takes milliseconds, an answer may take long.
+        patience = openai.Timeout(config.llm_timeout, connect=min(CONNECT, config.llm_timeout))
         wanted: Any = {"type": "json_schema", "json_schema": {"name": "plan", "schema": form, "strict": True}}
         asked: Any = talk
         try:
             async with openai.AsyncOpenAI(
-                base_url=config.llm_url, api_key=config.llm_key or "none", max_retries=0, timeout=config.llm_timeout
+                base_url=config.llm_url, api_key=config.llm_key or "none", max_retries=0, timeout=patience
             ) as client:
                 answer = await client.chat.completions.create(
                     model=config.llm_model, messages=asked, response_format=wanted, extra_body=config.llm_options
@@ -114,8 +119,8 @@ class Llm:
         except openai.APITimeoutError:
             raise TimeoutError from None
         except openai.APIStatusError as error:
-            raise LlmError(f"status {error.status_code}") from None
+            raise NoAnswer(f"status {error.status_code}") from None
         except openai.APIConnectionError:
-            raise LlmError("no connection") from None
+            raise NoAnswer("no connection") from None
         except (openai.OpenAIError, ValueError, TypeError, AttributeError, IndexError) as error:
             raise LlmError(f"no chat completion: {type(error).__name__}") from None

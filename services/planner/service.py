@@ -8,10 +8,10 @@ import msgspec
 from common import messages as m
 from common import topics
 from common.io import Io, Job
-from common.runtime import StartError
 from services.planner import grammar
+from services.planner.backend import Backend
 from services.planner.config import PlannerConfig
-from services.planner.llm import Call, Llm, LlmError, Reply, installed
+from services.planner.llm import Call, LlmError, NoAnswer, Reply
 from services.planner.world import World, believed
 
 T = TypeVar("T")
@@ -37,16 +37,11 @@ class PlannerService:
     HZ = 10
     CONFIG = PlannerConfig
     READS = (topics.PLAN_REQUEST, topics.WORLD_OBJECTS, topics.POSE)
-    WRITES = (topics.ACTION_PLAN,)
+    WRITES = (topics.ACTION_PLAN, topics.PLANNER_STATUS)
 
     def __init__(self, config: PlannerConfig, io: Io) -> None:
-        if config.backend == "llm" and not installed():
-            raise StartError("planner.backend = llm needs the openai package: pip install 'tidybot-zenoh[llm]'")
         self._config, self._io = config, io
-        self._llm: Llm | None = None
-        if config.backend == "llm":
-            self._llm = Llm(config)
-            io.submit(self._llm.open)
+        self._backend = Backend(config, io)
         self._pending: Pending | None = None
         self._answers: OrderedDict[str, m.ActionPlan] = OrderedDict()
         self._rejected: OrderedDict[str, list[m.RejectedPlan]] = OrderedDict()
@@ -58,6 +53,7 @@ class PlannerService:
             elif self._pending is None or self._pending.request.id != request.id:
                 self._take(request, now)
         self._poll(now)
+        self._backend.step(now, self._pending is None)
 
     # --- the language model
     def _take(self, request: m.PlanRequest, now: float) -> None:
@@ -65,11 +61,12 @@ class PlannerService:
         rejected, world = self._rejections(request), self._world(request, now)
         self.close()
         plan = self._by_grammar(request, world, rejected)
-        if self._llm is None or plan.again:
+        llm = self._backend.llm
+        if llm is None or plan.again:
             self._publish(request, plan)
             return
         call, seconds = Call(), self._config.llm_seconds
-        job = self._io.submit(self._llm.plan, request.command, world, rejected, call, seconds=seconds)
+        job = self._io.submit(llm.plan, request.command, world, rejected, call, seconds=seconds)
         self._pending = Pending(request, world, rejected, now + self._config.llm_timeout + GRACE, call, job)
 
     def _poll(self, now: float) -> None:
@@ -79,7 +76,7 @@ class PlannerService:
         ready = pending.job.poll(now)
         if ready or (now > pending.due and not self._io.lockstep):
             self.close()
-            self._publish(pending.request, self._outcome(pending, ready))
+            self._publish(pending.request, self._outcome(pending, ready, now))
 
     def close(self) -> None:
         """Let go of the question under way."""
@@ -87,13 +84,16 @@ class PlannerService:
             self._pending.call.cancelled = True
             self._pending = None
 
-    def _outcome(self, pending: Pending, ready: bool) -> m.ActionPlan:
+    def _outcome(self, pending: Pending, ready: bool, now: float) -> m.ActionPlan:
         """The model's plan; the grammar's where the model failed or knows none."""
         try:
             if not ready:
-                raise LlmError("timed out")
+                raise NoAnswer("timed out")
             reply = pending.job.result()
+            self._backend.answered()
         except LlmError as error:
+            if isinstance(error, NoAnswer):
+                self._backend.failed(str(error), now)
             return self._by_grammar(pending.request, pending.world, pending.rejected, f"llm: {error}")
         plan = m.ActionPlan(request_id=pending.request.id, steps=reply.steps, source="llm", detail=reply.detail)
         if plan.steps:

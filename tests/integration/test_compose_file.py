@@ -77,7 +77,7 @@ def test_the_language_model_is_a_profile_that_only_the_planner_reaches(compose: 
     assert model["profiles"] == ["llm"] and "ports" not in model
     port = model["command"][model["command"].index("--port") + 1]
     assert planner["TIDYBOT__PLANNER__LLM_URL"] == f"http://llm:{port}/v1"
-    assert planner["TIDYBOT__PLANNER__BACKEND"] == "grammar"
+    assert planner["TIDYBOT__PLANNER__BACKEND"] == "auto"
 
 
 def test_no_variable_is_left_unfilled(compose: dict[str, Any]) -> None:

@@ -10,12 +10,13 @@ import msgspec
 import openai  # noqa: F401  its import takes long and is not what is measured here
 import pytest
 
+from cli import doctor
 from common import messages as m
 from common import topics
 from common.runtime import StartError
 from common.scene import load_scene
-from services.planner import llm
 from services.planner.config import PlannerConfig
+from services.planner.endpoint import EVERY, REST, installed, look
 from services.planner.service import GRACE, PlannerService
 from tests.node import Node
 from tests.support import Site, eventually, free_port
@@ -55,16 +56,31 @@ def send(handler: BaseHTTPRequestHandler, body: Any, status: int = 200) -> None:
 
 
 class Endpoint:
-    """Answers the n-th request with the n-th of `answers`, the last one ever after; remembers the requests."""
+    """Answers the n-th request with the n-th of `answers`, the last one ever after; remembers the requests.
+
+    `models` is what it lists; None: it is not ready. `looks` counts who asked for the list.
+    """
 
     def __init__(self) -> None:
         self.answers: list[Answer] = []
         self.requests: list[dict[str, Any]] = []
+        self.models: list[str] | None = ["local"]
+        self.looks = 0
+        self.page: bytes | None = None
         self.over = threading.Event()
         self.nodes: list[Desk] = []
         endpoint = self
 
         class Handler(BaseHTTPRequestHandler):
+            def do_GET(self) -> None:
+                endpoint.looks += 1
+                if endpoint.page is not None:
+                    send(self, endpoint.page)
+                elif endpoint.models is None:
+                    send(self, {"error": "loading the model"}, 503)
+                else:
+                    send(self, {"object": "list", "data": [{"id": name} for name in endpoint.models]})
+
             def do_POST(self) -> None:
                 body = json.loads(self.rfile.read(int(self.headers["Content-Length"])))
                 endpoint.requests.append({"path": self.path, "key": self.headers["Authorization"], **body})
@@ -261,7 +277,7 @@ def test_a_dripping_answer_ends_at_the_deadline(endpoint: Endpoint) -> None:
 
 
 def test_a_blocked_worker_does_not_hold_up_the_answer(endpoint: Endpoint, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(llm.Llm, "open", lambda self: endpoint.over.wait(30))
+    monkeypatch.setattr("services.planner.backend.prepare", lambda: endpoint.over.wait(30))
     endpoint.answers = [plans(*MUG)]
     node = Desk(endpoint, llm_timeout=5.0)
     node.request()
@@ -329,14 +345,118 @@ def test_in_lockstep_the_answer_comes_at_its_tick(endpoint: Endpoint) -> None:
     assert node.sent(topics.ACTION_PLAN)[0].source == "llm"
 
 
-def test_the_real_process_asks_the_endpoint(endpoint: Endpoint, here: Site) -> None:
+def plans_by(node: Desk, backend: str) -> m.PlannerStatus:
+    """Let the worker look until the planner says that this one plans."""
+
+    def found() -> bool:
+        node.step(EVERY / 2)
+        return node.last(topics.PLANNER_STATUS).backend == backend
+
+    eventually(found, f"plans by {backend}", patience=120)
+    return node.last(topics.PLANNER_STATUS)
+
+
+def at_once(node: Desk, request_id: str) -> m.ActionPlan:
+    """The plan that the very step of its request has published."""
+    before = node.count(topics.ACTION_PLAN)
+    node.request(request_id=request_id)
+    node.step()
+    assert node.count(topics.ACTION_PLAN) == before + 1
+    return node.sent(topics.ACTION_PLAN)[-1]
+
+
+def test_by_itself_it_takes_the_model_while_there_is_one(endpoint: Endpoint) -> None:
+    endpoint.answers, endpoint.models = [plans(*MUG)], None
+    node = Desk(endpoint, backend="auto")
+    assert at_once(node, "m.1").source == "grammar"
+    eventually(lambda: endpoint.looks, "it looks for the endpoint")
+    assert at_once(node, "m.2").source == "grammar"
+    endpoint.models = ["llama3.2:3b", "qwen2.5:7b"]
+    there = plans_by(node, "llm")
+    assert (there.model, there.url, there.detail) == ("llama3.2:3b", endpoint.url, "one of 2")
+    node.request(request_id="m.3")
+    assert node.wait(3).source == "llm" and endpoint.requests[0]["model"] == "llama3.2:3b"
+    endpoint.models = None
+    assert plans_by(node, "grammar").detail == "status 503"
+    assert at_once(node, "m.4").source == "grammar"
+    endpoint.models = ["local"]
+    assert plans_by(node, "llm").model == "local"
+
+
+def test_by_itself_it_waits_for_nobody(endpoint: Endpoint) -> None:
+    node = Desk(endpoint, backend="auto", llm_url=f"http://127.0.0.1:{free_port()}/v1")
+    detail = lambda: node.last(topics.PLANNER_STATUS).detail  # noqa: E731
+    eventually(lambda: (node.step(), "nobody answers" in detail())[1], "it has looked")
+    assert at_once(node, "m.1").source == "grammar"
+
+
+def test_a_model_that_did_not_answer_is_left_alone_for_longer_and_longer(endpoint: Endpoint) -> None:
+    endpoint.answers = [endpoint.hangs, endpoint.hangs, plans(*MUG)]
+    node = Desk(endpoint, backend="auto", llm_timeout=0.5)
+    for number, rest in ((1, REST), (2, 2 * REST)):
+        plans_by(node, "llm")
+        asked, answered = len(endpoint.requests), node.count(topics.ACTION_PLAN)
+        node.request(request_id=f"m.{number}")
+        assert node.wait(answered + 1).source == "grammar (llm: timed out)"
+        looks, failed = endpoint.looks, node.now
+        while node.now < failed + rest - 2 * EVERY:
+            node.step(EVERY)
+            assert at_once(node, f"m.{number}.{node.now}").source == "grammar"
+        assert (endpoint.looks, len(endpoint.requests)) == (looks, asked + 1)
+    plans_by(node, "llm")
+    node.request(request_id="m.3")
+    assert node.wait(node.count(topics.ACTION_PLAN) + 1).source == "llm"
+
+
+def test_in_lockstep_and_without_the_client_it_does_not_look(
+    endpoint: Endpoint, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    steady = Desk(endpoint, backend="auto", lockstep=True)
+    monkeypatch.setattr("services.planner.backend.installed", lambda: False)
+    lacking = Desk(endpoint, backend="auto")
+    for node in (steady, lacking):
+        node.step(2 * EVERY)
+        assert at_once(node, "m.1").source == "grammar"
+    assert endpoint.looks == 0
+    assert "seed" in steady.last(topics.PLANNER_STATUS).detail
+    assert "pip install" in lacking.last(topics.PLANNER_STATUS).detail
+
+
+@pytest.mark.parametrize("answer", [b"<html>hello</html>", b'{"models": []}', b""])
+def test_what_else_may_listen_there_is_no_endpoint(endpoint: Endpoint, answer: bytes) -> None:
+    endpoint.page = answer
+    assert "no chat endpoint" in look(endpoint.url).why
+    assert "no http address" in look("file:///etc/passwd").why
+
+
+def test_doctor_says_what_it_found(endpoint: Endpoint, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("TIDYBOT__PLANNER__LLM_URL", endpoint.url)
+    endpoint.models = ["llama3.2:3b", "qwen2.5:7b"]
+    (found,) = doctor.language_model()
+    assert found.level == "ok" and "llama3.2:3b plans (of llama3.2:3b, qwen2.5:7b)" in found.state
+    monkeypatch.setenv("TIDYBOT__PLANNER__LLM_MODEL", "mistral")
+    (found,) = doctor.language_model()
+    assert found.level == "note" and found.fix.endswith("LLM_MODEL=llama3.2:3b")
+    endpoint.models = None
+    monkeypatch.setattr(doctor, "OLLAMA", f"http://127.0.0.1:{free_port()}/v1")
+    (found,) = doctor.language_model()
+    assert found.level == "note" and "status 503; the grammar plans" in found.state
+
+
+def test_the_real_process_finds_and_asks_the_endpoint(endpoint: Endpoint, here: Site) -> None:
     endpoint.answers = [plans(*MUG)]
     here.start(
-        "services.planner", TIDYBOT_CLOCK="wall", TIDYBOT__PLANNER__BACKEND="llm",
-        TIDYBOT__PLANNER__LLM_URL=endpoint.url, TIDYBOT__PLANNER__LLM_TIMEOUT="100",
+        "services.planner", TIDYBOT_CLOCK="wall", TIDYBOT__PLANNER__LLM_URL=endpoint.url,
+        TIDYBOT__PLANNER__LLM_TIMEOUT="100",
     )  # fmt: skip
     with here.session() as session:
         here.wait_alive(session, "planner")
+
+        def shown() -> str:
+            replies = list(session.get("planner/status", timeout=2.0))
+            return str(json.loads(replies[0].ok.payload.to_bytes())["backend"]) if replies and replies[0].ok else ""
+
+        eventually(lambda: shown() == "llm", "the planner has found the model", patience=120)
         heard: list[dict[str, Any]] = []
         kept = session.declare_subscriber("action_plan", lambda s: heard.append(json.loads(s.payload.to_string())))
         session.put("plan_request", json.dumps({"id": "m.1", "command": "bring me the red mug"}))
@@ -348,7 +468,7 @@ def test_the_real_process_asks_the_endpoint(endpoint: Endpoint, here: Site) -> N
 def test_without_the_client_the_service_says_what_to_install(
     endpoint: Endpoint, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("services.planner.service.installed", lambda: False)
+    monkeypatch.setattr("services.planner.backend.installed", lambda: False)
     with pytest.raises(StartError, match=r"tidybot-zenoh\[llm\]"):
         Desk(endpoint)
-    assert llm.installed()
+    assert installed()
