@@ -187,7 +187,7 @@ def machine() -> Iterator[Finding]:
 
 
 def robots() -> Iterator[Finding]:
-    """The official model for `--robot menagerie:stanford_tidybot`."""
+    """The official model for `--robot official`."""
     root = os.environ.get("MENAGERIE_ROOT", "")
     if root:
         there = any((Path(root).expanduser() / ROBOT).glob("*.xml"))
@@ -197,7 +197,7 @@ def robots() -> Iterator[Finding]:
         yield Finding("ok", "official model", "from the mujoco-menagerie package")
     else:
         fix = ".venv/bin/pip install mujoco-menagerie   (or MENAGERIE_ROOT=<a checkout>)"
-        yield Finding("note", "official model", f"none (only for --robot menagerie:{ROBOT})", fix)
+        yield Finding("note", "official model", "none (only for --robot official)", fix)
 
 
 def language_model() -> Iterator[Finding]:

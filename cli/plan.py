@@ -131,6 +131,6 @@ def add_start_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--scene", help="a shipped scene's name or a path")
     parser.add_argument("--seed", type=int, help="object layout and noise")
     parser.add_argument("--pipeline", choices=PIPELINES, help="the brain's flow (default: brain.toml's, else vla)")
-    parser.add_argument("--robot", metavar="NAME", help="tidybot, or menagerie:stanford_tidybot (docs/EXTENDING.md)")
+    parser.add_argument("--robot", metavar="NAME", help="tidybot, or official: MuJoCo Menagerie's (docs/EXTENDING.md)")
     parser.add_argument("--set", action="append", default=[], metavar="section.key=value", help="override a parameter")
     parser.add_argument("--viewer", action="store_true", help="open a window on the simulation")

@@ -13,6 +13,7 @@ HOME = "home"
 SIDES = ("left", "right")
 # A gripper whose fingers do not simply slide says where its joints stand for a few widths, widest first.
 HAND_JOINTS, HAND_WIDTHS, HAND_POSTURES, HAND_LENGTHS = "hand_joints", "hand_widths", "hand_postures", "hand_lengths"
+HAND_ADVANCES = "hand_advances"
 
 
 def arm_limits(model: Any) -> tuple[Array, Array]:
@@ -67,6 +68,7 @@ class Hand:
             widths, lengths = (np.array(model.numeric(n).data) for n in (HAND_WIDTHS, HAND_LENGTHS))
             postures = np.array(model.numeric(HAND_POSTURES).data).reshape(len(widths), len(self.joints))
             self.table = widths, lengths, postures
+            self._advances = np.array(model.numeric(HAND_ADVANCES).data)
             self.open = float(widths[0])
         else:
             self.joints = tuple(f"{side}_finger" for side in SIDES)
@@ -79,3 +81,12 @@ class Hand:
             return np.full(2, np.clip(self._top - width / 2, 0.0, self._top))
         widths, _, postures = self.table
         return np.array([np.interp(width, widths[::-1], column[::-1]) for column in postures.T])
+
+    def advance(self, width: float) -> float:
+        """How far along the approach the middle of the pads is beyond the site `pinch` at this width [m].
+
+        Pads on a linkage move on an arc, forward while they close; sliding ones stay.
+        """
+        if self.table is None:
+            return 0.0
+        return float(np.interp(width, self.table[0][::-1], self._advances[::-1]))

@@ -1,10 +1,10 @@
 """A robot of our own under the names of MuJoCo Menagerie's stanford_tidybot: defaults by class, files for meshes, a
 gripper of rotating fingers that a motor of 0..255 closes over a tendon."""
 
-import struct
 from pathlib import Path
 
 import numpy as np
+import trimesh
 
 from services.sim.robot import _LIMITS, _LINKS, _TORQUE
 
@@ -12,14 +12,19 @@ RETRACT = (0.0, -0.34906585, 3.14159265, -2.54818071, 0.0, -0.87266463, 1.570796
 LENGTH, OPEN = 0.055, 0.575
 
 
-def _box_stl(path: Path, half: tuple[float, float, float]) -> None:
-    """A box as binary STL."""
-    corners = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], np.float32) * half
-    quads = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
-    triangles = [t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))]
-    body = b"".join(struct.pack("<12fH", 0, 0, 0, *corners[list(t)].reshape(-1), 0) for t in triangles)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_bytes(b"\0" * 80 + struct.pack("<I", len(triangles)) + body)
+ASKEW = ((0.23, 0.22, -0.03), (-0.24, 0.22, -0.03), (-0.24, -0.23, -0.03), (0.23, 0.1, 0.03), (-0.24, 0.0, 0.03))
+"""Corners [m] of a bumper whose principal axes are not those of its sides."""
+
+
+def _meshes(folder: Path) -> None:
+    """The files that the model names, as STL: corners are not shared, axes are not principal."""
+    folder.mkdir(parents=True, exist_ok=True)
+    rod = trimesh.creation.cylinder(0.03, 0.12, sections=24)
+    rod.apply_transform(trimesh.transformations.rotation_matrix(0.7, (1, 2, 3), (0, 0, 0)))
+    made = {"body": trimesh.creation.box((0.5, 0.48, 0.24)), "bumper": trimesh.convex.convex_hull(ASKEW), "rod": rod}
+    made["shell"] = trimesh.creation.icosphere(subdivisions=4, radius=0.05)
+    for name, mesh in made.items():
+        mesh.export(folder / f"{name}.stl")
 
 
 def _finger(side: str, sign: int) -> str:
@@ -46,13 +51,15 @@ def _arm() -> str:
 </body>
 <camera name="wrist" pos="0.065 0 -0.08" xyaxes="0 1 0 0.98 0 -0.2" fovy="42"/>
 <site name="pinch_site" pos="0 0 -0.1815" euler="3.14159265 0 1.5707963"/>"""
+    rod = '<geom class="hit" type="mesh" mesh="rod" pos="0 0 -0.1" quat="0.3 0.6 0.1 0.7" mass="0.01"/>'
     for i in reversed(range(7)):
         name, pos, quat, mass, capsule, radius = _LINKS[i]
         limits = f'range="-{_LIMITS[i]} {_LIMITS[i]}"' if _LIMITS[i] else ""
         inner = f"""
 <body name="{name}" pos="{pos}" quat="{quat}">
   <joint name="joint_{i + 1}" {limits} armature="0.1" damping="1"/>
-  <geom class="hit" type="capsule" fromto="{capsule}" size="{radius}" mass="{mass}"/>{inner}
+  <geom class="see" mesh="shell" quat="0.5 0.1 0.7 0.2"/>
+  <geom class="hit" type="capsule" fromto="{capsule}" size="{radius}" mass="{mass}"/>{rod if i == 2 else ""}{inner}
 </body>"""
     return f'<body name="gen3/base_link" pos="0 0 0.335">{inner}</body>'
 
@@ -60,7 +67,7 @@ def _arm() -> str:
 def write(root: Path, without: str = "", file: str = "tidybot.xml") -> Path:
     """The model below a MENAGERIE_ROOT; `without` is a piece of its text that is left out."""
     folder = root / "stanford_tidybot"
-    _box_stl(folder / "assets" / "body.stl", (0.25, 0.24, 0.12))
+    _meshes(folder / "assets")
     actuators = "".join(
         f'<position class="strong" name="joint_{i + 1}" joint="joint_{i + 1}" forcerange="-{t} {t}"/>'
         for i, t in enumerate(_TORQUE)
@@ -77,14 +84,17 @@ def write(root: Path, without: str = "", file: str = "tidybot.xml") -> Path:
   <default class="hit"><geom group="3"/></default>
   <default class="strong"><position kp="3000" kv="110"/></default>
 </default>
-<asset><material name="grey" rgba="0.6 0.6 0.6 1"/><mesh file="body.stl"/></asset>
+<asset><material name="grey" rgba="0.6 0.6 0.6 1"/>
+  <mesh file="rod.stl"/><mesh file="shell.stl"/><mesh file="bumper.stl"/><mesh file="body.stl"/></asset>
 <worldbody>
   <body name="base_link">
     <inertial pos="0 0 0.1" mass="60" diaginertia="1 1 1"/>
     <joint name="joint_x" type="slide" axis="1 0 0"/>
     <joint name="joint_y" type="slide" axis="0 1 0"/>
     <joint name="joint_th"/>
+    <geom class="see" mesh="bumper" pos="0 0 0.04"/>
     <geom class="see" mesh="body" pos="0 0 0.2" material="grey"/>
+    <geom class="hit" type="mesh" mesh="bumper" pos="0 0 0.04"/>
     <geom class="hit" type="mesh" mesh="body" pos="0 0 0.2"/>
     <camera name="base" pos="0.26 0 0.3"/>
     {_arm()}

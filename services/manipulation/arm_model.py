@@ -1,7 +1,6 @@
 """The arm for planning: kinematics and collision checks in the base frame, with boxes for what stands around."""
 
 import math
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -39,23 +38,45 @@ class Pose:
         return Pose(self.position + offset, self.rotation)
 
 
-def planning_mjcf(robot_mjcf: str) -> str:
-    """The robot's model plus movable boxes and a box in the gripper that stands for a held object."""
-    boxes = "".join(
-        f'<body name="box_{i}" mocap="true" pos="{FAR} {FAR} {i}"><geom name="box_{i}" type="box" size=".01 .01 .01" '
-        'contype="1" conaffinity="2"/></body>'
-        for i in range(BOXES)
-    )
-    held = '<geom name="held" type="box" size=".12 .12 .12" pos="0 0 0.145" mass="0" contype="2" conaffinity="1"/>'
-    text = robot_mjcf.replace("</worldbody>", boxes + "</worldbody>")
-    return re.sub(r'(<body name="gripper"[^>]*>)', rf"\1{held}", text, count=1)
+HELD = 0.12
+"""Half extents [m] the held box is compiled with: bounds of the broad phase that no carried object exceeds."""
+
+
+STAND_IN = "stand_in"
+"""The geom that takes an object's shape when the hand's distance to it is asked for; it collides with nothing."""
+
+
+def planning_model(robot_mjcf: str) -> Any:
+    """The robot's compiled model plus movable boxes and, at the pinch point, a box that stands for a held object."""
+    spec: Any = mujoco.MjSpec.from_string(robot_mjcf)
+    kind = mujoco.mjtGeom.mjGEOM_BOX
+    for i in range(BOXES):
+        box = spec.worldbody.add_body(name=f"box_{i}", mocap=True, pos=[FAR, FAR, i])
+        box.add_geom(name=f"box_{i}", type=kind, size=[0.01] * 3, contype=1, conaffinity=2)
+    spec.worldbody.add_geom(name=STAND_IN, type=kind, size=[0.01] * 3, pos=[0, FAR, 0], contype=0, conaffinity=0)
+    pos, quat = _pinch_in_gripper(spec.compile())
+    spec.body("gripper").add_geom(
+        name="held", type=kind, size=[HELD] * 3, pos=pos, quat=quat, mass=0.0,
+        contype=2, conaffinity=1,
+    )  # fmt: skip
+    return spec.compile()
+
+
+def _pinch_in_gripper(model: Any) -> tuple[Array, Array]:
+    """Position (3,) and quaternion (4,) of the pinch site in the frame of the body `gripper`."""
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    gripper, site = data.body("gripper"), data.site("pinch")
+    turn, quat = gripper.xmat.reshape(3, 3).T, np.empty(4)
+    mujoco.mju_mat2Quat(quat, (turn @ site.xmat.reshape(3, 3)).reshape(-1))
+    return turn @ (site.xpos - gripper.xpos), quat
 
 
 class ArmModel:
     """One MuJoCo model of the robot at the origin, arm configurations as arrays (7,)."""
 
     def __init__(self, robot_mjcf: str) -> None:
-        self.model: Any = mujoco.MjModel.from_xml_string(planning_mjcf(robot_mjcf))
+        self.model: Any = planning_model(robot_mjcf)
         self.data: Any = mujoco.MjData(self.model)
         self.qpos_at = np.array([self.model.joint(j).qposadr[0] for j in ARM])
         self.dof_at = np.array([self.model.joint(j).dofadr[0] for j in ARM])
@@ -67,6 +88,10 @@ class ArmModel:
         self.widest = Hand(self.model).open - FINGER_ROOM
         self.pinch = self.model.site("pinch").id
         self._held = self.model.geom("held").id
+        self._held_at = self.model.geom_pos[self._held].copy()
+        turn = np.empty(9)
+        mujoco.mju_quat2Mat(turn, self.model.geom_quat[self._held])
+        self._held_turn = turn.reshape(3, 3)
         self._boxes = [self.model.geom(f"box_{i}").id for i in range(BOXES)]
         self._mocap = [self.model.body(f"box_{i}").mocapid[0] for i in range(BOXES)]
         self.set_obstacles(())
@@ -91,7 +116,7 @@ class ArmModel:
         self.model.geom_contype[self._held], self.model.geom_conaffinity[self._held] = flags
         if half is not None and offset is not None:
             self._resize(self._held, half)
-            self.model.geom_pos[self._held] = self.model.site_pos[self.pinch] + offset
+            self.model.geom_pos[self._held] = self._held_at + self._held_turn @ offset
 
     def _resize(self, geom: int, half: Array) -> None:
         self.model.geom_size[geom] = half

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from services.manipulation.arm_model import ArmModel, Array, Obstacle, Pose
+from services.manipulation.clearance import HandClearance
 from services.manipulation.grasp import Grasp, Target, candidates
 from services.manipulation.held import Held
 from services.manipulation.ik import InverseKinematics
@@ -43,6 +44,7 @@ class Planner:
     def __init__(self, robot_mjcf: str, seed: int) -> None:
         self.arm = ArmModel(robot_mjcf)
         self.ik = InverseKinematics(self.arm)
+        self.clearance = HandClearance(self.arm)
         self.carries = tuple(self.arm.home + np.array([0, 0, 0, 0, 0, tip, turn]) for tip, turn in _CARRY)
         self._seed = seed
 

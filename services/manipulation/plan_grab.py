@@ -58,10 +58,19 @@ def plan_grab(
 
 
 def _try_grab(
-    planner: Planner, target: Target, grasp: Grasp, around: Sequence[Obstacle], now: Array, approach: float, lift: float
+    planner: Planner,
+    target: Target,
+    wanted: Grasp,
+    around: Sequence[Obstacle],
+    now: Array,
+    approach: float,
+    lift: float,
 ) -> "GrabPlan | str":
     arm = planner.arm
     rng = planner.rng()
+    grasp = planner.clearance.clear(target, wanted)
+    if grasp is None:
+        return "too deep for the hand"
     own = Obstacle(target.position, target.size, target.yaw)
     arm.hold(None)
     arm.set_obstacles(around)

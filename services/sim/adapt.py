@@ -1,7 +1,8 @@
 """A robot of somebody else's MJCF brought into our terms: one self-contained text with our names.
 
-Meshes become their convex hulls, which is what MuJoCo collides, so that the text alone shows every process the same
-body. Mass, limits, gains and keyframes stay the model's own; head camera, mast and lidar are added.
+Colliding meshes become their convex hulls, which is what MuJoCo collides; meshes to look at stay meshes of fewer
+faces. So the text alone shows every process the same body. Mass, limits, gains and keyframes stay the model's own; head
+camera, mast and lidar are added.
 """
 
 import warnings
@@ -9,15 +10,25 @@ import xml.etree.ElementTree as ET
 from pathlib import Path
 from typing import Any
 
+import fast_simplification
 import mujoco
 import numpy as np
 
 from services.sim import robot
+from services.sim.calibrate import bounds
 from services.sim.menagerie import Mapping, RobotError
 
 FOREIGN = "their-"
 HULL = 64
+FACES = 1500
+"""Triangles wanted of a mesh to look at: twenty such meshes cost a picture about as much as the flat does."""
+CARE = 3
+"""How hard fast_simplification may collapse edges: with its usual 7, corners of the arm's shells flew off by 5 cm."""
 MAST = 0.022
+PAD_TORSION = 0.02
+"""Torsional friction [m] of a finger pad: without it objects slipped by up to 16 mm in the hand, with it by 2.5."""
+HEAVY, GYRATION = 10.0, 0.02
+"""Mass [kg] from which a radius of gyration below this [m] is a placeholder: the base of 60 kg had .001 kg m2."""
 _MASTED = ("mast", "head")
 
 
@@ -44,9 +55,11 @@ def adapted(path: Path, names: Mapping, mapped_in: Path) -> ET.Element:
         ours.attach(theirs, prefix=FOREIGN, frame=ours.worldbody.add_frame())
         _strip(ours)
         model = ours.compile()
-        _hulls(ours, model)
+        data = mujoco.MjData(model)
+        mujoco.mj_kinematics(model, data)
+        _shapes(ours, model, {FOREIGN + n for side in names.pads.values() for n in side})
         for body in ours.bodies[1:]:
-            _fix_mass(body, model)
+            _fix_mass(body, model, data)
         _float_arm(ours, names)
         _sensors(ours, model, names)
         for kind in ("geoms", "joints", "sites", "cameras", "actuators", "equalities", "meshes"):
@@ -88,38 +101,70 @@ def _strip(spec: Any) -> None:
             spec.delete(element)
 
 
-def _hulls(spec: Any, model: Any) -> None:
-    """Colliding meshes as the hulls of their corners, coloured like what they stand for; other meshes go."""
-    colours = {}
-    for geom in spec.geoms:
+def _shapes(spec: Any, model: Any, gripping: set[str]) -> None:
+    """Make every mesh text: hulls to collide, hidden on bodies that have something to look at, and decimated looks."""
+    seen = {g.parent.name for g in spec.geoms if not _collides(g)}
+    meshes = _Meshes(spec, model)
+    # The compiled model's numbers are taken first: an element that is deleted renumbers those behind it.
+    for at, geom in [(g.id, g) for g in spec.geoms]:
         material = spec.material(geom.material) if geom.material else None
-        rgba = np.array(material.rgba if material is not None else geom.rgba)
-        if geom.meshname and not (geom.contype or geom.conaffinity):
-            colours[geom.parent.name, geom.meshname] = rgba
-        geom.rgba, geom.material = rgba, ""
-    used: dict[str, str] = {}
-    for geom in list(spec.geoms):
-        if not (geom.contype or geom.conaffinity):
-            spec.delete(geom)
-            continue
-        geom.contype, geom.conaffinity, geom.group = 2, 1, robot.ROBOT_GROUP
-        if not geom.meshname:
-            continue
-        geom.rgba = colours.get((geom.parent.name, geom.meshname), geom.rgba)
-        at = geom.id
-        if geom.meshname not in used:
-            vertices, faces = hull(model, int(model.geom_dataid[at]))
-            used[geom.meshname] = f"hull_{len(used)}"
-            spec.add_mesh(
-                name=used[geom.meshname], uservert=np.round(vertices, 5).reshape(-1), userface=faces.reshape(-1)
-            )
-        geom.meshname = used[geom.meshname]
-        geom.pos, geom.quat = model.geom_pos[at], model.geom_quat[at]
+        geom.rgba, geom.material = np.array(material.rgba if material is not None else geom.rgba), ""
+        geom.group = robot.ROBOT_GROUP
+        if _collides(geom):
+            geom.contype, geom.conaffinity = 2, 1
+            geom.group = robot.HULL_GROUP if geom.parent.name in seen else robot.ROBOT_GROUP
+        else:
+            geom.contype = geom.conaffinity = 0
+        if geom.name in gripping:
+            # A pad of rubber also resists turning; with priority over the object's own it would cancel its torsion.
+            geom.condim, geom.friction[1] = 4, PAD_TORSION
+        if geom.meshname:
+            geom.meshname = meshes.name(geom.meshname, int(model.geom_dataid[at]), hulled=_collides(geom))
+            geom.pos, geom.quat = model.geom_pos[at], model.geom_quat[at]
     for mesh in list(spec.meshes):
-        if mesh.name not in used.values():
+        if mesh.name not in meshes.made:
             spec.delete(mesh)
     for element in [*spec.materials, *spec.textures]:
         spec.delete(element)
+
+
+def _collides(geom: Any) -> bool:
+    return bool(geom.contype or geom.conaffinity)
+
+
+class _Meshes:
+    """The meshes of the adapted model, each made once from a compiled one."""
+
+    def __init__(self, spec: Any, model: Any) -> None:
+        self._spec, self._model = spec, model
+        self._names: dict[tuple[str, bool], str] = {}
+
+    @property
+    def made(self) -> set[str]:
+        return set(self._names.values())
+
+    def name(self, theirs: str, mesh: int, hulled: bool) -> str:
+        key = theirs, hulled
+        if key not in self._names:
+            self._names[key] = f"{'hull' if hulled else 'look'}_{len(self._names)}"
+            vertices, faces = hull(self._model, mesh) if hulled else look(self._model, mesh)
+            self._spec.add_mesh(
+                name=self._names[key], uservert=np.round(vertices, 5).reshape(-1), userface=faces.reshape(-1),
+            )  # fmt: skip
+        return self._names[key]
+
+
+def look(model: Any, mesh: int) -> tuple[Any, Any]:
+    """Corners (n, 3) and triangles (k, 3) of a compiled mesh, decimated to at most `FACES` or little more."""
+    at, count = int(model.mesh_vertadr[mesh]), int(model.mesh_vertnum[mesh])
+    begin, faces = int(model.mesh_faceadr[mesh]), int(model.mesh_facenum[mesh])
+    vertices = np.array(model.mesh_vert[at : at + count], np.float64)
+    triangles = np.array(model.mesh_face[begin : begin + faces])
+    if faces <= FACES:
+        return vertices, triangles
+    fewer, left = fast_simplification.simplify(vertices, triangles, target_count=FACES, agg=CARE)
+    # A corner where surfaces meet may be thrown beyond the body: it stays within its bounds.
+    return np.clip(fewer, vertices.min(axis=0), vertices.max(axis=0)), left
 
 
 def hull(model: Any, mesh: int) -> tuple[Any, Any]:
@@ -134,13 +179,19 @@ def hull(model: Any, mesh: int) -> tuple[Any, Any]:
     return model.mesh_vert[first + ids], np.vectorize(place.__getitem__)(faces)
 
 
-def _fix_mass(body: Any, model: Any) -> None:
-    """The inertia as it was compiled, whatever shapes are left out."""
+def _fix_mass(body: Any, model: Any, data: Any) -> None:
+    """The inertia as it was compiled, whatever shapes are left out; a placeholder becomes that of a solid box."""
     at = body.id
-    if model.body_mass[at] > 0:
-        body.explicitinertial, body.mass = True, model.body_mass[at]
-        body.ipos, body.iquat, body.inertia = model.body_ipos[at], model.body_iquat[at], model.body_inertia[at]
-        body.fullinertia = np.full(6, np.nan)
+    if model.body_mass[at] <= 0:
+        return
+    body.explicitinertial, body.mass = True, model.body_mass[at]
+    body.ipos, body.iquat, body.inertia = model.body_ipos[at], model.body_iquat[at], model.body_inertia[at]
+    body.fullinertia = np.full(6, np.nan)
+    if body.mass > HEAVY and max(body.inertia) < body.mass * GYRATION**2:
+        solid = [g for g in range(model.ngeom) if model.geom_bodyid[g] == at and model.geom_contype[g]]
+        corners = np.array([bounds(model, data, g) for g in solid])
+        square = (corners[:, 1].max(axis=0) - corners[:, 0].min(axis=0)) ** 2
+        body.iquat, body.inertia = [1, 0, 0, 0], body.mass / 12 * (square.sum() - square)
 
 
 def _float_arm(spec: Any, names: Mapping) -> None:
@@ -161,8 +212,8 @@ def _sensors(spec: Any, model: Any, names: Mapping) -> None:
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
     solid = [g for g in range(model.ngeom) if model.geom_bodyid[g] == at and model.geom_contype[g]]
-    low = np.min([_box(model, data, g)[0] for g in solid], axis=0)
-    high = np.max([_box(model, data, g)[1] for g in solid], axis=0)
+    low = np.min([bounds(model, data, g)[0] for g in solid], axis=0)
+    high = np.max([bounds(model, data, g)[1] for g in solid], axis=0)
     height = robot.HEAD_CAMERA[2]
     x = float(low[0]) + MAST
     look = {"contype": 2, "conaffinity": 1, "group": robot.ROBOT_GROUP, "mass": 0.0}
@@ -181,13 +232,6 @@ def _sensors(spec: Any, model: Any, names: Mapping) -> None:
     mujoco.mju_mat2Quat(quat, turn.reshape(-1))
     base.add_camera(name="head", pos=[x + 0.05, 0, height], quat=quat, fovy=robot.HEAD_FOVY)
     base.add_site(name="lidar", pos=[0, 0, robot.LIDAR_HEIGHT], size=[0.01] * 3, group=4)
-
-
-def _box(model: Any, data: Any, geom: int) -> tuple[Any, Any]:
-    """Lowest and highest corner of a geom's bounding box in the world."""
-    turn, box = data.geom_xmat[geom].reshape(3, 3), model.geom_aabb[geom]
-    middle, half = data.geom_xpos[geom] + turn @ box[:3], np.abs(turn) @ box[3:]
-    return middle - half, middle + half
 
 
 def _rename(root: ET.Element, names: Mapping) -> None:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from common.robot import (
     ARM,
     BASE,
+    HAND_ADVANCES,
     HAND_JOINTS,
     HAND_LENGTHS,
     HAND_POSTURES,
@@ -63,11 +64,13 @@ def measure_hand(root: ET.Element) -> None:
         lengths.append(float(data.actuator_length[gripper]))
         postures.append([float(data.qpos[model.jnt_qposadr[j]]) for j in joints])
         places.append((left + right) / 2)
-    _place_pinch(root, model, data, places[STEPS // 2], axis)
+    approach = _place_pinch(root, model, data, places[STEPS // 2], axis)
+    advances = [float((place - places[STEPS // 2]) @ approach) for place in places]
     # Where nothing is left to close, more travel says nothing.
     keep = [0] + [i for i in range(1, STEPS) if widths[i] < widths[i - 1] - 1e-4]
     custom = ET.SubElement(root, "custom")
-    for name, values in ((HAND_WIDTHS, widths), (HAND_LENGTHS, lengths), (HAND_POSTURES, postures)):
+    table = ((HAND_WIDTHS, widths), (HAND_LENGTHS, lengths), (HAND_POSTURES, postures), (HAND_ADVANCES, advances))
+    for name, values in table:
         flat = np.ravel([values[i] for i in keep])
         ET.SubElement(custom, "numeric", name=name, data=" ".join(f"{v:.6g}" for v in flat))
     ET.SubElement(custom, "text", name=HAND_JOINTS, data=" ".join(model.joint(j).name for j in joints))
@@ -86,8 +89,11 @@ def _gap(model: Any, data: Any, axis: Array) -> float:
     return faces[0] - faces[1]
 
 
-def _place_pinch(root: ET.Element, model: Any, data: Any, place: Array, closing: Array) -> None:
-    """z along the approach as the model has it, y along the closing direction from right to left."""
+def _place_pinch(root: ET.Element, model: Any, data: Any, place: Array, closing: Array) -> Array:
+    """The site's z along the approach as the model has it, y along the closing direction from right to left.
+
+    Returns the approach (3,) in the world.
+    """
     site = model.site("pinch")
     body = int(model.site_bodyid[site.id])
     turn = data.xmat[body].reshape(3, 3)
@@ -99,6 +105,7 @@ def _place_pinch(root: ET.Element, model: Any, data: Any, place: Array, closing:
     element = next(e for e in root.iter("site") if e.get("name") == "pinch")
     element.set("pos", " ".join(f"{v:.9g}" for v in turn.T @ (place - data.xpos[body])))
     element.set("quat", " ".join(f"{v:.9g}" for v in quat))
+    return np.asarray(z)
 
 
 def name_deck(root: ET.Element) -> None:
@@ -110,12 +117,26 @@ def name_deck(root: ET.Element) -> None:
     first = int(model.body_geomadr[base])
     count = itertools.count()
     for number, element in enumerate(elements):
-        turn, box = data.geom_xmat[first + number].reshape(3, 3), model.geom_aabb[first + number]
-        middle, half = data.geom_xpos[first + number] + turn @ box[:3], np.abs(turn) @ box[3:]
-        wide = min(half[0], half[1]) > DECK / 2
-        if wide and middle[2] + half[2] > mount - 4 * DECK:
+        low, high = bounds(model, data, first + number)
+        wide = (high - low)[:2].min() > DECK
+        if wide and high[2] > mount - 4 * DECK and element.get("contype") != "0":
             n = next(count)
             element.set("name", f"deck_{n}" if n else "deck")
+
+
+def bounds(model: Any, data: Any, geom: int) -> tuple[Array, Array]:
+    """Lowest and highest corner (3,) of a geom's axis-aligned bounding box in the world [m].
+
+    A mesh's own box lies along its principal axes, which may be askew: its turned corners would be far too wide.
+    """
+    turn, box = data.geom_xmat[geom].reshape(3, 3), model.geom_aabb[geom]
+    if model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_MESH:
+        mesh = int(model.geom_dataid[geom])
+        first, count = int(model.mesh_vertadr[mesh]), int(model.mesh_vertnum[mesh])
+        points = data.geom_xpos[geom] + model.mesh_vert[first : first + count] @ turn.T
+        return points.min(axis=0), points.max(axis=0)
+    middle, half = data.geom_xpos[geom] + turn @ box[:3], np.abs(turn) @ box[3:]
+    return middle - half, middle + half
 
 
 def exclude_neighbours(root: ET.Element) -> None:

@@ -7,7 +7,7 @@ from common.scene import Obstacle
 class SimConfig(Config, frozen=True):
     """`speed` is `realtime`, a factor, or `max`; `wait_for` names the participants that lockstep waits for.
 
-    `robot`: `tidybot`, or `menagerie:stanford_tidybot` for the official model.
+    `robot`: `tidybot`, or `official` for MuJoCo Menagerie's model of it.
 
     Wheel odometry: `slip` is the largest constant scale error, `veer` the largest constant turn [rad/m],
     `noise` a random walk [m and rad per sqrt(m)]. `obstacles`: tables, or names of the scene's; `none`: not even those

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from services.sim.objects import GROUP
-from services.sim.robot import ROBOT_GROUP
+from services.sim.robot import HULL_GROUP, ROBOT_GROUP
 
 RAYS, RANGE_MIN, RANGE_MAX = 360, 0.05, 10.0
 _TAKES_NORMAL = "normal" in (mujoco.mj_multiRay.__doc__ or "")
@@ -34,7 +34,7 @@ class Lidar:
         angles = -math.pi + np.arange(RAYS) * (2 * math.pi / RAYS)
         self._local = np.stack([np.cos(angles), np.sin(angles), np.zeros(RAYS)], axis=1)
         self._groups = np.ones(6, np.uint8)
-        self._groups[[ROBOT_GROUP, GROUP]] = 0
+        self._groups[[ROBOT_GROUP, HULL_GROUP, GROUP]] = 0
 
     def scan(self, model: Any, data: Any) -> NDArray[np.float32]:
         """Ranges (360,) [m]; values above RANGE_MAX mean nothing was seen."""

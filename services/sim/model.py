@@ -9,7 +9,7 @@ from common.robot import home_arm
 from services.sim import robot
 from services.sim.menagerie import PREFIX, RobotError, find, mapping
 
-OURS = "tidybot"
+OURS, OFFICIAL = "tidybot", "official"
 _SECTIONS = ("contact", "tendon", "equality", "actuator", "custom")
 
 
@@ -32,15 +32,17 @@ def own() -> Robot:
 
 @functools.cache
 def load_robot(name: str) -> Robot:
-    """`tidybot`, or `menagerie:NAME`.
+    """`tidybot`, `official` (MuJoCo Menagerie's stanford_tidybot), or `menagerie:NAME`.
 
     Raises:
         RobotError: there is none of that name, or it lacks something.
     """
     if name in ("", OURS):
         return own()
+    if name == OFFICIAL:
+        return load_robot(f"{PREFIX}stanford_tidybot")
     if not name.startswith(PREFIX):
-        raise RobotError(f"robot {name}: expected {OURS} or {PREFIX}stanford_tidybot")
+        raise RobotError(f"robot {name}: expected {OURS}, {OFFICIAL} or {PREFIX}stanford_tidybot")
     from services.sim import calibrate
     from services.sim.adapt import adapted
 
@@ -50,7 +52,7 @@ def load_robot(name: str) -> Robot:
     try:
         calibrate.measure_hand(root)
         calibrate.name_deck(root)
-        alone = copy.deepcopy(root)
+        alone = _bare(root)
         calibrate.exclude_neighbours(alone)
     except (ValueError, KeyError, StopIteration) as error:
         raise RobotError(
@@ -63,3 +65,16 @@ def load_robot(name: str) -> Robot:
     rest = "".join(f"<{tag}>{inside(tag)}</{tag}>" for tag in _SECTIONS if root.find(tag) is not None)
     home = tuple(home_arm(calibrate.load(alone)[0]).tolist())
     return Robot(name, inside("worldbody"), inside("asset"), rest, ET.tostring(alone, encoding="unicode"), home)
+
+
+def _bare(root: ET.Element) -> ET.Element:
+    """The robot as those see it who plan: without the meshes that are only to look at."""
+    alone = copy.deepcopy(root)
+    for body in alone.iter("body"):
+        for geom in [g for g in body.findall("geom") if g.get("contype") == "0"]:
+            body.remove(geom)
+    used = {g.get("mesh") for g in alone.iter("geom")}
+    for asset in alone.findall("asset"):
+        for mesh in [e for e in asset.findall("mesh") if e.get("name") not in used]:
+            asset.remove(mesh)
+    return alone

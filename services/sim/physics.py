@@ -43,6 +43,8 @@ class Physics:
         self.rates = view(self.data.qvel, self.qvel_at)
         self.forces = view(self.data.actuator_force, np.append(self.ctrl_at, self.gripper_ctrl))
         self._ctrl = view(self.data.ctrl, self.ctrl_at)
+        self._lead = servo_lead(model, self.ctrl_at, self.qvel_at) / model.opt.timestep
+        self._lead[: len(BASE)] = 0.0  # the base's set-point is led by its own driver
         self.lidar_site = model.site("lidar").id
         self.pads = pads(model)
         self.fingers = fingers(model, self.data)
@@ -77,8 +79,8 @@ class Physics:
     def advance(self, start: NDArray[np.float64], end: NDArray[np.float64]) -> None:
         """Run 10 ms while the set-points (10,) of base and arm move from `start` to `end`."""
         model, data, ctrl = self.model, self.data, self._ctrl
-        ctrl[:] = start
         change = (end - start) / SUBSTEPS
+        ctrl[:] = start + self._lead * change
         if not change.any():
             mujoco.mj_step(model, data, SUBSTEPS)
             return
@@ -119,3 +121,13 @@ class Physics:
         """Back to a snapshot of the same model."""
         mujoco.mj_setState(self.model, self.data, state, _STATE)
         mujoco.mj_forward(self.model, self.data)
+
+
+def servo_lead(model: Any, actuators: NDArray[np.int64], dofs: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Seconds (n,) by which a position servo trails a set-point that moves evenly: (kv + damping) / kp.
+
+    A set-point that leads by as much, as the arm's own controller does by feeding the velocity forward, leaves no
+    error but that of inertia.
+    """
+    gain, rate_gain = model.actuator_gainprm[actuators, 0], -model.actuator_biasprm[actuators, 2]
+    return np.asarray((rate_gain + model.dof_damping[dofs]) / gain)

@@ -12,6 +12,8 @@ JOINT_NAMES = ("base_x", "base_y", "base_yaw", *ARM_JOINTS, "gripper")
 HOME_ARM = (0.0, -0.34906585, 3.14159265, -2.54818071, 0.0, -0.87266463, 1.57079633)
 STROKE = 0.085
 ROBOT_GROUP = 3
+HULL_GROUP = 4
+"""Geoms that collide but are not to be seen, for bodies with meshes to look at; nobody draws this group."""
 ARM_MOUNT = (0.12, 0.0, 0.395)
 LIDAR_HEIGHT = 0.2
 HEAD_CAMERA = (-0.12, 0.0, 1.30)

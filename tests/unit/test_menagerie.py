@@ -1,6 +1,9 @@
 """A robot of MuJoCo Menagerie in place of our own; a stand-in of ours has the official one's names."""
 
+import os
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -18,13 +21,16 @@ from services.manipulation.arm_model import ArmModel, Pose
 from services.manipulation.ik import InverseKinematics, seeds
 from services.perception.body import Body
 from services.sim import menagerie
+from services.sim.adapt import FACES
+from services.sim.calibrate import bounds
 from services.sim.config import SimConfig
 from services.sim.model import Robot, load_robot
+from services.sim.robot import HULL_GROUP, ROBOT_GROUP
 from services.sim.service import SimService
 from tests import standin
 from tests.simulation import Simulation
 
-NAME = "menagerie:stanford_tidybot"
+NAME = "official"
 SCENE = load_scene("minimal")
 
 
@@ -39,6 +45,93 @@ def robot(root: Path) -> Robot:
         patch.setenv(menagerie.ROOT, str(root))
         load_robot.cache_clear()
         return load_robot(NAME)
+
+
+def _shared() -> Path | None:
+    """The official models, where MENAGERIE_ROOT or a folder beside the project has them."""
+    named = os.environ.get(menagerie.ROOT, "")
+    root = Path(named) if named else Path(__file__).parents[3] / "shared" / "models" / "menagerie"
+    return root if (root / "stanford_tidybot" / "tidybot.xml").is_file() else None
+
+
+@pytest.fixture(scope="module", params=["stand-in", "official"])
+def pair(request: pytest.FixtureRequest, root: Path) -> Iterator[tuple[Any, Any, Robot]]:
+    """A model as its file has it, the world's model with the adapted one in it, and the adapted robot."""
+    folder = root if request.param == "stand-in" else _shared()
+    if folder is None:
+        pytest.skip("the official model is not here: set MENAGERIE_ROOT to a checkout of MuJoCo Menagerie")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv(menagerie.ROOT, str(folder))
+        load_robot.cache_clear()
+        adapted = load_robot(NAME)
+    theirs = mujoco.MjModel.from_xml_path(str(folder / "stanford_tidybot" / "tidybot.xml"))
+    assets, body = f"<asset>{adapted.assets}</asset>", f"<worldbody>{adapted.body}</worldbody>"
+    text = f"<mujoco><compiler angle='radian'/>{assets}{body}</mujoco>"
+    yield theirs, mujoco.MjModel.from_xml_string(text), adapted
+    load_robot.cache_clear()
+
+
+def _placed(model: Any) -> tuple[Any, dict[str, list[int]]]:
+    """Kinematics at zero, and the geoms of each body by its name in the original."""
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    names = {"base": "base_link", "gripper": "base"} if model.body("base").parentid[0] == 0 else {}
+    found: dict[str, list[int]] = {}
+    for g in range(model.ngeom):
+        name = model.body(model.geom_bodyid[g]).name
+        if model.geom(g).name not in ("mast", "head"):
+            found.setdefault(names.get(name, name), []).append(g)
+    return data, found
+
+
+def test_every_shape_is_where_the_original_has_it(pair: tuple[Any, Any, Robot]) -> None:
+    theirs, ours, _ = pair
+    (there, wanted), (here, found) = _placed(theirs), _placed(ours)
+    assert found.keys() == wanted.keys()
+    for name, geoms in wanted.items():
+        solid = [bool(theirs.geom_contype[g]) for g in geoms]
+        assert [bool(ours.geom_contype[g]) for g in found[name]] == solid, name
+        for a, b in zip(geoms, found[name], strict=True):
+            assert theirs.geom_type[a] == ours.geom_type[b]
+            corners = np.array([bounds(theirs, there, a), bounds(ours, here, b)])
+            fine = 0.0015 if theirs.geom_contype[a] else 0.003
+            assert corners[0] == pytest.approx(corners[1], abs=fine), f"{name}, geom {a}"
+
+
+def test_meshes_to_look_at_stay_meshes_and_hulls_are_out_of_sight(pair: tuple[Any, Any, Robot]) -> None:
+    theirs, ours, adapted = pair
+    looks = [g for g in range(ours.ngeom) if not ours.geom_contype[g]]
+    assert len(looks) == sum(1 for g in range(theirs.ngeom) if not theirs.geom_contype[g]) > 0
+    assert all(ours.geom_group[g] == ROBOT_GROUP and ours.geom_rgba[g, 3] == 1 for g in looks)
+    dressed = {int(ours.geom_bodyid[g]) for g in looks}
+    assert all(
+        ours.geom_group[g] == (HULL_GROUP if int(ours.geom_bodyid[g]) in dressed else ROBOT_GROUP)
+        for g in range(ours.ngeom)
+        if ours.geom_contype[g] and ours.geom(g).name not in ("mast", "head")
+    )
+    assert max(ours.mesh_facenum) < 2 * FACES
+    planned = mujoco.MjModel.from_xml_string(adapted.mjcf)
+    assert all(planned.geom_contype), "who plans needs nothing to look at"
+
+
+def test_the_mast_stands_on_the_base(pair: tuple[Any, Any, Robot]) -> None:
+    _, ours, _ = pair
+    data, found = _placed(ours)
+    low, high = np.array([bounds(ours, data, g) for g in found["base_link"]]).swapaxes(0, 1)
+    mast = bounds(ours, data, ours.geom("mast").id)
+    assert (mast[0][:2] >= low.min(axis=0)[:2] - 1e-6).all() and (mast[1][:2] <= high.max(axis=0)[:2] + 1e-6).all()
+    assert mast[0][2] == pytest.approx(high.max(axis=0)[2] - 0.022, abs=0.002), "on top, but for the capsule's end"
+
+
+def test_what_is_held_is_at_the_pinch_point(pair: tuple[Any, Any, Robot]) -> None:
+    _, _, adapted = pair
+    arm = ArmModel(adapted.mjcf)
+    arm.hold(np.array([0.02, 0.03, 0.05]), np.array([0.01, 0.02, 0.03]))
+    for q in (arm.home, arm.home + 0.4):
+        pinch = arm.pose(q)
+        held = arm.data.geom("held")
+        assert held.xpos == pytest.approx(pinch.position + pinch.rotation @ [0.01, 0.02, 0.03], abs=1e-5)
+        assert held.xmat.reshape(3, 3) == pytest.approx(pinch.rotation, abs=1e-4)
 
 
 class Sim(Simulation):
@@ -138,9 +231,9 @@ def test_perception_knows_this_body(robot: Robot) -> None:
     pose: Pose = arm.pose(np.array(standin.RETRACT))
     assert np.allclose(hand, pose.position, atol=1e-6)
     # Base box of 0.5 x 0.48 x 0.24 m from 0.08 m upwards: a mesh in the stand-in.
-    points = np.array([[0.26, 0.0, 0.2], [0.2, 0.2, 0.2], [0.5, 0.0, 0.2], [0.0, 0.0, 0.02]])
+    points = np.array([[0.26, 0.0, 0.25], [0.2, 0.2, 0.2], [0.0, 0.34, 0.2], [0.0, 0.0, 0.02]])
     distance = np.min([body._distance(points, g) for g in body._solid], axis=0)
-    assert distance[:3] == pytest.approx([0.01, 0.0, 0.25], abs=1e-4)
+    assert distance[:3] == pytest.approx([0.01, 0.0, 0.1], abs=1e-4)
 
 
 def test_the_page_draws_its_fingers_where_physics_has_them(sim: Sim) -> None:
@@ -201,7 +294,7 @@ def test_a_model_under_another_file_name_is_found(tmp_path: Path) -> None:
         ("menagerie:stanford_tidybot", "empty", "Set MENAGERIE_ROOT"),
         ("menagerie:stanford_tidybot", None, "pip install mujoco-menagerie"),
         ("menagerie:unitree_go2", None, "known: menagerie:stanford_tidybot"),
-        ("r2d2", None, "expected tidybot or menagerie:"),
+        ("r2d2", None, "expected tidybot, official or menagerie:"),
     ],
 )
 def test_what_is_not_there_is_said_with_the_cure(
@@ -243,3 +336,10 @@ def test_the_package_is_asked_when_no_root_is_set(root: Path, monkeypatch: pytes
     monkeypatch.setattr(menagerie.importlib, "import_module", lambda name: Package(None))
     with pytest.raises(menagerie.RobotError, match="no network"):
         menagerie.find("stanford_tidybot", "tidybot.xml")
+
+
+def test_a_placeholder_of_an_inertia_becomes_that_of_a_solid_box(pair: tuple[Any, Any, Robot]) -> None:
+    _, _, adapted = pair
+    inertia = mujoco.MjModel.from_xml_string(adapted.mjcf).body("base").inertia
+    # 60 kg: the stand-in says 1 kg m2 and keeps it; the official model says .001, a box of 0.48 m has 2.3.
+    assert inertia[2] == pytest.approx(1.0) or inertia[2] == pytest.approx(2.3, abs=0.1)

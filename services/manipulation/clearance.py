@@ -1,0 +1,109 @@
+"""How far the hand keeps back from a grasp, so that open and closed nothing but its pads comes near the object."""
+
+from dataclasses import replace
+
+import mujoco
+import numpy as np
+
+from common.robot import Hand, pads, subtree
+from services.manipulation.arm_model import STAND_IN, ArmModel, Array, Pose
+from services.manipulation.grasp import Grasp, Target
+
+GAP = 0.002
+"""Free space [m] kept between the object and every part of the hand but the pads: the pose error of a good sighting."""
+STEP = 0.002
+"""Resolution [m] of the search along the approach: finer than the pose noise."""
+PAD = 0.019
+"""Half the length [m] of a pad along the approach (Robotiq 2F-85: two boxes of 18.75 mm)."""
+MOST = 0.016
+"""Farthest [m] that the hand keeps back from something round: its widest line stays 3 mm within the pads."""
+OVERLAP = 0.6
+"""Least share of a pad's length that lies on a flat face."""
+ROUND = ("mug", "can", "bottle")
+BALLS = ("apple", "ball")
+
+
+class HandClearance:
+    """The hand alone, open and closed on a width, with the object as a primitive in the frame of the pinch point."""
+
+    def __init__(self, arm: ArmModel) -> None:
+        model = arm.model
+        self._model, self._data = model, mujoco.MjData(model)
+        self.hand = Hand(model)
+        self._joints = [model.joint(name).qposadr[0] for name in self.hand.joints]
+        gripping = set().union(*pads(model))
+        bodies = subtree(model, "gripper")
+        self._parts = [
+            g
+            for g in range(model.ngeom)
+            if int(model.geom_bodyid[g]) in bodies and g not in gripping and model.geom(g).name != "held"
+        ]
+        self._arm_at, self._home = arm.qpos_at, arm.home
+
+    def clear(self, target: Target, grasp: Grasp) -> Grasp | None:
+        """The grasp with its pinch point where the pads meet, kept back as far as the hand needs; None if too far.
+
+        The pads' middle runs along an arc while they close: the site is put so far behind that at the grasp's width
+        they are where the grasp wants them.
+        """
+        advance = self.hand.advance(grasp.width)
+        pose = grasp.pose.moved(-advance * grasp.pose.rotation[:, 2])
+        if target.kind != "bowl":  # held at its rim: the hand is inside the bowl's own bounding shape
+            back = self._needed(target, pose, grasp.width)
+            if back is None:
+                return None
+            pose = pose.moved(-back * pose.rotation[:, 2])
+        return replace(grasp, pose=pose)
+
+    def _needed(self, target: Target, pose: Pose, width: float) -> float | None:
+        most = _most(target, pose)
+        free = min(self._room(target, pose, w) for w in (self.hand.open, width))
+        back = 0.0
+        while free < GAP:
+            # Nothing of the hand comes nearer than it moves: the distance missing is the least that helps.
+            back += max(STEP, GAP - max(free, 0.0))
+            if back > most:
+                return None
+            moved = pose.moved(-back * pose.rotation[:, 2])
+            free = min(self._room(target, moved, w) for w in (self.hand.open, width))
+        return back
+
+    def _room(self, target: Target, pose: Pose, width: float) -> float:
+        """Distance [m] from the object to the nearest part of the hand but its pads; negative inside, at most 0.05."""
+        model, data = self._model, self._data
+        data.qpos[self._arm_at] = self._home
+        data.qpos[self._joints] = self.hand.posture(width)
+        mujoco.mj_kinematics(model, data)
+        site = data.site("pinch")
+        turn = site.xmat.reshape(3, 3) @ pose.rotation.T
+        centre = site.xpos + turn @ (np.array(target.position) - pose.position)
+        shape = self._place(target, centre, turn)
+        return min(float(mujoco.mj_geomDistance(model, data, g, shape, 0.05, None)) for g in self._parts)
+
+    def _place(self, target: Target, centre: Array, turn: Array) -> int:
+        """Put the geom that stands for the object at `centre`, `turn` being the base frame in the hand's world."""
+        model, data, kinds = self._model, self._data, mujoco.mjtGeom
+        shape = int(model.geom(STAND_IN).id)
+        size = np.array(target.size) / 2
+        model.geom_type[shape], model.geom_size[shape] = kinds.mjGEOM_BOX, size
+        if target.kind in ROUND:
+            model.geom_type[shape], model.geom_size[shape] = kinds.mjGEOM_CYLINDER, (size[:2].max(), size[2], 0)
+        elif target.kind in BALLS:
+            model.geom_type[shape] = kinds.mjGEOM_ELLIPSOID
+        model.geom_rbound[shape] = float(np.linalg.norm(model.geom_size[shape]))
+        c, s = np.cos(target.yaw), np.sin(target.yaw)
+        data.geom_xpos[shape] = centre
+        data.geom_xmat[shape] = (turn @ np.array([[c, -s, 0], [s, c, 0], [0, 0, 1.0]])).reshape(-1)
+        return shape
+
+
+def _most(target: Target, pose: Pose) -> float:
+    """How far [m] the pads' middle may stay before the object's and still hold it."""
+    if target.kind in (*ROUND, *BALLS):
+        return MOST
+    c, s = np.cos(target.yaw), np.sin(target.yaw)
+    own = np.array([[c, s, 0], [-s, c, 0], [0, 0, 1.0]])
+    approach, at = own @ pose.rotation[:, 2], own @ (pose.position - np.array(target.position))
+    run = np.where(np.abs(approach) > 1e-6, np.abs(approach), np.inf)
+    inside = float(((np.array(target.size) / 2 + np.sign(approach) * at) / run)[run < np.inf].min())
+    return inside + PAD - 2 * PAD * OVERLAP

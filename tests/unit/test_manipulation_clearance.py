@@ -1,0 +1,71 @@
+"""How far the hand keeps back: only its pads may come near what it grasps, open and closed."""
+
+import numpy as np
+import pytest
+
+from services.manipulation.arm_model import Pose
+from services.manipulation.clearance import GAP, MOST
+from services.manipulation.grasp import Grasp, Target, approach_rotation
+from services.manipulation.plan import Planner
+from services.sim.model import own
+
+PLANNER = Planner(own().mjcf, seed=0)
+KNUCKLES = 0.06
+"""The built-in hand's knuckles end 60 mm behind the pinch point, its palm 75 mm."""
+
+
+def grasp(target: Target, width: float, tilt: float = 0.0) -> Grasp:
+    pose = Pose(np.array(target.position), approach_rotation(0.0, tilt))
+    return Grasp(pose, width, target.size[2] / 2, tilt, "straight")
+
+
+def kept_back(target: Target, width: float) -> float | None:
+    wanted = grasp(target, width)
+    found = PLANNER.clearance.clear(target, wanted)
+    if found is None:
+        return None
+    moved = found.pose.position - wanted.pose.position
+    assert moved[1:] == pytest.approx([0.0, 0.0], abs=1e-9), "along the approach alone"
+    return -float(moved[0])
+
+
+def box(deep: float) -> Target:
+    return Target("box", "box", (0.5, 0.0, 0.5), 0.0, (deep, 0.05, 0.1))
+
+
+def test_what_the_hand_reaches_around_is_grasped_in_its_middle() -> None:
+    assert kept_back(box(0.06), 0.05) == pytest.approx(0.0)
+    can = Target("can", "can", (0.5, 0.0, 0.5), 0.0, (0.066, 0.066, 0.12))
+    assert kept_back(can, 0.066) == pytest.approx(0.0)
+
+
+def test_the_hand_keeps_back_from_a_deep_box_as_far_as_its_knuckles_need() -> None:
+    deep = 0.14
+    back = kept_back(box(deep), 0.05)
+    assert back is not None
+    assert KNUCKLES + back - deep / 2 == pytest.approx(GAP, abs=0.0025)
+
+
+def test_what_the_pads_would_not_hold_any_more_is_refused() -> None:
+    ball = Target("ball", "ball", (0.5, 0.0, 0.5), 0.0, (0.16, 0.05, 0.16))
+    assert KNUCKLES - 0.08 + MOST < GAP
+    assert kept_back(ball, 0.05) is None
+
+
+def test_the_turn_of_the_object_counts() -> None:
+    along = Target("box", "box", (0.5, 0.0, 0.5), np.pi / 2, (0.05, 0.14, 0.1))
+    assert kept_back(along, 0.05) == pytest.approx(kept_back(box(0.14), 0.05) or -1.0, abs=1e-6)
+
+
+def test_the_pads_of_a_linkage_meet_where_the_grasp_wants_them(monkeypatch: pytest.MonkeyPatch) -> None:
+    clearance = PLANNER.clearance
+    monkeypatch.setattr(clearance.hand, "advance", lambda width: -0.1 * width)
+    assert kept_back(box(0.06), 0.05) == pytest.approx(-0.005), "the site goes 5 mm beyond, where pads lag by 5 mm"
+
+
+def test_asking_leaves_the_arms_model_as_it_was() -> None:
+    arm = PLANNER.arm
+    before = arm.pose(arm.home).position
+    kept_back(box(0.14), 0.05)
+    assert arm.pose(arm.home).position == pytest.approx(before)
+    assert not arm.collides(arm.home)
