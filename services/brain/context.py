@@ -8,6 +8,7 @@ from py_trees.behaviour import Behaviour
 from common import messages as m
 from common import topics
 from common.clock import unix_time
+from common.geometry import Pose2
 from common.io import Io
 from common.topics import Topic
 from services.brain.config import BrainConfig
@@ -98,6 +99,12 @@ class Context:
 
     def note(self, cause: str, evidence: str = "", kind: Kind = "note") -> None:
         self.journal.note(self.mission.id, Entry(self.now, self.shown.state, cause, evidence, kind))
+
+    @property
+    def here(self) -> Pose2:
+        """The robot's pose in the map as navigation believes it; the origin before it has said so."""
+        pose = self.io.latest(topics.POSE)
+        return (pose.x, pose.y, pose.theta) if pose else (0.0, 0.0, 0.0)
 
     # --- the journal
     def save(self, closed: bool = False) -> None:

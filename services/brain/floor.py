@@ -35,6 +35,22 @@ def standing_pose(scene: Scene, point: Point, here: Pose2) -> Pose2:
     return min(poses_for(point, scene.surface_at(*point)))[1]
 
 
+def place_pose(scene: Scene, name: str, here: Pose2) -> Pose2 | None:
+    """The standing pose of a place, room or surface by name or alias; None for one that the scene does not have."""
+    for place in (scene.home, *scene.places):
+        if name == place.name or name in place.aliases:
+            return place.x, place.y, place.theta
+    for room in scene.rooms:
+        if name == room.name or name in room.aliases:
+            return (room.low[0] + room.high[0]) / 2, (room.low[1] + room.high[1]) / 2, 0.0
+    receptacle = scene.receptacle(name)
+    if receptacle is None:
+        return None
+    if receptacle.name == scene.delivery:
+        return scene.home.x, scene.home.y, scene.home.theta
+    return standing_pose(scene, (receptacle.center[0], receptacle.center[1]), here)
+
+
 def _distances(scene: Scene, x: float, y: float) -> Iterator[float]:
     for wall in scene.walls:
         yield max(0.0, _to_segment(x, y, wall.start, wall.end) - wall.thickness / 2)

@@ -11,6 +11,7 @@ from common import topics
 from common.topics import Topic
 from services.brain.behaviours import Goal, Leaf
 from services.brain.context import Context
+from services.brain.floor import place_pose
 from services.brain.goals import Answer
 from services.brain.mission import Failure
 
@@ -20,13 +21,15 @@ LOST = ("LOST_OBJECT", "NOT_HOLDING", "SLIPPED")
 
 
 class Drive(Goal):
-    """A navigation goal in words.
+    """A navigation goal in words, or as the pose of `place` with `drive_by = "poses"`.
 
     A way that is blocked is tried again on another path `navigation_retries` times in all: what navigation reports as
     `recoveries` counts, only what is missing is made up for by further attempts.
     """
 
-    def __init__(self, name: str, ctx: Context, text: Text, spoken: Text, state: m.BrainStateName) -> None:
+    def __init__(
+        self, name: str, ctx: Context, text: Text, spoken: Text, state: m.BrainStateName, place: str = ""
+    ) -> None:
         config = ctx.config
         super().__init__(
             name,
@@ -36,7 +39,7 @@ class Drive(Goal):
             timeout=config.navigation_timeout,
             retries=config.navigation_retries,
         )
-        self._text, self._spoken = text, spoken
+        self._text, self._spoken, self._place = text, spoken, place
         self._recovered = 0
 
     def initialise(self) -> None:
@@ -47,6 +50,11 @@ class Drive(Goal):
         return self._text()
 
     def goal(self, goal_id: str) -> tuple[Topic[Any], m.Message]:
+        ctx = self.ctx
+        if self._place and ctx.config.drive_by == "poses":
+            pose = place_pose(ctx.io.scene, self._place, ctx.here)
+            if pose is not None:
+                return topics.NAV_GOAL, m.NavGoal(id=goal_id, x=pose[0], y=pose[1], theta=pose[2])
         return topics.NAVIGATION_GOAL, m.NavigationGoal(goal=self._text(), id=goal_id)
 
     def spoken(self) -> str:

@@ -87,6 +87,7 @@ def drive_home(ctx: Context) -> Behaviour:
         text=lambda: "return_to_start",
         spoken=lambda: "I could not come back" + (f" with the {ctx.hand.holding}." if ctx.hand.holding else "."),
         state="RETURNING",
+        place=ctx.io.scene.home.name,
     )
 
 

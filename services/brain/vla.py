@@ -226,6 +226,7 @@ def go_to(ctx: Context, where: str) -> Behaviour:
         text=lambda: f"goto {where}",
         spoken=lambda: f"I could not get to the {where}.",
         state="NAVIGATING",
+        place=where,
     )
     return sequence(f"go to {where}", drive, Stand("there", ctx, where))
 

@@ -134,9 +134,7 @@ class TakeView(Goal):
 
     def initialise(self) -> None:
         super().initialise()
-        ctx, mission = self.ctx, self.ctx.mission
-        here = ctx.io.latest(topics.POSE)
-        pose = (here.x, here.y, here.theta) if here else (0.0, 0.0, 0.0)
+        ctx, mission, pose = self.ctx, self.ctx.mission, self.ctx.here
         choose = ctx.lookout.next if self._elsewhere else ctx.lookout.turns
         self._target = choose(pose, [*mission.visited, pose])
         # A view that cannot be reached is not tried a second time either.
@@ -216,9 +214,7 @@ class Approach(Drive):
         ctx, ref = self.ctx, reference(self.ctx, self._thing)
         if ref is None or ref.frame != "map":
             return super().goal(goal_id)  # nobody has said where in the map it is: navigation looks for it
-        here = ctx.io.latest(topics.POSE)
-        pose = (here.x, here.y, here.theta) if here else (0.0, 0.0, 0.0)
-        x, y, theta = standing_pose(ctx.io.scene, (ref.position[0], ref.position[1]), pose)
+        x, y, theta = standing_pose(ctx.io.scene, (ref.position[0], ref.position[1]), ctx.here)
         return topics.NAV_GOAL, m.NavGoal(id=goal_id, x=x, y=y, theta=theta, object=ref)
 
 

@@ -93,12 +93,12 @@ class Peer:
 
 
 @contextmanager
-def scripted(here: Site, **parameters: str) -> Iterator[Peer]:
+def scripted(here: Site, deaf: str = "", **parameters: str) -> Iterator[Peer]:
+    """A brain and its peer, which does not subscribe to the goal `deaf`."""
     with here.session() as session:
         peer = Peer(session)
-        subscribers = [
-            session.declare_subscriber(key, peer.receive) for key in (*GOALS, "system_status", "gripper_command")
-        ]
+        keys = (*GOALS, "system_status", "gripper_command")
+        subscribers = [session.declare_subscriber(key, peer.receive) for key in keys if key != deaf]
         changes = {f"TIDYBOT__BRAIN__{k.upper()}": v for k, v in parameters.items()}
         process = here.start("services.brain", TIDYBOT_CLOCK="wall", TIDYBOT__BRAIN__PIPELINE="vla", **changes)
         here.wait_alive(session, "brain")
@@ -230,3 +230,15 @@ def test_a_full_hand_is_emptied_by_manipulation(here: Site) -> None:
         peer.did(peer.next("brain/manipulation_goal", goal="release"))
         peer.speech("say Done.")
         assert peer.grips == []
+
+
+def test_a_navigator_that_knows_poses_alone_is_enough(here: Site) -> None:
+    with scripted(here, "brain/navigation_goal", settle="0.2", drive_by="poses", enable_confirmation="false") as peer:
+        peer.ask("bring me the red mug", *FETCH)
+        peer.saw(peer.next("object_query"))
+        peer.moved(peer.stance())
+        peer.did(peer.next("brain/manipulation_goal", goal="grab"))
+        home = peer.next("nav_goal", x=0.0, y=0.0, object=None)
+        peer.moved(home)
+        peer.did(peer.next("brain/manipulation_goal", goal="release"))
+        peer.speech("say Done.")

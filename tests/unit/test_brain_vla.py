@@ -10,7 +10,7 @@ from common import topics
 from common.approach import ROOM
 from common.scene import load_scene
 from services.brain.config import BrainConfig
-from services.brain.floor import clearance, standing_pose
+from services.brain.floor import clearance, place_pose, standing_pose
 from services.sim.layout import place_objects
 from tests.unit.brain_bench import Bench
 
@@ -343,6 +343,15 @@ def test_the_standing_pose_is_free_and_faces_the_thing() -> None:
         assert math.dist(pose[:2], (x, y)) < 0.75
         assert SCENE.room_at(pose[0], pose[1]) is SCENE.room_at(x, y)
         assert abs(math.remainder(math.atan2(y - pose[1], x - pose[0]) - pose[2], math.tau)) < 0.01
+
+
+def test_every_destination_has_a_pose_to_drive_to() -> None:
+    places = [p.name for p in SCENE.places] + [r.name for r in SCENE.rooms] + [r.name for r in SCENE.receptacles]
+    for name in places:
+        pose = place_pose(SCENE, name, (0.0, 0.0, 0.0))
+        assert pose is not None and clearance(SCENE, pose[0], pose[1]) > 0.0, name
+    assert place_pose(SCENE, SCENE.delivery, (3.0, 3.0, 0.0)) == (SCENE.home.x, SCENE.home.y, SCENE.home.theta)
+    assert place_pose(SCENE, "the moon", (0.0, 0.0, 0.0)) is None
 
 
 def test_the_robot_stands_on_its_own_side_of_what_lies_free() -> None:
