@@ -9,7 +9,7 @@ from typing import Any
 import msgspec
 
 from cli.errors import CliError, near
-from cli.link import add_options, linked
+from cli.link import Link, add_options, linked
 from cli.missions import date_of
 from common import topics
 
@@ -29,7 +29,8 @@ def told(record: dict[str, Any]) -> str:
         word = WORDS.get(entry["kind"], entry["kind"])
         cause = entry["cause"] if entry["cause"] != state else ""
         text = f"{word}: {cause}" if word and not cause.startswith(f"{word}: ") else cause
-        text = " - ".join(part for part in (text, entry["evidence"]) if part)
+        shown_by = f"picture {entry['picture']}" if entry.get("picture") else ""
+        text = " - ".join(part for part in (text, entry["evidence"], shown_by) if part)
         head = f"{max(0.0, entry['t'] - began):8.1f} s  {shown:11}  "
         lines += textwrap.wrap(text, WIDTH, initial_indent=head, subsequent_indent=" " * len(head)) or [head.rstrip()]
     lines.append("")
@@ -41,6 +42,17 @@ def told(record: dict[str, Any]) -> str:
     return "\n".join(lines)
 
 
+def pictures(link: Link, record: dict[str, Any]) -> list[tuple[float, str, str]]:
+    """What the mission rests on, as the page takes it: seconds since the mission began, caption, JPEG in base64."""
+    found = []
+    for entry in record["entries"]:
+        name = entry.get("picture")
+        jpeg = link.query(topics.BRAIN_MISSIONS, {"picture": name}) if name else None
+        if jpeg:
+            found.append((max(0.0, entry["t"] - record["started"]), entry["evidence"], str(jpeg)))
+    return found
+
+
 def explain(args: argparse.Namespace) -> int:
     with linked(args) as link:
         record = link.query(topics.BRAIN_MISSIONS, {"id": args.id})
@@ -49,8 +61,9 @@ def explain(args: argparse.Namespace) -> int:
             if not known:
                 raise CliError("there has been no mission yet")
             raise CliError(f"no mission {args.id!r}{near(args.id, known)}; `tidybot missions` lists all")
+        seen = pictures(link, record) if args.html else []
     if args.html:
-        page: str = importlib.import_module("services.dashboard.timeline").page(record)
+        page: str = importlib.import_module("services.dashboard.timeline").page(record, seen)
         try:
             args.html.write_text(page, encoding="utf-8")
         except OSError as error:

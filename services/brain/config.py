@@ -14,7 +14,9 @@ class BrainConfig(Config, frozen=True):
     simulation needs to come back on a busy machine) it ends in ERROR.
     `journal` is relative to the process's state directory; "" keeps missions in memory only. A mission whose brain
     was killed is resumed within `resume_within` seconds of wall time. `run` names the run of the whole robot that
-    this brain belongs to: within one, a mission outlives also an orderly restart.
+    this brain belongs to: within one, a mission outlives also an orderly restart. After every release perception is
+    asked where the object is; it has `check_timeout` for the answer, four times what it needs on a slow machine. What
+    is not where it belongs is picked up and put down again at most `put_right_attempts` times.
     """
 
     pipeline: Literal["fetch", "vla"] = "vla"
@@ -40,3 +42,5 @@ class BrainConfig(Config, frozen=True):
     journal: str = "missions.db"
     resume_within: float = 600.0
     run: str = ""
+    check_timeout: float = 8.0
+    put_right_attempts: int = 2

@@ -18,6 +18,7 @@ from services.brain.journal import Checkpoint, Entry, Journal, Kind, Place
 from services.brain.mission import SYSTEM_STATE, Failure, Hand, Mission, Outcome
 from services.brain.search import lookout
 from services.brain.snapshot import path_to
+from services.brain.store import open_pictures
 
 SAVE_AGAIN = 1.0
 
@@ -27,6 +28,7 @@ class Context:
 
     def __init__(self, config: BrainConfig, io: Io, journal: Journal) -> None:
         self.config, self.io, self.journal = config, io, journal
+        self.pictures = open_pictures(config, io)
         self.now = 0.0
         self.heartbeat = Heartbeat(io)
         self.speech = Channel(io, "speech")
@@ -97,8 +99,8 @@ class Context:
         )
         self.io.publish(topics.SYSTEM_STATUS, status)
 
-    def note(self, cause: str, evidence: str = "", kind: Kind = "note") -> None:
-        self.journal.note(self.mission.id, Entry(self.now, self.shown.state, cause, evidence, kind))
+    def note(self, cause: str, evidence: str = "", kind: Kind = "note", picture: str = "") -> None:
+        self.journal.note(self.mission.id, Entry(self.now, self.shown.state, cause, evidence, kind, picture))
 
     @property
     def here(self) -> Pose2:

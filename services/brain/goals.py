@@ -123,6 +123,11 @@ class Channel:
         return True
 
     # --- the peer's process
+    @property
+    def known(self) -> bool:
+        """A process of this peer has been seen alive, now or earlier."""
+        return bool(self._known)
+
     def watch(self, now: float) -> None:
         """Once a step: remember the peer's epoch and since when it is gone."""
         present = self._io.peer(self.peer)

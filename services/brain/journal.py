@@ -18,13 +18,17 @@ Pose = tuple[float, float, float]
 
 
 class Entry(msgspec.Struct, frozen=True):
-    """One transition or finding: `cause` is why, `evidence` the message or measurement that said so."""
+    """One transition or finding: `cause` is why, `evidence` the message or measurement that said so.
+
+    `picture` names the picture that shows it, "" when there is none.
+    """
 
     t: float
     state: BrainStateName
     cause: str
     evidence: str = ""
     kind: Kind = "state"
+    picture: str = ""
 
 
 class Record(msgspec.Struct):

@@ -51,7 +51,11 @@ class Failure(msgspec.Struct, frozen=True):
 
 
 class Mission(msgspec.Struct):
-    """One command from hearing to outcome. Goal ids are `<id>.<n>`."""
+    """One command from hearing to outcome. Goal ids are `<id>.<n>`.
+
+    `put_down`: the object released last. `checked`: what a look after a release showed, in words; `unchecked`: objects
+    put down where nobody could look.
+    """
 
     id: str
     command: str = ""
@@ -76,6 +80,9 @@ class Mission(msgspec.Struct):
     visited: list[tuple[float, float, float]] = []
     options: list[str] = []
     chosen: dict[str, str] = {}
+    put_down: str = ""
+    checked: list[str] = []
+    unchecked: list[str] = []
 
     def next_goal(self) -> str:
         self.goals += 1

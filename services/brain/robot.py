@@ -143,6 +143,7 @@ class Release(Manipulate):
         return super().give_up(failure)
 
     def done(self, answer: Answer) -> Status:
+        self.ctx.mission.put_down = self.ctx.hand.holding
         self.ctx.hand.released(self.ctx.now)
         self.ctx.mission.released = True
         return Status.SUCCESS

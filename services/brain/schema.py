@@ -12,13 +12,14 @@ MIGRATIONS: tuple[tuple[str, ...], ...] = (
         "create table checkpoint (one integer primary key check (one = 1), body blob not null)",
         "create table boots (number integer primary key autoincrement, date real not null)",
     ),
+    ("alter table entries add column picture text not null default ''",),
 )
 """Statements that bring a file from version n to n + 1; `PRAGMA user_version` holds n. Only ever appended to."""
 
 FIELDS = "id, command, started, outcome, reason, ended, steps, date"
 BEGIN = f"insert or ignore into missions ({FIELDS}) values (?, ?, ?, ?, ?, ?, ?, ?)"
 END = "update missions set command = ?, outcome = ?, reason = ?, ended = ?, steps = ? where id = ?"
-ENTRY = "insert into entries (mission, t, state, cause, evidence, kind) values (?, ?, ?, ?, ?, ?)"
+ENTRY = "insert into entries (mission, t, state, cause, evidence, kind, picture) values (?, ?, ?, ?, ?, ?, ?)"
 CHECKPOINT = "insert or replace into checkpoint (one, body) values (1, ?)"
 TRIM = (
     f"delete from missions where number <= (select max(number) from missions) - {MISSIONS_KEPT}",

@@ -254,10 +254,13 @@ class BrainService:
 
     # --- queries
     def _answer_missions(self, payload: bytes) -> bytes:
-        """All missions, or the timeline of the one whose id is asked for."""
+        """All missions, the timeline of the one whose id is asked for, or a picture of it by name (base64)."""
         wanted = payload.decode().strip()
         if wanted.startswith("{"):
-            wanted = str(msgspec.json.decode(payload).get("id", ""))
+            asked = msgspec.json.decode(payload)
+            if picture := asked.get("picture"):
+                return msgspec.json.encode(self.context.pictures.load(str(picture)))
+            wanted = str(asked.get("id", ""))
         missions = self._journal.missions()
         if wanted == "last":
             wanted = missions[-1].id if missions else wanted

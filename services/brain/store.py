@@ -14,6 +14,7 @@ from common.io import Io
 from services.brain.config import BrainConfig
 from services.brain.journal import ENTRIES_KEPT, KEPT, Checkpoint, Entry, Journal, MemoryJournal, Record
 from services.brain.mission import Mission, Outcome
+from services.brain.pictures import Pictures
 from services.brain.schema import BEGIN, CHECKPOINT, END, ENTRY, FIELDS, MIGRATIONS, TRIM
 
 KEY = "journal"
@@ -124,7 +125,7 @@ class SqliteJournal:
         rows = [] if own else self._rows(f"select {FIELDS} from missions where id = ?", mission_id)
         if not rows:
             return own
-        of = "select t, state, cause, evidence, kind from entries where mission = ? order by number limit ?"
+        of = "select t, state, cause, evidence, kind, picture from entries where mission = ? order by number limit ?"
         entries = [Entry(*row) for row in self._rows(of, mission_id, ENTRIES_KEPT)]
         return msgspec.structs.replace(Record(*rows[0]), entries=entries)
 
@@ -232,12 +233,24 @@ def _values(r: Record) -> tuple[Any, ...]:
 
 
 def _entry(mission_id: str, e: Entry) -> tuple[Any, ...]:
-    return mission_id, e.t, e.state, e.cause, e.evidence, e.kind
+    return mission_id, e.t, e.state, e.cause, e.evidence, e.kind, e.picture
 
 
 def open_journal(config: BrainConfig, io: Io) -> Journal:
     """On disk at the configured path, below the process's state directory; in memory when it has none."""
+    path = journal_path(config, io)
+    return SqliteJournal(path, io) if path is not None else MemoryJournal()
+
+
+def open_pictures(config: BrainConfig, io: Io) -> Pictures:
+    """In the folder `pictures` beside the journal; none are kept where missions are not."""
+    path = journal_path(config, io)
+    folder = path.parent / "pictures" if path is not None else None
+    return Pictures(folder, lambda why: io.count_drop("pictures", why))
+
+
+def journal_path(config: BrainConfig, io: Io) -> Path | None:
     path = Path(config.journal)
     if not config.journal or not (path.is_absolute() or io.state_dir):
-        return MemoryJournal()
-    return SqliteJournal((io.state_dir or Path()) / path, io)
+        return None
+    return (io.state_dir or Path()) / path

@@ -7,6 +7,7 @@ from py_trees.composites import Selector, Sequence
 from common import messages as m
 from common import topics
 from services.brain.behaviours import Do, Leaf, Say, Settle
+from services.brain.check import astray, checked
 from services.brain.context import Context
 from services.brain.decorators import Attempts, When
 from services.brain.intent import parse
@@ -39,8 +40,7 @@ def carry_out(ctx: Context) -> Behaviour:
     fetching = sequence(
         "fetch",
         When("free the hand", put_down_at_home(ctx), lambda: holds_another(ctx)),
-        When("get it", acquire(ctx), lambda: not ctx.hand.holding and not ctx.mission.released),
-        When("deliver it", bring_home(ctx), lambda: not ctx.mission.released),
+        Attempts("until it is right", ctx, deliver(ctx), ctx.config.put_right_attempts, again=lambda: astray(ctx)),
         Complete("complete", ctx),
         Settle("settle", ctx),
     )
@@ -53,6 +53,17 @@ def carry_out(ctx: Context) -> Behaviour:
         When("nothing to stop", Do("end", ctx, lambda: end_unneeded(ctx)), lambda: ctx.mission.kind == "stop", no),
         When("return only", coming, lambda: ctx.mission.kind == "return", no),
         When("fetch it", fetching, lambda: ctx.mission.kind == "fetch", no),
+    )
+
+
+def deliver(ctx: Context) -> Behaviour:
+    """Get it, bring it, put it down; where perception is alive, look whether it stands there."""
+    look = sequence("look", Settle("settle", ctx), checked(ctx, ctx.io.scene.delivery))
+    return sequence(
+        "deliver",
+        When("get it", acquire(ctx), lambda: not ctx.hand.holding and not ctx.mission.released),
+        When("deliver it", bring_home(ctx), lambda: not ctx.mission.released),
+        When("check it", look, lambda: ctx.io.peer("perception") is not None),
     )
 
 
@@ -156,8 +167,9 @@ def object_ref(ctx: Context) -> m.ObjectRef | None:
     if known is None or known.seen_at <= ctx.hand.put_down.get(known.label, -1.0):
         return None
     return m.ObjectRef(
-        label=known.label, position=known.position, orientation=known.orientation, size=known.size, kind=known.kind
-    )
+        label=known.label, position=known.position, orientation=known.orientation, size=known.size, kind=known.kind,
+        tilt=known.tilt,
+    )  # fmt: skip
 
 
 def enter_error(ctx: Context) -> None:

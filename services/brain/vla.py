@@ -1,6 +1,6 @@
 """The VLA pipeline as a tree: listen, confirm, plan, then the plan's steps, each with its fallbacks, then report."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
@@ -12,7 +12,8 @@ from services.brain.behaviours import Leaf, Say, Settle
 from services.brain.context import Context
 from services.brain.decorators import Attempts, When
 from services.brain.hand import Gripper, let_go, open_hand
-from services.brain.robot import LOST, Drive, Grab, Ready, Release
+from services.brain.put_down import put_and_check, put_right
+from services.brain.robot import Drive, Grab, Ready
 from services.brain.trees import drive_home, first_of, grab_failed, report_failure, sequence
 from services.brain.validate import is_destination
 from services.brain.vla_leaves import (
@@ -43,12 +44,18 @@ def vla_tree(ctx: Context) -> Behaviour:
         When("look first", look_first(ctx), lambda: ctx.mission.again),
         RunPlan("execute", ctx),
         Evidence("complete", ctx, lambda: "; ".join(map(in_words, ctx.mission.plan))),
-        Say("report success", ctx, lambda: "Done."),
+        Say("report success", ctx, lambda: success(ctx)),
         Settle("settle", ctx),
     )
     return sequence(
         "vla pipeline", Ready("ready", ctx), Await("listen", ctx), first_of("mission", do, report_failure(ctx))
     )
+
+
+def success(ctx: Context) -> str:
+    """What may be claimed at the end: no more than was seen."""
+    things = " and the ".join(dict.fromkeys(ctx.mission.unchecked))
+    return f"I put down the {things}, but I could not check where it is." if things else "Done."
 
 
 def needs_confirmation(ctx: Context) -> bool:
@@ -93,10 +100,12 @@ class RunPlan(Sequence):
     def unfold(self) -> None:
         """Build the children; a restarted brain does so to find its place among them."""
         self.remove_all_children()
-        carried = ""
+        carried, at_home = "", False
         for step in self._ctx.mission.plan:
             carried = step.object if step.action == "grasp" else carried
-            self.add_child(step_tree(self._ctx, step, carried))
+            if step.action in ("return", "navigate", "grasp", "place"):
+                at_home = step.action == "return"
+            self.add_child(step_tree(self._ctx, step, carried, at_home))
 
     def tick(self) -> Iterator[Behaviour]:
         if self.status != Status.RUNNING:
@@ -104,8 +113,11 @@ class RunPlan(Sequence):
         yield from super().tick()
 
 
-def step_tree(ctx: Context, step: PlanStep, carried: str) -> Behaviour:
-    """One step with its own recovery; the next goal comes a settle later. `carried`: what was grasped last."""
+def step_tree(ctx: Context, step: PlanStep, carried: str, at_home: bool = False) -> Behaviour:
+    """One step with its own recovery; the next goal comes a settle later. `carried`: what was grasped last.
+
+    `at_home`: the plan has brought it to where things are delivered.
+    """
     name = in_words(step)
     match step.action:
         case "find":
@@ -123,15 +135,15 @@ def step_tree(ctx: Context, step: PlanStep, carried: str) -> Behaviour:
         case "place":
             there = When("go there", go_and_settle(ctx, step.target), lambda: ctx.mission.at != step.target)
             back = go_and_settle(ctx, step.target)
-            put = put_down(ctx, carried, back, lambda name: Release(name, ctx, lambda: f"place {step.target}"))
-            return sequence(name, there, put, Settle("settle", ctx))
+            return sequence(name, there, put_down(ctx, carried, back, f"place {step.target}", step.target))
         case "release" if step.hand_alone:
             return sequence(name, open_hand(ctx), Settle("settle", ctx))
         case "release" if not carried:
             return sequence(name, let_go(ctx), Settle("settle", ctx))
         case "release":
             home = sequence("back", drive_home(ctx), Settle("settle", ctx))
-            return sequence(name, put_down(ctx, carried, home, lambda name: Release(name, ctx)), Settle("settle", ctx))
+            target = ctx.io.scene.delivery if at_home else ""
+            return sequence(name, put_down(ctx, carried, home, "release", target))
         case "say":
             return Say(name, ctx, lambda: step.text)
         case "wait":
@@ -205,18 +217,11 @@ def grasp(ctx: Context, thing: str) -> Behaviour:
     return first_of(f"grasp: {thing}", first, When("grab failed", regrasp, lambda: grab_failed(ctx), Status.FAILURE))
 
 
-def put_down(ctx: Context, thing: str, back: Behaviour, release: Callable[[str], Behaviour]) -> Behaviour:
-    """Release; what was lost on the way is looked for, picked up again and brought `back`."""
+def put_down(ctx: Context, thing: str, back: Behaviour, goal: str, target: str) -> Behaviour:
+    """Carry out the `goal` that opens the hand and look; what is lost or amiss is brought `back` again."""
     if not thing:
-        return release("put down")
-    again = sequence("fetch it again", find(ctx, thing), grasp(ctx, thing), back, release("put down at last"))
-    once = When("lost on the way", again, lambda: lost(ctx), Status.FAILURE)
-    return first_of(f"put down {thing}", release("put down"), once)
-
-
-def lost(ctx: Context) -> bool:
-    failure = ctx.mission.failure
-    return failure is not None and failure.code in LOST
+        return put_and_check(ctx, "put down", goal, target)
+    return put_right(ctx, thing, find(ctx, thing), grasp(ctx, thing), back, goal, target)
 
 
 def go_to(ctx: Context, where: str) -> Behaviour:

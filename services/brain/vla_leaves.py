@@ -188,7 +188,9 @@ class Evidence(Leaf):
         if (grasps and not mission.grabbed) or (lets_go and not mission.released):
             ctx.fail(Failure("COMPLETED", "NO_EVIDENCE", spoken="I am not sure that it worked."))
             return Status.FAILURE
-        detail = self._summary()
+        detail = "; ".join(
+            [self._summary(), *mission.checked, *(f"{thing}: not checked" for thing in mission.unchecked)]
+        )
         ctx.finish("delivered", detail)
         ctx.enter("COMPLETED", detail=detail)
         return Status.SUCCESS
@@ -229,5 +231,5 @@ def reference(ctx: Context, thing: str) -> m.ObjectRef | None:
     pose = ctx.mission.found.get(thing)
     if pose is None:
         return None
-    fields = {k: getattr(pose, k) for k in ("label", "position", "orientation", "size", "frame")}
+    fields = {k: getattr(pose, k) for k in ("label", "position", "orientation", "size", "frame", "tilt")}
     return msgspec.convert(fields, m.ObjectRef)

@@ -91,6 +91,11 @@ class Peer:
     def saw(self, query: dict[str, Any], found: bool = True) -> None:
         self.put("object_pose", query_id=query["id"], found=found, label="red mug", position=MUG_AT)
 
+    def looked(self, query: dict[str, Any]) -> None:
+        """A picture taken after the question shows the mug on the tray."""
+        at = [0.7, 0.0, 0.51]
+        self.put("object_pose", query_id=query["id"], found=True, label="red mug", position=at, seen_at=query["since"])
+
 
 @contextmanager
 def scripted(here: Site, deaf: str = "", **parameters: str) -> Iterator[Peer]:
@@ -146,6 +151,7 @@ def test_voice_to_action_with_a_correction_and_a_replan(here: Site) -> None:
         peer.did(grab)
         peer.drove(peer.next("brain/navigation_goal", goal="return_to_start"))
         peer.did(peer.next("brain/manipulation_goal", goal="release"))
+        peer.looked(peer.next("object_query", query="red mug"))
         peer.speech("say Done.")
         eventually(lambda: peer.system[-1] == "IDLE", "back to waiting")
         states = [

@@ -15,6 +15,7 @@ from tests.node import Node
 
 SCENE = load_scene("apartment")
 ITEM = "red mug"
+TRAY = (0.7, 0.0, 0.51)
 PERIOD = 0.05
 SECONDS = {"drive": 3.0, "grab": 3.0, "release": 2.0, "listen": 1.0, "plan": 0.5, "look": 0.5}
 PLAN = [
@@ -165,10 +166,15 @@ class Perception(Peer):
         super().__init__(world, "perception", (topics.OBJECT_QUERY,), (topics.OBJECT_POSE,))
 
     def take(self, goal: m.ObjectQuery, now: float) -> None:
-        found = self.world.item_at != "hand"
-        pose = m.ObjectPose(query_id=goal.id, found=found, label=ITEM, confidence=0.9, position=(1.0, 2.0, 0.8))
-        send = lambda: self.answer(goal, lambda: self.io.publish(topics.OBJECT_POSE, pose))  # noqa: E731
-        self.run(goal, SECONDS["look"], send)
+        self.run(goal, SECONDS["look"], lambda: self.look(goal))
+
+    def look(self, goal: m.ObjectQuery) -> None:
+        at = self.world.item_at
+        position = TRAY if at == "home" else (1.0, 2.0, 0.8)
+        pose = m.ObjectPose(
+            query_id=goal.id, found=at != "hand", label=ITEM, confidence=0.9, position=position, seen_at=self.world.now
+        )
+        self.answer(goal, lambda: self.io.publish(topics.OBJECT_POSE, pose))
 
 
 PEERS = (Navigation, Manipulation, Speech, Planner, Perception)

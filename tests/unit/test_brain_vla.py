@@ -57,7 +57,9 @@ def answer_plan(bench: Bench, count: int, steps: list[m.PlanStep], detail: str =
 def see(bench: Bench, count: int, found: bool = True) -> None:
     query = bench.next_goal(QUERY, count)
     assert query.query == "red mug"
-    bench.send(topics.OBJECT_POSE, m.ObjectPose(query_id=query.id, found=found, label="red mug", position=MUG_AT))
+    at = (0.7, 0.0, 0.51) if query.since else MUG_AT
+    pose = m.ObjectPose(query_id=query.id, found=found, label="red mug", position=at, seen_at=bench.now)
+    bench.send(topics.OBJECT_POSE, pose)
     bench.step()
 
 
@@ -93,6 +95,7 @@ def test_the_contracts_sequence() -> None:
     bench.did(grab)
     bench.drove(bench.nav(1))
     bench.did(bench.manip(2))
+    see(bench, 2)
     bench.until(lambda: bench.states()[-1] == "WAITING")
     assert bench.states() == [
         "IDLE", "WAITING", "CONFIRMING", "PLANNING", "GROUNDING", "NAVIGATING", "GRABBING", "RETURNING", "RELEASING",

@@ -1,0 +1,212 @@
+"""After putting down the brain looks, and claims only what it saw."""
+
+import math
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from common import messages as m
+from common import topics
+from common.memory import MemoryIo
+from common.scene import load_scene
+from services.brain.config import BrainConfig
+from services.brain.pictures import KEPT, LARGEST, START, Pictures
+from services.brain.placement import found_at, not_found
+from tests.unit.brain_bench import Bench
+from tests.unit.test_brain_vla import FETCH, MANIP, NAV, QUERY, SPEECH, planned, see
+
+SCENE = load_scene("apartment")
+TRAY = (0.7, 0.0, 0.51)
+LYING = math.pi / 2
+SIDE = (math.sqrt(0.5), 0.0, math.sqrt(0.5), 0.0)
+
+
+def pose(**fields: Any) -> m.ObjectPose:
+    return m.ObjectPose(query_id="q", found=True, **{"label": "red mug", "position": TRAY, **fields})
+
+
+@pytest.mark.parametrize(
+    ("label", "target", "seen", "fault"),
+    [
+        ("red mug", "delivery tray", {}, ""),
+        ("red mug", "tray", {"on": "delivery tray"}, ""),
+        ("red mug", "delivery tray", {"tilt": LYING}, "TOPPLED"),
+        ("red mug", "delivery tray", {"orientation": SIDE}, "TOPPLED"),
+        ("red mug", "delivery tray", {"tilt": math.pi}, "TOPPLED"),
+        ("red ball", "delivery tray", {"tilt": LYING}, ""),
+        ("red mug", "delivery tray", {"position": (0.7, 0.0, 0.05)}, "MISPLACED"),
+        ("red mug", "delivery tray", {"position": (1.3, 0.0, 0.05)}, "MISPLACED"),
+        ("red mug", "delivery tray", {"on": "desk", "position": (-2.6, 3.0, 0.77)}, "MISPLACED"),
+        ("red mug", "", {"position": (1.3, 0.0, 0.05)}, ""),
+        ("red mug", "", {"position": (1.3, 0.0, 0.05), "tilt": LYING}, "TOPPLED"),
+        ("red mug", "bin", {"position": (6.6, -2.3, 0.1), "tilt": LYING}, ""),
+        ("red mug", "bin", {"position": (6.1, -2.3, 0.05)}, "MISPLACED"),
+    ],
+)
+def test_what_is_seen_is_judged_by_place_and_stance(label: str, target: str, seen: dict[str, Any], fault: str) -> None:
+    finding = found_at(pose(label=label, **seen), label, target, SCENE)
+    assert finding.fault == fault
+    assert label in finding.words and "tilt" in finding.words
+
+
+def test_into_a_bin_nobody_sees() -> None:
+    assert not_found("red mug", "bin", SCENE).fault == ""
+    assert not_found("red mug", "delivery tray", SCENE).fault == "NOT_SEEN"
+
+
+def with_perception(bench: Bench) -> None:
+    """Its process is alive: it holds the token."""
+    MemoryIo(bench.bus, "perception", (), (), scene=SCENE)
+
+
+def brought(alive: bool = True) -> Bench:
+    """The mug has been released at home; the query after that is the second."""
+    bench = planned(FETCH)
+    if alive:
+        with_perception(bench)
+    see(bench, 1)
+    bench.drove(bench.nav(1))
+    bench.did(bench.manip(1))
+    bench.drove(bench.nav(2))
+    bench.did(bench.manip(2))
+    return bench
+
+
+def look(bench: Bench, count: int, **seen: Any) -> None:
+    """Answer a query by what a picture shows that is taken now."""
+    query = bench.next_goal(QUERY, count)
+    bench.send(topics.OBJECT_POSE, m.ObjectPose(query_id=query.id, **{**SEEN, "seen_at": bench.now, **seen}))
+    bench.step()
+
+
+SEEN: dict[str, Any] = {"found": True, "label": "red mug", "position": TRAY, "on": "delivery tray"}
+
+
+def ended(bench: Bench) -> m.MissionOutcome:
+    bench.until(lambda: bench.state.last is not None)
+    assert bench.state.last is not None
+    return bench.state.last
+
+
+def test_what_stands_where_it_belongs_is_delivered_and_the_look_is_evidence() -> None:
+    bench = brought()
+    query = bench.next_goal(QUERY, 2)
+    assert query.query == "red mug" and query.since > 0.0
+    assert bench.state.state == "RELEASING" and bench.state.step == "check red mug"
+    look(bench, 2)
+    last = ended(bench)
+    assert last.outcome == "delivered" and "the red mug is on the delivery tray, at (0.70, 0.00, 0.51)" in last.reason
+    bench.until(lambda: "say Done." in bench.texts(SPEECH))
+
+
+def test_a_fault_is_believed_when_a_second_picture_shows_it() -> None:
+    bench = brought()
+    look(bench, 2, tilt=LYING)
+    assert bench.state.state == "RELEASING"
+    look(bench, 3)
+    assert ended(bench).outcome == "delivered"
+    assert bench.texts(MANIP) == ["grab", "release"]
+
+
+def test_what_lies_is_said_picked_up_and_put_right() -> None:
+    bench = brought()
+    for count in (2, 3, 4):
+        look(bench, count, tilt=LYING)
+    bench.drove(bench.nav(3))
+    grab = bench.manip(3)
+    assert grab.object is not None and grab.object.tilt == LYING
+    bench.did(grab)
+    bench.drove(bench.nav(4))
+    bench.did(bench.manip(4))
+    look(bench, 5)
+    assert ended(bench).outcome == "delivered"
+    said = "say I put down the red mug, but the red mug lies on its side on the delivery tray. I will try again."
+    assert said in bench.texts(SPEECH)
+    assert bench.texts(NAV) == ["find red mug", "return_to_start"] * 2
+
+
+def test_what_is_found_in_its_place_after_all_is_not_picked_up() -> None:
+    bench = brought()
+    for count in (2, 3):
+        look(bench, count, found=False)
+    look(bench, 4)
+    assert ended(bench).outcome == "delivered"
+    assert bench.texts(MANIP) == ["grab", "release"]
+
+
+def test_what_never_gets_right_is_reported_and_never_claimed() -> None:
+    bench = brought()
+    count, drives, arms = 2, 2, 2
+    while bench.state.last is None:
+        if bench.count(QUERY) >= count:
+            look(bench, count, on="", position=(1.2, 0.3, 0.05))
+            count += 1
+        if bench.count(NAV) > drives:
+            drives += 1
+            bench.drove(bench.nav(drives))
+        if bench.count(MANIP) > arms:
+            arms += 1
+            bench.did(bench.manip(arms))
+        bench.step()
+    assert ended(bench).outcome == "failed" and "MISPLACED" in ended(bench).reason
+    assert "COMPLETED" not in bench.states()
+    assert bench.texts(MANIP) == ["grab", "release"] * (1 + BrainConfig().put_right_attempts)
+    assert "on the floor" in bench.texts(SPEECH)[-1]
+
+
+@pytest.mark.parametrize("answers", [False, True])
+def test_a_plain_peer_that_does_not_look_costs_seconds_and_nothing_more_is_claimed(answers: bool) -> None:
+    bench = brought(alive=False)
+    asked = bench.next_goal(QUERY, 2)
+    began = bench.now
+    if answers:  # as it did before: where the mug once was
+        bench.send(topics.OBJECT_POSE, m.ObjectPose(query_id=asked.id, found=True, label="red mug", position=TRAY))
+    last = ended(bench)
+    assert bench.now - began < BrainConfig().check_timeout + 3.0
+    assert last.outcome == "delivered" and "red mug: not checked" in last.reason
+    bench.until(lambda: bench.texts(SPEECH)[-1] == "say I put down the red mug, but I could not check where it is.")
+
+
+def test_perception_that_lives_and_does_not_answer_is_an_error() -> None:
+    bench = brought()
+    last = ended(bench)
+    assert last.outcome == "failed" and "UNCHECKED" in last.reason
+    assert "COMPLETED" not in bench.states()
+    assert bench.texts(SPEECH)[-1] == "say I put down the red mug, but I could not check where it is."
+
+
+@pytest.mark.parametrize("alive", [False, True])
+def test_the_fetch_pipeline_looks_where_perception_is_alive(alive: bool) -> None:
+    bench = Bench(BrainConfig(pipeline="fetch"))
+    if alive:
+        with_perception(bench)
+    bench.hear("bring me the red mug")
+    bench.drove(bench.nav(1))
+    bench.did(bench.manip(1))
+    bench.drove(bench.nav(2))
+    bench.did(bench.manip(2))
+    if alive:
+        for count in (1, 2):
+            look(bench, count, found=False)
+        bench.drove(bench.nav(3))
+        bench.did(bench.manip(3))
+        bench.drove(bench.nav(4))
+        bench.did(bench.manip(4))
+        look(bench, 3)
+    bench.until(lambda: bench.state.state == "COMPLETED")
+    assert bench.texts(MANIP) == ["grab", "release"] * (2 if alive else 1)
+    assert bench.count(QUERY) == (3 if alive else 0)
+
+
+def test_the_newest_pictures_are_kept_and_only_pictures(tmp_path: Path) -> None:
+    told: list[str] = []
+    pictures = Pictures(tmp_path / "pictures", told.append)
+    names = [pictures.keep(f"m/{n}", START + bytes([n % 256])) for n in range(KEPT + 3)]
+    assert pictures.load(names[0]) is None and pictures.load(names[-1]) == START + bytes([(KEPT + 2) % 256])
+    assert len(list((tmp_path / "pictures").iterdir())) == KEPT
+    assert pictures.keep("m", b"") == pictures.keep("m", b"MZ") == pictures.keep("m", START + bytes(LARGEST)) == ""
+    assert pictures.load("../missions.db") is None and pictures.load("/etc/passwd") is None
+    assert Pictures(None, told.append).keep("m", START) == "" and not told
+    (tmp_path / "file").write_text("where the folder should be")
+    assert Pictures(tmp_path / "file", told.append).keep("m", START) == "" and told
