@@ -13,18 +13,35 @@ from common.geometry import Pose2, matrix_quat, quat_matrix, yaw_quat
 from services.manipulation.arm_model import Array, Pose
 
 HANDLE_CONE = math.radians(50)
+LYING_FROM = 0.7
+"""Tilt [rad] from which, and up to which before upside down, a thing lies on its side."""
+LYING_TILTS = {"mug": (60, 75, 90, 50), "can": (75, 60, 90), "bottle": (75, 90, 60)}
+"""Degrees from which a lying thing is taken: to set it upright, the hand comes from 90 less these above horizontal, and
+a low thing needs room for the palm."""
+LYING_POINT = {"bottle": -0.14}
+"""Where along its axis a lying thing is taken, from its middle to its top, in lengths: a bottle's body is below it."""
+ALIKE = ("can", "box", "block")
+"""Kinds whose ends are alike: either may be up."""
 BOWL_LEAN, BOWL_WALL, RIM_DEPTH = 0.55, 0.006, 0.012
 
 
 @dataclass(frozen=True)
 class Target:
-    """An object in the base frame: `position` its centre, `yaw` about z, `size` full extents standing upright."""
+    """An object in the base frame: `position` its centre, `yaw` about z, `size` full extents as it rests.
+
+    With a `tilt` [rad] it lies: its own axis points along `yaw`, and its first extent is along that.
+    """
 
     label: str
     kind: str
     position: tuple[float, float, float]
     yaw: float
     size: tuple[float, float, float]
+    tilt: float = 0.0
+
+    @property
+    def lies(self) -> bool:
+        return LYING_FROM < self.tilt < math.pi - LYING_FROM
 
     @property
     def bottom(self) -> float:
@@ -33,13 +50,17 @@ class Target:
 
 @dataclass(frozen=True)
 class Grasp:
-    """Where the pinch point goes, how wide the object is there, and its height above the object's underside."""
+    """Where the pinch point goes, how wide the object is there, and its height above the object's underside.
+
+    `axis`: where the upper end of a lying object points [rad]; None when it stands.
+    """
 
     pose: Pose
     width: float
     height: float
     tilt: float
     name: str
+    axis: float | None = None
 
 
 def approach_rotation(azimuth: float, tilt: float, roll: float = 0.0) -> Array:
@@ -65,6 +86,8 @@ def candidates(target: Target, forward: float, widest: float) -> list[Grasp]:
 
 def _candidates(target: Target, forward: float) -> list[Grasp]:
     facing = math.atan2(target.position[1], target.position[0] - forward)
+    if target.lies:
+        return _lying(target, facing)
     if target.kind == "mug":
         return _round(target, facing, (40, 55, 25), handle=True)
     if target.kind in ("can", "bottle"):
@@ -124,6 +147,30 @@ def _round(target: Target, facing: float, tilts: Sequence[float], handle: bool) 
                 continue
             found.append(_make(target, height, azimuth, tilt, 0.0, width, f"{degrees:.0f} deg at {turn:+.0f}"))
     return found
+
+
+def _lying(target: Target, facing: float) -> list[Grasp]:
+    """Fingers on either side of a lying thing's axis, the hand leaning towards its foot: so it can be set upright."""
+    found = []
+    along = LYING_POINT.get(target.kind, 0.0) * target.size[0]
+    x, y, _ = target.position
+    point = np.array([x + along * math.cos(target.yaw), y + along * math.sin(target.yaw), target.position[2]])
+    turns = (0.0, math.pi) if target.kind in ALIKE else (0.0,)
+    for degrees in LYING_TILTS.get(target.kind, (75, 90, 60)):
+        for axis in sorted((target.yaw + turn for turn in turns), key=lambda a: abs(_off(a + math.pi, facing))):
+            # Straight from above the hand may be turned either way.
+            for azimuth in (axis + math.pi, axis) if degrees == 90 else (axis + math.pi,):
+                pose = Pose(point, approach_rotation(azimuth, math.radians(degrees)))
+                name = f"lying, {degrees} deg at {math.degrees(_off(azimuth, facing)):+.0f}"
+                height = target.size[2] / 2
+                found.append(
+                    Grasp(pose, target.size[1], height, math.radians(degrees), name, math.remainder(axis, math.tau))
+                )
+    return found
+
+
+def _off(angle: float, other: float) -> float:
+    return math.remainder(angle - other, math.tau)
 
 
 def _closes_on(handle: float, azimuth: float) -> bool:

@@ -47,13 +47,15 @@ class ObjectSource:
         known = next((o for o in self.objects() if o.label == label), None)
         if known is None:
             return
+        # What lay is held, and put down, as it stands.
+        size = known.size[::-1] if known.tilt else known.size
         self._moved[label] = WorldObject(
             label=label,
             kind=known.kind,
             colour=known.colour,
             position=position or known.position,
             orientation=known.orientation,
-            size=known.size,
+            size=size,
             on=on,
             seen_at=now,
             held=position is None,
@@ -89,6 +91,7 @@ class ObjectSource:
             orientation=ref.orientation,
             size=size,
             on=known.on if known and _close(known.position, ref.position) else "",
+            tilt=ref.tilt,
         )
 
 

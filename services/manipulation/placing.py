@@ -1,5 +1,7 @@
 """Setting down what is held: on a receptacle, or wherever there is room; the hand opens only when it stands."""
 
+from itertools import product
+
 import numpy as np
 
 from common.geometry import compose
@@ -38,7 +40,8 @@ def place(robot: Robot, where: str) -> Steps[str]:
     if not choices:
         raise Failure("UNREACHABLE", f"no free spot of the {where} is within reach from here")
     last = Failure("UNREACHABLE", "nothing within reach")
-    for name, free, surface, drop in choices:
+    stances = [held, held.as_found] if held.as_found is not None else [held]
+    for held, (name, free, surface, drop) in product(stances, choices):
         try:
             plan = yield from robot.work(
                 plan_place, planner, held, free, surface, drop, _around(robot, held, name), robot.joints.copy()

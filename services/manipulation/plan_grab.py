@@ -7,7 +7,7 @@ import numpy as np
 
 from services.manipulation.arm_model import Array, Obstacle
 from services.manipulation.grasp import Grasp, Target
-from services.manipulation.held import Held
+from services.manipulation.held import Held, grasped
 from services.manipulation.ik import seeds
 from services.manipulation.plan import PlanError, Planner, counted
 from services.manipulation.surroundings import with_thing
@@ -92,11 +92,7 @@ def _try_grab(
     there = connect(arm, now, back[-1], rng)
     if there is None:
         return "no path to the pre-grasp"
-    bottom = np.array([target.position[0], target.position[1], target.bottom])
-    held = Held(
-        target.label, target.kind, grasp.pose.rotation, grasp.pose.position - bottom, target.size, grasp.width,
-        target.yaw,
-    )  # fmt: skip
+    held = grasped(target, grasp)
     arm.hold(*held.box())
     planner.surround(around, up[-1])
     away = planner.to_carry(up[-1], rng)

@@ -83,7 +83,8 @@ def _aimed(robot: Robot, plan: GrabPlan, goal: m.ManipulationGoal, found: WorldO
         Failure: MISTAKEN, it was planned for a place or a side that is not the object's.
     """
     config, since = robot.config, robot.now
-    if not robot.io.peer("perception"):
+    if not robot.io.peer("perception") or found.tilt:
+        # From so near the wrist camera sees no end of what lies.
         return plan
     robot.phase = "aim"
     seen: WorldObject | None = None

@@ -24,7 +24,7 @@ def target_of(found: WorldObject, base: Pose2, scene: Scene) -> Target:
     receptacle = scene.receptacle(found.on)
     if receptacle is not None and not receptacle.depth:
         z = receptacle.center[2] + found.size[2] / 2
-    return Target(found.label, found.kind, (x, y, z), yaw, found.size)
+    return Target(found.label, found.kind, (x, y, z), yaw, found.size, found.tilt)
 
 
 def turned(was: Target, new: Target) -> float:

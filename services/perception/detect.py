@@ -174,7 +174,7 @@ def _stances(spec: ObjectSpec) -> list[Stance]:
     x, y, z = spec.size
     if spec.kind != "box":
         return [Stance(spec.size)]
-    return [Stance(size, 0.0 if size[2] == z else LYING) for size in dict.fromkeys([(x, y, z), (y, z, x), (z, x, y)])]
+    return [Stance(size, 0.0 if size[2] == z else LYING) for size in dict.fromkeys([(x, y, z), (z, y, x), (z, x, y)])]
 
 
 def _toppled(spec: ObjectSpec) -> list[Stance]:
