@@ -9,6 +9,7 @@ from py_trees.composites import Sequence
 from common.messages import PlanStep
 from services.brain.asking import HearChoice, HearReply, Question, question, which
 from services.brain.behaviours import Leaf, Say, Settle
+from services.brain.check import checked
 from services.brain.context import Context
 from services.brain.decorators import Attempts, When
 from services.brain.hand import Gripper, let_go, open_hand
@@ -139,7 +140,9 @@ def step_tree(ctx: Context, step: PlanStep, carried: str, at_home: bool = False)
         case "release" if step.hand_alone:
             return sequence(name, open_hand(ctx), Settle("settle", ctx))
         case "release" if not carried:
-            return sequence(name, let_go(ctx), Settle("settle", ctx))
+            look = checked(ctx, ctx.io.scene.delivery if at_home else "")
+            known = When("look", look, lambda: ctx.io.scene.object(ctx.mission.put_down) is not None)
+            return sequence(name, let_go(ctx), Settle("settle", ctx), known)
         case "release":
             home = sequence("back", drive_home(ctx), Settle("settle", ctx))
             target = ctx.io.scene.delivery if at_home else ""
