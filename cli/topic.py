@@ -33,9 +33,9 @@ def check_key(expression: str) -> str:
     """
     keys = known_keys()
     dynamic = [
-        topics.HEALTH_KEY.format(name="sim"),
+        topics.HEALTH.of("sim"),
         topics.ALIVE_KEY.format(name="sim"),
-        topics.LOG_KEY.format(name="sim"),
+        topics.LOG.of("sim"),
     ]
     if topics.type_of(expression) is not None or any(matches(expression, k) for k in (*keys, *dynamic)):
         return expression

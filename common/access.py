@@ -1,9 +1,9 @@
 """Who may publish, subscribe and ask what: Zenoh access control generated from the topic table.
 
 A certificate's common name is `<service>`, or `<namespace>/<service>` for a robot that has a namespace. What is not
-granted here is denied: a service writes the topics whose table row names it, reads the topics listed below, and
-answers its own queries. Clients are people's tools: an operator reads everything and writes what `*` may write, an
-observer only reads. Routers, which link with each other, pass everything.
+granted here is denied: a service writes and reads the topics whose row names it, and answers its own queries. Clients
+are people's tools: an operator reads everything and writes what `*` may write, an observer only reads. Routers, which
+link with each other, pass everything.
 """
 
 from collections.abc import Iterable
@@ -12,59 +12,12 @@ from typing import Any, Literal
 import msgspec
 
 from common import topics as t
-from common.topics import Topic
 
 Role = Literal["service", "operator", "observer", "router"]
-ANYONE = "*"
 ROUTER, OPERATOR, EAR = "router", "operator", "ear"
 
-# What each service subscribes to; tests/unit/test_access.py holds it against the services themselves.
-READS: dict[str, tuple[Topic[Any], ...]] = {
-    "sim": (t.BASE_TARGET, t.CMD_VEL, t.ARM_COMMAND, t.GRIPPER_COMMAND, t.ROBOT_STOP, t.ROBOT_RESUME),
-    "camera": (t.SIM_MODEL, t.SIM_STATE, t.CAMERA_REQUEST),
-    "navigation": (
-        t.NAVIGATION_GOAL, t.NAV_GOAL, t.GOAL_REACHED, t.ODOMETRY, t.JOINT_STATES, t.SCAN, t.WORLD_OBJECTS,
-        t.ROBOT_STOP,
-    ),
-    "manipulation": (
-        t.MANIPULATION_GOAL, t.NAVIGATION_GOAL, t.JOINT_STATES, t.POSE, t.ODOMETRY, t.WORLD_OBJECTS,
-        t.ROBOT_DESCRIPTION, t.ROBOT_STOP,
-    ),
-    "speech": (t.SPEECH_GOAL, t.SPEECH_TEXT, t.AUDIO_PCM),
-    "brain": (
-        t.SPEECH_RESULT, t.SPEECH_STATUS, t.VOICE_COMMAND, t.NAVIGATION_STATUS, t.NAVIGATION_FEEDBACK,
-        t.MANIPULATION_STATUS, t.ACTION_PLAN, t.OBJECT_POSE, t.WORLD_OBJECTS, t.SIM_STATUS, t.ROBOT_STOP,
-        t.ROBOT_RESUME, t.POSE, t.JOINT_STATES,
-    ),
-    "planner": (t.PLAN_REQUEST, t.WORLD_OBJECTS, t.POSE),
-    "perception": (
-        t.OBJECT_QUERY, t.HEAD_RGBD, t.WRIST_RGBD, t.POSE, t.JOINT_STATES, t.ROBOT_DESCRIPTION,
-        t.MANIPULATION_STATUS, t.SIM_STATUS,
-    ),
-    "dashboard": (
-        t.SIM_MODEL, t.SIM_STATUS, t.JOINT_STATES, t.POSE, t.SCAN, t.NAV_PATH, t.COSTMAP, t.GRASPS, t.ARM_COMMAND,
-        t.WORLD_OBJECTS, t.BRAIN_STATE, t.BRAIN_TREE, t.ACTION_PLAN, t.SPEECH_GOAL, t.SPEECH_RESULT, t.SPEECH_STATUS,
-        t.NAVIGATION_FEEDBACK, t.MANIPULATION_STATUS, t.HEAD_RGBD, t.WRIST_RGBD, t.AUDIO_OUT,
-    ),
-}  # fmt: skip
-
-# Services that a person acts through, and which of the topics that any client may write they do write.
-ON_BEHALF: dict[str, tuple[Topic[Any], ...]] = {
-    "dashboard": (t.VOICE_COMMAND, t.ROBOT_STOP, t.ROBOT_RESUME, t.NAV_GOAL, t.CAMERA_REQUEST, t.AUDIO_PCM),
-}
-
-# Queries: who answers, and whether the question changes something (then observers may not ask).
-SERVES: dict[str, str] = {
-    t.BRAIN_MISSIONS: "brain",
-    t.SIM_RESET: "sim",
-    t.SIM_PAUSE: "sim",
-    t.SIM_SNAPSHOT: "sim",
-    t.SIM_TRUTH: "sim",
-}
-ASKS: dict[str, tuple[str, ...]] = {"dashboard": (t.BRAIN_MISSIONS,)}
-CHANGING = (t.SIM_RESET, t.SIM_PAUSE, t.SIM_SNAPSHOT)
-
-ALL_HEALTH, ALL_ALIVE = t.HEALTH_KEY.format(name="*"), t.ALIVE_KEY.format(name="*")
+CHANGING = tuple(q.key for q in t.QUERIES if q.changing)
+ALL_HEALTH, ALL_ALIVE = t.HEALTH.key, t.ALIVE_KEY.format(name="*")
 ADVANCED = "@adv/**"  # caches, heartbeats and tokens of advanced publishers live below the key
 EVERYTHING = ("**", f"**/{ADVANCED}")
 
@@ -95,29 +48,25 @@ def grants(subject: Subject) -> Grants:
     """What the table gives a subject that is not a router."""
     if subject.role == "service":
         return _service(subject.name)
-    questions = tuple(k for k in SERVES if k not in CHANGING)
+    questions = tuple(q.key for q in t.QUERIES if not q.changing)
     if subject.role == "observer":
         return Grants(reads=EVERYTHING, asks=(*questions, *(topic.key for topic in t.TABLE), ALL_HEALTH))
-    puts = tuple(topic.key for topic in t.TABLE if ANYONE in topic.writers)
+    puts = tuple(topic.key for topic in t.TABLE if t.ANYONE in topic.writers)
     return Grants(puts=puts, reads=EVERYTHING, asks=EVERYTHING, tokens=(t.ALIVE_KEY.format(name=EAR),))
 
 
 def _service(name: str) -> Grants:
-    written = [topic for topic in t.TABLE if name in topic.writers] + list(ON_BEHALF.get(name, ()))
-    read = list(READS.get(name, ()))
-    if name == "sim":
-        read.append(t.LOCKSTEP_ACK)
-    else:
-        written.append(t.LOCKSTEP_ACK)
-        read += t.CLOCKS
-    health, alive = t.HEALTH_KEY.format(name=name), t.ALIVE_KEY.format(name=name)
-    served = (k for k, server in SERVES.items() if server == name)
+    """What the rows that name a service, or each, give it: the other side of a row of each does not get both."""
+    written = [row.key for row in t.TABLE if name in row.writers or (t.EACH in row.writers and name not in row.readers)]
+    read = [row.key for row in t.TABLE if name in row.readers or (t.EACH in row.readers and name not in row.writers)]
+    latched = [key for key in written if t.BY_KEY[key].latched]
+    own, health = [row.of(name) for row in t.PER_SERVICE], t.HEALTH.of(name)
     return Grants(
-        puts=(*(topic.key for topic in written), health, t.LOG_KEY.format(name=name)),
-        reads=(*(topic.key for topic in read), ALL_HEALTH, ALL_ALIVE),
-        answers=(*(topic.key for topic in written if topic.latched), health, *served),
-        asks=(*(topic.key for topic in read), ALL_HEALTH, *ASKS.get(name, ())),
-        tokens=(alive,),
+        puts=(*written, *own),
+        reads=(*read, ALL_HEALTH, ALL_ALIVE),
+        answers=(*latched, health, *(q.key for q in t.QUERIES if q.server == name)),
+        asks=(*read, ALL_HEALTH, *(q.key for q in t.QUERIES if name in q.askers)),
+        tokens=(t.ALIVE_KEY.format(name=name),),
     )
 
 

@@ -37,6 +37,10 @@ def _structs() -> list[type[m.Message]]:
     return sorted(found, key=lambda kind: kind.__name__)
 
 
+def _yes(said: bool) -> str:
+    return "yes" if said else ""
+
+
 def render() -> str:
     """The page as Markdown."""
     lines = [
@@ -46,23 +50,28 @@ def render() -> str:
         "",
         "## Topics",
         "",
-        "`*` as a writer means any client. *latched*: the last value also answers a `get` on the key.",
+        "Writer `*` is any client, `each` every service. *latched*: the last value also answers a `get` on the key.",
         "*all*: every message arrives, in order, also after a router outage; *latest*: only the newest counts.",
         "",
-        "| key | payload | writers | rate [Hz] | keep | latched | encoding | bare text fills |",
-        "|---|---|---|---|---|---|---|---|",
+        "| key | payload | writers | readers | rate [Hz] | keep | latched | encoding | bare text fills |",
+        "|---|---|---|---|---|---|---|---|---|",
     ]
-    for t in topics.TABLE:
+    for t in (*topics.TABLE, *topics.PER_SERVICE):
+        who = f"{', '.join(t.writers)} | {', '.join(t.readers)}"
         encoding = codec.encoding_of(t).partition("/")[2]
         lines.append(
-            f"| `{t.key}` | {t.type.__name__} | {', '.join(t.writers)} | {t.rate:g} | {t.keep} "
-            f"| {'yes' if t.latched else ''} | {encoding} | {t.text} |".replace("| 0 |", "| event |")
+            f"| `{t.key}` | {t.type.__name__} | {who} | {t.rate:g} | {t.keep} "
+            f"| {_yes(t.latched)} | {encoding} | {t.text} |".replace("| 0 |", "| event |")
         )
     lines += [
         "",
-        "Every process also holds the liveliness token `service/<name>/alive`, publishes `service/<name>/health`",
-        "(Health, 1 Hz, latched) and `log/<name>` (LogRecord).",
-        "Queries: `sim/reset`, `sim/pause`, `sim/snapshot`, `sim/truth`.",
+        "A `*` in a key is a service's name. Every process also holds the liveliness token `service/<name>/alive`.",
+        "",
+        "## Queries",
+        "",
+        "| key | answered by | asked by services | changes something |",
+        "|---|---|---|---|",
+        *(f"| `{q.key}` | {q.server} | {', '.join(q.askers)} | {_yes(q.changing)} |" for q in topics.QUERIES),
         "",
         "## Payloads",
         "",

@@ -62,7 +62,7 @@ class Process:
             log_level=shared.log_level,
         )
         self.io.state_dir = state_dir
-        self._health = opened.declare_publisher(topics.HEALTH_KEY.format(name=kind.NAME), encoding=codec.JSON)
+        self._health = opened.declare_publisher(topics.HEALTH.of(kind.NAME), encoding=codec.JSON)
         self._last_health = b""
         self._health_queryable = opened.declare_queryable(self._health.key_expr, self._answer_health)
         self._started = self._health_at = monotonic()

@@ -1,6 +1,7 @@
-"""The one table of topics: key, payload, rate, latched or not, keep the latest or keep all.
+"""The one table of topics: key, payload, who publishes and who subscribes, rate, delivery, latched or not.
 
-`docs/INTERFACES.md` is generated from this table (`python -m common.interfaces`).
+Everything else is derived from it: what a service subscribes to and publishes (`subscribed`, `published`), access
+rules, recordings, and docs/INTERFACES.md (`python -m common.interfaces`).
 """
 
 from typing import Any, Generic, Literal, TypeVar
@@ -11,21 +12,26 @@ from common import messages as m
 
 M = TypeVar("M", bound=m.Message)
 Keep = Literal["latest", "all"]
+ANYONE = "*"
+"""As a publisher: any client that may command the robot."""
+EACH = "each"
+"""As a publisher or subscriber: every service, by the runtime that it lives in."""
 
 
 class Topic(msgspec.Struct, Generic[M], frozen=True, kw_only=True):
     """One key expression.
 
-    `rate` is the declared frequency [Hz], 0 for events. `latched`: the last value also answers a zenoh `get`.
-    `keep` "latest" means only the newest value matters (dropped under load), "all" means reliable, in order, recovered
-    after an outage. `text` names the field that bare text fills. `command`: values from before the reader's start
-    are not acted on. `recover`: what a router outage swallowed is sent again. `writers` lists the services that
-    publish it; `*` is any client.
+    `writers` and `readers` are services, `ANYONE` or `EACH`. `rate` is the declared frequency [Hz], 0 for events.
+    `latched`: the last value also answers a zenoh `get`. `keep` "latest" means only the newest value matters (dropped
+    under load), "all" means reliable, in order, recovered after an outage. `text` names the field that bare text fills.
+    `command`: values from before the reader's start are not acted on. `recover`: what a router outage swallowed is
+    sent again. A `*` in the key of a row of `PER_SERVICE` stands for a service's name.
     """
 
     key: str
     type: type[M]
     writers: tuple[str, ...]
+    readers: tuple[str, ...] = ()
     rate: float = 0.0
     latched: bool = False
     keep: Keep = "all"
@@ -37,70 +43,124 @@ class Topic(msgspec.Struct, Generic[M], frozen=True, kw_only=True):
     def __hash__(self) -> int:
         return hash(self.key)
 
+    def of(self, name: str) -> str:
+        """The key of one service, for a row of `PER_SERVICE`."""
+        return self.key.replace("*", name)
 
-def _goal(key: str, type: type[M], *writers: str, text: str = "", latched: bool = True) -> Topic[M]:
-    return Topic(key=key, type=type, writers=writers, text=text, latched=latched, command=True)
+
+class Query(msgspec.Struct, frozen=True):
+    """A question that one service answers. `askers`: the services that ask it; people's tools may ask all but those
+    that are for evaluators. `changing`: it changes something, so that an observer may not ask."""
+
+    key: str
+    server: str
+    askers: tuple[str, ...] = ()
+    changing: bool = False
 
 
-def _event(key: str, type: type[M], *writers: str, text: str = "", latched: bool = True) -> Topic[M]:
-    return Topic(key=key, type=type, writers=writers, text=text, latched=latched)
+# --- kinds of rows; `by` and `to` name services, separated by blanks
+def _goal(key: str, type: type[M], *, by: str, to: str, text: str = "", latched: bool = True) -> Topic[M]:
+    """What somebody is to do: in order, none lost, none from before its reader's start."""
+    return _row(key, type, by, to, text=text, latched=latched, command=True)
+
+
+def _event(key: str, type: type[M], *, by: str, to: str = "", text: str = "") -> Topic[M]:
+    """What has happened or how something stands: in order, none lost."""
+    return _row(key, type, by, to, text=text, latched=True)
 
 
 def _stream(
-    key: str, type: type[M], *writers: str, rate: float, binary: bool = True, latched: bool = False
+    key: str, type: type[M], *, by: str, to: str, rate: float, binary: bool = True, latched: bool = False
 ) -> Topic[M]:
-    return Topic(key=key, type=type, writers=writers, rate=rate, binary=binary, latched=latched, keep="latest")
+    """Samples of which only the newest counts."""
+    return _row(key, type, by, to, rate=rate, binary=binary, latched=latched, keep="latest")
 
 
-SPEECH_GOAL = _goal("brain/speech_goal", m.SpeechGoal, "brain", text="goal")
-SPEECH_RESULT = _event("brain/speech_result", m.SpeechResult, "speech", text="text")
-NAVIGATION_GOAL = _goal("brain/navigation_goal", m.NavigationGoal, "brain", text="goal")
-NAVIGATION_STATUS = _event("brain/navigation_status", m.NavigationStatus, "navigation", text="status")
-MANIPULATION_GOAL = _goal("brain/manipulation_goal", m.ManipulationGoal, "brain", text="goal")
-MANIPULATION_STATUS = _event("brain/manipulation_status", m.ManipulationStatus, "manipulation", text="status")
-BRAIN_STATE = _event("brain/state", m.BrainState, "brain")
-BRAIN_TREE = _event("brain/tree", m.TreeSnapshot, "brain")
-
-SPEECH_STATUS = _event("speech/status", m.SpeechStatus, "speech")
-SPEECH_TEXT = _goal("speech/text", m.TypedText, "*", text="text", latched=False)
-AUDIO_PCM = Topic(key="audio/pcm", type=m.AudioChunk, writers=("*",), binary=True, rate=10.0)
-AUDIO_OUT = Topic(key="audio/out", type=m.AudioChunk, writers=("speech",), binary=True, rate=10.0)
-
-VOICE_COMMAND = _goal("voice_command", m.VoiceCommand, "speech", "*", text="text", latched=False)
-PLAN_REQUEST = _goal("plan_request", m.PlanRequest, "brain")
-ACTION_PLAN = _event("action_plan", m.ActionPlan, "planner")
-PLANNER_STATUS = _event("planner/status", m.PlannerStatus, "planner")
-OBJECT_QUERY = _goal("object_query", m.ObjectQuery, "brain")
-OBJECT_POSE = _event("object_pose", m.ObjectPose, "perception")
-NAV_GOAL = _goal("nav_goal", m.NavGoal, "brain", "*")
-NAVIGATION_FEEDBACK = _event("navigation_feedback", m.NavigationFeedback, "navigation")
-SYSTEM_STATUS = _event("system_status", m.SystemStatus, "brain")
-WORLD_OBJECTS = _event("world/objects", m.WorldObjects, "perception")
-
-BASE_TARGET = _goal("base/target_pose", m.BaseTarget, "navigation", latched=False)
-GOAL_REACHED = _event("base/goal_reached", m.GoalReached, "sim")
-CMD_VEL = _stream("base/cmd_vel", m.CmdVel, "navigation", rate=20.0, binary=False)
-ARM_COMMAND = _stream("arm/command", m.ArmCommand, "manipulation", rate=50.0)
-GRIPPER_COMMAND = _goal("gripper_command", m.GripperCommand, "manipulation", "brain", latched=False)
-JOINT_STATES = _stream("joint_states", m.JointStates, "sim", rate=100.0, latched=True)
-ODOMETRY = _stream("base/odom", m.Odometry, "sim", rate=100.0, latched=True)
-POSE = _stream("navigation/pose", m.PoseEstimate, "navigation", rate=20.0, binary=False, latched=True)
-NAV_PATH = _event("navigation/path", m.NavPath, "navigation")
-COSTMAP = _stream("navigation/costmap", m.Costmap, "navigation", rate=1.0)
-GRASPS = _event("manipulation/grasps", m.GraspCandidates, "manipulation")
-SCAN = _stream("scan", m.LaserScan, "sim", rate=10.0, latched=True)
-ROBOT_STOP = _goal("robot/stop", m.RobotStop, "*", "speech", text="reason", latched=False)
-ROBOT_RESUME = _goal("robot/resume", m.RobotResume, "*", text="source", latched=False)
-ROBOT_DESCRIPTION = _event("robot/description", m.RobotDescription, "sim")
-
-SIM_STATE = _stream("sim/state", m.SimState, "sim", rate=20.0, latched=True)
-SIM_MODEL = _event("sim/model", m.SimModel, "sim")
-SIM_STATUS = _event("sim/status", m.SimStatus, "sim")
+def _sound(key: str, *, by: str, to: str) -> Topic[m.AudioChunk]:
+    """Samples of which every one counts."""
+    return _row(key, m.AudioChunk, by, to, rate=10.0, binary=True)
 
 
 def _clock(key: str, rate: float) -> Topic[m.SimClockTick]:
-    return Topic(key=key, type=m.SimClockTick, writers=("sim",), rate=rate, binary=True, recover=False)
+    return _row(key, m.SimClockTick, "sim", EACH, rate=rate, binary=True, recover=False)
 
+
+def _row(key: str, type: type[M], by: str, to: str, **how: Any) -> Topic[M]:
+    return Topic(key=key, type=type, writers=tuple(by.split()), readers=tuple(to.split()), **how)
+
+
+SPEECH_GOAL = _goal("brain/speech_goal", m.SpeechGoal, by="brain", to="speech dashboard", text="goal")
+SPEECH_RESULT = _event("brain/speech_result", m.SpeechResult, by="speech", to="brain dashboard", text="text")
+NAVIGATION_GOAL = _goal(
+    "brain/navigation_goal", m.NavigationGoal, by="brain", to="navigation manipulation", text="goal"
+)
+NAVIGATION_STATUS = _event("brain/navigation_status", m.NavigationStatus, by="navigation", to="brain", text="status")
+MANIPULATION_GOAL = _goal("brain/manipulation_goal", m.ManipulationGoal, by="brain", to="manipulation", text="goal")
+MANIPULATION_STATUS = _event(
+    "brain/manipulation_status", m.ManipulationStatus, by="manipulation", to="brain perception dashboard", text="status"
+)
+BRAIN_STATE = _event("brain/state", m.BrainState, by="brain", to="dashboard")
+BRAIN_TREE = _event("brain/tree", m.TreeSnapshot, by="brain", to="dashboard")
+
+SPEECH_STATUS = _event("speech/status", m.SpeechStatus, by="speech", to="brain dashboard")
+SPEECH_TEXT = _goal("speech/text", m.TypedText, by="*", to="speech", text="text", latched=False)
+AUDIO_PCM = _sound("audio/pcm", by="dashboard *", to="speech")
+AUDIO_OUT = _sound("audio/out", by="speech", to="dashboard")
+
+VOICE_COMMAND = _goal("voice_command", m.VoiceCommand, by="speech dashboard *", to="brain", text="text", latched=False)
+PLAN_REQUEST = _goal("plan_request", m.PlanRequest, by="brain", to="planner")
+ACTION_PLAN = _event("action_plan", m.ActionPlan, by="planner", to="brain dashboard")
+PLANNER_STATUS = _event("planner/status", m.PlannerStatus, by="planner")
+OBJECT_QUERY = _goal("object_query", m.ObjectQuery, by="brain", to="perception")
+OBJECT_POSE = _event("object_pose", m.ObjectPose, by="perception", to="brain")
+NAV_GOAL = _goal("nav_goal", m.NavGoal, by="brain dashboard *", to="navigation")
+NAVIGATION_FEEDBACK = _event("navigation_feedback", m.NavigationFeedback, by="navigation", to="brain dashboard")
+SYSTEM_STATUS = _event("system_status", m.SystemStatus, by="brain")
+WORLD_OBJECTS = _event(
+    "world/objects", m.WorldObjects, by="perception", to="brain planner navigation manipulation dashboard"
+)
+
+BASE_TARGET = _goal("base/target_pose", m.BaseTarget, by="navigation", to="sim", latched=False)
+GOAL_REACHED = _event("base/goal_reached", m.GoalReached, by="sim", to="navigation")
+CMD_VEL = _stream("base/cmd_vel", m.CmdVel, by="navigation", to="sim", rate=20.0, binary=False)
+ARM_COMMAND = _stream("arm/command", m.ArmCommand, by="manipulation", to="sim dashboard", rate=50.0)
+GRIPPER_COMMAND = _goal("gripper_command", m.GripperCommand, by="brain manipulation", to="sim", latched=False)
+JOINT_STATES = _stream(
+    "joint_states",
+    m.JointStates,
+    by="sim",
+    to="brain perception navigation manipulation dashboard",
+    rate=100.0,
+    latched=True,
+)
+ODOMETRY = _stream("base/odom", m.Odometry, by="sim", to="navigation manipulation", rate=100.0, latched=True)
+POSE = _stream(
+    "navigation/pose",
+    m.PoseEstimate,
+    by="navigation",
+    to="brain planner perception manipulation dashboard",
+    rate=20.0,
+    binary=False,
+    latched=True,
+)
+NAV_PATH = _event("navigation/path", m.NavPath, by="navigation", to="dashboard")
+COSTMAP = _stream("navigation/costmap", m.Costmap, by="navigation", to="dashboard", rate=1.0)
+GRASPS = _event("manipulation/grasps", m.GraspCandidates, by="manipulation", to="dashboard")
+SCAN = _stream("scan", m.LaserScan, by="sim", to="navigation dashboard", rate=10.0, latched=True)
+ROBOT_STOP = _goal(
+    "robot/stop",
+    m.RobotStop,
+    by="speech dashboard *",
+    to="brain navigation manipulation sim",
+    text="reason",
+    latched=False,
+)
+ROBOT_RESUME = _goal("robot/resume", m.RobotResume, by="dashboard *", to="brain sim", text="source", latched=False)
+ROBOT_DESCRIPTION = _event("robot/description", m.RobotDescription, by="sim", to="perception manipulation")
+
+SIM_STATE = _stream("sim/state", m.SimState, by="sim", to="camera", rate=20.0, latched=True)
+SIM_MODEL = _event("sim/model", m.SimModel, by="sim", to="camera dashboard")
+SIM_STATUS = _event("sim/status", m.SimStatus, by="sim", to="brain perception dashboard")
 
 SIM_CLOCK = _clock("sim/clock", 100.0)
 SIM_CLOCK_50HZ = _clock("sim/clock/50hz", 50.0)
@@ -109,22 +169,42 @@ SIM_CLOCK_10HZ = _clock("sim/clock/10hz", 10.0)
 SLOWER_CLOCKS = {2: SIM_CLOCK_50HZ, 5: SIM_CLOCK_20HZ, 10: SIM_CLOCK_10HZ}
 """By the period of whoever is due at their ticks: a process is not woken for those of others."""
 CLOCKS = (SIM_CLOCK, *SLOWER_CLOCKS.values())
-LOCKSTEP_ACK = Topic(key="sim/ack", type=m.LockstepAck, writers=("*",), binary=True, recover=False)
+LOCKSTEP_ACK = _row("sim/ack", m.LockstepAck, f"{EACH} {ANYONE}", "sim", binary=True, recover=False)
 
-CAMERA_REQUEST = _goal("camera/request", m.CameraRequest, "perception", "*", latched=False)
-HEAD_RGBD = _stream("camera/head/rgbd", m.Rgbd, "camera", rate=10.0)
-WRIST_RGBD = _stream("camera/wrist/rgbd", m.Rgbd, "camera", rate=10.0)
+CAMERA_REQUEST = _goal("camera/request", m.CameraRequest, by="perception dashboard *", to="camera", latched=False)
+HEAD_RGBD = _stream("camera/head/rgbd", m.Rgbd, by="camera", to="perception dashboard", rate=10.0)
+WRIST_RGBD = _stream("camera/wrist/rgbd", m.Rgbd, by="camera", to="perception dashboard", rate=10.0)
 
-PAGE_STATUS = _event("page/status", m.PageStatus, "dashboard")
+PAGE_STATUS = _event("page/status", m.PageStatus, by="dashboard")
 
 TABLE: tuple[Topic[Any], ...] = tuple(t for t in list(globals().values()) if isinstance(t, Topic))
 BY_KEY: dict[str, Topic[Any]] = {t.key: t for t in TABLE}
 
-HEALTH_KEY = "service/{name}/health"
+HEALTH = _row("service/*/health", m.Health, EACH, f"{EACH} dashboard", recover=False)
+LOG = _row("log/*", m.LogRecord, EACH, "", recover=False)
+PER_SERVICE: tuple[Topic[Any], ...] = (HEALTH, LOG)
 ALIVE_KEY = "service/{name}/alive"
-LOG_KEY = "log/{name}"
+"""The liveliness token of a service."""
+
 BRAIN_MISSIONS = "brain/missions"
 SIM_RESET, SIM_PAUSE, SIM_SNAPSHOT, SIM_TRUTH = "sim/reset", "sim/pause", "sim/snapshot", "sim/truth"
+QUERIES = (
+    Query(BRAIN_MISSIONS, "brain", ("dashboard",)),
+    Query(SIM_RESET, "sim", changing=True),
+    Query(SIM_PAUSE, "sim", changing=True),
+    Query(SIM_SNAPSHOT, "sim", changing=True),
+    Query(SIM_TRUTH, "sim"),
+)
+
+
+def subscribed(service: str) -> tuple[Topic[Any], ...]:
+    """What a service reads, in the order of the table; clock and acknowledgements are the runtime's."""
+    return tuple(t for t in (*TABLE, *PER_SERVICE) if service in t.readers and t is not LOCKSTEP_ACK)
+
+
+def published(service: str) -> tuple[Topic[Any], ...]:
+    """What a service writes, in the order of the table; clock, acknowledgement and health are the runtime's."""
+    return tuple(t for t in TABLE if service in t.writers and EACH not in t.readers)
 
 
 def type_of(key: str) -> type[m.Message] | None:
@@ -132,6 +212,9 @@ def type_of(key: str) -> type[m.Message] | None:
     if key in BY_KEY:
         found: type[m.Message] = BY_KEY[key].type
         return found
-    if key.startswith("service/") and key.endswith("/health"):
-        return m.Health
-    return m.LogRecord if key.startswith("log/") else None
+    for row in PER_SERVICE:
+        before, _, after = row.key.partition("*")
+        if key.startswith(before) and key.endswith(after):
+            per_service: type[m.Message] = row.type
+            return per_service
+    return None

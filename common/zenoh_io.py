@@ -81,7 +81,7 @@ class ZenohIo(IoBase):
     ) -> None:
         reads, writes = tuple(reads), tuple(writes)
         self._session = opened
-        self._log_publisher: Any = opened.declare_publisher(topics.LOG_KEY.format(name=name), encoding=codec.JSON)
+        self._log_publisher: Any = opened.declare_publisher(topics.LOG.of(name), encoding=codec.JSON)
         super().__init__(
             name, reads, writes, scene=scene, seed=seed, lockstep=lockstep, clock=clock, log_level=log_level
         )
@@ -95,7 +95,7 @@ class ZenohIo(IoBase):
         for topic in reads:
             self._subscribe(topic)
         self._kept.append(bus.watch_tokens(opened, self._on_token))
-        self._kept.append(bus.listen(opened, topics.HEALTH_KEY.format(name="*"), self._on_health))
+        self._kept.append(bus.listen(opened, topics.HEALTH.key, self._on_health))
 
     def _subscribe(self, topic: Topic[Any]) -> None:
         box = self._boxes[topic.key]

@@ -29,34 +29,7 @@ class BrainService:
     NAME = "brain"
     HZ = 20
     CONFIG = BrainConfig
-    READS = (
-        topics.SPEECH_RESULT,
-        topics.SPEECH_STATUS,
-        topics.VOICE_COMMAND,
-        topics.NAVIGATION_STATUS,
-        topics.NAVIGATION_FEEDBACK,
-        topics.MANIPULATION_STATUS,
-        topics.ACTION_PLAN,
-        topics.OBJECT_POSE,
-        topics.WORLD_OBJECTS,
-        topics.JOINT_STATES,
-        topics.POSE,
-        topics.SIM_STATUS,
-        topics.ROBOT_STOP,
-        topics.ROBOT_RESUME,
-    )
-    WRITES = (
-        topics.SPEECH_GOAL,
-        topics.NAVIGATION_GOAL,
-        topics.NAV_GOAL,
-        topics.MANIPULATION_GOAL,
-        topics.GRIPPER_COMMAND,
-        topics.PLAN_REQUEST,
-        topics.OBJECT_QUERY,
-        topics.BRAIN_STATE,
-        topics.BRAIN_TREE,
-        topics.SYSTEM_STATUS,
-    )
+    READS, WRITES = topics.subscribed(NAME), topics.published(NAME)
 
     def __init__(self, config: BrainConfig, io: Io, journal: Journal | None = None) -> None:
         self._io = io

@@ -61,8 +61,7 @@ class CameraService:
     NAME = "camera"
     HZ = 10
     CONFIG = CameraConfig
-    READS = (topics.SIM_MODEL, topics.SIM_STATE, topics.CAMERA_REQUEST)
-    WRITES = (topics.HEAD_RGBD, topics.WRIST_RGBD)
+    READS, WRITES = topics.subscribed(NAME), topics.published(NAME)
 
     def __init__(self, config: CameraConfig, io: Io) -> None:
         self._config, self._io = config, io

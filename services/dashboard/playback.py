@@ -25,7 +25,7 @@ from services.dashboard import story
 from services.dashboard.config import DashboardConfig
 from services.dashboard.events import Words
 from services.dashboard.history import Transcript
-from services.dashboard.service import HEALTH, DashboardService
+from services.dashboard.service import DashboardService
 from services.dashboard.timeline import STATES, spans
 
 FRAME = 1 / 30
@@ -106,7 +106,7 @@ class Tape:
         elif row.key.endswith("/alive"):
             self._io.alive[row.key.split("/")[1]] = bool(msgspec.json.decode(row.payload)["alive"])
         elif row.key.endswith("/health"):
-            self._bus.put(HEALTH, row.payload)
+            self._bus.put(topics.HEALTH, row.payload)
 
 
 class Playback(DashboardService):

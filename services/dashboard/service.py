@@ -9,7 +9,6 @@ from common import topics
 from common.geometry import Pose2
 from common.io import Io, Job
 from common.runtime import StartError
-from common.topics import Topic
 from services.dashboard import markup, timeline
 from services.dashboard.bar import bar
 from services.dashboard.cameras import Cameras
@@ -28,7 +27,6 @@ from services.dashboard.tracking import FRESH, off_path
 from services.dashboard.view import View
 from services.dashboard.web import Web
 
-HEALTH = Topic(key=topics.HEALTH_KEY.format(name="*"), type=m.Health, writers=("*",), recover=False)
 SLOW, PLOT = 0.25, 0.5
 GRABBING = ("reach", "aim", "grasp")
 
@@ -40,16 +38,7 @@ class DashboardService:
     HZ = 100 / 3
     CLOCK = "wall"
     CONFIG = DashboardConfig
-    READS = (
-        topics.SIM_MODEL, topics.SIM_STATUS, topics.JOINT_STATES, topics.POSE, topics.SCAN, topics.NAV_PATH,
-        topics.COSTMAP, topics.GRASPS, topics.ARM_COMMAND, topics.WORLD_OBJECTS, topics.BRAIN_STATE, topics.BRAIN_TREE,
-        topics.ACTION_PLAN, topics.SPEECH_GOAL, topics.SPEECH_RESULT, topics.SPEECH_STATUS, topics.NAVIGATION_FEEDBACK,
-        topics.MANIPULATION_STATUS, topics.HEAD_RGBD, topics.WRIST_RGBD, topics.AUDIO_OUT, HEALTH,
-    )  # fmt: skip
-    WRITES = (
-        topics.VOICE_COMMAND, topics.ROBOT_STOP, topics.ROBOT_RESUME, topics.NAV_GOAL, topics.CAMERA_REQUEST,
-        topics.AUDIO_PCM, topics.PAGE_STATUS,
-    )  # fmt: skip
+    READS, WRITES = topics.subscribed(NAME), topics.published(NAME)
 
     def __init__(self, config: DashboardConfig, io: Io) -> None:
         self._config, self._io = config, io
@@ -119,7 +108,7 @@ class DashboardService:
             self._transcript.goal(t, goal)
         for result in io.drain(topics.SPEECH_RESULT):
             self._transcript.heard(t, result)
-        for health in io.drain(HEALTH):
+        for health in io.drain(topics.HEALTH):
             self._services.take(health)
         for chunk in io.drain(topics.AUDIO_OUT):
             if len(chunk.data) % 2 or not 4000 <= chunk.rate <= 192000:

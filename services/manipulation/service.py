@@ -28,11 +28,7 @@ class ManipulationService:
     NAME = "manipulation"
     HZ = 50
     CONFIG = ManipulationConfig
-    READS = (
-        topics.MANIPULATION_GOAL, topics.NAVIGATION_GOAL, topics.JOINT_STATES, topics.POSE, topics.ODOMETRY,
-        topics.WORLD_OBJECTS, topics.ROBOT_DESCRIPTION, topics.ROBOT_STOP,
-    )  # fmt: skip
-    WRITES = (topics.MANIPULATION_STATUS, topics.ARM_COMMAND, topics.GRIPPER_COMMAND, topics.GRASPS)
+    READS, WRITES = topics.subscribed(NAME), topics.published(NAME)
 
     def __init__(self, config: ManipulationConfig, io: Io) -> None:
         self._config, self._io = config, io

@@ -25,14 +25,7 @@ class NavigationService:
     NAME = "navigation"
     HZ = 20
     CONFIG = NavigationConfig
-    READS = (
-        topics.NAVIGATION_GOAL, topics.NAV_GOAL, topics.GOAL_REACHED, topics.ODOMETRY, topics.JOINT_STATES,
-        topics.SCAN, topics.WORLD_OBJECTS, topics.ROBOT_STOP,
-    )  # fmt: skip
-    WRITES = (
-        topics.NAVIGATION_STATUS, topics.NAVIGATION_FEEDBACK, topics.BASE_TARGET, topics.POSE, topics.NAV_PATH,
-        topics.CMD_VEL, topics.COSTMAP,
-    )  # fmt: skip
+    READS, WRITES = topics.subscribed(NAME), topics.published(NAME)
 
     def __init__(self, config: NavigationConfig, io: Io) -> None:
         self._config, self._io = config, io

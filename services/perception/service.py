@@ -36,11 +36,7 @@ class PerceptionService:
     NAME = "perception"
     HZ = 10
     CONFIG = PerceptionConfig
-    READS = (
-        topics.OBJECT_QUERY, topics.HEAD_RGBD, topics.WRIST_RGBD, topics.POSE, topics.JOINT_STATES,
-        topics.ROBOT_DESCRIPTION, topics.MANIPULATION_STATUS, topics.SIM_STATUS,
-    )  # fmt: skip
-    WRITES = (topics.OBJECT_POSE, topics.WORLD_OBJECTS, topics.CAMERA_REQUEST)
+    READS, WRITES = topics.subscribed(NAME), topics.published(NAME)
 
     def __init__(self, config: PerceptionConfig, io: Io) -> None:
         self._config, self._io = config, io

@@ -36,8 +36,7 @@ class PlannerService:
     NAME = "planner"
     HZ = 10
     CONFIG = PlannerConfig
-    READS = (topics.PLAN_REQUEST, topics.WORLD_OBJECTS, topics.POSE)
-    WRITES = (topics.ACTION_PLAN, topics.PLANNER_STATUS)
+    READS, WRITES = topics.subscribed(NAME), topics.published(NAME)
 
     def __init__(self, config: PlannerConfig, io: Io) -> None:
         self._config, self._io = config, io

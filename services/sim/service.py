@@ -41,14 +41,7 @@ class SimService:
     NAME = "sim"
     HZ = 100
     CONFIG = SimConfig
-    READS = (
-        topics.BASE_TARGET, topics.CMD_VEL, topics.ARM_COMMAND, topics.GRIPPER_COMMAND,
-        topics.ROBOT_STOP, topics.ROBOT_RESUME,
-    )  # fmt: skip
-    WRITES = (
-        topics.JOINT_STATES, topics.ODOMETRY, topics.SCAN, topics.GOAL_REACHED, topics.SIM_STATE, topics.SIM_MODEL,
-        topics.SIM_STATUS, topics.ROBOT_DESCRIPTION,
-    )  # fmt: skip
+    READS, WRITES = topics.subscribed(NAME), topics.published(NAME)
 
     def __init__(self, config: SimConfig, io: Io) -> None:
         self._config, self._io = config, io

@@ -30,10 +30,7 @@ class SpeechService:
     NAME = "speech"
     HZ = 10
     CONFIG = SpeechConfig
-    READS = (topics.SPEECH_GOAL, topics.SPEECH_TEXT, topics.AUDIO_PCM)
-    WRITES = (
-        topics.SPEECH_RESULT, topics.SPEECH_STATUS, topics.AUDIO_OUT, topics.VOICE_COMMAND, topics.ROBOT_STOP,
-    )  # fmt: skip
+    READS, WRITES = topics.subscribed(NAME), topics.published(NAME)
 
     def __init__(self, config: SpeechConfig, io: Io) -> None:
         self._config, self._io = config, io
