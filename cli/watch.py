@@ -54,7 +54,7 @@ class Picture:
         for key, watch in self._watches.items():
             while (message := watch.next(0.0)) is not None:
                 self.now[key] = message
-                self._listen(message)
+                self.hear(message)
         if monotonic() - self._asked >= SERVICES_EVERY:
             self._asked = monotonic()
             self.alive = self._link.alive()
@@ -64,7 +64,7 @@ class Picture:
                     self.restarts[name] = self.restarts.get(name, 0) + 1
                 self.health[name] = record
 
-    def _listen(self, message: m.Message) -> None:
+    def hear(self, message: m.Message) -> None:
         if isinstance(message, m.SpeechGoal) and message.goal.startswith("say "):
             self._note("robot", message.goal[4:])
         elif isinstance(message, m.SpeechResult) and message.code != "TIMEOUT":

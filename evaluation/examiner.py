@@ -53,7 +53,7 @@ class Examiner:
         self._voice: Job[Samples] | None = None
         self._sound: deque[Samples] = deque()
         self._saying = ""
-        self._active = False
+        self.active = False
         self._ended_at: float | None = None
         self._quiet_since = 0.0
         self._when: dict[str, float] = {}
@@ -68,7 +68,7 @@ class Examiner:
         self._listen(now)
         if not self._observer.ready:
             return
-        self._follow(now)
+        self.follow(now)
         self._talk(now)
         self.done = self._over(now)
         if self.done:
@@ -108,7 +108,8 @@ class Examiner:
                 if answer:
                     self._due.append((now + REACTION, answer))
 
-    def _follow(self, now: float) -> None:
+    def follow(self, now: float) -> None:
+        """Take what the brain says of its mission."""
         seen = self.observed
         for status in self._io.drain(topics.SYSTEM_STATUS):
             self._observer.status(now, status)
@@ -121,10 +122,10 @@ class Examiner:
             # A brain that has been restarted is IDLE with its mission until it has looked at the world.
             resuming = state.state == "IDLE" and bool(state.mission_id)
             if resuming or state.state not in (*OPEN, *OVER, "IDLE"):
-                self._active, self._ended_at = True, None
+                self.active, self._ended_at = True, None
                 seen.stage = seen.stage if resuming else state.state
-            elif state.state in (*OPEN, "IDLE") and self._active:
-                self._active, self._ended_at = False, now
+            elif state.state in (*OPEN, "IDLE") and self.active:
+                self.active, self._ended_at = False, now
                 self._when.setdefault("ended", now)
             if state.last is not None:
                 seen.claimed, seen.reason = state.last.outcome, state.last.reason
@@ -177,7 +178,7 @@ class Examiner:
         self._quiet_since, self._ended_at = now, None
         io.log.info("person", says=text)
         # Who speaks first has to get the robot's attention; speech itself hears only what it listens for.
-        opening = self._case.wake and not self._active
+        opening = self._case.wake and not self.active
         if not self._case.spoken and opening:
             io.publish(topics.VOICE_COMMAND, m.VoiceCommand(text=text, id=io.new_id("typed")))
             return
@@ -202,7 +203,7 @@ class Examiner:
         self.observed.ended = self._ended_at is not None
         if self._ended_at is not None:
             return now >= self._ended_at + WATCH
-        return "ready" in self._when and not self._active and now >= self._quiet_since + QUIET
+        return "ready" in self._when and not self.active and now >= self._quiet_since + QUIET
 
     def abort(self, now: float, why: str) -> None:
         """The run broke: conclude with what was seen."""

@@ -20,7 +20,7 @@ from tests.support import ROOT
 
 CONFIGURATION = ROOT / "tests" / "mutants.toml"
 WORK = ROOT / "build" / "mutants"
-PACKAGES = ("common", "services", "cli", "evaluation")
+PACKAGES = ("common", "services", "cli", "judge", "evaluation")
 BESIDES = ("bench", "config", "docs", "examples", "README.md", "docker-compose.yml")
 """What tests read beside the packages."""
 PLUGINS = ("-p", "no:cacheprovider", "-p", "no:xdist", "-p", "no:playwright", "-m", "not slow")

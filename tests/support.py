@@ -102,10 +102,10 @@ class Site:
 
     def start_router(self) -> "subprocess.Popen[bytes]":
         router = self.start("services.router", "--listen", self.connect)
-        eventually(self._listening, "the router listens")
+        eventually(self.listening, "the router listens")
         return router
 
-    def _listening(self) -> bool:
+    def listening(self) -> bool:
         with socket.socket() as probe:
             return probe.connect_ex(("127.0.0.1", self.port)) == 0
 

@@ -26,7 +26,7 @@ class Body:
         self.open = self._hand.open
         self._fingers = [self._model.joint(name).qposadr[0] for name in self._hand.joints]
         self._faces = {g: _faces(self._model, g) for g in range(self._model.ngeom) if _is_mesh(self._model, g)}
-        self._solid = [g for g in range(self._model.ngeom) if self._model.geom_type[g] != mujoco.mjtGeom.mjGEOM_PLANE]
+        self.solid = [g for g in range(self._model.ngeom) if self._model.geom_type[g] != mujoco.mjtGeom.mjGEOM_PLANE]
 
     def pose(self, arm: Array, width: float) -> None:
         """Take the arm's joint angles (7,) and the gripper's width [m]."""
@@ -59,16 +59,16 @@ class Body:
     def _touched(self, points: Array) -> Mask:
         """Which of the points (n, 3) in the base frame are within MARGIN of the body's geoms."""
         touched = np.zeros(len(points), bool)
-        centres, reaches = self._data.geom_xpos[self._solid], self._model.geom_rbound[self._solid] + MARGIN
+        centres, reaches = self._data.geom_xpos[self.solid], self._model.geom_rbound[self.solid] + MARGIN
         apart = (points**2).sum(axis=1)[:, None] - 2 * points @ centres.T + (centres**2).sum(axis=1)
         # A geom is near the points within its bounding sphere only; the last digits of `apart` are not to be trusted.
         around = apart < (reaches + 1e-6) ** 2
-        for n, g in enumerate(self._solid):
+        for n, g in enumerate(self.solid):
             few = np.flatnonzero(around[:, n])
-            touched[few] |= self._distance(points[few], g) < MARGIN
+            touched[few] |= self.distance_to(points[few], g) < MARGIN
         return touched
 
-    def _distance(self, points: Array, g: int) -> Array:
+    def distance_to(self, points: Array, g: int) -> Array:
         """Distance [m] of points (n, 3) in the base frame from a geom."""
         local = (points - self._data.geom_xpos[g]) @ self._data.geom_xmat[g].reshape(3, 3)
         if g in self._faces:

@@ -87,7 +87,7 @@ def _from_box(local: Array, size: Vec3) -> tuple[Array, Array]:
     return np.where(far > 0, far, -deep), gradient
 
 
-def _apart(kind: ObjectKind, size: Vec3, points: Array, floor: float, p: Array) -> tuple[Array, Array]:
+def residuals(kind: ObjectKind, size: Vec3, points: Array, floor: float, p: Array) -> tuple[Array, Array]:
     """Distance (n,) of points (n, 3) from a shape that stands at p = (x, y, yaw) or (x, y), and its slopes (n, k)."""
     dx, dy, z = points[:, 0] - p[0], points[:, 1] - p[1], points[:, 2] - floor
     if kind in ("block", "box"):
@@ -108,7 +108,7 @@ def _apart(kind: ObjectKind, size: Vec3, points: Array, floor: float, p: Array) 
 
 def distances(kind: ObjectKind, size: Vec3, points: Array, floor: float, x: float, y: float, yaw: float) -> Array:
     """Distance [m] of each point (n, 3) from the surface of a shape that stands at (x, y) on height `floor`."""
-    return _apart(kind, size, points, floor, np.array([x, y, yaw]))[0]
+    return residuals(kind, size, points, floor, np.array([x, y, yaw]))[0]
 
 
 def _span(points: Array, camera: Array, ahead: float) -> Array:
@@ -118,7 +118,7 @@ def _span(points: Array, camera: Array, ahead: float) -> Array:
     return np.array([bearings.min(), bearings.max()])
 
 
-def _ends(size: Vec3, p: Array, camera: Array, ahead: float) -> tuple[Array, Array]:
+def end_bearings(size: Vec3, p: Array, camera: Array, ahead: float) -> tuple[Array, Array]:
     """Bearings (2,) of the leftmost and the rightmost corner of a box at p = (x, y, yaw), and their slopes (2, 3)."""
     c, s = math.cos(p[2]), math.sin(p[2])
     x, y = float(p[0] - camera[0]), float(p[1] - camera[1])
@@ -150,10 +150,10 @@ def fit(kind: ObjectKind, size: Vec3, points: Array, floor: float, camera: Array
     edges = _span(points, camera, ahead) if free.any() else None
 
     def off(p: Array, points: Array) -> tuple[Array, Array]:
-        apart, slopes = _apart(kind, size, points, floor, p)
+        apart, slopes = residuals(kind, size, points, floor, p)
         if edges is None:
             return apart, slopes
-        corners, turns = _ends(size, p, camera, ahead)
+        corners, turns = end_bearings(size, p, camera, ahead)
         return np.append(apart, scale * (corners - edges)[free]), np.concatenate([slopes, scale * turns[free]])
 
     def badness(p: Array) -> float:

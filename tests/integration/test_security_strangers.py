@@ -44,7 +44,7 @@ def closed(tmp_path: Path, ours: Path) -> Iterator[Site]:
     opened.namespace, opened.connect = "", f"tls/127.0.0.1:{opened.port}"
     try:
         opened.start("services.router", "--listen", opened.connect, TIDYBOT_KEYS=str(ours))
-        eventually(opened._listening, "the router listens")
+        eventually(opened.listening, "the router listens")
         yield opened
     finally:
         opened.close()
@@ -114,7 +114,7 @@ def test_a_router_with_a_bad_certificate(
         # Zenoh itself takes an expired certificate to listen with, so it goes by the file made for zenohd.
         config = keys / "router" / "router.json5"
         opened.start("services.router", "--config", str(config), "--listen", opened.connect)
-        eventually(opened._listening, "the router listens")
+        eventually(opened.listening, "the router listens")
         monkeypatch.setenv("TIDYBOT_KEYS", str(keys))
         with pytest.raises(bus.BusError, match=expected), bus.session(opened.connect, patience=40):
             pass

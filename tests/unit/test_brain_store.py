@@ -6,7 +6,9 @@ import sqlite3
 import subprocess
 import sys
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -153,6 +155,28 @@ def overwrite(path: Path, offset: int, length: int) -> None:
     path.write_bytes(raw)
 
 
+@contextmanager
+def no_room() -> Iterator[None]:
+    """No file of this process may grow, as on a full disk."""
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (0, hard))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+
+
+def outside(path: Path, statement: str) -> list[Any]:
+    """Rows of a statement that another program executes on the file."""
+    db = sqlite3.connect(path)
+    try:
+        rows = db.execute(statement).fetchall()
+        db.commit()
+        return rows
+    finally:
+        db.close()
+
+
 @pytest.mark.parametrize("offset", [0, 100, 4096, 12288])
 def test_a_damaged_file_is_moved_aside_and_a_new_one_begun(path: Path, offset: int) -> None:
     journal = opened(path)
@@ -160,10 +184,11 @@ def test_a_damaged_file_is_moved_aside_and_a_new_one_begun(path: Path, offset: i
         told(journal, f"m-{n}")
     journal.close()
     overwrite(path, offset, 4000)
-    again = opened(path)
+    one = io()
+    again = SqliteJournal(path, one)
     told(again, "m-new")
     assert [record.id for record in again.missions()] == ["m-new"]
-    assert again.errors == 1 and again._io.drops["journal"] == 1  # type: ignore[attr-defined]
+    assert again.errors == 1 and one.drops["journal"] == 1
     aside = [p for p in path.parent.glob("missions.db.unreadable-*") if not p.name.endswith(("-wal", "-shm"))]
     assert len(aside) == 1 and aside[0].stat().st_size > 4096
     # Ids of the lost file do not come again.
@@ -193,9 +218,8 @@ def test_a_file_damaged_while_open_loses_nothing_of_the_mission_under_way(path: 
 def test_a_file_of_a_newer_program_is_not_touched(path: Path) -> None:
     journal = opened(path)
     told(journal, "m-1")
-    assert journal._db is not None
-    journal._db.execute(f"pragma user_version = {len(MIGRATIONS) + 1}")
     journal.close()
+    outside(path, f"pragma user_version = {len(MIGRATIONS) + 1}")
     again = opened(path)
     assert again.missions() == [] and again.errors == 1
     aside = next(p for p in path.parent.glob("missions.db.unreadable-*") if not p.name.endswith(("-wal", "-shm")))
@@ -212,9 +236,10 @@ def test_an_older_file_is_brought_up_to_date(path: Path) -> None:
     again = SqliteJournal(path, io(), migrations=newer)
     assert again.errors == 0 and [record.id for record in again.missions()] == ["m-1"]
     told(again, "m-2")
-    assert again._db is not None and again.errors == 0
-    assert again._db.execute("select mood from missions").fetchall() == [("good",), ("good",)]
-    assert again._db.execute("pragma user_version").fetchone() == (len(newer),)
+    assert again.errors == 0
+    again.close()
+    assert outside(path, "select mood from missions") == [("good",), ("good",)]
+    assert outside(path, "pragma user_version") == [(len(newer),)]
 
 
 def test_a_migration_cut_short_is_done_again(path: Path) -> None:
@@ -228,19 +253,17 @@ def test_a_migration_cut_short_is_done_again(path: Path) -> None:
 
 
 def test_a_full_disk_is_counted_and_made_up_for(path: Path) -> None:
-    journal = opened(path)
+    one = io()
+    journal = SqliteJournal(path, one)
     mission = told(journal, "m-1")
-    assert journal._db is not None
-    pages = journal._db.execute("pragma page_count").fetchone()[0]
-    journal._db.execute(f"pragma max_page_count = {pages}")
-    for n in range(50):
-        journal.note("m-1", Entry(20.0 + n, "RETURNING", f"long {n}", "x" * 500))
-        journal.save(Checkpoint(mission, Hand()))
-    assert journal.errors > 40 and journal._io.drops["journal"] == journal.errors  # type: ignore[attr-defined]
+    with no_room():
+        for n in range(50):
+            journal.note("m-1", Entry(20.0 + n, "RETURNING", f"long {n}", "x" * 500))
+            journal.save(Checkpoint(mission, Hand()))
+    assert journal.errors > 40 and one.drops["journal"] == journal.errors
     record = journal.mission("m-1")
     assert record is not None and len(record.entries) == 53
     refused = journal.errors
-    journal._db.execute("pragma max_page_count = 100000")
     journal.save(Checkpoint(mission, Hand(holding="red mug")))
     assert journal.errors == refused
     journal.close()
@@ -278,11 +301,12 @@ def test_a_deleted_file_is_written_again(path: Path) -> None:
 
 def test_a_second_brain_on_the_same_file_does_not_hold_up_the_first(path: Path) -> None:
     first, second = opened(path), opened(path)
-    assert second._db is not None
-    second._db.execute("begin immediate")
+    writer = sqlite3.connect(path, isolation_level=None)
+    writer.execute("begin immediate")
     mission = told(first, "m-1")
     assert first.errors == 1 and first.missions()[0].id == "m-1"
-    second._db.execute("rollback")
+    writer.execute("rollback")
+    writer.close()
     first.save(Checkpoint(mission, Hand()))
     assert first.errors == 1 and [r.id for r in second.missions()] == ["m-1"]
 
@@ -307,14 +331,10 @@ def test_what_a_killed_brain_left_is_read_from_a_disk_without_room(path: Path) -
     )
     done = subprocess.run([sys.executable, "-c", script, str(path)], cwd=ROOT, env={**os.environ, "PYTHONPATH": "."})
     assert done.returncode == -9
-    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (0, hard))
-    try:
+    with no_room():
         journal = SqliteJournal(path, io())
         left, missions = journal.checkpoint(), journal.missions()
         refused = journal.save(Checkpoint(Mission("m-1"), Hand()))
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
     assert left is not None and left.mission.id == "m-1" and [r.id for r in missions] == ["m-1"]
     assert not refused and journal.errors > 0
     assert journal.save(Checkpoint(left.mission, Hand(holding="red mug")))

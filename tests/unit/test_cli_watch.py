@@ -74,7 +74,7 @@ def test_a_mission_on_one_screen(picture: watch.Picture) -> None:
         m.VoiceCommand(text="bring me the mug"),
         m.SpeechResult(text="ERROR", code="TIMEOUT"),
     ):
-        picture._listen(message)
+        picture.hear(message)
     shown = text(picture)
     for words in (
         "STOPPED", "NAVIGATING", "bring me the mug", "for 11 s", "1. grasp red mug", "failed BLOCKED a chair",

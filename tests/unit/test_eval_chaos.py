@@ -11,8 +11,6 @@ from rich.console import Console
 
 from common import messages as m
 from common import topics
-from common.clock import ManualClock
-from common.memory import MemoryBus, MemoryIo
 from evaluation.case import Case, Line, Observed, Result, Strike
 from evaluation.chaos import CELLS, CHAOS_SERVICES, CHAOS_STATES, EVERY, MISTREATED, TRAFFIC, chaos
 from evaluation.examiner import Examiner, ExaminerConfig, examiner_of
@@ -41,9 +39,9 @@ def stack(tmp_path: Path) -> Iterator[Stack]:
 def test_a_killed_simulation_goes_on_with_its_world(stack: Stack) -> None:
     go(stack, "a.1")
     stack.advance(1.8)
-    now, base, epoch = stack.now, stack.truth()["base"], stack._sim_io.epoch
+    now, base, epoch = stack.now, stack.truth()["base"], stack.bus.ios["sim"].epoch
     stack.restart_sim()
-    assert now - 0.5 <= stack.now <= now and stack._sim_io.epoch != epoch
+    assert now - 0.5 <= stack.now <= now and stack.bus.ios["sim"].epoch != epoch
     assert stack.truth()["base"] == pytest.approx(base, abs=0.5) and stack.truth()["base"] != [0.0, 0.0, 0.0]
     stack.advance(0.1)
     assert stack.truth()["t"] == pytest.approx(stack.now)
@@ -154,22 +152,21 @@ def test_every_service_is_killed_in_every_state() -> None:
 # --- the examiner's clock
 def test_recovered_is_the_next_step_of_the_mission() -> None:
     case = Case(suite="chaos", seed=0, name="brain NAVIGATING", command="fetch", lines=(Line("fetch"),))
-    bus, clock = MemoryBus(), ManualClock()
-    examiner: Examiner = examiner_of(case)(
-        ExaminerConfig(), MemoryIo(bus, "examiner", Examiner.READS, Examiner.WRITES, scene=SCENE, clock=clock)
-    )
+    # The states alone: there is no simulation to be seen.
+    following = type("Following", (examiner_of(case),), {"step": Examiner.follow})
+    node = Node(following, ExaminerConfig(), SCENE)
+    examiner: Examiner = node.service
 
     def show(state: str, step: str, mission: str = "m-1") -> None:
-        bus.send(topics.BRAIN_STATE, m.BrainState(state=state, step=step, mission_id=mission))  # type: ignore[arg-type]
-        clock.advance(1.0)
-        examiner._io.begin(round(clock.now()), clock.now())
-        examiner._follow(clock.now())
+        node.send(topics.BRAIN_STATE, m.BrainState(state=state, step=step, mission_id=mission))  # type: ignore[arg-type]
+        node.later(1.0)
+        node.run()
 
     show("NAVIGATING", "go")
     examiner.struck(1.5)
     show("IDLE", "", mission="")
     show("IDLE", "")
-    assert examiner._active, "a mission that is being taken up has not ended"
+    assert examiner.active, "a mission that is being taken up has not ended"
     show("NAVIGATING", "go")
     assert examiner.observed.recovery is None
     show("GRABBING", "grab")

@@ -40,7 +40,7 @@ def test_a_killed_service_forgets_and_its_successor_starts_afresh(stack: Stack) 
     stack.kill("navigation")
     go(stack, "a.2")
     stack.advance(0.2)
-    assert stack.sim._io.peer("navigation") is None
+    assert stack.bus.ios["sim"].peer("navigation") is None
     assert status(stack).goal_id == "a.1"
     stack.start("navigation")
     stack.advance(0.2)

@@ -22,23 +22,23 @@ def battered() -> Iterator[Stack]:
     robot = Stack("minimal", seed=2, settings=("brain.enable_confirmation=false",))
     robot.advance(1.0)
     make = Payloads(4, gentle=True)
-    boxes = [box for _, io in [*robot.members.values(), (robot.sim, robot._sim_io)] for box in io._boxes.values()]
-    for box in boxes:
-        payload = robot.bus.last.get(box.topic.key)
+    read = {t.key: t for name in (*robot.members, "sim") for t in service_class(name).READS}
+    for topic in read.values():
+        payload = robot.bus.last.get(topic.key)
         if payload is not None:
-            make.learn(box.topic, codec.decode(box.topic, payload))
+            make.learn(topic, codec.decode(topic, payload))
     for _ in range(PAYLOADS // BURST):
         for _ in range(BURST):
-            box = make.rng.choice(boxes)
-            box.put(make.of(box.topic))
+            topic = make.rng.choice([*read.values()])
+            robot.bus.put(topic, make.of(topic))
         robot.tick()
     yield robot
     robot.close()
 
 
 def test_every_service_counted_what_it_refused(battered: Stack) -> None:
-    members = {**battered.members, "sim": (battered.sim, battered._sim_io)}
-    for name, (_, io) in members.items():
+    for name in (*battered.members, "sim"):
+        io = battered.bus.ios[name]
         commands = [t.key for t in service_class(name).READS if t.keep == "all"]
         assert sum(io.drops[k] for k in commands) > 0, name
 
@@ -104,7 +104,7 @@ def test_what_is_no_number_never_reaches_physics() -> None:
         assert np.allclose(robot.sim.physics.data.ctrl, before, atol=1e-3)
         assert robot.truth()["base"] == pytest.approx(start, abs=0.01)
         for topic in hostile(0.0):
-            io = robot.members["navigation"][1] if topic is topics.NAV_GOAL else robot._sim_io
+            io = robot.bus.ios["navigation" if topic is topics.NAV_GOAL else "sim"]
             assert io.drops[topic.key] == len(values), topic.key
     finally:
         robot.close()

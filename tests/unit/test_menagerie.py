@@ -232,7 +232,7 @@ def test_perception_knows_this_body(robot: Robot) -> None:
     assert np.allclose(hand, pose.position, atol=1e-6)
     # Base box of 0.5 x 0.48 x 0.24 m from 0.08 m upwards: a mesh in the stand-in.
     points = np.array([[0.26, 0.0, 0.25], [0.2, 0.2, 0.2], [0.0, 0.34, 0.2], [0.0, 0.0, 0.02]])
-    distance = np.min([body._distance(points, g) for g in body._solid], axis=0)
+    distance = np.min([body.distance_to(points, g) for g in body.solid], axis=0)
     assert distance[:3] == pytest.approx([0.01, 0.0, 0.1], abs=1e-4)
 
 

@@ -102,7 +102,7 @@ def test_no_edge_of_the_body_is_left_in_the_picture(camera: str) -> None:
     body.pose(np.array(robot.HOME_ARM), 0.085)
     points = seen.points.reshape(-1, 3).astype(np.float64)
     close = np.flatnonzero(np.hypot(points[:, 0], points[:, 1]) < 1.0)
-    own = close[np.min([body._distance(points[close], g) for g in body._solid], axis=0) < 0.002]
+    own = close[np.min([body.distance_to(points[close], g) for g in body.solid], axis=0) < 0.002]
     assert len(own) > 300 and body.mask(seen, (0.0, 0.0, 0.0)).reshape(-1)[own].all()
 
 

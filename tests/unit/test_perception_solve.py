@@ -51,21 +51,21 @@ def test_slopes_of_a_shape_are_the_differences_of_its_distances(kind: ObjectKind
     rng = np.random.default_rng(2)
     size, p = SIZES[kind], np.array([0.3, -0.2, 0.4])[: 3 if kind in ("block", "box") else 2]
     cloud = rng.uniform(-0.09, 0.09, (400, 3)) + np.array([0.3, -0.2, 0.7 + size[2] / 2])
-    apart, slopes = shapes._apart(kind, size, cloud, 0.7, p)
+    apart, slopes = shapes.residuals(kind, size, cloud, 0.7, p)
     near = apart > 1e-4  # on the surface itself distances have a kink
     for k in range(len(p)):
         step = np.eye(len(p))[k] * 1e-7
-        ahead, behind = (shapes._apart(kind, size, cloud, 0.7, q)[0] for q in (p + step, p - step))
+        ahead, behind = (shapes.residuals(kind, size, cloud, 0.7, q)[0] for q in (p + step, p - step))
         wrong = np.abs((ahead - behind) / 2e-7 - slopes[:, k])[near] > 1e-4
         assert np.count_nonzero(wrong) <= 2, "edges, where two faces are equally near"
 
 
 def test_ends_of_a_box_turn_with_it() -> None:
     size, camera, p = (0.06, 0.08, 0.13), np.array([-0.8, 0.1, 1.3]), np.array([0.3, -0.2, 0.4])
-    bearings, slopes = shapes._ends(size, p, camera, -0.2)
+    bearings, slopes = shapes.end_bearings(size, p, camera, -0.2)
     assert bearings[0] < bearings[1]
     wide = math.hypot(*size[:2]) / math.hypot(1.1, 0.3)
     assert 0.06 / 1.2 < bearings[1] - bearings[0] < wide
     for k in range(3):
-        ahead = shapes._ends(size, p + np.eye(3)[k] * 1e-6, camera, -0.2)[0]
+        ahead = shapes.end_bearings(size, p + np.eye(3)[k] * 1e-6, camera, -0.2)[0]
         assert (ahead - bearings) / 1e-6 == pytest.approx(slopes[:, k], abs=1e-3)

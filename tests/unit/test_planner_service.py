@@ -77,9 +77,12 @@ def test_every_rejected_plan_of_a_mission_is_remembered() -> None:
 def test_its_memory_is_bounded() -> None:
     node = Desk()
     rejected = {"steps": [], "reason": "step 1: no"}
-    for number in range(REMEMBERED + 10):
-        node.ask("bring me the apple", f"m{number}.1", rejected=rejected)
-    assert len(node.service._answers) == len(node.service._rejected) == REMEMBERED
+    node.send(topics.WORLD_OBJECTS, mugs(("red", (4.0, -3.1, 0.8))))
+    for number in range(REMEMBERED + 1):
+        node.ask("bring me the mug", f"m{number}.1", rejected=rejected)
+    node.send(topics.WORLD_OBJECTS, mugs(("white", (4.0, -3.1, 0.8))))
+    remembered = [targets(node.ask("bring me the mug", f"m{number}.1"))[0] for number in (1, REMEMBERED, 0)]
+    assert remembered == ["red mug", "red mug", "white mug"], "the oldest answer is forgotten"
 
 
 def test_a_request_that_does_not_decode_is_counted() -> None:
