@@ -31,7 +31,10 @@ from services.sim.service import SimService
 class Bench:
     """One object on one table of a chosen height, the robot in front of it."""
 
-    def __init__(self, scene: Scene, spec: ObjectSpec, height: float, seed: int, config: ManipulationConfig) -> None:
+    def __init__(
+        self, scene: Scene, spec: ObjectSpec, height: float, seed: int, config: ManipulationConfig,
+        simulation: Any = SimService,
+    ) -> None:  # fmt: skip
         surface = next(r for r in scene.receptacles if r.kind == "table")
         x, y, _ = surface.center
         table = msgspec.structs.replace(surface, center=(x, y, height))
@@ -39,11 +42,11 @@ class Bench:
         alone = msgspec.structs.replace(scene, objects=(spec,), receptacles=receptacles)
         self.spec = spec
         self.bus, clock = MemoryBus(), ManualClock()
-        sim_io = MemoryIo(self.bus, "sim", SimService.READS, SimService.WRITES, scene=alone, seed=seed, clock=clock)
+        sim_io = MemoryIo(self.bus, "sim", simulation.READS, simulation.WRITES, scene=alone, seed=seed, clock=clock)
         sim_io.out_stamp = -1
         # No navigation corrects the odometry here.
         exact = SimConfig(odometry_slip=0.0, odometry_veer=0.0, odometry_noise=0.0)
-        self.sim = SimService(exact, sim_io)
+        self.sim = simulation(exact, sim_io)
         self.world = InProcess(self.sim, sim_io, clock)
         io = MemoryIo(
             self.bus, "manipulation", ManipulationService.READS, ManipulationService.WRITES, scene=alone, seed=seed,

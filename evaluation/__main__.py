@@ -2,6 +2,7 @@
 
 import argparse
 import sys
+from collections import Counter
 from collections.abc import Generator
 from contextlib import closing
 from pathlib import Path
@@ -19,6 +20,7 @@ from evaluation import cluster, html_report, pool, processes, report, runner
 from evaluation.case import Case, Result
 from evaluation.lane import Run
 from evaluation.pool import Progressed, Repeated, Said
+from evaluation.sabotage import unavailable
 from evaluation.suites import BARS, DEFAULT_SCENARIOS, cases
 
 PERIOD = 30.0
@@ -67,11 +69,6 @@ def main(argv: list[str]) -> int:
     """Exit status 0 when the bar is met, 1 when fewer did as expected or a claim was false, 130 after Ctrl-C."""
     args = parser().parse_args(["eval", *argv])
     console = Console(stderr=bool(args.json == "-"), soft_wrap=True)
-    if args.processes and args.suite == "chaos":
-        print(
-            "tidybot: processes are killed and hung as objects of one process; leave --processes out", file=sys.stderr
-        )
-        return FAILED
     for target in (args.json, args.html):
         if target and target != "-" and not Path(target).resolve().parent.is_dir():
             print(f"tidybot: {target}: no such directory", file=sys.stderr)
@@ -79,6 +76,9 @@ def main(argv: list[str]) -> int:
     count = args.scenarios or DEFAULT_SCENARIOS.get(args.suite, 10)
     try:
         todo = cases(args.suite, count, args.seed, tuple(args.set), args.pipeline, args.voices, args.snr)
+        if args.processes:
+            todo = _available(todo, console)
+            count = len(todo)
         results, seconds = _run(todo, args, console)
     except (CliError, ConfigError) as error:
         print(f"tidybot: {error}", file=sys.stderr)
@@ -99,6 +99,20 @@ def main(argv: list[str]) -> int:
         console.print(f"[yellow]interrupted after {len(results)} of {count} scenarios[/]")
         return INTERRUPTED
     return 0 if found["passed"] else FAILED
+
+
+def _available(todo: list[Case], console: Console) -> list[Case]:
+    """The cases that processes can run; the others are listed with the reason.
+
+    Raises:
+        CliError: none of them can.
+    """
+    left = Counter(why for case in todo if (why := unavailable(case)))
+    for why, number in left.items():
+        console.print(f"[yellow]{number} of {len(todo)} scenarios not available as processes:[/] {why}")
+    if left.total() == len(todo):
+        raise CliError("no scenario of the run can be run as processes; leave --processes out")
+    return [case for case in todo if not unavailable(case)]
 
 
 def _run(todo: list[Case], args: argparse.Namespace, console: Console) -> tuple[list[Result], float]:

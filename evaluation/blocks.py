@@ -30,15 +30,23 @@ def random(seed: int, suite: int) -> np.random.Generator:
     return np.random.default_rng([seed, suite])
 
 
-def pick(rng: np.random.Generator, scene: Scene, seed: int, room: str = "", not_room: str = "") -> ObjectSpec:
-    """A random object of the seed's layout, in or out of a room."""
+def pick(
+    rng: np.random.Generator, scene: Scene, seed: int, room: str = "", not_room: str = "", kinds: tuple[str, ...] = ()
+) -> ObjectSpec:
+    """A random object of the seed's layout, in or out of a room, of one of the kinds."""
     placed = place_objects(scene, seed)
 
     def where(p: tuple[float, float, float]) -> str:
         found = scene.room_at(p[0], p[1])
         return found.name if found else ""
 
-    fitting = [p.spec for p in placed if (not room or where(p.position) == room) and where(p.position) != not_room]
+    fitting = [
+        p.spec
+        for p in placed
+        if (not room or where(p.position) == room)
+        and where(p.position) != not_room
+        and (not kinds or p.spec.kind in kinds)
+    ]
     pool = fitting or [p.spec for p in placed]
     return pool[int(rng.integers(len(pool)))]
 

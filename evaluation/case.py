@@ -6,15 +6,18 @@ import msgspec
 
 from common.scene import Scene
 from evaluation.faults import Rule
+from evaluation.physical import PhysicalFault
+from evaluation.strikes import Struck
 from judge.claims import Claim
 from judge.effects import Effect, Shown
 from judge.evidence import Evidence, Want
 from judge.goal import Goal
 
-Expect = Literal["delivered", "nothing", "stopped", "shown"]
+Expect = Literal["delivered", "nothing", "stopped", "shown", "reported"]
 Outcome = Literal[
-    "delivered", "declined", "stopped", "shown", "reported", "failed", "false_success", "timeout", "crashed"
-]
+    "delivered", "declined", "stopped", "shown", "reported", "failed", "false_success", "timeout", "crashed",
+    "not struck",
+]  # fmt: skip
 Cause = str
 
 
@@ -87,6 +90,7 @@ class Case(msgspec.Struct, kw_only=True):
     speaker: Speaker = Speaker()
     fault: str = ""
     rules: tuple[Rule, ...] = ()
+    physical: tuple[PhysicalFault, ...] = ()
     strikes: tuple[Strike, ...] = ()
     settings: tuple[str, ...] = ()
     scene: Scene | None = None
@@ -101,7 +105,12 @@ class Case(msgspec.Struct, kw_only=True):
         """What a claim after this line is held against; none is true where nothing should be done."""
         if line.goal is not None:
             return line.goal
-        return self.goal if self.expect in ("delivered", "shown") else Goal()
+        return self.goal if self.expect in ("delivered", "shown", "reported") else Goal()
+
+    @property
+    def faults(self) -> int:
+        """How many faults it injects."""
+        return len(self.rules) + len(self.physical) + len(self.strikes)
 
 
 class Observed(msgspec.Struct, kw_only=True):
@@ -109,8 +118,8 @@ class Observed(msgspec.Struct, kw_only=True):
 
     `claimed`: the last outcome; `claims`: every success announced at any time, held against physics as it was then;
     `shortfall`: what is not as the case wants it at the end. `wrong`: things in the hand that nobody asked for.
-    `struck`: when a fault hit [s of robot time]; `recovery`:
-    seconds from then until the mission's next step.
+    `strikes`: what the faults really did; `struck`: when the first did [s of robot time]; `recovery`: seconds from then
+    until the mission's next step.
     """
 
     evidence: Evidence = msgspec.field(default_factory=Evidence)
@@ -127,6 +136,7 @@ class Observed(msgspec.Struct, kw_only=True):
     stage: str = ""
     robot_seconds: float = 0.0
     shortest: float = 0.0
+    strikes: list[Struck] = []
     struck: float | None = None
     recovery: float | None = None
     crash: str = ""

@@ -12,6 +12,7 @@ from common.io import Io, Job
 from evaluation.case import Case, Line, Observed
 from evaluation.person import Manner, Person
 from evaluation.shortest import FloorPlan
+from evaluation.strikes import Struck
 from evaluation.voice import RATE, Samples, utter
 from judge.evidence import Look
 from judge.observer import Observer
@@ -133,10 +134,11 @@ class Examiner:
         if self._when.keys() & set(OPEN):
             self._when.setdefault("ready", now)
 
-    def struck(self, now: float) -> None:
-        """A fault hits now; the first counts."""
+    def struck(self, strike: Struck) -> None:
+        """A fault took effect; the first starts the clock of the recovery."""
+        self.observed.strikes.append(strike)
         if self.observed.struck is None:
-            self.observed.struck, self._struck_at = round(now, 2), self._at
+            self.observed.struck, self._struck_at = strike.t, self._at
 
     def _progress(self, state: m.BrainState, now: float) -> None:
         """Recovered is a mission that has come to another step than the one in which it was struck."""

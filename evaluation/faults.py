@@ -12,6 +12,7 @@ import numpy as np
 from common import messages as m
 from common import topics
 from common.topics import Topic
+from evaluation.strikes import Report, Struck, unheard
 
 Kind = Literal["drop", "duplicate", "delay", "reorder", "edit"]
 
@@ -46,8 +47,8 @@ class Rule(msgspec.Struct, frozen=True, kw_only=True):
 class FaultyIo:
     """An `Io` whose `publish` obeys the rules; everything else is the real one's."""
 
-    def __init__(self, io: Any, rules: tuple[Rule, ...]) -> None:
-        self._io, self._rules = io, rules
+    def __init__(self, io: Any, rules: tuple[Rule, ...], report: Report = unheard) -> None:
+        self._io, self._rules, self._report = io, rules, report
         self._rng = np.random.default_rng([io.seed, 13])
         self._seen: Counter[int] = Counter()
         self._hits: Counter[int] = Counter()
@@ -55,7 +56,6 @@ class FaultyIo:
         self._overtaken: dict[str, tuple[Topic[Any], m.Message]] = {}
         self._now = 0.0
         self.state = ""
-        self.hit_at: float | None = None
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._io, name)
@@ -88,8 +88,7 @@ class FaultyIo:
                 self._overtaken[topic.key] = topic, message
             case "edit":
                 assert rule is not None
-                altered = {**msgspec.to_builtins(message), **rule.fields}
-                self._io.publish(topic, msgspec.convert(altered, type(message)))
+                self._io.publish(topic, _edited(message, rule))
         if overtaken is not None:
             self._io.publish(*overtaken)
 
@@ -102,15 +101,22 @@ class FaultyIo:
             self._seen[number] += 1
             if self._seen[number] <= rule.skip or self._hits[number] >= rule.count:
                 continue
+            if rule.kind == "edit" and _edited(message, rule) == message:
+                # It said so by itself: nothing is injected.
+                continue
             if rule.chance >= 1.0 or self._rng.random() < rule.chance:
                 self._hits[number] += 1
-                self.hit_at = self._now if self.hit_at is None else self.hit_at
                 self._io.log.warning("fault injected", key=topic.key, kind=rule.kind)
+                self._report(Struck(round(self._now, 2), rule.kind, f"{topic.key}, message {self._seen[number]}"))
                 return rule
         return None
 
 
-def faulty(kind: Any, rules: tuple[Rule, ...]) -> Any:
+def _edited(message: m.Message, rule: Rule) -> m.Message:
+    return msgspec.convert({**msgspec.to_builtins(message), **rule.fields}, type(message))
+
+
+def faulty(kind: Any, rules: tuple[Rule, ...], report: Report = unheard) -> Any:
     """The service class behind a door that obeys the rules which name it; the class itself when none does."""
     mine = tuple(r for r in rules if r.service == kind.NAME)
     if not mine:
@@ -123,7 +129,7 @@ def faulty(kind: Any, rules: tuple[Rule, ...]) -> Any:
         READS = (*kind.READS, told) if listens and told not in kind.READS else kind.READS
 
         def __init__(self, config: Any, io: Any) -> None:
-            self.door = FaultyIo(io, mine)
+            self.door = FaultyIo(io, mine, report)
             super().__init__(config, self.door)
 
         def step(self, now: float) -> None:

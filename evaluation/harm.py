@@ -1,6 +1,7 @@
 """What befalls the host of a stack in one process: a router that is away, and a disk that takes nothing more."""
 
 import resource
+import tempfile
 from typing import Any
 
 from common.iobase import UNSTAMPED
@@ -52,6 +53,13 @@ class FullDisk:
     def __init__(self) -> None:
         self._before = resource.getrlimit(resource.RLIMIT_FSIZE)
 
-    def full(self, yes: bool) -> None:
+    def full(self, yes: bool) -> bool:
+        """True when a write indeed fails now."""
         soft, hard = self._before
         resource.setrlimit(resource.RLIMIT_FSIZE, (0 if yes else soft, hard))
+        try:
+            with tempfile.TemporaryFile() as file:
+                file.write(b"x")
+        except OSError:
+            return True
+        return False

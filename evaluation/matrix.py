@@ -12,7 +12,7 @@ from evaluation.statistics import percent
 
 
 class Tally(msgspec.Struct):
-    """Cases by what came of them; `missed`: the fault never hit; `lies`: false claims.
+    """Cases by what came of them; `missed`: the fault never took effect; `lies`: false claims.
 
     `seconds` of robot time to the mission's next step.
     """
@@ -39,7 +39,7 @@ def tally(results: Sequence[Result]) -> Tally:
         fell = any(t["drops"] for t in things) if isinstance(things, list) else False
         found.dropped += fell
         found.lies += r.false_claims
-        if evidence.get("struck") is None and (r.delivered or r.outcome == "reported"):
+        if r.outcome == "not struck":
             found.missed += 1
             continue
         if isinstance(seconds := evidence.get("recovery"), float) and r.delivered:
@@ -76,19 +76,19 @@ def _by_state(fault: str, results: Sequence[Result]) -> Table:
 
 
 def cell(results: Sequence[Result]) -> str:
-    """`1/0/0 3.2 s`; empty where nothing ran, `no hit` where the fault found nothing to hit."""
+    """`1/0/0 3.2 s`; empty where nothing ran, `not struck` where the fault never took effect."""
     if not results:
         return ""
     found = tally(results)
     if not found.hit:
-        return "[dim]no hit[/]"
+        return "[dim]not struck[/]"
     style = "red" if found.lost or found.lies or found.dropped else "yellow" if found.reported else "green"
     took = f" {max(found.seconds):.1f} s" if found.seconds else ""
     return f"[{style}]{found.recovered}/{found.reported}/{found.lost}[/]{took}"
 
 
 def _summary(faults: Sequence[str], results: Sequence[Result]) -> Table:
-    heads = ("fault", "hit", "recovered", "honest error", "lost", "no hit", "dropped", "false claims")
+    heads = ("fault", "hit", "recovered", "honest error", "lost", "not struck", "dropped", "false claims")
     table = Table(*heads, "mean s", "max s", title="all faults", title_justify="left")
     for fault in [*faults, "all"]:
         found = tally([r for r in results if fault in ("all", _fault(r))])

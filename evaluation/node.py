@@ -1,6 +1,7 @@
-"""`python -m evaluation.node`: a service of the case behind its faulty door, as a process of its own.
+"""`python -m evaluation.node`: a service with the case's faults injected, as a process of its own.
 
-Which service is what the supervisor calls this process; the case is in the file that TIDYBOT_EVAL_CASE names.
+Which service is what the supervisor calls this process; the case is in the file that TIDYBOT_EVAL_CASE names, and what
+the faults did is appended to `STRIKES` beside it.
 """
 
 import os
@@ -10,11 +11,15 @@ import msgspec
 
 from common.runtime import main
 from evaluation.case import Case
-from evaluation.faults import faulty
+from evaluation.inject import injected
 from evaluation.stack import service_class
+from evaluation.strikes import StrikeFile
 
 CASE = "TIDYBOT_EVAL_CASE"
+STRIKES = "strikes"
 
 if __name__ == "__main__":
-    found = msgspec.json.decode(Path(os.environ[CASE]).read_bytes(), type=Case)
-    main(faulty(service_class(os.environ["SUPERVISOR_PROCESS_NAME"]), found.rules))
+    path = Path(os.environ[CASE])
+    case = msgspec.json.decode(path.read_bytes(), type=Case)
+    report = StrikeFile(path.with_name(STRIKES)).report
+    main(injected(service_class(os.environ["SUPERVISOR_PROCESS_NAME"]), case, report))

@@ -6,6 +6,7 @@ import shutil
 import tempfile
 import threading
 import uuid
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -24,11 +25,14 @@ from common.runtime import Process
 from common.scene import load_scene
 from evaluation.case import Case, Observed, Result
 from evaluation.examiner import Examiner, ExaminerConfig, examiner_of
-from evaluation.node import CASE
+from evaluation.inject import targets
+from evaluation.node import CASE, STRIKES
 from evaluation.picture import last_picture
 from evaluation.runner import REPORT, Progress, idle_services, timeline
+from evaluation.sabotage import Saboteur, unavailable
 from evaluation.scene_file import to_toml
 from evaluation.stack import paced_services
+from evaluation.strikes import StrikeFile
 from evaluation.verdict import judge
 
 WALL_LIMIT = 3000.0
@@ -43,15 +47,22 @@ class Ended(StopSignal):
         self.process: Process | None = None
         self._progress, self._due = progress, 0.0
         self._end = monotonic() + WALL_LIMIT
+        self.follow: Callable[[float, str], None] = lambda now, state: None
 
     def is_set(self) -> bool:
         process = self.process
         if process is not None and process.io.clock.now() >= self._due:
             self._due = process.io.clock.now() + REPORT
-            last = process.service.observed.states[-1:]
-            self._progress(process.io.clock.now(), last[0] if last else "starting")
+            self._progress(process.io.clock.now(), _state(process) or "starting")
+        if process is not None:
+            self.follow(process.io.clock.now(), _state(process))
         over = process is not None and bool(process.service.done)
         return over or monotonic() > self._end or super().is_set()
+
+
+def _state(process: Process) -> str:
+    """What the brain was last seen to do."""
+    return "".join(process.service.observed.states[-1:])
 
 
 def run(case: Case, progress: Progress = lambda t, state: None) -> Result:
@@ -60,8 +71,8 @@ def run(case: Case, progress: Progress = lambda t, state: None) -> Result:
     directory = Path(tempfile.mkdtemp(prefix="case-"))
     supervision = Supervision(directory / "run")
     try:
-        if case.strikes:
-            raise CliError("strikes at services are made in one process; leave --processes out")
+        if why := unavailable(case):
+            raise CliError(f"not available as processes: {why}")
         return _run(case, directory, supervision, progress, began)
     except (CliError, bus.BusError) as error:
         return judge(case, Observed(crash=str(error).partition("\n")[0]), monotonic() - began)
@@ -78,10 +89,20 @@ def _run(case: Case, directory: Path, supervision: Supervision, progress: Progre
     shared = config.RuntimeConfig(seed=case.seed, lockstep=True, log_level="error")
     with bus.session(plan.connect, plan.namespace) as session:
         process = Process(examiner_of(case), ExaminerConfig(), shared, scene, session, clock, stop, directory)
-        stop.process = process
         examiner: Examiner = process.service
+        injected = StrikeFile(directory / STRIKES)
+        saboteur = Saboteur(supervision, case.strikes, directory, injected.report)
+
+        def follow(now: float, state: str) -> None:
+            saboteur.step(now, state)
+            for strike in injected.news():
+                examiner.struck(strike)
+
+        stop.process, stop.follow = process, follow
         try:
             process.run_on_sim_clock(clock)
+            saboteur.finish(clock.now())
+            follow(clock.now(), "")
             if not examiner.done:
                 examiner.abort(clock.now(), f"no end within {WALL_LIMIT:.0f} s of wall time")
             result = judge(case, examiner.observed, monotonic() - began)
@@ -114,7 +135,7 @@ def _plan(case: Case, directory: Path) -> Plan:
         seed=case.seed, viewer=False, set=list(case.settings),
     )  # fmt: skip
     plan = Plan(args)
-    faulty = {r.service for r in case.rules}
+    faulty = targets(case)
     needed = {"router", "sim", *paced_services()} - {*idle_services(case)}
     plan.services = [
         Service(s.name, "evaluation.node", s.paced, s.token) if s.name in faulty else s

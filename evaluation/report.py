@@ -116,15 +116,16 @@ def rates(report: dict[str, Any]) -> dict[str, str]:
 
 
 def by_fault(results: Sequence[Result]) -> Table:
-    """Rows of fault kinds: recovered, honestly reported, lost, false claims, and the mean time."""
-    heads = ("fault", "recovered", "reported", "lost", "false claims", "robot s")
+    """Rows of fault kinds: recovered, honestly reported, lost, not struck, false claims, and the mean time."""
+    heads = ("fault", "recovered", "reported", "lost", "not struck", "false claims", "robot s")
     table = Table(*heads, title="by fault, with 95 % intervals", title_justify="left")
     for fault in sorted({str(r.evidence.get("fault", "")) for r in results}):
         rows = [r for r in results if r.evidence.get("fault") == fault]
         good, told = sum(r.delivered for r in rows), sum(r.outcome == "reported" for r in rows)
-        shares = (share(n, len(rows)) for n in (good, told, len(rows) - good - told))
+        missed = sum(r.outcome == "not struck" for r in rows)
+        shares = (share(n, len(rows)) for n in (good, told, len(rows) - good - told - missed))
         mean = sum(r.sim_seconds for r in rows) / len(rows)
-        table.add_row(fault, *shares, str(sum(r.false_claims for r in rows)), f"{mean:.0f}")
+        table.add_row(fault, *shares, str(missed), str(sum(r.false_claims for r in rows)), f"{mean:.0f}")
     return table
 
 

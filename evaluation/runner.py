@@ -3,7 +3,7 @@
 import json
 import tempfile
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -13,9 +13,10 @@ from common.clock import monotonic
 from common.lockstep import DT
 from evaluation.case import Case, Observed, Result, Strike
 from evaluation.examiner import Examiner, examiner_of
-from evaluation.faults import faulty
+from evaluation.inject import injected, targets
 from evaluation.picture import last_picture
 from evaluation.stack import Stack
+from evaluation.strikes import Report, Struck, unheard
 from evaluation.verdict import judge
 
 Progress = Callable[[float, str], None]
@@ -24,12 +25,10 @@ OURS = tuple(str(Path(__file__).parents[1] / name) for name in ("common", "servi
 
 
 class Director:
-    """Does the strikes of a case when the brain is in their states."""
+    """Does the strikes of a case when the brain is in their states, and reports those that could be done."""
 
-    def __init__(
-        self, stack: Stack, strikes: tuple[Strike, ...], struck: Callable[[float], None] = lambda now: None
-    ) -> None:
-        self._stack, self._waiting, self._struck = stack, list(strikes), struck
+    def __init__(self, stack: Stack, strikes: tuple[Strike, ...], report: Report = unheard) -> None:
+        self._stack, self._waiting, self._report = stack, list(strikes), report
         self._back: list[tuple[float, str]] = []
         self._since: dict[str, float] = {}
 
@@ -39,28 +38,32 @@ class Director:
         due = [s for s in self._waiting if stack.now >= self._since.get(s.state, float("inf")) + s.after]
         for strike in due:
             self._waiting.remove(strike)
-            self._struck(stack.now)
-            self._strike(strike)
-        for service in (stack.sim, *(s for s, _ in stack.members.values())):
-            if (at := getattr(getattr(service, "door", None), "hit_at", None)) is not None:
-                self._struck(at)
+            now = round(stack.now, 2)
+            for fault, what in self._strike(strike):
+                self._report(Struck(now, fault, f"{what} in {strike.state}, {strike.after:.2f} s after it began"))
         self._start_again()
 
-    def _strike(self, strike: Strike) -> None:
-        stack = self._stack
+    def _strike(self, strike: Strike) -> Iterator[tuple[str, str]]:
+        """What was done of it."""
+        stack, name = self._stack, strike.service
         if strike.jump:
             stack.jump(strike.jump)
-        if strike.full:
-            stack.fill_disk(strike.full)
-        if strike.service == "router":
+            yield "clock jump", f"time leapt by {strike.jump:.0f} s"
+        if strike.full and stack.fill_disk(strike.full):
+            yield "disk full", "a write failed"
+        if name == "router":
             stack.cut(strike.seconds)
-        elif strike.service == "sim":
+            yield "router loss", f"nobody hears anybody for {strike.seconds:.0f} s"
+        elif name == "sim":
             stack.restart_sim()
-        elif strike.service in stack.members and strike.seconds:
-            stack.hang(strike.service, strike.seconds)
-        elif strike.service in stack.members:
-            stack.kill(strike.service)
-            self._back.append((stack.now + strike.back_after, strike.service))
+            yield "kill", "the sim was replaced"
+        elif name in stack.members and strike.seconds:
+            stack.hang(name, strike.seconds)
+            yield "hang", f"{name} takes no step for {strike.seconds:.0f} s"
+        elif name in stack.members:
+            stack.kill(name)
+            self._back.append((stack.now + strike.back_after, name))
+            yield "kill", f"{name} is gone"
 
     def _start_again(self) -> None:
         stack = self._stack
@@ -77,17 +80,18 @@ def run(case: Case, progress: Progress = lambda t, state: None) -> Result:
 
 
 def _run(case: Case, progress: Progress, began: float, state_dir: Path | None) -> Result:
+    struck: list[Struck] = []
     try:
         stack = Stack(
-            case.scene or "apartment", case.seed, case.settings, swaps=_swaps(case), without=idle_services(case),
-            state_dir=state_dir,
+            case.scene or "apartment", case.seed, case.settings, swaps=_swaps(case, struck.append),
+            without=idle_services(case), state_dir=state_dir,
         )  # fmt: skip
     except Exception as error:
         return judge(case, Observed(crash=_words(error)), monotonic() - began)
     try:
         examiner: Examiner = stack.join(examiner_of(case))
         try:
-            _until_over(stack, examiner, case, progress)
+            _until_over(stack, examiner, case, struck, progress)
         except Exception as error:
             examiner.abort(stack.now, _words(error))
         result = judge(case, examiner.observed, monotonic() - began)
@@ -99,13 +103,17 @@ def _run(case: Case, progress: Progress, began: float, state_dir: Path | None) -
         stack.close()
 
 
-def _until_over(stack: Stack, examiner: Examiner, case: Case, progress: Progress) -> None:
-    director = Director(stack, case.strikes, examiner.struck)
-    due = 0.0
+def _until_over(stack: Stack, examiner: Examiner, case: Case, struck: list[Struck], progress: Progress) -> None:
+    """`struck`: what the injectors have reported so far."""
+    director = Director(stack, case.strikes, struck.append)
+    due, told = 0.0, 0
     while not examiner.done:
         stack.tick()
-        if case.fault and round(stack.now / DT) % 5 == 0:
+        if case.strikes and round(stack.now / DT) % 5 == 0:
             director.step()
+        for strike in struck[told:]:
+            examiner.struck(strike)
+        told = len(struck)
         if stack.now >= due:
             due = stack.now + REPORT
             progress(stack.now, stack.state().state)
@@ -118,8 +126,8 @@ def _words(error: Exception) -> str:
     return f"{type(error).__name__}: {error}{where}"
 
 
-def _swaps(case: Case) -> dict[str, Any]:
-    return {r.service: partial(faulty, rules=case.rules) for r in case.rules}
+def _swaps(case: Case, report: Report) -> dict[str, Any]:
+    return {name: partial(injected, case=case, report=report) for name in targets(case)}
 
 
 def idle_services(case: Case) -> tuple[str, ...]:

@@ -152,10 +152,10 @@ class Stack:
             if name in paced_services():
                 self.hang(name, seconds)
 
-    def fill_disk(self, seconds: float) -> None:
-        """Nothing more goes onto any disk."""
-        self._disk.full(True)
+    def fill_disk(self, seconds: float) -> bool:
+        """Nothing more goes onto any disk; True when a write was tried and failed."""
         self._full_until = self.now + seconds
+        return self._disk.full(True)
 
     def close(self) -> None:
         """End every service; worker threads and contexts go with them."""

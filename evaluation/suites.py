@@ -5,8 +5,10 @@ from functools import partial
 from pathlib import Path
 
 import msgspec
+import numpy as np
 
 from common.config import config_dir, load
+from common.scene import ObjectSpec
 from evaluation.blocks import (
     VLA,
     WORDINGS,
@@ -23,6 +25,8 @@ from evaluation.case import Case, Line
 from evaluation.chaos import CHAOS_SERVICES, CHAOS_STATES, chaos
 from evaluation.commands import ALL, commands
 from evaluation.faults import Rule
+from evaluation.physical import Kind as PhysicalKind
+from evaluation.physical import PhysicalFault
 from evaluation.spoken import HERE, MANIFEST, read_corpus, spoken
 from judge.evidence import Want
 from services.brain.config import BrainConfig
@@ -38,8 +42,16 @@ IMPOSSIBLE: tuple[list[dict[str, str]], ...] = (
     [{"action": "navigate", "target": "swimming pool"}, {"action": "return"}],
     [{"action": "place", "target": "counter"}, {"action": "return"}],
 )
-FAULTS = ("speech", "planning", "perception", "navigation", "grasp")
+FAULTS = ("speech", "planning", "perception", "navigation", "shove", "slip", "jam", "heavy", "wide")
 NAMED = ("fetch", "misheard", "hallucination", "not_in_view", "blocked_path")
+SECONDS = {"slip": (0.06, 0.12), "jam": (2.0, 25.0)}
+"""How long a fault lasts [s]: a slip from a slide of 12 mm to a fall, a jam from one grasp to three."""
+AMOUNT = {"heavy": (7.0, 12.0), "wide": (0.087, 0.089)}
+"""Mass [kg]: friction 1 and 25 N at each of two pads hold 5. Width [m]: the hand opens to 85 mm."""
+GRASPED: dict[str, tuple[str, ...]] = {
+    "wide": ("mug", "apple"), "shove": ("mug", "can", "bottle", "apple", "block", "box", "ball"),
+}  # fmt: skip
+"""Kinds that a fault concerns: a wide mug or bowl is taken by its handle or rim, where a shove hits the finger too."""
 DIALOGUES = ("misheard", "correction", "rejection", "low_confidence", "stop", "cancel", "silence")
 
 Make = Callable[[int], Case]
@@ -105,14 +117,19 @@ def named(seed: int) -> Case:
         case.fault, case.rules = "planning", hallucinated(IMPOSSIBLE[seed % len(IMPOSSIBLE)])
     elif name == "blocked_path":
         case.fault, case.settings = "navigation", (VLA, CRATE)
+        case.physical = (PhysicalFault(kind="obstacle", thing="crate"),)
     return case
 
 
 def faults(seed: int) -> Case:
-    """One of the failure kinds, by the seed; recovering and honestly reporting both count."""
+    """One of the failure kinds, by the seed; recovering and honestly reporting both count.
+
+    What is too heavy or too wide cannot be fetched: there only the honest report does.
+    """
     scene, rng = flat(), random(seed, 3)
     fault = FAULTS[seed % len(FAULTS)]
-    spec = pick(rng, scene, seed, room="kitchen" if fault == "navigation" else "")
+    room = "kitchen" if fault == "navigation" else ""
+    spec = pick(rng, scene, seed, room=room, kinds=GRASPED.get(fault, ()))
     case = fetch_case("faults", seed, spec, scene)
     case.name = case.fault = fault
     case.settings, case.honest = (VLA,), True
@@ -127,10 +144,25 @@ def faults(seed: int) -> Case:
         blind = int(rng.integers(1, 4))
         case.rules = (Rule(service="perception", key="object_pose", kind="edit", count=blind, fields={"found": False}),)
     elif fault == "navigation":
-        case.settings = (VLA, CRATE if rng.random() < 0.5 else WALKER)
+        crate = rng.random() < 0.5
+        case.settings = (VLA, CRATE if crate else WALKER)
+        case.physical = (PhysicalFault(kind="obstacle", thing="crate" if crate else "walker"),)
     else:
-        case.rules = (Rule(service="manipulation", key="gripper_command", kind="drop", match={"position": 1.0}),)
+        grasp_fault(case, spec, rng)
     return case
+
+
+def grasp_fault(case: Case, spec: ObjectSpec, rng: np.random.Generator) -> None:
+    """What the case's fault does to the grasp of its object."""
+    fault = msgspec.convert(case.fault, PhysicalKind)
+    low, high = SECONDS.get(fault, (0.0, 0.0))
+    case.physical = (
+        PhysicalFault(
+            kind=fault, thing=spec.name, seconds=float(rng.uniform(low, high)), after=float(rng.uniform(0.1, 0.6)),
+            amount=float(rng.uniform(*AMOUNT.get(fault, (0.0, 0.0)))),
+        ),
+    )  # fmt: skip
+    case.expect = "reported" if fault in AMOUNT else "delivered"
 
 
 def dialogue(seed: int) -> Case:

@@ -16,12 +16,19 @@ STAGES = {
 }  # fmt: skip
 _WHY = re.compile(r"\(([A-Z]+): ([A-Z_]+)")
 STOOD_STILL = 0.3
-MET = {"delivered": ("delivered",), "nothing": ("declined",), "stopped": ("stopped",), "shown": ("shown",)}
+MET = {
+    "delivered": ("delivered",), "nothing": ("declined",), "stopped": ("stopped",), "shown": ("shown",),
+    "reported": ("reported",),
+}  # fmt: skip
+GOOD = ("delivered", "declined", "stopped", "shown", "reported")
+"""What says nothing of a robot whose fault never took effect."""
 
 
 def judge(case: Case, seen: Observed, wall_seconds: float) -> Result:
     """The verdict on one case."""
     outcome = _outcome(case, seen)
+    if case.faults and not seen.strikes and outcome in GOOD:
+        outcome = "not struck"
     delivered = outcome == "delivered" or (outcome == "shown" and bool(case.wants))
     allowed: tuple[str, ...] = MET[case.expect] + (("reported",) if case.honest else ())
     share = round(spl(delivered, seen.shortest, seen.evidence.driven), 3)
@@ -31,8 +38,8 @@ def judge(case: Case, seen: Observed, wall_seconds: float) -> Result:
         "reason": seen.reason, **msgspec.to_builtins(seen.evidence), "shortest": seen.shortest, "spl": share,
         "sim_seconds": seen.robot_seconds, "wall_seconds": round(wall_seconds, 1), "states": seen.states,
         "said": seen.said, "effects": msgspec.to_builtins(seen.shown), "wrong": seen.wrong,
-        "struck": seen.struck, "recovery": seen.recovery, "shortfall": seen.shortfall,
-        "claims": msgspec.to_builtins(seen.claims), "crash": seen.crash,
+        "struck": seen.struck, "strikes": msgspec.to_builtins(seen.strikes), "recovery": seen.recovery,
+        "shortfall": seen.shortfall, "claims": msgspec.to_builtins(seen.claims), "crash": seen.crash,
     }  # fmt: skip
     return Result(
         seed=case.seed, command=case.command, outcome=outcome, evidence=details,
@@ -52,11 +59,20 @@ def _outcome(case: Case, seen: Observed) -> Outcome:
         return "timeout"
     if case.expect == "nothing":
         return "declined" if not evidence.moved and evidence.driven < STOOD_STILL else "failed"
+    if case.expect == "reported":
+        # What cannot be done is refused aloud, and nothing breaks in trying.
+        whole = untouched(evidence) and not any(t.drops for t in evidence.things)
+        return "reported" if seen.claimed == "failed" and spoken(seen) and whole else "failed"
     if case.expect == "stopped":
         return "stopped" if seen.stopped and evidence.standing and untouched(evidence) else "failed"
     if not seen.shortfall and not seen.wrong and untouched(evidence):
         return "shown" if case.expect == "shown" else "delivered"
     return "reported" if seen.claimed in ("failed", "cancelled") else "failed"
+
+
+def spoken(seen: Observed) -> bool:
+    """The reason that was published was said aloud as well."""
+    return any(text and text in seen.reason for text in seen.said)
 
 
 def cause(case: Case, seen: Observed, outcome: Outcome) -> str:
@@ -65,6 +81,8 @@ def cause(case: Case, seen: Observed, outcome: Outcome) -> str:
         return f"evidence: {_first(next(c.false for c in seen.claims if c.false))}"
     if outcome == "crashed":
         return f"crash: {seen.crash}"
+    if outcome == "not struck":
+        return f"not struck: {case.fault or 'fault'}"
     if outcome == "timeout":
         return f"timeout: {STAGES.get(seen.stage, 'start')}"
     found = _WHY.search(seen.reason)

@@ -118,7 +118,11 @@ def _execute_grab(robot: Robot, plan: GrabPlan, goal: m.ManipulationGoal, found:
     yield from robot.follow(plan.insert, config.joint_speed * 0.6)
     robot.phase = "grasp"
     yield from robot.move_gripper(1.0)
-    _judge(robot, plan, None)
+    try:
+        _judge(robot, plan, None)
+    except Failure:
+        yield from _withdraw(robot, plan)
+        raise
     closed = robot.grip
     robot.held = plan.held
     robot.phase = "retract"
@@ -129,6 +133,17 @@ def _execute_grab(robot: Robot, plan: GrabPlan, goal: m.ManipulationGoal, found:
     _judge(robot, plan, closed.width)
     robot.source.remember(plan.held.label, None, "", robot.now)
     return f"{plan.held.label} held: width {robot.grip.width * 1000:.1f} mm, force {robot.grip.force:.0f} N"
+
+
+def _withdraw(robot: Robot, plan: GrabPlan) -> Steps[None]:
+    """Open and leave the way the hand came: the object may still stand between the fingers."""
+    robot.phase = "retract"
+    yield from robot.move_gripper(0.0)
+    try:
+        yield from robot.follow(plan.insert[::-1], robot.config.joint_speed * 0.6)
+    except Failure as failure:
+        robot.io.log.warning("on the way out", code=failure.code, detail=failure.detail)
+        robot.forget_command()
 
 
 def _carry_again(robot: Robot, held: Held, around: list[Obstacle]) -> Steps[str]:

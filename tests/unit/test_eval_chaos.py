@@ -18,6 +18,7 @@ from evaluation.faults import Rule, faulty
 from evaluation.matrix import cell, chaos_tables, tally
 from evaluation.runner import Director
 from evaluation.stack import Stack
+from evaluation.strikes import Struck
 from evaluation.verdict import judge
 from judge.claims import Claim
 from judge.evidence import Evidence, ThingEvidence
@@ -93,10 +94,9 @@ def test_a_full_disk_takes_nothing_until_there_is_room(stack: Stack, tmp_path: P
 
 
 def test_harm_comes_at_its_moment_and_is_told(stack: Stack) -> None:
-    told: list[float] = []
-    director = Director(
-        stack, (Strike("navigation", "GRABBING", after=0.5), Strike("router", "RELEASING")), told.append
-    )
+    told: list[Struck] = []
+    strikes = (Strike("navigation", "GRABBING", after=0.5), Strike("router", "RELEASING"))
+    director = Director(stack, (*strikes, Strike("speech", "GRABBING")), told.append)
     stack.bus.send(topics.BRAIN_STATE, m.BrainState(state="GRABBING"))
     director.step()
     began = stack.now
@@ -105,7 +105,8 @@ def test_harm_comes_at_its_moment_and_is_told(stack: Stack) -> None:
     assert "navigation" in stack.members and not told
     stack.advance(0.3)
     director.step()
-    assert "navigation" not in stack.members and told == pytest.approx([began + 0.6])
+    assert "navigation" not in stack.members, "and speech, which is not there, was not struck"
+    assert [(s.fault, s.what.split()[0], s.t) for s in told] == [("kill", "navigation", pytest.approx(began + 0.6))]
 
 
 # --- messages
@@ -113,24 +114,22 @@ def test_harm_comes_at_its_moment_and_is_told(stack: Stack) -> None:
 def test_a_message_that_is_hit_is_told(service: str) -> None:
     topic = topics.ODOMETRY if service == "sim" else topics.NAVIGATION_STATUS
     rule = Rule(service=service, key=topic.key, kind="drop")
-    opened = Stack("minimal", without=OTHERS, swaps={service: lambda kind: faulty(kind, (rule,))})
-    opened.bus.send(topics.BRAIN_STATE, m.BrainState(state="NAVIGATING"))
-    told: list[float] = []
-    director = Director(opened, (), told.append)
+    told: list[Struck] = []
+    opened = Stack("minimal", without=OTHERS, swaps={service: lambda kind: faulty(kind, (rule,), told.append)})
     opened.advance(0.5)
-    director.step()
     opened.close()
-    assert told
+    assert [s.fault for s in told] == ["drop"] and topic.key in told[0].what
 
 
 def test_a_rule_for_a_state_holds_in_that_state_only() -> None:
     rule = Rule(service="navigation", key=topics.NAVIGATION_STATUS.key, kind="drop", count=99, state="GRABBING")
-    node = Node(faulty(Counter, (rule,)), None, SCENE)
+    told: list[Struck] = []
+    node = Node(faulty(Counter, (rule,), told.append), None, SCENE)
     for state in ("NAVIGATING", "NAVIGATING", "GRABBING", "GRABBING", "RETURNING"):
         node.send(topics.BRAIN_STATE, m.BrainState(state=state))  # type: ignore[arg-type]
         node.step()
     assert [status.detail for status in node.sent(topics.NAVIGATION_STATUS)] == ["1", "2", "5"]
-    assert node.service.door.hit_at == pytest.approx(0.3)
+    assert [s.t for s in told] == pytest.approx([0.3, 0.4])
 
 
 # --- cells
@@ -163,7 +162,7 @@ def test_recovered_is_the_next_step_of_the_mission() -> None:
         node.run()
 
     show("NAVIGATING", "go")
-    examiner.struck(1.5)
+    examiner.struck(Struck(1.5, "kill", "brain is gone"))
     show("IDLE", "", mission="")
     show("IDLE", "")
     assert examiner.active, "a mission that is being taken up has not ended"
@@ -177,11 +176,15 @@ def test_recovered_is_the_next_step_of_the_mission() -> None:
 # --- the table
 def result(seed: int, delivered: bool, struck: float | None = 3.0, lies: bool = False, drops: int = 0) -> Result:
     thing = ThingEvidence("mug", "table", delivered=delivered, drops=drops)
-    case = Case(suite="chaos", seed=seed, name="brain GRABBING", command="x", lines=(), fault="kill", honest=True)
+    case = Case(
+        suite="chaos", seed=seed, name="brain GRABBING", command="x", lines=(), fault="kill", honest=True,
+        strikes=(Strike("brain", "GRABBING"),),
+    )  # fmt: skip
     seen = Observed(
         evidence=Evidence(things=[thing]), claimed="delivered" if delivered or lies else "failed", ended=True,
         struck=struck, recovery=2.0 if delivered and struck else None, shortfall="" if delivered else "not at rest",
         claims=[Claim(3.0, "speech", "Done.", "m-1", "x", "mug: not at rest")] if lies else [],
+        strikes=[Struck(struck, "kill", "brain is gone")] if struck else [],
     )  # fmt: skip
     return judge(case, seen, 1.0)
 
@@ -192,7 +195,8 @@ def test_what_came_of_it_is_counted() -> None:
     assert (found.recovered, found.reported, found.lost, found.missed) == (1, 1, 1, 1)
     assert (found.dropped, found.lies, found.seconds) == (1, 1, [2.0])
     assert "1/0/0" in cell(rows[:1]) and "2.0 s" in cell(rows[:1])
-    assert "no hit" in cell(rows[3:]) and cell([]) == ""
+    assert rows[3].outcome == "not struck" and not rows[3].met and not rows[3].delivered
+    assert "not struck" in cell(rows[3:]) and cell([]) == ""
     console = Console(record=True, width=160, file=StringIO())
     console.print(chaos_tables(rows))
     text = console.export_text()

@@ -9,6 +9,7 @@ from common import topics
 from common.io import Io
 from common.scene import Place, Scene
 from evaluation.faults import Kind, Rule, faulty
+from evaluation.strikes import Struck, unheard
 from tests.node import Node
 
 SCENE = Scene(name="empty", low=(-1, -1), high=(1, 1), home=Place(name="home", x=0, y=0))
@@ -30,9 +31,9 @@ class Counter:
         self._io.publish(STATUS, m.NavigationStatus(status="navigating", detail=str(self._n), code=code))
 
 
-def said(steps: int, *rules: Rule, seed: int = 0) -> list[str]:
+def said(steps: int, *rules: Rule, seed: int = 0, told: list[Struck] | None = None) -> list[str]:
     """The details that got through, step numbers at 10 Hz."""
-    node = Node(faulty(Counter, rules), None, SCENE, seed=seed)
+    node = Node(faulty(Counter, rules, unheard if told is None else told.append), None, SCENE, seed=seed)
     for _ in range(steps):
         node.step()
     return [status.detail for status in node.sent(STATUS)]
@@ -57,6 +58,15 @@ def test_the_second_message_is_hit(kind: Kind, expected: list[str]) -> None:
 
 def test_an_edit_replaces_fields_and_leaves_the_rest() -> None:
     assert said(3, rule("edit", skip=1, fields={"detail": "nonsense"})) == ["1", "nonsense", "3"]
+
+
+def test_only_what_takes_effect_is_reported() -> None:
+    """An edit that says what was said anyway waits for a message that it changes."""
+    told: list[Struck] = []
+    assert said(3, rule("edit", fields={"code": "even"}), told=told) == ["1", "2", "3"]
+    assert [(s.t, s.fault) for s in told] == [(0.1, "edit")]
+    said(3, rule("edit", fields={"code": "odd"}), told=told)
+    assert [s.t for s in told] == [0.1, 0.2]
 
 
 def test_an_edit_that_makes_no_message_is_an_error_of_the_rule() -> None:

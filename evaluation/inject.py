@@ -1,0 +1,19 @@
+"""Everything a case injects into a service: faulty messages at its door, and for the simulation faults of physics."""
+
+from typing import Any
+
+from evaluation.case import Case
+from evaluation.faults import faulty
+from evaluation.physical import afflicted
+from evaluation.strikes import Report
+
+
+def targets(case: Case) -> set[str]:
+    """The services whose class the case replaces."""
+    return {r.service for r in case.rules} | ({"sim"} if case.physical else set())
+
+
+def injected(kind: Any, case: Case, report: Report) -> Any:
+    """The class that runs in place of a service's; the class itself where the case has nothing for it."""
+    found = faulty(kind, case.rules, report)
+    return afflicted(found, case.physical, report) if kind.NAME == "sim" else found

@@ -1,0 +1,46 @@
+"""What faults really did: every injector reports it when, and only when, its fault took effect."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import msgspec
+
+
+class Struck(msgspec.Struct, frozen=True):
+    """A fault took effect at robot time `t` [s]; `what` is what was seen of it."""
+
+    t: float
+    fault: str
+    what: str
+
+
+Report = Callable[[Struck], None]
+
+
+def unheard(struck: Struck) -> None:
+    """For runs in which nobody asks what the faults did."""
+
+
+class StrikeFile:
+    """Reports of several processes to one reader: a JSON record a line, appended in one write."""
+
+    def __init__(self, path: Path) -> None:
+        self._path, self._read = path, 0
+
+    def report(self, struck: Struck) -> None:
+        with self._path.open("ab", buffering=0) as file:
+            file.write(msgspec.json.encode(struck) + b"\n")
+
+    def news(self) -> list[Struck]:
+        """The complete records since the last call."""
+        try:
+            size = self._path.stat().st_size
+        except OSError:
+            return []
+        if size <= self._read:
+            return []
+        with self._path.open("rb") as file:
+            file.seek(self._read)
+            lines, _, _ = file.read().rpartition(b"\n")
+        self._read += len(lines) + 1 if lines else 0
+        return [msgspec.json.decode(line, type=Struck) for line in lines.splitlines()]
