@@ -6,8 +6,10 @@ import msgspec
 import pytest
 
 from evaluation.case import Case, Line, Observed
+from evaluation.physical import PhysicalFault
 from evaluation.report import passed
 from evaluation.statistics import interval, percent, share, wilson
+from evaluation.strikes import Struck
 from evaluation.verdict import cause, judge
 from judge.claims import Claim
 from judge.effects import Effect, Shown
@@ -123,9 +125,40 @@ def test_a_stop_must_have_stopped_the_robot(evidence: Evidence, stopped: bool, o
     assert (result.outcome, result.cause) == (outcome, why)
 
 
+def test_a_fault_that_never_took_effect_says_nothing_of_the_robot() -> None:
+    jam = msgspec.structs.replace(CASE, fault="jam", physical=(PhysicalFault(kind="jam", thing="mug"),), honest=True)
+    for observed in (seen(GOOD, "delivered", claims=[claim()]), seen(GOOD, "failed", "(GRABBING: EMPTY_GRASP)")):
+        result = judge(jam, observed, 1.0)
+        assert (result.outcome, result.met, result.delivered) == ("not struck", False, False)
+        assert result.cause == "not struck: jam"
+        observed.strikes = [Struck(2.0, "jam", "a finger stays")]
+        assert judge(jam, observed, 1.0).met
+    assert judge(jam, seen(GOOD, "none", ended=False), 1.0).outcome == "timeout", "whatever struck"
+
+
+@pytest.mark.parametrize(
+    ("evidence", "claimed", "said", "outcome"),
+    [
+        (Evidence(), "failed", "The mug is too heavy.", "reported"),
+        (Evidence(), "failed", "Hello.", "failed"),
+        (Evidence(), "delivered", "The mug is too heavy.", "failed"),
+        (Evidence(hits=["hand on table"]), "failed", "The mug is too heavy.", "failed"),
+        (Evidence(things=[ThingEvidence("mug", "table", drops=1)]), "failed", "The mug is too heavy.", "failed"),
+    ],
+)
+def test_what_cannot_be_done_is_refused_aloud_and_nothing_breaks(
+    evidence: Evidence, claimed: str, said: str, outcome: str
+) -> None:
+    heavy = msgspec.structs.replace(CASE, expect="reported")
+    observed = seen(evidence, claimed, "The mug is too heavy. (GRABBING: TOO_HEAVY)", said=[said])
+    result = judge(heavy, observed, 1.0)
+    assert (result.outcome, result.met) == (outcome, outcome == "reported")
+
+
 def test_the_row_of_the_report_has_everything() -> None:
     observed = seen(GOOD, "delivered", claims=[claim()], robot_seconds=31.0, said=["Done."], states=["WAITING"])
     observed.struck, observed.recovery = 2.0, 3.0
+    observed.strikes = [Struck(2.0, "kill", "brain is gone")]
     result = judge(msgspec.structs.replace(CASE, fault="kill"), observed, 7.26)
     assert (result.seed, result.command, result.name, result.sim_seconds) == (3, "bring", "fetch", 31.0)
     assert (result.spl, result.wall_seconds, result.false_claims) == (0.5, 7.26, 0)
@@ -133,7 +166,7 @@ def test_the_row_of_the_report_has_everything() -> None:
         "name": "fetch", "fault": "kill", "expected": "delivered", "met": True, "claimed": "delivered", "reason": "",
         **msgspec.to_builtins(GOOD), "shortest": 2.4, "spl": 0.5, "sim_seconds": 31.0, "wall_seconds": 7.3,
         "states": ["WAITING"], "said": ["Done."], "struck": 2.0, "recovery": 3.0, "shortfall": "", "crash": "",
-        "effects": [], "wrong": [],
+        "effects": [], "wrong": [], "strikes": [{"t": 2.0, "fault": "kill", "what": "brain is gone"}],
         "claims": [msgspec.to_builtins(claim())],
     }  # fmt: skip
 
