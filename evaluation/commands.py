@@ -74,7 +74,8 @@ TASKS: tuple[Task, ...] = (
     Task("what is on the counter", effects=(Effect("tells what is on", "counter"),)),
     Task("what do you see", effects=(Effect("tells what it sees"), STILL)),
     Task("pick up the red mug", effects=(Effect("holds", "red mug"),)),
-    Task("open the gripper", effects=(Effect("hand", "open"), STILL)),
+    Task("open your hand", effects=(Effect("hand", "open"), STILL)),
+    Task("close the gripper", effects=(Effect("hand", "closed"), STILL)),
     Task("wait", effects=(STILL,)),
     Task("say dinner is ready", effects=(Effect("says", "dinner is ready"), STILL)),
     Task("bring me the banana", effects=(Effect("says", "I know no banana"), STILL)),
@@ -97,6 +98,10 @@ TALKS: tuple[Task, ...] = (
     Task(
         "go to the kitchen", effects=(Effect("visits", "kitchen"), HOME),
         first=Goal(effects=(Effect("ends", "kitchen"),)), then=(Line("come here", "ended"),),
+    ),
+    Task(
+        "close the gripper", effects=(Effect("hand", "open"),), first=Goal(effects=(Effect("hand", "closed"),)),
+        then=(Line("open your hand", "ended"),),
     ),
     Task("bring me the red mug", effects=LEFT_OFF, then=(Line("stop", "NAVIGATING", 2.0),)),
     Task("bring me the red mug", effects=LEFT_OFF, then=(Line("cancel", "NAVIGATING", 2.0),)),
