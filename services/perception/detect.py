@@ -104,12 +104,20 @@ class ClassicalDetector:
             return self._strange(view, piece, rgb, height)
         best = guesses[0]
         score, spec, size, fit = best.score, best.spec, best.stance.size, best.fit
+        tilt = best.stance.tilt
+        if (
+            spec.kind == "mug"
+            and not tilt
+            and toppled.closed_above("mug", size, piece.points, piece.surface.height, fit)
+        ):
+            # The walls look alike either way up.
+            tilt = math.pi
         second = next((rival.score for rival in guesses if rival.spec is not spec), WORST)
         # Sure when the fit is good and nothing else in the house comes close.
         confidence = math.exp(-0.5 * (score / 2.2) ** 2) * (1 - math.exp(-2.0 * (second - score) - 0.4))
         pixels = min(1.0, len(piece.rows) / 120)
         yaw = fit.yaw
-        if spec.kind == "mug" and not best.stance.tilt:
+        if spec.kind == "mug" and not tilt:
             yaw = shapes.handle_yaw(size, piece.points, fit.x, fit.y, view.position)
         position = (fit.x, fit.y, piece.surface.height + size[2] / 2)
         return Detection(
@@ -124,7 +132,7 @@ class ClassicalDetector:
             distance=_distance(view, fit),
             whole=not piece.cut and score < SOUND,
             share=min(1.0, len(piece.rows) / _pixels(view, position, size)),
-            tilt=best.stance.tilt,
+            tilt=tilt,
         )
 
     def _guesses(
@@ -141,6 +149,10 @@ class ClassicalDetector:
                     tall = min(tall, 1.0)
                 if tall <= WORST:
                     fit = _fit(spec, stance, view, piece)
+                    if stance.tilt == math.pi and not toppled.closed_above(
+                        spec.kind, spec.size, piece.points, piece.surface.height, fit
+                    ):
+                        continue
                     score = math.sqrt((fit.residual / SHAPE_SCALE) ** 2 + tall**2 + off**2)
                     found.append(Guess(score, spec, stance, fit))
         return sorted(found, key=lambda g: g.score)

@@ -27,6 +27,12 @@ HANDLE = 0.024
 """How far a mug's handle may reach above its body [m], as the household's mugs are built."""
 
 
+LEVEL = 0.008
+"""How near [m] the height of a vessel a point of its foot is, when that is on top: twice the noise at 1.5 m."""
+CLOSED = 0.06
+"""Least share of the points on the foot's inner part: a third of what a whole view from 45 degrees above shows."""
+
+
 def heights(kind: ObjectKind, size: Vec3) -> tuple[float, float]:
     """Lowest and highest top [m] of a shape on its side."""
     return size[0], size[0] + (HANDLE if kind == "mug" else 0.0)
@@ -105,6 +111,17 @@ def fit(kind: ObjectKind, size: Vec3, points: Array, floor: float, camera: Array
             best = solve(lambda p: _apart(kind, size, used, floor, p), best, ROBUST / 2, TRIES)[0]
     left = np.minimum(_apart(kind, size, used, floor, best)[0], 0.02)
     return Fit(float(best[0]), float(best[1]), math.remainder(float(best[2]), math.tau), float(left.mean()))
+
+
+def closed_above(kind: ObjectKind, size: Vec3, points: Array, floor: float, at: Fit) -> bool:
+    """The foot of a vessel that stands at `at` is seen on top: only then is it upside down.
+
+    The walls alone fit a vessel either way up, all the more when something hides a part of it.
+    """
+    foot = size[0] / 2 - (size[2] * math.tan(shapes.BOWL_LEAN) if kind == "bowl" else 0.0)
+    inner = np.hypot(points[:, 0] - at.x, points[:, 1] - at.y) < 0.6 * foot
+    on_top = np.abs(points[:, 2] - floor - size[2]) < LEVEL
+    return bool(np.count_nonzero(inner & on_top) > CLOSED * len(points))
 
 
 def fit_upside_down(kind: ObjectKind, size: Vec3, points: Array, floor: float, camera: Array) -> Fit:
