@@ -88,7 +88,7 @@ class MemoryIo(IoBase):
             clock=clock or ManualClock(),
             log_level=log_level,
         )
-        self._bus = bus
+        self.bus = bus
         self.out_stamp: int | None = None
         bus.attach(self)
 
@@ -97,17 +97,17 @@ class MemoryIo(IoBase):
             stamp = UNSTAMPED
         else:
             stamp = self.tick if self.out_stamp is None else self.out_stamp
-        self._bus.put(topic, payload, stamp)
+        self.bus.put(topic, payload, stamp)
 
     def serve(self, key: str, handler: Handler) -> None:
-        self._bus.handlers[key] = handler
+        self.bus.handlers[key] = handler
 
     def ask(self, key: str, request: bytes = b"") -> WorkerJob[bytes | None]:
-        answer = self._bus.get(key, request)
+        answer = self.bus.get(key, request)
         return self.submit(lambda: answer)
 
     def peer(self, name: str) -> str | None:
-        other = self._bus.ios.get(name)
+        other = self.bus.ios.get(name)
         return other.epoch if other else None
 
     def matched(self, topic: Topic[Any]) -> bool:

@@ -21,7 +21,7 @@ class Panels:
         gui.configure_theme(show_logo=False, show_share_button=False, control_width="large")
         gui.main_panel.dock_right()
         gui.set_panel_label("tidybot")
-        self._texts: dict[str, str] = {}
+        self.texts: dict[str, str] = {}
         self._html: dict[str, Any] = {}
         self._images: dict[str, Any] = {}
         self._wanted: dict[str, Any] = {}
@@ -72,8 +72,8 @@ class Panels:
         return bool(self._wanted[camera].value)
 
     def text(self, name: str, html: str) -> None:
-        if self._texts.get(name) != html:
-            self._texts[name] = html
+        if self.texts.get(name) != html:
+            self.texts[name] = html
             self._html[name].content = html
 
     def picture(self, camera: str, pixels: NDArray[np.uint8]) -> None:

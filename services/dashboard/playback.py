@@ -114,49 +114,49 @@ class Playback(DashboardService):
 
     def __init__(self, config: DashboardConfig, io: Any, tape: Tape, missions: list[story.Record]) -> None:
         super().__init__(config, io)
-        self._deck: TapeIo = io
-        self._tape, self._playing, self._speed_up = tape, True, 1.0
+        self.deck: TapeIo = io
+        self.tape, self.playing, self._speed_up = tape, True, 1.0
         self._shown: object = None
         self._bands = [
             {"from": began + a, "to": began + b, "state": state, "colour": STATES.get(state, "#dee2e6")}
             for began, entries, until in ((r["started"], r["entries"], r["until"]) for r in missions)
             for state, a, b in spans(entries, began, max(until, began))
         ]
-        self._panels.command_by_clicks(False)
+        self.panels.command_by_clicks(False)
         self.jump(tape.first)
 
     def jump(self, t: float) -> None:
         """Show the robot as it was at `t`."""
         self._transcript = Transcript()
         self._commands.take_notes(self._transcript)
-        for row in self._tape.seek(t):
+        for row in self.tape.seek(t):
             message = story.decoded(row)
             if isinstance(message, m.SpeechGoal):
                 self._transcript.goal(row.t, message)
             elif isinstance(message, m.SpeechResult):
                 self._transcript.heard(row.t, message)
         # What was just told must not be told again by the page's own reading.
-        self._deck.begin(None, monotonic())
-        self._deck.drain(topics.SPEECH_GOAL)
-        self._deck.drain(topics.SPEECH_RESULT)
+        self.deck.begin(None, monotonic())
+        self.deck.drain(topics.SPEECH_GOAL)
+        self.deck.drain(topics.SPEECH_RESULT)
 
     def pause(self, t: float) -> None:
         """Stand still at `t`."""
-        self._playing = False
+        self.playing = False
         self.jump(t)
 
     def frame(self, now: float, passed: float) -> None:
         """One step of the page after `passed` seconds."""
-        if self._playing:
-            self._tape.play(passed * self._speed_up)
-            self._playing = self._tape.at < self._tape.last
-        self._deck.begin(None, now)
+        if self.playing:
+            self.tape.play(passed * self._speed_up)
+            self.playing = self.tape.at < self.tape.last
+        self.deck.begin(None, now)
         self.step(now)
-        tape = self._tape
-        shown = {"t": round(tape.at, 1), "playing": self._playing, "speed": self._speed_up}
+        tape = self.tape
+        shown = {"t": round(tape.at, 1), "playing": self.playing, "speed": self._speed_up}
         if shown != self._shown:
             self._shown = shown
-            self._web.say("tape", {**shown, "first": tape.first, "last": tape.last, "bands": self._bands})
+            self.web.say("tape", {**shown, "first": tape.first, "last": tape.last, "bands": self._bands})
 
     def _said(self, words: Words) -> None:
         if words.do == "seek":
@@ -165,9 +165,9 @@ class Playback(DashboardService):
             except ValueError:
                 self._io.count_drop("page", f"{words.text[:20]!r} is no time")
         elif words.do in ("play", "pause"):
-            if words.do == "play" and self._tape.at >= self._tape.last:
-                self.jump(self._tape.first)
-            self._playing = words.do == "play"
+            if words.do == "play" and self.tape.at >= self.tape.last:
+                self.jump(self.tape.first)
+            self.playing = words.do == "play"
         elif words.do == "speed" and words.text in map(str, SPEEDS):
             self._speed_up = float(words.text)
         else:

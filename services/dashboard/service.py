@@ -43,16 +43,16 @@ class DashboardService:
     def __init__(self, config: DashboardConfig, io: Io) -> None:
         self._config, self._io = config, io
         try:
-            self._web = Web(config)
+            self.web = Web(config)
         except PageError as error:
             raise StartError(str(error)) from None
-        self._view, self._layers = View(self._web.viser), Layers(self._web.viser)
-        self._panels = Panels(self._web.viser, config.camera_width, config.camera_height)
-        self._cameras = Cameras(config, io, self._panels)
+        self.view, self._layers = View(self.web.viser), Layers(self.web.viser)
+        self.panels = Panels(self.web.viser, config.camera_width, config.camera_height)
+        self._cameras = Cameras(config, io, self.panels)
         self._transcript, self._services, self._reasons = Transcript(), Services(), Reasons()
         self._care = Care(io, config.supervisor, lambda words: self._transcript.add(self._t, "robot", words))
         self._commands = Commands(io, self._transcript)
-        self._plots = Plots(self._panels)
+        self._plots = Plots(self.panels)
         self._mjcf = ""
         self._drawn: Job[Drawing] | None = None
         self._base: Pose2 = (0.0, 0.0, 0.0)
@@ -64,20 +64,20 @@ class DashboardService:
         self._world: m.WorldObjects | None = None
         self._ghosts_at = float("-inf")
         self._tree: m.TreeNode | None = None
-        io.publish(topics.PAGE_STATUS, m.PageStatus(url=self._web.url))
-        io.log.info("page", url=self._web.url)
+        io.publish(topics.PAGE_STATUS, m.PageStatus(url=self.web.url))
+        io.log.info("page", url=self.web.url)
         # The token is for eyes at this terminal only, not for the log on the bus.
-        sys.stderr.write(f"dashboard: open {self._web.entrance}\n")
+        sys.stderr.write(f"dashboard: open {self.web.entrance}\n")
 
     def step(self, now: float) -> None:
         self._receive(now)
         self._obey(now)
         self._redraw_model(now)
-        watched = self._web.watched
+        watched = self.web.watched
         self._care.step(now, watched)
         if watched or now >= self._move_at:
             # All that is new goes out at once: each message of its own would wake the web server and every visitor.
-            with self._web.viser.atomic():
+            with self.web.viser.atomic():
                 self._draw(now, watched)
 
     def _draw(self, now: float, watched: bool) -> None:
@@ -94,7 +94,7 @@ class DashboardService:
             self._cameras.look(now, self._base)
             if now - self._plot_at >= PLOT:
                 self._plot_at = now
-                self._panels.redraw()
+                self.panels.redraw()
 
     # --- from the bus
     def _receive(self, now: float) -> None:
@@ -114,7 +114,7 @@ class DashboardService:
             if len(chunk.data) % 2 or not 4000 <= chunk.rate <= 192000:
                 io.count_drop(topics.AUDIO_OUT.key, "not 16 bit samples at 4 to 192 kHz")
             else:
-                self._web.play(chunk.data, chunk.rate)
+                self.web.play(chunk.data, chunk.rate)
 
     def _off_path(self) -> float:
         """How far the base is from its path [m], while it drives along one."""
@@ -124,18 +124,18 @@ class DashboardService:
     # --- from the visitors
     def _obey(self, now: float) -> None:
         state = self._io.latest(topics.BRAIN_STATE)
-        while not self._web.inbox.empty():
-            event = self._web.inbox.get_nowait()
+        while not self.web.inbox.empty():
+            event = self.web.inbox.get_nowait()
             if isinstance(event, Asked):
                 self._care.mission(event.mission, partial(self._show_mission, event))
             elif isinstance(event, Words):
                 self._said(event)
             elif isinstance(event, Sound):
                 self._commands.sound(event.data, self._t)
-            elif isinstance(event, Click) and self._panels.clicks:
+            elif isinstance(event, Click) and self.panels.clicks:
                 world = self._io.latest(topics.WORLD_OBJECTS)
                 objects = world.objects if world is not None else []
-                picked = pick(event.origin, event.direction, self._view.drawing.flat, objects)
+                picked = pick(event.origin, event.direction, self.view.drawing.flat, objects)
                 self._commands.picked(picked, self._base, state, self._t)
 
     def _said(self, words: Words) -> None:
@@ -145,7 +145,7 @@ class DashboardService:
             self._commands.words(words.do, words.text, self._t)
 
     def _show_mission(self, asked: Asked, record: dict[str, Any] | None) -> None:
-        self._web.answer(asked, timeline.page(record) if record is not None else "")
+        self.web.answer(asked, timeline.page(record) if record is not None else "")
 
     # --- to the visitors
     def _redraw_model(self, now: float) -> None:
@@ -153,7 +153,7 @@ class DashboardService:
         if self._drawn is not None and self._drawn.poll(now):
             job, self._drawn = self._drawn, None
             try:
-                self._view.show(job.result())
+                self.view.show(job.result())
             except ValueError as error:
                 self._io.count_drop(topics.SIM_MODEL.key, str(error))
         if model is not None and model.mjcf != self._mjcf and self._drawn is None:
@@ -161,7 +161,7 @@ class DashboardService:
             self._drawn = self._io.submit(partial(draw, model.mjcf))
 
     def _move(self, now: float) -> None:
-        io, panels, view = self._io, self._panels, self._view
+        io, panels, view = self._io, self.panels, self.view
         joints, pose = io.latest(topics.JOINT_STATES), io.latest(topics.POSE)
         q = dict(zip(joints.name, joints.position, strict=False)) if joints is not None else {}
         if pose is not None:
@@ -184,18 +184,18 @@ class DashboardService:
     def _overlay(self) -> None:
         """What navigation and manipulation think."""
         try:
-            self._layers.costmap(self._io.latest(topics.COSTMAP), self._panels.costmap)
+            self._layers.costmap(self._io.latest(topics.COSTMAP), self.panels.costmap)
         except ValueError as error:
             self._io.count_drop(topics.COSTMAP.key, str(error))
         found, doing = self._io.latest(topics.GRASPS), self._io.latest(topics.MANIPULATION_STATUS)
         under_way = doing is not None and doing.status == "executing" and doing.phase in GRABBING
-        shown = (found, under_way and self._panels.grasps)
+        shown = (found, under_way and self.panels.grasps)
         if shown != self._seen_grasps:
             self._seen_grasps = shown
             self._layers.grasps(*shown)
 
     def _refresh(self, now: float) -> None:
-        io, panels = self._io, self._panels
+        io, panels = self._io, self.panels
         state, plan = io.latest(topics.BRAIN_STATE), io.latest(topics.ACTION_PLAN)
         steps = plan.steps if plan is not None and state is not None and state.pipeline == "vla" else []
         navigation, manipulation = io.latest(topics.NAVIGATION_FEEDBACK), io.latest(topics.MANIPULATION_STATUS)
@@ -223,7 +223,7 @@ class DashboardService:
         }
         if told != self._told:
             self._told = told
-            self._web.say("state", told)
+            self.web.say("state", told)
 
     def close(self) -> None:
-        self._web.close()
+        self.web.close()

@@ -24,8 +24,8 @@ class View:
 
     def __init__(self, server: viser.ViserServer) -> None:
         self._server, self._scene = server, server.scene
-        self._nodes: dict[str, Any] = {}
-        self._objects: dict[str, Any] = {}
+        self.nodes: dict[str, Any] = {}
+        self.object_nodes: dict[str, Any] = {}
         self._looks: dict[str, tuple[object, ...]] = {}
         self._at: dict[str, tuple[Array, Array]] = {}
         self._values: dict[str, list[float]] = {}
@@ -44,14 +44,14 @@ class View:
         """Replace everything by another model."""
         self.drawing = found
         with self._server.atomic():
-            for node in (*self._nodes.values(), *(n for nodes in self._objects.values() for n in nodes)):
+            for node in (*self.nodes.values(), *(n for nodes in self.object_nodes.values() for n in nodes)):
                 node.remove()
-            for each in (self._nodes, self._objects, self._looks, self._at, self._values):
+            for each in (self.nodes, self.object_nodes, self._looks, self._at, self._values):
                 each.clear()
             if found.flat is not None:
-                self._nodes["flat"] = self._mesh("/flat", found.flat)
+                self.nodes["flat"] = self._mesh("/flat", found.flat)
             if found.walls is not None:
-                self._nodes["walls"] = self._scene.add_mesh_simple(
+                self.nodes["walls"] = self._scene.add_mesh_simple(
                     "/walls",
                     found.walls.vertices.astype(np.float32),
                     found.walls.faces.astype(np.uint32),
@@ -71,9 +71,9 @@ class View:
                 else:
                     node = self._scene.add_frame(path, show_axes=False)
                 node.position, node.wxyz = place, quaternion(turn)
-                self._nodes[path], self._at[path] = node, (place, turn)
+                self.nodes[path], self._at[path] = node, (place, turn)
             for camera in found.cameras:
-                self._nodes[f"camera {camera.name}"] = self._scene.add_camera_frustum(
+                self.nodes[f"camera {camera.name}"] = self._scene.add_camera_frustum(
                     f"{paths[camera.link]}/{camera.name}_camera",
                     fov=camera.fovy,
                     aspect=4 / 3,
@@ -114,9 +114,9 @@ class View:
             place, turn = posture(link, q)
             before = self._at[path]
             if np.abs(place - before[0]).max() > STILL:
-                self._nodes[path].position = place
+                self.nodes[path].position = place
             if np.abs(turn - before[1]).max() > STILL:
-                self._nodes[path].wxyz = quaternion(turn)
+                self.nodes[path].wxyz = quaternion(turn)
             self._at[path] = place, turn
 
     def follow(self, base: Pose2, wanted: bool) -> None:
@@ -166,19 +166,19 @@ class View:
         """Draw what the robot believes; what it has not seen for `ghost_after` seconds as a ghost."""
         names = [one.id or one.label for one in known]
         for gone in [k for k in self._looks if k not in names]:
-            for node in self._objects.pop(gone):
+            for node in self.object_nodes.pop(gone):
                 node.remove()
             del self._looks[gone]
         for name, one in zip(names, known, strict=True):
             ghost = not one.held and t - one.seen_at > ghost_after
             look = (one.label, one.kind, one.colour, one.size, ghost, labels)
             if self._looks.get(name, ())[:-1] != look:
-                for node in self._objects.pop(name, ()):
+                for node in self.object_nodes.pop(name, ()):
                     node.remove()
-                self._objects[name] = self._object(name, one, ghost, labels)
+                self.object_nodes[name] = self._object(name, one, ghost, labels)
             elif self._looks[name][-1] == (one.position, one.orientation):
                 continue
-            body, *label = self._objects[name]
+            body, *label = self.object_nodes[name]
             body.position, body.wxyz = one.position, one.orientation
             for each in label:
                 each.position = _above(one)

@@ -51,7 +51,7 @@ class Web:
         self._socket = listen(config)
         self.port: int = self._socket.getsockname()[1]
         self.inbox: queue.SimpleQueue[Event] = queue.SimpleQueue()
-        self._visitors = Visitors(self.inbox.put)
+        self.visitors = Visitors(self.inbox.put)
         self._secret = secrets.token_urlsafe(24)
         with guarded(self._secret):
             self.viser = viser.ViserServer(host="127.0.0.1", port=0, label="tidybot", verbose=False)
@@ -70,11 +70,11 @@ class Web:
     def say(self, kind: str, message: object) -> None:
         """Tell every page; the newest of each kind is also told to a page that opens later."""
         text = msgspec.json.encode({"kind": kind, "value": message}).decode()
-        self._loop.call_soon_threadsafe(self._visitors.tell, kind, text)
+        self._loop.call_soon_threadsafe(self.visitors.tell, kind, text)
 
     def play(self, samples: bytes, rate: int) -> None:
         """Let every page play int16 samples."""
-        self._loop.call_soon_threadsafe(self._visitors.spread, rate.to_bytes(4, "little") + samples)
+        self._loop.call_soon_threadsafe(self.visitors.spread, rate.to_bytes(4, "little") + samples)
 
     def answer(self, asked: Asked, page: str) -> None:
         """Give a visitor the page that was asked for; "" for none."""
@@ -100,7 +100,7 @@ class Web:
         app.router.add_get("/", self._page)
         app.router.add_get("/view", self._view)
         app.router.add_get("/view/", self._view)
-        app.router.add_get("/live", self._visitors.serve)
+        app.router.add_get("/live", self.visitors.serve)
         app.router.add_get("/mission/{id}", self._mission)
         app.router.add_static("/page", PAGE)
         # A connector belongs to the loop that it is made in.
@@ -111,7 +111,7 @@ class Web:
         return runner
 
     async def _end(self) -> None:
-        await self._visitors.close()
+        await self.visitors.close()
         await self._inner.close()
         await self._runner.cleanup()
 

@@ -18,7 +18,7 @@ from common.scene import load_scene
 from services.dashboard.config import DashboardConfig
 from services.dashboard.events import Click, Words
 from services.dashboard.playback import opened
-from services.dashboard.service import HEALTH, DashboardService
+from services.dashboard.service import DashboardService
 from services.dashboard.web import Web
 from services.sim.physics import Physics
 from services.sim.robot import HOME_ARM, JOINT_NAMES
@@ -51,7 +51,7 @@ class Page(Node):
         )
 
     def node(self, ending: str) -> object:
-        nodes = self.service._view._nodes
+        nodes = self.service.view.nodes
         return next(node for path, node in nodes.items() if path.endswith(ending))
 
 
@@ -73,7 +73,7 @@ def drawn(page: Page, monkeypatch: pytest.MonkeyPatch) -> Page:
 
     def there() -> bool:
         page.step()
-        return bool(page.service._view.drawing.links)
+        return bool(page.service.view.drawing.links)
 
     eventually(there, "the model is drawn")
     return page
@@ -105,15 +105,15 @@ def test_objects_come_go_and_turn_into_ghosts(drawn: Page) -> None:
         drawn.joints(t)
         drawn.step()
 
-    view = drawn.service._view
+    view = drawn.service.view
     show(MUG, t=10.0)
-    solid = view._objects["1"][0]
+    solid = view.object_nodes["1"][0]
     assert solid.opacity is None
     assert tuple(solid.position) == pytest.approx(MUG.position)
     show(MUG, t=60.0)
-    assert view._objects["1"][0].opacity is not None
+    assert view.object_nodes["1"][0].opacity is not None
     show(t=61.0)
-    assert view._objects == {}
+    assert view.object_nodes == {}
 
 
 def test_cameras_are_asked_only_while_somebody_looks(page: Page, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -149,27 +149,27 @@ def test_a_model_that_is_none_is_counted_and_a_later_one_is_drawn(drawn: Page) -
         return drawn.io.drops[topics.SIM_MODEL.key] > 0
 
     eventually(counted, "the bad model is counted")
-    assert drawn.service._view.drawing.links, "the old one stays"
+    assert drawn.service.view.drawing.links, "the old one stays"
 
 
 def test_clicks_obey_the_check_box(drawn: Page) -> None:
     goals = drawn.bus.tap(topics.NAV_GOAL)
     drawn.bus.send(topics.BRAIN_STATE, m.BrainState(state="LISTENING"))
     click = Click(np.array([-1.0, 1.0, 3.0]), np.array([0.0, 0.0, -1.0]))
-    drawn.service._web.inbox.put(click)
+    drawn.service.web.inbox.put(click)
     drawn.step()
     assert len(goals) == 1
-    drawn.service._panels._clicks.value = False
-    drawn.service._web.inbox.put(click)
+    drawn.service.panels.command_by_clicks(False)
+    drawn.service.web.inbox.put(click)
     drawn.step()
     assert len(goals) == 1
 
 
 def test_services_are_listed_from_their_health(page: Page) -> None:
     health = m.Health(name="sim", epoch="a", t=0.0, uptime=1.0, hz=100.0, drops=3, rss_mb=80.0, pid=1)
-    page.bus.send(HEALTH, health)
+    page.bus.send(topics.HEALTH, health)
     page.step(2.0)
-    shown = page.service._panels._texts["services"]
+    shown = page.service.panels.texts["services"]
     assert "sim" in shown
     assert "gone" in shown, "its token is not there"
 
@@ -182,7 +182,7 @@ def test_a_mission_has_a_page(page: Page) -> None:
     page.bus.handlers[topics.BRAIN_MISSIONS] = lambda asked: json.dumps(record if b"m-1" in asked else None).encode()
 
     def get(name: str) -> tuple[int, str]:
-        address = f"http://127.0.0.1:{page.service._web.port}/mission/{name}"
+        address = f"http://127.0.0.1:{page.service.web.port}/mission/{name}"
         with ThreadPoolExecutor(1) as visitor:
             answer = visitor.submit(urllib.request.urlopen, address, timeout=10)
 
@@ -221,23 +221,23 @@ def test_a_recording_is_seen_on_the_page_and_nothing_of_it_commands_a_robot(tmp_
         def drawn() -> bool:
             now[0] += 0.5
             film.frame(now[0], 0.0)
-            return bool(film._view.drawing.links)
+            return bool(film.view.drawing.links)
 
         eventually(drawn, "the model is drawn")
-        stops = film._deck._bus.tap(topics.ROBOT_STOP)
+        stops = film.deck.bus.tap(topics.ROBOT_STOP)
         for words in (Words("stop"), Words("say", "bring me the mug"), Words("pause"), Words("seek", "7.3")):
-            film._web.inbox.put(words)
+            film.web.inbox.put(words)
         film.frame(now[0] + 2, 0.0)
         film.frame(now[0] + 4, 0.5)
-        base = next(node for name, node in film._view._nodes.items() if name.endswith("/base"))
+        base = next(node for name, node in film.view.nodes.items() if name.endswith("/base"))
         assert base.position[0] == pytest.approx(0.73)
         assert stops == []
-        film._web.inbox.put(Words("play"))
+        film.web.inbox.put(Words("play"))
         film.frame(now[0] + 6, 0.0)
         film.frame(now[0] + 8, 1.5)
         assert base.position[0] == pytest.approx(0.88)
         film.frame(now[0] + 10, 60.0)
-        assert film._tape.at == 10.0 and not film._playing
+        assert film.tape.at == 10.0 and not film.playing
     finally:
         film.close()
 

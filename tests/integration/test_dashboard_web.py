@@ -148,7 +148,7 @@ def test_a_page_that_hangs_is_dropped_and_the_others_hear_everything(web: Web) -
     try:
         for page in pages:
             page.recv(timeout=10)
-        eventually(lambda: len(web._visitors) == 4, "all four are in")
+        eventually(lambda: len(web.visitors) == 4, "all four are in")
         sent = 400
         for n in range(sent):
             web.play(bytes(20000), 16000 + n)
@@ -156,7 +156,7 @@ def test_a_page_that_hangs_is_dropped_and_the_others_hear_everything(web: Web) -
                 heard = page.recv(timeout=10)
                 assert isinstance(heard, bytes)
                 assert int.from_bytes(heard[:4], "little") == 16000 + n
-        eventually(lambda: len(web._visitors) == 3, "the one that hangs was let go")
+        eventually(lambda: len(web.visitors) == 3, "the one that hangs was let go")
     finally:
         hung.close()
         for page in pages:
@@ -248,11 +248,11 @@ def test_stop_on_the_page_is_a_stop_on_the_bus_within_one_step() -> None:
         bus.send(topics.SIM_STATUS, m.SimStatus(state="stopped"))
         io.begin(None, 0.0)
         service.step(0.0)
-        with talk(service._web) as page:
+        with talk(service.web) as page:
             told = json.loads(page.recv(timeout=10))["value"]
             assert (told["asking"], told["stopped"], told["question"]) == (True, True, "Did you say mug?")
             page.send(json.dumps({"do": "stop"}))
-            eventually(lambda: not service._web.inbox.empty(), "the stop has arrived")
+            eventually(lambda: not service.web.inbox.empty(), "the stop has arrived")
             io.begin(None, 0.03)
             service.step(0.03)
             assert len(stops) == 1
