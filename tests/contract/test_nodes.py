@@ -19,7 +19,7 @@ from services.navigation.service import NavigationService
 from services.planner.service import PlannerService
 from services.sim.service import SimService
 from services.speech.service import SpeechService
-from tests.support import Site, eventually
+from tests.support import Site, eventually, free_port
 
 NODES = (SimService, NavigationService, ManipulationService, SpeechService, CameraService, PlannerService)
 
@@ -180,10 +180,17 @@ def test_speech_hears_typed_words_and_speaks(here: Site) -> None:
 
 
 def test_the_planner_answers_a_plain_peer(here: Site) -> None:
-    here.start("services.planner", TIDYBOT_CLOCK="wall")
+    nobody = f"http://127.0.0.1:{free_port()}/v1"
+    here.start("services.planner", TIDYBOT_CLOCK="wall", TIDYBOT__PLANNER__LLM_URL=nobody)
     with here.session() as session:
         here.wait_alive(session, "planner")
         peer = Peer(session, "action_plan")
+
+        def says_who_plans() -> bool:
+            status = json.loads(bus.fetch(session, "planner/status").get("planner/status", b"{}"))
+            return status.get("backend") == "grammar" and "nobody answers" in status["detail"]
+
+        eventually(says_who_plans, "the planner has looked for a language model and says that there is none")
         peer.put("plan_request", id="m.1", command="Bring me the red mug, please!")
         plan = peer.wait("action_plan", request_id="m.1")
         assert [s["action"] for s in plan["steps"]] == ["find", "grasp", "return", "release"]

@@ -112,6 +112,16 @@ def test_the_contracts_sequence() -> None:
     assert last is not None and last.outcome == "delivered"
 
 
+def test_the_tree_is_the_contracts_sequence_of_steps() -> None:
+    root = asked().last(topics.BRAIN_TREE).root
+    do = root.children[-1].children[0]
+    assert (root.type, do.type) == ("Sequence", "Sequence")
+    assert [child.name for child in root.children] == ["ready", "listen", "mission"]
+    assert [child.name for child in do.children] == [
+        "confirm", "plan and validate", "look first", "execute", "complete", "report success", "settle",
+    ]  # fmt: skip
+
+
 def test_a_correction_is_taken_and_confirmed_again() -> None:
     bench = asked()
     reply(bench, "no, the blue mug")
