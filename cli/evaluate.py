@@ -46,9 +46,13 @@ def _positive(text: str) -> int:
 
 
 def _level(text: str) -> float:
-    level = float(text)
+    """The type of `--snr` [dB]: from drowned to silent."""
+    try:
+        level = float(text)
+    except ValueError:
+        level = float("nan")
     if not -20.0 <= level <= 80.0:
-        raise argparse.ArgumentTypeError(f"{text}: expected -20 to 80 dB")
+        raise argparse.ArgumentTypeError(f"{text!r}: expected -20 to 80 dB")
     return level
 
 

@@ -7,7 +7,9 @@ lane's business. The traffic is Dask's own, pickles included: a cluster is for m
 
 import atexit
 import hashlib
+import logging
 import platform
+import signal
 import uuid
 from asyncio import CancelledError
 from collections.abc import Generator, Iterator
@@ -30,15 +32,20 @@ from evaluation.verdict import judge
 
 INSTALL = "pip install 'tidybot-zenoh[cluster]'"
 ROOT = Path(__file__).resolve().parents[1]
-SOURCES = ("common", "services", "cli", "evaluation")
+SOURCES = ("common", "services", "cli", "judge", "evaluation")
 DECIDES = (
     "mujoco", "mink", "daqp", "numpy", "scipy", "onnxruntime", "moonshine-cpp", "hibari-tts", "py_trees", "msgspec",
 )  # fmt: skip
 """Packages whose release can change what a seed does."""
 REACH = 15.0
 """Time [s] to reach the scheduler before the address counts as wrong."""
-WORKER_TTL = "60s"
-"""Without a heartbeat for so long a worker of `--cluster local` counts as lost; they beat every 0.5 s and more."""
+LOCAL = {
+    "distributed.scheduler.worker-ttl": "60s",
+    "distributed.worker.preload": ["evaluation.cluster"],
+    "distributed.nanny.pre-spawn-environ.DASK_LOGGING__DISTRIBUTED": "critical",
+}
+"""Dask's settings for `--cluster local`: a worker is lost after 60 s without a heartbeat (one comes every 0.5 s, later
+on an overloaded machine); `dask_setup` runs in it; it prints nothing, for the client says what becomes of cases."""
 
 
 class Mismatch(RuntimeError):
@@ -65,9 +72,11 @@ def _client(address: str, jobs: int) -> Iterator[Any]:
         import distributed
     except ImportError:
         raise CliError(f"--cluster needs Dask: {INSTALL}") from None
+    # What it warns of is told as repeats of cases.
+    logging.getLogger("distributed").setLevel(logging.CRITICAL)
     if address == "local":
         with (
-            dask.config.set({"distributed.scheduler.worker-ttl": WORKER_TTL}),
+            dask.config.set(LOCAL),
             distributed.LocalCluster(
                 n_workers=jobs, threads_per_worker=1, host="127.0.0.1", dashboard_address=None, memory_limit=None
             ) as cluster,
@@ -84,6 +93,11 @@ def _client(address: str, jobs: int) -> Iterator[Any]:
         yield client
     finally:
         client.close()
+
+
+def dask_setup(worker: Any) -> None:
+    """Dask calls this in a worker of `--cluster local`: Ctrl-C at the terminal is for the client alone."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 def _check(client: Any) -> None:

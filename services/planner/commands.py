@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 
+from common.messages import PlanStep
 from common.scene import Receptacle
 from services.planner.draft import Draft, Refusal
 from services.planner.forms import Slots
@@ -59,6 +60,7 @@ def put_near(draft: Draft, slots: Slots) -> None:
     moved, anchor = things(draft, slots["thing"], prefer_held=True), one(draft, slots["spot"]).thing
     where = draft.world.receptacle_of(anchor)
     if where is None:
+        draft.search_first([PlanStep(action="find", object=anchor.label)])
         raise Refusal(f"I have not seen where the {anchor.label} stands")
     for meant in moved:
         _put(draft, meant, where)

@@ -1,6 +1,8 @@
 """Workers that die or hang cost one case; the report has the fields of the contract; help and mistakes."""
 
+import contextlib
 import os
+import sys
 from collections.abc import Callable, Iterator
 from io import StringIO
 from pathlib import Path
@@ -10,9 +12,10 @@ import psutil
 import pytest
 from rich.console import Console
 
+from cli.errors import CliError
 from cli.main import main, parser
 from evaluation import __main__ as evaluation_main
-from evaluation import lane, report
+from evaluation import cluster, lane, report
 from evaluation.case import Case, Line, Observed, Result
 from evaluation.pool import Progressed, Repeated, evaluate
 from evaluation.suites import BARS, SUITES
@@ -173,3 +176,33 @@ def test_help_has_examples(capsys: pytest.CaptureFixture[str]) -> None:
 def test_a_mistyped_suite_is_named(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["eval", "--suite", "fetsh"]) == 1
     assert "fetch" in capsys.readouterr().err
+
+
+def test_without_dask_the_line_that_installs_it_is_given(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    with pytest.raises(CliError, match=r"pip install 'tidybot-zenoh\[cluster\]'"):
+        next(cluster.evaluate([case_of(0)], "local", 1, pretend))
+
+
+def test_other_code_has_another_fingerprint(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    ours = cluster.fingerprint()
+    (tmp_path / "brain.toml").write_text("settle = 0.5\n")
+    monkeypatch.setenv("TIDYBOT_CONFIG_DIR", str(tmp_path))
+    cluster.fingerprint.cache_clear()
+    theirs = cluster.fingerprint()
+    cluster.fingerprint.cache_clear()
+    assert {name for name in ours if ours[name] != theirs[name]} == {"tidybot"}
+
+
+@pytest.mark.parametrize(
+    ("words", "reason"),
+    [
+        (["--cluster", "somewhere"], "expected tcp://HOST:PORT"),
+        (["--voices", "."], "are for --suite spoken"),
+        (["--suite", "spoken", "--snr", "loud"], "expected -20 to 80 dB"),
+    ],
+)
+def test_options_that_make_no_sense(words: list[str], reason: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with contextlib.suppress(SystemExit):
+        assert main(["eval", *words]) == 1
+    assert reason in capsys.readouterr().err

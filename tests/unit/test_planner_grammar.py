@@ -353,6 +353,14 @@ def test_what_nobody_has_seen_is_looked_for_and_then_told(command: str) -> None:
     assert not after.again and text(after) == "say The apple is on the kitchen table."
 
 
+def test_what_something_is_put_beside_is_looked_for_first() -> None:
+    command = "put the red mug next to the apple"
+    first = ask(command, objects=WORLD[:1], done=[])
+    assert first.again and text(first) == "find apple"
+    assert text(ask(command, done=first.steps)) == put("red mug", "kitchen table")
+    assert "I have not seen where the apple stands" in text(ask(command, objects=WORLD[:1], done=first.steps))
+
+
 def test_where_one_of_several_is_told_of_the_one_that_was_found() -> None:
     first = ask("find a mug", objects=[], done=[])
     assert first.again and text(first) == "find mug"
