@@ -80,14 +80,16 @@ class Lane:
     def _once(self, case: Case, progress: Progress) -> Result | str:
         """The result, or why there is none."""
         pipe = self._ready()
-        began = heard = monotonic()
+        heard = monotonic()
+        # A fresh process may take long to load: its first word starts the clock.
+        end = float("inf")
         try:
             pipe.send_bytes(msgspec.msgpack.encode(case))
             while True:
+                now = monotonic()
+                if now > end:
+                    return f"no result within {self._limit:.0f} s of wall time"
                 if not pipe.poll(1.0):
-                    now = monotonic()
-                    if now - began > self._limit:
-                        return f"no result within {self._limit:.0f} s of wall time"
                     if now - heard > self._silence:
                         return f"no sign of life for {self._silence:.0f} s"
                     continue
@@ -95,6 +97,7 @@ class Lane:
                 if isinstance(said, Result):
                     return said
                 heard = monotonic()
+                end = min(end, heard + self._limit)
                 progress(*said)
         except (OSError, EOFError):
             if self._closed:

@@ -156,7 +156,7 @@ def test_the_exit_status_is_the_bar_of_the_suite(
                 false_claims=int(lie),
             )  # fmt: skip
 
-    monkeypatch.setattr(evaluation_main, "evaluate", ended)
+    monkeypatch.setattr(evaluation_main, "_evaluate", ended)
     assert evaluation_main.main(["--suite", "fetch", "-n", "20", *words]) == status
     shown = capsys.readouterr().out
     bar = "95" if not words else str(round(100 * float(words[1])))
