@@ -30,6 +30,8 @@ def evaluate(args: argparse.Namespace) -> int:
     checked(args.suite, SUITES, "suite")
     if (args.voices or args.snr is not None) and args.suite != "spoken":
         raise CliError("--voices and --snr are for --suite spoken")
+    if args.replace and args.processes:
+        raise CliError("--replace works in one process; leave --processes out")
     if args.cluster and args.cluster != "local" and not args.cluster.startswith(("tcp://", "tls://")):
         raise CliError(f"--cluster {args.cluster}: expected tcp://HOST:PORT of a Dask scheduler, or local")
     words = sys.argv[sys.argv.index("eval") + 1 :]
@@ -84,6 +86,9 @@ def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") ->
     parser.add_argument("--timeline", action="store_true", help="print each case's mission log")
     parser.add_argument(
         "--at-least", type=_share, metavar="SHARE", help="exit 1 when fewer did as expected (default: the suite's bar)"
+    )
+    parser.add_argument(
+        "--replace", action="append", default=[], metavar="MODULE:CLASS", help="a class of yours in a service's place"
     )
     parser.add_argument("--set", action="append", default=[], metavar="section.key=value", help="override a parameter")
     parser.set_defaults(run=evaluate)

@@ -21,6 +21,7 @@ from evaluation.case import Case, Result
 from evaluation.lane import Run
 from evaluation.pool import Progressed, Repeated, Said
 from evaluation.sabotage import unavailable
+from evaluation.stack import replacement
 from evaluation.suites import BARS, DEFAULT_SCENARIOS, cases
 
 PERIOD = 30.0
@@ -75,12 +76,16 @@ def main(argv: list[str]) -> int:
             return FAILED
     count = args.scenarios or DEFAULT_SCENARIOS.get(args.suite, 10)
     try:
-        todo = cases(args.suite, count, args.seed, tuple(args.set), args.pipeline, args.voices, args.snr)
+        for entry in args.replace:
+            replacement(entry)
+        todo = cases(
+            args.suite, count, args.seed, tuple(args.set), args.pipeline, args.voices, args.snr, tuple(args.replace)
+        )
         if args.processes:
             todo = _available(todo, console)
             count = len(todo)
         results, seconds = _run(todo, args, console)
-    except (CliError, ConfigError) as error:
+    except (CliError, ConfigError, LookupError) as error:
         print(f"tidybot: {error}", file=sys.stderr)
         return FAILED
     bar = BARS[args.suite] if args.at_least is None else args.at_least

@@ -70,7 +70,8 @@ class Case(msgspec.Struct, kw_only=True):
     `shown`: all that is wanted is delivered and all `effects` are seen. `wants` and `effects` are as things should be
     at the end. Without a `scene` it is the shipped flat. `honest`: a spoken, published failure counts as well as a
     delivery.
-    `wake`: a command that opens a dialogue starts with the wake word. `silent`: the person answers no question.
+    `replaced`: classes that stand in for services, see `Stack`. `wake`: a command that opens a dialogue starts with
+    the wake word. `silent`: the person answers no question.
     """
 
     suite: str
@@ -93,6 +94,7 @@ class Case(msgspec.Struct, kw_only=True):
     physical: tuple[PhysicalFault, ...] = ()
     strikes: tuple[Strike, ...] = ()
     settings: tuple[str, ...] = ()
+    replaced: tuple[str, ...] = ()
     scene: Scene | None = None
     limit: float = 600.0
 

@@ -19,7 +19,8 @@ STYLES = {
 def record(suite: str, results: Sequence[Result], wall_seconds: float, bar: float = 1.0) -> dict[str, Any]:
     """The report as `--json` writes it; cases by seed.
 
-    `false_success` counts cases with a false claim, `false_claims` the claims. `intervals`: 95 % Wilson intervals of
+    `false_success` counts cases with a false claim, `false_claims` the claims, `wrong_thing` cases
+    in which something that nobody asked for was in the hand. `intervals`: 95 % Wilson intervals of
     the shares of cases. `bar`: the share of cases that must end as expected; `passed`: they did, without a false claim.
     """
     rows = sorted(results, key=lambda r: r.seed)
@@ -28,6 +29,7 @@ def record(suite: str, results: Sequence[Result], wall_seconds: float, bar: floa
         "delivered": sum(r.delivered for r in rows),
         "false_success": sum(r.false_claims > 0 for r in rows),
         "as_expected": sum(r.met for r in rows),
+        "wrong_thing": sum(bool(r.evidence.get("wrong")) for r in rows),
     }
     intervals = {name: interval(number, len(rows)) for name, number in counts.items()}
     false = sum(r.false_claims for r in rows)
@@ -110,6 +112,7 @@ def rates(report: dict[str, Any]) -> dict[str, str]:
     if report["objects"] > count:
         found["objects where they belong"] = share(report["objects_delivered"], report["objects"])
     found["as expected of the scenario"] = share(report["as_expected"], count)
+    found["scenarios with a wrong thing in the hand"] = share(report["wrong_thing"], count)
     found["scenarios with a false claim"] = share(report["false_success"], count)
     found["false claims"] = str(report["false_claims"])
     return found

@@ -84,7 +84,7 @@ def _run(case: Case, progress: Progress, began: float, state_dir: Path | None) -
     try:
         stack = Stack(
             case.scene or "apartment", case.seed, case.settings, swaps=_swaps(case, struck.append),
-            without=idle_services(case), state_dir=state_dir,
+            without=idle_services(case), state_dir=state_dir, replaced=case.replaced,
         )  # fmt: skip
     except Exception as error:
         return judge(case, Observed(crash=_words(error)), monotonic() - began)

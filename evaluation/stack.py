@@ -24,6 +24,25 @@ Swap = Callable[[Any], Any]
 """Takes a service's class and returns the one that runs in its place."""
 
 
+def replacement(entry: str) -> tuple[str, Any]:
+    """The NAME and the class of `package.module:Class`, which takes the place of the service of that name.
+
+    Raises:
+        LookupError: there is no such module or class, or it is no service of the stack.
+    """
+    module, _, name = entry.partition(":")
+    try:
+        kind = getattr(importlib.import_module(module), name)
+    except (ImportError, AttributeError, ValueError) as error:
+        raise LookupError(f"{entry}: {error}; expected package.module:Class that can be imported") from None
+    missing = [n for n in ("NAME", "HZ", "CONFIG", "READS", "WRITES", "step") if not hasattr(kind, n)]
+    if missing:
+        raise LookupError(f"{entry} has no {', '.join(missing)}; see docs/EXTENDING.md for what a service has")
+    if kind.NAME not in paced_services():
+        raise LookupError(f"{entry}: no service {kind.NAME!r}; known: {', '.join(paced_services())}")
+    return kind.NAME, kind
+
+
 @cache
 def service_class(name: str) -> Any:
     """The class of a service of the table, by its NAME.
@@ -46,6 +65,8 @@ def paced_services() -> tuple[str, ...]:
 class Stack:
     """A simulation and the services around it. `advance` makes time pass; nothing else does.
 
+    `replaced` are classes that stand in for services, as `package.module:Class`.
+
     `kill`, `hang` and `start` do to a service object what signals and the supervisor do to its process; `restart_sim`,
     `cut`, `fill_disk` and `jump` are the other things that can happen. What services keep on disk goes to `state_dir`,
     None: nowhere.
@@ -58,6 +79,7 @@ class Stack:
         settings: tuple[str, ...] = (),
         *,
         without: tuple[str, ...] = (),
+        replaced: tuple[str, ...] = (),
         swaps: Mapping[str, Swap] | None = None,
         state_dir: Path | None = None,
         log_level: str = "error",
@@ -67,7 +89,7 @@ class Stack:
         kept = ("sim.run=stack", "brain.run=stack") if state_dir else ()
         # Many a run never hears or says anything.
         self._changes = config.overrides({}, ("speech.preload=false", *kept, *settings))
-        self._swaps = dict(swaps or {})
+        self._swaps, self._replaced = dict(swaps or {}), dict(replacement(entry) for entry in replaced)
         # One process, one GL library, chosen before anything imports MuJoCo.
         choose("auto")
         self.bus, self._clock = CutBus(), ManualClock()
@@ -101,7 +123,7 @@ class Stack:
     # --- members
     def start(self, name: str) -> Any:
         """A fresh process of the service joins at the next tick."""
-        return self.join(service_class(name))
+        return self.join(self._replaced.get(name) or service_class(name))
 
     def join(self, kind: Any) -> Any:
         """A participant of any class, such as the person who talks to the robot."""

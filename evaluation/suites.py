@@ -65,10 +65,12 @@ def cases(
     pipeline: str = "",
     voices: Path | None = None,
     snr: float | None = None,
+    replaced: tuple[str, ...] = (),
 ) -> list[Case]:
     """The scenarios of a run; `settings` are added to each, `pipeline` where the suite leaves the brain's open.
 
-    `voices` is a directory of recordings for the suite `spoken`, `snr` its signal-to-noise ratio [dB].
+    `voices` is a directory of recordings for the suite `spoken`, `snr` its signal-to-noise ratio [dB]. `replaced` are
+    classes that stand in for services.
     """
     chosen = (f"brain.pipeline={pipeline}",) if pipeline else ()
     make = SUITES[suite]
@@ -80,7 +82,7 @@ def cases(
         case = make(seed + n)
         own = case.settings if any(s.startswith("brain.pipeline=") for s in case.settings) else chosen + case.settings
         effective = own + settings
-        found.append(msgspec.structs.replace(case, settings=effective, wake=_wakes(effective)))
+        found.append(msgspec.structs.replace(case, settings=effective, wake=_wakes(effective), replaced=replaced))
     return found
 
 

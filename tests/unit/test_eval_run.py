@@ -117,7 +117,7 @@ def test_false_claims_have_a_column_of_their_own_everywhere_and_every_rate_its_i
     assert found["cases"][0]["evidence"]["claims"][1]["false"] == "mug: on floor"
     assert found["intervals"] == {
         "delivered": [0.0, 0.49], "false_success": [0.046, 0.699], "as_expected": [0.0, 0.49],
-        "objects_delivered": [0.0, 1.0],
+        "objects_delivered": [0.0, 1.0], "wrong_thing": [0.0, 0.49],
     }  # fmt: skip
     assert (found["as_expected"], found["bar"], found["passed"]) == (0, 0.5, False)
     console = Console(record=True, width=160, file=StringIO())

@@ -12,7 +12,7 @@ from evaluation.case import Case
 from evaluation.chaos import CHAOS_SERVICES
 from evaluation.faults import Rule
 from evaluation.scene_file import to_toml
-from evaluation.stack import service_class
+from evaluation.stack import replacement, service_class
 from evaluation.suites import DIALOGUES, FAULTS, NAMED, SUITES, cases
 from services.sim.layout import place_objects
 
@@ -104,6 +104,21 @@ def test_services_are_found_by_the_table() -> None:
     assert service_class("navigation").NAME == "navigation"
     with pytest.raises(ImportError):
         service_class("nonsense")
+
+
+def test_a_class_of_ones_own_takes_the_place_of_a_service() -> None:
+    entry = "services.planner.service:PlannerService"
+    assert replacement(entry) == ("planner", service_class("planner"))
+    assert cases("fetch", 1, 0, replaced=(entry,))[0].replaced == (entry,)
+    for wrong, reason in (
+        ("nowhere.at_all:Planner", "No module named"),
+        ("services.planner.service:Nonsense", "no attribute"),
+        ("services.planner.service", "expected package.module:Class"),
+        ("common.scene:Scene", "has no NAME"),
+        ("services.sim.service:SimService", "no service 'sim'"),
+    ):
+        with pytest.raises(LookupError, match=reason):
+            replacement(wrong)
 
 
 def test_settings_are_such_that_services_start_with_them() -> None:
