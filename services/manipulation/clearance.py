@@ -86,7 +86,7 @@ class HandClearance:
         shape = int(model.geom(STAND_IN).id)
         size = np.array(target.size) / 2
         model.geom_type[shape], model.geom_size[shape] = kinds.mjGEOM_BOX, size
-        if target.kind in ROUND:
+        if target.kind in ROUND and not target.lies:
             model.geom_type[shape], model.geom_size[shape] = kinds.mjGEOM_CYLINDER, (size[:2].max(), size[2], 0)
         elif target.kind in BALLS:
             model.geom_type[shape] = kinds.mjGEOM_ELLIPSOID

@@ -5,15 +5,16 @@ import math
 from common import messages as m
 from common import topics
 from common.messages import WorldObject
-from services.manipulation.arm_model import Obstacle
+from services.manipulation.arm_model import Array, Obstacle
 from services.manipulation.grasp import shown
 from services.manipulation.held import Held
 from services.manipulation.plan_grab import GrabPlan, plan_grab, refine
 from services.manipulation.robot import Failure, Robot, Steps, go_home, planner_of
 from services.manipulation.surroundings import obstacles, target_of, turned
-from services.manipulation.verify import holds, judge
+from services.manipulation.verify import WIDTH_ERROR, held_badly, holds, judge
 
 MISTAKEN = "MISTAKEN"
+BAD_HOLD = "BAD_HOLD"
 FLAT_SIDED = ("box", "block")
 
 
@@ -22,6 +23,7 @@ def grab(robot: Robot, goal: m.ManipulationGoal, wanted: str) -> Steps[str]:
     config, planner = robot.config, planner_of(robot)
     since = robot.now - config.fresh
     tried: set[str] = set()
+    widths: list[float] = []
     last = Failure("UNREACHABLE", "no grasp tried")
     for _ in range(config.max_candidates):
         found = yield from _sighted(robot, goal, wanted, since)
@@ -40,14 +42,14 @@ def grab(robot: Robot, goal: m.ManipulationGoal, wanted: str) -> Steps[str]:
         tried.add(plan.grasp.name)
         robot.io.log.info("grasp chosen", object=found.label, grasp=plan.grasp.name)
         try:
-            return (yield from _execute_grab(robot, plan, goal, found))
+            return (yield from _execute_grab(robot, plan, goal, found, widths))
         except Failure as failure:
             if failure.code == MISTAKEN:
                 robot.io.log.info("aim mistaken", detail=failure.detail, grasp=plan.grasp.name)
                 tried.discard(plan.grasp.name)
                 since, last = robot.now - config.fresh, failure
                 continue
-            if failure.code not in ("EMPTY_GRASP", "SLIPPED", "BLOCKED"):
+            if failure.code not in ("EMPTY_GRASP", "SLIPPED", "BLOCKED", BAD_HOLD):
                 raise
             last = failure
             robot.io.log.warning("grasp failed", code=failure.code, detail=failure.detail, grasp=plan.grasp.name)
@@ -110,7 +112,10 @@ def _aimed(robot: Robot, plan: GrabPlan, goal: m.ManipulationGoal, found: WorldO
         return plan
 
 
-def _execute_grab(robot: Robot, plan: GrabPlan, goal: m.ManipulationGoal, found: WorldObject) -> Steps[str]:
+def _execute_grab(
+    robot: Robot, plan: GrabPlan, goal: m.ManipulationGoal, found: WorldObject, widths: list[float]
+) -> Steps[str]:
+    """`widths`: of earlier bad holds [m]; one that is felt again from another side is the object's own."""
     config = robot.config
     yield from robot.move_gripper(0.0)
     yield from robot.follow(plan.reach, config.joint_speed)
@@ -126,11 +131,19 @@ def _execute_grab(robot: Robot, plan: GrabPlan, goal: m.ManipulationGoal, found:
     closed = robot.grip
     robot.held = plan.held
     robot.phase = "retract"
-    yield from robot.follow(plan.lift, config.joint_speed * 0.5)
-    _judge(robot, plan, closed.width)
-    yield from robot.follow(plan.carry, config.joint_speed * 0.8)
-    yield from robot.wait(0.2)
-    _judge(robot, plan, closed.width)
+    way = [plan.lift]
+    try:
+        yield from robot.follow(plan.lift, config.joint_speed * 0.5)
+        _judge(robot, plan, closed.width)
+        _check_width(robot, plan, widths)
+        way.append(plan.carry)
+        yield from robot.follow(plan.carry, config.joint_speed * 0.8)
+        yield from robot.wait(0.2)
+        _judge(robot, plan, closed.width)
+    except Failure as failure:
+        if failure.code in ("SLIPPED", BAD_HOLD) and holds(robot.grip, config):
+            yield from _set_back(robot, plan, way)
+        raise
     robot.source.remember(plan.held.label, None, "", robot.now)
     return f"{plan.held.label} held: width {robot.grip.width * 1000:.1f} mm, force {robot.grip.force:.0f} N"
 
@@ -144,6 +157,30 @@ def _withdraw(robot: Robot, plan: GrabPlan) -> Steps[None]:
     except Failure as failure:
         robot.io.log.warning("on the way out", code=failure.code, detail=failure.detail)
         robot.forget_command()
+
+
+def _set_back(robot: Robot, plan: GrabPlan, way: list[list[Array]]) -> Steps[None]:
+    """What is held badly goes back to where it was taken: the hand would drop it from where it is."""
+    for path in reversed(way):
+        yield from robot.follow(path[::-1], robot.config.joint_speed * 0.5)
+    yield from _withdraw(robot, plan)
+
+
+def _check_width(robot: Robot, plan: GrabPlan, widths: list[float]) -> None:
+    """A known object that has not its width between the fingers is held by something else than its body.
+
+    Raises:
+        Failure: BAD_HOLD.
+    """
+    held, width = plan.held, robot.grip.width
+    spec = robot.io.scene.object(held.label)
+    if spec is None or held.kind == "bowl" or not held_badly(robot.grip, plan.grasp.width, spec.kind):
+        return
+    if any(abs(width - other) < WIDTH_ERROR for other in widths):
+        robot.io.log.warning("not as wide as it should be", object=held.label, mm=round(1000 * width, 1))
+        return
+    widths.append(width)
+    raise Failure(BAD_HOLD, f"width {1000 * width:.1f} mm where the {held.label} has {1000 * plan.grasp.width:.1f}")
 
 
 def _carry_again(robot: Robot, held: Held, around: list[Obstacle]) -> Steps[str]:

@@ -7,6 +7,12 @@ from services.manipulation.config import ManipulationConfig
 
 HOLDING_FORCE = 3.0
 TOO_WIDE = 0.006
+WIDTH_ERROR = 0.0008
+"""Most [m] that the width after the lift may be off what the object measures there: beyond it the hold is bad (measured
+over reach-grasp-lift trials)."""
+FACETS = {"mug": 0.002}
+"""By kind, how much wider [m] than its diameter a round wall may be across its corners: 16 flat pieces of a mug's wall
+make 75.5 of 74 mm, and the grips of good holds were 74.7 to 75.8."""
 
 
 @dataclass(frozen=True)
@@ -42,3 +48,9 @@ def judge(
         # On a handle or a rim, not around the body.
         return "EMPTY_GRASP" if at_close is None else "SLIPPED"
     return ""
+
+
+def held_badly(grip: Grip, nominal: float, kind: str) -> bool:
+    """The lifted object is not held around its body: its width differs from `nominal` [m] there, as on a handle."""
+    over = grip.width - nominal
+    return nominal > 0 and not -WIDTH_ERROR <= over <= WIDTH_ERROR + FACETS.get(kind, 0.0)

@@ -19,7 +19,7 @@ from services.manipulation.ik import InverseKinematics, seeds
 from services.manipulation.memo import HandMemo
 from services.manipulation.service import ManipulationService
 from services.manipulation.trajectory import connect, free_line, timed
-from services.manipulation.verify import Grip, holds, judge
+from services.manipulation.verify import Grip, held_badly, holds, judge
 from services.perception.config import PerceptionConfig
 from services.sim.robot import HOME_ARM, JOINT_NAMES, robot_mjcf
 from tests.node import Node
@@ -136,6 +136,21 @@ def test_trajectories_keep_speed_and_acceleration_and_end_where_they_should(arm:
 )
 def test_width_and_force_decide_what_a_grasp_is_worth(grip: Grip, at_close: float | None, code: str) -> None:
     assert judge(grip, 0.066, at_close, CONFIG) == code
+
+
+@pytest.mark.parametrize(
+    ("kind", "nominal", "width", "bad"),
+    [
+        ("can", 0.066, 0.0658, False),
+        ("can", 0.066, 0.0669, True),
+        ("can", 0.066, 0.0651, True),
+        ("mug", 0.074, 0.0757, False),
+        ("mug", 0.074, 0.0779, True),
+        ("box", 0.06, 0.0631, True),
+    ],
+)
+def test_a_width_that_is_not_the_bodys_is_a_bad_hold(kind: str, nominal: float, width: float, bad: bool) -> None:
+    assert held_badly(Grip(width, 25.0), nominal, kind) is bad
 
 
 def test_an_open_hand_holds_nothing() -> None:
