@@ -79,7 +79,11 @@ TASKS: tuple[Task, ...] = (
     Task("wait", effects=(STILL,)),
     Task("say dinner is ready", effects=(Effect("says", "dinner is ready"), STILL)),
     Task("bring me the banana", effects=(Effect("says", "I know no banana"), STILL)),
-    Task("put the apple in the bowl", effects=(Effect("says", "I cannot put things on or in the bowl"), STILL)),
+    Task(
+        "put the apple in the bowl",
+        effects=(Effect("says", "I cannot put things on or in the bowl"), STILL),
+        laid={"yellow bowl": "kitchen table"},
+    ),
     Task("open the fridge", effects=(Effect("says", "I cannot open or close doors, drawers or lids"), STILL)),
     Task("don't touch the red mug", effects=(Effect("says", "you told me not to, so I leave it"), STILL)),
 )
