@@ -7,6 +7,7 @@ from common.scene import load_scene
 from evaluation import runner
 from evaluation.case import Case, Line, Result
 from evaluation.faults import Rule
+from evaluation.suites import FAULTS, cases
 from judge.evidence import Want
 
 pytestmark = pytest.mark.timeout(600)
@@ -42,6 +43,7 @@ def test_a_gripper_that_does_not_close_is_noticed_and_tried_again() -> None:
     rule = Rule(service="manipulation", key="gripper_command", kind="drop", match={"position": 1.0})
     result = runner.run(case_of(2, "yellow block", rules=(rule,)))
     assert result.delivered, result.evidence
+    assert [s["fault"] for s in result.evidence["strikes"]] == ["drop"]  # type: ignore[attr-defined]
     assert result.evidence["things"][0]["carried"] > 0.5  # type: ignore[index]
     always = msgspec.structs.replace(rule, count=1000)
     lame = runner.run(case_of(2, "yellow block", rules=(always,)))
@@ -56,3 +58,13 @@ def test_a_service_that_raises_ends_its_case_as_crashed(key: str) -> None:
     result = runner.run(case_of(2, "green can", rules=(rule,)))
     assert result.outcome == "crashed"
     assert "status" in result.cause
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("fault", ["shove", "slip", "jam", "heavy", "wide"])
+def test_every_fault_of_a_grasp_strikes_and_nothing_is_claimed_that_is_not_so(fault: str) -> None:
+    result = runner.run(cases("faults", 1, 2 * len(FAULTS) + FAULTS.index(fault))[0])
+    strikes = result.evidence["strikes"]
+    assert isinstance(strikes, list) and [s["fault"] for s in strikes] == [fault], result.evidence
+    assert result.outcome not in ("not struck", "false_success", "crashed", "timeout"), result.cause
+    assert not result.false_claims
