@@ -1,7 +1,7 @@
 """Mutation testing of the pure modules: `python -m tests.mutants [-h] [NAME...]`, configured in tests/mutants.toml.
 
 mutmut changes one thing at a time in a module and asks the module's own tests; what they do not notice survives. Each
-module is run in a directory of its own below build/mutants, where mutmut keeps its results between runs.
+module is run in a directory of its own below build/mutants; `.venv/bin/mutmut browse` there shows what was found.
 """
 
 import argparse
@@ -59,14 +59,12 @@ def mutmut(*words: str, cwd: Path) -> "subprocess.CompletedProcess[str]":
     return done
 
 
-def prepare(name: str, module: dict[str, Any], fresh: bool) -> Path:
+def prepare(name: str, module: dict[str, Any], keep: bool) -> Path:
     """The module's directory: links to the sources and a configuration for mutmut."""
     place = WORK / name
-    if fresh:
+    if not keep:
+        # mutmut does not ask changed tests again.
         shutil.rmtree(place, ignore_errors=True)
-    # Results are kept; the tests and what they read are copied anew.
-    for stale in ("tests", *PACKAGES, *BESIDES):
-        shutil.rmtree(place / "mutants" / stale, ignore_errors=True)
     place.mkdir(parents=True, exist_ok=True)
     for entry in (*PACKAGES, *BESIDES, "tests"):
         link = place / entry
@@ -93,9 +91,9 @@ def changed(place: Path, mutant: str) -> str:
     return "\n".join(f"{line[0]} {line[1:].strip()}" for line in lines)
 
 
-def examine(name: str, module: dict[str, Any], fresh: bool, children: int) -> Found:
+def examine(name: str, module: dict[str, Any], keep: bool, children: int) -> Found:
     """Run the mutants of one module."""
-    place = prepare(name, module, fresh)
+    place = prepare(name, module, keep)
     mutmut("run", "--max-children", str(children), cwd=place)
     codes = json.loads((place / "mutants" / f"{module['path']}.meta").read_text())["exit_code_by_key"]
     found = Found(name, len(codes))
@@ -132,7 +130,7 @@ def main() -> int:
     least = settings.pop("least")
     parser = argparse.ArgumentParser(prog="python -m tests.mutants", description=__doc__.splitlines()[0])
     parser.add_argument("names", nargs="*", metavar="NAME", help=f"modules (default: all): {', '.join(settings)}")
-    parser.add_argument("--fresh", action="store_true", help="forget the results of earlier runs")
+    parser.add_argument("--keep", action="store_true", help="go on where a run with the same tests was interrupted")
     parser.add_argument("--survivors", action="store_true", help="show every survivor, also of modules not strict")
     parser.add_argument("--children", type=int, default=os.cpu_count() or 1, help="mutants at a time (default: cores)")
     options = parser.parse_args()
@@ -143,7 +141,7 @@ def main() -> int:
     for name in options.names or settings:
         module = settings[name]
         print(f"{name}: {module['path']}", flush=True)
-        found = examine(name, module, options.fresh, options.children)
+        found = examine(name, module, options.keep, options.children)
         rows.append(found)
         strict = module.get("strict", False)
         failed |= strict and bool(found.unargued)

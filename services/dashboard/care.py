@@ -28,8 +28,8 @@ class Errand:
 class Care:
     """What can be restarted and what missions there were, as far as known; refreshed while somebody looks."""
 
-    def __init__(self, io: Io, socket: str, told: Told) -> None:
-        self._io, self._supervisor, self._told = io, Supervisor(socket), told
+    def __init__(self, io: Io, supervisor: Supervisor, told: Told) -> None:
+        self._io, self._supervisor, self._told = io, supervisor, told
         self._queue: deque[Errand] = deque()
         self._due = float("-inf")
         self.restartable: tuple[str, ...] = ()

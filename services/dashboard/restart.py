@@ -26,7 +26,7 @@ class Supervisor:
     def names(self) -> tuple[str, ...]:
         """The processes that can be restarted; empty when no supervisor answers."""
         try:
-            rows = self._call("supervisor.getAllProcessInfo")
+            rows = self.call("supervisor.getAllProcessInfo")
         except Refused:
             return ()
         return tuple(str(row["name"]) for row in rows if row["name"] not in HIDDEN)
@@ -40,16 +40,21 @@ class Supervisor:
         if name not in self.names():
             raise Refused(f"{name[:40]!r} is not part of this run")
         if name == OURSELVES:
-            self._call("supervisor.signalProcess", name, "TERM")
+            self.call("supervisor.signalProcess", name, "TERM")
             return
         try:
-            self._call("supervisor.stopProcess", name)
+            self.call("supervisor.stopProcess", name)
         except Refused as refused:
             if "NOT_RUNNING" not in str(refused):
                 raise
-        self._call("supervisor.startProcess", name, False)
+        self.call("supervisor.startProcess", name, False)
 
-    def _call(self, method: str, *args: Any) -> Any:
+    def call(self, method: str, *args: Any) -> Any:
+        """One call of the supervisor's own interface.
+
+        Raises:
+            Refused: nobody answers, or it says no.
+        """
         if not self._socket or not Path(self._socket).exists():
             raise Refused(NOBODY)
         from supervisor.xmlrpc import SupervisorTransport

@@ -23,6 +23,7 @@ from services.dashboard.layers import Layers
 from services.dashboard.panels import Panels
 from services.dashboard.picking import pick
 from services.dashboard.plots import Plots
+from services.dashboard.restart import Supervisor
 from services.dashboard.tracking import FRESH, off_path
 from services.dashboard.view import View
 from services.dashboard.web import Web
@@ -50,7 +51,9 @@ class DashboardService:
         self.panels = Panels(self.web.viser, config.camera_width, config.camera_height)
         self._cameras = Cameras(config, io, self.panels)
         self._transcript, self._services, self._reasons = Transcript(), Services(), Reasons()
-        self._care = Care(io, config.supervisor, lambda words: self._transcript.add(self._t, "robot", words))
+        self._care = Care(
+            io, Supervisor(config.supervisor), lambda words: self._transcript.add(self._t, "robot", words)
+        )
         self._commands = Commands(io, self._transcript)
         self._plots = Plots(self.panels)
         self._mjcf = ""

@@ -23,7 +23,7 @@ class Fake(Supervisor):
         self.calls: list[tuple[Any, ...]] = []
         self._stopped = stopped
 
-    def _call(self, method: str, *args: Any) -> Any:
+    def call(self, method: str, *args: Any) -> Any:
         if method == "supervisor.getAllProcessInfo":
             return [{"name": name} for name in ("sim", "navigation", "dashboard", "watchdog")]
         self.calls.append((method, *args))
@@ -71,19 +71,17 @@ def test_a_dead_socket_is_nobody(tmp_path: Path) -> None:
     assert Supervisor(str(tmp_path / "dead.sock")).names() == ()
 
 
-def carer(told: list[str]) -> tuple[Care, MemoryBus, MemoryIo]:
+def carer(told: list[str], supervisor: Supervisor) -> tuple[Care, MemoryBus, MemoryIo]:
     bus = MemoryBus()
     io = MemoryIo(bus, "dashboard", (), (), scene=load_scene("minimal"), lockstep=True)
-    return Care(io, "", told.append), bus, io
+    return Care(io, supervisor, told.append), bus, io
 
 
-def test_errands_run_one_after_the_other_and_tell_of_failure(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_errands_run_one_after_the_other_and_tell_of_failure() -> None:
     told: list[str] = []
-    care, bus, io = carer(told)
+    care, bus, io = carer(told, Fake())
     rows = b'[{"id": "m-1", "command": "fetch", "reason": "", "outcome": null, "started": 0, "ended": 0}, 7]'
     bus.handlers[topics.BRAIN_MISSIONS] = lambda request: b"null" if b"m-2" in request else rows
-    fake = Fake()
-    monkeypatch.setattr(care, "_supervisor", fake)
     answers: list[object] = []
     care.restart("navigation")
     care.restart("kettle")
@@ -99,7 +97,7 @@ def test_errands_run_one_after_the_other_and_tell_of_failure(monkeypatch: pytest
 
 
 def test_nothing_is_asked_while_nobody_looks() -> None:
-    care, bus, io = carer([])
+    care, bus, io = carer([], Supervisor(""))
     asked: list[bytes] = []
     bus.handlers[topics.BRAIN_MISSIONS] = lambda request: asked.append(request) or b"[]"  # type: ignore[func-returns-value]
     for n in range(100):
@@ -122,4 +120,4 @@ def test_a_fault_of_the_supervisor_is_a_refusal(tmp_path: Path, monkeypatch: pyt
     socket.touch()
     monkeypatch.setattr(restart.xmlrpc.client, "ServerProxy", Proxy)
     with pytest.raises(Refused, match="BAD_NAME"):
-        Supervisor(str(socket))._call("supervisor.startProcess", "x", False)
+        Supervisor(str(socket)).call("supervisor.startProcess", "x", False)
