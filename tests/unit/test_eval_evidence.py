@@ -217,3 +217,41 @@ def test_rates_in_words_have_their_interval() -> None:
 )  # fmt: skip
 def test_the_bar_is_met_without_a_false_claim_only(met: int, count: int, false: int, bar: float, good: bool) -> None:
     assert passed(met, count, false, bar) == good
+
+
+# --- at the edges of the words
+def test_what_was_shown_counts_as_delivered_only_where_something_was_to_be_brought() -> None:
+    bring, look = (msgspec.structs.replace(CASE, expect="shown", wants=wants) for wants in ((WANT,), ()))
+    results = [judge(case, seen(GOOD, "delivered"), 1.0) for case in (bring, look)]
+    assert [r.outcome for r in results] == ["shown", "shown"] and all(r.met for r in results)
+    assert [(r.delivered, r.spl) for r in results] == [(True, 0.5), (False, 0.0)]
+
+
+def test_the_share_of_the_way_has_three_digits() -> None:
+    driven = msgspec.structs.replace(GOOD, driven=3.0)
+    assert judge(CASE, seen(driven, "delivered", shortest=1.0), 1.0).spl == 0.333
+
+
+def test_a_fault_that_did_not_strike_is_named() -> None:
+    assert cause(CASE, seen(GOOD), "not struck") == "not struck: fault"
+    assert cause(msgspec.structs.replace(CASE, fault="slip"), seen(GOOD), "not struck") == "not struck: slip"
+
+
+@pytest.mark.parametrize("expect", ["delivered", "shown"])
+def test_what_is_missing_comes_before_what_was_disturbed(expect: str) -> None:
+    case = msgspec.structs.replace(CASE, expect=expect)
+    shoved = Evidence(things=[AWAY], disturbed=["can"])
+    assert cause(case, seen(shoved, "delivered"), "failed") == "evidence: never lifted by the gripper"
+    stop = msgspec.structs.replace(CASE, expect="stopped")
+    assert cause(stop, seen(shoved, "delivered"), "failed") == "disturbed"
+
+
+@pytest.mark.parametrize(
+    ("shortfall", "first"),
+    [
+        ("mug: on table: upside down; can: on floor; apple: lost", "on table: upside down"),
+        ("mug: a: b: c", "a: b: c"), ("nothing was wanted", "nothing was wanted"),
+    ],
+)  # fmt: skip
+def test_the_first_shortfall_is_told_without_the_name_of_the_thing(shortfall: str, first: str) -> None:
+    assert cause(CASE, seen(BAD, "delivered", shortfall=shortfall), "failed") == f"evidence: {first}"
