@@ -8,6 +8,7 @@ export OMP_NUM_THREADS = 1
 unexport PYTHONDONTWRITEBYTECODE
 PIP := $(BIN)/python -m pip --disable-pip-version-check
 ARGS ?=
+BENCHES ?= physics bus processes fetch grasp speech
 
 .PHONY: help setup demo test test-slow test-all mutants check test-compose bench lock wheels clean
 
@@ -63,8 +64,9 @@ mutants: setup ## what the tests of the pure modules do not notice; ARGS='valida
 test-compose: setup ## the compose file under a Docker engine of its own (root, Debian)
 	$(BIN)/python -m tests.compose.run $(ARGS)
 
-bench: setup ## every benchmark, each prints a table
-	@for name in physics bus processes fetch grasp speech; do echo "== bench.$$name"; $(BIN)/python -m bench.$$name; done
+bench: setup ## every benchmark, each prints a table; fails when one of them does
+	@failed=; for name in $(BENCHES); do echo "== bench.$$name"; $(BIN)/python -m bench.$$name || failed="$$failed $$name"; done; \
+	test -z "$$failed" || { echo "failed:$$failed"; exit 1; }
 
 lock: ## requirements.lock anew from pyproject.toml
 	rm -rf build/lock && $(PYTHON) -m venv build/lock

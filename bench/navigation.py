@@ -121,7 +121,7 @@ def drive(
     for contact in robot.truth()["contacts"]:
         tally.touches += 1
         tally.notes.append(
-            f"seed {seed}: {contact['robot']} touched {contact['thing']} at {contact['first']:.1f} s "
+            f"seed {seed}: {contact['part']} touched {contact['thing']} at {contact['first']:.1f} s "
             f"for {contact['seconds']:.2f} s"
         )
     tally.ms += [1000 * s for s in robot.timed.seconds]

@@ -28,6 +28,12 @@ ROWS = (
     ("cmd", "clean"), ("cmd", "10"), ("wakecmd", "clean"), ("wakecmd", "10"), ("wake", ""), ("near", ""), ("oog", ""),
 )  # fmt: skip
 CORPUS = Path(__file__).resolve().parents[2] / "shared" / "speech"
+NOTHING = 2
+"""Exit status when nothing could be measured."""
+MISSING = """bench.speech: no recordings: {}/manifest.tsv is not there, so nothing was measured.
+Point --corpus at a directory of WAV files (16 kHz mono) with a manifest.tsv, tab-separated, with the columns
+file, text, voice, snr (clean or dB) and kind (cmd, wakecmd, wake, near, oog). The shared recordings belong in
+shared/speech beside the checkout; your own can be made with any recorder."""
 
 
 def main() -> int:
@@ -42,8 +48,8 @@ def main() -> int:
     shard, shards = (int(part) for part in args.shard.split("/"))
     manifest = args.corpus / "manifest.tsv"
     if not manifest.exists():
-        print(f"no recordings at {args.corpus}: nothing measured")
-        return 0
+        print(MISSING.format(args.corpus), file=sys.stderr)
+        return NOTHING
     parameters = config.load("speech", SpeechConfig, config.config_dir(), {})
     reader = Reader(parameters, load_scene("apartment"))
     with manifest.open(encoding="utf-8") as file:

@@ -21,6 +21,7 @@ BrainStateName = Literal[
 SystemStateName = Literal["IDLE", "LISTENING", "PLANNING", "GROUNDING", "NAVIGATING", "EXECUTING", "SUCCESS", "ERROR"]
 SpeechStateName = Literal["idle", "listening", "transcribing", "speaking"]
 PlannerBackend = Literal["grammar", "llm"]
+TouchKind = Literal["furniture", "obstacle", "floor", "self", "held"]
 StepAction = Literal["navigate", "find", "grasp", "place", "release", "say", "wait", "return"]
 GRIPPER = "gripper"
 """The target of a step that only opens or closes the hand."""
@@ -477,6 +478,33 @@ class SimState(Message):
     epoch: str
     qpos: bytes
     mocap: bytes = b""
+
+
+class Touch(Message):
+    """The robot or what it holds in contact with something, without a break; updates carry the same `id`.
+
+    `kind`: what the robot's `part` touches, itself included, or `held`: then `part` is the object in the hand. Greatest
+    `force` [N], `impulse` [Ns] and contact time `seconds` so far, greatest `depth` [m] of overlap.
+    """
+
+    id: int
+    part: str
+    thing: str
+    kind: TouchKind
+    first: float
+    last: float
+    seconds: float = 0.0
+    force: float = 0.0
+    impulse: float = 0.0
+    depth: float = 0.0
+
+
+class SimContacts(Message):
+    """Touches that began or went on since the last message, from every physics step; for evaluators alone."""
+
+    t: float
+    epoch: str
+    touches: list[Touch]
 
 
 class SimModel(Message):

@@ -161,6 +161,8 @@ ROBOT_DESCRIPTION = _event("robot/description", m.RobotDescription, by="sim", to
 SIM_STATE = _stream("sim/state", m.SimState, by="sim", to="camera", rate=20.0, latched=True)
 SIM_MODEL = _event("sim/model", m.SimModel, by="sim", to="camera dashboard")
 SIM_STATUS = _event("sim/status", m.SimStatus, by="sim", to="brain perception dashboard")
+SIM_CONTACTS = _row("sim/contacts", m.SimContacts, "sim", "", binary=True)
+"""For evaluators alone, like `sim/truth`: no service reads it."""
 
 SIM_CLOCK = _clock("sim/clock", 100.0)
 SIM_CLOCK_50HZ = _clock("sim/clock/50hz", 50.0)

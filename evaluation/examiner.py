@@ -37,7 +37,7 @@ class Examiner:
     CONFIG = ExaminerConfig
     READS = (
         topics.SIM_MODEL, topics.SIM_STATE, topics.SIM_STATUS, topics.SPEECH_STATUS, topics.BRAIN_STATE,
-        topics.SYSTEM_STATUS,
+        topics.SYSTEM_STATUS, topics.SIM_CONTACTS,
     )  # fmt: skip
     WRITES = (topics.SPEECH_TEXT, topics.AUDIO_PCM, topics.VOICE_COMMAND)
     case: Case
@@ -86,6 +86,8 @@ class Examiner:
             look = observer.world(state)
             if first and look is not None:
                 self.observed.shortest = self._shortest(look)
+        for report in io.drain(topics.SIM_CONTACTS):
+            observer.contacts(report)
         for status in io.drain(topics.SIM_STATUS):
             self.observed.stopped |= status.state == "stopped"
 

@@ -8,23 +8,22 @@ from collections.abc import Mapping
 
 import msgspec
 
+from common import messages as m
+from judge.contacts import ContactBook
 from judge.track import Thing, Track, distance
 
 STILL = 0.005
 """Drift [m] over `REST` that still counts as at rest: a rolling apple covers it in half the time."""
 REST = 0.5
 """Time [s] over which rest is judged: ten samples at 20 Hz."""
-HARD = 0.004
-"""Depth [m] of a contact with furniture that the skin of a real robot would feel."""
 
 
 class Look(msgspec.Struct, frozen=True):
-    """The world at robot time `t`. `hits`: (part of the robot, what it touches, depth [m]); `opening`: of the hand."""
+    """The world at robot time `t`; `opening`: gap between the pads [m]."""
 
     t: float
     base: tuple[float, float, float]
     things: dict[str, Thing]
-    hits: tuple[tuple[str, str, float], ...] = ()
     opening: float = 0.0
 
 
@@ -56,7 +55,8 @@ class ThingEvidence(msgspec.Struct):
 class Evidence(msgspec.Struct):
     """The whole case.
 
-    `hits`: furniture, walls and obstacles the robot touched; `moved`: objects that moved or went over, whoever touched
+    `hits`: what the robot or the object in its hand touched too hard, itself included; `touches`: whatever they touched
+    more than barely. `moved`: objects that moved or went over, whoever touched
     them; `disturbed`: those of them that nobody wanted moved.
     """
 
@@ -66,6 +66,7 @@ class Evidence(msgspec.Struct):
     driven: float = 0.0
     standing: bool = False
     moved: list[str] = []
+    touches: list[str] = []
 
 
 class Recorder:
@@ -76,7 +77,7 @@ class Recorder:
         self._kinds, self._bins = kinds, bins
         self._recent: list[Look] = []
         self._tracks: dict[str, Track] = {}
-        self._hits: dict[str, float] = {}
+        self._book = ContactBook()
         self._driven = 0.0
 
     def see(self, look: Look) -> None:
@@ -87,13 +88,13 @@ class Recorder:
             return
         step = distance(look.base[:2], self._recent[-1].base[:2])
         self._driven += step
-        for part, thing, depth in look.hits:
-            if depth >= HARD:
-                key = f"{part} on {thing}"
-                self._hits[key] = max(self._hits.get(key, 0.0), depth)
         for name, now in look.things.items():
             self._tracks[name].see(now, look.t, step)
         self._recent = [x for x in self._recent if x.t >= look.t - REST] + [look]
+
+    def feel(self, report: m.SimContacts) -> None:
+        """What the simulation's log of contacts says."""
+        self._book.note(report)
 
     @property
     def ready(self) -> bool:
@@ -116,11 +117,12 @@ class Recorder:
         moved = [n for n, track in sorted(self._tracks.items()) if track.disturbed]
         return Evidence(
             things=self.things(wants),
-            hits=[f"{key}, {1000 * depth:.0f} mm" for key, depth in sorted(self._hits.items())],
+            hits=self._book.hits(),
             disturbed=[n for n in moved if n not in may_move],
             driven=round(self._driven, 3),
             standing=self._standing,
             moved=moved,
+            touches=self._book.felt(),
         )
 
     @property

@@ -46,6 +46,10 @@ class Observer:
         self._watcher.see(look)
         return look
 
+    def contacts(self, report: m.SimContacts) -> None:
+        """A part of the simulation's log of contacts."""
+        self._recorder.feel(report)
+
     # --- what is wanted
     def begin(self) -> None:
         """The robot is about to be asked for the first time: what has moved until now is the world settling."""

@@ -1,4 +1,4 @@
-"""A second copy of the simulated world that is fed with `sim/state`: poses and contacts, never dynamics."""
+"""A second copy of the simulated world that is fed with `sim/state`: where things are and what holds them."""
 
 import math
 from typing import Any
@@ -13,8 +13,6 @@ from common.support import support
 from judge.evidence import Look
 from judge.track import Thing
 
-PENETRATION = 0.0005
-
 
 class Replica:
     """Built from the MJCF that the simulation publishes."""
@@ -26,8 +24,7 @@ class Replica:
         model = self._model
         self._specs: list[ObjectSpec] = list(scene.objects)
         self._body = {o.name: model.body(body_name(o)).id for o in self._specs}
-        self._base = base = model.body("base").id
-        self._is_robot = model.body_rootid[model.geom_bodyid] == base
+        self._is_robot = model.body_rootid[model.geom_bodyid] == model.body("base").id
         self._owner = np.full(model.ngeom, -1)
         for number, body in enumerate(self._body.values()):
             self._owner[model.geom_bodyid == body] = number
@@ -38,7 +35,6 @@ class Replica:
         self._widths = np.linspace(0.0, hand.open, round(1000 * hand.open) + 1)
         self._postures = np.array([hand.posture(float(w)) for w in self._widths])
         self._base_at = [model.joint(j).qposadr[0] for j in ("base_x", "base_y", "base_yaw")]
-        self._floor = model.geom("floor").id
         starts = [model.joint(body_name(o)).qposadr[0] for o in self._specs]
         self._poses_at = np.array(starts, dtype=int).reshape(-1, 1) + np.arange(7)
         self._poses = np.full(self._poses_at.shape, np.nan)
@@ -59,7 +55,7 @@ class Replica:
             data.mocap_pos[:] = mocap.reshape(-1, 3)
         mujoco.mj_kinematics(model, data)
         mujoco.mj_collision(model, data)
-        robot, other, hits = self._contacts()
+        robot, other = self._contacts()
         poses = qpos[self._poses_at]
         moved = (poses != self._poses).any(axis=1).tolist()
         self._poses = poses
@@ -86,32 +82,17 @@ class Replica:
         base = tuple(float(v) for v in data.qpos[self._base_at])
         apart = np.square(self._postures - qpos[self._fingers_at]).sum(axis=1)
         opening = float(self._widths[int(np.argmin(apart))])
-        return Look(state.t, (base[0], base[1], base[2]), things, tuple(hits), opening)
+        return Look(state.t, (base[0], base[1], base[2]), things, opening)
 
-    def _contacts(self) -> tuple[dict[str, set[int]], set[str], list[tuple[str, str, float]]]:
-        """Per object the robot's geoms that touch it; the objects that anything else touches; the robot's hits."""
+    def _contacts(self) -> tuple[dict[str, set[int]], set[str]]:
+        """Per object the robot's geoms that touch it; the objects that anything else touches."""
         data, owner, mine = self._data, self._owner, self._is_robot
         pairs = data.contact.geom[: data.ncon]
-        one, two = pairs[:, 0], pairs[:, 1]
-        by_robot = mine[one] | mine[two]
+        by_robot = mine[pairs[:, 0]] | mine[pairs[:, 1]]
         supported = {self._specs[k].name for k in set(owner[pairs[~by_robot]].ravel().tolist()) - {-1}}
         robot: dict[str, set[int]] = {o.name: set() for o in self._specs}
-        hits = []
-        for contact in np.nonzero(by_robot)[0].tolist():
-            a, b = (int(g) for g in pairs[contact])
+        for a, b in pairs[by_robot].tolist():
             part, thing = (a, b) if mine[a] else (b, a)
-            if mine[thing]:
-                continue
             if owner[thing] >= 0:
                 robot[self._specs[owner[thing]].name].add(part)
-                continue
-            body, depth = int(self._model.geom_bodyid[part]), -float(data.contact.dist[contact])
-            if depth > PENETRATION and not (thing == self._floor and body == self._base):
-                hits.append((self._model.body(body).name, self._name(thing), depth))
-        return robot, supported, hits
-
-    def _name(self, geom: int) -> str:
-        """What people call the thing a geom belongs to."""
-        model = self._model
-        words: str = model.geom(geom).name or model.body(int(model.geom_bodyid[geom])).name or "a wall"
-        return words.replace("_", " ")
+        return robot, supported

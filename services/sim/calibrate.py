@@ -140,7 +140,7 @@ def bounds(model: Any, data: Any, geom: int) -> tuple[Array, Array]:
 
 
 def exclude_neighbours(root: ET.Element) -> None:
-    """For planning the robot collides with itself, but for parts that touch at home or nearly always."""
+    """The robot collides with itself, but for parts that touch at home or nearly always."""
     for geom in root.iter("geom"):
         if geom.get("contype") == "2":
             geom.set("conaffinity", "3")

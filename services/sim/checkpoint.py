@@ -6,6 +6,7 @@ from pathlib import Path
 import msgspec
 
 from common import files
+from common.messages import Touch
 
 VERSION = 1
 NAME = "sim.checkpoint"
@@ -13,7 +14,9 @@ NAME = "sim.checkpoint"
 
 class Checkpoint(msgspec.Struct):
     """Everything that a world is made of: `physics` float64 bytes of MuJoCo's integration state, `setpoint` of base
-    and arm, `odometry` the believed pose. `run` and `model` say to which run and model it belongs."""
+    and arm, `odometry` the believed pose, `touches` the log of contacts. `run` and `model` say to which run
+    and model it belongs.
+    """
 
     run: str
     model: str
@@ -25,6 +28,7 @@ class Checkpoint(msgspec.Struct):
     odometry: tuple[float, float, float]
     effort: float
     stopped: bool
+    touches: list[Touch] = []
     version: int = VERSION
 
 

@@ -1,69 +1,138 @@
-"""What the robot has run into since the world was laid out: furniture, walls and obstacles; for evaluators."""
+"""What the robot and the object in its hand touch, taken from every physics step; for evaluators.
 
-from dataclasses import dataclass
+Of each touch between a part and a thing the log keeps the greatest force, the impulse, the duration and the depth.
+The pads on what they grip are no touch, and neither is an object that the robot pushes: where it ends up tells.
+"""
+
+import itertools
 from typing import Any
 
 import mujoco
 import numpy as np
+from numpy.typing import NDArray
 
+from common import messages as m
 from services.sim.obstacles import PREFIX
 
+GAP = 0.1
+"""Time [s] without contact after which the same pair begins another touch: bouncing ends within some 50 ms."""
+PATTERNS = 4096
+"""Sets of touching geoms that are remembered as read; a mission has some hundred."""
 
-@dataclass
-class Touch:
-    """One part of the robot against one thing."""
-
-    robot: str
-    thing: str
-    kind: str
-    first: float
-    last: float
-    ticks: int = 0
+Pair = tuple[str, str, m.TouchKind]
 
 
 class Contacts:
-    """Objects to grasp and the floor do not count."""
+    """`step` takes down who touches whom after one physics step; `take` hands out what is new."""
 
-    def __init__(self, model: Any, robot_bodies: set[int]) -> None:
+    def __init__(
+        self, model: Any, robot_bodies: set[int], pads: tuple[frozenset[int], frozenset[int]], objects: dict[str, int]
+    ) -> None:
         body = model.geom_bodyid
+        self._model, self._pads = model, pads
         self._robot = np.isin(body, list(robot_bodies))
-        solid = (model.body_weldid[body] == 0) | (model.body_mocapid[body] >= 0)
-        self._thing = solid & (model.geom_type != mujoco.mjtGeom.mjGEOM_PLANE)
+        owners = {number: name for name, number in objects.items()}
+        self._object = [owners.get(int(b), "") for b in body]
         self._names = [_name(model, g) for g in range(model.ngeom)]
         self._parts = [model.body(int(b)).name for b in body]
-        self._touches: dict[tuple[int, int], Touch] = {}
+        self._views: dict[int, NDArray[np.int32]] = {}
+        self._read: dict[bytes, tuple[tuple[int, Pair], ...]] = {}
+        self._force = np.zeros(6)
+        self._ids = itertools.count()
+        self.forget()
 
     def forget(self) -> None:
-        self._touches = {}
+        """The world begins anew."""
+        self._touches: list[m.Touch] = []
+        self._current: dict[Pair, m.Touch] = {}
+        self._fresh: dict[int, m.Touch] = {}
 
-    def note(self, data: Any, now: float) -> None:
-        """Take down who touches what at this moment."""
-        geoms = data.contact.geom[: data.ncon]
-        one, two = geoms[:, 0], geoms[:, 1]
-        hits = (self._robot[one] & self._thing[two]) | (self._robot[two] & self._thing[one])
-        if not hits.any():
-            return
-        for a, b in set(map(tuple, geoms[hits].tolist())):
-            part, thing = (a, b) if self._robot[a] else (b, a)
+    def restore(self, touches: list[m.Touch]) -> None:
+        """Go on with the log of the process before."""
+        self.forget()
+        self._touches = touches
+
+    def step(self, data: Any, now: float) -> None:
+        """After the physics step that ends at `now` [s], while `data.ncon` contacts exist."""
+        count = data.ncon
+        view = self._views.get(count)
+        if view is None:
+            # Contacts stand at the start of MjData's arena: the view of so many stays valid for good. Looking the
+            # array up anew takes longer than all that follows.
+            view = self._views[count] = data.contact.geom
+        pattern = view.tobytes()
+        pairs = self._read.get(pattern)
+        if pairs is None:
+            if len(self._read) == PATTERNS:
+                self._read.clear()
+            pairs = self._read[pattern] = self._classify(view)
+        if pairs:
+            self._note(data, pairs, now)
+
+    def _classify(self, geoms: NDArray[np.int32]) -> tuple[tuple[int, Pair], ...]:
+        """Of the touching geoms (n, 2) those that count: index and pair."""
+        rows: list[tuple[int, int]] = [(int(a), int(b)) for a, b in geoms]
+        left, right = (
+            {self._object[other] for a, b in rows for geom, other in ((a, b), (b, a)) if geom in pad}
+            for pad in self._pads
+        )
+        held = (left & right) - {""}
+        found = []
+        for index, (a, b) in enumerate(rows):
+            pair = self._pair(a, b, held) or self._pair(b, a, held)
+            if pair is not None:
+                found.append((index, pair))
+        return tuple(found)
+
+    def _pair(self, part: int, thing: int, held: set[str]) -> Pair | None:
+        """What it is that geom `part` of the robot or of a held object touches; None if it does not count."""
+        if self._robot[part]:
+            if self._robot[thing]:
+                return self._parts[part], self._parts[thing], "self"
+            if self._object[thing]:
+                return None
             kind, name = self._names[thing]
-            touch = self._touches.get((part, thing))
-            if touch is None:
-                touch = self._touches[part, thing] = Touch(self._parts[part], name, kind, now, now)
-            touch.last, touch.ticks = now, touch.ticks + 1
+            return self._parts[part], name, kind
+        if self._object[part] in held and not self._robot[thing] and self._object[thing] != self._object[part]:
+            return self._object[part], self._object[thing] or self._names[thing][1], "held"
+        return None
 
-    def report(self) -> list[dict[str, Any]]:
-        """Oldest first: {robot, thing, kind: furniture or obstacle, first, last, seconds}."""
-        found = sorted(self._touches.values(), key=lambda t: t.first)
-        return [
-            {"robot": t.robot, "thing": t.thing, "kind": t.kind, "first": t.first, "last": t.last,
-             "seconds": t.ticks * 0.01}
-            for t in found
-        ]  # fmt: skip
+    def _note(self, data: Any, pairs: tuple[tuple[int, Pair], ...], now: float) -> None:
+        forces: dict[Pair, tuple[float, float]] = {}
+        for index, pair in pairs:
+            mujoco.mj_contactForce(self._model, data, index, self._force)
+            force, depth = forces.get(pair, (0.0, 0.0))
+            pressed = float(np.linalg.norm(self._force[:3]))
+            forces[pair] = force + pressed, max(depth, -float(data.contact.dist[index]))
+        span = float(self._model.opt.timestep)
+        for pair, (force, depth) in forces.items():
+            touch = self._current.get(pair)
+            if touch is None or now - touch.last > GAP:
+                part, thing, kind = pair
+                touch = m.Touch(id=next(self._ids), part=part, thing=thing, kind=kind, first=now, last=now)
+                self._current[pair] = touch
+                self._touches.append(touch)
+            touch.last, touch.seconds = now, touch.seconds + span
+            touch.force, touch.impulse = max(touch.force, force), touch.impulse + force * span
+            touch.depth = max(touch.depth, depth)
+            self._fresh[touch.id] = touch
+
+    def take(self) -> list[m.Touch]:
+        """The touches that began or went on since the last call."""
+        fresh, self._fresh = list(self._fresh.values()), {}
+        return fresh
+
+    @property
+    def touches(self) -> list[m.Touch]:
+        """All since the world was laid out, oldest first."""
+        return self._touches
 
 
-def _name(model: Any, geom: int) -> tuple[str, str]:
-    """Kind and name of what a geom belongs to."""
+def _name(model: Any, geom: int) -> tuple[m.TouchKind, str]:
+    """Kind and name of what a geom that is not the robot's belongs to."""
     body = model.body(int(model.geom_bodyid[geom])).name
     if body.startswith(PREFIX):
         return "obstacle", body.removeprefix(PREFIX)
+    if model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_PLANE:
+        return "floor", model.geom(geom).name
     return "furniture", model.geom(geom).name or f"geom_{geom}"

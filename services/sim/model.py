@@ -26,7 +26,7 @@ class Robot:
 
 
 def own() -> Robot:
-    rest = f"{robot.actuators_xml()}\n{robot.equality_xml()}"
+    rest = f"{robot.contact_xml()}\n{robot.actuators_xml()}\n{robot.equality_xml()}"
     return Robot(OURS, robot.body_xml(), "", rest, robot.robot_mjcf(), robot.HOME_ARM)
 
 
@@ -52,8 +52,8 @@ def load_robot(name: str) -> Robot:
     try:
         calibrate.measure_hand(root)
         calibrate.name_deck(root)
+        calibrate.exclude_neighbours(root)
         alone = _bare(root)
-        calibrate.exclude_neighbours(alone)
     except (ValueError, KeyError, StopIteration) as error:
         raise RobotError(
             f"robot {name}: the model does not behave like a base with an arm and a gripper: {error}"

@@ -6,6 +6,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from common.lockstep import DT
 from common.robot import ARM, BASE, arm_limits, pads, subtree
 from common.scene import Obstacle, Scene, body_name
 from services.sim.contacts import Contacts
@@ -16,6 +17,8 @@ from services.sim.obstacles import Obstacles, body_xml
 from services.sim.world import world_mjcf
 
 SUBSTEPS = 5
+STEP = DT / SUBSTEPS
+"""One physics step [s], the model's own."""
 SETTLE_STEPS = 250
 _STATE = mujoco.mjtState.mjSTATE_INTEGRATION
 
@@ -53,7 +56,7 @@ class Physics:
         self.bodies = {p.spec.name: model.body(body_name(p.spec)).id for p in self.placements}
         self.gripper_bodies = subtree(model, "gripper")
         self.robot_bodies = {b for b in range(model.nbody) if model.body_rootid[b] == model.body("base").id}
-        self.contacts = Contacts(self.model, self.robot_bodies)
+        self.contacts = Contacts(self.model, self.robot_bodies, self.pads, self.bodies)
         self.obstacles = Obstacles(obstacles, self.model)
         self.reset()
 
@@ -76,17 +79,18 @@ class Physics:
         self.seed, self.placements = seed, place_objects(self.scene, seed)
         self.reset()
 
-    def advance(self, start: NDArray[np.float64], end: NDArray[np.float64]) -> None:
-        """Run 10 ms while the set-points (10,) of base and arm move from `start` to `end`."""
-        model, data, ctrl = self.model, self.data, self._ctrl
+    def advance(self, start: NDArray[np.float64], end: NDArray[np.float64], now: float = 0.0) -> None:
+        """Run the 10 ms from `now` [s] while the set-points (10,) of base and arm move from `start` to `end`."""
+        model, data, ctrl, contacts = self.model, self.data, self._ctrl, self.contacts
         change = (end - start) / SUBSTEPS
         ctrl[:] = start + self._lead * change
-        if not change.any():
-            mujoco.mj_step(model, data, SUBSTEPS)
-            return
-        for _ in range(SUBSTEPS):
-            ctrl += change
+        moving = bool(change.any())
+        for number in range(1, SUBSTEPS + 1):
+            if moving:
+                ctrl += change
             mujoco.mj_step(model, data)
+            if data.ncon:
+                contacts.step(data, now + number * STEP)
 
     def grip(self, closed: float, effort: float) -> None:
         """Drive the fingers to `closed` (0..1) with at most `effort` newtons each."""

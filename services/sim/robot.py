@@ -37,8 +37,8 @@ _COLOURS = ("0.85 0.86 0.88 1", "0.25 0.26 0.28 1")
 
 
 def _geom(extra: str, mass: float, rgba: str, collide: bool = True) -> str:
-    # Robot geoms touch the world but not each other; the planning model turns that on.
-    flags = 'contype="2" conaffinity="1"' if collide else 'contype="0" conaffinity="0"'
+    # Robot geoms touch the world and each other, but for the pairs that `contact_xml` excludes.
+    flags = 'contype="2" conaffinity="3"' if collide else 'contype="0" conaffinity="0"'
     return f'<geom {extra} mass="{mass}" rgba="{rgba}" group="{ROBOT_GROUP}" {flags}/>'
 
 
@@ -151,8 +151,8 @@ def equality_xml() -> str:
 </equality>"""
 
 
-def robot_mjcf() -> str:
-    """A model of the robot alone, with self-collision on, for inverse kinematics and planning."""
+def contact_xml() -> str:
+    """Neighbours in the chain, which overlap or nearly touch by design, do not collide."""
     excludes = [("base", "arm_mount"), ("base", "shoulder_link"), ("arm_mount", "shoulder_link")]
     names = [row[0] for row in _LINKS]
     excludes += [(names[i], names[i + 2]) for i in range(5)]
@@ -160,11 +160,15 @@ def robot_mjcf() -> str:
     excludes += [(body, f"{side}_finger") for body in ("gripper", "bracelet_link") for side in ("left", "right")]
     excludes += [("left_finger", "right_finger")]
     rows = "\n".join(f'<exclude body1="{a}" body2="{b}"/>' for a, b in excludes)
-    body = body_xml().replace('contype="2" conaffinity="1"', 'contype="2" conaffinity="3"')
+    return f"<contact>{rows}</contact>"
+
+
+def robot_mjcf() -> str:
+    """A model of the robot alone, for inverse kinematics and planning."""
     return f"""<mujoco model="tidybot">
 <compiler angle="radian" autolimits="true"/>
-<worldbody>{body}</worldbody>
-<contact>{rows}</contact>
+<worldbody>{body_xml()}</worldbody>
+{contact_xml()}
 {actuators_xml()}
 {equality_xml()}
 <keyframe><key name="home" qpos="0 0 0 {" ".join(map(repr, HOME_ARM))} 0 0"/></keyframe>

@@ -101,6 +101,7 @@ class SimService:
         self._base = BaseDriver(self._config, (x, y, yaw), stopped=state.stopped)
         self._arm = ArmDriver(self._setpoint[3:], self._config.stream_timeout, physics.arm_limits)
         self.sensors.odometry.resume((x, y, yaw), state.odometry)
+        physics.contacts.restore(state.touches)
         self._effort = state.effort
         physics.limit_effort(state.effort)
         self._io.log.warning("the world goes on where it was", t=round(self.start_time, 2))
@@ -121,6 +122,7 @@ class SimService:
             odometry=self.sensors.odometry.believed,
             effort=self._effort,
             stopped=self._base.stopped,
+            touches=self.physics.contacts.touches,
         )
         why = checkpoint.save(self._saved, state)
         if why and why != self._unsaved:
@@ -149,10 +151,7 @@ class SimService:
         after[:3] = self._base.advance((x, y, yaw), self.sensors.odometry.believed, now, DT)
         after[3:] = self._arm.advance(now, DT)
         physics.obstacles.advance(physics.data, (x, y), DT)
-        moving = bool((after != self._setpoint).any()) or physics.obstacles.moving
-        physics.advance(self._setpoint, after)
-        if moving:
-            physics.contacts.note(physics.data, now + DT)
+        physics.advance(self._setpoint, after, now)
         self._setpoint = after
         self._tick += 1
         self._publish(now + DT)
@@ -211,6 +210,8 @@ class SimService:
                 t=t, tick=self._tick, epoch=io.epoch, qpos=data.qpos.tobytes(), mocap=data.mocap_pos.tobytes()
             )
             io.publish(topics.SIM_STATE, state)
+            if touches := self.physics.contacts.take():
+                io.publish(topics.SIM_CONTACTS, m.SimContacts(t=t, epoch=io.epoch, touches=touches))
 
     # --- queries
     def _answer_truth(self, payload: bytes) -> bytes:

@@ -2,6 +2,8 @@
 
 from typing import Any
 
+import msgspec
+
 from common.support import support
 from services.sim.physics import Physics
 
@@ -64,5 +66,5 @@ def report(physics: Physics, t: float, epoch: str) -> dict[str, Any]:
         "objects": found,
         "goal_regions": regions,
         "obstacles": physics.obstacles.report(data),
-        "contacts": physics.contacts.report(),
+        "contacts": [msgspec.to_builtins(t) for t in physics.contacts.touches],
     }

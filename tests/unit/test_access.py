@@ -93,6 +93,18 @@ def test_no_key_hides_behind_another() -> None:
         assert {k for k in granted.reads if "*" in k} == {access.ALL_HEALTH, access.ALL_ALIVE}
 
 
+def test_what_is_really_so_is_for_evaluators_alone() -> None:
+    """No service may read or ask for it, and none asks the bus for it; who evaluates may."""
+    truth = {topics.SIM_TRUTH, topics.SIM_CONTACTS.key}
+    for name in SERVICES:
+        granted = access.grants(Subject(name=name))
+        assert not truth & {*granted.reads, *granted.asks}, name
+        assert topics.SIM_CONTACTS not in service(name).READS
+    assert topics.SIM_CONTACTS.writers == ("sim",)
+    judge = access.grants(Subject(name="judge", role="observer"))
+    assert "**" in judge.reads and truth <= {*judge.asks}
+
+
 def test_only_the_page_may_ask_for_the_missions_and_it_answers_for_nobody() -> None:
     asking = {name for name in SERVICES if topics.BRAIN_MISSIONS in access.grants(Subject(name=name)).asks}
     assert asking == {"dashboard"}

@@ -1,13 +1,18 @@
 """The evaluation's second look at the world agrees with the simulation's own truth; and the lengths of ways."""
 
 import math
+from pathlib import Path
+from typing import Any
 
 import pytest
 
 from common import codec, topics
+from common import messages as m
 from common.scene import load_scene
 from evaluation.shortest import FloorPlan
-from judge.evidence import Look
+from judge.evidence import Evidence, Look
+from judge.goal import Goal
+from judge.observer import Observer
 from judge.replica import Replica
 from services.sim.truth import report
 from tests.simulation import Simulation
@@ -38,19 +43,78 @@ def test_the_replica_sees_what_is_so(seed: int) -> None:
         assert not thing.held and not thing.touched
         assert thing.tilt < 0.02
     assert look.base == pytest.approx(truth["base"])
-    assert look.hits == ()
 
 
-def test_a_robot_in_the_furniture_is_noticed() -> None:
-    world = World("minimal", 0)
-    data, at = world.sim.physics.data, world.sim.physics.qpos_at
-    world.look()
-    data.qpos[at[0]] = 2.0
-    state = codec.decode(topics.SIM_STATE, world.bus.last["sim/state"])
-    state.qpos = data.qpos.tobytes()
-    hits = world.replica.look(state).hits
-    assert {thing for _, thing, _ in hits} & {"table", "table leg 0", "table leg 1", "table leg 2", "table leg 3"}
-    assert all(depth > 0 for *_, depth in hits)
+class Watched(Simulation):
+    """The simulation with an observer that gets what an evaluator gets."""
+
+    def __init__(self, scene: str = "minimal", **more: Any) -> None:
+        super().__init__(scene, 0, **more)
+        self.observer = Observer(self.io.scene)
+        self.observer.model(self.last(topics.SIM_MODEL))
+
+    def watch(self, seconds: float) -> Evidence:
+        for _ in range(round(seconds / 0.05)):
+            self.step(0.05)
+            self.observer.world(self.last(topics.SIM_STATE))
+        for said in self.sent(topics.SIM_CONTACTS):
+            self.observer.contacts(said)
+        return self.observer.conclude(Goal())
+
+    def move(self, name: str, position: tuple[float, float, float], velocity: tuple[float, float, float]) -> None:
+        """Put an object somewhere, upright, on its way."""
+        physics = self.sim.physics
+        joint = physics.model.joint(name.replace(" ", "_"))
+        at, rate = joint.qposadr[0], joint.dofadr[0]
+        physics.data.qpos[at : at + 7] = (*position, 1.0, 0.0, 0.0, 0.0)
+        physics.data.qvel[rate : rate + 3] = velocity
+
+
+def test_a_robot_that_drives_into_furniture_has_hit_it() -> None:
+    world = Watched()
+    assert world.watch(0.5).hits == []
+    world.bus.send(topics.BASE_TARGET, m.BaseTarget(x=2.6, y=0.0, theta=0.0, id="a"))
+    found = world.watch(7.0)
+    assert found.hits and all(" on delivery tray" in hit for hit in found.hits)
+    touches = world.sim.physics.contacts.touches
+    worst = max(touches, key=lambda t: t.force)
+    assert worst.force > 65.0 and worst.impulse > 0.0 and worst.kind == "furniture" and worst.depth > 0.0
+    assert worst.seconds <= worst.last - worst.first + 0.0021, "counted in steps of 2 ms"
+
+
+def test_what_another_object_knocks_over_is_disturbed() -> None:
+    """The robot touches neither: a can slides into a bottle, and the bottle goes over."""
+    world = Watched("apartment")
+    table = next(r for r in world.io.scene.receptacles if r.kind == "table")
+    x, y, z = table.center
+    world.move("green can", (x - 0.12, y, z + 0.06), (0.0, 0.0, 0.0))
+    world.move("blue bottle", (x, y, z + 0.107), (0.0, 0.0, 0.0))
+    world.watch(0.5)
+    world.observer.begin()
+    assert world.watch(0.5).disturbed == []
+    world.move("green can", (x - 0.12, y, z + 0.06), (1.5, 0.0, 0.0))
+    found = world.watch(2.0)
+    assert {"green can", "blue bottle"} <= set(found.disturbed) and found.hits == []
+
+
+def test_an_arm_on_its_own_base_is_a_hit_and_the_log_outlives_the_process(tmp_path: Path) -> None:
+    world = Watched(state_dir=tmp_path, run="one")
+    home = world.sim.physics.home_arm
+    assert world.watch(0.5).touches == [], "at home the robot does not touch itself"
+    folded = [home[0], -2.2, home[2], -2.5, *home[4:]]
+    for n in range(100):
+        share = min(1.0, n / 60)
+        aim = [a + share * (b - a) for a, b in zip(home, folded, strict=True)]
+        world.bus.send(topics.ARM_COMMAND, m.ArmCommand(position=aim, period=0.05))
+        world.watch(0.05)
+    found = world.watch(0.5)
+    touches = world.sim.physics.contacts.touches
+    assert {t.kind for t in touches} == {"self"} and max(t.force for t in touches) > 10.0
+    assert found.hits
+    after = Simulation("minimal", 0, state_dir=tmp_path, run="one")
+    kept = after.sim.physics.contacts.touches
+    assert kept and [t.part for t in kept] == [t.part for t in touches][: len(kept)]
+    assert after.truth()["contacts"][0]["kind"] == "self"
 
 
 def test_a_state_of_another_model_is_refused() -> None:

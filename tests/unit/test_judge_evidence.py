@@ -6,6 +6,8 @@ from typing import Any
 import msgspec
 import pytest
 
+from common import messages as m
+from judge.contacts import ContactBook, describe, is_hit
 from judge.effects import Effect, Shown
 from judge.evidence import Evidence, Look, Recorder, ThingEvidence, Want, spl
 from judge.goal import Goal, shortfall
@@ -207,10 +209,44 @@ def test_what_another_command_wanted_moved_is_not_disturbed() -> None:
     assert moved.conclude((WANT,), frozenset({"mug", "can"})).disturbed == []
 
 
-@pytest.mark.parametrize(("depth", "hits"), [(0.0039, []), (0.004, ["base on desk, 4 mm"])])
-def test_furniture_is_hit_when_the_contact_is_deep(depth: float, hits: list[str]) -> None:
-    contact = Look(2.5, (2.4, 0.0, 0.0), GOOD[2].things, (("base", "desk", depth), ("base", "desk", depth / 2)))
-    assert evidence([*GOOD[:3], contact, *GOOD[3:]]).hits == hits
+def test_touches_are_in_the_evidence_and_hits_too() -> None:
+    found = recorder(GOOD)
+    touches = [touch(0, force=20.0), touch(1, "desk_leg", force=70.0, impulse=1.24), touch(2, force=0.9)]
+    found.feel(m.SimContacts(t=3.0, epoch="e", touches=touches))
+    seen = found.conclude((WANT,), MUG)
+    assert seen.hits == ["base on desk leg: 70 N, 1.2 Ns in 0.05 s at 2.5 s"]
+    assert seen.touches == ["base on desk: 20 N, 0.0 Ns in 0.05 s at 2.5 s", *seen.hits]
+
+
+def touch(number: int, thing: str = "desk", kind: m.TouchKind = "furniture", **more: float) -> m.Touch:
+    return m.Touch(id=number, part="base", thing=thing, kind=kind, first=2.5, last=2.55, seconds=0.05, **more)
+
+
+@pytest.mark.parametrize(
+    ("kind", "force", "impulse", "hit"),
+    [
+        ("furniture", 65.0, 32.5, False), ("furniture", 65.1, 0.1, True), ("furniture", 1.0, 32.6, True),
+        ("obstacle", 65.1, 0.1, True), ("floor", 65.1, 0.1, True), ("held", 65.0, 32.5, False),
+        ("held", 65.1, 0.1, True), ("held", 5.0, 32.6, True), ("self", 10.0, 5.0, False), ("self", 10.1, 0.1, True),
+        ("self", 1.0, 5.1, True),
+    ],
+)  # fmt: skip
+def test_a_touch_is_a_hit_by_its_force_or_its_impulse(
+    kind: m.TouchKind, force: float, impulse: float, hit: bool
+) -> None:
+    assert is_hit(touch(0, kind=kind, force=force, impulse=impulse)) == hit
+
+
+def test_a_book_keeps_the_last_word_on_each_touch_and_what_a_killed_simulation_saw() -> None:
+    book = ContactBook()
+    book.note(m.SimContacts(t=1.0, epoch="a", touches=[touch(0, force=1.0), touch(1, kind="held", force=0.99)]))
+    book.note(m.SimContacts(t=2.0, epoch="a", touches=[touch(0, force=66.0)]))
+    book.note(m.SimContacts(t=3.0, epoch="b", touches=[touch(0, "wall_3", force=1.0, impulse=40.0)]))
+    assert book.felt() == [
+        "base on desk: 66 N, 0.0 Ns in 0.05 s at 2.5 s", "base on wall 3: 1 N, 40.0 Ns in 0.05 s at 2.5 s",
+    ]  # fmt: skip
+    assert book.hits() == book.felt()
+    assert describe(touch(1, kind="held")) == "base in the hand on desk: 0 N, 0.0 Ns in 0.05 s at 2.5 s"
 
 
 @pytest.mark.parametrize(("drift", "standing"), [(0.0049, True), (0.0051, False)])

@@ -104,13 +104,13 @@ def test_contacts_are_kept_until_the_next_reset() -> None:
     world.bus.send(topics.BASE_TARGET, m.BaseTarget(x=0.0, y=0.2, theta=0.0, id="b"))
     world.step(1.5)
     contacts = world.truth()["contacts"]
-    assert [(c["robot"], c["thing"], c["kind"]) for c in contacts] == [("base", "crate", "obstacle")]  # type: ignore
+    assert [(c["part"], c["thing"], c["kind"]) for c in contacts] == [("base", "crate", "obstacle")]  # type: ignore
     assert 0.3 < contacts[0]["first"] < contacts[0]["last"] < 2.5  # type: ignore[index]
     world.bus.get("sim/reset", b"{}")
     assert world.truth()["contacts"] == []
 
 
-def test_furniture_and_walls_count_as_contacts_the_floor_and_objects_do_not() -> None:
+def test_furniture_and_walls_count_as_contacts_and_standing_on_the_floor_does_not() -> None:
     world = World()
     world.bus.send(topics.BASE_TARGET, m.BaseTarget(x=-0.4, y=0.4, theta=0.0, id="a"))
     world.step(3.0)
