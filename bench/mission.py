@@ -1,4 +1,4 @@
-"""Fetch missions of the real services in one process, judged by physics."""
+"""Fetch missions of the real services in one process, judged as the evaluation judges."""
 
 import time
 from dataclasses import dataclass, field
@@ -7,8 +7,12 @@ from typing import Any
 from common import messages as m
 from common import topics
 from evaluation.stack import Stack
-
-LIFTED = 0.05
+from evaluation.watch import Watch
+from judge.claims import Claim, false_claims
+from judge.evidence import Evidence, Want
+from judge.goal import Goal
+from judge.observer import WATCH
+from judge.verdict import objections
 
 
 @dataclass
@@ -19,26 +23,31 @@ class Outcome:
     item: str
     claimed: str = "none"
     reason: str = ""
-    on: str = ""
-    held: bool = False
-    lifted: bool = False
+    evidence: Evidence = field(default_factory=Evidence)
+    claims: list[Claim] = field(default_factory=list)
     robot_seconds: float = 0.0
     wall_seconds: float = 0.0
     states: list[str] = field(default_factory=list)
 
-    def delivered(self, goal: str) -> bool:
-        """The object was lifted and rests on the goal, let go of."""
-        return self.lifted and not self.held and self.on == goal
+    @property
+    def objections(self) -> list[str]:
+        """What speaks against a flawless delivery."""
+        return objections(self.evidence, self.claims)
+
+    @property
+    def false_claims(self) -> int:
+        return false_claims(self.claims)
 
 
 class Robot(Stack):
-    """Every service of the fetch pipeline in one process."""
+    """Every service of the fetch pipeline in one process, and the judge's watch."""
 
     def __init__(
         self, scene: str = "apartment", seed: int = 0, settings: tuple[str, ...] = (), log_level: str = "error"
     ) -> None:
         settings = ("brain.pipeline=fetch", *settings)
         super().__init__(scene, seed, settings, without=("planner",), log_level=log_level)
+        self.watch: Watch = self.join(Watch)
 
 
 def fetch(robot: Robot, item: str, seed: int, patience: float = 400.0, speech: Any = None) -> Outcome:
@@ -47,24 +56,24 @@ def fetch(robot: Robot, item: str, seed: int, patience: float = 400.0, speech: A
     while robot.state().state != "LISTENING":
         robot.tick()
     begin, started = robot.now, time.perf_counter()
-    height = robot.truth()["objects"][item]["position"][2]
+    goal = Goal((Want(item, (robot.scene.delivery,)),))
+    observer = robot.watch.observer
+    observer.begin()
+    observer.expect(goal)
     if speech is None:
         robot.bus.send(topics.SPEECH_TEXT, m.TypedText(text=f"bring me the {item}"))
     else:
         robot.play(speech)
-    body = robot.sim.physics.bodies[item]
     while robot.now - begin < patience:
         robot.advance(0.1)
-        outcome.lifted |= bool(robot.sim.physics.data.xpos[body][2] > height + LIFTED)
         state = robot.state()
         if not outcome.states or outcome.states[-1] != state.state:
             outcome.states.append(state.state)
         if state.last is not None and state.state == "LISTENING" and len(outcome.states) > 2:
             outcome.claimed, outcome.reason = state.last.outcome, state.last.reason
             break
-    found = robot.truth()
-    outcome.on = found["objects"][item]["on"]
-    outcome.held = found["objects"][item]["touching_gripper"]
     outcome.robot_seconds = robot.now - begin
     outcome.wall_seconds = time.perf_counter() - started
+    robot.advance(WATCH)
+    outcome.evidence, outcome.claims = observer.conclude(goal), observer.claims
     return outcome

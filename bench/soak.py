@@ -1,9 +1,8 @@
 """An hour of the robot's life: `python -m bench.soak --hours 1`.
 
 Every service in one process, in lockstep: things are fetched to the tray and put back where they stood, one after
-the other, and each mission's outcome is checked against physics. Resident memory is read every five minutes of robot
-time. Exit status 1 when memory grew by more than 2 % after the first ten minutes, or when a mission was reported
-delivered that physics does not show.
+the other, and each mission is judged as the evaluation judges. Resident memory is read every five minutes of robot
+time. Exit status 1 when memory grew by more than 2 % after the first ten minutes, or when a claim was false.
 """
 
 import argparse
@@ -17,8 +16,17 @@ import psutil
 from common import messages as m
 from common import topics
 from evaluation.stack import Stack
+from evaluation.statistics import share
+from evaluation.watch import Watch
+from judge.claims import false_claims
+from judge.evidence import Want
+from judge.goal import Goal
+from judge.observer import WATCH
+from judge.verdict import objections
 
 PATIENCE = 400.0
+SAMPLE = 0.2
+"""Robot time [s] in which a fresh judge sees the world before the next command: four samples at 20 Hz."""
 SETTLED, EVERY = 600.0, 300.0
 GROWTH = 0.02
 THINGS = ("red mug", "green can", "blue block", "apple", "white box", "blue bottle")
@@ -38,14 +46,18 @@ class Life:
 
     def __init__(self, seed: int) -> None:
         self.stack = Stack(seed=seed, settings=("brain.pipeline=vla",))
+        self._watch: Watch = self.stack.join(Watch)
         self.told: dict[str, int] = {}
-        self.false = 0
+        self.flawless = self.false = 0
         self.memory: list[tuple[float, float]] = []
         self._began = time.monotonic()
 
     def ask(self, command: str, thing: str, goal: str) -> None:
         """One mission from the words to the report."""
-        stack = self.stack
+        stack, observer, wanted = self.stack, self._watch.renew(), Goal((Want(thing, (goal,)),))
+        stack.advance(SAMPLE)
+        observer.begin()
+        observer.expect(wanted)
         before = stack.state().last
         stack.bus.send(topics.VOICE_COMMAND, m.VoiceCommand(text=command, confidence=1.0, confirmed=True))
         end = stack.now + PATIENCE
@@ -61,9 +73,12 @@ class Life:
         self.told[outcome] = self.told.get(outcome, 0) + 1
         if outcome != "delivered":
             print(f"  {command}: {outcome}{f', {ended.reason}' if ended else ''}", flush=True)
-        if outcome == "delivered" and on(stack, thing) != goal:
-            self.false += 1
-            print(f"  {command}: reported delivered, but it is on {on(stack, thing) or 'nothing'}", flush=True)
+        stack.advance(WATCH)
+        against = objections(observer.conclude(wanted), observer.claims)
+        self.false += false_claims(observer.claims)
+        self.flawless += not against
+        if outcome == "delivered" and against:
+            print(f"  {command}: reported delivered, but {'; '.join(against)}", flush=True)
 
     def _weigh(self) -> None:
         if not self.memory or self.stack.now - self.memory[-1][0] >= EVERY:
@@ -94,7 +109,8 @@ def main() -> int:
             break
     settled = next((mb for t, mb in life.memory if t >= SETTLED), life.memory[-1][1])
     growth = life.memory[-1][1] / settled - 1
-    print(f"missions {life.told}, false claims {life.false}")
+    missions = sum(life.told.values())
+    print(f"missions {life.told}, flawless {share(life.flawless, missions)}, false claims {life.false}")
     print(f"memory after ten minutes {settled:.1f} MB, {growth:+.1%} since")
     return 1 if growth > GROWTH or life.false else 0
 

@@ -7,7 +7,6 @@ import subprocess
 import sys
 import uuid
 from pathlib import Path
-from typing import Any
 
 from cli.audio import Player, padded, read_wav
 from cli.errors import CliError, near, port_number
@@ -15,7 +14,6 @@ from cli.link import Link, Watch
 from cli.mission import ACCEPT, Conversation, speak_into, typed
 from cli.plan import Plan, add_start_options
 from cli.programs import ROOT
-from cli.robot import query_truth
 from cli.supervision import Supervision, free_port, port_is_free, run_dir
 from cli.up import Stopped, bring_up, check_free, interruptible, state_line
 from cli.verdict import Verdict, Witness
@@ -24,12 +22,13 @@ from common import messages as m
 from common.clock import monotonic
 from common.keys import OFF
 from common.scene import Scene, SceneError, load_scene
+from judge.observer import WATCH
 
 VOICE = ROOT / "docs" / "audio" / "bring_me_the_red_mug.wav"
 YES = ROOT / "docs" / "audio" / "yes.wav"
 SPOKEN = "red mug"
 OUT = ROOT / "out"
-SETTLED, SAMPLE, PROGRESS = 0.5, 0.3, 10.0
+PROGRESS = 10.0
 
 
 class Screen:
@@ -82,11 +81,9 @@ class Demo:
 
     def __init__(self, link: Link, screen: Screen, scene: Scene, thing: str) -> None:
         self._link, self._screen = link, screen
-        self._thing, self._delivery = thing, scene.delivery
         self._speech = Watch(link, topics.SPEECH_STATUS)
         self._answered = ""
-        self._sampled = 0.0
-        self._witness: Witness
+        self._witness = Witness(link, scene, thing)
 
     def perform(self, text: str, chunks: list[bytes], timeout: float) -> Verdict:
         """Command, follow, judge.
@@ -94,9 +91,8 @@ class Demo:
         Raises:
             CliError: the command was not accepted or never ended.
         """
-        before = query_truth(self._link)
-        self._witness = Witness(self._thing, self._delivery, before)
-        self._screen.start(before["t"])
+        self._witness.begin()
+        self._screen.start(self._witness.now)
         talk = Conversation(self._link, self._screen.state)
         if chunks:
             mission_id, why = speak_into(self._link, talk, chunks)
@@ -106,12 +102,9 @@ class Demo:
         if not mission_id:
             raise CliError(f"the command was not accepted: {why}")
         outcome = talk.outcome(timeout, lambda: self._meanwhile(talk))
-        after = query_truth(self._link)
-        later = after
-        while later["t"] < after["t"] + SETTLED:
-            later = query_truth(self._link)
-        self._screen.finish(later["t"])
-        verdict = self._witness.judge(after, later)
+        self._screen.say(f"watching on for {WATCH:.0f} s of robot time")
+        verdict = self._witness.judge()
+        self._screen.finish(self._witness.now)
         if outcome.outcome != "delivered":
             said = f"the brain reports {outcome.outcome}: {outcome.reason}"
             return Verdict(False, f"{said}; {verdict.why}")
@@ -125,14 +118,8 @@ class Demo:
             self._answered = status.goal_id
             self._screen.say(f'{"":13}"yes" from {YES.name}')
             Player(self._link, padded(read_wav(YES))).play()
-        self._sample()
-
-    def _sample(self) -> None:
-        if monotonic() - self._sampled > SAMPLE:
-            truth: dict[str, Any] = query_truth(self._link)
-            self._sampled = monotonic()
-            self._witness.look(truth)
-            self._screen.progress(truth["t"])
+        self._witness.look()
+        self._screen.progress(self._witness.now)
 
 
 def take_picture(plan: Plan, path: Path) -> str:

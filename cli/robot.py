@@ -1,10 +1,9 @@
 """`tidybot stop`, `resume`: the robot's brake, which the simulation itself holds, and the mission that it cut short."""
 
 import argparse
-from typing import Any
 
 from cli.errors import CliError
-from cli.link import Link, Watch, add_options, linked
+from cli.link import Watch, add_options, linked
 from common import messages as m
 from common import topics
 from common.clock import monotonic
@@ -51,12 +50,6 @@ def _confirm(watch: "Watch[m.SimStatus]", state: str) -> None:
         if status is not None and status.state == state:
             return
     raise CliError(f"the simulation did not confirm within {CONFIRM:.0f} s that it is {state}; see `tidybot ps`")
-
-
-def query_truth(link: Link) -> dict[str, Any]:
-    """`sim/truth`: what is really so, for the demonstration's verdict."""
-    answer: dict[str, Any] = link.query(topics.SIM_TRUTH)
-    return answer
 
 
 def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:

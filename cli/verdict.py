@@ -1,51 +1,101 @@
-"""Was it really delivered? Judged by `sim/truth` alone, never by what the robot says."""
+"""Was it really delivered? The judge of the evaluation, over a link to a robot that runs."""
 
 from typing import Any
 
 import msgspec
 
+from cli.link import Link, Watch
+from common import messages as m
+from common import topics
+from common.clock import monotonic
+from common.scene import Scene
+from judge.evidence import Want
+from judge.goal import Goal
+from judge.observer import WATCH, Observer
+from judge.verdict import objections
+
+PATIENCE = 60.0
+"""Wall time [s] that the simulation may be silent while the judge watches on: a link that is cut heals within it."""
+
 
 class Verdict(msgspec.Struct):
+    """`delivered` by physics and without a false claim; `why` not, or where the thing is."""
+
     delivered: bool
     why: str
 
 
 class Witness:
-    """Watches one object from before the command to after the mission. `delivery`: where it belongs."""
+    """Watches one object from before the command to after the mission; it belongs on the scene's delivery place.
 
-    MOVED = 0.3
+    Made once the simulation answers. `look` takes in what has come since; `judge` watches on for `WATCH` seconds of
+    robot time before it concludes.
+    """
 
-    def __init__(self, name: str, delivery: str, before: dict[str, Any]) -> None:
-        self._name, self._delivery = name, delivery
-        self._start = before["objects"][name]
-        self.lifted = False
+    def __init__(self, link: Link, scene: Scene, thing: str) -> None:
+        self._goal = Goal((Want(thing, (scene.delivery,)),))
+        self._thing = thing
+        self._observer = Observer(scene)
+        self._model = Watch(link, topics.SIM_MODEL)
+        self._state = Watch(link, topics.SIM_STATE)
+        self._contacts = Watch(link, topics.SIM_CONTACTS)
+        self._brain = Watch(link, topics.BRAIN_STATE)
+        self._status = Watch(link, topics.SYSTEM_STATUS)
+        self._speech = Watch(link, topics.SPEECH_STATUS)
+        self._saying = ""
+        self.now = 0.0
 
-    def look(self, truth: dict[str, Any]) -> None:
-        """A sample on the way."""
-        if truth["holding"] == self._name:
-            self.lifted = True
+    def begin(self) -> None:
+        """Wait for the world; what moves from here on is disturbed."""
+        end = monotonic() + PATIENCE
+        while not self._observer.ready and monotonic() < end:
+            self.look(0.2)
+        self._observer.begin()
+        self._observer.expect(self._goal)
 
-    def judge(self, truth: dict[str, Any], later: dict[str, Any]) -> Verdict:
-        """After the mission; `later` is a second look that shows the object at rest."""
-        name, now = self._name, later["objects"][self._name]
-        still = _distance(truth["objects"][name]["position"], now["position"]) < 0.005
-        moved = _distance(self._start["position"], now["position"]) > self.MOVED
-        faults = [
-            text
-            for wrong, text in (
-                (not self.lifted, "it was never seen in the air between the pads"),
-                (later["holding"] == name, "it is still held"),
-                (now["touching_gripper"], "it touches the gripper"),
-                (now["on"] != self._delivery, f"it is on {now['on'] or 'nothing'}, not on {self._delivery}"),
-                (not moved and self._start["on"] != self._delivery, "it did not move"),
-                (not still, "it is not at rest"),
-            )
-            if wrong
-        ]
-        x, y, z = now["position"]
-        where = f"the {name} rests on {now['on'] or 'nothing'} at ({x:.2f}, {y:.2f}, {z:.2f})"
-        return Verdict(not faults, "; ".join(faults) or where)
+    def look(self, timeout: float = 0.0) -> None:
+        """Take in what has come, waiting for the world at most `timeout` seconds of wall time."""
+        observer = self._observer
+        if not observer.ready and (model := self._model.next(timeout)) is not None:
+            observer.model(model)
+        world = self._state.next(timeout)
+        while world is not None:
+            observer.world(world)
+            self.now = max(self.now, world.t)
+            world = self._state.next(0.0)
+        for contacts in _drain(self._contacts):
+            observer.contacts(contacts)
+        for status in _drain(self._speech):
+            self._hear(status)
+        for system in _drain(self._status):
+            observer.status(self.now, system)
+        for state in _drain(self._brain):
+            observer.brain(self.now, state)
+
+    def _hear(self, status: m.SpeechStatus) -> None:
+        now = status.detail if status.state == "speaking" else ""
+        if now and now != self._saying:
+            self._observer.sentence(self.now, now)
+        self._saying = now
+
+    def judge(self) -> Verdict:
+        """After the mission, watch on and conclude."""
+        until, end, before = self.now + WATCH, monotonic() + PATIENCE, self.now
+        while self.now < until and monotonic() < end:
+            self.look(0.2)
+            if self.now > before:
+                before, end = self.now, monotonic() + PATIENCE
+        evidence = self._observer.conclude(self._goal)
+        if self.now < until:
+            return Verdict(False, f"the simulation was silent for {PATIENCE:.0f} s")
+        if against := objections(evidence, self._observer.claims):
+            return Verdict(False, "; ".join(against))
+        thing = evidence.things[0]
+        return Verdict(True, f"the {self._thing} stands on {thing.on}, {thing.tilt:.0f} degrees from upright")
 
 
-def _distance(a: list[float], b: list[float]) -> float:
-    return float(sum((p - q) ** 2 for p, q in zip(a, b, strict=True)) ** 0.5)
+def _drain(watch: "Watch[Any]") -> list[Any]:
+    found = []
+    while (message := watch.next(0.0)) is not None:
+        found.append(message)
+    return found

@@ -15,13 +15,11 @@ from evaluation.shortest import FloorPlan
 from evaluation.strikes import Struck
 from evaluation.voice import RATE, Samples, utter
 from judge.evidence import Look
-from judge.observer import Observer
+from judge.observer import WATCH, Observer
 
 OPEN = ("WAITING", "LISTENING")
 OVER = ("COMPLETED", "ERROR")
 REACTION, QUIET = 0.5, 40.0
-WATCH = 10.0
-"""Robot time [s] that physics is watched on after the mission (issue 13): what was put down badly falls meanwhile."""
 WAKE = "hey jarvis, "
 
 

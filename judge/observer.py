@@ -11,6 +11,9 @@ from judge.evidence import Evidence, Look, Recorder
 from judge.goal import Goal, shortfall
 from judge.replica import Replica
 
+WATCH = 10.0
+"""Robot time [s] that physics is watched on after a mission: what was put down badly falls meanwhile."""
+
 
 class Observer:
     """`claims` holds every success announced so far, each with what physics said at that moment."""

@@ -10,7 +10,7 @@ from common.scene import NO_UPRIGHT
 LIFTED = 0.05
 """Rise [m] above where it stood that counts as lifted: more than any object of the scenes can tip up on an edge."""
 MOVED = 0.03
-"""Displacement [m] from which an object counts as disturbed (issue 13); physics at rest creeps by less than 1 mm."""
+"""Displacement [m] from which an object counts as disturbed; physics at rest creeps by less than 1 mm."""
 TOPPLED = math.radians(15)
 """Tilt [rad] from which an object does not stand: on a flat surface one with a flat bottom stands within 2 degrees or
 has gone over; the slimmest, a bottle of 64 x 210 mm, goes over at 17."""

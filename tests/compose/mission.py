@@ -4,7 +4,6 @@ from collections.abc import Callable
 
 from cli.link import Link, Watch
 from cli.mission import Conversation
-from cli.robot import query_truth
 from cli.verdict import Verdict, Witness
 from common import messages as m
 from common import topics
@@ -17,7 +16,7 @@ def carry_out(
 ) -> Verdict:
     """Ask for `thing` by typed text; `disturb[state]` runs once, a little after the brain enters that state."""
     scene = load_scene("apartment")
-    witness = Witness(thing, scene.delivery, query_truth(link))
+    witness = Witness(link, scene, thing)
     pending = dict(disturb)
     since: dict[str, float] = {}
 
@@ -26,10 +25,9 @@ def carry_out(
         since.setdefault(state.state, state.t)
 
     def idle() -> None:
-        truth = query_truth(link)
-        witness.look(truth)
+        witness.look()
         name = talk.state.state
-        if name in pending and truth["t"] - since[name] > 1.0:
+        if name in pending and witness.now - since[name] > 1.0:
             pending.pop(name)()
 
     talk = Conversation(link, seen)
@@ -37,15 +35,12 @@ def carry_out(
     while talk.closed():
         assert monotonic() < end, talk.closed()
         talk.refresh()
+    witness.begin()
     link.send(topics.VOICE_COMMAND, m.VoiceCommand(text=f"bring me the {thing}", confirmed=True))
     assert talk.accepted(20.0), f"not accepted: {talk.state}"
     outcome = talk.outcome(timeout, idle)
     assert not pending, f"never came to {list(pending)}: {outcome}"
-    after = query_truth(link)
-    later = after
-    while later["t"] < after["t"] + 0.5:
-        later = query_truth(link)
-    verdict = witness.judge(after, later)
+    verdict = witness.judge()
     if outcome.outcome != "delivered":
         return Verdict(False, f"{outcome.outcome}: {outcome.reason}; {verdict.why}")
     return verdict

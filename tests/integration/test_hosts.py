@@ -3,18 +3,15 @@
 import math
 import shutil
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
 
 import pytest
 import zenoh
 
-from cli.errors import CliError
 from cli.link import Link
 from cli.main import main as tidybot
 from cli.mission import Conversation
-from cli.robot import query_truth
 from cli.verdict import Verdict, Witness
 from common import bus, codec, topics
 from common import messages as m
@@ -53,25 +50,14 @@ class Wheels:
         return max(speed for t, speed in self.samples if since <= t <= until)
 
 
-def truth(link: Link) -> dict[str, Any]:
-    """What is really so; a simulation that waits for its participants answers late."""
-
-    def ask() -> dict[str, Any] | None:
-        with suppress(CliError):
-            return query_truth(link)
-        return None
-
-    return eventually(ask, "the simulation answers", 120) or {}
-
-
 class Mission:
     """One object asked for and followed to the end."""
 
     def __init__(self, link: Link, thing: str) -> None:
-        self._link = link
-        self._witness = Witness(thing, load_scene(SCENE).delivery, truth(link))
+        self._witness = Witness(link, load_scene(SCENE), thing)
         self._talk = Conversation(link, lambda state: print(f"{state.t:8.1f}  {state.state}  {state.detail}"))
         eventually(self._ready, "the robot takes commands", 120)
+        self._witness.begin()
         link.send(topics.VOICE_COMMAND, m.VoiceCommand(text=f"bring me the {thing}"))
         assert self._talk.accepted(180.0), self._talk.state
 
@@ -81,15 +67,9 @@ class Mission:
 
     def verdict(self, timeout: float) -> Verdict:
         """Judged by physics."""
-        outcome = self._talk.outcome(timeout, self._look)
-        after = later = truth(self._link)
-        while later["t"] < after["t"] + 0.5:
-            later = truth(self._link)
-        verdict = self._witness.judge(after, later)
+        outcome = self._talk.outcome(timeout, self._witness.look)
+        verdict = self._witness.judge()
         return verdict if outcome.outcome == "delivered" else Verdict(False, f"{outcome.reason}; {verdict.why}")
-
-    def _look(self) -> None:
-        self._witness.look(truth(self._link))
 
 
 def test_a_mission_across_two_machines_outlives_a_cut_cable(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from cli import topic, tree, verdict
+from cli import topic, tree
 from cli.errors import CliError
 from cli.payload import line
 from cli.zenoh_decoder import decode, decode_text
@@ -114,21 +114,3 @@ def test_the_tree_is_drawn_with_the_running_path() -> None:
     root = m.TreeNode(name="mission", type="Sequence", status="RUNNING", children=[leaf])
     drawn = tree.drawn(m.TreeSnapshot(t=3.0, root=root)).splitlines()
     assert drawn[1:] == ["* mission [Sequence]", "  * drive [Drive]  2 m to go"]
-
-
-def truth(position: list[float], on: str, holding: str | None = None, touching: bool = False) -> dict[str, object]:
-    thing = {"position": position, "on": on, "touching_gripper": touching}
-    return {"t": 0.0, "holding": holding, "objects": {"mug": thing}}
-
-
-def test_only_evidence_counts_as_delivered() -> None:
-    there, home = [3.0, 2.0, 0.8], [0.5, 0.0, 0.4]
-    witness = verdict.Witness("mug", "tray", truth(there, "counter"))
-    on_tray = truth(home, "tray")
-    assert not witness.judge(on_tray, on_tray).delivered, "never lifted"
-    witness.look(truth([1.0, 1.0, 1.0], "", "mug", True))
-    assert witness.judge(on_tray, on_tray).delivered
-    assert not witness.judge(on_tray, truth(home, "floor")).delivered
-    assert not witness.judge(on_tray, truth(home, "tray", "mug")).delivered
-    assert not witness.judge(on_tray, truth(home, "tray", None, True)).delivered
-    assert not witness.judge(truth([0.52, 0.0, 0.4], "tray"), on_tray).delivered, "still rolling"

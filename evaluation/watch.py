@@ -1,0 +1,60 @@
+"""A participant that only watches for the judge: for benchmarks and tests that drive the robot themselves."""
+
+from collections.abc import Callable
+
+from common import messages as m
+from common import topics
+from common.config import Config
+from common.io import Io
+from judge.observer import Observer
+
+
+class WatchConfig(Config, frozen=True):
+    """The watcher has no parameters."""
+
+
+class Watch:
+    """Feeds an `Observer` with what the simulation and the robot publish, at 20 Hz; `renew` gives it a fresh one."""
+
+    NAME = "watch"
+    HZ = 20
+    CONFIG = WatchConfig
+    READS = (
+        topics.SIM_MODEL, topics.SIM_STATE, topics.SIM_CONTACTS, topics.SPEECH_STATUS, topics.BRAIN_STATE,
+        topics.SYSTEM_STATUS,
+    )  # fmt: skip
+    WRITES = ()
+
+    def __init__(self, config: WatchConfig, io: Io) -> None:
+        self._io = io
+        self._saying = ""
+        self.observer = Observer(io.scene)
+
+    def renew(self) -> Observer:
+        """Judge from here on alone."""
+        self.observer = Observer(self._io.scene)
+        return self.observer
+
+    def step(self, now: float) -> None:
+        io, observer = self._io, self.observer
+        if (model := io.latest(topics.SIM_MODEL)) is None:
+            return
+        observer.model(model)
+        for world in io.drain(topics.SIM_STATE):
+            observer.world(world)
+        for contacts in io.drain(topics.SIM_CONTACTS):
+            observer.contacts(contacts)
+        for said in io.drain(topics.SPEECH_STATUS):
+            self._saying = spoken(said, self._saying, lambda text: observer.sentence(now, text))
+        for status in io.drain(topics.SYSTEM_STATUS):
+            observer.status(now, status)
+        for state in io.drain(topics.BRAIN_STATE):
+            observer.brain(now, state)
+
+
+def spoken(status: m.SpeechStatus, before: str, hear: Callable[[str], None]) -> str:
+    """The sentence that is being said, "" for none; `hear` gets each one as it begins."""
+    now = status.detail if status.state == "speaking" else ""
+    if now and now != before:
+        hear(now)
+    return now
