@@ -23,7 +23,7 @@ HOME, KITCHEN = (0.0, 0.0), (3.6, -1.2)
 
 
 def look(t: float, base: tuple[float, float] = HOME, mug: Thing = MUG, apple: Thing = APPLE, **more: Any) -> Look:
-    return Look(t, (*base, 0.0), {"red mug": mug, "apple": apple}, (), opening=more.get("opening", 0.085))
+    return Look(t, (*base, 0.0), {"red mug": mug, "apple": apple}, opening=more.get("opening", 0.085))
 
 
 def still(base: tuple[float, float], start: float, **more: Any) -> list[Look]:
