@@ -9,7 +9,7 @@ from evaluation.chaos import CELLS, CHAOS_STATES, EVERY, HARM, MOMENTS, Cell
 from evaluation.suites import cases
 
 pytestmark = [pytest.mark.slow, pytest.mark.timeout(900)]
-REAL = ("kill", "hang", "disk full", "disk full, kill")
+REAL = ("kill", "hang", "router loss", "disk full", "disk full, kill")
 NUMBER, TOGETHER, SEED = 20, 4, 13
 
 
