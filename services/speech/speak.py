@@ -1,7 +1,6 @@
 """Text to speech: Hibari's bundled voice, on the bus as `audio/out` and on speakers where there are any."""
 
 import re
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -19,11 +18,12 @@ class Voice:
     """Loads in seconds and speaks in milliseconds: make it in the worker."""
 
     def __init__(self) -> None:
-        from hibari import SAMPLE_RATE, Hibari
+        from hibari import SAMPLE_RATE
 
-        self._voice, self._rate = Hibari(threads=1), int(SAMPLE_RATE)
-        self._voice.sess = session(Path(self._voice.model_path), 1)  # its own keeps the space of the longest sentence
-        self.speak("ready")  # the lexicon loads with the first word
+        from services.speech.pronounce import LeanHibari
+
+        self._voice, self._rate = LeanHibari(session), int(SAMPLE_RATE)
+        self.speak("ready")  # what else it needs it loads with the first word
         return_memory()
 
     def speak(self, text: str) -> Samples:
