@@ -9,7 +9,7 @@ import mujoco
 import numpy as np
 
 from common.scene import load_scene
-from services.sim.physics import SUBSTEPS, Physics
+from services.sim.physics import FINE, Physics
 
 SECONDS = 5.0
 RUNS = 5
@@ -32,18 +32,18 @@ def main() -> None:
     physics = Physics(msgspec.structs.replace(scene, objects=scene.objects[:OBJECTS]), 0)
     model, data = physics.model, physics.data
     hold = np.array(data.ctrl[physics.ctrl_at])
-    print(f"{len(physics.placements)} objects, nv {model.nv}, {model.ngeom} geoms, 2 ms steps")
+    print(f"{len(physics.placements)} objects, nv {model.nv}, {model.ngeom} geoms, 2.5 ms steps")
     print(f"{'variant':34} {'x real time':>12}")
     physics.advance(hold, hold)
     for _ in range(300):
         physics.advance(hold, hold)
     print(f"{'ours, 10 ms ticks':34} {speed(lambda: physics.advance(hold, hold), 0.01):12.1f}")
-    plain = speed(lambda: mujoco.mj_step(model, data, SUBSTEPS), 0.01)
+    plain = speed(lambda: mujoco.mj_step(model, data, FINE), 0.01)
     print(f"{'plain mj_step, objects asleep':34} {plain:12.1f}")
     model.opt.enableflags &= ~int(mujoco.mjtEnableBit.mjENBL_SLEEP)
     awake = mujoco.MjData(model)
     awake.qpos[:], awake.ctrl[:] = data.qpos, data.ctrl
-    plain = speed(lambda: mujoco.mj_step(model, awake, SUBSTEPS), 0.01)
+    plain = speed(lambda: mujoco.mj_step(model, awake, FINE), 0.01)
     print(f"{'plain mj_step, objects awake':34} {plain:12.1f}")
 
 

@@ -10,21 +10,24 @@ from common.lockstep import DT
 from common.robot import ARM, BASE, arm_limits, pads, subtree
 from common.scene import Obstacle, Scene, body_name
 from services.sim.contacts import Contacts
-from services.sim.fingers import fingers, view
+from services.sim.fingers import Slides, fingers, view
 from services.sim.layout import Placement, place_objects
 from services.sim.model import Robot, own
 from services.sim.obstacles import Obstacles, body_xml
 from services.sim.world import world_mjcf
 
-SUBSTEPS = 5
-STEP = DT / SUBSTEPS
-"""One physics step [s], the model's own."""
-SETTLE_STEPS = 250
+FINE, COARSE, LINKED = 4, 2, 5
+"""Steps of a tick. 2.5 ms, half the time constant of the pads' contacts, is the longest that MuJoCo takes for them;
+5 ms do while the base drives or stands, touches nothing, and every object sleeps; a linkage, whose loops are closed
+by stiffer constraints, gets 2 ms always."""
+AT_REST = 1e-3
+"""Slower than this the pads stand still [m/s]."""
+SETTLE_TICKS = 50
 _STATE = mujoco.mjtState.mjSTATE_INTEGRATION
 
 
 class Physics:
-    """One world; `advance` runs 10 ms of it at 500 Hz."""
+    """One world; `advance` runs 10 ms of it, at 400 Hz or, while nothing but the base moves, at 200 Hz."""
 
     def __init__(
         self, scene: Scene, seed: int, obstacles: tuple[Obstacle, ...] = (), robot: Robot | None = None
@@ -46,11 +49,12 @@ class Physics:
         self.rates = view(self.data.qvel, self.qvel_at)
         self.forces = view(self.data.actuator_force, np.append(self.ctrl_at, self.gripper_ctrl))
         self._ctrl = view(self.data.ctrl, self.ctrl_at)
-        self._lead = servo_lead(model, self.ctrl_at, self.qvel_at) / model.opt.timestep
+        self._lead = servo_lead(model, self.ctrl_at, self.qvel_at) / DT
         self._lead[: len(BASE)] = 0.0  # the base's set-point is led by its own driver
         self.lidar_site = model.site("lidar").id
         self.pads = pads(model)
         self.fingers = fingers(model, self.data)
+        self._fine, self._coarse = (FINE, COARSE) if isinstance(self.fingers, Slides) else (LINKED, LINKED)
         self.home_arm = self.robot.home
         self.arm_limits = arm_limits(model)
         self.bodies = {p.spec.name: model.body(body_name(p.spec)).id for p in self.placements}
@@ -58,11 +62,13 @@ class Physics:
         self.robot_bodies = {b for b in range(model.nbody) if model.body_rootid[b] == model.body("base").id}
         self.contacts = Contacts(self.model, self.robot_bodies, self.pads, self.bodies)
         self.obstacles = Obstacles(obstacles, self.model)
+        self._steps = self._fine
         self.reset()
 
     def reset(self) -> None:
         """The layout of the seed, the robot at home, everything at rest."""
         mujoco.mj_resetData(self.model, self.data)
+        self._steps, self.model.opt.timestep = self._fine, DT / self._fine
         home = (self.scene.home.x, self.scene.home.y, self.scene.home.theta, *self.home_arm)
         self.data.qpos[self.qpos_at] = home
         self.data.ctrl[self.ctrl_at] = home
@@ -70,7 +76,7 @@ class Physics:
             at = self.model.joint(body_name(p.spec)).qposadr[0]
             self.data.qpos[at : at + 3] = p.position
             self.data.qpos[at + 3 : at + 7] = (np.cos(p.yaw / 2), 0, 0, np.sin(p.yaw / 2))
-        mujoco.mj_step(self.model, self.data, SETTLE_STEPS)
+        mujoco.mj_step(self.model, self.data, SETTLE_TICKS * self._fine)
         self.contacts.forget()
         self.obstacles.reset()
 
@@ -82,15 +88,26 @@ class Physics:
     def advance(self, start: NDArray[np.float64], end: NDArray[np.float64], now: float = 0.0) -> None:
         """Run the 10 ms from `now` [s] while the set-points (10,) of base and arm move from `start` to `end`."""
         model, data, ctrl, contacts = self.model, self.data, self._ctrl, self.contacts
-        change = (end - start) / SUBSTEPS
+        change = end - start
+        steps = self._coarse if self._alone(change) else self._fine
+        if steps != self._steps:
+            self._steps, model.opt.timestep = steps, DT / steps
         ctrl[:] = start + self._lead * change
         moving = bool(change.any())
-        for number in range(1, SUBSTEPS + 1):
+        change /= steps
+        for number in range(1, steps + 1):
             if moving:
                 ctrl += change
             mujoco.mj_step(model, data)
             if data.ncon:
-                contacts.step(data, now + number * STEP)
+                contacts.step(data, now + number * DT / steps)
+
+    def _alone(self, change: NDArray[np.float64]) -> bool:
+        """True while the robot touches nothing, nothing but it is awake, and arm and fingers rest."""
+        data = self.data
+        if data.ntree_awake > 1 or data.ncon:
+            return False
+        return not change[3:].any() and abs(self.fingers.rate()) < AT_REST
 
     def grip(self, closed: float, effort: float) -> None:
         """Drive the fingers to `closed` (0..1) with at most `effort` newtons each."""

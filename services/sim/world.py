@@ -104,7 +104,7 @@ def world_mjcf(scene: Scene, placements: Sequence[Placement], mocap: str = "", r
     bodies = "".join(objects.body_xml(p.spec, p.position, p.yaw) for p in placements)
     return f"""<mujoco model="{scene.name}">
 <compiler angle="radian" autolimits="true"/>
-<option timestep="0.002" integrator="implicitfast" cone="elliptic" impratio="10" jacobian="dense"/>
+<option timestep="0.0025" integrator="implicitfast" cone="elliptic" impratio="10" jacobian="dense"/>
 <statistic center="{center[0]} {center[1]} 0.5" extent="6"/>
 <visual>
   <global offwidth="1280" offheight="960"/>

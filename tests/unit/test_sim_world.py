@@ -77,7 +77,7 @@ def test_the_base_runs_to_its_target_within_limits_and_says_so() -> None:
 def test_stop_brakes_at_once_and_holds_until_resume() -> None:
     world = World("apartment")
     world.bus.send(topics.BASE_TARGET, m.BaseTarget(x=-1.2, y=-1.2, theta=0.0, id="a"))
-    world.step(1.2)
+    world.step(1.1)
     before = world.speed()
     assert before > 0.4
     world.bus.put(topics.ROBOT_STOP, b"enough")
