@@ -33,7 +33,7 @@ PARTS = {
     "services.sim.sensors:Sensors.feel": "joints and wheels",
     "services.sim.base:BaseDriver.advance": "drivers",
     "services.sim.arm:ArmDriver.advance": "drivers",
-    "services.sim.contacts:Contacts.note": "contact log",
+    "services.sim.contacts:Contacts.step": "contact log",
     "services.camera.render:Renderer.load": "state",
     "services.camera.render:Renderer.rgbd": "drawing",
     "services.perception.detect:ClassicalDetector.detect": "detection",
