@@ -57,6 +57,8 @@ def say(text: str) -> PlanStep:
 
 RELEASE, RETURN, WAIT = PlanStep(action="release"), PlanStep(action="return"), PlanStep(action="wait")
 MUG = (find("red mug"), grasp("red mug"))
+CLOSE, OPEN = (PlanStep(action=action, target="gripper") for action in ("grasp", "release"))  # type: ignore[arg-type]
+NOTHING = "step {}: there is nothing in the hand to release"
 
 
 @pytest.mark.parametrize(
@@ -97,6 +99,11 @@ MUG = (find("red mug"), grasp("red mug"))
         ((go("ballroom", "red mug"),), "", (), "step 1: I know no ballroom"),
         ((go(),), "", (), "step 1: I know no "),
         ((say(" "),), "", (), "step 1: there is nothing to say"),
+        ((CLOSE, OPEN, *MUG), "", (), ""),
+        ((CLOSE, find("red mug"), grasp("red mug"), RELEASE, OPEN, RELEASE), "", (), NOTHING.format(6)),
+        ((CLOSE, RELEASE), "", (), NOTHING.format(2)),
+        ((CLOSE,), "apple", (), "step 1: the hand holds the apple, which has to be put down"),
+        ((OPEN,), "apple", (), "step 1: the hand holds the apple, which has to be put down"),
     ],
 )
 def test_the_first_step_that_cannot_be_done_is_named_with_the_reason(

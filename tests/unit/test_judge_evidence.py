@@ -282,3 +282,26 @@ def test_success_is_weighted_by_the_way() -> None:
     assert spl(True, 2.0, 4.0) == 0.5
     assert spl(True, 4.0, 2.0) == 1.0
     assert spl(True, 0.0, 2.0) == spl(False, 2.0, 2.0) == 0.0
+
+
+# --- numbers as they are told
+def test_of_a_world_that_nobody_showed_nothing_is_known() -> None:
+    unseen = ThingEvidence("mug", "", why="the simulation showed nothing")
+    assert Recorder(KINDS).things((WANT,)) == [unseen]
+
+
+def test_ways_are_told_to_the_millimetre() -> None:
+    third = 1 / 3
+    carrying = [look(0.0, ON_TABLE), look(1.0, HELD, third), look(2.0, HELD, 2 * third), look(3.0, ON_TRAY, 2 * third)]
+    found = evidence(carrying)
+    assert (found.driven, found.things[0].carried) == (0.667, 0.667)
+
+
+def test_five_millimetres_are_no_rest() -> None:
+    here, there = (changed(ON_TRAY, position=(x, 0.0, 0.0)) for x in (0.0, 0.005))
+    assert not mug([*GOOD[:5], look(5.0, here), look(5.5, there)]).at_rest
+
+
+def test_the_weight_of_short_ways_and_of_none() -> None:
+    assert spl(True, 0.5, 1.0) == 0.5
+    assert spl(True, 0.0, 0.0) == 0.0
