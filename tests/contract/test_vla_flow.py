@@ -247,4 +247,5 @@ def test_a_navigator_that_knows_poses_alone_is_enough(here: Site) -> None:
         home = peer.next("nav_goal", x=0.0, y=0.0, object=None)
         peer.moved(home)
         peer.did(peer.next("brain/manipulation_goal", goal="release"))
+        peer.looked(peer.next("object_query", query="red mug"))
         peer.speech("say Done.")
