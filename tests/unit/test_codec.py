@@ -150,3 +150,17 @@ def test_the_encoding_is_told() -> None:
 def test_the_wrong_type_is_told_with_both_names() -> None:
     with pytest.raises(TypeError, match=r"^brain/state carries BrainState, not GoalReached$"):
         codec.encode(topics.BRAIN_STATE, m.GoalReached(reached=True))
+
+
+def test_a_type_that_was_never_decoded_before_is_read_in_either_form() -> None:
+    class Fresh(m.Message):
+        x: float
+
+    for payload in (b'{"x": 0.5}', msgspec.msgpack.encode({"x": 0.5})) * 2:
+        assert codec.decode_as(Fresh, payload) == Fresh(x=0.5)
+    with pytest.raises(codec.DecodeError):
+        codec.decode_as(Fresh, b'{"y": 0.5}')
+
+
+def test_the_decoder_s_own_reason_is_passed_on() -> None:
+    assert refusal(topics.NAVIGATION_GOAL, b'{"goal": "find') == "Input data was truncated"
