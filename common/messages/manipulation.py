@@ -1,0 +1,45 @@
+"""Manipulation: goals, progress and grasp candidates."""
+
+from typing import Literal
+
+from common.messages.base import Message, Quat, Vec3
+from common.messages.perception import ObjectRef
+
+ManipStatus = Literal["idle", "executing", "done", "failed"]
+
+
+class ManipulationGoal(Message):
+    """`grab`, `release`, `place <receptacle>`, `home` or `stop`."""
+
+    goal: str
+    id: str = ""
+    attempt: int = 1
+    object: ObjectRef | None = None
+
+
+class ManipulationStatus(Message):
+    status: ManipStatus
+    goal_id: str = ""
+    attempt: int = 0
+    phase: str = ""
+    code: str = ""
+    detail: str = ""
+
+
+class GraspCandidate(Message):
+    """Pose of the pinch point (z: approach, y: across the fingers) and width there [m], in frame map."""
+
+    name: str
+    position: Vec3
+    orientation: Quat
+    width: float
+    state: Literal["open", "failed", "chosen"] = "open"
+
+
+class GraspCandidates(Message):
+    """What manipulation considers for the object that it is about to grab, in the order it tries, for viewers."""
+
+    t: float
+    object: str
+    candidates: list[GraspCandidate]
+    goal_id: str = ""

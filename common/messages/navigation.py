@@ -1,0 +1,90 @@
+"""Navigation: goals, progress, pose and costmap."""
+
+from typing import Literal
+
+from common.messages.base import Message
+from common.messages.perception import ObjectRef
+
+NavStatus = Literal["idle", "navigating", "arrived", "failed"]
+
+
+class NavigationGoal(Message):
+    """`find <item>`, `goto <place>`, `return_to_start` or `stop`."""
+
+    goal: str
+    id: str = ""
+    attempt: int = 1
+
+
+class NavigationStatus(Message):
+    status: NavStatus
+    goal_id: str = ""
+    attempt: int = 0
+    code: str = ""
+    detail: str = ""
+
+
+class NavGoal(Message):
+    """A standing pose [m, rad] to drive to; the answers come on `navigation_feedback`.
+
+    `object`: what the pose is for. A navigator that knows where the arm reaches it from may stand elsewhere before it.
+    """
+
+    x: float
+    y: float
+    theta: float = 0.0
+    frame: str = "map"
+    id: str = ""
+    attempt: int = 1
+    object: ObjectRef | None = None
+
+
+class NavigationFeedback(Message):
+    """How a goal stands: `distance_remaining` [m], `eta` [s].
+
+    `recoveries` counts other paths taken or tried since the goal was sent; the sender of a goal that failed BLOCKED
+    adds to them only what is missing to two. An `attempt` of 0 is one that the navigator does not state.
+    """
+
+    goal_id: str
+    status: NavStatus
+    distance_remaining: float = 0.0
+    eta: float = 0.0
+    recoveries: int = 0
+    code: str = ""
+    attempt: int = 0
+    detail: str = ""
+
+
+class PoseEstimate(Message):
+    """The robot's pose in frame `map` as navigation believes it; `covariance` row-major 3 x 3."""
+
+    t: float
+    x: float
+    y: float
+    theta: float
+    covariance: list[float] = []
+
+
+class NavPath(Message):
+    """The path being followed, for viewers: points in frame map."""
+
+    t: float
+    points: list[tuple[float, float]]
+    goal_id: str = ""
+
+
+class Costmap(Message):
+    """Room for the base's centre, for viewers: clearance of `width` x `height` cells of `resolution` [m].
+
+    `cells` is zlib of uint8, row by row from the south-west corner (`x`, `y`): 0 occupied, 255 for `far` [m] or more.
+    """
+
+    t: float
+    x: float
+    y: float
+    resolution: float
+    width: int
+    height: int
+    far: float
+    cells: bytes

@@ -1,0 +1,107 @@
+"""Cameras, perception and the objects it knows."""
+
+from typing import Literal
+
+from common.messages.base import IDENTITY, Message, Quat, Vec3
+
+
+class ObjectRef(Message):
+    """What manipulation is told about the object to grab: `position` is its centre, `size` full extent.
+
+    `tilt` as in `WorldObject`.
+    """
+
+    label: str
+    position: Vec3
+    orientation: Quat = IDENTITY
+    size: Vec3 = (0.0, 0.0, 0.0)
+    kind: str = ""
+    frame: str = "map"
+    tilt: float = 0.0
+
+
+class WorldObject(Message):
+    """An object the robot knows of. `on` names its receptacle, `seen_at` is the time of the evidence.
+
+    `tilt` [rad]: angle of its own upward axis to the vertical, 0 when it stands. Of what lies on its side, the first
+    extent of `size` is along that axis, which points along the yaw of `orientation`.
+    """
+
+    label: str
+    kind: str
+    colour: str
+    position: Vec3
+    orientation: Quat = IDENTITY
+    size: Vec3 = (0.0, 0.0, 0.0)
+    on: str = ""
+    confidence: float = 1.0
+    seen_at: float = 0.0
+    held: bool = False
+    id: str = ""
+    tilt: float = 0.0
+
+
+class WorldObjects(Message):
+    t: float
+    objects: list[WorldObject]
+    source: str = "survey"
+
+
+class ObjectQuery(Message):
+    """`since` [s]: only what a picture taken at that robot time or later shows counts, and the picture is wanted."""
+
+    id: str
+    query: str
+    since: float = 0.0
+
+
+class ObjectPose(Message):
+    """The answer to a query. `candidates` names the objects that match when several do and none is chosen.
+
+    `seen_at`: when a picture last showed the object; `on` names its receptacle, "" the floor or not known; `tilt` as
+    in `WorldObject`. `picture`: a JPEG of the view behind the answer, for queries with `since`.
+    """
+
+    query_id: str
+    found: bool
+    label: str = ""
+    confidence: float = 0.0
+    frame: str = "map"
+    position: Vec3 = (0.0, 0.0, 0.0)
+    orientation: Quat = IDENTITY
+    size: Vec3 = (0.0, 0.0, 0.0)
+    seen_at: float = 0.0
+    detail: str = ""
+    candidates: list[str] = []
+    on: str = ""
+    tilt: float = 0.0
+    picture: bytes = b""
+
+
+class CameraRequest(Message):
+    id: str
+    camera: Literal["head", "wrist"]
+    width: int = 320
+    height: int = 240
+
+
+class Rgbd(Message):
+    """One RGB-D image: rgb uint8 h*w*3, depth uint16 [mm] h*w (0: nothing seen).
+
+    `position`, `orientation`: pose of the optical frame (x right, y down, z forward) in the base frame.
+    """
+
+    t: float
+    id: str
+    camera: str
+    width: int
+    height: int
+    fx: float
+    fy: float
+    cx: float
+    cy: float
+    position: Vec3
+    orientation: Quat
+    rgb: bytes
+    depth: bytes
+    backend: str = ""

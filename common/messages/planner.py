@@ -1,0 +1,67 @@
+"""The planner: commands to plans."""
+
+from typing import Literal
+
+import msgspec
+
+from common.messages.base import Message
+
+PlannerBackend = Literal["grammar", "llm"]
+StepAction = Literal["navigate", "find", "grasp", "place", "release", "say", "wait", "return"]
+GRIPPER = "gripper"
+"""The target of a step that only opens or closes the hand."""
+
+
+class KnownWorld(Message):
+    objects: list[str] = []
+    places: list[str] = []
+    receptacles: list[str] = []
+    held: str = ""
+
+
+class RejectedPlan(Message):
+    steps: list["PlanStep"] = []
+    reason: str = ""
+
+
+class PlanStep(Message):
+    """One step of a plan. `grasp` and `release` with the target `gripper` close and open the hand around nothing."""
+
+    action: StepAction
+    object: str = ""
+    target: str = ""
+    text: str = ""
+
+    @property
+    def hand_alone(self) -> bool:
+        """A step of the gripper that needs no arm and names no object."""
+        return self.action in ("grasp", "release") and self.target == GRIPPER and not self.object
+
+
+class PlanRequest(Message):
+    """`done`: steps already carried out for this command, from a sender that asks again after a plan marked `again`."""
+
+    id: str
+    command: str
+    world: KnownWorld = msgspec.field(default_factory=KnownWorld)
+    rejected: RejectedPlan | None = None
+    done: list["PlanStep"] | None = None
+
+
+class ActionPlan(Message):
+    """`again`: these steps only go and look; the command has to be planned anew with what they show."""
+
+    request_id: str
+    steps: list[PlanStep]
+    source: str = ""
+    detail: str = ""
+    again: bool = False
+
+
+class PlannerStatus(Message):
+    """Who plans now: the `model` at `url`, or the grammar; `detail` says why there is no model."""
+
+    backend: PlannerBackend
+    model: str = ""
+    url: str = ""
+    detail: str = ""

@@ -1,0 +1,63 @@
+"""Speech: what is to be heard and said, what was, and sound."""
+
+from typing import Literal
+
+from common.messages.base import Message
+
+SpeechStateName = Literal["idle", "listening", "transcribing", "speaking"]
+
+
+class SpeechGoal(Message):
+    """`listen`, `say <text>` or `cancel`."""
+
+    goal: str
+    id: str = ""
+    attempt: int = 1
+
+
+class SpeechResult(Message):
+    """What was heard; `text` is `ERROR` after silence, noise or speech that is no command."""
+
+    text: str
+    goal_id: str = ""
+    confidence: float = 1.0
+    attempt: int = 0
+    code: str = ""
+    detail: str = ""
+
+
+class SpeechStatus(Message):
+    state: SpeechStateName
+    goal_id: str = ""
+    attempt: int = 0
+    detail: str = ""
+
+
+class TypedText(Message):
+    """Text typed by a person; counts as heard with confidence 1."""
+
+    text: str
+    id: str = ""
+
+
+class AudioChunk(Message):
+    """Mono int16 little-endian samples that start at robot time `t`; `end` marks the last chunk.
+
+    `addressed`: the speaker means the robot (push-to-talk), so that no wake word is needed.
+    """
+
+    t: float
+    data: bytes
+    rate: int = 16000
+    seq: int = 0
+    end: bool = False
+    addressed: bool = False
+
+
+class VoiceCommand(Message):
+    """A command in words; `confirmed`: the sender vouches for them (typed text), so nobody asks "Did you say ...?"."""
+
+    text: str
+    confidence: float = 1.0
+    id: str = ""
+    confirmed: bool = False
