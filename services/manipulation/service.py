@@ -7,6 +7,7 @@ import numpy as np
 from common import messages as m
 from common import topics
 from common.geometry import Pose2
+from common.goal_register import GoalRegister
 from common.io import Io, Job
 from services.manipulation import placing, rescue, routines
 from services.manipulation.config import ManipulationConfig
@@ -39,7 +40,7 @@ class ManipulationService:
         self._description: m.RobotDescription | None = None
         self._steps: Steps[str] | None = None
         self._goal = m.ManipulationGoal(goal="")
-        self._seen: set[tuple[str, int]] = set()
+        self._taken: GoalRegister[None] = GoalRegister()
         self._looked_for = ""
         self._indices: tuple[list[str], list[int], int] | None = None
         self._waiting_since: float | None = None
@@ -112,10 +113,9 @@ class ManipulationService:
     # --- goals
     def _take(self, goal: m.ManipulationGoal, now: float) -> None:
         goal.id = goal.id or self._io.new_id("manipulation")
-        if (goal.id, goal.attempt) in self._seen:
+        if not self._taken.is_new(goal.id, goal.attempt):
             self._io.publish(topics.MANIPULATION_STATUS, self._status)
             return
-        self._seen.add((goal.id, goal.attempt))
         if self._steps is not None:
             self._end(Failure("PREEMPTED", f"replaced by {goal.goal}"))
         self._goal = goal

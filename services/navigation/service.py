@@ -3,6 +3,7 @@
 from common import messages as m
 from common import topics
 from common.config import config_dir
+from common.goal_register import GoalRegister
 from common.io import Io
 from services.navigation.config import NavigationConfig
 from services.navigation.costmap import Costmap
@@ -37,7 +38,7 @@ class NavigationService:
         self._stood = Stood()
         self._drive: Drive | None = None
         self._search: Search | None = None
-        self._seen: set[tuple[str, int]] = set()
+        self._taken: GoalRegister[None] = GoalRegister()
         self._legs = 0
         self._recoveries = 0
         self._told = (0, "")
@@ -76,10 +77,9 @@ class NavigationService:
 
     # --- goals
     def _take(self, goal_id: str, attempt: int, text: str, pose: m.NavGoal | None) -> None:
-        if (goal_id, attempt) in self._seen:
+        if not self._taken.is_new(goal_id, attempt):
             self._publish(self._status)
             return
-        self._seen.add((goal_id, attempt))
         if self._busy:
             self._finish(Ended("failed", "PREEMPTED", f"replaced by {text or in_words(pose)}"))
         self._from_brain = pose is None

@@ -9,6 +9,7 @@ import numpy as np
 
 from common import messages as m
 from common import topics
+from common.goal_register import GoalRegister
 from common.io import Io
 from common.runtime import StartError
 from services.speech.attention import Attention, Hearing
@@ -46,8 +47,7 @@ class SpeechService:
         self._attention = Attention(config, io, lambda: Ear(config, io.scene, found))
         self._mouth = Mouth(io, config.speakers, config.synthesis_seconds, config.preload)
         self._goal = m.SpeechGoal(goal="")
-        self._seen: set[tuple[str, int]] = set()
-        self._answers: dict[tuple[str, int], m.SpeechResult] = {}
+        self._taken: GoalRegister[m.SpeechResult] = GoalRegister()
         self._listening = False
         self._deadline = 0.0
         self._typed: deque[tuple[float, str]] = deque(maxlen=8)
@@ -71,13 +71,11 @@ class SpeechService:
     # --- goals
     def _take(self, goal: m.SpeechGoal, now: float) -> None:
         goal.id = goal.id or self._io.new_id("speech")
-        key = goal.id, goal.attempt
-        if key in self._seen:
-            if key in self._answers:
-                self._io.publish(topics.SPEECH_RESULT, self._answers[key])
+        if not self._taken.is_new(goal.id, goal.attempt):
+            if (answer := self._taken.answered(goal.id, goal.attempt)) is not None:
+                self._io.publish(topics.SPEECH_RESULT, answer)
             self._io.publish(topics.SPEECH_STATUS, self._status)
             return
-        self._seen.add(key)
         verb, _, text = goal.goal.strip().partition(" ")
         if verb == "say" and text.strip():
             self._goal, self._listening = goal, False
@@ -101,7 +99,7 @@ class SpeechService:
         result = m.SpeechResult(
             text=text, goal_id=goal.id, attempt=goal.attempt, confidence=confidence, code=code, detail=detail
         )
-        self._answers[goal.id, goal.attempt] = result
+        self._taken.answer(goal.id, goal.attempt, result)
         self._io.log.info("heard", text=text, confidence=confidence, code=code, detail=detail)
         self._io.publish(topics.SPEECH_RESULT, result)
 
