@@ -252,7 +252,8 @@ class Slip(Injector):
     def _watch(self, now: float) -> str:
         assert self._lowered is not None
         slid = float(np.linalg.norm(self.in_hand() - self._held_at))
-        lost = self.touched() == 0
+        # Pads bounce on what slides between them: it is lost once it has left the hand.
+        lost = self.touched() == 0 and not self._between()
         if not lost and now - self._lowered < self.fault.seconds:
             return ""
         self.physics.model.geom_friction[self._pads] = self._friction

@@ -71,7 +71,7 @@ def test_friction_that_goes_lets_it_slide_or_fall(seconds: float, kept: bool) ->
 
 def test_a_jammed_finger_stays_and_comes_free() -> None:
     told: list[Struck] = []
-    bench = bench_of(PhysicalFault(kind="jam", thing="blue block", seconds=1.0), told)
+    bench = bench_of(PhysicalFault(kind="jam", thing="blue block", seconds=3.0), told)
     status = bench.run("grab", "b.1")
     assert (status.status, status.code) == ("failed", "EMPTY_GRASP")
     assert [s.fault for s in told] == ["jam"] and "84 mm" in told[0].what
