@@ -43,8 +43,9 @@ HELD_UP = 0.3
 """Seconds that a hand told to close has to stand open before its finger counts as jammed; closing takes 0.1 s."""
 STAYS = 0.005
 """Most that the width [m] of a jammed hand changes, half of what is free on both sides of the smallest gap."""
-TRIED = 0.02
-"""Rise [m] of a hand that has closed on an object, which shows that it tried to lift it."""
+PULLED = 20.0
+"""Force [N] with which the pads pull an object up, which shows that the hand tried to lift it: five times the weight of
+the heaviest object of the scenes, and a third of the lightest one that is too heavy."""
 ROUND = ("apple", "ball")
 NEAR = 1.0
 """Distance [m] of the base within which an object is in reach and an obstacle has to be avoided."""
@@ -315,22 +316,38 @@ class Jam(Injector):
 
 
 class Heavy(Injector):
-    """Watches for the hand to close on the object and to rise."""
+    """Watches for the hand to close on the object and to pull it up."""
 
     _grasped: Any = None
 
     def step(self, now: float, state: str) -> str:
-        if self._grasped is None:
-            if self.closing() and self.touched() == 2:
-                self._grasped = self.pinch(), self.thing()
+        if not self.closing():
+            self._grasped = None
             return ""
-        hand, thing = (float(a[2] - b[2]) for a, b in zip((self.pinch(), self.thing()), self._grasped, strict=True))
-        if hand >= TRIED:
-            self.over = True
-            mass = float(self.physics.model.body_mass[self.body])
-            return f"{mass:.1f} kg grasped; the hand rose {1000 * hand:.0f} mm, the object {1000 * thing:.0f} mm"
-        self._grasped = self._grasped if self.closing() else None
-        return ""
+        if self._grasped is None:
+            self._grasped = self.thing() if self.touched() == 2 else None
+            return ""
+        pull = self._pull()
+        if pull < PULLED:
+            return ""
+        self.over = True
+        mass, rise = float(self.physics.model.body_mass[self.body]), float(self.thing()[2] - self._grasped[2])
+        return f"{mass:.1f} kg grasped and pulled up with {pull:.0f} N: it rose {1000 * rise:.0f} mm"
+
+    def _pull(self) -> float:
+        """Upward force [N] of the pads on the object."""
+        model, data = self.physics.model, self.physics.data
+        pads, force, up = set().union(*self.physics.pads), np.zeros(6), 0.0
+        for number in range(data.ncon):
+            contact = data.contact[number]
+            one, two = (int(g) for g in contact.geom)
+            if not (pads & {one, two} and self.body in model.geom_bodyid[[one, two]]):
+                continue
+            # A contact's force is that on its second geom.
+            mujoco.mj_contactForce(model, data, number, force)
+            on_thing = 1.0 if model.geom_bodyid[two] == self.body else -1.0
+            up += on_thing * float(contact.frame.reshape(3, 3)[:, 2] @ force[:3])
+        return up
 
 
 class Wide(Injector):

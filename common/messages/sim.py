@@ -20,8 +20,9 @@ class SimState(Message):
 class Touch(Message):
     """The robot or what it holds in contact with something, without a break; updates carry the same `id`.
 
-    `kind`: what the robot's `part` touches, itself included, or `held`: then `part` is the object in the hand. Greatest
-    `force` [N], `impulse` [Ns] and contact time `seconds` so far, greatest `depth` [m] of overlap.
+    `kind`: what the robot's `part` touches, itself included, or `held`: then `part` is the object in the hand,
+    which presses with what is beyond its own weight. Greatest `force` [N], `impulse` [Ns] and contact time `seconds` so
+    far, greatest `depth` [m] of overlap.
     """
 
     id: int

@@ -29,6 +29,7 @@ GRIPPER_EMPTY = 0.003
 GRIPPER_OPEN = 0.080
 HOLDING_FORCE = 2.0
 LOST_AFTER = 0.5
+PERMANENT = ("PREEMPTED", "STOPPED", "CANCELLED", "NO_PEER", "TOO_HEAVY")
 
 
 class Failure(msgspec.Struct, frozen=True):
@@ -42,7 +43,7 @@ class Failure(msgspec.Struct, frozen=True):
     @property
     def permanent(self) -> bool:
         """True when trying the same again cannot help, or somebody else has taken the robot over."""
-        return self.code.startswith("UNKNOWN_") or self.code in ("PREEMPTED", "STOPPED", "CANCELLED", "NO_PEER")
+        return self.code.startswith("UNKNOWN_") or self.code in PERMANENT
 
     @property
     def reason(self) -> str:

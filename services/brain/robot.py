@@ -18,6 +18,8 @@ from services.brain.mission import Failure
 Text = Callable[[], str]
 # The hand is empty that should have held something.
 LOST = ("LOST_OBJECT", "NOT_HOLDING", "SLIPPED")
+# Why no grasp can hold an object, by manipulation's code.
+BEYOND_THE_HAND = {"TOO_HEAVY": "too heavy for me", "TOO_WIDE": "too wide for my hand"}
 
 
 class Drive(Goal):
@@ -121,6 +123,11 @@ class Grab(Manipulate):
 
     def spoken(self) -> str:
         return f"I could not pick up the {self._label()}."
+
+    def give_up(self, failure: Failure) -> Status:
+        if why := BEYOND_THE_HAND.get(failure.code):
+            failure = msgspec.structs.replace(failure, spoken=f"The {self._label()} is {why}.")
+        return super().give_up(failure)
 
 
 class Release(Manipulate):

@@ -11,10 +11,14 @@ from services.manipulation.held import USUAL_SIZE, Held
 from services.manipulation.plan_place import PlacePlan, plan_place
 from services.manipulation.robot import Failure, Robot, Steps, go_home, planner_of
 from services.manipulation.surroundings import obstacles, spots
+from services.manipulation.touch import TOUCHED
 
 FLOOR_SPOTS = ((0.60, 0.0), (0.60, 0.2), (0.60, -0.2))
 DROP = 0.004
 BIN_DROP = 0.06
+STANDS = 0.03
+"""Height [m] above the end of the way down at which what is met is what the object is put on: it may have slid so far
+down in the hand, or have been taken so far above its foot."""
 
 
 def place(robot: Robot, where: str) -> Steps[str]:
@@ -67,7 +71,7 @@ def _execute_place(robot: Robot, plan: PlacePlan, held: Held, name: str, surface
     if robot.grip.width <= config.empty_width:
         robot.held = None
         raise Failure("SLIPPED", f"the {held.label} was lost on the way")
-    yield from robot.follow(plan.lower, config.joint_speed * 0.4)
+    yield from _lower(robot, plan, held)
     yield from robot.wait(0.2)
     robot.phase = "release"
     yield from robot.move_gripper(0.0)
@@ -87,6 +91,24 @@ def _execute_place(robot: Robot, plan: PlacePlan, held: Held, name: str, surface
     x, y, _ = compose(robot.base, (*plan.spot, 0.0))
     robot.source.remember(held.label, (x, y, surface + held.size[2] / 2), name, robot.now)
     return f"{held.label} on the {name}, gripper open at {robot.grip.width * 1000:.0f} mm"
+
+
+def _lower(robot: Robot, plan: PlacePlan, held: Held) -> Steps[None]:
+    """Down until it stands: at the end of the way, or a little before that where it is felt to.
+
+    Raises:
+        Failure: BLOCKED, it met something that is not what it is put on.
+    """
+    feel = planner_of(robot).reaction
+    try:
+        yield from robot.follow(plan.lower, robot.config.joint_speed * 0.4, robot.guard(robot.torques.copy()))
+    except Failure as failure:
+        if failure.code != TOUCHED:
+            raise
+        above = feel.height(robot.joints) - feel.height(plan.lower[-1])
+        if above > STANDS:
+            raise Failure("BLOCKED", f"the {held.label} met something {1000 * above:.0f} mm too high") from None
+        robot.io.log.info("set down", object=held.label, felt=failure.detail, above_mm=round(1000 * above, 1))
 
 
 def _unknown(robot: Robot) -> Held:

@@ -10,6 +10,7 @@ from services.manipulation.clearance import HandClearance
 from services.manipulation.grasp import Grasp, Target, candidates
 from services.manipulation.held import Held
 from services.manipulation.ik import InverseKinematics
+from services.manipulation.touch import Reaction
 from services.manipulation.trajectory import connect
 
 CARTESIAN_STEP = 0.02
@@ -45,6 +46,7 @@ class Planner:
         self.arm = ArmModel(robot_mjcf)
         self.ik = InverseKinematics(self.arm)
         self.clearance = HandClearance(self.arm)
+        self.reaction = Reaction(self.arm)
         self.carries = tuple(self.arm.home + np.array([0, 0, 0, 0, 0, tip, turn]) for tip, turn in _CARRY)
         self._seed = seed
 

@@ -15,6 +15,7 @@ from services.manipulation.held import Held
 from services.manipulation.object_source import ObjectSource
 from services.manipulation.plan import PlanError, Planner
 from services.manipulation.surroundings import obstacles
+from services.manipulation.touch import MET, Guard
 from services.manipulation.trajectory import timed
 from services.manipulation.verify import Grip
 
@@ -39,6 +40,7 @@ class Robot:
         self.config, self.io, self.source = config, io, source
         self.now = 0.0
         self.joints: Array = np.zeros(7)
+        self.torques: Array = np.zeros(7)
         self.grip = Grip(0.0, 0.0)
         self.base: Pose2 = (0.0, 0.0, 0.0)
         self.phase = ""
@@ -48,17 +50,23 @@ class Robot:
         self._late = 0
 
     # --- motion
-    def follow(self, path: Sequence[Array], speed: float) -> Steps[None]:
-        """Stream a joint path and wait until the arm has come to rest at its end."""
+    def follow(self, path: Sequence[Array], speed: float, guard: Guard | None = None) -> Steps[None]:
+        """Stream a joint path and wait until the arm has come to rest at its end.
+
+        Raises:
+            Failure: BLOCKED, or what the guard feels; the arm then holds where it is.
+        """
         start = self._command if self._command is not None else self.joints
         points = [start, *path] if np.abs(start - path[0]).max() > 1e-3 else list(path)
         for q in timed(points, speed, self.config.joint_acceleration, DT):
             self._stream(q)
             yield
             self._check_blocked(q)
+            self._check_touched(guard)
         for _ in range(round(self.config.settle / DT)):
             self._stream(points[-1])
             yield
+            self._check_touched(guard)
             if np.abs(self.joints - points[-1]).max() < 0.01:
                 break
         self._command = None
@@ -76,13 +84,27 @@ class Robot:
             worst = int(error.argmax())
             raise Failure("BLOCKED", f"joint_{worst + 1} is {error[worst]:.2f} rad behind")
 
+    def guard(self, rest: Array, most: float = MET, lifting: bool = False) -> Guard | None:
+        """For a motion near things; `rest`: torques (7,) [Nm] of the arm in the air."""
+        return Guard(self.planner.reaction, rest, most, lifting) if self.planner is not None else None
+
+    def _check_touched(self, guard: Guard | None) -> None:
+        code, force = guard.feel(self.joints, self.torques) if guard is not None else ("", 0.0)
+        if code:
+            self._stream(self.joints)
+            self.forget_command()
+            raise Failure(code, f"{force:.0f} N on the hand")
+
     def forget_command(self) -> None:
         """The arm was stopped or moved by somebody else."""
         self._command, self._late = None, 0
 
-    def move_gripper(self, closed: float) -> Steps[None]:
-        """Open or close and wait until the width has settled. Said again and again: one lost command costs nothing."""
-        command = m.GripperCommand(position=closed, max_effort=self.config.grip_effort)
+    def move_gripper(self, closed: float, effort: float = 0.0) -> Steps[None]:
+        """Open or close and wait until the width has settled. Said again and again: one lost command costs nothing.
+
+        `effort` [N] is what a finger presses at most, the configured one unless told.
+        """
+        command = m.GripperCommand(position=closed, max_effort=effort or self.config.grip_effort)
         still, last = 0, self.grip.width
         for n in range(round(1.5 / DT)):
             if n % GRIPPER_TICKS == 0:

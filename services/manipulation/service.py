@@ -99,6 +99,8 @@ class ManipulationService:
         robot, (_, arm, gripper) = self._robot, self._indices
         robot.joints = np.array([states.position[i] for i in arm])
         effort = states.effort[gripper] if len(states.effort) > gripper else 0.0
+        if len(states.effort) > max(arm):
+            robot.torques = np.array([states.effort[i] for i in arm])
         robot.grip = Grip(states.position[gripper], effort)
         if first and holds(robot.grip, self._config):
             robot.held = self._memo.recall(robot.grip.width, self._config.slip_width)

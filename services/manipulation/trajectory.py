@@ -83,6 +83,12 @@ def _shorten(arm: ArmModel, path: list[Array], rng: np.random.Generator) -> list
     return path
 
 
+def back_along(path: Sequence[Array], now: Array) -> list[Array]:
+    """The way back to the beginning of a path from `now`, somewhere on it, without going deeper first."""
+    nearest = int(np.argmin([np.abs(q - now).max() for q in path]))
+    return list(path[max(nearest - 1, 0) :: -1])
+
+
 def timed(path: Sequence[Array], speed: float, acceleration: float, dt: float) -> Array:
     """Set-points (n, 7) every `dt` seconds along a piecewise straight path, from rest to rest.
 

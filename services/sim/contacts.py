@@ -1,6 +1,7 @@
 """What the robot and the object in its hand touch, taken from every physics step; for evaluators.
 
-Of each touch between a part and a thing the log keeps the greatest force, the impulse, the duration and the depth.
+Of each touch between a part and a thing the log keeps the greatest force, the impulse, the duration and the depth; an
+object in the hand presses with what is beyond its own weight.
 The pads on what they grip are no touch, and neither is an object that the robot pushes: where it ends up tells.
 """
 
@@ -32,6 +33,8 @@ class Contacts:
         self._model, self._pads = model, pads
         self._robot = np.isin(body, list(robot_bodies))
         owners = {number: name for name, number in objects.items()}
+        gravity = float(np.linalg.norm(model.opt.gravity))
+        self._weight = {name: float(model.body_mass[number]) * gravity for name, number in objects.items()}
         self._object = [owners.get(int(b), "") for b in body]
         self._names = [_name(model, g) for g in range(model.ngeom)]
         self._parts = [model.body(int(b)).name for b in body]
@@ -105,7 +108,9 @@ class Contacts:
             pressed = float(np.linalg.norm(self._force[:3]))
             forces[pair] = force + pressed, max(depth, -float(data.contact.dist[index]))
         span = float(self._model.opt.timestep)
-        for pair, (force, depth) in forces.items():
+        for pair, (pressed, depth) in forces.items():
+            # What stands on a surface presses on it with its own weight, whoever holds it.
+            force = max(0.0, pressed - self._weight[pair[0]]) if pair[2] == "held" else pressed
             touch = self._current.get(pair)
             if touch is None or now - touch.last > GAP:
                 part, thing, kind = pair

@@ -13,6 +13,7 @@ from evaluation.inject import injected, targets
 from evaluation.physical import PhysicalFault, afflicted
 from evaluation.strikes import StrikeFile, Struck, unheard
 from evaluation.suites import AMOUNT, FAULTS, GRASPED, faults
+from judge.contacts import is_hit
 from services.manipulation.config import ManipulationConfig
 from services.sim.service import SimService
 
@@ -74,15 +75,18 @@ def test_a_jammed_finger_stays_and_comes_free() -> None:
     bench = bench_of(PhysicalFault(kind="jam", thing="blue block", seconds=3.0), told)
     status = bench.run("grab", "b.1")
     assert (status.status, status.code) == ("failed", "EMPTY_GRASP")
-    assert [s.fault for s in told] == ["jam"] and "84 mm" in told[0].what
+    assert [s.fault for s in told] == ["jam"] and "85 mm" in told[0].what
     assert bench.run("grab", "b.2").status == "done", "one more try, without the jam"
 
 
-def test_what_is_too_heavy_slides_out_of_the_rising_hand() -> None:
+def test_what_is_too_heavy_is_left_where_it_stood() -> None:
     told: list[Struck] = []
     bench = bench_of(PhysicalFault(kind="heavy", thing="blue block", amount=8.0), told)
+    before = bench.truth()["objects"]["blue block"]["position"]
     status = bench.run("grab", "b.1")
-    assert (status.status, status.code, bench.truth()["holding"]) == ("failed", "SLIPPED", None)
+    assert (status.status, status.code, bench.truth()["holding"]) == ("failed", "TOO_HEAVY", None)
+    assert math.dist(before, bench.truth()["objects"]["blue block"]["position"]) < 0.01
+    assert not any(is_hit(touch) for touch in bench.sim.physics.contacts.touches)
     assert [s.fault for s in told] == ["heavy"] and told[0].what.startswith("8.0 kg")
 
 

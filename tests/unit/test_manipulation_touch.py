@@ -1,0 +1,88 @@
+"""What the hand feels in the joints' torques, and what is decided by it."""
+
+import mujoco
+import numpy as np
+import pytest
+
+from common import topics
+from services.manipulation.arm_model import ArmModel
+from services.manipulation.robot import Failure
+from services.manipulation.touch import MET, TOO_HEAVY, TOUCHED, Guard, Reaction, load_limit
+from services.manipulation.trajectory import back_along
+from services.manipulation.verify import does_not_fit
+from services.sim.robot import robot_mjcf
+from tests.unit.test_manipulation_service import CONFIG, Arm
+
+
+@pytest.fixture(scope="module")
+def arm() -> ArmModel:
+    return ArmModel(robot_mjcf())
+
+
+def torques(arm: ArmModel, force: tuple[float, float, float]) -> np.ndarray:
+    """What the joints need to press with `force` [N] in the arm's home pose, by MuJoCo's own transposed Jacobian."""
+    data, found = mujoco.MjData(arm.model), np.zeros(arm.model.nv)
+    data.qpos[arm.qpos_at] = arm.home
+    mujoco.mj_forward(arm.model, data)
+    body = arm.model.site_bodyid[arm.pinch]
+    mujoco.mj_applyFT(arm.model, data, np.array(force), np.zeros(3), data.site_xpos[arm.pinch], body, found)
+    return found[arm.dof_at]
+
+
+@pytest.mark.parametrize("force", [(0.0, 0.0, -40.0), (12.0, -7.0, 3.0)])
+def test_torques_tell_the_force_on_the_hand(arm: ArmModel, force: tuple[float, float, float]) -> None:
+    assert Reaction(arm).force(arm.home, torques(arm, force)) == pytest.approx(force, abs=0.1)
+
+
+@pytest.mark.parametrize(
+    ("force", "lifting", "code"),
+    [
+        ((0.0, 0.0, -MET - 1), False, TOUCHED),
+        ((0.0, MET + 1, 0.0), False, TOUCHED),
+        ((0.0, 0.0, -MET + 1), False, ""),
+        ((0.0, 0.0, load_limit(25.0) + 1), True, TOO_HEAVY),
+        ((0.0, 0.0, load_limit(25.0) - 1), True, ""),
+        ((0.0, 50.0, -50.0), True, ""),
+    ],
+)
+def test_a_motion_ends_at_what_it_should_not_meet(
+    arm: ArmModel, force: tuple[float, float, float], lifting: bool, code: str
+) -> None:
+    rest = torques(arm, (3.0, 0.0, 9.0))
+    guard = Guard(Reaction(arm), rest, load_limit(25.0) if lifting else MET, lifting)
+    found, _ = guard.feel(arm.home, rest + torques(arm, force))
+    assert found == code
+
+
+def test_the_way_back_never_goes_deeper_first() -> None:
+    path = [np.full(7, 0.1 * n) for n in range(5)]
+    for now, first in ((0.4, 0.3), (0.27, 0.2), (0.33, 0.2), (0.02, 0.0), (9.0, 0.3)):
+        back = back_along(path, np.full(7, now))
+        assert back[0][0] == pytest.approx(first) and back[-1][0] == 0.0
+
+
+@pytest.mark.parametrize(
+    ("codes", "wide"),
+    [
+        ([], False),
+        ([TOUCHED], False),
+        ([TOUCHED, TOUCHED], True),
+        ([TOUCHED, "BAD_HOLD", TOUCHED], False),
+    ],
+)
+def test_what_the_open_fingers_meet_again_and_again_is_too_wide(codes: list[str], wide: bool) -> None:
+    assert does_not_fit(codes) is wide
+
+
+def test_a_guarded_motion_lets_go_of_its_set_point() -> None:
+    node = Arm()
+    node.step(1.0)
+    robot = node.service._robot
+    guard = robot.guard(np.zeros(7))
+    assert robot.planner is not None and guard is not None
+    robot.torques = torques(robot.planner.arm, (0.0, 0.0, -2 * MET))
+    steps = robot.follow([robot.joints + 0.3], CONFIG.joint_speed, guard)
+    with pytest.raises(Failure, match="40 N on the hand"):
+        for _ in steps:
+            pass
+    assert node.sent(topics.ARM_COMMAND)[-1].position == pytest.approx(robot.joints.tolist())
