@@ -56,17 +56,16 @@ class HandClearance:
         return replace(grasp, pose=pose)
 
     def _needed(self, target: Target, pose: Pose, width: float) -> float | None:
-        most = _most(target, pose)
-        free = min(self._room(target, pose, w) for w in (self.hand.open, width))
-        back = 0.0
-        while free < GAP:
+        back, most = 0.0, _most(target, pose)
+        while True:
+            kept = pose.moved(-back * pose.rotation[:, 2])
+            free = min(self._room(target, kept, w) for w in (self.hand.open, width))
+            if free >= GAP:
+                return back
             # Nothing of the hand comes nearer than it moves: the distance missing is the least that helps.
             back += max(STEP, GAP - max(free, 0.0))
             if back > most:
                 return None
-            moved = pose.moved(-back * pose.rotation[:, 2])
-            free = min(self._room(target, moved, w) for w in (self.hand.open, width))
-        return back
 
     def _room(self, target: Target, pose: Pose, width: float) -> float:
         """Distance [m] from the object to the nearest part of the hand but its pads; negative inside, at most 0.05."""
