@@ -5,13 +5,14 @@ from typing import Any
 
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
+from py_trees.composites import Sequence
 
 from common import messages as m
 from common import topics
 from common.topics import Topic
-from services.brain.behaviours import Goal, Leaf
+from services.brain.behaviours import Goal, Leaf, Settle
 from services.brain.context import Context
-from services.brain.decorators import Attempts
+from services.brain.decorators import Attempts, When
 from services.brain.goals import Answer
 from services.brain.mission import Failure
 from services.brain.placement import Finding, found_at, not_found
@@ -20,6 +21,9 @@ ASTRAY = ("NOT_SEEN", "MISPLACED", "TOPPLED")
 """Codes of a look that shows an object not where, or not as, it belongs."""
 LOOKS = 2
 """Pictures in a row that must show a fault before it is believed; each costs a settle and a second or two."""
+ASIDE = 0.4
+"""rad by which the base turns before the second look for an object that is not to be seen: the folded arm hides some
+0.2 rad of the head camera's picture, and turns with the base."""
 
 
 class Check(Goal):
@@ -75,6 +79,30 @@ class Check(Goal):
         return Status.SUCCESS
 
 
+class TurnAside(Goal):
+    """Turns the base on the spot, so that the arm hides another part of the surface before it from the camera.
+
+    SUCCESS whatever navigation says: the look that follows tells what is to be seen from there.
+    """
+
+    def __init__(self, name: str, ctx: Context) -> None:
+        super().__init__(name, ctx, ctx.navigation, state="RELEASING", timeout=ctx.config.check_timeout)
+
+    def update(self) -> Status:
+        if self._sent_at is None and not self.ctx.io.matched(topics.NAV_GOAL):
+            return Status.SUCCESS
+        return super().update()
+
+    def goal(self, goal_id: str) -> tuple[Topic[Any], m.Message]:
+        self.ctx.mission.at = ""
+        x, y, theta = self.ctx.here
+        return topics.NAV_GOAL, m.NavGoal(id=goal_id, x=x, y=y, theta=theta + ASIDE)
+
+    def give_up(self, failure: Failure) -> Status:
+        self.feedback_message = f"not turned: {failure.code}"
+        return Status.SUCCESS
+
+
 class InPlace(Leaf):
     """SUCCESS when the object, as it was found, is already where it belongs."""
 
@@ -109,8 +137,21 @@ def conclude(ctx: Context, finding: Finding, picture: bytes) -> Status:
 
 
 def checked(ctx: Context, target: str) -> Behaviour:
-    """Look once physics has settled; a fault is believed when another picture shows it too."""
-    return Attempts("look at it", ctx, Check("check", ctx, target), LOOKS - 1, again=lambda: astray(ctx))
+    """Look once physics has settled; a fault is believed when another picture shows it too.
+
+    What is not to be seen is looked for from a little aside.
+    """
+    aside = Sequence(name="aside", memory=True, children=[TurnAside("turn aside", ctx), Settle("come to rest", ctx)])
+    moved = When("hidden by the arm?", aside, lambda: looks.used > 0 and unseen(ctx))
+    look = Sequence(name="look", memory=True, children=[moved, Check("check", ctx, target)])
+    looks = Attempts("look at it", ctx, look, LOOKS - 1, again=lambda: astray(ctx))
+    return looks
+
+
+def unseen(ctx: Context) -> bool:
+    """The last look did not show the object."""
+    failure = ctx.mission.failure
+    return failure is not None and failure.code == "NOT_SEEN"
 
 
 def astray(ctx: Context) -> bool:

@@ -10,6 +10,7 @@ from common import messages as m
 from common import topics
 from common.memory import MemoryIo
 from common.scene import load_scene
+from services.brain.check import ASIDE
 from services.brain.config import BrainConfig
 from services.brain.pictures import KEPT, LARGEST, START, Pictures
 from services.brain.placement import found_at, not_found
@@ -131,10 +132,32 @@ def test_what_lies_is_said_picked_up_and_put_right() -> None:
     assert said in bench.texts(SPEECH)
 
 
+def turned(bench: Bench, arrived: bool = True) -> m.NavGoal:
+    """Answer the turn that follows a look that did not show the object."""
+    goal = bench.next_goal(POSE, 2)
+    status, code = ("arrived", "") if arrived else ("failed", "UNREACHABLE")
+    bench.send(topics.NAVIGATION_FEEDBACK, m.NavigationFeedback(goal_id=goal.id, status=status, code=code))
+    bench.step()
+    return goal
+
+
+@pytest.mark.parametrize("arrived", [True, False])
+def test_what_the_arm_may_hide_is_looked_for_from_aside(arrived: bool) -> None:
+    bench = brought()
+    look(bench, 2, found=False)
+    x, y, theta = bench.brain.context.here
+    goal = turned(bench, arrived)
+    assert (goal.x, goal.y) == (x, y) and abs(goal.theta - theta) == pytest.approx(ASIDE)
+    look(bench, 3)
+    assert ended(bench).outcome == "delivered"
+    assert bench.texts(MANIP) == ["grab", "release"]
+
+
 def test_what_is_found_in_its_place_after_all_is_not_picked_up() -> None:
     bench = brought()
-    for count in (2, 3):
-        look(bench, count, found=False)
+    look(bench, 2, found=False)
+    turned(bench)
+    look(bench, 3, found=False)
     look(bench, 4)
     assert ended(bench).outcome == "delivered"
     assert bench.texts(MANIP) == ["grab", "release"]
