@@ -82,7 +82,7 @@ class WitnessService:
         self._began = now if self._began is None else self._began
         tick = round(now / DT)
         for topic in self.READS:
-            for message in self._io.drain(topic):
+            for message in self._io.take_all(topic):
                 if not first:  # which of the messages from before the first tick arrive is chance
                     self._see(tick, topic, message)
         if not self._said and now >= self._config.at:

@@ -59,7 +59,7 @@ class ReplayIo(MemoryIo):
             self._next = next(self._changes, None)
         return self._present.get(name)
 
-    def matched(self, topic: Topic[Any]) -> bool:
+    def has_subscribers(self, topic: Topic[Any]) -> bool:
         """Somebody looked at a stream from its first recorded message on."""
         return topic.keep != "latest" or self.clock.now() > self.first.get(topic.key, inf) - DT / 2
 

@@ -49,7 +49,7 @@ class Io(Protocol):
     fresh: bool
     state_dir: Path | None
 
-    def drain(self, topic: Topic[M]) -> list[M]:
+    def take_all(self, topic: Topic[M]) -> list[M]:
         """Every message received since the last step, oldest first."""
 
     def latest(self, topic: Topic[M]) -> M | None:
@@ -72,7 +72,7 @@ class Io(Protocol):
     def peer(self, name: str) -> str | None:
         """The epoch of a live peer process, "" while unknown, None when its token is gone."""
 
-    def matched(self, topic: Topic[Any]) -> bool:
+    def has_subscribers(self, topic: Topic[Any]) -> bool:
         """True when somebody subscribes to what this process publishes on the topic."""
 
     def new_id(self, prefix: str) -> str: ...

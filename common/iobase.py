@@ -164,7 +164,7 @@ class IoBase:
                 lost, box.overflow = box.overflow, 0
                 self.count_drop(box.topic.key, f"{lost} messages over the queue limit", lost)
 
-    def drain(self, topic: Topic[M]) -> list[M]:
+    def take_all(self, topic: Topic[M]) -> list[M]:
         box: Mailbox[M] = self._boxes[topic.key]
         if topic.keep == "latest":
             # A payload that is none must not bring the one before it a second time.
@@ -219,7 +219,7 @@ class IoBase:
     def peer(self, name: str) -> str | None:
         raise NotImplementedError
 
-    def matched(self, topic: Topic[Any]) -> bool:
+    def has_subscribers(self, topic: Topic[Any]) -> bool:
         """True when somebody subscribes to what this process publishes there."""
         raise NotImplementedError
 

@@ -110,5 +110,5 @@ class MemoryIo(IoBase):
         other = self.bus.ios.get(name)
         return other.epoch if other else None
 
-    def matched(self, topic: Topic[Any]) -> bool:
+    def has_subscribers(self, topic: Topic[Any]) -> bool:
         return True

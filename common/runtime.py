@@ -29,9 +29,10 @@ STALLED = 1.0
 BAD_CONFIGURATION = 2
 
 
-# A class with NAME, HZ, CONFIG, READS, WRITES, a constructor (config, io) and `step(now)`, which drains, decides,
-# publishes and never blocks; `now` is robot time [s]. With `stalled(seconds)` it is also told, some ten times a second,
-# for how long robot time has stood still [s of wall time]. The simulation also has `paused`, `start_time` and `pace()`.
+# A class with NAME, HZ, CONFIG, READS, WRITES, a constructor (config, io) and `step(now)`, which takes its input,
+# decides, publishes and never blocks; `now` is robot time [s]. With `stalled(seconds)` it is also told, some ten times
+# a second, for how long robot time has stood still [s of wall time]. The simulation also has `paused`, `start_time`
+# and `pace()`.
 ServiceClass = type[Any]
 
 

@@ -59,7 +59,7 @@ class Publisher:
         self._out.put(payload, attachment=bus.stamp(tick))
 
     @property
-    def matched(self) -> bool:
+    def has_subscribers(self) -> bool:
         return bool(self._matching.matching_status.matching)  # type: ignore[attr-defined]
 
 
@@ -146,8 +146,8 @@ class ZenohIo(IoBase):
     def peer(self, name: str) -> str | None:
         return self._peers.get(name)
 
-    def matched(self, topic: Topic[Any]) -> bool:
-        return self._publishers[topic.key].matched
+    def has_subscribers(self, topic: Topic[Any]) -> bool:
+        return self._publishers[topic.key].has_subscribers
 
     # --- sending
     def _send(self, topic: Topic[Any], payload: bytes) -> None:

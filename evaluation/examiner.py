@@ -79,14 +79,14 @@ class Examiner:
         if (model := io.latest(topics.SIM_MODEL)) is None:
             return
         observer.model(model)
-        for state in io.drain(topics.SIM_STATE):
+        for state in io.take_all(topics.SIM_STATE):
             first = not observer.ready
             look = observer.world(state)
             if first and look is not None:
                 self.observed.shortest = self._shortest(look)
-        for report in io.drain(topics.SIM_CONTACTS):
+        for report in io.take_all(topics.SIM_CONTACTS):
             observer.contacts(report)
-        for status in io.drain(topics.SIM_STATUS):
+        for status in io.take_all(topics.SIM_STATUS):
             self.observed.stopped |= status.state == "stopped"
 
     def _shortest(self, look: Look) -> float:
@@ -98,7 +98,7 @@ class Examiner:
 
     # --- the robot's words and states
     def _listen(self, now: float) -> None:
-        for status in self._io.drain(topics.SPEECH_STATUS):
+        for status in self._io.take_all(topics.SPEECH_STATUS):
             if status.state == "speaking" and status.detail != self._saying:
                 self._saying = status.detail
                 self.observed.said.append(status.detail)
@@ -112,9 +112,9 @@ class Examiner:
     def follow(self, now: float) -> None:
         """Take what the brain says of its mission."""
         seen = self.observed
-        for status in self._io.drain(topics.SYSTEM_STATUS):
+        for status in self._io.take_all(topics.SYSTEM_STATUS):
             self._observer.status(now, status)
-        for state in self._io.drain(topics.BRAIN_STATE):
+        for state in self._io.take_all(topics.BRAIN_STATE):
             self._observer.brain(now, state)
             if not seen.states or seen.states[-1] != state.state:
                 seen.states.append(state.state)

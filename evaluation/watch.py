@@ -40,15 +40,15 @@ class Watch:
         if (model := io.latest(topics.SIM_MODEL)) is None:
             return
         observer.model(model)
-        for world in io.drain(topics.SIM_STATE):
+        for world in io.take_all(topics.SIM_STATE):
             observer.world(world)
-        for contacts in io.drain(topics.SIM_CONTACTS):
+        for contacts in io.take_all(topics.SIM_CONTACTS):
             observer.contacts(contacts)
-        for said in io.drain(topics.SPEECH_STATUS):
+        for said in io.take_all(topics.SPEECH_STATUS):
             self._saying = spoken(said, self._saying, lambda text: observer.sentence(now, text))
-        for status in io.drain(topics.SYSTEM_STATUS):
+        for status in io.take_all(topics.SYSTEM_STATUS):
             observer.status(now, status)
-        for state in io.drain(topics.BRAIN_STATE):
+        for state in io.take_all(topics.BRAIN_STATE):
             observer.brain(now, state)
 
 

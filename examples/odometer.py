@@ -39,7 +39,7 @@ class OdometerService:
         self._metres = self._told = 0.0
 
     def step(self, now: float) -> None:
-        for odometry in self._io.drain(topics.ODOMETRY):
+        for odometry in self._io.take_all(topics.ODOMETRY):
             if self._last is not None:
                 self._metres += hypot(odometry.x - self._last.x, odometry.y - self._last.y)
             self._last = odometry

@@ -26,7 +26,7 @@ class EchoService:
 
     def step(self, now: float) -> None:
         self._io.latest(topics.JOINT_STATES)
-        for goal in self._io.drain(topics.NAVIGATION_GOAL):
+        for goal in self._io.take_all(topics.NAVIGATION_GOAL):
             if goal.goal == self._config.fail_on:
                 raise RuntimeError("asked to fail")
             detail = f"{goal.goal} at {now:.2f}"

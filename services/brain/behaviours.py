@@ -140,7 +140,7 @@ class Goal(Leaf):
         ctx = self.ctx
         ctx.enter(self.state, self.step())
         topic, message = self.goal(f"{ctx.mission.id}.{ctx.mission.goals + 1}")
-        if not ctx.io.matched(topic):
+        if not ctx.io.has_subscribers(topic):
             if max(self.elapsed, self.channel.gone(ctx.now)) > ctx.config.peer_timeout:
                 return self._failed("NO_PEER", f"{self.channel.peer} does not answer")
             self.feedback_message = f"waiting for {self.channel.peer}"
@@ -198,7 +198,7 @@ class Say(Leaf):
         super().initialise()
         ctx, text = self.ctx, " ".join(self._text().split())
         self._heard, self._goal_id = False, ""
-        if text and ctx.io.matched(topics.SPEECH_GOAL):
+        if text and ctx.io.has_subscribers(topics.SPEECH_GOAL):
             self._goal_id = ctx.tell(ctx.speech, topics.SPEECH_GOAL, f"say {text}")
         self._estimate = min(1.0 + 0.07 * len(text), ctx.config.say_timeout)
         self.feedback_message = text

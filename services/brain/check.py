@@ -39,7 +39,7 @@ class Check(Goal):
 
     def update(self) -> Status:
         ctx = self.ctx
-        strange = self._sent_at is None and not self.channel.known and not ctx.io.matched(topics.OBJECT_QUERY)
+        strange = self._sent_at is None and not self.channel.known and not ctx.io.has_subscribers(topics.OBJECT_QUERY)
         if strange or not ctx.mission.put_down:
             return self._unchecked("nobody answers object queries")
         return super().update()
@@ -89,7 +89,7 @@ class TurnAside(Goal):
         super().__init__(name, ctx, ctx.navigation, state="RELEASING", timeout=ctx.config.check_timeout)
 
     def update(self) -> Status:
-        if self._sent_at is None and not self.ctx.io.matched(topics.NAV_GOAL):
+        if self._sent_at is None and not self.ctx.io.has_subscribers(topics.NAV_GOAL):
             return Status.SUCCESS
         return super().update()
 

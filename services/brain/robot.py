@@ -173,7 +173,7 @@ class Ready(Leaf):
             )
         elif not ctx.heartbeat.fresh(ctx.now):
             missing = "waiting for joint_states"
-        elif not ctx.mission.active and not ctx.io.matched(topics.SPEECH_GOAL):
+        elif not ctx.mission.active and not ctx.io.has_subscribers(topics.SPEECH_GOAL):
             missing = "waiting for speech"
         else:
             return Status.SUCCESS

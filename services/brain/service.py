@@ -125,26 +125,26 @@ class BrainService:
     # --- answers of the peers
     def _receive_answers(self) -> None:
         ctx, io = self.context, self._io
-        for status in io.drain(topics.NAVIGATION_STATUS):
+        for status in io.take_all(topics.NAVIGATION_STATUS):
             self._offer(ctx.navigation, status, _NAVIGATION.get(status.status), status.code, status.detail)
-        for feedback in io.drain(topics.NAVIGATION_FEEDBACK):
+        for feedback in io.take_all(topics.NAVIGATION_FEEDBACK):
             if ctx.navigation.goal_id and feedback.goal_id == ctx.navigation.goal_id:
                 self._offer(ctx.navigation, feedback, _NAVIGATION.get(feedback.status), feedback.code, "")
-        for done in io.drain(topics.MANIPULATION_STATUS):
+        for done in io.take_all(topics.MANIPULATION_STATUS):
             detail = done.detail or done.phase
             self._offer(ctx.manipulation, done, _MANIPULATION.get(done.status), done.code, detail)
-        for heard in io.drain(topics.SPEECH_RESULT):
+        for heard in io.take_all(topics.SPEECH_RESULT):
             text = heard.text.strip()
             if text:
                 word: Word = "failed" if text == "ERROR" else "ok"
                 self._offer(ctx.speech, heard, word, heard.code, heard.detail)
-        for speech in io.drain(topics.SPEECH_STATUS):
+        for speech in io.take_all(topics.SPEECH_STATUS):
             ctx.speaking = speech
-        for plan in io.drain(topics.ACTION_PLAN):
+        for plan in io.take_all(topics.ACTION_PLAN):
             ctx.planner.offer(plan.request_id, 0, Answer("ok", message=plan))
-        for pose in io.drain(topics.OBJECT_POSE):
+        for pose in io.take_all(topics.OBJECT_POSE):
             ctx.perception.offer(pose.query_id, 0, Answer("ok", message=pose))
-        io.drain(topics.WORLD_OBJECTS)
+        io.take_all(topics.WORLD_OBJECTS)
 
     @staticmethod
     def _offer(channel: Channel, message: m.Message, word: Word | None, code: str, detail: str) -> None:
@@ -155,14 +155,14 @@ class BrainService:
     # --- people
     def _receive_stops(self) -> None:
         ctx, io = self.context, self._io
-        for status in io.drain(topics.SIM_STATUS):
+        for status in io.take_all(topics.SIM_STATUS):
             stopped = status.state == "stopped"
             if stopped != self._sim_stopped and status.state != "paused":
                 self._sim_stopped = stopped
                 ctx.stopped = (ctx.stopped or status.detail) if stopped else None
-        for stop in io.drain(topics.ROBOT_STOP):
+        for stop in io.take_all(topics.ROBOT_STOP):
             ctx.stopped = stop.reason
-        resumes = io.drain(topics.ROBOT_RESUME)
+        resumes = io.take_all(topics.ROBOT_RESUME)
         if resumes:
             ctx.stopped = None
         if ctx.stopped is not None and ctx.state != "IDLE":
@@ -193,7 +193,7 @@ class BrainService:
 
     def _receive_commands(self) -> None:
         ctx = self.context
-        for command in self._io.drain(topics.VOICE_COMMAND):
+        for command in self._io.take_all(topics.VOICE_COMMAND):
             words = normal(command.text)
             if not words:
                 self._io.count_drop(topics.VOICE_COMMAND.key, "no words")

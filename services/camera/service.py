@@ -71,7 +71,7 @@ class CameraService:
         self._rendered = False
 
     def step(self, now: float) -> None:
-        for request in self._io.drain(topics.CAMERA_REQUEST):
+        for request in self._io.take_all(topics.CAMERA_REQUEST):
             if not (0 < request.width <= self._config.max_width and 0 < request.height <= self._config.max_height):
                 limit = f"{self._config.max_width} x {self._config.max_height}"
                 self._io.count_drop(topics.CAMERA_REQUEST.key, f"{request.width} x {request.height}: up to {limit}")

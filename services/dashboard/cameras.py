@@ -25,7 +25,7 @@ class Cameras:
         for name in CAMERAS:
             # Others ask for pictures, too, and more often than a person needs to see one.
             due = now - self._shown.get(name, float("-inf")) >= 0.9 / config.camera_rate
-            for image in self._io.drain(PICTURES[name]) if due and self._panels.wanted(name) else ():
+            for image in self._io.take_all(PICTURES[name]) if due and self._panels.wanted(name) else ():
                 self._shown[name] = now
                 pixels = marked(image, base, world.objects if world is not None else [])
                 if pixels is None:

@@ -137,8 +137,8 @@ class Playback(DashboardService):
                 self._transcript.heard(row.t, message)
         # What was just told must not be told again by the page's own reading.
         self.deck.begin(None, monotonic())
-        self.deck.drain(topics.SPEECH_GOAL)
-        self.deck.drain(topics.SPEECH_RESULT)
+        self.deck.take_all(topics.SPEECH_GOAL)
+        self.deck.take_all(topics.SPEECH_RESULT)
 
     def pause(self, t: float) -> None:
         """Stand still at `t`."""

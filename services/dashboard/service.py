@@ -107,13 +107,13 @@ class DashboardService:
             self._t = t = joints.t
             command = io.latest(topics.ARM_COMMAND) if io.age(topics.ARM_COMMAND, now) < FRESH else None
             self._plots.take(now, joints, command, self._off_path())
-        for goal in io.drain(topics.SPEECH_GOAL):
+        for goal in io.take_all(topics.SPEECH_GOAL):
             self._transcript.goal(t, goal)
-        for result in io.drain(topics.SPEECH_RESULT):
+        for result in io.take_all(topics.SPEECH_RESULT):
             self._transcript.heard(t, result)
-        for health in io.drain(topics.HEALTH):
+        for health in io.take_all(topics.HEALTH):
             self._services.take(health)
-        for chunk in io.drain(topics.AUDIO_OUT):
+        for chunk in io.take_all(topics.AUDIO_OUT):
             if len(chunk.data) % 2 or not 4000 <= chunk.rate <= 192000:
                 io.count_drop(topics.AUDIO_OUT.key, "not 16 bit samples at 4 to 192 kHz")
             else:
@@ -173,9 +173,9 @@ class DashboardService:
             self._base = (q.get("base_x", 0.0), q.get("base_y", 0.0), q.get("base_yaw", 0.0))
         view.pose(q, self._base, q.get("gripper", 0.0))
         view.follow(self._base, panels.follow)
-        for scan in io.drain(topics.SCAN):
+        for scan in io.take_all(topics.SCAN):
             view.scan(scan, self._base, panels.scan)
-        for path in io.drain(topics.NAV_PATH):
+        for path in io.take_all(topics.NAV_PATH):
             self._way = path.points
             view.path(path.points)
         self._overlay()
@@ -206,7 +206,7 @@ class DashboardService:
         if self._transcript.changed:
             self._transcript.changed = False
             panels.text("transcript", markup.transcript(self._transcript.lines))
-        for tree in io.drain(topics.BRAIN_TREE):
+        for tree in io.take_all(topics.BRAIN_TREE):
             self._reasons.take(tree)
             self._tree = tree.root
         if self._tree is not None:

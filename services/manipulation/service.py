@@ -51,13 +51,13 @@ class ManipulationService:
         io, robot = self._io, self._robot
         robot.now = now
         self._sense(now)
-        for look in io.drain(topics.NAVIGATION_GOAL):
+        for look in io.take_all(topics.NAVIGATION_GOAL):
             verb, _, item = look.goal.partition(" ")
             if verb == "find":
                 self._looked_for = item.strip()
-        if io.drain(topics.ROBOT_STOP):
+        if io.take_all(topics.ROBOT_STOP):
             self._end(Failure("STOPPED", "robot/stop"))
-        for goal in io.drain(topics.MANIPULATION_GOAL):
+        for goal in io.take_all(topics.MANIPULATION_GOAL):
             self._take(goal, now)
         if self._steps is not None:
             self._advance(now)

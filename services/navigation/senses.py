@@ -46,12 +46,12 @@ class Senses:
 
     def step(self, now: float) -> None:
         io = self._io
-        for o in io.drain(topics.ODOMETRY):
+        for o in io.take_all(topics.ODOMETRY):
             if _sane(o.t, o.x, o.y, o.theta, o.vx, o.vy, o.omega):
                 self._odometry = o
             else:
                 io.count_drop(topics.ODOMETRY.key, "not a finite pose and velocity")
-        scans, odometry = io.drain(topics.SCAN), self._odometry
+        scans, odometry = io.take_all(topics.SCAN), self._odometry
         if odometry is not None:
             believed: Pose2 | None = (odometry.x, odometry.y, odometry.theta)
         else:

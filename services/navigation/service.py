@@ -53,16 +53,16 @@ class NavigationService:
         self._senses.step(now)
         if int(now) != self._shown:
             self._shown = int(now)
-            if io.matched(topics.COSTMAP):
+            if io.has_subscribers(topics.COSTMAP):
                 io.publish(topics.COSTMAP, self._map.picture(now))
-        if io.drain(topics.ROBOT_STOP) and self._busy:
+        if io.take_all(topics.ROBOT_STOP) and self._busy:
             self._finish(Ended("failed", "STOPPED", "robot/stop"))
-        for goal in io.drain(topics.NAVIGATION_GOAL):
+        for goal in io.take_all(topics.NAVIGATION_GOAL):
             goal.id = goal.id or io.new_id("navigation")
             self._take(goal.id, goal.attempt, goal.goal.strip(), None)
-        for pose in io.drain(topics.NAV_GOAL):
+        for pose in io.take_all(topics.NAV_GOAL):
             self._take(pose.id or io.new_id("navigation"), pose.attempt, "", pose)
-        reached = io.drain(topics.GOAL_REACHED)
+        reached = io.take_all(topics.GOAL_REACHED)
         try:
             if self._search is not None:
                 self._look_for(self._search, now)

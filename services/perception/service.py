@@ -59,7 +59,7 @@ class PerceptionService:
 
     def step(self, now: float) -> None:
         self._sense(now)
-        for query in self._io.drain(topics.OBJECT_QUERY):
+        for query in self._io.take_all(topics.OBJECT_QUERY):
             self._take(query)
         self._receive(now)
         if self._detecting is not None and self._detecting.poll(now):
@@ -112,7 +112,7 @@ class PerceptionService:
         self._io.publish(topics.CAMERA_REQUEST, request)
 
     def _receive(self, now: float) -> None:
-        for key, image in ((t.key, image) for t in PICTURES for image in self._io.drain(t)):
+        for key, image in ((t.key, image) for t in PICTURES for image in self._io.take_all(t)):
             base = self._posture.base_at(image.t)
             if not self._picture or image.id != self._picture or base is None:
                 continue

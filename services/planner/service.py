@@ -46,7 +46,7 @@ class PlannerService:
         self._rejected: OrderedDict[str, list[m.RejectedPlan]] = OrderedDict()
 
     def step(self, now: float) -> None:
-        for request in self._io.drain(topics.PLAN_REQUEST):
+        for request in self._io.take_all(topics.PLAN_REQUEST):
             if request.id in self._answers:
                 self._io.publish(topics.ACTION_PLAN, self._answers[request.id])
             elif self._pending is None or self._pending.request.id != request.id:

@@ -161,7 +161,7 @@ class SimService:
 
     def _take_commands(self, now: float) -> None:
         io = self._io
-        stops, resumes = io.drain(topics.ROBOT_STOP), io.drain(topics.ROBOT_RESUME)
+        stops, resumes = io.take_all(topics.ROBOT_STOP), io.take_all(topics.ROBOT_RESUME)
         if resumes and self._base.stopped:
             self._base.stopped = False
             io.log.info("resumed", by=resumes[-1].source)
@@ -175,22 +175,22 @@ class SimService:
                 self._setpoint = actual.copy()
             self._base.halt((float(actual[0]), float(actual[1]), float(actual[2])))
             self._arm.halt(actual[3:])
-        for target in io.drain(topics.BASE_TARGET):
+        for target in io.take_all(topics.BASE_TARGET):
             if not all(map(_sane, (target.x, target.y, target.theta))):
                 io.count_drop(topics.BASE_TARGET.key, "not a finite pose near the apartment")
             elif not self._base.stopped:
                 self._base.go_to(target.x, target.y, target.theta, target.id, now)
-        for twist in io.drain(topics.CMD_VEL):
+        for twist in io.take_all(topics.CMD_VEL):
             if not all(map(_sane, (twist.vx, twist.vy, twist.omega))):
                 io.count_drop(topics.CMD_VEL.key, "not a finite velocity")
             elif not self._base.stopped:
                 self._base.drive(twist.vx, twist.vy, twist.omega, now)
-        for command in io.drain(topics.ARM_COMMAND):
+        for command in io.take_all(topics.ARM_COMMAND):
             if self._base.stopped:
                 continue
             if why := self._arm.follow(command.position, command.period, now):
                 io.count_drop(topics.ARM_COMMAND.key, why)
-        for grip in io.drain(topics.GRIPPER_COMMAND):
+        for grip in io.take_all(topics.GRIPPER_COMMAND):
             if not (0.0 <= grip.position <= 1.0 and grip.max_effort > 0.0):
                 io.count_drop(topics.GRIPPER_COMMAND.key, "position is 0..1, max_effort above 0")
             elif not self._base.stopped:

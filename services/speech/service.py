@@ -56,9 +56,9 @@ class SpeechService:
 
     def step(self, now: float) -> None:
         io = self._io
-        for goal in io.drain(topics.SPEECH_GOAL):
+        for goal in io.take_all(topics.SPEECH_GOAL):
             self._take(goal, now)
-        for typed in io.drain(topics.SPEECH_TEXT):
+        for typed in io.take_all(topics.SPEECH_TEXT):
             self._type(typed.text.strip(), now)
         key = self._goal.id, self._goal.attempt
         self._attention.push(self._audio(), now, bool(self._mouth.saying), self._listening, key)
@@ -125,7 +125,7 @@ class SpeechService:
     def _audio(self) -> list[tuple[Samples, bool]]:
         """What arrived since the last step, at 16 kHz, and whether it is meant for the robot."""
         found: list[tuple[Samples, bool]] = []
-        for chunk in self._io.drain(topics.AUDIO_PCM):
+        for chunk in self._io.take_all(topics.AUDIO_PCM):
             if len(chunk.data) % 2 or not 4000 <= chunk.rate <= 192000:
                 self._io.count_drop(topics.AUDIO_PCM.key, "not 16 bit samples at 4 to 192 kHz")
                 continue

@@ -71,7 +71,7 @@ class World:
         joints = m.JointStates(t=self.now, name=["gripper"], position=[width], velocity=[0.0], effort=[force])
         self.io.publish(topics.JOINT_STATES, joints)
         for topic in self.goals:
-            for goal in self.io.drain(topic):
+            for goal in self.io.take_all(topic):
                 getattr(self, "_" + topic.key.rpartition("/")[2])(goal)
         for node in self.nodes:
             node.later(PERIOD)

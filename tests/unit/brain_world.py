@@ -40,7 +40,7 @@ class Peer:
     def step(self, now: float) -> None:
         self.io.begin(None, now)
         for topic in self.goals:
-            for goal in self.io.drain(topic):
+            for goal in self.io.take_all(topic):
                 key = goal.id, getattr(goal, "attempt", 0)
                 if key in self.seen:
                     if key in self.answers:

@@ -18,14 +18,14 @@ def joints(t: float) -> m.JointStates:
     return m.JointStates(t=t, name=["a"], position=[t], velocity=[0.0], effort=[0.0])
 
 
-def test_drain_returns_each_message_once_in_order() -> None:
+def test_take_all_returns_each_message_once_in_order() -> None:
     bus, io = make()
     for n in range(3):
         bus.send(topics.NAVIGATION_GOAL, m.NavigationGoal(goal=f"goto {n}"))
-    assert io.drain(topics.NAVIGATION_GOAL) == []
+    assert io.take_all(topics.NAVIGATION_GOAL) == []
     io.begin(None, 1.0)
-    assert [g.goal for g in io.drain(topics.NAVIGATION_GOAL)] == ["goto 0", "goto 1", "goto 2"]
-    assert io.drain(topics.NAVIGATION_GOAL) == []
+    assert [g.goal for g in io.take_all(topics.NAVIGATION_GOAL)] == ["goto 0", "goto 1", "goto 2"]
+    assert io.take_all(topics.NAVIGATION_GOAL) == []
 
 
 def test_streams_keep_only_the_newest_and_know_its_age() -> None:
@@ -37,7 +37,7 @@ def test_streams_keep_only_the_newest_and_know_its_age() -> None:
     newest = io.latest(topics.JOINT_STATES)
     assert newest is not None and newest.t == 2.0
     assert io.age(topics.JOINT_STATES, 5.5) == 0.5
-    assert [j.t for j in io.drain(topics.JOINT_STATES)] == [2.0]
+    assert [j.t for j in io.take_all(topics.JOINT_STATES)] == [2.0]
 
 
 def test_bad_payloads_are_counted_and_leave_the_last_good_value() -> None:
@@ -51,7 +51,7 @@ def test_bad_payloads_are_counted_and_leave_the_last_good_value() -> None:
     io.begin(None, 0.1)
     newest = io.latest(topics.JOINT_STATES)
     assert newest is not None and newest.t == 1.0
-    assert [g.goal for g in io.drain(topics.NAVIGATION_GOAL)] == ["stop"]
+    assert [g.goal for g in io.take_all(topics.NAVIGATION_GOAL)] == ["stop"]
     assert io.drops == {"joint_states": 1, "brain/navigation_goal": 1}
 
 
@@ -59,19 +59,19 @@ def test_a_bad_payload_neither_repeats_the_last_good_one_nor_keeps_it_fresh() ->
     bus, io = make()
     bus.send(topics.JOINT_STATES, joints(1.0))
     io.begin(None, 1.0)
-    assert len(io.drain(topics.JOINT_STATES)) == 1
+    assert len(io.take_all(topics.JOINT_STATES)) == 1
     for asked_first in (False, True):
         bus.put(topics.JOINT_STATES, b"\xff\xff")
         io.begin(None, 2.0)
         if asked_first:
             io.latest(topics.JOINT_STATES)
-        assert io.drain(topics.JOINT_STATES) == []
+        assert io.take_all(topics.JOINT_STATES) == []
         assert io.age(topics.JOINT_STATES, 2.0) == 1.0
         newest = io.latest(topics.JOINT_STATES)
         assert newest is not None and newest.t == 1.0
     bus.send(topics.JOINT_STATES, joints(3.0))
     io.begin(None, 3.0)
-    assert [j.t for j in io.drain(topics.JOINT_STATES)] == [3.0]
+    assert [j.t for j in io.take_all(topics.JOINT_STATES)] == [3.0]
     assert io.age(topics.JOINT_STATES, 3.0) == 0.0
 
 
@@ -80,7 +80,7 @@ def test_an_overfull_queue_drops_the_oldest_and_says_so() -> None:
     for n in range(CAPACITY + 5):
         bus.send(topics.NAVIGATION_GOAL, m.NavigationGoal(goal=f"goto {n}"))
     io.begin(None, 0.0)
-    goals = io.drain(topics.NAVIGATION_GOAL)
+    goals = io.take_all(topics.NAVIGATION_GOAL)
     assert len(goals) == CAPACITY and goals[-1].goal == f"goto {CAPACITY + 4}"
     assert io.drops["brain/navigation_goal"] == 5
 
@@ -116,5 +116,5 @@ def test_goal_ids_name_the_mission_in_the_log() -> None:
     bus, io = make()
     bus.send(topics.NAVIGATION_GOAL, m.NavigationGoal(goal="stop", id="m-7.3"))
     io.begin(None, 0.0)
-    io.drain(topics.NAVIGATION_GOAL)
+    io.take_all(topics.NAVIGATION_GOAL)
     assert io.log.mission == "m-7"

@@ -22,7 +22,7 @@ class Relay:
         self.seen: list[tuple[int, str]] = []
 
     def step(self, now: float) -> None:
-        for goal in self.io.drain(topics.NAVIGATION_GOAL):
+        for goal in self.io.take_all(topics.NAVIGATION_GOAL):
             self.seen.append((round(now * 100), goal.goal))
 
 
@@ -44,7 +44,7 @@ class World:
         self.seen: list[tuple[int, str]] = []
 
     def step(self, now: float) -> None:
-        self.seen += [(round(now * 100), goal.goal) for goal in self.io.drain(topics.NAVIGATION_GOAL)]
+        self.seen += [(round(now * 100), goal.goal) for goal in self.io.take_all(topics.NAVIGATION_GOAL)]
         self.io.publish(topics.GOAL_REACHED, m.GoalReached(reached=True, target_id=str(round(now * 100) + 1)))
 
 
