@@ -4,6 +4,8 @@ The injectors sit behind the simulation's door, as message faults do: `afflicted
 place whose every step they follow. No service can reach them: nothing below `services/` imports `evaluation`.
 """
 
+import math
+from itertools import pairwise
 from typing import Any, Literal
 
 import msgspec
@@ -16,6 +18,7 @@ from common.lockstep import DT
 from common.robot import SIDES, Hand, subtree
 from common.scene import Scene
 from common.support import inside
+from evaluation.shortest import FloorPlan
 from evaluation.strikes import Report, Struck
 from services.sim.objects import GROUP
 from services.sim.physics import Physics
@@ -49,6 +52,8 @@ the heaviest object of the scenes, and a third of the lightest one that is too h
 ROUND = ("apple", "ball")
 NEAR = 1.0
 """Distance [m] of the base within which an object is in reach and an obstacle has to be avoided."""
+AT_REST, DROVE = 0.02, 0.3
+"""Speed of the base [m/s] below which it rests, and for how long [s] when a drive is over."""
 
 
 class PhysicalFault(msgspec.Struct, frozen=True, kw_only=True):
@@ -361,15 +366,44 @@ class Wide(Injector):
 
 
 class InTheWay(Injector):
-    """Watches for the robot to come upon the obstacle while it drives."""
+    """Watches for the robot to come upon the obstacle while it drives, or to drive another way because of it.
+
+    A robot that sees an obstacle from afar goes round in time: then it lay on the shortest path of a drive.
+    """
+
+    def __init__(self, fault: PhysicalFault, physics: Physics) -> None:
+        super().__init__(fault, physics)
+        self._since: tuple[float, float] | None = None
+        self._resting = 0.0
 
     def step(self, now: float, state: str) -> str:
         if state not in ("NAVIGATING", "RETURNING", "GROUNDING"):
+            self._since = None
             return ""
         found = self.physics.obstacles.report(self.physics.data)[self.fault.thing]
-        gap = float(np.linalg.norm(np.array(found["position"][:2]) - self.physics.joints[:2]))
-        self.over = gap < NEAR
-        return f"the {self.fault.thing} {gap:.2f} m from the robot's middle" if self.over else ""
+        x, y = found["position"][:2]
+        here = (float(self.physics.joints[0]), float(self.physics.joints[1]))
+        gap = math.dist((x, y), here)
+        if gap < NEAR:
+            self.over = True
+            return f"the {self.fault.thing} {gap:.2f} m from the robot's middle"
+        moving = float(np.hypot(*self.physics.rates[:2])) > AT_REST
+        self._resting = 0.0 if moving else self._resting + DT
+        if moving and self._since is None:
+            self._since = here
+        if self._since is None or self._resting < DROVE:
+            return ""
+        start, self._since = self._since, None
+        path = FloorPlan(self.physics.scene).path(start, [here])
+        self.over = any(_from_line((x, y), a, b) < max(found["size"][:2]) / 2 for a, b in pairwise(path))
+        return f"the {self.fault.thing} on the shortest path of a drive, which went round it" if self.over else ""
+
+
+def _from_line(point: tuple[float, float], a: tuple[float, float], b: tuple[float, float]) -> float:
+    """Distance [m] of a point from the line from `a` to `b`."""
+    along = np.subtract(b, a)
+    share = float(np.clip(np.dot(np.subtract(point, a), along) / max(float(along @ along), 1e-9), 0.0, 1.0))
+    return float(np.linalg.norm(np.subtract(point, a) - share * along))
 
 
 INJECTORS: dict[Kind, type[Injector]] = {

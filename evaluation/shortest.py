@@ -44,32 +44,37 @@ class FloorPlan:
         self._graph = sparse.csr_matrix((np.concatenate(lengths), edges), shape=(size, size))
 
     def length(self, start: Point, ends: Sequence[Point]) -> float:
-        """To the nearest of `ends` [m]; inf when none can be reached."""
+        """Of the path to the nearest of `ends` [m]; inf when none can be reached."""
+        points = self.path(start, ends)
+        return sum(math.dist(a, b) for a, b in pairwise(points)) if points else math.inf
+
+    def path(self, start: Point, ends: Sequence[Point]) -> list[Point]:
+        """The corners of the shortest path to the nearest of `ends`, from there back; empty when there is none."""
         width = self._map.shape[1]
         cost, previous = csgraph.dijkstra(
             self._graph, directed=False, indices=self._index(start), return_predecessors=True
         )
         goals = [self._index(e) for e in ends]
         if not goals:
-            return math.inf
+            return []
         best = min(goals, key=lambda g: cost[g])
         if not math.isfinite(cost[best]):
-            return math.inf
+            return []
         cells = [best]
         while previous[cells[-1]] >= 0:
             cells.append(int(previous[cells[-1]]))
         return self._tight([self._map.point(*divmod(c, width)) for c in cells])
 
-    def _tight(self, points: list[Point]) -> float:
-        total, i = 0.0, 0
+    def _tight(self, points: list[Point]) -> list[Point]:
+        corners, i = points[:1], 0
         radius = self._config.footprint_radius
         while i < len(points) - 1:
             j = len(points) - 1
             while j > i + 1 and self._map.line_clearance(points[i], points[j]) < radius:
                 j -= max(1, (j - i) // 8)
-            total += math.dist(points[i], points[j])
+            corners.append(points[j])
             i = j
-        return total
+        return corners
 
     def _index(self, point: Point) -> int:
         row, column = self._map.cell(*point)

@@ -8,13 +8,14 @@ import pytest
 from bench.grasp import Bench
 from common import messages as m
 from common import topics
-from common.scene import load_scene
+from common.scene import Obstacle, load_scene
 from evaluation.inject import injected, targets
-from evaluation.physical import PhysicalFault, afflicted
+from evaluation.physical import InTheWay, PhysicalFault, afflicted
 from evaluation.strikes import StrikeFile, Struck, unheard
 from evaluation.suites import AMOUNT, FAULTS, GRASPED, faults
 from judge.contacts import is_hit
 from services.manipulation.config import ManipulationConfig
+from services.sim.physics import Physics
 from services.sim.service import SimService
 
 SCENE = load_scene("apartment")
@@ -128,3 +129,17 @@ def test_reports_of_other_processes_are_read_as_they_come(tmp_path: Path) -> Non
     with path.open("ab") as file:
         file.write(b':"jam","what":"a finger stays"}\n')
     assert (reader.news(), reader.news()) == ([second], [])
+
+
+@pytest.mark.parametrize(("around", "struck"), [((2.5, -0.75), True), ((0.0, 2.0), False)])
+def test_an_obstacle_on_the_shortest_path_was_in_the_way_of_who_went_round_it(
+    around: tuple[float, float], struck: bool
+) -> None:
+    crate = Obstacle(name="crate", kind="box", size=(0.5, 0.9, 0.9), position=around)
+    physics = Physics(SCENE, 0, (crate,))
+    injector = InTheWay(PhysicalFault(kind="obstacle", thing="crate"), physics)
+    told = []
+    for x, y, speed in [(0.6, -0.75, 0.3), (4.6, -0.75, 0.3), *[(4.6, -0.75, 0.0)] * 40]:
+        physics.data.qpos[:2], physics.data.qvel[:2] = (x, y), (speed, 0.0)
+        told.append(injector.step(0.0, "NAVIGATING"))
+    assert any("shortest path" in t for t in told) is struck
