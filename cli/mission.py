@@ -139,8 +139,8 @@ def speak_into(link: Link, talk: Conversation, chunks: list[bytes]) -> tuple[str
         result, now = heard.next(0.0), status.next(0.0)
         if result is not None and result.text == "ERROR":
             why = f"not understood: {result.code} {result.detail}".strip()
-        elif now is not None and now.detail.startswith("not understood"):
-            why = now.detail
+        elif now is not None and now.code:
+            why = f"not understood: {now.code} {now.detail}".strip()
         return why
 
     found = talk.accepted(HEAR, refused)

@@ -24,7 +24,7 @@ def resume(args: argparse.Namespace) -> int:
     with linked(args) as link:
         before = link.latest(topics.BRAIN_STATE)
         last = before.last if before is not None else None
-        left = last is not None and last.outcome == "cancelled" and last.reason.startswith("stopped")
+        left = last is not None and last.resumable
         watch, states = Watch(link, topics.SIM_STATUS), Watch(link, topics.BRAIN_STATE)
         link.send(topics.ROBOT_RESUME, m.RobotResume(source="tidybot", go_on=not args.cancel))
         _confirm(watch, "running")

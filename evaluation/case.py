@@ -118,7 +118,8 @@ class Case(msgspec.Struct, kw_only=True):
 class Observed(msgspec.Struct, kw_only=True):
     """What the examiner saw of one case, before it is judged.
 
-    `claimed`: the last outcome; `claims`: every success announced at any time, held against physics as it was then;
+    `claimed`: the last outcome, `failed_at`, `code` and `explained` the stage, code and spoken words of its failure;
+    `claims`: every success announced at any time, held against physics as it was then;
     `shortfall`: what is not as the case wants it at the end. `wrong`: things in the hand that nobody asked for.
     `strikes`: what the faults really did; `struck`: when the first did [s of robot time]; `recovery`: seconds from then
     until the mission's next step.
@@ -131,6 +132,9 @@ class Observed(msgspec.Struct, kw_only=True):
     shortfall: str = "nothing was seen"
     claimed: str = "none"
     reason: str = ""
+    failed_at: str = ""
+    code: str = ""
+    explained: str = ""
     ended: bool = False
     stopped: bool = False
     states: list[str] = []

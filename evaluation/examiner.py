@@ -129,7 +129,9 @@ class Examiner:
                 self.active, self._ended_at = False, now
                 self._when.setdefault("ended", now)
             if state.last is not None:
-                seen.claimed, seen.reason = state.last.outcome, state.last.reason
+                last = state.last
+                seen.claimed, seen.reason = last.outcome, last.reason
+                seen.failed_at, seen.code, seen.explained = last.stage, last.code, last.spoken
             self._quiet_since = now
         if self._when.keys() & set(OPEN):
             self._when.setdefault("ready", now)

@@ -1,7 +1,5 @@
 """From what was seen to the row of the report: outcome by physics, cause by stage, false claims. Pure."""
 
-import re
-
 import msgspec
 
 from evaluation.case import Case, Observed, Outcome, Result
@@ -14,7 +12,6 @@ STAGES = {
     "PLANNING": "planning", "GROUNDING": "perception", "NAVIGATING": "navigation", "RETURNING": "navigation",
     "GRABBING": "grasp", "RELEASING": "release", "COMPLETED": "evidence",
 }  # fmt: skip
-_WHY = re.compile(r"\(([A-Z]+): ([A-Z_]+)")
 STOOD_STILL = 0.3
 MET = {
     "delivered": ("delivered",), "nothing": ("declined",), "stopped": ("stopped",), "shown": ("shown",),
@@ -72,7 +69,7 @@ def _outcome(case: Case, seen: Observed) -> Outcome:
 
 def spoken(seen: Observed) -> bool:
     """The reason that was published was said aloud as well."""
-    return any(text and text in seen.reason for text in seen.said)
+    return bool(seen.explained) and any(seen.explained in text for text in seen.said)
 
 
 def cause(case: Case, seen: Observed, outcome: Outcome) -> str:
@@ -85,10 +82,9 @@ def cause(case: Case, seen: Observed, outcome: Outcome) -> str:
         return f"not struck: {case.fault or 'fault'}"
     if outcome == "timeout":
         return f"timeout: {STAGES.get(seen.stage, 'start')}"
-    found = _WHY.search(seen.reason)
-    if outcome == "reported" or (found and seen.claimed == "failed"):
-        stage = found[1] if found else seen.stage
-        return f"{STAGES.get(stage, stage.lower() or 'start')}{': ' + found[2] if found else ''}"
+    if outcome == "reported" or (seen.code and seen.claimed == "failed"):
+        stage = seen.failed_at or seen.stage
+        return f"{STAGES.get(stage, stage.lower() or 'start')}{': ' + seen.code if seen.code else ''}"
     if not (case.expect in ("delivered", "shown") and seen.shortfall) and not untouched(seen.evidence):
         return "contact" if seen.evidence.hits else "disturbed"
     if missing := next((s for s in seen.shown if not s.shown), None):

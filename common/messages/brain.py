@@ -24,13 +24,21 @@ class BrainState(Message):
 
 
 class MissionOutcome(Message):
-    """How the last mission ended."""
+    """How the last mission ended; `reason` says it to people, the other fields to programs.
+
+    `stage` (a state's name, or another stage in capitals), `code` and `spoken` are those of the failure that ended it,
+    "" without one. `resumable`: a `robot/resume` with `go_on` takes it up.
+    """
 
     id: str
     command: str
     outcome: Literal["delivered", "failed", "cancelled"]
     reason: str = ""
     t: float = 0.0
+    stage: str = ""
+    code: str = ""
+    spoken: str = ""
+    resumable: bool = False
 
 
 class TreeNode(Message):

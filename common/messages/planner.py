@@ -20,8 +20,11 @@ class KnownWorld(Message):
 
 
 class RejectedPlan(Message):
+    """A plan that cannot be carried out; `step`: number from 1 of the step that `reason` is about, 0 for all of it."""
+
     steps: list["PlanStep"] = []
     reason: str = ""
+    step: int = 0
 
 
 class PlanStep(Message):
@@ -39,13 +42,17 @@ class PlanStep(Message):
 
 
 class PlanRequest(Message):
-    """`done`: steps already carried out for this command, from a sender that asks again after a plan marked `again`."""
+    """`done`: steps already carried out for this command, from a sender that asks again after a plan marked `again`.
+
+    `mission_id`: what the requests of one mission have in common, "" when the sender has no missions.
+    """
 
     id: str
     command: str
     world: KnownWorld = msgspec.field(default_factory=KnownWorld)
     rejected: RejectedPlan | None = None
     done: list["PlanStep"] | None = None
+    mission_id: str = ""
 
 
 class ActionPlan(Message):

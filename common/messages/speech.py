@@ -27,10 +27,13 @@ class SpeechResult(Message):
 
 
 class SpeechStatus(Message):
+    """What speech does; `detail` of `speaking` is the sentence, `code` says why an utterance was not understood."""
+
     state: SpeechStateName
     goal_id: str = ""
     attempt: int = 0
     detail: str = ""
+    code: str = ""
 
 
 class TypedText(Message):

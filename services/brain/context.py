@@ -75,7 +75,7 @@ class Context:
             detail=detail,
             started=mission.started if running else 0.0,
             pipeline=self.config.pipeline,
-            last=self.last,
+            last=self._last_outcome(),
         )
         if _same(before, self.shown):
             self.shown = before
@@ -89,6 +89,12 @@ class Context:
             self.io.log.info(
                 "state", mission=self.shown.mission_id, state=state, step=step, detail=detail, was=before.state
             )
+
+    def _last_outcome(self) -> m.MissionOutcome | None:
+        if self.last is None or self.last.resumable == (self.put_off is not None):
+            return self.last
+        self.last = msgspec.structs.replace(self.last, resumable=self.put_off is not None)
+        return self.last
 
     def _publish_state(self) -> None:
         self.io.publish(topics.BRAIN_STATE, self.shown)
@@ -186,7 +192,17 @@ class Context:
         """The mission's outcome; shown with the next state."""
         mission = self.mission
         mission.outcome = outcome
-        self.last = m.MissionOutcome(id=mission.id, command=mission.command, outcome=outcome, reason=reason, t=self.now)
+        failure = mission.ended_by
+        self.last = m.MissionOutcome(
+            id=mission.id,
+            command=mission.command,
+            outcome=outcome,
+            reason=reason,
+            t=self.now,
+            stage=failure.stage,
+            code=failure.code,
+            spoken=failure.spoken,
+        )
         self.note(outcome, reason, "did" if outcome == "delivered" else "note")
         self.journal.end(mission, outcome, reason, self.now)
         self.save()
@@ -220,4 +236,13 @@ def _outcome(journal: Journal) -> m.MissionOutcome | None:
     last = journal.last()
     if last is None or last.outcome is None:
         return None
-    return m.MissionOutcome(id=last.id, command=last.command, outcome=last.outcome, reason=last.reason, t=last.ended)
+    return m.MissionOutcome(
+        id=last.id,
+        command=last.command,
+        outcome=last.outcome,
+        reason=last.reason,
+        t=last.ended,
+        stage=last.stage,
+        code=last.code,
+        spoken=last.spoken,
+    )

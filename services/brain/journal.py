@@ -32,7 +32,10 @@ class Entry(msgspec.Struct, frozen=True):
 
 
 class Record(msgspec.Struct):
-    """A mission as `tidybot missions` lists it; `steps` counts its goals, `date` is Unix time of its start."""
+    """A mission as `tidybot missions` lists it; `steps` counts its goals, `date` is Unix time of its start.
+
+    `stage`, `code` and `spoken` are those of the failure that ended it.
+    """
 
     id: str
     command: str
@@ -42,6 +45,9 @@ class Record(msgspec.Struct):
     ended: float = 0.0
     steps: int = 0
     date: float = 0.0
+    stage: str = ""
+    code: str = ""
+    spoken: str = ""
     entries: list[Entry] = []
 
 
@@ -133,6 +139,7 @@ class MemoryJournal:
             self.begin(mission)
         else:
             record.outcome, record.reason, record.ended = None, "", 0.0
+            record.stage = record.code = record.spoken = ""
 
     def note(self, mission_id: str, entry: Entry) -> bool:
         """True if there was room for it."""
@@ -147,6 +154,8 @@ class MemoryJournal:
         if record is not None:
             record.command = mission.command
             record.outcome, record.reason, record.ended, record.steps = outcome, reason, t, mission.goals
+            failure = mission.ended_by
+            record.stage, record.code, record.spoken = failure.stage, failure.code, failure.spoken
 
     def save(self, checkpoint: Checkpoint) -> bool:
         self._checkpoint = msgspec.json.encode(checkpoint)

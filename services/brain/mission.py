@@ -90,6 +90,11 @@ class Mission(msgspec.Struct):
         return f"{self.id}.{self.goals}"
 
     @property
+    def ended_by(self) -> Failure:
+        """The failure that ended the mission; an empty one if none did."""
+        return self.failure if self.failure is not None and self.outcome != "delivered" else Failure("", "")
+
+    @property
     def active(self) -> bool:
         """A command was accepted and has not ended."""
         return bool(self.command) and self.outcome is None

@@ -13,12 +13,16 @@ MIGRATIONS: tuple[tuple[str, ...], ...] = (
         "create table boots (number integer primary key autoincrement, date real not null)",
     ),
     ("alter table entries add column picture text not null default ''",),
+    tuple(f"alter table missions add column {name} text not null default ''" for name in ("stage", "code", "spoken")),
 )
 """Statements that bring a file from version n to n + 1; `PRAGMA user_version` holds n. Only ever appended to."""
 
-FIELDS = "id, command, started, outcome, reason, ended, steps, date"
-BEGIN = f"insert or ignore into missions ({FIELDS}) values (?, ?, ?, ?, ?, ?, ?, ?)"
-END = "update missions set command = ?, outcome = ?, reason = ?, ended = ?, steps = ? where id = ?"
+FIELDS = "id, command, started, outcome, reason, ended, steps, date, stage, code, spoken"
+BEGIN = f"insert or ignore into missions ({FIELDS}) values ({', '.join('?' * len(FIELDS.split()))})"
+END = (
+    "update missions set command = ?, outcome = ?, reason = ?, ended = ?, steps = ?, stage = ?, code = ?, spoken = ?"
+    " where id = ?"
+)
 ENTRY = "insert into entries (mission, t, state, cause, evidence, kind, picture) values (?, ?, ?, ?, ?, ?, ?)"
 CHECKPOINT = "insert or replace into checkpoint (one, body) values (1, ?)"
 TRIM = (

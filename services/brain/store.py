@@ -64,7 +64,7 @@ class SqliteJournal:
             self.begin(mission)
             return
         if record.outcome is not None:
-            self._waiting.append((END, (mission.command, None, "", 0.0, mission.goals, mission.id)))
+            self._waiting.append((END, (mission.command, None, "", 0.0, mission.goals, "", "", "", mission.id)))
         self._memory.keep(record)
         self._memory.resume(mission)
 
@@ -74,7 +74,9 @@ class SqliteJournal:
 
     def end(self, mission: Mission, outcome: Outcome, reason: str, t: float) -> None:
         self._memory.end(mission, outcome, reason, t)
-        self._waiting.append((END, (mission.command, outcome, reason, t, mission.goals, mission.id)))
+        failure = mission.ended_by
+        why = failure.stage, failure.code, failure.spoken
+        self._waiting.append((END, (mission.command, outcome, reason, t, mission.goals, *why, mission.id)))
 
     def save(self, checkpoint: Checkpoint) -> bool:
         checkpoint.date = self._clock()
@@ -229,7 +231,7 @@ class SqliteJournal:
 
 
 def _values(r: Record) -> tuple[Any, ...]:
-    return r.id, r.command, r.started, r.outcome, r.reason, r.ended, r.steps, r.date
+    return msgspec.structs.astuple(r)[: len(FIELDS.split())]
 
 
 def _entry(mission_id: str, e: Entry) -> tuple[Any, ...]:

@@ -2,11 +2,23 @@
 
 from collections.abc import Sequence
 
+import msgspec
+
 from common.messages import KnownWorld, PlanStep
 from common.scene import Scene
 
 GRIPPER_WIDTH = 0.085
 MAX_STEPS = 60
+
+
+class Objection(msgspec.Struct, frozen=True):
+    """Why a plan cannot be carried out, as a clause that can be spoken; `step`: number from 1, 0 for the whole plan."""
+
+    step: int
+    reason: str
+
+    def __str__(self) -> str:
+        return f"step {self.step}: {self.reason}" if self.step else self.reason
 
 
 def known_world(scene: Scene, seen: Sequence[str], held: str) -> KnownWorld:
@@ -20,17 +32,17 @@ def known_world(scene: Scene, seen: Sequence[str], held: str) -> KnownWorld:
     )
 
 
-def objection(steps: Sequence[PlanStep], world: KnownWorld, scene: Scene) -> str:
-    """Why the plan cannot be carried out, as a clause that can be spoken; "" if it can."""
+def objection(steps: Sequence[PlanStep], world: KnownWorld, scene: Scene) -> Objection | None:
+    """The first objection to the plan; None when it can be carried out."""
     if not steps:
-        return "the plan has no steps"
+        return Objection(0, "the plan has no steps")
     if len(steps) > MAX_STEPS:
-        return f"the plan has {len(steps)} steps"
+        return Objection(0, f"the plan has {len(steps)} steps")
     held, found = world.held, set[str]()
     for number, step in enumerate(steps, 1):
         reason = _objection(step, held, found, world, scene)
         if reason:
-            return f"step {number}: {reason}"
+            return Objection(number, reason)
         if step.hand_alone:
             continue
         if step.action == "find":
@@ -39,7 +51,7 @@ def objection(steps: Sequence[PlanStep], world: KnownWorld, scene: Scene) -> str
             held = step.object
         elif step.action in ("place", "release"):
             held = ""
-    return ""
+    return None
 
 
 def _objection(step: PlanStep, held: str, found: set[str], world: KnownWorld, scene: Scene) -> str:

@@ -16,7 +16,7 @@ from services.brain.goals import Answer
 from services.brain.mission import Failure
 from services.brain.robot import Drive, take_command
 from services.brain.search import View
-from services.brain.validate import known_world, objection
+from services.brain.validate import Objection, known_world, objection
 
 
 class Await(Leaf):
@@ -42,7 +42,12 @@ class Plan(Goal):
         ctx = self.ctx
         mission = ctx.mission
         request = m.PlanRequest(
-            id=goal_id, command=mission.command, world=self._world(), rejected=mission.rejected, done=mission.looked
+            id=goal_id,
+            command=mission.command,
+            world=self._world(),
+            rejected=mission.rejected,
+            done=mission.looked,
+            mission_id=mission.id,
         )
         return topics.PLAN_REQUEST, request
 
@@ -55,8 +60,8 @@ class Plan(Goal):
     def done(self, answer: Answer) -> Status:
         ctx, plan = self.ctx, answer.message
         assert isinstance(plan, m.ActionPlan)
-        reason = objection(plan.steps, self._world(), ctx.io.scene)
-        if not reason:
+        wrong = objection(plan.steps, self._world(), ctx.io.scene)
+        if wrong is None:
             ctx.mission.plan, ctx.mission.again = plan.steps, plan.again
             if plan.again:
                 ctx.mission.looked = [*ctx.mission.looked, *plan.steps]
@@ -66,8 +71,9 @@ class Plan(Goal):
             ctx.note("plan accepted", "; ".join(map(in_words, plan.steps)), "planned")
             return Status.SUCCESS
         if not plan.steps and plan.detail:
-            reason = plan.detail
-        ctx.mission.rejected = m.RejectedPlan(steps=plan.steps, reason=reason)
+            wrong = Objection(0, plan.detail)
+        ctx.mission.rejected = m.RejectedPlan(steps=plan.steps, reason=wrong.reason, step=wrong.step)
+        reason = str(wrong)
         self.feedback_message = reason
         code = "REJECTED" if plan.steps else "NO_PLAN"
         return self.give_up(Failure("PLANNING", code, reason, spoken=f"I cannot do that: {reason}."))

@@ -4,9 +4,6 @@ from typing import Any
 
 from common import messages as m
 
-STOPPED = ("stopped", "the robot was stopped")
-"""How the brain begins, in its reason or after the stage, what it says of a mission that a stop has cut short."""
-
 
 def under_way(state: m.BrainState | None) -> bool:
     """A mission is being worked on; one that was gone on with has the name of the one that was cut short."""
@@ -17,12 +14,10 @@ def under_way(state: m.BrainState | None) -> bool:
 
 
 def left_off(state: m.BrainState | None) -> str:
-    """The command of the mission that a stop has cut short and that can be gone on with; "" when there is none."""
+    """The command of the mission that can be gone on with; "" when there is none."""
     if state is None or state.last is None or under_way(state):
         return ""
-    last = state.last
-    said = last.reason.removeprefix("(RESTART: CANCELLED: ")
-    return last.command if last.outcome == "cancelled" and said.startswith(STOPPED) else ""
+    return state.last.command if state.last.resumable else ""
 
 
 def bar(state: m.BrainState | None, sim: m.SimStatus | None, t: float) -> dict[str, Any]:

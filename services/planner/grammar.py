@@ -1,6 +1,5 @@
 """The embedded planner: a sentence and the believed world in, a plan or the reason against it out. Pure."""
 
-import re
 from collections.abc import Sequence
 
 from common.messages import ActionPlan, PlanStep, RejectedPlan
@@ -21,7 +20,6 @@ MAX_CHARACTERS = 2000
 MAX_WORDS = 60
 MAX_EFFORT = 120
 _THING_STARTS = DETERMINERS | PRONOUNS | PLURAL_PRONOUNS | {"all", "every", "two", "three"}
-_STEP = re.compile(r"^step (\d+): ")
 
 
 class _Failure(Exception):
@@ -71,16 +69,14 @@ def plan(
 
 def _spent(first: ActionPlan, rejected: RejectedPlan) -> ActionPlan:
     """No other plan: the reason against the last one, or why there never was one."""
-    reason = _STEP.sub("", rejected.reason).strip().rstrip(".") or "that plan was rejected and I know no other"
+    reason = rejected.reason.strip().rstrip(".") or "that plan was rejected and I know no other"
     detail = reason if first.steps or not first.detail else first.detail
     return ActionPlan(request_id=first.request_id, steps=[], source=SOURCE, detail=detail)
 
 
 def _culprit(rejected: RejectedPlan) -> PlanStep | None:
-    """The step that a reason of the form `step 3: ...` complains about."""
-    found = _STEP.match(rejected.reason)
-    number = int(found[1]) if found else 0
-    return rejected.steps[number - 1] if 0 < number <= len(rejected.steps) else None
+    """The step that the reason is about."""
+    return rejected.steps[rejected.step - 1] if 0 < rejected.step <= len(rejected.steps) else None
 
 
 def _steps(command: str, draft: Draft) -> list[PlanStep]:

@@ -62,7 +62,7 @@ def messages(command: str, world: World, config: PlannerConfig, rejected: list[R
         "command": command,
     }
     if rejected:
-        told["rejected_plans"] = [{"steps": r.steps, "reason": r.reason} for r in rejected]
+        told["rejected_plans"] = [{"steps": r.steps, "step": r.step, "reason": r.reason} for r in rejected]
     user = msgspec.json.encode(told).decode()
     return [{"role": "system", "content": RULES}, {"role": "user", "content": user}]
 

@@ -123,7 +123,7 @@ class PlannerService:
 
     def _rejections(self, request: m.PlanRequest) -> list[m.RejectedPlan]:
         """Every plan rejected so far for this command of this mission, the newest last."""
-        key = f"{request.id.partition('.')[0]} {request.command}"
+        key = f"{request.mission_id} {request.command}"
         history = self._rejected.get(key, [])
         if request.rejected is None:
             self._rejected.pop(key, None)

@@ -104,9 +104,9 @@ class SpeechService:
         self._io.publish(topics.SPEECH_RESULT, result)
 
     # --- status
-    def _set(self, state: m.SpeechStateName, detail: str = "") -> None:
+    def _set(self, state: m.SpeechStateName, detail: str = "", code: str = "") -> None:
         goal = self._goal
-        self._status = m.SpeechStatus(state=state, goal_id=goal.id, attempt=goal.attempt, detail=detail)
+        self._status = m.SpeechStatus(state=state, goal_id=goal.id, attempt=goal.attempt, detail=detail, code=code)
         self._io.publish(topics.SPEECH_STATUS, self._status)
 
     def _show(self, now: float, detail: str) -> None:
@@ -163,7 +163,7 @@ class SpeechService:
         elif found in ("awake", "again"):
             self._attention.wake(now)
             if found == "again":
-                self._set("listening", f"not understood: {_FAILURES[heard.verdict]} {heard.free!r}")
+                self._set("listening", f"understood {heard.free!r}", _FAILURES[heard.verdict])
 
     def _end_listening(self, heard: Heard) -> None:
         self._listening = False

@@ -195,7 +195,7 @@ def test_the_planner_answers_a_plain_peer(here: Site) -> None:
         plan = peer.wait("action_plan", request_id="m.1")
         assert [s["action"] for s in plan["steps"]] == ["find", "grasp", "return", "release"]
         assert {s["object"] for s in plan["steps"]} == {"red mug", ""} and plan["source"] == "grammar"
-        rejected = {"steps": plan["steps"], "reason": "step 2: the red mug does not fit into the gripper"}
+        rejected = {"steps": plan["steps"], "reason": "the red mug does not fit into the gripper", "step": 2}
         peer.put("plan_request", id="m.2", command="Bring me the red mug, please!", rejected=rejected)
         none = peer.wait("action_plan", request_id="m.2")
         assert none["steps"] == [] and none["detail"] == "the red mug does not fit into the gripper"

@@ -244,11 +244,11 @@ def test_odd_spellings_become_the_names_of_the_scene(endpoint: Endpoint) -> None
 def test_a_rejected_plan_is_told_and_not_accepted_again(endpoint: Endpoint) -> None:
     steps = [msgspec.convert(s, m.PlanStep) for s in MUG]
     endpoint.answers = [plans(*MUG)]
-    plan = Desk(endpoint).ask(rejected=m.RejectedPlan(steps=steps, reason="step 3: the desk is full"))
-    assert plan.source == "grammar (llm: the rejected plan again: step 3: the desk is full)"
+    plan = Desk(endpoint).ask(rejected=m.RejectedPlan(steps=steps, reason="the desk is full", step=3))
+    assert plan.source == "grammar (llm: the rejected plan again: the desk is full)"
     assert actions(plan) == GRAMMAR
     told = json.loads(endpoint.requests[0]["messages"][1]["content"])
-    assert told["rejected_plans"][0]["reason"] == "step 3: the desk is full"
+    assert told["rejected_plans"][0]["reason"] == "the desk is full"
 
 
 def test_what_the_model_declines_is_planned_by_the_grammar_if_it_can(endpoint: Endpoint) -> None:

@@ -43,7 +43,7 @@ def test_stopped_in_each_state_it_goes_on(pipeline: str, state: str, tmp_path: P
     world.until(lambda: world.outcome == "delivered")
     finished(world)
     delivered_once(world)
-    assert world.state.last is not None and world.state.last.id == mission
+    assert world.state.last is not None and world.state.last.id == mission and not world.state.last.resumable
 
 
 @pytest.mark.parametrize("pipeline", PIPELINES)
@@ -55,6 +55,7 @@ def test_a_plain_resume_only_releases(pipeline: str, tmp_path: Path) -> None:
     resume(world, go_on=False)
     world.step(10.0)
     assert world.outcome == "cancelled" and world.drives == drives and world.held
+    assert world.state.last is not None and world.state.last.resumable
     # Who thinks better of it later may still go on.
     go_on(world)
     delivered_once(world)

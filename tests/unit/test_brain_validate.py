@@ -109,7 +109,7 @@ NOTHING = "step {}: there is nothing in the hand to release"
 def test_the_first_step_that_cannot_be_done_is_named_with_the_reason(
     steps: tuple[PlanStep, ...], held: str, seen: tuple[str, ...], reason: str
 ) -> None:
-    assert objection(steps, known_world(SCENE, seen, held), SCENE) == reason
+    assert str(objection(steps, known_world(SCENE, seen, held), SCENE) or "") == reason
 
 
 def test_the_known_world_lists_each_name_once_in_the_order_of_the_scene() -> None:

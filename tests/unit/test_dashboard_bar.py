@@ -1,12 +1,12 @@
 """What the bar at the top of the page tells, and when a mission can be gone on with."""
 
 import json
+from typing import Literal
 
 import msgspec
 import pytest
 
 from common import messages as m
-from services.brain.mission import Failure
 from services.dashboard import markup
 from services.dashboard.bar import bar, left_off, under_way
 
@@ -57,27 +57,10 @@ def test_what_is_not_known_is_empty() -> None:
     assert json.loads(msgspec.json.encode(shown))["last"] is None
 
 
-def ended(outcome: str, reason: str) -> m.MissionOutcome:
-    return msgspec.convert({"id": "m-1", "command": "go", "outcome": outcome, "reason": reason}, m.MissionOutcome)
-
-
-def cut(detail: str) -> str:
-    return Failure("RESTART", "CANCELLED", detail).reason
-
-
-@pytest.mark.parametrize(
-    ("last", "can"),
-    [
-        (ended("cancelled", "stopped"), True),
-        (ended("cancelled", "stopped: stop button; holding the red mug"), True),
-        (ended("cancelled", cut("the robot was stopped before it could go on")), True),
-        (ended("cancelled", cut("the robot was shut down")), False),
-        (ended("cancelled", "asked to stop"), False),
-        (ended("failed", "stopped"), False),
-        (ended("delivered", ""), False),
-        (None, False),
-    ],
-)  # fmt: skip
-def test_only_what_a_stop_has_cut_short_is_gone_on_with(last: m.MissionOutcome | None, can: bool) -> None:
-    assert bool(left_off(state("IDLE", last=last))) is can
-    assert left_off(state("NAVIGATING", "m-2", last)) == ""
+@pytest.mark.parametrize("outcome", ["cancelled", "failed"])
+def test_only_what_can_be_resumed_is_gone_on_with(outcome: Literal["cancelled", "failed"]) -> None:
+    for resumable in (True, False):
+        last = m.MissionOutcome(id="m-1", command="go", outcome=outcome, reason="stopped", resumable=resumable)
+        assert bool(left_off(state("IDLE", last=last))) is resumable
+        assert left_off(state("NAVIGATING", "m-2", last)) == ""
+    assert left_off(state("IDLE")) == ""

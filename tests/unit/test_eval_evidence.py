@@ -42,7 +42,7 @@ def seen(evidence: Evidence, claimed: str = "none", reason: str = "", **more: An
         (seen(GOOD, "delivered", claims=[claim()]), "delivered", ""),
         (seen(GOOD), "delivered", ""),
         (seen(BAD, "delivered", claims=[claim(MISSED)]), "false_success", "evidence: never lifted by the gripper"),
-        (seen(BAD, "failed", "No. (GRABBING: BLOCKED: joint_4)"), "reported", "grasp: BLOCKED"),
+        (seen(BAD, "failed", "No.", failed_at="GRABBING", code="BLOCKED"), "reported", "grasp: BLOCKED"),
         (seen(BAD, "failed", "No."), "reported", "grasp"),
         (seen(BAD, "cancelled", stage=""), "reported", "start"),
         (seen(BAD, "failed", stage="ODD"), "reported", "odd"),
@@ -59,7 +59,7 @@ def seen(evidence: Evidence, claimed: str = "none", reason: str = "", **more: An
             "effect: not b",
         ),
         (seen(SHOVED, "delivered"), "failed", "disturbed"),
-        (seen(SHOVED, "failed", "(GRABBING: SLIPPED: x)"), "reported", "grasp: SLIPPED"),
+        (seen(SHOVED, "failed", failed_at="GRABBING", code="SLIPPED"), "reported", "grasp: SLIPPED"),
         (Observed(crash="KeyError: 'x'"), "crashed", "crash: KeyError: 'x'"),
     ],
 )
@@ -85,7 +85,7 @@ def test_a_false_claim_counts_whatever_else_happens(then: dict[str, Any], case: 
 
 
 def test_an_honest_report_is_enough_where_the_case_says_so() -> None:
-    observed = seen(BAD, "failed", "(NAVIGATING: BLOCKED: no way)")
+    observed = seen(BAD, "failed", failed_at="NAVIGATING", code="BLOCKED")
     assert not judge(CASE, observed, 1.0).met
     honest = msgspec.structs.replace(CASE, honest=True)
     assert judge(honest, observed, 1.0).met and judge(honest, observed, 1.0).cause == ""
@@ -150,7 +150,7 @@ def test_what_cannot_be_done_is_refused_aloud_and_nothing_breaks(
     evidence: Evidence, claimed: str, said: str, outcome: str
 ) -> None:
     heavy = msgspec.structs.replace(CASE, expect="reported")
-    observed = seen(evidence, claimed, "The mug is too heavy. (GRABBING: TOO_HEAVY)", said=[said])
+    observed = seen(evidence, claimed, explained="The mug is too heavy.", said=[said])
     result = judge(heavy, observed, 1.0)
     assert (result.outcome, result.met) == (outcome, outcome == "reported")
 
@@ -172,7 +172,7 @@ def test_the_row_of_the_report_has_everything() -> None:
 
 
 def test_the_cause_of_a_failure_that_the_robot_gave_a_code_for_is_the_code() -> None:
-    observed = seen(HIT, "failed", "(RETURNING: BLOCKED: by a crate)")
+    observed = seen(HIT, "failed", failed_at="RETURNING", code="BLOCKED")
     assert cause(CASE, observed, "failed") == "navigation: BLOCKED"
     observed.claimed = "none"
     assert cause(CASE, observed, "failed") == "contact"

@@ -41,7 +41,7 @@ def pretend(case: Case, progress: Callable[[float, str], None]) -> Result:
         os._exit(7)
     while case.name == "hangs":
         pass
-    return judge(case, Observed(claimed="failed", reason="(GRABBING: MISSED: air)", ended=True), 0.1)
+    return judge(case, Observed(claimed="failed", failed_at="GRABBING", code="MISSED", ended=True), 0.1)
 
 
 def test_a_worker_that_dies_costs_its_case_only() -> None:
@@ -89,7 +89,7 @@ def test_a_worker_is_renewed_after_so_many_cases(monkeypatch: pytest.MonkeyPatch
 
 
 def test_the_report_is_that_of_the_contract() -> None:
-    results = [judge(case_of(n), Observed(claimed="failed", reason="(GRABBING: MISSED: air)", ended=True), 0.1)
+    results = [judge(case_of(n), Observed(claimed="failed", failed_at="GRABBING", code="MISSED", ended=True), 0.1)
                for n in (2, 1)]  # fmt: skip
     found = report.record("fetch", results, 3.0)
     assert [f for f in found if f in FIELDS] == FIELDS

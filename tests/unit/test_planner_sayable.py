@@ -83,7 +83,7 @@ def plan_of(command: str, objects: list[WorldObject], held: str, rejected: tuple
     told = known_world(SCENE, [o.label for o in objects], held)
     plan = grammar.plan(command, believed(SCENE, told, objects), CONFIG, rejected)
     if plan.steps:
-        assert objection(plan.steps, told, SCENE) == "", f"{command!r} with {held!r} in hand: {plan.steps}"
+        assert objection(plan.steps, told, SCENE) is None, f"{command!r} with {held!r} in hand: {plan.steps}"
     else:
         assert plan.detail, command
     return plan
@@ -117,7 +117,7 @@ def test_a_rejected_plan_never_comes_twice(seed: int) -> None:
                 break
             assert all(plan.steps != r.steps for r in rejected), command
             step = rng.randint(1, len(plan.steps))
-            rejected.append(RejectedPlan(steps=plan.steps, reason=f"step {step}: it cannot be done"))
+            rejected.append(RejectedPlan(steps=plan.steps, reason="it cannot be done", step=step))
 
 
 SALAD = (
