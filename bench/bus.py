@@ -9,9 +9,11 @@ from collections.abc import Callable
 from pathlib import Path
 from statistics import median
 
-from common import bus, codec, topics
 from common import messages as m
-from common.zenoh_io import Publisher
+from common import topics
+from common.bus import codec
+from common.bus.delivery import Publisher
+from common.bus.session import open_session
 from tests.support import Site, site
 
 ROUNDS = 1000
@@ -21,7 +23,7 @@ PING, PONG = topics.NAVIGATION_GOAL, topics.NAVIGATION_STATUS
 
 def echo(connect: str, namespace: str, raw: bool) -> None:
     """The other side: answers until it is ended."""
-    with bus.session(connect, namespace) as session:
+    with open_session(connect, namespace) as session:
         publisher = session.declare_publisher("raw/pong") if raw else Publisher(session, PONG)
 
         def answer(payload: bytes) -> None:

@@ -7,10 +7,10 @@ import msgspec
 
 from common import config, topics
 from common import messages as m
-from common.clock import ManualClock
-from common.lockstep import DT, InProcess
-from common.memory import MemoryBus, MemoryIo
+from common.bus.memory import MemoryBus, MemoryIo
 from common.scene import Obstacle, load_scene
+from common.time.clock import ManualClock
+from common.time.lockstep import DT, InProcess
 from services.navigation.service import NavigationService
 from services.sim import truth
 from services.sim.service import SimService

@@ -15,8 +15,9 @@ from typing import Any
 
 from bench.payloads import Payloads
 from cli.services import SERVICES
-from common import bus, codec, topics
 from common import messages as m
+from common import topics
+from common.bus import codec, delivery
 from common.topics import Topic
 from evaluation.stack import service_class
 from tests.support import Site, eventually, free_port, site
@@ -55,7 +56,7 @@ class Storm:
     def learn(self) -> None:
         """Take what the robot says now as examples to vary."""
         for topic in self.topics:
-            for payload in bus.fetch(self.session, topic.key, timeout=0.3).values() if topic.latched else ():
+            for payload in delivery.fetch(self.session, topic.key, timeout=0.3).values() if topic.latched else ():
                 try:
                     self.payloads.learn(topic, codec.decode(topic, payload))
                 except codec.DecodeError:
@@ -112,7 +113,7 @@ class Storm:
     def health(self) -> dict[str, m.Health]:
         """What every process says of itself."""
         found = {}
-        for payload in bus.fetch(self.session, "service/*/health", timeout=5.0).values():
+        for payload in delivery.fetch(self.session, "service/*/health", timeout=5.0).values():
             record = codec.decode_as(m.Health, payload)
             found[record.name] = record
         return found
@@ -143,10 +144,10 @@ class Storm:
 
     def recover(self) -> None:
         """Undo what well-formed commands have done: a stopped robot, a pause, a world in disorder."""
-        bus.fetch(self.session, topics.SIM_PAUSE, b'{"paused": false}', timeout=5.0)
-        bus.fetch(self.session, topics.SIM_RESET, b'{"seed": 1}', timeout=30.0)
-        bus.send(self.session, topics.VOICE_COMMAND, m.VoiceCommand(text="cancel", id="calm"))
-        bus.send(self.session, topics.ROBOT_RESUME, m.RobotResume(source="fuzz"))
+        delivery.fetch(self.session, topics.SIM_PAUSE, b'{"paused": false}', timeout=5.0)
+        delivery.fetch(self.session, topics.SIM_RESET, b'{"seed": 1}', timeout=30.0)
+        delivery.send(self.session, topics.VOICE_COMMAND, m.VoiceCommand(text="cancel", id="calm"))
+        delivery.send(self.session, topics.ROBOT_RESUME, m.RobotResume(source="fuzz"))
 
     def fetch(self, item: str, patience: float) -> str:
         """Ask for an item: `delivered`, `failed`, `cancelled`, or why there is no outcome."""
@@ -154,7 +155,7 @@ class Storm:
         end, asked = time.monotonic() + patience, 0.0
         state, before = m.BrainState(state="IDLE"), None
         while time.monotonic() < end:
-            for payload in bus.fetch(self.session, topics.BRAIN_STATE.key).values():
+            for payload in delivery.fetch(self.session, topics.BRAIN_STATE.key).values():
                 state = codec.decode(topics.BRAIN_STATE, payload)
             last = state.last
             if asked and last is not None and last != before and last.command == wanted.text:
@@ -162,7 +163,7 @@ class Storm:
             waiting = state.state in ("WAITING", "LISTENING") and time.monotonic() - asked > 10.0
             if waiting:
                 asked, before = time.monotonic(), last
-                bus.send(self.session, topics.VOICE_COMMAND, wanted)
+                delivery.send(self.session, topics.VOICE_COMMAND, wanted)
             time.sleep(0.5)
         known = f"{state.state} {state.command!r} {state.step} {state.detail}"
         return f"no outcome in {patience:.0f} s; last seen {known}"

@@ -16,11 +16,11 @@ import numpy as np
 
 from common import messages as m
 from common import topics
-from common.clock import ManualClock
+from common.bus.memory import MemoryBus, MemoryIo
 from common.geometry import compose, inverse, yaw_quat
-from common.lockstep import DT, InProcess
-from common.memory import MemoryBus, MemoryIo
 from common.scene import ObjectSpec, Scene, body_name, load_scene
+from common.time.clock import ManualClock
+from common.time.lockstep import DT, InProcess
 from evaluation.statistics import percent
 from evaluation.watch import Watch, WatchConfig
 from judge.effects import Effect

@@ -13,7 +13,7 @@ import numpy as np
 
 from bench.driving import Driver
 from common.geometry import wrap
-from common.lockstep import DT
+from common.time.lockstep import DT
 
 LIMIT, LIMIT_ANGLE = 0.05, math.radians(3.0)
 PERIOD = 5

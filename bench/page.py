@@ -22,8 +22,9 @@ import zstandard
 from aiohttp import ClientSession
 
 from cli.link import Link, Watch
-from common import bus, topics
 from common import messages as m
+from common import topics
+from common.bus.session import open_session
 from tests.support import free_port
 
 SETTLE = 3.0
@@ -158,7 +159,7 @@ def main() -> None:
             url = next(word for word in told.split() if word.startswith("http://"))
             rows: list[dict[str, Any]] = json.loads(tidybot("ps", "--json"))
             pid = next(int(row["pid"]) for row in rows if row["name"] == "dashboard")
-            with bus.session(f"tcp/127.0.0.1:{port}") as session:
+            with open_session(f"tcp/127.0.0.1:{port}") as session:
                 robot = Robot(Link(session, ""), pid)
                 print(f"{'start':22} {robot.cpu():5.1f} s of a core until the page was up", flush=True)
                 for _ in range(2):

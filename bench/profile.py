@@ -20,8 +20,8 @@ from typing import Any
 import msgspec
 
 from bench.meter import NOBODY, Meter
-from common.iobase import IoBase
-from common.lockstep import InProcess
+from common.bus.base import IoBase
+from common.time.lockstep import InProcess
 from services.camera.render import choose
 
 REST = "rest"
@@ -50,9 +50,9 @@ PARTS = {
     "services.navigation.planner:PathPlanner.field": "planning",
     "services.navigation.planner:PathPlanner.path": "planning",
     "services.navigation.search:Search.next": "search",
-    "common.codec:encode": "encoding",
-    "common.codec:decode": "decoding",
-    "common.memory:MemoryBus.put": "delivery",
+    "common.bus.codec:encode": "encoding",
+    "common.bus.codec:decode": "decoding",
+    "common.bus.memory:MemoryBus.put": "delivery",
     "services.camera.offscreen:Offscreen.__init__": "opening GL",
     "services.camera.render:Renderer.__init__": "its model",
     "services.perception.body:Body.__init__": "its model",

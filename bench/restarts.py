@@ -25,7 +25,7 @@ from cli.plan import Plan
 from cli.services import SERVICES
 from cli.supervision import Supervision, free_port
 from cli.up import bring_up
-from common import bus
+from common.bus.session import open_session
 
 PATIENCE, CALM, TRIES = 180.0, 8.0, 10
 HALVES = (("speech", "planner", "perception", "camera"), ("sim", "navigation", "manipulation", "brain", "dashboard"))
@@ -175,7 +175,7 @@ def main() -> int:
         plan = Plan(options)
         try:
             bring_up(supervision, plan, lambda text: None)
-            with bus.session(plan.connect, plan.namespace) as session:
+            with open_session(plan.connect, plan.namespace) as session:
                 return run(Robot(supervision, Link(session, plan.connect), plan.names), args.restarts, args.seconds)
         finally:
             supervision.stop()

@@ -12,10 +12,10 @@ import msgspec
 
 from common import messages as m
 from common import topics
+from common.bus.port import Io
 from common.config import Config
-from common.io import Io
-from common.lockstep import DT
 from common.runtime import main
+from common.time.lockstep import DT
 
 RANDOM = ("epoch", "world")  # of the process, not of the run
 UNTRACED = {t.key for t in topics.CLOCKS} | {

@@ -11,10 +11,11 @@ from numpy.typing import NDArray
 
 from cli.errors import CliError
 from cli.link import Link, Watch
-from common import bus, codec, topics
 from common import messages as m
-from common.clock import monotonic
-from common.lockstep import DT
+from common import topics
+from common.bus import codec, delivery
+from common.time.clock import monotonic
+from common.time.lockstep import DT
 
 RATE = 16000
 CHUNK = 0.1
@@ -100,7 +101,7 @@ class Player:
                     last = sent == len(self._chunks) - 1
                     at = (start + sent * _PERIOD) * DT
                     chunk = m.AudioChunk(t=at, data=self._chunks[sent], rate=RATE, seq=sent, end=last, addressed=True)
-                    stamp = bus.stamp(tick.tick if tick.lockstep else None)
+                    stamp = delivery.stamp(tick.tick if tick.lockstep else None)
                     out.put(codec.encode(topics.AUDIO_PCM, chunk), attachment=stamp)
                     sent += 1
                     progress(at)

@@ -15,12 +15,12 @@ from cryptography.hazmat.primitives.asymmetric import ec
 from cryptography.x509.oid import ExtendedKeyUsageOID, NameOID
 
 from cli.errors import CliError
-from common.access import ROUTER, Subject
-from common.clock import unix_time
-from common.keys import CA, CERT, KEY
-from common.router import client, standalone
+from common.security.access import ROUTER, Subject
+from common.security.keys import CA, CERT, KEY
+from common.security.zenoh_config import SUBJECTS, client, standalone
+from common.time.clock import unix_time
 
-SUBJECTS, STANDALONE, CLIENT = "subjects.json", "router.json5", "client.json5"
+STANDALONE, CLIENT = "router.json5", "client.json5"
 HOSTS = ("localhost", "127.0.0.1", "::1", "router")  # `router` is its name in the compose file
 SKEW = timedelta(days=1)  # robots without a battery clock start in the past
 

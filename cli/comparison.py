@@ -7,8 +7,9 @@ from typing import Any
 
 import msgspec
 
-from common import codec, topics
 from common import messages as m
+from common import topics
+from common.bus import codec
 from common.topics import Topic
 
 EPOCHS = {"epoch", "world"}  # random for every start of a process

@@ -12,7 +12,7 @@ from cli.drivers import STALL, Driver, Unmet
 from cli.errors import CliError
 from cli.link import add_options, linked
 from common import topics
-from common.clock import monotonic, sleep
+from common.time.clock import monotonic, sleep
 
 RIVALS = {"navigation", "manipulation", "brain"}
 LISTEN = 2.0

@@ -11,9 +11,9 @@ from cli.errors import CliError, checked
 from cli.link import Link, use_keys
 from cli.services import NAMES
 from cli.supervision import WORLD, Supervision, run_dir
-from common import bus
-from common.clock import monotonic, sleep
-from common.keys import OFF
+from common.bus.session import BusError, open_session
+from common.security.keys import OFF
+from common.time.clock import monotonic, sleep
 
 
 def down(args: argparse.Namespace) -> int:
@@ -35,11 +35,11 @@ def rows(supervision: Supervision) -> list[dict[str, object]]:
     alive, health = set[str](), {}
     try:
         use_keys(info.keys or OFF)
-        with bus.session(info.connect, info.namespace, patience=1.0) as session:
+        with open_session(info.connect, info.namespace, patience=1.0) as session:
             link = Link(session, info.connect)
             # The router has no token of its own: this session shows that it is alive.
             alive, health = link.alive() | {"router"}, link.health()
-    except bus.BusError:
+    except BusError:
         pass
     found: list[dict[str, object]] = []
     for p in processes:

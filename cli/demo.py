@@ -17,11 +17,12 @@ from cli.programs import ROOT
 from cli.supervision import Supervision, free_port, port_is_free, run_dir
 from cli.up import Stopped, bring_up, check_free, interruptible, state_line
 from cli.verdict import Verdict, Witness
-from common import bus, topics
 from common import messages as m
-from common.clock import monotonic
-from common.keys import OFF
+from common import topics
+from common.bus.session import open_session
 from common.scene import Scene, SceneError, load_scene
+from common.security.keys import OFF
+from common.time.clock import monotonic
 from judge.observer import WATCH
 
 VOICE = ROOT / "docs" / "audio" / "bring_me_the_red_mug.wav"
@@ -184,7 +185,7 @@ def demo(args: argparse.Namespace) -> int:
             screen.say(f"starting on {plan.connect}, speed {plan.speed}, seed {args.seed or 0}")
             screen.say(f"ready in {bring_up(supervision, plan, screen.say):.1f} s")
             screen.say(f'"{text}" ' + (f"from {recording.name}" if recording else "typed"))
-            with bus.session(plan.connect, plan.namespace) as session:
+            with open_session(plan.connect, plan.namespace) as session:
                 link = Link(session, plan.connect)
                 verdict = Demo(link, screen, scene, thing).perform(text, chunks, args.timeout)
                 screen.say(take_picture(plan, args.out))

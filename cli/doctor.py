@@ -19,8 +19,9 @@ from cli.authority import Authority
 from cli.errors import CliError
 from cli.programs import ROOT
 from cli.supervision import Supervision, port_is_free, run_dir
-from common import config, keys
-from common.clock import unix_time
+from common import config
+from common.security import keys
+from common.time.clock import unix_time
 
 EXPIRES_SOON = 30  # days
 PAGE_PORT = 8080

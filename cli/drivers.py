@@ -6,8 +6,9 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from cli.link import Link
-from common import codec, topics
-from common.clock import monotonic, sleep
+from common import topics
+from common.bus import codec
+from common.time.clock import monotonic, sleep
 from common.topics import Topic
 
 HEARD: tuple[Topic[Any], ...] = (

@@ -20,7 +20,8 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
 from cli.errors import CliError
-from common import codec, topics
+from common import topics
+from common.bus import codec
 from common.recording import Recording
 
 WIDTH, HEIGHT = 480, 360

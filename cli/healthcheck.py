@@ -6,7 +6,8 @@ Ten of these run every few seconds, so it imports no more than the bus.
 import os
 import sys
 
-from common import bus, topics
+from common import topics
+from common.bus.session import BusError, default_connect, open_session
 
 PATIENCE = 3.0
 
@@ -17,11 +18,11 @@ def main() -> int:
         return 2
     name = sys.argv[1]
     try:
-        connect = os.environ.get("TIDYBOT_CONNECT") or bus.default_connect()
-        with bus.session(connect, os.environ.get("TIDYBOT_NAMESPACE", ""), name=name) as session:
+        connect = os.environ.get("TIDYBOT_CONNECT") or default_connect()
+        with open_session(connect, os.environ.get("TIDYBOT_NAMESPACE", ""), name=name) as session:
             tokens = session.liveliness().get(topics.ALIVE_KEY.format(name="*"), timeout=PATIENCE)
             alive = {str(token.ok.key_expr).split("/")[1] for token in tokens if token.ok is not None}
-    except bus.BusError as error:
+    except BusError as error:
         print(error, file=sys.stderr)
         return 1
     if name == "router" or name in alive:

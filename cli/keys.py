@@ -10,8 +10,8 @@ import msgspec
 from cli.authority import Authority, hosts_of
 from cli.errors import CliError
 from cli.services import NAMES
-from common.access import OPERATOR, ROUTER, Role, Subject
-from common.keys import OFF, default_directory
+from common.security.access import OPERATOR, ROUTER, Role, Subject
+from common.security.keys import OFF, default_directory
 
 DAYS = 365.0
 _WORD = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]*")

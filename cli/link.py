@@ -11,10 +11,12 @@ import msgspec
 
 from cli.errors import CliError
 from cli.supervision import Supervision, run_dir
-from common import bus, codec, topics
 from common import messages as m
-from common.clock import monotonic
-from common.keys import OFF
+from common import topics
+from common.bus import codec, delivery
+from common.bus.session import default_connect, open_session
+from common.security.keys import OFF
+from common.time.clock import monotonic
 from common.topics import Topic
 
 M = TypeVar("M", bound=m.Message)
@@ -28,7 +30,7 @@ class Link:
 
     def latest(self, topic: Topic[M]) -> M | None:
         """The latched value, None when its writer does not answer."""
-        for payload in bus.fetch(self.session, topic.key).values():
+        for payload in delivery.fetch(self.session, topic.key).values():
             try:
                 return codec.decode(topic, payload)
             except codec.DecodeError as error:
@@ -43,7 +45,7 @@ class Link:
     def health(self) -> dict[str, m.Health]:
         """The last health record of every live service."""
         found = {}
-        for payload in bus.fetch(self.session, "service/*/health").values():
+        for payload in delivery.fetch(self.session, "service/*/health").values():
             try:
                 record = codec.decode_as(m.Health, payload)
             except codec.DecodeError:
@@ -52,7 +54,7 @@ class Link:
         return found
 
     def send(self, topic: Topic[M], message: M) -> None:
-        bus.send(self.session, topic, message)
+        delivery.send(self.session, topic, message)
 
     def query(self, key: str, request: dict[str, object] | None = None) -> Any:
         """The JSON answer of a queryable.
@@ -61,7 +63,7 @@ class Link:
             CliError: nobody answers.
         """
         payload = msgspec.json.encode(request) if request is not None else b""
-        answers = bus.fetch(self.session, key, payload, timeout=5.0)
+        answers = delivery.fetch(self.session, key, payload, timeout=5.0)
         if not answers:
             raise CliError(f"nothing answers on {key}; is the simulation up? See `tidybot ps`")
         return msgspec.json.decode(next(iter(answers.values())))
@@ -118,7 +120,7 @@ def address(args: argparse.Namespace) -> tuple[str, str]:
         try:
             info = Supervision(run_dir()).info()
         except CliError:
-            return bus.default_connect(), namespace or ""
+            return default_connect(), namespace or ""
         use_keys(info.keys or OFF)
         return info.connect, info.namespace if namespace is None else namespace
     return connect, namespace or ""
@@ -137,7 +139,7 @@ def linked(args: argparse.Namespace, patience: float = 3.0) -> Iterator[Link]:
         BusError: no router, or a bad endpoint.
     """
     connect, namespace = address(args)
-    with bus.session(connect, namespace, patience=patience) as session:
+    with open_session(connect, namespace, patience=patience) as session:
         yield Link(session, connect)
 
 

@@ -26,7 +26,7 @@ from cli import (
     watch,
 )
 from cli.errors import CliError, near
-from common.bus import BusError
+from common.bus.session import BusError
 
 FAILED, MISUSED, INTERRUPTED = 1, 2, 130
 

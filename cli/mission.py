@@ -13,7 +13,7 @@ from cli.errors import CliError, checked
 from cli.link import Link, Watch, add_options, linked
 from common import messages as m
 from common import topics
-from common.clock import monotonic
+from common.time.clock import monotonic
 
 OPEN = ("WAITING", "LISTENING", "COMPLETED", "ERROR")
 ACCEPT, KEPT, HEAR, LISTEN = 5.0, 30.0, 60.0, 90.0

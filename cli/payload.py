@@ -4,8 +4,9 @@ from typing import Any
 
 import msgspec
 
-from common import codec, topics
 from common import messages as m
+from common import topics
+from common.bus import codec
 
 SHOWN_BYTES, SHOWN_ITEMS = 24, 400
 STATE_FIELD = {topics.SYSTEM_STATUS.key: "state", topics.BRAIN_STATE.key: "state", topics.SIM_STATUS.key: "state"}

@@ -10,10 +10,11 @@ from cli.errors import CliError, checked
 from cli.link import use_keys
 from cli.services import NAMES, SECTIONS, SERVICES, Service
 from cli.supervision import RunInfo, run_dir
-from common import config, keys
-from common.access import OPERATOR, ROUTER
-from common.clock import unix_time
-from common.keys import OFF
+from common import config
+from common.security import keys
+from common.security.access import OPERATOR, ROUTER
+from common.security.keys import OFF
+from common.time.clock import unix_time
 
 PIPELINES = ("fetch", "vla")
 """The values of `brain.pipeline`: the eight-state system flow, or voice, plan, vision and action."""
@@ -94,7 +95,7 @@ def certificates(option: str | None, names: Sequence[str], namespace: str) -> st
                 raise CliError(f"no keys in {keys.default_directory()}; `tidybot keys` makes them")
             use_keys(OFF)
             return ""
-        from common.certificate import Identity
+        from common.security.certificate import Identity
 
         for name in (*names, OPERATOR):
             where = namespace if name != ROUTER else ""

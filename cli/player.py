@@ -12,12 +12,12 @@ import msgspec
 from cli.services import SERVICES
 from common import messages as m
 from common import topics
-from common.clock import ManualClock
-from common.iobase import UNSTAMPED
-from common.lockstep import DT, period_of
-from common.memory import MemoryBus, MemoryIo
+from common.bus.mailbox import UNSTAMPED
+from common.bus.memory import MemoryBus, MemoryIo
 from common.recording import Recording, Row
 from common.scene import Scene
+from common.time.clock import ManualClock
+from common.time.lockstep import DT, period_of
 from common.topics import Topic
 
 M = TypeVar("M", bound=m.Message)

@@ -13,14 +13,16 @@ from typing import Any
 from cli.errors import CliError
 from cli.link import Link, add_options, address
 from cli.supervision import Supervision, run_dir
-from common import bus, codec, topics
 from common import messages as m
-from common.clock import monotonic, unix_time
+from common import topics
+from common.bus import codec, delivery
+from common.bus.session import NoRouter, open_session
 from common.config import config_dir
-from common.lockstep import DT
 from common.process import StopSignal
 from common.recording import Recorder, RecordingError
 from common.scene import scene_path
+from common.time.clock import monotonic, unix_time
+from common.time.lockstep import DT
 
 FLUSH, BATCH = 1.0, 2000
 # The brain asks whether anybody subscribes to these before it counts on the service that reads them, so the
@@ -47,20 +49,22 @@ class Listener:
         # The slower clocks say nothing that `sim/clock` does not.
         marks = (topics.SIM_CLOCK, topics.LOCKSTEP_ACK)
         others = {t.key for t in (*READERS, *topics.SLOWER_CLOCKS.values(), *marks)}
-        self._kept = [bus.subscribe(session, t, self._receive) for t in topics.TABLE if t.key not in others]
-        self._kept += [bus.listen(session, key, self._receive) for key in ("service/*/health", "log/*")]
-        self._kept.append(bus.watch_tokens(session, lambda name, alive: self.tokens.put((name, alive))))
+        self._kept = [delivery.subscribe(session, t, self._receive) for t in topics.TABLE if t.key not in others]
+        self._kept += [delivery.listen(session, key, self._receive) for key in ("service/*/health", "log/*")]
+        self._kept.append(delivery.watch_tokens(session, lambda name, alive: self.tokens.put((name, alive))))
         # What says that a step is over, last here and first in `close`: of a step so recorded, everything was heard.
-        self._marks = [bus.subscribe(session, t, self._receive) for t in marks]
+        self._marks = [delivery.subscribe(session, t, self._receive) for t in marks]
 
     def _receive(self, sample: Any) -> None:
-        self.inbox.put((str(sample.key_expr), sample.payload.to_bytes(), bus.tick_of(sample), bus.sent_at(sample)))
+        self.inbox.put(
+            (str(sample.key_expr), sample.payload.to_bytes(), delivery.tick_of(sample), delivery.sent_at(sample))
+        )
 
     def gate(self, alive: set[str]) -> None:
         """Listen to the goals of services that are there, and to no others."""
         for topic, reader in READERS.items():
             if reader in alive and topic.key not in self._gated:
-                self._gated[topic.key] = bus.subscribe(self._session, topic, self._receive)
+                self._gated[topic.key] = delivery.subscribe(self._session, topic, self._receive)
             elif reader not in alive and topic.key in self._gated:
                 self._gated.pop(topic.key).undeclare()
 
@@ -173,9 +177,9 @@ def record(args: argparse.Namespace) -> int:
     except (OSError, RecordingError) as error:
         raise CliError(str(error)) from None
     try:
-        with bus.session(connect, namespace, wait=_patience(args.wait, stop, connect)) as session:
+        with open_session(connect, namespace, wait=_patience(args.wait, stop, connect)) as session:
             return _run(args, recorder, Link(session, connect), stop)
-    except bus.NoRouter:
+    except NoRouter:
         raise CliError("stopped before a router was there") from None
     finally:
         _close(recorder)

@@ -13,9 +13,9 @@ from cli.errors import CliError, checked, port_number
 from cli.player import Player, service_class
 from cli.services import NAMES
 from common import config, topics
-from common.clock import monotonic
 from common.recording import RAW, Recording, RecordingError, repair
 from common.scene import SceneError, load_scene
+from common.time.clock import monotonic
 
 SLACK = 0.2  # outside lockstep the replay cannot know in which step a message was seen
 LOCKSTEP_SLACK = 0.1

@@ -6,7 +6,7 @@ from cli.errors import CliError
 from cli.link import Watch, add_options, linked
 from common import messages as m
 from common import topics
-from common.clock import monotonic
+from common.time.clock import monotonic
 
 CONFIRM = 3.0
 

@@ -19,7 +19,7 @@ from supervisor.xmlrpc import SupervisorTransport
 from cli.errors import CliError
 from cli.programs import ROOT, ROUTER_SOCKET, WATCHDOG, endpoints, render_config, socket_path
 from cli.services import Service
-from common import clock
+from common.time import clock
 
 STATES = {
     "RUNNING": "running",

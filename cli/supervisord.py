@@ -15,7 +15,7 @@ from supervisor.options import ProcessConfig, ServerOptions, decode_wait_status
 from supervisor.process import Subprocess
 from supervisor.states import ProcessStates
 
-from common import clock
+from common.time import clock
 
 PR_SET_PDEATHSIG = 1
 BAD_CONFIGURATION = 2

@@ -13,9 +13,10 @@ import msgspec
 from cli.errors import CliError, near
 from cli.link import Link, add_options, known_keys, linked
 from cli.payload import line
-from common import bus, codec, topics
 from common import messages as m
-from common.clock import monotonic, sleep
+from common import topics
+from common.bus import codec, delivery
+from common.time.clock import monotonic, sleep
 
 
 def matches(expression: str, key: str) -> bool:
@@ -75,7 +76,7 @@ def echo(args: argparse.Namespace) -> int:
     with linked(args) as link:
         seen: dict[str, bytes] = {}
         kept = link.session.declare_subscriber(key, lambda s: inbox.put((str(s.key_expr), s.payload.to_bytes())))
-        for one, payload in sorted(bus.fetch(link.session, key, timeout=1.0).items()):
+        for one, payload in sorted(delivery.fetch(link.session, key, timeout=1.0).items()):
             if topics.type_of(one) is not None:
                 seen[one] = payload
                 inbox.put((one, payload))
@@ -145,7 +146,7 @@ def pub(args: argparse.Namespace) -> int:
 
 def _note(link: Link, topic: "topics.Topic[Any]") -> None:
     """Let the message leave before the session closes: the answer comes back after it has gone out."""
-    bus.fetch(link.session, "service/*/health", timeout=1.0)
+    delivery.fetch(link.session, "service/*/health", timeout=1.0)
 
 
 def compose(topic: "topics.Topic[Any]", words: list[str]) -> m.Message:

@@ -13,9 +13,10 @@ from cli.plan import Plan, add_start_options
 from cli.programs import ROOT, socket_path
 from cli.services import NAMES
 from cli.supervision import Supervision, port_is_free, run_dir
-from common import bus, topics
 from common import messages as m
-from common.clock import monotonic, sleep
+from common import topics
+from common.bus.session import NoRouter, open_session
+from common.time.clock import monotonic, sleep
 
 READY_LIMIT = 120.0
 EXTRA = {"camera", "dashboard"}  # the brain starts missions without these
@@ -75,7 +76,7 @@ def bring_up(supervision: Supervision, plan: Plan, say: Callable[[str], None], d
         _until(lambda: not port_is_free(plan.port), supervision, "the router", began)
         say(f"  router        {monotonic() - began:4.1f} s  {plan.connect}")
     waiting = {s.name for s in plan.services if s.token}
-    with bus.session(plan.connect, plan.namespace, wait=_gone(supervision, began)) as session:
+    with open_session(plan.connect, plan.namespace, wait=_gone(supervision, began)) as session:
         link = Link(session, plan.connect)
         while waiting:
             for name in sorted(waiting & link.alive()):
@@ -97,7 +98,7 @@ def _awake(link: Link) -> bool:
 
 
 def _gone(supervision: Supervision, began: float) -> Callable[[float], bool]:
-    """For `bus.session`: give up as soon as there is nobody left to wait for."""
+    """For `open_session`: give up as soon as there is nobody left to wait for."""
 
     def wait(seconds: float) -> bool:
         sleep(seconds)
@@ -143,8 +144,8 @@ def follow(supervision: Supervision, plan: Plan, say: Callable[[str], None]) -> 
     seen: dict[str, tuple[int, str]] = {}
     shown = ""
     with (
-        contextlib.suppress(bus.NoRouter),
-        bus.session(plan.connect, plan.namespace, wait=_gone(supervision, monotonic())) as session,
+        contextlib.suppress(NoRouter),
+        open_session(plan.connect, plan.namespace, wait=_gone(supervision, monotonic())) as session,
     ):
         watch = Watch(Link(session, plan.connect), topics.BRAIN_STATE)
         while not supervision.died():

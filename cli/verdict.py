@@ -7,8 +7,8 @@ import msgspec
 from cli.link import Link, Watch
 from common import messages as m
 from common import topics
-from common.clock import monotonic
 from common.scene import Scene
+from common.time.clock import monotonic
 from judge.evidence import Want
 from judge.goal import Goal
 from judge.observer import WATCH, Observer

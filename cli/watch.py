@@ -21,7 +21,7 @@ from rich.tree import Tree
 from cli.link import Link, Watch, add_options, linked
 from common import messages as m
 from common import topics
-from common.clock import monotonic
+from common.time.clock import monotonic
 
 COLOURS = {"RUNNING": "bold blue", "SUCCESS": "green", "FAILURE": "red", "INVALID": "bright_black"}
 GOOD, BAD, FAINT = "green", "bold red", "bright_black"

@@ -14,11 +14,12 @@ from cli.errors import CliError
 from cli.link import Link, use_keys
 from cli.services import SERVICES
 from cli.supervision import ProcessState, Supervision, run_dir
-from common import bus, codec
 from common import messages as m
-from common.clock import monotonic, unix_time
-from common.keys import OFF
+from common.bus import codec
+from common.bus.session import BusError, open_session
 from common.process import StopSignal, die_with_parent
+from common.security.keys import OFF
+from common.time.clock import monotonic, unix_time
 
 # In lockstep a step may wait for slow work, such as the first picture on a busy machine.
 FROZEN, STUCK = 2.0, 60.0
@@ -75,7 +76,7 @@ def watch(supervision: Supervision, stop: StopSignal) -> None:
     info, pulse = supervision.info(), Pulse()
     tokens = {s.name for s in SERVICES if s.token}
     use_keys(info.keys or OFF)
-    with bus.session(info.connect, info.namespace, wait=stop.wait) as session:
+    with open_session(info.connect, info.namespace, wait=stop.wait) as session:
         link, records = Link(session, info.connect), SimpleQueue[bytes]()
         kept: Any = session.declare_subscriber("service/*/health", lambda s: records.put(s.payload.to_bytes()))
         while not stop.wait(LOOK):
@@ -107,7 +108,7 @@ def main() -> int:
     while not stop.is_set():
         try:
             watch(supervision, stop)
-        except (CliError, bus.BusError) as error:
+        except (CliError, BusError) as error:
             print(f"{unix_time():.1f} {error}", flush=True)
             stop.wait(LOOK)
     return 0

@@ -6,8 +6,9 @@ from typing import Any
 
 import msgspec
 
-from common import codec, topics
 from common import messages as m
+from common import topics
+from common.bus import codec
 
 
 def _type_name(kind: Any) -> str:

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from common import messages as m
-from common.clock import Clock
+from common.time.clock import Clock
 
 LEVELS = {"debug": 10, "info": 20, "warning": 30, "error": 40}
 

@@ -17,8 +17,9 @@ from mcap.stream_reader import StreamReader, breakup_chunk
 from mcap.writer import CompressionType, Writer
 from zstandard import ZstdError
 
-from common import codec, topics
 from common import messages as m
+from common import topics
+from common.bus import codec
 from common.schemas import schema_of
 
 PROFILE = "tidybot"

@@ -14,8 +14,8 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TaskID, TextC
 from cli.errors import CliError
 from cli.main import FAILED, INTERRUPTED, parser
 from cli.up import Stopped, interruptible
-from common.clock import monotonic
 from common.config import ConfigError
+from common.time.clock import monotonic
 from evaluation import cluster, html_report, pool, processes, report, runner
 from evaluation.case import Case, Result
 from evaluation.lane import Run

@@ -7,8 +7,8 @@ import numpy as np
 
 from common import messages as m
 from common import topics
+from common.bus.port import Io, Job
 from common.config import Config
-from common.io import Io, Job
 from evaluation.case import Case, Line, Observed
 from evaluation.person import Manner, Person
 from evaluation.shortest import FloorPlan

@@ -4,8 +4,8 @@ import resource
 import tempfile
 from typing import Any
 
-from common.iobase import UNSTAMPED
-from common.memory import MemoryBus, MemoryIo
+from common.bus.mailbox import UNSTAMPED
+from common.bus.memory import MemoryBus, MemoryIo
 from common.topics import Topic
 
 

@@ -19,7 +19,7 @@ from typing import Any
 
 import msgspec
 
-from common.clock import monotonic
+from common.time.clock import monotonic
 from evaluation.case import Case, Observed, Result
 from evaluation.verdict import judge
 from services.camera.render import best, environment

@@ -14,10 +14,10 @@ import numpy as np
 from msgspec.structs import replace
 
 from common import topics
-from common.lockstep import DT
 from common.robot import SIDES, Hand, subtree
 from common.scene import Scene
 from common.support import inside
+from common.time.lockstep import DT
 from evaluation.shortest import FloorPlan
 from evaluation.strikes import Report, Struck
 from services.sim.objects import GROUP

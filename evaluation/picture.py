@@ -6,7 +6,8 @@ from collections.abc import Callable
 
 from PIL import Image
 
-from common import codec, topics
+from common import topics
+from common.bus import codec
 from services.camera.outlook import outlook
 from services.camera.render import Renderer
 

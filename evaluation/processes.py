@@ -18,11 +18,13 @@ from cli.plan import Plan
 from cli.services import SERVICES, Service
 from cli.supervision import Supervision, free_port
 from cli.up import bring_up
-from common import bus, config, topics
-from common.clock import SimClock, monotonic
+from common import config, topics
+from common.bus import delivery
+from common.bus.session import BusError, open_session
 from common.process import StopSignal
-from common.runtime import Process
 from common.scene import load_scene
+from common.service_process import Process
+from common.time.clock import SimClock, monotonic
 from evaluation.case import Case, Observed, Result
 from evaluation.examiner import Examiner, ExaminerConfig, examiner_of
 from evaluation.inject import targets
@@ -74,7 +76,7 @@ def run(case: Case, progress: Progress = lambda t, state: None) -> Result:
         if why := unavailable(case):
             raise CliError(f"not available as processes: {why}")
         return _run(case, directory, supervision, progress, began)
-    except (CliError, bus.BusError) as error:
+    except (CliError, BusError) as error:
         return judge(case, Observed(crash=str(error).partition("\n")[0]), monotonic() - began)
     finally:
         supervision.stop()
@@ -87,7 +89,7 @@ def _run(case: Case, directory: Path, supervision: Supervision, progress: Progre
     bring_up(supervision, plan, lambda text: None)
     stop, clock = Ended(progress), SimClock()
     shared = config.RuntimeConfig(seed=case.seed, lockstep=True, log_level="error")
-    with bus.session(plan.connect, plan.namespace) as session:
+    with open_session(plan.connect, plan.namespace) as session:
         process = Process(examiner_of(case), ExaminerConfig(), shared, scene, session, clock, stop, directory)
         examiner: Examiner = process.service
         injected = StrikeFile(directory / STRIKES)
@@ -115,11 +117,11 @@ def _run(case: Case, directory: Path, supervision: Supervision, progress: Progre
 
 
 def _ask(session: Any, payload: bytes) -> bytes | None:
-    return next(iter(bus.fetch(session, topics.BRAIN_MISSIONS, payload).values()), None)
+    return next(iter(delivery.fetch(session, topics.BRAIN_MISSIONS, payload).values()), None)
 
 
 def _value(session: Any, key: str) -> bytes | None:
-    return next(iter(bus.fetch(session, key).values()), None)
+    return next(iter(delivery.fetch(session, key).values()), None)
 
 
 def _plan(case: Case, directory: Path) -> Plan:

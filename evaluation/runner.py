@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from common import topics
-from common.clock import monotonic
-from common.lockstep import DT
+from common.time.clock import monotonic
+from common.time.lockstep import DT
 from evaluation.case import Case, Observed, Result, Strike
 from evaluation.examiner import Examiner, examiner_of
 from evaluation.inject import injected, targets

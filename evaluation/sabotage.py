@@ -12,7 +12,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from cli.supervision import WORLD, Supervision
-from common.clock import monotonic
+from common.time.clock import monotonic
 from evaluation.case import Case, Strike
 from evaluation.strikes import Report, Struck
 

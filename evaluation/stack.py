@@ -13,10 +13,10 @@ import msgspec
 from cli.services import SERVICES
 from common import config, topics
 from common import messages as m
-from common.clock import ManualClock
-from common.lockstep import DT, InProcess
-from common.memory import MemoryIo
+from common.bus.memory import MemoryIo
 from common.scene import Scene, load_scene
+from common.time.clock import ManualClock
+from common.time.lockstep import DT, InProcess
 from evaluation.harm import CutBus, FullDisk
 from services.camera.render import choose
 

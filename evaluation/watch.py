@@ -4,8 +4,8 @@ from collections.abc import Callable
 
 from common import messages as m
 from common import topics
+from common.bus.port import Io
 from common.config import Config
-from common.io import Io
 from judge.observer import Observer
 
 

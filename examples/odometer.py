@@ -7,8 +7,8 @@ from math import hypot
 
 from common import messages as m
 from common import topics
+from common.bus.port import Io
 from common.config import Config
-from common.io import Io
 from common.runtime import main
 from common.topics import Topic
 

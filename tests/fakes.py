@@ -2,8 +2,8 @@
 
 from common import messages as m
 from common import topics
+from common.bus.port import Io
 from common.config import Config
-from common.io import Io
 from common.runtime import main
 
 

@@ -4,12 +4,12 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeVar
 
-from common import codec
 from common import messages as m
-from common.clock import ManualClock
-from common.lockstep import DT, period_of
-from common.memory import MemoryBus, MemoryIo
+from common.bus import codec
+from common.bus.memory import MemoryBus, MemoryIo
 from common.scene import Scene
+from common.time.clock import ManualClock
+from common.time.lockstep import DT, period_of
 from common.topics import Topic
 
 M = TypeVar("M", bound=m.Message)

@@ -7,8 +7,8 @@ from typing import Any
 import msgspec
 
 from common import topics
-from common.lockstep import DT
 from common.scene import Scene, load_scene
+from common.time.lockstep import DT
 from services.sim.config import SimConfig
 from services.sim.service import SimService
 from tests.node import Node

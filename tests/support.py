@@ -14,7 +14,7 @@ from typing import TypeVar
 
 import zenoh
 
-from common import bus
+from common.bus.session import open_session
 
 T = TypeVar("T")
 ROOT = Path(__file__).resolve().parent.parent
@@ -111,7 +111,7 @@ class Site:
 
     @contextmanager
     def session(self) -> Iterator[zenoh.Session]:
-        with bus.session(self.connect, self.namespace) as opened:
+        with open_session(self.connect, self.namespace) as opened:
             yield opened
 
     def wait_alive(self, opened: zenoh.Session, *names: str) -> None:

@@ -7,9 +7,9 @@ from py_trees.behaviour import Behaviour
 
 from common import messages as m
 from common import topics
-from common.clock import unix_time
+from common.bus.port import Io
 from common.geometry import Pose2
-from common.io import Io
+from common.time.clock import unix_time
 from common.topics import Topic
 from services.brain.config import BrainConfig
 from services.brain.goals import Channel

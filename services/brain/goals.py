@@ -7,7 +7,7 @@ from typing import Any, Literal
 import msgspec
 
 from common import messages as m
-from common.io import Io
+from common.bus.port import Io
 from common.topics import BY_KEY, Topic
 
 Word = Literal["busy", "ok", "failed"]

@@ -1,7 +1,7 @@
 """`joint_states` as the heartbeat of the simulation or the hardware: nothing starts without it, and its loss stops."""
 
 from common import topics
-from common.io import Io
+from common.bus.port import Io
 
 MISSED = 200
 """Messages in a row whose absence means loss: 2.0 s at the declared 100 Hz, the silence after which the watchdog calls

@@ -6,8 +6,8 @@ from typing import Literal, Protocol
 
 import msgspec
 
-from common.clock import unix_time
 from common.messages import BrainStateName
+from common.time.clock import unix_time
 from services.brain.goals import Sent
 from services.brain.mission import Hand, Mission, Outcome
 

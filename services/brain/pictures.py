@@ -5,7 +5,7 @@ import re
 from collections.abc import Callable
 from pathlib import Path
 
-from common import files
+from common import atomic_file
 
 KEPT = 200
 """Files: at some 10 KB each 2 MB, a day of missions."""
@@ -31,7 +31,7 @@ class Pictures:
             numbers = [int(p.name.partition("-")[0]) for p in self._directory.glob("*.jpg") if p.name[0].isdigit()]
             number = max(numbers, default=0) + 1
             name = f"{number:06d}-{re.sub(r'[^A-Za-z0-9._-]', '_', mission_id)[:60]}.jpg"
-            why = files.replace(self._directory / name, jpeg)
+            why = atomic_file.replace(self._directory / name, jpeg)
             for old in sorted(self._directory.glob("*.jpg"))[:-KEPT]:
                 old.unlink(missing_ok=True)
         except (OSError, ValueError) as error:

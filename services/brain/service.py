@@ -5,8 +5,8 @@ from py_trees.common import Status
 
 from common import messages as m
 from common import topics
-from common.clock import unix_time
-from common.io import Io
+from common.bus.port import Io
+from common.time.clock import unix_time
 from services.brain.config import BrainConfig
 from services.brain.context import Context
 from services.brain.goals import Answer, Channel, Word

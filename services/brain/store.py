@@ -9,8 +9,8 @@ from typing import Any
 
 import msgspec
 
-from common.clock import unix_time
-from common.io import Io
+from common.bus.port import Io
+from common.time.clock import unix_time
 from services.brain.config import BrainConfig
 from services.brain.journal import ENTRIES_KEPT, KEPT, Checkpoint, Entry, Journal, MemoryJournal, Record
 from services.brain.mission import Mission, Outcome

@@ -4,7 +4,7 @@ import msgspec
 from py_trees.behaviour import Behaviour
 
 from common import topics
-from common.clock import unix_time
+from common.time.clock import unix_time
 from services.brain.context import Context
 from services.brain.journal import Checkpoint
 from services.brain.mission import Failure, Hand, Mission, fingers_hold

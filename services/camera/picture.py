@@ -5,7 +5,9 @@ import os
 import sys
 from pathlib import Path
 
-from common import bus, codec, topics
+from common import topics
+from common.bus import codec, delivery
+from common.bus.session import BusError, default_connect, open_session
 from services.camera.render import Renderer, View
 
 VIEWS = {
@@ -26,11 +28,11 @@ def main() -> int:
     parser.add_argument("--timeout", type=float, default=5.0)
     args = parser.parse_args()
     try:
-        connect = os.environ.get("TIDYBOT_CONNECT") or bus.default_connect()
-        with bus.session(connect, os.environ.get("TIDYBOT_NAMESPACE", ""), patience=args.timeout) as opened:
-            model = bus.fetch(opened, topics.SIM_MODEL.key, timeout=args.timeout)
-            state = bus.fetch(opened, topics.SIM_STATE.key, timeout=args.timeout)
-    except bus.BusError as error:
+        connect = os.environ.get("TIDYBOT_CONNECT") or default_connect()
+        with open_session(connect, os.environ.get("TIDYBOT_NAMESPACE", ""), patience=args.timeout) as opened:
+            model = delivery.fetch(opened, topics.SIM_MODEL.key, timeout=args.timeout)
+            state = delivery.fetch(opened, topics.SIM_STATE.key, timeout=args.timeout)
+    except BusError as error:
         print(f"picture: {error}", file=sys.stderr)
         return 2
     if not model or not state:

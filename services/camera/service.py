@@ -6,8 +6,8 @@ import numpy as np
 
 from common import messages as m
 from common import topics
+from common.bus.port import Io, Job
 from common.geometry import matrix_quat
-from common.io import Io, Job
 from services.camera.config import CameraConfig
 from services.camera.render import Renderer
 

@@ -2,8 +2,8 @@
 
 from common import messages as m
 from common import topics
+from common.bus.port import Io
 from common.geometry import Pose2
-from common.io import Io
 from services.dashboard.config import DashboardConfig
 from services.dashboard.overlay import marked
 from services.dashboard.panels import CAMERAS, Panels

@@ -9,7 +9,7 @@ from typing import Any
 import msgspec
 
 from common import topics
-from common.io import Io, Job
+from common.bus.port import Io, Job
 from services.dashboard.restart import NOBODY, Refused, Supervisor
 
 LOOK, MOST = 5.0, 30

@@ -4,8 +4,8 @@ from math import atan2
 
 from common import messages as m
 from common import topics
+from common.bus.port import Io
 from common.geometry import Pose2
-from common.io import Io
 from services.dashboard.history import Transcript
 from services.dashboard.picking import Picked
 

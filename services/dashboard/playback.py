@@ -12,15 +12,16 @@ from typing import Any
 
 import msgspec
 
-from common import codec, topics
 from common import messages as m
-from common.clock import monotonic
-from common.iobase import WorkerJob
-from common.memory import MemoryBus, MemoryIo
+from common import topics
+from common.bus import codec
+from common.bus.base import WorkerJob
+from common.bus.memory import MemoryBus, MemoryIo
 from common.process import StopSignal
 from common.recording import Recording, RecordingError, Row
 from common.runtime import StartError
 from common.scene import load_scene
+from common.time.clock import monotonic
 from services.dashboard import story
 from services.dashboard.config import DashboardConfig
 from services.dashboard.events import Words

@@ -6,8 +6,8 @@ from typing import Any
 
 from common import messages as m
 from common import topics
+from common.bus.port import Io, Job
 from common.geometry import Pose2
-from common.io import Io, Job
 from common.runtime import StartError
 from services.dashboard import markup, timeline
 from services.dashboard.bar import bar

@@ -3,8 +3,9 @@
 from collections.abc import Iterable
 from typing import Any
 
-from common import codec, topics
 from common import messages as m
+from common import topics
+from common.bus import codec
 from common.recording import Row
 from services.dashboard.bar import under_way
 

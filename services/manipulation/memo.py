@@ -7,7 +7,7 @@ from pathlib import Path
 import msgspec
 import numpy as np
 
-from common import files
+from common import atomic_file
 from services.manipulation.held import Held
 
 NAME, VERSION = "hand", 1
@@ -47,7 +47,7 @@ class HandMemo:
         if self._released_path is not None:
             with contextlib.suppress(OSError):
                 self._released_path.parent.mkdir(parents=True, exist_ok=True)
-            if why := files.replace(self._released_path, goal_id.encode()):
+            if why := atomic_file.replace(self._released_path, goal_id.encode()):
                 self._report(why)
 
     def released(self) -> str:
@@ -70,7 +70,7 @@ class HandMemo:
             memo = Memo(held.label, held.kind, rotation, offset, held.size, held.width, held.yaw, closed)
             with contextlib.suppress(OSError):
                 self._path.parent.mkdir(parents=True, exist_ok=True)
-            why = files.replace(self._path, msgspec.msgpack.encode(memo))
+            why = atomic_file.replace(self._path, msgspec.msgpack.encode(memo))
         if held is None or why:
             try:
                 self._path.unlink(missing_ok=True)

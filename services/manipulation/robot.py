@@ -7,8 +7,8 @@ import numpy as np
 
 from common import messages as m
 from common import topics
+from common.bus.port import Io
 from common.geometry import Pose2
-from common.io import Io
 from services.manipulation.arm_model import Array
 from services.manipulation.config import ManipulationConfig
 from services.manipulation.held import Held

@@ -6,9 +6,9 @@ import numpy as np
 
 from common import messages as m
 from common import topics
+from common.bus.port import Io, Job
 from common.geometry import Pose2
 from common.goal_register import GoalRegister
-from common.io import Io, Job
 from services.manipulation import placing, rescue, routines
 from services.manipulation.config import ManipulationConfig
 from services.manipulation.memo import HandMemo

@@ -4,8 +4,8 @@ import numpy as np
 
 from common import messages as m
 from common import topics
+from common.bus.port import Io, Job
 from common.geometry import Pose2, compose, inverse
-from common.io import Io, Job
 from services.navigation.config import NavigationConfig
 from services.navigation.costmap import Array, Costmap
 from services.navigation.floorplan import distance_field

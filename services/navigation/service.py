@@ -2,9 +2,9 @@
 
 from common import messages as m
 from common import topics
+from common.bus.port import Io
 from common.config import config_dir
 from common.goal_register import GoalRegister
-from common.io import Io
 from services.navigation.config import NavigationConfig
 from services.navigation.costmap import Costmap
 from services.navigation.drive import Drive, Ended

@@ -6,8 +6,8 @@ import numpy as np
 
 from common import messages as m
 from common import topics
+from common.bus.port import Io, Job
 from common.geometry import Array, Pose2, wrap
-from common.io import Io, Job
 from common.robot import ARM
 from services.perception.body import Body
 

@@ -8,8 +8,8 @@ import msgspec
 
 from common import messages as m
 from common import topics
+from common.bus.port import Io, Job
 from common.geometry import Pose2, wrap
-from common.io import Io, Job
 from common.runtime import StartError
 from services.perception.body import Body
 from services.perception.config import PerceptionConfig

@@ -4,7 +4,7 @@ import msgspec
 
 from common import messages as m
 from common import topics
-from common.io import Io, Job
+from common.bus.port import Io, Job
 from common.runtime import StartError
 from services.planner.config import PlannerConfig
 from services.planner.endpoint import MISSING, Breaker, Found, installed, look, model_of

@@ -8,8 +8,8 @@ from typing import Any
 
 import msgspec
 
-from common.clock import monotonic
 from common.messages import PlanStep, RejectedPlan
+from common.time.clock import monotonic
 from services.planner.check import Impossible, checked
 from services.planner.config import PlannerConfig
 from services.planner.draft import same

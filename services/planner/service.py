@@ -7,7 +7,7 @@ import msgspec
 
 from common import messages as m
 from common import topics
-from common.io import Io, Job
+from common.bus.port import Io, Job
 from services.planner import grammar
 from services.planner.backend import Backend
 from services.planner.config import PlannerConfig

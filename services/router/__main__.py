@@ -1,6 +1,6 @@
 """A Zenoh router in Python, for runs without Docker."""
 
-from common.router import main
+from services.router.router import main
 
 if __name__ == "__main__":
     main()

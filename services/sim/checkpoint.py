@@ -5,7 +5,7 @@ from pathlib import Path
 
 import msgspec
 
-from common import files
+from common import atomic_file
 from common.messages import Touch
 
 VERSION = 1
@@ -39,7 +39,7 @@ def fingerprint(mjcf: str) -> str:
 
 def save(path: Path, state: Checkpoint) -> str:
     """Replace the file in one step; the reason when that was not possible."""
-    return files.replace(path, msgspec.msgpack.encode(state))
+    return atomic_file.replace(path, msgspec.msgpack.encode(state))
 
 
 def load(path: Path, run: str, model: str) -> Checkpoint | None:

@@ -6,9 +6,9 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from common.lockstep import DT
 from common.robot import ARM, BASE, arm_limits, pads, subtree
 from common.scene import Obstacle, Scene, body_name
+from common.time.lockstep import DT
 from services.sim.contacts import Contacts
 from services.sim.fingers import Slides, fingers, view
 from services.sim.layout import Placement, place_objects

@@ -4,8 +4,8 @@ import math
 
 from common import messages as m
 from common import topics
+from common.bus.port import Io
 from common.geometry import Pose2
-from common.io import Io
 from common.robot import ARM, BASE
 from services.sim.config import SimConfig
 from services.sim.lidar import RANGE_MAX, RANGE_MIN, RAYS, Lidar

@@ -9,9 +9,9 @@ import numpy as np
 
 from common import messages as m
 from common import topics
-from common.io import Io
-from common.lockstep import DT
+from common.bus.port import Io
 from common.runtime import StartError
+from common.time.lockstep import DT
 from services.sim import checkpoint, truth
 from services.sim.arm import ArmDriver
 from services.sim.base import BaseDriver

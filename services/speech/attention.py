@@ -4,7 +4,7 @@ from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from common.io import Io, Job
+from common.bus.port import Io, Job
 from services.speech.audio import RATE, Samples
 from services.speech.config import SpeechConfig
 from services.speech.dialogue import Setting, scope

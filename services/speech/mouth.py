@@ -4,7 +4,7 @@ import numpy as np
 
 from common import messages as m
 from common import topics
-from common.io import Io, Job
+from common.bus.port import Io, Job
 from services.speech.audio import RATE, Samples
 from services.speech.speak import Speakers, Voice
 

@@ -9,8 +9,8 @@ import numpy as np
 
 from common import messages as m
 from common import topics
+from common.bus.port import Io
 from common.goal_register import GoalRegister
-from common.io import Io
 from common.runtime import StartError
 from services.speech.attention import Attention, Hearing
 from services.speech.audio import RATE, AudioError, Samples, read_wav, resample

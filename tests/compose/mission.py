@@ -7,8 +7,8 @@ from cli.mission import Conversation
 from cli.verdict import Verdict, Witness
 from common import messages as m
 from common import topics
-from common.clock import monotonic
 from common.scene import load_scene
+from common.time.clock import monotonic
 
 
 def carry_out(

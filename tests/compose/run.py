@@ -13,7 +13,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from cli.link import Link
-from common import bus
+from common.bus.session import open_session
 from tests.compose.engine import Engine, download_wheels, install, note, run
 from tests.compose.mission import carry_out
 
@@ -135,7 +135,7 @@ def mission(stack: Stack) -> None:
     stack.compose("up", "-d", "--no-build")
     connect = f"tls/127.0.0.1:{stack.port}"
     os.environ["TIDYBOT_KEYS"] = str(stack.keys)
-    with bus.session(connect, patience=60) as session:
+    with open_session(connect, patience=60) as session:
         link = Link(session, connect)
         wait_until(lambda: set(NODES) <= link.alive(), "every node is alive")
         note(f"every node alive {time.monotonic() - began:.1f} s after `up`")

@@ -11,8 +11,9 @@ import pytest
 import zenoh
 from zenoh.handlers import Callback
 
-from common import bus, codec, topics
 from common import messages as m
+from common import topics
+from common.bus import codec, delivery
 from services.camera.service import CameraService
 from services.manipulation.service import ManipulationService
 from services.navigation.service import NavigationService
@@ -79,7 +80,7 @@ def test_navigation_drives_to_the_spot_and_waits_for_the_base(here: Site, odomet
         assert (status["goal_id"], status["attempt"]) == ("m.1", 1)
         last = peer.heard["base/target_pose"][-1]
         assert (last["x"], last["y"]) == pytest.approx((1.0, 1.0))
-        assert json.loads(bus.fetch(session, "brain/navigation_status")["brain/navigation_status"]) == status
+        assert json.loads(delivery.fetch(session, "brain/navigation_status")["brain/navigation_status"]) == status
         peer.put("brain/navigation_goal", goal="find red mug", id="m.1", attempt=1)
         eventually(lambda: len(_arrivals(peer)) == 2, "the same goal is answered with the same status")
         session.put("brain/navigation_goal", "dance")
@@ -187,7 +188,7 @@ def test_the_planner_answers_a_plain_peer(here: Site) -> None:
         peer = Peer(session, "action_plan")
 
         def says_who_plans() -> bool:
-            status = json.loads(bus.fetch(session, "planner/status").get("planner/status", b"{}"))
+            status = json.loads(delivery.fetch(session, "planner/status").get("planner/status", b"{}"))
             return status.get("backend") == "grammar" and "nobody answers" in status["detail"]
 
         eventually(says_who_plans, "the planner has looked for a language model and says that there is none")
@@ -213,7 +214,7 @@ def test_the_planner_answers_a_plain_peer(here: Site) -> None:
             assert (step["action"], step["object"], step["target"]) == (action, "", "gripper")
         peer.put("plan_request", id="m.6", command="dance with me")
         assert "do not understand" in peer.wait("action_plan", request_id="m.6")["detail"]
-        assert json.loads(bus.fetch(session, "action_plan")["action_plan"])["request_id"] == "m.6"
+        assert json.loads(delivery.fetch(session, "action_plan")["action_plan"])["request_id"] == "m.6"
 
 
 def test_the_simulation_obeys_a_plain_peer(here: Site) -> None:
@@ -223,12 +224,12 @@ def test_the_simulation_obeys_a_plain_peer(here: Site) -> None:
         peer = Peer(session, "base/goal_reached")
         peer.put("base/target_pose", x=-0.4, y=0.3, theta=0.5, id="p-1")
         peer.wait("base/goal_reached", reached=True, target_id="p-1")
-        truth = json.loads(bus.fetch(session, "sim/truth")["sim/truth"])
+        truth = json.loads(delivery.fetch(session, "sim/truth")["sim/truth"])
         assert truth["base"] == pytest.approx([-0.4, 0.3, 0.5], abs=0.05)
-        state = codec.decode(topics.JOINT_STATES, bus.fetch(session, "joint_states")["joint_states"])
+        state = codec.decode(topics.JOINT_STATES, delivery.fetch(session, "joint_states")["joint_states"])
         assert state.name[:3] == ["base_x", "base_y", "base_yaw"]
-        assert not bus.fetch(session, "sim/reset", b"junk", timeout=2.0), "junk is refused"
-        assert json.loads(bus.fetch(session, "sim/reset", b'{"seed": 3}')["sim/reset"])["seed"] == 3
+        assert not delivery.fetch(session, "sim/reset", b"junk", timeout=2.0), "junk is refused"
+        assert json.loads(delivery.fetch(session, "sim/reset", b'{"seed": 3}')["sim/reset"])["seed"] == 3
 
 
 @pytest.mark.parametrize("kind", NODES, ids=lambda kind: kind.NAME)
@@ -245,7 +246,7 @@ def test_noise_on_every_key_is_counted_and_harms_nothing(here: Site, kind: Any) 
             session.put(topic.key, b'{"t": "later", "x": [], "id": 3}')
 
         def counted() -> m.Health | None:
-            answer = bus.fetch(session, f"service/{kind.NAME}/health")
+            answer = delivery.fetch(session, f"service/{kind.NAME}/health")
             health = codec.decode_as(m.Health, next(iter(answer.values()))) if answer else None
             commands = [t.key for t in kind.READS if t.command]
             return health if health and all(health.by_key.get(k, 0) >= 15 for k in commands) else None

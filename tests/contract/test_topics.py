@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from common import interfaces, topics
-from common.lockstep import period_of
+from common.time.lockstep import period_of
 from common.topics import Topic
 
 SERVICES = ("brain", "speech", "navigation", "manipulation", "sim", "camera", "planner", "perception", "dashboard")

@@ -16,7 +16,8 @@ import numpy as np
 import pytest
 
 from cli.link import Link
-from common import bus, topics
+from common import topics
+from common.bus.session import open_session
 from services.dashboard.config import DashboardConfig
 from services.dashboard.events import Sound
 from services.dashboard.web import Web
@@ -61,7 +62,7 @@ def robot(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
 
 @pytest.fixture(scope="module")
 def link(robot: str) -> Iterator[Link]:
-    with bus.session(robot, patience=10) as session:
+    with open_session(robot, patience=10) as session:
         yield Link(session, robot)
 
 

@@ -9,9 +9,10 @@ import msgspec
 import pytest
 import zenoh
 
-from common import bus, codec, topics
 from common import messages as m
-from common.zenoh_io import Publisher
+from common import topics
+from common.bus import codec, delivery
+from common.bus.delivery import Publisher
 from tests.support import Site, eventually
 
 STATUS = topics.NAVIGATION_STATUS.key
@@ -39,7 +40,7 @@ def details(payloads: list[bytes]) -> list[str]:
 
 
 def health(session: zenoh.Session) -> m.Health:
-    answer = eventually(lambda: bus.fetch(session, "service/echo/health"), "health answers a get")
+    answer = eventually(lambda: delivery.fetch(session, "service/echo/health"), "health answers a get")
     return codec.decode_as(m.Health, next(iter(answer.values())))
 
 
@@ -53,7 +54,7 @@ def test_a_plain_peer_is_heard_in_every_form_and_the_status_is_latched(here: Sit
             session.put("brain/navigation_goal", '{"goal": "stop", "id": "m.1"}')
             eventually(lambda: len(got) == 3, "three answers")
         assert details(got) == ["find red mug", "goto kitchen", "stop"]
-        assert details(list(bus.fetch(session, "brain/**").values())) == ["stop"]
+        assert details(list(delivery.fetch(session, "brain/**").values())) == ["stop"]
 
 
 def test_noise_is_counted_and_harms_nothing(here: Site) -> None:

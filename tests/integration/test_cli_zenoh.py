@@ -9,8 +9,9 @@ from pathlib import Path
 import pytest
 import zenoh
 
-from common import codec, topics
 from common import messages as m
+from common import topics
+from common.bus import codec
 from tests.support import Site
 
 

@@ -13,7 +13,7 @@ import pytest
 import yaml
 
 from cli.link import Link
-from common import bus
+from common.bus.session import open_session
 from tests.compose.mission import carry_out
 from tests.support import ROOT, eventually, free_port
 
@@ -175,7 +175,7 @@ def test_a_mission_survives_a_killed_and_a_restarted_navigation(
     # A node may come before the router, as containers do.
     for name in ("brain", "router", *(n for n in NODES if n != "brain")):
         containers.start(name)
-    with bus.session(containers.connect, patience=60) as session:
+    with open_session(containers.connect, patience=60) as session:
         link = Link(session, containers.connect)
         eventually(lambda: set(NODES) <= link.alive(), f"all of {NODES} are alive", 120)
         disturb = {

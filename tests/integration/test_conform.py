@@ -12,8 +12,9 @@ from cli import conformance
 from cli.conform import examine
 from cli.drivers import Driver, Unmet
 from cli.link import Link
-from common import codec, topics
 from common import messages as m
+from common import topics
+from common.bus import codec
 from services.sim.robot import robot_mjcf
 from tests.support import Site, eventually
 

@@ -11,8 +11,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from common import codec, topics
 from common import messages as m
+from common import topics
+from common.bus import codec
 from common.recording import Recorder, RecordingError
 from common.scene import load_scene
 from services.dashboard.config import DashboardConfig

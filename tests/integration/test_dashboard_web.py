@@ -17,7 +17,7 @@ from websockets.typing import Origin, Subprotocol
 
 from common import messages as m
 from common import topics
-from common.memory import MemoryBus, MemoryIo
+from common.bus.memory import MemoryBus, MemoryIo
 from common.scene import load_scene
 from services.dashboard.config import DashboardConfig
 from services.dashboard.door import PageError

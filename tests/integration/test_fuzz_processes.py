@@ -3,8 +3,9 @@
 import pytest
 
 from bench.fuzz import Storm
-from common import bus, codec, topics
 from common import messages as m
+from common import topics
+from common.bus import codec, delivery
 from tests.support import Site, eventually
 
 PAYLOADS = 3000
@@ -21,13 +22,13 @@ def test_processes_survive_hostile_payloads_and_still_answer(here: Site) -> None
         assert all(health[name].drops > 20 for name in storm.names)
         assert not storm.troubles()
         storm.recover()
-        bus.send(session, topics.NAVIGATION_GOAL, m.NavigationGoal(goal="goto the moon", id="t.1"))
+        delivery.send(session, topics.NAVIGATION_GOAL, m.NavigationGoal(goal="goto the moon", id="t.1"))
 
         def answered() -> bool:
-            found = bus.fetch(session, topics.NAVIGATION_STATUS.key).values()
+            found = delivery.fetch(session, topics.NAVIGATION_STATUS.key).values()
             return any(codec.decode(topics.NAVIGATION_STATUS, f).code == "UNKNOWN_PLACE" for f in found)
 
         eventually(answered, "navigation still answers", 120.0)
-        truth = bus.fetch(session, topics.SIM_TRUTH, timeout=20.0)
+        truth = delivery.fetch(session, topics.SIM_TRUTH, timeout=20.0)
         assert truth and b"nan" not in next(iter(truth.values())).lower()
         storm.check_alive()

@@ -13,8 +13,10 @@ from cli.link import Link
 from cli.main import main as tidybot
 from cli.mission import Conversation
 from cli.verdict import Verdict, Witness
-from common import bus, codec, topics
 from common import messages as m
+from common import topics
+from common.bus import codec
+from common.bus.session import open_session
 from common.scene import load_scene
 from tests.network import network
 from tests.support import Site, eventually
@@ -90,7 +92,7 @@ def test_a_mission_across_two_machines_outlives_a_cut_cable(tmp_path: Path, monk
             two.start(f"services.{name}", label=name, **away)
         monkeypatch.setenv("TIDYBOT_KEYS", str(keys))
         door = f"tls/{net.door}:7447"
-        with bus.session(door, patience=60) as session:
+        with open_session(door, patience=60) as session:
             link, wheels = Link(session, door), Wheels(session)
             eventually(lambda: {*here[1:], *there} <= link.alive(), "everybody is alive on both machines", 90)
             mission = Mission(link, THING)
@@ -122,7 +124,7 @@ def robot(site: Site, link: Link, namespace: str, seed: int) -> Iterator[None]:
     }
     for name in ("sim", *PACED):
         site.start(f"services.{name}", **extra)
-    with bus.session(site.connect, namespace, name="speech", patience=60) as ears:
+    with open_session(site.connect, namespace, name="speech", patience=60) as ears:
         # Commands are typed: somebody who is there is all of speech that a mission needs.
         kept = ears.liveliness().declare_token(topics.ALIVE_KEY.format(name="speech"))
         ears.declare_subscriber(topics.SPEECH_GOAL.key, lambda sample: None)
@@ -143,8 +145,8 @@ def test_two_robots_on_one_router_do_not_disturb_each_other(tmp_path: Path, monk
     try:
         site.start("services.router", "--listen", site.connect)
         with (
-            bus.session(site.connect, "alpha", patience=60) as first,
-            bus.session(site.connect, "beta", patience=60) as second,
+            open_session(site.connect, "alpha", patience=60) as first,
+            open_session(site.connect, "beta", patience=60) as second,
         ):
             alpha, beta = Link(first, site.connect), Link(second, site.connect)
             with robot(site, alpha, "alpha", 1), robot(site, beta, "beta", 2):

@@ -12,8 +12,9 @@ from cli.link import Link
 from cli.plan import Plan
 from cli.supervision import Supervision
 from cli.up import bring_up
-from common import bus, topics
 from common import messages as m
+from common import topics
+from common.bus.session import open_session
 from tests.support import eventually, free_port
 
 ITEM = "red mug"
@@ -43,7 +44,7 @@ def test_kill_9_of_the_brain_under_a_whole_robot(tmp_path: Path, monkeypatch: py
     plan, supervision = plan_of(tmp_path, monkeypatch), Supervision(tmp_path / "run")
     try:
         bring_up(supervision, plan, lambda text: None)
-        with bus.session(plan.connect, plan.namespace) as session:
+        with open_session(plan.connect, plan.namespace) as session:
             link = Link(session, plan.connect)
             mission = ask(link)
             killed: list[str] = []

@@ -5,9 +5,9 @@ import pytest
 
 from common import config, topics
 from common import messages as m
-from common.lockstep import DT
-from common.memory import MemoryBus, MemoryIo
+from common.bus.memory import MemoryBus, MemoryIo
 from common.scene import load_scene
+from common.time.lockstep import DT
 from services.brain.config import BrainConfig
 from services.brain.service import BrainService
 from services.planner.config import PlannerConfig

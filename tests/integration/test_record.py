@@ -10,8 +10,9 @@ from typing import Any
 
 import pytest
 
-from common import bus, codec, topics
 from common import messages as m
+from common import topics
+from common.bus import codec, delivery
 from common.recording import Recording
 from tests.support import ROOT, Site, eventually
 
@@ -28,10 +29,10 @@ def tidybot(here: Site, *words: str) -> "subprocess.Popen[str]":
 
 def drive(here: Site, session: Any) -> None:
     """Send the robot somewhere and wait until it is there."""
-    bus.send(session, topics.NAV_GOAL, m.NavGoal(id="m.1", x=-0.4, y=0.3, theta=0.5))
+    delivery.send(session, topics.NAV_GOAL, m.NavGoal(id="m.1", x=-0.4, y=0.3, theta=0.5))
 
     def arrived() -> bool:
-        answers = bus.fetch(session, topics.NAVIGATION_FEEDBACK.key).values()
+        answers = delivery.fetch(session, topics.NAVIGATION_FEEDBACK.key).values()
         feedback = [codec.decode(topics.NAVIGATION_FEEDBACK, a) for a in answers]
         return any(f.goal_id == "m.1" and f.status == "arrived" for f in feedback)
 

@@ -13,7 +13,9 @@ import zenoh
 
 from cli.main import main as tidybot
 from cli.services import NAMES
-from common import bus, topics
+from common import topics
+from common.bus import delivery
+from common.bus.session import open_session
 from tests.support import Site, eventually
 
 SERVICES = tuple(n for n in NAMES if n != "router")
@@ -89,7 +91,7 @@ class Guarded(Site):
         return super().environment(**{"TIDYBOT_KEYS": str(self.keys), **extra})
 
     def open(self, stack: ExitStack, name: str, namespace: str = "") -> zenoh.Session:
-        return stack.enter_context(bus.session(self.connect, namespace, name=name, patience=20))
+        return stack.enter_context(open_session(self.connect, namespace, name=name, patience=20))
 
 
 @pytest.fixture(scope="module")
@@ -120,11 +122,11 @@ def heard_puts(open_session: Opener) -> set[tuple[str, str]]:
         witness.declare_queryable(LAST, lambda query: query.reply(LAST, b"here"))
         for subject in SUBJECTS:
             session = open_session(stack, subject)
-            eventually(lambda s=session: bus.fetch(s, LAST), "the witness answers")
+            eventually(lambda s=session: delivery.fetch(s, LAST), "the witness answers")
             for key in KEYS:
                 session.put(key, subject)
             # A question follows what was sent before it, so its answer says that everything has arrived.
-            assert bus.fetch(session, LAST, timeout=20.0)
+            assert delivery.fetch(session, LAST, timeout=20.0)
     return got
 
 
@@ -138,7 +140,7 @@ def test_without_access_control_everything_would_come_through(here: Site, monkey
     monkeypatch.setenv("TIDYBOT_KEYS", "off")
 
     def plain(stack: ExitStack, name: str) -> zenoh.Session:
-        return stack.enter_context(bus.session(here.connect))
+        return stack.enter_context(open_session(here.connect))
 
     assert heard_puts(plain) == {(s, k) for s in SUBJECTS for k in KEYS}, "or the tests above would show nothing"
 
@@ -185,10 +187,10 @@ def test_every_certificate_asks_and_answers_its_own_keys_and_no_other(guarded: G
         serving = witness.declare_queryable("**", reply)
         sessions = {s: guarded.open(stack, s) for s in SUBJECTS}
         for subject, session in sessions.items():
-            eventually(lambda s=session: bus.fetch(s, LAST), "the witness answers")
+            eventually(lambda s=session: delivery.fetch(s, LAST), "the witness answers")
             for key in KEYS:
                 session.get(key, lambda reply: None, payload=subject, timeout=2.0)
-            assert bus.fetch(session, LAST, timeout=20.0)
+            assert delivery.fetch(session, LAST, timeout=20.0)
         serving.undeclare()
         for subject, session in sessions.items():
 
@@ -225,7 +227,9 @@ def test_a_question_to_many_reaches_all_of_them(guarded: Guarded) -> None:
         for asking in ("operator", "looker", "brain"):
             session = guarded.open(stack, asking)
             everybody = {f"service/{n}/health" for n in SERVICES if n != asking}
-            eventually(lambda s=session, e=everybody: e <= set(bus.fetch(s, "service/*/health")), f"{asking} hears")
+            eventually(
+                lambda s=session, e=everybody: e <= set(delivery.fetch(s, "service/*/health")), f"{asking} hears"
+            )
 
 
 def test_a_wide_subscription_is_served_by_a_publisher_that_sends_only_what_is_wanted(guarded: Guarded) -> None:
@@ -277,9 +281,9 @@ def test_a_robot_does_not_reach_into_another(guarded: Guarded) -> None:
         eventually(both, "each robot hears itself")
         # What was sent before an answer has arrived.
         guarded.open(stack, "router").declare_queryable(LAST, lambda query: query.reply(LAST, b""))
-        eventually(lambda: bus.fetch(ours, LAST), "everything has arrived")
+        eventually(lambda: delivery.fetch(ours, LAST), "everything has arrived")
         both()
-        assert bus.fetch(ours, LAST)
+        assert delivery.fetch(ours, LAST)
     assert got == {("ours", "speech/status"), ("theirs", "speech/status")}
 
 

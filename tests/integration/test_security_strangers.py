@@ -10,10 +10,12 @@ import zenoh
 
 from cli.authority import Authority, hosts_of
 from cli.main import main as tidybot
-from common import bus, probe, topics
-from common.access import Subject
-from common.certificate import Identity
-from common.zenoh_io import Publisher
+from common import topics
+from common.bus.delivery import Publisher
+from common.bus.session import BusError, open_session
+from common.security import tls_diagnosis
+from common.security.access import Subject
+from common.security.certificate import Identity
 from tests.network import Machine, network
 from tests.support import Site, eventually, free_port
 
@@ -53,14 +55,14 @@ def closed(tmp_path: Path, ours: Path) -> Iterator[Site]:
 def refused(closed: Site, keys: str, monkeypatch: pytest.MonkeyPatch, connect: str = "", name: str = "operator") -> str:
     """What somebody is told who comes with these keys."""
     monkeypatch.setenv("TIDYBOT_KEYS", keys)
-    with pytest.raises(bus.BusError) as caught, bus.session(connect or closed.connect, name=name, patience=40):
+    with pytest.raises(BusError) as caught, open_session(connect or closed.connect, name=name, patience=40):
         pass
     return str(caught.value)
 
 
 def test_with_the_right_keys_it_opens(closed: Site, ours: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("TIDYBOT_KEYS", str(ours))
-    with bus.session(closed.connect, patience=40) as session:
+    with open_session(closed.connect, patience=40) as session:
         assert session.info.routers_zid()
 
 
@@ -82,7 +84,7 @@ def test_a_forged_certificate_is_refused_by_the_router(
     theirs = authority(tmp_path / "theirs")
     forged = Identity(theirs / "speech", "speech")
     forged.ca = ours / "speech" / "ca.pem"
-    assert "refuses us: certificate of speech" in probe.trouble(closed.connect, forged)
+    assert "refuses us: certificate of speech" in tls_diagnosis.trouble(closed.connect, forged)
 
 
 def test_plain_endpoints_are_not_used_when_there_are_keys(
@@ -116,7 +118,7 @@ def test_a_router_with_a_bad_certificate(
         opened.start("services.router", "--config", str(config), "--listen", opened.connect)
         eventually(opened.listening, "the router listens")
         monkeypatch.setenv("TIDYBOT_KEYS", str(keys))
-        with pytest.raises(bus.BusError, match=expected), bus.session(opened.connect, patience=40):
+        with pytest.raises(BusError, match=expected), open_session(opened.connect, patience=40):
             pass
     finally:
         opened.close()
@@ -198,7 +200,7 @@ def test_a_stranger_on_another_machine_sees_nothing(tmp_path: Path, monkeypatch:
         net.one.start("services.router", "--listen", "tls/0.0.0.0:7447", TIDYBOT_KEYS=str(keys))
         monkeypatch.setenv("TIDYBOT_KEYS", str(keys))
         got: list[str] = []
-        with bus.session(f"tls/{net.door}:7447", name="sim", patience=40) as session:
+        with open_session(f"tls/{net.door}:7447", name="sim", patience=40) as session:
             session.declare_subscriber(topics.BASE_TARGET.key, lambda s: got.append(s.payload.to_string()))
             session.declare_subscriber(topics.ROBOT_STOP.key, lambda s: got.append(s.payload.to_string()))
             state = Publisher(session, topics.SIM_STATUS)
@@ -241,9 +243,9 @@ def test_a_certificate_that_the_router_does_not_list_opens_no_key(
     monkeypatch.setenv("TIDYBOT_KEYS", str(ours))
     heard: list[str] = []
     with (
-        bus.session(closed.connect, name="operator", patience=40) as operator,
-        bus.session(closed.connect, name="speech", patience=40) as speech,
-        bus.session(closed.connect, name="mallory", patience=40) as mallory,
+        open_session(closed.connect, name="operator", patience=40) as operator,
+        open_session(closed.connect, name="speech", patience=40) as speech,
+        open_session(closed.connect, name="mallory", patience=40) as mallory,
     ):
         for name, session in (("operator", operator), ("mallory", mallory)):
             elsewhere = zenoh.Locality.REMOTE

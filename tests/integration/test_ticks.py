@@ -4,9 +4,10 @@ from collections import Counter
 
 import zenoh
 
-from common import codec, topics
 from common import messages as m
-from common.ticks import AckCollector, ClockListener, ClockSpeaker
+from common import topics
+from common.bus import codec
+from common.time.clock_transport import AckCollector, ClockPublisher, ClockSubscriber
 from common.topics import Topic
 from tests.support import Site, eventually
 
@@ -17,7 +18,7 @@ def say(session: zenoh.Session, clock: Topic[m.SimClockTick], tick: int) -> None
     session.put(clock.key, codec.encode(clock, m.SimClockTick(t=tick / 100, tick=tick)))
 
 
-def hear(listener: ClockListener, newest: bool = False) -> int:
+def hear(listener: ClockSubscriber, newest: bool = False) -> int:
     found = eventually(lambda: listener.next(0.1, newest), "a tick")
     return int(found.tick)
 
@@ -30,12 +31,12 @@ def wait_for_a_reader(session: zenoh.Session, clock: Topic[m.SimClockTick]) -> N
 
 def test_every_participant_hears_the_ticks_it_is_due_at_and_no_others(here: Site) -> None:
     with here.session() as sim, here.session() as robot:
-        listeners = {period: ClockListener(robot, period, Counter()) for period in (1, 2, 4, 5, 10, 100)}
+        listeners = {period: ClockSubscriber(robot, period, Counter()) for period in (1, 2, 4, 5, 10, 100)}
         for clock in topics.CLOCKS:
             wait_for_a_reader(sim, clock)
-        speaker = ClockSpeaker(sim)
+        speaker = ClockPublisher(sim)
         for tick in range(1, 201):
-            speaker.say(m.SimClockTick(t=tick / 100, tick=tick), at_once=tick % 7 == 0 or tick == 200)
+            speaker.publish(m.SimClockTick(t=tick / 100, tick=tick), at_once=tick % 7 == 0 or tick == 200)
         for period, listener in listeners.items():
             heard = [hear(listener)]
             while heard[-1] < 200:
@@ -47,7 +48,7 @@ def test_every_participant_hears_the_ticks_it_is_due_at_and_no_others(here: Site
 def test_the_common_clock_is_followed_until_ones_own_comes_and_again_when_it_stays_away(here: Site) -> None:
     drops: Counter[str] = Counter()
     with here.session() as sim, here.session() as robot:
-        listener = ClockListener(robot, 10, drops)
+        listener = ClockSubscriber(robot, 10, drops)
         for clock in (topics.SIM_CLOCK, OWN):
             wait_for_a_reader(sim, clock)
         for tick in (9, 10, 11):

@@ -4,11 +4,12 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from common import codec, topics
 from common import messages as m
-from common.lockstep import DT
-from common.memory import MemoryBus, MemoryIo
+from common import topics
+from common.bus import codec
+from common.bus.memory import MemoryBus, MemoryIo
 from common.scene import load_scene
+from common.time.lockstep import DT
 from services.brain.config import BrainConfig
 from services.brain.service import BrainService
 from tests.node import Node

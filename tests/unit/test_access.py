@@ -6,8 +6,9 @@ from typing import Any
 import pytest
 
 from cli.services import NAMES
-from common import access, topics
-from common.access import Subject
+from common import topics
+from common.security import access
+from common.security.access import Subject
 
 SERVICES = tuple(n for n in NAMES if n != "router")
 MOVES = {

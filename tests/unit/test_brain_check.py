@@ -8,7 +8,7 @@ import pytest
 
 from common import messages as m
 from common import topics
-from common.memory import MemoryIo
+from common.bus.memory import MemoryIo
 from common.scene import load_scene
 from services.brain.check import ASIDE
 from services.brain.config import BrainConfig

@@ -4,7 +4,7 @@ import pytest
 
 from common import messages as m
 from common import topics
-from common.memory import MemoryIo
+from common.bus.memory import MemoryIo
 from common.scene import load_scene
 from tests.unit.brain_bench import Bench
 

@@ -5,9 +5,10 @@ from typing import Any
 
 import pytest
 
-from common import codec, topics
 from common import messages as m
-from common.memory import MemoryIo
+from common import topics
+from common.bus import codec
+from common.bus.memory import MemoryIo
 from services.brain.heartbeat import LIMIT
 from tests.unit.brain_bench import JOINTS, Bench
 from tests.unit.brain_world import SCENE, World

@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from common.memory import MemoryBus, MemoryIo
+from common.bus.memory import MemoryBus, MemoryIo
 from common.scene import load_scene
 from services.brain.config import BrainConfig
 from services.brain.goals import Sent

@@ -9,8 +9,9 @@ from cli import topic, tree
 from cli.errors import CliError
 from cli.payload import line
 from cli.zenoh_decoder import decode, decode_text
-from common import codec, topics
 from common import messages as m
+from common import topics
+from common.bus import codec
 
 
 def test_json_messagepack_and_text_all_print_as_json() -> None:

@@ -13,8 +13,9 @@ import pytest
 from bench import speech
 from cli import verdict
 from cli.verdict import Witness
-from common import codec, topics
 from common import messages as m
+from common import topics
+from common.bus import codec
 from common.topics import Topic
 from tests.simulation import Simulation
 

@@ -1,8 +1,9 @@
 import msgspec
 import pytest
 
-from common import codec, topics
 from common import messages as m
+from common import topics
+from common.bus import codec
 
 
 @pytest.mark.parametrize(

@@ -6,9 +6,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from common import codec, topics
 from common import messages as m
-from common.memory import MemoryBus, MemoryIo
+from common import topics
+from common.bus import codec
+from common.bus.memory import MemoryBus, MemoryIo
 from common.scene import load_scene
 from common.topics import Topic
 from services.dashboard.commands import CHUNK, LONGEST, TRAILING, Commands

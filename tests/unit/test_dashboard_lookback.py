@@ -11,12 +11,13 @@ from PIL import Image
 
 from cli import film, lookback
 from cli.errors import CliError
-from common import codec, topics
 from common import messages as m
-from common.lockstep import DT
-from common.memory import MemoryBus
+from common import topics
+from common.bus import codec
+from common.bus.memory import MemoryBus
 from common.recording import Recorder, Recording, Row
 from common.scene import load_scene
+from common.time.lockstep import DT
 from common.topics import Topic
 from services.dashboard import story, timeline
 from services.dashboard.playback import Tape, TapeIo, wanted_keys

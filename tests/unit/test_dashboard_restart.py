@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from common import topics
-from common.memory import MemoryBus, MemoryIo
+from common.bus.memory import MemoryBus, MemoryIo
 from common.scene import load_scene
 from services.dashboard import markup, restart
 from services.dashboard.care import Care

@@ -6,7 +6,7 @@ import pytest
 
 from common import messages as m
 from common import topics
-from common.io import Io
+from common.bus.port import Io
 from common.scene import Place, Scene
 from evaluation.faults import Kind, Rule, faulty
 from evaluation.strikes import Struck, unheard

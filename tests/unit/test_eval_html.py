@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 from PIL import Image
 
-from common import codec, topics
 from common import messages as m
+from common import topics
+from common.bus import codec
 from common.scene import load_scene
 from evaluation import html_report, report
 from evaluation.case import Result

@@ -4,7 +4,7 @@ import msgspec
 import pytest
 
 from common import topics
-from common.codec import decode, encode
+from common.bus.codec import decode, encode
 from common.config import config_dir, load, overrides
 from common.scene import load_scene
 from evaluation.blocks import destination

@@ -6,8 +6,9 @@ from typing import Any
 
 import pytest
 
-from common import codec, topics
 from common import messages as m
+from common import topics
+from common.bus import codec
 from common.scene import load_scene
 from evaluation.shortest import FloorPlan
 from judge.evidence import Evidence, Look

@@ -10,9 +10,10 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from bench.payloads import Payloads
-from common import codec, topics
 from common import messages as m
-from common.finite import LIMIT, bad_field
+from common import topics
+from common.bus import codec
+from common.bus.validation import LIMIT, bad_field
 from common.topics import Topic
 
 QUICK = settings(max_examples=15, deadline=None, suppress_health_check=list(HealthCheck))

@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 from bench.payloads import Payloads
-from common import codec, topics
 from common import messages as m
+from common import topics
+from common.bus import codec
 from evaluation.stack import Stack, service_class
 
 PAYLOADS, BURST = 2400, 40

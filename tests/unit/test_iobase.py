@@ -2,8 +2,8 @@ import pytest
 
 from common import messages as m
 from common import topics
-from common.iobase import CAPACITY
-from common.memory import MemoryBus, MemoryIo
+from common.bus.mailbox import CAPACITY
+from common.bus.memory import MemoryBus, MemoryIo
 from tests.unit.test_lockstep import SCENE
 
 

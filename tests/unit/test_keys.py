@@ -10,10 +10,10 @@ import pytest
 from cli.authority import Authority
 from cli.main import main as tidybot
 from cli.services import NAMES
-from common import keys
-from common.access import Subject
-from common.certificate import Identity
-from common.keys import KeysError
+from common.security import keys
+from common.security.access import Subject
+from common.security.certificate import Identity
+from common.security.keys import KeysError
 
 
 @pytest.fixture(scope="module")

@@ -4,10 +4,10 @@ import pytest
 
 from common import messages as m
 from common import topics
-from common.clock import ManualClock
-from common.lockstep import Barrier, InProcess, period_of
-from common.memory import MemoryBus, MemoryIo
+from common.bus.memory import MemoryBus, MemoryIo
 from common.scene import Place, Scene
+from common.time.clock import ManualClock
+from common.time.lockstep import Barrier, InProcess, period_of
 
 SCENE = Scene(name="empty", low=(-1, -1), high=(1, 1), home=Place(name="home", x=0, y=0))
 

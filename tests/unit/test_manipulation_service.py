@@ -9,7 +9,7 @@ import pytest
 from bench.mission import Robot
 from common import messages as m
 from common import topics
-from common.memory import MemoryIo
+from common.bus.memory import MemoryIo
 from common.scene import load_scene
 from evaluation.stack import Stack
 from services.manipulation.arm_model import ArmModel, Obstacle, Pose

@@ -10,9 +10,10 @@ import numpy as np
 import pytest
 
 from cli import conformance
-from common import codec, topics
 from common import messages as m
-from common.memory import MemoryBus, MemoryIo
+from common import topics
+from common.bus import codec
+from common.bus.memory import MemoryBus, MemoryIo
 from common.robot import Hand
 from common.runtime import StartError
 from common.scene import load_scene

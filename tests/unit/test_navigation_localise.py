@@ -5,8 +5,8 @@ import pytest
 
 from common import messages as m
 from common import topics
+from common.bus.port import Io
 from common.geometry import Pose2, compose, inverse, wrap
-from common.io import Io
 from common.scene import load_scene
 from services.navigation.config import NavigationConfig
 from services.navigation.costmap import Costmap

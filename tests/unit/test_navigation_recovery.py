@@ -7,7 +7,7 @@ import pytest
 
 from common import messages as m
 from common import topics
-from common.memory import MemoryIo
+from common.bus.memory import MemoryIo
 from common.scene import load_scene
 from services.navigation.avoid import avoid
 from services.navigation.config import Camera, NavigationConfig

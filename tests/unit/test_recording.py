@@ -14,11 +14,12 @@ from bench.payloads import Payloads
 from cli import replay
 from cli.comparison import compare, differs
 from cli.errors import CliError
-from common import codec, topics
 from common import messages as m
-from common.lockstep import DT
+from common import topics
+from common.bus import codec
 from common.recording import BULK, Recorder, Recording, RecordingError, repair
 from common.schemas import schema_of
+from common.time.lockstep import DT
 from evaluation.stack import Stack
 
 FOXGLOVE = {"boolean", "string", "number", "integer", "object", "array"}

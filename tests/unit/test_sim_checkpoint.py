@@ -5,10 +5,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from common import codec, topics
 from common import messages as m
-from common.lockstep import DT
+from common import topics
+from common.bus import codec
 from common.scene import load_scene
+from common.time.lockstep import DT
 from services.sim import checkpoint
 from tests.simulation import Simulation
 

@@ -8,7 +8,7 @@ import pytest
 
 from common import config, topics
 from common import messages as m
-from common.memory import MemoryIo
+from common.bus.memory import MemoryIo
 from common.runtime import StartError
 from common.scene import load_scene
 from services.speech.audio import RATE, AudioError, read_wav, write_wav

@@ -5,24 +5,19 @@ the topic table and no others.
 """
 
 import argparse
-import base64
 import ipaddress
 import os
 import sys
-from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
 
-import msgspec
 import zenoh
 
-from common import access, keys
-from common.certificate import Identity
-from common.keys import CA, CERT, KEY
+from common.bus.session import endpoints
 from common.process import SILENCE, StopSignal, die_with_parent, limit_silence
+from common.security import access, keys
+from common.security.certificate import Identity
+from common.security.zenoh_config import ROUTER_CONFIG, as_json, secure, subjects, value_of
 
-CONFIG = Path(__file__).resolve().parent.parent / "config" / "zenoh" / "router.json5"
-SUBJECTS = "subjects.json"
 BAD_CONFIGURATION = 2
 
 
@@ -51,27 +46,27 @@ def _arguments() -> argparse.Namespace:
         help="endpoints, comma-separated (default: port 7447 of this machine, over TLS when there are keys)",
     )
     parser.add_argument("--connect", default=os.environ.get("TIDYBOT_ROUTERS", ""), help="other routers to link with")
-    parser.add_argument("--config", type=Path, default=CONFIG, help="zenoh configuration (default %(default)s)")
+    parser.add_argument("--config", type=Path, default=ROUTER_CONFIG, help="zenoh configuration (default %(default)s)")
     parser.add_argument("--open", action="store_true", help="listen without certificates beyond this machine")
     return parser.parse_args()
 
 
 def _config(args: argparse.Namespace) -> zenoh.Config:
     config = zenoh.Config.from_file(str(args.config))
-    config.insert_json5("listen/endpoints", _json(_endpoints(args.listen)))
+    config.insert_json5("listen/endpoints", as_json(endpoints(args.listen)))
     if args.connect:
-        config.insert_json5("connect/endpoints", _json(_endpoints(args.connect)))
+        config.insert_json5("connect/endpoints", as_json(endpoints(args.connect)))
         config.insert_json5("connect/timeout_ms", "-1")
         config.insert_json5("connect/exit_on_failure", "false")
-    if _json_of(config, "access_control/enabled") is True:
+    if value_of(config, "access_control/enabled") is True:
         return config  # made by `tidybot keys`: certificates and access control are in it
     found = keys.directory()
-    for endpoint in _endpoints(args.listen) + _endpoints(args.connect):
+    for endpoint in endpoints(args.listen) + endpoints(args.connect):
         _check(endpoint, found, args.open)
     if found is not None:
         folder = keys.folder(found, access.ROUTER)
         identity = Identity(folder, access.ROUTER)
-        _secure(config, identity.settings(serving=True), subjects(folder))
+        secure(config, identity.settings(serving=True), subjects(folder))
     return config
 
 
@@ -98,70 +93,6 @@ def _local(endpoint: str) -> bool:
         return ipaddress.ip_address(host).is_loopback
     except ValueError:
         return False
-
-
-def subjects(folder: Path) -> list[access.Subject]:
-    """Who has a certificate, as `tidybot keys` wrote it down beside the router's own.
-
-    Raises:
-        KeysError: the list is not there or not readable.
-    """
-    path = folder / SUBJECTS
-    try:
-        return msgspec.json.decode(path.read_bytes(), type=list[access.Subject])
-    except (OSError, msgspec.DecodeError) as error:
-        raise keys.KeysError(f"{path}: {error}; `tidybot keys --missing` writes it") from None
-
-
-def _secure(config: zenoh.Config, tls: dict[str, Any], allowed: Iterable[access.Subject]) -> None:
-    config.insert_json5("transport/link/protocols", _json(["tls"]))
-    config.insert_json5("transport/link/tls", _json(tls))
-    config.insert_json5("access_control", _json(access.acl(allowed)))
-
-
-def standalone(folder: Path, allowed: Iterable[access.Subject]) -> str:
-    """The router's whole configuration as one file, certificates included, for the official `zenohd`."""
-    config = zenoh.Config.from_file(str(CONFIG))
-    tls = _inside(folder)
-    tls |= {k.replace("connect_", "listen_"): v for k, v in tls.items() if k.startswith("connect_")}
-    whole = {name: _json_of(config, name) for name in ("mode", "scouting", "timestamping")}
-    link = {"tx": {"lease": _json_of(config, "transport/link/tx/lease")}, "protocols": ["tls"], "tls": tls}
-    shared = {"enabled": _json_of(config, "transport/shared_memory/enabled")}
-    whole |= {"transport": {"link": link, "shared_memory": shared}, "access_control": access.acl(allowed)}
-    return msgspec.json.format(msgspec.json.encode(whole), indent=1).decode() + "\n"
-
-
-def client(folder: Path, endpoint: str, namespace: str) -> str:
-    """A whole configuration for any Zenoh tool (`zenoh --config FILE`), certificate included."""
-    config = zenoh.Config.from_file(str(CONFIG.with_name("client.json5")))
-    whole = {name: _json_of(config, name) for name in ("mode", "scouting")}
-    whole |= {"connect": {"endpoints": [endpoint]}, "namespace": namespace or None}
-    whole |= {"transport": {"link": {"protocols": ["tls"], "tls": _inside(folder)}}}
-    return msgspec.json.format(msgspec.json.encode(whole), indent=1).decode() + "\n"
-
-
-def _inside(folder: Path) -> dict[str, Any]:
-    """TLS settings with the certificates themselves instead of paths to them."""
-    ca, cert, key = (base64.b64encode((folder / n).read_bytes()).decode() for n in (CA, CERT, KEY))
-    return {
-        "root_ca_certificate_base64": ca,
-        "connect_certificate_base64": cert,
-        "connect_private_key_base64": key,
-        "enable_mtls": True,
-        "verify_name_on_connect": True,
-    }
-
-
-def _json_of(config: zenoh.Config, key: str) -> Any:
-    return msgspec.json.decode(config.get_json(key))
-
-
-def _endpoints(text: str) -> list[str]:
-    return [e.strip() for e in text.split(",") if e.strip()]
-
-
-def _json(value: object) -> str:
-    return msgspec.json.encode(value).decode()
 
 
 def _reason(error: Exception, listen: str) -> str:

@@ -1,4 +1,4 @@
-"""`ZenohIo`, the `Io` of a process of its own, and the publisher that gives each topic its delivery."""
+"""`ZenohIo`: the `Io` of a process of its own, over a Zenoh session."""
 
 import queue
 from collections.abc import Iterable
@@ -6,61 +6,19 @@ from typing import Any
 
 import msgspec
 import zenoh
-from zenoh import ext, handlers
+from zenoh import handlers
 
-from common import bus, codec, topics
 from common import messages as m
-from common.clock import Clock, unix_time
-from common.io import Handler
-from common.iobase import CAPACITY, UNSTAMPED, IoBase, Mailbox, WorkerJob
+from common import topics
+from common.bus import codec, delivery
+from common.bus.base import IoBase, WorkerJob
+from common.bus.mailbox import CAPACITY, UNSTAMPED, Mailbox
+from common.bus.port import Handler
 from common.scene import Scene
+from common.time.clock import Clock, unix_time
 from common.topics import Topic
 
-HEARTBEAT = 0.25
 _BAD_REQUEST = (ValueError, LookupError, TypeError, AttributeError, ArithmeticError, RecursionError, OSError)
-
-
-class Publisher:
-    """Sends one topic with the delivery that the table declares; in lockstep streams lose nothing either."""
-
-    def __init__(self, opened: zenoh.Session, topic: Topic[Any], lossless: bool = False) -> None:
-        self._matching = opened.declare_publisher(topic.key)
-        self.last: bytes | None = None
-        encoding = codec.encoding_of(topic)
-        self._out: Any
-        if topic.keep == "latest":
-            control = zenoh.CongestionControl.BLOCK if lossless else zenoh.CongestionControl.DROP
-            self._out = opened.declare_publisher(topic.key, encoding=encoding, congestion_control=control)
-        elif not topic.recover:
-            self._out = opened.declare_publisher(
-                topic.key, encoding=encoding, congestion_control=zenoh.CongestionControl.BLOCK, express=True
-            )
-        else:
-            self._out = ext.declare_advanced_publisher(
-                opened,
-                topic.key,
-                encoding=encoding,
-                congestion_control=zenoh.CongestionControl.BLOCK,
-                cache=ext.CacheConfig(bus.CACHE),
-                sample_miss_detection=ext.MissDetectionConfig(heartbeat=None, sporadic_heartbeat=HEARTBEAT),
-                publisher_detection=True,
-            )
-        if topic.latched:
-            self._queryable = opened.declare_queryable(topic.key, self._answer)
-        self._key, self._encoding = topic.key, encoding
-
-    def _answer(self, query: zenoh.Query) -> None:
-        with query:
-            if self.last is not None:
-                query.reply(self._key, self.last, encoding=self._encoding)
-
-    def put(self, payload: bytes, tick: int | None) -> None:
-        self.last = payload
-        self._out.put(payload, attachment=bus.stamp(tick))
-
-    @property
-    def has_subscribers(self) -> bool:
-        return bool(self._matching.matching_status.matching)  # type: ignore[attr-defined]
 
 
 class ZenohIo(IoBase):
@@ -91,11 +49,11 @@ class ZenohIo(IoBase):
         self._queries: queue.SimpleQueue[tuple[Handler, zenoh.Query]] = queue.SimpleQueue()
         self._kept: list[Any] = []
         self._streams: list[tuple[Any, Mailbox[Any]]] = []
-        self._publishers = {t.key: Publisher(opened, t, lossless=lockstep) for t in writes}
+        self._publishers = {t.key: delivery.Publisher(opened, t, lossless=lockstep) for t in writes}
         for topic in reads:
             self._subscribe(topic)
-        self._kept.append(bus.watch_tokens(opened, self._on_token))
-        self._kept.append(bus.listen(opened, topics.HEALTH.key, self._on_health))
+        self._kept.append(delivery.watch_tokens(opened, self._on_token))
+        self._kept.append(delivery.listen(opened, topics.HEALTH.key, self._on_health))
 
     def _subscribe(self, topic: Topic[Any]) -> None:
         box = self._boxes[topic.key]
@@ -109,12 +67,12 @@ class ZenohIo(IoBase):
         started, stale_key = self._started, f"{topic.key} (stale)"
 
         def receive(sample: zenoh.Sample) -> None:
-            if topic.command and bus.sent_at(sample) < started:
+            if topic.command and delivery.sent_at(sample) < started:
                 self.drops[stale_key] += 1
                 return
             _keep(box, sample)
 
-        self._kept.append(bus.subscribe(self._session, topic, receive))
+        self._kept.append(delivery.subscribe(self._session, topic, receive))
 
     def begin(self, tick: int | None, now: float) -> None:
         for stream, box in self._streams:
@@ -164,7 +122,7 @@ class ZenohIo(IoBase):
         self._kept.append(self._session.declare_queryable(key, lambda query: self._queries.put((handler, query))))
 
     def ask(self, key: str, request: bytes = b"") -> WorkerJob[bytes | None]:
-        return self.submit(lambda: next(iter(bus.fetch(self._session, key, request).values()), None))
+        return self.submit(lambda: next(iter(delivery.fetch(self._session, key, request).values()), None))
 
     def answer_queries(self) -> None:
         """Run the handlers of waiting queries, in the calling thread."""
@@ -180,5 +138,5 @@ class ZenohIo(IoBase):
 
 
 def _keep(box: Mailbox[Any], sample: zenoh.Sample) -> None:
-    tick = bus.tick_of(sample)
+    tick = delivery.tick_of(sample)
     box.put(sample.payload.to_bytes(), UNSTAMPED if tick is None else tick)

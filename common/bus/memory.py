@@ -3,12 +3,13 @@
 from collections.abc import Iterable
 from typing import Any, TypeVar
 
-from common import codec
 from common import messages as m
-from common.clock import ManualClock
-from common.io import Handler
-from common.iobase import UNSTAMPED, IoBase, Mailbox, WorkerJob
+from common.bus import codec
+from common.bus.base import IoBase, WorkerJob
+from common.bus.mailbox import UNSTAMPED, Mailbox
+from common.bus.port import Handler
 from common.scene import Scene
+from common.time.clock import ManualClock
 from common.topics import Topic
 
 M = TypeVar("M", bound=m.Message)

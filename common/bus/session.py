@@ -1,11 +1,5 @@
-"""Zenoh: sessions, what goes over them once, and subscribers with the delivery that the table declares.
+"""Zenoh sessions: endpoints, certificates, and an open session or the reason why there is none."""
 
-Events and goals travel over advanced publishers (cache, miss detection) to advanced subscribers (history,
-recovery), so a router outage loses none; streams keep the newest value only. Every latched key also answers a
-plain `get`. Callbacks only enqueue: they run in Zenoh's receiving thread, one after the other in the order of arrival.
-"""
-
-import struct
 import sys
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future
@@ -13,27 +7,26 @@ from concurrent.futures import wait as futures_wait
 from contextlib import contextmanager
 from pathlib import Path
 from threading import Thread
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import msgspec
 import zenoh
-from zenoh import ext, handlers
 
-from common import codec, keys, probe, topics
-from common import messages as m
-from common.access import OPERATOR
-from common.clock import monotonic, unix_time
-from common.topics import Topic
+from common.security import keys, tls_diagnosis
+from common.security.access import OPERATOR
+from common.time.clock import monotonic
 
 if TYPE_CHECKING:
-    from common.certificate import Identity
+    from common.security.certificate import Identity
 
-CONFIGS = Path(__file__).resolve().parent.parent / "config" / "zenoh"
+CONFIGS = Path(__file__).resolve().parents[2] / "config" / "zenoh"
 DEFAULT_CONNECT = "tcp/127.0.0.1:7447"
 DEFAULT_SECURE = "tls/127.0.0.1:7447"
-CACHE = 64
-PROBE_AFTER, PROBE_PERIOD = 2.0, 30.0
-_TICK = struct.Struct("<q")
+PROBE_AFTER = 2.0
+"""Wait for a connection before a TLS handshake of our own looks for the reason [s]; chosen: a router that runs answers
+sooner."""
+PROBE_PERIOD = 30.0
+"""Time between two reports of why there is no router [s]; chosen: rarely enough not to flood a log."""
 
 
 class BusError(ValueError):
@@ -73,7 +66,7 @@ def identity_for(connect: str, name: str, namespace: str) -> "Identity | None":
             raise BusError(
                 f"{connect}: there are keys in {found}, so only tls/ endpoints are used (TIDYBOT_KEYS=off: none)"
             )
-        from common.certificate import Identity
+        from common.security.certificate import Identity
 
         return Identity(keys.folder(found, name, namespace), name, namespace)
     except keys.KeysError as error:
@@ -106,7 +99,7 @@ def client_config(
 
 
 @contextmanager
-def session(
+def open_session(
     connect: str,
     namespace: str = "",
     wait: Callable[[float], bool] | None = None,
@@ -155,70 +148,8 @@ def session(
 
 def _trouble(connect: str, shown: "Identity | None") -> str:
     """Why no router takes us, "" when none is there."""
-    found = (probe.trouble(endpoint, shown) for endpoint in endpoints(connect))
+    found = (tls_diagnosis.trouble(endpoint, shown) for endpoint in endpoints(connect))
     return next((why for why in found if why), "")
-
-
-def fetch(opened: zenoh.Session, key: str, payload: bytes = b"", timeout: float = 2.0) -> dict[str, bytes]:
-    """What answers a `get` on a key expression: key -> payload. Empty: nobody answered."""
-    answers: dict[str, bytes] = {}
-    for reply in opened.get(key, payload=payload or None, timeout=timeout):
-        if reply.ok is not None:
-            answers[str(reply.ok.key_expr)] = reply.ok.payload.to_bytes()
-    return answers
-
-
-def send(opened: zenoh.Session, topic: Topic[Any], message: m.Message) -> None:
-    """One message, once, as any client sends it."""
-    opened.put(topic.key, codec.encode(topic, message), encoding=codec.encoding_of(topic))
-
-
-def subscribe(opened: zenoh.Session, topic: Topic[Any], receive: Callable[[zenoh.Sample], None]) -> Any:
-    """A subscriber with the delivery that the table declares: streams as they come, events with what was missed."""
-    if topic.keep == "latest" or not topic.recover:
-        return listen(opened, topic.key, receive)
-    return ext.declare_advanced_subscriber(
-        opened,
-        topic.key,
-        _in_order(receive),
-        history=ext.HistoryConfig(detect_late_publishers=True, max_samples=CACHE),
-        recovery=ext.RecoveryConfig(periodic_queries=None, heartbeat=True),
-    )
-
-
-def listen(opened: zenoh.Session, key: str, receive: Callable[[zenoh.Sample], None]) -> Any:
-    """A plain subscriber to a key expression."""
-    return opened.declare_subscriber(key, _in_order(receive))
-
-
-def _in_order(receive: Callable[[zenoh.Sample], None]) -> Any:
-    """Zenoh would give every subscriber a thread of its own: a tick could be seen before the data it follows."""
-    return handlers.Callback(receive, indirect=False)
-
-
-def watch_tokens(opened: zenoh.Session, changed: Callable[[str, bool], None]) -> Any:
-    """A subscriber to the liveliness of services: `changed(name, alive)`, those already there first."""
-
-    def receive(sample: zenoh.Sample) -> None:
-        changed(str(sample.key_expr).split("/")[-2], sample.kind == zenoh.SampleKind.PUT)
-
-    return opened.liveliness().declare_subscriber(topics.ALIVE_KEY.format(name="*"), _in_order(receive), history=True)
-
-
-def stamp(tick: int | None) -> bytes | None:
-    """The attachment that says in which lockstep tick a sample is published; `tick_of` reads it."""
-    return None if tick is None else _TICK.pack(tick)
-
-
-def tick_of(sample: zenoh.Sample) -> int | None:
-    """The lockstep tick in which a sample was published, None where it carries none."""
-    raw = sample.attachment.to_bytes() if sample.attachment is not None else b""
-    return int(_TICK.unpack(raw)[0]) if len(raw) == _TICK.size else None
-
-
-def sent_at(sample: zenoh.Sample) -> float:
-    """Unix time of the sender's put."""
-    return sample.timestamp.get_time().timestamp() if sample.timestamp is not None else unix_time()
 
 
 def _open(config: zenoh.Config, opening: "Future[zenoh.Session]") -> None:

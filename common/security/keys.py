@@ -40,7 +40,7 @@ def default_directory(environ: Mapping[str, str] = os.environ) -> Path:
         return Path(environ["TIDYBOT_KEYS_DIR"]).resolve()
     if environ.get("TIDYBOT_RUN_DIR"):
         return Path(environ["TIDYBOT_RUN_DIR"]).resolve() / "keys"
-    project = Path(__file__).resolve().parent.parent
+    project = Path(__file__).resolve().parents[2]
     return project / "run" / "keys" if os.access(project, os.W_OK) else Path.home() / ".config" / "tidybot" / "keys"
 
 

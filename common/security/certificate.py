@@ -10,8 +10,8 @@ from cryptography.exceptions import InvalidSignature
 from cryptography.hazmat.primitives import serialization
 from cryptography.x509.oid import NameOID
 
-from common.clock import unix_time
-from common.keys import CA, CERT, KEY, KeysError
+from common.security.keys import CA, CERT, KEY, KeysError
+from common.time.clock import unix_time
 
 
 class Identity:

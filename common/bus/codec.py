@@ -5,7 +5,7 @@ from typing import Any, TypeVar
 import msgspec
 
 from common import messages as m
-from common.finite import bad_field
+from common.bus.validation import bad_field
 from common.topics import Topic
 
 M = TypeVar("M", bound=m.Message)

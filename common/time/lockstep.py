@@ -9,8 +9,8 @@ k + 1, from what was sent before k: a command reaches the world one tick after i
 from collections.abc import Callable, Iterable
 from typing import Any, Protocol
 
-from common.clock import ManualClock, monotonic
-from common.memory import MemoryIo
+from common.bus.memory import MemoryIo
+from common.time.clock import ManualClock, monotonic
 
 DT = 0.01
 

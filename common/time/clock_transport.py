@@ -1,4 +1,4 @@
-"""The clock and its acknowledgements over Zenoh: what the simulation says, what the others hear, what comes back."""
+"""The lockstep clock over Zenoh: ticks that the simulation publishes, and the acknowledgements of participants."""
 
 import queue
 from collections import Counter
@@ -6,14 +6,15 @@ from typing import Any
 
 import zenoh
 
-from common import codec, topics
 from common import messages as m
-from common.bus import listen
-from common.clock import monotonic
+from common import topics
+from common.bus import codec
+from common.bus.delivery import listen
+from common.time.clock import monotonic
 
 
-class ClockSpeaker:
-    """Says each tick on `sim/clock`, and on the slower clocks those that are theirs."""
+class ClockPublisher:
+    """Publishes each tick on `sim/clock`, and every n-th on the slower clocks."""
 
     def __init__(self, opened: zenoh.Session) -> None:
         def publisher(key: str, express: bool) -> zenoh.Publisher:
@@ -25,7 +26,7 @@ class ClockSpeaker:
         self._now = publisher(topics.SIM_CLOCK.key, True)
         self._slower = {period: publisher(topic.key, True) for period, topic in topics.SLOWER_CLOCKS.items()}
 
-    def say(self, tick: m.SimClockTick, at_once: bool = True) -> None:
+    def publish(self, tick: m.SimClockTick, at_once: bool = True) -> None:
         """`at_once`: somebody waits for it on `sim/clock`."""
         message = codec.encode(topics.SIM_CLOCK, tick)
         (self._now if at_once else self._lazy).put(message)
@@ -34,7 +35,7 @@ class ClockSpeaker:
                 clock.put(message)
 
 
-class ClockListener:
+class ClockSubscriber:
     """Ticks that a participant is due at.
 
     They come on the clock of its own rate. Until the first of them, and when they stay away, it follows `sim/clock`,

@@ -5,7 +5,7 @@ import ssl
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from common.certificate import Identity
+    from common.security.certificate import Identity
 
 PROBE = 1.0
 EXPIRED, WRONG_NAME, WRONG_ADDRESS = 10, 62, 64
