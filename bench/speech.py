@@ -17,11 +17,11 @@ from pathlib import Path
 import psutil  # type: ignore[import-untyped]
 
 from common import config
+from common.language.normalise import normalise
 from common.scene import load_scene
 from services.speech.audio import RATE, read_wav
 from services.speech.config import SpeechConfig
 from services.speech.ear import without_wake
-from services.speech.grammar import spoken
 from services.speech.transcribe import Reader
 
 ROWS = (
@@ -71,7 +71,7 @@ def main() -> int:
             heard_seconds += len(samples) / RATE
             same = heard.text == without_wake(row["text"], parameters.wake)
             taken = heard.verdict == "accept" and bool(heard.text)
-            right, exact, free = right + (same and taken), exact + same, free + (spoken(heard.free) == row["text"])
+            right, exact, free = right + (same and taken), exact + same, free + (normalise(heard.free) == row["text"])
             accepted, woken = accepted + taken, woken + wake
             if args.errors and ((same and taken) != kind.endswith("cmd") or wake != kind.startswith("wake")):
                 print(f"   {row['file']}: {heard} wake={wake}", flush=True)

@@ -4,42 +4,35 @@ import re
 from collections.abc import Sequence
 from typing import Literal
 
+from common.language.meaning import asks_for
+from common.language.normalise import normalise, without_determiners
 from common.scene import Scene
-from services.brain.intent import CANCEL, normal
 
 Reply = Literal["yes", "no", "cancel", "correction"]
-YES = frozenset({
-    "yes", "yeah", "yep", "yes please", "yes i did", "correct", "right", "that's right", "that is right", "exactly",
-    "sure", "ok", "okay", "go ahead", "do it", "please do", "affirmative",
-})  # fmt: skip
-NO = frozenset(
-    {"no", "nope", "no i did not", "no i didn't", "wrong", "that's wrong", "that is wrong", "negative", "not that"}
-)
-_LEAD = re.compile(r"^(?:no|nope|wrong|not that|i said|i meant|i mean|actually|rather)\s+")
-_DETERMINER = re.compile(r"^(?:the|a|an|my|that)\s+")
+_CORRECTION = re.compile(r"^(?:no|nope|wrong|not that|i said|i meant|i mean|actually|rather)\s+")
 
 
 def reply(text: str) -> tuple[Reply, str]:
     """The kind of answer, and for a correction the words without its "no, I said"."""
-    words = normal(text)
-    if words in YES:
-        return "yes", ""
-    if words in NO:
-        return "no", ""
-    if words in CANCEL:
-        return "cancel", ""
-    rest = words
-    while (shorter := _LEAD.sub("", rest)) != rest:
+    rest = normalise(text)
+    match asks_for(rest, "yes", "no", "cancel"):
+        case "yes":
+            return "yes", ""
+        case "no":
+            return "no", ""
+        case "cancel":
+            return "cancel", ""
+    while (shorter := _CORRECTION.sub("", rest)) != rest:
         rest = shorter
     return "correction", rest
 
 
 def corrected(command: str, correction: str, scene: Scene) -> str:
     """The command with its object exchanged for the corrected one; a whole new command replaces it."""
-    thing = _DETERMINER.sub("", correction)
+    thing = " ".join(without_determiners(tuple(correction.split())))
     if scene.object(thing) is None:
         return correction
-    words = normal(command)
+    words = normalise(command)
     names = sorted((n for o in scene.objects for n in (o.name, *o.aliases)), key=len, reverse=True)
     for name in names:
         if re.search(rf"\b{re.escape(name)}\b", words):
@@ -49,7 +42,7 @@ def corrected(command: str, correction: str, scene: Scene) -> str:
 
 def chosen(answer: str, options: Sequence[str]) -> str | None:
     """The one option that the answer's words single out; "the first" and "the second one" count too."""
-    words = set(_DETERMINER.sub("", normal(answer)).split()) - {"one", "the", "please"}
+    words = set(without_determiners(tuple(normalise(answer).split()))) - {"one", "the", "please"}
     for n, ordinal in enumerate(("first", "second", "third", "fourth")):
         if words == {ordinal} and n < len(options):
             return options[n]

@@ -5,34 +5,29 @@ from typing import Literal
 
 import msgspec
 
+from common.language.meaning import VERBS, asks_for, readings
+from common.language.normalise import (
+    Words,
+    enumeration,
+    expand,
+    infinitive,
+    normalise,
+    without_determiners,
+    without_politeness,
+)
+from common.language.noun_phrase import WHICH, related
+from common.language.wordings import Action
 from common.scene import ObjectSpec, Scene
 
 Kind = Literal["fetch", "return", "stop", "cancel", "none"]
 
-STOP = frozenset({"stop", "stop it", "stop now", "halt", "freeze", "emergency stop", "stop moving"})
-CANCEL = frozenset({"cancel", "cancel that", "cancel it", "abort", "never mind", "nevermind", "forget it"})
-RETURN = frozenset({"come back", "come home", "go home", "return", "return home", "return to start", "go back"})
-
-_POLITE = re.compile(
-    r"^(?:(?:hey|hello|hi|ok|okay|jarvis|robot|tidybot|please|now|and|so|"
-    r"(?:can|could|would|will) you|would you mind|i (?:would like|want|need) you to|i'd like you to)\s+)+"
-)
-_TRAILING = re.compile(
-    r"(?:\s+(?:please|now|here|over here|over|back|quickly|for me|to me|thanks|thank you|will you|robot|jarvis))+$"
-)
-_VERB = re.compile(
-    r"^(?:bring|fetch|get|grab|give|hand|find|pick up|pick|take|carry|pass|"
-    r"i (?:want|need|would like)|i'd like|go (?:and )?(?:get|fetch|find)|go)\s+"
-)
-_ME = re.compile(r"^(?:to )?(?:me|us|up)\s+")
-_DETERMINER = re.compile(r"^(?:(?:the|a|an|my|that|this|some|any|one|your|our)\s+)+")
-_WHERE = re.compile(r"\s+(?:from|on|in|at|off|under|near|next to|that is|which is)\s+.*$")
+_CONTROLS: dict[Action, Kind] = {"stop": "stop", "cancel": "cancel", "come_back": "return"}
+_FETCH: frozenset[Action] = frozenset({"fetch", "fetch_named", "pick_up", "find"})
 _INDEFINITE = re.compile(r"\b(?:a|an|any|some)\s+\w")
-_SIZES = frozenset({"big", "small", "little", "large"})
 
 
 class Intent(msgspec.Struct, frozen=True):
-    """`item` is the thing as spoken, `label` its name in the scene; `reason` says why there is no intent."""
+    """`item` is the object as spoken, `label` its name in the scene; `reason` says why there is no intent."""
 
     kind: Kind
     item: str = ""
@@ -40,36 +35,32 @@ class Intent(msgspec.Struct, frozen=True):
     reason: str = ""
 
 
-def normal(text: str) -> str:
-    """Lower case, words separated by single spaces, no punctuation."""
-    return " ".join(re.sub(r"[^\w' ]+", " ", text.lower().replace("_", " ")).split())
-
-
 def parse(text: str, scene: Scene) -> Intent:
     """The intent of a sentence; kind `none` with a reason that can be spoken when there is none."""
-    whole = _POLITE.sub("", normal(text) + " ").strip()
-    words = _TRAILING.sub("", whole)
-    controls: tuple[tuple[Kind, frozenset[str]], ...] = (("stop", STOP), ("cancel", CANCEL), ("return", RETURN))
-    for kind, phrases in controls:
-        if words in phrases or whole in phrases:
-            return Intent(kind)
-    any_one = _INDEFINITE.search(words) is not None
-    for candidate in _things(words):
+    if action := asks_for(text, *_CONTROLS):
+        return Intent(_CONTROLS[action])
+    words = tuple(without_politeness(expand(normalise(text))).split())
+    any_one = _INDEFINITE.search(" ".join(words)) is not None
+    named = _object_phrases(words)
+    for candidate in (item for variants in named for item in variants):
         label, _ = find_object(candidate, scene, any_one)
         if label:
             exact = scene.object(candidate) is not None
             return Intent("fetch", item=candidate if exact else label, label=label)
-    thing = _things(words)[-1]
-    return Intent("none", reason=find_object(thing, scene)[1])
+    return Intent("none", reason=find_object(named[0][-1] if named else "", scene)[1])
 
 
-def _things(words: str) -> list[str]:
-    """Readings of the object part, the most literal first."""
-    bare = _DETERMINER.sub("", words)
-    without_verb = _DETERMINER.sub("", _ME.sub("", _VERB.sub("", words)))
-    readings = [bare, without_verb, _TRAILING.sub("", _WHERE.sub("", without_verb))]
-    readings += [" ".join(w for w in readings[-1].split() if w not in _SIZES)]
-    return list(dict.fromkeys(readings))
+def _object_phrases(words: Words) -> list[list[str]]:
+    """Per reading of the sentence what it may name, the most literal first."""
+    words = (infinitive(words[0], VERBS), *words[1:]) if words else words
+    phrases = [slots["thing"] for wording, slots in readings(words, "command", "name") if wording.action in _FETCH]
+    return [_variants(without_determiners(phrase)) for phrase in phrases]
+
+
+def _variants(phrase: Words) -> list[str]:
+    """A noun phrase as it is, without where the object is, and without its size."""
+    bare = min((without_determiners(head) for head, _, _ in related(phrase)), key=len, default=phrase)
+    return [" ".join(phrase), " ".join(bare), " ".join(w for w in bare if w not in WHICH)]
 
 
 def find_object(thing: str, scene: Scene, any_one: bool = False) -> tuple[str, str]:
@@ -108,5 +99,4 @@ def _nouns(scene: Scene) -> dict[str, str]:
 
 
 def _choice(specs: list[ObjectSpec]) -> str:
-    names = [s.name for s in specs]
-    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} or {names[-1]}"
+    return enumeration([s.name for s in specs], "or")

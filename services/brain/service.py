@@ -6,11 +6,12 @@ from py_trees.common import Status
 from common import messages as m
 from common import topics
 from common.bus.port import Io
+from common.language.meaning import asks_for
+from common.language.normalise import normalise
 from common.time.clock import unix_time
 from services.brain.config import BrainConfig
 from services.brain.context import Context
 from services.brain.goals import Answer, Channel, Word
-from services.brain.intent import CANCEL, RETURN, STOP, normal
 from services.brain.journal import Journal
 from services.brain.mission import Failure, fingers_hold
 from services.brain.snapshot import Signature, signature, snapshot, tip
@@ -194,13 +195,14 @@ class BrainService:
     def _receive_commands(self) -> None:
         ctx = self.context
         for command in self._io.take_all(topics.VOICE_COMMAND):
-            words = normal(command.text)
+            words = normalise(command.text)
+            asked = asks_for(words, "stop", "cancel", "come_back")
             if not words:
                 self._io.count_drop(topics.VOICE_COMMAND.key, "no words")
-            elif ctx.mission.active and words in STOP | CANCEL | RETURN:
+            elif ctx.mission.active and asked:
                 self._interrupt(f"asked to {words}")
-                ctx.command = command if words in RETURN else None
-            elif words in STOP | CANCEL:
+                ctx.command = command if asked == "come_back" else None
+            elif asked in ("stop", "cancel"):
                 ctx.command = None
             elif ctx.state == "CONFIRMING":
                 ctx.reply = m.SpeechResult(text=command.text, confidence=command.confidence)

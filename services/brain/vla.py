@@ -7,6 +7,7 @@ from py_trees.common import Status
 from py_trees.composites import Sequence
 
 from common.messages import PlanStep
+from common.plan_rules import is_destination
 from services.brain.asking import HearChoice, HearReply, Question, question, which
 from services.brain.behaviours import Leaf, Say, Settle
 from services.brain.check import checked
@@ -16,7 +17,6 @@ from services.brain.hand import Gripper, let_go, open_hand
 from services.brain.put_down import put_and_check, put_right
 from services.brain.robot import Drive, Grab, Ready
 from services.brain.trees import drive_home, first_of, grab_failed, report_failure, sequence
-from services.brain.validate import is_destination
 from services.brain.vla_leaves import (
     Approach,
     Await,

@@ -8,6 +8,7 @@ from py_trees.common import Status
 
 from common import messages as m
 from common import topics
+from common.plan_rules import Objection, known_world, objection
 from common.topics import Topic
 from services.brain.behaviours import Goal, Leaf
 from services.brain.context import Context
@@ -16,7 +17,6 @@ from services.brain.goals import Answer
 from services.brain.mission import Failure
 from services.brain.robot import Drive, take_command
 from services.brain.search import View
-from services.brain.validate import Objection, known_world, objection
 
 
 class Await(Leaf):

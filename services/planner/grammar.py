@@ -2,17 +2,16 @@
 
 from collections.abc import Sequence
 
+from common.language.meaning import VERBS
+from common.language.normalise import DETERMINERS, Words, clauses, infinitive, without_politeness
+from common.language.noun_phrase import PLURAL_PRONOUNS, PRONOUNS
 from common.messages import ActionPlan, PlanStep, RejectedPlan
 from services.planner import answers
-from services.planner.choices import Choices, every
-from services.planner.commands import Action
+from services.planner.choice_points import ChoicePoints, every
 from services.planner.config import PlannerConfig
-from services.planner.draft import Draft, LookFirst, Refusal, same
-from services.planner.forms import Form, Words
-from services.planner.phrases import PLURAL_PRONOUNS, PRONOUNS
-from services.planner.sentences import ALONE, FORMS, VERBS
-from services.planner.vocabulary import DETERMINERS, Vocabulary
-from services.planner.words import parts, plain, polite
+from services.planner.plan_builder import LookFirst, PlanBuilder, Refusal, same
+from services.planner.rules import apply_first
+from services.planner.vocabulary import Vocabulary
 from services.planner.world import World
 
 SOURCE = "grammar"
@@ -41,10 +40,10 @@ def plan(
     """The preferred plan that differs from every rejected one; without steps when there is none, with the reason."""
     vocabulary = Vocabulary(world, config)
 
-    def run(choices: Choices) -> ActionPlan:
-        draft = Draft(world.copy(), vocabulary, config, choices, done)
+    def run(choices: ChoicePoints) -> ActionPlan:
+        builder = PlanBuilder(world.copy(), vocabulary, config, choices, done)
         try:
-            steps = _steps(command, draft)
+            steps = _steps(command, builder)
         except LookFirst as look:
             return ActionPlan(request_id=request_id, steps=look.steps, source=SOURCE, again=True)
         except Refusal as refusal:
@@ -55,7 +54,7 @@ def plan(
         return ActionPlan(request_id=request_id, steps=steps, source=SOURCE)
 
     if not rejected:
-        return run(Choices())
+        return run(ChoicePoints())
     culprits = [c for r in rejected if (c := _culprit(r)) is not None]
     other: ActionPlan | None = None
     for candidate in every(run):
@@ -64,7 +63,7 @@ def plan(
         if not any(c in candidate.steps for c in culprits):
             return candidate
         other = other or candidate
-    return other or _spent(run(Choices()), rejected[-1])
+    return other or _spent(run(ChoicePoints()), rejected[-1])
 
 
 def _spent(first: ActionPlan, rejected: RejectedPlan) -> ActionPlan:
@@ -79,39 +78,39 @@ def _culprit(rejected: RejectedPlan) -> PlanStep | None:
     return rejected.steps[rejected.step - 1] if 0 < rejected.step <= len(rejected.steps) else None
 
 
-def _steps(command: str, draft: Draft) -> list[PlanStep]:
-    sentences = parts(command[:MAX_CHARACTERS])
+def _steps(command: str, builder: PlanBuilder) -> list[PlanStep]:
+    sentences = clauses(command[:MAX_CHARACTERS])
     if not sentences:
         raise Refusal("I did not hear a command")
     if len(command) > MAX_CHARACTERS or any(len(s.split()) > MAX_WORDS for s in sentences):
         raise Refusal("that is too long a sentence for me")
     for number, sentence in enumerate(sentences):
         words = tuple(sentence.split())
-        _whole(words, draft, alone=len(sentences) == 1, started=number > 0)
-    if draft.collecting:
+        _whole(words, builder, alone=len(sentences) == 1, started=number > 0)
+    if builder.collecting:
         raise Refusal("I can hold only one thing at a time")
-    if not draft.steps:
+    if not builder.steps:
         raise Refusal("there is nothing to do")
-    if all(step.action == "find" for step in draft.steps):
-        answers.found(draft)
-    return draft.steps
+    if all(step.action == "find" for step in builder.steps):
+        answers.found(builder)
+    return builder.steps
 
 
-def _whole(words: Words, draft: Draft, alone: bool, started: bool) -> None:
+def _whole(words: Words, builder: PlanBuilder, alone: bool, started: bool) -> None:
     """One part of the sentence: one command, or several joined by "and"."""
     try:
-        _joined(words, draft, "" if not started else "bring", 0, alone)
+        _joined(words, builder, "" if not started else "bring", 0, alone)
     except _Failure as failure:
         raise Refusal(failure.reason) from None
 
 
-def _joined(words: Words, draft: Draft, verb: str, at: int, alone: bool) -> None:
-    """Carry out `words` as the longest command that works, followed by the rest; changes `draft` only on success."""
+def _joined(words: Words, builder: PlanBuilder, verb: str, at: int, alone: bool) -> None:
+    """Carry out `words` as the longest command that works, followed by the rest; changes `builder` only on success."""
     cuts = [len(words), *(i for i in range(len(words) - 1, 0, -1) if words[i] == "and")]
     worst: _Failure | None = None
     for cut in cuts:
         head, rest = words[:cut], words[cut + 1 :]
-        trial = draft.fork()
+        trial = builder.fork()
         try:
             _command(head, trial, verb, at, alone and not rest)
             if rest:
@@ -119,51 +118,35 @@ def _joined(words: Words, draft: Draft, verb: str, at: int, alone: bool) -> None
         except _Failure as failure:
             worst = failure if worst is None or failure.at >= worst.at else worst
             continue
-        draft.adopt(trial)
+        builder.adopt(trial)
         return
     assert worst is not None
     raise worst
 
 
-def _command(words: Words, draft: Draft, verb: str, at: int, alone: bool) -> None:
+def _command(words: Words, builder: PlanBuilder, verb: str, at: int, alone: bool) -> None:
     """The first form that fits the words and can be done; else the reason of the first that fits."""
     if not words:
         raise _Failure(at, "I did not hear a command")
-    words = tuple(polite(" ".join(words)).split()) or words
-    draft.effort[0] += 1
-    if draft.effort[0] > MAX_EFFORT:
+    words = tuple(without_politeness(" ".join(words)).split()) or words
+    builder.effort[0] += 1
+    if builder.effort[0] > MAX_EFFORT:
         raise Refusal("that is too long a sentence for me")
-    words = (plain(words[0], VERBS), *words[1:])
-    reason = _try(words, draft, FORMS)
+    words = (infinitive(words[0], VERBS), *words[1:])
+    reason = apply_first(words, builder, "command", "reply")
     if reason is None:
         return
     if not reason and alone:
-        reason = _try(words, draft, ALONE)
-    elif not reason and verb and _is_thing(words, draft):
+        reason = apply_first(words, builder, "name")
+    elif not reason and verb and _is_thing(words, builder):
         # "put the mug on the table and the can on the counter": the verb is said once.
-        reason = _try((verb, *words), draft, FORMS)
+        reason = apply_first((verb, *words), builder, "command", "reply")
     if reason is None:
         return
     said = " ".join(words)
     raise _Failure(at if reason else at - 1, reason or f"I do not understand {said!r}")
 
 
-def _is_thing(words: Words, draft: Draft) -> bool:
+def _is_thing(words: Words, builder: PlanBuilder) -> bool:
     """Do the words begin like a thing's name?"""
-    return words[0] in _THING_STARTS or any(draft.vocabulary.noun(w) for w in words[:3])
-
-
-def _try(words: Words, draft: Draft, forms: Sequence[tuple[Form, Action]]) -> str | None:
-    """None when a form was carried out; else the first reason against it, "" when no form fits."""
-    reason = ""
-    for form, action in forms:
-        for slots in form.matches(words):
-            trial = draft.fork()
-            try:
-                action(trial, slots)
-            except Refusal as refusal:
-                reason = reason or str(refusal)
-                continue
-            draft.adopt(trial)
-            return None
-    return reason
+    return words[0] in _THING_STARTS or any(builder.vocabulary.noun(w) for w in words[:3])

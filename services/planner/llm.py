@@ -10,9 +10,9 @@ import msgspec
 
 from common.messages import PlanStep, RejectedPlan
 from common.time.clock import monotonic
-from services.planner.check import Impossible, checked
 from services.planner.config import PlannerConfig
-from services.planner.draft import same
+from services.planner.llm_plan import Impossible, checked
+from services.planner.plan_builder import same
 from services.planner.prompt import messages, schema
 from services.planner.vocabulary import Vocabulary
 from services.planner.world import World

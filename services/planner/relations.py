@@ -4,28 +4,28 @@ import cmath
 import math
 from collections.abc import Sequence
 
-from services.planner.draft import Draft, Refusal
+from common.language.normalise import enumeration
 from services.planner.phrases import Phrase
+from services.planner.plan_builder import PlanBuilder, Refusal
 from services.planner.vocabulary import Spot
-from services.planner.words import listed
 from services.planner.world import Thing
 
 NEAR = 1.5
 BESIDE = 0.6
 
 
-def superlative(draft: Draft, phrase: Phrase, seen: Sequence[Thing]) -> Thing:
+def superlative(builder: PlanBuilder, phrase: Phrase, seen: Sequence[Thing]) -> Thing:
     if phrase.which in ("biggest", "smallest"):
         by_size = sorted(seen, key=lambda t: math.prod(t.size))
         if math.isclose(math.prod(by_size[0].size), math.prod(by_size[-1].size), rel_tol=0.05) and len(seen) > 1:
-            raise Refusal(f"they are all of the same size: {listed([f'the {t.label}' for t in by_size])}")
+            raise Refusal(f"they are all of the same size: {enumeration([f'the {t.label}' for t in by_size])}")
         return by_size[-1 if phrase.which == "biggest" else 0]
     if phrase.which in ("nearest", "farthest"):
-        by_distance = sorted(seen, key=draft.world.distance)
+        by_distance = sorted(seen, key=builder.world.distance)
         return by_distance[0 if phrase.which == "nearest" else -1]
     with_place = [t for t in seen if t.position]
     sign = 1 if phrase.side == "right" else -1
-    placed = sorted(with_place, key=lambda t: sign * _bearing(draft, t, with_place))
+    placed = sorted(with_place, key=lambda t: sign * _bearing(builder, t, with_place))
     if not placed:
         raise Refusal(f"I have not seen which {phrase.noun} that is")
     index = {"left": 0, "first": 0, "second": 1, "third": 2, "right": 0, "last": -1}[phrase.which]
@@ -34,29 +34,29 @@ def superlative(draft: Draft, phrase: Phrase, seen: Sequence[Thing]) -> Thing:
     return placed[index]
 
 
-def _bearing(draft: Draft, thing: Thing, group: Sequence[Thing]) -> float:
+def _bearing(builder: PlanBuilder, thing: Thing, group: Sequence[Thing]) -> float:
     """Angle to the left of the middle of a group, as the robot would see it from where it stands [rad]."""
-    x, y, _ = draft.world.pose
+    x, y, _ = builder.world.pose
     rays = [complex(t.position[0] - x, t.position[1] - y) for t in (thing, *group) if t.position]
     middle = sum(ray / max(abs(ray), 1e-9) for ray in rays[1:])
     return cmath.phase(rays[0] / middle) if abs(middle) > 1e-9 else cmath.phase(rays[0])
 
 
-def holds(draft: Draft, relation: str, thing: Thing, anchor: Thing) -> bool:
+def holds(builder: PlanBuilder, relation: str, thing: Thing, anchor: Thing) -> bool:
     if relation in ("left of", "right of"):
-        turn = _bearing(draft, thing, (thing, anchor)) - _bearing(draft, anchor, (thing, anchor))
+        turn = _bearing(builder, thing, (thing, anchor)) - _bearing(builder, anchor, (thing, anchor))
         return (turn > 0) == (relation == "left of")
     if relation in ("behind", "front of"):
-        farther = draft.world.distance(thing) > draft.world.distance(anchor)
+        farther = builder.world.distance(thing) > builder.world.distance(anchor)
         return farther == (relation == "behind")
     return between(thing, anchor) < BESIDE if relation == "near" else thing.on == anchor.label
 
 
-def is_near(draft: Draft, thing: Thing, place: Spot) -> bool:
+def is_near(builder: PlanBuilder, thing: Thing, place: Spot) -> bool:
     """On a surface or a step away from it, or from a standing place; in a room."""
     if place.room:
-        return draft.world.room_of(thing) == place.name
-    where = draft.vocabulary.position(place)
+        return builder.world.room_of(thing) == place.name
+    where = builder.vocabulary.position(place)
     if thing.on == place.name or where is None or thing.position is None:
         return thing.on == place.name
     return math.dist(where, thing.position[:2]) < NEAR
@@ -67,9 +67,9 @@ def between(a: Thing, b: Thing) -> float:
     return math.dist(a.position, b.position)
 
 
-def away(draft: Draft, place: Spot) -> float:
-    x, y, _ = draft.world.pose
-    where = draft.vocabulary.position(place)
+def away(builder: PlanBuilder, place: Spot) -> float:
+    x, y, _ = builder.world.pose
+    where = builder.vocabulary.position(place)
     return math.dist(where, (x, y)) if where else 0.0
 
 

@@ -4,15 +4,13 @@ from collections.abc import Iterable
 
 import msgspec
 
+from common.language.normalise import Words, enumeration, normalise, without_determiners
 from common.scene import Receptacle, Scene
 from services.planner.config import PlannerConfig
-from services.planner.forms import Words
-from services.planner.words import listed, normal
 from services.planner.world import World
 
 ANY = frozenset({"thing", "object", "item", "stuff", "mess", "one"})
 WHOLE = frozenset({"everything", "anything", "something", "all", "mess"})
-DETERMINERS = frozenset({"the", "a", "an", "my", "your", "our", "that", "this", "some", "any", "those", "these"})
 _HERE = frozenset({"me", "us", "here", "home", "start", "over here", "back"})
 
 
@@ -46,34 +44,34 @@ class Vocabulary:
         self._nouns: dict[str, Sense] = {}
         self._aliases(scene)
         for thing in known:
-            self._nouns.setdefault(normal(thing.label), Sense(names=frozenset({thing.label})))
+            self._nouns.setdefault(normalise(thing.label), Sense(names=frozenset({thing.label})))
         for kind in self.kinds:
             named = self._nouns.get(kind, Sense())
             only = next(iter(named.names)) if len(named.names) == 1 else ""
             self._nouns[kind] = Sense(kinds=frozenset({kind}), prefer=only)
         for word, group in config.groups.items():
             if members := frozenset(k for k in group if k in self.kinds):
-                self._nouns.setdefault(normal(word), Sense(kinds=members))
-        self._mass = frozenset(map(normal, config.mass))
+                self._nouns.setdefault(normalise(word), Sense(kinds=members))
+        self._mass = frozenset(map(normalise, config.mass))
         self._places = self._standing(scene, world.places)
 
     def _aliases(self, scene: Scene) -> None:
         for spec in scene.objects:
             for alias in (spec.name, *spec.aliases):
-                self._nouns[normal(alias)] = Sense(names=frozenset({spec.name}))
+                self._nouns[normalise(alias)] = Sense(names=frozenset({spec.name}))
             for alias in spec.aliases:
-                noun = normal(alias).removeprefix(f"{spec.colour} ")
-                if noun != normal(alias):
+                noun = normalise(alias).removeprefix(f"{spec.colour} ")
+                if noun != normalise(alias):
                     self._nouns.setdefault(noun, Sense(kinds=frozenset({spec.kind})))
 
     def _standing(self, scene: Scene, told: Iterable[str]) -> dict[str, Spot]:
-        spots = {normal(p): Spot(p) for p in told if scene.receptacle(p) is None}
+        spots = {normalise(p): Spot(p) for p in told if scene.receptacle(p) is None}
         for place in scene.places:
-            spots |= {normal(n): Spot(place.name) for n in (place.name, *place.aliases)}
+            spots |= {normalise(n): Spot(place.name) for n in (place.name, *place.aliases)}
         for room in scene.rooms:
-            spots |= {normal(n): Spot(room.name, room=True) for n in (room.name, *room.aliases)}
+            spots |= {normalise(n): Spot(room.name, room=True) for n in (room.name, *room.aliases)}
         home = Spot(scene.home.name, home=True)
-        return spots | {normal(n): home for n in (scene.home.name, *scene.home.aliases, *_HERE)}
+        return spots | {normalise(n): home for n in (scene.home.name, *scene.home.aliases, *_HERE)}
 
     # --- nouns
     def noun(self, phrase: str) -> tuple[Sense, str, bool] | None:
@@ -90,23 +88,25 @@ class Vocabulary:
     # --- spots
     def spot(self, words: Words, room: str = "") -> list[Spot]:
         """Every place that the words can mean, the best alone when one is meant by name; [] if unknown."""
-        phrase = " ".join(bare(words))
+        phrase = " ".join(without_determiners(words))
         if not phrase:
             return []
         for preposition in ("in", "of", "from", "at"):
             head, found, tail = phrase.partition(f" {preposition} ")
-            where = self._places.get(" ".join(bare(tuple(tail.split())))) if found else None
+            where = self._places.get(" ".join(without_determiners(tuple(tail.split())))) if found else None
             if where is not None and where.room:
                 return self.spot(tuple(head.split()), where.name)
         if not room and (place := self._places.get(phrase)):
             return [place]
-        named = [r for r in self._scene.receptacles if phrase in map(normal, (r.name, *r.aliases))]
+        named = [r for r in self._scene.receptacles if phrase in map(normalise, (r.name, *r.aliases))]
         colour, _, rest = phrase.partition(" ")
         meant = self.colours.get(colour)
         kin = [
             r
             for r in self._scene.receptacles
-            if r.kind == phrase or f" {normal(r.name)}".endswith(f" {phrase}") or (meant and _coloured(r, meant, rest))
+            if r.kind == phrase
+            or f" {normalise(r.name)}".endswith(f" {phrase}")
+            or (meant and _coloured(r, meant, rest))
         ]
         if room:
             named, kin = [r for r in named if self._is_in(r, room)], [r for r in kin if self._is_in(r, room)]
@@ -118,8 +118,8 @@ class Vocabulary:
 
     def furniture(self, words: Words) -> str:
         """The furniture meant, which is in the way but no place to put things."""
-        phrase = " ".join(bare(words))
-        return next((f.name for f in self._scene.furniture if phrase and phrase in normal(f.name)), "")
+        phrase = " ".join(without_determiners(words))
+        return next((f.name for f in self._scene.furniture if phrase and phrase in normalise(f.name)), "")
 
     def position(self, place: Spot) -> tuple[float, float] | None:
         """The middle of a surface, or where one stands at a place [m]; None for a room."""
@@ -133,14 +133,7 @@ class Vocabulary:
         return [r for r in self._scene.receptacles if r.spawn and not r.depth and (not room or self._is_in(r, room))]
 
     def receptacles_named(self) -> str:
-        return listed([r.name for r in self._scene.receptacles], "or")
-
-
-def bare(words: Words) -> Words:
-    """Without leading determiners."""
-    while words and words[0] in DETERMINERS:
-        words = words[1:]
-    return words
+        return enumeration([r.name for r in self._scene.receptacles], "or")
 
 
 def _coloured(r: Receptacle, colour: str, rest: str) -> bool:

@@ -6,7 +6,8 @@ from common.config import Config
 
 
 class SpeechConfig(Config, frozen=True):
-    """`commands` are the patterns of the grammar; the lists extend the scene's vocabulary. Times in seconds.
+    """`commands` are the patterns of the grammar, around those of `common/language/wordings.py` (`<verb>` and
+    `<utterance>`); the lists extend the scene's vocabulary. Times in seconds.
 
     `tempo_weight` and `rare` (what a word costs) weigh sentences that sound alike. `wake_window`:
     how long after the wake word a command may begin. `interrupt_pause`: the pause after a short utterance at which it
@@ -34,8 +35,6 @@ class SpeechConfig(Config, frozen=True):
     wake_threshold: float = 0.3
     wake_window: float = 6.0
     wake: tuple[str, ...] = ("hey jarvis",)
-    stop: tuple[str, ...] = ("stop",)
-    cancel: tuple[str, ...] = ("cancel",)
     interrupt_pause: float = 0.25
     interrupt_longest: float = 1.6
     interrupt_seconds: float = 0.4

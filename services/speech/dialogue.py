@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 from typing import Literal
 
+from common.language.wordings import Action
 from services.speech.recognise import Heard, Scope
 
-Interrupt = Literal["stop", "cancel", ""]
 Act = Literal["stop", "cancel", "answer", "command", "awake", "again", "nothing"]
 
 
@@ -33,8 +33,8 @@ def scope(setting: Setting, over: bool) -> Scope:
     return "woken" if setting.woken else "command"
 
 
-def act(heard: Heard, interrupt: Interrupt, asked: Scope, setting: Setting) -> Act:
-    """What follows from an utterance in which `asked` was looked for.
+def act(heard: Heard, interrupt: Action | None, asked: Scope, setting: Setting) -> Act:
+    """What follows from an utterance in which `asked` was looked for; `interrupt` is stop or cancel if it was that.
 
     `again`: the robot was addressed but did not understand. A cancel that answers the brain's listening is the answer.
     """

@@ -8,16 +8,14 @@ import re
 from collections.abc import Iterable, Mapping
 from copy import copy
 
+from common.language.meaning import heard_parts
+from common.language.normalise import normalise
+from common.language.pattern import Either, Node, PatternError, Sequence, Slot, Word, parse
 from common.scene import Scene
 
 State = frozenset[int]
-_TOKEN = re.compile(r"<(\w+)>|([()\[\]|])|([a-z0-9']+)")
-_WORDS = re.compile(r"^[a-z0-9' ]+$")
+_WORDS = re.compile(r"^[\w' ]+$")
 _NAMED = re.compile(r"^(\w+)\s*=\s*(.+)$")
-
-
-class GrammarError(ValueError):
-    """A pattern that cannot be used; names it."""
 
 
 class Grammar:
@@ -42,7 +40,7 @@ class Grammar:
         self._steps: dict[tuple[State, str], State] = {}
         self.start: State = self._closure({self._first})
         if self.accepts(""):
-            raise GrammarError("the grammar accepts silence: a pattern is wholly optional")
+            raise PatternError("the grammar accepts silence: a pattern is wholly optional")
 
     def introduced(self, phrases: Iterable[str]) -> "Grammar":
         """The same sentences after one of the phrases, or one of the phrases alone. It shares the automaton."""
@@ -108,50 +106,34 @@ class Grammar:
         return node
 
     def _parse(self, pattern: str, start: int, end: int) -> None:
-        tokens = _TOKEN.findall(pattern.lower())
-        rest = _TOKEN.sub("", pattern.lower()).strip()
-        if rest:
-            raise GrammarError(f"pattern {pattern!r}: {rest[:10]!r} is not understood")
-        position = self._alternatives(tokens, 0, start, end, pattern)
-        if position != len(tokens):
-            raise GrammarError(f"pattern {pattern!r}: a closing bracket too many")
+        self._build(parse(pattern), start, end, pattern)
 
-    def _alternatives(self, tokens: list[tuple[str, str, str]], i: int, start: int, end: int, pattern: str) -> int:
-        while True:
-            inner = self._node()
-            self._silent[start].append(inner)
-            i, last = self._sequence(tokens, i, inner, pattern)
-            self._silent[last].append(end)
-            if i >= len(tokens) or tokens[i][1] != "|":
-                return i
-            i += 1
-
-    def _sequence(self, tokens: list[tuple[str, str, str]], i: int, node: int, pattern: str) -> tuple[int, int]:
-        while i < len(tokens):
-            part, mark, word = tokens[i]
-            if mark in ("|", ")", "]"):
-                break
-            after = self._node()
-            if word:
-                self._silent[self._word(node, word)].append(after)
-            elif part:
-                self._part(part, node, after, pattern)
-            else:
-                i = self._alternatives(tokens, i + 1, node, after, pattern)
-                closing = ")" if mark == "(" else "]"
-                if i >= len(tokens) or tokens[i][1] != closing:
-                    raise GrammarError(f"pattern {pattern!r}: {mark} is not closed")
-                if mark == "[":
-                    self._silent[node].append(after)
-            node, i = after, i + 1
-        return i, node
+    def _build(self, node: Node, start: int, end: int, pattern: str) -> None:
+        """Ways from the automaton's node `start` to `end` for each sentence of a pattern's syntax tree."""
+        match node:
+            case Word(text):
+                self._silent[self._word(start, text)].append(end)
+            case Slot(name):
+                self._part(name, start, end, pattern)
+            case Either(options):
+                for option in options:
+                    first = self._node()
+                    self._silent[start].append(first)
+                    self._build(option, first, end, pattern)
+            case Sequence(parts):
+                at = start
+                for part in parts:
+                    after = self._node()
+                    self._build(part, at, after, pattern)
+                    at = after
+                self._silent[at].append(end)
 
     def _part(self, name: str, start: int, end: int, pattern: str) -> None:
         if name not in self._parts:
-            raise GrammarError(f"pattern {pattern!r}: nothing defines <{name}>")
+            raise PatternError(f"pattern {pattern!r}: nothing defines <{name}>")
         self._depth += 1
         if self._depth > 12:
-            raise GrammarError(f"pattern {pattern!r}: <{name}> contains itself")
+            raise PatternError(f"pattern {pattern!r}: <{name}> contains itself")
         for row in self._parts[name]:
             if _WORDS.match(row):
                 node = start
@@ -166,22 +148,21 @@ class Grammar:
 def vocabulary(
     scene: Scene, objects: Iterable[str], places: Iterable[str], colours: Iterable[str]
 ) -> dict[str, list[str]]:
-    """The words of <object>, <place>, <surface>, <container> and <colour>: names and aliases of the scene and the
-    configured ones. Anything can be put on a receptacle; bins and rooms can hold things."""
+    """The parts that patterns need not define: <verb> and <utterance> from the wordings' table, and as names and
+    aliases of the scene with the configured ones <object>, <place>, <surface>, <container> and <colour>.
+
+    Anything can be put on a receptacle; bins and rooms can hold things.
+    """
     things = [n for o in scene.objects for n in (o.name, o.kind, *o.aliases)]
     surfaces = [n for r in scene.receptacles for n in (r.name, *r.aliases)]
     rooms = [n for r in scene.rooms for n in (r.name, *r.aliases)]
     bins = [n for r in scene.receptacles if r.kind in ("bin", "tray") for n in (r.name, *r.aliases)]
     spots = [n for p in (scene.home, *scene.places) for n in (p.name, *p.aliases)]
     return {
-        "object": [spoken(n) for n in (*things, *objects)],
-        "place": [spoken(n) for n in (*surfaces, *rooms, *spots, *places)],
-        "surface": [spoken(n) for n in surfaces],
-        "container": [spoken(n) for n in (*bins, *rooms)],
-        "colour": [spoken(n) for n in (*(o.colour for o in scene.objects), *colours) if n],
+        **heard_parts(),
+        "object": [normalise(n) for n in (*things, *objects)],
+        "place": [normalise(n) for n in (*surfaces, *rooms, *spots, *places)],
+        "surface": [normalise(n) for n in surfaces],
+        "container": [normalise(n) for n in (*bins, *rooms)],
+        "colour": [normalise(n) for n in (*(o.colour for o in scene.objects), *colours) if n],
     }
-
-
-def spoken(text: str) -> str:
-    """Lower case words without punctuation, as the grammar has them."""
-    return " ".join(re.sub(r"[^a-z0-9' ]+", " ", text.lower()).split())

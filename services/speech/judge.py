@@ -7,8 +7,8 @@ from typing import Protocol, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from common.language.normalise import normalise
 from services.speech.config import SpeechConfig
-from services.speech.grammar import spoken
 
 Array = NDArray[np.float32]
 CANDIDATES, HOPELESS, PLAUSIBLE = 6, 8.0, -1.2
@@ -39,7 +39,7 @@ def judged(
     judged `again` by others, in which the same noise sounds different to the network. `weigh` tells a sentence's cost.
     """
     best = found[0]
-    if spoken(free.text) == best.text:
+    if normalise(free.text) == best.text:
         return best, (best.log_probability - free.log_probability) / best.tokens
     least = best.log_probability - weigh(best.text) - HOPELESS
     rivals = [f for f in found[:CANDIDATES] if f.log_probability - weigh(f.text) >= least]

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from common.language.wordings import INTERRUPTS
 from common.scene import Scene
 from services.speech.config import SpeechConfig
 from services.speech.grammar import Grammar, vocabulary
@@ -101,7 +102,7 @@ def patterns(config: SpeechConfig, scope: Scope) -> list[str]:
         return list(config.commands)
     wake = _either(config.wake)
     if scope == "interrupt":
-        return [f"[{wake}] {_either((*config.stop, *config.cancel))}"]
+        return [f"[{wake}] {_either(line for lines in INTERRUPTS.values() for line in lines)}"]
     sentences = [line for line in config.commands if not _is_part(line)]
     return [f"{wake} [{_either(sentences)}]", *(line for line in config.commands if _is_part(line))]
 
@@ -110,7 +111,7 @@ def grammars(config: SpeechConfig, scene: Scene) -> dict[Scope, Grammar]:
     """One grammar for each scope.
 
     Raises:
-        GrammarError: a pattern that cannot be used.
+        PatternError: a pattern that cannot be used.
     """
     words = vocabulary(scene, config.objects, config.places, config.colours)
     commands = Grammar(patterns(config, "command"), words)
@@ -125,16 +126,3 @@ def _is_part(line: str) -> bool:
 
 def _either(patterns: Iterable[str]) -> str:
     return "(" + " | ".join(patterns) + ")"
-
-
-class Interrupts:
-    """Which of the words that end everything were said."""
-
-    def __init__(self, config: SpeechConfig) -> None:
-        self._stop, self._cancel = Grammar(config.stop, {}), Grammar(config.cancel, {})
-
-    def of(self, text: str) -> Literal["stop", "cancel", ""]:
-        """stop, cancel, or neither."""
-        if self._stop.accepts(text):
-            return "stop"
-        return "cancel" if self._cancel.accepts(text) else ""

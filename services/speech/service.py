@@ -11,15 +11,17 @@ from common import messages as m
 from common import topics
 from common.bus.port import Io
 from common.goal_register import GoalRegister
+from common.language.meaning import asks_for
+from common.language.normalise import normalise
+from common.language.pattern import PatternError
 from common.runtime import StartError
 from services.speech.attention import Attention, Hearing
 from services.speech.audio import RATE, AudioError, Samples, read_wav, resample
 from services.speech.config import SpeechConfig
 from services.speech.dialogue import act
 from services.speech.ear import Ear
-from services.speech.grammar import GrammarError, spoken
 from services.speech.mouth import CHUNK, Mouth
-from services.speech.recognise import Heard, Interrupts, grammars
+from services.speech.recognise import Heard, grammars
 from services.speech.speak import Microphone
 
 _FAILURES = {"silence": "NO_SPEECH", "ask": "UNCERTAIN", "reject": "NO_COMMAND"}
@@ -37,9 +39,8 @@ class SpeechService:
         self._config, self._io = config, io
         try:
             found = grammars(config, io.scene)
-            self._interrupts = Interrupts(config)
             self._recording: Samples | None = read_wav(Path(config.wav)) if config.wav else None
-        except (GrammarError, AudioError) as error:
+        except (PatternError, AudioError) as error:
             raise StartError(f"speech: {error}") from None
         if config.wake_word and not find_spec("pyopen_wakeword"):
             raise StartError("speech.wake_word needs pyopen-wakeword; install it, or set speech.wake_word = false")
@@ -148,7 +149,7 @@ class SpeechService:
         heard, setting = hearing.job.result(), hearing.setting
         same = self._listening and hearing.key == (self._goal.id, self._goal.attempt)
         setting = replace(setting, listening=setting.listening and same)
-        found = act(heard, self._interrupts.of(heard.text), hearing.scope, setting)
+        found = act(heard, asks_for(heard.text, "stop", "cancel"), hearing.scope, setting)
         self._io.log.debug("utterance", text=heard.text, free=heard.free, verdict=heard.verdict, act=found)
         if found in ("stop", "cancel", "answer"):
             self._attention.settle(hearing)
@@ -191,7 +192,7 @@ class SpeechService:
 
     # --- listening on request
     def _type(self, text: str, now: float) -> None:
-        word = self._interrupts.of(spoken(text))
+        word = asks_for(text, "stop", "cancel")
         if word == "stop" or (word and not self._listening):
             self._interrupt(word, 1.0, now)
         else:
@@ -201,9 +202,9 @@ class SpeechService:
         """End the goal when something was typed, or the time is over."""
         while self._typed:
             at, text = self._typed.popleft()
-            if now - at <= self._config.typed_memory and spoken(text):
+            if now - at <= self._config.typed_memory and normalise(text):
                 self._listening = False
-                self._answer(self._goal, spoken(text), 1.0)
+                self._answer(self._goal, normalise(text), 1.0)
                 return
         if now >= self._deadline and not self._attention.busy:
             self._listening = False

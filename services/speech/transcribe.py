@@ -8,12 +8,12 @@ from pathlib import Path
 import msgspec
 
 from common import config
+from common.language.pattern import PatternError
 from common.runtime import BAD_CONFIGURATION, StartError
 from common.scene import Scene, SceneError, load_scene
 from services.speech.audio import AudioError, Samples, read_wav
 from services.speech.config import SpeechConfig
 from services.speech.ear import Ear
-from services.speech.grammar import GrammarError
 from services.speech.recognise import Heard, grammars
 from services.speech.wake import WakeWord
 
@@ -47,7 +47,7 @@ def main() -> int:
         shared = config.load("runtime", config.RuntimeConfig, directory, changes)
         parameters, scene = config.load("speech", SpeechConfig, directory, changes), load_scene(shared.scene)
         reader = Reader(parameters, scene)
-    except (config.ConfigError, SceneError, GrammarError, StartError, FileNotFoundError) as error:
+    except (config.ConfigError, SceneError, PatternError, StartError, FileNotFoundError) as error:
         print(f"transcribe: {error}", file=sys.stderr)
         return BAD_CONFIGURATION
     failed = False

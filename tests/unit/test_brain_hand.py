@@ -5,9 +5,9 @@ import pytest
 from common import messages as m
 from common import topics
 from common.bus.memory import MemoryIo
+from common.plan_rules import known_world, objection
 from common.scene import load_scene
 from services.brain.config import BrainConfig
-from services.brain.validate import known_world, objection
 from tests.unit.brain_bench import Bench
 
 OPEN = m.PlanStep(action="release", target="gripper")

@@ -12,9 +12,9 @@ import pytest
 from bench.mission import Robot, fetch
 from common import config, topics
 from common import messages as m
+from common.plan_rules import known_world
 from common.scene import ObjectKind, ObjectSpec, load_scene
 from examples.odometer import DISTANCE, OdometerConfig, OdometerService
-from services.brain.validate import known_world
 from services.manipulation.grasp import Target, candidates
 from services.perception.shapes import distances
 from services.planner import grammar

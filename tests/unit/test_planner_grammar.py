@@ -6,8 +6,8 @@ import pytest
 
 from common import config
 from common.messages import ActionPlan, KnownWorld, PlanStep, RejectedPlan, WorldObject
+from common.plan_rules import known_world, objection
 from common.scene import Scene, load_scene
-from services.brain.validate import known_world, objection
 from services.planner import grammar
 from services.planner.config import PlannerConfig
 from services.planner.world import believed

@@ -2,21 +2,21 @@
 
 import pytest
 
+from common.language.normalise import clauses, infinitive
+from common.language.pattern import Pattern, PatternError
 from common.messages import KnownWorld, PlanStep
 from common.scene import load_scene
-from services.planner.check import Impossible, checked
-from services.planner.choices import MAX_RUNS, Choices, every
+from services.planner.choice_points import MAX_RUNS, ChoicePoints, every
 from services.planner.config import PlannerConfig
-from services.planner.forms import Form
+from services.planner.llm_plan import Impossible, checked
 from services.planner.vocabulary import Vocabulary
-from services.planner.words import parts, plain
 from services.planner.world import believed
 
 SCENE = load_scene("apartment")
 
 
 def readings(pattern: str, text: str) -> list[dict[str, str]]:
-    return [{k: " ".join(v) for k, v in found.items()} for found in Form(pattern).matches(tuple(text.split()))]
+    return [{k: " ".join(v) for k, v in found.items()} for found in Pattern(pattern).matches(tuple(text.split()))]
 
 
 def test_a_form_gives_every_reading_the_shortest_slot_first() -> None:
@@ -32,12 +32,12 @@ def test_a_form_gives_every_reading_the_shortest_slot_first() -> None:
 
 @pytest.mark.parametrize("pattern", ["go (home", "go [home", "go home)", "go ] home"])
 def test_a_bad_form_is_named(pattern: str) -> None:
-    with pytest.raises(ValueError, match="form"):
-        Form(pattern)
+    with pytest.raises(PatternError, match="pattern"):
+        Pattern(pattern)
 
 
 def test_choices_run_through_every_combination_in_order() -> None:
-    def run(choices: Choices) -> str:
+    def run(choices: ChoicePoints) -> str:
         first = choices.pick("ab")
         return first + choices.pick("xyz") if first == "a" else first
 
@@ -46,7 +46,7 @@ def test_choices_run_through_every_combination_in_order() -> None:
 
 
 def test_a_trial_that_is_dropped_leaves_no_choice_behind() -> None:
-    choices = Choices()
+    choices = ChoicePoints()
     trial = choices.fork()
     trial.pick("abc")
     assert choices.taken == [] and trial.taken == [(0, 3)]
@@ -65,12 +65,12 @@ def test_a_trial_that_is_dropped_leaves_no_choice_behind() -> None:
     ],
 )
 def test_sentences_are_cut_into_commands(text: str, expected: list[str]) -> None:
-    assert parts(text) == expected
+    assert clauses(text) == expected
 
 
 def test_verbs_lose_their_ing() -> None:
     verbs = {"bring", "take", "put", "tidy"}
-    assert [plain(w, verbs) for w in ("bringing", "taking", "putting", "tidying", "king", "bring")] == [
+    assert [infinitive(w, verbs) for w in ("bringing", "taking", "putting", "tidying", "king", "bring")] == [
         "bring", "take", "put", "tidy", "king", "bring",
     ]  # fmt: skip
 

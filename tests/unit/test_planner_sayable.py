@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from common import config
 from common.messages import ActionPlan, RejectedPlan, WorldObject
+from common.plan_rules import known_world, objection
 from common.scene import load_scene
-from services.brain.validate import known_world, objection
 from services.planner import grammar
 from services.planner.config import PlannerConfig
 from services.planner.world import believed

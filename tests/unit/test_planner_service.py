@@ -66,8 +66,8 @@ def test_every_rejected_plan_of_a_mission_is_remembered() -> None:
         if not plan.steps:
             break
         seen.append(plan.steps[-1].target)
-        reason = f"step 3: the {seen[-1]} is full"
-        rejected = {"steps": msgspec.to_builtins(plan.steps), "reason": reason}
+        reason = f"the {seen[-1]} is full"
+        rejected = {"steps": msgspec.to_builtins(plan.steps), "step": 3, "reason": reason}
         plan = node.ask(command, f"m.{number}", rejected=rejected)
     assert sorted(seen) == ["bookshelf", "living table"]
     assert plan.detail == f"the {seen[-1]} is full"
@@ -76,7 +76,7 @@ def test_every_rejected_plan_of_a_mission_is_remembered() -> None:
 
 def test_its_memory_is_bounded() -> None:
     node = Desk()
-    rejected = {"steps": [], "reason": "step 1: no"}
+    rejected = {"steps": [], "step": 1, "reason": "no"}
     node.send(topics.WORLD_OBJECTS, mugs(("red", (4.0, -3.1, 0.8))))
     for number in range(REMEMBERED + 1):
         node.ask("bring me the mug", f"m{number}.1", rejected=rejected)

@@ -6,7 +6,7 @@ from common import config
 from services.speech.config import SpeechConfig
 from services.speech.dialogue import Setting, act, scope
 from services.speech.ear import without_wake
-from services.speech.recognise import Heard, Interrupts
+from services.speech.recognise import Heard
 from tests.support import ROOT
 
 CONFIG = config.load("speech", SpeechConfig, ROOT / "config", {})
@@ -48,27 +48,19 @@ def test_cancel_answers_the_listening_brain_and_else_ends_what_goes_on() -> None
 
 
 def test_commands_need_the_wake_word_or_an_open_ear() -> None:
-    assert act(SAID, "", "woken", WOKEN) == "command"
-    assert act(SAID, "", "command", Setting(window=True)) == "command"
-    assert act(SAID, "", "command", LISTENING) == "answer"
-    assert act(SAID, "", "command", STRANGER) == "nothing", "the goal was cancelled in the meantime"
+    assert act(SAID, None, "woken", WOKEN) == "command"
+    assert act(SAID, None, "command", Setting(window=True)) == "command"
+    assert act(SAID, None, "command", LISTENING) == "answer"
+    assert act(SAID, None, "command", STRANGER) == "nothing", "the goal was cancelled in the meantime"
 
 
 def test_a_doubtful_command_goes_to_the_brain_which_asks() -> None:
-    assert act(Heard("bring me the apple", "ask", 0.3), "", "woken", WOKEN) == "command"
+    assert act(Heard("bring me the apple", "ask", 0.3), None, "woken", WOKEN) == "command"
 
 
 def test_the_wake_word_alone_opens_the_ear_and_nonsense_after_it_keeps_it_open() -> None:
-    assert act(Heard("", "accept", 0.9), "", "woken", WOKEN) == "awake"
-    assert act(Heard("take a bowl", "reject", 0.1, "the weather is fine"), "", "woken", WOKEN) == "again"
-
-
-@pytest.mark.parametrize(
-    ("text", "word"),
-    [("stop", "stop"), ("please stop it", "stop"), ("cancel that", "cancel"), ("bring me the apple", ""), ("", "")],
-)
-def test_stop_and_cancel_have_variants(text: str, word: str) -> None:
-    assert Interrupts(CONFIG).of(text) == word
+    assert act(Heard("", "accept", 0.9), None, "woken", WOKEN) == "awake"
+    assert act(Heard("take a bowl", "reject", 0.1, "the weather is fine"), None, "woken", WOKEN) == "again"
 
 
 def test_the_wake_word_is_taken_off() -> None:

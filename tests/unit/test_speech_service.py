@@ -9,11 +9,12 @@ import pytest
 from common import config, topics
 from common import messages as m
 from common.bus.memory import MemoryIo
+from common.language.pattern import PatternError
 from common.runtime import StartError
 from common.scene import load_scene
 from services.speech.audio import RATE, AudioError, read_wav, write_wav
 from services.speech.config import SpeechConfig
-from services.speech.grammar import Grammar, GrammarError, vocabulary
+from services.speech.grammar import Grammar, vocabulary
 from services.speech.moonshine import Vocabulary
 from services.speech.service import SpeechService
 from services.speech.speak import Voice
@@ -57,7 +58,7 @@ def test_what_is_no_command_is_not_accepted(grammar: Grammar, text: str) -> None
     ],
 )
 def test_a_bad_pattern_is_named(patterns: tuple[str, ...], words: str) -> None:
-    with pytest.raises(GrammarError, match=words):
+    with pytest.raises(PatternError, match=words):
         Grammar(patterns, {})
 
 

@@ -4,12 +4,12 @@ from typing import Literal
 
 import msgspec
 
+from common.language.normalise import enumeration
 from common.messages import GRIPPER, PlanStep
 from common.scene import Receptacle
-from services.planner.choices import Choices
+from services.planner.choice_points import ChoicePoints
 from services.planner.config import PlannerConfig, Rule
 from services.planner.vocabulary import Spot, Vocabulary
-from services.planner.words import listed
 from services.planner.world import Thing, World
 
 
@@ -25,7 +25,7 @@ class LookFirst(Exception):
         self.steps = steps
 
 
-class Draft:
+class PlanBuilder:
     """`done`: the steps already carried out for this command by a sender who asks again, None for one who does not."""
 
     def __init__(
@@ -33,7 +33,7 @@ class Draft:
         world: World,
         vocabulary: Vocabulary,
         config: PlannerConfig,
-        choices: Choices,
+        choices: ChoicePoints,
         done: list[PlanStep] | None = None,
     ) -> None:
         self.world, self.vocabulary, self.config, self.choices, self.done = world, vocabulary, config, choices, done
@@ -45,15 +45,15 @@ class Draft:
         self.collecting: set[str] = set()
         self._found: set[str] = set()
 
-    def fork(self) -> "Draft":
+    def fork(self) -> "PlanBuilder":
         """A copy to try something on; its choices count only when it is adopted."""
-        other = Draft(self.world.copy(), self.vocabulary, self.config, self.choices.fork(), self.done)
+        other = PlanBuilder(self.world.copy(), self.vocabulary, self.config, self.choices.fork(), self.done)
         other.steps, other.last, other.spot = list(self.steps), list(self.last), self.spot
         other.moved, other._found, other.effort = self.moved, set(self._found), self.effort
         other.collecting = set(self.collecting)
         return other
 
-    def adopt(self, other: "Draft") -> None:
+    def adopt(self, other: "PlanBuilder") -> None:
         self.world, self.steps, self.last, self.spot = other.world, other.steps, other.last, other.spot
         self.moved, self._found, self.collecting = other.moved, other._found, other.collecting
         self.choices.taken = other.choices.taken
@@ -192,7 +192,7 @@ class Draft:
         if self.done is None:
             raise Refusal(reason)
         self.look_at(spots)
-        seen = listed([f"the {r.name}" for r in spots])
+        seen = enumeration([f"the {r.name}" for r in spots])
         raise Refusal(f"I looked at {seen} and found nothing of the kind" if spots else reason)
 
 

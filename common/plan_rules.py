@@ -1,4 +1,4 @@
-"""Is a plan possible in the known world? Pure: a plan in, the reason against it out."""
+"""The rules that every plan obeys, whoever made it. Pure: a plan and the known world in, the reason against it out."""
 
 from collections.abc import Sequence
 
@@ -8,7 +8,9 @@ from common.messages import KnownWorld, PlanStep
 from common.scene import Scene
 
 GRIPPER_WIDTH = 0.085
+"""Widest object between the pads [m]: the stroke of the Robotiq 2F-85 (data sheet)."""
 MAX_STEPS = 60
+"""Chosen: 15 objects of four steps each, more than any scene has."""
 
 
 class Objection(msgspec.Struct, frozen=True):
@@ -32,11 +34,16 @@ def known_world(scene: Scene, seen: Sequence[str], held: str) -> KnownWorld:
     )
 
 
-def objection(steps: Sequence[PlanStep], world: KnownWorld, scene: Scene) -> Objection | None:
-    """The first objection to the plan; None when it can be carried out."""
+def objection(
+    steps: Sequence[PlanStep], world: KnownWorld, scene: Scene, max_steps: int = MAX_STEPS
+) -> Objection | None:
+    """The first objection to a plan; None when it can be carried out.
+
+    Names are the scene's, its aliases, kinds of objects, or labels in `world`.
+    """
     if not steps:
         return Objection(0, "the plan has no steps")
-    if len(steps) > MAX_STEPS:
+    if len(steps) > max_steps:
         return Objection(0, f"the plan has {len(steps)} steps")
     held, found = world.held, set[str]()
     for number, step in enumerate(steps, 1):

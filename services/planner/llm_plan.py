@@ -1,12 +1,13 @@
-"""Is a plan of somebody else's making possible? Pure."""
+"""Plans of a language model: odd names become the scene's, then the rules for all plans decide. Pure."""
 
 from collections.abc import Sequence
 
 import msgspec
 
+from common.language.normalise import normalise
 from common.messages import GRIPPER, PlanStep
+from common.plan_rules import known_world, objection
 from services.planner.vocabulary import Vocabulary
-from services.planner.words import normal
 from services.planner.world import World
 
 
@@ -15,47 +16,21 @@ class Impossible(Exception):
 
 
 def checked(steps: Sequence[PlanStep], world: World, vocabulary: Vocabulary, max_steps: int) -> list[PlanStep]:
-    """The steps with every name as the scene has it.
+    """The steps with every name as the scene has it; no steps are no plan, and nothing to object to.
 
     Raises:
-        Impossible: an unknown name, an order that cannot work, or too many steps.
+        Impossible: an unknown name, or what `common.plan_rules` objects to.
     """
-    if len(steps) > max_steps:
-        raise Impossible(f"the plan has {len(steps)} steps")
-    held = world.held.label if world.held else ""
-    found: set[str] = set()
-    done: list[PlanStep] = []
+    named: list[PlanStep] = []
     for number, step in enumerate(steps, 1):
         try:
-            step = _named(step, world, vocabulary)
-            _in_order(step, held, found)
+            named.append(_named(step, world, vocabulary))
         except Impossible as impossible:
             raise Impossible(f"step {number}: {impossible}") from None
-        if step.hand_alone:
-            pass
-        elif step.action == "find":
-            found.add(step.object)
-        elif step.action == "grasp":
-            held = step.object
-        elif step.action in ("place", "release"):
-            held = ""
-        done.append(step)
-    return done
-
-
-def _in_order(step: PlanStep, held: str, found: set[str]) -> None:
-    match step.action:
-        case "grasp" | "release" if step.hand_alone:
-            if held:
-                raise Impossible(f"the hand holds the {held}")
-        case "grasp" if held:
-            raise Impossible(f"the hand already holds the {held}")
-        case "grasp" if step.object not in found:
-            raise Impossible(f"the {step.object} must be found before it can be grasped")
-        case "place" | "release" if not held:
-            raise Impossible(f"there is nothing in the hand to {step.action}")
-        case "say" if not step.text.strip():
-            raise Impossible("there is nothing to say")
+    known = known_world(world.scene, [t.label for t in world.things], world.held.label if world.held else "")
+    if named and (against := objection(named, known, world.scene, max_steps)):
+        raise Impossible(str(against))
+    return named
 
 
 def _named(step: PlanStep, world: World, vocabulary: Vocabulary) -> PlanStep:
@@ -67,12 +42,12 @@ def _named(step: PlanStep, world: World, vocabulary: Vocabulary) -> PlanStep:
         case "find" | "grasp":
             return msgspec.structs.replace(step, object=_thing(thing or target, world, vocabulary), target="", text="")
         case "place":
-            receptacle = world.scene.receptacle(normal(target or thing))
+            receptacle = world.scene.receptacle(normalise(target or thing))
             if receptacle is None:
                 raise Impossible(f"there is no {target or thing or 'place'} to put things on")
             return msgspec.structs.replace(step, object="", target=receptacle.name)
         case "navigate":
-            spots = vocabulary.spot(tuple(normal(target).split())) if target else []
+            spots = vocabulary.spot(tuple(normalise(target).split())) if target else []
             if spots:
                 home = spots[0].home
                 return PlanStep(action="return") if home else PlanStep(action="navigate", target=spots[0].name)
@@ -90,9 +65,9 @@ def _thing(name: str, world: World, vocabulary: Vocabulary) -> str:
     if not name:
         raise Impossible("no object is named")
     known = [*world.things, *world.specs]
-    wanted = normal(name).removeprefix("the ")
+    wanted = normalise(name).removeprefix("the ")
     spec = world.scene.object(wanted)
-    label = spec.name if spec else next((t.label for t in known if normal(t.label) == wanted), "")
+    label = spec.name if spec else next((t.label for t in known if normalise(t.label) == wanted), "")
     if label:
         return label
     if wanted in vocabulary.kinds:

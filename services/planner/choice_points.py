@@ -8,7 +8,7 @@ R = TypeVar("R")
 MAX_RUNS = 64
 
 
-class Choices:
+class ChoicePoints:
     """Answers each choice with the option that the script names, the first where the script ends."""
 
     def __init__(self, script: Sequence[int] = ()) -> None:
@@ -22,20 +22,20 @@ class Choices:
         self.taken.append((chosen, len(options)))
         return options[chosen]
 
-    def fork(self) -> "Choices":
+    def fork(self) -> "ChoicePoints":
         """The same script, going on from the same point."""
-        other = Choices(self._script)
+        other = ChoicePoints(self._script)
         other.taken = list(self.taken)
         return other
 
 
-def every(run: Callable[[Choices], R]) -> Iterator[R]:
+def every(run: Callable[[ChoicePoints], R]) -> Iterator[R]:
     """The results of `run` for every combination of choices, the preferred first, at most MAX_RUNS of them."""
     script: list[int] | None = []
     for _ in range(MAX_RUNS):
         if script is None:
             return
-        choices = Choices(script)
+        choices = ChoicePoints(script)
         yield run(choices)
         script = _after(choices.taken)
 

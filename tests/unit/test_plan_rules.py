@@ -4,8 +4,8 @@ import msgspec
 import pytest
 
 from common.messages import KnownWorld, PlanStep
+from common.plan_rules import GRIPPER_WIDTH, MAX_STEPS, is_destination, known_world, objection
 from common.scene import ObjectSpec, Place, Receptacle, Room, Scene
-from services.brain.validate import GRIPPER_WIDTH, MAX_STEPS, is_destination, known_world, objection
 
 COLOUR = (1.0, 0.0, 0.0, 1.0)
 

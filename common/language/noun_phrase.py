@@ -1,0 +1,69 @@
+"""Words around a noun: numbers, order and size, relations to other things, clauses that add nothing. Pure."""
+
+from collections.abc import Iterator
+from typing import Literal
+
+from common.language.normalise import Words
+
+Which = Literal[
+    "", "left", "right", "nearest", "farthest", "biggest", "smallest", "first", "second", "third", "last", "other"
+]
+PRONOUNS = frozenset({"it", "that", "this", "him", "her"})
+PLURAL_PRONOUNS = frozenset({"them", "those", "these", "both", "all of them", "both of them", "them all", "all of it"})
+WHICH: dict[str, Which] = {
+    "left": "left", "leftmost": "left", "right": "right", "rightmost": "right", "nearest": "nearest",
+    "closest": "nearest", "next": "nearest", "farthest": "farthest", "furthest": "farthest", "biggest": "biggest",
+    "big": "biggest", "large": "biggest", "largest": "biggest", "bigger": "biggest", "tallest": "biggest",
+    "smallest": "smallest", "small": "smallest", "little": "smallest", "smaller": "smallest", "first": "first",
+    "second": "second", "third": "third", "last": "last", "other": "other", "another": "other",
+}  # fmt: skip
+"""Words that single one out of several."""
+NUMBERS = {"one": 1, "two": 2, "three": 3, "four": 4, "five": 5, "six": 6, "couple": 2}
+Relation = Literal["left of", "right of", "front of", "behind", "near", "on"]
+RELATIONS: tuple[tuple[str, Relation], ...] = (
+    ("to the left of", "left of"), ("to the right of", "right of"), ("on the left of", "left of"),
+    ("on the right of", "right of"), ("left of", "left of"), ("right of", "right of"), ("in front of", "front of"),
+    ("on top of", "on"), ("next to", "near"), ("close to", "near"), ("from inside", "on"), ("out of", "on"),
+    ("from", "on"), ("inside", "on"), ("behind", "behind"), ("near", "near"), ("beside", "near"), ("by", "near"),
+    ("off", "on"), ("on", "on"), ("in", "on"), ("at", "on"),
+)  # fmt: skip
+"""Words between an object and what it is related to, longer ones first."""
+SIDES: dict[str, Which] = {
+    "on the left": "left", "from the left": "left", "to the left": "left", "on the left side": "left",
+    "on the right": "right", "from the right": "right", "to the right": "right", "on the right side": "right",
+    "on your left": "left", "on your right": "right", "to your left": "left", "to your right": "right",
+}  # fmt: skip
+_TAILS = ("over there", "there", "you see", "you can see", "you found", "you have found", "you are holding", "you hold")
+_CLAUSES = ("that is", "that are", "that's", "which is", "which are", "lying", "standing", "that you see")
+
+
+def without_tail(words: Words) -> Words:
+    """Words without `(that you see) over there` at their end."""
+    text = " ".join(words)
+    for tail in _TAILS:
+        if text.endswith(f" {tail}"):
+            head = text.removesuffix(f" {tail}")
+            for clause in (*_CLAUSES, "that", "which"):
+                if head.endswith(f" {clause}"):
+                    return tuple(head.removesuffix(f" {clause}").split())
+            return tuple(head.split())
+    return words
+
+
+def without_clause(words: Words) -> Words:
+    """Words without `that is` at their beginning."""
+    text = " ".join(words)
+    for clause in _CLAUSES:
+        if text.startswith(f"{clause} "):
+            return tuple(text.removeprefix(f"{clause} ").split())
+    return words
+
+
+def related(words: Words) -> Iterator[tuple[Words, Relation, Words]]:
+    """Every (object, relation, anchor) reading of a phrase like `the mug that is on the table`."""
+    for at in range(1, len(words)):
+        rest = without_clause(words[at:])
+        for spoken, relation in RELATIONS:
+            width = len(spoken.split())
+            if " ".join(rest[:width]) == spoken and len(rest) > width:
+                yield words[:at], relation, rest[width:]

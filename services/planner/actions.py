@@ -1,0 +1,192 @@
+"""What each sentence form does to the builder of a plan. Pure."""
+
+from common.language.normalise import DETERMINERS, enumeration
+from common.language.noun_phrase import PLURAL_PRONOUNS, PRONOUNS
+from common.language.pattern import Slots
+from common.messages import PlanStep
+from common.scene import Receptacle
+from services.planner.phrases import Phrase, read
+from services.planner.plan_builder import PlanBuilder, Refusal
+from services.planner.resolve import Meant, one, spot, things
+from services.planner.vocabulary import Spot
+
+
+# --- moving things
+def fetch_named(builder: PlanBuilder, slots: Slots) -> None:
+    """A thing's name alone; other words are no command."""
+    last = builder.vocabulary.noun(slots["thing"][-1])
+    named = slots["thing"][0] in DETERMINERS or slots["thing"][0] in builder.vocabulary.colours
+    if last is None and not named and not isinstance(read(slots["thing"], builder.vocabulary), Phrase):
+        raise Refusal(f"I do not understand {' '.join(slots['thing'])!r}")
+    fetch(builder, slots)
+
+
+def fetch(builder: PlanBuilder, slots: Slots) -> None:
+    everything = things(builder, slots["thing"], prefer_held=True)
+    for meant in everything:
+        take(builder, meant)
+        builder.hand_over()
+    builder.last = [m.thing for m in everything]
+
+
+def deliver(builder: PlanBuilder, slots: Slots) -> None:
+    """Take things to a place, a room, a surface or the person."""
+    _deliver(builder, things(builder, slots["thing"], prefer_held=True), spot(builder, slots["spot"]))
+
+
+def deliver_there(builder: PlanBuilder, slots: Slots) -> None:
+    """`take the mug there` and `go to the kitchen with the mug`."""
+    if builder.spot is None:
+        raise Refusal("I do not know which place you mean by there")
+    _deliver(builder, things(builder, slots["thing"], prefer_held=True), builder.spot)
+
+
+def put(builder: PlanBuilder, slots: Slots) -> None:
+    """Put things in or on something that holds things."""
+    everything = things(builder, slots["thing"], prefer_held=True)
+    where = _surface(builder, slots)
+    for meant in everything:
+        _put(builder, meant, where)
+    builder.last = [m.thing for m in everything]
+
+
+def put_near(builder: PlanBuilder, slots: Slots) -> None:
+    """Next to a thing: on what that stands on."""
+    if builder.vocabulary.spot(slots["spot"]) or builder.vocabulary.furniture(slots["spot"]):
+        raise Refusal(f"I cannot put things on the floor next to the {' '.join(slots['spot'][1:] or slots['spot'])}")
+    moved, anchor = things(builder, slots["thing"], prefer_held=True), one(builder, slots["spot"]).thing
+    where = builder.world.receptacle_of(anchor)
+    if where is None:
+        builder.search_first([PlanStep(action="find", object=anchor.label)])
+        raise Refusal(f"I have not seen where the {anchor.label} stands")
+    for meant in moved:
+        _put(builder, meant, where)
+
+
+def pick_up(builder: PlanBuilder, slots: Slots) -> None:
+    everything = things(builder, slots["thing"], prefer_held=True)
+    meant = everything[0]
+    if len(everything) > 1:
+        builder.collect([m.thing for m in everything])
+        return
+    if meant.thing.held:
+        builder.say(f"I am holding the {meant.thing.label} already.")
+        builder.last = [meant.thing]
+        return
+    if builder.world.held and any(s.action == "grasp" for s in builder.steps):
+        raise Refusal("I can hold only one thing at a time")
+    take(builder, meant)
+
+
+def put_down(builder: PlanBuilder, slots: Slots) -> None:
+    if "thing" not in slots or " ".join(slots["thing"]) in PRONOUNS | PLURAL_PRONOUNS:
+        builder.release()
+        return
+    meant = one(builder, slots["thing"], prefer_held=True)
+    if not meant.thing.held:
+        raise Refusal(f"I am not holding the {meant.thing.label}")
+    builder.release()
+
+
+def open_hand(builder: PlanBuilder, slots: Slots) -> None:
+    if builder.world.held is None:
+        builder.hand_alone("release")
+    else:
+        builder.release()
+
+
+def close_hand(builder: PlanBuilder, slots: Slots) -> None:
+    if (held := builder.world.held) is None:
+        builder.hand_alone("grasp")
+    else:
+        builder.say(f"I am holding the {held.label}.")
+
+
+# --- moving itself
+def go(builder: PlanBuilder, slots: Slots) -> None:
+    """To a place, or up to a thing."""
+    try:
+        place = spot(builder, slots["spot"])
+    except Refusal:
+        if not isinstance(read(slots["spot"], builder.vocabulary), Phrase):
+            raise
+        meant = one(builder, slots["spot"])
+        builder.approach(meant.thing)
+        return
+    builder.go(place)
+
+
+def come_back(builder: PlanBuilder, slots: Slots) -> None:
+    builder.go(Spot(builder.world.scene.home.name, home=True))
+
+
+def wait(builder: PlanBuilder, slots: Slots) -> None:
+    builder.wait()
+
+
+def find(builder: PlanBuilder, slots: Slots) -> None:
+    everything = things(builder, slots["thing"])
+    for meant in everything:
+        if meant.at is not None:
+            builder.go(meant.at)
+        builder.find(meant.thing, meant.words)
+    builder.last = [m.thing for m in everything]
+
+
+def say(builder: PlanBuilder, slots: Slots) -> None:
+    text = " ".join(slots["words"])
+    builder.say(f"{text[0].upper()}{text[1:]}.")
+
+
+# --- parts of the above
+def take(builder: PlanBuilder, meant: Meant) -> None:
+    if meant.at is not None and not meant.thing.seen:
+        builder.go(meant.at)
+    builder.take(meant.thing, meant.words)
+
+
+def _put(builder: PlanBuilder, meant: Meant, where: Receptacle) -> None:
+    if meant.thing.on == where.name and not meant.thing.held:
+        builder.say(f"The {meant.thing.label} is there already.")
+        builder.last = [meant.thing]
+        return
+    take(builder, meant)
+    builder.place(where)
+
+
+def _deliver(builder: PlanBuilder, everything: list[Meant], where: Spot) -> None:
+    for meant in everything:
+        if where.receptacle is not None:
+            _put(builder, meant, where.receptacle)
+            continue
+        if where.room and builder.world.room_of(meant.thing) == where.name and not meant.thing.held:
+            builder.say(f"The {meant.thing.label} is in the {where.name} already.")
+            continue
+        take(builder, meant)
+        if where.home:
+            builder.hand_over()
+        elif where.room:
+            builder.place(builder.in_room(where.name))
+        else:
+            builder.go(where)
+            builder.release()
+    builder.last = [m.thing for m in everything]
+
+
+def _surface(builder: PlanBuilder, slots: Slots) -> Receptacle:
+    words = slots["spot"]
+    if "floor" in words or "ground" in words:
+        raise Refusal("I cannot put things on the floor")
+    try:
+        where = spot(builder, words)
+    except Refusal as refusal:
+        phrase = read(words, builder.vocabulary)
+        if isinstance(phrase, Phrase):
+            raise Refusal(f"I cannot put things on or in the {phrase.noun}") from None
+        raise refusal from None
+    if where.room:
+        return builder.in_room(where.name)
+    if where.receptacle is None:
+        known = enumeration([r.name for r in builder.world.scene.receptacles], "or")
+        raise Refusal(f"I cannot put things on the {where.name}, only on or in the {known}")
+    return where.receptacle

@@ -1,0 +1,57 @@
+"""The grammar rules: what each action of the wordings' table does to the plan under construction."""
+
+from collections.abc import Callable
+
+from common.language.meaning import readings
+from common.language.normalise import Words
+from common.language.pattern import Slots
+from common.language.wordings import Action, Kind
+from services.planner import actions, answers, tidying
+from services.planner.plan_builder import PlanBuilder, Refusal
+
+ACTIONS: dict[Action, Callable[[PlanBuilder, Slots], None]] = {
+    "open_hand": actions.open_hand,
+    "close_hand": actions.close_hand,
+    "seen": answers.seen,
+    "contents": answers.contents,
+    "holding": answers.holding,
+    "whereabouts": answers.whereabouts,
+    "where": answers.where,
+    "number": answers.number,
+    "say": actions.say,
+    "wait": actions.wait,
+    "come_back": actions.come_back,
+    "go": actions.go,
+    "throw_away": tidying.throw_away,
+    "put_away": tidying.put_away,
+    "tidy": tidying.tidy,
+    "put": actions.put,
+    "put_near": actions.put_near,
+    "put_down": actions.put_down,
+    "deliver": actions.deliver,
+    "deliver_there": actions.deliver_there,
+    "fetch": actions.fetch,
+    "fetch_named": actions.fetch_named,
+    "pick_up": actions.pick_up,
+    "find": actions.find,
+}
+
+
+def apply_first(words: Words, builder: PlanBuilder, *kinds: Kind) -> str | None:
+    """Carry out the first reading of a clause that can be done, in the table's order.
+
+    None when one was; else the reason against the first that fits, "" when none fits.
+    """
+    reason = ""
+    for wording, slots in readings(words, *kinds):
+        trial = builder.fork()
+        try:
+            if wording.reason:
+                raise Refusal(wording.reason)
+            ACTIONS[wording.action](trial, slots)
+        except Refusal as refusal:
+            reason = reason or str(refusal)
+            continue
+        builder.adopt(trial)
+        return None
+    return reason
