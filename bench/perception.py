@@ -1,6 +1,6 @@
 """Perception on random views: `python -m bench.perception --views 200`.
 
-Each view shows a random layout from a random place before a piece of furniture, with noise on the depth. The table
+Each view shows a random layout from a random place before a piece of furniture, by the sensor's model. The table
 compares what is detected with the simulation's own poses, and asks for things that are not there. The peer gets the
 same pixels of each thing and takes the middle of the visible points and the nearest colour for its answer.
 """
@@ -18,6 +18,7 @@ from common.geometry import Pose2
 from common.messages import WorldObject
 from common.scene import Receptacle, Scene, load_scene
 from services.camera.render import Renderer
+from services.camera.sensor import StereoCamera
 from services.perception import colour, segment
 from services.perception.detect import ClassicalDetector
 from services.perception.ground import ground
@@ -88,7 +89,10 @@ def _view(renderer: Renderer, pose: Pose2, args: argparse.Namespace, rng: np.ran
         data.qpos[model.joint(name).qposadr[0]] = value
     renderer.load(data.qpos.copy().tobytes(), b"")
     rgb, depth = renderer.rgbd("head", args.width, args.height)
-    depth = depth + rng.normal(0.0, 1.0, depth.shape) * args.noise * depth**2
+    if args.sensors == "bought":
+        focal = args.height / 2 / math.tan(math.radians(float(renderer.model.camera("head").fovy[0])) / 2)
+        taken = StereoCamera(int(rng.integers(2**32))).expose(rgb, depth, focal, 0)
+        rgb, depth = taken.rgb, taken.depth / 1000.0
     position, rotation = renderer.optical_pose("head")
     # Where the robot believes to be is a little off.
     x, y, theta = (v + float(rng.normal(0.0, args.pose_noise)) for v in pose)
@@ -131,7 +135,7 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--width", type=int, default=640)
     parser.add_argument("--height", type=int, default=480)
-    parser.add_argument("--noise", type=float, default=0.0012, help="of the depth [m at 1 m, grows squared]")
+    parser.add_argument("--sensors", choices=("bought", "ideal"), default="bought", help="the camera's (bought)")
     parser.add_argument("--pose-noise", type=float, default=0.0, help="of the robot's own pose [m and rad]")
     parser.add_argument("--backend", default="auto", choices=("auto", "egl", "osmesa", "raycast"))
     parser.add_argument("--verbose", "-v", action="store_true", help="name every mistake")

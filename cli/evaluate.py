@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 
 from cli.errors import CliError, checked
+from cli.plan import add_machine_options
 from cli.programs import ROOT
 
 SUITES = ("seed", "fetch", "tidy", "faults", "dialogue", "chaos", "commands", "spoken")
@@ -90,5 +91,6 @@ def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") ->
     parser.add_argument(
         "--replace", action="append", default=[], metavar="MODULE:CLASS", help="a class of yours in a service's place"
     )
+    add_machine_options(parser)
     parser.add_argument("--set", action="append", default=[], metavar="section.key=value", help="override a parameter")
     parser.set_defaults(run=evaluate)

@@ -18,6 +18,8 @@ from common.time.clock import unix_time
 
 PIPELINES = ("fetch", "vla")
 """The values of `brain.pipeline`: the eight-state system flow, or voice, plan, vision and action."""
+SENSORS = ("bought", "ideal")
+"""With the noise and the gaps of sensors that can be bought, or without."""
 
 
 class Plan:
@@ -42,8 +44,7 @@ class Plan:
             settings["TIDYBOT__RUNTIME__SCENE"] = args.scene
         if args.seed is not None:
             settings["TIDYBOT__RUNTIME__SEED"] = str(args.seed)
-        if getattr(args, "robot", None):
-            settings["TIDYBOT__SIM__ROBOT"] = args.robot
+        settings |= _overrides(machine(args))
         if getattr(args, "pipeline", None):
             settings["TIDYBOT__BRAIN__PIPELINE"] = args.pipeline
         if args.viewer:
@@ -106,6 +107,13 @@ def certificates(option: str | None, names: Sequence[str], namespace: str) -> st
     return str(found)
 
 
+def machine(args: argparse.Namespace) -> list[str]:
+    """The settings that `--robot` and `--sensors` stand for, as `section.key=value`."""
+    robot = [f"sim.robot={args.robot}"] if getattr(args, "robot", None) else []
+    sensors = getattr(args, "sensors", None)
+    return [*robot, *(f"{section}.sensors={sensors}" for section in ("camera", "sim") if sensors)]
+
+
 def _selection(only: str, without: str) -> list[Service]:
     chosen = [checked(n, NAMES, "service") for n in only.split(",") if n] or list(NAMES)
     dropped = [checked(n, NAMES, "service") for n in without.split(",") if n]
@@ -132,6 +140,12 @@ def add_start_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--scene", help="a shipped scene's name or a path")
     parser.add_argument("--seed", type=int, help="object layout and noise")
     parser.add_argument("--pipeline", choices=PIPELINES, help="the brain's flow (default: brain.toml's, else vla)")
-    parser.add_argument("--robot", metavar="NAME", help="tidybot, or official: MuJoCo Menagerie's (docs/EXTENDING.md)")
+    add_machine_options(parser)
     parser.add_argument("--set", action="append", default=[], metavar="section.key=value", help="override a parameter")
     parser.add_argument("--viewer", action="store_true", help="open a window on the simulation")
+
+
+def add_machine_options(parser: argparse.ArgumentParser) -> None:
+    """Options that everything shares which starts a robot."""
+    parser.add_argument("--robot", metavar="NAME", help="tidybot, or official: MuJoCo Menagerie's (docs/EXTENDING.md)")
+    parser.add_argument("--sensors", choices=SENSORS, help="bought: with noise and gaps (the default), or ideal")

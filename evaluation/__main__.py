@@ -13,6 +13,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TaskID, TextC
 
 from cli.errors import CliError
 from cli.main import FAILED, INTERRUPTED, parser
+from cli.plan import machine
 from cli.up import Stopped, interruptible
 from common.config import ConfigError
 from common.time.clock import monotonic
@@ -75,12 +76,11 @@ def main(argv: list[str]) -> int:
             print(f"tidybot: {target}: no such directory", file=sys.stderr)
             return FAILED
     count = args.scenarios or DEFAULT_SCENARIOS.get(args.suite, 10)
+    settings = (*machine(args), *args.set)
     try:
         for entry in args.replace:
             replacement(entry)
-        todo = cases(
-            args.suite, count, args.seed, tuple(args.set), args.pipeline, args.voices, args.snr, tuple(args.replace)
-        )
+        todo = cases(args.suite, count, args.seed, settings, args.pipeline, args.voices, args.snr, tuple(args.replace))
         if args.processes:
             todo = _available(todo, console)
             count = len(todo)

@@ -6,9 +6,13 @@ from common.config import Config
 
 
 class CameraConfig(Config, frozen=True):
-    """`backend` auto takes EGL or OSMesa where they work and MuJoCo's own ray casting otherwise."""
+    """`backend` auto takes EGL or OSMesa where they work and MuJoCo's own ray casting otherwise.
+
+    `sensors`: `bought`, with the noise and the gaps of a stereo depth camera (see sensor.py), or `ideal`.
+    """
 
     backend: Literal["auto", "egl", "osmesa", "raycast"] = "auto"
+    sensors: Literal["bought", "ideal"] = "bought"
     max_width: int = 1280
     max_height: int = 960
     render_seconds: float = 0.1

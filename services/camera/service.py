@@ -10,16 +10,21 @@ from common.bus.port import Io, Job
 from common.geometry import matrix_quat
 from services.camera.config import CameraConfig
 from services.camera.render import Renderer
+from services.camera.sensor import StereoCamera, exact
 
 MAX_WAITING = 8
+CAMERAS = ("head", "wrist")
+TICKS = 100
+"""Ticks per second of robot time."""
 
 
 class Shutter:
-    """Lives in the worker: a renderer for the model at hand."""
+    """Lives in the worker: a renderer for the model at hand and, unless `seed` is None, the sensors' models."""
 
-    def __init__(self, backend: str) -> None:
-        self._backend, self._epoch, self._mjcf = backend, "", ""
+    def __init__(self, backend: str, seed: int | None) -> None:
+        self._backend, self._mjcf = backend, ""
         self._renderer: Renderer | None = None
+        self._sensors = {} if seed is None else {c: StereoCamera(seed + i) for i, c in enumerate(CAMERAS)}
 
     def take(self, model: m.SimModel, state: m.SimState, request: m.CameraRequest) -> m.Rgbd:
         """Render one image."""
@@ -33,6 +38,8 @@ class Shutter:
         position, rotation = renderer.optical_pose(request.camera)
         x, y, z = (float(v) for v in position)
         focal = height / 2 / np.tan(np.radians(float(renderer.model.camera(request.camera).fovy[0])) / 2)
+        sensor = self._sensors.get(request.camera)
+        picture = sensor.expose(rgb, depth, float(focal), round(state.t * TICKS)) if sensor else exact(rgb, depth)
         return m.Rgbd(
             t=state.t,
             id=request.id,
@@ -45,8 +52,8 @@ class Shutter:
             cy=height / 2,
             position=(x, y, z),
             orientation=matrix_quat(rotation),
-            rgb=rgb.tobytes(),
-            depth=np.clip(np.round(depth * 1000), 0, 65535).astype("<u2").tobytes(),
+            rgb=picture.rgb.tobytes(),
+            depth=picture.depth.astype("<u2").tobytes(),
             backend=renderer.backend,
         )
 
@@ -65,7 +72,7 @@ class CameraService:
 
     def __init__(self, config: CameraConfig, io: Io) -> None:
         self._config, self._io = config, io
-        self._shutter = Shutter(config.backend)
+        self._shutter = Shutter(config.backend, int(io.rng.integers(2**32)) if config.sensors == "bought" else None)
         self._waiting: deque[m.CameraRequest] = deque(maxlen=MAX_WAITING)
         self._job: Job[m.Rgbd] | None = None
         self._rendered = False

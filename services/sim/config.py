@@ -1,5 +1,7 @@
 """Parameters of the simulation."""
 
+from typing import Literal
+
 from common.config import Config
 from common.scene import Obstacle
 
@@ -8,6 +10,9 @@ class SimConfig(Config, frozen=True):
     """`speed` is `realtime`, a factor, or `max`; `wait_for` names the participants that lockstep waits for.
 
     `robot`: `tidybot`, or `official` for MuJoCo Menagerie's model of it.
+
+    `sensors`: `bought`, or `ideal`: a lidar without noise (standard deviation `lidar_noise` [m]) of which every ray
+    returns (`lidar_missing` is the share that does not). Source: Slamtec RPLIDAR A2 datasheet, 1 % of up to 1 m.
 
     Wheel odometry: `slip` is the largest constant scale error, `veer` the largest constant turn [rad/m],
     `noise` a random walk [m and rad per sqrt(m)]. `obstacles`: tables, or names of the scene's; `none`: not even those
@@ -29,7 +34,9 @@ class SimConfig(Config, frozen=True):
     angle_tolerance: float = 0.05
     stream_timeout: float = 0.25
     target_timeout: float = 0.2
-    lidar_noise: float = 0.004
+    sensors: Literal["bought", "ideal"] = "bought"
+    lidar_noise: float = 0.01
+    lidar_missing: float = 0.01
     odometry_slip: float = 0.02
     odometry_veer: float = 0.005
     odometry_noise: float = 0.005

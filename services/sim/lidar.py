@@ -27,10 +27,11 @@ def cast(
 
 
 class Lidar:
-    """360 rays counter-clockwise from -pi in the lidar's frame."""
+    """360 rays counter-clockwise from -pi in the lidar's frame; `noise` [m], of each ray `missing` is the probability
+    that it does not return."""
 
-    def __init__(self, model: Any, site: int, noise: float, rng: np.random.Generator) -> None:
-        self._site, self._noise, self._rng = site, noise, rng
+    def __init__(self, model: Any, site: int, noise: float, missing: float, rng: np.random.Generator) -> None:
+        self._site, self._noise, self._missing, self._rng = site, noise, missing, rng
         angles = -math.pi + np.arange(RAYS) * (2 * math.pi / RAYS)
         self._local = np.stack([np.cos(angles), np.sin(angles), np.zeros(RAYS)], axis=1)
         self._groups = np.ones(6, np.uint8)
@@ -43,4 +44,6 @@ class Lidar:
         distance, _ = cast(model, data, origin, self._local @ rotation.T, self._groups)
         hit = (distance >= 0) & (distance <= RANGE_MAX)
         noisy = distance + self._rng.normal(0.0, self._noise, RAYS) if self._noise else distance
+        if self._missing:
+            hit &= self._rng.random(RAYS) >= self._missing
         return np.where(hit, np.clip(noisy, RANGE_MIN, RANGE_MAX), RANGE_MAX + 1.0).astype(np.float32)

@@ -21,7 +21,9 @@ class Sensors:
     def __init__(self, physics: Physics, config: SimConfig, io: Io, start: Pose2) -> None:
         self._physics, self._io = physics, io
         self.odometry = WheelOdometry(start, config, physics.seed)
-        self._lidar = Lidar(physics.model, physics.lidar_site, config.lidar_noise, io.rng)
+        bought = config.sensors == "bought"
+        noise, missing = (config.lidar_noise, config.lidar_missing) if bought else (0.0, 0.0)
+        self._lidar = Lidar(physics.model, physics.lidar_site, noise, missing, io.rng)
 
     def feel(self, t: float) -> None:
         """Odometry and joint states."""

@@ -1,0 +1,123 @@
+"""RGB-D sensor model: what a stereo depth camera would report of a rendered image. Pure.
+
+Source: Intel RealSense D400 series datasheet (337029-013): baseline 50 mm (D435), least range 175 mm at 640 x 480,
+sub-pixel disparity of 5 bits; depth noise from Intel's "Best known methods for tuning D435": RMS of some .15 % at 1 m,
+growing with the square of the distance.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+from scipy import ndimage
+
+Rgb = NDArray[np.uint8]
+Depth = NDArray[np.float64]
+
+BASELINE = 0.05
+"""Distance of the two imagers [m]."""
+NOISE_AT_1_M = 0.0015
+"""Standard deviation of depth at 1 m [m]."""
+SUBPIXELS = 32
+"""Steps of disparity per pixel."""
+LEAST_RANGE = 0.175
+"""Depth [m] below which the disparity is beyond the matcher's search."""
+MATCHING_WINDOW = 5
+"""Side [px] of the window that is matched: noise has bumps of that size, and what is narrower gets no depth."""
+EDGE = 0.04
+"""Ratio of neighbouring depths from which on an edge goes through the matching window, and no depth is found."""
+DARK, GLARE = 12, 250
+"""Level (of 255) below which all channels are too dark to match, and above which all are saturated; chosen."""
+PIXEL_NOISE = 2.0
+"""Standard deviation of a pixel's level (of 255) at the gain of a lit room; chosen: what an 8-bit web camera has."""
+EXPOSURE, WHITE_BALANCE = 0.08, 0.04
+"""Largest deviations of all channels together and of red and blue alone; chosen: automatic control that has settled."""
+MARGIN = 64
+"""By how much [px] the noise that is drawn once is larger than a picture, which takes a piece from a random corner of
+it: drawing it anew would cost as much as the picture."""
+
+
+@dataclass(frozen=True)
+class Picture:
+    """`rgb` (h, w, 3); `depth` (h, w) [mm], 0 where there is none."""
+
+    rgb: Rgb
+    depth: NDArray[np.uint16]
+
+
+def exact(rgb: Rgb, depth: Depth) -> Picture:
+    """The rendered image as it is; `depth` (h, w) [m], 0 for nothing."""
+    return Picture(rgb, np.clip(np.round(depth * 1000), 0, 65535).astype(np.uint16))
+
+
+class StereoCamera:
+    """One camera of a robot: what differs from camera to camera is drawn from `seed`."""
+
+    def __init__(self, seed: int) -> None:
+        rng = np.random.default_rng(seed)
+        self._seed = seed
+        gain = 1.0 + rng.uniform(-EXPOSURE, EXPOSURE)
+        red, blue = 1.0 + rng.uniform(-WHITE_BALANCE, WHITE_BALANCE, 2)
+        levels = np.arange(256)[:, None] * np.array([gain * red, gain, gain * blue])
+        self._levels = np.clip(np.round(levels), 0, 255).astype(int).T.ravel().tolist()
+        self._noise: dict[tuple[int, int], tuple[NDArray[np.float32], NDArray[np.int16]]] = {}
+
+    def expose(self, rgb: Rgb, depth: Depth, focal: float, moment: int) -> Picture:
+        """What the sensor reports of a rendered `rgb` (h, w, 3) and `depth` (h, w) [m], 0 for nothing.
+
+        `focal` [px]; the same `moment` [ticks] repeats the same noise.
+        """
+        bumps, grain = self._drawn(depth.shape)
+        row, column = np.random.default_rng([self._seed, moment]).integers(MARGIN, size=2)
+        piece = slice(row, row + depth.shape[0]), slice(column, column + depth.shape[1])
+        levels = np.asarray(Image.fromarray(rgb).point(self._levels)) + grain[piece]
+        seen = np.clip(levels, 0, 255, out=levels).astype(np.uint8)
+        return Picture(seen, _measure(rgb, depth, focal, bumps[piece]))
+
+    def _drawn(self, shape: tuple[int, ...]) -> tuple[NDArray[np.float32], NDArray[np.int16]]:
+        """Noise of unit variance and of levels for pictures of a shape, always the same."""
+        height, width = shape
+        if (height, width) not in self._noise:
+            size = height + MARGIN, width + MARGIN
+            rng = np.random.default_rng([self._seed, *size])
+            bumps = ndimage.uniform_filter(rng.standard_normal(size, np.float32), MATCHING_WINDOW, mode="wrap")
+            grain = np.round(rng.normal(0.0, PIXEL_NOISE, (*size, 3))).astype(np.int16)
+            self._noise[height, width] = bumps / bumps.std(), grain
+        return self._noise[height, width]
+
+
+def _measure(rgb: Rgb, depth: Depth, focal: float, noise: NDArray[np.float32]) -> NDArray[np.uint16]:
+    """Depth (h, w) [mm] from disparity with `noise` (h, w) of unit variance; 0 where none can be matched."""
+    scale = np.float32(focal * BASELINE)
+    far = np.where(depth > 0.0, depth, np.inf).astype(np.float32)
+    true = scale / far
+    disparity = np.round((true + noise * (NOISE_AT_1_M * scale)) * SUBPIXELS)
+    blind = (far < LEAST_RANGE) | np.isinf(far) | (disparity < 1.0) | _shadowed(true) | _edges(far)
+    red, green, blue = (rgb[..., channel] for channel in range(3))
+    brightest, darkest = np.maximum(np.maximum(red, green), blue), np.minimum(np.minimum(red, green), blue)
+    blind |= (brightest < DARK) | (darkest > GLARE)
+    measured = scale * (1000 * SUBPIXELS) / np.maximum(disparity, 1.0)
+    measured[blind] = 0.0
+    return np.minimum(np.round(measured), 65535).astype(np.uint16)
+
+
+def _shadowed(disparity: NDArray[np.float32]) -> NDArray[np.bool_]:
+    """Pixels (h, w) that the right imager does not see, because something nearer hides them from it."""
+    there = np.arange(disparity.shape[1], dtype=np.float32) - disparity
+    nearest = np.minimum.accumulate(there[:, ::-1], axis=1)[:, ::-1]
+    hidden = np.zeros(disparity.shape, bool)
+    hidden[:, :-1] = there[:, :-1] > nearest[:, 1:]
+    return hidden
+
+
+def _edges(far: NDArray[np.float32]) -> NDArray[np.bool_]:
+    """Pixels (h, w) on the far side of a jump of depth [m], whose window is mostly filled by what is nearer."""
+    found = np.zeros(far.shape, bool)
+    for first, second, here, there in (
+        (far[:-1], far[1:], found[:-1], found[1:]),
+        (far[:, :-1], far[:, 1:], found[:, :-1], found[:, 1:]),
+    ):
+        here |= first > second * np.float32(1 + EDGE)
+        there |= second > first * np.float32(1 + EDGE)
+    return found
