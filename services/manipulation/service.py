@@ -8,7 +8,7 @@ from common import messages as m
 from common import topics
 from common.bus.port import Io, Job
 from common.geometry import Pose2
-from common.goal_register import GoalRegister
+from common.goal_inbox import GoalInbox
 from services.manipulation import placing, rescue, routines
 from services.manipulation.config import ManipulationConfig
 from services.manipulation.memo import HandMemo
@@ -40,7 +40,9 @@ class ManipulationService:
         self._description: m.RobotDescription | None = None
         self._steps: Steps[str] | None = None
         self._goal = m.ManipulationGoal(goal="")
-        self._taken: GoalRegister[None] = GoalRegister()
+        self._inbox: GoalInbox[m.ManipulationGoal, m.ManipulationStatus] = GoalInbox(
+            io, (topics.MANIPULATION_GOAL,), self._take, self._repeat, self._preempted
+        )
         self._looked_for = ""
         self._indices: tuple[list[str], list[int], int] | None = None
         self._waiting_since: float | None = None
@@ -57,8 +59,7 @@ class ManipulationService:
                 self._looked_for = item.strip()
         if io.take_all(topics.ROBOT_STOP):
             self._end(Failure("STOPPED", "robot/stop"))
-        for goal in io.take_all(topics.MANIPULATION_GOAL):
-            self._take(goal, now)
+        self._inbox.receive()
         if self._steps is not None:
             self._advance(now)
         if self._indices is not None:
@@ -113,13 +114,13 @@ class ManipulationService:
         return (odometry.x, odometry.y, odometry.theta) if odometry else self._robot.base
 
     # --- goals
-    def _take(self, goal: m.ManipulationGoal, now: float) -> None:
-        goal.id = goal.id or self._io.new_id("manipulation")
-        if not self._taken.is_new(goal.id, goal.attempt):
-            self._io.publish(topics.MANIPULATION_STATUS, self._status)
-            return
-        if self._steps is not None:
-            self._end(Failure("PREEMPTED", f"replaced by {goal.goal}"))
+    def _repeat(self, goal: m.ManipulationGoal, answer: m.ManipulationStatus | None) -> None:
+        self._io.publish(topics.MANIPULATION_STATUS, answer or self._status)
+
+    def _preempted(self, old: m.ManipulationGoal, new: m.ManipulationGoal) -> None:
+        self._end(Failure("PREEMPTED", f"replaced by {new.goal}"))
+
+    def _take(self, goal: m.ManipulationGoal) -> None:
         self._goal = goal
         verb, _, rest = goal.goal.strip().partition(" ")
         robot = self._robot
@@ -133,7 +134,7 @@ class ManipulationService:
             self._publish("failed", "", "UNKNOWN_GOAL", detail)
             return
         self._io.log.info("goal", goal=goal.goal, id=goal.id, attempt=goal.attempt)
-        self._steps, self._waiting_since = steps, now
+        self._steps, self._waiting_since = steps, robot.now
         robot.phase, robot.held = "start", robot.held if holds(robot.grip, self._config) else None
         robot.forget_command()
         self._publish("executing", "start")
@@ -229,4 +230,6 @@ class ManipulationService:
         self._status = m.ManipulationStatus(
             status=status, goal_id=goal.id, attempt=goal.attempt, phase=phase, code=code, detail=detail
         )
+        if status != "executing":
+            self._inbox.end(goal, self._status)
         self._io.publish(topics.MANIPULATION_STATUS, self._status)

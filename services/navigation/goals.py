@@ -10,6 +10,7 @@ from services.navigation.config import NavigationConfig
 from services.navigation.drive import Ended
 from services.navigation.places import Places
 
+Goal = m.NavigationGoal | m.NavGoal
 # Candidate poses, each with a penalty [m].
 Choices = list[tuple[float, Pose2]]
 
@@ -81,6 +82,8 @@ class Goals:
         return poses_for(point, receptacle, self._config.stand_off, self._config.edge_distance)
 
 
-def in_words(pose: m.NavGoal | None) -> str:
-    """A goal on `nav_goal` for logs and reasons."""
-    return f"a pose before {pose.object.label}" if pose is not None and pose.object is not None else "a pose"
+def in_words(goal: Goal) -> str:
+    """A goal for logs and reasons."""
+    if isinstance(goal, m.NavigationGoal):
+        return goal.goal.strip()
+    return f"a pose before {goal.object.label}" if goal.object is not None else "a pose"

@@ -4,11 +4,11 @@ from common import messages as m
 from common import topics
 from common.bus.port import Io
 from common.config import config_dir
-from common.goal_register import GoalRegister
+from common.goal_inbox import GoalInbox
 from services.navigation.config import NavigationConfig
 from services.navigation.costmap import Costmap
 from services.navigation.drive import Drive, Ended
-from services.navigation.goals import Choices, Goals, in_words
+from services.navigation.goals import Choices, Goal, Goals, in_words
 from services.navigation.places import Places, load_places
 from services.navigation.planner import PathPlanner
 from services.navigation.search import Search
@@ -38,7 +38,9 @@ class NavigationService:
         self._stood = Stood()
         self._drive: Drive | None = None
         self._search: Search | None = None
-        self._taken: GoalRegister[None] = GoalRegister()
+        self._inbox: GoalInbox[Goal, m.NavigationStatus] = GoalInbox(
+            io, (topics.NAVIGATION_GOAL, topics.NAV_GOAL), self._take, self._repeat, self._preempted
+        )
         self._legs = 0
         self._recoveries = 0
         self._told = (0, "")
@@ -57,11 +59,7 @@ class NavigationService:
                 io.publish(topics.COSTMAP, self._map.picture(now))
         if io.take_all(topics.ROBOT_STOP) and self._busy:
             self._finish(Ended("failed", "STOPPED", "robot/stop"))
-        for goal in io.take_all(topics.NAVIGATION_GOAL):
-            goal.id = goal.id or io.new_id("navigation")
-            self._take(goal.id, goal.attempt, goal.goal.strip(), None)
-        for pose in io.take_all(topics.NAV_GOAL):
-            self._take(pose.id or io.new_id("navigation"), pose.attempt, "", pose)
+        self._inbox.receive()
         reached = io.take_all(topics.GOAL_REACHED)
         try:
             if self._search is not None:
@@ -76,19 +74,22 @@ class NavigationService:
         return self._drive is not None or self._search is not None
 
     # --- goals
-    def _take(self, goal_id: str, attempt: int, text: str, pose: m.NavGoal | None) -> None:
-        if not self._taken.is_new(goal_id, attempt):
-            self._publish(self._status)
-            return
-        if self._busy:
-            self._finish(Ended("failed", "PREEMPTED", f"replaced by {text or in_words(pose)}"))
+    def _repeat(self, goal: Goal, answer: m.NavigationStatus | None) -> None:
+        self._publish(answer or self._status)
+
+    def _preempted(self, old: Goal, new: Goal) -> None:
+        self._finish(Ended("failed", "PREEMPTED", f"replaced by {in_words(new)}"))
+
+    def _take(self, goal: Goal) -> None:
+        text, pose = ("", goal) if isinstance(goal, m.NavGoal) else (goal.goal.strip(), None)
         self._from_brain = pose is None
         self._recoveries = 0
-        self._status = m.NavigationStatus(status="navigating", goal_id=goal_id, attempt=attempt)
-        self._io.log.info("goal", goal=text or in_words(pose), id=goal_id, attempt=attempt)
+        self._status = m.NavigationStatus(status="navigating", goal_id=goal.id, attempt=goal.attempt)
+        self._io.log.info("goal", goal=in_words(goal), id=goal.id, attempt=goal.attempt)
         if text == "stop":
             self._hold()
             self._report("idle", "STOPPED", "the base holds")
+            self._inbox.end(goal, self._status)
             return
         try:
             self._begin(text, pose)
@@ -206,6 +207,8 @@ class NavigationService:
         if ended.status == "failed" and drive is not None and self._senses.pose is not None:
             self._hold()
         self._report(ended.status, ended.code, ended.detail)
+        if self._inbox.active is not None:
+            self._inbox.end(self._inbox.active, self._status)
         log = self._io.log.info if ended.status == "arrived" else self._io.log.warning
         log(ended.status, id=self._status.goal_id, code=ended.code, detail=ended.detail)
 

@@ -10,6 +10,7 @@ from common import messages as m
 from common import topics
 from common.bus.port import Io, Job
 from common.geometry import Pose2, wrap
+from common.goal_inbox import GoalInbox
 from common.runtime import StartError
 from services.perception.body import Body
 from services.perception.config import PerceptionConfig
@@ -49,8 +50,9 @@ class PerceptionService:
         self._asked_at = -1e9
         self._detecting: Job[tuple[View, list[Detection]]] | None = None
         self._looked_from: tuple[Pose2, str] | None = None
-        self._query: m.ObjectQuery | None = None
-        self._answers: dict[str, m.ObjectPose] = {}
+        self._inbox: GoalInbox[m.ObjectQuery, m.ObjectPose] = GoalInbox(
+            io, (topics.OBJECT_QUERY,), self._take, self._repeat
+        )
 
     def _forget(self) -> None:
         self._memory = Memory(self._io.scene, self._config.gone_after, self._config.min_confidence)
@@ -59,8 +61,7 @@ class PerceptionService:
 
     def step(self, now: float) -> None:
         self._sense(now)
-        for query in self._io.take_all(topics.OBJECT_QUERY):
-            self._take(query)
+        self._inbox.receive()
         self._receive(now)
         if self._detecting is not None and self._detecting.poll(now):
             self._see(self._detecting, now)
@@ -103,11 +104,11 @@ class PerceptionService:
         phase = self._working()
         resting = self._looked_from is not None and _near(self._looked_from[0], here) and self._looked_from[1] == phase
         period = config.idle_period if resting else config.period
-        if self._query is None and now - self._asked_at < period and phase != AIM:
+        if self._inbox.active is None and now - self._asked_at < period and phase != AIM:
             return
         self._looked_from = here, phase
         self._picture, self._asked_at = self._io.new_id("picture"), now
-        camera: Literal["head", "wrist"] = "wrist" if phase == AIM and self._query is None else "head"
+        camera: Literal["head", "wrist"] = "wrist" if phase == AIM and self._inbox.active is None else "head"
         request = m.CameraRequest(id=self._picture, camera=camera, width=config.width, height=config.height)
         self._io.publish(topics.CAMERA_REQUEST, request)
 
@@ -152,18 +153,16 @@ class PerceptionService:
             self._io.publish(topics.WORLD_OBJECTS, m.WorldObjects(t=now, objects=objects, source="perception"))
 
     # --- queries
+    def _repeat(self, query: m.ObjectQuery, answer: m.ObjectPose | None) -> None:
+        if answer is not None:
+            self._io.publish(topics.OBJECT_POSE, answer)
+
     def _take(self, query: m.ObjectQuery) -> None:
-        query.id = query.id or self._io.new_id("query")
-        if query.id in self._answers:
-            self._io.publish(topics.OBJECT_POSE, self._answers[query.id])
-            return
-        if self._query is not None and self._query.id == query.id:
-            return
         # A picture that is under way was not taken for this question.
-        self._query, self._pictures, self._picture = query, 0, ""
+        self._pictures, self._picture = 0, ""
 
     def _answer(self, seen: set[str], view: View) -> None:
-        query = self._query
+        query = self._inbox.active
         if query is None or view.t < query.since:
             return
         self._pictures += 1
@@ -173,10 +172,9 @@ class PerceptionService:
             return
         if found is not None and found.id not in seen and self._pictures < self._config.query_pictures:
             return
-        self._query = None
         answer = _pose_answer(query, result, jpeg(view) if query.since else b"")
         # Kept for a query that is sent again, without what costs memory.
-        self._answers[query.id] = msgspec.structs.replace(answer, picture=b"")
+        self._inbox.end(query, msgspec.structs.replace(answer, picture=b""))
         self._io.log.info("asked", query=query.query, found=answer.label, detail=answer.detail)
         self._io.publish(topics.OBJECT_POSE, answer)
 

@@ -1,20 +1,19 @@
 """The planner: answers each `plan_request` with an `action_plan`, by the grammar or by a language model over it."""
 
 from collections import OrderedDict
-from typing import TypeVar
 
 import msgspec
 
 from common import messages as m
 from common import topics
 from common.bus.port import Io, Job
+from common.goal_inbox import GoalInbox
 from services.planner import grammar
 from services.planner.backend import Backend
 from services.planner.config import PlannerConfig
 from services.planner.llm import Call, LlmError, NoAnswer, Reply
 from services.planner.world import World, believed
 
-T = TypeVar("T")
 REMEMBERED = 32
 GRACE = 1.0
 
@@ -42,21 +41,26 @@ class PlannerService:
         self._config, self._io = config, io
         self._backend = Backend(config, io)
         self._pending: Pending | None = None
-        self._answers: OrderedDict[str, m.ActionPlan] = OrderedDict()
+        self._inbox: GoalInbox[m.PlanRequest, m.ActionPlan] = GoalInbox(
+            io, (topics.PLAN_REQUEST,), self._take, self._repeat
+        )
+        self._now = 0.0
         self._rejected: OrderedDict[str, list[m.RejectedPlan]] = OrderedDict()
 
     def step(self, now: float) -> None:
-        for request in self._io.take_all(topics.PLAN_REQUEST):
-            if request.id in self._answers:
-                self._io.publish(topics.ACTION_PLAN, self._answers[request.id])
-            elif self._pending is None or self._pending.request.id != request.id:
-                self._take(request, now)
+        self._now = now
+        self._inbox.receive()
         self._poll(now)
         self._backend.step(now, self._pending is None)
 
     # --- the language model
-    def _take(self, request: m.PlanRequest, now: float) -> None:
+    def _repeat(self, request: m.PlanRequest, answer: m.ActionPlan | None) -> None:
+        if answer is not None:
+            self._io.publish(topics.ACTION_PLAN, answer)
+
+    def _take(self, request: m.PlanRequest) -> None:
         """Only the newest request counts: a sender has one outstanding. A model is asked once enough was seen."""
+        now = self._now
         rejected, world = self._rejections(request), self._world(request, now)
         self.close()
         plan = self._by_grammar(request, world, rejected)
@@ -110,7 +114,7 @@ class PlannerService:
 
     # --- requests and answers
     def _publish(self, request: m.PlanRequest, plan: m.ActionPlan) -> None:
-        _remember(self._answers, request.id, plan)
+        self._inbox.end(request, plan)
         self._io.publish(topics.ACTION_PLAN, plan)
         steps = "; ".join(" ".join(p for p in (s.action, s.object, s.target) if p) for s in plan.steps)
         self._io.log.info("planned", command=request.command, steps=steps, detail=plan.detail, source=plan.source)
@@ -128,12 +132,8 @@ class PlannerService:
         if request.rejected is None:
             self._rejected.pop(key, None)
             return []
-        _remember(self._rejected, key, [*history, request.rejected])
+        self._rejected[key] = [*history, request.rejected]
+        self._rejected.move_to_end(key)
+        while len(self._rejected) > REMEMBERED:
+            self._rejected.popitem(last=False)
         return self._rejected[key]
-
-
-def _remember(memory: OrderedDict[str, T], key: str, value: T) -> None:
-    memory[key] = value
-    memory.move_to_end(key)
-    while len(memory) > REMEMBERED:
-        memory.popitem(last=False)

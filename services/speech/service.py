@@ -10,7 +10,7 @@ import numpy as np
 from common import messages as m
 from common import topics
 from common.bus.port import Io
-from common.goal_register import GoalRegister
+from common.goal_inbox import GoalInbox
 from common.language.meaning import asks_for
 from common.language.normalise import normalise
 from common.language.pattern import PatternError
@@ -48,17 +48,19 @@ class SpeechService:
         self._attention = Attention(config, io, lambda: Ear(config, io.scene, found))
         self._mouth = Mouth(io, config.speakers, config.synthesis_seconds, config.preload)
         self._goal = m.SpeechGoal(goal="")
-        self._taken: GoalRegister[m.SpeechResult] = GoalRegister()
+        self._inbox: GoalInbox[m.SpeechGoal, m.SpeechResult] = GoalInbox(
+            io, (topics.SPEECH_GOAL,), self._take, self._repeat
+        )
         self._listening = False
-        self._deadline = 0.0
+        self._now = self._deadline = 0.0
         self._typed: deque[tuple[float, str]] = deque(maxlen=8)
         self._status = m.SpeechStatus(state="idle")
         io.publish(topics.SPEECH_STATUS, self._status)
 
     def step(self, now: float) -> None:
         io = self._io
-        for goal in io.take_all(topics.SPEECH_GOAL):
-            self._take(goal, now)
+        self._now = now
+        self._inbox.receive()
         for typed in io.take_all(topics.SPEECH_TEXT):
             self._type(typed.text.strip(), now)
         key = self._goal.id, self._goal.attempt
@@ -70,13 +72,12 @@ class SpeechService:
         self._show(now, "said" if self._mouth.step(now) else "")
 
     # --- goals
-    def _take(self, goal: m.SpeechGoal, now: float) -> None:
-        goal.id = goal.id or self._io.new_id("speech")
-        if not self._taken.is_new(goal.id, goal.attempt):
-            if (answer := self._taken.answered(goal.id, goal.attempt)) is not None:
-                self._io.publish(topics.SPEECH_RESULT, answer)
-            self._io.publish(topics.SPEECH_STATUS, self._status)
-            return
+    def _repeat(self, goal: m.SpeechGoal, answer: m.SpeechResult | None) -> None:
+        if answer is not None:
+            self._io.publish(topics.SPEECH_RESULT, answer)
+        self._io.publish(topics.SPEECH_STATUS, self._status)
+
+    def _take(self, goal: m.SpeechGoal) -> None:
         verb, _, text = goal.goal.strip().partition(" ")
         if verb == "say" and text.strip():
             self._goal, self._listening = goal, False
@@ -85,7 +86,7 @@ class SpeechService:
         elif goal.goal.strip() == "listen":
             self._mouth.stop()
             self._goal, self._listening = goal, True
-            self._deadline = now + self._config.listen_timeout
+            self._deadline = self._now + self._config.listen_timeout
             self._set("listening")
             self._io.log.info("listening", id=goal.id)
         elif goal.goal.strip() == "cancel":
@@ -100,7 +101,7 @@ class SpeechService:
         result = m.SpeechResult(
             text=text, goal_id=goal.id, attempt=goal.attempt, confidence=confidence, code=code, detail=detail
         )
-        self._taken.answer(goal.id, goal.attempt, result)
+        self._inbox.end(goal, result)
         self._io.log.info("heard", text=text, confidence=confidence, code=code, detail=detail)
         self._io.publish(topics.SPEECH_RESULT, result)
 

@@ -5,9 +5,10 @@ import pytest
 
 from common import config, topics
 from common import messages as m
+from common.goal_inbox import CAPACITY
 from common.scene import load_scene
 from services.planner.config import PlannerConfig
-from services.planner.service import REMEMBERED, PlannerService
+from services.planner.service import PlannerService
 from tests.node import Node
 
 SCENE = load_scene("apartment")
@@ -19,7 +20,9 @@ class Desk(Node):
         super().__init__(PlannerService, CONFIG, SCENE)
 
     def ask(self, command: str, request_id: str = "m.1", **fields: object) -> m.ActionPlan:
-        request = msgspec.convert({"id": request_id, "command": command, **fields}, m.PlanRequest)
+        request = msgspec.convert(
+            {"id": request_id, "command": command, "mission_id": request_id.partition(".")[0], **fields}, m.PlanRequest
+        )
         self.bus.send(topics.PLAN_REQUEST, request)
         self.step()
         plan = self.sent(topics.ACTION_PLAN)[-1]
@@ -66,8 +69,7 @@ def test_every_rejected_plan_of_a_mission_is_remembered() -> None:
         if not plan.steps:
             break
         seen.append(plan.steps[-1].target)
-        reason = f"the {seen[-1]} is full"
-        rejected = {"steps": msgspec.to_builtins(plan.steps), "step": 3, "reason": reason}
+        rejected = {"steps": msgspec.to_builtins(plan.steps), "reason": f"the {seen[-1]} is full", "step": 3}
         plan = node.ask(command, f"m.{number}", rejected=rejected)
     assert sorted(seen) == ["bookshelf", "living table"]
     assert plan.detail == f"the {seen[-1]} is full"
@@ -76,12 +78,12 @@ def test_every_rejected_plan_of_a_mission_is_remembered() -> None:
 
 def test_its_memory_is_bounded() -> None:
     node = Desk()
-    rejected = {"steps": [], "step": 1, "reason": "no"}
+    rejected = {"steps": [], "reason": "no"}
     node.send(topics.WORLD_OBJECTS, mugs(("red", (4.0, -3.1, 0.8))))
-    for number in range(REMEMBERED + 1):
+    for number in range(CAPACITY + 1):
         node.ask("bring me the mug", f"m{number}.1", rejected=rejected)
     node.send(topics.WORLD_OBJECTS, mugs(("white", (4.0, -3.1, 0.8))))
-    remembered = [targets(node.ask("bring me the mug", f"m{number}.1"))[0] for number in (1, REMEMBERED, 0)]
+    remembered = [targets(node.ask("bring me the mug", f"m{number}.1"))[0] for number in (1, CAPACITY, 0)]
     assert remembered == ["red mug", "red mug", "white mug"], "the oldest answer is forgotten"
 
 
