@@ -21,7 +21,7 @@ from common.language.normalise import normalise
 from common.scene import load_scene
 from services.speech.audio import RATE, read_wav
 from services.speech.config import SpeechConfig
-from services.speech.ear import without_wake
+from services.speech.recognise.front_end import without_wake
 from services.speech.transcribe import Reader
 
 ROWS = (

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from scipy.signal import fftconvolve
 
 from evaluation.case import Speaker
-from services.speech.speak import Voice
+from services.speech.speak.voice import Voice
 
 RATE = 16000
 LEAD, TAIL = 0.3, 1.2

@@ -15,14 +15,14 @@ from common.language.meaning import asks_for
 from common.language.normalise import normalise
 from common.language.pattern import PatternError
 from common.runtime import StartError
-from services.speech.attention import Attention, Hearing
 from services.speech.audio import RATE, AudioError, Samples, read_wav, resample
 from services.speech.config import SpeechConfig
-from services.speech.dialogue import act
-from services.speech.ear import Ear
-from services.speech.mouth import CHUNK, Mouth
-from services.speech.recognise import Heard, grammars
-from services.speech.speak import Microphone
+from services.speech.listen.addressee import act
+from services.speech.listen.utterance_queue import Attention, Hearing
+from services.speech.recognise.front_end import Ear
+from services.speech.recognise.recogniser import Heard, grammars
+from services.speech.sound_card import Microphone
+from services.speech.speak.player import CHUNK, Mouth
 
 _FAILURES = {"silence": "NO_SPEECH", "ask": "UNCERTAIN", "reject": "NO_COMMAND"}
 

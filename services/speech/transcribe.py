@@ -13,9 +13,9 @@ from common.runtime import BAD_CONFIGURATION, StartError
 from common.scene import Scene, SceneError, load_scene
 from services.speech.audio import AudioError, Samples, read_wav
 from services.speech.config import SpeechConfig
-from services.speech.ear import Ear
-from services.speech.recognise import Heard, grammars
-from services.speech.wake import WakeWord
+from services.speech.listen.wake_word import WakeWord
+from services.speech.recognise.front_end import Ear
+from services.speech.recognise.recogniser import Heard, grammars
 
 
 class Reader:

@@ -19,7 +19,7 @@ from services.navigation.places import load_places
 from services.sim.config import SimConfig
 from services.speech.audio import AudioError, read_wav, write_wav
 from services.speech.config import SpeechConfig
-from services.speech.speak import Voice
+from services.speech.speak.voice import Voice
 
 QUICK = settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
 WORDS = (

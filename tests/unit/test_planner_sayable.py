@@ -15,7 +15,7 @@ from services.planner import grammar
 from services.planner.config import PlannerConfig
 from services.planner.world import believed
 from services.speech.config import SpeechConfig
-from services.speech.grammar import vocabulary
+from services.speech.recognise.grammar import vocabulary
 
 CONFIG = config.load("planner", PlannerConfig, config.DEFAULT_DIR, {})
 SPEECH = config.load("speech", SpeechConfig, config.DEFAULT_DIR, {})

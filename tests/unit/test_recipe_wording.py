@@ -18,7 +18,7 @@ from services.planner import grammar
 from services.planner.config import PlannerConfig
 from services.planner.world import believed
 from services.speech.config import SpeechConfig
-from services.speech.recognise import grammars
+from services.speech.recognise.recogniser import grammars
 
 scene, said = load_scene("apartment"), "i could use the red mug"
 plan = grammar.plan(said, believed(scene, KnownWorld(), []), PlannerConfig())
@@ -44,7 +44,7 @@ def answers(folder: str) -> str:
 def test_the_recipe_for_a_wording(tmp_path: object) -> None:
     page = (ROOT / "docs" / "EXTENDING.md").read_text(encoding="utf-8")
     section = page.partition("## A new wording")[2].partition("\n## ")[0]
-    (row,) = re.findall(r"```python\n(.*?)```", section, re.DOTALL)
+    (row,) = re.findall(r"```text\n(.*?)```", section, re.DOTALL)
     assert row.count("\n") == 1
     folder = f"{tmp_path}/copy"
     for part in ("common", "services", "config"):

@@ -11,9 +11,9 @@ from common import messages as m
 from common.scene import load_scene
 from services.speech.audio import RATE, Samples
 from services.speech.config import SpeechConfig
-from services.speech.segment import Segment, Segmenter
+from services.speech.listen.segmenter import Segment, Segmenter
 from services.speech.service import SpeechService
-from services.speech.speak import Voice
+from services.speech.speak.voice import Voice
 from tests.node import Node
 from tests.support import ROOT
 

@@ -4,9 +4,9 @@ import pytest
 
 from common import config
 from services.speech.config import SpeechConfig
-from services.speech.dialogue import Setting, act, scope
-from services.speech.ear import without_wake
-from services.speech.recognise import Heard
+from services.speech.listen.addressee import Setting, act, scope
+from services.speech.recognise.front_end import without_wake
+from services.speech.recognise.recogniser import Heard
 from tests.support import ROOT
 
 CONFIG = config.load("speech", SpeechConfig, ROOT / "config", {})

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from services.speech import protobuf as pb
-from services.speech.grammar import Grammar
-from services.speech.moonshine import models, networks
-from services.speech.speak import Voice
-from services.speech.tokens import BOS
-from services.speech.weights import BLOCK, Net, session
+from services.speech.recognise import protobuf as pb
+from services.speech.recognise.grammar import Grammar
+from services.speech.recognise.moonshine import models, networks
+from services.speech.recognise.packed_network import BLOCK, Net, session
+from services.speech.recognise.token_trie import BOS
+from services.speech.speak.voice import Voice
 
 HEADS, LAYERS, WIDTH = 8, 8, 52
 

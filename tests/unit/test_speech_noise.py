@@ -6,9 +6,9 @@ import numpy as np
 
 from common import config
 from services.speech.config import SpeechConfig
-from services.speech.denoise import noise_power, noise_ratio, reduce_noise
-from services.speech.judge import CANDIDATES, cost, judged, paced
-from services.speech.recognise import Sound, confidence_of
+from services.speech.recognise.denoise import noise_power, noise_ratio, reduce_noise
+from services.speech.recognise.recogniser import Sound, confidence_of
+from services.speech.recognise.scoring import CANDIDATES, cost, judged, paced
 from tests.support import ROOT
 
 CONFIG = config.load("speech", SpeechConfig, ROOT / "config", {})

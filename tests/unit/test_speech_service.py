@@ -14,11 +14,11 @@ from common.runtime import StartError
 from common.scene import load_scene
 from services.speech.audio import RATE, AudioError, read_wav, write_wav
 from services.speech.config import SpeechConfig
-from services.speech.grammar import Grammar, vocabulary
-from services.speech.moonshine import Vocabulary
+from services.speech.listen.vad import Endpointer
+from services.speech.recognise.grammar import Grammar, vocabulary
+from services.speech.recognise.moonshine import Vocabulary
 from services.speech.service import SpeechService
-from services.speech.speak import Voice
-from services.speech.vad import Endpointer
+from services.speech.speak.voice import Voice
 from tests.node import Node
 
 ROOT = Path(__file__).parents[2]

@@ -11,8 +11,8 @@ from hibari.g2p import G2P
 from scipy.signal import resample_poly
 
 from services.speech.audio import RATE, resample
-from services.speech.pronounce import ASSETS, Pronunciation
-from services.speech.table import Table
+from services.speech.speak.packed_mapping import Table
+from services.speech.speak.pronounce import ASSETS, Pronunciation
 
 
 def packed(words: dict[str, object]) -> Table:

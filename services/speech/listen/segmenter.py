@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from services.speech.audio import RATE, Samples
-from services.speech.vad import FRAME, Endpointer, VoiceDetector
-from services.speech.wake import WakeWord
+from services.speech.listen.vad import FRAME, Endpointer, VoiceDetector
+from services.speech.listen.wake_word import WakeWord
 
 PRE_ROLL = int(0.4 * RATE)
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from services.speech import protobuf as pb
+from services.speech.recognise import protobuf as pb
 
 BLOCK = 32
 Array = NDArray[Any]

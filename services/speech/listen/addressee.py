@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from common.language.wordings import Action
-from services.speech.recognise import Heard, Scope
+from services.speech.recognise.recogniser import Heard, Scope
 
 Act = Literal["stop", "cancel", "answer", "command", "awake", "again", "nothing"]
 

@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 from common.bus.port import Io, Job
 from services.speech.audio import RATE, Samples
 from services.speech.config import SpeechConfig
-from services.speech.dialogue import Setting, scope
-from services.speech.ear import Ear
-from services.speech.recognise import Heard, Scope
-from services.speech.segment import Segment, Segmenter
+from services.speech.listen.addressee import Setting, scope
+from services.speech.listen.segmenter import Segment, Segmenter
+from services.speech.recognise.front_end import Ear
+from services.speech.recognise.recogniser import Heard, Scope
 
 GAP, LOADING = 0.1, 0.5
 

@@ -8,12 +8,12 @@ from numpy.typing import NDArray
 
 from common.scene import Scene
 from services.speech.config import SpeechConfig
-from services.speech.denoise import noise_ratio, reduce_noise
-from services.speech.grammar import Grammar
-from services.speech.recognise import Array, Heard, MoonshineRecogniser, Recogniser, Scope, Sound
-from services.speech.sphinx import SphinxRecogniser
-from services.speech.vad import RATE, VoiceDetector, speech_span
-from services.speech.weights import return_memory
+from services.speech.listen.vad import RATE, VoiceDetector, speech_span
+from services.speech.recognise.denoise import noise_ratio, reduce_noise
+from services.speech.recognise.grammar import Grammar
+from services.speech.recognise.packed_network import return_memory
+from services.speech.recognise.recogniser import Array, Heard, MoonshineRecogniser, Recogniser, Scope, Sound
+from services.speech.recognise.sphinx import SphinxRecogniser
 
 BEFORE, AFTER = 0.2, 0.6
 MIN_SAMPLES = 4000

@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 from common.language.wordings import INTERRUPTS
 from common.scene import Scene
 from services.speech.config import SpeechConfig
-from services.speech.grammar import Grammar, vocabulary
-from services.speech.judge import cost, judged, paced
+from services.speech.recognise.grammar import Grammar, vocabulary
+from services.speech.recognise.scoring import cost, judged, paced
 
 if TYPE_CHECKING:
-    from services.speech.moonshine import Decoded
+    from services.speech.recognise.moonshine import Decoded
 
 Array = NDArray[np.float32]
 Verdict = Literal["accept", "ask", "reject", "silence"]
@@ -62,8 +62,8 @@ class MoonshineRecogniser:
     """Moonshine under the grammar."""
 
     def __init__(self, config: SpeechConfig, grammars: dict[Scope, Grammar]) -> None:
-        from services.speech.moonshine import Moonshine
-        from services.speech.tokens import Vocabulary
+        from services.speech.recognise.moonshine import Moonshine
+        from services.speech.recognise.token_trie import Vocabulary
 
         self._config = config
         self._model = Moonshine(config.beam)

@@ -13,7 +13,7 @@ from hibari.g2p.tagger import Tagger
 from hibari.g2p.tokenize import Tokenizer
 from hibari.voices import DEFAULT, voice_path
 
-from services.speech.table import Table
+from services.speech.speak.packed_mapping import Table
 
 ASSETS = Path(hibari.__file__).parent / "assets"
 Words = dict[str, msgspec.Raw]

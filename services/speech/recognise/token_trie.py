@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from services.speech.grammar import Grammar, State
+from services.speech.recognise.grammar import Grammar, State
 
 BOS, EOS = 1, 2
 _SILENT = set('.,?!;:"-')

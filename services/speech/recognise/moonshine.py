@@ -14,10 +14,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from services.speech.decoder import Decoder
-from services.speech.grammar import State
-from services.speech.tokens import BOS, EOS, Vocabulary, read_tokens
-from services.speech.weights import unpacked
+from services.speech.recognise.decoder import Decoder
+from services.speech.recognise.grammar import State
+from services.speech.recognise.packed_network import unpacked
+from services.speech.recognise.token_trie import BOS, EOS, Vocabulary, read_tokens
 
 Array = NDArray[np.float32]
 TOKENS_PER_SECOND = 6.5

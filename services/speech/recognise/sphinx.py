@@ -5,8 +5,8 @@ import numpy as np
 from common.runtime import StartError
 from common.scene import Scene
 from services.speech.config import SpeechConfig
-from services.speech.grammar import vocabulary
-from services.speech.recognise import Heard, Scope, Sound, patterns
+from services.speech.recognise.grammar import vocabulary
+from services.speech.recognise.recogniser import Heard, Scope, Sound, patterns
 
 
 def jsgf(config: SpeechConfig, scene: Scene, scope: Scope = "command") -> str:

@@ -6,7 +6,8 @@ from common import messages as m
 from common import topics
 from common.bus.port import Io, Job
 from services.speech.audio import RATE, Samples
-from services.speech.speak import Speakers, Voice
+from services.speech.sound_card import Speakers
+from services.speech.speak.voice import Voice
 
 CHUNK = RATE // 10
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from services.speech.weights import Net, Packed, return_memory
+from services.speech.recognise.packed_network import Net, Packed, return_memory
 
 LAYERS, HEADS, WIDTH, TURNED = 8, 8, 52, 32
 SIZE = HEADS * WIDTH

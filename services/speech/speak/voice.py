@@ -1,0 +1,36 @@
+"""Text to speech with Hibari's bundled voice: https://pypi.org/project/hibari-tts/."""
+
+import re
+
+import numpy as np
+
+from services.speech.audio import RATE, Samples, resample
+from services.speech.recognise.packed_network import return_memory, session
+
+MAX_CHARACTERS = 400
+MAX_DIGITS = 20
+LONG_NUMBER = re.compile(r"\d{7,}")
+
+
+class Voice:
+    """Loads in seconds and speaks in milliseconds: make it in the worker."""
+
+    def __init__(self) -> None:
+        from hibari import SAMPLE_RATE
+
+        from services.speech.speak.pronounce import LeanHibari
+
+        self._voice, self._rate = LeanHibari(session), int(SAMPLE_RATE)
+        self.speak("ready")  # what else it needs it loads with the first word
+        return_memory()
+
+    def speak(self, text: str) -> Samples:
+        """16 kHz samples of the spoken text, with a short silence after it."""
+        # The voice stumbles over numbers beyond its words for thousands and millions: digit by digit then.
+        words = LONG_NUMBER.sub(lambda found: " ".join(found[0][:MAX_DIGITS]), text[:MAX_CHARACTERS])
+        pause = np.zeros(RATE // 5, np.int16)
+        try:
+            audio = np.asarray(self._voice(words, seed=0), dtype=np.float32)
+        except (LookupError, ValueError, TypeError, ArithmeticError, RecursionError):
+            return pause  # a text that the library cannot pronounce must not silence the robot for good
+        return np.concatenate([resample(audio * 32000, self._rate), pause])
