@@ -156,7 +156,9 @@ ROBOT_STOP = _goal(
     latched=False,
 )
 ROBOT_RESUME = _goal("robot/resume", m.RobotResume, by="dashboard *", to="brain sim", text="source", latched=False)
-ROBOT_DESCRIPTION = _event("robot/description", m.RobotDescription, by="sim", to="perception manipulation")
+ROBOT_DESCRIPTION = _event(
+    "robot/description", m.RobotDescription, by="sim", to="brain perception navigation manipulation"
+)
 
 SIM_STATE = _stream("sim/state", m.SimState, by="sim", to="camera", rate=20.0, latched=True)
 SIM_MODEL = _event("sim/model", m.SimModel, by="sim", to="camera dashboard")

@@ -88,7 +88,23 @@ class LaserScan(Message):
     y: float = 0.0
 
 
+class CameraMount(Message):
+    """Where a camera sits on the base and how much it sees.
+
+    `x`, `y`, `z`: its optical centre in frame `base` [m]. `yaw`: where it looks from straight ahead, counter-clockwise,
+    `pitch`: how far down from level, `fovy`: the vertical angle of its pictures [rad].
+    """
+
+    x: float
+    z: float
+    pitch: float
+    fovy: float
+    y: float = 0.0
+    yaw: float = 0.0
+
+
 class RobotDescription(Message):
-    """Robot-only MJCF, the robot's drawing as on `robot_description`."""
+    """Robot-only MJCF, the robot's drawing as on `robot_description`; `head_camera` is its camera `head`."""
 
     mjcf: str
+    head_camera: CameraMount | None = None

@@ -11,12 +11,12 @@ from common.bus.port import Io
 from common.geometry import Pose2
 from common.time.clock import unix_time
 from common.topics import Topic
+from common.viewpoints import Viewpoints, viewpoints_of
 from services.brain.config import BrainConfig
 from services.brain.goals import Channel
 from services.brain.heartbeat import Heartbeat
 from services.brain.journal import Checkpoint, Entry, Journal, Kind, Place
 from services.brain.mission import SYSTEM_STATE, Failure, Hand, Mission, Outcome
-from services.brain.search import lookout
 from services.brain.snapshot import path_to
 from services.brain.store import open_pictures
 
@@ -41,7 +41,6 @@ class Context:
             channel.before_send = self.save
         self.mission = Mission(id=self._fresh_id())
         self.hand = Hand()
-        self.lookout = lookout(io.scene)
         self.at: Behaviour | None = None
         self.resumes = 0
         self.put_off: Checkpoint | None = None
@@ -107,6 +106,11 @@ class Context:
 
     def note(self, cause: str, evidence: str = "", kind: Kind = "note", picture: str = "") -> None:
         self.journal.note(self.mission.id, Entry(self.now, self.shown.state, cause, evidence, kind, picture))
+
+    @property
+    def viewpoints(self) -> Viewpoints:
+        """Where the robot's head camera may look from."""
+        return viewpoints_of(self.io.scene, self.io.latest(topics.ROBOT_DESCRIPTION))
 
     @property
     def here(self) -> Pose2:

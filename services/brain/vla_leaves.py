@@ -8,15 +8,16 @@ from py_trees.common import Status
 
 from common import messages as m
 from common import topics
+from common.geometry import Pose2
 from common.plan_rules import Objection, known_world, objection
 from common.topics import Topic
+from services.brain import search
 from services.brain.behaviours import Goal, Leaf
 from services.brain.context import Context
 from services.brain.floor import standing_pose
 from services.brain.goals import Answer
 from services.brain.mission import Failure
 from services.brain.robot import Drive, take_command
-from services.brain.search import View
 
 
 class Await(Leaf):
@@ -136,13 +137,16 @@ class TakeView(Goal):
         config = ctx.config
         super().__init__(name, ctx, ctx.navigation, state="GROUNDING", timeout=config.navigation_timeout)
         self._elsewhere = elsewhere
-        self._target: View | None = None
+        self._target: Pose2 | None = None
 
     def initialise(self) -> None:
         super().initialise()
         ctx, mission, pose = self.ctx, self.ctx.mission, self.ctx.here
-        choose = ctx.lookout.next if self._elsewhere else ctx.lookout.turns
-        self._target = choose(pose, [*mission.visited, pose])
+        looked_from = [*mission.visited, pose]
+        if self._elsewhere:
+            self._target = search.elsewhere(ctx.io.scene, ctx.viewpoints, pose, looked_from)
+        else:
+            self._target = search.turn(ctx.viewpoints, pose, looked_from)
         # A view that cannot be reached is not tried a second time either.
         mission.visited = [*mission.visited, pose, *([self._target] if self._target else [])]
         mission.at = ""

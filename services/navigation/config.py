@@ -4,17 +4,6 @@ from common.approach import EDGE_DISTANCE, STAND_OFF
 from common.config import Config
 
 
-class Camera(Config, frozen=True):
-    """The head camera on the base [m, rad]: `width` and `tallness` are the angles it covers."""
-
-    forward: float = -0.12
-    height: float = 1.30
-    pitch: float = 0.62
-    width: float = 1.25
-    tallness: float = 1.0
-    reach: float = 2.2
-
-
 class NavigationConfig(Config, frozen=True):
     """Lengths in metres, speeds in m/s, times in seconds."""
 
@@ -39,7 +28,6 @@ class NavigationConfig(Config, frozen=True):
     timeout_margin: float = 30.0
     scan_timeout: float = 0.5
     odometry_timeout: float = 0.5
-    camera: Camera = Camera()
     look_time: float = 2.0
     look_memory: float = 60.0
     find_timeout: float = 170.0

@@ -1,33 +1,46 @@
-"""`find` for an object that nobody has seen: a tour of viewpoints with an end."""
+"""`find` for an object that nobody has seen: viewpoint after viewpoint, until all is looked at or time is up."""
 
 from common.geometry import Pose2
 from services.navigation.config import NavigationConfig
 from services.navigation.costmap import Costmap
+from services.navigation.coverage import SearchCoverage
 from services.navigation.drive import Ended
 from services.navigation.planner import PathPlanner
-from services.navigation.tour import Memory, Tour
 
 
 class Search:
-    """`fresh`: the next view is due without a look from here."""
+    """One search. `fresh`: the next viewpoint is due without a look from here."""
 
-    def __init__(self, item: str, memory: Memory, config: NavigationConfig, now: float) -> None:
+    def __init__(self, item: str, coverage: SearchCoverage, config: NavigationConfig, now: float) -> None:
         self.item, self.fresh = item, False
-        self.tour = Tour(memory, now, config.look_memory)
-        self._config, self._until = config, now + config.find_timeout
+        self._coverage, self._config, self._started = coverage, config, now
+        self._tried: set[Pose2] = set()
+
+    @property
+    def looked(self) -> int:
+        """How many viewpoints were taken or tried."""
+        return len(self._tried)
 
     def timed_out(self, now: float) -> bool:
         """False, or raises `Ended` TIMEOUT."""
-        if now > self._until:
-            detail = f"no {self.item} after {self._config.find_timeout:.0f} s and {self.tour.looked} views"
-            raise Ended("failed", "TIMEOUT", detail)
+        limit = self._config.find_timeout
+        if now > self._started + limit:
+            raise Ended("failed", "TIMEOUT", f"no {self.item} after {limit:.0f} s and {self.looked} views")
         return False
 
     def next(self, pose: Pose2, planner: PathPlanner, costmap: Costmap) -> Pose2:
-        """The next view; raises `Ended` NOT_FOUND when none is left."""
+        """The next viewpoint [map]; raises `Ended` NOT_FOUND when none is left."""
         self.fresh = False
-        view = self.tour.next(pose, planner, costmap, self._config.footprint_radius + self._config.clearance)
+        radius = self._config.footprint_radius + self._config.clearance
+        field = planner.field(pose[0], pose[1])
+        view = self._coverage.viewpoints.best(
+            self._coverage.worth(self._started, self._config.look_memory),
+            self._tried,
+            cost=lambda to: planner.cost_to(field, (to[0], to[1])),
+            free=lambda to: costmap.clearance(to[0], to[1]) >= radius,
+        )
         if view is None:
-            seen = f"{self.tour.looked} views show {self.tour.share():.0%} of the surfaces"
-            raise Ended("failed", "NOT_FOUND", f"no {self.item}: {seen}")
+            share = self._coverage.share(self._started)
+            raise Ended("failed", "NOT_FOUND", f"no {self.item}: {self.looked} views show {share:.0%} of the surfaces")
+        self._tried.add(view)
         return view

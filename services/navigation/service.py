@@ -5,8 +5,10 @@ from common import topics
 from common.bus.port import Io
 from common.config import config_dir
 from common.goal_inbox import GoalInbox
+from common.viewpoints import viewpoints_of
 from services.navigation.config import NavigationConfig
 from services.navigation.costmap import Costmap
+from services.navigation.coverage import SearchCoverage
 from services.navigation.drive import Drive, Ended
 from services.navigation.goals import Choices, Goal, Goals, in_words
 from services.navigation.places import Places, load_places
@@ -14,8 +16,6 @@ from services.navigation.planner import PathPlanner
 from services.navigation.search import Search
 from services.navigation.senses import Senses
 from services.navigation.stood import Stood
-from services.navigation.tour import Memory
-from services.navigation.views import views_of
 
 PERCEPTION = "perception"
 
@@ -34,7 +34,7 @@ class NavigationService:
         self._map = Costmap(io.scene, config.resolution, config.obstacle_memory)
         self._planner = PathPlanner(self._map, config.footprint_radius + config.clearance, config.inflation)
         self._senses = Senses(config, io, self._map)
-        self._memory = Memory(views_of(io.scene, config.camera))
+        self._coverage = SearchCoverage(viewpoints_of(io.scene, None))
         self._stood = Stood()
         self._drive: Drive | None = None
         self._search: Search | None = None
@@ -120,7 +120,8 @@ class NavigationService:
             self._go(choices)
         elif self._io.peer(PERCEPTION) is not None:
             self._io.log.info("search", item=item)
-            self._search = Search(item, self._memory, self._config, self._now)
+            self._coverage.viewpoints = viewpoints_of(self._io.scene, self._io.latest(topics.ROBOT_DESCRIPTION))
+            self._search = Search(item, self._coverage, self._config, self._now)
         else:
             self._go(self._goals.spot(item))
 
@@ -141,7 +142,7 @@ class NavigationService:
     def _look_for(self, search: Search, now: float) -> None:
         """One step of a search; raises `Ended` when it is over without result."""
         if choices := self._before(search.item):
-            self._io.log.info("found", item=search.item, views=search.tour.looked)
+            self._io.log.info("found", item=search.item, views=search.looked)
             self._search = None
             self._leave(self._drive)
             self._go(choices)
@@ -154,10 +155,10 @@ class NavigationService:
         pose = self._senses.pose
         if pose is None or search.timed_out(now):
             return
-        looked = self._memory.look(pose, now, self._config.look_time)
+        looked = self._coverage.look(pose, now, self._config.look_time)
         if self._drive is None and (looked or search.fresh):
             view = search.next(pose, self._planner, self._map)
-            self._io.log.info("view", item=search.item, number=search.tour.looked, x=view[0], y=view[1])
+            self._io.log.info("view", item=search.item, number=search.looked, x=view[0], y=view[1])
             self._go([(0.0, view)])
 
     def _leave(self, drive: Drive | None) -> None:

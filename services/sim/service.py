@@ -18,6 +18,7 @@ from services.sim.base import BaseDriver
 from services.sim.config import SimConfig
 from services.sim.menagerie import RobotError
 from services.sim.model import Robot, load_robot
+from services.sim.mounts import head_camera
 from services.sim.obstacles import chosen
 from services.sim.physics import Physics
 from services.sim.sensors import Sensors
@@ -79,7 +80,8 @@ class SimService:
         self._grip(0.0, self.physics.fingers.force)
         self._reached: tuple[bool, str] = (False, "")
         physics = self.physics
-        io.publish(topics.ROBOT_DESCRIPTION, m.RobotDescription(mjcf=physics.robot.mjcf))
+        description = m.RobotDescription(mjcf=physics.robot.mjcf, head_camera=head_camera(physics.model))
+        io.publish(topics.ROBOT_DESCRIPTION, description)
         model = m.SimModel(scene=io.scene.name, seed=physics.seed, epoch=io.epoch, mjcf=physics.mjcf)
         io.publish(topics.SIM_MODEL, model)
         io.publish(topics.GOAL_REACHED, m.GoalReached(reached=False))

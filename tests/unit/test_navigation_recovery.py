@@ -9,12 +9,12 @@ from common import messages as m
 from common import topics
 from common.bus.memory import MemoryIo
 from common.scene import load_scene
+from common.viewpoints import viewpoints_of
 from services.navigation.avoid import avoid
-from services.navigation.config import Camera, NavigationConfig
+from services.navigation.config import NavigationConfig
 from services.navigation.costmap import Costmap
 from services.navigation.movers import Mover, Movers, clusters
 from services.navigation.patience import Patience
-from services.navigation.views import Views
 from tests.unit.navigation_flat import SCENE, Flat
 
 KITCHEN_DOOR = (2.5, -0.75, 0.4, 0.9, 0.0)
@@ -153,7 +153,7 @@ class Eyes:
 
     def __init__(self, flat: Flat, label: str, position: tuple[float, float, float] | None) -> None:
         self._flat, self._label, self._position = flat, label, position
-        self._views = Views(flat.scene, Camera())
+        self._views = viewpoints_of(flat.scene, None)
         self._still, self._last = 0, flat.true
         self.looked = np.zeros(len(self._views.points), bool)
         MemoryIo(flat.bus, "perception", (), (topics.WORLD_OBJECTS,), scene=flat.scene)
@@ -234,14 +234,3 @@ def test_without_eyes_it_goes_to_the_item_s_spot_or_the_default_one() -> None:
         flat.ask(f"find {item}")
         assert flat.finish(60.0).status == "arrived"
         assert math.dist(flat.true[:2], spot) < 0.05
-
-
-def test_views_do_not_look_through_walls_or_beyond_the_picture() -> None:
-    views = Views(SCENE, Camera())
-    table = np.hypot(*(views.points[:, :2] - (5.3, -0.75)).T) < 0.2
-    assert table.any()
-    assert views.visible((4.2, -0.75, 0.0))[table].all()
-    assert not views.visible((4.2, -0.75, math.pi))[table].any(), "behind it"
-    assert not views.visible((2.0, -2.0, 0.8))[table].any(), "in the next room"
-    shelf = np.hypot(*(views.points[:, :2] - (1.45, 1.74)).T) < 0.3
-    assert not views.visible((1.45, 3.0, -math.pi / 2))[shelf].any(), "behind the wall"

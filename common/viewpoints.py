@@ -1,0 +1,192 @@
+"""Viewpoint planner: where the base stands so that the head camera sees the surfaces of a scene. Pure.
+
+The surfaces are sample points, a viewpoint is a base pose (x, y, theta) [map] and the points that it shows. Whoever
+searches keeps what was looked at and asks `Viewpoints.best` for the next pose.
+"""
+
+import math
+from collections.abc import Callable, Collection
+from functools import cached_property, lru_cache
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from common.approach import BIN_RIM
+from common.geometry import Array, Pose2
+from common.messages import CameraMount, RobotDescription
+from common.scene import Receptacle, Scene
+
+Mask = NDArray[np.bool_]
+Rectangle = tuple[float, float, float, float, float]
+"""x, y, full extent along its own x and y [m], yaw [rad]."""
+NOMINAL = CameraMount(x=-0.12, z=1.30, pitch=0.62, fovy=math.radians(62))
+"""Camera of a robot whose description names none: the built-in robot's."""
+ASPECT = 4 / 3
+"""Width of a picture by its height [-]: perception asks for 640 x 480."""
+USED = 0.92
+"""Share of the picture's angles that counts [-]; chosen: what the picture's edge cuts off is not recognised."""
+REACH = 2.2
+"""Floor distance up to which an object is recognised [m]; chosen: well within the 3 m of bench.perception."""
+NEAREST = 0.2
+"""Depth from which the camera sees [m]; chosen: the near limit of common RGB-D cameras."""
+SPACING = 0.12
+"""Distance between sample points [m]; chosen: about the size of the objects."""
+INSET = 0.04
+"""Distance of the outermost sample points from a surface's edge [m]; chosen: half of an object's width."""
+LIFT = 0.05
+"""Height of the sample points over their surface [m]; chosen: the middle of a small object."""
+DISTANCES = (0.50, 0.85)
+"""From the base's centre to the edge that it looks over [m]; chosen: as near as it can stand, and a step back."""
+ALONG = 0.55
+"""Step from one viewpoint to the next along an edge [m]; chosen: a picture at 0.5 m shows about twice as much."""
+LOOK_COST = 2.0
+"""What a look costs beside the way to it [m of way]; chosen: settling and a picture take as long as 1 m of driving."""
+LEAST_GAIN = 1.0
+"""New points that make a viewpoint worth its way [count]."""
+SEE_OVER = 0.3
+"""Furniture that ends less than this below the camera hides what is behind it [m]."""
+HEADINGS = 12
+"""Directions that are compared when the robot turns on the spot [count]: 30 degrees, half of what a picture shows."""
+
+
+def viewpoints_of(scene: Scene, robot: RobotDescription | None) -> "Viewpoints":
+    """The viewpoints of a scene for a robot's head camera; they take a while to work out and are made once."""
+    camera = robot.head_camera if robot is not None else None
+    return _made(scene, msgspec.structs.astuple(camera if camera is not None else NOMINAL))
+
+
+@lru_cache(maxsize=4)
+def _made(scene: Scene, camera: tuple[float, ...]) -> "Viewpoints":
+    return Viewpoints(scene, CameraMount(**dict(zip(CameraMount.__struct_fields__, camera, strict=True))))
+
+
+class Viewpoints:
+    """`points` (p, 3) [m] on the surfaces, `poses` (v) to look from, `shows` (v, p): which points each pose shows."""
+
+    def __init__(self, scene: Scene, camera: CameraMount) -> None:
+        self._camera = camera
+        self._surfaces = [r for r in scene.receptacles if r.kind != "bin"]
+        self.points: Array = np.concatenate([_points_on(r) for r in self._surfaces] or [np.empty((0, 3))])
+        self._screens = _screens(scene, camera.z)
+        self._across = math.tan(USED * math.atan(math.tan(camera.fovy / 2) * ASPECT))
+        self._upright = math.tan(USED * camera.fovy / 2)
+
+    @cached_property
+    def poses(self) -> list[Pose2]:
+        """Base poses that face a surface from before one of its free edges."""
+        return [pose for r in self._surfaces for pose in _poses_before(r)]
+
+    @cached_property
+    def shows(self) -> NDArray[np.bool_]:
+        """Which points (v, p) each of the poses shows."""
+        return np.array([self.visible(pose) for pose in self.poses], bool).reshape(len(self.poses), len(self.points))
+
+    def visible(self, pose: Pose2) -> Mask:
+        """Which points (p,) the camera sees from a base pose: in the picture, near enough, nothing tall between."""
+        camera = self._camera
+        heading = pose[2] + camera.yaw
+        cos, sin = math.cos(heading), math.sin(heading)
+        turn, side = math.cos(pose[2]), math.sin(pose[2])
+        eye = np.array([pose[0] + camera.x * turn - camera.y * side, pose[1] + camera.x * side + camera.y * turn])
+        to = self.points[:, :2] - eye
+        ahead, left = cos * to[:, 0] + sin * to[:, 1], cos * to[:, 1] - sin * to[:, 0]
+        up = self.points[:, 2] - camera.z
+        tilt, drop = math.cos(camera.pitch), math.sin(camera.pitch)
+        depth, down = ahead * tilt - up * drop, -(ahead * drop + up * tilt)
+        inside: Mask = (depth > NEAREST) & (np.hypot(to[:, 0], to[:, 1]) < REACH)
+        inside &= (np.abs(left) < depth * self._across) & (np.abs(down) < depth * self._upright)
+        for screen in self._screens:
+            if not inside.any():
+                break
+            inside[inside] = ~_crosses(eye, self.points[inside, :2], screen)
+        return inside
+
+    def covered(self, looked_from: Collection[Pose2]) -> Mask:
+        """Which points (p,) one of the poses shows."""
+        seen = np.zeros(len(self.points), bool)
+        for pose in looked_from:
+            seen |= self.visible(pose)
+        return seen
+
+    def turn(self, pose: Pose2, worth: Array) -> Pose2 | None:
+        """The heading at this spot that shows the most; None when turning shows nothing that is worth it."""
+        turned = [(pose[0], pose[1], math.remainder(math.tau * k / HEADINGS, math.tau)) for k in range(HEADINGS)]
+        gains = [float(worth[self.visible(view)].sum()) for view in turned]
+        best = int(np.argmax(gains))
+        return turned[best] if gains[best] >= LEAST_GAIN else None
+
+    def best(
+        self, worth: Array, tried: Collection[Pose2], cost: Callable[[Pose2], float], free: Callable[[Pose2], bool]
+    ) -> Pose2 | None:
+        """The pose, not yet `tried`, that shows the most for its way; None when none is worth it.
+
+        `worth` (p,) is what each point counts, `cost` the way to a pose [m], inf where none leads, `free` whether the
+        base can stand there.
+        """
+        gains = self.shows @ worth
+        best, best_score = None, 0.0
+        for n in np.flatnonzero(gains >= LEAST_GAIN).tolist():
+            pose = self.poses[n]
+            # The way is asked last: it is the dearest to know.
+            if gains[n] / LOOK_COST <= best_score or pose in tried or not free(pose):
+                continue
+            score = float(gains[n]) / (cost(pose) + LOOK_COST)
+            if score > best_score:
+                best, best_score = pose, score
+        return best
+
+
+def _points_on(r: Receptacle) -> Array:
+    """Sample points (n, 3) of a surface, LIFT above it."""
+    counts = [max(2, math.ceil(extent / SPACING)) for extent in r.size]
+    inner = [extent / 2 - INSET for extent in r.size]
+    u, v = (np.linspace(-half, half, n) for half, n in zip(inner, counts, strict=True))
+    x, y = (axis.ravel() for axis in np.meshgrid(u, v))
+    c, s = math.cos(r.yaw), math.sin(r.yaw)
+    return np.stack([r.center[0] + c * x - s * y, r.center[1] + s * x + c * y, np.full(x.shape, r.center[2] + LIFT)], 1)
+
+
+def _poses_before(r: Receptacle) -> list[Pose2]:
+    """Poses before each free edge that face the surface."""
+    found = []
+    c, s = math.cos(r.yaw), math.sin(r.yaw)
+    for ax, ay in r.approach:
+        edge, length = (r.size[0] / 2, r.size[1]) if ax else (r.size[1] / 2, r.size[0])
+        count = max(1, math.ceil(length / ALONG) - 1)
+        sides = (np.arange(count) - (count - 1) / 2) * ALONG
+        for distance in DISTANCES:
+            out = edge + distance + (BIN_RIM if r.depth else 0.0)
+            for side in sides.tolist():
+                lx, ly = (ax * out, side) if ax else (side, ay * out)
+                x, y = r.center[0] + c * lx - s * ly, r.center[1] + s * lx + c * ly
+                theta = math.atan2(-(s * ax + c * ay), -(c * ax - s * ay))
+                found.append((round(x, 3), round(y, 3), round(theta, 3)))
+    return found
+
+
+def _screens(scene: Scene, height: float) -> list[Rectangle]:
+    """What a camera at `height` [m] does not look over: walls, and furniture nearly as high."""
+    found: list[Rectangle] = []
+    for wall in scene.walls:
+        dx, dy = wall.end[0] - wall.start[0], wall.end[1] - wall.start[1]
+        middle = (wall.start[0] + wall.end[0]) / 2, (wall.start[1] + wall.end[1]) / 2
+        found.append((*middle, math.hypot(dx, dy) + wall.thickness, wall.thickness, math.atan2(dy, dx)))
+    for box in scene.furniture:
+        if box.center[2] + box.size[2] / 2 > height - SEE_OVER:
+            found.append((box.center[0], box.center[1], box.size[0], box.size[1], box.yaw))
+    return found
+
+
+def _crosses(eye: Array, points: Array, rectangle: Rectangle) -> Mask:
+    """Which lines of sight from `eye` (2,) to `points` (n, 2) pass through a rectangle; slab method."""
+    x, y, sx, sy, yaw = rectangle
+    turn = np.array([[math.cos(yaw), -math.sin(yaw)], [math.sin(yaw), math.cos(yaw)]])
+    start, end = (eye - (x, y)) @ turn, (points - (x, y)) @ turn
+    way = end - start
+    way[np.abs(way) < 1e-9] = 1e-9
+    half = np.array([sx, sy]) / 2
+    one, two = (-half - start) / way, (half - start) / way
+    enters, leaves = np.minimum(one, two).max(axis=1), np.maximum(one, two).min(axis=1)
+    found: Mask = (enters < leaves) & (leaves > 0.0) & (enters < 0.98)
+    return found

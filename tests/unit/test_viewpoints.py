@@ -1,0 +1,104 @@
+"""The viewpoint planner, and the order in which the brain's search goes through its viewpoints."""
+
+import math
+
+import msgspec
+import mujoco
+import numpy as np
+import pytest
+
+from common import messages as m
+from common.geometry import Pose2
+from common.scene import load_scene
+from common.viewpoints import NOMINAL, REACH, Viewpoints, viewpoints_of
+from services.brain import search
+from services.sim.mounts import head_camera
+
+SCENE = load_scene("apartment")
+HOME = (0.0, 0.0, 0.0)
+VIEWPOINTS = viewpoints_of(SCENE, None)
+
+
+def test_the_search_shows_every_surface_and_ends() -> None:
+    looked_from: list[Pose2] = []
+    at: Pose2 = HOME
+    while (view := search.elsewhere(SCENE, VIEWPOINTS, at, looked_from)) is not None:
+        assert view not in looked_from
+        looked_from.append(view)
+        at = view
+    assert len(looked_from) < 20
+    assert VIEWPOINTS.covered(looked_from).mean() > 0.97
+
+
+def test_every_view_shows_something_new() -> None:
+    first = search.elsewhere(SCENE, VIEWPOINTS, HOME, [])
+    assert first is not None
+    second = search.elsewhere(SCENE, VIEWPOINTS, first, [first])
+    assert second is not None
+    assert VIEWPOINTS.covered([first, second]).sum() > VIEWPOINTS.covered([first]).sum() > 0
+
+
+def test_turning_stays_on_the_spot_and_ends() -> None:
+    pose: Pose2 = (0.9, -1.4, 0.0)
+    looked_from: list[Pose2] = []
+    while (view := search.turn(VIEWPOINTS, pose, looked_from)) is not None:
+        assert view[:2] == pose[:2]
+        looked_from.append(view)
+    assert 1 <= len(looked_from) <= 12
+
+
+def test_walls_hide_what_is_behind_them() -> None:
+    alone = SCENE.receptacle("study shelf")
+    assert alone is not None
+    # From the living room the shelf is 2.4 m away, behind the wall between.
+    hidden = Viewpoints(msgspec.structs.replace(SCENE, receptacles=(alone,)), NOMINAL)
+    assert not hidden.covered([(1.3, 1.9, math.pi / 2)]).any()
+    assert hidden.covered([(1.3, 2.6, math.pi / 2)]).any()
+
+
+def test_views_do_not_look_through_walls_or_beyond_the_picture() -> None:
+    views = VIEWPOINTS
+    table = np.hypot(*(views.points[:, :2] - (5.3, -0.75)).T) < 0.2
+    assert table.any()
+    assert views.visible((4.2, -0.75, 0.0))[table].all()
+    assert not views.visible((4.2, -0.75, math.pi))[table].any(), "behind it"
+    assert not views.visible((2.0, -2.0, 0.8))[table].any(), "in the next room"
+    shelf = np.hypot(*(views.points[:, :2] - (1.45, 1.74)).T) < 0.3
+    assert not views.visible((1.45, 3.0, -math.pi / 2))[shelf].any(), "behind the wall"
+
+
+def test_a_camera_that_looks_aside_sees_what_is_there() -> None:
+    left = msgspec.structs.replace(NOMINAL, yaw=math.pi / 2)
+    aside = viewpoints_of(SCENE, m.RobotDescription(mjcf="", head_camera=left))
+    # Its optical centre is behind the base's: the base stands so that the camera is and looks where the other does.
+    x, y = 4.2 + NOMINAL.x, -0.75 + NOMINAL.x
+    assert (aside.visible((x, y, -math.pi / 2)) == VIEWPOINTS.visible((4.2, -0.75, 0.0))).all()
+
+
+def test_a_higher_camera_looks_over_more() -> None:
+    low, high = (msgspec.structs.replace(NOMINAL, z=z) for z in (0.9, 1.6))
+    shown = [Viewpoints(SCENE, camera).shows.any(axis=0).mean() for camera in (low, high)]
+    assert shown[0] < shown[1]
+
+
+@pytest.mark.parametrize("orientation", ['xyaxes="0 -1 0 0.5 0 0.866"', 'euler="0 -60 -90"'])
+def test_the_mount_is_read_from_the_model(orientation: str) -> None:
+    camera = f'<camera name="head" pos="-0.1 0.05 1.2" {orientation} fovy="50"/>'
+    text = f'<mujoco><worldbody><body name="base"><geom size="0.1" mass="1"/>{camera}</body></worldbody></mujoco>'
+    mount = head_camera(mujoco.MjModel.from_xml_string(text))
+    assert mount is not None
+    assert np.allclose((mount.x, mount.y, mount.z), (-0.1, 0.05, 1.2))
+    assert math.isclose(mount.pitch, math.radians(30), abs_tol=1e-3)
+    assert math.isclose(mount.yaw, 0.0, abs_tol=1e-6) and math.isclose(mount.fovy, math.radians(50))
+
+
+def test_a_robot_without_the_camera_has_no_mount() -> None:
+    body = '<body name="base"><geom size="0.1" mass="1"/></body>'
+    assert head_camera(mujoco.MjModel.from_xml_string(f"<mujoco><worldbody>{body}</worldbody></mujoco>")) is None
+
+
+def test_nothing_beyond_the_camera_s_reach_is_shown() -> None:
+    for pose, shows in zip(VIEWPOINTS.poses, VIEWPOINTS.shows, strict=True):
+        eye = (pose[0] + NOMINAL.x * math.cos(pose[2]), pose[1] + NOMINAL.x * math.sin(pose[2]))
+        assert shows.any()
+        assert np.hypot(*(VIEWPOINTS.points[shows, :2] - eye).T).max() < REACH
