@@ -60,8 +60,7 @@ def stand(rng: np.random.Generator, scene: Scene, placement: Placement) -> Pose2
 
 def _before(rng: np.random.Generator, r: Receptacle) -> tuple[float, float]:
     ax, ay = r.approach[int(rng.integers(len(r.approach)))]
-    c, s = math.cos(r.yaw), math.sin(r.yaw)
-    ux, uy = c * ax - s * ay, s * ax + c * ay
+    ux, uy = r.outline.direction(ax, ay)
     distance = (r.size[0] if ax else r.size[1]) / 2 + rng.uniform(0.4, 1.6)
     side = rng.uniform(-0.6, 0.6)
     return float(r.center[0] + ux * distance - uy * side), float(r.center[1] + uy * distance + ux * side)

@@ -18,11 +18,6 @@ LATERAL = (0.0, 0.10, -0.10, 0.20, -0.20)
 RING = 16
 
 
-def _local(r: Receptacle, x: float, y: float) -> Point:
-    c, s = math.cos(r.yaw), math.sin(r.yaw)
-    return c * (x - r.center[0]) + s * (y - r.center[1]), c * (y - r.center[1]) - s * (x - r.center[0])
-
-
 def poses_for(
     target: Point,
     receptacle: Receptacle | None,
@@ -40,14 +35,14 @@ def poses_for(
             a = 2 * math.pi * k / RING
             found.append((0.0, (x - stand_off * math.cos(a), y - stand_off * math.sin(a), a)))
         return found
-    lx, ly = _local(receptacle, x, y)
-    c, s = math.cos(receptacle.yaw), math.sin(receptacle.yaw)
+    outline = receptacle.outline
+    lx, ly = outline.to_local(x, y)
     for ax, ay in receptacle.approach:
         edge = receptacle.size[0] / 2 if ax else receptacle.size[1] / 2
         inset = max(0.0, edge - (lx * ax + ly * ay))
         rim = BIN_RIM if receptacle.depth else 0.0
         distance = max(stand_off, inset + rim + edge_distance)
-        ux, uy = c * ax - s * ay, s * ax + c * ay
+        ux, uy = outline.direction(ax, ay)
         for side in LATERAL:
             bx, by = x + ux * distance - uy * side, y + uy * distance + ux * side
             theta = math.atan2(y - by, x - bx)

@@ -1,12 +1,15 @@
-"""Angles, planar poses and quaternions (w, x, y, z)."""
+"""Angles, planar poses, rectangles on the floor plan and quaternions (w, x, y, z)."""
 
 import math
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 Pose2 = tuple[float, float, float]
+Number = TypeVar("Number", float, NDArray[np.floating])
+"""A coordinate, or an array of them of any shape."""
 
 
 def wrap(angle: float) -> float:
@@ -31,6 +34,49 @@ def to_frame(frame: Pose2, point: tuple[float, float]) -> tuple[float, float]:
     """A point of the parent frame in `frame`."""
     x, y, _ = compose(inverse(frame), (point[0], point[1], 0.0))
     return x, y
+
+
+class Rectangle(NamedTuple):
+    """A rectangle on the floor plan: centre (x, y), `length` along its own x, `width` along its own y [m], `yaw` [rad].
+
+    Its own frame has the origin at the centre. Points are in the frame that the rectangle is given in.
+    """
+
+    x: float
+    y: float
+    length: float
+    width: float
+    yaw: float = 0.0
+
+    def to_local(self, x: Number, y: Number) -> tuple[Number, Number]:
+        """Points in the rectangle's own frame."""
+        c, s = math.cos(self.yaw), math.sin(self.yaw)
+        dx, dy = x - self.x, y - self.y
+        return c * dx + s * dy, c * dy - s * dx
+
+    def to_map(self, u: Number, v: Number) -> tuple[Number, Number]:
+        """Points (u, v) of the rectangle's own frame in the frame that it is given in."""
+        c, s = math.cos(self.yaw), math.sin(self.yaw)
+        return self.x + c * u - s * v, self.y + s * u + c * v
+
+    def direction(self, u: float, v: float) -> tuple[float, float]:
+        """A vector (u, v) of the rectangle's own frame in the frame that it is given in."""
+        c, s = math.cos(self.yaw), math.sin(self.yaw)
+        return c * u - s * v, s * u + c * v
+
+    def contains(self, x: float, y: float, margin: float = 0.0) -> bool:
+        """True when the point lies in the rectangle, or at most `margin` [m] beyond one of its sides."""
+        u, v = self.to_local(x, y)
+        return abs(u) <= self.length / 2 + margin and abs(v) <= self.width / 2 + margin
+
+    def distance(self, x: float, y: float) -> float:
+        """Distance [m] of the point from the rectangle, 0 within it."""
+        u, v = self.to_local(x, y)
+        return math.hypot(max(abs(u) - self.length / 2, 0.0), max(abs(v) - self.width / 2, 0.0))
+
+    def grown(self, margin: float) -> "Rectangle":
+        """The same rectangle with every side `margin` [m] farther out."""
+        return self._replace(length=self.length + 2 * margin, width=self.width + 2 * margin)
 
 
 def yaw_quat(yaw: float) -> tuple[float, float, float, float]:

@@ -12,93 +12,31 @@ from typing import Literal
 
 import msgspec
 
+from common.floor_plan import Box, Obstacle, Place, Receptacle, Rgba, Room, Strict, Vec2, Vec3, Wall
+from common.geometry import Rectangle
+
+__all__ = [
+    "Box", "ObjectKind", "ObjectSpec", "Obstacle", "Place", "Receptacle", "Rgba", "Room", "Scene", "SceneError", "Vec2",
+    "Vec3", "Wall", "body_name", "load_scene", "scene_path",
+]  # fmt: skip
 SCENES = Path(__file__).resolve().parent.parent / "services" / "sim" / "scenes"
 
-Vec2 = tuple[float, float]
-Vec3 = tuple[float, float, float]
-Rgba = tuple[float, float, float, float]
 ObjectKind = Literal["mug", "can", "bottle", "apple", "block", "box", "bowl", "ball"]
 NO_UPRIGHT: frozenset[str] = frozenset({"apple", "ball", "block"})
 """Kinds that have no upright: what rolls, and cubes. Every other kind stands or has been toppled."""
-ReceptacleKind = Literal["table", "counter", "shelf", "bin", "tray", "sink"]
-# How furniture is built: a table's legs and how far inside the top's edge they stand, how far a cabinet's body stays
-# behind its top, the thickness of a bin's walls [m].
-LEG, LEG_INSET, BODY_INSET, BIN_WALL = 0.05, 0.04, 0.01, 0.015
+SUNK = 0.05
+"""How far [m] below a surface the centre of what rests on it may be seen: the error of its height."""
+TALLEST = 0.35
+"""How far [m] above a surface the centre of what rests on it is looked for: beyond half of the tallest object."""
+SIGHTING_ERROR = 0.02
+"""How far [m] over the edge of a surface the centre of what rests on it may be seen: the error at arm's length."""
 
 
 class SceneError(ValueError):
     """A scene file that cannot be used; the message names file, entry and remedy."""
 
 
-class _Strict(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    pass
-
-
-class Wall(_Strict, frozen=True):
-    """A straight wall from `start` to `end`; doors are gaps between walls."""
-
-    start: Vec2
-    end: Vec2
-    thickness: float = 0.12
-    height: float = 2.4
-
-
-class Box(_Strict, frozen=True):
-    """A box of furniture: `size` is the full extent, `center` its middle, `yaw` about z."""
-
-    name: str
-    center: Vec3
-    size: Vec3
-    yaw: float = 0.0
-    rgba: Rgba = (0.7, 0.6, 0.5, 1.0)
-
-
-class Receptacle(_Strict, frozen=True):
-    """A surface or container that holds objects.
-
-    `center` is the middle of the usable surface (z = its height, or the inner floor of a bin), `size` its
-    usable extent along its own x and y. `approach` lists the directions (unit steps in its own frame) from
-    which the robot has free floor. `furniture` names the boxes that make it up. `depth` is the wall height of a bin.
-    """
-
-    name: str
-    kind: ReceptacleKind
-    center: Vec3
-    size: Vec2
-    yaw: float = 0.0
-    depth: float = 0.0
-    approach: tuple[Vec2, ...] = ()
-    aliases: tuple[str, ...] = ()
-    spawn: bool = True
-    colour: str = ""
-
-    def covers(self, x: float, y: float) -> bool:
-        """True when the point (x, y) [map] lies within the usable extent."""
-        c, s = math.cos(self.yaw), math.sin(self.yaw)
-        dx, dy = x - self.center[0], y - self.center[1]
-        return abs(c * dx + s * dy) <= self.size[0] / 2 and abs(c * dy - s * dx) <= self.size[1] / 2
-
-
-class Room(_Strict, frozen=True):
-    """A named axis-aligned room between corners `low` and `high`."""
-
-    name: str
-    low: Vec2
-    high: Vec2
-    aliases: tuple[str, ...] = ()
-
-
-class Place(_Strict, frozen=True):
-    """A named standing pose of the base."""
-
-    name: str
-    x: float
-    y: float
-    theta: float = 0.0
-    aliases: tuple[str, ...] = ()
-
-
-class ObjectSpec(_Strict, frozen=True):
+class ObjectSpec(Strict, frozen=True):
     """An object that may be picked up. `size` is its full extent (x, y, z) standing upright."""
 
     name: str
@@ -116,31 +54,7 @@ def body_name(spec: ObjectSpec) -> str:
     return spec.name.replace(" ", "_")
 
 
-class Obstacle(_Strict, frozen=True):
-    """Something in the simulated world that the robot's map does not have.
-
-    It stands at `position`, turned by `yaw`; `size` is its full extent. With a `path` it goes from there along these
-    points at `speed`: after `start` seconds, and, if `near` is set, once the robot is so near to its place or path.
-    `repeat`: to and fro for ever, else it stays at the end. `polite`: it waits while the robot is in its way.
-    With `placed = false` it is there only when `sim.obstacles` names it.
-    """
-
-    name: str
-    position: Vec2
-    kind: Literal["box", "cylinder"] = "cylinder"
-    size: Vec3 = (0.4, 0.4, 1.65)
-    yaw: float = 0.0
-    path: tuple[Vec2, ...] = ()
-    speed: float = 0.6
-    start: float = 0.0
-    near: float = 0.0
-    repeat: bool = False
-    polite: bool = True
-    placed: bool = True
-    rgba: Rgba = (0.55, 0.35, 0.60, 1.0)
-
-
-class Scene(_Strict, frozen=True):
+class Scene(Strict, frozen=True):
     """A whole apartment."""
 
     name: str
@@ -164,9 +78,35 @@ class Scene(_Strict, frozen=True):
         """The object called `name` or by that alias, None if unknown."""
         return next((o for o in self.objects if name == o.name or name in o.aliases), None)
 
-    def surface_at(self, x: float, y: float) -> Receptacle | None:
-        """The receptacle whose usable surface is over or under the point (x, y)."""
-        return next((r for r in self.receptacles if r.covers(x, y)), None)
+    def surface_at(
+        self,
+        x: float,
+        y: float,
+        z: float | None = None,
+        margin: float = 0.0,
+        below: float = SUNK,
+        above: float = math.inf,
+    ) -> Receptacle | None:
+        """The receptacle whose usable surface is under the point (x, y, z) [map]; without `z` at whatever height.
+
+        Distances in metres: the point is at most `margin` beyond the surface's sides, `below` under it and `above` over
+        it, or in a bin between its walls.
+        """
+        for r in self.receptacles:
+            if r.contains(x, y, margin) and (
+                z is None or r.center[2] - below <= z <= max(r.center[2] + above, r.depth)
+            ):
+                return r
+        return None
+
+    def resting_place(self, position: Vec3) -> Receptacle | None:
+        """The receptacle on or in which an object with its centre at `position` [map] was seen to rest."""
+        return self.surface_at(*position, margin=SIGHTING_ERROR, above=TALLEST)
+
+    @property
+    def footprints(self) -> list[Rectangle]:
+        """Where receptacles and furniture stand on the floor plan."""
+        return [r.outline for r in self.receptacles] + [f.outline for f in self.furniture]
 
     def room_at(self, x: float, y: float) -> Room | None:
         """The room that contains the point (x, y)."""

@@ -16,7 +16,7 @@ from msgspec.structs import replace
 from common import topics
 from common.robot import SIDES, Hand, subtree
 from common.scene import Scene
-from common.support import inside
+from common.support import MARGIN
 from common.time.lockstep import DT
 from evaluation.shortest import FloorPlan
 from evaluation.strikes import Report, Struck
@@ -186,9 +186,13 @@ class Shove(Injector):
     def _free(self, at: Any, half: float) -> bool:
         """On the same surface, with nobody else there."""
         physics = self.physics
-        on = [r for r in physics.scene.receptacles if inside(r, *(float(v) for v in self.thing()[:2]))]
+        x, y = (float(v) for v in self.thing()[:2])
+        on = [r for r in physics.scene.receptacles if r.contains(x, y, MARGIN)]
         stays = all(
-            inside(r, float(at[0] + dx), float(at[1] + dy)) for r in on for dx in (-half, half) for dy in (-half, half)
+            r.contains(float(at[0] + dx), float(at[1] + dy), MARGIN)
+            for r in on
+            for dx in (-half, half)
+            for dy in (-half, half)
         )
         others = [
             (physics.data.xpos[physics.bodies[p.spec.name]][:2], max(p.spec.size[:2]) / 2)

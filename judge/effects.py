@@ -9,7 +9,7 @@ from typing import Literal
 
 import msgspec
 
-from common.scene import Receptacle, Scene
+from common.scene import Scene
 from judge.evidence import Look
 from judge.track import distance
 from judge.words import plain
@@ -194,15 +194,7 @@ def at(scene: Scene, name: str, x: float, y: float) -> bool:
     if room is not None and (name == room.name or name in room.aliases):
         return True
     receptacle = scene.receptacle(name)
-    return receptacle is not None and _edge(receptacle, x, y) <= AT_FURNITURE
-
-
-def _edge(r: Receptacle, x: float, y: float) -> float:
-    """Distance [m] of a point from the rectangle of a surface."""
-    c, s = math.cos(r.yaw), math.sin(r.yaw)
-    dx, dy = x - r.center[0], y - r.center[1]
-    u, v = abs(c * dx + s * dy) - r.size[0] / 2, abs(c * dy - s * dx) - r.size[1] / 2
-    return math.hypot(max(u, 0.0), max(v, 0.0))
+    return receptacle is not None and receptacle.outline.distance(x, y) <= AT_FURNITURE
 
 
 def mentions(words: str, scene: Scene) -> list[tuple[str, str]]:

@@ -54,13 +54,8 @@ def place_pose(scene: Scene, name: str, here: Pose2) -> Pose2 | None:
 def _distances(scene: Scene, x: float, y: float) -> Iterator[float]:
     for wall in scene.walls:
         yield max(0.0, _to_segment(x, y, wall.start, wall.end) - wall.thickness / 2)
-    boxes = [(b.center, b.size[0], b.size[1], b.yaw) for b in scene.furniture]
-    boxes += [(r.center, r.size[0], r.size[1], r.yaw) for r in scene.receptacles]
-    for center, length, width, yaw in boxes:
-        c, s = math.cos(yaw), math.sin(yaw)
-        dx, dy = x - center[0], y - center[1]
-        u, v = abs(c * dx + s * dy) - length / 2, abs(c * dy - s * dx) - width / 2
-        yield math.hypot(max(u, 0.0), max(v, 0.0))
+    for footprint in scene.footprints:
+        yield footprint.distance(x, y)
 
 
 def _to_segment(x: float, y: float, a: Point, b: Point) -> float:

@@ -6,7 +6,7 @@ from typing import Literal
 
 from common.geometry import quat_matrix
 from common.messages import ObjectPose
-from common.scene import Receptacle, Scene, Vec3
+from common.scene import Scene
 
 Fault = Literal["", "NOT_SEEN", "MISPLACED", "TOPPLED"]
 STANDING: frozenset[str] = frozenset({"mug", "can", "bottle", "box", "bowl"})
@@ -15,10 +15,6 @@ TIPPED = 0.35
 """Tilt [rad] from which a thing does not stand; perception tells standing, lying (1.57) and upside down (3.14)."""
 UPSIDE_DOWN = 2.4
 """Tilt [rad] from which a thing is upside down rather than on its side: half-way between the two."""
-BELOW, ABOVE = 0.05, 0.35
-"""How far [m] below and above a surface a thing's middle is looked for: the error of its height, the tallest thing."""
-EDGE = 0.02
-"""How far [m] over the edge of a surface a thing's middle may be seen; the error of a position at arm's length."""
 
 
 @dataclass(frozen=True)
@@ -32,7 +28,7 @@ class Finding:
 def found_at(pose: ObjectPose, label: str, target: str, scene: Scene) -> Finding:
     """Judge an object that was seen after it was put down on `target`; "": anywhere will do."""
     spec, wanted = scene.object(label), scene.receptacle(target)
-    on = scene.receptacle(pose.on) or surface_at(scene, pose.position)
+    on = scene.receptacle(pose.on) or scene.resting_place(pose.position)
     where = f"on the {on.name}" if on else "on the floor"
     if on and on.depth:
         where = f"in the {on.name}"
@@ -53,19 +49,6 @@ def not_found(label: str, target: str, scene: Scene) -> Finding:
     if wanted is not None and wanted.depth:
         return Finding("", f"the {label} was let go over the {wanted.name} and is nowhere else to be seen")
     return Finding("NOT_SEEN", f"the {label} is not to be seen" + (f" on the {wanted.name}" if wanted else ""))
-
-
-def surface_at(scene: Scene, position: Vec3) -> Receptacle | None:
-    """The receptacle on or in which a thing with its middle at `position` rests."""
-    return next((r for r in scene.receptacles if _holds(r, position)), None)
-
-
-def _holds(r: Receptacle, position: Vec3) -> bool:
-    c, s = math.cos(r.yaw), math.sin(r.yaw)
-    dx, dy, up = position[0] - r.center[0], position[1] - r.center[1], position[2] - r.center[2]
-    across, along = abs(c * dx + s * dy), abs(c * dy - s * dx)
-    over = across < r.size[0] / 2 + EDGE and along < r.size[1] / 2 + EDGE
-    return over and -BELOW < up < max(ABOVE, r.depth)
 
 
 def tilt_of(pose: ObjectPose) -> float:

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from common.geometry import Pose2, compose, inverse, quat_yaw
+from common.geometry import Pose2, Rectangle, compose, inverse, quat_yaw
 from common.messages import WorldObject
 from common.scene import Receptacle, Scene
 from services.manipulation.arm_model import Obstacle
@@ -40,9 +40,7 @@ def _box(base: Pose2, center: tuple[float, float, float], size: tuple[float, flo
 
 def _near(box: Obstacle) -> float:
     """Distance [m] from the base's centre to the box, seen from above."""
-    c, s = math.cos(box.yaw), math.sin(box.yaw)
-    u, v = -(c * box.center[0] + s * box.center[1]), -(c * box.center[1] - s * box.center[0])
-    return math.hypot(max(abs(u) - box.size[0] / 2, 0.0), max(abs(v) - box.size[1] / 2, 0.0))
+    return Rectangle(box.center[0], box.center[1], box.size[0], box.size[1], box.yaw).distance(0.0, 0.0)
 
 
 def _receptacle(r: Receptacle, base: Pose2) -> list[Obstacle]:
@@ -51,11 +49,9 @@ def _receptacle(r: Receptacle, base: Pose2) -> list[Obstacle]:
     if not r.depth:
         return [_box(base, (x, y, z - SLAB / 2), (sx, sy, SLAB), r.yaw)]
     walls = []
-    c, s = math.cos(r.yaw), math.sin(r.yaw)
     for i, j in ((1, 0), (-1, 0), (0, 1), (0, -1)):
-        u, v = i * sx / 2, j * sy / 2
         size = (0.03 if i else sx, 0.03 if j else sy, r.depth)
-        walls.append(_box(base, (x + c * u - s * v, y + s * u + c * v, r.depth / 2), size, r.yaw))
+        walls.append(_box(base, (*r.outline.to_map(i * sx / 2, j * sy / 2), r.depth / 2), size, r.yaw))
     return walls
 
 
@@ -68,9 +64,8 @@ def obstacles(
         found += _receptacle(r, base)
     found += [_box(base, f.center, f.size, f.yaw) for f in scene.furniture]
     for wall in scene.walls:
-        dx, dy = wall.end[0] - wall.start[0], wall.end[1] - wall.start[1]
-        center = ((wall.start[0] + wall.end[0]) / 2, (wall.start[1] + wall.end[1]) / 2, wall.height / 2)
-        found.append(_box(base, center, (math.hypot(dx, dy), wall.thickness, wall.height), math.atan2(dy, dx)))
+        x, y, length, width, yaw = wall.outline
+        found.append(_box(base, (x, y, wall.height / 2), (length, width, wall.height), yaw))
     near = sorted((b for b in found if _near(b) < RANGE), key=_near)
     things = []
     for o in objects:
@@ -88,14 +83,13 @@ def with_thing(around: Sequence[Obstacle], thing: Obstacle) -> list[Obstacle]:
 
 def spots(r: Receptacle, base: Pose2, footprint: float, taken: Iterable[WorldObject]) -> list[tuple[float, float]]:
     """Free points of a surface in the base frame, those easiest to reach first."""
-    c, s = math.cos(r.yaw), math.sin(r.yaw)
     others = [(o.position[0], o.position[1], max(o.size[0], o.size[1]) / 2) for o in taken if not o.held]
     radius = footprint / 2
     grid = []
     half = [max(0.0, v / 2 - radius - 0.02) for v in r.size]
     for u in np.linspace(-half[0], half[0], 5):
         for v in np.linspace(-half[1], half[1], 7):
-            x, y = r.center[0] + c * u - s * v, r.center[1] + s * u + c * v
+            x, y = r.outline.to_map(float(u), float(v))
             if all(math.hypot(x - ox, y - oy) > radius + other + 0.03 for ox, oy, other in others):
                 bx, by, _ = compose(inverse(base), (x, y, 0.0))
                 ideal = math.hypot(bx - 0.62, 0.6 * by)

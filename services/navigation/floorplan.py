@@ -6,7 +6,8 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from common.scene import BIN_WALL, BODY_INSET, LEG, LEG_INSET, Receptacle, Scene
+from common.floor_plan import BIN_WALL, BODY_INSET, LEG, LEG_INSET
+from common.scene import Receptacle, Scene
 
 Array = NDArray[np.float64]
 # x, y, full extent along x and y, yaw

@@ -115,19 +115,9 @@ class Memory:
             return
         # Where the hand let go; the next look says better.
         held.held, held.misses, held.weight, held.seen_at = False, 0, 0.0, now
-        held.on = self._under(hand)
-        surface = self._scene.receptacle(held.on)
-        height = surface.center[2] if surface else 0.0
+        surface = self._scene.surface_at(*hand)
+        held.on, height = (surface.name, surface.center[2]) if surface else ("", 0.0)
         held.position = (hand[0], hand[1], height + held.size[2] / 2)
-
-    def _under(self, point: Vec3) -> str:
-        for r in self._scene.receptacles:
-            c, s = math.cos(r.yaw), math.sin(r.yaw)
-            dx, dy = point[0] - r.center[0], point[1] - r.center[1]
-            inside = abs(c * dx + s * dy) < r.size[0] / 2 and abs(c * dy - s * dx) < r.size[1] / 2
-            if inside and point[2] > r.center[2] - 0.05:
-                return r.name
-        return ""
 
     def objects(self, since: float = -math.inf) -> list[WorldObject]:
         """What is believed, one place for each thing of the household, the newest that was sure.

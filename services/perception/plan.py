@@ -7,12 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from common.scene import Receptacle, Scene
+from common.geometry import Rectangle
+from common.scene import Scene
 
 WALL_MARGIN = 0.035
+"""How far [m] from a wall's face its own points are measured: depth noise at the limit of the camera's range."""
 FLOOR_MARGIN = 0.10
-# A rectangle on the floor plan: middle, yaw, size.
-Box = tuple[float, float, float, float, float]
+"""Margin [m] around furniture in which nothing on the floor is looked for: its legs and edges are seen there."""
 
 
 @dataclass(frozen=True)
@@ -27,7 +28,7 @@ class Cloud:
     def kept(self, chosen: NDArray[np.bool_]) -> "Cloud":
         return Cloud(self.pixels[chosen], self.x[chosen], self.y[chosen], self.z[chosen])
 
-    def outside(self, boxes: Sequence[Box]) -> "Cloud":
+    def outside(self, boxes: Sequence[Rectangle]) -> "Cloud":
         """Those that lie in none of the rectangles."""
         rest = self
         for box in boxes:
@@ -35,8 +36,8 @@ class Cloud:
                 rest = rest.kept(~within)
         return rest
 
-    def _may_meet(self, box: Box) -> bool:
-        x, y, _, sx, sy = box
+    def _may_meet(self, box: Rectangle) -> bool:
+        x, y, sx, sy, _ = box
         radius = math.hypot(sx, sy) / 2 + 0.001
         return bool(
             self.x.min() < x + radius
@@ -46,24 +47,17 @@ class Cloud:
         )
 
 
-def box_of(r: Receptacle, margin: float) -> Box:
-    return r.center[0], r.center[1], r.yaw, r.size[0] + 2 * margin, r.size[1] + 2 * margin
-
-
-def inside(x: NDArray[np.float32], y: NDArray[np.float32], box: Box) -> NDArray[np.bool_]:
+def inside(x: NDArray[np.float32], y: NDArray[np.float32], box: Rectangle) -> NDArray[np.bool_]:
     """Which of the points lie in a rectangle on the floor plan, at any height."""
-    middle_x, middle_y, yaw, sx, sy = box
-    c, s = math.cos(yaw), math.sin(yaw)
-    dx, dy = x - np.float32(middle_x), y - np.float32(middle_y)
-    found: NDArray[np.bool_] = (np.abs(c * dx + s * dy) < sx / 2) & (np.abs(c * dy - s * dx) < sy / 2)
+    u, v = box.to_local(x, y)
+    found: NDArray[np.bool_] = (np.abs(u) < box.length / 2) & (np.abs(v) < box.width / 2)
     return found
 
 
-def corners(box: Box, low: float, high: float) -> NDArray[np.float64]:
+def corners(box: Rectangle, low: float, high: float) -> NDArray[np.float64]:
     """The corners (8, 3) of what stands on a rectangle between two heights."""
-    x, y, yaw, sx, sy = box
-    c, s = math.cos(yaw), math.sin(yaw)
-    plan = [(x + c * a - s * b, y + s * a + c * b) for a in (-sx / 2, sx / 2) for b in (-sy / 2, sy / 2)]
+    u, v = box.length / 2, box.width / 2
+    plan = [box.to_map(a, b) for a in (-u, u) for b in (-v, v)]
     return np.array([(*corner, z) for corner in plan for z in (low, high)])
 
 
@@ -71,22 +65,11 @@ class Nearby:
     """What of the floor plan a view can show: surfaces, wall strips, and the floor that furniture takes."""
 
     def __init__(self, scene: Scene, x: float, y: float, reach: float) -> None:
-        def close(box: Box) -> bool:
-            return math.hypot(box[0] - x, box[1] - y) < reach + math.hypot(box[3], box[4]) / 2
+        def close(box: Rectangle) -> bool:
+            return math.hypot(box.x - x, box.y - y) < reach + math.hypot(box.length, box.width) / 2
 
-        self.receptacles = [r for r in scene.receptacles if close(box_of(r, 0.0))]
-        self.walls: list[Box] = []
-        self.boxes: list[Box] = []
-        for wall in scene.walls:
-            dx, dy = wall.end[0] - wall.start[0], wall.end[1] - wall.start[1]
-            mx, my = (wall.start[0] + wall.end[0]) / 2, (wall.start[1] + wall.end[1]) / 2
-            length, yaw = math.hypot(dx, dy), math.atan2(dy, dx)
-            for margin, into in ((WALL_MARGIN, self.walls), (FLOOR_MARGIN, self.boxes)):
-                width = wall.thickness + 2 * margin
-                if close((mx, my, yaw, length + width, width)):
-                    into.append((mx, my, yaw, length + width, width))
-        self.boxes += [b for r in scene.receptacles if close(b := box_of(r, FLOOR_MARGIN))]
-        for f in scene.furniture:
-            box = (f.center[0], f.center[1], f.yaw, f.size[0] + 2 * FLOOR_MARGIN, f.size[1] + 2 * FLOOR_MARGIN)
-            if close(box):
-                self.boxes.append(box)
+        self.receptacles = [r for r in scene.receptacles if close(r.outline)]
+        ends = [w.outline._replace(length=w.outline.length + w.thickness) for w in scene.walls]
+        self.walls = [w for wall in ends if close(w := wall.grown(WALL_MARGIN))]
+        taken = [*ends, *scene.footprints]
+        self.boxes = [b for box in taken if close(b := box.grown(FLOOR_MARGIN))]

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from common.scene import Scene
-from services.perception.plan import Cloud, Nearby, box_of, corners, inside
+from services.perception.plan import Cloud, Nearby, corners, inside
 from services.perception.view import Mask, View, Window
 
 CLEARANCE = 0.008
@@ -59,7 +59,7 @@ def pieces(view: View, scene: Scene, max_range: float, robot: Mask | None = None
     usable = (view.depth > 0.05) & (view.depth < max_range) & ~own
     found: list[Piece] = []
     for r in near.receptacles:
-        box, low, high = box_of(r, -0.012), r.center[2] - PLANE_SEARCH, r.center[2] + MAX_HEIGHT
+        box, low, high = r.outline.grown(-0.012), r.center[2] - PLANE_SEARCH, r.center[2] + MAX_HEIGHT
         window = view.window(corners(box, low, high))
         x, y, _ = np.moveaxis(view.points[window], -1, 0)
         over = _between(view, usable[window] & inside(x, y, box), low, high, window)

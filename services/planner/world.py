@@ -103,7 +103,7 @@ def believed(
                 kind=o.kind or (spec.kind if spec else ""),
                 colour=o.colour or (spec.colour if spec else ""),
                 position=None if in_hand else o.position,
-                on="" if in_hand else o.on or _under(o.position, scene),
+                on="" if in_hand else o.on or _resting_on(o.position, scene),
                 size=o.size if any(o.size) else (spec.size if spec else o.size),
                 seen_at=o.seen_at,
                 held=in_hand,
@@ -124,11 +124,7 @@ def _canonical(label: str, scene: Scene) -> str:
     return spec.name if spec else label
 
 
-def _under(position: Vec3, scene: Scene) -> str:
-    """The surface below a point; "" when there is none."""
-    x, y, z = position
-    for r in scene.receptacles:
-        near = abs(x - r.center[0]) <= r.size[0] / 2 and abs(y - r.center[1]) <= r.size[1] / 2
-        if near and -0.05 <= z - r.center[2] <= max(0.4, r.depth):
-            return r.name
-    return ""
+def _resting_on(position: Vec3, scene: Scene) -> str:
+    """Name of the surface that an object rests on; "" when there is none."""
+    surface = scene.resting_place(position)
+    return surface.name if surface else ""

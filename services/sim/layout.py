@@ -36,8 +36,7 @@ def _spot(rng: np.random.Generator, r: Receptacle, spec: ObjectSpec) -> tuple[fl
         return None
     shift = rng.uniform(-room, room)
     local = (ax * (depth - inset), shift) if ax else (shift, ay * (depth - inset))
-    c, s = math.cos(r.yaw), math.sin(r.yaw)
-    x, y = r.center[0] + c * local[0] - s * local[1], r.center[1] + s * local[0] + c * local[1]
+    x, y = r.outline.to_map(*local)
     return float(x), float(y)
 
 

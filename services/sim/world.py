@@ -3,7 +3,8 @@
 import math
 from collections.abc import Sequence
 
-from common.scene import BIN_WALL, BODY_INSET, LEG, LEG_INSET, Receptacle, Scene
+from common.floor_plan import BIN_WALL, BODY_INSET, LEG, LEG_INSET
+from common.scene import Receptacle, Scene
 from services.sim import objects
 from services.sim.layout import Placement
 from services.sim.model import Robot, own

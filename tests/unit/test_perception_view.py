@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from common.geometry import Array
+from common.geometry import Array, Rectangle
 from services.perception.plan import corners, inside
 from services.perception.view import View
 
@@ -29,7 +29,8 @@ def test_a_pixel_has_the_point_that_is_projected_to_it() -> None:
 def test_no_point_of_a_box_is_seen_outside_its_window(seed: int) -> None:
     rng = np.random.default_rng(seed)
     view = ahead(float(rng.uniform(-1, 1)))
-    box = (float(rng.uniform(1, 3)), float(rng.uniform(-1, 1)), float(rng.uniform(-2, 2)), 0.8, 0.5)
+    x, y, yaw = float(rng.uniform(1, 3)), float(rng.uniform(-1, 1)), float(rng.uniform(-2, 2))
+    box = Rectangle(x, y, 0.8, 0.5, yaw)
     rows, columns = view.window(corners(box, 0.7, 1.0))
     points: Array = rng.uniform((-1, -3, 0.7), (5, 3, 1.0), (4000, 3))
     points = points[inside(points[:, 0].astype(np.float32), points[:, 1].astype(np.float32), box)]
@@ -42,8 +43,8 @@ def test_no_point_of_a_box_is_seen_outside_its_window(seed: int) -> None:
 
 def test_what_is_behind_has_an_empty_window_and_what_is_around_the_whole_picture() -> None:
     view = ahead()
-    behind = view.window(corners((-2.0, 0.0, 0.0, 0.5, 0.5), 0.5, 1.0))
+    behind = view.window(corners(Rectangle(-2.0, 0.0, 0.5, 0.5), 0.5, 1.0))
     assert view.depth[behind].size == 0
-    assert view.window(corners((0.0, 0.0, 0.0, 2.0, 2.0), 0.5, 1.0)) == view.everywhere
-    small = view.window(corners((2.0, 0.0, 0.0, 0.1, 0.1), 0.95, 1.05))
+    assert view.window(corners(Rectangle(0.0, 0.0, 2.0, 2.0), 0.5, 1.0)) == view.everywhere
+    small = view.window(corners(Rectangle(2.0, 0.0, 0.1, 0.1), 0.95, 1.05))
     assert 0 < view.depth[small].size < 200

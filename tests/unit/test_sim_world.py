@@ -10,7 +10,7 @@ from common import messages as m
 from common import topics
 from common.runtime import StartError
 from common.scene import SCENES, SceneError, load_scene
-from common.support import inside
+from common.support import MARGIN
 from services.sim.layout import place_objects
 from services.sim.physics import Physics
 from services.sim.robot import JOINT_NAMES
@@ -35,7 +35,7 @@ def test_layouts_repeat_for_a_seed_and_stand_on_reachable_free_spots() -> None:
         for i, p in enumerate(placements):
             receptacle = scene.receptacle(p.on)
             assert receptacle is not None and receptacle.approach
-            assert inside(receptacle, p.position[0], p.position[1])
+            assert receptacle.contains(p.position[0], p.position[1], MARGIN)
             for q in placements[:i]:
                 gap = math.dist(p.position[:2], q.position[:2])
                 assert gap > (max(p.spec.size[:2]) + max(q.spec.size[:2])) / 2 + 0.08
