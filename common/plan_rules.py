@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import msgspec
 
+from common.kinds import kind_of
 from common.messages import KnownWorld, PlanStep
 from common.scene import Scene
 
@@ -112,6 +113,6 @@ def _not_a_thing(thing: str, world: KnownWorld, scene: Scene) -> str:
 def _too_big(thing: str, scene: Scene) -> str:
     """Bowls are gripped at the rim; everything else between the pads."""
     spec = scene.object(thing)
-    if spec is None or spec.kind == "bowl" or min(spec.size) <= GRIPPER_WIDTH:
+    if spec is None or kind_of(spec.kind).by_the_rim or min(spec.size) <= GRIPPER_WIDTH:
         return ""
     return f"the {thing} does not fit into the gripper"

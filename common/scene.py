@@ -8,22 +8,19 @@ radians, everything in frame `map` (the robot's start pose is the origin).
 import math
 import tomllib
 from pathlib import Path
-from typing import Literal
 
 import msgspec
 
 from common.floor_plan import Box, Obstacle, Place, Receptacle, Rgba, Room, Strict, Vec2, Vec3, Wall
 from common.geometry import Rectangle
+from common.kinds import KINDS
 
 __all__ = [
-    "Box", "ObjectKind", "ObjectSpec", "Obstacle", "Place", "Receptacle", "Rgba", "Room", "Scene", "SceneError", "Vec2",
+    "Box", "ObjectSpec", "Obstacle", "Place", "Receptacle", "Rgba", "Room", "Scene", "SceneError", "Vec2",
     "Vec3", "Wall", "body_name", "load_scene", "scene_path",
 ]  # fmt: skip
 SCENES = Path(__file__).resolve().parent.parent / "services" / "sim" / "scenes"
 
-ObjectKind = Literal["mug", "can", "bottle", "apple", "block", "box", "bowl", "ball"]
-NO_UPRIGHT: frozenset[str] = frozenset({"apple", "ball", "block"})
-"""Kinds that have no upright: what rolls, and cubes. Every other kind stands or has been toppled."""
 SUNK = 0.05
 """How far [m] below a surface the centre of what rests on it may be seen: the error of its height."""
 TALLEST = 0.35
@@ -37,10 +34,10 @@ class SceneError(ValueError):
 
 
 class ObjectSpec(Strict, frozen=True):
-    """An object that may be picked up. `size` is its full extent (x, y, z) standing upright."""
+    """An object that may be picked up: `kind` is one of `common.kinds`, `size` its full extent (x, y, z) upright."""
 
     name: str
-    kind: ObjectKind
+    kind: str
     colour: str
     size: Vec3
     mass: float
@@ -152,6 +149,8 @@ def _check(scene: Scene, path: Path) -> None:
         if doubled:
             raise SceneError(f"{path}: {label} {doubled[0]!r} is defined twice")
     for spec in scene.objects:
+        if spec.kind not in KINDS:
+            raise SceneError(f"{path}: object {spec.name!r} is a {spec.kind!r}; known kinds: {', '.join(KINDS)}")
         if min(spec.size) <= 0 or spec.mass <= 0 or not all(map(math.isfinite, (*spec.size, spec.mass))):
             raise SceneError(f"{path}: object {spec.name!r} needs a positive size and mass")
         if spec.on and scene.receptacle(spec.on) is None:

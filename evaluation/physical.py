@@ -14,6 +14,7 @@ import numpy as np
 from msgspec.structs import replace
 
 from common import topics
+from common.kinds import kind_of
 from common.robot import SIDES, Hand, subtree
 from common.scene import Scene
 from common.support import MARGIN
@@ -49,7 +50,6 @@ STAYS = 0.005
 PULLED = 20.0
 """Force [N] with which the pads pull an object up, which shows that the hand tried to lift it: five times the weight of
 the heaviest object of the scenes, and a third of the lightest one that is too heavy."""
-ROUND = ("apple", "ball")
 NEAR = 1.0
 """Distance [m] of the base within which an object is in reach and an obstacle has to be avoided."""
 AT_REST, DROVE = 0.02, 0.3
@@ -79,7 +79,7 @@ class PhysicalFault(msgspec.Struct, frozen=True, kw_only=True):
         objects = []
         for spec in scene.objects:
             if spec.name == self.thing and self.kind == "wide":
-                height = self.amount if spec.kind in ROUND else spec.size[2]
+                height = self.amount if kind_of(spec.kind).shape == "sphere" else spec.size[2]
                 changes["size"] = (self.amount, self.amount, height)
             objects.append(replace(spec, **changes) if spec.name == self.thing else spec)
         return replace(scene, objects=tuple(objects))

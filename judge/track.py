@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 import msgspec
 
-from common.scene import NO_UPRIGHT
+from common.kinds import kind_of
 
 LIFTED = 0.05
 """Rise [m] above where it stood that counts as lifted: more than any object of the scenes can tip up on an edge."""
@@ -73,12 +73,12 @@ class Track(msgspec.Struct):
     @property
     def toppled(self) -> bool:
         """It does not stand although it has an upright and lies in no bin where it may."""
-        return self.kind not in NO_UPRIGHT and self.last.tilt > TOPPLED and self.last.on not in self.bins
+        return kind_of(self.kind).upright and self.last.tilt > TOPPLED and self.last.on not in self.bins
 
     @property
     def disturbed(self) -> bool:
         """Moved or knocked over at any time since the baseline, whoever touched it."""
-        return self.shift > MOVED or (self.kind not in NO_UPRIGHT and self.lean > TOPPLED)
+        return self.shift > MOVED or (kind_of(self.kind).upright and self.lean > TOPPLED)
 
 
 def distance(a: Sequence[float], b: Sequence[float]) -> float:

@@ -5,12 +5,11 @@ from dataclasses import dataclass
 from typing import Literal
 
 from common.geometry import quat_matrix
+from common.kinds import kind_of
 from common.messages import ObjectPose
 from common.scene import Scene
 
 Fault = Literal["", "NOT_SEEN", "MISPLACED", "TOPPLED"]
-STANDING: frozenset[str] = frozenset({"mug", "can", "bottle", "box", "bowl"})
-"""Kinds that stand on a foot; balls and apples roll, a block has no upper side."""
 TIPPED = 0.35
 """Tilt [rad] from which a thing does not stand; perception tells standing, lying (1.57) and upside down (3.14)."""
 UPSIDE_DOWN = 2.4
@@ -37,7 +36,7 @@ def found_at(pose: ObjectPose, label: str, target: str, scene: Scene) -> Finding
     measured = f"at ({x:.2f}, {y:.2f}, {z:.2f}), tilt {math.degrees(tilt):.0f} deg"
     if wanted is not None and on is not wanted:
         return Finding("MISPLACED", f"the {label} is {where}, not on the {wanted.name}, {measured}")
-    if spec is not None and spec.kind in STANDING and tilt > TIPPED and not (on and on.depth):
+    if spec is not None and kind_of(spec.kind).upright and tilt > TIPPED and not (on and on.depth):
         lies = "stands upside down" if tilt > UPSIDE_DOWN else "lies on its side"
         return Finding("TOPPLED", f"the {label} {lies} {where}, {measured}")
     return Finding("", f"the {label} is {where}, {measured}")

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from common.kinds import kind_of
 from services.dashboard.drawing import Mesh
 
 
@@ -10,10 +11,11 @@ def fallback(kind: str, size: tuple[float, float, float], colour: str) -> Mesh:
     import trimesh
 
     x, y, z = (max(s, 0.02) for s in size)
-    if kind in ("apple", "ball", "sphere"):
+    solid = kind_of(kind).shape
+    if solid == "sphere":
         shape = trimesh.creation.icosphere(subdivisions=2)
         shape.apply_scale([x / 2, y / 2, z / 2])
-    elif kind in ("mug", "can", "bottle", "bowl", "cup"):
+    elif solid == "turned":
         shape = trimesh.creation.cylinder(radius=(x + y) / 4, height=z, sections=24)
     else:
         shape = trimesh.creation.box(extents=[x, y, z])

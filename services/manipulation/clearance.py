@@ -5,6 +5,7 @@ from dataclasses import replace
 import mujoco
 import numpy as np
 
+from common.kinds import kind_of
 from common.robot import Hand, pads, subtree
 from services.manipulation.arm_model import STAND_IN, ArmModel, Array, Pose
 from services.manipulation.grasp import Grasp, Target
@@ -19,8 +20,6 @@ MOST = 0.016
 """Farthest [m] that the hand keeps back from something round: its widest line stays 3 mm within the pads."""
 OVERLAP = 0.6
 """Least share of a pad's length that lies on a flat face."""
-ROUND = ("mug", "can", "bottle")
-BALLS = ("apple", "ball")
 
 
 class HandClearance:
@@ -48,7 +47,7 @@ class HandClearance:
         """
         advance = self.hand.advance(grasp.width)
         pose = grasp.pose.moved(-advance * grasp.pose.rotation[:, 2])
-        if target.kind != "bowl":  # held at its rim: the hand is inside the bowl's own bounding shape
+        if not kind_of(target.kind).by_the_rim:  # there the hand is inside the object's own bounding shape
             back = self._needed(target, pose, grasp.width)
             if back is None:
                 return None
@@ -85,9 +84,10 @@ class HandClearance:
         shape = int(model.geom(STAND_IN).id)
         size = np.array(target.size) / 2
         model.geom_type[shape], model.geom_size[shape] = kinds.mjGEOM_BOX, size
-        if target.kind in ROUND and not target.lies:
+        solid = kind_of(target.kind).shape
+        if solid == "turned" and not target.lies:
             model.geom_type[shape], model.geom_size[shape] = kinds.mjGEOM_CYLINDER, (size[:2].max(), size[2], 0)
-        elif target.kind in BALLS:
+        elif solid == "sphere":
             model.geom_type[shape] = kinds.mjGEOM_ELLIPSOID
         model.geom_rbound[shape] = float(np.linalg.norm(model.geom_size[shape]))
         c, s = np.cos(target.yaw), np.sin(target.yaw)
@@ -98,7 +98,7 @@ class HandClearance:
 
 def _most(target: Target, pose: Pose) -> float:
     """How far [m] the pads' middle may stay before the object's and still hold it."""
-    if target.kind in (*ROUND, *BALLS):
+    if kind_of(target.kind).shape != "box":
         return MOST
     c, s = np.cos(target.yaw), np.sin(target.yaw)
     own = np.array([[c, s, 0], [-s, c, 0], [0, 0, 1.0]])

@@ -2,7 +2,7 @@
 from above for low ones, at the rim for bowls. Angles were measured in simulation for a 85 mm parallel gripper."""
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Literal
 
@@ -10,19 +10,14 @@ import numpy as np
 
 from common import messages as m
 from common.geometry import Pose2, matrix_quat, quat_matrix, yaw_quat
+from common.kinds import GraspRule, kind_of
 from services.manipulation.arm_model import Array, Pose
 
 HANDLE_CONE = math.radians(50)
 LYING_FROM = 0.7
 """Tilt [rad] from which, and up to which before upside down, a thing lies on its side."""
-LYING_TILTS = {"mug": (60, 75, 90, 50), "can": (75, 60, 90), "bottle": (75, 90, 60)}
-"""Degrees from which a lying thing is taken: to set it upright, the hand comes from 90 less these above horizontal, and
-a low thing needs room for the palm."""
-LYING_POINT = {"bottle": -0.14}
-"""Where along its axis a lying thing is taken, from its middle to its top, in lengths: a bottle's body is below it."""
-ALIKE = ("can", "box", "block")
-"""Kinds whose ends are alike: either may be up."""
-BOWL_LEAN, BOWL_WALL, RIM_DEPTH = 0.55, 0.006, 0.012
+RIM_DEPTH = 0.012
+"""How far [m] below a rim the pads take hold: more than half of a pad's length is on the wall."""
 
 
 @dataclass(frozen=True)
@@ -88,19 +83,9 @@ def _candidates(target: Target, forward: float) -> list[Grasp]:
     facing = math.atan2(target.position[1], target.position[0] - forward)
     if target.lies:
         return _lying(target, facing)
-    if target.kind == "mug":
-        return _round(target, facing, (40, 55, 25), handle=True)
-    if target.kind in ("can", "bottle"):
-        return _round(target, facing, (15, 25, 5, 40), handle=False)
-    if target.kind == "box":
-        from_above = _flat(target, facing, (90, 70), target.size[2] * 0.8)
-        return _flat(target, facing, (15, 30, 45), target.size[2] * 0.6) + from_above
-    if target.kind in ("apple", "ball"):
-        return _round(target, facing, (90, 65, 45, 30), handle=False)
-    if target.kind == "bowl":
-        return _rim(target, facing)
-    tilts = (90, 65, 45, 30) if target.size[2] < 0.09 else (15, 30, 45)
-    return _flat(target, facing, tilts, target.size[2] / 2)
+    kind, tall = kind_of(target.kind), target.size[2]
+    makers = {"around": _round, "faces": _flat, "rim": _rim}
+    return [g for r in kind.grasps if r.least <= tall < r.most for g in makers[r.hold](target, facing, r)]
 
 
 def shown(
@@ -133,30 +118,29 @@ def _make(target: Target, height: float, azimuth: float, tilt: float, roll: floa
     return Grasp(Pose(np.array([x, y, target.bottom + height]), rotation), width, height, tilt, name)
 
 
-def _round(target: Target, facing: float, tilts: Sequence[float], handle: bool) -> list[Grasp]:
+def _round(target: Target, facing: float, rule: GraspRule) -> list[Grasp]:
+    """Fingers on either side of a round object's axis, from the front and up to 50 degrees to the sides."""
     width = max(target.size[0], target.size[1])
-    height = target.size[2] * (0.42 if target.kind == "bottle" else 0.55)
-    if target.kind in ("apple", "ball"):
-        height = target.size[2] / 2
     found = []
-    for degrees in tilts:
+    for degrees in rule.angles:
         tilt = math.radians(degrees)
         for turn in (0.0, 25.0, -25.0, 50.0, -50.0):
             azimuth = facing + math.radians(turn)
-            if handle and _closes_on(target.yaw, azimuth):
+            if kind_of(target.kind).handle and _closes_on(target.yaw, azimuth):
                 continue
-            found.append(_make(target, height, azimuth, tilt, 0.0, width, f"{degrees:.0f} deg at {turn:+.0f}"))
+            name = f"{degrees:.0f} deg at {turn:+.0f}"
+            found.append(_make(target, target.size[2] * rule.height, azimuth, tilt, 0.0, width, name))
     return found
 
 
 def _lying(target: Target, facing: float) -> list[Grasp]:
     """Fingers on either side of a lying thing's axis, the hand leaning towards its foot: so it can be set upright."""
-    found = []
-    along = LYING_POINT.get(target.kind, 0.0) * target.size[0]
+    found, kind = [], kind_of(target.kind)
+    along = kind.lying_point * target.size[0]
     x, y, _ = target.position
     point = np.array([x + along * math.cos(target.yaw), y + along * math.sin(target.yaw), target.position[2]])
-    turns = (0.0, math.pi) if target.kind in ALIKE else (0.0,)
-    for degrees in LYING_TILTS.get(target.kind, (75, 90, 60)):
+    turns = (0.0, math.pi) if kind.ends_alike else (0.0,)
+    for degrees in kind.lying_angles:
         for axis in sorted((target.yaw + turn for turn in turns), key=lambda a: abs(_off(a + math.pi, facing))):
             # Straight from above the hand may be turned either way.
             for azimuth in (axis + math.pi, axis) if degrees == 90 else (axis + math.pi,):
@@ -178,10 +162,10 @@ def _closes_on(handle: float, azimuth: float) -> bool:
     return abs(math.cos(handle - azimuth - math.pi / 2)) > math.cos(HANDLE_CONE)
 
 
-def _flat(target: Target, facing: float, tilts: Sequence[float], height: float) -> list[Grasp]:
+def _flat(target: Target, facing: float, rule: GraspRule) -> list[Grasp]:
     """Fingers on two parallel faces."""
-    found = []
-    for degrees in tilts:
+    found, height = [], target.size[2] * rule.height
+    for degrees in rule.angles:
         tilt = math.radians(degrees)
         options = []
         for quarter in range(4):
@@ -201,13 +185,14 @@ def _flat(target: Target, facing: float, tilts: Sequence[float], height: float) 
     return found
 
 
-def _rim(target: Target, facing: float) -> list[Grasp]:
-    """Fingers on either side of a bowl's wall at the rim, along its slope: the near side first."""
+def _rim(target: Target, facing: float, rule: GraspRule) -> list[Grasp]:
+    """Fingers on either side of a vessel's wall at the rim, along its slope: the near side first."""
     x, y, _ = target.position
     height = target.size[2] - RIM_DEPTH
-    radius = target.size[0] / 2 - RIM_DEPTH * math.tan(BOWL_LEAN) - BOWL_WALL / 2
+    kind = kind_of(target.kind)
+    radius = target.size[0] / 2 - RIM_DEPTH * math.tan(kind.lean) - kind.wall / 2
     found = []
-    for degrees in (65, 72, 58, 80, 90):
+    for degrees in rule.angles:
         tilt = math.radians(degrees)
         for turn in (0.0, 25.0, -25.0, 50.0, -50.0):
             azimuth = facing + math.radians(turn)
@@ -215,5 +200,5 @@ def _rim(target: Target, facing: float) -> list[Grasp]:
             for roll in (math.pi / 2, -math.pi / 2):
                 rotation = approach_rotation(azimuth, tilt, roll)
                 name = f"rim at {turn:+.0f}, {degrees} deg, {'palm up' if roll < 0 else 'palm down'}"
-                found.append(Grasp(Pose(point, rotation), BOWL_WALL, height, tilt, name))
+                found.append(Grasp(Pose(point, rotation), kind.wall, height, tilt, name))
     return found

@@ -4,6 +4,7 @@ import math
 
 from common import messages as m
 from common import topics
+from common.kinds import kind_of
 from common.messages import WorldObject
 from services.manipulation.arm_model import Array, Obstacle
 from services.manipulation.grasp import shown
@@ -26,7 +27,6 @@ WEIGHED = 3
 the arm is nearly stretched its own damping shows as 20 N at twice the speed."""
 INSERTING = 0.3
 """Share of the joint speed around the object: with 8 mm in the 40 ms until it stops the hand knocks with some 50 N."""
-FLAT_SIDED = ("box", "block")
 
 
 def grab(robot: Robot, goal: m.ManipulationGoal, wanted: str) -> Steps[str]:
@@ -116,7 +116,7 @@ def _aimed(robot: Robot, plan: GrabPlan, goal: m.ManipulationGoal, found: WorldO
         return plan
     was, new = (target_of(o, robot.base, robot.io.scene) for o in (found, seen))
     shift = new.position[0] - was.position[0], new.position[1] - was.position[1]
-    off, turn = math.hypot(*shift), turned(was, new) if found.kind in FLAT_SIDED else 0.0
+    off, turn = math.hypot(*shift), turned(was, new) if kind_of(found.kind).shape == "box" else 0.0
     if off > config.aim_most or turn > config.aim_turn:
         raise Failure(MISTAKEN, f"{found.label} is {1000 * off:.0f} mm and {math.degrees(turn):.0f} deg from there")
     if off < config.aim_least:
@@ -205,7 +205,7 @@ def _check_width(robot: Robot, plan: GrabPlan, widths: list[float]) -> None:
     """
     held, width = plan.held, robot.grip.width
     spec = robot.io.scene.object(held.label)
-    if spec is None or held.kind == "bowl" or not held_badly(robot.grip, plan.grasp.width, spec.kind):
+    if spec is None or kind_of(held.kind).by_the_rim or not held_badly(robot.grip, plan.grasp.width, spec.kind):
         return
     if any(abs(width - other) < WIDTH_ERROR for other in widths):
         robot.io.log.warning("not as wide as it should be", object=held.label, mm=round(1000 * width, 1))
@@ -226,7 +226,7 @@ def _carry_again(robot: Robot, held: Held, around: list[Obstacle]) -> Steps[str]
 
 
 def _judge(robot: Robot, plan: GrabPlan, at_close: float | None) -> None:
-    nominal = plan.grasp.width if plan.held.kind != "bowl" else 0.0
+    nominal = 0.0 if kind_of(plan.held.kind).by_the_rim else plan.grasp.width
     code = judge(robot.grip, nominal, at_close, robot.config)
     if code:
         was = "" if at_close is None else f", was {at_close * 1000:.1f} mm"

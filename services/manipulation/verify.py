@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
+from common.kinds import kind_of
 from services.manipulation.config import ManipulationConfig
 from services.manipulation.touch import TOUCHED
 
@@ -14,9 +15,6 @@ MEETINGS = 2
 WIDTH_ERROR = 0.0008
 """Most [m] that the width after the lift may be off what the object measures there: beyond it the hold is bad (measured
 over reach-grasp-lift trials)."""
-FACETS = {"mug": 0.002}
-"""By kind, how much wider [m] than its diameter a round wall may be across its corners: 16 flat pieces of a mug's wall
-make 75.5 of 74 mm, and the grips of good holds were 74.7 to 75.8."""
 
 
 @dataclass(frozen=True)
@@ -57,7 +55,7 @@ def judge(
 def held_badly(grip: Grip, nominal: float, kind: str) -> bool:
     """The lifted object is not held around its body: its width differs from `nominal` [m] there, as on a handle."""
     over = grip.width - nominal
-    return nominal > 0 and not -WIDTH_ERROR <= over <= WIDTH_ERROR + FACETS.get(kind, 0.0)
+    return nominal > 0 and not -WIDTH_ERROR <= over <= WIDTH_ERROR + kind_of(kind).facets
 
 
 def does_not_fit(codes: Sequence[str]) -> bool:

@@ -13,7 +13,8 @@ from typing import Protocol
 import numpy as np
 
 from common.geometry import Array
-from common.scene import ObjectKind, ObjectSpec, Scene, Vec3
+from common.kinds import KINDS, kind_of
+from common.scene import ObjectSpec, Scene, Vec3
 from services.perception import colour, segment, shapes, toppled
 from services.perception.segment import Piece
 from services.perception.view import Mask, View
@@ -23,7 +24,7 @@ WORST, SOUND = 3.2, 2.0
 LYING = math.pi / 2
 """Tilt [rad] of what lies on its side."""
 STRANGE_CONFIDENCE = 0.45
-STRANGE_KINDS: tuple[ObjectKind, ...] = ("can", "box")
+STRANGE_KINDS = (KINDS["can"], KINDS["box"])
 
 
 @dataclass(frozen=True)
@@ -104,12 +105,9 @@ class ClassicalDetector:
             return self._strange(view, piece, rgb, height)
         best = guesses[0]
         score, spec, size, fit = best.score, best.spec, best.stance.size, best.fit
-        tilt = best.stance.tilt
-        if (
-            spec.kind == "mug"
-            and not tilt
-            and toppled.closed_above("mug", size, piece.points, piece.surface.height, fit)
-        ):
+        tilt, kind = best.stance.tilt, kind_of(spec.kind)
+        either_way = "upside down" in kind.rests and kind.straight
+        if either_way and not tilt and toppled.closed_above(kind, size, piece.points, piece.surface.height, fit):
             # The walls look alike either way up.
             tilt = math.pi
         second = next((rival.score for rival in guesses if rival.spec is not spec), WORST)
@@ -117,7 +115,7 @@ class ClassicalDetector:
         confidence = math.exp(-0.5 * (score / 2.2) ** 2) * (1 - math.exp(-2.0 * (second - score) - 0.4))
         pixels = min(1.0, len(piece.rows) / 120)
         yaw = fit.yaw
-        if spec.kind == "mug" and not tilt:
+        if kind.handle and not tilt:
             yaw = shapes.handle_yaw(size, piece.points, fit.x, fit.y, view.position)
         position = (fit.x, fit.y, piece.surface.height + size[2] / 2)
         return Detection(
@@ -150,7 +148,7 @@ class ClassicalDetector:
                 if tall <= WORST:
                     fit = _fit(spec, stance, view, piece)
                     if stance.tilt == math.pi and not toppled.closed_above(
-                        spec.kind, spec.size, piece.points, piece.surface.height, fit
+                        kind_of(spec.kind), spec.size, piece.points, piece.surface.height, fit
                     ):
                         continue
                     score = math.sqrt((fit.residual / SHAPE_SCALE) ** 2 + tall**2 + off**2)
@@ -182,34 +180,36 @@ class ClassicalDetector:
 
 
 def _stances(spec: ObjectSpec) -> list[Stance]:
-    """A thing as it stands, and a box on one of its sides."""
+    """An object as it stands, and what may lie on another face."""
     x, y, z = spec.size
-    if spec.kind != "box":
+    if "face" not in kind_of(spec.kind).rests:
         return [Stance(spec.size)]
     return [Stance(size, 0.0 if size[2] == z else LYING) for size in dict.fromkeys([(x, y, z), (z, y, x), (z, x, y)])]
 
 
 def _toppled(spec: ObjectSpec) -> list[Stance]:
     """A round thing on its side, or upside down."""
-    found = [Stance(toppled.extents(spec.size), LYING)] if spec.kind in toppled.ROLLS_OVER else []
-    return found + ([Stance(spec.size, math.pi)] if spec.kind in ("mug", "bowl") else [])
+    rests = kind_of(spec.kind).rests
+    found = [Stance(toppled.extents(spec.size), LYING)] if "side" in rests else []
+    return found + ([Stance(spec.size, math.pi)] if "upside down" in rests else [])
 
 
 def _too_tall(spec: ObjectSpec, stance: Stance, height: float) -> float:
     """How far [m] a measured height is from a stance's."""
     low = high = stance.size[2]
-    if stance.tilt == LYING and spec.kind in toppled.ROLLS_OVER:
-        low, high = toppled.heights(spec.kind, spec.size)
+    kind = kind_of(spec.kind)
+    if stance.tilt == LYING and "side" in kind.rests:
+        low, high = toppled.heights(kind, spec.size)
     return max(low - height, height - high, 0.0)
 
 
 def _fit(spec: ObjectSpec, stance: Stance, view: View, piece: Piece) -> shapes.Fit:
-    floor, camera = piece.surface.height, view.position
+    kind, floor, camera = kind_of(spec.kind), piece.surface.height, view.position
     if stance.tilt == math.pi:
-        return toppled.fit_upside_down(spec.kind, spec.size, piece.points, floor, camera)
-    if stance.tilt and spec.kind in toppled.ROLLS_OVER:
-        return toppled.fit(spec.kind, spec.size, piece.points, floor, camera)
-    return shapes.fit(spec.kind, stance.size, piece.points, floor, camera, piece.ends)
+        return toppled.fit_upside_down(kind, spec.size, piece.points, floor, camera)
+    if stance.tilt and "side" in kind.rests:
+        return toppled.fit(kind, spec.size, piece.points, floor, camera)
+    return shapes.fit(kind, stance.size, piece.points, floor, camera, piece.ends)
 
 
 def _pixels(view: View, position: Vec3, size: Vec3) -> float:

@@ -11,6 +11,7 @@ from common import topics
 from common.bus.port import Io, Job
 from common.geometry import Pose2, wrap
 from common.goal_inbox import GoalInbox
+from common.kinds import kind_of
 from common.runtime import StartError
 from services.perception.body import Body
 from services.perception.config import PerceptionConfig
@@ -27,7 +28,6 @@ CLEAR = ("", "start", "look")
 # The hand is in front of the thing and waits for what its own camera sees.
 AIM = "aim"
 REFINED = 0.05
-ROUND = ("apple", "ball", "bottle", "can", "mug")
 PICTURES = (topics.HEAD_RGBD, topics.WRIST_RGBD)
 
 
@@ -143,7 +143,7 @@ class PerceptionService:
         """True for what the wrist camera may say of a thing: where it is more exactly, and of round things from any
         part of them."""
         known = any(o.label == d.label and math.dist(o.position, d.position) < REFINED for o in self._shown)
-        return known and (d.kind in ROUND or (d.whole and d.confidence >= SURE))
+        return known and (kind_of(d.kind).straight or (d.whole and d.confidence >= SURE))
 
     def _show(self, now: float, seen: bool = False) -> None:
         """Publish what is believed when it has changed or was `seen` again."""

@@ -11,16 +11,14 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from common.scene import ObjectKind, Vec3
+from common.kinds import Kind
+from common.scene import Vec3
 from services.perception.solve import solve
 
 Array = NDArray[np.float64]
 Ends = tuple[bool, bool]
-Segment = tuple[tuple[float, float], tuple[float, float]]
 SAMPLE = 160
 ROBUST, STRAY = 0.004, 0.007
-MUG_WALL, BOWL_WALL, BOWL_LEAN = 0.004, 0.006, 0.55
-NECK, NECK_FROM = 0.014, 0.72
 EDGE_WEIGHT = 3.0
 TRIES, SETTLED = 15, 0.001
 TINY = 1e-12
@@ -37,31 +35,10 @@ class Fit:
     residual: float
 
 
-def profile(kind: ObjectKind, size: Vec3) -> list[Segment]:
-    """The outline (radius, height above the surface) that is turned about the axis of a round thing."""
-    r, h = size[0] / 2, size[2]
-    if kind == "mug":
-        inner = r - MUG_WALL
-        return [((r, 0), (r, h)), ((inner, 0.008), (inner, h)), ((inner, h), (r, h)), ((0, 0.008), (inner, 0.008))]
-    if kind == "bowl":
-        base = r - h * math.tan(BOWL_LEAN)
-        wall = BOWL_WALL / math.cos(BOWL_LEAN)
-        return [((base, 0), (r, h)), ((base - wall, 0), (r - wall, h)), ((0, 0.010), (base, 0.010))]
-    if kind == "bottle":
-        shoulder = NECK_FROM * h
-        return [
-            ((r, 0), (r, shoulder)),
-            ((r, shoulder), (NECK, shoulder)),
-            ((NECK, shoulder), (NECK, h)),
-            ((NECK, h), (0, h)),
-        ]
-    return [((r, 0), (r, h)), ((r, h), (0, h))]
-
-
 @cache
-def _outline(kind: ObjectKind, size: Vec3) -> Array:
+def _outline(kind: Kind, size: Vec3) -> Array:
     """Starts and directions (radius, height) of the outline's segments (4, k, 1)."""
-    ends = np.array(profile(kind, size)).transpose(1, 2, 0)[..., None]
+    ends = np.array(kind.profile(size)).transpose(1, 2, 0)[..., None]
     return np.concatenate([ends[0], ends[1] - ends[0]])
 
 
@@ -87,15 +64,15 @@ def _from_box(local: Array, size: Vec3) -> tuple[Array, Array]:
     return np.where(far > 0, far, -deep), gradient
 
 
-def residuals(kind: ObjectKind, size: Vec3, points: Array, floor: float, p: Array) -> tuple[Array, Array]:
+def residuals(kind: Kind, size: Vec3, points: Array, floor: float, p: Array) -> tuple[Array, Array]:
     """Distance (n,) of points (n, 3) from a shape that stands at p = (x, y, yaw) or (x, y), and its slopes (n, k)."""
     dx, dy, z = points[:, 0] - p[0], points[:, 1] - p[1], points[:, 2] - floor
-    if kind in ("block", "box"):
+    if kind.shape == "box":
         c, s = math.cos(p[2]), math.sin(p[2])
         x, y = c * dx + s * dy, c * dy - s * dx
         distance, (gx, gy, _) = _from_box(np.array([x, y, z - size[2] / 2]), size)
         return distance, np.array([s * gy - c * gx, -s * gx - c * gy, gx * y - gy * x]).T
-    if kind in ("apple", "ball"):
+    if kind.shape == "sphere":
         r = size[0] / 2
         far = np.sqrt(dx * dx + dy * dy + (z - r) ** 2)
         distance, growth = np.abs(far - r), np.sign(far - r) / np.maximum(far, TINY)
@@ -106,7 +83,7 @@ def residuals(kind: ObjectKind, size: Vec3, points: Array, floor: float, p: Arra
     return distance, np.array([-dx * growth, -dy * growth]).T
 
 
-def distances(kind: ObjectKind, size: Vec3, points: Array, floor: float, x: float, y: float, yaw: float) -> Array:
+def distances(kind: Kind, size: Vec3, points: Array, floor: float, x: float, y: float, yaw: float) -> Array:
     """Distance [m] of each point (n, 3) from the surface of a shape that stands at (x, y) on height `floor`."""
     return residuals(kind, size, points, floor, np.array([x, y, yaw]))[0]
 
@@ -133,7 +110,7 @@ def end_bearings(size: Vec3, p: Array, camera: Array, ahead: float) -> tuple[Arr
     return outer[:, 0], outer[:, 1:]
 
 
-def fit(kind: ObjectKind, size: Vec3, points: Array, floor: float, camera: Array, ends: Ends = (True, True)) -> Fit:
+def fit(kind: Kind, size: Vec3, points: Array, floor: float, camera: Array, ends: Ends = (True, True)) -> Fit:
     """Place a shape on the surface of height `floor` so that it explains `points` (n, 3), seen from `camera` (3,).
 
     `ends`: nothing hides its right or its left end, so that a box must end there where its points do.
@@ -142,7 +119,7 @@ def fit(kind: ObjectKind, size: Vec3, points: Array, floor: float, camera: Array
     middle = used[:, :2].mean(axis=0)
     away = middle - camera[:2]
     away /= max(1e-6, float(np.linalg.norm(away)))
-    boxy = kind in ("block", "box")
+    boxy = kind.shape == "box"
     yaws = (0.0, 0.5, 1.0, 1.5) if size[0] == size[1] else (0.0, 0.5, 1.0, 1.5, 2.0, 2.5)
     # A box of unequal sides also ends where its points do, or its far side would be free.
     free = np.array(ends) & (boxy and size[0] != size[1])

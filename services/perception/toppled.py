@@ -12,30 +12,25 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.geometry import Array
-from common.scene import ObjectKind, Vec3
+from common.kinds import Kind
+from common.scene import Vec3
 from services.perception import shapes
 from services.perception.shapes import ROBUST, SAMPLE, STRAY, TINY, TRIES, Fit
 from services.perception.solve import solve
 
-ROLLS_OVER: tuple[ObjectKind, ...] = ("mug", "can", "bottle")
-"""Kinds that come to rest on their side."""
 STARTS = (0.0, math.pi / 4, math.pi / 2, 3 * math.pi / 4)
 """Directions of the axis [rad] from which the fit begins, each both ways round."""
 FOLLOWED = 4
 """Starts that are followed to their end: the two ends of a shape differ little from the side."""
-HANDLE = 0.024
-"""How far a mug's handle may reach above its body [m], as the household's mugs are built."""
-
-
 LEVEL = 0.008
 """How near [m] the height of a vessel a point of its foot is, when that is on top: twice the noise at 1.5 m."""
 CLOSED = 0.06
 """Least share of the points on the foot's inner part: a third of what a whole view from 45 degrees above shows."""
 
 
-def heights(kind: ObjectKind, size: Vec3) -> tuple[float, float]:
+def heights(kind: Kind, size: Vec3) -> tuple[float, float]:
     """Lowest and highest top [m] of a shape on its side."""
-    return size[0], size[0] + (HANDLE if kind == "mug" else 0.0)
+    return size[0], size[0] + kind.handle
 
 
 def extents(size: Vec3) -> Vec3:
@@ -44,10 +39,10 @@ def extents(size: Vec3) -> Vec3:
 
 
 @cache
-def _outline(kind: ObjectKind, size: Vec3) -> Array:
+def _outline(kind: Kind, size: Vec3) -> Array:
     """Starts and directions (radius, height) of the outline's segments (4, k, 1), the foot among them."""
     radius = size[0] / 2
-    ends = np.array([*shapes.profile(kind, size), ((0, 0), (radius, 0))]).transpose(1, 2, 0)[..., None]
+    ends = np.array([*kind.profile(size), ((0, 0), (radius, 0))]).transpose(1, 2, 0)[..., None]
     return np.concatenate([ends[0], ends[1] - ends[0]])
 
 
@@ -64,7 +59,7 @@ def _from_outline(rho: Array, z: Array, outline: Array) -> tuple[Array, Array, A
     return distance, across[nearest] / far, up[nearest] / far
 
 
-def _apart(kind: ObjectKind, size: Vec3, points: Array, floor: float, p: Array) -> tuple[Array, Array]:
+def _apart(kind: Kind, size: Vec3, points: Array, floor: float, p: Array) -> tuple[Array, Array]:
     """Distance (n,) of points (n, 3) from a shape that lies at p = (x, y, yaw of its axis), and its slopes (n, 3)."""
     c, s = math.cos(p[2]), math.sin(p[2])
     dx, dy, w = points[:, 0] - p[0], points[:, 1] - p[1], points[:, 2] - floor - size[0] / 2
@@ -83,7 +78,7 @@ def _beside(size: Vec3, points: Array, floor: float, p: Array) -> NDArray[np.boo
     return beside
 
 
-def fit(kind: ObjectKind, size: Vec3, points: Array, floor: float, camera: Array) -> Fit:
+def fit(kind: Kind, size: Vec3, points: Array, floor: float, camera: Array) -> Fit:
     """Lay a shape on the surface of height `floor` so that it explains `points` (n, 3), seen from `camera` (3,).
 
     The fit's (x, y) is half-way along the axis; its yaw points from the foot to the top.
@@ -96,14 +91,14 @@ def fit(kind: ObjectKind, size: Vec3, points: Array, floor: float, camera: Array
     def badness(p: Array) -> float:
         return float(np.minimum(_apart(kind, size, used, floor, p)[0], 0.02).mean())
 
-    turns = [yaw + flip for yaw, flip in product(STARTS, (0.0, math.pi) if kind != "can" else (0.0,))]
+    turns = [yaw + flip for yaw, flip in product(STARTS, (0.0,) if kind.ends_alike else (0.0, math.pi))]
     starts = sorted((np.array([*(middle + away * size[0] / 4), yaw]) for yaw in turns), key=badness)
     best, cost = starts[0], math.inf
     for begin in starts[:FOLLOWED]:
         then, new = solve(lambda p: _apart(kind, size, used, floor, p), begin, ROBUST, TRIES)
         if new < cost:
             best, cost = then, new
-    if kind == "mug":
+    if kind.handle:
         # Once more without the handle, which the profile does not have.
         own = used[~_beside(size, used, floor, best)]
         if len(own) > len(used) // 2:
@@ -113,18 +108,17 @@ def fit(kind: ObjectKind, size: Vec3, points: Array, floor: float, camera: Array
     return Fit(float(best[0]), float(best[1]), math.remainder(float(best[2]), math.tau), float(left.mean()))
 
 
-def closed_above(kind: ObjectKind, size: Vec3, points: Array, floor: float, at: Fit) -> bool:
+def closed_above(kind: Kind, size: Vec3, points: Array, floor: float, at: Fit) -> bool:
     """The foot of a vessel that stands at `at` is seen on top: only then is it upside down.
 
     The walls alone fit a vessel either way up, all the more when something hides a part of it.
     """
-    foot = size[0] / 2 - (size[2] * math.tan(shapes.BOWL_LEAN) if kind == "bowl" else 0.0)
-    inner = np.hypot(points[:, 0] - at.x, points[:, 1] - at.y) < 0.6 * foot
+    inner = np.hypot(points[:, 0] - at.x, points[:, 1] - at.y) < 0.6 * kind.foot(size)
     on_top = np.abs(points[:, 2] - floor - size[2]) < LEVEL
     return bool(np.count_nonzero(inner & on_top) > CLOSED * len(points))
 
 
-def fit_upside_down(kind: ObjectKind, size: Vec3, points: Array, floor: float, camera: Array) -> Fit:
+def fit_upside_down(kind: Kind, size: Vec3, points: Array, floor: float, camera: Array) -> Fit:
     """As `shapes.fit` for a shape that stands on its rim."""
     mirrored = points * (1.0, 1.0, -1.0) + (0.0, 0.0, 2 * floor + size[2])
     return shapes.fit(kind, size, mirrored, floor, camera)

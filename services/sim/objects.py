@@ -2,6 +2,7 @@
 
 import math
 
+from common.kinds import kind_of
 from common.scene import ObjectSpec, body_name
 
 _CONTACT = 'condim="4" friction="1 .02 .0005" solref=".005 1" solimp=".95 .99 .001"'
@@ -46,16 +47,16 @@ def _mug(spec: ObjectSpec) -> str:
             f"{r + 0.022} 0 {-h * 0.20} {r - 0.002} 0 {-h * 0.28}",
         )
     )
-    return _ring(spec, r, h / 2, 0.0, 0.002, 0.0, 0.68, r) + bottom + handle
+    return _ring(spec, r, h / 2, 0.0, kind_of(spec.kind).wall / 2, 0.0, 0.68, r) + bottom + handle
 
 
 def _bowl(spec: ObjectSpec) -> str:
     r, h = spec.size[0] / 2, spec.size[2]
-    lean = 0.55
-    base_r = r - h * math.tan(lean)
+    kind = kind_of(spec.kind)
+    base_r = kind.foot(spec.size)
     bottom = _geom(spec, f'type="cylinder" size="{base_r + 0.004} 0.005" pos="0 0 {-h / 2 + 0.005}"', 0.3)
-    half = h / 2 / math.cos(lean)
-    return _ring(spec, (r + base_r) / 2, half, 0.0, 0.003, lean, 0.7, r) + bottom
+    half = h / 2 / math.cos(kind.lean)
+    return _ring(spec, (r + base_r) / 2, half, 0.0, kind.wall / 2, kind.lean, 0.7, r) + bottom
 
 
 def _bottle(spec: ObjectSpec) -> str:
@@ -70,20 +71,20 @@ def _bottle(spec: ObjectSpec) -> str:
     )
 
 
+_BODIES = {"mug": _mug, "bowl": _bowl, "bottle": _bottle}
+"""Bodies of several geoms; every other kind is the solid of its row in `common.kinds`."""
+
+
 def geoms(spec: ObjectSpec) -> str:
     """The geoms of one object."""
-    r, h = spec.size[0] / 2, spec.size[2]
-    if spec.kind == "mug":
-        return _mug(spec)
-    if spec.kind == "bowl":
-        return _bowl(spec)
-    if spec.kind == "bottle":
-        return _bottle(spec)
-    if spec.kind == "can":
-        return _geom(spec, f'type="cylinder" size="{r} {h / 2}"', 1.0)
-    if spec.kind in ("apple", "ball"):
-        return _geom(spec, f'type="sphere" size="{r}"', 1.0).replace('condim="4"', 'condim="6"')
+    if spec.kind in _BODIES:
+        return _BODIES[spec.kind](spec)
     x, y, z = (v / 2 for v in spec.size)
+    shape = kind_of(spec.kind).shape
+    if shape == "sphere":
+        return _geom(spec, f'type="sphere" size="{x}"', 1.0).replace('condim="4"', 'condim="6"')
+    if shape == "turned":
+        return _geom(spec, f'type="cylinder" size="{x} {z}"', 1.0)
     return _geom(spec, f'type="box" size="{x} {y} {z}"', 1.0)
 
 

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 from common.geometry import quat_matrix
+from common.kinds import KINDS
 from services.manipulation.grasp import (
-    BOWL_LEAN,
-    BOWL_WALL,
     RIM_DEPTH,
     Grasp,
     Target,
@@ -18,6 +17,7 @@ from services.manipulation.grasp import (
 )  # fmt: skip
 
 FORWARD = 0.12
+BOWL = KINDS["bowl"]
 AT = (0.62, -0.15, 0.70)
 FACING = math.atan2(-0.15, 0.50)
 TURNS = (0, 25, -25, 50, -50)
@@ -162,17 +162,17 @@ def test_a_bowl_is_taken_at_the_rim_along_its_slope() -> None:
     found = candidates(bowl, FORWARD, 0.08)
     order = [(d, t, p) for d in (65, 72, 58, 80, 90) for t in TURNS for p in ("palm down", "palm up")]
     assert [g.name for g in found] == [f"rim at {t:+d}, {d} deg, {p}" for d, t, p in order]
-    radius = 0.07 - RIM_DEPTH * math.tan(BOWL_LEAN) - BOWL_WALL / 2
+    radius = 0.07 - RIM_DEPTH * math.tan(BOWL.lean) - BOWL.wall / 2
     for grasp, (degrees, turn, palm) in zip(found, order, strict=True):
         azimuth = FACING + math.radians(turn)
-        assert (grasp.width, grasp.height) == (BOWL_WALL, pytest.approx(0.06 - RIM_DEPTH))
+        assert (grasp.width, grasp.height) == (BOWL.wall, pytest.approx(0.06 - RIM_DEPTH))
         ahead = np.array([math.cos(azimuth), math.sin(azimuth)])
         assert grasp.pose.position[:2] == pytest.approx(np.array(AT[:2]) - radius * ahead), "the near side of the rim"
         assert grasp.pose.position[2] == pytest.approx(AT[2] - 0.03 + 0.06 - RIM_DEPTH)
         roll = math.pi / 2 if palm == "palm down" else -math.pi / 2
         assert np.allclose(grasp.pose.rotation, approach_rotation(azimuth, math.radians(degrees), roll))
         assert grasp.tilt == pytest.approx(math.radians(degrees))
-    assert candidates(bowl, FORWARD, BOWL_WALL) and not candidates(bowl, FORWARD, BOWL_WALL - 1e-6)
+    assert candidates(bowl, FORWARD, BOWL.wall) and not candidates(bowl, FORWARD, BOWL.wall - 1e-6)
 
 
 # --- for viewers

@@ -6,6 +6,7 @@ from functools import cache
 import numpy as np
 import pytest
 
+from common.kinds import KINDS
 from common.scene import Scene, load_scene
 from services.camera.raycast import render
 from services.perception import colour, shapes
@@ -113,10 +114,10 @@ def test_a_shape_is_placed_from_the_half_that_is_seen(kind: str, size: tuple[flo
     rng = np.random.default_rng(1)
     x, y, yaw, floor = 0.3, -0.2, 0.4, 0.7
     cloud = rng.uniform(-0.08, 0.08, (60000, 3)) + np.array([x, y, floor + size[2] / 2])
-    shell = cloud[shapes.distances(kind, size, cloud, floor, x, y, yaw) < 0.001]  # type: ignore[arg-type]
+    shell = cloud[shapes.distances(KINDS[kind], size, cloud, floor, x, y, yaw) < 0.001]
     camera = np.array([-0.8, 0.1, 1.3])
     facing = shell[(shell - np.array([x, y, floor + size[2] / 2])) @ (camera - np.array([x, y, floor])) > 0]
-    fit = shapes.fit(kind, size, facing, floor, camera)  # type: ignore[arg-type]
+    fit = shapes.fit(KINDS[kind], size, facing, floor, camera)
     assert math.hypot(fit.x - x, fit.y - y) < 0.004
     assert fit.residual < 0.002
     if kind == "box":
@@ -137,7 +138,7 @@ def test_a_box_of_which_one_face_is_seen_ends_where_its_points_do(size: tuple[fl
             points[:, axis] = side
             if (camera - middle - normal * size[axis]) @ normal > 0.05:
                 faces.append(middle + points * np.array(size) @ turn.T)
-    fit = shapes.fit("box", size, np.concatenate(faces), 0.7, camera)
+    fit = shapes.fit(KINDS["box"], size, np.concatenate(faces), 0.7, camera)
     assert math.hypot(fit.x - middle[0], fit.y - middle[1]) < 0.003
     assert abs(math.remainder(fit.yaw - yaw, math.pi)) < 0.05
 
@@ -147,7 +148,7 @@ def test_a_hidden_end_of_a_box_is_not_where_its_points_end() -> None:
     across, up = np.meshgrid(np.linspace(-0.03, 0.03, 40), np.linspace(0.0, 0.13, 40))
     face = np.stack([np.zeros(1600), across.ravel(), 0.7 + up.ravel()], axis=1)
     left = face[face[:, 1] > 0.0]
-    fit = shapes.fit("box", size, left, 0.7, camera, (False, True))
+    fit = shapes.fit(KINDS["box"], size, left, 0.7, camera, (False, True))
     assert abs(math.remainder(fit.yaw, math.pi / 2)) < 0.05
     front, side = (0.08, 0.06) if abs(math.sin(fit.yaw)) > 0.5 else (0.06, 0.08)
     assert math.hypot(fit.x - front / 2, fit.y - (0.03 - side / 2)) < 0.004
@@ -234,7 +235,8 @@ def test_a_can_explains_a_mug_worse_than_a_mug_does() -> None:
     ]
     points = np.concatenate(ring)
     camera = np.array([-1.0, 0.0, 1.0])
-    assert shapes.fit("mug", size, points, 0.0, camera).residual < shapes.fit("can", size, points, 0.0, camera).residual
+    mug, can = (shapes.fit(KINDS[kind], size, points, 0.0, camera) for kind in ("mug", "can"))
+    assert mug.residual < can.residual
 
 
 def test_colours_have_their_everyday_names_in_bright_and_dim_light() -> None:

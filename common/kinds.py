@@ -1,0 +1,137 @@
+"""The kinds of objects: one row each, with what every service needs of shape, rest and hold.
+
+Perception fits the shape to what it sees, manipulation takes the grasps, the brain asks whether an object stands, the
+page draws the volume, the simulation builds its body from the same measures. A kind that is not in the table is taken
+for a box without an upper side (`UNKNOWN`).
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal
+
+Shape = Literal["box", "sphere", "turned"]
+Rest = Literal["face", "side", "upside down"]
+Hold = Literal["around", "faces", "rim"]
+Segment = tuple[tuple[float, float], tuple[float, float]]
+"""A piece of an outline between two points (radius, height above the surface) [m]."""
+Outline = Callable[["Kind", float, float], list[Segment]]
+"""Of a kind, the outer radius and the height [m]: the outline that is turned about the vertical axis."""
+
+
+@dataclass(frozen=True)
+class GraspRule:
+    """From where an upright object is taken. `angles` [deg] are the approach's below horizontal, in order of trying.
+
+    `hold`: `around` the axis from any side, on two opposite `faces`, with one finger inside the `rim`. `height` is
+    where, as a share of the object's height. The rule is for objects between `least` and `most` [m] high.
+    """
+
+    hold: Hold
+    angles: tuple[int, ...]
+    height: float = 0.5
+    least: float = 0.0
+    most: float = math.inf
+
+
+@dataclass(frozen=True)
+class Kind:
+    """What is common to all objects of a kind; an object's own `size` is in the scene file. Angles were measured with
+    `python -m bench.grasp` for a parallel gripper of 85 mm.
+
+    `shape`: the solid that stands for it, `turned` about its vertical axis by `outline` (a cylinder without one).
+    `upright`: it has an upper side and is to stand on its foot. `rests`: how else it may come to rest: a box on any
+    `face`, round things on their `side` or `upside down`. `ends_alike`: top and bottom cannot be told apart.
+    `lean` [rad] and `wall` [m] of a vessel's wall; `handle`: how far one reaches beyond the body [m]. `facets`: how
+    much wider [m] than `size` a grip around it may be: the simulated wall has flat pieces. Lying it is taken
+    `lying_point` of its length from the middle towards the top, from `lying_angles` [deg] below horizontal.
+    """
+
+    name: str
+    shape: Shape
+    grasps: tuple[GraspRule, ...]
+    outline: Outline | None = None
+    upright: bool = True
+    rests: frozenset[Rest] = frozenset()
+    ends_alike: bool = False
+    lean: float = 0.0
+    wall: float = 0.0
+    handle: float = 0.0
+    facets: float = 0.0
+    lying_angles: tuple[int, ...] = (75, 90, 60)
+    lying_point: float = 0.0
+
+    @property
+    def by_the_rim(self) -> bool:
+        """It is held at its wall: what the fingers close on is no measure of the object."""
+        return any(rule.hold == "rim" for rule in self.grasps)
+
+    @property
+    def straight(self) -> bool:
+        """Round with a vertical wall, or a ball: any part of its surface tells where its axis is."""
+        return self.shape == "sphere" or (self.shape == "turned" and not self.lean)
+
+    def profile(self, size: tuple[float, float, float]) -> list[Segment]:
+        """The outline of an object of this kind and full extents `size` (x, y, z) [m]."""
+        return (self.outline or _cylinder)(self, size[0] / 2, size[2])
+
+    def foot(self, size: tuple[float, float, float]) -> float:
+        """Radius [m] of the part on which a round object of full extents `size` stands."""
+        return size[0] / 2 - size[2] * math.tan(self.lean)
+
+
+def _cylinder(kind: Kind, r: float, h: float) -> list[Segment]:
+    return [((r, 0), (r, h)), ((r, h), (0, h))]
+
+
+def _mug(kind: Kind, r: float, h: float) -> list[Segment]:
+    inner, floor = r - kind.wall, 0.008
+    return [((r, 0), (r, h)), ((inner, floor), (inner, h)), ((inner, h), (r, h)), ((0, floor), (inner, floor))]
+
+
+def _bowl(kind: Kind, r: float, h: float) -> list[Segment]:
+    base, floor = r - h * math.tan(kind.lean), 0.010
+    wall = kind.wall / math.cos(kind.lean)
+    return [((base, 0), (r, h)), ((base - wall, 0), (r - wall, h)), ((0, floor), (base, floor))]
+
+
+def _bottle(kind: Kind, r: float, h: float) -> list[Segment]:
+    neck, low = 0.014, 0.72 * h
+    return [((r, 0), (r, low)), ((r, low), (neck, low)), ((neck, low), (neck, h)), ((neck, h), (0, h))]
+
+
+_ROLLING = (GraspRule("around", (90, 65, 45, 30)),)
+# What is low is taken from above, what is tall from the side.
+_ON_FACES = (GraspRule("faces", (90, 65, 45, 30), most=0.09), GraspRule("faces", (15, 30, 45), least=0.09))
+UNKNOWN = Kind("", "box", _ON_FACES, upright=False)
+_TABLE = (
+    Kind(
+        "mug", "turned", (GraspRule("around", (40, 55, 25), 0.55),), _mug, rests=frozenset({"side", "upside down"}),
+        wall=0.004, handle=0.024, facets=0.002, lying_angles=(60, 75, 90, 50),
+    ),
+    Kind(
+        "can", "turned", (GraspRule("around", (15, 25, 5, 40), 0.55),), rests=frozenset({"side"}), ends_alike=True,
+        lying_angles=(75, 60, 90),
+    ),
+    Kind(
+        "bottle", "turned", (GraspRule("around", (15, 25, 5, 40), 0.42),), _bottle, rests=frozenset({"side"}),
+        lying_angles=(75, 90, 60), lying_point=-0.14,
+    ),
+    Kind("apple", "sphere", _ROLLING, upright=False),
+    Kind("ball", "sphere", _ROLLING, upright=False),
+    Kind("block", "box", _ON_FACES, upright=False, ends_alike=True),
+    Kind(
+        "box", "box", (GraspRule("faces", (15, 30, 45), 0.6), GraspRule("faces", (90, 70), 0.8)),
+        rests=frozenset({"face"}), ends_alike=True,
+    ),
+    Kind(
+        "bowl", "turned", (GraspRule("rim", (65, 72, 58, 80, 90)),), _bowl, rests=frozenset({"upside down"}),
+        lean=0.55, wall=0.006,
+    ),
+)  # fmt: skip
+KINDS = {kind.name: kind for kind in _TABLE}
+
+
+def kind_of(name: str) -> Kind:
+    """The row of a kind by its name."""
+    return KINDS.get(name, UNKNOWN)
