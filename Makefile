@@ -32,10 +32,11 @@ demo: setup ## "bring me the red mug", from a recording to the delivery; ARGS='-
 	$(BIN)/tidybot demo $(ARGS)
 
 # Two groups, one after the other: what runs in the test's own process, by test; what starts processes of its own, by
-# file (a router port and a namespace each, robots shared within a file). 5: ARGS chose none of them.
+# file (a router port and a namespace each, robots shared within a file); those wait most of the time for clocks and for
+# each other, so there are more of them than cores. 5: ARGS chose none of them.
 PYTEST := $(BIN)/python -m pytest -q
 TOGETHER := -n logical --maxprocesses 4 --dist worksteal tests/unit tests/e2e/in_process
-APART := -n 2 --dist loadfile --no-loadscope-reorder tests/e2e tests/integration tests/contract --ignore tests/e2e/in_process
+APART := -n 4 --dist loadfile --no-loadscope-reorder tests/e2e tests/integration tests/contract --ignore tests/e2e/in_process
 
 define run_tests
 @status=0; \

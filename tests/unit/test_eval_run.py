@@ -1,9 +1,8 @@
 """Workers that die or hang cost one case; the report has the fields of the contract; help and mistakes."""
 
 import contextlib
-import os
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from io import StringIO
 from pathlib import Path
 
@@ -16,60 +15,38 @@ from cli.errors import CliError
 from cli.main import main, parser
 from evaluation import __main__ as evaluation_main
 from evaluation import cluster, lane, report
-from evaluation.case import Case, Line, Observed, Result
+from evaluation.case import Observed, Result
 from evaluation.pool import Progressed, Repeated, evaluate
 from evaluation.suites import BARS, SUITES
 from evaluation.verdict import judge
 from judge.claims import Claim
+from tests.unit.eval_case import case_of, pretend
 
 FIELDS = [
     "suite", "scenarios", "delivered", "false_success", "by_cause", "spl", "sim_seconds", "wall_seconds", "cases",
 ]  # fmt: skip
 
 
-def case_of(seed: int, name: str = "fine") -> Case:
-    return Case(suite="fetch", seed=seed, name=name, command=f"do {name}", lines=(Line("do"),))
-
-
-def pretend(case: Case, progress: Callable[[float, str], None]) -> Result:
-    """A case without a robot."""
-    progress(1.0, str(os.getpid()) if case.name == "pid" else "WAITING")
-    marker = Path(case.command)
-    if case.name == "dies" or (case.name == "dies once" and not marker.exists()):
-        if case.name == "dies once":
-            marker.touch()
-        os._exit(7)
-    while case.name == "hangs":
-        pass
-    return judge(case, Observed(claimed="failed", failed_at="GRABBING", code="MISSED", ended=True), 0.1)
-
-
-def test_a_worker_that_dies_costs_its_case_only() -> None:
-    todo = [case_of(0), case_of(1, "dies"), case_of(2), case_of(3)]
-    said = list(evaluate(todo, 2, pretend))
+def test_a_worker_that_dies_costs_its_case_only_and_one_that_dies_once_a_repeat(tmp_path: Path) -> None:
+    once = msgspec.structs.replace(case_of(3, "dies once"), command=str(tmp_path / "died"))
+    said = list(evaluate([case_of(0), case_of(1, "dies"), case_of(2), once], 2, pretend))
     results = {r.seed: r for r in said if isinstance(r, Result)}
     assert sorted(results) == [0, 1, 2, 3]
     assert results[1].outcome == "crashed" and "status 7" in results[1].cause
     assert {results[n].outcome for n in (0, 2, 3)} == {"reported"}
     assert any(isinstance(p, Progressed) and p.state == "WAITING" for p in said)
+    assert sorted((r.case.seed, "status 7" in r.why) for r in said if isinstance(r, Repeated)) == [(1, True), (3, True)]
 
 
 def test_a_case_without_end_is_given_up() -> None:
-    said = list(evaluate([case_of(0, "hangs"), case_of(1)], 1, pretend, limit=3.0))
+    said = list(evaluate([case_of(0, "hangs"), case_of(1)], 1, pretend, limit=1.0))
     assert [r.outcome for r in said if isinstance(r, Result)] == ["crashed", "reported"]
-    assert [(r.case.seed, r.why) for r in said if isinstance(r, Repeated)] == [(0, "no result within 3 s of wall time")]
+    assert [(r.case.seed, r.why) for r in said if isinstance(r, Repeated)] == [(0, "no result within 1 s of wall time")]
 
 
 def test_a_process_that_says_nothing_is_hung() -> None:
-    said = list(evaluate([case_of(0, "hangs")], 1, pretend, silence=2.0))
-    assert [r.cause for r in said if isinstance(r, Result)] == ["crash: no sign of life for 2 s, in each of 2 attempts"]
-
-
-def test_a_worker_that_dies_once_costs_a_repeat(tmp_path: Path) -> None:
-    case = msgspec.structs.replace(case_of(0, "dies once"), command=str(tmp_path / "died"))
-    said = list(evaluate([case], 1, pretend))
-    assert [r.outcome for r in said if isinstance(r, Result)] == ["reported"]
-    assert ["status 7" in r.why for r in said if isinstance(r, Repeated)] == [True]
+    said = list(evaluate([case_of(0, "hangs")], 1, pretend, silence=1.0))
+    assert [r.cause for r in said if isinstance(r, Result)] == ["crash: no sign of life for 1 s, in each of 2 attempts"]
 
 
 def test_a_run_that_is_left_ends_its_workers() -> None:

@@ -40,7 +40,7 @@ def trajectory(seed: int) -> str:
     digest = hashlib.sha256()
     robot.advance(0.5)
     robot.bus.put(topics.SPEECH_TEXT, b"bring me the red mug")
-    for _ in range(60):
+    for _ in range(40):
         robot.advance(0.2)
         digest.update(robot.sim.physics.data.qpos.tobytes())
     return digest.hexdigest()
