@@ -25,12 +25,12 @@ from cli.plan import Plan
 from cli.services import Service
 from cli.supervision import Supervision, free_port
 from cli.up import bring_up
+from common.rendering.renderer import choose
 from evaluation.case import Case
 from evaluation.chaos import MISTREATED, TRAFFIC
 from evaluation.faults import Rule, faulty
 from evaluation.node import CASE
 from evaluation.stack import Stack
-from services.camera.render import choose
 
 T = TypeVar("T")
 WALL_LIMIT, NODE = 1800.0, "evaluation.node"

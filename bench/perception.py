@@ -16,8 +16,8 @@ import numpy as np
 
 from common.geometry import Pose2
 from common.messages import WorldObject
+from common.rendering.renderer import Renderer
 from common.scene import Receptacle, Scene, load_scene
-from services.camera.render import Renderer
 from services.camera.sensor import StereoCamera
 from services.perception import colour, segment
 from services.perception.detect import ClassicalDetector

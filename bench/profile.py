@@ -21,8 +21,8 @@ import msgspec
 
 from bench.meter import NOBODY, Meter
 from common.bus.base import IoBase
+from common.rendering.renderer import choose
 from common.time.lockstep import InProcess
-from services.camera.render import choose
 
 REST = "rest"
 JUDGES = (NOBODY, "watch")
@@ -36,8 +36,8 @@ PARTS = {
     "services.sim.base:BaseDriver.advance": "drivers",
     "services.sim.arm:ArmDriver.advance": "drivers",
     "services.sim.contacts:Contacts.step": "contact log",
-    "services.camera.render:Renderer.load": "state",
-    "services.camera.render:Renderer.rgbd": "drawing",
+    "common.rendering.renderer:Renderer.load": "state",
+    "common.rendering.renderer:Renderer.rgbd": "drawing",
     "services.perception.detect:ClassicalDetector.detect": "detection",
     "services.perception.body:Body.mask": "its own body",
     "services.perception.body:Body.pose": "its own body",
@@ -53,8 +53,8 @@ PARTS = {
     "common.bus.codec:encode": "encoding",
     "common.bus.codec:decode": "decoding",
     "common.bus.memory:MemoryBus.put": "delivery",
-    "services.camera.offscreen:Offscreen.__init__": "opening GL",
-    "services.camera.render:Renderer.__init__": "its model",
+    "common.rendering.offscreen:Offscreen.__init__": "opening GL",
+    "common.rendering.renderer:Renderer.__init__": "its model",
     "services.perception.body:Body.__init__": "its model",
 }
 """Where the parts are, and what each is called; parts of one name are added up."""

@@ -2,11 +2,11 @@
 
 import argparse
 import ctypes.util
-import importlib
 import importlib.util
 import os
 import platform
 import shutil
+import subprocess
 import sys
 from collections.abc import Iterator
 from datetime import datetime
@@ -19,7 +19,6 @@ from cli.authority import Authority
 from cli.errors import CliError
 from cli.programs import ROOT
 from cli.supervision import Supervision, port_is_free, run_dir
-from common import config
 from common.security import keys
 from common.time.clock import unix_time
 
@@ -27,10 +26,6 @@ EXPIRES_SOON = 30  # days
 PAGE_PORT = 8080
 ROOM = 500  # MB
 ROBOT = "stanford_tidybot"
-OLLAMA = "http://127.0.0.1:11434/v1"
-"""Where Ollama listens if it is not told otherwise."""
-SHOWN = 5
-"""Names of models in one line."""
 
 
 class Finding(msgspec.Struct):
@@ -75,9 +70,11 @@ def packages() -> Iterator[Finding]:
 def graphics() -> Iterator[Finding]:
     fix = "apt-get install libegl1 libgl1-mesa-dri   (or libosmesa6)"
     # A library that is there may still not render: the camera's own choice tells, by trying.
-    best = importlib.import_module("services.camera.render").best()
-    if best != "raycast":
-        yield Finding("ok", "camera GL", f"{best} renders")
+    from common.rendering import renderer  # NumPy is not for every command to load
+
+    found = renderer.best()
+    if found != "raycast":
+        yield Finding("ok", "camera GL", f"{found} renders")
     else:
         yield Finding("note", "camera GL", "none: cameras use ray casting (slower, plain colours)", fix)
     if os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"):
@@ -202,36 +199,15 @@ def robots() -> Iterator[Finding]:
 
 
 def language_model() -> Iterator[Finding]:
-    """Who plans with `planner.backend = "auto"`: the endpoint of the configuration, by the planner's own look."""
-    parameters = importlib.import_module("services.planner.config").PlannerConfig
-    endpoint = importlib.import_module("services.planner.endpoint")
-    what = "language model"
-    try:
-        planner = config.load("planner", parameters, config.config_dir(), config.overrides(os.environ, ()))
-    except config.ConfigError as error:
-        yield Finding("error", what, str(error), "correct planner.toml or the TIDYBOT__PLANNER__ variables")
+    """Who plans with `planner.backend = "auto"`: the planner's own look at its configuration and endpoint."""
+    path = os.pathsep.join(p for p in (str(ROOT), os.environ.get("PYTHONPATH", "")) if p)
+    command = [sys.executable, "-m", "services.planner.diagnosis"]
+    done = subprocess.run(command, env={**os.environ, "PYTHONPATH": path}, capture_output=True, text=True)
+    if done.returncode:
+        why = done.stderr.strip().splitlines()[-1:] or [f"exit status {done.returncode}"]
+        yield Finding("error", "language model", f"the planner cannot tell: {why[0]}", "make setup")
         return
-    if planner.backend == "grammar":
-        yield Finding("ok", what, "none wanted: planner.backend = grammar")
-        return
-    if not endpoint.installed():
-        fix = ".venv/bin/pip install 'tidybot-zenoh[llm]'"
-        level = "error" if planner.backend == "llm" else "note"
-        yield Finding(level, what, "the openai package is missing: the grammar plans", fix)
-    found = endpoint.look(planner.llm_url, planner.llm_key)
-    if not found.good:
-        other = endpoint.look(OLLAMA) if planner.llm_url != OLLAMA else found
-        fix = "start one there (docs/COMMANDS.md), or go on without"
-        if other.good:
-            fix = f"export TIDYBOT__PLANNER__LLM_URL={OLLAMA}   (Ollama answers there)"
-        yield Finding("note", what, f"{planner.llm_url}: {found.why}; the grammar plans", fix)
-        return
-    model = endpoint.model_of(planner.llm_model, found)
-    listed = ", ".join(found.models[:SHOWN]) + (", ..." if len(found.models) > SHOWN else "")
-    known = model in found.models or not found.models
-    fix = "" if known else f"export TIDYBOT__PLANNER__LLM_MODEL={found.models[0]}"
-    state = f"{planner.llm_url} answers; {model} plans" + (f" (of {listed})" if listed else "")
-    yield Finding("ok" if known else "note", what, state, fix)
+    yield msgspec.json.decode(done.stdout, type=Finding)
 
 
 def doctor(args: argparse.Namespace) -> int:

@@ -1,13 +1,12 @@
 """`tidybot eval`: scenarios in lockstep, judged by physics. The work is done by the `evaluation` package."""
 
 import argparse
-import os
 import sys
 from pathlib import Path
 
 from cli.errors import CliError, checked
 from cli.plan import add_machine_options
-from cli.programs import ROOT
+from cli.programs import become
 
 SUITES = ("seed", "fetch", "tidy", "faults", "dialogue", "chaos", "commands", "spoken")
 EXAMPLES = """examples:
@@ -36,9 +35,7 @@ def evaluate(args: argparse.Namespace) -> int:
     if args.cluster and args.cluster != "local" and not args.cluster.startswith(("tcp://", "tls://")):
         raise CliError(f"--cluster {args.cluster}: expected tcp://HOST:PORT of a Dask scheduler, or local")
     words = sys.argv[sys.argv.index("eval") + 1 :]
-    path = os.pathsep.join(p for p in (str(ROOT), os.environ.get("PYTHONPATH", "")) if p)
-    environment = {"OMP_NUM_THREADS": "1", **os.environ, "PYTHONPATH": path}
-    os.execve(sys.executable, [sys.executable, "-m", "evaluation", *words], environment)
+    become("evaluation", *words)
 
 
 def _positive(text: str) -> int:

@@ -1,7 +1,6 @@
 """`tidybot explain ID`: one mission as a timeline: what was heard, planned, seen and done, and why it failed."""
 
 import argparse
-import importlib
 import textwrap
 from pathlib import Path
 from typing import Any
@@ -63,9 +62,11 @@ def explain(args: argparse.Namespace) -> int:
             raise CliError(f"no mission {args.id!r}{near(args.id, known)}; `tidybot missions` lists all")
         seen = pictures(link, record) if args.html else []
     if args.html:
-        page: str = importlib.import_module("services.dashboard.timeline").page(record, seen)
+        # Jinja2 is not for every command to load.
+        from common.mission_log.timeline import page
+
         try:
-            args.html.write_text(page, encoding="utf-8")
+            args.html.write_text(page(record, seen), encoding="utf-8")
         except OSError as error:
             raise CliError(f"{args.html}: {error.strerror}") from None
         print(args.html)

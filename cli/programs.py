@@ -8,6 +8,7 @@ import sys
 import tempfile
 from collections.abc import Sequence
 from pathlib import Path
+from typing import NoReturn
 
 from cli.services import Service
 
@@ -15,6 +16,13 @@ ROOT = Path(__file__).resolve().parent.parent
 SOCKET_PATH_LIMIT = 100
 ROUTER_SOCKET, ENDPOINT_PATH = "router.sock", re.compile(r"[\w./-]+", re.ASCII)
 WATCHDOG = "watchdog"
+
+
+def become(module: str, *words: str) -> NoReturn:
+    """Replace this process by `python -m module words`, as commands do whose work needs services in their process."""
+    path = os.pathsep.join(p for p in (str(ROOT), os.environ.get("PYTHONPATH", "")) if p)
+    environment = {"OMP_NUM_THREADS": "1", **os.environ, "PYTHONPATH": path}
+    os.execve(sys.executable, [sys.executable, "-m", module, *words], environment)
 
 
 def socket_path(directory: Path) -> Path:

@@ -1,7 +1,6 @@
-"""How far each case came, with confidence: counts, Wilson intervals, and their bars as SVG. Pure."""
+"""How far each case came: counts by stage, and where the charts of the report have their bars and dots. Pure."""
 
 from collections.abc import Sequence
-from html import escape
 from typing import Any
 
 from evaluation.case import Result
@@ -9,6 +8,7 @@ from evaluation.statistics import share, wilson
 
 BUSY = {"PLANNING", "GROUNDING", "NAVIGATING", "GRABBING", "RETURNING", "RELEASING"}
 CARRIED = 0.3
+"""Distance [m] in the hand from which an object counts as carried; chosen: more than a lift moves it."""
 STAGES = ("understood", "at the object", "lifted", "carried", "delivered")
 
 
@@ -32,51 +32,44 @@ def by_stage(results: Sequence[Result]) -> list[tuple[str, int, int]]:
     return [(stage, sum(row[stage] for row in rows), len(rows)) for stage in STAGES]
 
 
-def bars(rows: Sequence[tuple[str, int, int]], width: int = 640) -> str:
-    """A bar for each row with its 95 % interval as a whisker."""
-    left, right, line = 150, 150, 34
-    span = width - left - right
-    parts = []
+def bars(rows: Sequence[tuple[str, int, int]], width: int = 640) -> dict[str, Any]:
+    """Where the chart of (name, successes, cases) has its bars [px], with 95 % intervals from `low` to `high`."""
+    margin, line = 150, 34
+    span = width - 2 * margin
+    drawn = []
     for n, (name, good, count) in enumerate(rows):
         low, high = wilson(good, count)
-        part, y = (good / count if count else 0.0), n * line + 6
-        middle, begin, end = y + 11, left + span * low, left + span * high
-        parts.append(
-            f'<text x="{left - 8}" y="{middle + 4}" text-anchor="end">{escape(name)}</text>'
-            f'<rect x="{left}" y="{y}" width="{span}" height="22" fill="#f1f3f5"/>'
-            f'<rect x="{left}" y="{y}" width="{span * part:.1f}" height="22" fill="#69db7c"/>'
-            f'<path d="M{begin:.1f} {middle}H{end:.1f}M{begin:.1f} {middle - 5}v10M{end:.1f} {middle - 5}v10" '
-            'stroke="#212529" stroke-width="1.5" fill="none"/>'
-            f'<text x="{left + span + 8}" y="{middle + 4}">'
-            f"{share(good, count)}</text>"
-        )
-    return _svg(width, len(rows) * line + 8, parts, "success by stage")
+        y = n * line + 6
+        drawn.append(
+            {
+                "name": name, "y": y, "middle": y + 11, "width": round(span * good / count, 1) if count else 0.0,
+                "low": round(margin + span * low, 1), "high": round(margin + span * high, 1),
+                "share": share(good, count),
+            }
+        )  # fmt: skip
+    return {"width": width, "height": len(rows) * line + 8, "left": margin, "span": span, "bars": drawn}
 
 
-def strip(values: Sequence[tuple[float, bool, str]], unit: str, top: float, width: int = 640) -> str:
-    """One dot for each (value, good, title) along an axis from 0 to `top`, stacked where dots would overlap."""
-    left, right = 30, 30
-    span, heights = width - left - right, dict[int, int]()
+def strip(values: Sequence[tuple[float, bool, str]], unit: str, top: float, width: int = 640) -> dict[str, Any]:
+    """Where the dots of (value, good, title) are [px] on an axis from 0 to `top`, stacked where they would overlap."""
+    margin, dot, ticks = 30, 9, 5
+    span, heights = width - 2 * margin, dict[int, int]()
     places = []
     for value, good, title in sorted(values, key=lambda v: v[0]):
-        x = left + span * min(max(value / top, 0.0), 1.0)
-        level = heights[round(x / 9)] = heights.get(round(x / 9), -1) + 1
+        x = margin + span * min(max(value / top, 0.0), 1.0)
+        level = heights[round(x / dot)] = heights.get(round(x / dot), -1) + 1
         places.append((x, level, good, title))
-    height = 26 + 9 * (1 + max(heights.values(), default=0))
-    parts = [f'<line x1="{left}" y1="{height - 18}" x2="{width - right}" y2="{height - 18}" stroke="#adb5bd"/>']
-    for n in range(6):
-        x = left + span * n / 5
-        parts.append(f'<text x="{x:.0f}" y="{height - 4}" text-anchor="middle">{top * n / 5:.3g} {unit}</text>')
-    for x, level, good, title in places:
-        colour = "#2b8a3e" if good else "#e03131"
-        y = height - 24 - 9 * level
-        parts.append(f'<circle cx="{x:.1f}" cy="{y}" r="4" fill="{colour}"><title>{escape(title)}</title></circle>')
-    return _svg(width, height, parts, unit or "share")
-
-
-def _svg(width: int, height: int, parts: Sequence[str], label: str) -> str:
-    look = f'viewBox="0 0 {width} {height}" style="max-width:{width}px" role="img" aria-label="{label}"'
-    return f"<svg {look}>{''.join(parts)}</svg>"
+    height = 26 + dot * (1 + max(heights.values(), default=0))
+    return {
+        "width": width, "height": height, "left": margin, "right": width - margin, "label": unit or "share",
+        "ticks": [
+            {"x": round(margin + span * n / ticks), "label": f"{top * n / ticks:.3g} {unit}"} for n in range(ticks + 1)
+        ],
+        "dots": [
+            {"x": round(x, 1), "y": height - 24 - dot * level, "good": good, "title": title}
+            for x, level, good, title in places
+        ],
+    }  # fmt: skip
 
 
 def _list(value: Any) -> list[Any]:

@@ -19,10 +19,10 @@ from typing import Any
 
 import msgspec
 
+from common.rendering.renderer import best, environment
 from common.time.clock import monotonic
 from evaluation.case import Case, Observed, Result
 from evaluation.verdict import judge
-from services.camera.render import best, environment
 
 Progress = Callable[[float, str], None]
 Run = Callable[[Case, Progress], Result]

@@ -12,7 +12,7 @@ import msgspec
 from common.runtime import main
 from evaluation.case import Case
 from evaluation.inject import injected
-from evaluation.stack import service_class
+from evaluation.registry import service_class
 from evaluation.strikes import StrikeFile
 
 CASE = "TIDYBOT_EVAL_CASE"

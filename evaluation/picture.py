@@ -8,8 +8,8 @@ from PIL import Image
 
 from common import topics
 from common.bus import codec
-from services.camera.outlook import outlook
-from services.camera.render import Renderer
+from common.rendering.free_camera import free_view
+from common.rendering.renderer import Renderer
 
 WIDTH, HEIGHT = 420, 300
 Get = Callable[[str], bytes | None]
@@ -27,7 +27,7 @@ def last_picture(get: Get) -> str:
     renderer = Renderer(codec.decode(topics.SIM_MODEL, model).mjcf, "raycast")
     try:
         renderer.load(seen.qpos, seen.mocap)
-        picture = renderer.picture(outlook(renderer), WIDTH, HEIGHT)
+        picture = renderer.picture(free_view(renderer), WIDTH, HEIGHT)
     except (ValueError, KeyError):
         return ""
     finally:

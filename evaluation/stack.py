@@ -4,7 +4,6 @@ import gc
 import importlib
 import json
 from collections.abc import Callable, Mapping
-from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -14,11 +13,12 @@ from cli.services import SERVICES
 from common import config, topics
 from common import messages as m
 from common.bus.memory import MemoryIo
+from common.rendering.renderer import choose
 from common.scene import Scene, load_scene
 from common.time.clock import ManualClock
 from common.time.lockstep import DT, InProcess
 from evaluation.harm import CutBus, FullDisk
-from services.camera.render import choose
+from evaluation.registry import service_class
 
 Swap = Callable[[Any], Any]
 """Takes a service's class and returns the one that runs in its place."""
@@ -41,20 +41,6 @@ def replacement(entry: str) -> tuple[str, Any]:
     if kind.NAME not in paced_services():
         raise LookupError(f"{entry}: no service {kind.NAME!r}; known: {', '.join(paced_services())}")
     return kind.NAME, kind
-
-
-@cache
-def service_class(name: str) -> Any:
-    """The class of a service of the table, by its NAME.
-
-    Raises:
-        LookupError: the service's module has no such class.
-    """
-    module = importlib.import_module(f"services.{name}.service")
-    for found in vars(module).values():
-        if isinstance(found, type) and getattr(found, "NAME", None) == name:
-            return found
-    raise LookupError(f"services.{name}.service has no class with NAME = {name!r}")
 
 
 def paced_services() -> tuple[str, ...]:

@@ -8,7 +8,7 @@ from pathlib import Path
 from common import topics
 from common.bus import codec, delivery
 from common.bus.session import BusError, default_connect, open_session
-from services.camera.render import Renderer, View
+from common.rendering.renderer import Renderer, View
 
 VIEWS = {
     "overview": View((2.0, 0.3, 0.0), 11.0, 90.0, -62.0),

@@ -8,8 +8,8 @@ from common import messages as m
 from common import topics
 from common.bus.port import Io, Job
 from common.geometry import matrix_quat
+from common.rendering.renderer import Renderer
 from services.camera.config import CameraConfig
-from services.camera.render import Renderer
 from services.camera.sensor import StereoCamera, exact
 
 MAX_WAITING = 8

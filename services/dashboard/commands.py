@@ -6,8 +6,8 @@ from common import messages as m
 from common import topics
 from common.bus.port import Io
 from common.geometry import Pose2
-from services.dashboard.history import Transcript
-from services.dashboard.picking import Picked
+from services.dashboard.panels.history_buffers import Transcript
+from services.dashboard.scene.picking import Picked
 
 RATE = 16000
 CHUNK = RATE // 10 * 2
@@ -26,7 +26,7 @@ class Commands:
         self._sound = b""
         self._sent = 0
 
-    def take_notes(self, transcript: Transcript) -> None:
+    def use_transcript(self, transcript: Transcript) -> None:
         """From now on, what visitors do is noted there."""
         self._transcript = transcript
 

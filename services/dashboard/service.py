@@ -8,28 +8,31 @@ from common import messages as m
 from common import topics
 from common.bus.port import Io, Job
 from common.geometry import Pose2
+from common.mission_log import timeline
 from common.runtime import StartError
-from services.dashboard import markup, timeline
-from services.dashboard.bar import bar
-from services.dashboard.cameras import Cameras
-from services.dashboard.care import Care
+from services.dashboard.background_requests import BackgroundRequests
 from services.dashboard.commands import Commands
 from services.dashboard.config import DashboardConfig
-from services.dashboard.door import PageError
-from services.dashboard.drawing import Drawing, draw
-from services.dashboard.events import Asked, Click, Sound, Words
-from services.dashboard.history import Reasons, Services, Transcript
-from services.dashboard.layers import Layers
-from services.dashboard.panels import Panels
-from services.dashboard.picking import pick
-from services.dashboard.plots import Plots
-from services.dashboard.restart import Supervisor
-from services.dashboard.tracking import FRESH, off_path
-from services.dashboard.view import View
-from services.dashboard.web import Web
+from services.dashboard.panels import markup
+from services.dashboard.panels.cameras import Cameras
+from services.dashboard.panels.history_buffers import HealthRecords, Transcript, TreeReasons
+from services.dashboard.panels.plots import Plots
+from services.dashboard.panels.status_bar import status_bar
+from services.dashboard.panels.tracking_error import FRESH, off_path
+from services.dashboard.panels.widgets import Panels
+from services.dashboard.scene.drawing import Drawing, draw
+from services.dashboard.scene.layers import Layers
+from services.dashboard.scene.picking import pick
+from services.dashboard.scene.view import View
+from services.dashboard.supervisor_client import Supervisor
+from services.dashboard.web.events import Asked, Click, Sound, Words
+from services.dashboard.web.listener import PageError
+from services.dashboard.web.server import Web
 
 SLOW, PLOT = 0.25, 0.5
+"""Periods [s] of panels and ghosts, and of the curves; chosen: as often as a person reads them."""
 GRABBING = ("reach", "aim", "grasp")
+"""Phases of a grab in which its candidates are shown."""
 
 
 class DashboardService:
@@ -50,8 +53,8 @@ class DashboardService:
         self.view, self._layers = View(self.web.viser), Layers(self.web.viser)
         self.panels = Panels(self.web.viser, config.camera_width, config.camera_height)
         self._cameras = Cameras(config, io, self.panels)
-        self._transcript, self._services, self._reasons = Transcript(), Services(), Reasons()
-        self._care = Care(
+        self._transcript, self._health, self._reasons = Transcript(), HealthRecords(), TreeReasons()
+        self._requests = BackgroundRequests(
             io, Supervisor(config.supervisor), lambda words: self._transcript.add(self._t, "robot", words)
         )
         self._commands = Commands(io, self._transcript)
@@ -61,9 +64,9 @@ class DashboardService:
         self._base: Pose2 = (0.0, 0.0, 0.0)
         self._t = 0.0
         self._move_at = self._slow_at = self._plot_at = float("-inf")
-        self._way: list[tuple[float, float]] = []
+        self._path: list[tuple[float, float]] = []
         self._seen_grasps: tuple[object, bool] = (None, False)
-        self._told: object = None
+        self._shown_bar: object = None
         self._world: m.WorldObjects | None = None
         self._ghosts_at = float("-inf")
         self._tree: m.TreeNode | None = None
@@ -77,7 +80,7 @@ class DashboardService:
         self._obey(now)
         self._redraw_model(now)
         watched = self.web.watched
-        self._care.step(now, watched)
+        self._requests.step(now, watched)
         if watched or now >= self._move_at:
             # All that is new goes out at once: each message of its own would wake the web server and every visitor.
             with self.web.viser.atomic():
@@ -108,11 +111,11 @@ class DashboardService:
             command = io.latest(topics.ARM_COMMAND) if io.age(topics.ARM_COMMAND, now) < FRESH else None
             self._plots.take(now, joints, command, self._off_path())
         for goal in io.take_all(topics.SPEECH_GOAL):
-            self._transcript.goal(t, goal)
+            self._transcript.add_goal(t, goal)
         for result in io.take_all(topics.SPEECH_RESULT):
-            self._transcript.heard(t, result)
+            self._transcript.add_result(t, result)
         for health in io.take_all(topics.HEALTH):
-            self._services.take(health)
+            self._health.take(health)
         for chunk in io.take_all(topics.AUDIO_OUT):
             if len(chunk.data) % 2 or not 4000 <= chunk.rate <= 192000:
                 io.count_drop(topics.AUDIO_OUT.key, "not 16 bit samples at 4 to 192 kHz")
@@ -122,7 +125,7 @@ class DashboardService:
     def _off_path(self) -> float:
         """How far the base is from its path [m], while it drives along one."""
         driving = self._io.latest(topics.NAVIGATION_FEEDBACK)
-        return off_path(self._way, self._base) if driving is not None and driving.status == "navigating" else 0.0
+        return off_path(self._path, self._base) if driving is not None and driving.status == "navigating" else 0.0
 
     # --- from the visitors
     def _obey(self, now: float) -> None:
@@ -130,7 +133,7 @@ class DashboardService:
         while not self.web.inbox.empty():
             event = self.web.inbox.get_nowait()
             if isinstance(event, Asked):
-                self._care.mission(event.mission, partial(self._show_mission, event))
+                self._requests.mission(event.mission, partial(self._show_mission, event))
             elif isinstance(event, Words):
                 self._said(event)
             elif isinstance(event, Sound):
@@ -143,7 +146,7 @@ class DashboardService:
 
     def _said(self, words: Words) -> None:
         if words.do == "restart":
-            self._care.restart(words.text)
+            self._requests.restart(words.text)
         else:
             self._commands.words(words.do, words.text, self._t)
 
@@ -176,7 +179,7 @@ class DashboardService:
         for scan in io.take_all(topics.SCAN):
             view.scan(scan, self._base, panels.scan)
         for path in io.take_all(topics.NAV_PATH):
-            self._way = path.points
+            self._path = path.points
             view.path(path.points)
         self._overlay()
         world = io.latest(topics.WORLD_OBJECTS)
@@ -191,8 +194,8 @@ class DashboardService:
         except ValueError as error:
             self._io.count_drop(topics.COSTMAP.key, str(error))
         found, doing = self._io.latest(topics.GRASPS), self._io.latest(topics.MANIPULATION_STATUS)
-        under_way = doing is not None and doing.status == "executing" and doing.phase in GRABBING
-        shown = (found, under_way and self.panels.grasps)
+        under_path = doing is not None and doing.status == "executing" and doing.phase in GRABBING
+        shown = (found, under_path and self.panels.grasps)
         if shown != self._seen_grasps:
             self._seen_grasps = shown
             self._layers.grasps(*shown)
@@ -211,22 +214,22 @@ class DashboardService:
             self._tree = tree.root
         if self._tree is not None:
             panels.text("tree", markup.tree(self._tree, self._reasons.last))
-        rows = self._services.rows(lambda name: io.peer(name) is not None)
-        panels.text("services", markup.services(rows, self._care.restartable, self._care.why))
-        if self._care.missions is not None:
-            panels.text("missions", markup.missions(self._care.missions))
-        self._tell(state)
+        rows = self._health.rows(lambda name: io.peer(name) is not None)
+        panels.text("services", markup.services(rows, self._requests.restartable, self._requests.why))
+        if self._requests.missions is not None:
+            panels.text("missions", markup.missions(self._requests.missions))
+        self._show_bar(state)
 
-    def _tell(self, state: m.BrainState | None) -> None:
-        """The bar at the top of the page."""
+    def _show_bar(self, state: m.BrainState | None) -> None:
+        """Send the status bar at the top of the page when it changed."""
         sim, speech = self._io.latest(topics.SIM_STATUS), self._io.latest(topics.SPEECH_STATUS)
-        told = bar(state, sim, self._t) | {
+        shown = status_bar(state, sim, self._t) | {
             "listening": speech is not None and speech.state == "listening",
             "sim": self._io.peer("sim") is not None,
         }
-        if told != self._told:
-            self._told = told
-            self.web.say("state", told)
+        if shown != self._shown_bar:
+            self._shown_bar = shown
+            self.web.say("state", shown)
 
     def close(self) -> None:
         self.web.close()

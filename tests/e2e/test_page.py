@@ -19,8 +19,8 @@ from cli.link import Link
 from common import topics
 from common.bus.session import open_session
 from services.dashboard.config import DashboardConfig
-from services.dashboard.events import Sound
-from services.dashboard.web import Web
+from services.dashboard.web.events import Sound
+from services.dashboard.web.server import Web
 from tests.support import ROOT, eventually, free_port
 
 playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")

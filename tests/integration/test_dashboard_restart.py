@@ -7,7 +7,7 @@ import pytest
 from cli.programs import socket_path
 from cli.services import SERVICES
 from cli.supervision import RunInfo, Supervision, free_port, stopping
-from services.dashboard.restart import Refused, Supervisor
+from services.dashboard.supervisor_client import Refused, Supervisor
 from tests.support import eventually
 
 

@@ -17,10 +17,10 @@ from common.bus import codec
 from common.recording import Recorder, RecordingError
 from common.scene import load_scene
 from services.dashboard.config import DashboardConfig
-from services.dashboard.events import Click, Words
-from services.dashboard.playback import opened
+from services.dashboard.replay.playback import opened
 from services.dashboard.service import DashboardService
-from services.dashboard.web import Web
+from services.dashboard.web.events import Click, Words
+from services.dashboard.web.server import Web
 from services.sim.physics import Physics
 from services.sim.robot import HOME_ARM, JOINT_NAMES
 from tests.node import Node

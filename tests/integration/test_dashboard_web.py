@@ -20,10 +20,10 @@ from common import topics
 from common.bus.memory import MemoryBus, MemoryIo
 from common.scene import load_scene
 from services.dashboard.config import DashboardConfig
-from services.dashboard.door import PageError
-from services.dashboard.events import Sound, Words
 from services.dashboard.service import DashboardService
-from services.dashboard.web import Web
+from services.dashboard.web.events import Sound, Words
+from services.dashboard.web.listener import PageError
+from services.dashboard.web.server import Web
 from tests.support import eventually
 
 TOKEN = "a token for these tests"

@@ -11,8 +11,9 @@ import pytest
 from common import messages as m
 from common import topics
 from common.geometry import quat_matrix
+from common.rendering import raycast
+from common.rendering import renderer as render
 from common.scene import load_scene
-from services.camera import raycast, render
 from services.camera.config import CameraConfig
 from services.camera.service import CameraService
 from services.sim.physics import Physics
@@ -45,7 +46,7 @@ def test_ray_cast_depth_and_colours_are_those_of_the_scene() -> None:
 
 ONE_PASS = f"""
 import mujoco, numpy
-from services.camera.render import Renderer
+from common.rendering.renderer import Renderer
 ours = Renderer('''{TINY}''', "auto")
 ours.load(ours.data.qpos.tobytes(), b"")
 rgb, depth = ours.rgbd("down", 80, 60)

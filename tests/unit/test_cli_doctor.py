@@ -14,7 +14,7 @@ import pytest
 from cli import doctor
 from cli.authority import Authority
 from cli.errors import CliError
-from services.camera import render
+from common.rendering import renderer as render
 
 
 @pytest.fixture(autouse=True)

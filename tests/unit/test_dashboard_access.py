@@ -2,7 +2,7 @@
 
 import pytest
 
-from services.dashboard import access
+from services.dashboard.web import access
 
 
 @pytest.mark.parametrize("host", ["127.0.0.1", "127.3.2.1", "::1", "[::1]", "localhost", "ip6-localhost"])

@@ -13,8 +13,8 @@ from common.bus.memory import MemoryBus, MemoryIo
 from common.scene import load_scene
 from common.topics import Topic
 from services.dashboard.commands import CHUNK, LONGEST, TRAILING, Commands
-from services.dashboard.history import Transcript
-from services.dashboard.picking import Picked
+from services.dashboard.panels.history_buffers import Transcript
+from services.dashboard.scene.picking import Picked
 
 WRITES = (topics.VOICE_COMMAND, topics.ROBOT_STOP, topics.ROBOT_RESUME, topics.NAV_GOAL, topics.AUDIO_PCM)
 READY = m.BrainState(state="LISTENING")

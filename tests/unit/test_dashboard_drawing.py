@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from common.scene import load_scene
-from services.dashboard.drawing import Drawing, Mesh, draw, posture
-from services.dashboard.shapes import COLOURS, fallback
+from services.dashboard.scene.drawing import Drawing, Mesh, draw, posture
+from services.dashboard.scene.shapes import COLOURS, fallback
 from services.sim.physics import Physics
 
 

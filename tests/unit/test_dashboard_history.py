@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from common import messages as m
-from services.dashboard import markup
-from services.dashboard.history import Curves, Jitter, Reasons, Services, Transcript
+from services.dashboard.panels import markup
+from services.dashboard.panels.history_buffers import Curves, HealthRecords, Jitter, Transcript, TreeReasons
 
 
 def health(name: str, epoch: str, **more: object) -> m.Health:
@@ -14,7 +14,7 @@ def health(name: str, epoch: str, **more: object) -> m.Health:
 
 
 def test_a_new_epoch_is_a_restart() -> None:
-    services = Services()
+    services = HealthRecords()
     for epoch in ("a", "a", "b", "b", "c"):
         services.take(health("sim", epoch, drops=3, last_error="bad"))
     services.take(health("brain", "x"))
@@ -25,13 +25,13 @@ def test_a_new_epoch_is_a_restart() -> None:
 
 def test_transcript_has_both_sides_once() -> None:
     talk = Transcript()
-    talk.heard(1.0, m.SpeechResult(text="bring me the mug"))
-    talk.heard(1.2, m.SpeechResult(text="bring me the mug"))
-    talk.goal(2.0, m.SpeechGoal(goal="say Did you say mug?"))
-    talk.goal(2.1, m.SpeechGoal(goal="listen"))
-    talk.heard(3.0, m.SpeechResult(text="ERROR", code="NOISE", detail="no words"))
-    talk.heard(4.0, m.SpeechResult(text="ERROR", code="TIMEOUT"))
-    talk.heard(9.0, m.SpeechResult(text="bring me the mug"))
+    talk.add_result(1.0, m.SpeechResult(text="bring me the mug"))
+    talk.add_result(1.2, m.SpeechResult(text="bring me the mug"))
+    talk.add_goal(2.0, m.SpeechGoal(goal="say Did you say mug?"))
+    talk.add_goal(2.1, m.SpeechGoal(goal="listen"))
+    talk.add_result(3.0, m.SpeechResult(text="ERROR", code="NOISE", detail="no words"))
+    talk.add_result(4.0, m.SpeechResult(text="ERROR", code="TIMEOUT"))
+    talk.add_result(9.0, m.SpeechResult(text="bring me the mug"))
     assert [(line.who, line.text) for line in talk.lines] == [
         ("heard", "bring me the mug"),
         ("said", "Did you say mug?"),
@@ -71,7 +71,6 @@ def test_the_tree_shows_the_running_branch_and_reasons() -> None:
     leaf = node("drive", "RUNNING", detail="2.0 m left")
     root = node("root", "RUNNING", node("wait", "SUCCESS"), node("mission", "RUNNING", leaf), node("say", "INVALID"))
     text = markup.tree(root)
-    assert markup.running(root) == ["root", "mission", "drive"]
     assert "2.0 m left" in text
     assert text.count("▶") == 3
     assert text.count("✓") == 1
@@ -86,7 +85,7 @@ def test_nothing_from_the_bus_becomes_html() -> None:
     steps = [m.PlanStep(action="say", text=evil)]
     talk = Transcript()
     talk.add(0.0, evil, evil)
-    services = Services()
+    services = HealthRecords()
     services.take(health(evil, "a", last_error=evil))
     pages = (
         markup.tree(node(evil, "RUNNING", detail=evil)),
@@ -116,7 +115,7 @@ def grown(status: str, detail: str) -> m.TreeSnapshot:
 
 
 def test_a_node_that_was_reset_still_tells_its_last_reason() -> None:
-    reasons = Reasons()
+    reasons = TreeReasons()
     reasons.take(grown("RUNNING", "turning"))
     reasons.take(grown("FAILURE", "no <mug> in sight"))
     later = grown("INVALID", "")
@@ -129,7 +128,7 @@ def test_a_node_that_was_reset_still_tells_its_last_reason() -> None:
 
 
 def test_reasons_of_nodes_that_are_gone_are_forgotten() -> None:
-    reasons = Reasons()
+    reasons = TreeReasons()
     reasons.take(grown("FAILURE", "why"))
     root = m.TreeNode(name="root", type="Selector", status="RUNNING")
     reasons.take(m.TreeSnapshot(t=8.0, root=root))

@@ -9,8 +9,8 @@ import pytest
 from common import messages as m
 from common.geometry import matrix_quat
 from common.scene import load_scene
-from services.dashboard.layers import FOOTPRINT, STATES, forks, picture
-from services.dashboard.tracking import arm_error, off_path
+from services.dashboard.panels.tracking_error import arm_error, off_path
+from services.dashboard.scene.layers import FOOTPRINT, STATES, forks, picture
 from services.manipulation.grasp import Target, candidates, shown
 from services.navigation.costmap import Costmap
 

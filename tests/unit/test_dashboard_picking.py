@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from common import messages as m
-from services.dashboard.drawing import Mesh, draw
-from services.dashboard.picking import first_hit, pick
+from services.dashboard.scene.drawing import Mesh, draw
+from services.dashboard.scene.picking import first_hit, pick
 
 FLAT = draw(
     "<mujoco><worldbody><geom type='plane' size='6 5 .1'/>"

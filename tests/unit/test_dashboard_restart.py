@@ -9,10 +9,11 @@ import pytest
 from common import topics
 from common.bus.memory import MemoryBus, MemoryIo
 from common.scene import load_scene
-from services.dashboard import markup, restart
-from services.dashboard.care import Care
-from services.dashboard.history import Row
-from services.dashboard.restart import NOBODY, Refused, Supervisor
+from services.dashboard import supervisor_client as restart
+from services.dashboard.background_requests import BackgroundRequests
+from services.dashboard.panels import markup
+from services.dashboard.panels.history_buffers import ServiceRow
+from services.dashboard.supervisor_client import NOBODY, Refused, Supervisor
 
 
 class Fake(Supervisor):
@@ -58,7 +59,7 @@ def test_without_a_supervisor_there_are_no_buttons_and_the_page_says_why(tmp_pat
     assert nobody.names() == ()
     with pytest.raises(Refused):
         nobody.restart("sim")
-    row = Row("sim", True, 0, 100.0, 80.0, 0, 5.0, "")
+    row = ServiceRow("sim", True, 0, 100.0, 80.0, 0, 5.0, "")
     bare = markup.services([row], (), NOBODY)
     assert "<button" not in bare
     assert "docker compose restart" in bare
@@ -71,10 +72,10 @@ def test_a_dead_socket_is_nobody(tmp_path: Path) -> None:
     assert Supervisor(str(tmp_path / "dead.sock")).names() == ()
 
 
-def carer(told: list[str], supervisor: Supervisor) -> tuple[Care, MemoryBus, MemoryIo]:
+def carer(told: list[str], supervisor: Supervisor) -> tuple[BackgroundRequests, MemoryBus, MemoryIo]:
     bus = MemoryBus()
     io = MemoryIo(bus, "dashboard", (), (), scene=load_scene("minimal"), lockstep=True)
-    return Care(io, supervisor, told.append), bus, io
+    return BackgroundRequests(io, supervisor, told.append), bus, io
 
 
 def test_errands_run_one_after_the_other_and_tell_of_failure() -> None:

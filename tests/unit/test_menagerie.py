@@ -17,7 +17,7 @@ from common.bus.memory import MemoryBus, MemoryIo
 from common.robot import Hand
 from common.runtime import StartError
 from common.scene import load_scene
-from services.dashboard.drawing import draw
+from services.dashboard.scene.drawing import draw
 from services.manipulation.arm_model import ArmModel, Pose
 from services.manipulation.ik import InverseKinematics, seeds
 from services.perception.body import Body

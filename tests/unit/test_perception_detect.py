@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from common.kinds import KINDS
+from common.rendering.raycast import render
 from common.scene import Scene, load_scene
-from services.camera.raycast import render
 from services.perception import colour, shapes
 from services.perception.body import Body
 from services.perception.detect import ClassicalDetector, Detection

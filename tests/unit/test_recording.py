@@ -12,7 +12,6 @@ from mcap.reader import make_reader
 
 from bench.payloads import Payloads
 from cli import replay
-from cli.comparison import compare, differs
 from cli.errors import CliError
 from common import messages as m
 from common import topics
@@ -20,6 +19,8 @@ from common.bus import codec
 from common.recording import BULK, Recorder, Recording, RecordingError, repair
 from common.schemas import schema_of
 from common.time.lockstep import DT
+from evaluation.replay.__main__ import main as replay_service
+from evaluation.replay.comparison import compare, differs
 from evaluation.stack import Stack
 
 FOXGLOVE = {"boolean", "string", "number", "integer", "object", "array"}
@@ -233,11 +234,8 @@ def cut_file(run_file: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def play(path: Path, service: str, *settings: str) -> int:
-    parser = argparse.ArgumentParser()
-    replay.register(parser.add_subparsers())
-    settings = tuple(word for setting in settings for word in ("--set", setting))
-    args = parser.parse_args(["replay", str(path), "--service", service, *settings])
-    return replay.replay(args)
+    words = (word for setting in settings for word in ("--set", setting))
+    return replay_service([str(path), "--service", service, *words])
 
 
 @pytest.mark.parametrize("file", ["run_file", "cut_file"])
@@ -275,5 +273,7 @@ def test_what_a_recording_holds(run_file: Path, capsys: pytest.CaptureFixture[st
 
 
 def test_an_unknown_service_is_named(run_file: Path) -> None:
+    parser = argparse.ArgumentParser()
+    replay.register(parser.add_subparsers())
     with pytest.raises(CliError, match="did you mean 'navigation'"):
-        play(run_file, "navigator")
+        replay.replay(parser.parse_args(["replay", str(run_file), "--service", "navigator"]))

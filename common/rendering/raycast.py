@@ -1,0 +1,69 @@
+"""Images by MuJoCo's ray casting, for machines without any GL library."""
+
+from typing import Any
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from common.rendering.renderer import SKY
+
+NEAR = 0.02
+FAR = 30.0
+CHUNK = 16384
+_TAKES_NORMAL = "normal" in (mujoco.mj_multiRay.__doc__ or "")
+_SKY = np.array(SKY, np.float64)
+_LIGHT = np.array([0.3, -0.4, 0.87])
+
+
+def directions(rotation: NDArray[np.float64], fovy: float, width: int, height: int) -> NDArray[np.float64]:
+    """Unit directions (height * width, 3) in the world for a MuJoCo camera frame; `fovy` in degrees."""
+    focal = height / 2 / np.tan(np.radians(fovy) / 2)
+    u, v = np.meshgrid(np.arange(width) + 0.5 - width / 2, np.arange(height) + 0.5 - height / 2)
+    rays = np.stack([u / focal, -v / focal, -np.ones_like(u)], axis=-1).reshape(-1, 3)
+    rays /= np.linalg.norm(rays, axis=1, keepdims=True)
+    turned: NDArray[np.float64] = rays @ rotation.T
+    return turned
+
+
+def _cast(
+    model: Any, data: Any, origin: NDArray[np.float64], rays: NDArray[np.float64], exclude: int = -1
+) -> tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.float64]]:
+    """Distance (n,), -1 for nothing, geom (n,) and normal (n, 3) along unit rays (n, 3); `exclude`: a body's number."""
+    count = len(rays)
+    distance, geom, normal = np.empty(count), np.empty(count, np.int32), np.zeros((count, 3))
+    groups = np.array([1, 1, 1, 1, 0, 0], np.uint8)
+    for a in range(0, count, CHUNK):
+        b = min(count, a + CHUNK)
+        part, ids, normals = np.empty(b - a), np.empty(b - a, np.int32), np.zeros((b - a) * 3)
+        middle = (ids, part, normals) if _TAKES_NORMAL else (ids, part)
+        mujoco.mj_multiRay(model, data, origin, rays[a:b].reshape(-1), groups, 1, exclude, *middle, b - a, FAR)
+        distance[a:b], geom[a:b], normal[a:b] = part, ids, normals.reshape(-1, 3)
+    return distance, geom, normal
+
+
+def render(
+    model: Any,
+    data: Any,
+    position: NDArray[np.float64],
+    rotation: NDArray[np.float64],
+    fovy: float,
+    width: int,
+    height: int,
+    body: int = -1,
+) -> tuple[NDArray[np.uint8], NDArray[np.float64]]:
+    """RGB (height, width, 3) and depth (height, width) [m] along the optical axis, 0 where nothing is seen.
+
+    `body`: the one the camera is built into, whose case does not hide the view.
+    """
+    rays = directions(rotation, fovy, width, height)
+    distance, geom, normal = _cast(model, data, position, rays)
+    case = (distance >= 0) & (distance < NEAR)
+    if body >= 0 and case.any():
+        distance[case], geom[case], normal[case] = _cast(model, data, position, rays[case], body)
+    seen = (distance >= 0) & (distance < FAR)
+    depth = np.where(seen, distance * (rays @ -rotation[:, 2]), 0.0).reshape(height, width)
+    colours = np.where(model.geom_matid[:, np.newaxis] >= 0, [0.70, 0.64, 0.56, 1.0], model.geom_rgba)[:, :3] * 255
+    light = 0.55 + 0.45 * np.abs(normal @ _LIGHT) if _TAKES_NORMAL else np.full(len(rays), 0.85)
+    rgb = np.where(seen[:, np.newaxis], colours[geom] * light[:, np.newaxis], _SKY)
+    return np.clip(rgb, 0, 255).astype(np.uint8).reshape(height, width, 3), depth

@@ -1,0 +1,141 @@
+"""`python -m evaluation.replay FILE --service NAME`: a service fed with a recording and its outputs compared.
+
+`tidybot replay FILE --service NAME` becomes this.
+"""
+
+import argparse
+import os
+import sys
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+
+from cli.errors import CliError
+from common import config, topics
+from common.recording import Recording, RecordingError
+from common.scene import SceneError, load_scene
+from common.time.clock import monotonic
+from evaluation.registry import service_class
+from evaluation.replay.comparison import Timed, Verdict, compare, decoded
+from evaluation.replay.player import Player
+
+SLACK = 0.2
+"""Tolerance for times [s] outside lockstep, where the replay cannot know in which step a message was seen."""
+LOCKSTEP_SLACK = 0.1
+"""Tolerance for times [s] of a run in lockstep that a client outside lockstep took part in."""
+
+
+def prepared(args: argparse.Namespace, workspace: Path) -> Player:
+    """The service as it was configured in the run, on the recording.
+
+    Raises:
+        CliError: a configuration or a scene that cannot be used.
+    """
+    name = args.service
+    kind = service_class(name)
+    keys = {t.key for t in (*kind.READS, *kind.WRITES)} | {"sim/ack", "sim/clock"}
+    recording = Recording(args.file, lambda key: key in keys or key.startswith("service/"))
+    for file, data in recording.files.items():
+        target = workspace / file
+        target.parent.mkdir(parents=True, exist_ok=True)
+        target.write_bytes(data)
+    directory = workspace / "config" if (workspace / "config").exists() else config.config_dir()
+    os.environ["TIDYBOT_CONFIG_DIR"] = str(directory)
+    os.environ["TIDYBOT_RUN_DIR"] = str(workspace / "run")  # no journal of the real robot may be touched
+    run = recording.facts.get("run", {})
+    try:
+        changes = config.overrides(recording.facts.get("settings", {}), args.set)
+        shared = config.load("runtime", config.RuntimeConfig, directory, changes)
+        scene = load_scene(_scene(workspace) or run.get("scene") or shared.scene)
+        return Player(
+            kind, config.load(name, kind.CONFIG, directory, changes), recording, scene, _seed(run, shared.seed)
+        )
+    except (config.ConfigError, SceneError) as error:
+        raise CliError(str(error)) from None
+
+
+def _scene(workspace: Path) -> str:
+    files = sorted((workspace / "scene").glob("*.toml"))
+    return str(files[0]) if files else ""
+
+
+def _seed(run: dict[str, str], default: int) -> int:
+    return int(run.get("seed", default))
+
+
+def verdicts(player: Player, outputs: list[tuple[float, str, bytes]], tolerance: float, slack: float) -> list[Verdict]:
+    """One verdict for every topic that the service writes."""
+    recorded: dict[str, list[Timed]] = {}
+    for row in player.recording.rows:
+        topic = topics.BY_KEY.get(row.key)
+        message = None if row.junk or topic is None else decoded(row.key, row.payload)
+        if message is not None and player.covers(row):
+            recorded.setdefault(row.key, []).append((row.t, message))
+    replayed: dict[str, list[Timed]] = {}
+    for t, key, payload in outputs:
+        message = decoded(key, payload)
+        if message is not None:
+            replayed.setdefault(key, []).append((t, message))
+    found = []
+    for topic in player.kind.WRITES:
+        old, new = recorded.get(topic.key, []), replayed.get(topic.key, [])
+        if old or new:
+            found.append(compare(topic, old, new, tolerance, slack))
+    return found
+
+
+def judged(args: argparse.Namespace, player: Player) -> int:
+    """Run the player and print a verdict for each topic; 0 when all are the same, else 1."""
+    began = monotonic()
+    try:
+        outputs = player.run(_progress())
+    finally:
+        player.close()
+    slack = (
+        args.slack if args.slack is not None else 0.0 if player.exact else LOCKSTEP_SLACK if player.lockstep else SLACK
+    )
+    if sys.stderr.isatty():
+        print("\r\033[K", end="", file=sys.stderr)
+    found = verdicts(player, outputs, args.tolerance, slack)
+    if player.recording.torn:
+        print(f"the recording is torn ({player.recording.torn})")
+    mode = "lockstep" if player.lockstep else "real time"
+    print(f"{player.kind.NAME} over {player.seconds:.1f} s of robot time in {monotonic() - began:.1f} s; {mode}, "
+          f"numbers within {args.tolerance:g}, times within {slack:g} s")  # fmt: skip
+    print(f"{'topic':30} {'recorded':>9} {'replayed':>9}  verdict")
+    for v in found:
+        print(f"{v.key:30} {v.recorded:9} {v.replayed:9}  {'same' if v.same else 'differing: ' + v.difference}")
+    if not found:
+        raise CliError(f"neither the recording nor the replay has anything from {player.kind.NAME}")
+    return 0 if all(v.same for v in found) else 1
+
+
+def _progress() -> Callable[[float], None]:
+    due = [0.0]
+
+    def show(t: float) -> None:
+        if sys.stderr.isatty() and monotonic() > due[0]:
+            due[0] = monotonic() + 0.2
+            print(f"\r\033[K  {t:.1f} s", end="", file=sys.stderr, flush=True)
+
+    return show
+
+
+def main(argv: list[str]) -> int:
+    parser = argparse.ArgumentParser(prog="tidybot replay", description=__doc__)
+    parser.add_argument("file", type=Path)
+    parser.add_argument("--service", required=True)
+    parser.add_argument("--tolerance", type=float, default=1e-9)
+    parser.add_argument("--slack", type=float)
+    parser.add_argument("--set", action="append", default=[])
+    args = parser.parse_args(argv)
+    try:
+        with tempfile.TemporaryDirectory(prefix="tidybot-replay-") as workspace:
+            return judged(args, prepared(args, Path(workspace)))
+    except (RecordingError, CliError) as error:
+        print(f"tidybot: {error}", file=sys.stderr)
+        return 1
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

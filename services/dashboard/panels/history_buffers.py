@@ -1,0 +1,164 @@
+"""History buffers of the page: the last minutes of speech, tree reasons, health records and curves."""
+
+from collections import deque
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from common import messages as m
+
+LINES = 60
+"""Lines of the transcript that are kept; chosen: two screens."""
+REPEATED = 2.0
+"""Time [s] within which the same words of the same speaker are one line: a command comes by two topics."""
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Line:
+    """One line of the transcript; `who` is heard, typed, said or robot."""
+
+    t: float
+    who: str
+    text: str
+
+
+class Transcript:
+    """Speech in both directions, newest last."""
+
+    def __init__(self) -> None:
+        self.lines: deque[Line] = deque(maxlen=LINES)
+        self.changed = True
+
+    def add(self, t: float, who: str, text: str) -> None:
+        """Append a line said at robot time `t` [s]; a repetition within `REPEATED` is left out."""
+        text = text.strip()
+        if not text:
+            return
+        if any(line.text == text and line.who == who and t - line.t < REPEATED for line in self.lines):
+            return
+        self.lines.append(Line(t, who, text))
+        self.changed = True
+
+    def add_result(self, t: float, result: m.SpeechResult) -> None:
+        """Append what was understood at `t` [s], or why nothing was."""
+        if result.code == "TIMEOUT":
+            return
+        if result.text == "ERROR":
+            self.add(t, "robot", f"not understood: {result.code} {result.detail}".strip())
+        else:
+            self.add(t, "heard", result.text)
+
+    def add_goal(self, t: float, goal: m.SpeechGoal) -> None:
+        """Append what the robot says from `t` [s] on."""
+        verb, _, words = goal.goal.strip().partition(" ")
+        if verb == "say":
+            self.add(t, "said", words)
+
+
+NodePath = tuple[str, ...]
+"""A node of the tree: names from the root, each with its place among its siblings."""
+
+
+def places(node: m.TreeNode, path: NodePath = ()) -> Iterator[tuple[NodePath, m.TreeNode]]:
+    """Every child of a node, and theirs."""
+    for n, child in enumerate(node.children):
+        place = (*path, f"{n} {child.name}")
+        yield place, child
+        yield from places(child, place)
+
+
+class TreeReasons:
+    """The last (time [s], status, detail) that each node of the tree gave."""
+
+    def __init__(self) -> None:
+        self.last: dict[NodePath, tuple[float, str, str]] = {}
+
+    def take(self, tree: m.TreeSnapshot) -> None:
+        """Note the reasons of a snapshot; nodes that are gone are forgotten."""
+        now = dict(places(tree.root))
+        self.last = {place: said for place, said in self.last.items() if place in now}
+        for place, node in now.items():
+            said = (node.status, node.detail)
+            # A node that is only reset keeps saying why it ended.
+            reset = node.status == "INVALID" and place in self.last
+            if node.detail and not reset and self.last.get(place, (0.0, "", ""))[1:] != said:
+                self.last[place] = (tree.t, *said)
+
+
+@dataclass(frozen=True)
+class ServiceRow:
+    """A service as the table shows it."""
+
+    name: str
+    alive: bool
+    restarts: int
+    hz: float
+    rss_mb: float
+    drops: int
+    uptime: float
+    error: str
+
+
+class HealthRecords:
+    """Health records by name; a new epoch of a name is a restart."""
+
+    def __init__(self) -> None:
+        self._last: dict[str, m.Health] = {}
+        self._restarts: dict[str, int] = {}
+
+    def take(self, health: m.Health) -> None:
+        """Note a health record."""
+        before = self._last.get(health.name)
+        if before is not None and before.epoch != health.epoch:
+            self._restarts[health.name] = self._restarts.get(health.name, 0) + 1
+        self._last[health.name] = health
+
+    def rows(self, alive: Callable[[str], bool]) -> list[ServiceRow]:
+        """One row for every service ever heard of, by name."""
+        return [
+            ServiceRow(
+                h.name, alive(h.name), self._restarts.get(h.name, 0), h.hz, h.rss_mb, h.drops, h.uptime, h.last_error
+            )
+            for h in sorted(self._last.values(), key=lambda one: one.name)
+        ]
+
+
+class Curves:
+    """Several values over time, at most one sample each `spacing` seconds, the last `seconds` of them."""
+
+    def __init__(self, names: tuple[str, ...], seconds: float = 60.0, spacing: float = 0.1) -> None:
+        self.names, self._spacing = names, spacing
+        self._t: deque[float] = deque(maxlen=round(seconds / spacing))
+        self._values = {name: deque[float](maxlen=self._t.maxlen) for name in names}
+
+    def add(self, t: float, **values: float) -> None:
+        """Samples too close to the last one are left out, unless they are larger: peaks are what one looks for."""
+        if self._t and t - self._t[-1] < self._spacing:
+            for name, value in values.items():
+                self._values[name][-1] = max(self._values[name][-1], value)
+            return
+        self._t.append(t)
+        for name in self.names:
+            self._values[name].append(values.get(name, 0.0))
+
+    def arrays(self) -> tuple[Array, ...]:
+        """Age of each sample [s] (0: now), then the values of each name."""
+        if not self._t:
+            return (np.zeros(1), *(np.zeros(1) for _ in self.names))
+        t = np.array(self._t)
+        return (t - t[-1], *(np.array(self._values[name]) for name in self.names))
+
+
+class Jitter:
+    """Differences between a stream's steps on its own clock and the steps that passed here [s]."""
+
+    def __init__(self) -> None:
+        self._before: tuple[float, float] | None = None
+
+    def late(self, stamped: float, now: float) -> float:
+        """The difference [s] for a message stamped `stamped` that came at `now` [s]; 0 for the first."""
+        before, self._before = self._before, (stamped, now)
+        return abs((stamped - before[0]) - (now - before[1])) if before is not None else 0.0

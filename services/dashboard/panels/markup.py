@@ -1,0 +1,106 @@
+"""The panels' contents as HTML, from the templates beside this module; whatever comes from the bus is escaped."""
+
+from collections.abc import Collection, Container, Iterable, Iterator, Mapping
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from jinja2 import Environment
+
+from common import messages as m
+from common.html.environment import environment
+from common.mission_log.states import under_way
+from services.dashboard.panels.history_buffers import Line, NodePath, ServiceRow
+
+TEMPLATES = Path(__file__).parent / "templates"
+GOOD, BAD, FAINT = "#2b8a3e", "#c92a2a", "#868e96"
+COLOURS = {"RUNNING": "#1c7ed6", "SUCCESS": GOOD, "FAILURE": BAD, "INVALID": "#adb5bd"}
+SIGNS = {"RUNNING": "▶", "SUCCESS": "✓", "FAILURE": "✗", "INVALID": "·"}
+SPEAKERS = {"said": ("robot", "#1c7ed6"), "heard": ("heard", GOOD), "typed": ("typed", GOOD), "robot": ("", FAINT)}
+"""Word and colour of a transcript line by who said it."""
+UNFOLDED = 2
+"""Levels of the tree that are shown though they were never reached."""
+
+Reason = tuple[float, str, str]
+"""Time [s], status and detail of a tree node."""
+_NONE: Mapping[NodePath, Reason] = {}
+
+
+@cache
+def _templates() -> Environment:
+    made = environment(TEMPLATES)
+    made.globals.update(good=GOOD, bad=BAD, faint=FAINT)
+    return made
+
+
+def _render(name: str, **values: Any) -> str:
+    return _templates().get_template(name).render(**values)
+
+
+def tree(root: m.TreeNode, last: Mapping[NodePath, Reason] = _NONE) -> str:
+    """The behaviour tree: running nodes are lit, branches never reached are folded, `last` reasons beside the nodes."""
+    reported = {path[:n] for path in last for n in range(1, len(path) + 1)}
+    return _render("tree.html", rows=_rows(root, (), last, reported))
+
+
+def _rows(
+    node: m.TreeNode, path: NodePath, last: Mapping[NodePath, Reason], reported: Container[NodePath]
+) -> Iterator[dict[str, Any]]:
+    past = node.status == "INVALID" and path in last
+    detail = node.detail
+    if past:
+        t, status, words = last[path]
+        detail = f"{SIGNS.get(status, '·')} {words} ({t:.0f} s)"
+    yield {
+        "depth": len(path), "name": node.name, "status": node.status, "past": past, "detail": detail,
+        "colour": COLOURS.get(node.status, FAINT), "sign": SIGNS.get(node.status, "·"),
+    }  # fmt: skip
+    for n, child in enumerate(node.children):
+        below = (*path, f"{n} {child.name}")
+        if node.status != "INVALID" or len(path) < UNFOLDED or below in reported:
+            yield from _rows(child, below, last, reported)
+
+
+def mission(
+    state: m.BrainState | None,
+    now: float,
+    steps: Iterable[m.PlanStep],
+    navigation: m.NavigationFeedback | None,
+    manipulation: m.ManipulationStatus | None,
+) -> str:
+    """State, command, step, plan, status of base and arm at robot time `now` [s], and the last outcome."""
+    busy, last = under_way(state), ""
+    if state is not None and state.last is not None and not (busy and state.last.id == state.mission_id):
+        reason = state.last.reason
+        why = f" {reason}" if reason.startswith("(") else f" ({reason})" if reason else ""
+        last = f"{state.last.command}: {state.last.outcome}{why}"
+    limbs = []
+    for name, status in (("base", navigation), ("arm", manipulation)):
+        if status is not None:
+            words = (status.status, getattr(status, "phase", ""), status.code, status.detail)
+            limbs.append((name, " ".join(w for w in words if w)))
+    shown = [_step(step, state.step) for step in steps] if state is not None else []
+    return _render("mission.html", state=state, now=now, busy=busy, steps=shown, limbs=limbs, last=last)
+
+
+def _step(step: m.PlanStep, current: str) -> tuple[str, bool]:
+    """The words of a step of the plan, and whether it is the one that the brain names now."""
+    words = " ".join(w for w in (step.action, step.object, step.target, step.text) if w)
+    return words, current.startswith(step.action) and (not step.object or step.object in current)
+
+
+def transcript(lines: Iterable[Line]) -> str:
+    """Who said what, newest first."""
+    return _render("transcript.html", lines=list(lines)[::-1], looks=SPEAKERS)
+
+
+def services(rows: Iterable[ServiceRow], restartable: Collection[str] = (), why: str = "") -> str:
+    """The table of services with buttons for the `restartable` ones; `why` there are no buttons."""
+    rows = list(rows)
+    silent = sorted(set(restartable) - {row.name for row in rows})
+    return _render("services.html", rows=rows, restartable=restartable, silent=silent, why=why)
+
+
+def missions(rows: Iterable[dict[str, Any]]) -> str:
+    """The missions of the log, newest first; each leads to its timeline."""
+    return _render("missions.html", rows=list(rows)[::-1])

@@ -1,0 +1,213 @@
+"""The 3-D view: the model's drawing in viser, moved by what the robot says of itself."""
+
+from typing import Any
+
+import numpy as np
+import viser
+from numpy.typing import NDArray
+
+from common import messages as m
+from common.geometry import Pose2
+from services.dashboard.scene.drawing import Drawing, Mesh, posture, quaternion
+from services.dashboard.scene.shapes import fallback
+
+Array = NDArray[np.float64]
+EYE, LOOK = (-3.4, -4.2, 4.6), (0.8, -0.2, 0.3)
+GHOST = 0.3
+STILL = 1e-4
+SCAN_COLOUR, PATH_COLOUR = (255, 60, 60), (40, 160, 255)
+FRUSTUM = 0.25
+
+
+class View:
+    """Draws into a viser server; every call is from the service's thread."""
+
+    def __init__(self, server: viser.ViserServer) -> None:
+        self._server, self._scene = server, server.scene
+        self.nodes: dict[str, Any] = {}
+        self.object_nodes: dict[str, Any] = {}
+        self._looks: dict[str, tuple[object, ...]] = {}
+        self._at: dict[str, tuple[Array, Array]] = {}
+        self._values: dict[str, list[float]] = {}
+        self._scan: Any = None
+        self._path: Any = None
+        self._followed: dict[int, Pose2] = {}
+        self._paths: dict[str, str] = {}
+        self.drawing = Drawing(None, None)
+        self._scene.set_up_direction("+z")
+        # Shadows cost more than all else on machines that draw without a graphics card.
+        self._scene.configure_default_lights(cast_shadow=False)
+        server.initial_camera.position, server.initial_camera.look_at = EYE, LOOK
+
+    # --- the model
+    def show(self, found: Drawing) -> None:
+        """Replace everything by another model."""
+        self.drawing = found
+        with self._server.atomic():
+            for node in (*self.nodes.values(), *(n for nodes in self.object_nodes.values() for n in nodes)):
+                node.remove()
+            for each in (self.nodes, self.object_nodes, self._looks, self._at, self._values):
+                each.clear()
+            if found.flat is not None:
+                self.nodes["flat"] = self._mesh("/flat", found.flat)
+            if found.walls is not None:
+                self.nodes["walls"] = self._scene.add_mesh_simple(
+                    "/walls",
+                    found.walls.vertices.astype(np.float32),
+                    found.walls.faces.astype(np.uint32),
+                    color=_rgb(found.walls),
+                    opacity=0.45,
+                    flat_shading=True,
+                    side="double",
+                    cast_shadow=False,
+                )
+            paths: dict[str, str] = {}
+            for link in found.links:
+                path = f"{paths.get(link.parent, '/robot')}/{link.name}"
+                paths[link.name] = path
+                place, turn = posture(link, {})
+                if link.mesh is not None:
+                    node = self._mesh(path, link.mesh)
+                else:
+                    node = self._scene.add_frame(path, show_axes=False)
+                node.position, node.wxyz = place, quaternion(turn)
+                self.nodes[path], self._at[path] = node, (place, turn)
+            for camera in found.cameras:
+                self.nodes[f"camera {camera.name}"] = self._scene.add_camera_frustum(
+                    f"{paths[camera.link]}/{camera.name}_camera",
+                    fov=camera.fovy,
+                    aspect=4 / 3,
+                    thickness=0.008,
+                    scale=FRUSTUM if camera.name == "head" else FRUSTUM / 2,
+                    color=(250, 200, 60),
+                    position=camera.position,
+                    wxyz=quaternion(camera.rotation),
+                )
+            self._paths = paths
+
+    def _mesh(self, name: str, mesh: Mesh) -> Any:
+        import trimesh
+
+        colours = np.concatenate([mesh.colours, np.ones((len(mesh.colours), 1))], axis=1)
+        # Faces must not share corners, or light would be smeared over the edges of boxes.
+        order = mesh.faces.reshape(-1)
+        faces = np.arange(len(order)).reshape(-1, 3)
+        shape = trimesh.Trimesh(mesh.vertices[order], faces, process=False)
+        shape.visual = trimesh.visual.ColorVisuals(shape, vertex_colors=(colours[order] * 255).astype(np.uint8))
+        return self._scene.add_mesh_trimesh(name, shape)
+
+    # --- the robot
+    def pose(self, joints: dict[str, float], base: Pose2, width: float) -> None:
+        """Put the links where the joints say; `base` in frame map, `width` of the gripper [m]."""
+        q = {**joints, "base_x": base[0], "base_y": base[1], "base_yaw": base[2]}
+        if self.drawing.hand is not None:
+            q |= zip(self.drawing.hand.joints, self.drawing.hand.posture(width).tolist(), strict=True)
+        for link in self.drawing.links:
+            if not link.joints:
+                continue
+            path = self._paths[link.name]
+            values = [q.get(joint.name, 0.0) for joint in link.joints]
+            drawn = self._values.get(path)
+            if drawn is not None and max(abs(a - b) for a, b in zip(values, drawn, strict=True)) < STILL:
+                continue
+            self._values[path] = values
+            place, turn = posture(link, q)
+            before = self._at[path]
+            if np.abs(place - before[0]).max() > STILL:
+                self.nodes[path].position = place
+            if np.abs(turn - before[1]).max() > STILL:
+                self.nodes[path].wxyz = quaternion(turn)
+            self._at[path] = place, turn
+
+    def follow(self, base: Pose2, wanted: bool) -> None:
+        """Move every visitor's eye along with the robot."""
+        clients = self._server.get_clients() if wanted else {}
+        for number, client in clients.items():
+            before = self._followed.get(number)
+            if before is None:
+                self._followed[number] = base
+                continue
+            step = np.array([base[0] - before[0], base[1] - before[1], 0.0])
+            if np.abs(step).max() > 0.01 and client.camera.update_timestamp:
+                client.camera.position = client.camera.position + step
+                self._followed[number] = base
+        for number in self._followed.keys() - clients.keys():
+            del self._followed[number]
+
+    # --- what it senses and believes
+    def scan(self, scan: m.LaserScan, base: Pose2, visible: bool) -> None:
+        ranges = np.frombuffer(scan.ranges[: len(scan.ranges) // 4 * 4], "<f4").astype(np.float64)
+        angles = scan.angle_min + np.arange(len(ranges)) * scan.angle_increment + base[2]
+        seen = np.isfinite(ranges) & (ranges > scan.range_min) & (ranges < scan.range_max)
+        cos, sin = np.cos(base[2]), np.sin(base[2])
+        x, y = base[0] + cos * scan.x - sin * scan.y, base[1] + sin * scan.x + cos * scan.y
+        points = np.stack(
+            [x + ranges * np.cos(angles), y + ranges * np.sin(angles), np.full(len(ranges), 0.2)], axis=1
+        )[seen]
+        if self._scan is None:
+            self._scan = self._scene.add_point_cloud(
+                "/scan", points.astype(np.float32), SCAN_COLOUR, point_size=0.03, point_shape="circle",
+                precision="float32",
+            )  # fmt: skip
+        else:
+            self._scan.points = points.astype(np.float32)
+        self._scan.visible = visible
+
+    def path(self, points: list[tuple[float, float]]) -> None:
+        if self._path is not None:
+            self._path.remove()
+            self._path = None
+        if len(points) > 1:
+            line = np.array([(x, y, 0.02) for x, y in points], dtype=np.float32)
+            segments = np.stack([line[:-1], line[1:]], axis=1)
+            self._path = self._scene.add_line_segments("/path", segments, PATH_COLOUR, thickness=0.03)
+
+    def objects(self, known: list[m.WorldObject], t: float, ghost_after: float, labels: bool) -> None:
+        """Draw what the robot believes; what it has not seen for `ghost_after` seconds as a ghost."""
+        names = [one.id or one.label for one in known]
+        for gone in [k for k in self._looks if k not in names]:
+            for node in self.object_nodes.pop(gone):
+                node.remove()
+            del self._looks[gone]
+        for name, one in zip(names, known, strict=True):
+            ghost = not one.held and t - one.seen_at > ghost_after
+            look = (one.label, one.kind, one.colour, one.size, ghost, labels)
+            if self._looks.get(name, ())[:-1] != look:
+                for node in self.object_nodes.pop(name, ()):
+                    node.remove()
+                self.object_nodes[name] = self._object(name, one, ghost, labels)
+            elif self._looks[name][-1] == (one.position, one.orientation):
+                continue
+            body, *label = self.object_nodes[name]
+            body.position, body.wxyz = one.position, one.orientation
+            for each in label:
+                each.position = _above(one)
+            self._looks[name] = (*look, (one.position, one.orientation))
+
+    def _object(self, name: str, one: m.WorldObject, ghost: bool, labels: bool) -> tuple[Any, ...]:
+        mesh = self.drawing.objects.get(one.label) or fallback(one.kind, one.size, one.colour)
+        path = f"/objects/{name}"
+        body = self._scene.add_mesh_simple(
+            path,
+            mesh.vertices.astype(np.float32),
+            mesh.faces.astype(np.uint32),
+            color=_rgb(mesh),
+            opacity=GHOST if ghost else None,
+            side="double",
+        )
+        if not labels:
+            return (body,)
+        text = f"{one.label}?" if ghost else one.label
+        return body, self._scene.add_label(f"/names/{name}", text, position=_above(one), font_screen_scale=0.8)
+
+
+def _above(one: m.WorldObject) -> tuple[float, float, float]:
+    x, y, z = one.position
+    return x, y, z + one.size[2] / 2 + 0.08
+
+
+def _rgb(mesh: Mesh) -> tuple[int, int, int]:
+    """The colour of most of it."""
+    colours, counts = np.unique(np.round(mesh.colours * 255).astype(int), axis=0, return_counts=True)
+    r, g, b = (int(v) for v in colours[int(np.argmax(counts))])
+    return r, g, b

@@ -1,0 +1,79 @@
+"""The pages that are open: the state to them, words and sound from them. All of it runs in the web server's loop."""
+
+import asyncio
+import contextlib
+from collections.abc import Callable
+
+import msgspec
+from aiohttp import WSMsgType, web
+
+from services.dashboard.web.events import Event, Sound, Words
+
+SEND_QUEUE = 100
+MAX_CHUNK = 64 * 1024
+
+
+class Visitors:
+    """One WebSocket for each open page; what visitors do goes to `told`."""
+
+    def __init__(self, told: Callable[[Event], None]) -> None:
+        self._told = told
+        self._open: dict[web.WebSocketResponse, asyncio.Queue[str | bytes]] = {}
+        self._last: dict[str, str] = {}
+
+    def __len__(self) -> int:
+        return len(self._open)
+
+    async def serve(self, request: web.Request) -> web.StreamResponse:
+        """One visitor, from opening to closing."""
+        socket = web.WebSocketResponse(heartbeat=10.0, max_msg_size=MAX_CHUNK, compress=False)
+        await socket.prepare(request)
+        outbox: asyncio.Queue[str | bytes] = asyncio.Queue(SEND_QUEUE)
+        for text in self._last.values():
+            outbox.put_nowait(text)
+        self._open[socket] = outbox
+        sender = asyncio.ensure_future(_send(socket, outbox))
+        try:
+            async for message in socket:
+                if message.type is WSMsgType.BINARY:
+                    self._told(Sound(message.data))
+                elif message.type is WSMsgType.TEXT:
+                    with contextlib.suppress(msgspec.DecodeError):
+                        self._told(msgspec.json.decode(message.data, type=Words))
+        finally:
+            self._open.pop(socket, None)
+            sender.cancel()
+            await asyncio.gather(sender, return_exceptions=True)
+            # A microphone that goes with its page must not leave half a sentence open.
+            self._told(Sound(b""))
+        return socket
+
+    def tell(self, kind: str, text: str) -> None:
+        """To every page, and to those that open before there is a newer one of this kind."""
+        self._last[kind] = text
+        self.spread(text)
+
+    def spread(self, message: str | bytes) -> None:
+        """To every page that is open now."""
+        for visitor, outbox in list(self._open.items()):
+            try:
+                outbox.put_nowait(message)
+            except asyncio.QueueFull:
+                # A browser that hangs loses its connection, and nobody else notices; it opens a new one by itself.
+                self._open.pop(visitor, None)
+                if visitor._req is not None and visitor._req.transport is not None:
+                    visitor._req.transport.abort()
+
+    async def close(self) -> None:
+        for visitor in list(self._open):
+            with contextlib.suppress(ConnectionError, TimeoutError):
+                await asyncio.wait_for(visitor.close(), 0.5)
+
+
+async def _send(socket: web.WebSocketResponse, outbox: "asyncio.Queue[str | bytes]") -> None:
+    while True:
+        message = await outbox.get()
+        if isinstance(message, str):
+            await socket.send_str(message)
+        else:
+            await socket.send_bytes(message)
