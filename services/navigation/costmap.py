@@ -1,4 +1,4 @@
-"""Where the base can be: the scene's static map, what the lidar sees beyond it, and the distance to either."""
+"""Costmap: the scene's static map, what the lidar sees beyond it, and the clearance from both."""
 
 import math
 import zlib
@@ -15,12 +15,17 @@ from common.scene import Scene
 Grid = NDArray[np.bool_]
 Array = NDArray[np.float64]
 _PAD = 0.3
+"""Margin around the scene [m]; chosen: less than a footprint, so that nothing drives there."""
 _EXPLAINED = 0.12
-# Farther than this from something seen nobody cares [m].
+"""Distance from the static map within which it explains a lidar point [m]: two cells and the lidar's noise."""
 _REACH = 0.8
-# Something seen for longer than _LASTING stands there, other things are forgotten after _BRIEF [s].
+"""Distance from something seen up to which clearance counts it [m]: beyond `navigation.inflation`."""
 _LASTING, _BRIEF = 2.0, 4.0
-_FAR = 1.0  # the clearance [m] beyond which viewers see no difference
+"""Something seen for longer than the first stands there, anything else is forgotten after the second [s]."""
+_BEHIND = 0.15
+"""How far beyond a cell a ray must reach to clear it [m]: three cells."""
+_FAR = 1.0
+"""Clearance [m] beyond which viewers see no difference."""
 
 
 class Costmap:
@@ -158,7 +163,7 @@ class Costmap:
         step = angles[1] - angles[0]
         bearing = np.arctan2(y, x) - pose[2] - angles[0]
         ray = np.round(np.mod(bearing, 2 * math.pi) / step).astype(int) % len(angles)
-        passed = reach[ray] > np.hypot(x, y) + 0.15
+        passed = reach[ray] > np.hypot(x, y) + _BEHIND
         seen_at = self._seen_at[rows, columns]
         # What was there for a moment only was walking by.
         lasting = seen_at - self._first_at[rows, columns] > _LASTING

@@ -10,20 +10,30 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.geometry import Pose2, compose, inverse, wrap
-from services.navigation.floorplan import Array, DistanceField
+from services.navigation.distance_field import Array, DistanceField
 
-# Odometry is trusted to this share of the motion and this random walk [m, rad; per sqrt(m)].
 SHARE, WALK = 0.03, 0.01
+"""Error of odometry: a share of the motion [-] and a random walk [m or rad per sqrt(m)]; chosen: on the safe side."""
 TURN_RADIUS = 0.2
-# One end point counts as known to this [m]: more than its noise, since neighbours err together.
+"""Motion that a turn counts as [m/rad]; chosen: about the distance of the wheels from the middle."""
 SIGMA = 0.03
+"""Standard deviation of one end point [m]: more than its noise, since neighbours err together."""
 STEPS = 6
-# Farther than this beyond what its speed allows, odometry has not moved but started anew [m, m/s].
+"""Gauss-Newton steps per scan [count]; chosen: the weights narrow in four."""
 JUMP, TOP_SPEED = 0.1, 1.0
-START = (0.02, 0.02, 0.02)
-UNKNOWN = (0.3, 0.3, 0.2)
+"""Farther than this [m] beyond what this speed [m/s] allows, odometry has not moved but started anew."""
+START, UNKNOWN = (0.02, 0.02, 0.02), (0.3, 0.3, 0.2)
+"""Standard deviation of the first pose [m, m, rad]: at home, and elsewhere."""
 FLOOR = np.square([0.001, 0.001, 0.0007])
+"""Variance added before every scan [m2, m2, rad2], so that the filter never stops to correct."""
 INLIER = 0.10
+"""Distance from the map within which it explains an end point [m]; chosen: three SIGMA."""
+MIN_POINTS = 20
+"""End points without which a scan corrects nothing [count]."""
+WIDEST, NARROWEST = 0.5, 0.10
+"""Width of Tukey's weights in the first step at most, and in the last [m]; chosen: for a bad prior, and INLIER."""
+CONVERGED = 2e-4
+"""Step that ends the iteration [m or rad]; chosen: far below the lidar's noise."""
 
 
 class Localiser:
@@ -67,7 +77,7 @@ class Localiser:
 
     def correct(self, points: Array) -> float:
         """Match scan end points (n, 2) in the base frame; the share of them that the map explains."""
-        if len(points) < 20:
+        if len(points) < MIN_POINTS:
             self.fit = 0.0
             return 0.0
         covariance = self.covariance + np.diag(FLOOR)
@@ -77,14 +87,14 @@ class Localiser:
         x = start.copy()
         hessian = prior
         for step in range(STEPS):
-            width = max(0.10, min(0.5, 3.0 * spread) * 0.5**step)
+            width = max(NARROWEST, min(WIDEST, 3.0 * spread) * 0.5**step)
             r, j = self._residuals(x, points)
             weight = np.square(1.0 - np.minimum(np.square(r / width), 1.0)) / SIGMA**2
             weighted = j * weight
             hessian = weighted @ j.T + prior
             move = np.linalg.solve(hessian, -(weighted @ r) - prior @ (x - start))
             x += move
-            if width == 0.10 and abs(move).max() < 2e-4:
+            if width == NARROWEST and abs(move).max() < CONVERGED:
                 break
         fit = float(np.mean(np.abs(r) < INLIER))
         self.fit = fit

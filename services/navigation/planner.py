@@ -13,13 +13,19 @@ from services.navigation.costmap import Costmap
 
 Point = tuple[float, float]
 SPACING = 0.05
+"""Distance between the points of a path [m]: the costmap's resolution."""
 _NEIGHBOURS = ((0, 1, 1.0), (1, 0, 1.0), (1, 1, math.sqrt(2)), (1, -1, math.sqrt(2)))
 _WEIGHT = 4.0
+"""Cost of a cell where the base just fits, beside its length [-]; chosen: a detour of four times the way."""
+_JUMP = 60
+"""Cells that one straight line may replace [count]: 3 m."""
+_LOST = 0.03
+"""Clearance that a straight line may lose against the path [m]: less than a cell."""
 
 
 @dataclass(frozen=True)
 class Field:
-    """Cost from one cell to all others, with the way back."""
+    """Cost [m and more] from one cell to all others, with the cells before each on its path."""
 
     start: tuple[int, int]
     cost: NDArray[np.float64]
@@ -48,7 +54,7 @@ class PathPlanner:
         return Field(start, cost.reshape(self._map.shape), previous)
 
     def path(self, field: Field, start: Point, goal: Point) -> list[Point] | None:
-        """Points every 5 cm from start to goal; None when there is no way."""
+        """Points [map] every SPACING from start to goal; None when there is no path."""
         row, column = self._map.cell(*goal)
         if not math.isfinite(field.cost[row, column]):
             return None
@@ -108,11 +114,11 @@ class PathPlanner:
         kept, i = [points[0]], 0
         clearances = np.array([self._map.clearance(*p) for p in points])
         while i < len(points) - 1:
-            j = min(len(points) - 1, i + 60)
+            j = min(len(points) - 1, i + _JUMP)
             while j > i + 1:
                 least = float(clearances[i : j + 1 : 3].min())
                 straight = self._map.line_clearance(points[i], points[j])
-                if straight >= min(least, self._inflation) - 0.03 and (straight >= self._radius or i == 0):
+                if straight >= min(least, self._inflation) - _LOST and (straight >= self._radius or i == 0):
                     break
                 j -= max(1, (j - i) // 4)
             kept.append(points[j])

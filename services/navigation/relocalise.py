@@ -1,17 +1,23 @@
-"""Where in the map a scan was taken when nobody knows: a coarse look everywhere, then fine matching of the best."""
+"""Global localisation: where in the map a scan was taken, by a coarse grid search and fine matching of the best."""
 
 import math
 
 import numpy as np
 
 from common.geometry import Pose2
-from services.navigation.floorplan import Array, DistanceField
+from services.navigation.distance_field import Array, DistanceField
 from services.navigation.localise import Localiser
 
-STEP, TURNS, RAYS = 0.25, 48, 60
+STEP, TURNS = 0.25, 48
+"""Grid of positions [m] and number of headings; chosen: the fine matching converges from half of it."""
+RAYS = 60
+"""Rays of the scan that the coarse search uses [count]; chosen: keeps the whole search near 0.1 s."""
 SPREAD = 0.15
+"""Standard deviation of an end point in the coarse search [m]; chosen: about half of STEP."""
 BEST = 16
+"""Guesses that are matched finely [count]; chosen: rooms look alike."""
 BODY = 0.25
+"""Distance from walls within which the robot cannot stand [m]; chosen: less than its footprint."""
 
 
 def relocalise(

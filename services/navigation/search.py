@@ -4,7 +4,7 @@ from common.geometry import Pose2
 from services.navigation.config import NavigationConfig
 from services.navigation.costmap import Costmap
 from services.navigation.coverage import SearchCoverage
-from services.navigation.drive import Ended
+from services.navigation.navigator import Ended
 from services.navigation.planner import PathPlanner
 
 

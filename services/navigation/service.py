@@ -6,16 +6,16 @@ from common.bus.port import Io
 from common.config import config_dir
 from common.goal_inbox import GoalInbox
 from common.viewpoints import viewpoints_of
+from services.navigation.approach_history import ApproachHistory
 from services.navigation.config import NavigationConfig
 from services.navigation.costmap import Costmap
 from services.navigation.coverage import SearchCoverage
-from services.navigation.drive import Drive, Ended
 from services.navigation.goals import Choices, Goal, Goals, in_words
+from services.navigation.navigator import Ended, Navigator
 from services.navigation.places import Places, load_places
 from services.navigation.planner import PathPlanner
 from services.navigation.search import Search
-from services.navigation.senses import Senses
-from services.navigation.stood import Stood
+from services.navigation.state_estimation import StateEstimator
 
 PERCEPTION = "perception"
 
@@ -33,17 +33,17 @@ class NavigationService:
         self._goals = Goals(io.scene, Places(io.scene, load_places(config_dir())), config)
         self._map = Costmap(io.scene, config.resolution, config.obstacle_memory)
         self._planner = PathPlanner(self._map, config.footprint_radius + config.clearance, config.inflation)
-        self._senses = Senses(config, io, self._map)
+        self._state = StateEstimator(config, io, self._map)
         self._coverage = SearchCoverage(viewpoints_of(io.scene, None))
-        self._stood = Stood()
-        self._drive: Drive | None = None
+        self._approaches = ApproachHistory()
+        self._navigator: Navigator | None = None
         self._search: Search | None = None
         self._inbox: GoalInbox[Goal, m.NavigationStatus] = GoalInbox(
             io, (topics.NAVIGATION_GOAL, topics.NAV_GOAL), self._take, self._repeat, self._preempted
         )
         self._legs = 0
         self._recoveries = 0
-        self._told = (0, "")
+        self._reported = (0, "")
         self._now = 0.0
         self._shown = -1
         self._from_brain = True
@@ -52,7 +52,7 @@ class NavigationService:
 
     def step(self, now: float) -> None:
         io, self._now = self._io, now
-        self._senses.step(now)
+        self._state.step(now)
         if int(now) != self._shown:
             self._shown = int(now)
             if io.has_subscribers(topics.COSTMAP):
@@ -64,14 +64,14 @@ class NavigationService:
         try:
             if self._search is not None:
                 self._look_for(self._search, now)
-            if self._drive is not None:
-                self._advance(self._drive, reached, now)
+            if self._navigator is not None:
+                self._advance(self._navigator, reached, now)
         except Ended as ended:
             self._finish(ended)
 
     @property
     def _busy(self) -> bool:
-        return self._drive is not None or self._search is not None
+        return self._navigator is not None or self._search is not None
 
     # --- goals
     def _repeat(self, goal: Goal, answer: m.NavigationStatus | None) -> None:
@@ -103,9 +103,9 @@ class NavigationService:
         verb, _, rest = text.partition(" ")
         rest = rest.strip()
         named = pose.object.label if pose is not None and pose.object is not None else ""
-        self._stood.sent(rest if verb == "find" else named)
+        self._approaches.goal_sent(rest if verb == "find" else named)
         if pose is not None:
-            self._go(self._stood.apart(self._status.goal_id, self._goals.pose(pose, self._objects())))
+            self._go(self._approaches.penalised(self._status.goal_id, self._goals.pose(pose, self._objects())))
         elif text == "return_to_start":
             self._go(self._goals.home())
         elif verb == "goto" and rest:
@@ -116,7 +116,7 @@ class NavigationService:
             raise Ended("failed", "UNKNOWN_GOAL", f"{text!r}: expected find, goto, return_to_start or stop")
 
     def _find(self, item: str) -> None:
-        if choices := self._before(item):
+        if choices := self._approaches_to(item):
             self._go(choices)
         elif self._io.peer(PERCEPTION) is not None:
             self._io.log.info("search", item=item)
@@ -125,8 +125,8 @@ class NavigationService:
         else:
             self._go(self._goals.spot(item))
 
-    def _before(self, item: str) -> Choices:
-        return self._stood.apart(self._status.goal_id, self._goals.seen(item, self._objects()))
+    def _approaches_to(self, item: str) -> Choices:
+        return self._approaches.penalised(self._status.goal_id, self._goals.seen(item, self._objects()))
 
     def _objects(self) -> list[m.WorldObject]:
         reported = self._io.latest(topics.WORLD_OBJECTS)
@@ -135,16 +135,16 @@ class NavigationService:
     def _go(self, choices: Choices) -> None:
         self._legs += 1
         name = f"{self._status.goal_id}/{self._status.attempt}/{self._legs}"
-        self._drive = Drive(self._config, self._map, self._planner, choices, name, self._now)
-        self._told = (0, "")
+        self._navigator = Navigator(self._config, self._map, self._planner, choices, name, self._now)
+        self._reported = (0, "")
 
     # --- searching
     def _look_for(self, search: Search, now: float) -> None:
         """One step of a search; raises `Ended` when it is over without result."""
-        if choices := self._before(search.item):
+        if choices := self._approaches_to(search.item):
             self._io.log.info("found", item=search.item, views=search.looked)
             self._search = None
-            self._leave(self._drive)
+            self._leave(self._navigator)
             self._go(choices)
             return
         if self._io.peer(PERCEPTION) is None:
@@ -152,60 +152,60 @@ class NavigationService:
             self._search = None
             self._go(self._goals.spot(search.item))
             return
-        pose = self._senses.pose
+        pose = self._state.pose
         if pose is None or search.timed_out(now):
             return
         looked = self._coverage.look(pose, now, self._config.look_time)
-        if self._drive is None and (looked or search.fresh):
+        if self._navigator is None and (looked or search.fresh):
             view = search.next(pose, self._planner, self._map)
             self._io.log.info("view", item=search.item, number=search.looked, x=view[0], y=view[1])
             self._go([(0.0, view)])
 
-    def _leave(self, drive: Drive | None) -> None:
-        self._recoveries += drive.recoveries if drive else 0
+    def _leave(self, navigator: Navigator | None) -> None:
+        self._recoveries += navigator.recoveries if navigator else 0
 
     # --- driving
-    def _advance(self, drive: Drive, reached: list[m.GoalReached], now: float) -> None:
+    def _advance(self, navigator: Navigator, reached: list[m.GoalReached], now: float) -> None:
         """Raises `Ended` when the goal has."""
-        senses = self._senses
-        age = senses.silence(now)
-        if senses.pose is not None and age > self._config.odometry_timeout:
+        state = self._state
+        age = state.silence(now)
+        if state.pose is not None and age > self._config.odometry_timeout:
             raise Ended("failed", "NO_ODOMETRY", f"odometry silent for {age:.1f} s")
-        if senses.points is not None and self._io.age(topics.SCAN, now) > self._config.scan_timeout:
+        if state.points is not None and self._io.age(topics.SCAN, now) > self._config.scan_timeout:
             raise Ended("failed", "NO_SCAN", "the lidar fell silent")
-        if senses.lost:
+        if state.lost:
             self._io.publish(topics.CMD_VEL, m.CmdVel(vx=0.0, vy=0.0, omega=0.0))
             return
         try:
-            target = drive.step(senses.pose, reached, senses.points, senses.movers.moving(), now)
+            target = navigator.step(state.pose, reached, state.points, state.tracker.moving(), now)
         except Ended as ended:
             if self._search is None or ended.code == "TIMEOUT":
                 raise
             # A view that cannot be reached is one view less.
-            self._leave(drive)
-            self._drive = None
+            self._leave(navigator)
+            self._navigator = None
             self._search.fresh = ended.status == "failed"
             return
         if target is not None:
-            target.x, target.y, target.theta = senses.localiser.to_odometry((target.x, target.y, target.theta))
+            target.x, target.y, target.theta = state.localiser.to_odometry((target.x, target.y, target.theta))
             self._io.publish(topics.BASE_TARGET, target)
-        if path := drive.take_new_path():
+        if path := navigator.take_new_path():
             self._io.publish(topics.NAV_PATH, m.NavPath(t=now, points=path[::4], goal_id=self._status.goal_id))
-        told = (drive.recoveries, drive.doing)
-        if told != self._told:
-            self._told = told
-            self._io.log.info("under way", doing=drive.doing or "driving", recoveries=drive.recoveries)
+        reported = (navigator.recoveries, navigator.doing)
+        if reported != self._reported:
+            self._reported = reported
+            self._io.log.info("under way", doing=navigator.doing or "driving", recoveries=navigator.recoveries)
             self._feedback()
-        elif path or drive.due_feedback(now):
+        elif path or navigator.due_feedback(now):
             self._feedback()
 
     def _finish(self, ended: Ended) -> None:
-        drive, self._search = self._drive, None
-        self._leave(drive)
-        self._drive = None
+        navigator, self._search = self._navigator, None
+        self._leave(navigator)
+        self._navigator = None
         if ended.status == "arrived":
-            self._stood.arrived(self._status.goal_id, self._senses.pose)
-        if ended.status == "failed" and drive is not None and self._senses.pose is not None:
+            self._approaches.arrived(self._status.goal_id, self._state.pose)
+        if ended.status == "failed" and navigator is not None and self._state.pose is not None:
             self._hold()
         self._report(ended.status, ended.code, ended.detail)
         if self._inbox.active is not None:
@@ -215,7 +215,7 @@ class NavigationService:
 
     def _hold(self) -> None:
         """Brake: a velocity stream that falls silent at once."""
-        self._drive = self._search = None
+        self._navigator = self._search = None
         self._io.publish(topics.CMD_VEL, m.CmdVel(vx=0.0, vy=0.0, omega=0.0))
 
     def _report(self, status: m.NavStatus, code: str, detail: str) -> None:
@@ -231,14 +231,14 @@ class NavigationService:
         self._feedback()
 
     def _feedback(self) -> None:
-        status, drive = self._status, self._drive
+        status, navigator = self._status, self._navigator
         feedback = m.NavigationFeedback(
             goal_id=status.goal_id,
             status=status.status,
-            distance_remaining=drive.remaining if drive else 0.0,
-            eta=drive.eta if drive else 0.0,
-            recoveries=self._recoveries + (drive.recoveries if drive else 0),
-            code=status.code or (drive.doing if drive else ""),
+            distance_remaining=navigator.remaining if navigator else 0.0,
+            eta=navigator.eta if navigator else 0.0,
+            recoveries=self._recoveries + (navigator.recoveries if navigator else 0),
+            code=status.code or (navigator.doing if navigator else ""),
             attempt=status.attempt,
             detail=status.detail,
         )

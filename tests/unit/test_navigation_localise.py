@@ -10,11 +10,11 @@ from common.geometry import Pose2, compose, inverse, wrap
 from common.scene import load_scene
 from services.navigation.config import NavigationConfig
 from services.navigation.costmap import Costmap
-from services.navigation.floorplan import REACH, DistanceField, Rectangle, distance_field, rectangles
+from services.navigation.distance_field import REACH, DistanceField, Rectangle, distance_field, rectangles
 from services.navigation.localise import Localiser
 from services.navigation.relocalise import relocalise
-from services.navigation.senses import Senses
 from services.navigation.service import NavigationService
+from services.navigation.state_estimation import StateEstimator
 from tests.node import Node
 from tests.unit.navigation_flat import cast, ends
 
@@ -115,16 +115,16 @@ class Hearing:
     READS, WRITES = (topics.ODOMETRY, topics.JOINT_STATES, topics.SCAN), (topics.POSE,)
 
     def __init__(self, config: NavigationConfig, io: Io) -> None:
-        self.senses = Senses(config, io, Costmap(io.scene, config.resolution, 4.0))
+        self.senses = StateEstimator(config, io, Costmap(io.scene, config.resolution, 4.0))
         self.step = self.senses.step
 
 
 class Ear(Node):
-    """Senses with a robot whose wheels lie."""
+    """StateEstimator with a robot whose wheels lie."""
 
     def __init__(self) -> None:
         super().__init__(Hearing, NavigationConfig(), SCENE)
-        self.senses: Senses = self.service.senses
+        self.senses: StateEstimator = self.service.senses
 
     def feel(self, wheels: Pose2, ranges: np.ndarray | None, scan_age: float = 0.0, **velocity: float) -> None:
         self.later()

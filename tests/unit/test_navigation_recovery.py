@@ -10,11 +10,11 @@ from common import topics
 from common.bus.memory import MemoryIo
 from common.scene import load_scene
 from common.viewpoints import viewpoints_of
-from services.navigation.avoid import avoid
+from services.navigation.collision_avoidance import avoid
 from services.navigation.config import NavigationConfig
 from services.navigation.costmap import Costmap
-from services.navigation.movers import Mover, Movers, clusters
-from services.navigation.patience import Patience
+from services.navigation.obstacle_tracker import Obstacle, ObstacleTracker, clusters
+from services.navigation.progress import BlockedTimer
 from tests.unit.navigation_flat import SCENE, Flat
 
 KITCHEN_DOOR = (2.5, -0.75, 0.4, 0.9, 0.0)
@@ -54,8 +54,8 @@ def test_with_every_way_shut_it_waits_backs_off_tries_twice_and_says_so() -> Non
 def test_waiting_for_somebody_who_passes_costs_no_retry() -> None:
     passer, here = person(1.0, 0.0, 0.0, 0.5), (0.0, 0.0)
 
-    def blocked(movers: list[Mover], seconds: float) -> float:
-        patience = Patience()
+    def blocked(movers: list[Obstacle], seconds: float) -> float:
+        patience = BlockedTimer()
         return max(patience.blocked(here, movers, 100.0 + 0.05 * n) for n in range(round(seconds / 0.05) + 1))
 
     wait = NavigationConfig().blocked_wait
@@ -93,8 +93,8 @@ def test_feedback_counts_down_to_the_goal() -> None:
 
 
 # --- people
-def person(x: float, y: float, vx: float, vy: float) -> Mover:
-    return Mover(x, y, 0.2, 0.0, vx, vy, sightings=9)
+def person(x: float, y: float, vx: float, vy: float) -> Obstacle:
+    return Obstacle(x, y, 0.2, 0.0, vx, vy, sightings=9)
 
 
 def costmap() -> Costmap:
@@ -127,7 +127,7 @@ def test_it_steps_aside_from_one_who_comes_straight_on_and_not_into_furniture() 
 
 
 def test_the_speed_of_a_walker_is_found_and_a_box_stays_a_box() -> None:
-    movers = Movers()
+    movers = ObstacleTracker()
     arc = np.linspace(-0.6, 0.6, 9)
     for k in range(20):
         walker = np.stack([2.0 - 0.2 * np.cos(arc), -1.0 + 0.06 * k + 0.2 * np.sin(arc)], 1)

@@ -12,7 +12,7 @@ from common.geometry import quat_yaw
 from common.scene import load_scene
 from services.navigation.config import NavigationConfig
 from services.navigation.costmap import Costmap
-from services.navigation.follow import Follower
+from services.navigation.path_follower import PathFollower
 from services.navigation.planner import PathPlanner, Point
 from services.navigation.service import NavigationService
 from services.sim.layout import place_objects
@@ -95,7 +95,7 @@ def test_the_lidar_marks_what_the_map_lacks_and_clears_it_again() -> None:
 def test_the_follower_stops_before_what_the_lidar_sees() -> None:
     costmap = Costmap(SCENE, 0.05, 4.0)
     path = [(0.0, -0.05 * i) for i in range(30)]
-    follower = Follower(path, (0.0, -1.45, -1.57), 0.5, CONFIG.corridor)
+    follower = PathFollower(path, (0.0, -1.45, -1.57), 0.5, CONFIG.corridor)
     pose = (0.0, 0.0, -math.pi / 2)
     free = follower.step(pose, costmap, CONFIG.footprint_radius, None)
     assert free.pose[1] < -0.4 and not free.blocked

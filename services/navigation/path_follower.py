@@ -1,4 +1,7 @@
-"""Path following for a holonomic base: a carrot ahead on the path, a heading, and a brake for what the lidar sees."""
+"""Path follower: pure pursuit for a holonomic base, with a heading and a brake for what the lidar sees.
+
+Source of pure pursuit: Coulter, "Implementation of the pure pursuit path tracking algorithm", CMU-RI-TR-92-01, 1992.
+"""
 
 import math
 from dataclasses import dataclass
@@ -10,13 +13,24 @@ from services.navigation.costmap import Array, Costmap
 from services.navigation.planner import SPACING, Point
 
 TURN_AT = 0.9
+"""Path left from which on the base turns to the goal's heading [m]; chosen: so that it faces there on arrival."""
 SLOW_TURN = 0.6
-MIN_STEP = 0.08
+"""Turn from which on the base slows down [rad]; chosen: beyond it the base would drive sideways."""
+MIN_STEP, TURNING_STEP = 0.08, 0.2
+"""Least and greatest distance of the target while it turns [m]; chosen: the base keeps moving slowly."""
+WINDOW = 40
+"""Points ahead among which the nearest is looked for [count]: 2 m, so that progress does not jump to a later bend."""
+KEEP = 0.10
+"""Distance kept from the lidar point that stops it [m]; chosen: for the lidar's noise and delay."""
+STOPPED = 0.05
+"""A target this near is none: the path is blocked [m]; chosen: the play of the pose estimate."""
+OFF = 1.0
+"""Distance from the path that counts towards what is left, at most [m]."""
 
 
 @dataclass(frozen=True)
-class Carrot:
-    """Where to send the base next; `final` is the goal itself, `blocked` says that something stands in the way."""
+class Lookahead:
+    """The target pose [map]; `final`: it is the goal, `blocked`: something stands before it; `remaining` path [m]."""
 
     pose: Pose2
     final: bool
@@ -24,8 +38,11 @@ class Carrot:
     remaining: float
 
 
-class Follower:
-    """Follows one path; progress along it never goes back."""
+class PathFollower:
+    """Follows one path, `lookahead` [m] before the robot; progress along it never goes back.
+
+    `corridor` is the half width [m] that must be free of lidar points.
+    """
 
     def __init__(self, path: list[Point], goal: Pose2, lookahead: float, corridor: float) -> None:
         self.path, self.goal = path, goal
@@ -37,7 +54,7 @@ class Follower:
         """Metres of path left."""
         ahead = len(self.path) - 1 - self._index
         off = math.hypot(self.path[self._index][0] - pose[0], self.path[self._index][1] - pose[1])
-        return ahead * SPACING + min(off, 1.0)
+        return ahead * SPACING + min(off, OFF)
 
     def blocked_at(self, pose: Pose2, costmap: Costmap, radius: float) -> float | None:
         """Metres along the path to where it comes closer than `radius` to something seen; None when it does not."""
@@ -46,9 +63,9 @@ class Follower:
         close = costmap.seen_within(ahead, radius) & ~near
         return float(np.argmax(close) + 1) * SPACING if close.any() else None
 
-    def step(self, pose: Pose2, costmap: Costmap, radius: float, points: Array | None) -> Carrot:
-        """The next carrot; `points` (n, 2) is what the lidar sees now, in frame map."""
-        window = self._points[self._index : self._index + 40]
+    def step(self, pose: Pose2, costmap: Costmap, radius: float, points: Array | None) -> Lookahead:
+        """The next target; `points` (n, 2) [map] is what the lidar sees now."""
+        window = self._points[self._index : self._index + WINDOW]
         self._index += int(np.argmin(np.hypot(window[:, 0] - pose[0], window[:, 1] - pose[1])))
         remaining = self.remaining(pose)
         near_end = remaining < TURN_AT
@@ -61,16 +78,16 @@ class Follower:
         turn = abs(wrap(heading - pose[2]))
         final = reach == len(self.path) - 1
         if turn > SLOW_TURN and not near_end:
-            target = _towards(here, target, max(MIN_STEP, 0.2 * math.cos(min(turn, math.pi / 2))))
+            target = _towards(here, target, max(MIN_STEP, TURNING_STEP * math.cos(min(turn, math.pi / 2))))
             final = False
         room = self._room(here, target, points)
         distance = math.hypot(target[0] - here[0], target[1] - here[1])
         if room < distance:
-            stop = max(0.0, room - 0.10)
+            stop = max(0.0, room - KEEP)
             target = _towards(here, target, stop)
-            return Carrot((target[0], target[1], heading), False, stop < 0.05, remaining)
+            return Lookahead((target[0], target[1], heading), False, stop < STOPPED, remaining)
         pose_to = self.goal if final else (target[0], target[1], heading)
-        return Carrot(pose_to, final, False, remaining)
+        return Lookahead(pose_to, final, False, remaining)
 
     def _room(self, here: Point, target: Point, points: Array | None) -> float:
         """How far the base can go towards `target` before it touches a lidar point."""

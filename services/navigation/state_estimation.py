@@ -1,4 +1,4 @@
-"""What navigation feels: odometry and lidar in, pose in the map and the live costmap out."""
+"""State estimation: odometry and lidar in; pose in the map, costmap and moving obstacles out."""
 
 import numpy as np
 
@@ -8,24 +8,30 @@ from common.bus.port import Io, Job
 from common.geometry import Pose2, compose, inverse
 from services.navigation.config import NavigationConfig
 from services.navigation.costmap import Array, Costmap
-from services.navigation.floorplan import distance_field
+from services.navigation.distance_field import distance_field
 from services.navigation.localise import Localiser
-from services.navigation.movers import Movers
+from services.navigation.obstacle_tracker import ObstacleTracker
 from services.navigation.relocalise import relocalise
 
 NEAR = 4.0
+"""Range up to which lidar points are braked for and tracked [m]; chosen: beyond what the robot reaches in 5 s."""
 EXPLAINED = 0.15
-MAX_RANGE = 1000.0
-MAX_VALUE = 1e9
-# Shares of rays that the map explains: below BAD_FIT for DOUBT seconds the robot counts as lost, and if no better
-# place is found it goes on and asks again later, at last every MAX_DOUBT seconds.
-BAD_FIT, GOOD_FIT, BETTER, MIN_RAYS = 0.5, 0.6, 0.15, 60
+"""Distance from the map's walls and furniture within which they explain a point [m]; chosen: five times its noise."""
+MAX_RANGE, MAX_VALUE = 1000.0, 1e9
+"""What no lidar [m] and no odometry [m, m/s, rad] reports: a fault of its sender."""
+BAD_FIT, GOOD_FIT, BETTER = 0.5, 0.6, 0.15
+"""Shares of rays that the map explains [-]: below the first the pose is in doubt; a pose found anew needs the second,
+and this much more than the old one. Chosen: people and boxes hide less than half of the walls."""
+MIN_RAYS = 60
+"""Rays without which nothing is found anew [count]; chosen: as many as relocalisation matches."""
 DOUBT, MAX_DOUBT = 1.0, 16.0
+"""Time of doubt before the robot counts as lost [s], doubled up to the second after a search that found nothing."""
 FOUND = (0.1, 0.1, 0.05)
+"""Standard deviation of a pose found anew [m, m, rad]; chosen: finer than the grid of its search."""
 
 
-class Senses:
-    """`pose` is None before the first odometry, `points` (n, 2) [map] is what the lidar saw last."""
+class StateEstimator:
+    """`pose` [map] is None before the first odometry, `points` (n, 2) [map] is what the lidar saw last."""
 
     def __init__(self, config: NavigationConfig, io: Io, costmap: Costmap) -> None:
         self._config, self._io, self._map = config, io, costmap
@@ -35,7 +41,7 @@ class Senses:
         self._good_at, self._doubt_after = 0.0, DOUBT
         self._asked: Job[tuple[Pose2, float]] | None = None
         self._asked_from: Pose2 = (0.0, 0.0, 0.0)
-        self.movers = Movers()
+        self.tracker = ObstacleTracker()
         self.pose: Pose2 | None = None
         self._odometry: m.Odometry | None = None
         self._measured = 0.0
@@ -45,6 +51,7 @@ class Senses:
         self._directions: Array = np.empty((0, 2))
 
     def step(self, now: float) -> None:
+        """Take what wheels and lidar have reported, and publish the pose."""
         io = self._io
         for o in io.take_all(topics.ODOMETRY):
             if _sane(o.t, o.x, o.y, o.theta, o.vx, o.vy, o.omega):
@@ -69,7 +76,7 @@ class Senses:
         io.publish(topics.POSE, m.PoseEstimate(t=measured, x=x, y=y, theta=theta, covariance=covariance))
 
     def silence(self, now: float) -> float:
-        """Seconds since the wheels last reported."""
+        """Time since the wheels last reported [s]."""
         return min(self._io.age(topics.ODOMETRY, now), self._io.age(topics.JOINT_STATES, now))
 
     def _look(self, scan: m.LaserScan, odometry: m.Odometry | None, late: float, now: float) -> None:
@@ -99,7 +106,7 @@ class Senses:
         placed = _transformed(pose, seen)
         near = ranges[hit] < NEAR
         unknown = near & ~self._field.near(placed, EXPLAINED)
-        self.movers.update(placed[unknown], (pose[0], pose[1]), now)
+        self.tracker.update(placed[unknown], (pose[0], pose[1]), now)
         lidar = compose(pose, (scan.x, scan.y, 0.0))
         self._map.see(lidar, self._angles, ranges, scan.range_max, now)
         self.points = placed[near]

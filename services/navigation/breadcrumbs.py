@@ -1,4 +1,4 @@
-"""The way the robot came, for going back a little."""
+"""The last stretch that the robot came, for going back a little."""
 
 import math
 from collections import deque
@@ -7,21 +7,25 @@ from common.geometry import Pose2
 from services.navigation.costmap import Costmap
 from services.navigation.planner import Point
 
-STEP, LENGTH = 0.05, 40
+SPACING = 0.05
+"""Distance between two points [m]; chosen: the costmap's resolution."""
+COUNT = 40
+"""Points that are kept [count]: the last 2 m, four times `navigation.back_off`."""
 
 
-class Trail:
-    """The last two metres, a point every 5 cm."""
+class Breadcrumbs:
+    """Points [map] where the robot has been."""
 
     def __init__(self) -> None:
-        self._points: deque[Point] = deque(maxlen=LENGTH)
+        self._points: deque[Point] = deque(maxlen=COUNT)
 
     def add(self, pose: Pose2) -> None:
-        if not self._points or math.dist(self._points[-1], pose[:2]) > STEP:
+        """Note where the robot is."""
+        if not self._points or math.dist(self._points[-1], pose[:2]) > SPACING:
             self._points.append((pose[0], pose[1]))
 
     def retreat(self, pose: Pose2, costmap: Costmap, radius: float, limit: float) -> Pose2:
-        """The farthest point of the trail within `limit` that is free all the way; else where the robot stands."""
+        """The farthest point within `limit` [m] to which a disc of `radius` [m] can go back; else where it stands."""
         here = best = (pose[0], pose[1])
         for point in reversed(self._points):
             if math.dist(point, here) > limit or costmap.line_clearance(here, point) < radius:

@@ -1,0 +1,295 @@
+"""Goal executor: choose a pose, plan a path, follow it, wait out or go around what blocks it, give up in time."""
+
+import math
+from collections.abc import Sequence
+
+from common import messages as m
+from common.geometry import Pose2
+from services.navigation.breadcrumbs import Breadcrumbs
+from services.navigation.collision_avoidance import avoid
+from services.navigation.config import NavigationConfig
+from services.navigation.costmap import Array, Costmap
+from services.navigation.obstacle_tracker import Obstacle
+from services.navigation.path_follower import Lookahead, PathFollower
+from services.navigation.planner import PathPlanner, Point
+from services.navigation.progress import BlockedTimer, Progress
+
+REPLAN_PERIOD = 1.0
+"""Least time between two plans [s]; chosen: what the lidar sees seldom changes faster."""
+FEEDBACK_PERIOD = 1.0
+"""Time between two feedbacks without news [s]; chosen: often enough for a person who watches."""
+DETOUR_PAUSE = 4.0
+"""Time after a detour before another path counts as one [s]; chosen: until then the same obstacle shows more sides."""
+SHORTER = 0.85
+"""A new path replaces a free one only if it is this much shorter [-]; chosen: so that it does not waver between two."""
+OUT_OF_SIGHT = 3.0
+"""Age from which what was seen may be gone when there is no path [s]; chosen: longer than somebody hides a cell."""
+HERE = 0.05
+"""A pose this near is where the robot stands [m], free or not: the costmap's resolution."""
+WAY_COST = 0.15
+"""What the path to an approach pose adds to its penalty [m/m]; chosen: a better stance is worth a way round a table."""
+TOUCHING = 0.02
+"""How much closer than its footprint an obstacle must be to block a path [m]: the costmap's rounding."""
+
+
+class Ended(Exception):
+    """The goal has ended with this status, code and detail."""
+
+    def __init__(self, status: m.NavStatus, code: str = "", detail: str = "") -> None:
+        super().__init__(detail)
+        self.status, self.code, self.detail = status, code, detail
+
+
+class BlindBase:
+    """A base that reports no motion: what it says that it has reached is where it is."""
+
+    def __init__(self) -> None:
+        self.sent: Pose2 | None = None
+        self.start: Pose2 | None = None
+        self.assumed: Pose2 | None = None
+
+    def reached(self, pose: Pose2 | None) -> None:
+        """The base reports that it is where it was sent; believed while odometry shows no motion."""
+        still = pose is None or pose == self.start
+        if still and self.sent is not None:
+            self.assumed = self.sent
+
+
+class Navigator:
+    """Steps at the service's rate; returns the next target pose [map] for the base, raises `Ended` when over.
+
+    `recoveries` counts detours and retreats, `doing` is which of them is under way: "", WAITING, DETOUR, BACKING_OFF or
+    GIVING_WAY. `remaining` is the path that is left [m].
+    """
+
+    def __init__(
+        self,
+        config: NavigationConfig,
+        costmap: Costmap,
+        planner: PathPlanner,
+        choices: list[tuple[float, Pose2]],
+        name: str,
+        now: float,
+    ) -> None:
+        self._config, self._map, self._planner, self._choices = config, costmap, planner, choices
+        self._name, self._started = name, now
+        self._progress = Progress(config, now)
+        self._blocked = BlockedTimer()
+        self._breadcrumbs = Breadcrumbs()
+        self._base = BlindBase()
+        self._follower: PathFollower | None = None
+        self._new_path: list[Point] | None = None
+        self._planned_at = -math.inf
+        self._planned_version = -1
+        self._targets = 0
+        self._retreat: tuple[float, Pose2] | None = None
+        self._feedback_at = -math.inf
+        self._detour_at = -math.inf
+        self._retries = 0
+        self.recoveries = 0
+        self.remaining = 0.0
+        self.doing = ""
+
+    @property
+    def final_id(self) -> str:
+        """Id of the target pose that is the goal itself."""
+        return self._name
+
+    @property
+    def eta(self) -> float:
+        """Seconds that are left, as far as one can tell."""
+        waiting = self._config.blocked_wait if self.doing else 0.0
+        return self.remaining / self._config.usual_speed + waiting
+
+    def take_new_path(self) -> list[Point] | None:
+        """The path being followed, once after it has changed."""
+        path, self._new_path = self._new_path, None
+        return path
+
+    def due_feedback(self, now: float) -> bool:
+        """True once every FEEDBACK_PERIOD."""
+        if now - self._feedback_at < FEEDBACK_PERIOD:
+            return False
+        self._feedback_at = now
+        return True
+
+    def step(
+        self,
+        pose: Pose2 | None,
+        reached: list[m.GoalReached],
+        points: Array | None,
+        obstacles: Sequence[Obstacle],
+        now: float,
+    ) -> m.BaseTarget | None:
+        """`points` (n, 2) [map] is what the lidar sees around, `obstacles` what moves there.
+
+        Raises:
+            Ended: arrived, or failed TIMEOUT, NO_PATH or BLOCKED.
+        """
+        for answer in reached:
+            if answer.reached and answer.target_id == self.final_id:
+                raise Ended("arrived")
+            if answer.reached and answer.target_id == f"{self._name}#{self._targets}":
+                self._base.reached(pose)
+        pose = self._base.assumed or pose
+        if pose is None:
+            return self._without_odometry(now)
+        if self._base.start is None:
+            self._begin(pose, now)
+        if now > self._progress.deadline:
+            raise Ended("failed", "TIMEOUT", f"not there after {now - self._started:.0f} s")
+        self._breadcrumbs.add(pose)
+        target = self._go_on(pose, points, obstacles, now)
+        here = (pose[0], pose[1])
+        aside = avoid(here, (target.x, target.y), obstacles, self._map, self._config.footprint_radius)
+        if aside is None:
+            return target
+        self._base.sent, self.doing = None, "GIVING_WAY"
+        self._progress.excuse(now)
+        return self._hold_at((*aside, pose[2]))
+
+    def _go_on(self, pose: Pose2, points: Array | None, obstacles: Sequence[Obstacle], now: float) -> m.BaseTarget:
+        if self._retreat is not None:
+            return self._go_back(*self._retreat, pose, now)
+        if self._follower is None:
+            return self._wait(pose, obstacles, now)
+        return self._follow(pose, points, obstacles, now)
+
+    def _without_odometry(self, now: float) -> m.BaseTarget | None:
+        """The goal itself is sent, once a second, and the base's own controller does the rest."""
+        if self._progress.deadline == math.inf:
+            self._progress.allow(self._config.timeout_margin * 2, now)
+        if now > self._progress.deadline:
+            raise Ended("failed", "TIMEOUT", "no odometry, and the base never reported that it arrived")
+        if now - self._planned_at < REPLAN_PERIOD:
+            return None
+        self._planned_at = now
+        x, y, theta = min(self._choices)[1]
+        return m.BaseTarget(x=x, y=y, theta=theta, id=self.final_id)
+
+    # --- planning
+    def _begin(self, pose: Pose2, now: float) -> None:
+        """The first plan.
+
+        Raises:
+            Ended: NO_PATH, when even an empty flat has none.
+        """
+        self._base.start = pose
+        if self._plan(pose, now):
+            return
+        if not self._planner.possible((pose[0], pose[1]), [(g[0], g[1]) for _, g in self._choices]):
+            raise Ended("failed", "NO_PATH", "no free way leads there")
+        self._progress.allow(self._config.timeout_margin + self._config.blocked_wait * 10, now)
+
+    def _plan(self, pose: Pose2, now: float) -> bool:
+        """Choose the pose to stand at and the path there; False, and nothing changes, when there is none now."""
+        field = self._planner.field(pose[0], pose[1])
+        costs = []
+        for penalty, goal in self._choices:
+            here = math.hypot(goal[0] - pose[0], goal[1] - pose[1]) < HERE
+            if here or self._planner.free(goal[0], goal[1]):
+                cost = self._planner.cost_to(field, (goal[0], goal[1]))
+                costs.append((penalty + WAY_COST * cost, goal))
+        self._planned_at, self._planned_version = now, self._map.version
+        score, goal = min(costs, default=(math.inf, (0.0, 0.0, 0.0)))
+        path = self._planner.path(field, (pose[0], pose[1]), (goal[0], goal[1])) if math.isfinite(score) else None
+        if path is None:
+            return False
+        follower = PathFollower(path, goal, self._config.lookahead, self._config.corridor)
+        old = self._follower
+        if old is not None and self._blocked_at(old, pose) is None:
+            if follower.remaining(pose) > SHORTER * old.remaining(pose):
+                return True
+        elif old is not None and now - self._detour_at > DETOUR_PAUSE:
+            self.recoveries += 1
+            self._detour_at, self.doing = now, "DETOUR"
+        self._follower, self._new_path = follower, path
+        self._progress.follow(follower.remaining(pose), now)
+        return True
+
+    def _blocked_at(self, follower: PathFollower, pose: Pose2) -> float | None:
+        """How far ahead [m] something that was seen lies on the path; None when it is clear."""
+        return follower.blocked_at(pose, self._map, self._config.footprint_radius - TOUCHING)
+
+    def _follow(self, pose: Pose2, points: Array | None, obstacles: Sequence[Obstacle], now: float) -> m.BaseTarget:
+        if self._map.version != self._planned_version and now - self._planned_at > REPLAN_PERIOD:
+            self._replan(pose, now)
+        follower = self._follower
+        if follower is None:
+            return self._wait(pose, obstacles, now)
+        ahead = follower.step(pose, self._map, self._config.footprint_radius, points)
+        self.remaining = ahead.remaining
+        self._watch(ahead, pose, obstacles, now)
+        self._targets += 1
+        self._base.sent = ahead.pose
+        x, y, theta = ahead.pose
+        number = self.final_id if ahead.final else f"{self._name}#{self._targets}"
+        return m.BaseTarget(x=x, y=y, theta=theta, id=number)
+
+    def _watch(self, ahead: Lookahead, pose: Pose2, obstacles: Sequence[Obstacle], now: float) -> None:
+        """Lose patience with a blocked path, and with no progress on a free one."""
+        if self._progress.advanced(ahead.remaining, now) and (
+            self.doing != "DETOUR" or now - self._detour_at > DETOUR_PAUSE
+        ):
+            self.doing = ""
+        if ahead.blocked:
+            self._progress.excuse(now)
+            self.doing = "WAITING"
+            if self._blocked.blocked((pose[0], pose[1]), obstacles, now) > self._config.blocked_wait:
+                self._recover(pose, now, "the way is blocked")
+        else:
+            self._blocked.clear()
+            if self._progress.stuck(now):
+                self._recover(pose, now, "no progress")
+
+    def _replan(self, pose: Pose2, now: float) -> None:
+        """Around what was seen; when there is no path round it, on towards it, but not up to it."""
+        if self._plan(pose, now) or self._follower is None:
+            return
+        ahead = self._blocked_at(self._follower, pose)
+        if ahead is not None and ahead < self._config.keep_off:
+            self._follower = None
+
+    # --- recovery
+    def _wait(self, pose: Pose2, obstacles: Sequence[Obstacle], now: float) -> m.BaseTarget:
+        """No path at this moment: stand, look for one every second, lose patience in time."""
+        self.doing = "WAITING"
+        blocked = self._blocked.blocked((pose[0], pose[1]), obstacles, now)
+        if now - self._planned_at > REPLAN_PERIOD and self._plan(pose, now):
+            self._blocked.clear()
+        elif blocked > self._config.blocked_wait:
+            self._recover(pose, now, "something stands in every way there")
+        return self._hold_at(pose)
+
+    def _hold_at(self, pose: Pose2) -> m.BaseTarget:
+        self._targets += 1
+        return m.BaseTarget(x=pose[0], y=pose[1], theta=pose[2], id=f"{self._name}#{self._targets}")
+
+    def _recover(self, pose: Pose2, now: float, why: str) -> None:
+        """Go back a little the way it came, then look for another path; after the retries report.
+
+        These are all the retries of a blocked path: whoever sent the goal adds none.
+
+        Raises:
+            Ended: BLOCKED.
+        """
+        if self._retries >= self._config.retries:
+            raise Ended("failed", "BLOCKED", f"{why} after {self._retries} retries")
+        self._retries += 1
+        self.recoveries += 1
+        self.doing = "BACKING_OFF"
+        self._blocked.clear()
+        self._map.doubt(now, OUT_OF_SIGHT)
+        config = self._config
+        back = self._breadcrumbs.retreat(pose, self._map, config.footprint_radius, config.back_off)
+        self._retreat = now + config.back_off_time, back
+
+    def _go_back(self, until: float, back: Pose2, pose: Pose2, now: float) -> m.BaseTarget:
+        """Towards `back` until that robot time [s], then another plan."""
+        if now >= until:
+            self._retreat = None
+            self._progress.restart(now)
+            self._follower = None
+            self._plan(pose, now)
+            self._blocked.clear()
+        return self._hold_at(back)

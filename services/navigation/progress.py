@@ -1,0 +1,77 @@
+"""Is a goal getting anywhere: its time limit, its progress along the path, and how long the path has been blocked."""
+
+import math
+from collections.abc import Sequence
+
+from services.navigation.config import NavigationConfig
+from services.navigation.obstacle_tracker import Obstacle
+from services.navigation.planner import Point
+
+STEP = 0.05
+"""What counts as progress [m]; chosen: more than the play of the pose estimate."""
+NEAR = 3.0
+"""What moves within this of the robot may be what blocks the path [m]: as far as collision avoidance looks."""
+PASSING = 20.0
+"""Time that a goal waits for those who pass before its waiting counts again [s]: several times what a person needs
+to clear a door, and less than the margin of a goal's time limit, so that somebody who stays is reported as BLOCKED."""
+
+
+class Progress:
+    """Of one goal: `deadline` is the robot time [s] at which it fails, inf before it is set."""
+
+    def __init__(self, config: NavigationConfig, now: float) -> None:
+        self._config = config
+        self.deadline = math.inf
+        self._best, self._best_at = math.inf, now
+
+    def allow(self, seconds: float, now: float) -> None:
+        """Set the time limit of a goal for which there is no path."""
+        self.deadline = now + seconds
+
+    def follow(self, length: float, now: float) -> None:
+        """A path of `length` [m] begins: the limit leaves time for it and is never brought forward."""
+        self._best, self._best_at = length, now
+        limit = now + length / self._config.min_average_speed + self._config.timeout_margin
+        self.deadline = max(limit, self.deadline if math.isfinite(self.deadline) else 0.0)
+
+    def advanced(self, remaining: float, now: float) -> bool:
+        """True when less path remains [m] than ever before."""
+        if remaining >= self._best - STEP:
+            return False
+        self._best, self._best_at = remaining, now
+        return True
+
+    def excuse(self, now: float) -> None:
+        """Not getting on until now has a known reason."""
+        self._best_at = now
+
+    def restart(self, now: float) -> None:
+        """Whatever remains is progress."""
+        self._best, self._best_at = math.inf, now
+
+    def stuck(self, now: float) -> bool:
+        """True when there has been no progress for too long."""
+        return now - self._best_at > self._config.no_progress
+
+
+class BlockedTimer:
+    """How long a path has been blocked; the time in which somebody may just be passing is not counted."""
+
+    def __init__(self) -> None:
+        self._since: float | None = None
+        self._at = 0.0
+        self._left = PASSING
+
+    def blocked(self, here: Point, obstacles: Sequence[Obstacle], now: float) -> float:
+        """Once a step while the path is blocked: for how long it has been [s]. `obstacles` are those that move."""
+        if self._since is None:
+            self._since = self._at = now
+        elif self._left > 0.0 and any(math.dist((o.x, o.y), here) < NEAR + o.radius for o in obstacles):
+            self._left -= now - self._at
+            self._since += now - self._at
+        self._at = now
+        return now - self._since
+
+    def clear(self) -> None:
+        """The path is free, or another one is tried."""
+        self._since = None
