@@ -24,7 +24,7 @@ class Finding:
     words: str
 
 
-def found_at(pose: ObjectPose, label: str, target: str, scene: Scene) -> Finding:
+def judge_placement(pose: ObjectPose, label: str, target: str, scene: Scene) -> Finding:
     """Judge an object that was seen after it was put down on `target`; "": anywhere will do."""
     spec, wanted = scene.object(label), scene.receptacle(target)
     on = scene.receptacle(pose.on) or scene.resting_place(pose.position)
@@ -42,7 +42,7 @@ def found_at(pose: ObjectPose, label: str, target: str, scene: Scene) -> Finding
     return Finding("", f"the {label} is {where}, {measured}")
 
 
-def not_found(label: str, target: str, scene: Scene) -> Finding:
+def judge_absence(label: str, target: str, scene: Scene) -> Finding:
     """Judge that an object is not to be seen. Into a bin the camera hardly looks: there the hand's word counts."""
     wanted = scene.receptacle(target)
     if wanted is not None and wanted.depth:

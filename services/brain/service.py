@@ -10,18 +10,19 @@ from common.language.meaning import asks_for
 from common.language.normalise import normalise
 from common.time.clock import unix_time
 from services.brain.config import BrainConfig
-from services.brain.context import Context
-from services.brain.goals import Answer, Channel, Word
-from services.brain.journal import Journal
-from services.brain.mission import Failure, fingers_hold
-from services.brain.snapshot import Signature, signature, snapshot, tip
-from services.brain.store import open_journal
-from services.brain.take_up import Resumption, cut_short
-from services.brain.trees import fetch_tree
-from services.brain.vla import vla_tree
+from services.brain.journal.records import Journal
+from services.brain.journal.sqlite import open_journal
+from services.brain.mission.channel import Channel, GoalStatus, Result
+from services.brain.mission.context import Context
+from services.brain.mission.mission import Failure, gripper_holds
+from services.brain.pipelines.fetch import fetch_tree
+from services.brain.pipelines.vla import vla_tree
+from services.brain.resume.resumption import Resumption, suspend
+from services.brain.tree.path import tip
+from services.brain.tree.snapshot import Signature, signature, snapshot
 
-_NAVIGATION: dict[m.NavStatus, Word] = {"navigating": "busy", "arrived": "ok", "failed": "failed"}
-_MANIPULATION: dict[m.ManipStatus, Word] = {"executing": "busy", "done": "ok", "failed": "failed"}
+_NAVIGATION: dict[m.NavStatus, GoalStatus] = {"navigating": "busy", "arrived": "ok", "failed": "failed"}
+_MANIPULATION: dict[m.ManipStatus, GoalStatus] = {"executing": "busy", "done": "ok", "failed": "failed"}
 
 
 class BrainService:
@@ -62,19 +63,19 @@ class BrainService:
         ctx.now = now
         for channel in ctx.channels:
             channel.watch(now)
-        ctx.hand.feel(fingers_hold(self._io.latest(topics.JOINT_STATES)), now)
+        ctx.gripper.update(gripper_holds(self._io.latest(topics.JOINT_STATES)), now)
         self._receive_answers()
         self._receive_stops()
         self._receive_commands()
         self._watch_heartbeat()
         if self._resumption is not None and self._resumption.step():
-            if self._resumption.put_off:
-                ctx.put_off = cut_short(self._resumption.left, ctx.mission, ctx.hand)
+            if self._resumption.suspended:
+                ctx.suspended = suspend(self._resumption.left, ctx.mission, ctx.gripper)
             self._resumption = None
         if self._resumption is None:
             self.tree.tick_once()
             for channel in ctx.channels:
-                if channel.taken_up:  # no leaf has gone on with it
+                if channel.resuming:  # no leaf has gone on with it
                     channel.abandon()
             ctx.at = tip(self.tree)
             ctx.save()
@@ -98,7 +99,7 @@ class BrainService:
         record = self._journal.mission(left.mission.id)
         if left.mission.active and (record is None or record.outcome is None):
             return Resumption(self.context, self.tree, left)
-        self.context.hand, self.context.put_off = left.hand, left.put_off
+        self.context.gripper, self.context.suspended = left.gripper, left.suspended
         return None
 
     # --- the robot's body
@@ -117,10 +118,10 @@ class BrainService:
         ctx = self.context
         left = ctx.bookmark()
         self._io.log.error("joint_states lost: the mission is suspended", state=ctx.state, step=ctx.shown.step)
-        ctx.quiet()
+        ctx.stop_all()
         self.tree.stop(Status.INVALID)
         self._resumption = Resumption(
-            ctx, self.tree, cut_short(left, ctx.mission, ctx.hand), why="joint_states lost: base and arm told to stop"
+            ctx, self.tree, suspend(left, ctx.mission, ctx.gripper), why="joint_states lost: base and arm told to stop"
         )
 
     # --- answers of the peers
@@ -137,21 +138,21 @@ class BrainService:
         for heard in io.take_all(topics.SPEECH_RESULT):
             text = heard.text.strip()
             if text:
-                word: Word = "failed" if text == "ERROR" else "ok"
+                word: GoalStatus = "failed" if text == "ERROR" else "ok"
                 self._offer(ctx.speech, heard, word, heard.code, heard.detail)
         for speech in io.take_all(topics.SPEECH_STATUS):
             ctx.speaking = speech
         for plan in io.take_all(topics.ACTION_PLAN):
-            ctx.planner.offer(plan.request_id, 0, Answer("ok", message=plan))
+            ctx.planner.handle_status(plan.request_id, 0, Result("ok", message=plan))
         for pose in io.take_all(topics.OBJECT_POSE):
-            ctx.perception.offer(pose.query_id, 0, Answer("ok", message=pose))
+            ctx.perception.handle_status(pose.query_id, 0, Result("ok", message=pose))
         io.take_all(topics.WORLD_OBJECTS)
 
     @staticmethod
-    def _offer(channel: Channel, message: m.Message, word: Word | None, code: str, detail: str) -> None:
+    def _offer(channel: Channel, message: m.Message, word: GoalStatus | None, code: str, detail: str) -> None:
         if word is not None:  # `idle` of a service that has just started is no answer
             goal_id, attempt = getattr(message, "goal_id", ""), getattr(message, "attempt", 0)
-            channel.offer(goal_id, attempt, Answer(word, code, detail, message))
+            channel.handle_status(goal_id, attempt, Result(word, code, detail, message))
 
     # --- people
     def _receive_stops(self) -> None:
@@ -176,17 +177,17 @@ class BrainService:
         left = self.context.bookmark() if self.context.mission.active else None
         self._interrupt(reason)
         if left is not None:
-            self.context.put_off = cut_short(left, self.context.mission, self.context.hand)
+            self.context.suspended = suspend(left, self.context.mission, self.context.gripper)
 
     def _go_on(self) -> None:
         """Take up what a stop has cut short, unless something else has begun meanwhile."""
-        ctx, left = self.context, self.context.put_off
-        ctx.put_off = None
+        ctx, left = self.context, self.context.suspended
+        ctx.suspended = None
         if left is None or ctx.mission.active or self._resumption is not None:
             self._io.log.info("no mission to go on with")
             return
         if ctx.speech.outstanding:
-            ctx.tell(ctx.speech, topics.SPEECH_GOAL, "cancel")
+            ctx.send_only(ctx.speech, topics.SPEECH_GOAL, "cancel")
         self.tree.stop(Status.INVALID)
         if left.run and left.run == ctx.config.run:
             left.date = unix_time()  # as long as the robot is up it may stand as long as people like
@@ -215,14 +216,14 @@ class BrainService:
         """End the mission under way and everything that is done for it."""
         ctx = self.context
         if ctx.mission.active:
-            ctx.quiet()
+            ctx.stop_all()
             self.tree.stop(Status.INVALID)
             ctx.mission.failure = Failure(ctx.state, "CANCELLED", reason)
-            held = ctx.hand.holding or ctx.hand.uncertain
-            ctx.finish("cancelled", f"{reason}; holding the {held}" if held else reason)
+            held = ctx.gripper.holding or ctx.gripper.grasp_uncertain
+            ctx.end_mission("cancelled", f"{reason}; holding the {held}" if held else reason)
         else:
             if ctx.speech.outstanding:
-                ctx.tell(ctx.speech, topics.SPEECH_GOAL, "cancel")
+                ctx.send_only(ctx.speech, topics.SPEECH_GOAL, "cancel")
             self.tree.stop(Status.INVALID)
         ctx.listen_after = ctx.now + ctx.config.settle
         ctx.command = None

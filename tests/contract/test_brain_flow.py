@@ -61,7 +61,7 @@ class Peer:
         return [n for i, n in enumerate(names) if i == 0 or n != names[i - 1]]
 
     def answer(self, key: str, goal: dict[str, Any], **fields: Any) -> float:
-        """Answer a goal; returns the moment just before."""
+        """Result a goal; returns the moment just before."""
         self.put(key, goal_id=goal["id"], attempt=goal["attempt"], **fields)
         return self.sent_at[-1]
 

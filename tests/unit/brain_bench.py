@@ -56,7 +56,7 @@ class Bench(Node):
 
     # --- peers
     def hear(self, text: str, count: int = 1) -> None:
-        """Answer the listen goal number `count` with a text."""
+        """Result the listen goal number `count` with a text."""
         goal = self.next_goal(topics.SPEECH_GOAL, count)
         assert goal.goal == "listen"
         self.send(topics.SPEECH_RESULT, m.SpeechResult(text=text, goal_id=goal.id, attempt=goal.attempt))

@@ -10,10 +10,10 @@ from common import messages as m
 from common import topics
 from common.bus.memory import MemoryIo
 from common.scene import load_scene
-from services.brain.check import ASIDE
 from services.brain.config import BrainConfig
-from services.brain.pictures import KEPT, LARGEST, START, Pictures
-from services.brain.placement import found_at, not_found
+from services.brain.journal.pictures import KEPT, LARGEST, START, Pictures
+from services.brain.placement import judge_absence, judge_placement
+from services.brain.steps.verify import ASIDE
 from tests.unit.brain_bench import Bench
 from tests.unit.test_brain_vla import FETCH, MANIP, POSE, QUERY, SPEECH, approach, planned, see
 
@@ -46,14 +46,14 @@ def pose(**fields: Any) -> m.ObjectPose:
     ],
 )
 def test_what_is_seen_is_judged_by_place_and_stance(label: str, target: str, seen: dict[str, Any], fault: str) -> None:
-    finding = found_at(pose(label=label, **seen), label, target, SCENE)
+    finding = judge_placement(pose(label=label, **seen), label, target, SCENE)
     assert finding.fault == fault
     assert label in finding.words and "tilt" in finding.words
 
 
 def test_into_a_bin_nobody_sees() -> None:
-    assert not_found("red mug", "bin", SCENE).fault == ""
-    assert not_found("red mug", "delivery tray", SCENE).fault == "NOT_SEEN"
+    assert judge_absence("red mug", "bin", SCENE).fault == ""
+    assert judge_absence("red mug", "delivery tray", SCENE).fault == "NOT_SEEN"
 
 
 def with_perception(bench: Bench) -> None:
@@ -81,7 +81,7 @@ def approach_again(bench: Bench, count: int) -> None:
 
 
 def look(bench: Bench, count: int, **seen: Any) -> None:
-    """Answer a query by what a picture shows that is taken now."""
+    """Result a query by what a picture shows that is taken now."""
     query = bench.next_goal(QUERY, count)
     bench.send(topics.OBJECT_POSE, m.ObjectPose(query_id=query.id, **{**SEEN, "seen_at": bench.now, **seen}))
     bench.step()
@@ -133,7 +133,7 @@ def test_what_lies_is_said_picked_up_and_put_right() -> None:
 
 
 def turned(bench: Bench, arrived: bool = True) -> m.NavGoal:
-    """Answer the turn that follows a look that did not show the object."""
+    """Result the turn that follows a look that did not show the object."""
     goal = bench.next_goal(POSE, 2)
     status, code = ("arrived", "") if arrived else ("failed", "UNREACHABLE")
     bench.send(topics.NAVIGATION_FEEDBACK, m.NavigationFeedback(goal_id=goal.id, status=status, code=code))
@@ -145,7 +145,7 @@ def turned(bench: Bench, arrived: bool = True) -> m.NavGoal:
 def test_what_the_arm_may_hide_is_looked_for_from_aside(arrived: bool) -> None:
     bench = brought()
     look(bench, 2, found=False)
-    x, y, theta = bench.brain.context.here
+    x, y, theta = bench.brain.context.robot_pose
     goal = turned(bench, arrived)
     assert (goal.x, goal.y) == (x, y) and abs(goal.theta - theta) == pytest.approx(ASIDE)
     look(bench, 3)

@@ -6,10 +6,10 @@ import pytest
 
 from common.messages import ObjectPose, PlanStep
 from services.brain.config import BrainConfig
-from services.brain.goals import Sent
-from services.brain.journal import Checkpoint, Place, Pose
-from services.brain.mission import Failure, Hand, Mission
-from services.brain.resume import (
+from services.brain.journal.records import Checkpoint, PathNode, Pose
+from services.brain.mission.channel import SentGoal
+from services.brain.mission.mission import Failure, GripperState, Mission
+from services.brain.resume.policy import (
     CLOCK_SLACK,
     MAX_RESUMES,
     MOVED,
@@ -33,23 +33,23 @@ PLAN = [
 ]  # fmt: skip
 
 
-def in_plan(k: int, *below: str, inside: str = "execute") -> list[Place]:
+def in_plan(k: int, *below: str, inside: str = "execute") -> list[PathNode]:
     """The path of a plan's step `k` and the leaf at work in it."""
     return [
-        Place(0, "root"),
-        Place(2, "mission", 1),
-        Place(1, inside),
-        Place(k, f"step {k}"),
-        *(Place(1, n) for n in below),
+        PathNode("root"),
+        PathNode("mission", 0, 1),
+        PathNode(inside),
+        PathNode("step", k),
+        *(PathNode(n, 1) for n in below),
     ]
 
 
-def in_fetch(*below: str) -> list[Place]:
-    return [Place(0, "root"), Place(1, "as asked"), Place(2, "do"), *(Place(1, name, 2) for name in below)]
+def in_fetch(*below: str) -> list[PathNode]:
+    return [PathNode("root"), PathNode("as_asked"), PathNode("do"), *(PathNode(name, 1, 2) for name in below)]
 
 
-def left(path: list[Place], plan: bool = True, **more: object) -> Checkpoint:
-    fields = {"t": 50.0, "base": HOME, "hand": Hand(), **more}
+def left(path: list[PathNode], plan: bool = True, **more: object) -> Checkpoint:
+    fields = {"t": 50.0, "base": HOME, "gripper": GripperState(), **more}
     mission = fields.pop("mission", Mission(id="m", plan=PLAN if plan else [], label="the mug", kind="fetch"))
     return Checkpoint(mission=mission, path=path, **fields)  # type: ignore[arg-type]
 
@@ -58,8 +58,8 @@ def seen(fingers: bool | None = None, base: Pose | None = HOME, t: float = 51.0,
     return Seen(fingers, base, t, arm_answered)
 
 
-def sent(peer: str) -> Sent:
-    return Sent(peer, "k", {"id": "m.1"})
+def sent(peer: str) -> SentGoal:
+    return SentGoal(peer, "k", {"id": "m.1"})
 
 
 # --- whether at all
@@ -89,22 +89,26 @@ def test_nothing_changed_goes_on_at_the_same_leaf() -> None:
 
 
 def test_what_was_held_and_is_not_is_found_and_grasped_again() -> None:
-    hand = Hand(holding=MUG)
-    assert decide(left(in_plan(2), hand=hand), seen(False)) == Decision([*in_plan(2)[:3], Place(0, "")], "lost", MUG)
-    assert decide(left(in_fetch("return"), hand=hand), seen(False)) == Decision(in_fetch(), "lost", MUG)
-    nowhere = [Place(0, "root"), Place(3, "say")]
-    assert decide(left(nowhere, hand=hand), seen(False)) == Decision(nowhere, "lost", MUG)
+    hand = GripperState(holding=MUG)
+    assert decide(left(in_plan(2), gripper=hand), seen(False)) == Decision(
+        [*in_plan(2)[:3], PathNode("step", 0)], "lost", MUG
+    )
+    assert decide(left(in_fetch("return"), gripper=hand), seen(False)) == Decision(in_fetch(), "lost", MUG)
+    nowhere = [PathNode("root"), PathNode("say")]
+    assert decide(left(nowhere, gripper=hand), seen(False)) == Decision(nowhere, "lost", MUG)
     for fingers in (True, None):
-        assert decide(left(in_plan(2), hand=hand), seen(fingers)).change == ""
-    busy = left(in_plan(3), hand=hand, sent=[sent("manipulation")])
+        assert decide(left(in_plan(2), gripper=hand), seen(fingers)).change == ""
+    busy = left(in_plan(3), gripper=hand, sent=[sent("manipulation")])
     assert decide(busy, seen(False)).change == "", "the arm is asked first"
-    assert decide(left(in_plan(3), hand=hand, sent=[sent("navigation")]), seen(False)).change == "lost"
+    assert decide(left(in_plan(3), gripper=hand, sent=[sent("navigation")]), seen(False)).change == "lost"
 
 
 def test_a_full_hand_before_a_grasp_is_that_grasp_done() -> None:
-    assert decide(left(in_plan(0, "drive")), seen(True)) == Decision([*in_plan(0)[:3], Place(2, "")], "holding", MUG)
-    assert decide(left(in_plan(4)), seen(True)) == Decision([*in_plan(4)[:3], Place(6, "")], "holding", CAN)
-    assert decide(left(in_plan(0, inside="go and look")), seen(True)).change == "holding"
+    assert decide(left(in_plan(0, "drive")), seen(True)) == Decision(
+        [*in_plan(0)[:3], PathNode("step", 2)], "holding", MUG
+    )
+    assert decide(left(in_plan(4)), seen(True)) == Decision([*in_plan(4)[:3], PathNode("step", 6)], "holding", CAN)
+    assert decide(left(in_plan(0, inside="go_and_look")), seen(True)).change == "holding"
     grounded = Mission(id="m", plan=PLAN, found={MUG: ObjectPose(query_id="q", found=True, label="mug 2")})
     assert decide(left(in_plan(0), mission=grounded), seen(True)).label == "mug 2"
     nameless = Mission(id="m", plan=PLAN, found={MUG: ObjectPose(query_id="q", found=True)})
@@ -116,11 +120,12 @@ def test_a_full_hand_before_a_grasp_is_that_grasp_done() -> None:
     "checkpoint",
     [
         left(in_plan(2)), left(in_plan(3)), left(in_plan(6)), left(in_plan(7)),
-        left(in_plan(0, "grab")), left(in_plan(1, "grab it")), left(in_plan(0), hand=Hand(uncertain=MUG)),
-        left(in_plan(0), hand=Hand(holding=MUG)), left(in_plan(0), sent=[sent("manipulation")]),
+        left(in_plan(0, "grab")), left(in_fetch("approach_and_grab", "grab")),
+        left(in_plan(0), gripper=GripperState(grasp_uncertain=MUG)),
+        left(in_plan(0), gripper=GripperState(holding=MUG)), left(in_plan(0), sent=[sent("manipulation")]),
         left(in_plan(0), mission=Mission(id="m", plan=PLAN, released=True)),
         left(in_fetch("go"), mission=Mission(id="m", kind="return", label=MUG)),
-        left([Place(0, "root"), Place(1, "listen")], plan=False), left([], plan=False),
+        left([PathNode("root"), PathNode("listen")], plan=False), left([], plan=False),
     ],
 )  # fmt: skip
 def test_a_full_hand_at_any_other_time_changes_nothing(checkpoint: Checkpoint) -> None:
@@ -134,10 +139,12 @@ def test_a_grasp_as_the_last_step_is_not_skipped() -> None:
 
 def test_a_world_begun_anew_is_looked_at_anew() -> None:
     early = 50.0 - CLOCK_SLACK
-    assert decide(left(in_plan(5, "go")), seen(t=early - 0.1)) == Decision([*in_plan(5)[:3], Place(4, "")], "new world")
+    assert decide(left(in_plan(5, "go")), seen(t=early - 0.1)) == Decision(
+        [*in_plan(5)[:3], PathNode("step", 4)], "new world"
+    )
     assert decide(left(in_plan(5, "go")), seen(t=early)).change == "", "clocks differ a little"
     assert decide(left(in_fetch("go")), seen(t=0.0)) == Decision(in_fetch(), "new world")
-    assert decide(left(in_plan(5), hand=Hand(holding=CAN)), seen(t=0.0)).change == ""
+    assert decide(left(in_plan(5), gripper=GripperState(holding=CAN)), seen(t=0.0)).change == ""
     done = Mission(id="m", plan=PLAN, released=True)
     assert decide(left(in_plan(5), mission=done), seen(t=0.0)).change == ""
 
@@ -152,7 +159,7 @@ def test_a_world_begun_anew_is_looked_at_anew() -> None:
     ],
 )  # fmt: skip
 def test_a_base_that_was_moved_drives_there_again(base: Pose | None, moved: bool) -> None:
-    expected = Decision([*in_plan(1)[:3], Place(1, "")], "moved") if moved else Decision(in_plan(1, "reach"))
+    expected = Decision([*in_plan(1)[:3], PathNode("step", 1)], "moved") if moved else Decision(in_plan(1, "reach"))
     assert decide(left(in_plan(1, "reach")), seen(base=base)) == expected
 
 
@@ -190,13 +197,13 @@ def test_the_step_to_do_again_without_a_find_or_a_drive() -> None:
 
 
 # --- what is believed from then on
-def believing() -> tuple[Mission, Hand]:
+def believing() -> tuple[Mission, GripperState]:
     poses = {
         MUG: ObjectPose(query_id="a", found=True, label="mug 2"),
         CAN: ObjectPose(query_id="b", found=True, label=CAN),
     }
     mission = Mission(id="m", grabbed=True, found=poses, visited=[HOME], at="desk")
-    return mission, Hand(holding=MUG, put_down={CAN: 3.0})
+    return mission, GripperState(holding=MUG, put_down={CAN: 3.0})
 
 
 def test_what_was_lost_is_nowhere_known() -> None:
@@ -208,9 +215,9 @@ def test_what_was_lost_is_nowhere_known() -> None:
 
 
 def test_what_is_held_was_grabbed() -> None:
-    mission, hand = Mission(id="m", at="desk"), Hand(uncertain=CAN)
+    mission, hand = Mission(id="m", at="desk"), GripperState(grasp_uncertain=CAN)
     apply(Decision([], "holding", MUG), mission, hand)
-    assert (hand.holding, hand.uncertain, mission.grabbed, mission.at) == (MUG, "", True, "")
+    assert (hand.holding, hand.grasp_uncertain, mission.grabbed, mission.at) == (MUG, "", True, "")
 
 
 def test_of_a_new_world_nothing_is_known() -> None:

@@ -17,13 +17,13 @@ Grip = tuple[float, float]
 WIDE, SHUT, AROUND = (0.085, 0.0), (0.0, 30.0), (0.041, 30.0)
 
 
-class Hand(Bench):
+class GripperState(Bench):
     """A bench whose joint_states tell of a gripper that goes where it is told, unless it is `stuck`."""
 
     def __init__(self, grip: Grip, steps: list[m.PlanStep], holding: str = "", inside: float = 0.0) -> None:
         super().__init__(BrainConfig(pipeline="vla", enable_confirmation=False))
         self.grip, self.inside, self.stuck = grip, inside, False
-        self.brain.context.hand.holding = holding
+        self.brain.context.gripper.holding = holding
         self.step()
         self.ask(steps)
 
@@ -62,7 +62,7 @@ class Hand(Bench):
 
 @pytest.mark.parametrize("grip", [WIDE, SHUT], ids=["open", "closed"])
 def test_an_empty_hand_opens_without_the_arm(grip: Grip) -> None:
-    hand = Hand(grip, [OPEN])
+    hand = GripperState(grip, [OPEN])
     assert hand.outcome().outcome == "delivered"
     assert hand.positions() == {0.0} and hand.grip[0] > 0.08
     assert hand.sent(topics.MANIPULATION_GOAL) == []
@@ -70,22 +70,22 @@ def test_an_empty_hand_opens_without_the_arm(grip: Grip) -> None:
 
 
 def test_an_empty_hand_closes_and_stays_empty() -> None:
-    hand = Hand(WIDE, [CLOSE])
+    hand = GripperState(WIDE, [CLOSE])
     assert hand.outcome().outcome == "delivered"
-    assert hand.positions() == {1.0} and hand.brain.context.hand.holding == ""
+    assert hand.positions() == {1.0} and hand.brain.context.gripper.holding == ""
 
 
 def test_what_a_person_puts_into_the_closing_hand_is_held() -> None:
-    hand = Hand(WIDE, [CLOSE], inside=0.03)
+    hand = GripperState(WIDE, [CLOSE], inside=0.03)
     assert hand.outcome().outcome == "delivered"
-    assert hand.brain.context.hand.holding == "object"
+    assert hand.brain.context.gripper.holding == "object"
     hand.step(3.0)
-    assert hand.brain.context.hand.holding == "object" and not hand.brain.context.hand.lost(hand.now)
+    assert hand.brain.context.gripper.holding == "object" and not hand.brain.context.gripper.has_lost_object(hand.now)
 
 
 @pytest.mark.parametrize("step", [OPEN, CLOSE])
 def test_time_alone_is_no_success(step: m.PlanStep) -> None:
-    hand = Hand((0.05, 0.0), [step])
+    hand = GripperState((0.05, 0.0), [step])
     hand.stuck = True
     ended = hand.outcome()
     assert ended.outcome == "failed" and "STUCK" in ended.reason and "50 mm" in ended.reason
@@ -93,16 +93,16 @@ def test_time_alone_is_no_success(step: m.PlanStep) -> None:
 
 
 def test_a_full_hand_sets_down_first() -> None:
-    hand = Hand(AROUND, [OPEN])
+    hand = GripperState(AROUND, [OPEN])
     goal = hand.manip(1)
     assert goal.goal == "release" and not hand.sent(topics.GRIPPER_COMMAND), "felt, though nobody knew of it"
     hand.did(goal)
     assert hand.outcome().outcome == "delivered"
 
 
-def gone(answer: str) -> Hand:
+def gone(answer: str) -> GripperState:
     """Asked to put down the mug while manipulation dies for good; the person answers the question."""
-    hand = Hand(AROUND, [PUT_DOWN], holding="red mug")
+    hand = GripperState(AROUND, [PUT_DOWN], holding="red mug")
     arm = MemoryIo(hand.bus, "manipulation", (), (), scene=hand.io.scene, lockstep=False)
     hand.manip(1)
     hand.step(0.5)
@@ -111,7 +111,7 @@ def gone(answer: str) -> Hand:
     return hand
 
 
-def reply(hand: Hand, answer: str) -> None:
+def reply(hand: GripperState, answer: str) -> None:
     hand.until(lambda: hand.state.state == "CONFIRMING")
     assert "let the red mug drop" in hand.state.step and not hand.sent(topics.GRIPPER_COMMAND)
     hand.send(topics.VOICE_COMMAND, m.VoiceCommand(text=answer, confidence=1.0))
@@ -121,15 +121,15 @@ def reply(hand: Hand, answer: str) -> None:
 def test_without_an_arm_it_lets_go_on_a_yes() -> None:
     hand = gone("yes")
     assert hand.outcome().outcome == "delivered"
-    assert hand.positions() == {0.0} and hand.brain.context.hand.holding == ""
-    assert "red mug" in hand.brain.context.hand.put_down
+    assert hand.positions() == {0.0} and hand.brain.context.gripper.holding == ""
+    assert "red mug" in hand.brain.context.gripper.put_down
 
 
 def test_without_a_yes_it_holds_on() -> None:
     hand = gone("no")
     ended = hand.outcome()
     assert ended.outcome == "failed" and "NO_PEER" in ended.reason and "still holding the red mug" in ended.reason
-    assert not hand.sent(topics.GRIPPER_COMMAND) and hand.brain.context.hand.holding == "red mug"
+    assert not hand.sent(topics.GRIPPER_COMMAND) and hand.brain.context.gripper.holding == "red mug"
     hand.until(lambda: hand.state.state == "WAITING")
     asked = hand.now
     hand.ask([PUT_DOWN])

@@ -9,7 +9,7 @@ from common import messages as m
 from common import topics
 from common.bus import codec
 from common.bus.memory import MemoryIo
-from services.brain.heartbeat import LIMIT
+from services.brain.mission.heartbeat import LIMIT
 from tests.unit.brain_bench import JOINTS, Bench
 from tests.unit.brain_world import SCENE, World
 from tests.unit.test_brain_resume import PIPELINES, STATES, begun, delivered_once, finished

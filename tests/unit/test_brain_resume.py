@@ -1,6 +1,8 @@
 """A brain killed at any moment of a mission: the mission goes on, nothing is done twice, nothing old is begun."""
 
+import json
 import random
+import sqlite3
 from pathlib import Path
 from typing import Any
 
@@ -69,6 +71,36 @@ def test_killed_in_each_state(pipeline: str, state: str, down: float, into: floa
     assert world.state.last is not None and world.state.last.id == mission
     # No completed drive was made again.
     assert world.drives == ["item", "home"], world.timeline()
+
+
+@pytest.mark.parametrize("pipeline", PIPELINES)
+def test_nodes_may_be_shown_under_other_names_after_the_restart(
+    pipeline: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    world = begun(pipeline, tmp_path / "j.db")
+    world.until(lambda: world.state.state == "RETURNING")
+    world.kill_brain()
+    monkeypatch.setattr("services.brain.tree.composites.shown", lambda node_id, name="": f"<{node_id}>")
+    world.start_brain()
+    assert world.brain is not None and world.brain.tree.name.startswith("<")
+    finished(world)
+    delivered_once(world)
+    assert world.drives == ["item", "home"], world.timeline()
+
+
+@pytest.mark.parametrize("pipeline", PIPELINES)
+def test_a_journal_of_a_version_with_other_nodes_is_refused_in_words(pipeline: str, tmp_path: Path) -> None:
+    world = begun(pipeline, tmp_path / "j.db")
+    world.until(lambda: world.state.state == "RETURNING")
+    world.kill_brain()
+    with sqlite3.connect(tmp_path / "j.db") as file:
+        body = json.loads(file.execute("select body from checkpoint").fetchone()[0])
+        body["path"] = [{"index": 3, "name": "mission", "used": 0}, {"index": 0, "name": "do", "used": 0}]
+        file.execute("update checkpoint set format = 1, body = ?", (json.dumps(body).encode(),))
+    world.start_brain()
+    world.until(lambda: world.outcome == "failed")
+    assert world.state.last is not None and world.state.last.code == "OLD_JOURNAL"
+    assert world.state.last.reason.endswith("another version of the brain wrote the journal); holding the red mug")
 
 
 @pytest.mark.parametrize("pipeline", PIPELINES)

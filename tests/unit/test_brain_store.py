@@ -15,10 +15,10 @@ import pytest
 from common.bus.memory import MemoryBus, MemoryIo
 from common.scene import load_scene
 from services.brain.config import BrainConfig
-from services.brain.goals import Sent
-from services.brain.journal import ENTRIES_KEPT, Checkpoint, Entry, Journal, MemoryJournal, Place
-from services.brain.mission import Hand, Mission
-from services.brain.store import MIGRATIONS, SqliteJournal, open_journal
+from services.brain.journal.records import ENTRIES_KEPT, Checkpoint, Entry, Journal, MemoryJournal, PathNode
+from services.brain.journal.sqlite import MIGRATIONS, SqliteJournal, open_journal
+from services.brain.mission.channel import SentGoal
+from services.brain.mission.mission import GripperState, Mission
 from tests.support import ROOT
 
 SCENE = load_scene("apartment")
@@ -42,9 +42,10 @@ def told(journal: Journal, name: str, notes: int = 3) -> Mission:
     journal.begin(mission)
     for n in range(notes):
         journal.note(name, Entry(10.0 + n, "NAVIGATING", f"cause {n}", "evidence", "saw"))
-    sent = Sent("navigation", "brain/navigation_goal", {"goal": "find red mug", "id": f"{name}.1", "attempt": 1}, "abc")
-    path = [Place(3, "mission"), Place(0, "do", 2)]
-    journal.save(Checkpoint(mission, Hand(holding="apple"), path, [sent], t=12.0, base=(1.0, 2.0, 3.0)))
+    goal = {"goal": "find red mug", "id": f"{name}.1", "attempt": 1}
+    sent = SentGoal("navigation", "brain/navigation_goal", goal, "abc")
+    path = [PathNode("mission"), PathNode("do", 0, 2)]
+    journal.save(Checkpoint(mission, GripperState(holding="apple"), path, [sent], t=12.0, base=(1.0, 2.0, 3.0)))
     return mission
 
 
@@ -54,7 +55,7 @@ def test_missions_come_back_as_they_were_told(path: Path, kind: str) -> None:
     mission = told(journal, "m-1")
     mission.goals = 7
     journal.end(mission, "failed", "NO_WAY: blocked", 42.0)
-    journal.save(Checkpoint(mission, Hand()))
+    journal.save(Checkpoint(mission, GripperState()))
     told(journal, "m-2")
     if kind == "disk":
         journal.close()
@@ -76,8 +77,8 @@ def test_missions_come_back_as_they_were_told(path: Path, kind: str) -> None:
     last = journal.last()
     assert last is not None and last.id == "m-1"
     left = journal.checkpoint()
-    assert left is not None and left.mission.id == "m-2" and left.hand.holding == "apple"
-    assert left.path == [Place(3, "mission"), Place(0, "do", 2)] and left.base == (1.0, 2.0, 3.0)
+    assert left is not None and left.mission.id == "m-2" and left.gripper.holding == "apple"
+    assert left.path == [PathNode("mission"), PathNode("do", 0, 2)] and left.base == (1.0, 2.0, 3.0)
     assert left.sent[0].message["goal"] == "find red mug" and left.sent[0].epoch == "abc"
 
 
@@ -206,13 +207,13 @@ def test_a_file_damaged_while_open_loses_nothing_of_the_mission_under_way(path: 
     journal._db.execute("pragma shrink_memory")
     for n in range(10):
         journal.note("m-1", Entry(20.0 + n, "GRABBING", f"later {n}"))
-        journal.save(Checkpoint(mission, Hand(holding="red mug")))
+        journal.save(Checkpoint(mission, GripperState(holding="red mug")))
     assert journal.errors >= 1
     journal.close()
     again = opened(path)
     record, left = again.mission("m-1"), again.checkpoint()
     assert record is not None and record.entries[-1].cause == "later 9" and len(record.entries) == 13
-    assert left is not None and left.hand.holding == "red mug"
+    assert left is not None and left.gripper.holding == "red mug"
 
 
 def test_a_file_of_a_newer_program_is_not_touched(path: Path) -> None:
@@ -259,18 +260,18 @@ def test_a_full_disk_is_counted_and_made_up_for(path: Path) -> None:
     with no_room():
         for n in range(50):
             journal.note("m-1", Entry(20.0 + n, "RETURNING", f"long {n}", "x" * 500))
-            journal.save(Checkpoint(mission, Hand()))
+            journal.save(Checkpoint(mission, GripperState()))
     assert journal.errors > 40 and one.drops["journal"] == journal.errors
     record = journal.mission("m-1")
     assert record is not None and len(record.entries) == 53
     refused = journal.errors
-    journal.save(Checkpoint(mission, Hand(holding="red mug")))
+    journal.save(Checkpoint(mission, GripperState(holding="red mug")))
     assert journal.errors == refused
     journal.close()
     again = opened(path)
     record, left = again.mission("m-1"), again.checkpoint()
     assert record is not None and [e.cause for e in record.entries[3:]] == [f"long {n}" for n in range(50)]
-    assert left is not None and left.hand.holding == "red mug"
+    assert left is not None and left.gripper.holding == "red mug"
 
 
 def test_without_a_place_on_disk_the_mission_goes_on(tmp_path: Path) -> None:
@@ -278,11 +279,11 @@ def test_without_a_place_on_disk_the_mission_goes_on(tmp_path: Path) -> None:
     journal = opened(tmp_path / "file" / "missions.db")
     mission = told(journal, "m-1")
     journal.end(mission, "delivered", "", 30.0)
-    journal.save(Checkpoint(mission, Hand()))
+    journal.save(Checkpoint(mission, GripperState()))
     assert [(r.id, r.outcome) for r in journal.missions()] == [("m-1", "delivered")]
     assert journal.errors >= 2 and journal.boot > 1e9
     (tmp_path / "file").unlink()
-    journal.save(Checkpoint(mission, Hand()))
+    journal.save(Checkpoint(mission, GripperState()))
     journal.close()
     assert [(r.id, r.outcome) for r in opened(tmp_path / "file" / "missions.db").missions()] == [("m-1", "delivered")]
 
@@ -293,7 +294,7 @@ def test_a_deleted_file_is_written_again(path: Path) -> None:
     for file in path.parent.iterdir():
         file.unlink()
     journal.note("m-1", Entry(20.0, "RETURNING", "later"))
-    journal.save(Checkpoint(mission, Hand()))
+    journal.save(Checkpoint(mission, GripperState()))
     journal.close()
     record = opened(path).mission("m-1")
     assert record is not None and [e.cause for e in record.entries] == ["cause 0", "cause 1", "cause 2", "later"]
@@ -307,7 +308,7 @@ def test_a_second_brain_on_the_same_file_does_not_hold_up_the_first(path: Path) 
     assert first.errors == 1 and first.missions()[0].id == "m-1"
     writer.execute("rollback")
     writer.close()
-    first.save(Checkpoint(mission, Hand()))
+    first.save(Checkpoint(mission, GripperState()))
     assert first.errors == 1 and [r.id for r in second.missions()] == ["m-1"]
 
 
@@ -334,10 +335,10 @@ def test_what_a_killed_brain_left_is_read_from_a_disk_without_room(path: Path) -
     with no_room():
         journal = SqliteJournal(path, io())
         left, missions = journal.checkpoint(), journal.missions()
-        refused = journal.save(Checkpoint(Mission("m-1"), Hand()))
+        refused = journal.save(Checkpoint(Mission("m-1"), GripperState()))
     assert left is not None and left.mission.id == "m-1" and [r.id for r in missions] == ["m-1"]
     assert not refused and journal.errors > 0
-    assert journal.save(Checkpoint(left.mission, Hand(holding="red mug")))
+    assert journal.save(Checkpoint(left.mission, GripperState(holding="red mug")))
     journal.close()
     again = opened(path).checkpoint()
-    assert again is not None and again.hand.holding == "red mug"
+    assert again is not None and again.gripper.holding == "red mug"

@@ -66,7 +66,7 @@ def see(bench: Bench, count: int, found: bool = True) -> None:
 def approach(
     bench: Bench, count: int, status: m.NavStatus = "arrived", code: str = "", recoveries: int = 0
 ) -> m.NavGoal:
-    """Answer the pose number `count`, which must be one before the mug, as a navigator that only knows `nav_goal`."""
+    """Result the pose number `count`, which must be one before the mug, as a navigator that only knows `nav_goal`."""
     goal = bench.next_goal(POSE, count)
     assert goal.object is not None and (goal.object.label, goal.object.position) == ("red mug", MUG_AT)
     told = m.NavigationFeedback(goal_id=goal.id, status=status, code=code, recoveries=recoveries)
@@ -76,7 +76,7 @@ def approach(
 
 
 def reply(bench: Bench, text: str) -> None:
-    """Answer the newest question."""
+    """Result the newest question."""
     count = bench.texts(SPEECH).count("listen") + 1
     bench.until(lambda: bench.texts(SPEECH).count("listen") == count)
     listen = [g for g in bench.sent(SPEECH) if g.goal == "listen"][-1]

@@ -1,4 +1,4 @@
-"""Goals under way: which answer counts, and when a goal has to be sent again."""
+"""Goals under way: which status counts as their result, and when a goal has to be sent again."""
 
 from collections import deque
 from collections.abc import Callable
@@ -10,21 +10,22 @@ from common import messages as m
 from common.bus.port import Io
 from common.topics import BY_KEY, Topic
 
-Word = Literal["busy", "ok", "failed"]
-_RECENT = 32
+GoalStatus = Literal["busy", "ok", "failed"]
+RECENT = 32
+"""Goals remembered per peer (chosen: more than a peer's outbox holds), to tell late statuses from strangers'."""
 
 
-class Answer(msgspec.Struct, frozen=True):
-    """A peer's word on the outstanding goal; `message` is what it sent."""
+class Result(msgspec.Struct, frozen=True):
+    """How the goal under way stands according to its peer; `message` is what the peer sent."""
 
-    word: Word
+    status: GoalStatus
     code: str = ""
     detail: str = ""
     message: m.Message | None = None
 
 
-class Sent(msgspec.Struct, frozen=True):
-    """A goal under way as the journal keeps it: who got it, on which key, and which process it was."""
+class SentGoal(msgspec.Struct, frozen=True):
+    """A goal under way as the journal keeps it: who received it, on which key, and that process's epoch."""
 
     peer: str
     key: str
@@ -35,31 +36,32 @@ class Sent(msgspec.Struct, frozen=True):
 class Channel:
     """One goal at a time to one peer process.
 
-    An answer counts when it names the outstanding goal and attempt. A peer of bare texts names none: its answers
-    count for whatever is outstanding. Nothing counts that arrived before the goal was sent.
+    A status counts when it names the outstanding goal and attempt. A peer of bare texts names none: its statuses count
+    for whatever is outstanding. Nothing counts that arrived before the goal was sent.
     """
 
     def __init__(self, io: Io, peer: str) -> None:
         self._io, self.peer = io, peer
         self.before_send: Callable[[], None] = lambda: None
-        self.taken_up = False
+        self.resuming = False
         self.goal_id = ""
         self.attempt = 0
-        self.answer: Answer | None = None
+        self.result: Result | None = None
         self.ignored = 0
         self._topic: Topic[Any] | None = None
         self._message: Any = None
         self._epoch = self._known = ""
         self._gone_since: float | None = None
-        self._recent: deque[str] = deque(maxlen=_RECENT)
+        self._recent: deque[str] = deque(maxlen=RECENT)
 
     @property
     def outstanding(self) -> bool:
+        """A goal was sent and has neither ended nor been abandoned."""
         return bool(self.goal_id)
 
-    def send(self, topic: Topic[Any], message: Any) -> None:
-        """A new goal; its `id` must be fresh."""
-        self.goal_id, self.attempt, self.answer = message.id, getattr(message, "attempt", 0), None
+    def send_goal(self, topic: Topic[Any], message: Any) -> None:
+        """Send a new goal, whose `id` must be fresh, and await its result."""
+        self.goal_id, self.attempt, self.result = message.id, getattr(message, "attempt", 0), None
         self._recent.append(message.id)
         self._topic, self._message = topic, message
         present = self._io.peer(self.peer)
@@ -67,59 +69,59 @@ class Channel:
         self.before_send()
         self._io.publish(topic, message)
 
-    def tell(self, topic: Topic[Any], message: Any) -> None:
-        """Send without waiting for an answer."""
+    def send_only(self, topic: Topic[Any], message: Any) -> None:
+        """Send a goal whose result nobody awaits."""
         self._recent.append(message.id)
         self._io.publish(topic, message)
 
-    def again(self) -> None:
-        """The same goal with the next attempt number."""
+    def retry(self) -> None:
+        """Send the same goal with the next attempt number."""
         if self._topic is None:
             raise RuntimeError(f"no goal to {self.peer} was sent yet")
         if self.attempt:
             self._message = msgspec.structs.replace(self._message, attempt=self.attempt + 1)
-        self.send(self._topic, self._message)
+        self.send_goal(self._topic, self._message)
 
-    def repeat(self) -> None:
-        """The same goal and attempt once more: whoever has it already answers with how it stands."""
+    def resend(self) -> None:
+        """Send the same goal and attempt once more: whoever has it already answers with how it stands."""
         if self._topic is None:
             raise RuntimeError(f"no goal to {self.peer} was sent yet")
         self._io.publish(self._topic, self._message)
 
     def abandon(self) -> None:
-        """No answer is awaited any more."""
-        self.goal_id, self.answer, self.taken_up = "", None, False
+        """Await no result any more."""
+        self.goal_id, self.result, self.resuming = "", None, False
 
     # --- across a restart of the brain
-    def sent(self) -> Sent | None:
+    def outstanding_goal(self) -> SentGoal | None:
         """The goal under way, for the journal."""
         if not self.outstanding or self._topic is None:
             return None
-        return Sent(self.peer, self._topic.key, msgspec.to_builtins(self._message), self._epoch)
+        return SentGoal(self.peer, self._topic.key, msgspec.to_builtins(self._message), self._epoch)
 
-    def take_up(self, sent: Sent) -> None:
-        """Await the answer to a goal that an earlier process sent; the leaf that sent it goes on with it.
+    def resume_goal(self, sent: SentGoal) -> None:
+        """Await the result of a goal that an earlier process sent; the leaf that sent it goes on with it.
 
         Raises:
             msgspec.ValidationError, KeyError: the goal is of a kind that is not known any more.
         """
         topic = BY_KEY[sent.key]
         message = msgspec.convert(sent.message, topic.type)
-        self.goal_id, self.attempt, self.answer = message.id, getattr(message, "attempt", 0), None
+        self.goal_id, self.attempt, self.result = message.id, getattr(message, "attempt", 0), None
         self._recent.append(message.id)
-        self._topic, self._message, self.taken_up = topic, message, True
+        self._topic, self._message, self.resuming = topic, message, True
         self._epoch, self._known = sent.epoch, self._known or sent.epoch
 
-    def offer(self, goal_id: str, attempt: int, answer: Answer) -> bool:
-        """Take an answer if it counts; the first final word stands. An attempt of 0 is one the peer did not state."""
+    def handle_status(self, goal_id: str, attempt: int, result: Result) -> bool:
+        """Take a status if it counts; the first final one stands. An attempt of 0 is one the peer did not state."""
         ours = not goal_id or (goal_id == self.goal_id and (not attempt or not self.attempt or attempt == self.attempt))
         if not self.outstanding or not ours:
             self.ignored += 1
             if goal_id and goal_id not in self._recent:
                 self._io.count_drop(f"{self.peer} answers", f"answer to a goal that is not ours: {goal_id[:40]!r}")
             return False
-        if self.answer is None or self.answer.word == "busy":
-            self.answer = answer
+        if self.result is None or self.result.status == "busy":
+            self.result = result
         return True
 
     # --- the peer's process
@@ -129,7 +131,7 @@ class Channel:
         return bool(self._known)
 
     def watch(self, now: float) -> None:
-        """Once a step: remember the peer's epoch and since when it is gone."""
+        """Note the peer's epoch and since when it is gone; once a step."""
         present = self._io.peer(self.peer)
         if present:
             self._known = present
@@ -141,7 +143,7 @@ class Channel:
 
     @property
     def restarted(self) -> bool:
-        """The process that got the goal is not the one that is alive now."""
+        """The process that received the goal is not the one that is alive now."""
         return self.outstanding and bool(self._epoch) and self._known != self._epoch
 
     def gone(self, now: float) -> float:

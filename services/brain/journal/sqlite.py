@@ -12,13 +12,14 @@ import msgspec
 from common.bus.port import Io
 from common.time.clock import unix_time
 from services.brain.config import BrainConfig
-from services.brain.journal import ENTRIES_KEPT, KEPT, Checkpoint, Entry, Journal, MemoryJournal, Record
-from services.brain.mission import Mission, Outcome
-from services.brain.pictures import Pictures
-from services.brain.schema import BEGIN, CHECKPOINT, END, ENTRY, FIELDS, MIGRATIONS, TRIM
+from services.brain.journal.pictures import Pictures
+from services.brain.journal.records import ENTRIES_KEPT, FORMAT, KEPT, Checkpoint, Entry, Journal, MemoryJournal, Record
+from services.brain.journal.schema import BEGIN, CHECKPOINT, END, ENTRY, FIELDS, MIGRATIONS, TRIM
+from services.brain.mission.mission import Mission, Outcome
 
 KEY = "journal"
 WAITING_KEPT = 5000
+"""Statements kept while the disk refuses (chosen: ten long missions)."""
 _Op = tuple[str, tuple[Any, ...]]
 
 
@@ -84,7 +85,7 @@ class SqliteJournal:
         try:
             db = self._opened()
             db.execute("begin immediate")
-            for statement, values in (*self._waiting, (CHECKPOINT, (body,))):
+            for statement, values in (*self._waiting, (CHECKPOINT, (body, FORMAT))):
                 db.execute(statement, values)
             db.execute("commit")
         except (sqlite3.Error, OSError, Unusable) as error:
@@ -109,12 +110,15 @@ class SqliteJournal:
 
     # --- reading
     def checkpoint(self) -> Checkpoint | None:
-        rows = self._rows("select body from checkpoint")
+        rows = self._rows("select body, format from checkpoint")
         try:
-            return msgspec.json.decode(rows[0][0], type=Checkpoint) if rows else None
+            checkpoint = msgspec.json.decode(rows[0][0], type=Checkpoint) if rows else None
         except (msgspec.DecodeError, UnicodeDecodeError) as error:
             self._io.log.error("the mission under way cannot be read", path=str(self.path), error=str(error))
             return None
+        if checkpoint is not None:
+            checkpoint.outdated = rows[0][1] != FORMAT
+        return checkpoint
 
     def missions(self) -> list[Record]:
         rows = self._rows(f"select {FIELDS} from missions order by number desc limit ?", KEPT)

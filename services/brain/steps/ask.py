@@ -8,18 +8,18 @@ from py_trees.common import Status
 from common import messages as m
 from common import topics
 from common.topics import Topic
-from services.brain.behaviours import Goal, Say
-from services.brain.context import Context
 from services.brain.dialogue import chosen, corrected, reply
-from services.brain.goals import Answer
-from services.brain.mission import Failure
+from services.brain.mission.channel import Result
+from services.brain.mission.context import Context
+from services.brain.mission.mission import Failure
+from services.brain.steps.leaf import Say, SendGoal
 
 
-class Question(Say):
+class AskQuestion(Say):
     """Says the question, not before the pause that a speech failure costs is over; an answer cuts both short."""
 
-    def __init__(self, name: str, ctx: Context, text: Callable[[], str]) -> None:
-        super().__init__(name, ctx, text)
+    def __init__(self, node_id: str, ctx: Context, text: Callable[[], str]) -> None:
+        super().__init__(node_id, ctx, text)
         self._asked = text
         self._asking = False
 
@@ -30,18 +30,18 @@ class Question(Say):
             ctx.reply = None
             self._ask()
         else:
-            ctx.enter("CONFIRMING", self._asked(), "pause after a speech failure")
+            ctx.show_state("CONFIRMING", self._asked(), "pause after a speech failure")
 
     def _ask(self) -> None:
         self._asking = True
-        self.ctx.enter("CONFIRMING", self._asked())
+        self.ctx.show_state("CONFIRMING", self._asked())
         super().initialise()
 
     def update(self) -> Status:
         ctx = self.ctx
         if ctx.reply is not None:
             if self._asking:
-                ctx.tell(ctx.speech, topics.SPEECH_GOAL, "cancel")
+                ctx.send_only(ctx.speech, topics.SPEECH_GOAL, "cancel")
             return Status.SUCCESS
         if not self._asking:
             if ctx.now < ctx.listen_after:
@@ -50,11 +50,11 @@ class Question(Say):
         return super().update()
 
 
-class Hear(Goal):
+class HearAnswer(SendGoal):
     """Listens for the answer, unless it came while the question was being said."""
 
-    def __init__(self, name: str, ctx: Context) -> None:
-        super().__init__(name, ctx, ctx.speech, state="CONFIRMING", timeout=ctx.config.answer_timeout)
+    def __init__(self, node_id: str, ctx: Context) -> None:
+        super().__init__(node_id, ctx, ctx.speech, state="CONFIRMING", timeout=ctx.config.answer_timeout)
 
     def update(self) -> Status:
         given, self.ctx.reply = self.ctx.reply, None
@@ -62,24 +62,24 @@ class Hear(Goal):
             return super().update()
         if self.channel.outstanding:
             self.channel.abandon()
-            self.ctx.tell(self.channel, topics.SPEECH_GOAL, "cancel")
-        return self.done(Answer("ok", message=given))
+            self.ctx.send_only(self.channel, topics.SPEECH_GOAL, "cancel")
+        return self.succeed(Result("ok", message=given))
 
     def goal(self, goal_id: str) -> tuple[Topic[Any], m.Message]:
         return topics.SPEECH_GOAL, m.SpeechGoal(goal="listen", id=goal_id)
 
-    def give_up(self, failure: Failure) -> Status:
+    def fail_with(self, failure: Failure) -> Status:
         """Speech has failed: the same pause before it listens again as in the fetch pipeline."""
         self.ctx.listen_after = self.ctx.now + self.ctx.config.speech_retry_delay
-        return super().give_up(failure)
+        return super().fail_with(failure)
 
     def refuse(self, code: str, detail: str, spoken: str) -> Status:
         """Speech has worked, but what was heard is not the answer."""
-        self.ctx.fail(Failure("CONFIRMING", code, detail, spoken))
+        self.ctx.record_failure(Failure("CONFIRMING", code, detail, spoken))
         return Status.FAILURE
 
 
-class HearReply(Hear):
+class HearConfirmation(HearAnswer):
     """The person's answer to "did you say"; SUCCESS once the command stands."""
 
     def step(self) -> str:
@@ -88,8 +88,8 @@ class HearReply(Hear):
     def spoken(self) -> str:
         return "I did not hear an answer."
 
-    def done(self, answer: Answer) -> Status:
-        mission, heard = self.ctx.mission, answer.message
+    def succeed(self, result: Result) -> Status:
+        mission, heard = self.ctx.mission, result.message
         assert isinstance(heard, m.SpeechResult)
         kind, rest = reply(heard.text)
         self.ctx.note(f"reply: {kind}", heard.text, "heard")
@@ -106,21 +106,21 @@ class HearReply(Hear):
         return self.refuse("NOT_CONFIRMED", "", "I did not understand what I should do.")
 
 
-class HearChoice(Hear):
+class HearChoice(HearAnswer):
     """Which of several things was meant; SUCCESS once the answer names one of them."""
 
-    def __init__(self, name: str, ctx: Context, thing: str) -> None:
-        super().__init__(name, ctx)
-        self._thing = thing
+    def __init__(self, node_id: str, ctx: Context, item: str) -> None:
+        super().__init__(node_id, ctx)
+        self._item = item
 
     def step(self) -> str:
         return which(self.ctx)
 
     def spoken(self) -> str:
-        return f"I do not know which {self._thing} you mean."
+        return f"I do not know which {self._item} you mean."
 
-    def done(self, answer: Answer) -> Status:
-        mission, heard = self.ctx.mission, answer.message
+    def succeed(self, result: Result) -> Status:
+        mission, heard = self.ctx.mission, result.message
         assert isinstance(heard, m.SpeechResult)
         kind, rest = reply(heard.text)
         if kind == "cancel":
@@ -128,7 +128,7 @@ class HearChoice(Hear):
         label = chosen(rest, mission.options)
         if label is None:
             return self.refuse("NOT_CONFIRMED", heard.text, self.spoken())
-        mission.chosen[self._thing] = label
+        mission.chosen[self._item] = label
         self.ctx.note(f"meant: {label}", heard.text)
         return Status.SUCCESS
 

@@ -9,11 +9,11 @@ from py_trees.common import Status
 from common import messages as m
 from common import topics
 from common.topics import Topic
-from services.brain.behaviours import Goal, Leaf
-from services.brain.context import Context
 from services.brain.floor import place_pose
-from services.brain.goals import Answer
-from services.brain.mission import Failure
+from services.brain.mission.channel import Result
+from services.brain.mission.context import Context
+from services.brain.mission.mission import Failure
+from services.brain.steps.leaf import Leaf, SendGoal
 
 Text = Callable[[], str]
 # The hand is empty that should have held something.
@@ -22,7 +22,7 @@ LOST = ("LOST_OBJECT", "NOT_HOLDING", "SLIPPED")
 BEYOND_THE_HAND = {"TOO_HEAVY": "too heavy for me", "TOO_WIDE": "too wide for my hand"}
 
 
-class Drive(Goal):
+class Navigate(SendGoal):
     """A navigation goal in words, or as the pose of `place` with `drive_by = "poses"`.
 
     A way that is blocked is tried again on another path `navigation_retries` times in all: what navigation reports as
@@ -30,11 +30,11 @@ class Drive(Goal):
     """
 
     def __init__(
-        self, name: str, ctx: Context, text: Text, spoken: Text, state: m.BrainStateName, place: str = ""
+        self, node_id: str, ctx: Context, text: Text, spoken: Text, state: m.BrainStateName, place: str = ""
     ) -> None:
         config = ctx.config
         super().__init__(
-            name,
+            node_id,
             ctx,
             ctx.navigation,
             state=state,
@@ -54,7 +54,7 @@ class Drive(Goal):
     def goal(self, goal_id: str) -> tuple[Topic[Any], m.Message]:
         ctx = self.ctx
         if self._place and ctx.config.drive_by == "poses":
-            pose = place_pose(ctx.io.scene, self._place, ctx.here)
+            pose = place_pose(ctx.io.scene, self._place, ctx.robot_pose)
             if pose is not None:
                 return topics.NAV_GOAL, m.NavGoal(id=goal_id, x=pose[0], y=pose[1], theta=pose[2])
         return topics.NAVIGATION_GOAL, m.NavigationGoal(goal=self._text(), id=goal_id)
@@ -69,18 +69,18 @@ class Drive(Goal):
             self._recovered += max(0, told.recoveries)
         return self._recovered if code == "BLOCKED" else 0
 
-    def give_up(self, failure: Failure) -> Status:
+    def fail_with(self, failure: Failure) -> Status:
         if failure.code == "TIMEOUT":
-            self.ctx.tell(self.ctx.navigation, topics.NAVIGATION_GOAL, "stop")
-        return super().give_up(failure)
+            self.ctx.send_only(self.ctx.navigation, topics.NAVIGATION_GOAL, "stop")
+        return super().fail_with(failure)
 
 
-class Manipulate(Goal):
+class Manipulate(SendGoal):
     """A manipulation goal in words; `about` gives the object it concerns."""
 
     def __init__(
         self,
-        name: str,
+        node_id: str,
         ctx: Context,
         text: Text,
         about: Callable[[], m.ObjectRef | None],
@@ -89,7 +89,7 @@ class Manipulate(Goal):
         retries: int = 0,
     ) -> None:
         super().__init__(
-            name, ctx, ctx.manipulation, state=state, timeout=ctx.config.manipulation_timeout, retries=retries
+            node_id, ctx, ctx.manipulation, state=state, timeout=ctx.config.manipulation_timeout, retries=retries
         )
         self._text, self._about = text, about
 
@@ -100,66 +100,66 @@ class Manipulate(Goal):
         message = m.ManipulationGoal(goal=self._text(), id=goal_id, object=self._about())
         return topics.MANIPULATION_GOAL, message
 
-    def give_up(self, failure: Failure) -> Status:
+    def fail_with(self, failure: Failure) -> Status:
         if failure.code == "TIMEOUT":
-            self.ctx.tell(self.ctx.manipulation, topics.MANIPULATION_GOAL, "stop")
-        return super().give_up(failure)
+            self.ctx.send_only(self.ctx.manipulation, topics.MANIPULATION_GOAL, "stop")
+        return super().fail_with(failure)
 
 
 class Grab(Manipulate):
     """Holding is believed only after `done`."""
 
-    def __init__(self, name: str, ctx: Context, label: Text, about: Callable[[], m.ObjectRef | None]) -> None:
-        super().__init__(name, ctx, lambda: "grab", about, state="GRABBING")
+    def __init__(self, node_id: str, ctx: Context, label: Text, about: Callable[[], m.ObjectRef | None]) -> None:
+        super().__init__(node_id, ctx, lambda: "grab", about, state="GRABBING")
         self._label = label
 
-    def done(self, answer: Answer) -> Status:
-        self.ctx.hand.grabbed(self._label())
+    def succeed(self, result: Result) -> Status:
+        self.ctx.gripper.mark_grasped(self._label())
         self.ctx.mission.grabbed = True
         return Status.SUCCESS
 
     def unfinished(self) -> None:
-        self.ctx.hand.interrupted(self._label())
+        self.ctx.gripper.mark_uncertain(self._label())
 
     def spoken(self) -> str:
         return f"I could not pick up the {self._label()}."
 
-    def give_up(self, failure: Failure) -> Status:
+    def fail_with(self, failure: Failure) -> Status:
         if why := BEYOND_THE_HAND.get(failure.code):
             failure = msgspec.structs.replace(failure, spoken=f"The {self._label()} is {why}.")
-        return super().give_up(failure)
+        return super().fail_with(failure)
 
 
 class Release(Manipulate):
     """`release` or `place <receptacle>`; while it is not `done` the object counts as held."""
 
-    def __init__(self, name: str, ctx: Context, text: Text = lambda: "release") -> None:
-        super().__init__(name, ctx, text, lambda: None, state="RELEASING", retries=ctx.config.release_retries)
+    def __init__(self, node_id: str, ctx: Context, text: Text = lambda: "release") -> None:
+        super().__init__(node_id, ctx, text, lambda: None, state="RELEASING", retries=ctx.config.release_retries)
 
     def update(self) -> Status:
-        ctx, hand = self.ctx, self.ctx.hand
-        if self._sent_at is None and not self.channel.taken_up and hand.lost(ctx.now):
-            return self.give_up(Failure(ctx.state, "LOST_OBJECT", "the fingers are empty"))
+        ctx, hand = self.ctx, self.ctx.gripper
+        if self._sent_at is None and not self.channel.resuming and hand.has_lost_object(ctx.now):
+            return self.fail_with(Failure(ctx.state, "LOST_OBJECT", "the fingers are empty"))
         return super().update()
 
-    def give_up(self, failure: Failure) -> Status:
-        label = self.ctx.hand.holding
+    def fail_with(self, failure: Failure) -> Status:
+        label = self.ctx.gripper.holding
         if failure.code in LOST:
-            self.ctx.hand.released(self.ctx.now)
+            self.ctx.gripper.mark_released(self.ctx.now)
             failure = msgspec.structs.replace(failure, spoken=f"I lost the {label or 'object'} on the way.")
-        return super().give_up(failure)
+        return super().fail_with(failure)
 
-    def done(self, answer: Answer) -> Status:
-        self.ctx.mission.put_down = self.ctx.hand.holding
-        self.ctx.hand.released(self.ctx.now)
+    def succeed(self, result: Result) -> Status:
+        self.ctx.mission.put_down = self.ctx.gripper.holding
+        self.ctx.gripper.mark_released(self.ctx.now)
         self.ctx.mission.released = True
         return Status.SUCCESS
 
     def unfinished(self) -> None:
-        self.ctx.hand.interrupted(self.ctx.hand.holding)
+        self.ctx.gripper.mark_uncertain(self.ctx.gripper.holding)
 
     def spoken(self) -> str:
-        return f"I could not put down the {self.ctx.hand.holding or 'object'}."
+        return f"I could not put down the {self.ctx.gripper.holding or 'object'}."
 
 
 class Ready(Leaf):
@@ -177,7 +177,7 @@ class Ready(Leaf):
             missing = "waiting for speech"
         else:
             return Status.SUCCESS
-        ctx.enter("IDLE", detail=missing)
+        ctx.show_state("IDLE", detail=missing)
         self.feedback_message = missing
         return Status.RUNNING
 
@@ -185,31 +185,31 @@ class Ready(Leaf):
 class Wait(Leaf):
     """WAITING: for the pause before listening to end, or for a command from anybody."""
 
-    def __init__(self, name: str, ctx: Context, ends: Callable[[], bool]) -> None:
-        super().__init__(name, ctx)
+    def __init__(self, node_id: str, ctx: Context, ends: Callable[[], bool]) -> None:
+        super().__init__(node_id, ctx)
         self._ends = ends
 
     def update(self) -> Status:
         ctx = self.ctx
-        ctx.renew()
+        ctx.renew_mission()
         if not ctx.mission.active:
-            ctx.enter("WAITING")
+            ctx.show_state("WAITING")
         take_command(ctx)
         return Status.SUCCESS if ctx.mission.active or self._ends() else Status.RUNNING
 
 
-class Listen(Goal):
+class Listen(SendGoal):
     """Hears a command; silence and `ERROR` cost the pause before the next listening, not a mission."""
 
-    def __init__(self, name: str, ctx: Context) -> None:
+    def __init__(self, node_id: str, ctx: Context) -> None:
         limit = ctx.config.listen_timeout + ctx.config.listen_grace
-        super().__init__(name, ctx, ctx.speech, state="LISTENING", timeout=limit)
+        super().__init__(node_id, ctx, ctx.speech, state="LISTENING", timeout=limit)
 
     def update(self) -> Status:
         ctx = self.ctx
         if not ctx.mission.active and take_command(ctx) and self.channel.outstanding:
             self.channel.abandon()
-            ctx.tell(ctx.speech, topics.SPEECH_GOAL, "cancel")
+            ctx.send_only(ctx.speech, topics.SPEECH_GOAL, "cancel")
         return Status.SUCCESS if ctx.mission.active else super().update()
 
     def step(self) -> str:
@@ -218,13 +218,13 @@ class Listen(Goal):
     def goal(self, goal_id: str) -> tuple[Topic[Any], m.Message]:
         return topics.SPEECH_GOAL, m.SpeechGoal(goal="listen", id=goal_id)
 
-    def done(self, answer: Answer) -> Status:
-        ctx, heard = self.ctx, answer.message
+    def succeed(self, result: Result) -> Status:
+        ctx, heard = self.ctx, result.message
         assert isinstance(heard, m.SpeechResult)
-        ctx.accept(heard.text.strip(), heard.confidence, "heard")
+        ctx.start_mission(heard.text.strip(), heard.confidence, "heard")
         return Status.SUCCESS
 
-    def give_up(self, failure: Failure) -> Status:
+    def fail_with(self, failure: Failure) -> Status:
         self.ctx.listen_after = self.ctx.now + self.ctx.config.speech_retry_delay
         self.ctx.io.log.info("nothing heard", code=failure.code, detail=failure.detail)
         return Status.FAILURE
@@ -235,5 +235,5 @@ def take_command(ctx: Context) -> bool:
     command, ctx.command = ctx.command, None
     if command is None:
         return False
-    ctx.accept(command.text.strip(), command.confidence, "voice_command", command.confirmed)
+    ctx.start_mission(command.text.strip(), command.confidence, "voice_command", command.confirmed)
     return True

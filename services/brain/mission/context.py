@@ -13,12 +13,12 @@ from common.time.clock import unix_time
 from common.topics import Topic
 from common.viewpoints import Viewpoints, viewpoints_of
 from services.brain.config import BrainConfig
-from services.brain.goals import Channel
-from services.brain.heartbeat import Heartbeat
-from services.brain.journal import Checkpoint, Entry, Journal, Kind, Place
-from services.brain.mission import SYSTEM_STATE, Failure, Hand, Mission, Outcome
-from services.brain.snapshot import path_to
-from services.brain.store import open_pictures
+from services.brain.journal.records import Checkpoint, Entry, Journal, Kind, PathNode
+from services.brain.journal.sqlite import open_pictures
+from services.brain.mission.channel import Channel
+from services.brain.mission.heartbeat import Heartbeat
+from services.brain.mission.mission import SYSTEM_STATE, Failure, GripperState, Mission, Outcome
+from services.brain.tree.path import path_to
 
 SAVE_AGAIN = 1.0
 
@@ -40,11 +40,11 @@ class Context:
         for channel in self.channels:
             channel.before_send = self.save
         self.mission = Mission(id=self._fresh_id())
-        self.hand = Hand()
+        self.gripper = GripperState()
         self.at: Behaviour | None = None
         self.resumes = 0
-        self.put_off: Checkpoint | None = None
-        self._path: list[Place] = []
+        self.suspended: Checkpoint | None = None
+        self._path: list[PathNode] = []
         self._saved = self._refused = b""
         self._again_at = 0.0
         self.stopped: str | None = None
@@ -61,7 +61,7 @@ class Context:
     def state(self) -> m.BrainStateName:
         return self.shown.state
 
-    def enter(self, state: m.BrainStateName, step: str = "", detail: str = "", cause: str = "") -> None:
+    def show_state(self, state: m.BrainStateName, step: str = "", detail: str = "", cause: str = "") -> None:
         """Show a state; a change is published at once and noted in the journal."""
         mission, before = self.mission, self.shown
         running = mission.active or state in ("COMPLETED", "ERROR")
@@ -90,9 +90,9 @@ class Context:
             )
 
     def _last_outcome(self) -> m.MissionOutcome | None:
-        if self.last is None or self.last.resumable == (self.put_off is not None):
+        if self.last is None or self.last.resumable == (self.suspended is not None):
             return self.last
-        self.last = msgspec.structs.replace(self.last, resumable=self.put_off is not None)
+        self.last = msgspec.structs.replace(self.last, resumable=self.suspended is not None)
         return self.last
 
     def _publish_state(self) -> None:
@@ -113,7 +113,7 @@ class Context:
         return viewpoints_of(self.io.scene, self.io.latest(topics.ROBOT_DESCRIPTION))
 
     @property
-    def here(self) -> Pose2:
+    def robot_pose(self) -> Pose2:
         """The robot's pose in the map as navigation believes it; the origin before it has said so."""
         pose = self.io.latest(topics.POSE)
         return (pose.x, pose.y, pose.theta) if pose else (0.0, 0.0, 0.0)
@@ -140,13 +140,13 @@ class Context:
             self._path, self.resumes = path, 0
         return Checkpoint(
             mission=self.mission,
-            hand=msgspec.structs.replace(self.hand, empty_since=None),
+            gripper=msgspec.structs.replace(self.gripper, empty_since=None),
             path=path,
-            sent=[sent for channel in self.channels if (sent := channel.sent())],
+            sent=[sent for channel in self.channels if (sent := channel.outstanding_goal())],
             run=self.config.run,
             closed=closed,
             resumes=self.resumes,
-            put_off=self.put_off,
+            suspended=self.suspended,
         )
 
     def _located(self, state: Checkpoint) -> None:
@@ -170,29 +170,29 @@ class Context:
         return self.io.new_id(f"mission-{boot}" if self.io.lockstep and boot > 1 else "mission")
 
     # --- the mission
-    def renew(self) -> None:
+    def renew_mission(self) -> None:
         """A fresh mission once the last one has ended."""
         if self.mission.outcome is not None:
             self.save()
             self.mission, self.resumes = Mission(id=self._fresh_id()), 0
 
-    def accept(self, text: str, confidence: float, source: str, confirmed: bool = False) -> None:
+    def start_mission(self, text: str, confidence: float, source: str, confirmed: bool = False) -> None:
         """The mission begins with this command."""
         mission = self.mission
         self.reply = None
         mission.confirmed = confirmed
         mission.command, mission.confidence, mission.started = text, confidence, self.now
-        self.put_off = None
+        self.suspended = None
         self.journal.begin(mission)
         self.note(f"{source}: {text}", f"confidence {confidence:.2f}", "heard")
         self.save()
 
-    def fail(self, failure: Failure) -> None:
+    def record_failure(self, failure: Failure) -> None:
         self.mission.failure = failure
         self.note(failure.stage.lower(), failure.reason, "failed")
         self.io.log.warning("step failed", stage=failure.stage, code=failure.code, detail=failure.detail)
 
-    def finish(self, outcome: Outcome, reason: str) -> None:
+    def end_mission(self, outcome: Outcome, reason: str) -> None:
         """The mission's outcome; shown with the next state."""
         mission = self.mission
         mission.outcome = outcome
@@ -212,18 +212,18 @@ class Context:
         self.save()
         self.io.log.info("mission ended", outcome=outcome, reason=reason)
 
-    def tell(self, channel: Channel, topic: Topic[Any], text: str) -> str:
+    def send_only(self, channel: Channel, topic: Topic[Any], text: str) -> str:
         """Send a goal nobody waits for; returns its id."""
         goal_id = self.mission.next_goal()
-        channel.tell(topic, topic.type(goal=text, id=goal_id))
+        channel.send_only(topic, topic.type(goal=text, id=goal_id))
         return goal_id
 
-    def quiet(self) -> None:
+    def stop_all(self) -> None:
         """Tell every peer of an ended mission to stop what it does for it."""
         if self.speech.outstanding:
-            self.tell(self.speech, topics.SPEECH_GOAL, "cancel")
-        self.tell(self.navigation, topics.NAVIGATION_GOAL, "stop")
-        self.tell(self.manipulation, topics.MANIPULATION_GOAL, "stop")
+            self.send_only(self.speech, topics.SPEECH_GOAL, "cancel")
+        self.send_only(self.navigation, topics.NAVIGATION_GOAL, "stop")
+        self.send_only(self.manipulation, topics.MANIPULATION_GOAL, "stop")
 
     def known_object(self, label: str) -> m.WorldObject | None:
         """The object of that name as last surveyed."""

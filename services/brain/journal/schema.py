@@ -1,6 +1,7 @@
 """The tables of the journal, and every statement that writes to them."""
 
 MISSIONS_KEPT = 5000
+"""Missions on disk (chosen: a year of use, some 20 MB)."""
 MIGRATIONS: tuple[tuple[str, ...], ...] = (
     (
         "create table missions (number integer primary key autoincrement, id text not null unique,"
@@ -14,6 +15,7 @@ MIGRATIONS: tuple[tuple[str, ...], ...] = (
     ),
     ("alter table entries add column picture text not null default ''",),
     tuple(f"alter table missions add column {name} text not null default ''" for name in ("stage", "code", "spoken")),
+    ("alter table checkpoint add column format integer not null default 1",),
 )
 """Statements that bring a file from version n to n + 1; `PRAGMA user_version` holds n. Only ever appended to."""
 
@@ -24,7 +26,7 @@ END = (
     " where id = ?"
 )
 ENTRY = "insert into entries (mission, t, state, cause, evidence, kind, picture) values (?, ?, ?, ?, ?, ?, ?)"
-CHECKPOINT = "insert or replace into checkpoint (one, body) values (1, ?)"
+CHECKPOINT = "insert or replace into checkpoint (one, body, format) values (1, ?, ?)"
 TRIM = (
     f"delete from missions where number <= (select max(number) from missions) - {MISSIONS_KEPT}",
     "delete from entries where mission not in (select id from missions)",

@@ -95,43 +95,48 @@ class Mission(msgspec.Struct):
         return self.failure if self.failure is not None and self.outcome != "delivered" else Failure("", "")
 
     @property
+    def failed_for_good(self) -> bool:
+        """The last failure forbids another try of the same."""
+        return self.failure is not None and (self.failure.permanent or self.failure.code == "NO_PLAN")
+
+    @property
     def active(self) -> bool:
         """A command was accepted and has not ended."""
         return bool(self.command) and self.outcome is None
 
 
-class Hand(msgspec.Struct):
+class GripperState(msgspec.Struct, rename={"grasp_uncertain": "uncertain"}):
     """What the brain believes is in the gripper. `uncertain` after an interrupted grab or release.
 
     `felt`: since the grab the fingers have been seen to hold something; only then can they tell of a loss.
     """
 
     holding: str = ""
-    uncertain: str = ""
+    grasp_uncertain: str = ""
     felt: bool = False
     empty_since: float | None = None
     put_down: dict[str, float] = {}
 
-    def grabbed(self, label: str) -> None:
-        self.holding, self.uncertain = label, ""
+    def mark_grasped(self, label: str) -> None:
+        self.holding, self.grasp_uncertain = label, ""
         self.felt, self.empty_since = False, None
 
-    def released(self, now: float) -> None:
+    def mark_released(self, now: float) -> None:
         if self.holding:
             self.put_down[self.holding] = now
-        self.holding = self.uncertain = ""
+        self.holding = self.grasp_uncertain = ""
 
-    def interrupted(self, label: str) -> None:
+    def mark_uncertain(self, label: str) -> None:
         """A grab or release of `label` was cut short; the fingers decide later."""
-        self.uncertain = label
+        self.grasp_uncertain = label
 
-    def look(self, evidence: bool | None) -> None:
+    def resolve_uncertainty(self, evidence: bool | None) -> None:
         """Settle an uncertainty by what the fingers feel; with no evidence the old belief stays."""
-        if self.uncertain and evidence is not None:
-            self.holding = self.uncertain if evidence else ""
-            self.uncertain = ""
+        if self.grasp_uncertain and evidence is not None:
+            self.holding = self.grasp_uncertain if evidence else ""
+            self.grasp_uncertain = ""
 
-    def feel(self, evidence: bool | None, now: float) -> None:
+    def update(self, evidence: bool | None, now: float) -> None:
         """Once a step: what the fingers say while something should be between them."""
         self.felt = self.felt or evidence is True
         if evidence is False:
@@ -139,7 +144,7 @@ class Hand(msgspec.Struct):
         else:
             self.empty_since = None
 
-    def lost(self, now: float) -> bool:
+    def has_lost_object(self, now: float) -> bool:
         """Something was felt in the hand and is not any more."""
         return (
             bool(self.holding) and self.felt and self.empty_since is not None and now - self.empty_since >= LOST_AFTER
@@ -156,7 +161,7 @@ def gripper(joints: m.JointStates | None) -> tuple[float, float] | None:
     return joints.position[index], abs(joints.effort[index]) if index < len(joints.effort) else 0.0
 
 
-def fingers_hold(joints: m.JointStates | None) -> bool | None:
+def gripper_holds(joints: m.JointStates | None) -> bool | None:
     """Do width and force of the gripper speak of an object between the pads? None: no gripper reported."""
     grip = gripper(joints)
     return None if grip is None else GRIPPER_EMPTY < grip[0] < GRIPPER_OPEN and grip[1] > HOLDING_FORCE

@@ -1,4 +1,4 @@
-"""Taking up a mission that a restart of the brain cut short: look at the world, then decide where to go on."""
+"""Resume policy: where to go on with a mission that a restart of the brain or a stop has suspended. Pure."""
 
 import math
 from collections.abc import Sequence
@@ -8,15 +8,16 @@ import msgspec
 
 from common.messages import PlanStep
 from services.brain.config import BrainConfig
-from services.brain.journal import Checkpoint, Place, Pose
-from services.brain.mission import Failure, Hand, Mission
+from services.brain.journal.records import Checkpoint, PathNode, Pose
+from services.brain.mission.mission import Failure, GripperState, Mission
+from services.brain.tree.path import AS_ASKED, DO, GRAB, PLAN_STEP, PLANS
 
 MAX_RESUMES = 10
-MOVED = 0.3
-TURNED = 0.5
+"""Restarts without progress after which a mission is given up (chosen: a crash loop, not bad luck)."""
+MOVED, TURNED = 0.3, 0.5
+"""m, rad by which the base must have moved to be elsewhere (chosen: three times what localisation is wrong by)."""
 CLOCK_SLACK = 2.0
-GRABS = ("grab", "grab it")
-PLANS = ("execute", "go and look")
+"""s by which robot time may have gone back before the simulation counts as a new one (a checkpoint's period)."""
 Change = Literal["", "lost", "holding", "moved", "new world"]
 
 
@@ -32,13 +33,15 @@ class Seen(msgspec.Struct, frozen=True):
 class Decision(msgspec.Struct, frozen=True):
     """`path` is where to go on; `change` is what is not as the journal left it; `label` the object it is about."""
 
-    path: list[Place]
+    path: list[PathNode]
     change: Change = ""
     label: str = ""
 
 
 def refusal(left: Checkpoint, config: BrainConfig, now: float) -> Failure | None:
-    """Why the mission is not taken up at Unix time `now`."""
+    """Why the mission is not resumed at Unix time `now` [s]; None when it is."""
+    if left.outdated:
+        return Failure("RESTART", "OLD_JOURNAL", "another version of the brain wrote the journal")
     same_run = bool(config.run) and config.run == left.run
     if left.closed and not same_run:
         return Failure("RESTART", "CANCELLED", "the robot was shut down")
@@ -51,15 +54,15 @@ def refusal(left: Checkpoint, config: BrainConfig, now: float) -> Failure | None
 
 def decide(left: Checkpoint, seen: Seen) -> Decision:
     """Go on at the same leaf unless the world has changed: then no further back than the change makes necessary."""
-    mission, hand, path = left.mission, left.hand, left.path
+    mission, hand, path = left.mission, left.gripper, left.path
     under_way = {sent.peer for sent in left.sent}
     arm_busy = "manipulation" in under_way
     fresh = seen.t < left.t - CLOCK_SLACK
     if hand.holding and not arm_busy and seen.fingers is False:
         return Decision(_back(path, mission, "lost"), "lost", hand.holding)
     # Whoever was closing the hand finds it full and folds the arm; only then may the base move.
-    closing = bool(path) and path[-1].name in GRABS
-    if seen.fingers and not (hand.holding or hand.uncertain or arm_busy or mission.released or closing):
+    closing = bool(path) and path[-1].node == GRAB
+    if seen.fingers and not (hand.holding or hand.grasp_uncertain or arm_busy or mission.released or closing):
         label, behind = _about_to_grasp(path, mission)
         if label:
             return Decision(behind, "holding", label)
@@ -70,13 +73,13 @@ def decide(left: Checkpoint, seen: Seen) -> Decision:
     return Decision(path)
 
 
-def apply(decision: Decision, mission: Mission, hand: Hand) -> None:
+def apply(decision: Decision, mission: Mission, hand: GripperState) -> None:
     """Correct what is believed by what was seen."""
     if decision.change == "lost":
         hand.holding, mission.grabbed = "", False
         mission.found = {k: p for k, p in mission.found.items() if decision.label not in (k, p.label)}
     elif decision.change == "holding":
-        hand.grabbed(decision.label)
+        hand.mark_grasped(decision.label)
         mission.grabbed = True
     elif decision.change == "new world":
         mission.found, mission.visited, hand.put_down = {}, [], {}
@@ -92,21 +95,21 @@ def _moved(before: Pose | None, now: Pose | None) -> bool:
 
 
 # --- where to go on
-def _at(path: Sequence[Place], name: str) -> int:
-    return next((i for i, place in enumerate(path) if place.name == name), -1)
+def _at(path: Sequence[PathNode], node: str) -> int:
+    return next((i for i, step in enumerate(path) if step.node == node), -1)
 
 
-def _plan(path: Sequence[Place]) -> int | None:
+def _plan(path: Sequence[PathNode]) -> int | None:
     """Where in the path a plan is carried out: the place after it is the plan's step."""
-    return next((i for i, place in enumerate(path[:-1]) if place.name in PLANS), None)
+    return next((i for i, step in enumerate(path[:-1]) if step.node in PLANS), None)
 
 
-def _back(path: list[Place], mission: Mission, change: Change) -> list[Place]:
+def _back(path: list[PathNode], mission: Mission, change: Change) -> list[PathNode]:
     """The place from which the rest of the mission can be done again: in a plan the step that needs it."""
     plan = _plan(path)
     if plan is not None:
-        return [*path[: plan + 1], Place(earlier(mission.plan, path[plan + 1].index, change), "")]
-    return path[: _at(path, "do") + 1] if _at(path, "as asked") >= 0 else path
+        return [*path[: plan + 1], PathNode(PLAN_STEP, earlier(mission.plan, path[plan + 1].ordinal, change))]
+    return path[: _at(path, DO) + 1] if _at(path, AS_ASKED) >= 0 else path
 
 
 def earlier(plan: Sequence[PlanStep], k: int, change: Change) -> int:
@@ -124,20 +127,20 @@ def earlier(plan: Sequence[PlanStep], k: int, change: Change) -> int:
     return max(finds, default=grasp)
 
 
-def _about_to_grasp(path: list[Place], mission: Mission) -> tuple[str, list[Place]]:
+def _about_to_grasp(path: list[PathNode], mission: Mission) -> tuple[str, list[PathNode]]:
     """The object that the mission was about to take, and the place behind the taking; "" if there is none."""
     plan = _plan(path)
     if plan is not None:
-        for j in range(path[plan + 1].index, len(mission.plan) - 1):
+        for j in range(path[plan + 1].ordinal, len(mission.plan) - 1):
             step = mission.plan[j]
             if step.hand_alone:
                 continue
             if step.action == "grasp":
                 pose = mission.found.get(step.object)
-                return (pose.label if pose else "") or step.object, [*path[: plan + 1], Place(j + 1, "")]
+                return (pose.label if pose else "") or step.object, [*path[: plan + 1], PathNode(PLAN_STEP, j + 1)]
             if step.action in ("place", "release"):
                 break
         return "", path
-    if _at(path, "as asked") >= 0 and mission.kind == "fetch":
+    if _at(path, AS_ASKED) >= 0 and mission.kind == "fetch":
         return mission.label, _back(path, mission, "holding")
     return "", path

@@ -1,30 +1,33 @@
-"""Carries out the taking up of a mission that a restart or a stop has cut short: look, decide, put the tree there."""
+"""Resumption of a suspended mission: look at the world, decide by the policy, start the tree there."""
 
 import msgspec
 from py_trees.behaviour import Behaviour
 
 from common import topics
 from common.time.clock import unix_time
-from services.brain.context import Context
-from services.brain.journal import Checkpoint
-from services.brain.mission import Failure, Hand, Mission, fingers_hold
-from services.brain.resume import Decision, Seen, apply, decide, refusal
-from services.brain.snapshot import Moved, path_by_name, put
+from services.brain.journal.records import Checkpoint, PathNode
+from services.brain.mission.context import Context
+from services.brain.mission.mission import Failure, GripperState, Mission, gripper_holds
+from services.brain.resume.policy import Decision, Seen, apply, decide, refusal
+from services.brain.tree.path import MISSION, REPORT_FAILURE, PathNotFound, start_at
 
 LOOK = 0.6
+"""s of looking before deciding (chosen: three statuses of each peer, and the fingers at rest)."""
 PEER_PATIENCE = 3.0
+"""s to wait for a peer that had a goal and is not there (measured: a killed service is back after 2 s)."""
 SPARE_GOALS = 10
+"""Goal numbers skipped: what the process before this one may have sent after its last checkpoint."""
 
 
-def cut_short(left: Checkpoint, ended: Mission, hand: Hand) -> Checkpoint:
-    """What a stop leaves for later: the place and the mission as they were, the hand as it is, nothing under way."""
+def suspend(left: Checkpoint, ended: Mission, gripper: GripperState) -> Checkpoint:
+    """The checkpoint of a suspended mission: place and mission as they were, the gripper as it is, no goals."""
     mission = msgspec.structs.replace(left.mission, outcome=None, failure=None, goals=ended.goals)
-    now = msgspec.structs.replace(hand, uncertain="", empty_since=None, put_down=dict(hand.put_down))
-    return msgspec.structs.replace(left, mission=mission, hand=now, sent=[], resumes=0)
+    now = msgspec.structs.replace(gripper, grasp_uncertain="", empty_since=None, put_down=dict(gripper.put_down))
+    return msgspec.structs.replace(left, mission=mission, gripper=now, sent=[], resumes=0)
 
 
 class Resumption:
-    """Stands in for the tree until the mission has been taken up, or ended because it cannot be.
+    """Stands in for the tree until the mission has been resumed, or ended because it cannot be.
 
     `why` it has to be: for the timeline. Joint states that stay away longer than `heartbeat_patience` end it in ERROR.
     """
@@ -33,15 +36,15 @@ class Resumption:
         self._ctx, self._root, self.left, self._why = ctx, root, left, why
         self._since: float | None = None
         self._waiting: float | None = None
-        self._told = self.put_off = False
-        self._felt: set[bool | None] = set()
-        ctx.mission, ctx.hand = left.mission, left.hand
+        self._noted = self.suspended = False
+        self._readings: set[bool | None] = set()
+        ctx.mission, ctx.gripper = left.mission, left.gripper
         ctx.mission.goals += SPARE_GOALS
         ctx.journal.resume(ctx.mission)
         for sent in left.sent:
             for channel in ctx.channels:
                 if channel.peer == sent.peer:
-                    channel.take_up(sent)
+                    channel.resume_goal(sent)
         self._refused = refusal(left, ctx.config, unix_time())
         ctx.io.log.warning("mission to resume", mission=ctx.mission.id, command=ctx.mission.command, why=why)
 
@@ -54,21 +57,21 @@ class Resumption:
             self._end(self._refused)
             return True
         joints = ctx.io.latest(topics.JOINT_STATES)
-        if not self._told:
-            self._told = True
-            ctx.note(self._why, f"at {' > '.join(p.name for p in self.left.path) or 'the start'}")
+        if not self._noted:
+            self._noted = True
+            ctx.note(self._why, f"at {' > '.join(str(p) for p in self.left.path) or 'the start'}")
         if joints is None or not ctx.heartbeat.fresh(ctx.now):
             return self._wait()
         self._waiting = None
-        ctx.enter("IDLE", detail="resuming: looking at the world")
+        ctx.show_state("IDLE", detail="resuming: looking at the world")
         self._since = ctx.now if self._since is None else self._since
-        self._felt.add(fingers_hold(joints))
+        self._readings.add(gripper_holds(joints))
         looked = ctx.now - self._since
         strangers = any(not ctx.io.peer(sent.peer) for sent in self.left.sent)
         if looked < LOOK or (strangers and looked < PEER_PATIENCE):
             return False
         if ctx.stopped is not None:
-            self.put_off = True
+            self.suspended = True
             self._end(Failure("RESTART", "CANCELLED", "the robot was stopped before it could go on"))
         else:
             self._go_on()
@@ -77,19 +80,19 @@ class Resumption:
     def _wait(self) -> bool:
         """For joint states, as long as patience lasts; what was seen before does not count any more."""
         ctx, patience = self._ctx, self._ctx.config.heartbeat_patience
-        ctx.enter("IDLE", detail="resuming: waiting for joint_states")
+        ctx.show_state("IDLE", detail="resuming: waiting for joint_states")
         self._since = None
-        self._felt.clear()
+        self._readings.clear()
         if self._waiting is None or ctx.heartbeat.paused:
             self._waiting = ctx.now
         if max(ctx.now - self._waiting, ctx.heartbeat.stalled) <= patience:
             return False
         self._call_off()
-        ctx.fail(
+        ctx.record_failure(
             Failure("HEARTBEAT", "NO_JOINT_STATES", f"none for {patience:.0f} s", "I have lost contact with my motors.")
         )
-        self.put_off = True
-        put(self._root, path_by_name(self._root, "mission", "report failure"))
+        self.suspended = True
+        start_at(self._root, [PathNode(MISSION), PathNode(REPORT_FAILURE)])
         return True
 
     def _go_on(self) -> None:
@@ -97,22 +100,22 @@ class Resumption:
         here = ctx.io.latest(topics.POSE)
         arm = ctx.manipulation
         seen = Seen(
-            fingers=next(iter(self._felt)) if len(self._felt) == 1 else None,
+            fingers=next(iter(self._readings)) if len(self._readings) == 1 else None,
             base=(here.x, here.y, here.theta) if here else None,
             t=ctx.now,
-            arm_answered=arm.outstanding and arm.answer is not None and not arm.restarted,
+            arm_answered=arm.outstanding and arm.result is not None and not arm.restarted,
         )
         decision = decide(left, seen)
-        apply(decision, ctx.mission, ctx.hand)
+        apply(decision, ctx.mission, ctx.gripper)
         if decision.change:
             self._call_off()
         try:
-            ctx.placed(put(self._root, decision.path), left.resumes + 1)
-        except Moved as moved:
-            self._end(Failure("RESTART", "CANNOT_RESUME", str(moved)))
+            ctx.placed(start_at(self._root, decision.path), left.resumes + 1)
+        except PathNotFound as missing:
+            self._end(Failure("RESTART", "CANNOT_RESUME", str(missing)))
             return
-        ctx.note("resumed", _account(decision, seen, ctx.hand), "saw")
-        ctx.io.log.info("resumed", mission=ctx.mission.id, path=" > ".join(p.name for p in decision.path),
+        ctx.note("resumed", _account(decision, seen, ctx.gripper), "saw")
+        ctx.io.log.info("resumed", mission=ctx.mission.id, path=" > ".join(str(p) for p in decision.path),
                         change=decision.change)  # fmt: skip
         ctx.save()
 
@@ -121,7 +124,7 @@ class Resumption:
         ctx = self._ctx
         for channel, topic in ((ctx.navigation, topics.NAVIGATION_GOAL), (ctx.manipulation, topics.MANIPULATION_GOAL)):
             if channel.outstanding:
-                ctx.tell(channel, topic, "stop")
+                ctx.send_only(channel, topic, "stop")
         for channel in ctx.channels:
             channel.abandon()
 
@@ -129,12 +132,12 @@ class Resumption:
         ctx = self._ctx
         ctx.mission.failure = failure
         self._call_off()
-        held = ctx.hand.holding or ctx.hand.uncertain
+        held = ctx.gripper.holding or ctx.gripper.grasp_uncertain
         reason = failure.reason + (f"; holding the {held}" if held else "")
-        ctx.finish("cancelled" if failure.code == "CANCELLED" else "failed", reason)
+        ctx.end_mission("cancelled" if failure.code == "CANCELLED" else "failed", reason)
 
 
-def _account(decision: Decision, seen: Seen, hand: Hand) -> str:
+def _account(decision: Decision, seen: Seen, hand: GripperState) -> str:
     """What was seen, in words for the timeline."""
     fingers = {True: "the fingers hold something", False: "the fingers are empty", None: "the fingers say nothing"}
     where = "" if seen.base is None else f", base at ({seen.base[0]:.2f}, {seen.base[1]:.2f})"

@@ -9,15 +9,14 @@ from py_trees.common import Status
 
 from common import messages as m
 from common import topics
-from services.brain.asking import Hear, Question
-from services.brain.behaviours import Leaf
-from services.brain.context import Context
-from services.brain.decorators import When
 from services.brain.dialogue import reply
-from services.brain.goals import Answer
-from services.brain.mission import GRIPPER_EMPTY, GRIPPER_OPEN, HOLDING_FORCE, Failure, fingers_hold, gripper
-from services.brain.robot import Release
-from services.brain.trees import first_of, sequence
+from services.brain.mission.channel import Result
+from services.brain.mission.context import Context
+from services.brain.mission.mission import GRIPPER_EMPTY, GRIPPER_OPEN, HOLDING_FORCE, Failure, gripper, gripper_holds
+from services.brain.steps.ask import AskQuestion, HearAnswer
+from services.brain.steps.leaf import Leaf
+from services.brain.steps.motion import Release
+from services.brain.tree.composites import Condition, Selector, Sequence
 
 AGAIN = 0.2
 """The command is repeated this often [s]: one that is lost costs nothing."""
@@ -29,11 +28,11 @@ SOMETHING = "object"
 """The name of what a person puts between the closing fingers."""
 
 
-class Gripper(Leaf):
+class MoveGripper(Leaf):
     """Opens or closes the hand; SUCCESS when joint_states that came after the command show it, STUCK when none does."""
 
-    def __init__(self, name: str, ctx: Context, closed: bool) -> None:
-        super().__init__(name, ctx)
+    def __init__(self, node_id: str, ctx: Context, closed: bool) -> None:
+        super().__init__(node_id, ctx)
         self._closed = closed
         self._told_at = self._still_since = 0.0
         self._width = -1.0
@@ -46,7 +45,7 @@ class Gripper(Leaf):
 
     def update(self) -> Status:
         ctx = self.ctx
-        ctx.enter("GRABBING" if self._closed else "RELEASING", self.name)
+        ctx.show_state("GRABBING" if self._closed else "RELEASING", self.name)
         if self.elapsed - self._told_at >= AGAIN:
             self._told_at = self.elapsed
             ctx.io.publish(topics.GRIPPER_COMMAND, m.GripperCommand(position=float(self._closed)))
@@ -57,7 +56,9 @@ class Gripper(Leaf):
             return Status.RUNNING
         where = "joint_states tell of no gripper" if grip is None else f"the fingers are {grip[0] * 1000:.0f} mm apart"
         verb = "close" if self._closed else "open"
-        ctx.fail(Failure(ctx.state, "STUCK", f"{where} after {PATIENCE:.0f} s", f"I could not {verb} my hand."))
+        ctx.record_failure(
+            Failure(ctx.state, "STUCK", f"{where} after {PATIENCE:.0f} s", f"I could not {verb} my hand.")
+        )
         return Status.FAILURE
 
     def _there(self, width: float, force: float) -> bool:
@@ -71,66 +72,68 @@ class Gripper(Leaf):
     def _done(self, width: float, force: float) -> Status:
         ctx = self.ctx
         if self._closed and width > GRIPPER_EMPTY:
-            ctx.hand.grabbed(SOMETHING)
+            ctx.gripper.mark_grasped(SOMETHING)
         else:
             ctx.mission.released = ctx.mission.released or self._full
-            ctx.hand.released(ctx.now)
+            ctx.gripper.mark_released(ctx.now)
         ctx.note("gripper: " + ("closed" if self._closed else "open"), f"{width * 1000:.1f} mm, {force:.0f} N", "did")
         return Status.SUCCESS
 
 
-class HearYes(Hear):
+class HearPermission(HearAnswer):
     """SUCCESS on a yes; whatever else is heard leaves the failure that the question was about."""
 
     def spoken(self) -> str:
         return ""
 
-    def done(self, answer: Answer) -> Status:
-        heard = answer.message
+    def succeed(self, result: Result) -> Status:
+        heard = result.message
         assert isinstance(heard, m.SpeechResult)
         kind, _ = reply(heard.text)
         self.ctx.note(f"reply: {kind}", heard.text, "heard")
         return Status.SUCCESS if kind == "yes" else Status.FAILURE
 
-    def give_up(self, failure: Failure) -> Status:
+    def fail_with(self, failure: Failure) -> Status:
         before = self.ctx.mission.failure
-        status = super().give_up(failure)
+        status = super().fail_with(failure)
         self.ctx.mission.failure = before
         return status
 
 
 def open_hand(ctx: Context) -> Behaviour:
     """An empty hand opens; one that holds something sets it down first, as a release does."""
-    full = When("something is in it", let_go(ctx), lambda: in_hand(ctx), Status.FAILURE)
-    empty = When("it is empty", Gripper("open the hand", ctx, closed=False), lambda: not in_hand(ctx), Status.FAILURE)
-    return first_of("open", full, empty)
+    full = Condition("something_is_in_it", set_down_or_open(ctx), lambda: in_hand(ctx), Status.FAILURE)
+    empty = Condition(
+        "it_is_empty", MoveGripper("open_the_hand", ctx, closed=False), lambda: not in_hand(ctx), Status.FAILURE
+    )
+    return Selector("open", full, empty)
 
 
-def let_go(ctx: Context) -> Behaviour:
+def set_down_or_open(ctx: Context) -> Behaviour:
     """Set down what is held; when nobody moves the arm any more, open the hand on a person's yes."""
-    ask = sequence(
-        "without the arm",
-        Question("shall I", ctx, lambda: offer(ctx)),
-        HearYes("hear yes", ctx),
-        Gripper("let go", ctx, closed=False),
+    ask = Sequence(
+        "without_the_arm",
+        AskQuestion("shall_i", ctx, lambda: drop_question(ctx)),
+        HearPermission("hear_yes", ctx),
+        MoveGripper("let_go", ctx, closed=False),
     )
-    return first_of(
-        "let go of it",
-        Release("put down", ctx),
-        When("the arm is gone", ask, lambda: arm_gone(ctx), Status.FAILURE),
+    return Selector(
+        "let_go_of_it",
+        Release("put_down", ctx),
+        Condition("the_arm_is_gone", ask, lambda: manipulation_gone(ctx), Status.FAILURE),
     )
 
 
-def offer(ctx: Context) -> str:
+def drop_question(ctx: Context) -> str:
     """The question before something is dropped."""
-    return f"My arm does not answer. Shall I open my hand and let the {ctx.hand.holding or SOMETHING} drop?"
+    return f"My arm does not answer. Shall I open my hand and let the {ctx.gripper.holding or SOMETHING} drop?"
 
 
 def in_hand(ctx: Context) -> bool:
     """Something is believed or felt to be in the hand."""
-    return bool(ctx.hand.holding) or fingers_hold(ctx.io.latest(topics.JOINT_STATES)) is True
+    return bool(ctx.gripper.holding) or gripper_holds(ctx.io.latest(topics.JOINT_STATES)) is True
 
 
-def arm_gone(ctx: Context) -> bool:
+def manipulation_gone(ctx: Context) -> bool:
     failure = ctx.mission.failure
     return failure is not None and failure.code == "NO_PEER" and in_hand(ctx)

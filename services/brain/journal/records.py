@@ -8,11 +8,13 @@ import msgspec
 
 from common.messages import BrainStateName
 from common.time.clock import unix_time
-from services.brain.goals import Sent
-from services.brain.mission import Hand, Mission, Outcome
+from services.brain.mission.channel import SentGoal
+from services.brain.mission.mission import GripperState, Mission, Outcome
 
 KEPT = 200
+"""Missions listed (chosen: some days of use)."""
 ENTRIES_KEPT = 500
+"""Entries of a mission's timeline (chosen: five times what a long one has)."""
 Kind = Literal["heard", "planned", "saw", "did", "failed", "state", "note"]
 Pose = tuple[float, float, float]
 
@@ -51,33 +53,42 @@ class Record(msgspec.Struct):
     entries: list[Entry] = []
 
 
-class Place(msgspec.Struct, frozen=True):
-    """One node on the way from the root of the tree to the leaf at work: which child, its name, retries used there."""
+FORMAT = 2
+"""Version of what checkpoints mean: raised when an id of the trees changes; 1 had names of nodes for ids."""
 
-    index: int
-    name: str
+
+class PathNode(msgspec.Struct, frozen=True):
+    """One node on the path to the leaf at work: its id, which of the siblings with that id it is, its retries used."""
+
+    node: str = ""
+    ordinal: int = 0
     used: int = 0
 
+    def __str__(self) -> str:
+        return f"{self.node} {self.ordinal + 1}" if self.ordinal else self.node
 
-class Checkpoint(msgspec.Struct):
+
+class Checkpoint(msgspec.Struct, rename={"gripper": "hand", "suspended": "put_off"}):
     """All that a new process needs to go on: `path` leads to the leaf at work, `sent` are the goals under way.
 
     `run`: the run of the robot in which it was written. `closed`: the process ended in order, not by a crash.
-    `resumes`: times the mission was taken up since it last advanced. `date` is Unix time. `put_off`: how the mission
-    stood that a stop has cut short, for a resume that asks to go on with it.
+    `resumes`: times the mission was resumed since it last advanced. `date` is Unix time. `suspended`: how the mission
+    stood that a stop has cut short, for a resume that asks to go on with it. `outdated`: a program with other ids of
+    nodes has written it, so that `path` leads nowhere.
     """
 
     mission: Mission
-    hand: Hand
-    path: list[Place] = []
-    sent: list[Sent] = []
+    gripper: GripperState
+    path: list[PathNode] = []
+    sent: list[SentGoal] = []
     t: float = 0.0
     base: Pose | None = None
     date: float = 0.0
     run: str = ""
     closed: bool = False
     resumes: int = 0
-    put_off: "Checkpoint | None" = None
+    outdated: bool = False
+    suspended: "Checkpoint | None" = None
 
 
 class Journal(Protocol):

@@ -9,9 +9,10 @@ from py_trees.common import Status
 from common import messages as m
 from common import topics
 from common.topics import Topic
-from services.brain.context import Context
-from services.brain.goals import Answer, Channel
-from services.brain.mission import Failure
+from services.brain.mission.channel import Channel, Result
+from services.brain.mission.context import Context
+from services.brain.mission.mission import Failure
+from services.brain.tree.composites import shown
 
 MAX_RESENDS = 5
 
@@ -19,9 +20,9 @@ MAX_RESENDS = 5
 class Leaf(Behaviour):
     """A leaf that knows the context and when it began."""
 
-    def __init__(self, name: str, ctx: Context) -> None:
-        super().__init__(name)
-        self.ctx = ctx
+    def __init__(self, node_id: str, ctx: Context, name: str = "") -> None:
+        super().__init__(shown(node_id, name))
+        self.node_id, self.ctx = node_id, ctx
         self.since = 0.0
 
     def initialise(self) -> None:
@@ -40,18 +41,18 @@ class Settle(Leaf):
         return Status.SUCCESS if self.elapsed >= self.ctx.config.settle else Status.RUNNING
 
 
-class Do(Leaf):
+class Call(Leaf):
     """Calls a function once; SUCCESS unless it returns False."""
 
-    def __init__(self, name: str, ctx: Context, act: Callable[[], bool | None]) -> None:
-        super().__init__(name, ctx)
+    def __init__(self, node_id: str, ctx: Context, act: Callable[[], bool | None]) -> None:
+        super().__init__(node_id, ctx)
         self._act = act
 
     def update(self) -> Status:
         return Status.FAILURE if self._act() is False else Status.SUCCESS
 
 
-class Goal(Leaf):
+class SendGoal(Leaf):
     """Sends one goal to one peer and waits for its final word.
 
     Sent once a peer subscribes. Sent again with the next attempt after `failed` (at most `retries` times, a settle
@@ -59,9 +60,17 @@ class Goal(Leaf):
     """
 
     def __init__(
-        self, name: str, ctx: Context, channel: Channel, *, state: m.BrainStateName, timeout: float, retries: int = 0
+        self,
+        node_id: str,
+        ctx: Context,
+        channel: Channel,
+        *,
+        state: m.BrainStateName,
+        timeout: float,
+        retries: int = 0,
+        name: str = "",
     ) -> None:
-        super().__init__(name, ctx)
+        super().__init__(node_id, ctx, name)
         self.channel, self.state = channel, state
         self._timeout, self._retries = timeout, retries
         self._sent_at: float | None = None
@@ -80,7 +89,7 @@ class Goal(Leaf):
         """What to say when this fails for good."""
         return f"I could not {self.name}."
 
-    def done(self, answer: Answer) -> Status:
+    def succeed(self, result: Result) -> Status:
         return Status.SUCCESS
 
     def spent(self, code: str) -> int:
@@ -90,8 +99,8 @@ class Goal(Leaf):
     def unfinished(self) -> None:
         """The goal was cut short or timed out: its effect on the world is unknown."""
 
-    def give_up(self, failure: Failure) -> Status:
-        self.ctx.fail(failure)
+    def fail_with(self, failure: Failure) -> Status:
+        self.ctx.record_failure(failure)
         return Status.FAILURE
 
     # --- lifecycle
@@ -107,18 +116,18 @@ class Goal(Leaf):
             if ctx.now < self._again_at:
                 return Status.RUNNING
             self._again_at, self._sent_at = None, ctx.now
-            channel.again()
+            channel.retry()
             return Status.RUNNING
         if self._sent_at is None:
-            return self._take_up() if channel.taken_up else self._send()
-        answer = channel.answer
-        if answer is not None and answer.word == "ok":
+            return self._resume_goal() if channel.resuming else self._send()
+        result = channel.result
+        if result is not None and result.status == "ok":
             channel.abandon()
-            if isinstance(answer.message, m.NavigationStatus | m.NavigationFeedback | m.ManipulationStatus):
-                ctx.note(f"{channel.peer}: {answer.message.status}", answer.detail, "did")
-            return self.done(answer)
-        if answer is not None and answer.word == "failed":
-            return self._failed(answer.code or "FAILED", answer.detail)
+            if isinstance(result.message, m.NavigationStatus | m.NavigationFeedback | m.ManipulationStatus):
+                ctx.note(f"{channel.peer}: {result.message.status}", result.detail, "did")
+            return self.succeed(result)
+        if result is not None and result.status == "failed":
+            return self._failed(result.code or "FAILED", result.detail)
         if channel.restarted:
             return self._resend()
         if channel.gone(ctx.now) > ctx.config.peer_timeout:
@@ -126,8 +135,8 @@ class Goal(Leaf):
         if ctx.now - self._sent_at > self._timeout:
             self.unfinished()
             return self._failed("TIMEOUT", f"no answer in {self._timeout:.0f} s")
-        if answer is not None:
-            self.feedback_message = answer.detail
+        if result is not None:
+            self.feedback_message = result.detail
         return Status.RUNNING
 
     def terminate(self, new_status: Status) -> None:
@@ -138,7 +147,7 @@ class Goal(Leaf):
 
     def _send(self) -> Status:
         ctx = self.ctx
-        ctx.enter(self.state, self.step())
+        ctx.show_state(self.state, self.step())
         topic, message = self.goal(f"{ctx.mission.id}.{ctx.mission.goals + 1}")
         if not ctx.io.has_subscribers(topic):
             if max(self.elapsed, self.channel.gone(ctx.now)) > ctx.config.peer_timeout:
@@ -146,19 +155,19 @@ class Goal(Leaf):
             self.feedback_message = f"waiting for {self.channel.peer}"
             return Status.RUNNING
         ctx.mission.next_goal()
-        self.channel.send(topic, message)
+        self.channel.send_goal(topic, message)
         self._sent_at = ctx.now
         self.feedback_message = ""
         return Status.RUNNING
 
-    def _take_up(self) -> Status:
+    def _resume_goal(self) -> Status:
         """Go on with the goal that this brain had sent before it was restarted."""
         ctx, channel = self.ctx, self.channel
-        channel.taken_up = False
+        channel.resuming = False
         self._sent_at = ctx.now
-        ctx.enter(self.state, self.step())
-        if channel.answer is None and not channel.restarted:
-            channel.repeat()
+        ctx.show_state(self.state, self.step())
+        if channel.result is None and not channel.restarted:
+            channel.resend()
         return Status.RUNNING
 
     def _resend(self) -> Status:
@@ -166,7 +175,7 @@ class Goal(Leaf):
         if self._resends > MAX_RESENDS:
             return self._failed("NO_PEER", f"{self.channel.peer} keeps restarting")
         self.ctx.note(f"{self.channel.peer} restarted", f"attempt {self.channel.attempt + 1}")
-        self.channel.again()
+        self.channel.retry()
         self._sent_at = self.ctx.now
         return Status.RUNNING
 
@@ -181,14 +190,14 @@ class Goal(Leaf):
             self.ctx.note(f"{self.step()}: {self.feedback_message}", detail)
             return Status.RUNNING
         self.feedback_message = code
-        return self.give_up(failure)
+        return self.fail_with(failure)
 
 
 class Say(Leaf):
     """Speaks without depending on speech: ends when speech has spoken, or after as long as the words take."""
 
-    def __init__(self, name: str, ctx: Context, text: Callable[[], str]) -> None:
-        super().__init__(name, ctx)
+    def __init__(self, node_id: str, ctx: Context, text: Callable[[], str], name: str = "") -> None:
+        super().__init__(node_id, ctx, name)
         self._text = text
         self._goal_id = ""
         self._heard = False
@@ -199,7 +208,7 @@ class Say(Leaf):
         ctx, text = self.ctx, " ".join(self._text().split())
         self._heard, self._goal_id = False, ""
         if text and ctx.io.has_subscribers(topics.SPEECH_GOAL):
-            self._goal_id = ctx.tell(ctx.speech, topics.SPEECH_GOAL, f"say {text}")
+            self._goal_id = ctx.send_only(ctx.speech, topics.SPEECH_GOAL, f"say {text}")
         self._estimate = min(1.0 + 0.07 * len(text), ctx.config.say_timeout)
         self.feedback_message = text
 

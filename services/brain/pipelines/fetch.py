@@ -1,0 +1,144 @@
+"""The fetch pipeline as a tree: hear, go, grab, return, release, and what happens when one of them fails."""
+
+from py_trees.behaviour import Behaviour
+from py_trees.common import Status
+
+from common import messages as m
+from common import topics
+from services.brain.intent import parse
+from services.brain.mission.context import Context
+from services.brain.mission.mission import Failure, gripper_holds
+from services.brain.pipelines.shared import drive_home, report_failure
+from services.brain.recoveries.regrasp import grab_failed
+from services.brain.steps.leaf import Call, Leaf, Settle
+from services.brain.steps.motion import Grab, Listen, Navigate, Ready, Release, Wait
+from services.brain.steps.verify import is_misplaced, verify_placement
+from services.brain.tree.composites import Condition, Retry, Selector, Sequence
+
+
+def fetch_tree(ctx: Context) -> Behaviour:
+    """The system flow; ticked for ever, each round is one listening and at most one mission."""
+    wait = Wait("wait", ctx, ends=lambda: ctx.now >= ctx.listen_after)
+    return Sequence(
+        "fetch_pipeline",
+        Ready("ready", ctx),
+        wait,
+        Listen("listen", ctx),
+        Selector("mission", Sequence("do", ParseCommand("understand", ctx), carry_out(ctx)), report_failure(ctx)),
+    )
+
+
+def carry_out(ctx: Context) -> Behaviour:
+    """From the parsed command to COMPLETED."""
+    fetching = Sequence(
+        "fetch",
+        Condition("free_the_hand", put_down_at_home(ctx), lambda: holds_another(ctx)),
+        Retry("until_it_is_right", ctx, deliver(ctx), ctx.config.put_right_attempts, again=lambda: is_misplaced(ctx)),
+        Complete("complete", ctx),
+        Settle("settle", ctx),
+    )
+    coming = Sequence(
+        "come_back", drive_home(ctx), Settle("settle", ctx), Complete("complete", ctx), Settle("rest", ctx)
+    )
+    no = Status.FAILURE
+    return Selector(
+        "as_asked",
+        Condition(
+            "nothing_to_stop", Call("end", ctx, lambda: end_unneeded(ctx)), lambda: ctx.mission.kind == "stop", no
+        ),
+        Condition("return_only", coming, lambda: ctx.mission.kind == "return", no),
+        Condition("fetch_it", fetching, lambda: ctx.mission.kind == "fetch", no),
+    )
+
+
+def deliver(ctx: Context) -> Behaviour:
+    """Get it, bring it, put it down; where perception is alive, look whether it stands there."""
+    look = Sequence("look", Settle("settle", ctx), verify_placement(ctx, ctx.io.scene.delivery))
+    return Sequence(
+        "deliver",
+        Condition("get_it", acquire(ctx), lambda: not ctx.gripper.holding and not ctx.mission.released),
+        Condition("deliver_it", bring_home(ctx), lambda: not ctx.mission.released),
+        Condition("check_it", look, lambda: ctx.io.peer("perception") is not None),
+    )
+
+
+def acquire(ctx: Context) -> Behaviour:
+    """Drive up and grab; a failed grab drives up again."""
+    find = Navigate(
+        "reach_it",
+        ctx,
+        text=lambda: f"find {ctx.mission.item}",
+        spoken=lambda: f"I could not reach the {ctx.mission.item}.",
+        state="NAVIGATING",
+    )
+    grab = Grab("grab", ctx, lambda: ctx.mission.label, lambda: object_ref(ctx))
+    once = Sequence("approach_and_grab", find, Settle("settle", ctx), grab, Settle("settle", ctx))
+    return Retry("acquire", ctx, once, ctx.config.grab_retries, again=lambda: grab_failed(ctx))
+
+
+def bring_home(ctx: Context) -> Behaviour:
+    return Sequence("bring_home", drive_home(ctx), Settle("settle", ctx), Release("release_it", ctx))
+
+
+def put_down_at_home(ctx: Context) -> Behaviour:
+    """Frees a hand that an earlier mission left full, before anything else is fetched."""
+    down = bring_home(ctx)
+    return Sequence("put_down_at_home", down, Settle("settle", ctx), Call("forget", ctx, lambda: forget_release(ctx)))
+
+
+class ParseCommand(Leaf):
+    """The command as an intent, and whether the hand is really empty."""
+
+    def update(self) -> Status:
+        ctx = self.ctx
+        ctx.gripper.resolve_uncertainty(gripper_holds(ctx.io.latest(topics.JOINT_STATES)))
+        intent = parse(ctx.mission.command, ctx.io.scene)
+        ctx.note(f"understood: {intent.kind}", intent.item or intent.reason, "planned")
+        if intent.kind == "none":
+            ctx.record_failure(Failure("UNDERSTANDING", "NOT_UNDERSTOOD", spoken=intent.reason))
+            return Status.FAILURE
+        ctx.mission.kind = "stop" if intent.kind == "cancel" else intent.kind
+        ctx.mission.item, ctx.mission.label = intent.item, intent.label
+        if intent.label and ctx.gripper.holding == intent.label:
+            ctx.mission.grabbed = True
+            ctx.note("already in the hand", intent.label)
+        self.feedback_message = f"{intent.kind} {intent.item}".strip()
+        return Status.SUCCESS
+
+
+class Complete(Leaf):
+    """COMPLETED, only on the evidence that the kind of mission needs."""
+
+    def update(self) -> Status:
+        ctx, mission = self.ctx, self.ctx.mission
+        if mission.kind == "fetch" and not (mission.grabbed and mission.released and not ctx.gripper.holding):
+            ctx.record_failure(
+                Failure("COMPLETED", "NO_EVIDENCE", spoken=f"I am not sure that I brought the {mission.item}.")
+            )
+            return Status.FAILURE
+        ctx.end_mission("delivered", "" if mission.kind == "fetch" else "back at the start")
+        ctx.show_state("COMPLETED", detail=f"{mission.item} delivered" if mission.item else "back at the start")
+        return Status.SUCCESS
+
+
+def end_unneeded(ctx: Context) -> None:
+    ctx.end_mission("cancelled", "there was nothing to stop")
+
+
+def holds_another(ctx: Context) -> bool:
+    return bool(ctx.gripper.holding) and ctx.gripper.holding != ctx.mission.label
+
+
+def forget_release(ctx: Context) -> None:
+    ctx.mission.released = False
+
+
+def object_ref(ctx: Context) -> m.ObjectRef | None:
+    """Which object to grab, as last reported; none if the robot itself has moved it since."""
+    known = ctx.known_object(ctx.mission.label)
+    if known is None or known.seen_at <= ctx.gripper.put_down.get(known.label, -1.0):
+        return None
+    return m.ObjectRef(
+        label=known.label, position=known.position, orientation=known.orientation, size=known.size, kind=known.kind,
+        tilt=known.tilt,
+    )  # fmt: skip

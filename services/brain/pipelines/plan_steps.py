@@ -1,0 +1,177 @@
+"""The steps of a plan as subtrees, each with its recoveries."""
+
+from collections.abc import Iterator
+
+from py_trees.behaviour import Behaviour
+from py_trees.common import Status
+
+from common.messages import PlanStep
+from common.plan_rules import is_destination
+from services.brain.mission.context import Context
+from services.brain.pipelines.shared import drive_home
+from services.brain.recoveries.recovery import Subtree, Task, with_recoveries
+from services.brain.recoveries.table import AFTER_GRASPING, AFTER_LOOKING, AFTER_PUTTING_DOWN
+from services.brain.steps.find import Approach, LocateObject, label_of, object_ref
+from services.brain.steps.gripper import MoveGripper, open_hand, set_down_or_open
+from services.brain.steps.leaf import Leaf, Say, Settle
+from services.brain.steps.motion import Grab, Navigate
+from services.brain.steps.plan import describe_step
+from services.brain.steps.verify import AlreadyInPlace, release_and_verify, verify_placement
+from services.brain.tree.composites import Condition, Selector, Sequence
+from services.brain.tree.path import PLAN_STEP
+
+Node = Sequence | Selector | Leaf
+"""What a step of a plan may be."""
+
+
+class RunPlan(Sequence):
+    """The accepted plan as a sequence, built when it starts."""
+
+    def __init__(self, node_id: str, ctx: Context) -> None:
+        super().__init__(node_id)
+        self._ctx = ctx
+
+    def unfold(self) -> None:
+        """Build the children; a restarted brain does so to find its place among them."""
+        self.remove_all_children()
+        carried, at_home = "", False
+        for step in self._ctx.mission.plan:
+            carried = step.object if step.action == "grasp" else carried
+            if step.action in ("return", "navigate", "grasp", "place"):
+                at_home = step.action == "return"
+            child = step_tree(self._ctx, step, carried, at_home)
+            child.node_id = PLAN_STEP  # whatever it does, the journal knows it by its place in the plan
+            self.add_child(child)
+
+    def tick(self) -> Iterator[Behaviour]:
+        if self.status != Status.RUNNING:
+            self.unfold()
+        yield from super().tick()
+
+
+def step_tree(ctx: Context, step: PlanStep, carried: str, at_home: bool = False) -> Node:
+    """One step with its own recovery; the next goal comes a settle later. `carried`: what was grasped last.
+
+    `at_home`: the plan has brought it to where objects are delivered.
+    """
+    name = describe_step(step)
+    match step.action:
+        case "find":
+            return find(ctx, step.object)
+        case "navigate":
+            return navigate(ctx, step.target or step.object, name)
+        case "grasp" if step.hand_alone:
+            closing = MoveGripper("close_the_hand", ctx, closed=True)
+            return Sequence(PLAN_STEP, closing, Settle("settle", ctx), name=name)
+        case "grasp":
+            return grasp(ctx, step.object)
+        case "place":
+            there = Condition("go_there", go_and_settle(ctx, step.target), lambda: ctx.mission.at != step.target)
+            down = put_down(ctx, carried, lambda: go_and_settle(ctx, step.target), f"place {step.target}", step.target)
+            return Sequence(PLAN_STEP, there, down, name=name)
+        case "release" if step.hand_alone:
+            return Sequence(PLAN_STEP, open_hand(ctx), Settle("settle", ctx), name=name)
+        case "release":
+            return release(ctx, carried, at_home, name)
+        case "say":
+            return Say(PLAN_STEP, ctx, lambda: step.text, name=name)
+        case "wait":
+            return Settle(PLAN_STEP, ctx, name=name)
+        case "return":
+            at_start = RememberPlace("at_home", ctx, "home")
+            return Sequence(PLAN_STEP, drive_home(ctx), at_start, Settle("settle", ctx), name=name)
+
+
+def navigate(ctx: Context, where: str, name: str) -> Sequence:
+    """Drive to a place, or up to an object that is looked for first."""
+    if is_destination(where, ctx.io.scene):
+        return Sequence(PLAN_STEP, go_to(ctx, where), Settle("settle", ctx), name=name)
+    unseen = Condition("find_it", find(ctx, where), lambda: where not in ctx.mission.found)
+    return Sequence(PLAN_STEP, unseen, approach(ctx, where), name=name)
+
+
+def find(ctx: Context, item: str) -> Selector:
+    """Look from here, ask when several match, else search: turn, then other viewpoints."""
+    look = LocateObject("primary_detection", ctx, item)
+    return with_recoveries("perception", ctx, look, AFTER_LOOKING, Task(item), name=f"perception: {item}")
+
+
+def approach(ctx: Context, item: str) -> Behaviour:
+    """Drive to where the arm reaches the object."""
+    there = RememberPlace("there", ctx, item)
+    return Sequence("approach_and_settle", Approach(ctx, item), there, Settle("settle", ctx), name=f"approach {item}")
+
+
+def grab(ctx: Context, item: str) -> Grab:
+    """Close the hand around an object that was found."""
+    return Grab("grab", ctx, lambda: label_of(ctx, item), lambda: object_ref(ctx, item))
+
+
+def grasp(ctx: Context, item: str) -> Node:
+    """Approach if needed and grab; after a failed grab its recoveries."""
+    near = Condition("near_it", approach(ctx, item), lambda: ctx.mission.at != item)
+    first = Sequence("grasp_once", near, grab(ctx, item), Settle("settle", ctx), name=f"grasp {item}")
+    if not ctx.config.grab_retries:
+        return first
+    task = Task(item, find=lambda: find(ctx, item), approach=lambda: approach(ctx, item), grab=lambda: grab(ctx, item))
+    return with_recoveries("grasp", ctx, first, AFTER_GRASPING, task, name=f"grasp: {item}")
+
+
+def release(ctx: Context, carried: str, at_home: bool, name: str) -> Sequence:
+    """Let go of what was grasped, and look; of what somebody else put into the hand, look only if it is known."""
+    target = ctx.io.scene.delivery if at_home else ""
+    if carried:
+        down = put_down(ctx, carried, lambda: home_and_settle(ctx), "release", target)
+        return Sequence(PLAN_STEP, down, name=name)
+    look = verify_placement(ctx, target)
+    known = Condition("look", look, lambda: ctx.io.scene.object(ctx.mission.put_down) is not None)
+    return Sequence(PLAN_STEP, set_down_or_open(ctx), Settle("settle", ctx), known, name=name)
+
+
+def put_down(ctx: Context, item: str, back: Subtree, goal: str, target: str) -> Behaviour:
+    """Carry out the `goal` that opens the hand and look; what is lost or misplaced is brought `back` again."""
+    first = release_and_verify(ctx, "put_down", goal, target)
+    if not item:
+        return first
+    task = Task(
+        item,
+        find=lambda: find(ctx, item),
+        grasp=lambda: grasp(ctx, item),
+        carry_back=back,
+        put_down=lambda: release_and_verify(ctx, "put_down_at_last", goal, target),
+        in_place=lambda: AlreadyInPlace("in_place_already", ctx, item, target),
+    )
+    return with_recoveries("put_down_item", ctx, first, AFTER_PUTTING_DOWN, task, name=f"put down {item}")
+
+
+def go_to(ctx: Context, where: str) -> Behaviour:
+    """Drive to a place, room or receptacle."""
+    drive = Navigate(
+        "go",
+        ctx,
+        text=lambda: f"goto {where}",
+        spoken=lambda: f"I could not get to the {where}.",
+        state="NAVIGATING",
+        place=where,
+    )
+    return Sequence("go_to", drive, RememberPlace("there", ctx, where), name=f"go to {where}")
+
+
+def go_and_settle(ctx: Context, where: str) -> Behaviour:
+    return Sequence("go_and_settle", go_to(ctx, where), Settle("settle", ctx))
+
+
+def home_and_settle(ctx: Context) -> Behaviour:
+    return Sequence("back", drive_home(ctx), Settle("settle", ctx))
+
+
+class RememberPlace(Leaf):
+    """Remembers where the robot stands."""
+
+    def __init__(self, node_id: str, ctx: Context, where: str) -> None:
+        super().__init__(node_id, ctx)
+        self._where = where
+
+    def update(self) -> Status:
+        self.ctx.mission.at = self._where
+        return Status.SUCCESS

@@ -1,0 +1,51 @@
+"""Parts that both pipelines have: the way home, and the report of what failed."""
+
+from py_trees.behaviour import Behaviour
+
+from services.brain.mission.context import Context
+from services.brain.mission.mission import Failure
+from services.brain.steps.leaf import Call, Say
+from services.brain.steps.motion import Navigate
+from services.brain.tree.composites import Sequence
+
+
+def drive_home(ctx: Context) -> Behaviour:
+    return Navigate(
+        "return",
+        ctx,
+        text=lambda: "return_to_start",
+        spoken=lambda: "I could not come back" + (f" with the {ctx.gripper.holding}." if ctx.gripper.holding else "."),
+        state="RETURNING",
+        place=ctx.io.scene.home.name,
+    )
+
+
+def report_failure(ctx: Context) -> Behaviour:
+    """ERROR with a published and a spoken reason; never fails and never hangs. What a person called off is no error."""
+    return Sequence(
+        "report_failure",
+        Call("error", ctx, lambda: enter_error(ctx)),
+        Say("say_why", ctx, lambda: spoken_reason(ctx)),
+    )
+
+
+def enter_error(ctx: Context) -> None:
+    mission = ctx.mission
+    failure = mission.failure or Failure(ctx.state, "INTERNAL", spoken="Something went wrong.")
+    mission.failure = failure
+    reason = failure.reason
+    if ctx.gripper.holding or ctx.gripper.grasp_uncertain:
+        sure = "still" if ctx.gripper.holding else "perhaps"
+        reason += f"; {sure} holding the {ctx.gripper.holding or ctx.gripper.grasp_uncertain}"
+    if failure.stage == "CONFIRMING" and failure.code == "CANCELLED":
+        ctx.end_mission("cancelled", reason)
+    else:
+        ctx.end_mission("failed", reason)
+        ctx.show_state("ERROR", step=failure.stage, detail=reason)
+    ctx.listen_after = ctx.now + ctx.config.settle
+
+
+def spoken_reason(ctx: Context) -> str:
+    failure = ctx.mission.failure
+    text = failure.spoken if failure else ""
+    return f"{text} I am still holding the {ctx.gripper.holding}." if ctx.gripper.holding else text

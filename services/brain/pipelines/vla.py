@@ -1,0 +1,76 @@
+"""The VLA pipeline as a tree: listen, confirm, plan, then the plan's steps, each with its recoveries, then report."""
+
+from py_trees.behaviour import Behaviour
+
+from services.brain.mission.context import Context
+from services.brain.pipelines.plan_steps import RunPlan
+from services.brain.pipelines.shared import report_failure
+from services.brain.steps.ask import AskQuestion, HearConfirmation, question
+from services.brain.steps.leaf import Say, Settle
+from services.brain.steps.motion import Ready
+from services.brain.steps.plan import AwaitCommand, CompleteWithEvidence, PlanIsComplete, RequestPlan, describe_step
+from services.brain.tree.composites import Condition, Retry, Selector, Sequence
+
+LOOKS = 4
+"""Times that a plan may only go and look (chosen: as many rooms as the flat has)."""
+
+
+def vla_tree(ctx: Context) -> Behaviour:
+    """Each round is one command; ticked for ever."""
+    do = Sequence(
+        "do",
+        Condition("confirm", confirm(ctx), lambda: needs_confirmation(ctx)),
+        plan(ctx),
+        Condition("look_first", look_first(ctx), lambda: ctx.mission.again),
+        RunPlan("execute", ctx),
+        CompleteWithEvidence("complete", ctx, lambda: "; ".join(map(describe_step, ctx.mission.plan))),
+        Say("report_success", ctx, lambda: success(ctx)),
+        Settle("settle", ctx),
+    )
+    return Sequence(
+        "vla_pipeline",
+        Ready("ready", ctx),
+        AwaitCommand("listen", ctx),
+        Selector("mission", do, report_failure(ctx)),
+    )
+
+
+def success(ctx: Context) -> str:
+    """What may be claimed at the end: no more than was seen."""
+    items = " and the ".join(dict.fromkeys(ctx.mission.unchecked))
+    return f"I put down the {items}, but I could not check where it is." if items else "Done."
+
+
+def needs_confirmation(ctx: Context) -> bool:
+    """Nobody vouches for the words, and people want to be asked or the words are uncertain."""
+    mission, config = ctx.mission, ctx.config
+    return not mission.confirmed and (config.enable_confirmation or mission.confidence < config.confirm_below)
+
+
+def confirm(ctx: Context) -> Behaviour:
+    """Ask, hear yes, no or a correction; after no, ask for the command again."""
+    ask = Sequence(
+        "ask",
+        AskQuestion("question", ctx, lambda: question(ctx)),
+        HearConfirmation("hear_reply", ctx),
+    )
+    rounds = 2 * ctx.config.max_retry_attempts - 1
+    return Retry("until_confirmed", ctx, ask, rounds, again=lambda: not ctx.mission.failed_for_good)
+
+
+def plan(ctx: Context) -> Behaviour:
+    """Ask for a plan until one can be carried out."""
+    retries = ctx.config.max_retry_attempts - 1
+    request = RequestPlan("plan", ctx)
+    return Retry("plan_and_validate", ctx, request, retries, again=lambda: not ctx.mission.failed_for_good)
+
+
+def look_first(ctx: Context) -> Behaviour:
+    """A plan that only goes and looks is carried out, and the command planned anew with what was seen."""
+    looked = Sequence("look", RunPlan("go_and_look", ctx), plan(ctx), PlanIsComplete("seen_enough", ctx))
+    return Retry("look_and_plan", ctx, looked, LOOKS - 1, again=lambda: sees_more(ctx))
+
+
+def sees_more(ctx: Context) -> bool:
+    """The plan still only goes and looks, and nothing forbids to go on."""
+    return ctx.mission.again and not ctx.mission.failed_for_good

@@ -1,0 +1,25 @@
+"""Recovery: when several objects match, ask which of them was meant and look for that one."""
+
+from py_trees.behaviour import Behaviour
+
+from services.brain.mission.context import Context
+from services.brain.recoveries.recovery import Task
+from services.brain.steps.ask import AskQuestion, HearChoice, which
+from services.brain.steps.find import LocateObject
+from services.brain.tree.composites import Retry, Sequence
+
+
+def ask_which(ctx: Context, task: Task) -> Behaviour:
+    """Ask until the answer names one of them, at most `max_retry_attempts` times."""
+    ask = Sequence(
+        "ask_which",
+        AskQuestion("which", ctx, lambda: which(ctx)),
+        HearChoice("hear_choice", ctx, task.item),
+        LocateObject("look_for_the_one_meant", ctx, task.item),
+    )
+    return Retry("clarify", ctx, ask, ctx.config.max_retry_attempts - 1, again=lambda: not ctx.mission.failed_for_good)
+
+
+def several_match(ctx: Context) -> bool:
+    """Perception named more than one object that the words can mean."""
+    return len(ctx.mission.options) > 1

@@ -1,0 +1,51 @@
+"""Recovery: an object that is not in view is looked for by turning, then from other viewpoints, then reported."""
+
+from py_trees.behaviour import Behaviour
+
+from services.brain.mission.context import Context
+from services.brain.recoveries.clarify import ask_which, several_match
+from services.brain.recoveries.recovery import Recovery, Task, with_recoveries
+from services.brain.steps.find import LocateObject, MoveToViewpoint, ReportNotFound
+from services.brain.steps.leaf import Settle
+from services.brain.tree.composites import Retry, Selector, Sequence
+
+VIEWPOINTS = (2, 5, 9)
+"""Viewpoints of each search attempt (chosen: 2 turns on the spot show a camera of 66 degrees half a room; the flat has
+some 14 viewpoints that show anything new)."""
+SEVERAL = (Recovery("several_match", several_match, ask_which),)
+
+
+def search(ctx: Context, task: Task) -> Behaviour:
+    """`max_retry_attempts` attempts: the first turns on the spot, the others go to where more can be seen."""
+    attempts = [_attempt(ctx, task, number) for number in range(1, ctx.config.max_retry_attempts + 1)]
+    return Selector("search", *attempts)
+
+
+def _attempt(ctx: Context, task: Task, number: int) -> Behaviour:
+    label = f"attempt {number}"
+    looked = LocateObject("look", ctx, task.item)
+    look = Sequence(
+        "view",
+        MoveToViewpoint("viewpoint", ctx, number > 1, name=label),
+        Settle("settle", ctx),
+        with_recoveries("look_or_ask", ctx, looked, SEVERAL, task),
+        name=f"view of {label}",
+    )
+    retries = VIEWPOINTS[min(number, len(VIEWPOINTS)) - 1] - 1
+    return Retry("attempt", ctx, look, retries, again=lambda: more_to_see(ctx), name=label)
+
+
+def can_go_on(ctx: Context) -> bool:
+    """The failure at hand is none that forbids to look on."""
+    return not ctx.mission.failed_for_good
+
+
+def more_to_see(ctx: Context) -> bool:
+    """Looking on may help, and not everything has been looked at."""
+    failure = ctx.mission.failure
+    return can_go_on(ctx) and (failure is None or failure.code != "NOTHING_NEW")
+
+
+def report_not_found(ctx: Context, task: Task) -> Behaviour:
+    """The search has ended without result: the reason that counts, whatever failed last."""
+    return ReportNotFound("not_found", ctx, task.item, ctx.config.max_retry_attempts)

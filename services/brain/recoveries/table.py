@@ -1,0 +1,23 @@
+"""Which recoveries follow a failed step of a plan, in the order they are tried.
+
+To add one: write its two functions in a module beside this one, and a row here (docs/EXTENDING.md).
+"""
+
+from services.brain.recoveries.clarify import ask_which, several_match
+from services.brain.recoveries.put_right import needs_replacing, put_right
+from services.brain.recoveries.recovery import Recovery
+from services.brain.recoveries.regrasp import grab_failed, regrasp
+from services.brain.recoveries.search import can_go_on, report_not_found, search
+
+AFTER_LOOKING = (
+    Recovery("several_match", several_match, ask_which),
+    Recovery("search", can_go_on, search),
+    Recovery("not_found", can_go_on, report_not_found),
+)
+"""The object was not seen from where the robot stands, or several match."""
+
+AFTER_GRASPING = (Recovery("grab_failed", grab_failed, regrasp),)
+"""The hand does not hold the object."""
+
+AFTER_PUTTING_DOWN = (Recovery("lost_or_not_where_it_belongs", needs_replacing, put_right),)
+"""The object was lost on the way, or does not stand where it belongs."""

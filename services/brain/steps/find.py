@@ -1,0 +1,141 @@
+"""Leaves that look for an object and drive up to it."""
+
+from typing import Any
+
+import msgspec
+from py_trees.common import Status
+
+from common import messages as m
+from common import topics
+from common.geometry import Pose2
+from common.topics import Topic
+from services.brain import search
+from services.brain.floor import standing_pose
+from services.brain.mission.channel import Result
+from services.brain.mission.context import Context
+from services.brain.mission.mission import Failure
+from services.brain.steps.leaf import Leaf, SendGoal
+from services.brain.steps.motion import Navigate
+
+
+class LocateObject(SendGoal):
+    """Asks perception for an object from where the robot stands."""
+
+    def __init__(self, node_id: str, ctx: Context, item: str) -> None:
+        super().__init__(node_id, ctx, ctx.perception, state="GROUNDING", timeout=ctx.config.perception_timeout)
+        self._item = item
+
+    def goal(self, goal_id: str) -> tuple[Topic[Any], m.Message]:
+        return topics.OBJECT_QUERY, m.ObjectQuery(id=goal_id, query=self.ctx.mission.chosen.get(self._item, self._item))
+
+    def step(self) -> str:
+        return f"look for {self._item}"
+
+    def spoken(self) -> str:
+        return f"I could not find the {self._item}."
+
+    def succeed(self, result: Result) -> Status:
+        ctx, pose = self.ctx, result.message
+        assert isinstance(pose, m.ObjectPose)
+        ctx.mission.options = pose.candidates
+        if not pose.found:
+            self.feedback_message = pose.detail or "not seen"
+            code = "AMBIGUOUS" if pose.candidates else "NOT_FOUND"
+            return self.fail_with(Failure("GROUNDING", code, pose.detail, self.spoken()))
+        ctx.mission.found[self._item] = pose
+        x, y, z = pose.position
+        evidence = f"{pose.label} at ({x:.2f}, {y:.2f}, {z:.2f}), confidence {pose.confidence:.2f}"
+        ctx.note(f"found {self._item}", evidence, "saw")
+        return Status.SUCCESS
+
+
+class MoveToViewpoint(SendGoal):
+    """Brings the camera to the view that shows most that is new: by turning on the spot, or `elsewhere`."""
+
+    def __init__(self, node_id: str, ctx: Context, elsewhere: bool, name: str = "") -> None:
+        config = ctx.config
+        super().__init__(node_id, ctx, ctx.navigation, state="GROUNDING", timeout=config.navigation_timeout, name=name)
+        self._elsewhere = elsewhere
+        self._target: Pose2 | None = None
+
+    def initialise(self) -> None:
+        super().initialise()
+        ctx, mission, pose = self.ctx, self.ctx.mission, self.ctx.robot_pose
+        looked_from = [*mission.visited, pose]
+        if self._elsewhere:
+            self._target = search.elsewhere(ctx.io.scene, ctx.viewpoints, pose, looked_from)
+        else:
+            self._target = search.turn(ctx.viewpoints, pose, looked_from)
+        # A view that cannot be reached is not tried a second time either.
+        mission.visited = [*mission.visited, pose, *([self._target] if self._target else [])]
+        mission.at = ""
+
+    def update(self) -> Status:
+        if self._target is None:
+            self.feedback_message = "everything has been looked at"
+            self.ctx.record_failure(Failure("GROUNDING", "NOTHING_NEW", self.feedback_message, self.spoken()))
+            return Status.FAILURE
+        return super().update()
+
+    def goal(self, goal_id: str) -> tuple[Topic[Any], m.Message]:
+        assert self._target is not None
+        x, y, theta = self._target
+        return topics.NAV_GOAL, m.NavGoal(id=goal_id, x=x, y=y, theta=theta)
+
+    def step(self) -> str:
+        return f"search: {self.name}"
+
+    def spoken(self) -> str:
+        return "I could not get to where I wanted to look."
+
+
+class ReportNotFound(Leaf):
+    """Ends a search without result with the reason that counts, whatever failed last."""
+
+    def __init__(self, node_id: str, ctx: Context, item: str, tries: int) -> None:
+        super().__init__(node_id, ctx)
+        self._item, self._tries = item, tries
+
+    def update(self) -> Status:
+        detail = f"not seen in {self._tries} search attempts"
+        self.ctx.record_failure(Failure("GROUNDING", "NOT_FOUND", detail, f"I could not find the {self._item}."))
+        return Status.FAILURE
+
+
+class Approach(Navigate):
+    """`nav_goal`: a standing pose before an object that was found, and the object for who knows a better stance."""
+
+    def __init__(self, ctx: Context, item: str) -> None:
+        super().__init__(
+            "approach",
+            ctx,
+            text=lambda: f"find {label_of(ctx, item)}",
+            spoken=lambda: f"I could not reach the {item}.",
+            state="NAVIGATING",
+        )
+        self._item = item
+
+    def step(self) -> str:
+        return f"approach {label_of(self.ctx, self._item)}"
+
+    def goal(self, goal_id: str) -> tuple[Topic[Any], m.Message]:
+        ctx, ref = self.ctx, object_ref(self.ctx, self._item)
+        if ref is None or ref.frame != "map":
+            return super().goal(goal_id)  # nobody has said where in the map it is: navigation looks for it
+        x, y, theta = standing_pose(ctx.io.scene, (ref.position[0], ref.position[1]), ctx.robot_pose)
+        return topics.NAV_GOAL, m.NavGoal(id=goal_id, x=x, y=y, theta=theta, object=ref)
+
+
+def label_of(ctx: Context, item: str) -> str:
+    """The name of an object as perception has it."""
+    pose = ctx.mission.found.get(item)
+    return (pose.label if pose else "") or item
+
+
+def object_ref(ctx: Context, item: str) -> m.ObjectRef | None:
+    """What perception said about the item, for manipulation."""
+    pose = ctx.mission.found.get(item)
+    if pose is None:
+        return None
+    fields = {k: getattr(pose, k) for k in ("label", "position", "orientation", "size", "frame", "tilt")}
+    return msgspec.convert(fields, m.ObjectRef)

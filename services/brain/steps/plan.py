@@ -1,0 +1,116 @@
+"""Leaves of the VLA pipeline: await a command, ask for a plan and check it, complete on evidence."""
+
+from collections.abc import Callable
+from typing import Any
+
+from py_trees.common import Status
+
+from common import messages as m
+from common import topics
+from common.plan_rules import Objection, known_world, objection
+from common.topics import Topic
+from services.brain.mission.channel import Result
+from services.brain.mission.context import Context
+from services.brain.mission.mission import Failure
+from services.brain.steps.leaf import Leaf, SendGoal
+from services.brain.steps.motion import take_command
+
+
+class AwaitCommand(Leaf):
+    """Until somebody says something: WAITING, or LISTENING while speech takes in an utterance."""
+
+    def update(self) -> Status:
+        ctx = self.ctx
+        ctx.renew_mission()
+        if not ctx.mission.active and not take_command(ctx):
+            hearing = ctx.speaking is not None and ctx.speaking.state in ("listening", "transcribing")
+            ctx.show_state("LISTENING" if hearing else "WAITING")
+            return Status.RUNNING
+        return Status.SUCCESS
+
+
+class RequestPlan(SendGoal):
+    """Asks the planner and checks its plan against the known world; an impossible one is rejected with the reason."""
+
+    def __init__(self, node_id: str, ctx: Context) -> None:
+        super().__init__(node_id, ctx, ctx.planner, state="PLANNING", timeout=ctx.config.planning_timeout)
+
+    def goal(self, goal_id: str) -> tuple[Topic[Any], m.Message]:
+        ctx = self.ctx
+        mission = ctx.mission
+        request = m.PlanRequest(
+            id=goal_id,
+            command=mission.command,
+            world=self._world(),
+            rejected=mission.rejected,
+            done=mission.looked,
+            mission_id=mission.id,
+        )
+        return topics.PLAN_REQUEST, request
+
+    def step(self) -> str:
+        return f"plan: {self.ctx.mission.command}"
+
+    def spoken(self) -> str:
+        return "I could not make a plan for that."
+
+    def succeed(self, result: Result) -> Status:
+        ctx, plan = self.ctx, result.message
+        assert isinstance(plan, m.ActionPlan)
+        wrong = objection(plan.steps, self._world(), ctx.io.scene)
+        if wrong is None:
+            ctx.mission.plan, ctx.mission.again = plan.steps, plan.again
+            if plan.again:
+                ctx.mission.looked = [*ctx.mission.looked, *plan.steps]
+            for step in plan.steps:
+                if step.action == "find" and step.text:
+                    ctx.mission.chosen.setdefault(step.object, step.text)
+            ctx.note("plan accepted", "; ".join(map(describe_step, plan.steps)), "planned")
+            return Status.SUCCESS
+        if not plan.steps and plan.detail:
+            wrong = Objection(0, plan.detail)
+        ctx.mission.rejected = m.RejectedPlan(steps=plan.steps, reason=wrong.reason, step=wrong.step)
+        reason = str(wrong)
+        self.feedback_message = reason
+        code = "REJECTED" if plan.steps else "NO_PLAN"
+        return self.fail_with(Failure("PLANNING", code, reason, spoken=f"I cannot do that: {reason}."))
+
+    def _world(self) -> m.KnownWorld:
+        ctx = self.ctx
+        world = ctx.io.latest(topics.WORLD_OBJECTS)
+        return known_world(ctx.io.scene, [o.label for o in world.objects] if world else [], ctx.gripper.holding)
+
+
+class PlanIsComplete(Leaf):
+    """FAILURE as long as the latest plan only goes and looks."""
+
+    def update(self) -> Status:
+        return Status.FAILURE if self.ctx.mission.again else Status.SUCCESS
+
+
+def describe_step(step: m.PlanStep) -> str:
+    """A step as `brain/state` and the journal show it."""
+    return " ".join(part for part in (step.action, step.object, step.target, step.text) if part)
+
+
+class CompleteWithEvidence(Leaf):
+    """COMPLETED when every step of the plan left its mark on the hand."""
+
+    def __init__(self, node_id: str, ctx: Context, summary: Callable[[], str]) -> None:
+        super().__init__(node_id, ctx)
+        self._summary = summary
+
+    def update(self) -> Status:
+        ctx, mission = self.ctx, self.ctx.mission
+        steps = [s for s in mission.plan if not s.hand_alone]
+        lets_go = any(s.action in ("place", "release") for s in steps)
+        grasps = any(s.action == "grasp" for s in steps)
+        if (grasps and not mission.grabbed) or (lets_go and not mission.released):
+            ctx.record_failure(Failure("COMPLETED", "NO_EVIDENCE", spoken="I am not sure that it worked."))
+            return Status.FAILURE
+        detail = "; ".join(
+            [self._summary(), *mission.checked, *(f"{thing}: not checked" for thing in mission.unchecked)]
+        )
+        ctx.end_mission("delivered", detail)
+        ctx.show_state("COMPLETED", detail=detail)
+        return Status.SUCCESS
