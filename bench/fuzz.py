@@ -113,7 +113,7 @@ class Storm:
     def health(self) -> dict[str, m.Health]:
         """What every process says of itself."""
         found = {}
-        for payload in delivery.fetch(self.session, "service/*/health", timeout=5.0).values():
+        for payload in delivery.fetch(self.session, topics.HEALTH.key, timeout=5.0).values():
             record = codec.decode_as(m.Health, payload)
             found[record.name] = record
         return found

@@ -39,13 +39,13 @@ class Link:
 
     def alive(self) -> set[str]:
         """Names of the services whose liveliness token is seen."""
-        replies = self.session.liveliness().get("service/*/alive", timeout=2.0)
+        replies = self.session.liveliness().get(topics.ALIVE_KEY.format(name="*"), timeout=2.0)
         return {str(r.ok.key_expr).split("/")[1] for r in replies if r.ok is not None}
 
     def health(self) -> dict[str, m.Health]:
         """The last health record of every live service."""
         found = {}
-        for payload in delivery.fetch(self.session, "service/*/health").values():
+        for payload in delivery.fetch(self.session, topics.HEALTH.key).values():
             try:
                 record = codec.decode_as(m.Health, payload)
             except codec.DecodeError:

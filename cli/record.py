@@ -50,7 +50,7 @@ class Listener:
         marks = (topics.SIM_CLOCK, topics.LOCKSTEP_ACK)
         others = {t.key for t in (*READERS, *topics.SLOWER_CLOCKS.values(), *marks)}
         self._kept = [delivery.subscribe(session, t, self._receive) for t in topics.TABLE if t.key not in others]
-        self._kept += [delivery.listen(session, key, self._receive) for key in ("service/*/health", "log/*")]
+        self._kept += [delivery.listen(session, key, self._receive) for key in (row.key for row in topics.PER_SERVICE)]
         self._kept.append(delivery.watch_tokens(session, lambda name, alive: self.tokens.put((name, alive))))
         # What says that a step is over, last here and first in `close`: of a step so recorded, everything was heard.
         self._marks = [delivery.subscribe(session, t, self._receive) for t in marks]

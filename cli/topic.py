@@ -146,7 +146,7 @@ def pub(args: argparse.Namespace) -> int:
 
 def _note(link: Link, topic: "topics.Topic[Any]") -> None:
     """Let the message leave before the session closes: the answer comes back after it has gone out."""
-    delivery.fetch(link.session, "service/*/health", timeout=1.0)
+    delivery.fetch(link.session, topics.HEALTH.key, timeout=1.0)
 
 
 def compose(topic: "topics.Topic[Any]", words: list[str]) -> m.Message:

@@ -15,6 +15,7 @@ from cli.link import Link, use_keys
 from cli.services import SERVICES
 from cli.supervision import ProcessState, Supervision, run_dir
 from common import messages as m
+from common import topics
 from common.bus import codec
 from common.bus.session import BusError, open_session
 from common.process import StopSignal, die_with_parent
@@ -78,7 +79,7 @@ def watch(supervision: Supervision, stop: StopSignal) -> None:
     use_keys(info.keys or OFF)
     with open_session(info.connect, info.namespace, wait=stop.wait) as session:
         link, records = Link(session, info.connect), SimpleQueue[bytes]()
-        kept: Any = session.declare_subscriber("service/*/health", lambda s: records.put(s.payload.to_bytes()))
+        kept: Any = session.declare_subscriber(topics.HEALTH.key, lambda s: records.put(s.payload.to_bytes()))
         while not stop.wait(LOOK):
             now = monotonic()
             try:

@@ -53,16 +53,17 @@ def render() -> str:
         "",
         "Writer `*` is any client, `each` every service. *latched*: the last value also answers a `get` on the key.",
         "*all*: every message arrives, in order, also after a router outage; *latest*: only the newest counts.",
+        "*bulk*: a recording keeps it as it is, all else as JSON.",
         "",
-        "| key | payload | writers | readers | rate [Hz] | keep | latched | encoding | bare text fills |",
-        "|---|---|---|---|---|---|---|---|---|",
+        "| key | payload | writers | readers | rate [Hz] | keep | latched | bulk | encoding | bare text fills |",
+        "|---|---|---|---|---|---|---|---|---|---|",
     ]
     for t in (*topics.TABLE, *topics.PER_SERVICE):
         who = f"{', '.join(t.writers)} | {', '.join(t.readers)}"
         encoding = codec.encoding_of(t).partition("/")[2]
         lines.append(
             f"| `{t.key}` | {t.type.__name__} | {who} | {t.rate:g} | {t.keep} "
-            f"| {_yes(t.latched)} | {encoding} | {t.text} |".replace("| 0 |", "| event |")
+            f"| {_yes(t.latched)} | {_yes(t.bulk)} | {encoding} | {t.text} |".replace("| 0 |", "| event |")
         )
     lines += [
         "",

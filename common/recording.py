@@ -25,7 +25,7 @@ from common.schemas import schema_of
 PROFILE = "tidybot"
 MCAP0_MAGIC = b"\x89MCAP0\r\n"
 CHUNK = 512 * 1024
-BULK = {t.key for t in (topics.HEAD_RGBD, topics.WRIST_RGBD, topics.AUDIO_PCM, topics.AUDIO_OUT)}
+BULK = {t.key for t in topics.TABLE if t.bulk}
 RAW = "#undecodable"
 ALIVE_SCHEMA = b'{"title":"Alive","type":"object","properties":{"alive":{"type":"boolean"}}}'
 NANO = 1_000_000_000

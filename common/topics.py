@@ -22,8 +22,8 @@ class Topic(msgspec.Struct, Generic[M], frozen=True, kw_only=True):
     """One key expression.
 
     `writers` and `readers` are services, `ANYONE` or `EACH`. `rate` is the declared frequency [Hz], 0 for events.
-    `latched`: the last value also answers a zenoh `get`. `keep` "latest" means only the newest value matters (dropped
-    under load), "all" means reliable, in order, recovered after an outage. `text` names the field that bare text fills.
+    `latched`: the last value also answers a zenoh `get`. `bulk`: pictures and sound, which a recording keeps as they
+    are instead of as JSON. `keep` "latest" means only the newest value matters (dropped under load), "all" means reliable, in order, recovered after an outage. `text` names the field that bare text fills.
     `command`: values from before the reader's start are not acted on. `recover`: what a router outage swallowed is
     sent again. A `*` in the key of a row of `PER_SERVICE` stands for a service's name.
     """
@@ -36,6 +36,7 @@ class Topic(msgspec.Struct, Generic[M], frozen=True, kw_only=True):
     latched: bool = False
     keep: Keep = "all"
     binary: bool = False
+    bulk: bool = False
     text: str = ""
     command: bool = False
     recover: bool = True
@@ -70,15 +71,23 @@ def _event(key: str, type: type[M], *, by: str, to: str = "", text: str = "") ->
 
 
 def _stream(
-    key: str, type: type[M], *, by: str, to: str, rate: float, binary: bool = True, latched: bool = False
+    key: str,
+    type: type[M],
+    *,
+    by: str,
+    to: str,
+    rate: float,
+    binary: bool = True,
+    latched: bool = False,
+    bulk: bool = False,
 ) -> Topic[M]:
     """Samples of which only the newest counts."""
-    return _row(key, type, by, to, rate=rate, binary=binary, latched=latched, keep="latest")
+    return _row(key, type, by, to, rate=rate, binary=binary, latched=latched, bulk=bulk, keep="latest")
 
 
 def _sound(key: str, *, by: str, to: str) -> Topic[m.AudioChunk]:
     """Samples of which every one counts."""
-    return _row(key, m.AudioChunk, by, to, rate=10.0, binary=True)
+    return _row(key, m.AudioChunk, by, to, rate=10.0, binary=True, bulk=True)
 
 
 def _clock(key: str, rate: float) -> Topic[m.SimClockTick]:
@@ -176,8 +185,8 @@ CLOCKS = (SIM_CLOCK, *SLOWER_CLOCKS.values())
 LOCKSTEP_ACK = _row("sim/ack", m.LockstepAck, f"{EACH} {ANYONE}", "sim", binary=True, recover=False)
 
 CAMERA_REQUEST = _goal("camera/request", m.CameraRequest, by="perception dashboard *", to="camera", latched=False)
-HEAD_RGBD = _stream("camera/head/rgbd", m.Rgbd, by="camera", to="perception dashboard", rate=10.0)
-WRIST_RGBD = _stream("camera/wrist/rgbd", m.Rgbd, by="camera", to="perception dashboard", rate=10.0)
+HEAD_RGBD = _stream("camera/head/rgbd", m.Rgbd, by="camera", to="perception dashboard", rate=10.0, bulk=True)
+WRIST_RGBD = _stream("camera/wrist/rgbd", m.Rgbd, by="camera", to="perception dashboard", rate=10.0, bulk=True)
 
 PAGE_STATUS = _event("page/status", m.PageStatus, by="dashboard")
 

@@ -13,11 +13,12 @@ import pytest
 import yaml
 
 from cli.link import Link
+from cli.services import NAMES
 from common.bus.session import open_session
 from tests.compose.mission import carry_out
 from tests.support import ROOT, eventually, free_port
 
-NODES = ("sim", "camera", "navigation", "manipulation", "speech", "planner", "perception", "brain", "dashboard")
+NODES = tuple(name for name in NAMES if name != "router")
 SHELL = {
     "TIDYBOT_SPEED": "8",
     "TIDYBOT_LOCKSTEP": "true",
