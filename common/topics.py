@@ -23,9 +23,10 @@ class Topic(msgspec.Struct, Generic[M], frozen=True, kw_only=True):
 
     `writers` and `readers` are services, `ANYONE` or `EACH`. `rate` is the declared frequency [Hz], 0 for events.
     `latched`: the last value also answers a zenoh `get`. `bulk`: pictures and sound, which a recording keeps as they
-    are instead of as JSON. `keep` "latest" means only the newest value matters (dropped under load), "all" means reliable, in order, recovered after an outage. `text` names the field that bare text fills.
-    `command`: values from before the reader's start are not acted on. `recover`: what a router outage swallowed is
-    sent again. A `*` in the key of a row of `PER_SERVICE` stands for a service's name.
+    are instead of as JSON. `keep` "latest" means only the newest value matters (dropped under load), "all" means
+    reliable, in order, recovered after an outage. `text` names the field that bare text fills. `command`: values from
+    before the reader's start are not acted on. `recover`: what a router outage swallowed is sent again. A `*` in the
+    key of a row of `PER_SERVICE` stands for a service's name.
     """
 
     key: str
