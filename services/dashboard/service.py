@@ -21,6 +21,7 @@ from services.dashboard.panels.status_bar import status_bar
 from services.dashboard.panels.tracking_error import FRESH, off_path
 from services.dashboard.panels.widgets import Panels
 from services.dashboard.scene.drawing import Drawing, draw
+from services.dashboard.scene.follow_camera import FollowCamera
 from services.dashboard.scene.layers import Layers
 from services.dashboard.scene.picking import pick
 from services.dashboard.scene.view import View
@@ -51,6 +52,7 @@ class DashboardService:
         except PageError as error:
             raise StartError(str(error)) from None
         self.view, self._layers = View(self.web.viser), Layers(self.web.viser)
+        self._camera = FollowCamera(self.web.viser, io.scene)
         self.panels = Panels(self.web.viser, config.camera_width, config.camera_height)
         self._cameras = Cameras(config, io, self.panels)
         self._transcript, self._health, self._reasons = Transcript(), HealthRecords(), TreeReasons()
@@ -175,7 +177,8 @@ class DashboardService:
         elif joints is not None:
             self._base = (q.get("base_x", 0.0), q.get("base_y", 0.0), q.get("base_yaw", 0.0))
         view.pose(q, self._base, q.get("gripper", 0.0))
-        view.follow(self._base, panels.follow)
+        if pose is not None or joints is not None:
+            self._camera.step(self._base, panels.follow)
         for scan in io.take_all(topics.SCAN):
             view.scan(scan, self._base, panels.scan)
         for path in io.take_all(topics.NAV_PATH):

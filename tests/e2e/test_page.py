@@ -217,6 +217,29 @@ def test_the_space_bar_stops_from_inside_the_view(visitor: Visitor, link: Link) 
     eventually(lambda: sim_state(link) == "running", "the brake is released")
 
 
+def test_a_telephone_has_stop_question_and_talk_button_in_sight(visitor: Visitor) -> None:
+    page = visitor.page
+    page.set_viewport_size({"width": 390, "height": 780})
+    try:
+        page.evaluate("""() => {
+            document.getElementById('ask').hidden = false;
+            document.getElementById('question').textContent = 'Did you say bring me the red mug from the kitchen?';
+        }""")
+        boxes = {
+            name: page.locator(name).bounding_box() for name in ("#stop", "#talk", "#question", "#yes", "#no", "#text")
+        }
+        for name, box in boxes.items():
+            assert box and box["x"] >= 0 and box["x"] + box["width"] <= 390 and box["y"] + box["height"] <= 300, (
+                name,
+                box,
+            )
+        assert min(boxes[n]["height"] for n in ("#stop", "#talk", "#yes", "#no")) >= 40, "wide enough for a finger"
+        assert page.evaluate("document.documentElement.scrollWidth") <= 390
+        visitor.shot("telephone")
+    finally:
+        page.set_viewport_size({"width": 760, "height": 480})
+
+
 @pytest.mark.slow
 def test_a_command_by_microphone(visitor: Visitor, link: Link) -> None:
     page = visitor.page

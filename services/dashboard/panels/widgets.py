@@ -18,7 +18,7 @@ class Panels:
 
     def __init__(self, server: viser.ViserServer, width: int, height: int) -> None:
         gui = server.gui
-        gui.configure_theme(show_logo=False, show_share_button=False, control_width="large")
+        gui.configure_theme(show_logo=False, show_share_button=False, control_width="medium")
         gui.main_panel.dock_right()
         gui.set_panel_label("tidybot")
         self.texts: dict[str, str] = {}
@@ -45,7 +45,7 @@ class Panels:
             # Not in a tab of their own: one more would put the row of tabs into two lines.
             self._plots_below = gui.add_folder("plots")
         with tabs.add_tab("View"):
-            self._follow = gui.add_checkbox("follow the robot", initial_value=False)
+            self._follow = gui.add_checkbox("follow the robot", initial_value=True)
             self._scan = gui.add_checkbox("lidar", initial_value=True)
             self._costmap = gui.add_checkbox("costmap", initial_value=True)
             self._grasps = gui.add_checkbox("grasp candidates", initial_value=True)

@@ -12,7 +12,6 @@ from services.dashboard.scene.drawing import Drawing, Mesh, posture, quaternion
 from services.dashboard.scene.shapes import fallback
 
 Array = NDArray[np.float64]
-EYE, LOOK = (-3.4, -4.2, 4.6), (0.8, -0.2, 0.3)
 GHOST = 0.3
 STILL = 1e-4
 SCAN_COLOUR, PATH_COLOUR = (255, 60, 60), (40, 160, 255)
@@ -31,13 +30,11 @@ class View:
         self._values: dict[str, list[float]] = {}
         self._scan: Any = None
         self._path: Any = None
-        self._followed: dict[int, Pose2] = {}
         self._paths: dict[str, str] = {}
         self.drawing = Drawing(None, None)
         self._scene.set_up_direction("+z")
         # Shadows cost more than all else on machines that draw without a graphics card.
         self._scene.configure_default_lights(cast_shadow=False)
-        server.initial_camera.position, server.initial_camera.look_at = EYE, LOOK
 
     # --- the model
     def show(self, found: Drawing) -> None:
@@ -118,21 +115,6 @@ class View:
             if np.abs(turn - before[1]).max() > STILL:
                 self.nodes[path].wxyz = quaternion(turn)
             self._at[path] = place, turn
-
-    def follow(self, base: Pose2, wanted: bool) -> None:
-        """Move every visitor's eye along with the robot."""
-        clients = self._server.get_clients() if wanted else {}
-        for number, client in clients.items():
-            before = self._followed.get(number)
-            if before is None:
-                self._followed[number] = base
-                continue
-            step = np.array([base[0] - before[0], base[1] - before[1], 0.0])
-            if np.abs(step).max() > 0.01 and client.camera.update_timestamp:
-                client.camera.position = client.camera.position + step
-                self._followed[number] = base
-        for number in self._followed.keys() - clients.keys():
-            del self._followed[number]
 
     # --- what it senses and believes
     def scan(self, scan: m.LaserScan, base: Pose2, visible: bool) -> None:
