@@ -141,7 +141,9 @@ def fit(kind: Kind, size: Vec3, points: Array, floor: float, camera: Array, ends
         turned = [(yaw, abs(math.cos(yaw - ahead)) * size[0] + abs(math.sin(yaw - ahead)) * size[1]) for yaw in yaws]
         starts = sorted((np.array([*middle + away * 0.4 * deep, yaw]) for yaw, deep in turned), key=badness)
     else:
-        starts = [middle + away * 0.25 * size[0]]
+        # Of a vessel whose front is hidden the far wall is seen from inside: its axis is nearer than the points.
+        nearer = (0.25, -0.35) if kind.wall else (0.25,)
+        starts = [middle + away * share * size[0] for share in nearer]
     best, cost = starts[0], math.inf
     for tried, begin in enumerate(starts):
         # A box may settle on the wrong side: more of its starts are followed until one explains the points.

@@ -249,3 +249,16 @@ def test_colours_have_their_everyday_names_in_bright_and_dim_light() -> None:
 def test_the_typical_colour_ignores_a_small_part_of_another() -> None:
     rgb = np.array([[30, 130, 50]] * 80 + [[230, 230, 230]] * 20, np.uint8)
     assert colour.name(colour.typical(rgb)) == "green"
+
+
+@pytest.mark.parametrize(("kind", "size"), [("mug", (0.074, 0.074, 0.095)), ("bowl", (0.14, 0.14, 0.06))])
+@pytest.mark.parametrize("lowest", [0.4, 0.7])
+def test_a_vessel_whose_front_is_hidden_is_not_taken_to_begin_at_its_far_wall(
+    kind: str, size: tuple[float, float, float], lowest: float
+) -> None:
+    rng, row, camera = np.random.default_rng(3), KINDS[kind], np.array([0.3, -0.8, 1.3])
+    angle, height = rng.uniform(0.35, math.pi - 0.35, 500), rng.uniform(lowest, 1.0, 500) * size[2]
+    inside = size[0] / 2 - row.wall - (size[2] - height) * math.tan(row.lean)
+    points = np.stack([0.3 + inside * np.cos(angle), -0.2 + inside * np.sin(angle), 0.7 + height], axis=1)
+    fit = shapes.fit(row, size, points + rng.normal(0, 0.0015, points.shape), 0.7, camera)
+    assert math.hypot(fit.x - 0.3, fit.y + 0.2) < 0.01
