@@ -105,7 +105,7 @@ def _lower(robot: Robot, plan: PlacePlan, held: Held) -> Steps[None]:
     except Failure as failure:
         if failure.code != TOUCHED:
             raise
-        above = feel.height(robot.joints) - feel.height(plan.lower[-1])
+        above = float(feel.position(robot.joints)[2] - feel.position(plan.lower[-1])[2])
         if above > STANDS:
             raise Failure("BLOCKED", f"the {held.label} met something {1000 * above:.0f} mm too high") from None
         robot.io.log.info("set down", object=held.label, felt=failure.detail, above_mm=round(1000 * above, 1))

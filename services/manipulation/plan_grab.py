@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from services.manipulation.arm_model import Array, Obstacle
+from services.manipulation.contacts import new_sides_first
 from services.manipulation.grasp import Grasp, Target
 from services.manipulation.held import Held, grasped
 from services.manipulation.ik import seeds
@@ -35,8 +36,12 @@ def plan_grab(
     lift: float,
     reach: float,
     skip: frozenset[str],
+    touched: list[Array],
 ) -> GrabPlan:
     """The first candidate grasp that can be reached and carried away.
+
+    `skip` names grasps that are not tried; `touched` are rotations (3, 3) of the hand in the base frame with which the
+    open fingers touched the object: grasps from other sides come first.
 
     Raises:
         PlanError: UNREACHABLE.
@@ -44,7 +49,8 @@ def plan_grab(
     distance = float(np.hypot(target.position[0] - planner.arm.forward, target.position[1]))
     if distance > reach:
         raise PlanError("UNREACHABLE", f"{target.label} is {distance:.2f} m from the arm, reach is {reach:.2f} m")
-    options = [g for g in planner.candidates(target) if g.name not in skip]
+    left = [g for g in planner.candidates(target) if g.name not in skip]
+    options = [left[n] for n in new_sides_first((g.pose.rotation for g in left), touched)]
     if not options:
         raise PlanError("UNREACHABLE", f"no grasp left to try on {target.label}")
     failures: list[str] = []

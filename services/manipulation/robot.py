@@ -11,6 +11,7 @@ from common.bus.port import Io
 from common.geometry import Pose2
 from services.manipulation.arm_model import Array
 from services.manipulation.config import ManipulationConfig
+from services.manipulation.contacts import ContactLog
 from services.manipulation.held import Held
 from services.manipulation.object_source import ObjectSource
 from services.manipulation.plan import PlanError, Planner
@@ -45,6 +46,7 @@ class Robot:
         self.base: Pose2 = (0.0, 0.0, 0.0)
         self.phase = ""
         self.held: Held | None = None
+        self.contacts = ContactLog()
         self.planner: Planner | None = None
         self._command: Array | None = None
         self._late = 0

@@ -1,22 +1,25 @@
 """Grabbing: reach, aim, grasp, retract; another candidate after a miss."""
 
-import math
+import numpy as np
 
 from common import messages as m
 from common import topics
+from common.geometry import quat_matrix, yaw_quat
 from common.kinds import kind_of
 from common.messages import WorldObject
 from services.manipulation.arm_model import Array, Obstacle
+from services.manipulation.clearance import PAD
+from services.manipulation.contacts import Contact, came_around
 from services.manipulation.grasp import shown
 from services.manipulation.held import Held
-from services.manipulation.plan_grab import GrabPlan, plan_grab, refine
+from services.manipulation.plan_grab import GrabPlan, plan_grab
 from services.manipulation.robot import Failure, Robot, Steps, go_home, planner_of
-from services.manipulation.surroundings import obstacles, target_of, turned
+from services.manipulation.sighting import MISTAKEN, aimed, sighted
+from services.manipulation.surroundings import obstacles, target_of
 from services.manipulation.touch import TOO_HEAVY, TOUCHED, load_limit
 from services.manipulation.trajectory import back_along
-from services.manipulation.verify import WIDTH_ERROR, does_not_fit, held_badly, holds, judge
+from services.manipulation.verify import WIDTH_ERROR, held_badly, holds, judge
 
-MISTAKEN = "MISTAKEN"
 BAD_HOLD = "BAD_HOLD"
 TOO_WIDE = "TOO_WIDE"
 CLOSING_EFFORT = 8.0
@@ -35,17 +38,16 @@ def grab(robot: Robot, goal: m.ManipulationGoal, wanted: str) -> Steps[str]:
     since = robot.now - config.fresh
     tried: set[str] = set()
     widths: list[float] = []
-    codes: list[str] = []
     last = Failure("UNREACHABLE", "no grasp tried")
     for _ in range(config.max_candidates):
-        found = yield from _sighted(robot, goal, wanted, since)
+        found = yield from sighted(robot, goal, wanted, since)
         robot.phase = "reach"
         target = target_of(found, robot.base, robot.io.scene)
         around = obstacles(robot.io.scene, robot.base, robot.source.objects(), without=found.label)
         try:
             plan = yield from robot.work(
                 plan_grab, planner, target, around, robot.joints.copy(), config.approach_distance, config.lift_height,
-                config.reach, frozenset(tried),
+                config.reach, frozenset(tried), _touched(robot, found.label),
             )  # fmt: skip
         except Failure as failure:
             raise (failure if not tried else last) from None
@@ -64,7 +66,6 @@ def grab(robot: Robot, goal: m.ManipulationGoal, wanted: str) -> Steps[str]:
             if failure.code not in ("EMPTY_GRASP", "SLIPPED", "BLOCKED", BAD_HOLD, TOUCHED, TOO_HEAVY):
                 raise
             last = failure
-            codes.append(failure.code)
             robot.io.log.warning("grasp failed", code=failure.code, detail=failure.detail, grasp=plan.grasp.name)
             if failure.code == "BLOCKED" and robot.held is not None and holds(robot.grip, config):
                 return (yield from _carry_again(robot, robot.held, around))
@@ -74,60 +75,14 @@ def grab(robot: Robot, goal: m.ManipulationGoal, wanted: str) -> Steps[str]:
             yield from go_home(robot)
             if failure.code == TOO_HEAVY:
                 raise
-            if does_not_fit(codes):
-                detail = f"the open fingers met the {found.label} {len(codes)} times; last: {failure.detail}"
+            if failure.code != TOUCHED:
+                robot.contacts.clear()
+            elif robot.contacts.too_wide():
+                detail = f"the open fingers met the {found.label} from two sides; last: {failure.detail}"
                 raise Failure(TOO_WIDE, detail) from None
             # What was seen while the hand was at work may have been half hidden by it.
             since = robot.now
     raise last
-
-
-def _sighted(robot: Robot, goal: m.ManipulationGoal, wanted: str, since: float) -> Steps[WorldObject]:
-    """The object to grab as it was seen after `since`; an older sighting will do when no newer one comes in time."""
-    robot.phase = "look"
-    end = robot.now + (robot.config.look_patience if robot.io.peer("perception") else 0.0)
-    while True:
-        found = robot.source.resolve(goal, wanted, robot.base, since)
-        if found is not None and (found.seen_at >= since or robot.now >= end):
-            return found
-        if robot.now >= end:
-            what = wanted or (goal.object.label if goal.object else "object")
-            raise Failure("NO_OBJECT", f"no {what} is known here")
-        yield
-
-
-def _aimed(robot: Robot, plan: GrabPlan, goal: m.ManipulationGoal, found: WorldObject) -> Steps[GrabPlan]:
-    """The plan corrected by what the wrist camera sees from in front of the object, or as it was.
-
-    Raises:
-        Failure: MISTAKEN, it was planned for a place or a side that is not the object's.
-    """
-    config, since = robot.config, robot.now
-    if not robot.io.peer("perception") or found.tilt:
-        # From so near the wrist camera sees no end of what lies.
-        return plan
-    robot.phase = "aim"
-    seen: WorldObject | None = None
-    while seen is None and robot.now - since < config.aim_patience:
-        yield
-        closer = robot.source.resolve(goal, found.label, robot.base, since)
-        seen = closer if closer is not None and closer.label == found.label and closer.seen_at >= since else None
-    if seen is None:
-        return plan
-    was, new = (target_of(o, robot.base, robot.io.scene) for o in (found, seen))
-    shift = new.position[0] - was.position[0], new.position[1] - was.position[1]
-    off, turn = math.hypot(*shift), turned(was, new) if kind_of(found.kind).shape == "box" else 0.0
-    if off > config.aim_most or turn > config.aim_turn:
-        raise Failure(MISTAKEN, f"{found.label} is {1000 * off:.0f} mm and {math.degrees(turn):.0f} deg from there")
-    if off < config.aim_least:
-        return plan
-    robot.io.log.info("aim corrected", object=found.label, by_mm=round(1000 * off, 1))
-    try:
-        return (yield from robot.work(
-            refine, planner_of(robot), plan, shift, config.approach_distance, config.lift_height
-        ))  # fmt: skip
-    except Failure:
-        return plan
 
 
 def _execute_grab(
@@ -137,7 +92,7 @@ def _execute_grab(
     config = robot.config
     yield from robot.move_gripper(0.0)
     yield from robot.follow(plan.reach, config.joint_speed)
-    plan = yield from _aimed(robot, plan, goal, found)
+    plan = yield from aimed(robot, plan, goal, found)
     free = robot.torques.copy()
     try:
         yield from robot.follow(plan.insert, config.joint_speed * INSERTING, robot.guard(free))
@@ -145,7 +100,9 @@ def _execute_grab(
         yield from robot.move_gripper(1.0, CLOSING_EFFORT)
         yield from robot.move_gripper(1.0)
         _judge(robot, plan, None)
-    except Failure:
+    except Failure as failure:
+        if failure.code == TOUCHED:
+            _note_contact(robot, plan, found)
         yield from _withdraw(robot, plan)
         raise
     closed = robot.grip
@@ -166,8 +123,26 @@ def _execute_grab(
         if failure.code in ("SLIPPED", BAD_HOLD, TOO_HEAVY) and holds(robot.grip, config):
             yield from _set_back(robot, plan, way, free)
         raise
+    robot.contacts.clear()
     robot.source.remember(plan.held.label, None, "", robot.now)
     return f"{plan.held.label} held: width {robot.grip.width * 1000:.1f} mm, force {robot.grip.force:.0f} N"
+
+
+def _note_contact(robot: Robot, plan: GrabPlan, found: WorldObject) -> None:
+    """Remember that the open fingers touched the object, or something before it, on their way around it."""
+    hand, wanted = planner_of(robot).reaction.position(robot.joints), plan.grasp.pose
+    around = came_around(hand, wanted.position, plan.held.size, PAD)
+    turn = quat_matrix(yaw_quat(robot.base[2]))
+    robot.contacts.add(found.label, Contact(turn @ wanted.rotation, found.seen_at, around))
+    robot.io.log.info(
+        "contact", object=found.label, around=around, mm=round(1000 * float(np.linalg.norm(hand - wanted.position)))
+    )
+
+
+def _touched(robot: Robot, label: str) -> list[Array]:
+    """Rotations (3, 3) of the hand at contacts with the object, in the base frame."""
+    turn = quat_matrix(yaw_quat(robot.base[2]))
+    return [turn.T @ rotation for rotation in robot.contacts.rotations(label)]
 
 
 def _withdraw(robot: Robot, plan: GrabPlan) -> Steps[None]:

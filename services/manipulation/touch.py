@@ -37,10 +37,11 @@ class Reaction:
         found: Array = wrench[:3]
         return found
 
-    def height(self, joints: Array) -> float:
-        """Of the pinch point in the base frame [m]."""
+    def position(self, joints: Array) -> Array:
+        """The pinch point (3,) in the base frame [m]."""
         self._place(joints)
-        return float(self._data.site_xpos[self._pinch, 2])
+        found: Array = self._data.site_xpos[self._pinch].copy()
+        return found
 
     def _place(self, joints: Array) -> None:
         self._data.qpos[self._qpos] = joints

@@ -1,17 +1,13 @@
 """What the gripper's width and force say: nothing between the fingers, something held, something lost."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
 from common.kinds import kind_of
 from services.manipulation.config import ManipulationConfig
-from services.manipulation.touch import TOUCHED
 
 HOLDING_FORCE = 3.0
 TOO_WIDE = 0.006
-MEETINGS = 2
-"""Grasps whose open fingers met the object, from which on it does not fit between them: one may be aimed badly."""
 WIDTH_ERROR = 0.0008
 """Most [m] that the width after the lift may be off what the object measures there: beyond it the hold is bad (measured
 over reach-grasp-lift trials)."""
@@ -56,8 +52,3 @@ def held_badly(grip: Grip, nominal: float, kind: str) -> bool:
     """The lifted object is not held around its body: its width differs from `nominal` [m] there, as on a handle."""
     over = grip.width - nominal
     return nominal > 0 and not -WIDTH_ERROR <= over <= WIDTH_ERROR + kind_of(kind).facets
-
-
-def does_not_fit(codes: Sequence[str]) -> bool:
-    """The object is too wide for the hand, by how the grasps tried so far have ended: none got around it."""
-    return len(codes) >= MEETINGS and all(code == TOUCHED for code in codes)

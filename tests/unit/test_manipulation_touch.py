@@ -9,7 +9,6 @@ from services.manipulation.arm_model import ArmModel
 from services.manipulation.robot import Failure
 from services.manipulation.touch import MET, TOO_HEAVY, TOUCHED, Guard, Reaction, load_limit
 from services.manipulation.trajectory import back_along
-from services.manipulation.verify import does_not_fit
 from services.sim.robot import robot_mjcf
 from tests.unit.test_manipulation_service import CONFIG, Arm
 
@@ -59,19 +58,6 @@ def test_the_way_back_never_goes_deeper_first() -> None:
     for now, first in ((0.4, 0.3), (0.27, 0.2), (0.33, 0.2), (0.02, 0.0), (9.0, 0.3)):
         back = back_along(path, np.full(7, now))
         assert back[0][0] == pytest.approx(first) and back[-1][0] == 0.0
-
-
-@pytest.mark.parametrize(
-    ("codes", "wide"),
-    [
-        ([], False),
-        ([TOUCHED], False),
-        ([TOUCHED, TOUCHED], True),
-        ([TOUCHED, "BAD_HOLD", TOUCHED], False),
-    ],
-)
-def test_what_the_open_fingers_meet_again_and_again_is_too_wide(codes: list[str], wide: bool) -> None:
-    assert does_not_fit(codes) is wide
 
 
 def test_a_guarded_motion_lets_go_of_its_set_point() -> None:
