@@ -71,7 +71,11 @@ def _bottle(spec: ObjectSpec) -> str:
     )
 
 
-_BODIES = {"mug": _mug, "bowl": _bowl, "bottle": _bottle}
+_BODIES = {
+    "mug": _mug,
+    "bowl": _bowl,
+    "bottle": _bottle,
+}
 """Bodies of several geoms; every other kind is the solid of its row in `common.kinds`."""
 
 
