@@ -41,7 +41,7 @@ class BrainService:
         self._shown: Signature | None = None
         self._ticks = 0
         self._sim_stopped = False
-        self._resumption = self._left_behind()
+        self._resumption = self._unfinished()
         io.serve(topics.BRAIN_MISSIONS, self._answer_missions)
 
     def step(self, now: float) -> None:
@@ -54,17 +54,17 @@ class BrainService:
         With its token there it pauses or waits for a participant; with nobody there this process is cut off itself.
         """
         ctx, peer = self.context, self._io.peer
-        if peer("sim") is None and any(peer(channel.peer) is not None for channel in ctx.channels):
+        if peer("sim") is None and any(peer(channel.peer) is not None for channel in ctx.peers.all):
             ctx.heartbeat.stalled = seconds
             self._step(ctx.now)
 
     def _step(self, now: float) -> None:
         ctx = self.context
         ctx.now = now
-        for channel in ctx.channels:
+        for channel in ctx.peers.all:
             channel.watch(now)
         ctx.gripper.update(gripper_holds(self._io.latest(topics.JOINT_STATES)), now)
-        self._receive_answers()
+        self._receive_statuses()
         self._receive_stops()
         self._receive_commands()
         self._watch_heartbeat()
@@ -74,10 +74,10 @@ class BrainService:
             self._resumption = None
         if self._resumption is None:
             self.tree.tick_once()
-            for channel in ctx.channels:
+            for channel in ctx.peers.all:
                 if channel.resuming:  # no leaf has gone on with it
                     channel.abandon()
-            ctx.at = tip(self.tree)
+            ctx.checkpoints.at = tip(self.tree)
             ctx.save()
         self._ticks += 1
         seen = signature(self.tree)
@@ -91,7 +91,7 @@ class BrainService:
             self.context.save(closed=True)
         self._journal.close()
 
-    def _left_behind(self) -> Resumption | None:
+    def _unfinished(self) -> Resumption | None:
         """The mission that the process before this one did not end; what it held in its hand in any case."""
         left = self._journal.checkpoint()
         if left is None:
@@ -116,8 +116,8 @@ class BrainService:
     def _suspend(self) -> None:
         """Stop base and arm as far as anybody hears it, and take the mission up again when joint states return."""
         ctx = self.context
-        left = ctx.bookmark()
-        self._io.log.error("joint_states lost: the mission is suspended", state=ctx.state, step=ctx.shown.step)
+        left = ctx.frozen_checkpoint()
+        self._io.log.error("joint_states lost: the mission is suspended", state=ctx.state, step=ctx.display.shown.step)
         ctx.stop_all()
         self.tree.stop(Status.INVALID)
         self._resumption = Resumption(
@@ -125,34 +125,34 @@ class BrainService:
         )
 
     # --- answers of the peers
-    def _receive_answers(self) -> None:
-        ctx, io = self.context, self._io
+    def _receive_statuses(self) -> None:
+        io, peers = self._io, self.context.peers
         for status in io.take_all(topics.NAVIGATION_STATUS):
-            self._offer(ctx.navigation, status, _NAVIGATION.get(status.status), status.code, status.detail)
+            self._handle_status(peers.navigation, status, _NAVIGATION.get(status.status), status.code, status.detail)
         for feedback in io.take_all(topics.NAVIGATION_FEEDBACK):
-            if ctx.navigation.goal_id and feedback.goal_id == ctx.navigation.goal_id:
-                self._offer(ctx.navigation, feedback, _NAVIGATION.get(feedback.status), feedback.code, "")
+            if peers.navigation.goal_id and feedback.goal_id == peers.navigation.goal_id:
+                self._handle_status(peers.navigation, feedback, _NAVIGATION.get(feedback.status), feedback.code, "")
         for done in io.take_all(topics.MANIPULATION_STATUS):
             detail = done.detail or done.phase
-            self._offer(ctx.manipulation, done, _MANIPULATION.get(done.status), done.code, detail)
+            self._handle_status(peers.manipulation, done, _MANIPULATION.get(done.status), done.code, detail)
         for heard in io.take_all(topics.SPEECH_RESULT):
             text = heard.text.strip()
             if text:
-                word: GoalStatus = "failed" if text == "ERROR" else "ok"
-                self._offer(ctx.speech, heard, word, heard.code, heard.detail)
+                status_: GoalStatus = "failed" if text == "ERROR" else "ok"
+                self._handle_status(peers.speech, heard, status_, heard.code, heard.detail)
         for speech in io.take_all(topics.SPEECH_STATUS):
-            ctx.speaking = speech
+            self.context.voice.speaking = speech
         for plan in io.take_all(topics.ACTION_PLAN):
-            ctx.planner.handle_status(plan.request_id, 0, Result("ok", message=plan))
+            peers.planner.handle_status(plan.request_id, 0, Result("ok", message=plan))
         for pose in io.take_all(topics.OBJECT_POSE):
-            ctx.perception.handle_status(pose.query_id, 0, Result("ok", message=pose))
+            peers.perception.handle_status(pose.query_id, 0, Result("ok", message=pose))
         io.take_all(topics.WORLD_OBJECTS)
 
     @staticmethod
-    def _offer(channel: Channel, message: m.Message, word: GoalStatus | None, code: str, detail: str) -> None:
-        if word is not None:  # `idle` of a service that has just started is no answer
+    def _handle_status(channel: Channel, message: m.Message, status: GoalStatus | None, code: str, detail: str) -> None:
+        if status is not None:  # `idle` of a service that has just started is no answer
             goal_id, attempt = getattr(message, "goal_id", ""), getattr(message, "attempt", 0)
-            channel.handle_status(goal_id, attempt, Result(word, code, detail, message))
+            channel.handle_status(goal_id, attempt, Result(status, code, detail, message))
 
     # --- people
     def _receive_stops(self) -> None:
@@ -174,7 +174,7 @@ class BrainService:
 
     def _stop(self, reason: str) -> None:
         """Interrupt, and keep what is needed to go on when somebody asks for it."""
-        left = self.context.bookmark() if self.context.mission.active else None
+        left = self.context.frozen_checkpoint() if self.context.mission.active else None
         self._interrupt(reason)
         if left is not None:
             self.context.suspended = suspend(left, self.context.mission, self.context.gripper)
@@ -186,8 +186,7 @@ class BrainService:
         if left is None or ctx.mission.active or self._resumption is not None:
             self._io.log.info("no mission to go on with")
             return
-        if ctx.speech.outstanding:
-            ctx.send_only(ctx.speech, topics.SPEECH_GOAL, "cancel")
+        ctx.cancel_speech()
         self.tree.stop(Status.INVALID)
         if left.run and left.run == ctx.config.run:
             left.date = unix_time()  # as long as the robot is up it may stand as long as people like
@@ -202,13 +201,13 @@ class BrainService:
                 self._io.count_drop(topics.VOICE_COMMAND.key, "no words")
             elif ctx.mission.active and asked:
                 self._interrupt(f"asked to {words}")
-                ctx.command = command if asked == "come_back" else None
+                ctx.voice.command = command if asked == "come_back" else None
             elif asked in ("stop", "cancel"):
-                ctx.command = None
+                ctx.voice.command = None
             elif ctx.state == "CONFIRMING":
-                ctx.reply = m.SpeechResult(text=command.text, confidence=command.confidence)
+                ctx.voice.reply = m.SpeechResult(text=command.text, confidence=command.confidence)
             elif ctx.state in ("WAITING", "LISTENING", "COMPLETED", "ERROR"):
-                ctx.command = command
+                ctx.voice.command = command
             else:
                 self._io.log.warning("command ignored", text=command.text, state=ctx.state)
 
@@ -222,11 +221,10 @@ class BrainService:
             held = ctx.gripper.holding or ctx.gripper.grasp_uncertain
             ctx.end_mission("cancelled", f"{reason}; holding the {held}" if held else reason)
         else:
-            if ctx.speech.outstanding:
-                ctx.send_only(ctx.speech, topics.SPEECH_GOAL, "cancel")
+            ctx.cancel_speech()
             self.tree.stop(Status.INVALID)
-        ctx.listen_after = ctx.now + ctx.config.settle
-        ctx.command = None
+        ctx.voice.listen_after = ctx.now + ctx.config.settle
+        ctx.voice.command = None
 
     # --- queries
     def _answer_missions(self, payload: bytes) -> bytes:

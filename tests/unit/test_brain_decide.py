@@ -1,6 +1,7 @@
 """Where a mission goes on after a restart of the brain: the decision alone, case by case."""
 
 import math
+from typing import Any
 
 import pytest
 
@@ -8,7 +9,7 @@ from common.messages import ObjectPose, PlanStep
 from services.brain.config import BrainConfig
 from services.brain.journal.records import Checkpoint, PathNode, Pose
 from services.brain.mission.channel import SentGoal
-from services.brain.mission.mission import Failure, GripperState, Mission
+from services.brain.mission.mission import Delivery, Failure, GripperState, Mission, Planning, Search, Task
 from services.brain.resume.policy import (
     CLOCK_SLACK,
     MAX_RESUMES,
@@ -48,9 +49,13 @@ def in_fetch(*below: str) -> list[PathNode]:
     return [PathNode("root"), PathNode("as_asked"), PathNode("do"), *(PathNode(name, 1, 2) for name in below)]
 
 
+def mission_of(steps: list[PlanStep] | None = None, **parts: Any) -> Mission:
+    return Mission(id="m", planning=Planning(PLAN if steps is None else steps), **parts)
+
+
 def left(path: list[PathNode], plan: bool = True, **more: object) -> Checkpoint:
     fields = {"t": 50.0, "base": HOME, "gripper": GripperState(), **more}
-    mission = fields.pop("mission", Mission(id="m", plan=PLAN if plan else [], label="the mug", kind="fetch"))
+    mission = fields.pop("mission", mission_of(PLAN if plan else [], task=Task("fetch", label="the mug")))
     return Checkpoint(mission=mission, path=path, **fields)  # type: ignore[arg-type]
 
 
@@ -109,9 +114,9 @@ def test_a_full_hand_before_a_grasp_is_that_grasp_done() -> None:
     )
     assert decide(left(in_plan(4)), seen(True)) == Decision([*in_plan(4)[:3], PathNode("step", 6)], "holding", CAN)
     assert decide(left(in_plan(0, inside="go_and_look")), seen(True)).change == "holding"
-    grounded = Mission(id="m", plan=PLAN, found={MUG: ObjectPose(query_id="q", found=True, label="mug 2")})
+    grounded = mission_of(search=Search({MUG: ObjectPose(query_id="q", found=True, label="mug 2")}))
     assert decide(left(in_plan(0), mission=grounded), seen(True)).label == "mug 2"
-    nameless = Mission(id="m", plan=PLAN, found={MUG: ObjectPose(query_id="q", found=True)})
+    nameless = mission_of(search=Search({MUG: ObjectPose(query_id="q", found=True)}))
     assert decide(left(in_plan(0), mission=nameless), seen(True)).label == MUG
     assert decide(left(in_fetch("go"), plan=False), seen(True)) == Decision(in_fetch(), "holding", "the mug")
 
@@ -123,8 +128,8 @@ def test_a_full_hand_before_a_grasp_is_that_grasp_done() -> None:
         left(in_plan(0, "grab")), left(in_fetch("approach_and_grab", "grab")),
         left(in_plan(0), gripper=GripperState(grasp_uncertain=MUG)),
         left(in_plan(0), gripper=GripperState(holding=MUG)), left(in_plan(0), sent=[sent("manipulation")]),
-        left(in_plan(0), mission=Mission(id="m", plan=PLAN, released=True)),
-        left(in_fetch("go"), mission=Mission(id="m", kind="return", label=MUG)),
+        left(in_plan(0), mission=mission_of(delivery=Delivery(released=True))),
+        left(in_fetch("go"), mission=mission_of([], task=Task("return", label=MUG))),
         left([PathNode("root"), PathNode("listen")], plan=False), left([], plan=False),
     ],
 )  # fmt: skip
@@ -133,7 +138,7 @@ def test_a_full_hand_at_any_other_time_changes_nothing(checkpoint: Checkpoint) -
 
 
 def test_a_grasp_as_the_last_step_is_not_skipped() -> None:
-    mission = Mission(id="m", plan=PLAN[:2])
+    mission = mission_of(PLAN[:2])
     assert decide(left(in_plan(0), mission=mission), seen(True)).change == ""
 
 
@@ -145,7 +150,7 @@ def test_a_world_begun_anew_is_looked_at_anew() -> None:
     assert decide(left(in_plan(5, "go")), seen(t=early)).change == "", "clocks differ a little"
     assert decide(left(in_fetch("go")), seen(t=0.0)) == Decision(in_fetch(), "new world")
     assert decide(left(in_plan(5), gripper=GripperState(holding=CAN)), seen(t=0.0)).change == ""
-    done = Mission(id="m", plan=PLAN, released=True)
+    done = mission_of(delivery=Delivery(released=True))
     assert decide(left(in_plan(5), mission=done), seen(t=0.0)).change == ""
 
 
@@ -202,7 +207,7 @@ def believing() -> tuple[Mission, GripperState]:
         MUG: ObjectPose(query_id="a", found=True, label="mug 2"),
         CAN: ObjectPose(query_id="b", found=True, label=CAN),
     }
-    mission = Mission(id="m", grabbed=True, found=poses, visited=[HOME], at="desk")
+    mission = mission_of([], delivery=Delivery(grabbed=True), search=Search(poses, [HOME]), at="desk")
     return mission, GripperState(holding=MUG, put_down={CAN: 3.0})
 
 
@@ -210,21 +215,21 @@ def test_what_was_lost_is_nowhere_known() -> None:
     for label in (MUG, "mug 2"):
         mission, hand = believing()
         apply(Decision([], "lost", label), mission, hand)
-        assert (hand.holding, mission.grabbed, mission.at) == ("", False, "")
-        assert list(mission.found) == [CAN] and mission.visited == [HOME] and hand.put_down == {CAN: 3.0}
+        assert (hand.holding, mission.delivery.grabbed, mission.at) == ("", False, "")
+        assert list(mission.search.found) == [CAN] and mission.search.visited == [HOME] and hand.put_down == {CAN: 3.0}
 
 
 def test_what_is_held_was_grabbed() -> None:
     mission, hand = Mission(id="m", at="desk"), GripperState(grasp_uncertain=CAN)
     apply(Decision([], "holding", MUG), mission, hand)
-    assert (hand.holding, hand.grasp_uncertain, mission.grabbed, mission.at) == (MUG, "", True, "")
+    assert (hand.holding, hand.grasp_uncertain, mission.delivery.grabbed, mission.at) == (MUG, "", True, "")
 
 
 def test_of_a_new_world_nothing_is_known() -> None:
     mission, hand = believing()
     apply(Decision([], "new world"), mission, hand)
-    assert (mission.found, mission.visited, hand.put_down, mission.at) == ({}, [], {}, "")
-    assert (hand.holding, mission.grabbed) == (MUG, True)
+    assert (mission.search.found, mission.search.visited, hand.put_down, mission.at) == ({}, [], {}, "")
+    assert (hand.holding, mission.delivery.grabbed) == (MUG, True)
 
 
 def test_a_moved_base_is_nowhere_and_no_change_is_none() -> None:
@@ -232,4 +237,4 @@ def test_a_moved_base_is_nowhere_and_no_change_is_none() -> None:
     apply(Decision([], ""), mission, hand)
     assert (mission, hand) == believing()
     apply(Decision([], "moved"), mission, hand)
-    assert mission.at == "" and hand == believing()[1] and len(mission.found) == 2
+    assert mission.at == "" and hand == believing()[1] and len(mission.search.found) == 2

@@ -121,7 +121,7 @@ def test_no_false_success_and_no_standstill(pipeline: Any) -> None:
             start = bench.now
             while bench.now - start < 400.0:
                 peers.step()
-                shown = bench.brain.context.shown
+                shown = bench.brain.context.display.shown
                 if shown.last is not None and shown.last.t > start:
                     failed += shown.last.outcome == "failed"
                     break

@@ -18,7 +18,7 @@ from services.brain.config import BrainConfig
 from services.brain.journal.records import ENTRIES_KEPT, Checkpoint, Entry, Journal, MemoryJournal, PathNode
 from services.brain.journal.sqlite import MIGRATIONS, SqliteJournal, open_journal
 from services.brain.mission.channel import SentGoal
-from services.brain.mission.mission import GripperState, Mission
+from services.brain.mission.mission import GripperState, Mission, Task
 from tests.support import ROOT
 
 SCENE = load_scene("apartment")
@@ -38,7 +38,7 @@ def opened(path: Path) -> SqliteJournal:
 
 
 def told(journal: Journal, name: str, notes: int = 3) -> Mission:
-    mission = Mission(id=name, command="bring me the red mug", started=10.0, item="red mug")
+    mission = Mission(id=name, command="bring me the red mug", started=10.0, task=Task(item="red mug"))
     journal.begin(mission)
     for n in range(notes):
         journal.note(name, Entry(10.0 + n, "NAVIGATING", f"cause {n}", "evidence", "saw"))

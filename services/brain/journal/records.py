@@ -6,7 +6,7 @@ from typing import Literal, Protocol
 
 import msgspec
 
-from common.messages import BrainStateName
+from common.messages import BrainStateName, MissionOutcome
 from common.time.clock import unix_time
 from services.brain.mission.channel import SentGoal
 from services.brain.mission.mission import GripperState, Mission, Outcome
@@ -189,3 +189,20 @@ class MemoryJournal:
 
     def close(self) -> None:
         """Nothing to let go of."""
+
+
+def last_outcome(journal: Journal) -> MissionOutcome | None:
+    """How the newest ended mission ended, also one of an earlier process."""
+    last = journal.last()
+    if last is None or last.outcome is None:
+        return None
+    return MissionOutcome(
+        id=last.id,
+        command=last.command,
+        outcome=last.outcome,
+        reason=last.reason,
+        t=last.ended,
+        stage=last.stage,
+        code=last.code,
+        spoken=last.spoken,
+    )

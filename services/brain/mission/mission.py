@@ -51,39 +51,71 @@ class Failure(msgspec.Struct, frozen=True):
         return " ".join(part for part in (self.spoken, f"({self.stage}: {why})" if why else "") if part)
 
 
-class Mission(msgspec.Struct):
-    """One command from hearing to outcome. Goal ids are `<id>.<n>`.
+class Heard(msgspec.Struct):
+    """How sure the command is: `confidence` 0 to 1 of speech, `confirmed` by a person, `repeat`: to be said again."""
 
-    `put_down`: the object released last. `checked`: what a look after a release showed, in words; `unchecked`: objects
-    put down where nobody could look.
-    """
-
-    id: str
-    command: str = ""
     confidence: float = 1.0
     confirmed: bool = False
-    started: float = 0.0
+    repeat: bool = False
+
+
+class Task(msgspec.Struct):
+    """What the fetch pipeline understood: `kind` of intent, `item` as spoken, `label` as the scene has it."""
+
+    kind: str = ""
     item: str = ""
     label: str = ""
-    kind: str = ""
-    goals: int = 0
-    grabbed: bool = False
-    released: bool = False
-    failure: Failure | None = None
-    outcome: Outcome | None = None
-    plan: list[m.PlanStep] = []
+
+
+class Planning(msgspec.Struct):
+    """The accepted plan, the last rejected one, and the steps that went and looked before (`look_again`: they do)."""
+
+    steps: list[m.PlanStep] = []
     rejected: m.RejectedPlan | None = None
     looked: list[m.PlanStep] = []
-    again: bool = False
-    repeat: bool = False
+    look_again: bool = False
+
+
+class Search(msgspec.Struct):
+    """What looking has shown: `found` objects and the `chosen` one of several `options`, by the plan's name for them.
+
+    `visited`: poses (x, y, theta) [m, rad] in map that the robot has looked from.
+    """
+
     found: dict[str, m.ObjectPose] = {}
-    at: str = ""
     visited: list[tuple[float, float, float]] = []
     options: list[str] = []
     chosen: dict[str, str] = {}
+
+
+class Delivery(msgspec.Struct):
+    """What the hand has done. `put_down`: the object released last.
+
+    `checked`: what a look after a release showed, in words; `unchecked`: objects put down where nobody could look.
+    """
+
+    grabbed: bool = False
+    released: bool = False
     put_down: str = ""
     checked: list[str] = []
     unchecked: list[str] = []
+
+
+class Mission(msgspec.Struct):
+    """One command from hearing to outcome. Goal ids are `<id>.<n>`; `at`: the place or object the robot stands at."""
+
+    id: str
+    command: str = ""
+    started: float = 0.0
+    goals: int = 0
+    at: str = ""
+    failure: Failure | None = None
+    outcome: Outcome | None = None
+    heard: Heard = msgspec.field(default_factory=Heard)
+    task: Task = msgspec.field(default_factory=Task)
+    planning: Planning = msgspec.field(default_factory=Planning)
+    search: Search = msgspec.field(default_factory=Search)
+    delivery: Delivery = msgspec.field(default_factory=Delivery)
 
     def next_goal(self) -> str:
         self.goals += 1

@@ -18,7 +18,7 @@ from services.brain.tree.composites import Condition, Retry, Selector, Sequence
 
 def fetch_tree(ctx: Context) -> Behaviour:
     """The system flow; ticked for ever, each round is one listening and at most one mission."""
-    wait = Wait("wait", ctx, ends=lambda: ctx.now >= ctx.listen_after)
+    wait = Wait("wait", ctx, ends=lambda: ctx.now >= ctx.voice.listen_after)
     return Sequence(
         "fetch_pipeline",
         Ready("ready", ctx),
@@ -44,10 +44,10 @@ def carry_out(ctx: Context) -> Behaviour:
     return Selector(
         "as_asked",
         Condition(
-            "nothing_to_stop", Call("end", ctx, lambda: end_unneeded(ctx)), lambda: ctx.mission.kind == "stop", no
+            "nothing_to_stop", Call("end", ctx, lambda: end_unneeded(ctx)), lambda: ctx.mission.task.kind == "stop", no
         ),
-        Condition("return_only", coming, lambda: ctx.mission.kind == "return", no),
-        Condition("fetch_it", fetching, lambda: ctx.mission.kind == "fetch", no),
+        Condition("return_only", coming, lambda: ctx.mission.task.kind == "return", no),
+        Condition("fetch_it", fetching, lambda: ctx.mission.task.kind == "fetch", no),
     )
 
 
@@ -56,8 +56,8 @@ def deliver(ctx: Context) -> Behaviour:
     look = Sequence("look", Settle("settle", ctx), verify_placement(ctx, ctx.io.scene.delivery))
     return Sequence(
         "deliver",
-        Condition("get_it", acquire(ctx), lambda: not ctx.gripper.holding and not ctx.mission.released),
-        Condition("deliver_it", bring_home(ctx), lambda: not ctx.mission.released),
+        Condition("get_it", acquire(ctx), lambda: not ctx.gripper.holding and not ctx.mission.delivery.released),
+        Condition("deliver_it", bring_home(ctx), lambda: not ctx.mission.delivery.released),
         Condition("check_it", look, lambda: ctx.io.peer("perception") is not None),
     )
 
@@ -67,11 +67,11 @@ def acquire(ctx: Context) -> Behaviour:
     find = Navigate(
         "reach_it",
         ctx,
-        text=lambda: f"find {ctx.mission.item}",
-        spoken=lambda: f"I could not reach the {ctx.mission.item}.",
+        text=lambda: f"find {ctx.mission.task.item}",
+        spoken=lambda: f"I could not reach the {ctx.mission.task.item}.",
         state="NAVIGATING",
     )
-    grab = Grab("grab", ctx, lambda: ctx.mission.label, lambda: object_ref(ctx))
+    grab = Grab("grab", ctx, lambda: ctx.mission.task.label, lambda: object_ref(ctx))
     once = Sequence("approach_and_grab", find, Settle("settle", ctx), grab, Settle("settle", ctx))
     return Retry("acquire", ctx, once, ctx.config.grab_retries, again=lambda: grab_failed(ctx))
 
@@ -97,10 +97,10 @@ class ParseCommand(Leaf):
         if intent.kind == "none":
             ctx.record_failure(Failure("UNDERSTANDING", "NOT_UNDERSTOOD", spoken=intent.reason))
             return Status.FAILURE
-        ctx.mission.kind = "stop" if intent.kind == "cancel" else intent.kind
-        ctx.mission.item, ctx.mission.label = intent.item, intent.label
+        ctx.mission.task.kind = "stop" if intent.kind == "cancel" else intent.kind
+        ctx.mission.task.item, ctx.mission.task.label = intent.item, intent.label
         if intent.label and ctx.gripper.holding == intent.label:
-            ctx.mission.grabbed = True
+            ctx.mission.delivery.grabbed = True
             ctx.note("already in the hand", intent.label)
         self.feedback_message = f"{intent.kind} {intent.item}".strip()
         return Status.SUCCESS
@@ -110,14 +110,13 @@ class Complete(Leaf):
     """COMPLETED, only on the evidence that the kind of mission needs."""
 
     def update(self) -> Status:
-        ctx, mission = self.ctx, self.ctx.mission
-        if mission.kind == "fetch" and not (mission.grabbed and mission.released and not ctx.gripper.holding):
-            ctx.record_failure(
-                Failure("COMPLETED", "NO_EVIDENCE", spoken=f"I am not sure that I brought the {mission.item}.")
-            )
+        ctx, task, done = self.ctx, self.ctx.mission.task, self.ctx.mission.delivery
+        if task.kind == "fetch" and not (done.grabbed and done.released and not ctx.gripper.holding):
+            unsure = f"I am not sure that I brought the {task.item}."
+            ctx.record_failure(Failure("COMPLETED", "NO_EVIDENCE", spoken=unsure))
             return Status.FAILURE
-        ctx.end_mission("delivered", "" if mission.kind == "fetch" else "back at the start")
-        ctx.show_state("COMPLETED", detail=f"{mission.item} delivered" if mission.item else "back at the start")
+        ctx.end_mission("delivered", "" if task.kind == "fetch" else "back at the start")
+        ctx.show_state("COMPLETED", detail=f"{task.item} delivered" if task.item else "back at the start")
         return Status.SUCCESS
 
 
@@ -126,16 +125,16 @@ def end_unneeded(ctx: Context) -> None:
 
 
 def holds_another(ctx: Context) -> bool:
-    return bool(ctx.gripper.holding) and ctx.gripper.holding != ctx.mission.label
+    return bool(ctx.gripper.holding) and ctx.gripper.holding != ctx.mission.task.label
 
 
 def forget_release(ctx: Context) -> None:
-    ctx.mission.released = False
+    ctx.mission.delivery.released = False
 
 
 def object_ref(ctx: Context) -> m.ObjectRef | None:
     """Which object to grab, as last reported; none if the robot itself has moved it since."""
-    known = ctx.known_object(ctx.mission.label)
+    known = ctx.known_object(ctx.mission.task.label)
     if known is None or known.seen_at <= ctx.gripper.put_down.get(known.label, -1.0):
         return None
     return m.ObjectRef(

@@ -35,7 +35,7 @@ class RunPlan(Sequence):
         """Build the children; a restarted brain does so to find its place among them."""
         self.remove_all_children()
         carried, at_home = "", False
-        for step in self._ctx.mission.plan:
+        for step in self._ctx.mission.planning.steps:
             carried = step.object if step.action == "grasp" else carried
             if step.action in ("return", "navigate", "grasp", "place"):
                 at_home = step.action == "return"
@@ -86,7 +86,7 @@ def navigate(ctx: Context, where: str, name: str) -> Sequence:
     """Drive to a place, or up to an object that is looked for first."""
     if is_destination(where, ctx.io.scene):
         return Sequence(PLAN_STEP, go_to(ctx, where), Settle("settle", ctx), name=name)
-    unseen = Condition("find_it", find(ctx, where), lambda: where not in ctx.mission.found)
+    unseen = Condition("find_it", find(ctx, where), lambda: where not in ctx.mission.search.found)
     return Sequence(PLAN_STEP, unseen, approach(ctx, where), name=name)
 
 
@@ -124,7 +124,7 @@ def release(ctx: Context, carried: str, at_home: bool, name: str) -> Sequence:
         down = put_down(ctx, carried, lambda: home_and_settle(ctx), "release", target)
         return Sequence(PLAN_STEP, down, name=name)
     look = verify_placement(ctx, target)
-    known = Condition("look", look, lambda: ctx.io.scene.object(ctx.mission.put_down) is not None)
+    known = Condition("look", look, lambda: ctx.io.scene.object(ctx.mission.delivery.put_down) is not None)
     return Sequence(PLAN_STEP, set_down_or_open(ctx), Settle("settle", ctx), known, name=name)
 
 

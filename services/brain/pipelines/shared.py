@@ -42,7 +42,7 @@ def enter_error(ctx: Context) -> None:
     else:
         ctx.end_mission("failed", reason)
         ctx.show_state("ERROR", step=failure.stage, detail=reason)
-    ctx.listen_after = ctx.now + ctx.config.settle
+    ctx.voice.listen_after = ctx.now + ctx.config.settle
 
 
 def spoken_reason(ctx: Context) -> str:

@@ -21,9 +21,9 @@ def vla_tree(ctx: Context) -> Behaviour:
         "do",
         Condition("confirm", confirm(ctx), lambda: needs_confirmation(ctx)),
         plan(ctx),
-        Condition("look_first", look_first(ctx), lambda: ctx.mission.again),
+        Condition("look_first", look_first(ctx), lambda: ctx.mission.planning.look_again),
         RunPlan("execute", ctx),
-        CompleteWithEvidence("complete", ctx, lambda: "; ".join(map(describe_step, ctx.mission.plan))),
+        CompleteWithEvidence("complete", ctx, lambda: "; ".join(map(describe_step, ctx.mission.planning.steps))),
         Say("report_success", ctx, lambda: success(ctx)),
         Settle("settle", ctx),
     )
@@ -37,14 +37,16 @@ def vla_tree(ctx: Context) -> Behaviour:
 
 def success(ctx: Context) -> str:
     """What may be claimed at the end: no more than was seen."""
-    items = " and the ".join(dict.fromkeys(ctx.mission.unchecked))
+    items = " and the ".join(dict.fromkeys(ctx.mission.delivery.unchecked))
     return f"I put down the {items}, but I could not check where it is." if items else "Done."
 
 
 def needs_confirmation(ctx: Context) -> bool:
     """Nobody vouches for the words, and people want to be asked or the words are uncertain."""
     mission, config = ctx.mission, ctx.config
-    return not mission.confirmed and (config.enable_confirmation or mission.confidence < config.confirm_below)
+    return not mission.heard.confirmed and (
+        config.enable_confirmation or mission.heard.confidence < config.confirm_below
+    )
 
 
 def confirm(ctx: Context) -> Behaviour:
@@ -73,4 +75,4 @@ def look_first(ctx: Context) -> Behaviour:
 
 def sees_more(ctx: Context) -> bool:
     """The plan still only goes and looks, and nothing forbids to go on."""
-    return ctx.mission.again and not ctx.mission.failed_for_good
+    return ctx.mission.planning.look_again and not ctx.mission.failed_for_good

@@ -22,4 +22,4 @@ def ask_which(ctx: Context, task: Task) -> Behaviour:
 
 def several_match(ctx: Context) -> bool:
     """Perception named more than one object that the words can mean."""
-    return len(ctx.mission.options) > 1
+    return len(ctx.mission.search.options) > 1

@@ -62,11 +62,11 @@ def decide(left: Checkpoint, seen: Seen) -> Decision:
         return Decision(_back(path, mission, "lost"), "lost", hand.holding)
     # Whoever was closing the hand finds it full and folds the arm; only then may the base move.
     closing = bool(path) and path[-1].node == GRAB
-    if seen.fingers and not (hand.holding or hand.grasp_uncertain or arm_busy or mission.released or closing):
+    if seen.fingers and not (hand.holding or hand.grasp_uncertain or arm_busy or mission.delivery.released or closing):
         label, behind = _about_to_grasp(path, mission)
         if label:
             return Decision(behind, "holding", label)
-    if fresh and not hand.holding and not mission.released:
+    if fresh and not hand.holding and not mission.delivery.released:
         return Decision(_back(path, mission, "new world"), "new world")
     if "navigation" not in under_way and not seen.arm_answered and _moved(left.base, seen.base):
         return Decision(_back(path, mission, "moved"), "moved")
@@ -76,13 +76,13 @@ def decide(left: Checkpoint, seen: Seen) -> Decision:
 def apply(decision: Decision, mission: Mission, hand: GripperState) -> None:
     """Correct what is believed by what was seen."""
     if decision.change == "lost":
-        hand.holding, mission.grabbed = "", False
-        mission.found = {k: p for k, p in mission.found.items() if decision.label not in (k, p.label)}
+        hand.holding, mission.delivery.grabbed = "", False
+        mission.search.found = {k: p for k, p in mission.search.found.items() if decision.label not in (k, p.label)}
     elif decision.change == "holding":
         hand.mark_grasped(decision.label)
-        mission.grabbed = True
+        mission.delivery.grabbed = True
     elif decision.change == "new world":
-        mission.found, mission.visited, hand.put_down = {}, [], {}
+        mission.search.found, mission.search.visited, hand.put_down = {}, [], {}
     if decision.change:
         mission.at = ""
 
@@ -108,7 +108,7 @@ def _back(path: list[PathNode], mission: Mission, change: Change) -> list[PathNo
     """The place from which the rest of the mission can be done again: in a plan the step that needs it."""
     plan = _plan(path)
     if plan is not None:
-        return [*path[: plan + 1], PathNode(PLAN_STEP, earlier(mission.plan, path[plan + 1].ordinal, change))]
+        return [*path[: plan + 1], PathNode(PLAN_STEP, earlier(mission.planning.steps, path[plan + 1].ordinal, change))]
     return path[: _at(path, DO) + 1] if _at(path, AS_ASKED) >= 0 else path
 
 
@@ -131,16 +131,16 @@ def _about_to_grasp(path: list[PathNode], mission: Mission) -> tuple[str, list[P
     """The object that the mission was about to take, and the place behind the taking; "" if there is none."""
     plan = _plan(path)
     if plan is not None:
-        for j in range(path[plan + 1].ordinal, len(mission.plan) - 1):
-            step = mission.plan[j]
+        for j in range(path[plan + 1].ordinal, len(mission.planning.steps) - 1):
+            step = mission.planning.steps[j]
             if step.hand_alone:
                 continue
             if step.action == "grasp":
-                pose = mission.found.get(step.object)
+                pose = mission.search.found.get(step.object)
                 return (pose.label if pose else "") or step.object, [*path[: plan + 1], PathNode(PLAN_STEP, j + 1)]
             if step.action in ("place", "release"):
                 break
         return "", path
-    if _at(path, AS_ASKED) >= 0 and mission.kind == "fetch":
-        return mission.label, _back(path, mission, "holding")
+    if _at(path, AS_ASKED) >= 0 and mission.task.kind == "fetch":
+        return mission.task.label, _back(path, mission, "holding")
     return "", path

@@ -42,7 +42,7 @@ class Resumption:
         ctx.mission.goals += SPARE_GOALS
         ctx.journal.resume(ctx.mission)
         for sent in left.sent:
-            for channel in ctx.channels:
+            for channel in ctx.peers.all:
                 if channel.peer == sent.peer:
                     channel.resume_goal(sent)
         self._refused = refusal(left, ctx.config, unix_time())
@@ -98,7 +98,7 @@ class Resumption:
     def _go_on(self) -> None:
         ctx, left = self._ctx, self.left
         here = ctx.io.latest(topics.POSE)
-        arm = ctx.manipulation
+        arm = ctx.peers.manipulation
         seen = Seen(
             fingers=next(iter(self._readings)) if len(self._readings) == 1 else None,
             base=(here.x, here.y, here.theta) if here else None,
@@ -110,7 +110,7 @@ class Resumption:
         if decision.change:
             self._call_off()
         try:
-            ctx.placed(start_at(self._root, decision.path), left.resumes + 1)
+            ctx.checkpoints.resumed_at(start_at(self._root, decision.path), left.resumes + 1)
         except PathNotFound as missing:
             self._end(Failure("RESTART", "CANNOT_RESUME", str(missing)))
             return
@@ -122,10 +122,13 @@ class Resumption:
     def _call_off(self) -> None:
         """What was under way does not fit the world any more."""
         ctx = self._ctx
-        for channel, topic in ((ctx.navigation, topics.NAVIGATION_GOAL), (ctx.manipulation, topics.MANIPULATION_GOAL)):
+        for channel, topic in (
+            (ctx.peers.navigation, topics.NAVIGATION_GOAL),
+            (ctx.peers.manipulation, topics.MANIPULATION_GOAL),
+        ):
             if channel.outstanding:
                 ctx.send_only(channel, topic, "stop")
-        for channel in ctx.channels:
+        for channel in ctx.peers.all:
             channel.abandon()
 
     def _end(self, failure: Failure) -> None:

@@ -25,9 +25,9 @@ class AskQuestion(Say):
 
     def initialise(self) -> None:
         ctx = self.ctx
-        self._asking = ctx.now >= ctx.listen_after
+        self._asking = ctx.now >= ctx.voice.listen_after
         if self._asking:
-            ctx.reply = None
+            ctx.voice.reply = None
             self._ask()
         else:
             ctx.show_state("CONFIRMING", self._asked(), "pause after a speech failure")
@@ -39,12 +39,12 @@ class AskQuestion(Say):
 
     def update(self) -> Status:
         ctx = self.ctx
-        if ctx.reply is not None:
+        if ctx.voice.reply is not None:
             if self._asking:
-                ctx.send_only(ctx.speech, topics.SPEECH_GOAL, "cancel")
+                ctx.send_only(ctx.peers.speech, topics.SPEECH_GOAL, "cancel")
             return Status.SUCCESS
         if not self._asking:
-            if ctx.now < ctx.listen_after:
+            if ctx.now < ctx.voice.listen_after:
                 return Status.RUNNING
             self._ask()
         return super().update()
@@ -54,10 +54,10 @@ class HearAnswer(SendGoal):
     """Listens for the answer, unless it came while the question was being said."""
 
     def __init__(self, node_id: str, ctx: Context) -> None:
-        super().__init__(node_id, ctx, ctx.speech, state="CONFIRMING", timeout=ctx.config.answer_timeout)
+        super().__init__(node_id, ctx, ctx.peers.speech, state="CONFIRMING", timeout=ctx.config.answer_timeout)
 
     def update(self) -> Status:
-        given, self.ctx.reply = self.ctx.reply, None
+        given = self.ctx.voice.take_reply()
         if given is None:
             return super().update()
         if self.channel.outstanding:
@@ -70,7 +70,7 @@ class HearAnswer(SendGoal):
 
     def fail_with(self, failure: Failure) -> Status:
         """Speech has failed: the same pause before it listens again as in the fetch pipeline."""
-        self.ctx.listen_after = self.ctx.now + self.ctx.config.speech_retry_delay
+        self.ctx.voice.listen_after = self.ctx.now + self.ctx.config.speech_retry_delay
         return super().fail_with(failure)
 
     def refuse(self, code: str, detail: str, spoken: str) -> Status:
@@ -96,13 +96,13 @@ class HearConfirmation(HearAnswer):
         self.feedback_message = kind
         if kind == "cancel":
             return self.refuse("CANCELLED", "", "All right, I will do nothing.")
-        if kind == "yes" and not mission.repeat:
+        if kind == "yes" and not mission.heard.repeat:
             return Status.SUCCESS
         if kind == "correction":
-            mission.command = rest if mission.repeat else corrected(mission.command, rest, self.ctx.io.scene)
-            mission.repeat = False
+            mission.command = rest if mission.heard.repeat else corrected(mission.command, rest, self.ctx.io.scene)
+            mission.heard.repeat = False
         elif kind == "no":
-            mission.repeat = True
+            mission.heard.repeat = True
         return self.refuse("NOT_CONFIRMED", "", "I did not understand what I should do.")
 
 
@@ -125,19 +125,19 @@ class HearChoice(HearAnswer):
         kind, rest = reply(heard.text)
         if kind == "cancel":
             return self.refuse("CANCELLED", "", "All right, I will do nothing.")
-        label = chosen(rest, mission.options)
+        label = chosen(rest, mission.search.options)
         if label is None:
             return self.refuse("NOT_CONFIRMED", heard.text, self.spoken())
-        mission.chosen[self._item] = label
+        mission.search.chosen[self._item] = label
         self.ctx.note(f"meant: {label}", heard.text)
         return Status.SUCCESS
 
 
 def question(ctx: Context) -> str:
-    return "Please say it again." if ctx.mission.repeat else f"Did you say {ctx.mission.command}?"
+    return "Please say it again." if ctx.mission.heard.repeat else f"Did you say {ctx.mission.command}?"
 
 
 def which(ctx: Context) -> str:
     """The question between several things."""
-    *some, last = [f"the {name}" for name in ctx.mission.options]
+    *some, last = [f"the {name}" for name in ctx.mission.search.options]
     return f"Do you mean {', '.join(some)} or {last}?"

@@ -22,11 +22,13 @@ class LocateObject(SendGoal):
     """Asks perception for an object from where the robot stands."""
 
     def __init__(self, node_id: str, ctx: Context, item: str) -> None:
-        super().__init__(node_id, ctx, ctx.perception, state="GROUNDING", timeout=ctx.config.perception_timeout)
+        super().__init__(node_id, ctx, ctx.peers.perception, state="GROUNDING", timeout=ctx.config.perception_timeout)
         self._item = item
 
     def goal(self, goal_id: str) -> tuple[Topic[Any], m.Message]:
-        return topics.OBJECT_QUERY, m.ObjectQuery(id=goal_id, query=self.ctx.mission.chosen.get(self._item, self._item))
+        return topics.OBJECT_QUERY, m.ObjectQuery(
+            id=goal_id, query=self.ctx.mission.search.chosen.get(self._item, self._item)
+        )
 
     def step(self) -> str:
         return f"look for {self._item}"
@@ -37,12 +39,12 @@ class LocateObject(SendGoal):
     def succeed(self, result: Result) -> Status:
         ctx, pose = self.ctx, result.message
         assert isinstance(pose, m.ObjectPose)
-        ctx.mission.options = pose.candidates
+        ctx.mission.search.options = pose.candidates
         if not pose.found:
             self.feedback_message = pose.detail or "not seen"
             code = "AMBIGUOUS" if pose.candidates else "NOT_FOUND"
             return self.fail_with(Failure("GROUNDING", code, pose.detail, self.spoken()))
-        ctx.mission.found[self._item] = pose
+        ctx.mission.search.found[self._item] = pose
         x, y, z = pose.position
         evidence = f"{pose.label} at ({x:.2f}, {y:.2f}, {z:.2f}), confidence {pose.confidence:.2f}"
         ctx.note(f"found {self._item}", evidence, "saw")
@@ -54,20 +56,22 @@ class MoveToViewpoint(SendGoal):
 
     def __init__(self, node_id: str, ctx: Context, elsewhere: bool, name: str = "") -> None:
         config = ctx.config
-        super().__init__(node_id, ctx, ctx.navigation, state="GROUNDING", timeout=config.navigation_timeout, name=name)
+        super().__init__(
+            node_id, ctx, ctx.peers.navigation, state="GROUNDING", timeout=config.navigation_timeout, name=name
+        )
         self._elsewhere = elsewhere
         self._target: Pose2 | None = None
 
     def initialise(self) -> None:
         super().initialise()
         ctx, mission, pose = self.ctx, self.ctx.mission, self.ctx.robot_pose
-        looked_from = [*mission.visited, pose]
+        looked_from = [*mission.search.visited, pose]
         if self._elsewhere:
             self._target = search.elsewhere(ctx.io.scene, ctx.viewpoints, pose, looked_from)
         else:
             self._target = search.turn(ctx.viewpoints, pose, looked_from)
         # A view that cannot be reached is not tried a second time either.
-        mission.visited = [*mission.visited, pose, *([self._target] if self._target else [])]
+        mission.search.visited = [*mission.search.visited, pose, *([self._target] if self._target else [])]
         mission.at = ""
 
     def update(self) -> Status:
@@ -128,13 +132,13 @@ class Approach(Navigate):
 
 def label_of(ctx: Context, item: str) -> str:
     """The name of an object as perception has it."""
-    pose = ctx.mission.found.get(item)
+    pose = ctx.mission.search.found.get(item)
     return (pose.label if pose else "") or item
 
 
 def object_ref(ctx: Context, item: str) -> m.ObjectRef | None:
     """What perception said about the item, for manipulation."""
-    pose = ctx.mission.found.get(item)
+    pose = ctx.mission.search.found.get(item)
     if pose is None:
         return None
     fields = {k: getattr(pose, k) for k in ("label", "position", "orientation", "size", "frame", "tilt")}

@@ -74,7 +74,7 @@ class MoveGripper(Leaf):
         if self._closed and width > GRIPPER_EMPTY:
             ctx.gripper.mark_grasped(SOMETHING)
         else:
-            ctx.mission.released = ctx.mission.released or self._full
+            ctx.mission.delivery.released = ctx.mission.delivery.released or self._full
             ctx.gripper.mark_released(ctx.now)
         ctx.note("gripper: " + ("closed" if self._closed else "open"), f"{width * 1000:.1f} mm, {force:.0f} N", "did")
         return Status.SUCCESS

@@ -111,7 +111,7 @@ class SendGoal(Leaf):
 
     def update(self) -> Status:
         ctx, channel = self.ctx, self.channel
-        ctx.at = self
+        ctx.checkpoints.at = self
         if self._again_at is not None:
             if ctx.now < self._again_at:
                 return Status.RUNNING
@@ -208,14 +208,14 @@ class Say(Leaf):
         ctx, text = self.ctx, " ".join(self._text().split())
         self._heard, self._goal_id = False, ""
         if text and ctx.io.has_subscribers(topics.SPEECH_GOAL):
-            self._goal_id = ctx.send_only(ctx.speech, topics.SPEECH_GOAL, f"say {text}")
+            self._goal_id = ctx.send_only(ctx.peers.speech, topics.SPEECH_GOAL, f"say {text}")
         self._estimate = min(1.0 + 0.07 * len(text), ctx.config.say_timeout)
         self.feedback_message = text
 
     def update(self) -> Status:
         if not self._goal_id:
             return Status.SUCCESS
-        status = self.ctx.speaking
+        status = self.ctx.voice.speaking
         speaking = status is not None and status.goal_id == self._goal_id and status.state == "speaking"
         if self._heard and not speaking:
             return Status.SUCCESS

@@ -36,7 +36,7 @@ class Navigate(SendGoal):
         super().__init__(
             node_id,
             ctx,
-            ctx.navigation,
+            ctx.peers.navigation,
             state=state,
             timeout=config.navigation_timeout,
             retries=config.navigation_retries,
@@ -71,7 +71,7 @@ class Navigate(SendGoal):
 
     def fail_with(self, failure: Failure) -> Status:
         if failure.code == "TIMEOUT":
-            self.ctx.send_only(self.ctx.navigation, topics.NAVIGATION_GOAL, "stop")
+            self.ctx.send_only(self.ctx.peers.navigation, topics.NAVIGATION_GOAL, "stop")
         return super().fail_with(failure)
 
 
@@ -89,7 +89,7 @@ class Manipulate(SendGoal):
         retries: int = 0,
     ) -> None:
         super().__init__(
-            node_id, ctx, ctx.manipulation, state=state, timeout=ctx.config.manipulation_timeout, retries=retries
+            node_id, ctx, ctx.peers.manipulation, state=state, timeout=ctx.config.manipulation_timeout, retries=retries
         )
         self._text, self._about = text, about
 
@@ -102,7 +102,7 @@ class Manipulate(SendGoal):
 
     def fail_with(self, failure: Failure) -> Status:
         if failure.code == "TIMEOUT":
-            self.ctx.send_only(self.ctx.manipulation, topics.MANIPULATION_GOAL, "stop")
+            self.ctx.send_only(self.ctx.peers.manipulation, topics.MANIPULATION_GOAL, "stop")
         return super().fail_with(failure)
 
 
@@ -115,7 +115,7 @@ class Grab(Manipulate):
 
     def succeed(self, result: Result) -> Status:
         self.ctx.gripper.mark_grasped(self._label())
-        self.ctx.mission.grabbed = True
+        self.ctx.mission.delivery.grabbed = True
         return Status.SUCCESS
 
     def unfinished(self) -> None:
@@ -150,9 +150,9 @@ class Release(Manipulate):
         return super().fail_with(failure)
 
     def succeed(self, result: Result) -> Status:
-        self.ctx.mission.put_down = self.ctx.gripper.holding
+        self.ctx.mission.delivery.put_down = self.ctx.gripper.holding
         self.ctx.gripper.mark_released(self.ctx.now)
-        self.ctx.mission.released = True
+        self.ctx.mission.delivery.released = True
         return Status.SUCCESS
 
     def unfinished(self) -> None:
@@ -203,13 +203,13 @@ class Listen(SendGoal):
 
     def __init__(self, node_id: str, ctx: Context) -> None:
         limit = ctx.config.listen_timeout + ctx.config.listen_grace
-        super().__init__(node_id, ctx, ctx.speech, state="LISTENING", timeout=limit)
+        super().__init__(node_id, ctx, ctx.peers.speech, state="LISTENING", timeout=limit)
 
     def update(self) -> Status:
         ctx = self.ctx
         if not ctx.mission.active and take_command(ctx) and self.channel.outstanding:
             self.channel.abandon()
-            ctx.send_only(ctx.speech, topics.SPEECH_GOAL, "cancel")
+            ctx.send_only(ctx.peers.speech, topics.SPEECH_GOAL, "cancel")
         return Status.SUCCESS if ctx.mission.active else super().update()
 
     def step(self) -> str:
@@ -221,19 +221,19 @@ class Listen(SendGoal):
     def succeed(self, result: Result) -> Status:
         ctx, heard = self.ctx, result.message
         assert isinstance(heard, m.SpeechResult)
-        ctx.start_mission(heard.text.strip(), heard.confidence, "heard")
+        ctx.start_mission(m.VoiceCommand(text=heard.text, confidence=heard.confidence), "heard")
         return Status.SUCCESS
 
     def fail_with(self, failure: Failure) -> Status:
-        self.ctx.listen_after = self.ctx.now + self.ctx.config.speech_retry_delay
+        self.ctx.voice.listen_after = self.ctx.now + self.ctx.config.speech_retry_delay
         self.ctx.io.log.info("nothing heard", code=failure.code, detail=failure.detail)
         return Status.FAILURE
 
 
 def take_command(ctx: Context) -> bool:
     """Begin the mission of a waiting `voice_command`, if there is one."""
-    command, ctx.command = ctx.command, None
+    command = ctx.voice.take_command()
     if command is None:
         return False
-    ctx.start_mission(command.text.strip(), command.confidence, "voice_command", command.confirmed)
+    ctx.start_mission(command, "voice_command")
     return True

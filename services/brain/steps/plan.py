@@ -23,7 +23,7 @@ class AwaitCommand(Leaf):
         ctx = self.ctx
         ctx.renew_mission()
         if not ctx.mission.active and not take_command(ctx):
-            hearing = ctx.speaking is not None and ctx.speaking.state in ("listening", "transcribing")
+            hearing = ctx.voice.speaking is not None and ctx.voice.speaking.state in ("listening", "transcribing")
             ctx.show_state("LISTENING" if hearing else "WAITING")
             return Status.RUNNING
         return Status.SUCCESS
@@ -33,7 +33,7 @@ class RequestPlan(SendGoal):
     """Asks the planner and checks its plan against the known world; an impossible one is rejected with the reason."""
 
     def __init__(self, node_id: str, ctx: Context) -> None:
-        super().__init__(node_id, ctx, ctx.planner, state="PLANNING", timeout=ctx.config.planning_timeout)
+        super().__init__(node_id, ctx, ctx.peers.planner, state="PLANNING", timeout=ctx.config.planning_timeout)
 
     def goal(self, goal_id: str) -> tuple[Topic[Any], m.Message]:
         ctx = self.ctx
@@ -42,8 +42,8 @@ class RequestPlan(SendGoal):
             id=goal_id,
             command=mission.command,
             world=self._world(),
-            rejected=mission.rejected,
-            done=mission.looked,
+            rejected=mission.planning.rejected,
+            done=mission.planning.looked,
             mission_id=mission.id,
         )
         return topics.PLAN_REQUEST, request
@@ -59,17 +59,17 @@ class RequestPlan(SendGoal):
         assert isinstance(plan, m.ActionPlan)
         wrong = objection(plan.steps, self._world(), ctx.io.scene)
         if wrong is None:
-            ctx.mission.plan, ctx.mission.again = plan.steps, plan.again
+            ctx.mission.planning.steps, ctx.mission.planning.look_again = plan.steps, plan.again
             if plan.again:
-                ctx.mission.looked = [*ctx.mission.looked, *plan.steps]
+                ctx.mission.planning.looked = [*ctx.mission.planning.looked, *plan.steps]
             for step in plan.steps:
                 if step.action == "find" and step.text:
-                    ctx.mission.chosen.setdefault(step.object, step.text)
+                    ctx.mission.search.chosen.setdefault(step.object, step.text)
             ctx.note("plan accepted", "; ".join(map(describe_step, plan.steps)), "planned")
             return Status.SUCCESS
         if not plan.steps and plan.detail:
             wrong = Objection(0, plan.detail)
-        ctx.mission.rejected = m.RejectedPlan(steps=plan.steps, reason=wrong.reason, step=wrong.step)
+        ctx.mission.planning.rejected = m.RejectedPlan(steps=plan.steps, reason=wrong.reason, step=wrong.step)
         reason = str(wrong)
         self.feedback_message = reason
         code = "REJECTED" if plan.steps else "NO_PLAN"
@@ -85,7 +85,7 @@ class PlanIsComplete(Leaf):
     """FAILURE as long as the latest plan only goes and looks."""
 
     def update(self) -> Status:
-        return Status.FAILURE if self.ctx.mission.again else Status.SUCCESS
+        return Status.FAILURE if self.ctx.mission.planning.look_again else Status.SUCCESS
 
 
 def describe_step(step: m.PlanStep) -> str:
@@ -101,15 +101,19 @@ class CompleteWithEvidence(Leaf):
         self._summary = summary
 
     def update(self) -> Status:
-        ctx, mission = self.ctx, self.ctx.mission
-        steps = [s for s in mission.plan if not s.hand_alone]
+        ctx, mission, done = self.ctx, self.ctx.mission, self.ctx.mission.delivery
+        steps = [s for s in mission.planning.steps if not s.hand_alone]
         lets_go = any(s.action in ("place", "release") for s in steps)
         grasps = any(s.action == "grasp" for s in steps)
-        if (grasps and not mission.grabbed) or (lets_go and not mission.released):
+        if (grasps and not done.grabbed) or (lets_go and not done.released):
             ctx.record_failure(Failure("COMPLETED", "NO_EVIDENCE", spoken="I am not sure that it worked."))
             return Status.FAILURE
         detail = "; ".join(
-            [self._summary(), *mission.checked, *(f"{thing}: not checked" for thing in mission.unchecked)]
+            [
+                self._summary(),
+                *done.checked,
+                *(f"{item}: not checked" for item in done.unchecked),
+            ]
         )
         ctx.end_mission("delivered", detail)
         ctx.show_state("COMPLETED", detail=detail)

@@ -34,27 +34,27 @@ class VerifyPlacement(SendGoal):
     """
 
     def __init__(self, node_id: str, ctx: Context, target: str) -> None:
-        super().__init__(node_id, ctx, ctx.perception, state="RELEASING", timeout=ctx.config.check_timeout)
+        super().__init__(node_id, ctx, ctx.peers.perception, state="RELEASING", timeout=ctx.config.check_timeout)
         self._target = target
 
     def update(self) -> Status:
         ctx = self.ctx
         strange = self._sent_at is None and not self.channel.known and not ctx.io.has_subscribers(topics.OBJECT_QUERY)
-        if strange or not ctx.mission.put_down:
+        if strange or not ctx.mission.delivery.put_down:
             return self._unchecked("nobody answers object queries")
         return super().update()
 
     def step(self) -> str:
-        return f"check {self.ctx.mission.put_down}"
+        return f"check {self.ctx.mission.delivery.put_down}"
 
     def goal(self, goal_id: str) -> tuple[Topic[Any], m.Message]:
         ctx = self.ctx
-        return topics.OBJECT_QUERY, m.ObjectQuery(id=goal_id, query=ctx.mission.put_down, since=ctx.now)
+        return topics.OBJECT_QUERY, m.ObjectQuery(id=goal_id, query=ctx.mission.delivery.put_down, since=ctx.now)
 
     def succeed(self, result: Result) -> Status:
         ctx, pose = self.ctx, result.message
         assert isinstance(pose, m.ObjectPose)
-        label = ctx.mission.put_down
+        label = ctx.mission.delivery.put_down
         if pose.found and pose.seen_at <= ctx.gripper.put_down.get(label, math.inf):
             return self._unchecked("what was seen is older than the release")
         finding = judge_placement(pose, label, self._target, ctx.io.scene) if pose.found else judge_absence(
@@ -67,14 +67,14 @@ class VerifyPlacement(SendGoal):
             return super().fail_with(failure)
         if not self.channel.known:
             return self._unchecked(failure.detail)
-        spoken = f"I put down the {self.ctx.mission.put_down}, but I could not check where it is."
+        spoken = f"I put down the {self.ctx.mission.delivery.put_down}, but I could not check where it is."
         return super().fail_with(Failure(failure.stage, "UNCHECKED", f"{failure.code}: {failure.detail}", spoken))
 
     def _unchecked(self, why: str) -> Status:
         """Put down as far as the hand felt; the mission says that nobody looked."""
         ctx = self.ctx
-        ctx.mission.unchecked = [*ctx.mission.unchecked, ctx.mission.put_down or "object"]
-        ctx.note(f"not checked: {ctx.mission.put_down or 'object'}", why)
+        ctx.mission.delivery.unchecked = [*ctx.mission.delivery.unchecked, ctx.mission.delivery.put_down or "object"]
+        ctx.note(f"not checked: {ctx.mission.delivery.put_down or 'object'}", why)
         self.feedback_message = why
         return Status.SUCCESS
 
@@ -86,7 +86,7 @@ class TurnAside(SendGoal):
     """
 
     def __init__(self, node_id: str, ctx: Context) -> None:
-        super().__init__(node_id, ctx, ctx.navigation, state="RELEASING", timeout=ctx.config.check_timeout)
+        super().__init__(node_id, ctx, ctx.peers.navigation, state="RELEASING", timeout=ctx.config.check_timeout)
 
     def update(self) -> Status:
         if self._sent_at is None and not self.ctx.io.has_subscribers(topics.NAV_GOAL):
@@ -111,8 +111,8 @@ class AlreadyInPlace(Leaf):
         self._item, self._target = item, target
 
     def update(self) -> Status:
-        ctx, pose = self.ctx, self.ctx.mission.found.get(self._item)
-        label = ctx.mission.put_down
+        ctx, pose = self.ctx, self.ctx.mission.search.found.get(self._item)
+        label = ctx.mission.delivery.put_down
         if pose is None or pose.label != label or pose.seen_at <= ctx.gripper.put_down.get(label, math.inf):
             return Status.FAILURE
         finding = judge_placement(pose, label, self._target, ctx.io.scene)
@@ -123,14 +123,14 @@ class AlreadyInPlace(Leaf):
 
 def record_finding(ctx: Context, finding: Finding, picture: bytes) -> Status:
     """Write down what was seen; what is not where it belongs counts as not released."""
-    mission, label = ctx.mission, ctx.mission.put_down
+    mission, label = ctx.mission, ctx.mission.delivery.put_down
     name = ctx.pictures.keep(mission.id, picture)
     ctx.note(f"looked at the {label}", finding.words, "saw", picture=name)
     if not finding.fault:
-        mission.released, mission.failure = True, None
-        mission.checked = [*mission.checked, finding.words]
+        mission.delivery.released, mission.failure = True, None
+        mission.delivery.checked = [*mission.delivery.checked, finding.words]
         return Status.SUCCESS
-    mission.released = False
+    mission.delivery.released = False
     spoken = f"I put down the {label}, but {finding.words.partition(', at (')[0]}."
     ctx.record_failure(Failure("RELEASING", finding.fault, finding.words, spoken))
     return Status.FAILURE
