@@ -38,6 +38,11 @@ class Wall(Strict, frozen=True):
         x, y = (self.start[0] + self.end[0]) / 2, (self.start[1] + self.end[1]) / 2
         return Rectangle(x, y, math.hypot(dx, dy), self.thickness, math.atan2(dy, dx))
 
+    @property
+    def footprint(self) -> Rectangle:
+        """The outline, longer by half the thickness at both ends, where it closes the corner with another wall."""
+        return self.outline._replace(length=self.outline.length + self.thickness)
+
 
 class Box(Strict, frozen=True):
     """A box of furniture: `size` is the full extent, `center` its middle, `yaw` about z."""

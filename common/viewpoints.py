@@ -13,13 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.approach import BIN_RIM
-from common.geometry import Array, Pose2
+from common.geometry import Array, Pose2, Rectangle
 from common.messages import CameraMount, RobotDescription
 from common.scene import Receptacle, Scene
 
 Mask = NDArray[np.bool_]
-Rectangle = tuple[float, float, float, float, float]
-"""x, y, full extent along its own x and y [m], yaw [rad]."""
 NOMINAL = CameraMount(x=-0.12, z=1.30, pitch=0.62, fovy=math.radians(62))
 """Camera of a robot whose description names none: the built-in robot's."""
 ASPECT = 4 / 3
@@ -143,49 +141,37 @@ def _points_on(r: Receptacle) -> Array:
     inner = [extent / 2 - INSET for extent in r.size]
     u, v = (np.linspace(-half, half, n) for half, n in zip(inner, counts, strict=True))
     x, y = (axis.ravel() for axis in np.meshgrid(u, v))
-    c, s = math.cos(r.yaw), math.sin(r.yaw)
-    return np.stack([r.center[0] + c * x - s * y, r.center[1] + s * x + c * y, np.full(x.shape, r.center[2] + LIFT)], 1)
+    return np.stack([*r.outline.to_map(x, y), np.full(x.shape, r.center[2] + LIFT)], 1)
 
 
 def _poses_before(r: Receptacle) -> list[Pose2]:
     """Poses before each free edge that face the surface."""
     found = []
-    c, s = math.cos(r.yaw), math.sin(r.yaw)
     for ax, ay in r.approach:
+        dx, dy = r.outline.direction(-ax, -ay)
         edge, length = (r.size[0] / 2, r.size[1]) if ax else (r.size[1] / 2, r.size[0])
         count = max(1, math.ceil(length / ALONG) - 1)
         sides = (np.arange(count) - (count - 1) / 2) * ALONG
         for distance in DISTANCES:
             out = edge + distance + (BIN_RIM if r.depth else 0.0)
             for side in sides.tolist():
-                lx, ly = (ax * out, side) if ax else (side, ay * out)
-                x, y = r.center[0] + c * lx - s * ly, r.center[1] + s * lx + c * ly
-                theta = math.atan2(-(s * ax + c * ay), -(c * ax - s * ay))
-                found.append((round(x, 3), round(y, 3), round(theta, 3)))
+                x, y = r.outline.to_map(ax * out, side) if ax else r.outline.to_map(side, ay * out)
+                found.append((round(x, 3), round(y, 3), round(math.atan2(dy, dx), 3)))
     return found
 
 
 def _screens(scene: Scene, height: float) -> list[Rectangle]:
     """What a camera at `height` [m] does not look over: walls, and furniture nearly as high."""
-    found: list[Rectangle] = []
-    for wall in scene.walls:
-        dx, dy = wall.end[0] - wall.start[0], wall.end[1] - wall.start[1]
-        middle = (wall.start[0] + wall.end[0]) / 2, (wall.start[1] + wall.end[1]) / 2
-        found.append((*middle, math.hypot(dx, dy) + wall.thickness, wall.thickness, math.atan2(dy, dx)))
-    for box in scene.furniture:
-        if box.center[2] + box.size[2] / 2 > height - SEE_OVER:
-            found.append((box.center[0], box.center[1], box.size[0], box.size[1], box.yaw))
-    return found
+    tall = [box.outline for box in scene.furniture if box.center[2] + box.size[2] / 2 > height - SEE_OVER]
+    return [wall.footprint for wall in scene.walls] + tall
 
 
 def _crosses(eye: Array, points: Array, rectangle: Rectangle) -> Mask:
     """Which lines of sight from `eye` (2,) to `points` (n, 2) pass through a rectangle; slab method."""
-    x, y, sx, sy, yaw = rectangle
-    turn = np.array([[math.cos(yaw), -math.sin(yaw)], [math.sin(yaw), math.cos(yaw)]])
-    start, end = (eye - (x, y)) @ turn, (points - (x, y)) @ turn
-    way = end - start
+    start = np.array(rectangle.to_local(eye[0], eye[1]))
+    way = np.stack(rectangle.to_local(points[:, 0], points[:, 1]), 1) - start
     way[np.abs(way) < 1e-9] = 1e-9
-    half = np.array([sx, sy]) / 2
+    half = np.array([rectangle.length, rectangle.width]) / 2
     one, two = (-half - start) / way, (half - start) / way
     enters, leaves = np.minimum(one, two).max(axis=1), np.maximum(one, two).min(axis=1)
     found: Mask = (enters < leaves) & (leaves > 0.0) & (enters < 0.98)

@@ -55,20 +55,13 @@ class Costmap:
         gx, gy = np.meshgrid(xs, ys)
         outside = (gx < scene.low[0]) | (gx > scene.high[0]) | (gy < scene.low[1]) | (gy > scene.high[1])
         grid |= outside
-        boxes = [(f.center[0], f.center[1], f.size[0], f.size[1], f.yaw) for f in scene.furniture]
+        boxes = [f.outline for f in scene.furniture]
         # A table counts with its whole top: the lidar sees only its legs.
-        for r in scene.receptacles:
-            rim = 2 * BIN_RIM if r.depth else 0.0
-            boxes.append((r.center[0], r.center[1], r.size[0] + rim, r.size[1] + rim, r.yaw))
-        for wall in scene.walls:
-            dx, dy = wall.end[0] - wall.start[0], wall.end[1] - wall.start[1]
-            middle = (wall.start[0] + wall.end[0]) / 2, (wall.start[1] + wall.end[1]) / 2
-            length = math.hypot(dx, dy) + wall.thickness
-            boxes.append((*middle, length, wall.thickness, math.atan2(dy, dx)))
-        for x, y, sx, sy, yaw in boxes:
-            c, s = math.cos(yaw), math.sin(yaw)
-            u, v = c * (gx - x) + s * (gy - y), c * (gy - y) - s * (gx - x)
-            grid |= (np.abs(u) <= sx / 2) & (np.abs(v) <= sy / 2)
+        boxes += [r.outline.grown(BIN_RIM if r.depth else 0.0) for r in scene.receptacles]
+        boxes += [wall.footprint for wall in scene.walls]
+        for box in boxes:
+            u, v = box.to_local(gx, gy)
+            grid |= (np.abs(u) <= box.length / 2) & (np.abs(v) <= box.width / 2)
         return grid
 
     @staticmethod

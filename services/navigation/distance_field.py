@@ -7,11 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.floor_plan import BIN_WALL, BODY_INSET, LEG, LEG_INSET
+from common.geometry import Rectangle
 from common.scene import Receptacle, Scene
 
 Array = NDArray[np.float64]
-# x, y, full extent along x and y, yaw
-Rectangle = tuple[float, float, float, float, float]
 RESOLUTION = 0.025
 """Distance between nodes [m]; chosen: half the thickness of a table's leg."""
 REACH = 0.6
@@ -21,15 +20,10 @@ REACH = 0.6
 def rectangles(scene: Scene, height: float) -> list[Rectangle]:
     """What a horizontal ray at `height` [m] can hit."""
     found: list[Rectangle] = []
-    for wall in scene.walls:
-        dx, dy = wall.end[0] - wall.start[0], wall.end[1] - wall.start[1]
-        middle = (wall.start[0] + wall.end[0]) / 2, (wall.start[1] + wall.end[1]) / 2
-        found.append((*middle, math.hypot(dx, dy) + wall.thickness, wall.thickness, math.atan2(dy, dx)))
-    for box in scene.furniture:
-        if abs(height - box.center[2]) <= box.size[2] / 2:
-            found.append((box.center[0], box.center[1], box.size[0], box.size[1], box.yaw))
+    found += [wall.footprint for wall in scene.walls]
+    found += [box.outline for box in scene.furniture if abs(height - box.center[2]) <= box.size[2] / 2]
     for r in scene.receptacles:
-        found += [_placed(r, local) for local in _parts(r, height)]
+        found += [Rectangle(*r.outline.to_map(x, y), length, width, r.yaw) for x, y, length, width in _parts(r, height)]
     return found
 
 
@@ -50,12 +44,6 @@ def _parts(r: Receptacle, height: float) -> list[tuple[float, float, float, floa
     return [(0.0, 0.0, sx - 2 * BODY_INSET, sy - 2 * BODY_INSET)]
 
 
-def _placed(r: Receptacle, part: tuple[float, float, float, float]) -> Rectangle:
-    x, y, sx, sy = part
-    c, s = math.cos(r.yaw), math.sin(r.yaw)
-    return r.center[0] + c * x - s * y, r.center[1] + s * x + c * y, sx, sy, r.yaw
-
-
 class DistanceField:
     """Signed distance [m] to what the lidar can hit, up to REACH: exact at the nodes, bilinear between them."""
 
@@ -66,14 +54,14 @@ class DistanceField:
         field = np.full((rows, columns), REACH)
         xs = self._origin[0] + np.arange(columns) * resolution
         ys = self._origin[1] + np.arange(rows) * resolution
-        for x, y, sx, sy, yaw in rectangles(scene, height):
-            c, s = math.cos(yaw), math.sin(yaw)
-            wide = (abs(c) * sx + abs(s) * sy) / 2 + REACH
-            high = (abs(s) * sx + abs(c) * sy) / 2 + REACH
-            i, j = np.searchsorted(xs, (x - wide, x + wide))
-            k, n = np.searchsorted(ys, (y - high, y + high))
-            gx, gy = xs[i:j] - x, (ys[k:n] - y)[:, None]
-            u, v = np.abs(c * gx + s * gy) - sx / 2, np.abs(c * gy - s * gx) - sy / 2
+        for r in rectangles(scene, height):
+            c, s = abs(math.cos(r.yaw)), abs(math.sin(r.yaw))
+            wide = (c * r.length + s * r.width) / 2 + REACH
+            high = (s * r.length + c * r.width) / 2 + REACH
+            i, j = np.searchsorted(xs, (r.x - wide, r.x + wide))
+            k, n = np.searchsorted(ys, (r.y - high, r.y + high))
+            along, across = r.to_local(xs[i:j], ys[k:n][:, None])
+            u, v = np.abs(along) - r.length / 2, np.abs(across) - r.width / 2
             box = np.hypot(np.maximum(u, 0.0), np.maximum(v, 0.0)) + np.minimum(np.maximum(u, v), 0.0)
             np.minimum(field[k:n, i:j], box, out=field[k:n, i:j])
         self._columns, self._last = columns, np.array((columns, rows)) - 1.001

@@ -69,7 +69,7 @@ class Nearby:
             return math.hypot(box.x - x, box.y - y) < reach + math.hypot(box.length, box.width) / 2
 
         self.receptacles = [r for r in scene.receptacles if close(r.outline)]
-        ends = [w.outline._replace(length=w.outline.length + w.thickness) for w in scene.walls]
+        ends = [w.footprint for w in scene.walls]
         self.walls = [w for wall in ends if close(w := wall.grown(WALL_MARGIN))]
         taken = [*ends, *scene.footprints]
         self.boxes = [b for box in taken if close(b := box.grown(FLOOR_MARGIN))]

@@ -7,10 +7,10 @@ import numpy as np
 
 from common import messages as m
 from common import topics
-from common.geometry import Pose2, compose, inverse, wrap
+from common.geometry import Pose2, Rectangle, compose, inverse, wrap
 from common.scene import Scene, load_scene
 from services.navigation.config import NavigationConfig
-from services.navigation.distance_field import Rectangle, rectangles
+from services.navigation.distance_field import rectangles
 from services.navigation.service import NavigationService
 from tests.node import Node
 

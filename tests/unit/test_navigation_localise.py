@@ -6,11 +6,11 @@ import pytest
 from common import messages as m
 from common import topics
 from common.bus.port import Io
-from common.geometry import Pose2, compose, inverse, wrap
+from common.geometry import Pose2, Rectangle, compose, inverse, wrap
 from common.scene import load_scene
 from services.navigation.config import NavigationConfig
 from services.navigation.costmap import Costmap
-from services.navigation.distance_field import REACH, DistanceField, Rectangle, distance_field, rectangles
+from services.navigation.distance_field import REACH, DistanceField, distance_field, rectangles
 from services.navigation.localise import Localiser
 from services.navigation.relocalise import relocalise
 from services.navigation.service import NavigationService
