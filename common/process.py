@@ -10,7 +10,8 @@ from pathlib import Path
 from types import FrameType
 
 _PR_SET_PDEATHSIG = 1
-SILENCE = 3.0  # [s], longer than the lease in config/zenoh
+SILENCE = 3.0
+"""Time without acknowledgement after which a connection is given up [s]: longer than the lease in config/zenoh."""
 _PAGE_MB = resource.getpagesize() / 2**20
 
 

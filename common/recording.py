@@ -25,6 +25,7 @@ from common.schemas import schema_of
 PROFILE = "tidybot"
 MCAP0_MAGIC = b"\x89MCAP0\r\n"
 CHUNK = 512 * 1024
+"""Size from which a chunk is compressed and written [bytes]; chosen: what a crash loses at most."""
 BULK = {t.key for t in topics.TABLE if t.bulk}
 RAW = "#undecodable"
 ALIVE_SCHEMA = b'{"title":"Alive","type":"object","properties":{"alive":{"type":"boolean"}}}'

@@ -132,7 +132,7 @@ class Process:
         )
 
         def acknowledge(tick: int) -> None:
-            ack = m.LockstepAck(name=self._kind.NAME, tick=tick, period=period, heard=self.io.heard)
+            ack = m.LockstepAck(name=self._kind.NAME, tick=tick, period=period, heard=self.io.unstamped)
             acks.put(codec.encode(topics.LOCKSTEP_ACK, ack))
 
         stalled: Callable[[float], None] | None = getattr(self.service, "stalled", None)

@@ -26,7 +26,9 @@ from common.topics import Topic
 M = TypeVar("M", bound=m.Message)
 R = TypeVar("R")
 WORKER_LIMIT = 600.0
+"""Wall time that lockstep waits for work that is due [s]; chosen: loading a model on a busy machine."""
 _EPSILON = 1e-6
+"""Rounding of robot time [s]: far below a tick."""
 
 
 class WorkerJob(Generic[R]):
@@ -75,7 +77,7 @@ class IoBase:
         self._boxes: dict[str, Mailbox[Any]] = {t.key: Mailbox(t, lockstep) for t in reads}
         self._open_order = tuple(self._boxes.values())
         self.fresh = False
-        self.heard: list[str] = []
+        self.unstamped: list[str] = []
         self._writes = {t.key for t in writes}
         self._worker: ThreadPoolExecutor | None = None
         self._ids = 0
@@ -83,17 +85,16 @@ class IoBase:
 
     # --- reading
     def begin(self, tick: int | None, now: float) -> None:
-        """Start a step: what was published before `tick` becomes visible; `heard`: the keys of what had no stamp."""
+        """Start a step: what was published before `tick` becomes visible; `unstamped`: keys of what had no stamp."""
         if tick is not None:
             self.tick = tick
         self.fresh = False
-        self.heard.clear()
+        self.unstamped.clear()
         for box in self._open_order:
             if not box.waiting:
                 continue
             self.fresh = True
-            unstamped = box.open(tick if self.lockstep else None, now)
-            self.heard += [box.topic.key] * unstamped
+            self.unstamped += [box.topic.key] * box.open(tick if self.lockstep else None, now)
             if box.overflow:
                 lost, box.overflow = box.overflow, 0
                 self.count_drop(box.topic.key, f"{lost} messages over the queue limit", lost)

@@ -11,6 +11,7 @@ from typing import Any
 import msgspec
 
 LIMIT = 1e15
+"""Greatest magnitude of a number in a message [any unit]; chosen: its square and its nanoseconds are still finite."""
 Check = Callable[[Any], bool]
 Getter = Callable[[Any], tuple[float, ...]]
 

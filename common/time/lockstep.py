@@ -13,6 +13,7 @@ from common.bus.memory import MemoryIo
 from common.time.clock import ManualClock, monotonic
 
 DT = 0.01
+"""A tick [s]: fixed by the interface, 100 Hz."""
 
 
 class Stepped(Protocol):

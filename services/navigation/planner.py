@@ -15,6 +15,7 @@ Point = tuple[float, float]
 SPACING = 0.05
 """Distance between the points of a path [m]: the costmap's resolution."""
 _NEIGHBOURS = ((0, 1, 1.0), (1, 0, 1.0), (1, 1, math.sqrt(2)), (1, -1, math.sqrt(2)))
+"""Row and column to the neighbours that a cell is joined to, and their distance [cells]; the others join themselves."""
 _WEIGHT = 4.0
 """Cost of a cell where the base just fits, beside its length [-]; chosen: a detour of four times the way."""
 _JUMP = 60

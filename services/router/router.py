@@ -19,6 +19,7 @@ from common.security.certificate import Identity
 from common.security.zenoh_config import ROUTER_CONFIG, as_json, secure, subjects, value_of
 
 BAD_CONFIGURATION = 2
+"""Exit status, fixed by the interface."""
 
 
 def main() -> None:
