@@ -27,14 +27,7 @@ from common.time.lockstep import DT
 FLUSH, BATCH = 1.0, 2000
 # The brain asks whether anybody subscribes to these before it counts on the service that reads them, so the
 # recorder listens only while that service is there: a recording must not change what it records.
-READERS: "dict[topics.Topic[Any], str]" = {
-    topics.SPEECH_GOAL: "speech",
-    topics.NAVIGATION_GOAL: "navigation",
-    topics.NAV_GOAL: "navigation",
-    topics.MANIPULATION_GOAL: "manipulation",
-    topics.PLAN_REQUEST: "planner",
-    topics.OBJECT_QUERY: "perception",
-}
+READERS = {t: t.readers[0] for t in topics.TABLE if t.command and t.latched and "brain" in t.writers}
 Arrival = tuple[str, bytes, int | None, float]
 
 
