@@ -78,7 +78,7 @@ class Robot:
         return self.tokens <= self.link.alive() and all(n in health and health[n].pid == now[n] for n in names)
 
     def count(self) -> Count:
-        """Look at everything of this run on the host; once more when one of them ended meanwhile."""
+        """Sample at everything of this run on the host; once more when one of them ended meanwhile."""
         for _ in range(TRIES):
             try:
                 return self._count()

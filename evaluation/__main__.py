@@ -21,7 +21,7 @@ from evaluation import cluster, html_report, pool, processes, report, runner
 from evaluation.case import Case, Result
 from evaluation.lane import Run
 from evaluation.pool import Progressed, Repeated, Said
-from evaluation.sabotage import unavailable
+from evaluation.process_faults import unavailable
 from evaluation.stack import replacement
 from evaluation.suites import BARS, DEFAULT_SCENARIOS, cases
 

@@ -5,9 +5,9 @@ from typing import Literal
 import msgspec
 
 from common.scene import Scene
+from evaluation.fault_reports import FaultReport
 from evaluation.faults import Rule
-from evaluation.physical import PhysicalFault
-from evaluation.strikes import Struck
+from evaluation.physical.fault import PhysicalFault
 from judge.claims import Claim
 from judge.effects import Effect, Shown
 from judge.evidence import Evidence, Want
@@ -46,7 +46,7 @@ class Speaker(msgspec.Struct, frozen=True):
     room: bool = False
 
 
-class Strike(msgspec.Struct, frozen=True):
+class TimedFault(msgspec.Struct, frozen=True):
     """What happens `after` seconds from when the brain was first in `state`.
 
     The service's process is killed, and started again after `back_after` seconds; or it hangs for `seconds`. The
@@ -92,7 +92,7 @@ class Case(msgspec.Struct, kw_only=True):
     fault: str = ""
     rules: tuple[Rule, ...] = ()
     physical: tuple[PhysicalFault, ...] = ()
-    strikes: tuple[Strike, ...] = ()
+    timed_faults: tuple[TimedFault, ...] = ()
     settings: tuple[str, ...] = ()
     replaced: tuple[str, ...] = ()
     scene: Scene | None = None
@@ -112,7 +112,7 @@ class Case(msgspec.Struct, kw_only=True):
     @property
     def faults(self) -> int:
         """How many faults it injects."""
-        return len(self.rules) + len(self.physical) + len(self.strikes)
+        return len(self.rules) + len(self.physical) + len(self.timed_faults)
 
 
 class Observed(msgspec.Struct, kw_only=True):
@@ -121,8 +121,8 @@ class Observed(msgspec.Struct, kw_only=True):
     `claimed`: the last outcome, `failed_at`, `code` and `explained` the stage, code and spoken words of its failure;
     `claims`: every success announced at any time, held against physics as it was then;
     `shortfall`: what is not as the case wants it at the end. `wrong`: things in the hand that nobody asked for.
-    `strikes`: what the faults really did; `struck`: when the first did [s of robot time]; `recovery`: seconds from then
-    until the mission's next step.
+    `fault_reports`: what the faults really did; `fault_at`: when the first did [s of robot time]; `recovery`: seconds
+    from then until the mission's next step.
     """
 
     evidence: Evidence = msgspec.field(default_factory=Evidence)
@@ -142,8 +142,8 @@ class Observed(msgspec.Struct, kw_only=True):
     stage: str = ""
     robot_seconds: float = 0.0
     shortest: float = 0.0
-    strikes: list[Struck] = []
-    struck: float | None = None
+    fault_reports: list[FaultReport] = []
+    fault_at: float | None = None
     recovery: float | None = None
     crash: str = ""
 

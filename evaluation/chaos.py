@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import msgspec
 
 from evaluation.blocks import VLA, fetch_case, flat, pick, random
-from evaluation.case import Case, Strike
+from evaluation.case import Case, TimedFault
 from evaluation.faults import Kind, Rule
 
 CHAOS_STATES = ("CONFIRMING", "PLANNING", "GROUNDING", "NAVIGATING", "GRABBING", "RETURNING", "RELEASING")
@@ -91,8 +91,8 @@ def chaos(seed: int) -> Case:
         case "kill" | "hang" | "router loss" | "disk full" | "disk full, kill" | "clock jump":
             states = CHAOS_STATES if cell.state == EVERY else (cell.state,)
             moments = [round(float(rng.uniform(0.0, MOMENTS[state])), 2) for state in states]
-            case.strikes = tuple(
-                Strike(cell.service, state, after=moment, **HARM.get(cell.fault, {}))
+            case.timed_faults = tuple(
+                TimedFault(cell.service, state, after=moment, **HARM.get(cell.fault, {}))
                 for state, moment in zip(states, moments, strict=True)
             )
         case kind:

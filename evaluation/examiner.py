@@ -10,11 +10,11 @@ from common import topics
 from common.bus.port import Io, Job
 from common.config import Config
 from evaluation.case import Case, Line, Observed
-from evaluation.person import Manner, Person
+from evaluation.fault_reports import FaultReport
 from evaluation.shortest import FloorPlan
-from evaluation.strikes import Struck
+from evaluation.simulated_user import Manner, SimulatedUser
 from evaluation.voice import RATE, Samples, utter
-from judge.evidence import Look
+from judge.evidence import Sample
 from judge.observer import WATCH, Observer
 
 OPEN = ("WAITING", "LISTENING")
@@ -44,7 +44,7 @@ class Examiner:
         self._case, self._io = self.case, io
         manner: Manner = "reject" if self._case.name == "rejection" else "correct"
         manner = "silent" if self._case.silent else manner
-        self._person = Person(self._case.command, self._case.thing, io.scene, manner)
+        self._user = SimulatedUser(self._case.command, self._case.thing, io.scene, manner)
         self._observer = Observer(io.scene)
         self._begun = False
         self._lines = deque(self._case.lines)
@@ -56,7 +56,7 @@ class Examiner:
         self._ended_at: float | None = None
         self._quiet_since = 0.0
         self._when: dict[str, float] = {}
-        self._at = self._struck_at = ("", "")
+        self._at = self._step_at_fault = ("", "")
         self.observed = Observed()
         self.done = False
 
@@ -89,7 +89,7 @@ class Examiner:
         for status in io.take_all(topics.SIM_STATUS):
             self.observed.stopped |= status.state == "stopped"
 
-    def _shortest(self, look: Look) -> float:
+    def _shortest(self, look: Sample) -> float:
         """The shortest way [m] of a base that runs all errands; 0 where there is none."""
         wants = self._case.wants
         errands = [(look.things[w.thing].position[:2], look.things[w.thing].on, w.goals[0]) for w in wants]
@@ -104,7 +104,7 @@ class Examiner:
                 self.observed.said.append(status.detail)
                 self._observer.sentence(now, status.detail)
             elif status.state != "speaking" and self._saying:
-                answer, self._saying = self._person.answer(self._saying), ""
+                answer, self._saying = self._user.answer(self._saying), ""
                 self._quiet_since = now
                 if answer:
                     self._due.append((now + REACTION, answer))
@@ -136,27 +136,27 @@ class Examiner:
         if self._when.keys() & set(OPEN):
             self._when.setdefault("ready", now)
 
-    def struck(self, strike: Struck) -> None:
+    def note_fault(self, report: FaultReport) -> None:
         """A fault took effect; the first starts the clock of the recovery."""
-        self.observed.strikes.append(strike)
-        if self.observed.struck is None:
-            self.observed.struck, self._struck_at = strike.t, self._at
+        self.observed.fault_reports.append(report)
+        if self.observed.fault_at is None:
+            self.observed.fault_at, self._step_at_fault = report.t, self._at
 
     def _progress(self, state: m.BrainState, now: float) -> None:
         """Recovered is a mission that has come to another step than the one in which it was struck."""
         self._at = state.state, state.step
         seen = self.observed
-        if seen.struck is None or seen.recovery is not None or state.state == "IDLE":
+        if seen.fault_at is None or seen.recovery is not None or state.state == "IDLE":
             return
-        if self._at != self._struck_at:
-            seen.recovery = round(now - seen.struck, 2)
+        if self._at != self._step_at_fault:
+            seen.recovery = round(now - seen.fault_at, 2)
 
     # --- the person
     def _talk(self, now: float) -> None:
         while self._lines and self._reached(self._lines[0], now):
             line = self._lines.popleft()
             if line.when == "ended":
-                self._person.wish(line.text)
+                self._user.set_goal(line.text)
             if not self._begun:
                 self._begun = True
                 self._observer.begin()

@@ -12,7 +12,7 @@ import numpy as np
 from common import messages as m
 from common import topics
 from common.topics import Topic
-from evaluation.strikes import Report, Struck, unheard
+from evaluation.fault_reports import FaultReport, Reporter, ignore
 
 Kind = Literal["drop", "duplicate", "delay", "reorder", "edit"]
 
@@ -47,7 +47,7 @@ class Rule(msgspec.Struct, frozen=True, kw_only=True):
 class FaultyIo:
     """An `Io` whose `publish` obeys the rules; everything else is the real one's."""
 
-    def __init__(self, io: Any, rules: tuple[Rule, ...], report: Report = unheard) -> None:
+    def __init__(self, io: Any, rules: tuple[Rule, ...], report: Reporter = ignore) -> None:
         self._io, self._rules, self._report = io, rules, report
         self._rng = np.random.default_rng([io.seed, 13])
         self._seen: Counter[int] = Counter()
@@ -107,7 +107,7 @@ class FaultyIo:
             if rule.chance >= 1.0 or self._rng.random() < rule.chance:
                 self._hits[number] += 1
                 self._io.log.warning("fault injected", key=topic.key, kind=rule.kind)
-                self._report(Struck(round(self._now, 2), rule.kind, f"{topic.key}, message {self._seen[number]}"))
+                self._report(FaultReport(round(self._now, 2), rule.kind, f"{topic.key}, message {self._seen[number]}"))
                 return rule
         return None
 
@@ -116,7 +116,7 @@ def _edited(message: m.Message, rule: Rule) -> m.Message:
     return msgspec.convert({**msgspec.to_builtins(message), **rule.fields}, type(message))
 
 
-def faulty(kind: Any, rules: tuple[Rule, ...], report: Report = unheard) -> Any:
+def faulty(kind: Any, rules: tuple[Rule, ...], report: Reporter = ignore) -> Any:
     """The service class behind a door that obeys the rules which name it; the class itself when none does."""
     mine = tuple(r for r in rules if r.service == kind.NAME)
     if not mine:

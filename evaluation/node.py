@@ -11,9 +11,9 @@ import msgspec
 
 from common.runtime import main
 from evaluation.case import Case
-from evaluation.inject import injected
+from evaluation.fault_injection import with_faults
+from evaluation.fault_reports import FaultReportFile
 from evaluation.registry import service_class
-from evaluation.strikes import StrikeFile
 
 CASE = "TIDYBOT_EVAL_CASE"
 STRIKES = "strikes"
@@ -21,5 +21,5 @@ STRIKES = "strikes"
 if __name__ == "__main__":
     path = Path(os.environ[CASE])
     case = msgspec.json.decode(path.read_bytes(), type=Case)
-    report = StrikeFile(path.with_name(STRIKES)).report
-    main(injected(service_class(os.environ["SUPERVISOR_PROCESS_NAME"]), case, report))
+    report = FaultReportFile(path.with_name(STRIKES)).report
+    main(with_faults(service_class(os.environ["SUPERVISOR_PROCESS_NAME"]), case, report))

@@ -27,14 +27,14 @@ from common.service_process import Process
 from common.time.clock import SimClock, monotonic
 from evaluation.case import Case, Observed, Result
 from evaluation.examiner import Examiner, ExaminerConfig, examiner_of
-from evaluation.inject import targets
+from evaluation.fault_injection import targets
+from evaluation.fault_reports import FaultReportFile
 from evaluation.node import CASE, STRIKES
 from evaluation.picture import last_picture
+from evaluation.process_faults import ProcessFaultInjector, unavailable
 from evaluation.runner import REPORT, Progress, idle_services, timeline
-from evaluation.sabotage import Saboteur, unavailable
 from evaluation.scene_file import to_toml
 from evaluation.stack import paced_services
-from evaluation.strikes import StrikeFile
 from evaluation.verdict import judge
 
 WALL_LIMIT = 3000.0
@@ -92,18 +92,18 @@ def _run(case: Case, directory: Path, supervision: Supervision, progress: Progre
     with open_session(plan.connect, plan.namespace) as session:
         process = Process(examiner_of(case), ExaminerConfig(), shared, scene, session, clock, stop, directory)
         examiner: Examiner = process.service
-        injected = StrikeFile(directory / STRIKES)
-        saboteur = Saboteur(supervision, case.strikes, directory, injected.report)
+        injected = FaultReportFile(directory / STRIKES)
+        injector = ProcessFaultInjector(supervision, case.timed_faults, directory, injected.report)
 
         def follow(now: float, state: str) -> None:
-            saboteur.step(now, state)
-            for strike in injected.news():
-                examiner.struck(strike)
+            injector.step(now, state)
+            for report in injected.news():
+                examiner.note_fault(report)
 
         stop.process, stop.follow = process, follow
         try:
             process.run_on_sim_clock(clock)
-            saboteur.finish(clock.now())
+            injector.finish(clock.now())
             follow(clock.now(), "")
             if not examiner.done:
                 examiner.abort(clock.now(), f"no end within {WALL_LIMIT:.0f} s of wall time")

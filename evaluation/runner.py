@@ -11,12 +11,12 @@ from typing import Any
 from common import topics
 from common.time.clock import monotonic
 from common.time.lockstep import DT
-from evaluation.case import Case, Observed, Result, Strike
+from evaluation.case import Case, Observed, Result, TimedFault
 from evaluation.examiner import Examiner, examiner_of
-from evaluation.inject import injected, targets
+from evaluation.fault_injection import targets, with_faults
+from evaluation.fault_reports import FaultReport, Reporter, ignore
 from evaluation.picture import last_picture
 from evaluation.stack import Stack
-from evaluation.strikes import Report, Struck, unheard
 from evaluation.verdict import judge
 
 Progress = Callable[[float, str], None]
@@ -24,11 +24,11 @@ REPORT = 2.0
 OURS = tuple(str(Path(__file__).parents[1] / name) for name in ("common", "services", "evaluation", "judge"))
 
 
-class Director:
-    """Does the strikes of a case when the brain is in their states, and reports those that could be done."""
+class FaultScheduler:
+    """Does the faults of a case when the brain is in their states, and reports those that could be done."""
 
-    def __init__(self, stack: Stack, strikes: tuple[Strike, ...], report: Report = unheard) -> None:
-        self._stack, self._waiting, self._report = stack, list(strikes), report
+    def __init__(self, stack: Stack, faults: tuple[TimedFault, ...], report: Reporter = ignore) -> None:
+        self._stack, self._waiting, self._report = stack, list(faults), report
         self._back: list[tuple[float, str]] = []
         self._since: dict[str, float] = {}
 
@@ -36,33 +36,33 @@ class Director:
         stack, state = self._stack, self._stack.state().state
         self._since.setdefault(state, stack.now)
         due = [s for s in self._waiting if stack.now >= self._since.get(s.state, float("inf")) + s.after]
-        for strike in due:
-            self._waiting.remove(strike)
+        for timed in due:
+            self._waiting.remove(timed)
             now = round(stack.now, 2)
-            for fault, what in self._strike(strike):
-                self._report(Struck(now, fault, f"{what} in {strike.state}, {strike.after:.2f} s after it began"))
+            for fault, what in self._inject(timed):
+                self._report(FaultReport(now, fault, f"{what} in {timed.state}, {timed.after:.2f} s after it began"))
         self._start_again()
 
-    def _strike(self, strike: Strike) -> Iterator[tuple[str, str]]:
+    def _inject(self, fault: TimedFault) -> Iterator[tuple[str, str]]:
         """What was done of it."""
-        stack, name = self._stack, strike.service
-        if strike.jump:
-            stack.jump(strike.jump)
-            yield "clock jump", f"time leapt by {strike.jump:.0f} s"
-        if strike.full and stack.fill_disk(strike.full):
+        stack, name = self._stack, fault.service
+        if fault.jump:
+            stack.jump(fault.jump)
+            yield "clock jump", f"time leapt by {fault.jump:.0f} s"
+        if fault.full and stack.fill_disk(fault.full):
             yield "disk full", "a write failed"
         if name == "router":
-            stack.cut(strike.seconds)
-            yield "router loss", f"nobody hears anybody for {strike.seconds:.0f} s"
+            stack.cut(fault.seconds)
+            yield "router loss", f"nobody hears anybody for {fault.seconds:.0f} s"
         elif name == "sim":
             stack.restart_sim()
             yield "kill", "the sim was replaced"
-        elif name in stack.members and strike.seconds:
-            stack.hang(name, strike.seconds)
-            yield "hang", f"{name} takes no step for {strike.seconds:.0f} s"
+        elif name in stack.members and fault.seconds:
+            stack.hang(name, fault.seconds)
+            yield "hang", f"{name} takes no step for {fault.seconds:.0f} s"
         elif name in stack.members:
             stack.kill(name)
-            self._back.append((stack.now + strike.back_after, name))
+            self._back.append((stack.now + fault.back_after, name))
             yield "kill", f"{name} is gone"
 
     def _start_again(self) -> None:
@@ -76,14 +76,14 @@ def run(case: Case, progress: Progress = lambda t, state: None) -> Result:
     """Run and judge one case. What a service raises ends the case as `crashed`."""
     began = monotonic()
     with tempfile.TemporaryDirectory(prefix="case-") as state_dir:
-        return _run(case, progress, began, Path(state_dir) if case.strikes else None)
+        return _run(case, progress, began, Path(state_dir) if case.timed_faults else None)
 
 
 def _run(case: Case, progress: Progress, began: float, state_dir: Path | None) -> Result:
-    struck: list[Struck] = []
+    reports: list[FaultReport] = []
     try:
         stack = Stack(
-            case.scene or "apartment", case.seed, case.settings, swaps=_swaps(case, struck.append),
+            case.scene or "apartment", case.seed, case.settings, swaps=_swaps(case, reports.append),
             without=idle_services(case), state_dir=state_dir, replaced=case.replaced,
         )  # fmt: skip
     except Exception as error:
@@ -91,7 +91,7 @@ def _run(case: Case, progress: Progress, began: float, state_dir: Path | None) -
     try:
         examiner: Examiner = stack.join(examiner_of(case))
         try:
-            _until_over(stack, examiner, case, struck, progress)
+            _until_over(stack, examiner, case, reports, progress)
         except Exception as error:
             examiner.abort(stack.now, _words(error))
         result = judge(case, examiner.observed, monotonic() - began)
@@ -103,17 +103,17 @@ def _run(case: Case, progress: Progress, began: float, state_dir: Path | None) -
         stack.close()
 
 
-def _until_over(stack: Stack, examiner: Examiner, case: Case, struck: list[Struck], progress: Progress) -> None:
-    """`struck`: what the injectors have reported so far."""
-    director = Director(stack, case.strikes, struck.append)
+def _until_over(stack: Stack, examiner: Examiner, case: Case, reports: list[FaultReport], progress: Progress) -> None:
+    """`reports`: what the injectors have reported so far."""
+    scheduler = FaultScheduler(stack, case.timed_faults, reports.append)
     due, told = 0.0, 0
     while not examiner.done:
         stack.tick()
-        if case.strikes and round(stack.now / DT) % 5 == 0:
-            director.step()
-        for strike in struck[told:]:
-            examiner.struck(strike)
-        told = len(struck)
+        if case.timed_faults and round(stack.now / DT) % 5 == 0:
+            scheduler.step()
+        for report in reports[told:]:
+            examiner.note_fault(report)
+        told = len(reports)
         if stack.now >= due:
             due = stack.now + REPORT
             progress(stack.now, stack.state().state)
@@ -126,8 +126,8 @@ def _words(error: Exception) -> str:
     return f"{type(error).__name__}: {error}{where}"
 
 
-def _swaps(case: Case, report: Report) -> dict[str, Any]:
-    return {name: partial(injected, case=case, report=report) for name in targets(case)}
+def _swaps(case: Case, report: Reporter) -> dict[str, Any]:
+    return {name: partial(with_faults, case=case, report=report) for name in targets(case)}
 
 
 def idle_services(case: Case) -> tuple[str, ...]:

@@ -17,7 +17,7 @@ from common.rendering.renderer import choose
 from common.scene import Scene, load_scene
 from common.time.clock import ManualClock
 from common.time.lockstep import DT, InProcess
-from evaluation.harm import CutBus, FullDisk
+from evaluation.host_faults import FullDisk, OutageBus
 from evaluation.registry import service_class
 
 Swap = Callable[[Any], Any]
@@ -78,7 +78,7 @@ class Stack:
         self._swaps, self._replaced = dict(swaps or {}), dict(replacement(entry) for entry in replaced)
         # One process, one GL library, chosen before anything imports MuJoCo.
         choose("auto")
-        self.bus, self._clock = CutBus(), ManualClock()
+        self.bus, self._clock = OutageBus(), ManualClock()
         self.members: dict[str, tuple[Any, MemoryIo]] = {}
         self._hung: dict[str, float] = {}
         self._cut_until = self._full_until = float("inf")

@@ -25,8 +25,8 @@ from evaluation.case import Case, Line
 from evaluation.chaos import CHAOS_SERVICES, CHAOS_STATES, chaos
 from evaluation.commands import ALL, commands
 from evaluation.faults import Rule
-from evaluation.physical import Kind as PhysicalKind
-from evaluation.physical import PhysicalFault
+from evaluation.physical.fault import Kind as PhysicalKind
+from evaluation.physical.fault import PhysicalFault
 from evaluation.spoken import HERE, MANIFEST, read_corpus, spoken
 from judge.evidence import Want
 from services.brain.config import BrainConfig

@@ -24,7 +24,7 @@ GOOD = ("delivered", "declined", "stopped", "shown", "reported")
 def judge(case: Case, seen: Observed, wall_seconds: float) -> Result:
     """The verdict on one case."""
     outcome = _outcome(case, seen)
-    if case.faults and not seen.strikes and outcome in GOOD:
+    if case.faults and not seen.fault_reports and outcome in GOOD:
         outcome = "not struck"
     delivered = outcome == "delivered" or (outcome == "shown" and bool(case.wants))
     allowed: tuple[str, ...] = MET[case.expect] + (("reported",) if case.honest else ())
@@ -35,7 +35,7 @@ def judge(case: Case, seen: Observed, wall_seconds: float) -> Result:
         "reason": seen.reason, **msgspec.to_builtins(seen.evidence), "shortest": seen.shortest, "spl": share,
         "sim_seconds": seen.robot_seconds, "wall_seconds": round(wall_seconds, 1), "states": seen.states,
         "said": seen.said, "effects": msgspec.to_builtins(seen.shown), "wrong": seen.wrong,
-        "struck": seen.struck, "strikes": msgspec.to_builtins(seen.strikes), "recovery": seen.recovery,
+        "struck": seen.fault_at, "strikes": msgspec.to_builtins(seen.fault_reports), "recovery": seen.recovery,
         "shortfall": seen.shortfall, "claims": msgspec.to_builtins(seen.claims), "crash": seen.crash,
     }  # fmt: skip
     return Result(

@@ -10,7 +10,7 @@ from typing import Literal
 import msgspec
 
 from common.scene import Scene
-from judge.evidence import Look
+from judge.evidence import Sample
 from judge.track import distance
 from judge.words import plain
 
@@ -58,25 +58,25 @@ class Watcher:
 
     def __init__(self, scene: Scene) -> None:
         self._scene = scene
-        self._first: Look | None = None
-        self._last: Look | None = None
-        self._rest: Look | None = None
+        self._first: Sample | None = None
+        self._last: Sample | None = None
+        self._rest: Sample | None = None
         self._stood: list[tuple[float, float]] = []
         self._driven = 0.0
-        self._said: list[tuple[str, Look | None]] = []
+        self._said: list[tuple[str, Sample | None]] = []
         self.lifted: set[str] = set()
 
-    def see(self, look: Look) -> None:
-        self._first = self._first or look
-        self._driven += distance(look.base[:2], self._last.base[:2]) if self._last else 0.0
-        if self._rest is None or distance(look.base[:2], self._rest.base[:2]) > STOOD:
-            self._rest = look
-        elif look.t - self._rest.t >= STOOD_FOR:
+    def add(self, sample: Sample) -> None:
+        self._first = self._first or sample
+        self._driven += distance(sample.base[:2], self._last.base[:2]) if self._last else 0.0
+        if self._rest is None or distance(sample.base[:2], self._rest.base[:2]) > STOOD:
+            self._rest = sample
+        elif sample.t - self._rest.t >= STOOD_FOR:
             here = self._rest.base[:2]
             if not self._stood or distance(here, self._stood[-1]) > STOOD:
                 self._stood.append(here)
-        self.lifted |= {name for name, thing in look.things.items() if thing.held}
-        self._last = look
+        self.lifted |= {name for name, thing in sample.things.items() if thing.held}
+        self._last = sample
 
     def hear(self, sentence: str) -> None:
         """The robot says this now; what it says of the world has to be true now."""
@@ -124,14 +124,14 @@ class Watcher:
             case _:
                 return self._spoken(effect)
 
-    def _apart(self, last: Look, name: str, anchor: str) -> str:
+    def _apart(self, last: Sample, name: str, anchor: str) -> str:
         one, two = last.things[name], last.things[anchor]
         apart = distance(one.position[:2], two.position[:2])
         if one.on != two.on:
             return f"the {name} is on {one.on or 'nothing'}, the {anchor} on {two.on or 'nothing'}"
         return "" if apart <= BESIDE else f"the {name} stands {apart:.2f} m from the {anchor}"
 
-    def _motion(self, first: Look, last: Look) -> str:
+    def _motion(self, first: Sample, last: Sample) -> str:
         for name, now in last.things.items():
             if distance(now.position, first.things[name].position) > MOVED:
                 return f"moved the {name}"
@@ -139,7 +139,7 @@ class Watcher:
 
     # --- words
     def _spoken(self, effect: Effect) -> str:
-        reasons = [self._untrue(effect, words, look) for words, look in self._said]
+        reasons = [self._untrue(effect, words, sample) for words, sample in self._said]
         if "" in reasons:
             return ""
         told = [r for r in reasons if r is not None]
@@ -151,12 +151,12 @@ class Watcher:
             else (f"no answer: {effect}")
         )
 
-    def _untrue(self, effect: Effect, words: str, look: Look | None) -> str | None:
+    def _untrue(self, effect: Effect, words: str, sample: Sample | None) -> str | None:
         """Why the sentence is untrue, "" when it answers truly, None when it is about other things."""
         if effect.kind == "says":
             return "" if plain(effect.what) in words else None
         # A question of the robot's and its report at the end are no answers.
-        if look is None or words.startswith(("did you say", "do you mean")):
+        if sample is None or words.startswith(("did you say", "do you mean")):
             return None
         found = mentions(words, self._scene)
         things = [n for what, n in found if what == "thing"]
@@ -165,13 +165,13 @@ class Watcher:
             case "tells where":
                 if effect.what not in things:
                     return None
-                really = look.things[effect.what].on
+                really = sample.things[effect.what].on
                 good = set(surfaces) == {really}
                 return "" if good else f"said {words!r}, it is on the {really or 'hand'}"
             case "tells what is on":
                 if effect.what not in surfaces:
                     return None
-                there = {n for n, thing in look.things.items() if thing.on == effect.what}
+                there = {n for n, thing in sample.things.items() if thing.on == effect.what}
                 return (
                     "" if set(things) == there else f"said {words!r}, there is {', '.join(sorted(there)) or 'nothing'}"
                 )
@@ -180,8 +180,8 @@ class Watcher:
                     return "" if "seen nothing" in words or "see nothing" in words else None
                 for number, (what, name) in enumerate(found):
                     where = next((n for w, n in found[number:] if w == "surface"), "")
-                    if what == "thing" and look.things[name].on != where:
-                        return f"said the {name} is on the {where}, it is on the {look.things[name].on}"
+                    if what == "thing" and sample.things[name].on != where:
+                        return f"said the {name} is on the {where}, it is on the {sample.things[name].on}"
                 return ""
 
 

@@ -18,7 +18,7 @@ REST = 0.5
 """Time [s] over which rest is judged: ten samples at 20 Hz."""
 
 
-class Look(msgspec.Struct, frozen=True):
+class Sample(msgspec.Struct, frozen=True):
     """The world at robot time `t`; `opening`: gap between the pads [m]."""
 
     t: float
@@ -75,22 +75,22 @@ class Recorder:
     def __init__(self, kinds: Mapping[str, str], bins: frozenset[str] = frozenset()) -> None:
         """`kinds` of the objects by name; `bins`: receptacles into which things may be let fall, and lie as they do."""
         self._kinds, self._bins = kinds, bins
-        self._recent: list[Look] = []
+        self._recent: list[Sample] = []
         self._tracks: dict[str, Track] = {}
         self._book = ContactBook()
         self._driven = 0.0
 
-    def see(self, look: Look) -> None:
+    def add(self, sample: Sample) -> None:
         """One more sample."""
         if not self._recent:
-            self._tracks = {n: Track(self._kinds[n], self._bins, thing, thing) for n, thing in look.things.items()}
-            self._recent = [look]
+            self._tracks = {n: Track(self._kinds[n], self._bins, thing, thing) for n, thing in sample.things.items()}
+            self._recent = [sample]
             return
-        step = distance(look.base[:2], self._recent[-1].base[:2])
+        step = distance(sample.base[:2], self._recent[-1].base[:2])
         self._driven += step
-        for name, now in look.things.items():
-            self._tracks[name].see(now, look.t, step)
-        self._recent = [x for x in self._recent if x.t >= look.t - REST] + [look]
+        for name, now in sample.things.items():
+            self._tracks[name].add(now, sample.t, step)
+        self._recent = [x for x in self._recent if x.t >= sample.t - REST] + [sample]
 
     def feel(self, report: m.SimContacts) -> None:
         """What the simulation's log of contacts says."""

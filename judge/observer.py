@@ -7,7 +7,7 @@ from common import messages as m
 from common.scene import Scene
 from judge.claims import Claim, ClaimListener, Statement
 from judge.effects import Shown, Watcher
-from judge.evidence import Evidence, Look, Recorder
+from judge.evidence import Evidence, Recorder, Sample
 from judge.goal import Goal, shortfall
 from judge.replica import Replica
 
@@ -40,14 +40,14 @@ class Observer:
         """The world's model; only the first one counts."""
         self._replica = self._replica or Replica(model.mjcf, self._scene)
 
-    def world(self, state: m.SimState) -> Look | None:
+    def world(self, state: m.SimState) -> Sample | None:
         """One state of the world; None before its model is known."""
         if self._replica is None:
             return None
-        look = self._replica.look(state)
-        self._recorder.see(look)
-        self._watcher.see(look)
-        return look
+        sample = self._replica.sample(state)
+        self._recorder.add(sample)
+        self._watcher.add(sample)
+        return sample
 
     def contacts(self, report: m.SimContacts) -> None:
         """A part of the simulation's log of contacts."""

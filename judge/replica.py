@@ -10,7 +10,7 @@ from common import messages as m
 from common.robot import Hand, pads, subtree
 from common.scene import ObjectSpec, Scene, body_name
 from common.support import support
-from judge.evidence import Look
+from judge.evidence import Sample
 from judge.track import Thing
 
 
@@ -40,7 +40,7 @@ class Replica:
         self._poses = np.full(self._poses_at.shape, np.nan)
         self._things: dict[str, Thing] = {}
 
-    def look(self, state: m.SimState) -> Look:
+    def sample(self, state: m.SimState) -> Sample:
         """Poses and contacts of a published state.
 
         Raises:
@@ -82,7 +82,7 @@ class Replica:
         base = tuple(float(v) for v in data.qpos[self._base_at])
         apart = np.square(self._postures - qpos[self._fingers_at]).sum(axis=1)
         opening = float(self._widths[int(np.argmin(apart))])
-        return Look(state.t, (base[0], base[1], base[2]), things, opening)
+        return Sample(state.t, (base[0], base[1], base[2]), things, opening)
 
     def _contacts(self) -> tuple[dict[str, set[int]], set[str]]:
         """Per object the robot's geoms that touch it; the objects that anything else touches."""

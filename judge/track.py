@@ -47,7 +47,7 @@ class Track(msgspec.Struct):
         """Everything counts from here: what has happened so far was the world settling."""
         self.baseline, self.shift, self.lean = self.last, 0.0, 0.0
 
-    def see(self, now: Thing, t: float, driven: float) -> None:
+    def add(self, now: Thing, t: float, driven: float) -> None:
         """The object at time `t` [s], after the base has driven `driven` [m] since the sample before."""
         before, self.last = self.last, now
         if now is before and not now.held:

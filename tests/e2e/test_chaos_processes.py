@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from evaluation import processes
-from evaluation.case import Strike
+from evaluation.case import TimedFault
 from evaluation.chaos import CELLS, CHAOS_STATES, EVERY, HARM, MOMENTS, Cell
 from evaluation.suites import cases
 
@@ -39,8 +39,8 @@ def test_a_mission_survives_what_befalls_its_processes(cells: list[Cell]) -> Non
     rng = np.random.default_rng([SEED, len(cells)])
     case = cases("chaos", 1, CELLS.index(cells[0]))[0]
     case.spoken = any(c.service == "speech" or c.state == "CONFIRMING" for c in cells)
-    case.strikes = tuple(
-        Strike(c.service, c.state, after=float(rng.uniform(0, MOMENTS[c.state])), **HARM.get(c.fault, {}))
+    case.timed_faults = tuple(
+        TimedFault(c.service, c.state, after=float(rng.uniform(0, MOMENTS[c.state])), **HARM.get(c.fault, {}))
         for c in cells
     )
     result = processes.run(case)

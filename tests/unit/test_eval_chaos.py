@@ -11,14 +11,14 @@ from rich.console import Console
 
 from common import messages as m
 from common import topics
-from evaluation.case import Case, Line, Observed, Result, Strike
+from evaluation.case import Case, Line, Observed, Result, TimedFault
 from evaluation.chaos import CELLS, CHAOS_SERVICES, CHAOS_STATES, EVERY, MISTREATED, TRAFFIC, chaos
 from evaluation.examiner import Examiner, ExaminerConfig, examiner_of
+from evaluation.fault_reports import FaultReport
 from evaluation.faults import Rule, faulty
 from evaluation.matrix import cell, chaos_tables, tally
-from evaluation.runner import Director
+from evaluation.runner import FaultScheduler
 from evaluation.stack import Stack
-from evaluation.strikes import Struck
 from evaluation.verdict import judge
 from judge.claims import Claim
 from judge.evidence import Evidence, ThingEvidence
@@ -94,17 +94,17 @@ def test_a_full_disk_takes_nothing_until_there_is_room(stack: Stack, tmp_path: P
 
 
 def test_harm_comes_at_its_moment_and_is_told(stack: Stack) -> None:
-    told: list[Struck] = []
-    strikes = (Strike("navigation", "GRABBING", after=0.5), Strike("router", "RELEASING"))
-    director = Director(stack, (*strikes, Strike("speech", "GRABBING")), told.append)
+    told: list[FaultReport] = []
+    strikes = (TimedFault("navigation", "GRABBING", after=0.5), TimedFault("router", "RELEASING"))
+    scheduler = FaultScheduler(stack, (*strikes, TimedFault("speech", "GRABBING")), told.append)
     stack.bus.send(topics.BRAIN_STATE, m.BrainState(state="GRABBING"))
-    director.step()
+    scheduler.step()
     began = stack.now
     stack.advance(0.3)
-    director.step()
+    scheduler.step()
     assert "navigation" in stack.members and not told
     stack.advance(0.3)
-    director.step()
+    scheduler.step()
     assert "navigation" not in stack.members, "and speech, which is not there, was not struck"
     assert [(s.fault, s.what.split()[0], s.t) for s in told] == [("kill", "navigation", pytest.approx(began + 0.6))]
 
@@ -114,7 +114,7 @@ def test_harm_comes_at_its_moment_and_is_told(stack: Stack) -> None:
 def test_a_message_that_is_hit_is_told(service: str) -> None:
     topic = topics.ODOMETRY if service == "sim" else topics.NAVIGATION_STATUS
     rule = Rule(service=service, key=topic.key, kind="drop")
-    told: list[Struck] = []
+    told: list[FaultReport] = []
     opened = Stack("minimal", without=OTHERS, swaps={service: lambda kind: faulty(kind, (rule,), told.append)})
     opened.advance(0.5)
     opened.close()
@@ -123,7 +123,7 @@ def test_a_message_that_is_hit_is_told(service: str) -> None:
 
 def test_a_rule_for_a_state_holds_in_that_state_only() -> None:
     rule = Rule(service="navigation", key=topics.NAVIGATION_STATUS.key, kind="drop", count=99, state="GRABBING")
-    told: list[Struck] = []
+    told: list[FaultReport] = []
     node = Node(faulty(Counter, (rule,), told.append), None, SCENE)
     for state in ("NAVIGATING", "NAVIGATING", "GRABBING", "GRABBING", "RETURNING"):
         node.send(topics.BRAIN_STATE, m.BrainState(state=state))  # type: ignore[arg-type]
@@ -144,8 +144,8 @@ def test_every_service_is_killed_in_every_state() -> None:
     for seed, found in enumerate(CELLS):
         case = chaos(seed)
         assert case.name == f"{found.service} {found.state}" and case.fault == found.fault
-        assert bool(case.strikes) != bool(case.rules)
-        assert len(case.strikes) == (len(CHAOS_STATES) if found.state == EVERY else not case.rules)
+        assert bool(case.timed_faults) != bool(case.rules)
+        assert len(case.timed_faults) == (len(CHAOS_STATES) if found.state == EVERY else not case.rules)
 
 
 # --- the examiner's clock
@@ -162,7 +162,7 @@ def test_recovered_is_the_next_step_of_the_mission() -> None:
         node.run()
 
     show("NAVIGATING", "go")
-    examiner.struck(Struck(1.5, "kill", "brain is gone"))
+    examiner.note_fault(FaultReport(1.5, "kill", "brain is gone"))
     show("IDLE", "", mission="")
     show("IDLE", "")
     assert examiner.active, "a mission that is being taken up has not ended"
@@ -170,7 +170,7 @@ def test_recovered_is_the_next_step_of_the_mission() -> None:
     assert examiner.observed.recovery is None
     show("GRABBING", "grab")
     show("RETURNING", "return")
-    assert (examiner.observed.struck, examiner.observed.recovery) == (1.5, 3.5)
+    assert (examiner.observed.fault_at, examiner.observed.recovery) == (1.5, 3.5)
 
 
 # --- the table
@@ -178,13 +178,13 @@ def result(seed: int, delivered: bool, struck: float | None = 3.0, lies: bool = 
     thing = ThingEvidence("mug", "table", delivered=delivered, drops=drops)
     case = Case(
         suite="chaos", seed=seed, name="brain GRABBING", command="x", lines=(), fault="kill", honest=True,
-        strikes=(Strike("brain", "GRABBING"),),
+        timed_faults=(TimedFault("brain", "GRABBING"),),
     )  # fmt: skip
     seen = Observed(
         evidence=Evidence(things=[thing]), claimed="delivered" if delivered or lies else "failed", ended=True,
-        struck=struck, recovery=2.0 if delivered and struck else None, shortfall="" if delivered else "not at rest",
+        fault_at=struck, recovery=2.0 if delivered and struck else None, shortfall="" if delivered else "not at rest",
         claims=[Claim(3.0, "speech", "Done.", "m-1", "x", "mug: not at rest")] if lies else [],
-        strikes=[Struck(struck, "kill", "brain is gone")] if struck else [],
+        fault_reports=[FaultReport(struck, "kill", "brain is gone")] if struck else [],
     )  # fmt: skip
     return judge(case, seen, 1.0)
 

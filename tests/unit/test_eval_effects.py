@@ -12,7 +12,7 @@ from evaluation.commands import ALL, TALKS, TASKS, commands
 from evaluation.verdict import judge
 from judge.claims import Claim
 from judge.effects import Effect, Shown, Watcher, at
-from judge.evidence import Evidence, Look, ThingEvidence, Want
+from judge.evidence import Evidence, Sample, ThingEvidence, Want
 from judge.track import Thing
 
 SCENE = load_scene("apartment")
@@ -22,21 +22,21 @@ HELD = Thing(position=(0.5, 0.0, 0.9), tilt=0.0, on="", held=True, touched=True)
 HOME, KITCHEN = (0.0, 0.0), (3.6, -1.2)
 
 
-def look(t: float, base: tuple[float, float] = HOME, mug: Thing = MUG, apple: Thing = APPLE, **more: Any) -> Look:
-    return Look(t, (*base, 0.0), {"red mug": mug, "apple": apple}, opening=more.get("opening", 0.085))
+def sample(t: float, base: tuple[float, float] = HOME, mug: Thing = MUG, apple: Thing = APPLE, **more: Any) -> Sample:
+    return Sample(t, (*base, 0.0), {"red mug": mug, "apple": apple}, opening=more.get("opening", 0.085))
 
 
-def still(base: tuple[float, float], start: float, **more: Any) -> list[Look]:
-    return [look(start + 0.1 * n, base, **more) for n in range(8)]
+def still(base: tuple[float, float], start: float, **more: Any) -> list[Sample]:
+    return [sample(start + 0.1 * n, base, **more) for n in range(8)]
 
 
-def why(effect: Effect, *seen: Look | str) -> str:
+def why(effect: Effect, *seen: Sample | str) -> str:
     watcher = Watcher(SCENE)
     for one in seen:
         if isinstance(one, str):
             watcher.hear(one)
         else:
-            watcher.see(one)
+            watcher.add(one)
     shown = watcher.conclude((effect,))[0]
     assert shown.shown == (not shown.why)
     return shown.why
@@ -46,11 +46,11 @@ def test_places() -> None:
     there_and_back = [*still(HOME, 0.0), *still(KITCHEN, 5.0), *still(HOME, 9.0)]
     assert why(Effect("visits", "kitchen"), *there_and_back) == why(Effect("ends", "home"), *there_and_back) == ""
     assert "not at the kitchen" in why(Effect("ends", "kitchen"), *there_and_back)
-    through = [*still(HOME, 0.0), look(2.0, KITCHEN), *still(HOME, 4.0)]
+    through = [*still(HOME, 0.0), sample(2.0, KITCHEN), *still(HOME, 4.0)]
     assert "never stood" in why(Effect("visits", "kitchen"), *through)
-    assert "not at the home" in why(Effect("ends", "home"), *still(KITCHEN, 0.0), look(2.0, HOME))
-    assert "drives" in why(Effect("stands"), *still(HOME, 0.0), look(2.0, KITCHEN))
-    assert why(Effect("stands"), look(0.0, KITCHEN), *still(HOME, 4.0)) == ""
+    assert "not at the home" in why(Effect("ends", "home"), *still(KITCHEN, 0.0), sample(2.0, HOME))
+    assert "drives" in why(Effect("stands"), *still(HOME, 0.0), sample(2.0, KITCHEN))
+    assert why(Effect("stands"), sample(0.0, KITCHEN), *still(HOME, 4.0)) == ""
 
 
 @pytest.mark.parametrize(
@@ -65,31 +65,31 @@ def test_what_counts_as_at_a_place(name: str, point: tuple[float, float], there:
 
 
 def test_the_hand_and_what_it_holds() -> None:
-    assert why(Effect("holds", "red mug"), look(0.0), look(1.0, mug=HELD)) == ""
-    assert "holds apple" in why(Effect("holds", "red mug"), look(0.0), look(1.0, apple=HELD))
-    assert "holds nothing" in why(Effect("holds", "red mug"), look(0.0, mug=HELD), look(1.0))
-    assert why(Effect("hand", "open"), look(0.0)) == why(Effect("hand", "closed"), look(0.0, opening=0.0)) == ""
-    assert "40 mm" in why(Effect("hand", "closed"), look(0.0, opening=0.04))
-    assert why(Effect("rests", "red mug"), look(0.0, mug=HELD), look(1.0)) == ""
-    assert "not put down" in why(Effect("rests", "red mug"), look(0.0), look(1.0, mug=HELD))
+    assert why(Effect("holds", "red mug"), sample(0.0), sample(1.0, mug=HELD)) == ""
+    assert "holds apple" in why(Effect("holds", "red mug"), sample(0.0), sample(1.0, apple=HELD))
+    assert "holds nothing" in why(Effect("holds", "red mug"), sample(0.0, mug=HELD), sample(1.0))
+    assert why(Effect("hand", "open"), sample(0.0)) == why(Effect("hand", "closed"), sample(0.0, opening=0.0)) == ""
+    assert "40 mm" in why(Effect("hand", "closed"), sample(0.0, opening=0.04))
+    assert why(Effect("rests", "red mug"), sample(0.0, mug=HELD), sample(1.0)) == ""
+    assert "not put down" in why(Effect("rests", "red mug"), sample(0.0), sample(1.0, mug=HELD))
 
 
 def test_beside_is_on_the_same_surface_and_near() -> None:
     beside = Effect("beside", "red mug", "apple")
     near = msgspec.structs.replace(APPLE, position=(5.2, -0.7, 0.77))
     far = msgspec.structs.replace(APPLE, position=(5.7, -0.4, 0.77))
-    assert why(beside, look(0.0), look(1.0, mug=near)) == ""
-    assert "0.76 m" in why(beside, look(0.0), look(1.0, mug=far))
-    assert "counter" in why(beside, look(0.0), look(1.0))
+    assert why(beside, sample(0.0), sample(1.0, mug=near)) == ""
+    assert "0.76 m" in why(beside, sample(0.0), sample(1.0, mug=far))
+    assert "counter" in why(beside, sample(0.0), sample(1.0))
 
 
 def test_nothing_moves() -> None:
     shoved = msgspec.structs.replace(MUG, position=(4.54, -3.1, 0.81))
     assert why(Effect("still"), *still(HOME, 0.0)) == ""
-    assert why(Effect("still"), look(0.0), look(1.0, mug=shoved)) == "moved the red mug"
-    assert "drove" in why(Effect("still"), look(0.0), look(1.0, KITCHEN), look(2.0, HOME))
-    assert why(Effect("left alone", "apple"), look(0.0), look(1.0, mug=shoved)) == ""
-    assert "0.04 m" in why(Effect("left alone", "red mug"), look(0.0), look(1.0, mug=shoved))
+    assert why(Effect("still"), sample(0.0), sample(1.0, mug=shoved)) == "moved the red mug"
+    assert "drove" in why(Effect("still"), sample(0.0), sample(1.0, KITCHEN), sample(2.0, HOME))
+    assert why(Effect("left alone", "apple"), sample(0.0), sample(1.0, mug=shoved)) == ""
+    assert "0.04 m" in why(Effect("left alone", "red mug"), sample(0.0), sample(1.0, mug=shoved))
 
 
 @pytest.mark.parametrize(
@@ -110,7 +110,7 @@ def test_nothing_moves() -> None:
     ],
 )
 def test_answers_have_to_be_true_in_physics(effect: Effect, sentence: str, reason: str) -> None:
-    found = why(effect, look(0.0), sentence)
+    found = why(effect, sample(0.0), sentence)
     assert (reason in found) if reason else not found, found
 
 

@@ -6,10 +6,10 @@ import msgspec
 import pytest
 
 from evaluation.case import Case, Line, Observed
-from evaluation.physical import PhysicalFault
+from evaluation.fault_reports import FaultReport
+from evaluation.physical.fault import PhysicalFault
 from evaluation.report import passed
 from evaluation.statistics import interval, percent, share, wilson
-from evaluation.strikes import Struck
 from evaluation.verdict import cause, judge
 from judge.claims import Claim
 from judge.effects import Effect, Shown
@@ -131,7 +131,7 @@ def test_a_fault_that_never_took_effect_says_nothing_of_the_robot() -> None:
         result = judge(jam, observed, 1.0)
         assert (result.outcome, result.met, result.delivered) == ("not struck", False, False)
         assert result.cause == "not struck: jam"
-        observed.strikes = [Struck(2.0, "jam", "a finger stays")]
+        observed.fault_reports = [FaultReport(2.0, "jam", "a finger stays")]
         assert judge(jam, observed, 1.0).met
     assert judge(jam, seen(GOOD, "none", ended=False), 1.0).outcome == "timeout", "whatever struck"
 
@@ -157,8 +157,8 @@ def test_what_cannot_be_done_is_refused_aloud_and_nothing_breaks(
 
 def test_the_row_of_the_report_has_everything() -> None:
     observed = seen(GOOD, "delivered", claims=[claim()], robot_seconds=31.0, said=["Done."], states=["WAITING"])
-    observed.struck, observed.recovery = 2.0, 3.0
-    observed.strikes = [Struck(2.0, "kill", "brain is gone")]
+    observed.fault_at, observed.recovery = 2.0, 3.0
+    observed.fault_reports = [FaultReport(2.0, "kill", "brain is gone")]
     result = judge(msgspec.structs.replace(CASE, fault="kill"), observed, 7.26)
     assert (result.seed, result.command, result.name, result.sim_seconds) == (3, "bring", "fetch", 31.0)
     assert (result.spl, result.wall_seconds, result.false_claims) == (0.5, 7.26, 0)

@@ -8,8 +8,8 @@ from common import messages as m
 from common import topics
 from common.bus.port import Io
 from common.scene import Place, Scene
+from evaluation.fault_reports import FaultReport, ignore
 from evaluation.faults import Kind, Rule, faulty
-from evaluation.strikes import Struck, unheard
 from tests.node import Node
 
 SCENE = Scene(name="empty", low=(-1, -1), high=(1, 1), home=Place(name="home", x=0, y=0))
@@ -31,9 +31,9 @@ class Counter:
         self._io.publish(STATUS, m.NavigationStatus(status="navigating", detail=str(self._n), code=code))
 
 
-def said(steps: int, *rules: Rule, seed: int = 0, told: list[Struck] | None = None) -> list[str]:
+def said(steps: int, *rules: Rule, seed: int = 0, told: list[FaultReport] | None = None) -> list[str]:
     """The details that got through, step numbers at 10 Hz."""
-    node = Node(faulty(Counter, rules, unheard if told is None else told.append), None, SCENE, seed=seed)
+    node = Node(faulty(Counter, rules, ignore if told is None else told.append), None, SCENE, seed=seed)
     for _ in range(steps):
         node.step()
     return [status.detail for status in node.sent(STATUS)]
@@ -62,7 +62,7 @@ def test_an_edit_replaces_fields_and_leaves_the_rest() -> None:
 
 def test_only_what_takes_effect_is_reported() -> None:
     """An edit that says what was said anyway waits for a message that it changes."""
-    told: list[Struck] = []
+    told: list[FaultReport] = []
     assert said(3, rule("edit", fields={"code": "even"}), told=told) == ["1", "2", "3"]
     assert [(s.t, s.fault) for s in told] == [(0.1, "edit")]
     said(3, rule("edit", fields={"code": "odd"}), told=told)

@@ -9,9 +9,11 @@ from bench.grasp import Bench
 from common import messages as m
 from common import topics
 from common.scene import Obstacle, load_scene
-from evaluation.inject import injected, targets
-from evaluation.physical import InTheWay, PhysicalFault, afflicted
-from evaluation.strikes import StrikeFile, Struck, unheard
+from evaluation.fault_injection import targets, with_faults
+from evaluation.fault_reports import FaultReport, FaultReportFile, ignore
+from evaluation.physical.fault import PhysicalFault
+from evaluation.physical.faults import with_physical_faults
+from evaluation.physical.unfit import InTheWay
 from evaluation.suites import AMOUNT, FAULTS, GRASPED, faults
 from judge.contacts import is_hit
 from services.manipulation.config import ManipulationConfig
@@ -21,11 +23,11 @@ from services.sim.service import SimService
 SCENE = load_scene("apartment")
 
 
-def bench_of(fault: PhysicalFault, told: list[Struck]) -> Bench:
+def bench_of(fault: PhysicalFault, told: list[FaultReport]) -> Bench:
     """The robot before the fault's object, one grasp to try."""
     spec = SCENE.object(fault.thing)
     assert spec is not None
-    simulation = afflicted(SimService, (fault,), told.append)
+    simulation = with_physical_faults(SimService, (fault,), told.append)
     bench = Bench(SCENE, spec, 0.6, 1, ManipulationConfig(max_candidates=1), simulation)
     placed = bench.sim.physics.placements[0]
     x, y, _ = placed.position
@@ -48,7 +50,7 @@ def drive_back(bench: Bench) -> None:
 
 
 def test_a_shoved_object_is_not_between_the_fingers() -> None:
-    told: list[Struck] = []
+    told: list[FaultReport] = []
     bench = bench_of(PhysicalFault(kind="shove", thing="blue block"), told)
     before = bench.truth()["objects"]["blue block"]["position"]
     status = bench.run("grab", "b.1")
@@ -60,7 +62,7 @@ def test_a_shoved_object_is_not_between_the_fingers() -> None:
 
 @pytest.mark.parametrize(("seconds", "kept"), [(0.06, True), (1.5, False)])
 def test_friction_that_goes_lets_it_slide_or_fall(seconds: float, kept: bool) -> None:
-    told: list[Struck] = []
+    told: list[FaultReport] = []
     bench = bench_of(PhysicalFault(kind="slip", thing="green bottle", after=0.1, seconds=seconds), told)
     assert bench.run("grab", "b.1").status == "done"
     pads = sorted(g for side in bench.sim.physics.pads for g in side)
@@ -72,7 +74,7 @@ def test_friction_that_goes_lets_it_slide_or_fall(seconds: float, kept: bool) ->
 
 
 def test_a_jammed_finger_stays_and_comes_free() -> None:
-    told: list[Struck] = []
+    told: list[FaultReport] = []
     bench = bench_of(PhysicalFault(kind="jam", thing="blue block", seconds=3.0), told)
     status = bench.run("grab", "b.1")
     assert (status.status, status.code) == ("failed", "EMPTY_GRASP")
@@ -81,7 +83,7 @@ def test_a_jammed_finger_stays_and_comes_free() -> None:
 
 
 def test_what_is_too_heavy_is_left_where_it_stood() -> None:
-    told: list[Struck] = []
+    told: list[FaultReport] = []
     bench = bench_of(PhysicalFault(kind="heavy", thing="blue block", amount=8.0), told)
     before = bench.truth()["objects"]["blue block"]["position"]
     status = bench.run("grab", "b.1")
@@ -92,7 +94,7 @@ def test_what_is_too_heavy_is_left_where_it_stood() -> None:
 
 
 def test_without_a_grasp_nothing_strikes() -> None:
-    told: list[Struck] = []
+    told: list[FaultReport] = []
     for kind in ("shove", "slip", "jam", "heavy", "wide"):
         bench = bench_of(PhysicalFault(kind=kind, thing="blue block", amount=0.1), told)
         bench.run("home", "b.1")
@@ -102,9 +104,9 @@ def test_without_a_grasp_nothing_strikes() -> None:
 
 
 def test_only_services_with_faults_are_replaced() -> None:
-    assert afflicted(SimService, (), unheard) is SimService
+    assert with_physical_faults(SimService, (), ignore) is SimService
     case = faults(FAULTS.index("jam"))
-    assert targets(case) == {"sim"} and issubclass(injected(SimService, case, unheard), SimService)
+    assert targets(case) == {"sim"} and issubclass(with_faults(SimService, case, ignore), SimService)
 
 
 def test_every_kind_of_fault_comes_with_the_seeds() -> None:
@@ -118,9 +120,9 @@ def test_every_kind_of_fault_comes_with_the_seeds() -> None:
 
 def test_reports_of_other_processes_are_read_as_they_come(tmp_path: Path) -> None:
     path = tmp_path / "strikes"
-    reader, writer = StrikeFile(path), StrikeFile(path)
+    reader, writer = FaultReportFile(path), FaultReportFile(path)
     assert reader.news() == []
-    first, second = Struck(1.0, "drop", "scan"), Struck(2.5, "jam", "a finger stays")
+    first, second = FaultReport(1.0, "drop", "scan"), FaultReport(2.5, "jam", "a finger stays")
     writer.report(first)
     assert reader.news() == [first]
     with path.open("ab") as file:

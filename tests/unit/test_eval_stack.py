@@ -7,9 +7,9 @@ import pytest
 
 from common import messages as m
 from common import topics
-from evaluation.case import Strike
+from evaluation.case import TimedFault
 from evaluation.faults import Rule, faulty
-from evaluation.runner import Director
+from evaluation.runner import FaultScheduler
 from evaluation.stack import Stack, paced_services
 
 OTHERS = tuple(n for n in paced_services() if n != "navigation")
@@ -69,14 +69,14 @@ def test_a_jump_of_the_clock_moves_time_and_not_the_world(stack: Stack) -> None:
 
 
 def test_strikes_come_in_their_state_and_the_service_comes_back(stack: Stack) -> None:
-    director = Director(stack, (Strike("navigation", "GRABBING", back_after=0.5),))
+    scheduler = FaultScheduler(stack, (TimedFault("navigation", "GRABBING", back_after=0.5),))
     for state in ("NAVIGATING", "GRABBING", "GRABBING"):
         stack.bus.send(topics.BRAIN_STATE, m.BrainState(state=state))  # type: ignore[arg-type]
-        director.step()
+        scheduler.step()
         assert ("navigation" in stack.members) == (state == "NAVIGATING")
         stack.advance(0.1)
     stack.advance(0.5)
-    director.step()
+    scheduler.step()
     assert "navigation" in stack.members and stack.starts["navigation"] == 2
 
 

@@ -11,7 +11,7 @@ from common import topics
 from common.bus import codec
 from common.scene import load_scene
 from evaluation.shortest import FloorPlan
-from judge.evidence import Evidence, Look
+from judge.evidence import Evidence, Sample
 from judge.goal import Goal
 from judge.observer import Observer
 from judge.replica import Replica
@@ -28,9 +28,9 @@ class World(Simulation):
         super().__init__(scene, seed)
         self.replica = Replica(self.last(topics.SIM_MODEL).mjcf, self.io.scene)
 
-    def look(self) -> Look:
+    def look(self) -> Sample:
         self.step(0.05)
-        return self.replica.look(self.last(topics.SIM_STATE))
+        return self.replica.sample(self.last(topics.SIM_STATE))
 
 
 @pytest.mark.parametrize("seed", [0, 5])
@@ -124,7 +124,7 @@ def test_a_state_of_another_model_is_refused() -> None:
     state = codec.decode(topics.SIM_STATE, world.bus.last["sim/state"])
     state.qpos = state.qpos[:-8]
     with pytest.raises(ValueError, match="does not fit"):
-        world.replica.look(state)
+        world.replica.sample(state)
 
 
 def test_lengths_of_ways() -> None:

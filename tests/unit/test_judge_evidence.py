@@ -9,7 +9,7 @@ import pytest
 from common import messages as m
 from judge.contacts import ContactBook, describe, is_hit
 from judge.effects import Effect, Shown
-from judge.evidence import Evidence, Look, Recorder, ThingEvidence, Want, spl
+from judge.evidence import Evidence, Recorder, Sample, ThingEvidence, Want, spl
 from judge.goal import Goal, shortfall
 from judge.track import Thing
 
@@ -27,29 +27,29 @@ def changed(thing: Thing, **fields: Any) -> Thing:
     return msgspec.structs.replace(thing, **fields)
 
 
-def look(t: float, mug: Thing, x: float = 0.0, can: Thing = CAN, ball: Thing = BALL) -> Look:
-    return Look(t, (x, 0.0, 0.0), {"mug": mug, "can": can, "ball": ball})
+def sample(t: float, mug: Thing, x: float = 0.0, can: Thing = CAN, ball: Thing = BALL) -> Sample:
+    return Sample(t, (x, 0.0, 0.0), {"mug": mug, "can": can, "ball": ball})
 
 
 GOOD = [
-    look(0.0, ON_TABLE), look(1.0, ON_TABLE, 2.4), look(2.0, HELD, 2.4), look(3.0, HELD, 1.2), look(4.0, HELD),
-    look(5.0, ON_TRAY), look(5.5, ON_TRAY), look(6.0, ON_TRAY),
+    sample(0.0, ON_TABLE), sample(1.0, ON_TABLE, 2.4), sample(2.0, HELD, 2.4), sample(3.0, HELD, 1.2),
+    sample(4.0, HELD), sample(5.0, ON_TRAY), sample(5.5, ON_TRAY), sample(6.0, ON_TRAY),
 ]  # fmt: skip
 
 
-def recorder(looks: list[Look], bins: frozenset[str] = frozenset()) -> Recorder:
+def recorder(samples: list[Sample], bins: frozenset[str] = frozenset()) -> Recorder:
     found = Recorder(KINDS, bins)
-    for one in looks:
-        found.see(one)
+    for one in samples:
+        found.add(one)
     return found
 
 
-def evidence(looks: list[Look], bins: frozenset[str] = frozenset()) -> Evidence:
-    return recorder(looks, bins).conclude((WANT,), MUG)
+def evidence(samples: list[Sample], bins: frozenset[str] = frozenset()) -> Evidence:
+    return recorder(samples, bins).conclude((WANT,), MUG)
 
 
-def mug(looks: list[Look], bins: frozenset[str] = frozenset()) -> ThingEvidence:
-    return evidence(looks, bins).things[0]
+def mug(samples: list[Sample], bins: frozenset[str] = frozenset()) -> ThingEvidence:
+    return evidence(samples, bins).things[0]
 
 
 def test_lifted_carried_upright_and_at_rest_is_delivered() -> None:
@@ -65,45 +65,45 @@ def test_lifted_carried_upright_and_at_rest_is_delivered() -> None:
 
 
 @pytest.mark.parametrize(
-    ("looks", "why"),
+    ("samples", "why"),
     [
         ([*GOOD[:2], *GOOD[5:]], "never lifted by the gripper"),
         (GOOD[:5], "still touched by the gripper; on nothing, not on tray or desk"),
-        ([*GOOD[:-1], look(6.0, changed(ON_TRAY, touched=True))], "still touched by the gripper"),
-        ([*GOOD[:4], look(3.5, FALLING, 1.0), *GOOD[5:]], "dropped on the way"),
-        ([*GOOD[:4], look(3.5, changed(ON_TABLE, on="floor"), 1.0), *GOOD[5:]], "dropped on the way"),
+        ([*GOOD[:-1], sample(6.0, changed(ON_TRAY, touched=True))], "still touched by the gripper"),
+        ([*GOOD[:4], sample(3.5, FALLING, 1.0), *GOOD[5:]], "dropped on the way"),
+        ([*GOOD[:4], sample(3.5, changed(ON_TABLE, on="floor"), 1.0), *GOOD[5:]], "dropped on the way"),
         (
-            [*GOOD[:-1], look(6.0, changed(ON_TRAY, on="floor"))],
+            [*GOOD[:-1], sample(6.0, changed(ON_TRAY, on="floor"))],
             "dropped on the way; on floor, not on tray or desk",
         ),
-        ([*GOOD[:-1], look(6.0, changed(ON_TRAY, on="table"))], "on table, not on tray or desk"),
-        ([*GOOD[:-1], look(6.0, changed(ON_TRAY, position=(0.72, 0.0, 0.5)))], "not at rest"),
+        ([*GOOD[:-1], sample(6.0, changed(ON_TRAY, on="table"))], "on table, not on tray or desk"),
+        ([*GOOD[:-1], sample(6.0, changed(ON_TRAY, position=(0.72, 0.0, 0.5)))], "not at rest"),
         ([], "the simulation showed nothing"),
     ],
 )
-def test_what_is_not_a_delivery(looks: list[Look], why: str) -> None:
-    found = mug(looks)
+def test_what_is_not_a_delivery(samples: list[Sample], why: str) -> None:
+    found = mug(samples)
     assert not found.delivered and found.why == why
 
 
 @pytest.mark.parametrize(("rise", "lifted"), [(0.0499, False), (0.0501, True)])
 def test_lifted_is_five_centimetres_in_the_hand(rise: float, lifted: bool) -> None:
     low = changed(HELD, position=(3.0, 0.0, 0.7 + rise))
-    assert mug([*GOOD[:2], look(2.0, low), *GOOD[5:]]).lifted == lifted
-    assert not mug([*GOOD[:2], look(2.0, changed(low, held=False)), *GOOD[5:]]).lifted
+    assert mug([*GOOD[:2], sample(2.0, low), *GOOD[5:]]).lifted == lifted
+    assert not mug([*GOOD[:2], sample(2.0, changed(low, held=False)), *GOOD[5:]]).lifted
 
 
 def test_what_has_been_lifted_stays_so_and_is_carried_only_in_the_hand() -> None:
     low = changed(HELD, position=(3.0, 0.0, 0.71))
-    found = mug([*GOOD[:4], look(4.0, low, 1.0), look(5.0, changed(low, held=False), 0.5), look(6.0, ON_TRAY)])
+    found = mug([*GOOD[:4], sample(4.0, low, 1.0), sample(5.0, changed(low, held=False), 0.5), sample(6.0, ON_TRAY)])
     assert found.lifted and found.carried == 1.4
 
 
 @pytest.mark.parametrize(("drift", "at_rest"), [(0.0049, True), (0.0051, False)])
 def test_at_rest_is_less_than_five_millimetres_in_half_a_second(drift: float, at_rest: bool) -> None:
     creeping = changed(ON_TRAY, position=(0.7 + drift, 0.0, 0.5))
-    assert mug([*GOOD[:6], look(5.5, creeping)]).at_rest == at_rest
-    assert mug([*GOOD[:6], look(5.51, creeping)]).at_rest, "half a second, not longer"
+    assert mug([*GOOD[:6], sample(5.5, creeping)]).at_rest == at_rest
+    assert mug([*GOOD[:6], sample(5.51, creeping)]).at_rest, "half a second, not longer"
 
 
 # --- standing
@@ -111,7 +111,7 @@ def test_a_mug_held_by_its_handle_and_let_go_lies_on_the_tray_and_is_not_deliver
     """The hand held the mug, whose body is 74 mm wide, by 78 mm; let go, it lay at 90 degrees, and all said so."""
     askew = changed(HELD, tilt=math.radians(20))
     lying = changed(ON_TRAY, tilt=math.radians(90), position=(0.7, 0.03, 0.49))
-    found = recorder([*GOOD[:2], look(2.0, askew, 2.4), look(4.0, askew), look(5.0, lying), look(6.0, lying)])
+    found = recorder([*GOOD[:2], sample(2.0, askew, 2.4), sample(4.0, askew), sample(5.0, lying), sample(6.0, lying)])
     judged = found.conclude((WANT,), MUG).things[0]
     assert judged.lifted and judged.at_rest and judged.released and judged.on == "tray"
     assert not judged.delivered and judged.toppled and judged.tilt == 90.0
@@ -121,21 +121,21 @@ def test_a_mug_held_by_its_handle_and_let_go_lies_on_the_tray_and_is_not_deliver
 
 @pytest.mark.parametrize(("degrees", "toppled"), [(0, False), (14.9, False), (15.1, True), (90, True), (180, True)])
 def test_what_has_an_upright_must_stand(degrees: float, toppled: bool) -> None:
-    found = mug([*GOOD[:5], look(5.0, changed(ON_TRAY, tilt=math.radians(degrees)))])
+    found = mug([*GOOD[:5], sample(5.0, changed(ON_TRAY, tilt=math.radians(degrees)))])
     assert (found.toppled, found.delivered) == (toppled, not toppled)
     assert found.tilt == degrees
 
 
 def test_in_a_bin_it_may_lie_as_it_fell() -> None:
-    lying = [*GOOD[:5], look(5.0, changed(ON_TRAY, tilt=math.radians(90)))]
+    lying = [*GOOD[:5], sample(5.0, changed(ON_TRAY, tilt=math.radians(90)))]
     assert mug(lying, frozenset({"tray"})).delivered
     assert not mug(lying, frozenset({"desk"})).delivered
 
 
 def test_what_rolls_has_no_upright() -> None:
     rolled = changed(ON_TRAY, tilt=2.0)
-    ball_home = [look(one.t, ON_TABLE, one.base[0], CAN, one.things["mug"]) for one in GOOD]
-    ball_home[-1] = look(6.0, ON_TABLE, 0.0, CAN, rolled)
+    ball_home = [sample(one.t, ON_TABLE, one.base[0], CAN, one.things["mug"]) for one in GOOD]
+    ball_home[-1] = sample(6.0, ON_TABLE, 0.0, CAN, rolled)
     found = recorder(ball_home).things((Want("ball", ("tray",)),))[0]
     assert found.delivered and found.tilt == pytest.approx(114.6)
 
@@ -145,35 +145,42 @@ def test_what_rolls_has_no_upright() -> None:
     ("bins", "later", "drops"), [({"tray"}, 0.9, 0), (set(), 0.9, 1), ({"desk"}, 0.9, 1), ({"tray"}, 1.0, 1)]
 )
 def test_a_thing_may_fall_into_a_bin(bins: set[str], later: float, drops: int) -> None:
-    found = mug([*GOOD[:5], look(4.5, FALLING), look(4.5 + later, ON_TRAY), look(9.0, ON_TRAY)], frozenset(bins))
+    found = mug([*GOOD[:5], sample(4.5, FALLING), sample(4.5 + later, ON_TRAY), sample(9.0, ON_TRAY)], frozenset(bins))
     assert (found.drops, found.dropped, found.delivered) == (drops, bool(drops), not drops)
 
 
 def test_what_slipped_is_judged_by_the_carry_that_followed() -> None:
-    slipped = [*GOOD[:3], look(2.5, FALLING, 2.4), look(2.7, ON_TABLE, 2.4), *GOOD[3:]]
+    slipped = [*GOOD[:3], sample(2.5, FALLING, 2.4), sample(2.7, ON_TABLE, 2.4), *GOOD[3:]]
     found = mug(slipped)
     assert (found.drops, found.dropped, found.delivered) == (1, False, True)
-    twice = [*GOOD[:3], look(2.5, FALLING), look(2.6, FALLING), look(2.8, HELD), look(2.9, FALLING), look(3.0, HELD)]
+    twice = [
+        *GOOD[:3],
+        sample(2.5, FALLING),
+        sample(2.6, FALLING),
+        sample(2.8, HELD),
+        sample(2.9, FALLING),
+        sample(3.0, HELD),
+    ]
     assert mug([*twice, *GOOD[5:]]).drops == 2
 
 
 def test_set_down_is_not_dropped() -> None:
     touched = changed(FALLING, touched=True)
-    assert mug([*GOOD[:5], look(4.5, touched), *GOOD[5:]]).drops == 0
-    assert mug([*GOOD[:5], look(4.5, changed(ON_TABLE, touched=False)), *GOOD[5:]]).drops == 0
+    assert mug([*GOOD[:5], sample(4.5, touched), *GOOD[5:]]).drops == 0
+    assert mug([*GOOD[:5], sample(4.5, changed(ON_TABLE, touched=False)), *GOOD[5:]]).drops == 0
 
 
 def test_what_stands_on_the_floor_has_not_fallen() -> None:
     below = changed(ON_TABLE, on="floor")
-    assert mug([look(0.0, below), look(1.0, below), *GOOD[2:]]).delivered
-    assert mug([look(0.0, below), look(1.0, changed(below, position=(3.01, 0, 0.7))), *GOOD[2:]]).drops == 0
+    assert mug([sample(0.0, below), sample(1.0, below), *GOOD[2:]]).delivered
+    assert mug([sample(0.0, below), sample(1.0, changed(below, position=(3.01, 0, 0.7))), *GOOD[2:]]).drops == 0
 
 
 # --- others
 @pytest.mark.parametrize(("shift", "moved"), [(0.029, False), (0.031, True)])
 def test_dominoes_count_whoever_touched_them(shift: float, moved: bool) -> None:
     """For a moment is enough: what was put back had been taken away."""
-    shoved = look(2.0, HELD, 2.4, changed(CAN, position=(3.3 + shift, 0.0, 0.75)))
+    shoved = sample(2.0, HELD, 2.4, changed(CAN, position=(3.3 + shift, 0.0, 0.75)))
     found = evidence([*GOOD[:2], shoved, *GOOD[3:]])
     assert found.disturbed == (["can"] if moved else [])
     assert found.moved == (["can", "mug"] if moved else ["mug"])
@@ -182,29 +189,29 @@ def test_dominoes_count_whoever_touched_them(shift: float, moved: bool) -> None:
 @pytest.mark.parametrize(("degrees", "tipped"), [(14.9, False), (15.1, True), (90, True)])
 def test_what_went_over_is_disturbed(degrees: float, tipped: bool) -> None:
     leaning = changed(CAN, tilt=math.radians(degrees))
-    turned = [look(one.t, one.things["mug"], one.base[0], leaning if one.t > 1 else CAN) for one in GOOD]
+    turned = [sample(one.t, one.things["mug"], one.base[0], leaning if one.t > 1 else CAN) for one in GOOD]
     assert evidence(turned).disturbed == (["can"] if tipped else [])
 
 
 def test_a_ball_may_turn_on_the_spot() -> None:
-    turned = [*GOOD[:-1], look(6.0, ON_TRAY, ball=changed(BALL, tilt=1.5))]
+    turned = [*GOOD[:-1], sample(6.0, ON_TRAY, ball=changed(BALL, tilt=1.5))]
     assert evidence(turned).disturbed == []
-    assert evidence([*GOOD[:-1], look(6.0, ON_TRAY, ball=changed(BALL, position=(3.6, 0.04, 0.75)))]).disturbed
+    assert evidence([*GOOD[:-1], sample(6.0, ON_TRAY, ball=changed(BALL, position=(3.6, 0.04, 0.75)))]).disturbed
 
 
 def test_the_world_may_settle_until_the_robot_is_asked() -> None:
     away, over = changed(BALL, position=(3.7, 0.0, 0.75)), changed(CAN, tilt=1.5)
-    found = recorder([look(0.0, ON_TABLE, can=CAN), look(0.5, ON_TABLE, 0.0, over, away)])
+    found = recorder([sample(0.0, ON_TABLE, can=CAN), sample(0.5, ON_TABLE, 0.0, over, away)])
     assert found.conclude((WANT,), MUG).disturbed == ["ball", "can"]
     found.restart()
-    found.see(look(1.0, ON_TABLE, 0.0, over, away))
+    found.add(sample(1.0, ON_TABLE, 0.0, over, away))
     assert found.conclude((WANT,), MUG).disturbed == []
-    found.see(look(1.5, ON_TABLE, 0.0, CAN, BALL))
+    found.add(sample(1.5, ON_TABLE, 0.0, CAN, BALL))
     assert found.conclude((WANT,), MUG).disturbed == ["ball", "can"]
 
 
 def test_what_another_command_wanted_moved_is_not_disturbed() -> None:
-    moved = recorder([*GOOD[:-1], look(6.0, ON_TRAY, 0.0, changed(CAN, position=(1.0, 0.0, 0.75)))])
+    moved = recorder([*GOOD[:-1], sample(6.0, ON_TRAY, 0.0, changed(CAN, position=(1.0, 0.0, 0.75)))])
     assert moved.conclude((WANT,), MUG).disturbed == ["can"]
     assert moved.conclude((WANT,), frozenset({"mug", "can"})).disturbed == []
 
@@ -251,13 +258,13 @@ def test_a_book_keeps_the_last_word_on_each_touch_and_what_a_killed_simulation_s
 
 @pytest.mark.parametrize(("drift", "standing"), [(0.0049, True), (0.0051, False)])
 def test_a_base_stands_that_is_at_rest(drift: float, standing: bool) -> None:
-    assert evidence([*GOOD, look(6.4, ON_TRAY, drift)]).standing == standing
+    assert evidence([*GOOD, sample(6.4, ON_TRAY, drift)]).standing == standing
 
 
 def test_without_a_sample_nothing_is_shown() -> None:
     found = Recorder(KINDS)
     assert not found.ready and not found.conclude((WANT,), MUG).standing
-    found.see(GOOD[0])
+    found.add(GOOD[0])
     assert found.ready and found.conclude((WANT,), MUG).standing
 
 
@@ -292,14 +299,19 @@ def test_of_a_world_that_nobody_showed_nothing_is_known() -> None:
 
 def test_ways_are_told_to_the_millimetre() -> None:
     third = 1 / 3
-    carrying = [look(0.0, ON_TABLE), look(1.0, HELD, third), look(2.0, HELD, 2 * third), look(3.0, ON_TRAY, 2 * third)]
+    carrying = [
+        sample(0.0, ON_TABLE),
+        sample(1.0, HELD, third),
+        sample(2.0, HELD, 2 * third),
+        sample(3.0, ON_TRAY, 2 * third),
+    ]
     found = evidence(carrying)
     assert (found.driven, found.things[0].carried) == (0.667, 0.667)
 
 
 def test_five_millimetres_are_no_rest() -> None:
     here, there = (changed(ON_TRAY, position=(x, 0.0, 0.0)) for x in (0.0, 0.005))
-    assert not mug([*GOOD[:5], look(5.0, here), look(5.5, there)]).at_rest
+    assert not mug([*GOOD[:5], sample(5.0, here), sample(5.5, there)]).at_rest
 
 
 def test_the_weight_of_short_ways_and_of_none() -> None:

@@ -9,7 +9,7 @@ from common.bus.memory import MemoryBus, MemoryIo
 from common.topics import Topic
 
 
-class CutBus(MemoryBus):
+class OutageBus(MemoryBus):
     """A bus whose router can be away.
 
     As over Zenoh then: streams are lost, everything else is kept by its publisher and delivered in order afterwards.

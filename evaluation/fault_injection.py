@@ -3,9 +3,9 @@
 from typing import Any
 
 from evaluation.case import Case
+from evaluation.fault_reports import Reporter
 from evaluation.faults import faulty
-from evaluation.physical import afflicted
-from evaluation.strikes import Report
+from evaluation.physical.faults import with_physical_faults
 
 
 def targets(case: Case) -> set[str]:
@@ -13,7 +13,7 @@ def targets(case: Case) -> set[str]:
     return {r.service for r in case.rules} | ({"sim"} if case.physical else set())
 
 
-def injected(kind: Any, case: Case, report: Report) -> Any:
+def with_faults(kind: Any, case: Case, report: Reporter) -> Any:
     """The class that runs in place of a service's; the class itself where the case has nothing for it."""
     found = faulty(kind, case.rules, report)
-    return afflicted(found, case.physical, report) if kind.NAME == "sim" else found
+    return with_physical_faults(found, case.physical, report) if kind.NAME == "sim" else found

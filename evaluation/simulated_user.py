@@ -18,7 +18,7 @@ _AGAIN = re.compile(r"say (?:it|that) again|please repeat|did not (?:hear|unders
 _WHICH = re.compile(r"^(?:which\b|do you mean|the .+ or the .+\?)", re.IGNORECASE)
 
 
-class Person:
+class SimulatedUser:
     """Wants `command` done with `thing`.
 
     Manners: `correct` a wrong question ("no, the <thing>"), `reject` it with "no" and repeat when asked, keep `silent`,
@@ -29,7 +29,7 @@ class Person:
         self._command, self._thing, self._scene, self._manner = command, thing, scene, manner
         self.answers = 0
 
-    def wish(self, command: str) -> None:
+    def set_goal(self, command: str) -> None:
         """From now on this is what was said, and meant."""
         self._command, self.answers = command, 0
 

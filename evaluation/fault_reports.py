@@ -6,7 +6,7 @@ from pathlib import Path
 import msgspec
 
 
-class Struck(msgspec.Struct, frozen=True):
+class FaultReport(msgspec.Struct, frozen=True):
     """A fault took effect at robot time `t` [s]; `what` is what was seen of it."""
 
     t: float
@@ -14,24 +14,24 @@ class Struck(msgspec.Struct, frozen=True):
     what: str
 
 
-Report = Callable[[Struck], None]
+Reporter = Callable[[FaultReport], None]
 
 
-def unheard(struck: Struck) -> None:
+def ignore(report: FaultReport) -> None:
     """For runs in which nobody asks what the faults did."""
 
 
-class StrikeFile:
+class FaultReportFile:
     """Reports of several processes to one reader: a JSON record a line, appended in one write."""
 
     def __init__(self, path: Path) -> None:
         self._path, self._read = path, 0
 
-    def report(self, struck: Struck) -> None:
+    def report(self, report: FaultReport) -> None:
         with self._path.open("ab", buffering=0) as file:
-            file.write(msgspec.json.encode(struck) + b"\n")
+            file.write(msgspec.json.encode(report) + b"\n")
 
-    def news(self) -> list[Struck]:
+    def news(self) -> list[FaultReport]:
         """The complete records since the last call."""
         try:
             size = self._path.stat().st_size
@@ -43,4 +43,4 @@ class StrikeFile:
             file.seek(self._read)
             lines, _, _ = file.read().rpartition(b"\n")
         self._read += len(lines) + 1 if lines else 0
-        return [msgspec.json.decode(line, type=Struck) for line in lines.splitlines()]
+        return [msgspec.json.decode(line, type=FaultReport) for line in lines.splitlines()]

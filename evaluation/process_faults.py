@@ -1,6 +1,6 @@
-"""Strikes at real processes: SIGKILL, SIGSTOP, a router that is killed, a disk without room for each of them.
+"""Faults of real processes: SIGKILL, SIGSTOP, a router that is killed, a disk without room for each of them.
 
-Whoever supervises the run (supervisord, and the watchdog for what hangs) brings back what was struck, as on a robot.
+Whoever supervises the run (supervisord, and the watchdog for what hangs) brings back what was hit, as on a robot.
 """
 
 import contextlib
@@ -13,8 +13,8 @@ from pathlib import Path
 
 from cli.supervision import WORLD, Supervision
 from common.time.clock import monotonic
-from evaluation.case import Case, Strike
-from evaluation.strikes import Report, Struck
+from evaluation.case import Case, TimedFault
+from evaluation.fault_reports import FaultReport, Reporter
 
 DEAD = 5.0
 """Wall time [s] for the kernel to end a killed process: a thread in a disk write takes longest, by far under 1 s."""
@@ -22,16 +22,18 @@ DEAD = 5.0
 
 def unavailable(case: Case) -> str:
     """Why the case cannot be run as processes; "" when it can."""
-    if any(s.jump for s in case.strikes):
+    if any(s.jump for s in case.timed_faults):
         return "a clock jump: robot time is the simulation's count of steps, which no signal can make leap"
     return ""
 
 
-class Saboteur:
-    """Does the strikes of a case to the processes of a supervised run, each in its state, and reports what it did."""
+class ProcessFaultInjector:
+    """Does the faults of a case to the processes of a supervised run, each in its state, and reports what it did."""
 
-    def __init__(self, supervision: Supervision, strikes: tuple[Strike, ...], state_dir: Path, report: Report) -> None:
-        self._supervision, self._waiting, self._report = supervision, list(strikes), report
+    def __init__(
+        self, supervision: Supervision, faults: tuple[TimedFault, ...], state_dir: Path, report: Reporter
+    ) -> None:
+        self._supervision, self._waiting, self._report = supervision, list(faults), report
         self._since: dict[str, float] = {}
         self._frozen: list[tuple[float, int]] = []
         self._full: FullDisks | None = None
@@ -40,9 +42,9 @@ class Saboteur:
     def step(self, now: float, state: str) -> None:
         """At robot time `now` with the brain in `state`."""
         self._since.setdefault(state, now)
-        for strike in [s for s in self._waiting if now >= self._since.get(s.state, float("inf")) + s.after]:
-            self._waiting.remove(strike)
-            self._strike(strike, now)
+        for fault in [s for s in self._waiting if now >= self._since.get(s.state, float("inf")) + s.after]:
+            self._waiting.remove(fault)
+            self._inject(fault, now)
         for row in [r for r in self._frozen if now >= r[0]]:
             self._frozen.remove(row)
             _send(row[1], signal.SIGCONT)
@@ -60,24 +62,24 @@ class Saboteur:
             os.close(process)
         self._frozen = []
 
-    def _strike(self, strike: Strike, now: float) -> None:
-        where = f"in {strike.state}, {strike.after:.2f} s after it began"
+    def _inject(self, timed: TimedFault, now: float) -> None:
+        where = f"in {timed.state}, {timed.after:.2f} s after it began"
         pids = self._pids()
-        if strike.full:
-            self._full = FullDisks(self._world, now + strike.full)
+        if timed.full:
+            self._full = FullDisks(self._world, now + timed.full)
             self._full.step(now, self._pids)
-        pid = pids.get(strike.service)
+        pid = pids.get(timed.service)
         if pid is None:
             return
         process = os.pidfd_open(pid)
-        if strike.seconds and strike.service != "router":
+        if timed.seconds and timed.service != "router":
             if _send(process, signal.SIGSTOP) and _stopped(pid):
-                self._report(Struck(round(now, 2), "hang", f"{strike.service} (pid {pid}) stopped {where}"))
-            self._frozen.append((now + strike.seconds, process))
+                self._report(FaultReport(round(now, 2), "hang", f"{timed.service} (pid {pid}) stopped {where}"))
+            self._frozen.append((now + timed.seconds, process))
             return
         if _send(process, signal.SIGKILL) and select.select([process], [], [], DEAD)[0]:
-            fault = "router loss" if strike.service == "router" else "kill"
-            self._report(Struck(round(now, 2), fault, f"{strike.service} (pid {pid}) killed {where}"))
+            fault = "router loss" if timed.service == "router" else "kill"
+            self._report(FaultReport(round(now, 2), fault, f"{timed.service} (pid {pid}) killed {where}"))
         os.close(process)
 
     def _pids(self) -> dict[str, int]:
@@ -87,7 +89,7 @@ class Saboteur:
         full, self._full = self._full, None
         assert full is not None
         if full.took_effect():
-            self._report(Struck(round(now, 2), "disk full", "the simulation could not save its world"))
+            self._report(FaultReport(round(now, 2), "disk full", "the simulation could not save its world"))
         full.end(self._pids())
 
 

@@ -3,14 +3,14 @@
 import pytest
 
 from common.scene import load_scene
-from evaluation.person import PATIENCE, Manner, Person
+from evaluation.simulated_user import PATIENCE, Manner, SimulatedUser
 from judge.words import plain
 
 SCENE = load_scene("apartment")
 
 
-def person(manner: Manner = "correct", command: str = "bring me the red mug", thing: str = "red mug") -> Person:
-    return Person(command, thing, SCENE, manner)
+def person(manner: Manner = "correct", command: str = "bring me the red mug", thing: str = "red mug") -> SimulatedUser:
+    return SimulatedUser(command, thing, SCENE, manner)
 
 
 @pytest.mark.parametrize(

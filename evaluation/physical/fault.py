@@ -1,0 +1,40 @@
+"""A physical fault as a case names it."""
+
+from typing import Any, Literal
+
+import msgspec
+from msgspec.structs import replace
+
+from common.kinds import kind_of
+from common.scene import Scene
+
+Kind = Literal["shove", "slip", "heavy", "wide", "jam", "obstacle"]
+
+
+class PhysicalFault(msgspec.Struct, frozen=True, kw_only=True):
+    """What happens to the grasp of `thing`, or in the robot's way (`thing`: an obstacle).
+
+    `shove`: pushed out of the hand as the fingers come. `slip`: after it was carried `after` metres the pads lose
+    their friction for `seconds`. `jam`: a finger stays where it is for `seconds` when it should close. `heavy`: it has
+    the mass `amount` [kg]. `wide`: it is `amount` [m] wide and deep, which nobody told the robot. `obstacle` changes
+    nothing: it is watched whether it came in the way.
+    """
+
+    kind: Kind
+    thing: str
+    seconds: float = 0.0
+    after: float = 0.0
+    amount: float = 0.0
+
+    def world(self, scene: Scene) -> Scene:
+        """The scene with the object as it really is."""
+        changes: dict[str, Any] = {}
+        if self.kind == "heavy":
+            changes["mass"] = self.amount
+        objects = []
+        for spec in scene.objects:
+            if spec.name == self.thing and self.kind == "wide":
+                height = self.amount if kind_of(spec.kind).shape == "sphere" else spec.size[2]
+                changes["size"] = (self.amount, self.amount, height)
+            objects.append(replace(spec, **changes) if spec.name == self.thing else spec)
+        return replace(scene, objects=tuple(objects))
