@@ -17,7 +17,9 @@ from common.bus.session import open_session
 from tests.support import Site, site
 
 ROUNDS = 1000
+"""Round trips of a measurement, of which the first tenth is left out."""
 PAIRS = 5
+"""Measurements, of which the median counts."""
 PING, PONG = topics.NAVIGATION_GOAL, topics.NAVIGATION_STATUS
 
 

@@ -34,6 +34,7 @@ from evaluation.stack import Stack
 
 T = TypeVar("T")
 WALL_LIMIT, NODE = 1800.0, "evaluation.node"
+"""Wall time [s] for a run, and the module that runs a service with injected faults."""
 
 
 def in_memory(args: argparse.Namespace) -> Trace:

@@ -23,7 +23,9 @@ from evaluation.stack import service_class
 from tests.support import Site, eventually, free_port, site
 
 BURST = 100
+"""Payloads between two looks at the process."""
 START_LIMIT = 300.0
+"""Time [s] for a process to start on a busy machine."""
 # What is well-formed here is a lie nobody can tell from the truth; only what is malformed must be refused.
 TRUSTED = {t.key for t in (*topics.CLOCKS, topics.LOCKSTEP_ACK)}
 QUERIES = (topics.SIM_TRUTH, topics.SIM_RESET, topics.SIM_SNAPSHOT, topics.BRAIN_MISSIONS)

@@ -16,7 +16,9 @@ from common.geometry import wrap
 from common.time.lockstep import DT
 
 LIMIT, LIMIT_ANGLE = 0.05, math.radians(3.0)
+"""Errors [m, rad] beyond which a pose counts as wrong; chosen."""
 PERIOD = 5
+"""Ticks between two samples: 20 Hz."""
 
 
 @dataclass

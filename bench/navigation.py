@@ -20,8 +20,11 @@ from services.navigation.planner import PathPlanner
 
 CONFIG = NavigationConfig()
 GOALS = 3
+"""Places driven to in each layout."""
 PATIENCE = 240.0
+"""Robot time [s] for one drive."""
 ROOM = 1.1
+"""Clearance [m] of a point where a passer-by may stand in the way and still leave one."""
 
 
 class Guide:

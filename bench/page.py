@@ -28,6 +28,7 @@ from common.bus.session import open_session
 from tests.support import free_port
 
 SETTLE = 3.0
+"""Time [s] until all visitors are served, before the measurement."""
 PHASES = (("nobody looks", 0, 0), ("one viewer", 1, 0), ("three viewers", 3, 0), ("three, and one hangs", 3, 1))
 COMMANDS = ("bring me the red mug", "bring me the green can", "bring me the blue bottle", "go to the kitchen")
 EYE = {

@@ -12,8 +12,10 @@ from common import messages as m
 from common.topics import Topic
 
 NUMBERS = (0.0, -0.0, 1.0, -1.0, 0.5, 3.14, 1e-320, 1e9, -1e9, 1e38, 1e200, 1.7e308, -1.7e308)
+"""Numbers at the edges of what a float can be."""
 NOT_FINITE = (float("nan"), float("inf"), float("-inf"))
 INTEGERS = (0, 1, -1, 2, 255, 16000, 2**31, -(2**31), 2**53, 2**63 - 1, -(2**63))
+"""Integers at the edges of what types and protocols take."""
 WORDS = (
     "", " ", "find red mug", "find", "find  ", "goto kitchen", "goto nowhere", "return_to_start", "grab", "release",
     "home", "place delivery tray", "place", "listen", "say hello", "say", "bring me the red mug", "yes", "no",

@@ -28,8 +28,12 @@ from services.sim.robot import HOME_ARM
 from services.sim.world import world_mjcf
 
 RANGE, MARGIN, NEAR = 3.0, 12, 0.10
+"""Depth [m] up to which, and margin of the picture [px] within which an object must be seen; distance [m] to the truth
+that counts as found."""
 VIEWS_PER_LAYOUT = 5
+"""Standing places for each layout."""
 MIN_CONFIDENCE = 0.5
+"""Detections below it are not told to others and not counted."""
 
 
 @dataclass

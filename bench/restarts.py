@@ -28,6 +28,7 @@ from cli.up import bring_up
 from common.bus.session import open_session
 
 PATIENCE, CALM, TRIES = 180.0, 8.0, 10
+"""Times [s] for a restart and between two of them, and how often each is tried."""
 HALVES = (("speech", "planner", "perception", "camera"), ("sim", "navigation", "manipulation", "brain", "dashboard"))
 HANDLES, SHARE, MEGABYTES = 4, 0.2, 25.0
 """What a survivor may hold more of at the end: handles; of its memory a share, and so many MB."""

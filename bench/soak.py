@@ -25,10 +25,13 @@ from judge.observer import WATCH
 from judge.verdict import objections
 
 PATIENCE = 400.0
+"""Robot time [s] for one mission."""
 SAMPLE = 0.2
 """Robot time [s] in which a fresh judge sees the world before the next command: four samples at 20 Hz."""
 SETTLED, EVERY = 600.0, 300.0
+"""Robot time [s] from which memory is compared, and between two looks at it."""
 GROWTH = 0.02
+"""Growth of memory that passes, as a share."""
 THINGS = ("red mug", "green can", "blue block", "apple", "white box", "blue bottle")
 
 

@@ -16,8 +16,11 @@ from common import topics
 from evaluation.stack import Stack, paced_services
 
 HALF, REST = 0.25, 0.01
+"""Speeds [m/s] that count as half and as rest."""
 FULL = 0.5
+"""Speed [m/s] from which it is stopped."""
 LIMIT = 3.0
+"""Robot time [s] that is waited for rest."""
 
 
 def trial(stack: Stack, rng: np.random.Generator, stop: bool) -> tuple[float, float, float]:

@@ -26,6 +26,7 @@ UNTRACED = {t.key for t in topics.CLOCKS} | {
     "robot/description",
 }
 SHOWN = 400
+"""Bytes of a payload that are shown."""
 
 
 class WitnessConfig(Config, frozen=True):

@@ -18,8 +18,11 @@ from common.time.clock import monotonic
 from common.time.lockstep import DT
 
 RATE = 16000
+"""Samples per second that speech takes."""
 CHUNK = 0.1
+"""Length of a piece of sound [s], as microphones give them."""
 LEAD_IN, TRAILING = 0.3, 1.5
+"""Silence [s] before and after a recording: speech needs the second to know that it was the last word."""
 EAR = "ear"
 _PERIOD = round(CHUNK / DT)
 

@@ -16,6 +16,7 @@ from common.time.clock import monotonic, sleep
 
 RIVALS = {"navigation", "manipulation", "brain"}
 LISTEN = 2.0
+"""Time [s] for which streams are counted: 20 messages of the slowest (10 Hz)."""
 
 
 def examine(driver: Driver, move: bool) -> list[dict[str, object]]:

@@ -13,8 +13,11 @@ from common.topics import Topic
 ARM = tuple(f"joint_{i}" for i in range(1, 8))
 JOINTS = ("base_x", "base_y", "base_yaw", *ARM, "gripper")
 STEP, SPEED = 0.15, 0.12
+"""Length of a commanded move [m] and speed [m/s]; chosen: small enough for a room that nobody cleared."""
 SILENT, REST = 0.9, 0.01
+"""Time [s] without a command after which the base must rest, and the speed [m/s] that counts as rest."""
 STOP_WITHIN = 0.5
+"""Time [s] from `robot/stop` to rest."""
 
 
 # --- what it says by itself

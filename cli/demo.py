@@ -30,6 +30,7 @@ YES = ROOT / "docs" / "audio" / "yes.wav"
 SPOKEN = "red mug"
 OUT = ROOT / "out"
 PROGRESS = 10.0
+"""Time [s] between two lines of progress where the output is no terminal."""
 
 
 class Screen:

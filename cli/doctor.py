@@ -22,9 +22,12 @@ from cli.supervision import Supervision, port_is_free, run_dir
 from common.security import keys
 from common.time.clock import unix_time
 
-EXPIRES_SOON = 30  # days
+EXPIRES_SOON = 30
+"""Days of validity below which a certificate is worth a note."""
 PAGE_PORT = 8080
-ROOM = 500  # MB
+"""The page's port unless another is configured."""
+ROOM = 500
+"""Free disk [MB] below which there is a note; chosen: logs and recordings would soon fill it."""
 ROBOT = "stanford_tidybot"
 
 

@@ -16,6 +16,7 @@ HEARD: tuple[Topic[Any], ...] = (
     topics.ROBOT_DESCRIPTION,
 )  # fmt: skip
 STALL, PERIOD = 20.0, 0.05
+"""Time [s] without `joint_states` after which a driver counts as gone, and period of repeated commands [s]."""
 
 
 class Unmet(Exception):

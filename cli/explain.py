@@ -13,6 +13,7 @@ from cli.missions import date_of
 from common import topics
 
 WIDTH = 118
+"""Columns of the timeline."""
 WORDS = {"failed": "FAILED", "state": ""}
 """What stands before an entry, where that is not its kind; transitions carry their state instead."""
 

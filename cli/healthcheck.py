@@ -10,6 +10,7 @@ from common import topics
 from common.bus.session import BusError, default_connect, open_session
 
 PATIENCE = 3.0
+"""Time [s] for the router's answer; below the limit of the compose file's health checks."""
 
 
 def main() -> int:

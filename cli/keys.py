@@ -14,6 +14,7 @@ from common.security.access import OPERATOR, ROUTER, Role, Subject
 from common.security.keys import OFF, default_directory
 
 DAYS = 365.0
+"""Validity of a certificate [days]."""
 _WORD = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]*")
 _HOST = re.compile(r"[A-Za-z0-9:][A-Za-z0-9:._-]*")
 

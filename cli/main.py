@@ -29,6 +29,7 @@ from cli.errors import CliError, near
 from common.bus.session import BusError
 
 FAILED, MISUSED, INTERRUPTED = 1, 2, 130
+"""Exit statuses: a command failed, was mistyped, or was ended by Ctrl-C (128 + SIGINT)."""
 
 
 class Parser(argparse.ArgumentParser):

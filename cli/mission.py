@@ -17,6 +17,8 @@ from common.time.clock import monotonic
 
 OPEN = ("WAITING", "LISTENING", "COMPLETED", "ERROR")
 ACCEPT, KEPT, HEAR, LISTEN = 5.0, 30.0, 60.0, 90.0
+"""Times [s] for a busy brain to refuse a command, for a free one to take it up, for sound to be understood, and until
+the robot listens."""
 Show = Callable[[m.BrainState], None]
 
 

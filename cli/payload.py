@@ -9,6 +9,7 @@ from common import topics
 from common.bus import codec
 
 SHOWN_BYTES, SHOWN_ITEMS = 24, 400
+"""Bytes that are shown as hexadecimal digits, and items of a list; chosen: a line and a screen."""
 STATE_FIELD = {topics.SYSTEM_STATUS.key: "state", topics.BRAIN_STATE.key: "state", topics.SIM_STATUS.key: "state"}
 """Keys that carry a state and take no bare text: the field with its name."""
 

@@ -14,6 +14,7 @@ from cli.services import Service
 
 ROOT = Path(__file__).resolve().parent.parent
 SOCKET_PATH_LIMIT = 100
+"""Characters of a Unix socket's path: Linux allows 107, supervisord adds a suffix."""
 ROUTER_SOCKET, ENDPOINT_PATH = "router.sock", re.compile(r"[\w./-]+", re.ASCII)
 WATCHDOG = "watchdog"
 

@@ -25,6 +25,7 @@ from common.time.clock import monotonic, unix_time
 from common.time.lockstep import DT
 
 FLUSH, BATCH = 1.0, 2000
+"""Time [s] after which what was recorded goes to disk, and messages that are written at a time."""
 # The brain asks whether anybody subscribes to these before it counts on the service that reads them, so the
 # recorder listens only while that service is there: a recording must not change what it records.
 READERS = {t: t.readers[0] for t in topics.TABLE if t.command and t.latched and "brain" in t.writers}

@@ -9,6 +9,7 @@ from common import topics
 from common.time.clock import monotonic
 
 CONFIRM = 3.0
+"""Time [s] for the simulation to say that it has stopped or goes on."""
 
 
 def stop(args: argparse.Namespace) -> int:

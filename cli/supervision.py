@@ -9,7 +9,7 @@ import subprocess
 import sys
 import tempfile
 import xmlrpc.client
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -242,15 +242,6 @@ class Supervision:
             return self.log_path(name).read_text(errors="replace").splitlines()[-lines:]
         except OSError:
             return []
-
-
-@contextlib.contextmanager
-def stopping(supervision: Supervision) -> Iterator[Supervision]:
-    """Whatever happens inside, every process of the run has ended afterwards."""
-    try:
-        yield supervision
-    finally:
-        supervision.stop()
 
 
 def _python_path(environ: Mapping[str, str]) -> str:

@@ -19,6 +19,7 @@ from common.bus.session import NoRouter, open_session
 from common.time.clock import monotonic, sleep
 
 READY_LIMIT = 120.0
+"""Time [s] for all processes to be ready; chosen: far above the 3 to 5 s of a calm machine."""
 EXTRA = {"camera", "dashboard"}  # the brain starts missions without these
 
 

@@ -26,7 +26,9 @@ from common.time.clock import monotonic
 COLOURS = {"RUNNING": "bold blue", "SUCCESS": "green", "FAILURE": "red", "INVALID": "bright_black"}
 GOOD, BAD, FAINT = "green", "bold red", "bright_black"
 SERVICES_EVERY = 1.0
+"""Time [s] between two looks at the processes."""
 LINES = 12
+"""Lines of the transcript."""
 KEYS = "space stop, r resume, y/n, q"
 
 

@@ -22,11 +22,13 @@ from common.process import StopSignal, die_with_parent
 from common.security.keys import OFF
 from common.time.clock import monotonic, unix_time
 
-# In lockstep a step may wait for slow work, such as the first picture on a busy machine.
 FROZEN, STUCK = 2.0, 60.0
-# One that still gets at the processor now and then is starved by others, not frozen.
+"""Silence [s] after which a process without a token is frozen, and one with a token stuck: in lockstep a step may wait
+for slow work, such as the first picture on a busy machine."""
 IDLE = 1.0
+"""Time [s] without processor time: one that still gets some is starved by others, not frozen."""
 LOOK = 0.25
+"""Period [s] of the watchdog."""
 
 
 class Pulse:

@@ -20,6 +20,7 @@ from judge.observer import WATCH, Observer
 OPEN = ("WAITING", "LISTENING")
 OVER = ("COMPLETED", "ERROR")
 REACTION, QUIET = 0.5, 40.0
+"""Time [s] until the simulated user answers, and of quiet after which a case without an outcome is over."""
 WAKE = "hey jarvis, "
 
 

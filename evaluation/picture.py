@@ -12,6 +12,7 @@ from common.rendering.free_camera import free_view
 from common.rendering.renderer import Renderer
 
 WIDTH, HEIGHT = 420, 300
+"""Size of the picture [px]; chosen: three beside each other in the report."""
 Get = Callable[[str], bytes | None]
 
 

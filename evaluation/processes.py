@@ -38,6 +38,7 @@ from evaluation.stack import paced_services
 from evaluation.verdict import judge
 
 WALL_LIMIT = 3000.0
+"""Wall time [s] for one case; below the worker's own limit, so that the case can say why it ended."""
 
 
 class Ended(StopSignal):

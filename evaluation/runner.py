@@ -21,6 +21,7 @@ from evaluation.verdict import judge
 
 Progress = Callable[[float, str], None]
 REPORT = 2.0
+"""Robot time [s] between two signs of life of a worker."""
 OURS = tuple(str(Path(__file__).parents[1] / name) for name in ("common", "services", "evaluation", "judge"))
 
 

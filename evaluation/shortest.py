@@ -16,6 +16,7 @@ from services.navigation.costmap import Costmap
 
 Point = tuple[float, float]
 MAX_ORDERED = 5
+"""Objects whose every order is tried for the shortest way: 120 orders."""
 _STEPS = [
     (r, c) for r in range(-2, 3) for c in range(-2, 3) if math.gcd(r, c) == 1 and (r > 0 or (r == 0 and c > 0))
 ]  # fmt: skip

@@ -11,6 +11,7 @@ from judge.words import plain
 
 Manner = Literal["correct", "reject", "silent", "agree"]
 PATIENCE = 6
+"""Answers that the user gives to one command; chosen: more than the robot may ask."""
 CORRECTIONS = ("no, the {}", "no, I said the {}", "the {}")
 """Who was not understood says it in other words."""
 _HEARD = re.compile(r"^did you say,?\s*(.+?)\??$", re.IGNORECASE)

@@ -13,6 +13,7 @@ STAGES = {
     "GRABBING": "grasp", "RELEASING": "release", "COMPLETED": "evidence",
 }  # fmt: skip
 STOOD_STILL = 0.3
+"""Path [m] of the base below which a robot that did nothing has declined the command."""
 MET = {
     "delivered": ("delivered",), "nothing": ("declined",), "stopped": ("stopped",), "shown": ("shown",),
     "reported": ("reported",),

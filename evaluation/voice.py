@@ -10,7 +10,9 @@ from evaluation.case import Speaker
 from services.speech.speak.voice import Voice
 
 RATE = 16000
+"""Samples per second that speech takes."""
 LEAD, TAIL = 0.3, 1.2
+"""Silence [s] before and after a sentence."""
 WAKE, GAP = "hey jarvis", 0.25
 """The wake word as it is recorded alone, and the pause [s] between it and a command recorded alone."""
 ECHO, DIRECT = 0.3, 12.0

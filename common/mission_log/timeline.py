@@ -12,15 +12,17 @@ from common.mission_log.states import OTHER_STATE, STATE_COLOURS, spans
 
 TEMPLATES = Path(__file__).parent / "templates"
 WIDTH, LEFT, RIGHT = 1080, 70, 14
-"""Of the chart, and its margins [px of the view box]; chosen: a page of A4 at 96 dpi, room for the lanes' names."""
+"""Of the chart, and its margins [px of the view box]; chosen: within the page's 1100 px, with room for the
+lanes' names."""
 BAND, LANE, TOP = 34, 26, 8
 """Heights of the band of states and of a lane, and the margin above [px]."""
 LETTER = 7
-"""Width of a letter of a band's label [px]; measured: the widest of 11 px system fonts."""
+"""Width of a letter of a band's label [px]; chosen: most fonts at 11 px are narrower."""
 LANES = {"speech": "#1971c2", "steps": "#2b8a3e", "saw": "#0c8599", "faults": "#e03131"}
 """Lanes of the chart with their colours, from top to bottom."""
 LANE_OF = {"heard": "speech", "note": "speech", "planned": "steps", "did": "steps", "saw": "saw", "failed": "faults"}
 MOST_TICKS = 12
+"""Ticks of the axis; chosen: their labels do not touch."""
 STEPS = (1, 2, 5, 10, 20, 30, 60, 120, 300, 600)
 """Distances between the ticks of the axis [s], the first that needs no more than `MOST_TICKS`."""
 

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 MAX_GEOMS = 10000
+"""Geoms of a scene: the default of `mujoco.Renderer`."""
 
 
 class Offscreen:

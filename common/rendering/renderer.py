@@ -12,11 +12,13 @@ from numpy.typing import NDArray
 
 BACKENDS = ("egl", "osmesa", "raycast")
 PROBE_SECONDS = 20.0
+"""Time [s] for a GL library to show that it works."""
 FAR = 25.0
-# What a camera sees where nothing is, a blue between those of the scenes' sky
+"""Depth [m] from which there is nothing: beyond the largest flat."""
 SKY = (200, 215, 232)
-# A group of geoms that is never drawn
+"""RGB of what a camera sees where nothing is: a blue between those of the scenes' sky."""
 HIDDEN = 5
+"""A MuJoCo geom group that is never drawn."""
 _PROBE = (
     "import mujoco; m = mujoco.MjModel.from_xml_string('<mujoco/>'); d = mujoco.MjData(m); "
     "mujoco.mj_forward(m, d); r = mujoco.Renderer(m, 8, 8); r.update_scene(d); r.render(); r.close()"

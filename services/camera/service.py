@@ -13,6 +13,7 @@ from services.camera.config import CameraConfig
 from services.camera.sensor import StereoCamera, exact
 
 MAX_WAITING = 8
+"""Requests that may wait; chosen: more than are asked for at the same time."""
 CAMERAS = ("head", "wrist")
 TICKS = 100
 """Ticks per second of robot time."""

@@ -10,10 +10,13 @@ from services.dashboard.panels.history_buffers import Transcript
 from services.dashboard.scene.picking import Picked
 
 RATE = 16000
+"""Samples per second that speech takes (`audio/pcm`)."""
 CHUNK = RATE // 10 * 2
-# Silence after the last word, from which the ear knows that it was the last.
+"""Bytes of 100 ms of int16, the piece that speech recognition takes at a time."""
 TRAILING = 15
+"""Pieces of silence after the last word, 1.5 s, from which speech knows that it was the last; chosen."""
 LONGEST = 400
+"""Pieces of one utterance, 40 s; chosen: longer than any command."""
 OPEN = ("WAITING", "LISTENING", "COMPLETED", "ERROR")
 SOURCE = "page"
 

@@ -79,7 +79,7 @@ class DashboardService:
 
     def step(self, now: float) -> None:
         self._receive(now)
-        self._obey(now)
+        self._handle_events(now)
         self._redraw_model(now)
         watched = self.web.watched
         self._requests.step(now, watched)
@@ -130,14 +130,14 @@ class DashboardService:
         return off_path(self._path, self._base) if driving is not None and driving.status == "navigating" else 0.0
 
     # --- from the visitors
-    def _obey(self, now: float) -> None:
+    def _handle_events(self, now: float) -> None:
         state = self._io.latest(topics.BRAIN_STATE)
         while not self.web.inbox.empty():
             event = self.web.inbox.get_nowait()
             if isinstance(event, Asked):
                 self._requests.mission(event.mission, partial(self._show_mission, event))
             elif isinstance(event, Words):
-                self._said(event)
+                self._handle_action(event)
             elif isinstance(event, Sound):
                 self._commands.sound(event.data, self._t)
             elif isinstance(event, Click) and self.panels.clicks:
@@ -146,7 +146,7 @@ class DashboardService:
                 picked = pick(event.origin, event.direction, self.view.drawing.flat, objects)
                 self._commands.picked(picked, self._base, state, self._t)
 
-    def _said(self, words: Words) -> None:
+    def _handle_action(self, words: Words) -> None:
         if words.do == "restart":
             self._requests.restart(words.text)
         else:

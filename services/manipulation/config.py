@@ -16,7 +16,6 @@ class ManipulationConfig(Config, frozen=True):
     reach: float = 1.0
     joint_speed: float = 1.0
     joint_acceleration: float = 2.5
-    cartesian_speed: float = 0.18
     approach_distance: float = 0.10
     lift_height: float = 0.10
     grip_effort: float = 25.0

@@ -6,7 +6,7 @@ import pytest
 
 from cli.programs import socket_path
 from cli.services import SERVICES
-from cli.supervision import RunInfo, Supervision, free_port, stopping
+from cli.supervision import RunInfo, Supervision, free_port
 from services.dashboard.supervisor_client import Refused, Supervisor
 from tests.support import eventually
 
@@ -16,7 +16,8 @@ def test_a_process_is_restarted_over_the_supervisors_socket(tmp_path: Path) -> N
     connect = f"tcp/127.0.0.1:{free_port()}"
     router = [s for s in SERVICES if s.name == "router"]
     info = RunInfo(connect=connect, namespace="", speed="realtime", services=["router"], started=0.0)
-    with stopping(Supervision(tmp_path / "run")) as supervision:
+    supervision = Supervision(tmp_path / "run")
+    try:
         page = Supervisor(str(socket_path(supervision.directory)))
         assert page.names() == (), "nothing is up yet"
         supervision.start(router, connect, {"OMP_NUM_THREADS": "1"}, info, detach=False)
@@ -31,3 +32,5 @@ def test_a_process_is_restarted_over_the_supervisors_socket(tmp_path: Path) -> N
         assert after is not None and after.restarts == 1
         with pytest.raises(Refused):
             page.restart("watchdog")
+    finally:
+        supervision.stop()

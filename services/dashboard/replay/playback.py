@@ -30,7 +30,9 @@ from services.dashboard.service import DashboardService
 from services.dashboard.web.events import Words
 
 FRAME = 1 / 30
+"""Period of the page's steps [s]."""
 SPEEDS = (0.5, 1.0, 2.0, 4.0, 8.0)
+"""Robot seconds per second that a visitor may choose."""
 TALK = (topics.SPEECH_GOAL.key, topics.SPEECH_RESULT.key)
 
 
@@ -159,7 +161,7 @@ class Playback(DashboardService):
             self._shown = shown
             self.web.say("tape", {**shown, "first": tape.first, "last": tape.last, "bands": self._bands})
 
-    def _said(self, words: Words) -> None:
+    def _handle_action(self, words: Words) -> None:
         if words.do == "seek":
             try:
                 self.jump(float(words.text))

@@ -18,8 +18,9 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 ROBOT_BODY = "base"
 HIDDEN_GROUP = 4
-# Walls are cut off here, so that one can look into the rooms.
+"""First MuJoCo geom group that is not drawn: collision shapes are in it and above."""
 CUT = 1.0
+"""Height [m] at which walls are cut off, so that one can look into the rooms."""
 SEE_THROUGH = "wall"
 _FREE, _HINGE = 0, 3  # mjtJoint
 

@@ -16,7 +16,7 @@ AZIMUTH, ELEVATION = 225.0, 48.0
 HEIGHT = 0.4
 """Of the point looked at [m]: the middle of the robot."""
 SPAN = 5.0
-"""Width [m] of a room where the scene names none; measured: the mean of the shipped scenes."""
+"""Width [m] of a room where the scene names none; chosen: a living room's."""
 FILLED = 0.95
 """Share of the view's narrower side that the room's width takes up at the point looked at; chosen: only the near
 corners of the floor are cut off."""

@@ -13,9 +13,13 @@ from common.geometry import quat_matrix
 FOOTPRINT = 0.3
 """Clearance [m] up to which the base's centre cannot be."""
 FLOOR = 0.012
+"""Height [m] of the costmap above the floor; chosen: the two do not flicker."""
 LARGEST = 4_000_000
+"""Cells of a costmap that is drawn: 100 x 100 m at 5 cm."""
 STATES = {"open": (150, 150, 150), "failed": (224, 49, 49), "chosen": (47, 158, 68)}
 FINGER, DEPTH, STEM = 0.05, 0.05, 0.08
+"""Lengths [m] of the drawn fork: its fingers, how far its palm is behind the pinch point, its stem; chosen: about the
+hand's own."""
 
 
 def picture(costmap: m.Costmap) -> NDArray[np.uint8]:

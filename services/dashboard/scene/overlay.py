@@ -9,8 +9,10 @@ from common.geometry import Pose2, quat_matrix
 
 Array = NDArray[np.float64]
 NEAR = 0.1
-# A believed object is marked where the picture's own depth agrees with it [m].
+"""Depth [m] from which on a box is drawn into a picture; chosen: a nearer one would fill it."""
 AGREES = 0.12
+"""Difference [m] to the picture's own depth up to which a believed object is marked; chosen:
+a belief that is off by some centimetres is still marked."""
 COLOUR, BACK = (255, 214, 10), (0, 0, 0)
 
 

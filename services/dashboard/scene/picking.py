@@ -10,8 +10,11 @@ from services.dashboard.scene.drawing import Mesh
 
 Array = NDArray[np.float64]
 FLOOR = 0.03
+"""Height [m] up to which a clicked point is floor; chosen: what lies flat on it is meant as floor, too."""
 REACH = 0.04
+"""Least half size [m] of an object for a click; chosen: a finger's width at the usual distance."""
 FAR = 60.0
+"""Longest ray [m]: flats are smaller."""
 
 
 @dataclass(frozen=True)

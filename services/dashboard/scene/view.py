@@ -13,9 +13,12 @@ from services.dashboard.scene.shapes import fallback
 
 Array = NDArray[np.float64]
 GHOST = 0.3
+"""Opacity of an object that was not seen for long; chosen: visible, yet not to be mistaken for a fresh sighting."""
 STILL = 1e-4
+"""Change of a joint [m or rad] below which a link is not sent again: a tenth of a millimetre."""
 SCAN_COLOUR, PATH_COLOUR = (255, 60, 60), (40, 160, 255)
 FRUSTUM = 0.25
+"""Length [m] of the head camera's drawn frustum; the wrist's is half of it."""
 
 
 class View:

@@ -7,6 +7,7 @@ from urllib.parse import urlsplit
 
 LOCAL_NAMES = ("localhost", "ip6-localhost")
 SHORTEST = 16
+"""Characters of a token: 96 bits when made by `secrets.token_urlsafe`."""
 COOKIE = "tidybot"
 
 

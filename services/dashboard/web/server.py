@@ -29,6 +29,8 @@ from services.dashboard.web.visitors import MAX_CHUNK, Visitors
 PAGE = Path(__file__).parent / "page"
 VIEW = Path(viser.__file__).parent / "client" / "build" / "index.html"
 OPENING, CLOSING, ANSWER = 60.0, 2.0, 8.0
+"""Limits [s] for the server to start and to end, and for the brain to answer for a mission's page; chosen: far
+above what a busy machine needs."""
 # The view under the other name of this machine is another site to a browser, which draws it in another process: however
 # slow the drawing is, the stop button answers.
 OTHER_NAME = {"127.0.0.1": "localhost", "localhost": "127.0.0.1"}

@@ -10,7 +10,9 @@ from aiohttp import WSMsgType, web
 from services.dashboard.web.events import Event, Sound, Words
 
 SEND_QUEUE = 100
+"""Messages that a browser may be behind; chosen: some seconds of sound and state."""
 MAX_CHUNK = 64 * 1024
+"""Bytes of a visitor's message: two seconds of sound."""
 
 
 class Visitors:
