@@ -1,4 +1,4 @@
-"""A recording for the robot's ear: read and checked, then played at the robot's own pace."""
+"""A recording for speech recognition: read and checked, then sent at the pace of robot time."""
 
 import struct
 import wave

@@ -250,9 +250,9 @@ def _print_status(record: dict[str, object]) -> None:
 
 
 def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
-    parser = commands.add_parser("say", help="command the robot by text, or by a recording played into its ear")
+    parser = commands.add_parser("say", help="command the robot by text, or by a recording")
     parser.add_argument("text", nargs="*", help="such as: bring me the red mug")
-    parser.add_argument("--wav", type=Path, metavar="FILE", help="a recording to play into the robot's ear")
+    parser.add_argument("--wav", type=Path, metavar="FILE", help="a recording to send instead of a microphone's sound")
     parser.add_argument("--wait", action="store_true", help="until the mission ends; exit 0 only if it succeeded")
     parser.add_argument("--timeout", type=float, default=1800.0, metavar="S", help="for --wait (default %(default)s)")
     parser.add_argument("--json", action="store_true")

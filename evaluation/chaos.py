@@ -1,4 +1,4 @@
-"""The suite of harm: every service killed and hung in every state, its messages mistreated, the host out of order."""
+"""The chaos suite: every service killed and hung in every state, its messages mistreated, the host out of order."""
 
 from collections.abc import Sequence
 
@@ -13,7 +13,7 @@ CHAOS_SERVICES = ("speech", "planner", "perception", "camera", "navigation", "ma
 EVERY = "every one"
 MISTREATED: tuple[Kind, ...] = ("drop", "duplicate", "delay", "reorder")
 FAULTS = ("kill", "hang", "router loss", "disk full", "disk full, kill", "clock jump", *MISTREATED)
-HARM: dict[str, dict[str, float]] = {
+PARAMETERS: dict[str, dict[str, float]] = {
     "hang": {"seconds": 3.0}, "router loss": {"seconds": 5.0}, "disk full": {"full": 30.0},
     "disk full, kill": {"full": 30.0}, "clock jump": {"jump": 2.0},
 }  # fmt: skip
@@ -24,7 +24,7 @@ CHATTY = frozenset({
 """Keys with more than two messages in a state, of which not only the first are worth hitting."""
 MOMENTS = {"CONFIRMING": 3.0, "PLANNING": 0.2, "GROUNDING": 0.4, "NAVIGATING": 4.0, "GRABBING": 10.0,
            "RETURNING": 6.0, "RELEASING": 6.0}  # fmt: skip
-"""How long into a state [s] harm can come: about as long as the state usually lasts."""
+"""How long into a state [s] a fault can come: about as long as the state usually lasts."""
 TRAFFIC: dict[tuple[str, str], tuple[str, ...]] = {
     ("speech", "CONFIRMING"): ("brain/speech_result", "speech/status"),
     ("planner", "PLANNING"): ("action_plan",),
@@ -78,11 +78,11 @@ CELLS = _cells()
 def chaos(seed: int) -> Case:
     """Cell after cell: the first 56 seeds kill each service in each state, the next 49 hang it; then the rest.
 
-    The last ten strike in every state of one mission.
+    The last ten take effect in every state of one mission.
     """
     cell = CELLS[seed % len(CELLS)]
     scene, rng = flat(), random(seed, 6)
-    # What lies near makes a short mission: it is the harm that counts here, not the search.
+    # What lies near makes a short mission: it is the fault that counts here, not the search.
     near = scene.room_at(scene.home.x, scene.home.y)
     case = fetch_case("chaos", seed, pick(rng, scene, seed, room=near.name if near else ""), scene)
     case.name, case.fault, case.honest, case.settings = f"{cell.service} {cell.state}", cell.fault, True, (VLA,)
@@ -92,7 +92,7 @@ def chaos(seed: int) -> Case:
             states = CHAOS_STATES if cell.state == EVERY else (cell.state,)
             moments = [round(float(rng.uniform(0.0, MOMENTS[state])), 2) for state in states]
             case.timed_faults = tuple(
-                TimedFault(cell.service, state, after=moment, **HARM.get(cell.fault, {}))
+                TimedFault(cell.service, state, after=moment, **PARAMETERS.get(cell.fault, {}))
                 for state, moment in zip(states, moments, strict=True)
             )
         case kind:

@@ -82,19 +82,19 @@ class Examiner:
         observer.model(model)
         for state in io.take_all(topics.SIM_STATE):
             first = not observer.ready
-            look = observer.world(state)
-            if first and look is not None:
-                self.observed.shortest = self._shortest(look)
+            sample = observer.world(state)
+            if first and sample is not None:
+                self.observed.shortest = self._shortest(sample)
         for report in io.take_all(topics.SIM_CONTACTS):
             observer.contacts(report)
         for status in io.take_all(topics.SIM_STATUS):
             self.observed.stopped |= status.state == "stopped"
 
-    def _shortest(self, look: Sample) -> float:
-        """The shortest way [m] of a base that runs all errands; 0 where there is none."""
+    def _shortest(self, sample: Sample) -> float:
+        """The shortest way [m] of a base that makes all deliveries; 0 where there is none."""
         wants = self._case.wants
-        errands = [(look.things[w.thing].position[:2], look.things[w.thing].on, w.goals[0]) for w in wants]
-        found = FloorPlan(self._io.scene).mission(look.base, errands)
+        deliveries = [(sample.things[w.thing].position[:2], sample.things[w.thing].on, w.goals[0]) for w in wants]
+        found = FloorPlan(self._io.scene).mission(sample.base, deliveries)
         return round(found, 3) if np.isfinite(found) else 0.0
 
     # --- the robot's words and states
@@ -144,7 +144,7 @@ class Examiner:
             self.observed.fault_at, self._step_at_fault = report.t, self._at
 
     def _progress(self, state: m.BrainState, now: float) -> None:
-        """Recovered is a mission that has come to another step than the one in which it was struck."""
+        """Recovered is a mission that has come to another step than the one in which the fault took effect."""
         self._at = state.state, state.step
         seen = self.observed
         if seen.fault_at is None or seen.recovery is not None or state.state == "IDLE":

@@ -1,4 +1,4 @@
-"""Everything a case injects into a service: faulty messages at its door, and for the simulation faults of physics."""
+"""Everything a case injects into a service: faulty messages, and for the simulation faults of physics."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""Faults at a service's door to the bus: messages dropped, doubled, late, out of order or altered, by a seed.
+"""Faults of what a service receives and publishes: messages dropped, doubled, late, out of order or altered, by a seed.
 
 They sit between a service object and its `Io`, so the same rule does the same thing over memory and over Zenoh.
 """
@@ -117,7 +117,7 @@ def _edited(message: m.Message, rule: Rule) -> m.Message:
 
 
 def faulty(kind: Any, rules: tuple[Rule, ...], report: Reporter = ignore) -> Any:
-    """The service class behind a door that obeys the rules which name it; the class itself when none does."""
+    """The service class with an io that applies the rules which name it; the class itself when none does."""
     mine = tuple(r for r in rules if r.service == kind.NAME)
     if not mine:
         return kind
@@ -129,13 +129,13 @@ def faulty(kind: Any, rules: tuple[Rule, ...], report: Reporter = ignore) -> Any
         READS = (*kind.READS, told) if listens and told not in kind.READS else kind.READS
 
         def __init__(self, config: Any, io: Any) -> None:
-            self.door = FaultyIo(io, mine, report)
-            super().__init__(config, self.door)
+            self.faulty_io = FaultyIo(io, mine, report)
+            super().__init__(config, self.faulty_io)
 
         def step(self, now: float) -> None:
-            self.door.release(now)
-            state = self.door.latest(told) if listens else None
-            self.door.state = state.state if state is not None else self.door.state
+            self.faulty_io.release(now)
+            state = self.faulty_io.latest(told) if listens else None
+            self.faulty_io.state = state.state if state is not None else self.faulty_io.state
             super().step(now)
 
     Faulty.__name__ = Faulty.__qualname__ = f"Faulty{kind.__name__}"

@@ -1,7 +1,7 @@
 """`python -m evaluation.node`: a service with the case's faults injected, as a process of its own.
 
 Which service is what the supervisor calls this process; the case is in the file that TIDYBOT_EVAL_CASE names, and what
-the faults did is appended to `STRIKES` beside it.
+the faults did is appended to `FAULT_REPORTS` beside it.
 """
 
 import os
@@ -16,10 +16,10 @@ from evaluation.fault_reports import FaultReportFile
 from evaluation.registry import service_class
 
 CASE = "TIDYBOT_EVAL_CASE"
-STRIKES = "strikes"
+FAULT_REPORTS = "fault_reports"
 
 if __name__ == "__main__":
     path = Path(os.environ[CASE])
     case = msgspec.json.decode(path.read_bytes(), type=Case)
-    report = FaultReportFile(path.with_name(STRIKES)).report
+    report = FaultReportFile(path.with_name(FAULT_REPORTS)).report
     main(with_faults(service_class(os.environ["SUPERVISOR_PROCESS_NAME"]), case, report))

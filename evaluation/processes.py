@@ -29,7 +29,7 @@ from evaluation.case import Case, Observed, Result
 from evaluation.examiner import Examiner, ExaminerConfig, examiner_of
 from evaluation.fault_injection import targets
 from evaluation.fault_reports import FaultReportFile
-from evaluation.node import CASE, STRIKES
+from evaluation.node import CASE, FAULT_REPORTS
 from evaluation.picture import last_picture
 from evaluation.process_faults import ProcessFaultInjector, unavailable
 from evaluation.runner import REPORT, Progress, idle_services, timeline
@@ -93,7 +93,7 @@ def _run(case: Case, directory: Path, supervision: Supervision, progress: Progre
     with open_session(plan.connect, plan.namespace) as session:
         process = Process(examiner_of(case), ExaminerConfig(), shared, scene, session, clock, stop, directory)
         examiner: Examiner = process.service
-        injected = FaultReportFile(directory / STRIKES)
+        injected = FaultReportFile(directory / FAULT_REPORTS)
         injector = ProcessFaultInjector(supervision, case.timed_faults, directory, injected.report)
 
         def follow(now: float, state: str) -> None:

@@ -100,13 +100,13 @@ class FloorPlan:
             return [(scene.home.x, scene.home.y)]
         return self.stands(receptacle.center[0], receptacle.center[1], receptacle)
 
-    def mission(self, start: Pose2, errands: Sequence[tuple[Point, str, str]]) -> float:
+    def mission(self, start: Pose2, deliveries: Sequence[tuple[Point, str, str]]) -> float:
         """From `start` over every (object's place, what it stands on, where it goes), in the best order [m]."""
         scene = self._scene
-        pick = [self.stands(*where, scene.receptacle(on)) for where, on, _ in errands]
-        drop = [self._goal(goal) for _, _, goal in errands]
+        pick = [self.stands(*where, scene.receptacle(on)) for where, on, _ in deliveries]
+        drop = [self._goal(goal) for _, _, goal in deliveries]
         carry = [min(self.length(p, d) for p in _spread(ps)) for ps, d in zip(pick, drop, strict=True)]
-        count = len(errands)
+        count = len(deliveries)
         if not count:
             return 0.0
         first = [self.length((start[0], start[1]), p) for p in pick]

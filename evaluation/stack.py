@@ -212,7 +212,7 @@ class Stack:
         return found
 
     def play(self, samples: Any) -> None:
-        """Put 16 kHz int16 audio (n,) into the robot's ear at the pace of robot time."""
+        """Put 16 kHz int16 audio (n,) to speech recognition at the pace of robot time."""
         for n, start in enumerate(range(0, len(samples), 1600)):
             data = samples[start : start + 1600].tobytes()
             self.bus.send(topics.AUDIO_PCM, m.AudioChunk(t=self.now, data=data, seq=n))

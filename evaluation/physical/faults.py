@@ -1,6 +1,6 @@
 """Physical faults: what the world does to a grasp, injected into MuJoCo by the evaluator and asserted from its state.
 
-The injectors sit behind the simulation's door, as message faults do: `with_physical_faults` returns a class in the
+No message says that they are there: `with_physical_faults` returns a class in the
 simulation's place whose every step they follow. No service can reach them: nothing below `services/` imports
 `evaluation`.
 """

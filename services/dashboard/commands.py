@@ -22,7 +22,7 @@ SOURCE = "page"
 
 
 class Commands:
-    """Publishes; one microphone at a time is what the robot's ear can follow."""
+    """Publishes; speech recognition follows one microphone at a time."""
 
     def __init__(self, io: Io, transcript: Transcript) -> None:
         self._io, self._transcript = io, transcript

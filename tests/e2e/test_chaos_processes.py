@@ -5,7 +5,7 @@ import pytest
 
 from evaluation import processes
 from evaluation.case import TimedFault
-from evaluation.chaos import CELLS, CHAOS_STATES, EVERY, HARM, MOMENTS, Cell
+from evaluation.chaos import CELLS, CHAOS_STATES, EVERY, MOMENTS, PARAMETERS, Cell
 from evaluation.suites import cases
 
 pytestmark = [pytest.mark.slow, pytest.mark.timeout(900)]
@@ -40,7 +40,7 @@ def test_a_mission_survives_what_befalls_its_processes(cells: list[Cell]) -> Non
     case = cases("chaos", 1, CELLS.index(cells[0]))[0]
     case.spoken = any(c.service == "speech" or c.state == "CONFIRMING" for c in cells)
     case.timed_faults = tuple(
-        TimedFault(c.service, c.state, after=float(rng.uniform(0, MOMENTS[c.state])), **HARM.get(c.fault, {}))
+        TimedFault(c.service, c.state, after=float(rng.uniform(0, MOMENTS[c.state])), **PARAMETERS.get(c.fault, {}))
         for c in cells
     )
     result = processes.run(case)
