@@ -22,8 +22,9 @@ import numpy as np
 
 from bench.witness import Sight, Trace, WitnessService
 from cli.plan import Plan
+from cli.ports import free_port
 from cli.services import Service
-from cli.supervision import Supervision, free_port
+from cli.supervision import Supervision
 from cli.up import bring_up
 from common.rendering.renderer import choose
 from evaluation.case import Case

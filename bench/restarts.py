@@ -22,8 +22,9 @@ import psutil  # type: ignore[import-untyped]
 
 from cli.link import Link
 from cli.plan import Plan
+from cli.ports import free_port
 from cli.services import SERVICES
-from cli.supervision import Supervision, free_port
+from cli.supervision import Supervision
 from cli.up import bring_up
 from common.bus.session import open_session
 

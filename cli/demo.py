@@ -9,12 +9,13 @@ import uuid
 from pathlib import Path
 
 from cli.audio import Player, padded, read_wav
+from cli.conversation import ACCEPT, Conversation, speak_into, typed
 from cli.errors import CliError, near, port_number
 from cli.link import Link, Watch
-from cli.mission import ACCEPT, Conversation, speak_into, typed
 from cli.plan import Plan, add_start_options
+from cli.ports import free_port, port_is_free
 from cli.programs import ROOT
-from cli.supervision import Supervision, free_port, port_is_free, run_dir
+from cli.supervision import Supervision, run_dir
 from cli.up import Stopped, bring_up, check_free, interruptible, state_line
 from cli.verdict import Verdict, Witness
 from common import messages as m

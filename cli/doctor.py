@@ -17,8 +17,9 @@ import msgspec
 
 from cli.authority import Authority
 from cli.errors import CliError
+from cli.ports import port_is_free
 from cli.programs import ROOT
-from cli.supervision import Supervision, port_is_free, run_dir
+from cli.supervision import Supervision, run_dir
 from common.security import keys
 from common.time.clock import unix_time
 

@@ -4,7 +4,6 @@ import contextlib
 import http.client
 import os
 import signal
-import socket
 import subprocess
 import sys
 import tempfile
@@ -61,24 +60,6 @@ def run_dir(environ: Mapping[str, str] = os.environ) -> Path:
     if os.access(ROOT, os.W_OK):
         return ROOT / "run"
     return Path(environ.get("XDG_RUNTIME_DIR") or tempfile.gettempdir()) / f"tidybot-{os.getuid()}"
-
-
-def port_is_free(port: int) -> bool:
-    """True when the router can listen on 127.0.0.1:port."""
-    with socket.socket() as probe:
-        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        try:
-            probe.bind(("127.0.0.1", port))
-            probe.listen(1)
-        except OSError:
-            return False
-    return True
-
-
-def free_port() -> int:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])
 
 
 class Supervision:

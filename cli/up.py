@@ -10,9 +10,10 @@ from types import FrameType
 from cli.errors import CliError, port_number
 from cli.link import Link, Watch
 from cli.plan import Plan, add_start_options
+from cli.ports import port_is_free
 from cli.programs import ROOT, socket_path
 from cli.services import NAMES
-from cli.supervision import Supervision, port_is_free, run_dir
+from cli.supervision import Supervision, run_dir
 from common import messages as m
 from common import topics
 from common.bus.session import NoRouter, open_session

@@ -6,17 +6,12 @@ lane's business. The traffic is Dask's own, pickles included: a cluster is for m
 """
 
 import atexit
-import hashlib
 import logging
-import platform
 import signal
 import uuid
 from asyncio import CancelledError
 from collections.abc import Generator, Iterator
 from contextlib import contextmanager
-from functools import cache
-from importlib.metadata import PackageNotFoundError, version
-from pathlib import Path
 from queue import SimpleQueue
 from threading import Lock
 from typing import Any
@@ -24,19 +19,13 @@ from typing import Any
 import msgspec
 
 from cli.errors import CliError
-from common.config import config_dir
 from evaluation.case import Case, Observed, Result
+from evaluation.fingerprint import difference, fingerprint
 from evaluation.lane import SILENCE, WALL_LIMIT, Lane, LaneClosed, Run, name_of
 from evaluation.pool import Progressed, Repeated, Said
 from evaluation.verdict import judge
 
 INSTALL = "pip install 'tidybot-zenoh[cluster]'"
-ROOT = Path(__file__).resolve().parents[1]
-SOURCES = ("common", "services", "cli", "judge", "evaluation")
-DECIDES = (
-    "mujoco", "mink", "daqp", "numpy", "scipy", "onnxruntime", "moonshine-cpp", "hibari-tts", "py_trees", "msgspec",
-)  # fmt: skip
-"""Packages whose release can change what a seed does."""
 REACH = 15.0
 """Time [s] to reach the scheduler before the address counts as wrong."""
 LOCAL = {
@@ -115,12 +104,7 @@ def _check(client: Any) -> None:
         if isinstance(theirs, Exception):
             raise CliError(f"the worker at {address} cannot load tidybot ({theirs}); install the same version there")
         if theirs != ours:
-            raise CliError(f"the worker at {address} {_difference(ours, theirs)}; install the same version there")
-
-
-def _difference(ours: dict[str, str], theirs: dict[str, str]) -> str:
-    rows = [f"{name} {theirs.get(name)}, here {own}" for name, own in ours.items() if theirs.get(name) != own]
-    return "runs other code: " + "; ".join(rows)
+            raise CliError(f"the worker at {address} {difference(ours, theirs)}; install the same version there")
 
 
 def _evaluate(client: Any, cases: list[Case], run: Run, limit: float, silence: float) -> Generator[Said, None, None]:
@@ -197,7 +181,7 @@ def work(name: str, number: int, case: bytes, run: str, limit: float, silence: f
 
     here = get_worker()
     if (own := fingerprint()) != ours:
-        raise Mismatch(f"the worker at {here.address} {_difference(ours, own)}; install the same version there")
+        raise Mismatch(f"the worker at {here.address} {difference(ours, own)}; install the same version there")
 
     def tell(**words: Any) -> None:
         here.log_event(name, {"number": number, "worker": here.address, **words})
@@ -247,27 +231,3 @@ def abandon(name: str) -> None:
 def _end() -> None:
     for name in {*_lanes, *_running}:
         abandon(name)
-
-
-# --- the same code everywhere
-@cache
-def fingerprint() -> dict[str, str]:
-    """What decides a seed's outcome: Python, packages, and a hash of the project's sources and configuration."""
-    digest = hashlib.sha256()
-    files = {p.relative_to(ROOT).as_posix(): p for top in SOURCES for p in (ROOT / top).rglob("*.*")}
-    files |= {f"config/{p.name}": p for p in config_dir().glob("*.toml")}
-    for name, path in sorted(files.items()):
-        if path.suffix in (".py", ".toml"):
-            digest.update(name.encode() + b"\0" + path.read_bytes() + b"\0")
-    return {
-        "Python": ".".join(platform.python_version_tuple()[:2]),
-        "tidybot": digest.hexdigest()[:16],
-        **{name: _version(name) for name in DECIDES},
-    }
-
-
-def _version(name: str) -> str:
-    try:
-        return version(name)
-    except PackageNotFoundError:
-        return "missing"

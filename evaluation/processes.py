@@ -15,8 +15,9 @@ import msgspec
 
 from cli.errors import CliError
 from cli.plan import Plan
+from cli.ports import free_port
 from cli.services import SERVICES, Service
-from cli.supervision import Supervision, free_port
+from cli.supervision import Supervision
 from cli.up import bring_up
 from common import config, topics
 from common.bus import delivery

@@ -2,8 +2,8 @@
 
 from collections.abc import Callable
 
+from cli.conversation import Conversation
 from cli.link import Link, Watch
-from cli.mission import Conversation
 from cli.verdict import Verdict, Witness
 from common import messages as m
 from common import topics

@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 import zenoh
 
+from cli.conversation import Conversation
 from cli.link import Link
 from cli.main import main as tidybot
-from cli.mission import Conversation
 from cli.verdict import Verdict, Witness
 from common import messages as m
 from common import topics

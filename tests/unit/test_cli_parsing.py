@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from cli import main, programs, supervision
+from cli import main, ports, programs, supervision
 from cli import plan as plans
 from cli.errors import CliError, checked
 from cli.services import NAMES, SERVICES
@@ -64,7 +64,7 @@ def test_every_command_has_help(command: list[str], capsys: pytest.CaptureFixtur
 
 
 def test_no_router_is_said_with_the_remedy(capsys: pytest.CaptureFixture[str]) -> None:
-    port = supervision.free_port()
+    port = ports.free_port()
     assert main.main(["status", "--connect", f"tcp/127.0.0.1:{port}"]) == 1
     assert "tidybot up" in capsys.readouterr().err
 
