@@ -9,7 +9,9 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 
+Array = NDArray[np.float64]
 BACKENDS = ("egl", "osmesa", "raycast")
 PROBE_SECONDS = 20.0
 """Time [s] for a GL library to show that it works."""
@@ -123,6 +125,16 @@ class Renderer:
         empty = depth >= FAR
         rgb[empty], depth[empty] = SKY, 0.0
         return rgb, depth.astype(np.float64)
+
+    def move(self, camera: str, offset: Array, turn: Array) -> None:
+        """Displace a camera from where the model has it, until the next state is loaded.
+
+        `offset` (3,) [m] and `turn` (3,) [rad, a rotation vector] in its optical frame.
+        """
+        number, flip = self.model.camera(camera).id, np.diag([1.0, -1.0, -1.0])
+        optical = self.data.cam_xmat[number].reshape(3, 3) @ flip
+        self.data.cam_xpos[number] += optical @ offset
+        self.data.cam_xmat[number] = (optical @ Rotation.from_rotvec(turn).as_matrix() @ flip).ravel()
 
     def _in_sight(self, camera: int, aspect: float) -> NDArray[np.bool_]:
         """The geoms (n,) whose bounding sphere reaches into a camera's view; GL without a GPU is slow to find out."""

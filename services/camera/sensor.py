@@ -33,6 +33,8 @@ PIXEL_NOISE = 2.0
 """Standard deviation of a pixel's level (of 255) at the gain of a lit room; chosen: what an 8-bit web camera has."""
 EXPOSURE, WHITE_BALANCE = 0.08, 0.04
 """Largest deviations of all channels together and of red and blue alone; chosen: automatic control that has settled."""
+MOUNT_OFFSET, MOUNT_TURN = 0.003, 0.3
+"""Most that a camera sits off its drawing, along and about each axis [m, deg]; chosen: a printed bracket with play."""
 MARGIN = 64
 """By how much [px] the noise that is drawn once is larger than a picture, which takes a piece from a random corner of
 it: drawing it anew would cost as much as the picture."""
@@ -52,7 +54,10 @@ def exact(rgb: Rgb, depth: Depth) -> Picture:
 
 
 class StereoCamera:
-    """One camera of a robot: what differs from camera to camera is drawn from `seed`."""
+    """One camera of a robot: what differs from camera to camera is drawn from `seed`.
+
+    It sits `offset` (3,) [m] and `turn` (3,) [rad, a rotation vector] off its drawing, both in its optical frame.
+    """
 
     def __init__(self, seed: int) -> None:
         rng = np.random.default_rng(seed)
@@ -61,6 +66,8 @@ class StereoCamera:
         red, blue = 1.0 + rng.uniform(-WHITE_BALANCE, WHITE_BALANCE, 2)
         levels = np.arange(256)[:, None] * np.array([gain * red, gain, gain * blue])
         self._levels = np.clip(np.round(levels), 0, 255).astype(int).T.ravel().tolist()
+        self.offset = rng.uniform(-MOUNT_OFFSET, MOUNT_OFFSET, 3)
+        self.turn = np.radians(rng.uniform(-MOUNT_TURN, MOUNT_TURN, 3))
         self._noise: dict[tuple[int, int], tuple[NDArray[np.float32], NDArray[np.int16]]] = {}
 
     def expose(self, rgb: Rgb, depth: Depth, focal: float, moment: int) -> Picture:

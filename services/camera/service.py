@@ -35,11 +35,13 @@ class Shutter:
             self._renderer, self._mjcf = Renderer(model.mjcf, self._backend), model.mjcf
         renderer, width, height = self._renderer, request.width, request.height
         renderer.load(state.qpos, state.mocap)
-        rgb, depth = renderer.rgbd(request.camera, width, height)
         position, rotation = renderer.optical_pose(request.camera)
+        sensor = self._sensors.get(request.camera)
+        if sensor is not None:
+            renderer.move(request.camera, sensor.offset, sensor.turn)
+        rgb, depth = renderer.rgbd(request.camera, width, height)
         x, y, z = (float(v) for v in position)
         focal = height / 2 / np.tan(np.radians(float(renderer.model.camera(request.camera).fovy[0])) / 2)
-        sensor = self._sensors.get(request.camera)
         picture = sensor.expose(rgb, depth, float(focal), round(state.t * TICKS)) if sensor else exact(rgb, depth)
         return m.Rgbd(
             t=state.t,
