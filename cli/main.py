@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 from cli import (
+    calibrate,
     conform,
     control,
     demo,
@@ -66,6 +67,7 @@ def parser() -> argparse.ArgumentParser:
         replay,
         doctor,
         keys,
+        calibrate,
         conform,
         demo,
         evaluate,

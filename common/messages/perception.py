@@ -88,7 +88,8 @@ class CameraRequest(Message):
 class Rgbd(Message):
     """One RGB-D image: rgb uint8 h*w*3, depth uint16 [mm] h*w (0: nothing seen).
 
-    `position`, `orientation`: pose of the optical frame (x right, y down, z forward) in the base frame.
+    `position`, `orientation`: pose of the optical frame (x right, y down, z forward) in the base frame,
+    by the camera's drawing or, if it is `calibrated`, by the calibration.
     """
 
     t: float
@@ -105,3 +106,4 @@ class Rgbd(Message):
     rgb: bytes
     depth: bytes
     backend: str = ""
+    calibrated: bool = False

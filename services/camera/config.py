@@ -9,10 +9,12 @@ class CameraConfig(Config, frozen=True):
     """`backend` auto takes EGL or OSMesa where they work and MuJoCo's own ray casting otherwise.
 
     `sensors`: `bought`, with the noise and the gaps of a stereo depth camera (see sensor.py), or `ideal`.
+    `calibration`: the file of `tidybot calibrate` for this robot; without one the cameras are where their drawing says.
     """
 
     backend: Literal["auto", "egl", "osmesa", "raycast"] = "auto"
     sensors: Literal["bought", "ideal"] = "bought"
+    calibration: str = ""
     max_width: int = 1280
     max_height: int = 960
     render_seconds: float = 0.1

@@ -1,17 +1,21 @@
 """The cameras: render an RGB-D image from the streamed state when somebody asks for one."""
 
 from collections import deque
+from pathlib import Path
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
+from common import calibration, topics
 from common import messages as m
-from common import topics
 from common.bus.port import Io, Job
 from common.geometry import matrix_quat
 from common.rendering.renderer import Renderer
+from common.runtime import StartError
 from services.camera.config import CameraConfig
 from services.camera.sensor import StereoCamera, exact
 
+Mounts = dict[str, tuple[calibration.Vector, calibration.Vector]]
 MAX_WAITING = 8
 """Requests that may wait; chosen: more than are asked for at the same time."""
 CAMERAS = ("head", "wrist")
@@ -20,10 +24,13 @@ TICKS = 100
 
 
 class Shutter:
-    """Lives in the worker: a renderer for the model at hand and, unless `seed` is None, the sensors' models."""
+    """Lives in the worker: a renderer for the model at hand and, unless `seed` is None, the sensors' models.
 
-    def __init__(self, backend: str, seed: int | None) -> None:
-        self._backend, self._mjcf = backend, ""
+    `mounts`: offset [m] and turn [deg] of the calibrated cameras from their drawing.
+    """
+
+    def __init__(self, backend: str, seed: int | None, mounts: Mounts) -> None:
+        self._backend, self._mjcf, self._mounts = backend, "", mounts
         self._renderer: Renderer | None = None
         self._sensors = {} if seed is None else {c: StereoCamera(seed + i) for i, c in enumerate(CAMERAS)}
 
@@ -40,6 +47,10 @@ class Shutter:
         if sensor is not None:
             renderer.move(request.camera, sensor.offset, sensor.turn)
         rgb, depth = renderer.rgbd(request.camera, width, height)
+        mount = self._mounts.get(request.camera)
+        if mount is not None:
+            position = position + rotation @ np.array(mount[0])
+            rotation = rotation @ Rotation.from_rotvec(mount[1], degrees=True).as_matrix()
         x, y, z = (float(v) for v in position)
         focal = height / 2 / np.tan(np.radians(float(renderer.model.camera(request.camera).fovy[0])) / 2)
         picture = sensor.expose(rgb, depth, float(focal), round(state.t * TICKS)) if sensor else exact(rgb, depth)
@@ -58,6 +69,7 @@ class Shutter:
             rgb=picture.rgb.tobytes(),
             depth=picture.depth.astype("<u2").tobytes(),
             backend=renderer.backend,
+            calibrated=mount is not None,
         )
 
     def close(self) -> None:
@@ -75,7 +87,8 @@ class CameraService:
 
     def __init__(self, config: CameraConfig, io: Io) -> None:
         self._config, self._io = config, io
-        self._shutter = Shutter(config.backend, int(io.rng.integers(2**32)) if config.sensors == "bought" else None)
+        seed = int(io.rng.integers(2**32)) if config.sensors == "bought" else None
+        self._shutter = Shutter(config.backend, seed, _mounts(config.calibration))
         self._waiting: deque[m.CameraRequest] = deque(maxlen=MAX_WAITING)
         self._job: Job[m.Rgbd] | None = None
         self._rendered = False
@@ -114,3 +127,15 @@ class CameraService:
 
     def close(self) -> None:
         self._io.submit(self._shutter.close, seconds=0.0)
+
+
+def _mounts(path: str) -> Mounts:
+    """What a calibration file says; nothing without a path.
+
+    Raises:
+        StartError: the file cannot be used.
+    """
+    try:
+        return calibration.read(Path(path).expanduser()) if path else {}
+    except calibration.CalibrationError as error:
+        raise StartError(f"camera.calibration: {error}") from None
