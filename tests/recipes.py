@@ -1,7 +1,7 @@
 """Carries out a recipe of docs/EXTENDING.md in a copy of the code.
 
 A recipe is a section with blocks of ```diff: a file to change, and for each place in it the lines before and after. A
-block with two names copies the first file to the second and changes that.
+block with two names copies the first file to the second and changes that; one with only `+++` is a new file.
 """
 
 import os
@@ -42,7 +42,8 @@ class Recipe:
     def _apply(self, block: str) -> None:
         lines = block.splitlines()
         names = [line[4:] for line in lines if line.startswith(("--- ", "+++ "))]
-        text = (self.folder / names[0]).read_text(encoding="utf-8")
+        made = not any(line.startswith("--- ") for line in lines)
+        text = "" if made else (self.folder / names[0]).read_text(encoding="utf-8")
         for hunk in "\n".join(line for line in lines if line[:4] not in ("--- ", "+++ ")).split("\n@@\n"):
             rows = hunk.splitlines()
             old = "".join(f"{row[1:]}\n" for row in rows if not row.startswith("+"))

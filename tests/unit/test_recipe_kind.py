@@ -54,7 +54,7 @@ print(json.dumps({
     "turned": round(abs(float(np.sin(seen.yaw))), 1),
     "grasps": len(held) >= 3 and all(g.width == 0.03 for g in held),
     "plan": [" ".join((s.action, s.object)).strip() for s in plan.steps],
-    "fault": placement.found_at(lying, "wooden spoon", "delivery tray", scene).fault,
+    "fault": placement.judge_placement(lying, "wooden spoon", "delivery tray", scene).fault,
     "dishes": "spoon" in parameters.groups["dish"],
 }))
 """
