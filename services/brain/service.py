@@ -10,8 +10,8 @@ from common.language.meaning import asks_for
 from common.language.normalise import normalise
 from common.time.clock import unix_time
 from services.brain.config import BrainConfig
+from services.brain.journal.open import open_journal
 from services.brain.journal.records import Journal
-from services.brain.journal.sqlite import open_journal
 from services.brain.mission.channel import Channel, GoalStatus, Result
 from services.brain.mission.context import Context
 from services.brain.mission.mission import Failure, gripper_holds
@@ -126,6 +126,7 @@ class BrainService:
 
     # --- answers of the peers
     def _receive_statuses(self) -> None:
+        """Hand every status and answer of the peers to the channel of its goal."""
         io, peers = self._io, self.context.peers
         for status in io.take_all(topics.NAVIGATION_STATUS):
             self._handle_status(peers.navigation, status, _NAVIGATION.get(status.status), status.code, status.detail)
@@ -156,6 +157,7 @@ class BrainService:
 
     # --- people
     def _receive_stops(self) -> None:
+        """Stop and resume with the brake of the robot."""
         ctx, io = self.context, self._io
         for status in io.take_all(topics.SIM_STATUS):
             stopped = status.state == "stopped"
@@ -180,7 +182,7 @@ class BrainService:
             self.context.suspended = suspend(left, self.context.mission, self.context.gripper)
 
     def _go_on(self) -> None:
-        """Take up what a stop has cut short, unless something else has begun meanwhile."""
+        """Go on with the suspended mission, unless something else has begun meanwhile."""
         ctx, left = self.context, self.context.suspended
         ctx.suspended = None
         if left is None or ctx.mission.active or self._resumption is not None:
@@ -193,6 +195,7 @@ class BrainService:
         self._resumption = Resumption(ctx, self.tree, left)
 
     def _receive_commands(self) -> None:
+        """Start, answer or interrupt a mission by what people said."""
         ctx = self.context
         for command in self._io.take_all(topics.VOICE_COMMAND):
             words = normalise(command.text)

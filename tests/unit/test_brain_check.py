@@ -12,8 +12,8 @@ from common.bus.memory import MemoryIo
 from common.scene import load_scene
 from services.brain.config import BrainConfig
 from services.brain.journal.pictures import KEPT, LARGEST, START, Pictures
-from services.brain.placement import judge_absence, judge_placement
 from services.brain.steps.verify import ASIDE
+from services.brain.world.placement import judge_absence, judge_placement
 from tests.unit.brain_bench import Bench
 from tests.unit.test_brain_vla import FETCH, MANIP, POSE, QUERY, SPEECH, approach, planned, see
 
@@ -48,7 +48,7 @@ def pose(**fields: Any) -> m.ObjectPose:
 def test_what_is_seen_is_judged_by_place_and_stance(label: str, target: str, seen: dict[str, Any], fault: str) -> None:
     finding = judge_placement(pose(label=label, **seen), label, target, SCENE)
     assert finding.fault == fault
-    assert label in finding.words and "tilt" in finding.words
+    assert label in finding.words and "tilt" in finding.measured
 
 
 def test_into_a_bin_nobody_sees() -> None:

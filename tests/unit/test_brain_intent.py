@@ -3,7 +3,7 @@
 import pytest
 
 from common.scene import load_scene
-from services.brain.intent import parse
+from services.brain.language.intent import parse
 
 SCENE = load_scene("apartment")
 

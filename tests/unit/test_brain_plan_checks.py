@@ -3,7 +3,7 @@
 import pytest
 
 from common.scene import load_scene
-from services.brain.dialogue import chosen, corrected, reply
+from services.brain.language.dialogue import chosen, corrected, reply
 
 SCENE = load_scene("apartment")
 

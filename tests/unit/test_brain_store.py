@@ -15,8 +15,9 @@ import pytest
 from common.bus.memory import MemoryBus, MemoryIo
 from common.scene import load_scene
 from services.brain.config import BrainConfig
+from services.brain.journal.open import open_journal
 from services.brain.journal.records import ENTRIES_KEPT, Checkpoint, Entry, Journal, MemoryJournal, PathNode
-from services.brain.journal.sqlite import MIGRATIONS, SqliteJournal, open_journal
+from services.brain.journal.sqlite import MIGRATIONS, SqliteJournal
 from services.brain.mission.channel import SentGoal
 from services.brain.mission.mission import GripperState, Mission, Task
 from tests.support import ROOT

@@ -10,7 +10,7 @@ from common import topics
 from common.approach import ROOM
 from common.scene import load_scene
 from services.brain.config import BrainConfig
-from services.brain.floor import clearance, place_pose, standing_pose
+from services.brain.world.standing_poses import clearance, place_pose, standing_pose
 from services.sim.layout import place_objects
 from tests.unit.brain_bench import Bench
 

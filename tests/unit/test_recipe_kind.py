@@ -23,7 +23,7 @@ from common import config
 from common.kinds import KINDS, kind_of
 from common.messages import KnownWorld, ObjectPose
 from common.scene import load_scene
-from services.brain import placement
+from services.brain.world import placement
 from services.manipulation.grasp import Target, candidates
 from services.perception.shapes import fit
 from services.planner import grammar

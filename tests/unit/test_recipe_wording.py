@@ -13,7 +13,7 @@ import json
 from common import config
 from common.messages import KnownWorld
 from common.scene import load_scene
-from services.brain.intent import parse
+from services.brain.language.intent import parse
 from services.planner import grammar
 from services.planner.config import PlannerConfig
 from services.planner.world import believed

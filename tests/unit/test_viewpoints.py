@@ -11,7 +11,7 @@ from common import messages as m
 from common.geometry import Pose2
 from common.scene import load_scene
 from common.viewpoints import NOMINAL, REACH, Viewpoints, viewpoints_of
-from services.brain import search
+from services.brain.world import viewpoint_search
 from services.sim.mounts import head_camera
 
 SCENE = load_scene("apartment")
@@ -22,7 +22,7 @@ VIEWPOINTS = viewpoints_of(SCENE, None)
 def test_the_search_shows_every_surface_and_ends() -> None:
     looked_from: list[Pose2] = []
     at: Pose2 = HOME
-    while (view := search.elsewhere(SCENE, VIEWPOINTS, at, looked_from)) is not None:
+    while (view := viewpoint_search.elsewhere(SCENE, VIEWPOINTS, at, looked_from)) is not None:
         assert view not in looked_from
         looked_from.append(view)
         at = view
@@ -31,9 +31,9 @@ def test_the_search_shows_every_surface_and_ends() -> None:
 
 
 def test_every_view_shows_something_new() -> None:
-    first = search.elsewhere(SCENE, VIEWPOINTS, HOME, [])
+    first = viewpoint_search.elsewhere(SCENE, VIEWPOINTS, HOME, [])
     assert first is not None
-    second = search.elsewhere(SCENE, VIEWPOINTS, first, [first])
+    second = viewpoint_search.elsewhere(SCENE, VIEWPOINTS, first, [first])
     assert second is not None
     assert VIEWPOINTS.covered([first, second]).sum() > VIEWPOINTS.covered([first]).sum() > 0
 
@@ -41,7 +41,7 @@ def test_every_view_shows_something_new() -> None:
 def test_turning_stays_on_the_spot_and_ends() -> None:
     pose: Pose2 = (0.9, -1.4, 0.0)
     looked_from: list[Pose2] = []
-    while (view := search.turn(VIEWPOINTS, pose, looked_from)) is not None:
+    while (view := viewpoint_search.turn(VIEWPOINTS, pose, looked_from)) is not None:
         assert view[:2] == pose[:2]
         looked_from.append(view)
     assert 1 <= len(looked_from) <= 12

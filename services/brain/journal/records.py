@@ -14,7 +14,7 @@ from services.brain.mission.mission import GripperState, Mission, Outcome
 KEPT = 200
 """Missions listed (chosen: some days of use)."""
 ENTRIES_KEPT = 500
-"""Entries of a mission's timeline (chosen: five times what a long one has)."""
+"""Entries of a mission's timeline (chosen: far above those of a long mission)."""
 Kind = Literal["heard", "planned", "saw", "did", "failed", "state", "note"]
 Pose = tuple[float, float, float]
 

@@ -1,7 +1,7 @@
 """The tables of the journal, and every statement that writes to them."""
 
 MISSIONS_KEPT = 5000
-"""Missions on disk (chosen: a year of use, some 20 MB)."""
+"""Missions on disk (chosen: years of use)."""
 MIGRATIONS: tuple[tuple[str, ...], ...] = (
     (
         "create table missions (number integer primary key autoincrement, id text not null unique,"

@@ -11,9 +11,7 @@ import msgspec
 
 from common.bus.port import Io
 from common.time.clock import unix_time
-from services.brain.config import BrainConfig
-from services.brain.journal.pictures import Pictures
-from services.brain.journal.records import ENTRIES_KEPT, FORMAT, KEPT, Checkpoint, Entry, Journal, MemoryJournal, Record
+from services.brain.journal.records import ENTRIES_KEPT, FORMAT, KEPT, Checkpoint, Entry, MemoryJournal, Record
 from services.brain.journal.schema import BEGIN, CHECKPOINT, END, ENTRY, FIELDS, MIGRATIONS, TRIM
 from services.brain.mission.mission import Mission, Outcome
 
@@ -240,23 +238,3 @@ def _values(r: Record) -> tuple[Any, ...]:
 
 def _entry(mission_id: str, e: Entry) -> tuple[Any, ...]:
     return mission_id, e.t, e.state, e.cause, e.evidence, e.kind, e.picture
-
-
-def open_journal(config: BrainConfig, io: Io) -> Journal:
-    """On disk at the configured path, below the process's state directory; in memory when it has none."""
-    path = journal_path(config, io)
-    return SqliteJournal(path, io) if path is not None else MemoryJournal()
-
-
-def open_pictures(config: BrainConfig, io: Io) -> Pictures:
-    """In the folder `pictures` beside the journal; none are kept where missions are not."""
-    path = journal_path(config, io)
-    folder = path.parent / "pictures" if path is not None else None
-    return Pictures(folder, lambda why: io.count_drop("pictures", why))
-
-
-def journal_path(config: BrainConfig, io: Io) -> Path | None:
-    path = Path(config.journal)
-    if not config.journal or not (path.is_absolute() or io.state_dir):
-        return None
-    return (io.state_dir or Path()) / path

@@ -12,7 +12,7 @@ from common.topics import BY_KEY, Topic
 
 GoalStatus = Literal["busy", "ok", "failed"]
 RECENT = 32
-"""Goals remembered per peer (chosen: more than a peer's outbox holds), to tell late statuses from strangers'."""
+"""Goals remembered per peer (chosen: many times what can be under way), to tell late statuses from strangers'."""
 
 
 class Result(msgspec.Struct, frozen=True):

@@ -10,8 +10,8 @@ from common.topics import Topic
 from common.viewpoints import Viewpoints, viewpoints_of
 from services.brain.config import BrainConfig
 from services.brain.journal.checkpoints import Checkpoints
+from services.brain.journal.open import open_pictures
 from services.brain.journal.records import Checkpoint, Entry, Journal, Kind, last_outcome
-from services.brain.journal.sqlite import open_pictures
 from services.brain.mission.channel import Channel
 from services.brain.mission.display import Display
 from services.brain.mission.heartbeat import Heartbeat
@@ -23,7 +23,7 @@ from services.brain.mission.voice import Voice
 class Context:
     """One per brain; `now` [s of robot time] is set before every tick of the tree.
 
-    `stopped`: why the robot is stopped, None when it is not. `suspended`: the mission that a stop has cut short.
+    `stopped`: why the robot is stopped, None when it is not. `suspended`: the mission that a stop has interrupted.
     """
 
     def __init__(self, config: BrainConfig, io: Io, journal: Journal) -> None:

@@ -26,10 +26,17 @@ SYSTEM_STATE: Mapping[m.BrainStateName, m.SystemStateName] = {
 """The brain's states folded onto the eight names of `system_status`."""
 
 GRIPPER_EMPTY = 0.003
+"""Width [m] below which the pads have met (chosen: every object is wider)."""
 GRIPPER_OPEN = 0.080
+"""Width [m] from which the hand is open (chosen: just under the stroke of 85 mm)."""
 HOLDING_FORCE = 2.0
+"""Force [N] above which the pads press on something (chosen: above what closing fingers feel, far below a grip)."""
 LOST_AFTER = 0.5
-PERMANENT = ("PREEMPTED", "STOPPED", "CANCELLED", "NO_PEER", "TOO_HEAVY")
+"""s for which the fingers must be empty before the object counts as lost (chosen: longer than a bump of the base)."""
+PERMANENT = frozenset(
+    {"PREEMPTED", "STOPPED", "CANCELLED", "NO_PEER", "TOO_HEAVY", "UNKNOWN_GOAL", "UNKNOWN_PLACE", "UNKNOWN_OBJECT"}
+)
+"""Codes of failures that trying the same again cannot mend."""
 
 
 class Failure(msgspec.Struct, frozen=True):
@@ -43,10 +50,11 @@ class Failure(msgspec.Struct, frozen=True):
     @property
     def permanent(self) -> bool:
         """True when trying the same again cannot help, or somebody else has taken the robot over."""
-        return self.code.startswith("UNKNOWN_") or self.code in PERMANENT
+        return self.code in PERMANENT
 
     @property
     def reason(self) -> str:
+        """Words and codes in one line, for people."""
         why = ": ".join(part for part in (self.code, self.detail) if part)
         return " ".join(part for part in (self.spoken, f"({self.stage}: {why})" if why else "") if part)
 
@@ -118,6 +126,7 @@ class Mission(msgspec.Struct):
     delivery: Delivery = msgspec.field(default_factory=Delivery)
 
     def next_goal(self) -> str:
+        """The id of the next goal."""
         self.goals += 1
         return f"{self.id}.{self.goals}"
 
@@ -150,10 +159,12 @@ class GripperState(msgspec.Struct, rename={"grasp_uncertain": "uncertain"}):
     put_down: dict[str, float] = {}
 
     def mark_grasped(self, label: str) -> None:
+        """Believe that `label` is in the hand."""
         self.holding, self.grasp_uncertain = label, ""
         self.felt, self.empty_since = False, None
 
     def mark_released(self, now: float) -> None:
+        """Believe that the hand is empty, since robot time `now` [s]."""
         if self.holding:
             self.put_down[self.holding] = now
         self.holding = self.grasp_uncertain = ""

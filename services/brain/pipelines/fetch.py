@@ -5,7 +5,7 @@ from py_trees.common import Status
 
 from common import messages as m
 from common import topics
-from services.brain.intent import parse
+from services.brain.language.intent import parse
 from services.brain.mission.context import Context
 from services.brain.mission.mission import Failure, gripper_holds
 from services.brain.pipelines.shared import drive_home, report_failure
@@ -77,6 +77,7 @@ def acquire(ctx: Context) -> Behaviour:
 
 
 def bring_home(ctx: Context) -> Behaviour:
+    """Drive home and let go."""
     return Sequence("bring_home", drive_home(ctx), Settle("settle", ctx), Release("release_it", ctx))
 
 
@@ -121,14 +122,17 @@ class Complete(Leaf):
 
 
 def end_unneeded(ctx: Context) -> None:
+    """End a mission that asked to stop when nothing was going on."""
     ctx.end_mission("cancelled", "there was nothing to stop")
 
 
 def holds_another(ctx: Context) -> bool:
+    """The hand holds something else than what is asked for."""
     return bool(ctx.gripper.holding) and ctx.gripper.holding != ctx.mission.task.label
 
 
 def forget_release(ctx: Context) -> None:
+    """What was put down was not what is asked for."""
     ctx.mission.delivery.released = False
 
 

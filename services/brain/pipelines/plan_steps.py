@@ -158,10 +158,12 @@ def go_to(ctx: Context, where: str) -> Behaviour:
 
 
 def go_and_settle(ctx: Context, where: str) -> Behaviour:
+    """Drive to a place and come to rest."""
     return Sequence("go_and_settle", go_to(ctx, where), Settle("settle", ctx))
 
 
 def home_and_settle(ctx: Context) -> Behaviour:
+    """Drive home and come to rest."""
     return Sequence("back", drive_home(ctx), Settle("settle", ctx))
 
 

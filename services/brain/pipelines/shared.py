@@ -10,6 +10,7 @@ from services.brain.tree.composites import Sequence
 
 
 def drive_home(ctx: Context) -> Behaviour:
+    """Drive back to where the mission began."""
     return Navigate(
         "return",
         ctx,
@@ -30,6 +31,7 @@ def report_failure(ctx: Context) -> Behaviour:
 
 
 def enter_error(ctx: Context) -> None:
+    """End the mission by its last failure, and show it."""
     mission = ctx.mission
     failure = mission.failure or Failure(ctx.state, "INTERNAL", spoken="Something went wrong.")
     mission.failure = failure
@@ -46,6 +48,7 @@ def enter_error(ctx: Context) -> None:
 
 
 def spoken_reason(ctx: Context) -> str:
+    """What is said of the failure, and of what is still in the hand."""
     failure = ctx.mission.failure
     text = failure.spoken if failure else ""
     return f"{text} I am still holding the {ctx.gripper.holding}." if ctx.gripper.holding else text

@@ -12,7 +12,7 @@ from services.brain.steps.plan import AwaitCommand, CompleteWithEvidence, PlanIs
 from services.brain.tree.composites import Condition, Retry, Selector, Sequence
 
 LOOKS = 4
-"""Times that a plan may only go and look (chosen: as many rooms as the flat has)."""
+"""Times that a plan may only go and look (chosen: a planner that asks for more will never plan)."""
 
 
 def vla_tree(ctx: Context) -> Behaviour:

@@ -10,8 +10,7 @@ from services.brain.steps.leaf import Settle
 from services.brain.tree.composites import Retry, Selector, Sequence
 
 VIEWPOINTS = (2, 5, 9)
-"""Viewpoints of each search attempt (chosen: 2 turns on the spot show a camera of 66 degrees half a room; the flat has
-some 14 viewpoints that show anything new)."""
+"""Viewpoints of each search attempt, the last for all that follow (chosen: near and cheap first)."""
 SEVERAL = (Recovery("several_match", several_match, ask_which),)
 
 

@@ -15,9 +15,9 @@ from services.brain.tree.path import AS_ASKED, DO, GRAB, PLAN_STEP, PLANS
 MAX_RESUMES = 10
 """Restarts without progress after which a mission is given up (chosen: a crash loop, not bad luck)."""
 MOVED, TURNED = 0.3, 0.5
-"""m, rad by which the base must have moved to be elsewhere (chosen: three times what localisation is wrong by)."""
+"""m, rad by which the base must have moved to be elsewhere (chosen: well above errors of localisation)."""
 CLOCK_SLACK = 2.0
-"""s by which robot time may have gone back before the simulation counts as a new one (a checkpoint's period)."""
+"""s by which robot time may go back before the simulation counts as new (chosen: more than a crash of it loses)."""
 Change = Literal["", "lost", "holding", "moved", "new world"]
 
 

@@ -12,9 +12,9 @@ from services.brain.resume.policy import Decision, Seen, apply, decide, refusal
 from services.brain.tree.path import MISSION, REPORT_FAILURE, PathNotFound, start_at
 
 LOOK = 0.6
-"""s of looking before deciding (chosen: three statuses of each peer, and the fingers at rest)."""
+"""s of looking before deciding (chosen: some statuses of every peer, and no pause that people notice)."""
 PEER_PATIENCE = 3.0
-"""s to wait for a peer that had a goal and is not there (measured: a killed service is back after 2 s)."""
+"""s to wait for a peer that had a goal and is not there (chosen: a supervised service is started again within it)."""
 SPARE_GOALS = 10
 """Goal numbers skipped: what the process before this one may have sent after its last checkpoint."""
 
@@ -96,6 +96,7 @@ class Resumption:
         return True
 
     def _go_on(self) -> None:
+        """Start the tree where the policy says, with what was seen."""
         ctx, left = self._ctx, self.left
         here = ctx.io.latest(topics.POSE)
         arm = ctx.peers.manipulation

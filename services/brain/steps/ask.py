@@ -8,7 +8,7 @@ from py_trees.common import Status
 from common import messages as m
 from common import topics
 from common.topics import Topic
-from services.brain.dialogue import chosen, corrected, reply
+from services.brain.language.dialogue import chosen, corrected, reply
 from services.brain.mission.channel import Result
 from services.brain.mission.context import Context
 from services.brain.mission.mission import Failure
@@ -134,6 +134,7 @@ class HearChoice(HearAnswer):
 
 
 def question(ctx: Context) -> str:
+    """The question that confirms a command."""
     return "Please say it again." if ctx.mission.heard.repeat else f"Did you say {ctx.mission.command}?"
 
 

@@ -9,13 +9,13 @@ from common import messages as m
 from common import topics
 from common.geometry import Pose2
 from common.topics import Topic
-from services.brain import search
-from services.brain.floor import standing_pose
 from services.brain.mission.channel import Result
 from services.brain.mission.context import Context
 from services.brain.mission.mission import Failure
 from services.brain.steps.leaf import Leaf, SendGoal
 from services.brain.steps.motion import Navigate
+from services.brain.world import viewpoint_search
+from services.brain.world.standing_poses import standing_pose
 
 
 class LocateObject(SendGoal):
@@ -67,9 +67,9 @@ class MoveToViewpoint(SendGoal):
         ctx, mission, pose = self.ctx, self.ctx.mission, self.ctx.robot_pose
         looked_from = [*mission.search.visited, pose]
         if self._elsewhere:
-            self._target = search.elsewhere(ctx.io.scene, ctx.viewpoints, pose, looked_from)
+            self._target = viewpoint_search.elsewhere(ctx.io.scene, ctx.viewpoints, pose, looked_from)
         else:
-            self._target = search.turn(ctx.viewpoints, pose, looked_from)
+            self._target = viewpoint_search.turn(ctx.viewpoints, pose, looked_from)
         # A view that cannot be reached is not tried a second time either.
         mission.search.visited = [*mission.search.visited, pose, *([self._target] if self._target else [])]
         mission.at = ""

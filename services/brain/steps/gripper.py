@@ -9,7 +9,7 @@ from py_trees.common import Status
 
 from common import messages as m
 from common import topics
-from services.brain.dialogue import reply
+from services.brain.language.dialogue import reply
 from services.brain.mission.channel import Result
 from services.brain.mission.context import Context
 from services.brain.mission.mission import GRIPPER_EMPTY, GRIPPER_OPEN, HOLDING_FORCE, Failure, gripper, gripper_holds
@@ -135,5 +135,6 @@ def in_hand(ctx: Context) -> bool:
 
 
 def manipulation_gone(ctx: Context) -> bool:
+    """The hand is full and nobody moves the arm any more."""
     failure = ctx.mission.failure
     return failure is not None and failure.code == "NO_PEER" and in_hand(ctx)

@@ -15,6 +15,9 @@ from services.brain.mission.mission import Failure
 from services.brain.tree.composites import shown
 
 MAX_RESENDS = 5
+"""Restarts of a peer during one goal that are made up for (chosen: a crash loop has more)."""
+SPEECH_START, SPEECH_PER_CHARACTER = 1.0, 0.07
+"""s before speech begins and s per character of it (chosen: some 14 characters a second, ordinary speech)."""
 
 
 class Leaf(Behaviour):
@@ -31,6 +34,7 @@ class Leaf(Behaviour):
 
     @property
     def elapsed(self) -> float:
+        """Seconds of robot time since the leaf began."""
         return self.ctx.now - self.since
 
 
@@ -209,7 +213,7 @@ class Say(Leaf):
         self._heard, self._goal_id = False, ""
         if text and ctx.io.has_subscribers(topics.SPEECH_GOAL):
             self._goal_id = ctx.send_only(ctx.peers.speech, topics.SPEECH_GOAL, f"say {text}")
-        self._estimate = min(1.0 + 0.07 * len(text), ctx.config.say_timeout)
+        self._estimate = min(SPEECH_START + SPEECH_PER_CHARACTER * len(text), ctx.config.say_timeout)
         self.feedback_message = text
 
     def update(self) -> Status:

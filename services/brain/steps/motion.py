@@ -9,17 +9,17 @@ from py_trees.common import Status
 from common import messages as m
 from common import topics
 from common.topics import Topic
-from services.brain.floor import place_pose
 from services.brain.mission.channel import Result
 from services.brain.mission.context import Context
 from services.brain.mission.mission import Failure
 from services.brain.steps.leaf import Leaf, SendGoal
+from services.brain.world.standing_poses import place_pose
 
 Text = Callable[[], str]
-# The hand is empty that should have held something.
 LOST = ("LOST_OBJECT", "NOT_HOLDING", "SLIPPED")
-# Why no grasp can hold an object, by manipulation's code.
+"""Manipulation's codes for a hand that is empty and should have held something."""
 BEYOND_THE_HAND = {"TOO_HEAVY": "too heavy for me", "TOO_WIDE": "too wide for my hand"}
+"""Why no grasp can hold an object, in words, by manipulation's code."""
 
 
 class Navigate(SendGoal):

@@ -12,10 +12,10 @@ from common.topics import Topic
 from services.brain.mission.channel import Result
 from services.brain.mission.context import Context
 from services.brain.mission.mission import Failure
-from services.brain.placement import Finding, judge_absence, judge_placement
 from services.brain.steps.leaf import Leaf, SendGoal, Settle
 from services.brain.steps.motion import Release
 from services.brain.tree.composites import Condition, Retry, Sequence
+from services.brain.world.placement import Finding, judge_absence, judge_placement
 
 MISPLACED_CODES = ("NOT_SEEN", "MISPLACED", "TOPPLED")
 """Codes of a look that shows an object not where, or not as, it belongs."""
@@ -125,14 +125,14 @@ def record_finding(ctx: Context, finding: Finding, picture: bytes) -> Status:
     """Write down what was seen; what is not where it belongs counts as not released."""
     mission, label = ctx.mission, ctx.mission.delivery.put_down
     name = ctx.pictures.keep(mission.id, picture)
-    ctx.note(f"looked at the {label}", finding.words, "saw", picture=name)
+    ctx.note(f"looked at the {label}", finding.evidence, "saw", picture=name)
     if not finding.fault:
         mission.delivery.released, mission.failure = True, None
-        mission.delivery.checked = [*mission.delivery.checked, finding.words]
+        mission.delivery.checked = [*mission.delivery.checked, finding.evidence]
         return Status.SUCCESS
     mission.delivery.released = False
-    spoken = f"I put down the {label}, but {finding.words.partition(', at (')[0]}."
-    ctx.record_failure(Failure("RELEASING", finding.fault, finding.words, spoken))
+    spoken = f"I put down the {label}, but {finding.words}."
+    ctx.record_failure(Failure("RELEASING", finding.fault, finding.evidence, spoken))
     return Status.FAILURE
 
 

@@ -6,7 +6,7 @@ from collections.abc import Collection
 from common.geometry import Array, Pose2
 from common.scene import Scene
 from common.viewpoints import Viewpoints
-from services.brain.floor import clearance
+from services.brain.world.standing_poses import clearance
 
 CLEARANCE = 0.48
 """Free floor around a viewpoint [m]; chosen: the footprint's radius 0.37 and what an unknown chair takes of it."""

@@ -1,4 +1,4 @@
-"""Does what was put down stand where it belongs? Pure: what perception saw in, what is wrong with it out."""
+"""Judges by what perception saw whether an object that was put down stands where it belongs. Pure."""
 
 import math
 from dataclasses import dataclass
@@ -11,17 +11,23 @@ from common.scene import Scene
 
 Fault = Literal["", "NOT_SEEN", "MISPLACED", "TOPPLED"]
 TIPPED = 0.35
-"""Tilt [rad] from which a thing does not stand; perception tells standing, lying (1.57) and upside down (3.14)."""
+"""Tilt [rad] from which an object does not stand; perception tells standing, lying (1.57) and upside down (3.14)."""
 UPSIDE_DOWN = 2.4
-"""Tilt [rad] from which a thing is upside down rather than on its side: half-way between the two."""
+"""Tilt [rad] from which an object is upside down rather than on its side: half-way between the two."""
 
 
 @dataclass(frozen=True)
 class Finding:
-    """`fault` is "" when all is well; `words` is a sentence for people."""
+    """`fault` is "" when all is well; `words`: a clause for people; `measured`: the pose, "" when it was not seen."""
 
     fault: Fault
     words: str
+    measured: str = ""
+
+    @property
+    def evidence(self) -> str:
+        """Words and measurement, for the timeline."""
+        return f"{self.words}, {self.measured}" if self.measured else self.words
 
 
 def judge_placement(pose: ObjectPose, label: str, target: str, scene: Scene) -> Finding:
@@ -35,11 +41,11 @@ def judge_placement(pose: ObjectPose, label: str, target: str, scene: Scene) -> 
     x, y, z = pose.position
     measured = f"at ({x:.2f}, {y:.2f}, {z:.2f}), tilt {math.degrees(tilt):.0f} deg"
     if wanted is not None and on is not wanted:
-        return Finding("MISPLACED", f"the {label} is {where}, not on the {wanted.name}, {measured}")
+        return Finding("MISPLACED", f"the {label} is {where}, not on the {wanted.name}", measured)
     if spec is not None and kind_of(spec.kind).upright and tilt > TIPPED and not (on and on.depth):
         lies = "stands upside down" if tilt > UPSIDE_DOWN else "lies on its side"
-        return Finding("TOPPLED", f"the {label} {lies} {where}, {measured}")
-    return Finding("", f"the {label} is {where}, {measured}")
+        return Finding("TOPPLED", f"the {label} {lies} {where}", measured)
+    return Finding("", f"the {label} is {where}", measured)
 
 
 def judge_absence(label: str, target: str, scene: Scene) -> Finding:
