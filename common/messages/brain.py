@@ -12,6 +12,8 @@ SystemStateName = Literal["IDLE", "LISTENING", "PLANNING", "GROUNDING", "NAVIGAT
 
 
 class BrainState(Message):
+    """Where the mission stands; `plan_step`: number from 1 of the plan's step under way, 0 when none is."""
+
     state: BrainStateName
     t: float = 0.0
     mission_id: str = ""
@@ -21,6 +23,7 @@ class BrainState(Message):
     started: float = 0.0
     pipeline: str = ""
     last: "MissionOutcome | None" = None
+    plan_step: int = 0
 
 
 class MissionOutcome(Message):

@@ -110,6 +110,11 @@ def test_the_contracts_sequence() -> None:
     assert bench.texts(MANIP) == ["grab", "release"]
     last = bench.state.last
     assert last is not None and last.outcome == "delivered"
+    steps = dict.fromkeys((s.state, s.plan_step) for s in bench.sent(topics.BRAIN_STATE) if s.mission_id)
+    assert list(steps)[1:] == [
+        ("PLANNING", 0), ("GROUNDING", 1), ("NAVIGATING", 2), ("GRABBING", 2), ("RETURNING", 3), ("RELEASING", 4),
+        ("COMPLETED", 0),
+    ]  # fmt: skip
 
 
 def test_the_tree_is_the_contracts_sequence_of_steps() -> None:

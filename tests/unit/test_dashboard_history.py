@@ -100,9 +100,18 @@ def test_nothing_from_the_bus_becomes_html() -> None:
 
 def test_mission_panel_names_state_step_time_and_plan() -> None:
     state = m.BrainState(state="NAVIGATING", command="fetch it", step="find mug", mission_id="m-1", started=10.0)
+    state.plan_step = 2
     steps = [m.PlanStep(action="find", object="red mug"), m.PlanStep(action="grasp", object="red mug")]
     text = markup.mission(state, 17.4, steps, None, m.ManipulationStatus(status="executing", phase="lift"))
-    for word in ("NAVIGATING", "fetch it", "find mug", "7 s", "<li>find red mug</li>", "executing lift"):
+    for word in (
+        "NAVIGATING",
+        "fetch it",
+        "find mug",
+        "7 s",
+        "<li>find red mug</li>",
+        "<b>grasp red mug</b>",
+        "executing lift",
+    ):
         assert word in text
     assert "not been heard" in markup.mission(None, 0.0, [], None, None)
 

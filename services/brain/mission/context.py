@@ -18,6 +18,7 @@ from services.brain.mission.heartbeat import Heartbeat
 from services.brain.mission.mission import Failure, GripperState, Heard, Mission, Outcome
 from services.brain.mission.peers import Peers
 from services.brain.mission.voice import Voice
+from services.brain.tree.path import plan_step
 
 
 class Context:
@@ -48,7 +49,8 @@ class Context:
 
     def show_state(self, state: m.BrainStateName, step: str = "", detail: str = "", cause: str = "") -> None:
         """Show a state; a change is published at once and noted in the journal."""
-        before = self.display.show(self.mission, self.now, state, step, detail, self.suspended is not None)
+        number, resumable = plan_step(self.checkpoints.at), self.suspended is not None
+        before = self.display.show(self.mission, self.now, state, step, detail, number, resumable)
         if before is not None and (before.state != state or before.step != step):
             self.note(cause or step or state, detail, "state")
             shown = self.display.shown

@@ -18,7 +18,14 @@ class Display:
         self._publish()
 
     def show(
-        self, mission: Mission, t: float, state: m.BrainStateName, step: str, detail: str, resumable: bool
+        self,
+        mission: Mission,
+        t: float,
+        state: m.BrainStateName,
+        step: str,
+        detail: str,
+        plan_step: int,
+        resumable: bool,
     ) -> m.BrainState | None:
         """Show a state at robot time `t` [s]; what was shown before when it differs by more than time, else None."""
         running = mission.active or state in ("COMPLETED", "ERROR")
@@ -35,6 +42,7 @@ class Display:
             started=mission.started if running else 0.0,
             pipeline=self._pipeline,
             last=self.last,
+            plan_step=plan_step if mission.active else 0,
         )
         if now == msgspec.structs.replace(before, t=t):
             return None

@@ -49,6 +49,15 @@ def path_to(node: Behaviour) -> list[PathNode]:
     return path[::-1]
 
 
+def plan_step(node: Behaviour | None) -> int:
+    """Number from 1 of the plan's step that a node belongs to; 0 when it belongs to none."""
+    while node is not None and node.parent is not None:
+        if _id(node.parent) in PLANS:
+            return 1 + int(node.parent.children.index(node))
+        node = node.parent
+    return 0
+
+
 def start_at(root: Behaviour, path: Sequence[PathNode]) -> Behaviour:
     """Make the next tick begin at the end of the path, as if all before it had just been done; the node there.
 

@@ -79,14 +79,14 @@ def mission(
         if status is not None:
             words = (status.status, getattr(status, "phase", ""), status.code, status.detail)
             limbs.append((name, " ".join(w for w in words if w)))
-    shown = [_step(step, state.step) for step in steps] if state is not None else []
+    now_at = state.plan_step if state is not None else 0
+    shown = [(_words(step), number == now_at) for number, step in enumerate(steps, 1)] if state is not None else []
     return _render("mission.html", state=state, now=now, busy=busy, steps=shown, limbs=limbs, last=last)
 
 
-def _step(step: m.PlanStep, current: str) -> tuple[str, bool]:
-    """The words of a step of the plan, and whether it is the one that the brain names now."""
-    words = " ".join(w for w in (step.action, step.object, step.target, step.text) if w)
-    return words, current.startswith(step.action) and (not step.object or step.object in current)
+def _words(step: m.PlanStep) -> str:
+    """A step of the plan in words."""
+    return " ".join(w for w in (step.action, step.object, step.target, step.text) if w)
 
 
 def transcript(lines: Iterable[Line]) -> str:
