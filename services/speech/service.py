@@ -17,12 +17,12 @@ from common.language.pattern import PatternError
 from common.runtime import StartError
 from services.speech.audio import RATE, AudioError, Samples, read_wav, resample
 from services.speech.config import SpeechConfig
-from services.speech.listen.addressee import act
-from services.speech.listen.utterance_queue import Attention, Hearing
-from services.speech.recognise.front_end import Ear
-from services.speech.recognise.recogniser import Heard, grammars
+from services.speech.listen.addressee import consequence
+from services.speech.listen.utterance_queue import PendingUtterance, UtteranceQueue
+from services.speech.recognise.front_end import FrontEnd
+from services.speech.recognise.recogniser import Recognition, grammars
 from services.speech.sound_card import Microphone
-from services.speech.speak.player import CHUNK, Mouth
+from services.speech.speak.player import CHUNK, TtsPlayer
 
 _FAILURES = {"silence": "NO_SPEECH", "ask": "UNCERTAIN", "reject": "NO_COMMAND"}
 
@@ -45,8 +45,8 @@ class SpeechService:
         if config.wake_word and not find_spec("pyopen_wakeword"):
             raise StartError("speech.wake_word needs pyopen-wakeword; install it, or set speech.wake_word = false")
         self._microphone = Microphone() if config.microphone else None
-        self._attention = Attention(config, io, lambda: Ear(config, io.scene, found))
-        self._mouth = Mouth(io, config.speakers, config.synthesis_seconds, config.preload)
+        self._queue = UtteranceQueue(config, io, lambda: FrontEnd(config, io.scene, found))
+        self._player = TtsPlayer(io, config.speakers, config.synthesis_seconds, config.preload)
         self._goal = m.SpeechGoal(goal="")
         self._inbox: GoalInbox[m.SpeechGoal, m.SpeechResult] = GoalInbox(
             io, (topics.SPEECH_GOAL,), self._take, self._repeat
@@ -64,12 +64,12 @@ class SpeechService:
         for typed in io.take_all(topics.SPEECH_TEXT):
             self._type(typed.text.strip(), now)
         key = self._goal.id, self._goal.attempt
-        self._attention.push(self._audio(), now, bool(self._mouth.saying), self._listening, key)
-        while hearing := self._attention.take(now):
-            self._heard(hearing, now)
+        self._queue.push(self._audio(), now, bool(self._player.saying), self._listening, key)
+        while utterance := self._queue.take(now):
+            self._act(utterance, now)
         if self._listening:
             self._listen(now)
-        self._show(now, "said" if self._mouth.step(now) else "")
+        self._show(now, "said" if self._player.step(now) else "")
 
     # --- goals
     def _repeat(self, goal: m.SpeechGoal, answer: m.SpeechResult | None) -> None:
@@ -81,16 +81,16 @@ class SpeechService:
         verb, _, text = goal.goal.strip().partition(" ")
         if verb == "say" and text.strip():
             self._goal, self._listening = goal, False
-            self._mouth.say(text.strip())
+            self._player.say(text.strip())
             self._set("speaking", text.strip())
         elif goal.goal.strip() == "listen":
-            self._mouth.stop()
+            self._player.stop()
             self._goal, self._listening = goal, True
             self._deadline = self._now + self._config.listen_timeout
             self._set("listening")
             self._io.log.info("listening", id=goal.id)
         elif goal.goal.strip() == "cancel":
-            self._mouth.stop()
+            self._player.stop()
             self._goal, self._listening = goal, False
             self._set("idle", "cancelled")
         else:
@@ -114,11 +114,11 @@ class SpeechService:
     def _show(self, now: float, detail: str) -> None:
         """Publish the state when it has changed."""
         state: m.SpeechStateName = "idle"
-        if self._mouth.saying:
+        if self._player.saying:
             state = "speaking"
-        elif self._attention.transcribing:
+        elif self._queue.transcribing:
             state = "transcribing"
-        elif self._listening or self._attention.awake(now):
+        elif self._listening or self._queue.window_open(now):
             state = "listening"
         if state != self._status.state:
             self._set(state, detail)
@@ -145,40 +145,42 @@ class SpeechService:
                 found.append((np.zeros(RATE, np.int16), False))
         return found
 
-    def _heard(self, hearing: Hearing, now: float) -> None:
-        """Do what follows from an utterance."""
-        heard, setting = hearing.job.result(), hearing.setting
-        same = self._listening and hearing.key == (self._goal.id, self._goal.attempt)
-        setting = replace(setting, listening=setting.listening and same)
-        found = act(heard, asks_for(heard.text, "stop", "cancel"), hearing.scope, setting)
-        self._io.log.debug("utterance", text=heard.text, free=heard.free, verdict=heard.verdict, act=found)
+    def _act(self, utterance: PendingUtterance, now: float) -> None:
+        """Do what follows from an utterance that is through recognition."""
+        recognition, context = utterance.job.result(), utterance.context
+        same = self._listening and utterance.key == (self._goal.id, self._goal.attempt)
+        context = replace(context, listening=context.listening and same)
+        text, free, verdict = recognition.text, recognition.free, recognition.verdict
+        found = consequence(recognition, asks_for(text, "stop", "cancel"), utterance.scope, context)
+        self._io.log.debug("utterance", text=text, free=free, verdict=verdict, act=found)
         if found in ("stop", "cancel", "answer"):
-            self._attention.settle(hearing)
+            self._queue.settle(utterance)
         if found in ("stop", "cancel"):
-            self._interrupt(found, heard.confidence, now)
+            self._interrupt(found, recognition.confidence, now)
         elif found == "answer":
-            self._attention.sleep(now)
-            self._end_listening(heard)
+            self._queue.close_window(now)
+            self._end_listening(recognition)
         elif found == "command":
-            self._attention.sleep(now)
-            self._command(heard.text, heard.confidence)
+            self._queue.close_window(now)
+            self._command(text, recognition.confidence)
         elif found in ("awake", "again"):
-            self._attention.wake(now)
+            self._queue.open_window(now)
             if found == "again":
-                self._set("listening", f"understood {heard.free!r}", _FAILURES[heard.verdict])
+                self._set("listening", f"understood {free!r}", _FAILURES[verdict])
 
-    def _end_listening(self, heard: Heard) -> None:
+    def _end_listening(self, recognition: Recognition) -> None:
         self._listening = False
-        if heard.verdict == "accept":
-            self._answer(self._goal, heard.text, heard.confidence)
+        text, verdict = recognition.text, recognition.verdict
+        if verdict == "accept":
+            self._answer(self._goal, text, recognition.confidence)
         else:
-            detail = f"perhaps {heard.text!r}" if heard.verdict == "ask" else f"understood {heard.free!r}"
-            self._answer(self._goal, "ERROR", heard.confidence, _FAILURES[heard.verdict], detail)
+            detail = f"perhaps {text!r}" if verdict == "ask" else f"understood {recognition.free!r}"
+            self._answer(self._goal, "ERROR", recognition.confidence, _FAILURES[verdict], detail)
 
     def _interrupt(self, word: str, confidence: float, now: float) -> None:
         """Somebody said stop or cancel: be silent and tell the brain; a stop goes to the motors directly."""
-        self._mouth.stop()
-        self._attention.sleep(now)
+        self._player.stop()
+        self._queue.close_window(now)
         if word == "stop":
             self._io.publish(topics.ROBOT_STOP, m.RobotStop(reason="somebody said stop", source=self.NAME))
         if self._listening:
@@ -207,7 +209,7 @@ class SpeechService:
                 self._listening = False
                 self._answer(self._goal, normalise(text), 1.0)
                 return
-        if now >= self._deadline and not self._attention.busy:
+        if now >= self._deadline and not self._queue.busy:
             self._listening = False
             silent = f"nobody spoke for {self._config.listen_timeout:.0f} s"
             self._answer(self._goal, "ERROR", 0.0, "TIMEOUT", silent)

@@ -14,8 +14,8 @@ from common.scene import Scene, SceneError, load_scene
 from services.speech.audio import AudioError, Samples, read_wav
 from services.speech.config import SpeechConfig
 from services.speech.listen.wake_word import WakeWord
-from services.speech.recognise.front_end import Ear
-from services.speech.recognise.recogniser import Heard, grammars
+from services.speech.recognise.front_end import FrontEnd
+from services.speech.recognise.recogniser import Recognition, grammars
 
 
 class Reader:
@@ -23,16 +23,16 @@ class Reader:
 
     def __init__(self, parameters: SpeechConfig, scene: Scene) -> None:
         self._threshold = parameters.wake_threshold
-        self._ear = Ear(parameters, scene, grammars(parameters, scene))
+        self._front_end = FrontEnd(parameters, scene, grammars(parameters, scene))
         self._wake = WakeWord() if parameters.wake_word else None
 
-    def __call__(self, samples: Samples) -> tuple[Heard, bool]:
+    def __call__(self, samples: Samples) -> tuple[Recognition, bool]:
         """What 16 kHz samples (n,) say, and whether the wake word is in them."""
         woken = False
         if self._wake:
             self._wake.restart()
             woken = self._wake(samples) >= self._threshold
-        return self._ear.hear(samples, "woken" if woken else "command"), woken
+        return self._front_end.recognise(samples, "woken" if woken else "command"), woken
 
 
 def main() -> int:
@@ -53,19 +53,19 @@ def main() -> int:
     failed = False
     for path in args.wav:
         try:
-            heard, woken = reader(read_wav(path))
+            found, woken = reader(read_wav(path))
         except AudioError as error:
             print(f"transcribe: {error}", file=sys.stderr)
             failed = True
             continue
-        accepted = heard.verdict == "accept" and bool(heard.text)
-        row: dict[str, object] = {"file": str(path), "text": heard.text, "accepted": accepted}
-        row |= {"confidence": heard.confidence, "wake": woken}
+        accepted = found.verdict == "accept" and bool(found.text)
+        row: dict[str, object] = {"file": str(path), "text": found.text, "accepted": accepted}
+        row |= {"confidence": found.confidence, "wake": woken}
         if args.json:
             print(msgspec.json.encode(row).decode(), flush=True)
         else:
             wake = ", wake word" if woken else ""
-            print(f"{path.name}: {heard.text or '-'} ({heard.verdict}, {heard.confidence:.2f}{wake})", flush=True)
+            print(f"{path.name}: {found.text or '-'} ({found.verdict}, {found.confidence:.2f}{wake})", flush=True)
     return int(failed)
 
 

@@ -3,36 +3,13 @@
 import numpy as np
 import pytest
 
-from services.speech.recognise import protobuf as pb
 from services.speech.recognise.grammar import Grammar
 from services.speech.recognise.moonshine import models, networks
-from services.speech.recognise.packed_network import BLOCK, Net, session
+from services.speech.recognise.packed_network import BLOCK, NetworkBuilder, session
 from services.speech.recognise.token_trie import BOS
 from services.speech.speak.voice import Voice
 
 HEADS, LAYERS, WIDTH = 8, 8, 52
-
-
-def test_tensors_come_back_as_they_were_written() -> None:
-    for values in (
-        np.arange(6, dtype=np.float32).reshape(2, 3),
-        np.array([-3, 4], np.int64),
-        np.zeros((0, 2), np.int8),
-    ):
-        name, found = pb.array(pb.tensor("weights", values))
-        assert name == "weights" and found.dtype == values.dtype and np.array_equal(found, values)
-        assert found.shape == values.shape
-
-
-def test_fields_are_read_and_what_is_no_message_is_refused() -> None:
-    message = pb.field(3, 300) + pb.field(200, "words") + b"\x0d1234"
-    assert [(n, v if isinstance(v, int) else v and bytes(v)) for n, _, v in pb.fields(message)] == [
-        (3, 300), (200, b"words"), (1, None),
-    ]  # fmt: skip
-    assert b"".join(bytes(raw) for _, raw, _ in pb.fields(message)) == message
-    assert pb.texts(message, 200) == ["words"] and pb.texts(message, 4) == []
-    with pytest.raises(ValueError, match="wire type 3"):
-        list(pb.fields(b"\x0b"))
 
 
 def test_packed_weights_multiply_as_unpacked_ones() -> None:
@@ -41,7 +18,7 @@ def test_packed_weights_multiply_as_unpacked_ones() -> None:
     scale, zero = np.array([0.02], np.float32), -7
     added = -zero * scale
     x = rng.normal(size=(3, 2 * BLOCK)).astype(np.float32)
-    net = Net()
+    net = NetworkBuilder()
     doubled = net.op("Add", "x", "x")
     net.times(doubled, (q, scale, added), output="y")
     (found,) = net.session({"x": (np.float32, 2)}, ["y"], 1).run(None, {"x": x})
@@ -65,10 +42,10 @@ def test_the_decoder_finds_what_the_shipped_one_finds() -> None:
     encoder, decoder = networks(1)
     sound = Voice().speak("bring me the red mug").astype(np.float32) / np.float32(32768)
     hidden = encoder.run(None, {"input_values": np.stack([sound, sound[::-1]])})[0]
-    heard, past = decoder.heard(hidden), decoder.nothing(2)
+    attended, cache = decoder.cross_attention_cache(hidden), decoder.empty_cache(2)
     sequences, rows = np.array([[BOS, 518, 29915, 263], [BOS, 2803, 592, 278]]), [0, 0]
     for length in range(1, sequences.shape[1] + 1):
-        scores, past = decoder.step(heard, past, rows, list(sequences[:, length - 1]))
+        scores, cache = decoder.step(attended, cache, rows, list(sequences[:, length - 1]))
         rows = [0, 1]
     empty = np.zeros((0, HEADS, 1, WIDTH), np.float32)
     feeds = {

@@ -7,8 +7,8 @@ import numpy as np
 from common import config
 from services.speech.config import SpeechConfig
 from services.speech.recognise.denoise import noise_power, noise_ratio, reduce_noise
-from services.speech.recognise.recogniser import Sound, confidence_of
-from services.speech.recognise.scoring import CANDIDATES, cost, judged, paced
+from services.speech.recognise.recogniser import PreparedUtterance, confidence_of
+from services.speech.recognise.scoring import CANDIDATES, prior_cost, rescored, time_scaled
 from tests.support import ROOT
 
 CONFIG = config.load("speech", SpeechConfig, ROOT / "config", {})
@@ -59,12 +59,12 @@ def test_speech_to_noise_is_measured() -> None:
 
 def test_a_sentence_that_does_not_fit_its_time_costs_more() -> None:
     long, short = "pick up the blue cup", "yes"
-    assert cost(long, 1.25, CONFIG) < 1.0 < 5.0 < cost(short, 1.25, CONFIG)
-    assert cost(short, 0.5, CONFIG) < 1.0 < 5.0 < cost(long, 0.5, CONFIG)
+    assert prior_cost(long, 1.25, CONFIG) < 1.0 < 5.0 < prior_cost(short, 1.25, CONFIG)
+    assert prior_cost(short, 0.5, CONFIG) < 1.0 < 5.0 < prior_cost(long, 0.5, CONFIG)
 
 
 def test_rare_words_cost() -> None:
-    assert cost("go to my kitchen", 1.1, CONFIG) > cost("go to the kitchen", 1.1, CONFIG)
+    assert prior_cost("go to my kitchen", 1.1, CONFIG) > prior_cost("go to the kitchen", 1.1, CONFIG)
 
 
 def test_confidence_falls_with_the_likelihood_ratio() -> None:
@@ -90,18 +90,18 @@ def test_what_is_uncertain_is_judged_again_and_may_turn_out_otherwise() -> None:
         asked.extend(sentences)
         return [-9.0, -6.0, -4.0]
 
-    assert judged(FOUND, FREE, lambda text: 0.0, again) == (FOUND[1], -0.5)
+    assert rescored(FOUND, FREE, lambda text: 0.0, again) == (FOUND[1], -0.5)
     assert asked == [FOUND[0], FOUND[1], FREE]
-    assert judged(FOUND, FREE, lambda text: 5.0 * ("mug" in text), again) == (FOUND[0], -1.25)
+    assert rescored(FOUND, FREE, lambda text: 5.0 * ("mug" in text), again) == (FOUND[0], -1.25)
 
 
 def test_other_speech_is_no_command_because_its_transcription_does_not_hold() -> None:
     stop = Said("stop", -13.0, 2)
     free = Said("Let's talk market letter today", -8.0, 7)
-    assert judged([stop], free, lambda text: 0.0, lambda these: [-9.0, -30.0]) == (stop, -2.5)
+    assert rescored([stop], free, lambda text: 0.0, lambda these: [-9.0, -30.0]) == (stop, -2.5)
     near = Said("stop", -10.0, 2)
-    assert judged([near], free, lambda text: 0.0, lambda these: [-9.0, -9.0]) == (near, 0.0)
-    assert judged([near], free, lambda text: 20.0, lambda these: [-9.0, -9.0]) == (near, -10.0)
+    assert rescored([near], free, lambda text: 0.0, lambda these: [-9.0, -9.0]) == (near, 0.0)
+    assert rescored([near], free, lambda text: 20.0, lambda these: [-9.0, -9.0]) == (near, -10.0)
 
 
 def test_only_the_best_are_judged_again_and_nothing_where_there_is_no_doubt() -> None:
@@ -112,21 +112,21 @@ def test_only_the_best_are_judged_again_and_nothing_where_there_is_no_doubt() ->
         sizes.append(len(sentences))
         return [s.log_probability for s in sentences]
 
-    assert judged(many, FREE, lambda text: 0.0, again)[0] == many[0]
+    assert rescored(many, FREE, lambda text: 0.0, again)[0] == many[0]
     assert sizes == [CANDIDATES + 1]
     sure = Said("Bring me the red glass!", -5.0)
-    assert judged(FOUND, sure, lambda text: 0.0, again) == (FOUND[0], -0.25)
+    assert rescored(FOUND, sure, lambda text: 0.0, again) == (FOUND[0], -0.25)
     assert len(sizes) == 1
 
 
 def test_another_pace_changes_length_and_pitch_alike() -> None:
     t = np.arange(RATE) / RATE
     tone = (0.3 * np.sin(2 * np.pi * 440 * t)).astype(np.float32)
-    fast = paced(tone, 16 / 15)
+    fast = time_scaled(tone, 16 / 15)
     assert len(fast) == RATE * 15 // 16
     assert abs(float(np.argmax(np.abs(np.fft.rfft(fast)))) * RATE / len(fast) - 440 * 16 / 15) < 2.0
     assert abs(float(np.abs(fast[1000:-1000]).max()) - 0.3) < 0.01
-    both = Sound(np.stack([tone, np.zeros_like(tone)]), 0.5).paced()
+    both = PreparedUtterance(np.stack([tone, np.zeros_like(tone)]), 0.5).time_scaled()
     assert both.shape == (2, RATE * 16 // 15 + 1) and both[0].any() and not both[1].any()
-    alone = Sound(tone[None], 0.5).paced()
+    alone = PreparedUtterance(tone[None], 0.5).time_scaled()
     assert len(alone) == 2 and alone[0].any() and alone[1].any()

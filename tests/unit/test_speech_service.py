@@ -16,7 +16,7 @@ from services.speech.audio import RATE, AudioError, read_wav, write_wav
 from services.speech.config import SpeechConfig
 from services.speech.listen.vad import Endpointer
 from services.speech.recognise.grammar import Grammar, vocabulary
-from services.speech.recognise.moonshine import Vocabulary
+from services.speech.recognise.token_trie import TokenTrie
 from services.speech.service import SpeechService
 from services.speech.speak.voice import Voice
 from tests.node import Node
@@ -64,7 +64,7 @@ def test_a_bad_pattern_is_named(patterns: tuple[str, ...], words: str) -> None:
 
 def test_tokens_that_continue_a_sentence_are_found_whatever_their_case_and_length() -> None:
     grammar = Grammar(("stop it", "go"), {})
-    vocabulary = Vocabulary(["<unk>", "<s>", "</s>", " St", "op", " stop", " it", ".", " g", "o", " x"], grammar)
+    vocabulary = TokenTrie(["<unk>", "<s>", "</s>", " St", "op", " stop", " it", ".", " g", "o", " x"], grammar)
     numbers, states = vocabulary.allowed(grammar.start)
     assert sorted(numbers) == [3, 5, 7, 8]
     after = dict(zip(numbers.tolist(), states, strict=True))

@@ -1,18 +1,18 @@
-"""Who is meant by an utterance, and what follows from what was understood. Pure."""
+"""Addressee detection: is an utterance meant for the robot, and what follows from what was recognised in it. Pure."""
 
 from dataclasses import dataclass
 from typing import Literal
 
 from common.language.wordings import Action
-from services.speech.recognise.recogniser import Heard, Scope
+from services.speech.recognise.recogniser import Recognition, Scope
 
-Act = Literal["stop", "cancel", "answer", "command", "awake", "again", "nothing"]
+Consequence = Literal["stop", "cancel", "answer", "command", "awake", "again", "nothing"]
 
 
 @dataclass(frozen=True)
-class Setting:
-    """In which an utterance was made: did the robot itself `speak`, does the brain `listen`, was the wake word in it
-    (`woken`) or shortly before (`window`), or is the robot `addressed` without one (push-to-talk)."""
+class UtteranceContext:
+    """The circumstances of an utterance: was the robot itself `speaking`, the brain `listening`, the wake word in it
+    (`woken`) or shortly before (`window`), or the robot `addressed` without one (push-to-talk)."""
 
     speaking: bool = False
     listening: bool = False
@@ -26,27 +26,32 @@ class Setting:
         return not self.speaking and (self.listening or self.woken or self.window or self.addressed)
 
 
-def scope(setting: Setting, over: bool) -> Scope:
-    """What to listen for: while the robot speaks, in a mere pause, and among strangers only for stop and cancel."""
-    if not over or not setting.meant:
+def scope(context: UtteranceContext, over: bool) -> Scope:
+    """The grammar to recognise an utterance with.
+
+    While the robot speaks, in a mere pause (not `over`) and among strangers it is stop and cancel only.
+    """
+    if not over or not context.meant:
         return "interrupt"
-    return "woken" if setting.woken else "command"
+    return "woken" if context.woken else "command"
 
 
-def act(heard: Heard, interrupt: Action | None, asked: Scope, setting: Setting) -> Act:
-    """What follows from an utterance in which `asked` was looked for; `interrupt` is stop or cancel if it was that.
+def consequence(
+    recognition: Recognition, interrupt: Action | None, asked: Scope, context: UtteranceContext
+) -> Consequence:
+    """What follows from an utterance recognised with the grammar `asked`; `interrupt` is stop or cancel if it says so.
 
     `again`: the robot was addressed but did not understand. A cancel that answers the brain's listening is the answer.
     """
-    understood = heard.verdict == "accept"
+    understood = recognition.verdict == "accept"
     if understood and interrupt == "stop":
         return "stop"
     if understood and interrupt == "cancel":
-        return "answer" if setting.listening else "cancel"
-    if asked == "interrupt" or not setting.meant:
+        return "answer" if context.listening else "cancel"
+    if asked == "interrupt" or not context.meant:
         return "nothing"
-    if understood and not heard.text:
+    if understood and not recognition.text:
         return "awake"
-    if setting.listening:
+    if context.listening:
         return "answer"
-    return "command" if heard.verdict in ("accept", "ask") and heard.text else "again"
+    return "command" if recognition.verdict in ("accept", "ask") and recognition.text else "again"

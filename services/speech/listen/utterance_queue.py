@@ -1,4 +1,4 @@
-"""What is heard, cut into utterances, each recognised under the grammar that its setting asks for."""
+"""The queue of utterances from segmentation to recognition, each with the grammar that its circumstances ask for."""
 
 from collections import deque
 from collections.abc import Callable
@@ -7,108 +7,114 @@ from dataclasses import dataclass, replace
 from common.bus.port import Io, Job
 from services.speech.audio import RATE, Samples
 from services.speech.config import SpeechConfig
-from services.speech.listen.addressee import Setting, scope
+from services.speech.listen.addressee import UtteranceContext, scope
 from services.speech.listen.segmenter import Segment, Segmenter
-from services.speech.recognise.front_end import Ear
-from services.speech.recognise.recogniser import Heard, Scope
+from services.speech.recognise.front_end import FrontEnd
+from services.speech.recognise.recogniser import Recognition, Scope
 
-GAP, LOADING = 0.1, 0.5
+GAP = 0.1
+"""Longest gap between two chunks of a stream [s]: one step of the service."""
+LOADING = 0.5
+"""Modelled time of loading the networks in lockstep [s] (chosen: below the first words)."""
 
 
 @dataclass(frozen=True)
-class Hearing:
-    """An utterance in recognition; `key` is the listen goal at its end, `began` the time of its beginning."""
+class PendingUtterance:
+    """An utterance in recognition; `key` is the listen goal at its end, `began` the time of its beginning [s]."""
 
-    job: Job[Heard]
+    job: Job[Recognition]
     scope: Scope
-    setting: Setting
+    context: UtteranceContext
     key: tuple[str, int]
     began: float
 
 
-class Attention:
-    """`push` sound, `take` what was understood. The wake word opens a window for the utterance after it."""
+class UtteranceQueue:
+    """`push` sound, `take` what was recognised. The wake word opens a window for the utterance after it."""
 
-    def __init__(self, config: SpeechConfig, io: Io, load: Callable[[], Ear]) -> None:
+    def __init__(self, config: SpeechConfig, io: Io, load: Callable[[], FrontEnd]) -> None:
         self._config, self._io, self._load = config, io, load
-        self._ear: Job[Ear] | None = None
+        self._front_end: Job[FrontEnd] | None = None
         self._segmenter = Segmenter(
             config.end_silence, config.max_utterance, config.interrupt_pause, config.interrupt_longest, config.wake_word
         )
         if config.preload:
-            self._ear = io.submit(load, seconds=LOADING)
+            self._front_end = io.submit(load, seconds=LOADING)
         if not io.lockstep:
             self._segmenter.load()
-        self._setting = Setting()
-        self._began = self._heard_at = 0.0
-        self._awake_until = self._closed = float("-inf")
-        self._done = False
-        self._hearings: deque[Hearing] = deque()
+        self._context = UtteranceContext()
+        self._began = self._last_sound = 0.0
+        self._window_end = self._window_closed = float("-inf")
+        self._settled = False
+        self._pending: deque[PendingUtterance] = deque()
 
     @property
     def transcribing(self) -> bool:
         """True while a possible command is being recognised."""
-        return any(h.scope != "interrupt" for h in self._hearings)
+        return any(u.scope != "interrupt" for u in self._pending)
 
     @property
     def busy(self) -> bool:
         """True while somebody speaks, or what was said is being recognised."""
-        return self._segmenter.speaking or bool(self._hearings)
+        return self._segmenter.speaking or bool(self._pending)
 
-    def awake(self, now: float) -> bool:
+    def window_open(self, now: float) -> bool:
         """True while a command needs no wake word."""
-        return now <= self._awake_until
+        return now <= self._window_end
 
-    def wake(self, now: float) -> None:
+    def open_window(self, now: float) -> None:
         """Open the window, or keep it open."""
-        self._awake_until = now + self._config.wake_window
+        self._window_end = now + self._config.wake_window
 
-    def sleep(self, now: float) -> None:
+    def close_window(self, now: float) -> None:
         """Close the window: a command was given."""
-        self._awake_until, self._closed = float("-inf"), now
+        self._window_end, self._window_closed = float("-inf"), now
 
-    def settle(self, hearing: Hearing) -> None:
-        """What this utterance asked for is done: the rest of it means nothing more."""
-        self._hearings = deque(h for h in self._hearings if h.began != hearing.began)
-        self._done = self._done or hearing.began == self._began
+    def settle(self, utterance: PendingUtterance) -> None:
+        """Drop what else was said in the same breath: what this utterance asked for is done."""
+        self._pending = deque(u for u in self._pending if u.began != utterance.began)
+        self._settled = self._settled or utterance.began == self._began
 
     def push(
         self, parts: list[tuple[Samples, bool]], now: float, speaking: bool, listening: bool, key: tuple[str, int]
     ) -> None:
-        """New sound, each part with whether it is meant for the robot; does the robot speak or the brain listen?"""
+        """Append sound, each part with whether it is meant for the robot.
+
+        `speaking`: the robot speaks; `listening`: the brain listens, for the goal `key`.
+        """
         if parts:
-            self._heard_at = now
-        elif self._segmenter.speaking and now - self._heard_at > self._config.end_silence + GAP:
+            self._last_sound = now
+        elif self._segmenter.speaking and now - self._last_sound > self._config.end_silence + GAP:
             # A stream that stops in mid-utterance has ended it, as silence would have.
-            self._notice(now, False, speaking, listening)
+            self._update_context(now, False, speaking, listening)
             segment = self._segmenter.finish()
             if segment is not None:
-                self._utterance(segment, now, key)
+                self._submit(segment, now, key)
         for samples, addressed in parts:
-            self._notice(now, addressed, speaking, listening)
+            self._update_context(now, addressed, speaking, listening)
             for segment in self._segmenter.push(samples):
-                self._utterance(segment, now, key)
+                self._submit(segment, now, key)
 
-    def take(self, now: float) -> Hearing | None:
-        """The next utterance that is through recognition, its setting as it is now."""
-        if not self._hearings or not self._hearings[0].job.poll(now):
+    def take(self, now: float) -> PendingUtterance | None:
+        """The next utterance that is through recognition, its context as it is now."""
+        if not self._pending or not self._pending[0].job.poll(now):
             return None
-        hearing = self._hearings.popleft()
-        if hearing.setting.window and hearing.began <= self._closed:
-            return replace(hearing, setting=replace(hearing.setting, window=False))
-        return hearing
+        utterance = self._pending.popleft()
+        if utterance.context.window and utterance.began <= self._window_closed:
+            return replace(utterance, context=replace(utterance.context, window=False))
+        return utterance
 
-    def _notice(self, now: float, addressed: bool, speaking: bool, listening: bool) -> None:
-        """Keep what is known of the utterance under way: how it began, and what came since."""
-        old, config = self._setting, self._config
+    def _update_context(self, now: float, addressed: bool, speaking: bool, listening: bool) -> None:
+        """Keep the circumstances of the utterance under way: how it began, and what came since."""
+        old, config = self._context, self._config
         if not self._segmenter.speaking:
-            self._began, self._done = now, False
-            old = Setting(window=self.awake(now), addressed=not config.wake_word)
+            self._began, self._settled = now, False
+            old = UtteranceContext(window=self.window_open(now), addressed=not config.wake_word)
         woken = not speaking and self._segmenter.wake >= config.wake_threshold
         if woken and not old.woken:
             self._io.log.info("wake word", score=round(self._segmenter.wake, 2))
-            self.wake(now)
-        self._setting = Setting(
+            self.open_window(now)
+        self._context = UtteranceContext(
             speaking=old.speaking or speaking,
             listening=listening,
             woken=old.woken or woken,
@@ -116,20 +122,21 @@ class Attention:
             addressed=old.addressed or addressed,
         )
 
-    def _utterance(self, segment: Segment, now: float, key: tuple[str, int]) -> None:
-        config, setting = self._config, self._setting
-        if segment.wake >= config.wake_threshold and not setting.speaking and not setting.woken:
-            self.wake(now)
-            setting = replace(setting, woken=True)
-        asked = scope(setting, segment.over)
+    def _submit(self, segment: Segment, now: float, key: tuple[str, int]) -> None:
+        """Hand a segment to recognition, unless it can say nothing new."""
+        config, context = self._config, self._context
+        if segment.wake >= config.wake_threshold and not context.speaking and not context.woken:
+            self.open_window(now)
+            context = replace(context, woken=True)
+        asked = scope(context, segment.over)
         if segment.over:
-            known = self._done and segment.examined
+            known = self._settled and segment.examined
             longest = (config.interrupt_longest + config.end_silence) * RATE
             if known or (asked == "interrupt" and (segment.examined or len(segment.samples) > longest)):
                 return
-        if self._ear is None:
-            self._ear = self._io.submit(self._load, seconds=LOADING)
-        ear, samples = self._ear, segment.samples
+        if self._front_end is None:
+            self._front_end = self._io.submit(self._load, seconds=LOADING)
+        front_end, samples = self._front_end, segment.samples
         seconds = config.interrupt_seconds if asked == "interrupt" else config.recognition_seconds
-        job = self._io.submit(lambda: ear.result().hear(samples, asked), seconds=seconds)
-        self._hearings.append(Hearing(job, asked, setting, key, self._began))
+        job = self._io.submit(lambda: front_end.result().recognise(samples, asked), seconds=seconds)
+        self._pending.append(PendingUtterance(job, asked, context, key, self._began))

@@ -1,4 +1,4 @@
-"""Speech to a command: crop, normalise, take out noise, recognise."""
+"""The front end of speech recognition: voice activity, gain, noise reduction, then the recogniser."""
 
 from collections.abc import Iterable
 from dataclasses import replace
@@ -12,45 +12,62 @@ from services.speech.listen.vad import RATE, VoiceDetector, speech_span
 from services.speech.recognise.denoise import noise_ratio, reduce_noise
 from services.speech.recognise.grammar import Grammar
 from services.speech.recognise.packed_network import return_memory
-from services.speech.recognise.recogniser import Array, Heard, MoonshineRecogniser, Recogniser, Scope, Sound
+from services.speech.recognise.recogniser import (
+    Array,
+    MoonshineRecogniser,
+    PreparedUtterance,
+    Recogniser,
+    Recognition,
+    Scope,
+)
 from services.speech.recognise.sphinx import SphinxRecogniser
 
 BEFORE, AFTER = 0.2, 0.6
+"""Sound kept around the speech [s]. Chosen: room for soft beginnings and endings, which voice detection misses."""
 MIN_SAMPLES = 4000
-NOISY = 20.0  # [dB]
+"""Shortest sound that is worth recognising: a quarter of a second."""
+NOISY = 20.0
+"""Speech to noise [dB] below which a variant without the noise is recognised, too."""
+PEAK = 0.95
+"""Amplitude to which every variant is scaled, of 1."""
+SILENT_PEAK = 1e-4
+"""Amplitude of what is silence whatever the detector says: a few steps of 16 bit."""
 
 
 def without_wake(text: str, phrases: Iterable[str]) -> str:
-    """What follows the wake word, or the whole text."""
+    """Text after the wake word, or the whole text."""
     for phrase in phrases:
         if f"{text} ".startswith(f"{phrase} "):
             return text[len(phrase) :].strip()
     return text
 
 
-def prepare(audio: Array, detector: VoiceDetector) -> Sound | None:
-    """The part with speech and a little around it, at full scale; with noise, also without it. None: nobody speaks."""
+def prepare(audio: Array, detector: VoiceDetector) -> PreparedUtterance | None:
+    """Samples (n,) at 16 kHz cropped to the speech and scaled, with noise also a variant without it.
+
+    None when nobody speaks.
+    """
     span = speech_span(audio, detector)
     if span is None:
         return None
-    renditions = [audio]
+    variants = [audio]
     if noise_ratio(audio, span) < NOISY:
-        renditions.append(reduce_noise(audio, span))
+        variants.append(reduce_noise(audio, span))
     start, end = max(0, span[0] - int(BEFORE * RATE)), min(len(audio), span[1] + int(AFTER * RATE))
     missing = max(0, span[1] + int(AFTER * RATE) - end)
     if end - start < MIN_SAMPLES:
         return None
     scaled = []
-    for rendition in renditions:
-        part = rendition[start:end]
+    for variant in variants:
+        part = variant[start:end]
         peak = float(np.abs(part).max())
-        if peak < 1e-4:
+        if peak < SILENT_PEAK:
             return None
-        scaled.append(np.pad(part * np.float32(0.95 / peak), (0, missing)))
-    return Sound(np.stack(scaled), (span[1] - span[0]) / RATE)
+        scaled.append(np.pad(part * np.float32(PEAK / peak), (0, missing)))
+    return PreparedUtterance(np.stack(scaled), (span[1] - span[0]) / RATE)
 
 
-class Ear:
+class FrontEnd:
     """The whole path from samples to a verdict; models load at construction, so make it in the worker."""
 
     def __init__(self, config: SpeechConfig, scene: Scene, found: dict[Scope, Grammar]) -> None:
@@ -61,11 +78,11 @@ class Ear:
         else:
             self._recogniser = MoonshineRecogniser(config, found)
 
-    def hear(self, samples: NDArray[np.int16], scope: Scope = "command") -> Heard:
-        """What 16 kHz int16 samples (n,) say."""
-        sound = prepare(samples.astype(np.float32) / np.float32(32768), self._detector)
-        if sound is None:
-            return Heard("", "silence", 0.0)
-        heard = self._recogniser.hear(sound, scope)
+    def recognise(self, samples: NDArray[np.int16], scope: Scope = "command") -> Recognition:
+        """What 16 kHz int16 samples (n,) say, without the wake word."""
+        utterance = prepare(samples.astype(np.float32) / np.float32(32768), self._detector)
+        if utterance is None:
+            return Recognition("", "silence", 0.0)
+        found = self._recogniser.recognise(utterance, scope)
         return_memory()
-        return replace(heard, text=without_wake(heard.text, self._wake))
+        return replace(found, text=without_wake(found.text, self._wake))

@@ -14,15 +14,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from services.speech.recognise.decoder import Decoder
+from services.speech.recognise.decoder import Cache, Decoder
 from services.speech.recognise.grammar import State
 from services.speech.recognise.packed_network import unpacked
-from services.speech.recognise.token_trie import BOS, EOS, Vocabulary, read_tokens
+from services.speech.recognise.token_trie import BOS, EOS, TokenTrie, read_tokens
 
 Array = NDArray[np.float32]
 TOKENS_PER_SECOND = 6.5
-BREADTH = 10.0
+"""Most tokens per second of sound: the limit that Moonshine's authors recommend against endless repetition."""
+BEAM_THRESHOLD = 10.0
+"""Natural logarithm of how much less likely than the best a hypothesis may be to stay in the beam."""
 RATE = 16000
+"""Samples per second of the network's input."""
 
 
 @dataclass(frozen=True)
@@ -35,11 +38,31 @@ class Decoded:
 
     @property
     def tokens(self) -> int:
+        """How many tokens it has."""
         return len(self.numbers)
 
 
+@dataclass(frozen=True)
+class BeamHypothesis:
+    """A beginning of a sentence: its log-probability, its tokens, the grammar's state after it, what it reads."""
+
+    total: float
+    numbers: tuple[int, ...]
+    state: State
+    text: str
+
+
+@dataclass(frozen=True)
+class EncodedUtterance:
+    """The encoder's result as the decoder attends to it, the number of input variants, the most tokens in it."""
+
+    attended: Cache
+    variants: int
+    limit: int
+
+
 def models() -> Path:
-    """Where the installed wheel has its weights.
+    """Folder in which the installed wheel has its weights.
 
     Raises:
         FileNotFoundError: the package is missing.
@@ -61,7 +84,7 @@ def networks(threads: int) -> tuple[Any, Decoder]:
 class Moonshine:
     """One encoder and one decoder; not for use by several threads at once.
 
-    An utterance may be given in several renditions of equal length (as recorded, noise taken out): their token
+    An utterance may be given in several input variants of equal length (as recorded, noise taken out): their token
     probabilities are averaged, so that a word must be plausible in all of them.
     """
 
@@ -71,18 +94,15 @@ class Moonshine:
         self._beam = beam
         self.tokens = read_tokens(folder / "tokenizer.bin")
 
-    def encode(self, renditions: Array) -> "Utterance":
-        """16 kHz samples (renditions, n) of one utterance, ready for decoding."""
-        hidden = self._encoder.run(None, {"input_values": renditions.astype(np.float32)})[0]
-        return Utterance(
-            self._decoder.heard(hidden),
-            len(renditions),
-            max(2, int(renditions.shape[1] / RATE * TOKENS_PER_SECOND) + 2),
-        )
+    def encode(self, variants: Array) -> EncodedUtterance:
+        """Encode 16 kHz samples (variants, n) of one utterance."""
+        hidden = self._encoder.run(None, {"input_values": variants.astype(np.float32)})[0]
+        limit = max(2, int(variants.shape[1] / RATE * TOKENS_PER_SECOND) + 2)
+        return EncodedUtterance(self._decoder.cross_attention_cache(hidden), len(variants), limit)
 
-    def free(self, utterance: "Utterance") -> Decoded:
-        """The transcription without any grammar."""
-        scores, past = self._decoder.step(utterance.heard, self._decoder.nothing(utterance.renditions), [0], [BOS])
+    def free(self, utterance: EncodedUtterance) -> Decoded:
+        """The transcription without any grammar, the likeliest token at a time."""
+        scores, cache = self._first(utterance)
         numbers: list[int] = []
         total = 0.0
         for _ in range(utterance.limit):
@@ -91,53 +111,64 @@ class Moonshine:
             if best == EOS:
                 break
             numbers.append(best)
-            scores, past = self._decoder.step(utterance.heard, past, [0], [best])
+            scores, cache = self._decoder.step(utterance.attended, cache, [0], [best])
         return Decoded("".join(self.tokens[n] for n in numbers).strip(), total, (*numbers, EOS))
 
-    def best(self, utterance: "Utterance", vocabulary: Vocabulary, cost: Callable[[str], float]) -> list[Decoded]:
-        """Different sentences of the grammar, the likeliest first; empty when none fits into the length.
+    def best(self, utterance: EncodedUtterance, trie: TokenTrie, prior: Callable[[str], float]) -> list[Decoded]:
+        """Different sentences of the grammar by beam search, the likeliest first; empty when none fits into the length.
 
-        `cost` of a whole sentence is taken from its log-probability. Of beginnings that read the same only the best is
-        kept, so that the beam is not filled with spellings ("Stop", "stop.", "stop,").
+        The `prior` cost of a whole sentence is taken from its log-probability. Of hypotheses that read the same only
+        the best is kept, so that the beam is not filled with spellings ("Stop", "stop.", "stop,").
         """
-        grammar = vocabulary.grammar
-        scores, past = self._decoder.step(utterance.heard, self._decoder.nothing(utterance.renditions), [0], [BOS])
-        beams = [Beginning(0.0, (), grammar.start, "")]
+        grammar = trie.grammar
+        scores, cache = self._first(utterance)
+        beam = [BeamHypothesis(0.0, (), grammar.start, "")]
         finished: dict[str, tuple[float, Decoded]] = {}
-        leader = -np.inf
         for _ in range(utterance.limit):
-            options: dict[str, tuple[Beginning, int]] = {}
-            for row, beam in enumerate(beams):
-                if beam.text and grammar.is_final(beam.state):
-                    total = beam.total + float(scores[row, EOS])
-                    worth = total - cost(beam.text.strip())
-                    if beam.text not in finished or worth > finished[beam.text][0]:
-                        finished[beam.text] = worth, Decoded(beam.text.strip(), total, (*beam.numbers, EOS))
-                        leader = max(leader, worth)
-                allowed, after = vocabulary.allowed(beam.state)
-                values = scores[row, allowed]
-                for k in np.argsort(values)[::-1][: 2 * self._beam]:
-                    number, total = int(allowed[k]), beam.total + float(values[k])
-                    text = beam.text + vocabulary.letters(number)
-                    if text not in options or total > options[text][0].total:
-                        options[text] = Beginning(total, (*beam.numbers, number), after[int(k)], text), row
-            kept = sorted(options.values(), key=lambda o: -o[0].total)[: self._beam]
-            kept = [o for o in kept if o[0].total > max(leader, kept[0][0].total) - BREADTH]
+            for row, hypothesis in enumerate(beam):
+                if hypothesis.text and grammar.is_final(hypothesis.state):
+                    _finish(hypothesis, float(scores[row, EOS]), prior, finished)
+            leader = max((worth for worth, _ in finished.values()), default=-np.inf)
+            kept = self._continued(beam, scores, trie, leader)
             if not kept:
                 break
-            beams = [beam for beam, _ in kept]
-            rows, last = [row for _, row in kept], [beam.numbers[-1] for beam in beams]
-            scores, past = self._decoder.step(utterance.heard, past, rows, last)
+            beam = [hypothesis for hypothesis, _ in kept]
+            rows, last = [row for _, row in kept], [hypothesis.numbers[-1] for hypothesis in beam]
+            scores, cache = self._decoder.step(utterance.attended, cache, rows, last)
         return [found for _, found in sorted(finished.values(), key=lambda f: -f[0])]
 
-    def log_probabilities(self, utterance: "Utterance", sentences: list[Decoded]) -> list[float]:
-        """How likely each sentence is for these renditions, as it was spelt before."""
+    def _first(self, utterance: EncodedUtterance) -> tuple[Array, Array]:
+        """Scores and cache after the token that begins every sentence."""
+        return self._decoder.step(utterance.attended, self._decoder.empty_cache(utterance.variants), [0], [BOS])
+
+    def _continued(
+        self, beam: list[BeamHypothesis], scores: Array, trie: TokenTrie, leader: float
+    ) -> list[tuple[BeamHypothesis, int]]:
+        """The best hypotheses one token longer, each with the row of the one it goes on from.
+
+        `leader` is the log-probability of the best sentence that is finished.
+        """
+        options: dict[str, tuple[BeamHypothesis, int]] = {}
+        for row, hypothesis in enumerate(beam):
+            allowed, after = trie.allowed(hypothesis.state)
+            values = scores[row, allowed]
+            for k in np.argsort(values)[::-1][: 2 * self._beam]:
+                number, total = int(allowed[k]), hypothesis.total + float(values[k])
+                text = hypothesis.text + trie.letters(number)
+                if text not in options or total > options[text][0].total:
+                    longer = BeamHypothesis(total, (*hypothesis.numbers, number), after[int(k)], text)
+                    options[text] = longer, row
+        kept = sorted(options.values(), key=lambda o: -o[0].total)[: self._beam]
+        return [o for o in kept if o[0].total > max(leader, kept[0][0].total) - BEAM_THRESHOLD]
+
+    def log_probabilities(self, utterance: EncodedUtterance, sentences: list[Decoded]) -> list[float]:
+        """Log-probability of each sentence for these input variants, in the tokens that it was found in."""
         totals = [0.0] * len(sentences)
-        past, before = self._decoder.nothing(utterance.renditions), [0] * len(sentences)
+        cache, before = self._decoder.empty_cache(utterance.variants), [0] * len(sentences)
         alive = list(range(len(sentences)))
         last = [BOS] * len(alive)
         for i in range(max(s.tokens for s in sentences)):
-            scores, past = self._decoder.step(utterance.heard, past, before, last)
+            scores, cache = self._decoder.step(utterance.attended, cache, before, last)
             for row, k in enumerate(alive):
                 totals[k] += float(scores[row, sentences[k].numbers[i]])
             before = [row for row, k in enumerate(alive) if sentences[k].tokens > i + 1]
@@ -146,20 +177,14 @@ class Moonshine:
         return totals
 
 
-@dataclass(frozen=True)
-class Beginning:
-    """A beginning of a sentence: its log-probability, its tokens, the grammar's state after it, what it reads."""
-
-    total: float
-    numbers: tuple[int, ...]
-    state: State
-    text: str
-
-
-@dataclass(frozen=True)
-class Utterance:
-    """What the encoder made of the renditions, how many they are, and the most tokens it can hold."""
-
-    heard: dict[str, Array]
-    renditions: int
-    limit: int
+def _finish(
+    hypothesis: BeamHypothesis,
+    ending: float,
+    prior: Callable[[str], float],
+    finished: dict[str, tuple[float, Decoded]],
+) -> None:
+    """Enter a hypothesis as a whole sentence if it is the best so far; `ending` is the log-probability of its end."""
+    total = hypothesis.total + ending
+    worth = total - prior(hypothesis.text.strip())
+    if hypothesis.text not in finished or worth > finished[hypothesis.text][0]:
+        finished[hypothesis.text] = worth, Decoded(hypothesis.text.strip(), total, (*hypothesis.numbers, EOS))

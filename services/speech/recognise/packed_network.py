@@ -1,33 +1,41 @@
-"""Networks with 8-bit weights as they ship, multiplied without being unpacked: a quarter of the memory, and faster for
-few rows. The ORT files themselves unpack each weight at each run."""
+"""Networks whose 8-bit weights are multiplied without being unpacked.
+
+The networks as they ship unpack each weight at each run; `python -m bench.recogniser` measures what that costs.
+"""
 
 import ctypes
 import sys
 import tempfile
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import onnx
 from numpy.typing import NDArray
-
-from services.speech.recognise import protobuf as pb
+from onnx import TensorProto, helper, numpy_helper
 
 BLOCK = 32
+"""Weights per scale of `MatMulNBits`; the operator takes 16, 32, 64 and so on."""
+OPSETS = {"": 17, "com.microsoft": 1}
+"""Opset 17 is the first with LayerNormalization; MatMulNBits is onnxruntime's own."""
+IR_VERSION = 8
+"""Of the ONNX file format: the one that belongs to opset 17."""
 Array = NDArray[Any]
+Weight = tuple[Array, Array, Array]
+"""A matrix (inputs, outputs) as int8, its scale and what is added: w = q * scale + added."""
 
 
-class Packed:
-    """An ORT file: its operations and its 8-bit weights by the name of what they multiply."""
+class PackedWeights:
+    """The 8-bit weights of a shipped network, by the name of what they multiply."""
 
     def __init__(self, path: Path) -> None:
         with tempfile.TemporaryDirectory(prefix="tidybot-") as folder:
-            self.model = _written(path, Path(folder)).read_bytes()
-        self.graph = pb.every(self.model, pb.MODEL_GRAPH)[0]
-        self.arrays = dict(pb.array(t) for t in pb.every(self.graph, pb.GRAPH_INITIALISER))
-        self.nodes: list[memoryview] = pb.every(self.graph, pb.GRAPH_NODE)
+            self._graph = onnx.load(str(_as_onnx(path, Path(folder)))).graph
+        self.arrays: dict[str, Array] = {t.name: numpy_helper.to_array(t) for t in self._graph.initializer}
 
-    def weight(self, name: str) -> tuple[Array, Array, Array]:
-        """A matrix (inputs, outputs) as int8, its scale and what is added: w = q * scale + added."""
+    def weight(self, name: str) -> Weight:
+        """A matrix by the name of its unpacked form."""
         stem = name.removesuffix("_add_tensor")
         return self.arrays[f"{stem}_quantized"], self.arrays[f"{stem}_scale"], self.arrays[f"{stem}_zero_point"]
 
@@ -36,55 +44,56 @@ class Packed:
         packed = self.arrays.get(name.removesuffix("_add_tensor") + "_quantized")
         return name.endswith("_add_tensor") and packed is not None and packed.ndim == 2 and not packed.shape[0] % BLOCK
 
-    def multiplied(self) -> dict[str, str]:
-        """Weights by the path of the layer that multiplies them."""
-        found = {}
-        for raw in (n for graph in self._branches() for n in pb.every(graph, pb.GRAPH_NODE)):
-            if pb.texts(raw, pb.NODE_TYPE)[0] == "MatMul":
-                by = pb.texts(raw, pb.NODE_INPUT)[1]
-                if self.is_weight(by):
-                    found[pb.texts(raw, pb.NODE_OUTPUT)[0].removesuffix("/MatMul_output_0")] = by
-        return found
+    def by_layer(self) -> dict[str, str]:
+        """Names of weights by the path of the layer that multiplies by them."""
+        nodes = (node for branch in self._branches() for node in branch.node if node.op_type == "MatMul")
+        return {
+            node.output[0].removesuffix("/MatMul_output_0"): node.input[1]
+            for node in nodes
+            if self.is_weight(node.input[1])
+        }
 
-    def _branches(self) -> list[memoryview]:
-        choices = [n for n in self.nodes if pb.texts(n, pb.NODE_TYPE)[0] == "If"]
-        attributes = [a for n in choices for a in pb.every(n, pb.NODE_ATTRIBUTE)]
-        return [g for a in attributes for g in pb.every(a, pb.ATTRIBUTE_GRAPH)]
+    def _branches(self) -> Iterator[onnx.GraphProto]:
+        """With and without a cache: the two sides of the network's choice."""
+        for node in self._graph.node:
+            if node.op_type == "If":
+                yield from (attribute.g for attribute in node.attribute)
 
 
-class Net:
-    """A network under construction: operations return the names of what they make."""
+class NetworkBuilder:
+    """A network under construction: operations return the names of what they compute."""
 
     def __init__(self) -> None:
-        self.nodes: list[bytes] = []
-        self.tensors: list[bytes] = []
+        self._nodes: list[onnx.NodeProto] = []
+        self._tensors: list[onnx.TensorProto] = []
         self._count = 0
 
     def constant(self, values: Array) -> str:
-        """Its name."""
+        """Name of a new constant tensor."""
         self._count += 1
-        self.tensors.append(pb.tensor(f"c{self._count}", np.ascontiguousarray(values)))
+        self._tensors.append(numpy_helper.from_array(np.ascontiguousarray(values), f"c{self._count}"))
         return f"c{self._count}"
 
     def shape(self, *sizes: int) -> str:
+        """Name of a new constant vector of integers."""
         return self.constant(np.array(sizes, np.int64))
 
     def op(self, kind: str, *inputs: str, output: str = "", domain: str = "", **attributes: Any) -> str:
-        """One operation with one result."""
+        """Append an operation with one result; name of the result."""
         self._count += 1
         output = output or f"t{self._count}"
-        self.nodes.append(pb.node(kind, inputs, [output], domain, **attributes))
+        self._nodes.append(helper.make_node(kind, inputs, [output], domain=domain, **attributes))
         return output
 
     def split(self, x: str, parts: int, axis: int = 0) -> list[str]:
-        """Equal parts along an axis; along the first one it disappears."""
+        """Names of equal parts along an axis; along the first one it disappears."""
         self._count += 1
         names = [f"s{self._count}_{k}" for k in range(parts)]
-        self.nodes.append(pb.node("Split", [x], names, axis=axis))
+        self._nodes.append(helper.make_node("Split", [x], names, axis=axis))
         return names if axis else [self.op("Squeeze", name, self.shape(0)) for name in names]
 
-    def times(self, x: str, weight: tuple[Array, Array, Array], output: str = "") -> str:
-        """x (..., inputs) times a packed matrix (inputs, outputs)."""
+    def times(self, x: str, weight: Weight, output: str = "") -> str:
+        """Name of x (..., inputs) times a packed matrix (inputs, outputs)."""
         q, scale, added = weight
         inputs, outputs = q.shape
         zero = int(np.rint(-float(added.ravel()[0]) / float(scale.ravel()[0]))) + 128
@@ -98,10 +107,20 @@ class Net:
         )  # fmt: skip
 
     def session(self, inputs: dict[str, tuple[Any, int]], outputs: list[str], threads: int) -> Any:
-        """Ready to run."""
+        """An inference session of the network; inputs with type and number of dimensions, outputs are floats."""
+        takes = [
+            helper.make_tensor_value_info(
+                name, helper.np_dtype_to_tensor_dtype(np.dtype(kind)), [f"{name}{k}" for k in range(rank)]
+            )
+            for name, (kind, rank) in inputs.items()
+        ]
+        gives = [helper.make_tensor_value_info(name, TensorProto.FLOAT, None) for name in outputs]
+        graph = helper.make_graph(self._nodes, "network", takes, gives, self._tensors)
+        opsets = [helper.make_opsetid(domain, version) for domain, version in OPSETS.items()]
+        model = helper.make_model(graph, opset_imports=opsets, ir_version=IR_VERSION)
         with tempfile.TemporaryDirectory(prefix="tidybot-") as folder:
             path = Path(folder) / "model.onnx"
-            path.write_bytes(pb.model(self.nodes, self.tensors, inputs, outputs))
+            path.write_bytes(model.SerializeToString())
             return session(path, threads)
 
 
@@ -138,12 +157,12 @@ def unpacked(path: Path, threads: int) -> Any:
     onnxruntime computes constants beforehand for ONNX files only, so the file is written out as one and read again.
     """
     with tempfile.TemporaryDirectory(prefix="tidybot-") as folder:
-        found = session(_written(path, Path(folder)), threads)
+        found = session(_as_onnx(path, Path(folder)), threads)
     return_memory()
     return found
 
 
-def _written(path: Path, folder: Path) -> Path:
+def _as_onnx(path: Path, folder: Path) -> Path:
     """An ORT file as an ONNX file, unchanged otherwise."""
     import onnxruntime
 

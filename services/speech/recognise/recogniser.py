@@ -1,4 +1,4 @@
-"""An utterance to a command: recognised under the grammar; a likelihood ratio accepts, asks or rejects."""
+"""Recognition of one utterance under a grammar; a likelihood ratio decides between accept, ask and reject."""
 
 import math
 from collections.abc import Iterable
@@ -12,7 +12,7 @@ from common.language.wordings import INTERRUPTS
 from common.scene import Scene
 from services.speech.config import SpeechConfig
 from services.speech.recognise.grammar import Grammar, vocabulary
-from services.speech.recognise.scoring import cost, judged, paced
+from services.speech.recognise.scoring import prior_cost, rescored, time_scaled
 
 if TYPE_CHECKING:
     from services.speech.recognise.moonshine import Decoded
@@ -21,10 +21,11 @@ Array = NDArray[np.float32]
 Verdict = Literal["accept", "ask", "reject", "silence"]
 Scope = Literal["command", "woken", "interrupt"]
 PACES = (16 / 15, 15 / 16)
+"""Factors of speed for the second scoring. Chosen: a semitone up and down, far less than voices differ."""
 
 
 @dataclass(frozen=True)
-class Heard:
+class Recognition:
     """What was understood, without the wake word. `verdict`: accept, ask (perhaps), reject (no command), silence."""
 
     text: str
@@ -34,65 +35,67 @@ class Heard:
 
 
 @dataclass(frozen=True)
-class Sound:
-    """An utterance ready for recognition: 16 kHz samples (renditions, n) in -1..1, the recording first, and how many
+class PreparedUtterance:
+    """An utterance ready for recognition: 16 kHz samples (variants, n) in -1..1, the recording first, and how many
     `seconds` of it are speech."""
 
-    renditions: Array
+    variants: Array
     seconds: float
 
-    def paced(self) -> Array:
-        """Renditions at other paces (with their pitch), filled with silence to one length: the recording faster, and
-        slower without its noise, or else itself."""
-        found = [paced(self.renditions[k], factor) for k, factor in zip((0, -1), PACES, strict=True)]
+    def time_scaled(self) -> Array:
+        """Variants (2, m) at other speeds, filled with silence to one length.
+
+        The recording is faster, the last variant (without noise if there is one) slower.
+        """
+        found = [time_scaled(self.variants[k], factor) for k, factor in zip((0, -1), PACES, strict=True)]
         longest = max(map(len, found))
         return np.stack([np.pad(f, (0, longest - len(f))) for f in found])
 
 
 class Recogniser(Protocol):
-    """Turns an utterance into a command.
+    """What turns an utterance into a command.
 
     `scope` is the grammar: a command, a command after the wake word or the wake word alone, or stop and cancel only.
     """
 
-    def hear(self, sound: Sound, scope: Scope) -> Heard: ...
+    def recognise(self, utterance: PreparedUtterance, scope: Scope) -> Recognition: ...
 
 
 class MoonshineRecogniser:
-    """Moonshine under the grammar."""
+    """Moonshine base-en under the grammar of a scope."""
 
     def __init__(self, config: SpeechConfig, grammars: dict[Scope, Grammar]) -> None:
         from services.speech.recognise.moonshine import Moonshine
-        from services.speech.recognise.token_trie import Vocabulary
+        from services.speech.recognise.token_trie import TokenTrie
 
         self._config = config
         self._model = Moonshine(config.beam)
-        self._words = {scope: Vocabulary(self._model.tokens, grammar) for scope, grammar in grammars.items()}
+        self._tries = {scope: TokenTrie(self._model.tokens, grammar) for scope, grammar in grammars.items()}
 
-    def hear(self, sound: Sound, scope: Scope) -> Heard:
+    def recognise(self, utterance: PreparedUtterance, scope: Scope) -> Recognition:
         config = self._config
-        utterance = self._model.encode(sound.renditions)
-        free = self._model.free(utterance)
+        encoded = self._model.encode(utterance.variants)
+        free = self._model.free(encoded)
 
-        def weigh(text: str) -> float:
-            return cost(text, sound.seconds, config)
+        def prior(text: str) -> float:
+            return prior_cost(text, utterance.seconds, config)
 
-        found = self._model.best(utterance, self._words[scope], weigh)
+        found = self._model.best(encoded, self._tries[scope], prior)
         if not found:
-            return Heard("", "reject", 0.0, free.text)
-        command, score = judged(found, free, weigh, lambda these: self._again(these, sound))
+            return Recognition("", "reject", 0.0, free.text)
+        command, score = rescored(found, free, prior, lambda sentences: self._score_again(sentences, utterance))
         confidence = confidence_of(score, config)
         if score >= config.accept_score:
-            return Heard(command.text, "accept", confidence, free.text)
+            return Recognition(command.text, "accept", confidence, free.text)
         verdict: Verdict = "ask" if score >= config.ask_score else "reject"
-        return Heard(command.text, verdict, confidence, free.text)
+        return Recognition(command.text, verdict, confidence, free.text)
 
-    def _again(self, sentences: list["Decoded"], sound: Sound) -> list[float]:
-        return self._model.log_probabilities(self._model.encode(sound.paced()), sentences)
+    def _score_again(self, sentences: list["Decoded"], utterance: PreparedUtterance) -> list[float]:
+        return self._model.log_probabilities(self._model.encode(utterance.time_scaled()), sentences)
 
 
 def confidence_of(score: float, config: SpeechConfig) -> float:
-    """0..1: one at a likelihood ratio of 0, one half at the threshold of acceptance."""
+    """Confidence 0..1 of a log-likelihood ratio: one at 0 and above, one half at the threshold of acceptance."""
     return round(math.exp(min(0.0, score) * math.log(2) / -config.accept_score), 3)
 
 

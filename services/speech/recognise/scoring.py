@@ -1,4 +1,4 @@
-"""Which of the sentences that the grammar allows was said, and how sure that is. Pure."""
+"""Hypothesis scoring: which of the sentences that the grammar allows was said, and how sure that is. Pure."""
 
 import math
 from collections.abc import Callable
@@ -11,12 +11,21 @@ from common.language.normalise import normalise
 from services.speech.config import SpeechConfig
 
 Array = NDArray[np.float32]
-CANDIDATES, HOPELESS, PLAUSIBLE = 6, 8.0, -1.2
-# How long sentences take by voice detection: fitted to the voices of the corpus, whose spread is a third of this.
-PAUSES, SECONDS_PER_CHARACTER, TEMPO_SPREAD = 0.35, 0.045, 0.25
+CANDIDATES = 6
+"""Best sentences that are scored a second time. Chosen: the time of that grows with it."""
+MAX_DEFICIT = 8.0
+"""Natural logarithm of how much less likely than the best a sentence may be to be scored a second time."""
+PLAUSIBLE = -1.2
+"""Log-likelihood ratio per token to the free transcription, below which the second scoring cannot save a sentence."""
+PAUSES = 0.35
+"""Time without letters in a sentence by voice detection [s], fitted to the voices of the corpus."""
+SECONDS_PER_CHARACTER = 0.045
+"""Time of a letter [s], fitted likewise."""
+TEMPO_SPREAD = 0.25
+"""Standard deviation of the logarithm of a sentence's time. Chosen: three times that of the corpus's voices."""
 
 
-class Found(Protocol):
+class ScoredSentence(Protocol):
     """A sentence, the log-probability of its tokens, and how many these are."""
 
     @property
@@ -27,41 +36,42 @@ class Found(Protocol):
     def tokens(self) -> int: ...
 
 
-F = TypeVar("F", bound=Found)
+S = TypeVar("S", bound=ScoredSentence)
 
 
-def judged(
-    found: list[F], free: F, weigh: Callable[[str], float], again: Callable[[list[F]], list[float]]
-) -> tuple[F, float]:
-    """The likeliest of the sentences `found`, best first, and its likelihood ratio per token to the `free` one.
+def rescored(
+    sentences: list[S], free: S, prior: Callable[[str], float], score_again: Callable[[list[S]], list[float]]
+) -> tuple[S, float]:
+    """The likeliest of the `sentences`, best first, and its log-likelihood ratio per token to the `free` one.
 
-    Where they differ both were chosen to fit even the noise of the renditions that they were found in. So all are
-    judged `again` by others, in which the same noise sounds different to the network. `weigh` tells a sentence's cost.
+    Where they differ both were chosen to fit even the noise of the input variants that they were found in. So all are
+    scored a second time on others, in which the same noise sounds different to the network. `prior` is a sentence's
+    cost before anything was heard, a negative log-probability.
     """
-    best = found[0]
+    best = sentences[0]
     if normalise(free.text) == best.text:
         return best, (best.log_probability - free.log_probability) / best.tokens
-    least = best.log_probability - weigh(best.text) - HOPELESS
-    rivals = [f for f in found[:CANDIDATES] if f.log_probability - weigh(f.text) >= least]
-    *totals, freely = again([*rivals, free])
-    k = int(np.argmax([total - weigh(rival.text) for total, rival in zip(totals, rivals, strict=True)]))
+    least = best.log_probability - prior(best.text) - MAX_DEFICIT
+    rivals = [s for s in sentences[:CANDIDATES] if s.log_probability - prior(s.text) >= least]
+    *totals, free_total = score_again([*rivals, free])
+    k = int(np.argmax([total - prior(rival.text) for total, rival in zip(totals, rivals, strict=True)]))
     command = rivals[k]
     first = (command.log_probability - free.log_probability) / command.tokens
-    score = (totals[k] - weigh(command.text) - freely) / command.tokens
-    # What is far from any command has a free transcription that fits its own rendition only, and so none the other.
-    return command, score if first >= PLAUSIBLE else min(score, first)
+    second = (totals[k] - prior(command.text) - free_total) / command.tokens
+    # What is far from any command has a free transcription that fits its own variant only, and so none the other.
+    return command, second if first >= PLAUSIBLE else min(second, first)
 
 
-def paced(samples: Array, factor: float) -> Array:
-    """Samples (n,) played `factor` times as fast, with all that they contain."""
+def time_scaled(samples: Array, factor: float) -> Array:
+    """Samples (n,) played `factor` times as fast, their pitch with them: (n / factor,), resampled by FFT."""
     length = round(len(samples) / factor)
     found: Array = (np.fft.irfft(np.fft.rfft(samples), length) / factor).astype(np.float32)
     return found
 
 
-def cost(text: str, seconds: float, config: SpeechConfig) -> float:
-    """What speaks against a sentence however it sounds: words that people hardly use to a robot, and a length that
-    does not fit the time that it took."""
+def prior_cost(text: str, seconds: float, config: SpeechConfig) -> float:
+    """Cost of a sentence however it sounds, as a negative log-probability: words that people hardly use to a robot,
+    and a length that does not fit the `seconds` that it took."""
     rare = sum(config.rare.get(word, 0.0) for word in text.split())
     usual = PAUSES + SECONDS_PER_CHARACTER * len(text)
     return rare + config.tempo_weight * (math.log(max(seconds, 0.05) / usual) / TEMPO_SPREAD) ** 2 / 2

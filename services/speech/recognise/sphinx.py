@@ -6,7 +6,7 @@ from common.runtime import StartError
 from common.scene import Scene
 from services.speech.config import SpeechConfig
 from services.speech.recognise.grammar import vocabulary
-from services.speech.recognise.recogniser import Heard, Scope, Sound, patterns
+from services.speech.recognise.recogniser import PreparedUtterance, Recognition, Scope, patterns
 
 
 def jsgf(config: SpeechConfig, scene: Scene, scope: Scope = "command") -> str:
@@ -36,12 +36,12 @@ class SphinxRecogniser:
         for scope in scopes:
             self._decoder.add_jsgf_string(scope, jsgf(config, scene, scope))
 
-    def hear(self, sound: Sound, scope: Scope) -> Heard:
+    def recognise(self, utterance: PreparedUtterance, scope: Scope) -> Recognition:
         self._decoder.activate_search(scope)
         self._decoder.start_utt()
-        self._decoder.process_raw((sound.renditions[0] * 32000).astype(np.int16).tobytes(), full_utt=True)
+        self._decoder.process_raw((utterance.variants[0] * 32000).astype(np.int16).tobytes(), full_utt=True)
         self._decoder.end_utt()
         found = self._decoder.hyp()
         if found is None or not found.hypstr:
-            return Heard("", "reject", 0.0)
-        return Heard(found.hypstr, "accept", 0.6, found.hypstr)
+            return Recognition("", "reject", 0.0)
+        return Recognition(found.hypstr, "accept", 0.6, found.hypstr)

@@ -1,4 +1,4 @@
-"""The tokens of the recogniser, and which of them a grammar allows next."""
+"""The recogniser's tokens as a trie of characters, and which of them a grammar allows next."""
 
 from functools import cache
 from pathlib import Path
@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from services.speech.recognise.grammar import Grammar, State
 
 BOS, EOS = 1, 2
-_SILENT = set('.,?!;:"-')
+"""Numbers of the tokens that begin and end a sentence."""
+_PUNCTUATION = set('.,?!;:"-')
 
 
 @cache
@@ -40,8 +41,8 @@ def _trie(tokens: tuple[str, ...]) -> dict[str, Any]:
     return trie
 
 
-class Vocabulary:
-    """The tokens as a trie of lower-case characters, for finding those that a grammar state allows."""
+class TokenTrie:
+    """The tokens as a trie of lower-case characters, walked together with the grammar's automaton."""
 
     def __init__(self, tokens: list[str], grammar: Grammar) -> None:
         self.tokens = tokens
@@ -68,9 +69,9 @@ class Vocabulary:
             after = self.grammar.step(state, character)
             if after:
                 self._collect(child, after, numbers, states)
-            elif character in _SILENT:
+            elif character in _PUNCTUATION:
                 self._collect(child, state, numbers, states)
 
     def letters(self, number: int) -> str:
         """What a token adds to a sentence of the grammar, which has no punctuation."""
-        return "".join(c for c in self.tokens[number].lower() if c not in _SILENT)
+        return "".join(c for c in self.tokens[number].lower() if c not in _PUNCTUATION)

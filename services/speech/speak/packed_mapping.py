@@ -9,7 +9,7 @@ import numpy as np
 _decode = msgspec.json.Decoder().decode
 
 
-class Table(Mapping[str, Any]):
+class PackedMapping(Mapping[str, Any]):
     """A dictionary that cannot be added to; made of values that are still JSON, which each look-up decodes."""
 
     def __init__(self, words: Mapping[str, msgspec.Raw]) -> None:

@@ -12,7 +12,7 @@ from services.speech.speak.voice import Voice
 CHUNK = RATE // 10
 
 
-class Mouth:
+class TtsPlayer:
     """Synthesis runs in the worker; the voice is loaded at once with `preload`, else when first used."""
 
     def __init__(self, io: Io, speakers: bool, seconds: float, preload: bool = False) -> None:

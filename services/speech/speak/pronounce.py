@@ -13,7 +13,7 @@ from hibari.g2p.tagger import Tagger
 from hibari.g2p.tokenize import Tokenizer
 from hibari.voices import DEFAULT, voice_path
 
-from services.speech.speak.packed_mapping import Table
+from services.speech.speak.packed_mapping import PackedMapping
 
 ASSETS = Path(hibari.__file__).parent / "assets"
 Words = dict[str, msgspec.Raw]
@@ -36,12 +36,12 @@ class Pronunciation(G2P):  # type: ignore[misc]
         self.lexicon = Lexicon(_table("lexicon_us_gold.json.gz"), _table("lexicon_us_silver.json.gz"))
         self.tokenizer = Tokenizer(msgspec.json.decode((ASSETS / "tokenizer_exceptions.json").read_bytes()))
         model = msgspec.json.decode(_unzipped("tagger.json.gz"), type=TaggerModel)
-        packed: dict[str, Any] = {"tagdict": Table(model.tagdict), "weights": Table(model.weights)}
+        packed: dict[str, Any] = {"tagdict": PackedMapping(model.tagdict), "weights": PackedMapping(model.weights)}
         self.tagger = Tagger({"tags": model.tags, "vocab": model.vocab, **packed})
 
 
-def _table(name: str) -> Table:
-    return Table(msgspec.json.decode(_unzipped(name), type=Words))
+def _table(name: str) -> PackedMapping:
+    return PackedMapping(msgspec.json.decode(_unzipped(name), type=Words))
 
 
 def _unzipped(name: str) -> bytes:

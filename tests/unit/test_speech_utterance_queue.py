@@ -101,7 +101,7 @@ def test_speech_to_somebody_else_is_ignored(robot: Robot, said: dict[str, Sample
 
 
 @pytest.mark.slow
-def test_nonsense_after_the_wake_word_is_said_so_and_the_ear_stays_open(robot: Robot, said: dict[str, Samples]) -> None:
+def test_nonsense_after_the_wake_word_is_said_so_and_the_window_stays(robot: Robot, said: dict[str, Samples]) -> None:
     robot.hear(said["hey jarvis, the weather is nice today"])
     assert not robot.commands
     status = msgspec.json.decode(robot.statuses[-1], type=m.SpeechStatus)

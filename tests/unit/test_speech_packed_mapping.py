@@ -11,12 +11,12 @@ from hibari.g2p import G2P
 from scipy.signal import resample_poly
 
 from services.speech.audio import RATE, resample
-from services.speech.speak.packed_mapping import Table
+from services.speech.speak.packed_mapping import PackedMapping
 from services.speech.speak.pronounce import ASSETS, Pronunciation
 
 
-def packed(words: dict[str, object]) -> Table:
-    return Table(msgspec.json.decode(json.dumps(words), type=dict[str, msgspec.Raw]))
+def packed(words: dict[str, object]) -> PackedMapping:
+    return PackedMapping(msgspec.json.decode(json.dumps(words), type=dict[str, msgspec.Raw]))
 
 
 def test_a_table_reads_like_the_dictionary_it_was_made_from() -> None:
