@@ -2,12 +2,15 @@
 
 from collections.abc import Iterator
 
-from common.language.normalise import Words, expand, normalise, without_politeness
-from common.language.pattern import Pattern, Slots, first_words
+from common.language.normalise import Words, expand, normalise, without_fillers, without_politeness
+from common.language.pattern import ANY, Pattern, Slots, first_words
 from common.language.wordings import WORDINGS, Action, Kind, Wording
 
 _RULES = tuple((wording, Pattern(wording.pattern)) for wording in WORDINGS)
-VERBS: frozenset[str] = frozenset[str]().union(*(first_words(p.tree) for w, p in _RULES if w.kind == "command")) - {""}
+VERBS: frozenset[str] = frozenset[str]().union(*(first_words(p.tree) for w, p in _RULES if w.kind == "command")) - {
+    "",
+    ANY,
+}
 """Words with which a command may begin."""
 
 
@@ -21,7 +24,7 @@ def readings(words: Words, *kinds: Kind) -> Iterator[tuple[Wording, Slots]]:
 
 def asks_for(text: str, *actions: Action) -> Action | None:
     """The first of the `actions` that a whole text asks for, with or without politeness; None if it asks for none."""
-    whole = expand(normalise(text))
+    whole = without_fillers(expand(normalise(text)))
     said = {tuple(whole.split()), tuple(without_politeness(whole).split())}
     for action in actions:
         for wording, pattern in _RULES:

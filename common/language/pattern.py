@@ -44,6 +44,8 @@ class Either(NamedTuple):
 
 Node = Word | Slot | Sequence | Either
 NOTHING = Sequence(())
+ANY = "*"
+"""In place of a word that may be any."""
 
 
 def parse(pattern: str) -> Node:
@@ -101,7 +103,7 @@ class Pattern:
 
     def matches(self, words: Words) -> Iterator[Slots]:
         """Every reading of the whole sentence, shorter first slots first."""
-        if "" in self._first or (words[:1] and words[0] in self._first):
+        if self._first & {"", ANY, *words[:1]}:
             for end, slots in _match(self.tree, words, 0, {}):
                 if end == len(words):
                     yield slots
@@ -133,14 +135,18 @@ def _match_all(parts: tuple[Node, ...], depth: int, words: Words, at: int, slots
 
 
 def first_words(node: Node) -> set[str]:
-    """Words with which a sentence of the pattern may begin; "" where it may be empty or begin with a slot."""
+    """Words with which a sentence of the pattern may begin: ANY where that is a slot, "" where it may be empty."""
     match node:
         case Word(text):
             return {text}
+        case Slot(_):
+            return {ANY}
         case Either(options):
             return set[str]().union(*(first_words(option) for option in options))
-        case Sequence((first, *rest)):
-            found = first_words(first)
-            return found if "" not in found else (found - {""}) | first_words(Sequence(tuple(rest)))
-        case _:
-            return {""}
+        case Sequence(parts):
+            found = {""}
+            for part in parts:
+                if "" not in found:
+                    break
+                found = (found - {""}) | first_words(part)
+            return found

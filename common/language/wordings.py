@@ -6,11 +6,31 @@ commands from them. A new wording is one more row.
 
 from typing import Literal, NamedTuple
 
+from common.language.lexicon import (
+    ASK,
+    BACK,
+    BRING,
+    DISCARD,
+    FETCH,
+    GO,
+    IT,
+    MODAL,
+    MOVE,
+    NEAR,
+    ON,
+    PICK,
+    PUT,
+    SEEK,
+    THROW,
+    TIDY,
+    WISH,
+)
+
 Action = Literal[
     "stop", "cancel", "continue", "yes", "no", "refuse",
     "open_hand", "close_hand", "seen", "contents", "holding", "whereabouts", "where", "number", "say", "wait",
-    "come_back", "go", "throw_away", "put_away", "tidy", "put", "put_near", "put_down", "deliver", "deliver_there",
-    "fetch", "fetch_named", "pick_up", "find",
+    "wait_there", "come_back", "go", "remark", "untidy", "throw_away", "put_away", "tidy", "put", "put_near",
+    "put_down", "deliver", "deliver_there", "fetch", "fetch_named", "pick_up", "find",
 ]  # fmt: skip
 """What a wording asks for; `services/planner/rules.py` has a function for each that can be planned."""
 Kind = Literal["command", "reply", "name"]
@@ -32,17 +52,19 @@ class Wording(NamedTuple):
     reason: str = ""
 
 
-ON = "(in | into | inside | on top of | on | onto)"
-NEAR = "(next to | near | beside | close to | by)"
-IT = "(<thing> | it | them)"
-
 WORDINGS: tuple[Wording, ...] = (
     Wording(
-        "stop", "[no] (stop | halt | freeze) [it | now | moving | stop [stop]] | emergency stop",
+        "stop",
+        "[no] (stop | halt | freeze) [it | that | now | there | right there | at once | immediately | everything]"
+        " | [no] stop ([please] stop [stop] | moving | driving | going | doing that | what (you are | you're) doing)"
+        " | hold (it | still) | (don't | do not) move | stay (there | where you are) | emergency stop",
         heard="stop [it]", kind="reply", reason="stopping needs no plan",
     ),
     Wording(
-        "cancel", "[no] (cancel | abort) [that | it] | never mind | nevermind | forget it",
+        "cancel",
+        "[no] (cancel | abort | scrap) [that | this | it | the (mission | task | job | command | plan)]"
+        " | never mind | nevermind | forget [about] (it | that)"
+        " | i [have] changed my mind | (don't | do not) bother",
         heard="cancel [that] | never mind", kind="reply", reason="there is nothing to cancel",
     ),
     Wording(
@@ -73,56 +95,84 @@ WORDINGS: tuple[Wording, ...] = (
     ),
     # Questions.
     Wording(
-        "seen", "what (do | can) you see | look around | tell me what you [can] see", heard="what (do | can) you see"
+        "seen",
+        "[tell me] what (do | can) you see [now | right now | here | from (here | there | where you are)] | look around"
+        " | tell me what you [can] see", heard="what (do | can) you see"
     ),
-    Wording("contents", "(what | tell me what) (is | are | lies | do you see) (on | in | at) <spot>", heard=""),
+    Wording(
+        "contents", "[tell me] (what | which (things | objects)) (is | are | lies | do you see) [lying | standing]"
+        " (on | in | at) <spot>"
+        " | is there (anything | something) (on | in | at) <spot>",
+        heard="",
+    ),
     Wording("holding", "what are you holding | what do you (have | hold) [in your (hand | gripper)]", heard=""),
+    Wording("holding", "are you (holding | carrying) (anything | something)", heard=""),
     Wording("holding", "what (is | have you got | do you have) in your (hand | gripper)", heard=""),
     Wording("whereabouts", "where are you", heard=""),
-    Wording("where", "(where | tell me where) (is | are) <thing>", heard="where (is | are) <thing>"),
+    Wording("where", f"{ASK} (where | whereabouts) (is | are) <thing>", heard="where (is | are) <thing>"),
+    Wording("where", f"{ASK} where <thing> (is | are | went | has gone | might be | could be)", heard=""),
+    Wording("where", f"{ASK} where (has | have) <thing> (gone | been | got to | ended up)", heard=""),
+    Wording(
+        "where", f"{ASK} where (did | do | would | can) (you | i | we) (see | put | leave | have | find) <thing>",
+        heard="",
+    ),
+    Wording("where", f"{ASK} (which | what) room (is | are) <thing> in", heard=""),
+    Wording("where", "have you (seen | found | got) <thing> [anywhere]", heard=""),
     Wording("where", "(do | can) you (see | know) <thing>", heard=""),
     Wording("where", "(is | are) there <thing>", heard=""),
     Wording("where", "(is | are) <thing> (in | on | at) <spot>", heard=""),
     Wording(
         "number", "how many <thing> (are there | do you see | can you see | do you know | are <words>)", heard=""
     ),
+    # What is said beside a command.
+    Wording("untidy", "<spot> (is | looks) (a mess | messy | untidy | dirty | a tip)", heard=""),
+    Wording("remark", "(i'm | i am | we're | we are | it's | it is) <words>", heard=""),
     # The robot itself.
     Wording("say", "(say | announce) <words>", heard=""),
     Wording("wait", "wait [here | a moment | a bit | for me | a second]", heard="wait"),
+    Wording("wait_there", "[go and] wait (in | at | by | near) <spot>", heard=""),
     Wording("come_back", "(come | go | drive) [back] home", heard="go home"),
     Wording(
-        "come_back", "(come | go | drive | get) (here | back | to me | back here | back to me | over here)",
+        "come_back", "(come | go | drive | get) [on] [over] (here | back | to me | back here | back to me)",
         heard="come (here | back)",
+    ),
+    Wording(
+        "come_back", "(come | go) [back] [to] where (i am | we are | you started | you came from)", heard="",
     ),
     Wording("come_back", "return [home | here | to (start | me | base)] | come", heard=""),
     # Two things at once, said of one object.
-    Wording("throw_away", "(get | fetch | take | grab) <thing> and throw (it | them) away", heard=""),
-    Wording("put_away", "(get | fetch | take | grab) <thing> and put (it | them) away", heard=""),
+    Wording("throw_away", f"{PICK} <thing> [up] and throw (it | them) away", heard=""),
+    Wording("put_away", f"{PICK} <thing> [up] and put (it | them) away", heard=""),
     Wording(
-        "put", f"(get | fetch | take | grab) <thing> and (put | place | throw | drop | set) (it | them) {ON} <spot>",
+        "put", f"{PICK} <thing> [up] and ({PUT}) (it | them) {BACK} {ON} <spot>",
         heard="",
     ),
     Wording(
-        "deliver", "(get | fetch | take | grab) <thing> and (bring | take | carry) (it | them) to <spot>", heard="",
+        "deliver", f"{PICK} <thing> [up] and (bring | take | carry) (it | them) {BACK} to <spot>", heard="",
     ),
-    Wording("fetch", "(go | drive | get | walk) and (get | fetch | bring | find) [me | us] <thing>", heard=""),
-    Wording("fetch", "go (get | fetch | bring) [me | us] <thing>", heard=""),
+    Wording("fetch", f"(go | get | {GO}) [over | along] and ({BRING} | find) [me | us] <thing>", heard=""),
+    Wording("fetch", f"(go | come | run) ({BRING}) [me | us] <thing>", heard=""),
     # Tidying, going.
-    Wording("tidy", "(tidy | clean | clear) up [<spot>]", heard="(tidy | clean) up [the | my] <place>"),
-    Wording("tidy", "(tidy | clean | clear) [<spot>] [up]", heard="(tidy | clean | clear) [the | my] <place>"),
+    Wording("tidy", f"({TIDY}) up [<spot>]", heard="(tidy | clean) up [the | my] <place>"),
+    Wording("tidy", f"({TIDY}) [<spot>] [up]", heard="(tidy | clean | clear) [the | my] <place>"),
     Wording("tidy", "(clean | clear) <spot> off | empty <spot>", heard=""),
-    Wording("go", "go [over | back] (to | into | in | near | towards) <spot>", heard="go [back] to [the] <place>"),
+    Wording("tidy", "give <spot> a [quick | good] (tidy | clean | tidying | cleaning) [up]", heard=""),
+    Wording("tidy", "(clean | clear | take) (everything | all of it | it all) (off | from) <spot>", heard=""),
+    Wording(
+        "go", "go [over | back | along] (to | into | in | near | towards) <spot>", heard="go [back] to [the] <place>",
+    ),
     Wording(
         "go",
-        "(drive | navigate | move | walk | return | head | come | roll) [over | back] (to | into | towards) <spot>",
+        f"({GO} | off you go) [over | back | along] (to | into | towards) <spot>",
         heard="drive [back] to [the] <place>",
     ),
     Wording("go", "(approach | look at) <spot>", heard=""),
+    Wording("go", "(i | we) (need | want) you (in | at | by) <spot>", heard=""),
+    Wording("go", "(make your way | get yourself | take yourself) [over | back] (to | into) <spot>", heard=""),
     # Putting.
     Wording(
         "put",
-        "(put | set | lay) (down <thing> | <thing> down) (in | into | inside | on top of | on | onto | at) <spot>"
-        " | leave <thing> (in | on | at) <spot>",
+        f"({PUT}) (down <thing> | <thing> down) ({ON} | at) <spot>",
         heard="",
     ),
     Wording(
@@ -130,57 +180,53 @@ WORDINGS: tuple[Wording, ...] = (
         "put (down <thing> | back down <thing> | <thing> [back] down) | set (down <thing> | <thing> down)",
         heard="put (it | them) down",
     ),
+    Wording("put_down", "(drop | release | let go of | let go) <thing> | let go", heard="release it | let go"),
     Wording(
-        "put_down", "(drop | release | let go of | let go) <thing> | let go", heard="release it | let go"
-    ),
-    Wording(
-        "put_near", f"(put | place | set | move | throw | toss | drop) <thing> {NEAR} <spot>",
+        "put_near", f"({PUT}) <thing> {BACK} {NEAR} <spot>",
         heard=f"(put | place | set) {IT} <near> | move <thing> <near>",
     ),
-    Wording("throw_away", "(throw | toss) <thing> (away | out)", heard=f"throw {IT} away"),
+    Wording("throw_away", f"({THROW}) <thing> (away | out)", heard=f"throw {IT} away"),
+    Wording("throw_away", f"({THROW}) (away | out) <thing> | ({DISCARD}) <thing>", heard=""),
     Wording(
-        "throw_away",
-        "(throw | toss) (away | out) <thing> | (get rid | dispose) of <thing> | (trash | discard | recycle) <thing>",
-        heard="",
-    ),
-    Wording(
-        "put_away", "(put | tidy | clear | clean) away <thing> | (put | tidy | clear | clean) <thing> away",
-        heard=f"put {IT} away",
+        "put_away", f"(put | {TIDY}) away <thing> | (put | {TIDY}) <thing> away", heard=f"put {IT} away",
     ),
     Wording("put_away", "put <thing> (back | where it belongs | where they belong | in its place)", heard=""),
     # Bringing.
-    Wording("deliver_there", "(bring | take | carry | move | put | deliver) <thing> there", heard=""),
+    Wording("deliver_there", f"({MOVE} | {PUT}) <thing> [over] there", heard=""),
     Wording(
-        "fetch", "(bring | fetch | get | give | hand | pass | grab | take | carry | find) (me | us) <thing>",
-        heard="(bring | fetch | get | give | hand) me <thing>",
+        "fetch", f"({BRING} | find) (me | us) <thing>", heard="(bring | fetch | get | give | hand) me <thing>",
     ),
     Wording(
-        "fetch",
-        "(bring | fetch | get | give | hand | pass | grab | take | carry | move) <thing> [over | back] to (me | us)",
-        heard="(bring | take | carry) <thing> to me",
+        "fetch", f"({BRING} | move) <thing> [over | back] to (me | us)", heard="(bring | take | carry) <thing> to me",
     ),
-    Wording("fetch", "(bring | fetch | get) <thing> [over] (here | back)", heard=""),
+    Wording("fetch", f"({FETCH}) (<thing> [back | over] here | <thing> (back | over) | over <thing>)", heard=""),
     Wording(
         "put",
-        "(put | place | set | throw | toss | drop | lay | stick | move | stack)"
-        " <thing> (in | into | inside | on top of | on | onto | at | under | to) <spot>",
+        f"({PUT}) <thing> {BACK} ({ON} | at | under | to) <spot>",
         heard=f"(put | place | set) {IT} <onto> | throw {IT} (in | into) <inside> | move <thing> (to <spot> | <onto>)",
     ),
     Wording(
         "deliver",
-        "(bring | take | carry | deliver | transport | move | get | fetch | return) [me] <thing>"
-        " [over | back] (to | into) <spot>",
+        f"({MOVE}) [me] <thing> {BACK} (to | into) <spot>",
         heard="(bring | take | carry) <thing> to <spot>",
     ),
-    Wording("put", "(take | carry | bring) <thing> (on | onto | in) <spot>", heard=""),
+    Wording("put", f"({MOVE}) <thing> {BACK} (on | onto | in) <spot>", heard=""),
+    Wording("put", f"<thing> (belongs | belong | goes | go | can go | should be | should go) {ON} <spot>", heard=""),
+    Wording("put", f"(can | could | should) <thing> (go | be) {ON} <spot>", heard=""),
+    Wording("put", f"make sure [that] <thing> (is | are | ends up | end up) {ON} <spot>", heard=""),
     Wording(
         "pick_up", "(pick | take | grab | lift) up <thing> | pick <thing> up | lift <thing> [up]",
         heard="pick (up <thing> | <thing> up)",
     ),
+    Wording("pick_up", "(get | take | grab) hold of <thing>", heard=""),
     Wording("pick_up", "(grab | grasp | take | hold | pick) <thing>", heard="(grab | take) <thing>"),
-    Wording("find", "(find | search for | look for | locate | show me) <thing>", heard="find <thing>"),
-    Wording("fetch", "(bring | fetch | get | give | hand | pass | carry | collect | gather) <thing>", heard=""),
-    Wording("fetch", "(i | we) (want | need | would like | 'd like) <thing> | i'd like <thing>", heard=""),
+    Wording("find", f"({SEEK}) <thing>", heard="find <thing>"),
+    Wording("fetch", f"({FETCH} | get) <thing>", heard=""),
+    Wording("fetch", f"(i | we) {WISH} <thing> [[over] here] | (i'd | we'd) (like | love) <thing>", heard=""),
+    Wording("fetch", f"{MODAL} (i | we) (have | get) <thing> | let (me | us) have <thing>", heard=""),
+    Wording("fetch", f"{MODAL} i trouble you for <thing> | gimme <thing> | how about <thing>", heard=""),
+    Wording("fetch", "<thing> would be (nice | great | good | lovely | perfect)", heard=""),
+    Wording("fetch", "[is there] any chance of [getting | having] <thing>", heard=""),
     Wording("refuse", "(put | place | set) <thing>", heard="", reason="you did not say where to put it"),
     Wording(
         "refuse", "(open | close | shut | lock | unlock) <words>", heard="(open | close) the <openable>",

@@ -124,6 +124,12 @@ def wait(builder: PlanBuilder, slots: Slots) -> None:
     builder.wait()
 
 
+def wait_there(builder: PlanBuilder, slots: Slots) -> None:
+    """Wait at a place."""
+    go(builder, slots)
+    builder.wait()
+
+
 def find(builder: PlanBuilder, slots: Slots) -> None:
     everything = things(builder, slots["thing"])
     for meant in everything:
@@ -136,6 +142,18 @@ def find(builder: PlanBuilder, slots: Slots) -> None:
 def say(builder: PlanBuilder, slots: Slots) -> None:
     text = " ".join(slots["words"])
     builder.say(f"{text[0].upper()}{text[1:]}.")
+
+
+# --- what is said beside a command
+def remark(builder: PlanBuilder, slots: Slots) -> None:
+    """Nothing: a reason for what is asked next, such as "I'm thirsty"."""
+    if "and" in slots["words"]:
+        raise Refusal("I do not understand that")
+
+
+def untidy(builder: PlanBuilder, slots: Slots) -> None:
+    """The place that is spoken of next as "it"."""
+    builder.spot = spot(builder, slots["spot"])
 
 
 # --- parts of the above

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from common.language.meaning import VERBS
 from common.language.normalise import DETERMINERS, Words, clauses, infinitive, without_politeness
 from common.language.noun_phrase import PLURAL_PRONOUNS, PRONOUNS
+from common.language.simplify import simplified
 from common.messages import ActionPlan, PlanStep, RejectedPlan
 from services.planner import answers
 from services.planner.choice_points import ChoicePoints, every
@@ -133,18 +134,28 @@ def _command(words: Words, builder: PlanBuilder, verb: str, at: int, alone: bool
     if builder.effort[0] > MAX_EFFORT:
         raise Refusal("that is too long a sentence for me")
     words = (infinitive(words[0], VERBS), *words[1:])
-    reason = apply_first(words, builder, "command", "reply")
-    if reason is None:
+    reason = _apply(words, builder, verb, alone)
+    if (
+        reason is not None
+        and (simple := simplified(words)) not in ((), words)
+        and _apply(simple, builder, verb, alone) is None
+    ):
         return
-    if not reason and alone:
-        reason = apply_first(words, builder, "name")
-    elif not reason and verb and _is_thing(words, builder):
-        # "put the mug on the table and the can on the counter": the verb is said once.
-        reason = apply_first((verb, *words), builder, "command", "reply")
     if reason is None:
         return
     said = " ".join(words)
     raise _Failure(at if reason else at - 1, reason or f"I do not understand {said!r}")
+
+
+def _apply(words: Words, builder: PlanBuilder, verb: str, alone: bool) -> str | None:
+    """As `apply_first`, for a clause that may be a name alone or lack the `verb` of the one before it."""
+    reason = apply_first(words, builder, "command", "reply")
+    if reason == "" and alone:
+        return apply_first(words, builder, "name")
+    if reason == "" and verb and _is_thing(words, builder):
+        # "put the mug on the table and the can on the counter": the verb is said once.
+        return apply_first((verb, *words), builder, "command", "reply")
+    return reason
 
 
 def _is_thing(words: Words, builder: PlanBuilder) -> bool:

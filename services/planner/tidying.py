@@ -2,6 +2,8 @@
 
 from collections.abc import Iterable
 
+from common.language.normalise import without_determiners
+from common.language.noun_phrase import related
 from common.language.pattern import Slots
 from common.scene import Receptacle
 from services.planner.actions import take
@@ -54,6 +56,11 @@ def _sort(builder: PlanBuilder, everything: Iterable[Meant], rules: tuple[Rule, 
 
 def _area(builder: PlanBuilder, slots: Slots) -> Spot | None:
     words = slots.get("spot", ())
+    for head, relation, anchor in related(words):
+        sense = builder.vocabulary.noun(" ".join(without_determiners(head)))
+        if relation == "on" and sense is not None and sense[0].every:  # the mess on the table
+            words = anchor
+            break
     phrase = " ".join(w for w in words if w not in ("the", "my", "this", "whole", "entire", "all"))
     if phrase in ("", "up", "flat", "apartment", "house", "home", "place", "everything", "mess"):
         return None

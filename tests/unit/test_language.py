@@ -5,7 +5,9 @@ from typing import get_args
 import pytest
 
 from common.language.meaning import asks_for, heard_parts, readings
-from common.language.pattern import Node, Sequence, Slot, Word, parse
+from common.language.normalise import clauses
+from common.language.pattern import ANY, Node, Sequence, Slot, Word, first_words, parse
+from common.language.simplify import simplified
 from common.language.wordings import INTERRUPTS, WORDINGS, Action, Wording
 from services.planner.rules import ACTIONS
 
@@ -68,6 +70,10 @@ def sentences(node: Node) -> list[tuple[str, ...]]:
         ("cancel that", "cancel"),
         ("robot, cancel it please", "cancel"),
         ("never mind", "cancel"),
+        ("oh no, stop!", "stop"),
+        ("stop what you're doing", "stop"),
+        ("don't move", "stop"),
+        ("actually, forget about it", "cancel"),
         ("bring me the apple", None),
         ("stop at the table", None),
         ("", None),
@@ -87,3 +93,39 @@ def test_commands_and_what_is_said_by_itself_are_heard_apart() -> None:
     parts = heard_parts()
     assert "find <thing>" in parts["verb"] and "cancel [that] | never mind" in parts["utterance"]
     assert not set(parts["verb"]) & set(parts["utterance"])
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("um, bring me, uh, the red mug", ["bring me and the red mug"]),
+        ("I was wondering if you could fetch the apple", ["fetch the apple"]),
+        ("would you be so kind as to bring me the mug when you get a moment?", ["bring me the mug"]),
+        ("if you don't mind, tidy up", ["tidy up"]),
+        ("could you, like, get the mug", ["get the mug"]),
+        ("say um hello", ["say um hello"]),
+        ("do you know where the mug is", ["do you know where the mug is"]),
+    ],
+)
+def test_hesitation_and_politeness_are_no_words_of_a_command(text: str, expected: list[str]) -> None:
+    assert clauses(text) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("take the apple out to the counter", "take the apple to the counter"),
+        ("drive on over to the kitchen", "drive to the kitchen"),
+        ("bring me over the red mug", "bring me the red mug"),
+        ("possibly hand me the green can", "hand me the green can"),
+        ("pick up the mug", "pick up the mug"),
+        ("really", ""),
+    ],
+)
+def test_a_second_try_leaves_adverbs_and_particles_out(text: str, expected: str) -> None:
+    assert " ".join(simplified(tuple(text.split()))) == expected
+
+
+def test_a_sentence_may_begin_with_a_slot() -> None:
+    assert first_words(parse("<thing> belongs here | [now] go")) == {ANY, "now", "go"}
+    assert first_words(parse("[please]")) == {"please", ""}

@@ -13,6 +13,7 @@ from common.language.normalise import (
     infinitive,
     normalise,
     without_determiners,
+    without_fillers,
     without_politeness,
 )
 from common.language.noun_phrase import WHICH, related
@@ -39,7 +40,7 @@ def parse(text: str, scene: Scene) -> Intent:
     """The intent of a sentence; kind `none` with a reason that can be spoken when there is none."""
     if action := asks_for(text, *_CONTROLS):
         return Intent(_CONTROLS[action])
-    words = tuple(without_politeness(expand(normalise(text))).split())
+    words = tuple(without_politeness(without_fillers(expand(normalise(text)))).split())
     any_one = _INDEFINITE.search(" ".join(words)) is not None
     named = _object_phrases(words)
     for candidate in (item for variants in named for item in variants):

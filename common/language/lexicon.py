@@ -1,0 +1,28 @@
+"""Words that ask for the same, as options of a pattern: a synonym is one more word here and stands in every wording."""
+
+BRING = "bring | fetch | get | give | hand | pass | grab | take | carry | retrieve"
+"""Verbs of bringing that need a receiver: `grab me the mug`."""
+FETCH = "bring | fetch | get | give | hand | pass | carry | retrieve | collect | gather"
+"""Verbs of bringing that need none."""
+PICK = "(get | fetch | take | grab | pick | pick up)"
+"""The first half of moving something: `get the mug and put it away`."""
+PUT = (
+    "put | place | set | throw | toss | drop | lay | stick | move | stack | pop | slide | leave | shift | chuck | dump"
+    " | relocate"
+)
+MOVE = "bring | take | carry | deliver | transport | move | get | fetch | return | shift | relocate | transfer"
+"""Verbs of moving to a place that is named with "to"."""
+THROW = "throw | toss | chuck"
+DISCARD = "trash | discard | recycle | bin | get rid of | dispose of"
+TIDY = "tidy | clean | clear | declutter | straighten | neaten | sort out"
+GO = "drive | navigate | move | walk | return | head | come | roll | run | nip | pop | travel | proceed"
+SEEK = "find | search for | look for | locate | show me"
+MODAL = "(can | could | may | might)"
+WISH = "(want | need | would like | would love | fancy | could do with | could really do with)"
+# Words around them.
+ON = "(in | into | inside | on top of | on | onto | upon)"
+NEAR = "(next to | near | beside | close to | by)"
+BACK = "[back | over | straight | down | away]"
+"""Particles between an object and its place that change nothing."""
+IT = "(<thing> | it | them)"
+ASK = "[tell me | do you (know | remember) | [have you got] any idea | find out | i wonder]"
