@@ -15,8 +15,8 @@ import numpy as np
 from bench.driving import Driver
 from common.scene import Obstacle, Scene, load_scene
 from services.navigation.config import NavigationConfig
-from services.navigation.costmap import Costmap
-from services.navigation.planner import PathPlanner
+from services.navigation.planning.costmap import Costmap
+from services.navigation.planning.planner import PathPlanner
 
 CONFIG = NavigationConfig()
 GOALS = 3

@@ -12,7 +12,7 @@ from common.approach import poses_for
 from common.geometry import Pose2
 from common.scene import Receptacle, Scene
 from services.navigation.config import NavigationConfig
-from services.navigation.costmap import Costmap
+from services.navigation.planning.costmap import Costmap
 
 Point = tuple[float, float]
 MAX_ORDERED = 5

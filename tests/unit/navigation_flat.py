@@ -10,7 +10,7 @@ from common import topics
 from common.geometry import Pose2, Rectangle, compose, inverse, wrap
 from common.scene import Scene, load_scene
 from services.navigation.config import NavigationConfig
-from services.navigation.distance_field import rectangles
+from services.navigation.localisation.distance_field import rectangles
 from services.navigation.service import NavigationService
 from tests.node import Node
 

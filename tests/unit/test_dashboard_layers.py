@@ -12,7 +12,7 @@ from common.scene import load_scene
 from services.dashboard.panels.tracking_error import arm_error, off_path
 from services.dashboard.scene.layers import FOOTPRINT, STATES, forks, picture
 from services.manipulation.grasp import Target, candidates, shown
-from services.navigation.costmap import Costmap
+from services.navigation.planning.costmap import Costmap
 
 
 def test_the_costmap_is_opaque_at_obstacles_and_clear_in_the_open() -> None:

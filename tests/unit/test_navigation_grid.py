@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from common.scene import Box, Place, Receptacle, Scene, Wall
-from services.navigation.costmap import Costmap
-from services.navigation.planner import SPACING, PathPlanner, Point
+from services.navigation.planning.costmap import Costmap
+from services.navigation.planning.planner import SPACING, PathPlanner, Point
 
 CELL = 0.125
 ORIGIN = -0.3  # of either axis: the flat begins at 0, the map 0.3 m before

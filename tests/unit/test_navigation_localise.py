@@ -9,12 +9,12 @@ from common.bus.port import Io
 from common.geometry import Pose2, Rectangle, compose, inverse, wrap
 from common.scene import load_scene
 from services.navigation.config import NavigationConfig
-from services.navigation.costmap import Costmap
-from services.navigation.distance_field import REACH, DistanceField, distance_field, rectangles
-from services.navigation.localise import Localiser
-from services.navigation.relocalise import relocalise
+from services.navigation.localisation.distance_field import REACH, DistanceField, distance_field, rectangles
+from services.navigation.localisation.localise import Localiser
+from services.navigation.localisation.relocalise import relocalise
+from services.navigation.localisation.state_estimation import StateEstimator
+from services.navigation.planning.costmap import Costmap
 from services.navigation.service import NavigationService
-from services.navigation.state_estimation import StateEstimator
 from tests.node import Node
 from tests.unit.navigation_flat import cast, ends
 

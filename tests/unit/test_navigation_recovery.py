@@ -10,11 +10,11 @@ from common import topics
 from common.bus.memory import MemoryIo
 from common.scene import load_scene
 from common.viewpoints import viewpoints_of
-from services.navigation.collision_avoidance import avoid
 from services.navigation.config import NavigationConfig
-from services.navigation.costmap import Costmap
-from services.navigation.obstacle_tracker import Obstacle, ObstacleTracker, clusters
-from services.navigation.progress import BlockedTimer
+from services.navigation.motion.collision_avoidance import avoid
+from services.navigation.motion.obstacle_tracker import Obstacle, ObstacleTracker, clusters
+from services.navigation.motion.progress import BlockedTimer
+from services.navigation.planning.costmap import Costmap
 from tests.unit.navigation_flat import SCENE, Flat
 
 KITCHEN_DOOR = (2.5, -0.75, 0.4, 0.9, 0.0)

@@ -11,9 +11,9 @@ from common.approach import poses_for
 from common.geometry import quat_yaw
 from common.scene import load_scene
 from services.navigation.config import NavigationConfig
-from services.navigation.costmap import Costmap
-from services.navigation.path_follower import PathFollower
-from services.navigation.planner import PathPlanner, Point
+from services.navigation.motion.path_follower import PathFollower
+from services.navigation.planning.costmap import Costmap
+from services.navigation.planning.planner import PathPlanner, Point
 from services.navigation.service import NavigationService
 from services.sim.layout import place_objects
 from tests.node import Node

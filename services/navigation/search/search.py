@@ -2,10 +2,10 @@
 
 from common.geometry import Pose2
 from services.navigation.config import NavigationConfig
-from services.navigation.costmap import Costmap
-from services.navigation.coverage import SearchCoverage
-from services.navigation.navigator import Ended
-from services.navigation.planner import PathPlanner
+from services.navigation.motion.navigator import Ended
+from services.navigation.planning.costmap import Costmap
+from services.navigation.planning.planner import PathPlanner
+from services.navigation.search.coverage import SearchCoverage
 
 
 class Search:

@@ -7,11 +7,11 @@ from common import topics
 from common.bus.port import Io, Job
 from common.geometry import Pose2, compose, inverse
 from services.navigation.config import NavigationConfig
-from services.navigation.costmap import Array, Costmap
-from services.navigation.distance_field import distance_field
-from services.navigation.localise import Localiser
-from services.navigation.obstacle_tracker import ObstacleTracker
-from services.navigation.relocalise import relocalise
+from services.navigation.localisation.distance_field import distance_field
+from services.navigation.localisation.localise import Localiser
+from services.navigation.localisation.relocalise import relocalise
+from services.navigation.motion.obstacle_tracker import ObstacleTracker
+from services.navigation.planning.costmap import Array, Costmap
 
 NEAR = 4.0
 """Range up to which lidar points are braked for and tracked [m]; chosen: beyond what the robot reaches in 5 s."""

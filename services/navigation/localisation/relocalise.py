@@ -5,8 +5,8 @@ import math
 import numpy as np
 
 from common.geometry import Pose2
-from services.navigation.distance_field import Array, DistanceField
-from services.navigation.localise import Localiser
+from services.navigation.localisation.distance_field import Array, DistanceField
+from services.navigation.localisation.localise import Localiser
 
 STEP, TURNS = 0.25, 48
 """Grid of positions [m] and number of headings; chosen: the fine matching converges from half of it."""

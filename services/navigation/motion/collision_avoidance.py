@@ -5,8 +5,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from services.navigation.costmap import Array, Costmap
-from services.navigation.obstacle_tracker import Obstacle
+from services.navigation.motion.obstacle_tracker import Obstacle
+from services.navigation.planning.costmap import Array, Costmap
 
 Point = tuple[float, float]
 HORIZON, SAMPLE = 2.4, 0.2

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from services.navigation.distance_field import Array
+from services.navigation.localisation.distance_field import Array
 
 Point = tuple[float, float]
 GAP = 0.25

@@ -4,8 +4,8 @@ import math
 from collections.abc import Sequence
 
 from services.navigation.config import NavigationConfig
-from services.navigation.obstacle_tracker import Obstacle
-from services.navigation.planner import Point
+from services.navigation.motion.obstacle_tracker import Obstacle
+from services.navigation.planning.planner import Point
 
 STEP = 0.05
 """What counts as progress [m]; chosen: more than the play of the pose estimate."""

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy import ndimage, sparse
 from scipy.sparse import csgraph
 
-from services.navigation.costmap import Costmap
+from services.navigation.planning.costmap import Costmap
 
 Point = tuple[float, float]
 SPACING = 0.05

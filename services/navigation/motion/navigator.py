@@ -5,14 +5,14 @@ from collections.abc import Sequence
 
 from common import messages as m
 from common.geometry import Pose2
-from services.navigation.breadcrumbs import Breadcrumbs
-from services.navigation.collision_avoidance import avoid
 from services.navigation.config import NavigationConfig
-from services.navigation.costmap import Array, Costmap
-from services.navigation.obstacle_tracker import Obstacle
-from services.navigation.path_follower import Lookahead, PathFollower
-from services.navigation.planner import PathPlanner, Point
-from services.navigation.progress import BlockedTimer, Progress
+from services.navigation.motion.breadcrumbs import Breadcrumbs
+from services.navigation.motion.collision_avoidance import avoid
+from services.navigation.motion.obstacle_tracker import Obstacle
+from services.navigation.motion.path_follower import Lookahead, PathFollower
+from services.navigation.motion.progress import BlockedTimer, Progress
+from services.navigation.planning.costmap import Array, Costmap
+from services.navigation.planning.planner import PathPlanner, Point
 
 REPLAN_PERIOD = 1.0
 """Least time between two plans [s]; chosen: what the lidar sees seldom changes faster."""
