@@ -7,7 +7,7 @@ from common.approach import poses_for
 from common.geometry import Pose2
 from common.scene import Receptacle, Scene
 from services.navigation.config import NavigationConfig
-from services.navigation.motion.navigator import Ended
+from services.navigation.ended import Ended
 from services.navigation.places import Places
 
 Goal = m.NavigationGoal | m.NavGoal

@@ -8,9 +8,10 @@ from common.goal_inbox import GoalInbox
 from common.viewpoints import viewpoints_of
 from services.navigation.approach_history import ApproachHistory
 from services.navigation.config import NavigationConfig
+from services.navigation.ended import Ended
 from services.navigation.goals import Choices, Goal, Goals, in_words
 from services.navigation.localisation.state_estimation import StateEstimator
-from services.navigation.motion.navigator import Ended, Navigator
+from services.navigation.motion.navigator import Navigator
 from services.navigation.places import Places, load_places
 from services.navigation.planning.costmap import Costmap
 from services.navigation.planning.planner import PathPlanner

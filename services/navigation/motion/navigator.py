@@ -6,11 +6,14 @@ from collections.abc import Sequence
 from common import messages as m
 from common.geometry import Pose2
 from services.navigation.config import NavigationConfig
+from services.navigation.ended import Ended
+from services.navigation.motion.blind_base import BlindBase
 from services.navigation.motion.breadcrumbs import Breadcrumbs
 from services.navigation.motion.collision_avoidance import avoid
 from services.navigation.motion.obstacle_tracker import Obstacle
-from services.navigation.motion.path_follower import Lookahead, PathFollower
+from services.navigation.motion.path_follower import Lookahead
 from services.navigation.motion.progress import BlockedTimer, Progress
+from services.navigation.motion.route import DETOUR_PAUSE, Route
 from services.navigation.planning.costmap import Array, Costmap
 from services.navigation.planning.planner import PathPlanner, Point
 
@@ -18,41 +21,8 @@ REPLAN_PERIOD = 1.0
 """Least time between two plans [s]; chosen: what the lidar sees seldom changes faster."""
 FEEDBACK_PERIOD = 1.0
 """Time between two feedbacks without news [s]; chosen: often enough for a person who watches."""
-DETOUR_PAUSE = 4.0
-"""Time after a detour before another path counts as one [s]; chosen: until then the same obstacle shows more sides."""
-SHORTER = 0.85
-"""A new path replaces a free one only if it is this much shorter [-]; chosen: so that it does not waver between two."""
 OUT_OF_SIGHT = 3.0
 """Age from which what was seen may be gone when there is no path [s]; chosen: longer than somebody hides a cell."""
-HERE = 0.05
-"""A pose this near is where the robot stands [m], free or not: the costmap's resolution."""
-WAY_COST = 0.15
-"""What the path to an approach pose adds to its penalty [m/m]; chosen: a better stance is worth a way round a table."""
-TOUCHING = 0.02
-"""How much closer than its footprint an obstacle must be to block a path [m]: the costmap's rounding."""
-
-
-class Ended(Exception):
-    """The goal has ended with this status, code and detail."""
-
-    def __init__(self, status: m.NavStatus, code: str = "", detail: str = "") -> None:
-        super().__init__(detail)
-        self.status, self.code, self.detail = status, code, detail
-
-
-class BlindBase:
-    """A base that reports no motion: what it says that it has reached is where it is."""
-
-    def __init__(self) -> None:
-        self.sent: Pose2 | None = None
-        self.start: Pose2 | None = None
-        self.assumed: Pose2 | None = None
-
-    def reached(self, pose: Pose2 | None) -> None:
-        """The base reports that it is where it was sent; believed while odometry shows no motion."""
-        still = pose is None or pose == self.start
-        if still and self.sent is not None:
-            self.assumed = self.sent
 
 
 class Navigator:
@@ -71,20 +41,16 @@ class Navigator:
         name: str,
         now: float,
     ) -> None:
-        self._config, self._map, self._planner, self._choices = config, costmap, planner, choices
+        self._config, self._map = config, costmap
         self._name, self._started = name, now
+        self._route = Route(config, costmap, planner, choices)
         self._progress = Progress(config, now)
         self._blocked = BlockedTimer()
         self._breadcrumbs = Breadcrumbs()
         self._base = BlindBase()
-        self._follower: PathFollower | None = None
-        self._new_path: list[Point] | None = None
-        self._planned_at = -math.inf
-        self._planned_version = -1
         self._targets = 0
         self._retreat: tuple[float, Pose2] | None = None
         self._feedback_at = -math.inf
-        self._detour_at = -math.inf
         self._retries = 0
         self.recoveries = 0
         self.remaining = 0.0
@@ -103,8 +69,7 @@ class Navigator:
 
     def take_new_path(self) -> list[Point] | None:
         """The path being followed, once after it has changed."""
-        path, self._new_path = self._new_path, None
-        return path
+        return self._route.take_new_path()
 
     def due_feedback(self, now: float) -> bool:
         """True once every FEEDBACK_PERIOD."""
@@ -151,7 +116,7 @@ class Navigator:
     def _go_on(self, pose: Pose2, points: Array | None, obstacles: Sequence[Obstacle], now: float) -> m.BaseTarget:
         if self._retreat is not None:
             return self._go_back(*self._retreat, pose, now)
-        if self._follower is None:
+        if self._route.follower is None:
             return self._wait(pose, obstacles, now)
         return self._follow(pose, points, obstacles, now)
 
@@ -161,10 +126,10 @@ class Navigator:
             self._progress.allow(self._config.timeout_margin * 2, now)
         if now > self._progress.deadline:
             raise Ended("failed", "TIMEOUT", "no odometry, and the base never reported that it arrived")
-        if now - self._planned_at < REPLAN_PERIOD:
+        if now - self._route.planned_at < REPLAN_PERIOD:
             return None
-        self._planned_at = now
-        x, y, theta = min(self._choices)[1]
+        self._route.planned_at = now
+        x, y, theta = min(self._route.choices)[1]
         return m.BaseTarget(x=x, y=y, theta=theta, id=self.final_id)
 
     # --- planning
@@ -177,44 +142,24 @@ class Navigator:
         self._base.start = pose
         if self._plan(pose, now):
             return
-        if not self._planner.possible((pose[0], pose[1]), [(g[0], g[1]) for _, g in self._choices]):
+        if not self._route.possible(pose):
             raise Ended("failed", "NO_PATH", "no free way leads there")
         self._progress.allow(self._config.timeout_margin + self._config.blocked_wait * 10, now)
 
     def _plan(self, pose: Pose2, now: float) -> bool:
-        """Choose the pose to stand at and the path there; False, and nothing changes, when there is none now."""
-        field = self._planner.field(pose[0], pose[1])
-        costs = []
-        for penalty, goal in self._choices:
-            here = math.hypot(goal[0] - pose[0], goal[1] - pose[1]) < HERE
-            if here or self._planner.free(goal[0], goal[1]):
-                cost = self._planner.cost_to(field, (goal[0], goal[1]))
-                costs.append((penalty + WAY_COST * cost, goal))
-        self._planned_at, self._planned_version = now, self._map.version
-        score, goal = min(costs, default=(math.inf, (0.0, 0.0, 0.0)))
-        path = self._planner.path(field, (pose[0], pose[1]), (goal[0], goal[1])) if math.isfinite(score) else None
-        if path is None:
-            return False
-        follower = PathFollower(path, goal, self._config.lookahead, self._config.corridor)
-        old = self._follower
-        if old is not None and self._blocked_at(old, pose) is None:
-            if follower.remaining(pose) > SHORTER * old.remaining(pose):
-                return True
-        elif old is not None and now - self._detour_at > DETOUR_PAUSE:
+        """Choose pose and path anew; False, and nothing changes, when there is no path now."""
+        found = self._route.plan(pose, now)
+        if found == "detour":
             self.recoveries += 1
-            self._detour_at, self.doing = now, "DETOUR"
-        self._follower, self._new_path = follower, path
-        self._progress.follow(follower.remaining(pose), now)
-        return True
-
-    def _blocked_at(self, follower: PathFollower, pose: Pose2) -> float | None:
-        """How far ahead [m] something that was seen lies on the path; None when it is clear."""
-        return follower.blocked_at(pose, self._map, self._config.footprint_radius - TOUCHING)
+            self.doing = "DETOUR"
+        if found in ("new", "detour") and self._route.follower is not None:
+            self._progress.follow(self._route.follower.remaining(pose), now)
+        return bool(found)
 
     def _follow(self, pose: Pose2, points: Array | None, obstacles: Sequence[Obstacle], now: float) -> m.BaseTarget:
-        if self._map.version != self._planned_version and now - self._planned_at > REPLAN_PERIOD:
+        if self._route.outdated and now - self._route.planned_at > REPLAN_PERIOD:
             self._replan(pose, now)
-        follower = self._follower
+        follower = self._route.follower
         if follower is None:
             return self._wait(pose, obstacles, now)
         ahead = follower.step(pose, self._map, self._config.footprint_radius, points)
@@ -229,7 +174,7 @@ class Navigator:
     def _watch(self, ahead: Lookahead, pose: Pose2, obstacles: Sequence[Obstacle], now: float) -> None:
         """Lose patience with a blocked path, and with no progress on a free one."""
         if self._progress.advanced(ahead.remaining, now) and (
-            self.doing != "DETOUR" or now - self._detour_at > DETOUR_PAUSE
+            self.doing != "DETOUR" or now - self._route.detour_at > DETOUR_PAUSE
         ):
             self.doing = ""
         if ahead.blocked:
@@ -244,18 +189,18 @@ class Navigator:
 
     def _replan(self, pose: Pose2, now: float) -> None:
         """Around what was seen; when there is no path round it, on towards it, but not up to it."""
-        if self._plan(pose, now) or self._follower is None:
+        if self._plan(pose, now) or self._route.follower is None:
             return
-        ahead = self._blocked_at(self._follower, pose)
+        ahead = self._route.blocked_at(pose)
         if ahead is not None and ahead < self._config.keep_off:
-            self._follower = None
+            self._route.follower = None
 
     # --- recovery
     def _wait(self, pose: Pose2, obstacles: Sequence[Obstacle], now: float) -> m.BaseTarget:
         """No path at this moment: stand, look for one every second, lose patience in time."""
         self.doing = "WAITING"
         blocked = self._blocked.blocked((pose[0], pose[1]), obstacles, now)
-        if now - self._planned_at > REPLAN_PERIOD and self._plan(pose, now):
+        if now - self._route.planned_at > REPLAN_PERIOD and self._plan(pose, now):
             self._blocked.clear()
         elif blocked > self._config.blocked_wait:
             self._recover(pose, now, "something stands in every way there")
@@ -289,7 +234,7 @@ class Navigator:
         if now >= until:
             self._retreat = None
             self._progress.restart(now)
-            self._follower = None
+            self._route.follower = None
             self._plan(pose, now)
             self._blocked.clear()
         return self._hold_at(back)

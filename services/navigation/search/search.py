@@ -2,7 +2,7 @@
 
 from common.geometry import Pose2
 from services.navigation.config import NavigationConfig
-from services.navigation.motion.navigator import Ended
+from services.navigation.ended import Ended
 from services.navigation.planning.costmap import Costmap
 from services.navigation.planning.planner import PathPlanner
 from services.navigation.search.coverage import SearchCoverage

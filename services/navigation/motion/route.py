@@ -1,0 +1,83 @@
+"""The pose chosen among several, and the path there as long as it holds."""
+
+import math
+from typing import Literal
+
+from common.geometry import Pose2
+from services.navigation.config import NavigationConfig
+from services.navigation.motion.path_follower import PathFollower
+from services.navigation.planning.costmap import Costmap
+from services.navigation.planning.planner import PathPlanner, Point
+
+DETOUR_PAUSE = 4.0
+"""Time after a detour before another path counts as one [s]; chosen: until then the same obstacle shows more sides."""
+SHORTER = 0.85
+"""A new path replaces a free one only if it is this much shorter [-]; chosen: so that it does not waver between two."""
+HERE = 0.05
+"""A pose this near is where the robot stands [m], free or not: the costmap's resolution."""
+WAY_COST = 0.15
+"""What the path to an approach pose adds to its penalty [m/m]; chosen: a better stance is worth a way round a table."""
+TOUCHING = 0.02
+"""How much closer than its footprint an obstacle must be to block a path [m]: the costmap's rounding."""
+
+Found = Literal["", "kept", "new", "detour"]
+"""What a plan has brought: no path, the old one, another, or another because something blocks the old one."""
+
+
+class Route:
+    """`choices` are approach poses [map], each with a penalty [m]. `follower` follows the path; None: there is none."""
+
+    def __init__(
+        self, config: NavigationConfig, costmap: Costmap, planner: PathPlanner, choices: list[tuple[float, Pose2]]
+    ) -> None:
+        self._map, self._planner, self.choices = costmap, planner, choices
+        self._lookahead, self._corridor = config.lookahead, config.corridor
+        self._radius = config.footprint_radius - TOUCHING
+        self.follower: PathFollower | None = None
+        self.detour_at = -math.inf
+        self.planned_at = -math.inf
+        self._planned_version = -1
+        self._new_path: list[Point] | None = None
+
+    @property
+    def outdated(self) -> bool:
+        """The costmap has changed since the last plan."""
+        return self._map.version != self._planned_version
+
+    def take_new_path(self) -> list[Point] | None:
+        """The path, once after it has changed."""
+        path, self._new_path = self._new_path, None
+        return path
+
+    def possible(self, pose: Pose2) -> bool:
+        """True when an empty flat has a path to one of the choices."""
+        return self._planner.possible((pose[0], pose[1]), [(goal[0], goal[1]) for _, goal in self.choices])
+
+    def plan(self, pose: Pose2, now: float) -> Found:
+        """Choose the pose to stand at and the path there; without one at this moment nothing changes."""
+        field = self._planner.field(pose[0], pose[1])
+        costs = []
+        for penalty, goal in self.choices:
+            here = math.hypot(goal[0] - pose[0], goal[1] - pose[1]) < HERE
+            if here or self._planner.free(goal[0], goal[1]):
+                cost = self._planner.cost_to(field, (goal[0], goal[1]))
+                costs.append((penalty + WAY_COST * cost, goal))
+        self.planned_at, self._planned_version = now, self._map.version
+        score, goal = min(costs, default=(math.inf, (0.0, 0.0, 0.0)))
+        path = self._planner.path(field, (pose[0], pose[1]), (goal[0], goal[1])) if math.isfinite(score) else None
+        if path is None:
+            return ""
+        follower = PathFollower(path, goal, self._lookahead, self._corridor)
+        old = self.follower
+        found: Found = "new"
+        if old is not None and self.blocked_at(pose) is None:
+            if follower.remaining(pose) > SHORTER * old.remaining(pose):
+                return "kept"
+        elif old is not None and now - self.detour_at > DETOUR_PAUSE:
+            self.detour_at, found = now, "detour"
+        self.follower, self._new_path = follower, path
+        return found
+
+    def blocked_at(self, pose: Pose2) -> float | None:
+        """How far ahead [m] something that was seen lies on the path; None when it is clear, or there is none."""
+        return self.follower.blocked_at(pose, self._map, self._radius) if self.follower is not None else None
