@@ -62,6 +62,7 @@ class Examiner:
         self.done = False
 
     def step(self, now: float) -> None:
+        """Observe the world, play the simulated user, note the end of the case."""
         if self.done:
             return
         self._watch(now)

@@ -67,6 +67,7 @@ class Watcher:
         self.lifted: set[str] = set()
 
     def add(self, sample: Sample) -> None:
+        """Take the next sample of the world."""
         self._first = self._first or sample
         self._driven += distance(sample.base[:2], self._last.base[:2]) if self._last else 0.0
         if self._rest is None or distance(sample.base[:2], self._rest.base[:2]) > STOOD:

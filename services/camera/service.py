@@ -94,6 +94,7 @@ class CameraService:
         self._rendered = False
 
     def step(self, now: float) -> None:
+        """Take requests, and render one picture at a time in the worker."""
         for request in self._io.take_all(topics.CAMERA_REQUEST):
             if not (0 < request.width <= self._config.max_width and 0 < request.height <= self._config.max_height):
                 limit = f"{self._config.max_width} x {self._config.max_height}"

@@ -78,6 +78,7 @@ class DashboardService:
         sys.stderr.write(f"dashboard: open {self.web.entrance}\n")
 
     def step(self, now: float) -> None:
+        """Take what came from the bus and from visitors, then show what changed."""
         self._receive(now)
         self._handle_events(now)
         self._redraw_model(now)
@@ -235,4 +236,5 @@ class DashboardService:
             self.web.say("state", shown)
 
     def close(self) -> None:
+        """End the web server."""
         self.web.close()

@@ -65,6 +65,7 @@ class Panels:
     clicks = property(lambda self: bool(self._clicks.value))
 
     def command_by_clicks(self, wanted: bool) -> None:
+        """Set whether clicks in the view command the robot."""
         self._clicks.value = wanted  # type: ignore[misc]
 
     def wanted(self, camera: str) -> bool:
@@ -72,6 +73,7 @@ class Panels:
         return bool(self._wanted[camera].value)
 
     def text(self, name: str, html: str) -> None:
+        """Show HTML in the panel `name`; sent only when it changed."""
         if self.texts.get(name) != html:
             self.texts[name] = html
             self._html[name].content = html

@@ -48,9 +48,11 @@ class TapeIo(MemoryIo):
         self.alive: dict[str, bool] = {}
 
     def peer(self, name: str) -> str | None:
+        """ "" while the recorded service was alive, else None."""
         return "" if self.alive.get(name) else None
 
     def ask(self, key: str, request: bytes = b"") -> WorkerJob[bytes | None]:
+        """Answer for the brain's mission log; None for any other key."""
         wanted = msgspec.json.decode(request).get("id") if request else None
         rows = [r for r in self._missions if wanted in (None, r["id"])]
         if key != topics.BRAIN_MISSIONS:
@@ -178,6 +180,7 @@ class Playback(DashboardService):
 
 
 def wanted_keys() -> set[str]:
+    """The keys of a recording that the page reads."""
     return {t.key for t in DashboardService.READS if t.key in topics.BY_KEY} | recorded.TOLD
 
 
@@ -208,6 +211,7 @@ def frames(stop: StopSignal) -> Iterator[tuple[float, float]]:
 
 
 def main(argv: list[str]) -> int:
+    """Serve the page on a recording until stopped; 1 when that is impossible."""
     parser = argparse.ArgumentParser(prog="tidybot replay --view", description=__doc__)
     parser.add_argument("file", type=Path)
     parser.add_argument("--port", type=int, default=8080)

@@ -121,6 +121,7 @@ class View:
 
     # --- what it senses and believes
     def scan(self, scan: m.LaserScan, base: Pose2, visible: bool) -> None:
+        """Draw the lidar's points around `base` (frame map)."""
         ranges = np.frombuffer(scan.ranges[: len(scan.ranges) // 4 * 4], "<f4").astype(np.float64)
         angles = scan.angle_min + np.arange(len(ranges)) * scan.angle_increment + base[2]
         seen = np.isfinite(ranges) & (ranges > scan.range_min) & (ranges < scan.range_max)
@@ -139,6 +140,7 @@ class View:
         self._scan.visible = visible
 
     def path(self, points: list[tuple[float, float]]) -> None:
+        """Draw the planned path through points [m], frame map; none for fewer than two."""
         if self._path is not None:
             self._path.remove()
             self._path = None

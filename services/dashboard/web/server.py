@@ -88,6 +88,7 @@ class Web:
         return bool(self.viser.get_clients())
 
     def close(self) -> None:
+        """End the server and every visitor's connection."""
         with contextlib.suppress(TimeoutError):
             self._in_loop(self._end(), CLOSING)
         self.viser.stop()

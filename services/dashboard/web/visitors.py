@@ -67,6 +67,7 @@ class Visitors:
                     visitor._req.transport.abort()
 
     async def close(self) -> None:
+        """Close every visitor's connection."""
         for visitor in list(self._open):
             with contextlib.suppress(ConnectionError, TimeoutError):
                 await asyncio.wait_for(visitor.close(), 0.5)
