@@ -96,7 +96,9 @@ def scripted(here: Site, joints: bool = True, **parameters: str) -> Iterator[Pee
         peer = Peer(session)
         keys = (SPEECH, NAVIGATION, MANIPULATION, "brain/state", "system_status")
         subscribers = [session.declare_subscriber(key, peer.receive) for key in keys]
-        changes = {f"TIDYBOT__BRAIN__{k.upper()}": v for k, v in parameters.items()}
+        # Nobody speaks here: the brain waits for as long as a sentence would take, or this long.
+        quick = {"say_timeout": "1.0", **parameters}
+        changes = {f"TIDYBOT__BRAIN__{k.upper()}": v for k, v in quick.items()}
         process = here.start("services.brain", TIDYBOT_CLOCK="wall", TIDYBOT__BRAIN__PIPELINE="fetch", **changes)
         here.wait_alive(session, "brain")
         if joints:

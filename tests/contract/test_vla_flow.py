@@ -104,7 +104,9 @@ def scripted(here: Site, deaf: str = "", **parameters: str) -> Iterator[Peer]:
         peer = Peer(session)
         keys = (*GOALS, "system_status", "gripper_command")
         subscribers = [session.declare_subscriber(key, peer.receive) for key in keys if key != deaf]
-        changes = {f"TIDYBOT__BRAIN__{k.upper()}": v for k, v in parameters.items()}
+        # Nobody speaks here: the brain waits for as long as a sentence would take, or this long.
+        quick = {"say_timeout": "1.0", **parameters}
+        changes = {f"TIDYBOT__BRAIN__{k.upper()}": v for k, v in quick.items()}
         process = here.start("services.brain", TIDYBOT_CLOCK="wall", TIDYBOT__BRAIN__PIPELINE="vla", **changes)
         here.wait_alive(session, "brain")
         peer.joints.start()
