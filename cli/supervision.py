@@ -1,23 +1,21 @@
 """A run of the robot's processes under supervisord: its directory, configuration, start, control and end."""
 
 import contextlib
-import http.client
 import os
 import signal
 import subprocess
 import sys
 import tempfile
-import xmlrpc.client
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import msgspec
-from supervisor.xmlrpc import SupervisorTransport
 
 from cli.errors import CliError
 from cli.programs import ROOT, ROUTER_SOCKET, WATCHDOG, endpoints, render_config, socket_path
 from cli.services import Service
+from common import supervisor
 from common.time import clock
 
 STATES = {
@@ -145,21 +143,12 @@ class Supervision:
         Raises:
             CliError: nothing is up in this directory, or supervisord refuses.
         """
-        path = socket_path(self.directory)
-        if not path.exists():
-            raise CliError("nothing is up; start with `tidybot up`")
-        transport = SupervisorTransport(None, None, serverurl=f"unix://{path}")
         try:
-            proxy = xmlrpc.client.ServerProxy("http://127.0.0.1", transport=transport)
-            return getattr(proxy, method)(*args)
-        except xmlrpc.client.ProtocolError as error:
-            raise CliError(f"supervisord: {error.errmsg}; see {self.log_path('supervisord')}") from None
-        except (OSError, http.client.HTTPException):
+            return supervisor.call(socket_path(self.directory), method, *args)
+        except supervisor.NoSupervisor:
             raise CliError("nothing is up; start with `tidybot up`") from None
-        except xmlrpc.client.Fault as fault:
-            raise CliError(f"supervisord: {fault.faultString}") from None
-        finally:
-            transport.close()
+        except supervisor.SupervisorRefused as refused:
+            raise CliError(f"supervisord: {refused}; see {self.log_path('supervisord')}") from None
 
     def pid(self) -> int | None:
         """The process id of the supervisord that answers here, None when nobody does."""

@@ -1,9 +1,9 @@
 """Restarting a process, as `tidybot restart` does it: over the socket of the supervisor that `tidybot up` started."""
 
-import http.client
-import xmlrpc.client
 from pathlib import Path
 from typing import Any
+
+from common import supervisor
 
 HIDDEN = ("watchdog",)
 OURSELVES = "dashboard"
@@ -55,16 +55,11 @@ class Supervisor:
         Raises:
             Refused: nobody answers, or it says no.
         """
-        if not self._socket or not Path(self._socket).exists():
+        if not self._socket:
             raise Refused(NOBODY)
-        from supervisor.xmlrpc import SupervisorTransport
-
-        transport = SupervisorTransport(None, None, serverurl=f"unix://{self._socket}")
         try:
-            return getattr(xmlrpc.client.ServerProxy("http://127.0.0.1", transport=transport), method)(*args)
-        except xmlrpc.client.Fault as fault:
-            raise Refused(fault.faultString) from None
-        except (OSError, http.client.HTTPException, xmlrpc.client.ProtocolError) as error:
-            raise Refused(f"the supervisor does not answer: {error}") from None
-        finally:
-            transport.close()
+            return supervisor.call(Path(self._socket), method, *args)
+        except supervisor.NoSupervisor:
+            raise Refused(NOBODY) from None
+        except supervisor.SupervisorRefused as refused:
+            raise Refused(str(refused)) from None

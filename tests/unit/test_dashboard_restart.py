@@ -9,7 +9,6 @@ import pytest
 from common import topics
 from common.bus.memory import MemoryBus, MemoryIo
 from common.scene import load_scene
-from services.dashboard import supervisor_client as restart
 from services.dashboard.background_requests import BackgroundRequests
 from services.dashboard.panels import markup
 from services.dashboard.panels.history_buffers import ServiceRow
@@ -119,6 +118,6 @@ def test_a_fault_of_the_supervisor_is_a_refusal(tmp_path: Path, monkeypatch: pyt
 
     socket = tmp_path / "s.sock"
     socket.touch()
-    monkeypatch.setattr(restart.xmlrpc.client, "ServerProxy", Proxy)
+    monkeypatch.setattr(xmlrpc.client, "ServerProxy", Proxy)
     with pytest.raises(Refused, match="BAD_NAME"):
         Supervisor(str(socket)).call("supervisor.startProcess", "x", False)
