@@ -16,6 +16,7 @@ import numpy as np
 
 from common import messages as m
 from common import topics
+from common.approach import EDGE_DISTANCE, STAND_OFF
 from common.bus.memory import MemoryBus, MemoryIo
 from common.geometry import compose, inverse, yaw_quat
 from common.scene import ObjectSpec, Scene, body_name, load_scene
@@ -124,7 +125,7 @@ def trial(scene: Scene, spec: ObjectSpec, seed: int, config: ManipulationConfig)
     facing = math.atan2(-along[1], -along[0])
     half = surface.size[0] / 2 if along[0] else surface.size[1] / 2
     inset = half - (along[0] * (x - surface.center[0]) + along[1] * (y - surface.center[1]))
-    distance = max(rng.uniform(0.55, 0.65), inset + 0.36)
+    distance = max(rng.uniform(STAND_OFF - 0.01, STAND_OFF + 0.09), inset + EDGE_DISTANCE - 0.04)
     side = rng.uniform(-0.05, 0.05)
     bx = x - distance * math.cos(facing) - side * math.sin(facing)
     by = y - distance * math.sin(facing) + side * math.cos(facing)

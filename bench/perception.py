@@ -24,7 +24,7 @@ from services.perception.detect import ClassicalDetector
 from services.perception.ground import ground
 from services.perception.view import View
 from services.sim.layout import Placement, place_objects
-from services.sim.robot import HOME_ARM
+from services.sim.model import own
 from services.sim.world import world_mjcf
 
 RANGE, MARGIN, NEAR = 3.0, 12, 0.10
@@ -88,7 +88,7 @@ def views(args: argparse.Namespace, scene: Scene) -> Iterator[tuple[View, list[P
 def _view(renderer: Renderer, pose: Pose2, args: argparse.Namespace, rng: np.random.Generator) -> View:
     model, data = renderer.model, renderer.data
     names = ("base_x", "base_y", "base_yaw", *(f"joint_{i}" for i in range(1, 8)))
-    for name, value in zip(names, (*pose, *HOME_ARM), strict=True):
+    for name, value in zip(names, (*pose, *own().home), strict=True):
         data.qpos[model.joint(name).qposadr[0]] = value
     renderer.load(data.qpos.copy().tobytes(), b"")
     rgb, depth = renderer.rgbd("head", args.width, args.height)

@@ -9,6 +9,7 @@ import mujoco
 import numpy as np
 
 from common.scene import load_scene
+from common.time.lockstep import DT
 from services.sim.physics import FINE, Physics
 
 SECONDS = 5.0
@@ -35,7 +36,7 @@ def main() -> None:
     physics = Physics(msgspec.structs.replace(scene, objects=scene.objects[:OBJECTS]), 0)
     model, data = physics.model, physics.data
     hold = np.array(data.ctrl[physics.ctrl_at])
-    print(f"{len(physics.placements)} objects, nv {model.nv}, {model.ngeom} geoms, 2.5 ms steps")
+    print(f"{len(physics.placements)} objects, nv {model.nv}, {model.ngeom} geoms, {1000 * DT / FINE:.0f} ms steps")
     print(f"{'variant':34} {'x real time':>12}")
     physics.advance(hold, hold)
     for _ in range(300):

@@ -8,6 +8,7 @@ import platform
 import shutil
 import subprocess
 import sys
+import tomllib
 from collections.abc import Iterator
 from datetime import datetime
 from importlib import metadata
@@ -20,6 +21,7 @@ from cli.errors import CliError
 from cli.ports import port_is_free
 from cli.programs import ROOT
 from cli.supervision import Supervision, run_dir
+from common.config import config_dir
 from common.security import keys
 from common.time.clock import unix_time
 
@@ -189,7 +191,12 @@ def machine() -> Iterator[Finding]:
 
 
 def robots() -> Iterator[Finding]:
-    """The official model for `--robot official`."""
+    """Which robot the simulation has, and whether the official model is there as its skin."""
+    path = config_dir() / "sim.toml"
+    written = tomllib.loads(path.read_text(encoding="utf-8")).get("robot") if path.exists() else None
+    name = os.environ.get("TIDYBOT__SIM__ROBOT") or written or "tidybot"
+    skin = "the official meshes" if name == "official" else "primitives"
+    yield Finding("ok", "robot", f"sim.robot = {name}: TidyBot, drawn as {skin}")
     root = os.environ.get("MENAGERIE_ROOT", "")
     if root:
         there = any((Path(root).expanduser() / ROBOT).glob("*.xml"))

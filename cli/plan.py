@@ -147,5 +147,5 @@ def add_start_options(parser: argparse.ArgumentParser) -> None:
 
 def add_machine_options(parser: argparse.ArgumentParser) -> None:
     """Options that everything shares which starts a robot."""
-    parser.add_argument("--robot", metavar="NAME", help="tidybot, or official: MuJoCo Menagerie's (docs/EXTENDING.md)")
+    parser.add_argument("--robot", metavar="NAME", help="tidybot, or official: with MuJoCo Menagerie's meshes")
     parser.add_argument("--sensors", choices=SENSORS, help="bought: with noise and gaps (the default), or ideal")

@@ -6,12 +6,15 @@ from common.geometry import Pose2
 from common.scene import Receptacle
 
 Point = tuple[float, float]
-STAND_OFF = 0.56
-"""From the base's centre to the object [m]: the middle of the arm's reach at table height (bench.grasp)."""
-EDGE_DISTANCE = 0.40
-"""From the base's centre to the edge it stands before [m]: the footprint's radius 0.37 and 3 cm to spare."""
-ROOM = 0.39
-"""Clearance that the base's centre needs [m]: the footprint's radius 0.37 and 2 cm, as navigation plans with."""
+FOOTPRINT = 0.29
+"""Radius of the circle around the base [m]: its bumper's rounded corners are 0.284 from its centre."""
+STAND_OFF = 0.55
+"""From the base's centre to the object [m]: nearer, flat grasps of low tables are out of the arm's reach, farther away
+those from above on high ones."""
+EDGE_DISTANCE = FOOTPRINT + 0.03
+"""From the base's centre to the edge it stands before [m]."""
+ROOM = FOOTPRINT + 0.02
+"""Clearance that the base's centre needs [m], as navigation plans with."""
 BIN_RIM = 0.02
 """Thickness of a bin's walls, which its `size` does not contain [m]: 15 mm and the play of the map's grid."""
 LATERAL = (0.0, 0.10, -0.10, 0.20, -0.20)

@@ -45,9 +45,7 @@ class Injector:
 
     def closing(self) -> bool:
         """The gripper is told to close."""
-        model, at = self.physics.model, self.physics.gripper_ctrl
-        low, high = model.actuator_ctrlrange[at]
-        return bool((self.physics.data.ctrl[at] - low) / (high - low) > CLOSED)
+        return self.physics.fingers.wanted > CLOSED
 
     def touched(self) -> int:
         """How many of the two fingers' pads touch the object."""

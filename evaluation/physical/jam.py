@@ -2,17 +2,20 @@
 
 from typing import Any
 
-from common.robot import SIDES, subtree
+from common.robot import subtree
 from common.time.lockstep import DT
 from evaluation.physical.fault import PhysicalFault
 from evaluation.physical.injector import Injector
 from services.sim.physics import Physics
 
+JAMMED = "right_"
+"""What the names of the bodies of the jammed finger begin with."""
 JAM, STIFF_REF, STIFF_IMP = 500.0, (0.004, 1.0), (0.9999, 0.9999, 0.001, 0.5, 2.0)
-"""Dry friction [N] of a jammed finger: six times what the gripper's motor can do. MuJoCo's default friction constraint
-creeps by 0.3 m/s under that motor; this solref and solimp leave under 0.1 mm/s."""
+"""Dry friction [Nm] of a jammed finger: a hundred times what the gripper's motor can do. MuJoCo's default friction
+constraint creeps by 0.3 m/s under that motor; this solref and solimp leave under 0.1 mm/s."""
 HELD_UP = 0.3
-"""Seconds that a hand told to close has to stand open before its finger counts as jammed; closing takes 0.1 s."""
+"""Seconds that a hand told to close has to stand open before its finger counts as jammed; by then a free one has closed
+by 20 mm."""
 STAYS = 0.005
 """Most that the width [m] of a jammed hand changes, half of what is free on both sides of the smallest gap."""
 
@@ -23,13 +26,8 @@ class Jam(Injector):
     def __init__(self, fault: PhysicalFault, physics: Physics) -> None:
         super().__init__(fault, physics)
         model = physics.model
-        hand, finger = subtree(model, "gripper"), int(model.geom_bodyid[min(physics.pads[SIDES.index("right")])])
-        self._dofs: list[int] = []
-        while finger in hand and model.body_dofnum[finger]:
-            self._dofs += range(
-                int(model.body_dofadr[finger]), int(model.body_dofadr[finger] + model.body_dofnum[finger])
-            )
-            finger = int(model.body_parentid[finger])
+        finger = [b for b in subtree(model, "gripper") if model.body(b).name.startswith(JAMMED)]
+        self._dofs = [int(d) for d in range(model.nv) if int(model.dof_bodyid[d]) in finger]
         self._free = self._friction()
         self._until: float | None = None
         self._open = self._told = 0.0

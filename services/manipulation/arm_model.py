@@ -59,6 +59,11 @@ def planning_model(robot_mjcf: str) -> Any:
         name="held", type=kind, size=[HELD] * 3, pos=pos, quat=quat, mass=0.0,
         contype=2, conaffinity=1,
     )  # fmt: skip
+    # The fingers touch what they hold.
+    known = {(e.bodyname1, e.bodyname2) for e in spec.excludes}
+    for finger in spec.body("gripper").find_all("body"):
+        if ("gripper", finger.name) not in known:
+            spec.add_exclude(bodyname1="gripper", bodyname2=finger.name)
     return spec.compile()
 
 

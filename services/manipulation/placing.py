@@ -13,7 +13,8 @@ from services.manipulation.robot import Failure, Robot, Steps, go_home, planner_
 from services.manipulation.surroundings import obstacles, spots
 from services.manipulation.touch import TOUCHED
 
-FLOOR_SPOTS = ((0.60, 0.0), (0.60, 0.2), (0.60, -0.2))
+FLOOR_SPOTS = ((0.48, 0.0), (0.48, 0.2), (0.48, -0.2))
+"""Where things are put on the floor, from the arm's first joint [m]: in front of the base and clear of it."""
 DROP = 0.004
 BIN_DROP = 0.06
 STANDS = 0.03
@@ -36,11 +37,11 @@ def place(robot: Robot, where: str) -> Steps[str]:
             continue
         taken = [] if r.depth else known
         surface, drop = (r.depth, BIN_DROP) if r.depth else (r.center[2], DROP)
-        free = spots(r, robot.base, footprint if not r.depth else max(r.size), taken)
+        free = spots(r, robot.base, footprint if not r.depth else max(r.size), taken, planner.arm.forward)
         if free:
             choices.append((r.name, free, surface, drop))
     if not where:
-        choices.append(("floor", list(FLOOR_SPOTS), 0.0, DROP))
+        choices.append(("floor", [(planner.arm.forward + x, y) for x, y in FLOOR_SPOTS], 0.0, DROP))
     if not choices:
         raise Failure("UNREACHABLE", f"no free spot of the {where} is within reach from here")
     last = Failure("UNREACHABLE", "nothing within reach")

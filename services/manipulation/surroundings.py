@@ -15,6 +15,8 @@ RANGE = 1.4
 SLAB = 0.14
 MARGIN = 0.01
 MOST_FURNITURE = 14
+EASY = 0.54
+"""Distance [m] in front of the arm that is reached most easily at the height of tables: the middle of its reach."""
 
 
 def target_of(found: WorldObject, base: Pose2, scene: Scene) -> Target:
@@ -81,8 +83,10 @@ def with_thing(around: Sequence[Obstacle], thing: Obstacle) -> list[Obstacle]:
     return [*around[:MOST_FURNITURE], thing, *around[MOST_FURNITURE:]]
 
 
-def spots(r: Receptacle, base: Pose2, footprint: float, taken: Iterable[WorldObject]) -> list[tuple[float, float]]:
-    """Free points of a surface in the base frame, those easiest to reach first."""
+def spots(
+    r: Receptacle, base: Pose2, footprint: float, taken: Iterable[WorldObject], forward: float
+) -> list[tuple[float, float]]:
+    """Free points of a surface in the base frame, those easiest to reach first; the arm stands `forward` [m] on it."""
     others = [(o.position[0], o.position[1], max(o.size[0], o.size[1]) / 2) for o in taken if not o.held]
     radius = footprint / 2
     grid = []
@@ -92,6 +96,6 @@ def spots(r: Receptacle, base: Pose2, footprint: float, taken: Iterable[WorldObj
             x, y = r.outline.to_map(float(u), float(v))
             if all(math.hypot(x - ox, y - oy) > radius + other + 0.03 for ox, oy, other in others):
                 bx, by, _ = compose(inverse(base), (x, y, 0.0))
-                ideal = math.hypot(bx - 0.62, 0.6 * by)
+                ideal = math.hypot(bx - forward - EASY, 0.6 * by)
                 grid.append((ideal, (bx, by)))
     return [spot for ideal, spot in sorted(grid) if ideal < 0.6]

@@ -1,6 +1,6 @@
 """Parameters of navigation."""
 
-from common.approach import EDGE_DISTANCE, STAND_OFF
+from common.approach import EDGE_DISTANCE, FOOTPRINT, STAND_OFF
 from common.config import Config
 
 
@@ -11,7 +11,7 @@ class NavigationConfig(Config, frozen=True):
     """Of the costmap; chosen: a door of 0.9 m is 18 cells, a plan for the flat takes a fraction of a second."""
     lidar_height: float = 0.2
     """Of the lidar's plane over the floor: as the robot carries it."""
-    footprint_radius: float = 0.37
+    footprint_radius: float = FOOTPRINT
     """Of the circle around the base."""
     clearance: float = 0.02
     """Added to the footprint when paths are planned; chosen: the error of the pose."""
@@ -19,7 +19,7 @@ class NavigationConfig(Config, frozen=True):
     """Clearance from which on a path costs no more than its length; chosen: the middle of a door is still preferred."""
     lookahead: float = 0.5
     """Of the path follower; chosen: short enough for doors, long enough not to waver."""
-    corridor: float = 0.34
+    corridor: float = FOOTPRINT - 0.02
     """Half of the width that must be free of lidar points; chosen: below the footprint, or door frames brake."""
     stand_off: float = STAND_OFF
     """From the base's centre to an object to grab."""

@@ -1,9 +1,6 @@
-"""What an adapted model does not say in so many words, measured on it: the gripper's travel, the pinch point, and
-which of its parts touch each other however the arm stands."""
+"""What the gripper's linkage does, measured on the model: width, posture and pinch point for the motor's travel."""
 
-import itertools
 import xml.etree.ElementTree as ET
-from collections import Counter
 from typing import Any
 
 import mujoco
@@ -18,16 +15,13 @@ from common.robot import (
     HAND_LENGTHS,
     HAND_POSTURES,
     HAND_WIDTHS,
-    arm_limits,
     home_arm,
     pads,
     subtree,
 )  # fmt: skip
 
 Array = NDArray[np.float64]
-STEPS, SETTLE = 11, 1500
-SAMPLES, ALWAYS = 150, 0.6
-DECK = 0.10
+STEPS, SETTLE = 11, 500
 
 
 def load(root: ET.Element) -> tuple[Any, Any]:
@@ -108,22 +102,6 @@ def _place_pinch(root: ET.Element, model: Any, data: Any, place: Array, closing:
     return np.asarray(z)
 
 
-def name_deck(root: ET.Element) -> None:
-    """The upper parts of the base, which the hand must not come down on, are called deck."""
-    model, data = load(root)
-    mount = float(data.xanchor[model.joint(ARM[0]).id][2])
-    elements = next(b for b in root.iter("body") if b.get("name") == "base").findall("geom")
-    base = model.body("base").id
-    first = int(model.body_geomadr[base])
-    count = itertools.count()
-    for number, element in enumerate(elements):
-        low, high = bounds(model, data, first + number)
-        wide = (high - low)[:2].min() > DECK
-        if wide and high[2] > mount - 4 * DECK and element.get("contype") != "0":
-            n = next(count)
-            element.set("name", f"deck_{n}" if n else "deck")
-
-
 def bounds(model: Any, data: Any, geom: int) -> tuple[Array, Array]:
     """Lowest and highest corner (3,) of a geom's axis-aligned bounding box in the world [m].
 
@@ -137,34 +115,3 @@ def bounds(model: Any, data: Any, geom: int) -> tuple[Array, Array]:
         return points.min(axis=0), points.max(axis=0)
     middle, half = data.geom_xpos[geom] + turn @ box[:3], np.abs(turn) @ box[3:]
     return middle - half, middle + half
-
-
-def exclude_neighbours(root: ET.Element) -> None:
-    """The robot collides with itself, but for parts that touch at home or nearly always."""
-    for geom in root.iter("geom"):
-        if geom.get("contype") == "2":
-            geom.set("conaffinity", "3")
-    model, data = load(root)
-    low, high = arm_limits(model)
-    low, high = np.maximum(low, -np.pi), np.minimum(high, np.pi)
-    at = [model.joint(j).qposadr[0] for j in ARM]
-    rng = np.random.default_rng(0)
-    seen: Counter[tuple[str, str]] = Counter()
-    for number in range(SAMPLES):
-        if number:
-            data.qpos[at] = rng.uniform(low, high)
-        mujoco.mj_kinematics(model, data)
-        mujoco.mj_collision(model, data)
-        pairs = {tuple(sorted(model.geom_bodyid[list(c)].tolist())) for c in data.contact.geom[: data.ncon]}
-        for a, b in pairs:
-            seen[model.body(a).name, model.body(b).name] += SAMPLES if number == 0 else 1
-    hand = [model.body(b).name for b in sorted(subtree(model, "gripper"))]
-    wrist = [model.body(int(model.jnt_bodyid[model.joint(j).id])).name for j in ARM[-2:]]
-    always = {pair for pair, times in seen.items() if times > ALWAYS * SAMPLES}
-    always |= set(itertools.combinations(hand, 2)) | set(itertools.product(wrist, hand))
-    contact = root.find("contact")
-    contact = ET.SubElement(root, "contact") if contact is None else contact
-    known = {frozenset((e.get("body1"), e.get("body2"))) for e in contact.findall("exclude")}
-    for a, b in sorted(always):
-        if a != b and frozenset((a, b)) not in known:
-            ET.SubElement(contact, "exclude", body1=a, body2=b)

@@ -9,7 +9,7 @@ from common.scene import Obstacle
 class SimConfig(Config, frozen=True):
     """`speed` is `realtime`, a factor, or `max`; `wait_for` names the participants that lockstep waits for.
 
-    `robot`: `tidybot`, or `official` for MuJoCo Menagerie's model of it.
+    `robot`: `tidybot`, or `official` for the same drawn with MuJoCo Menagerie's meshes.
 
     `sensors`: `bought`, or `ideal`: a lidar without noise (standard deviation `lidar_noise` [m]) of which every ray
     returns (`lidar_missing` is the share that does not). Source: Slamtec RPLIDAR A2 datasheet, 1 % of up to 1 m.

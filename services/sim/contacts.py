@@ -2,7 +2,8 @@
 
 Of each touch between a part and a thing the log keeps the greatest force, the impulse, the duration and the depth; an
 object in the hand presses with what is beyond its own weight.
-The pads on what they grip are no touch, and neither is an object that the robot pushes: where it ends up tells.
+The pads on what they grip, or on each other, are no touch, and neither is an object that the robot pushes: where it
+ends up tells.
 """
 
 import itertools
@@ -91,6 +92,8 @@ class Contacts:
         """What it is that geom `part` of the robot or of a held object touches; None if it does not count."""
         if self._robot[part]:
             if self._robot[thing]:
+                if any(part in pad for pad in self._pads) and any(thing in pad for pad in self._pads):
+                    return None
                 return self._parts[part], self._parts[thing], "self"
             if self._object[thing]:
                 return None

@@ -1,4 +1,4 @@
-"""The robot that the simulation has: our own, or one of MuJoCo Menagerie."""
+"""The robot that the simulation has: TidyBot in primitives, or the same under the official model's skin."""
 
 import copy
 import functools
@@ -6,11 +6,11 @@ import xml.etree.ElementTree as ET
 from dataclasses import dataclass
 
 from common.robot import home_arm
-from services.sim import robot
-from services.sim.menagerie import PREFIX, RobotError, find, mapping
+from services.sim import calibrate, robot
+from services.sim.menagerie import RobotError, find
 
 OURS, OFFICIAL = "tidybot", "official"
-_SECTIONS = ("contact", "tendon", "equality", "actuator", "custom")
+_SECTIONS = ("default", "contact", "tendon", "equality", "actuator", "custom")
 
 
 @dataclass(frozen=True)
@@ -26,55 +26,37 @@ class Robot:
 
 
 def own() -> Robot:
-    rest = f"{robot.contact_xml()}\n{robot.actuators_xml()}\n{robot.equality_xml()}"
-    return Robot(OURS, robot.body_xml(), "", rest, robot.robot_mjcf(), robot.HOME_ARM)
+    """The robot in primitives."""
+    return load_robot(OURS)
 
 
 @functools.cache
 def load_robot(name: str) -> Robot:
-    """`tidybot`, `official` (MuJoCo Menagerie's stanford_tidybot), or `menagerie:NAME`.
+    """`tidybot`, or `official`: the same body, drawn with the meshes of MuJoCo Menagerie's stanford_tidybot.
 
     Raises:
-        RobotError: there is none of that name, or it lacks something.
+        RobotError: there is none of that name, or the official files are not on this machine.
     """
-    if name in ("", OURS):
-        return own()
+    if name not in (OURS, OFFICIAL):
+        raise RobotError(f"robot {name}: expected {OURS} or {OFFICIAL}")
+    alone = _measured()
+    dressed = copy.deepcopy(alone)
     if name == OFFICIAL:
-        return load_robot(f"{PREFIX}stanford_tidybot")
-    if not name.startswith(PREFIX):
-        raise RobotError(f"robot {name}: expected {OURS}, {OFFICIAL} or {PREFIX}stanford_tidybot")
-    from services.sim import calibrate
-    from services.sim.adapt import adapted
+        from services.sim.skin import dress
 
-    label = name.removeprefix(PREFIX)
-    names, mapped_in = mapping(label)
-    root = adapted(find(label, names.model), names, mapped_in)
-    try:
-        calibrate.measure_hand(root)
-        calibrate.name_deck(root)
-        calibrate.exclude_neighbours(root)
-        alone = _bare(root)
-    except (ValueError, KeyError, StopIteration) as error:
-        raise RobotError(
-            f"robot {name}: the model does not behave like a base with an arm and a gripper: {error}"
-        ) from None
+        dress(dressed, find())
 
     def inside(tag: str) -> str:
-        return "".join(ET.tostring(e, encoding="unicode") for section in root.findall(tag) for e in section)
+        return "".join(ET.tostring(e, encoding="unicode") for section in dressed.findall(tag) for e in section)
 
-    rest = "".join(f"<{tag}>{inside(tag)}</{tag}>" for tag in _SECTIONS if root.find(tag) is not None)
+    rest = "".join(f"<{tag}>{inside(tag)}</{tag}>" for tag in _SECTIONS)
     home = tuple(home_arm(calibrate.load(alone)[0]).tolist())
     return Robot(name, inside("worldbody"), inside("asset"), rest, ET.tostring(alone, encoding="unicode"), home)
 
 
-def _bare(root: ET.Element) -> ET.Element:
-    """The robot as those see it who plan: without the meshes that are only to look at."""
-    alone = copy.deepcopy(root)
-    for body in alone.iter("body"):
-        for geom in [g for g in body.findall("geom") if g.get("contype") == "0"]:
-            body.remove(geom)
-    used = {g.get("mesh") for g in alone.iter("geom")}
-    for asset in alone.findall("asset"):
-        for mesh in [e for e in asset.findall("mesh") if e.get("name") not in used]:
-            asset.remove(mesh)
-    return alone
+@functools.cache
+def _measured() -> ET.Element:
+    """The model's file with what the gripper's linkage does, measured on it."""
+    root = ET.parse(robot.MODEL).getroot()
+    calibrate.measure_hand(root)
+    return root

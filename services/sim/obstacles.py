@@ -5,12 +5,13 @@ from typing import Any
 
 import numpy as np
 
+from common.approach import FOOTPRINT
 from common.runtime import StartError
 from common.scene import Obstacle, Scene
 
 PREFIX = "obstacle "
 # A polite one stays this far from the robot's middle, beside its own radius [m].
-DISTANCE = 0.37 + 0.30
+DISTANCE = FOOTPRINT + 0.38
 
 
 def chosen(scene: Scene, wanted: tuple[Obstacle | str, ...] | str) -> tuple[Obstacle, ...]:

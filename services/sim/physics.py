@@ -10,16 +10,16 @@ from common.robot import ARM, BASE, arm_limits, pads, subtree
 from common.scene import Obstacle, Scene, body_name
 from common.time.lockstep import DT
 from services.sim.contacts import Contacts
-from services.sim.fingers import Slides, fingers, view
+from services.sim.fingers import Fingers, view
 from services.sim.layout import Placement, place_objects
 from services.sim.model import Robot, own
 from services.sim.obstacles import Obstacles, body_xml
 from services.sim.world import world_mjcf
 
-FINE, COARSE, LINKED = 4, 2, 5
-"""Steps of a tick. 2.5 ms, half the time constant of the pads' contacts, is the longest that MuJoCo takes for them;
-5 ms do while the base drives or stands, touches nothing, and every object sleeps; a linkage, whose loops are closed
-by stiffer constraints, gets 2 ms always."""
+FINE, COARSE = 5, 2
+"""Steps of a tick. 2 ms is half the time constant of the pads' contacts, the longest that MuJoCo takes for them; while
+the base drives or stands, touches nothing, and every object sleeps, 5 ms do: the loops of the linkage give way a little
+more then, with nothing between the pads."""
 AT_REST = 1e-3
 """Slower than this the pads stand still [m/s]."""
 SETTLE_TICKS = 50
@@ -27,7 +27,7 @@ _STATE = mujoco.mjtState.mjSTATE_INTEGRATION
 
 
 class Physics:
-    """One world; `advance` runs 10 ms of it, at 400 Hz or, while nothing but the base moves, at 200 Hz."""
+    """One world; `advance` runs 10 ms of it, at 500 Hz or, while nothing but the base moves, at 200 Hz."""
 
     def __init__(
         self, scene: Scene, seed: int, obstacles: tuple[Obstacle, ...] = (), robot: Robot | None = None
@@ -53,8 +53,7 @@ class Physics:
         self._lead[: len(BASE)] = 0.0  # the base's set-point is led by its own driver
         self.lidar_site = model.site("lidar").id
         self.pads = pads(model)
-        self.fingers = fingers(model, self.data)
-        self._fine, self._coarse = (FINE, COARSE) if isinstance(self.fingers, Slides) else (LINKED, LINKED)
+        self.fingers = Fingers(model, self.data)
         self.home_arm = self.robot.home
         self.arm_limits = arm_limits(model)
         self.bodies = {p.spec.name: model.body(body_name(p.spec)).id for p in self.placements}
@@ -62,13 +61,13 @@ class Physics:
         self.robot_bodies = {b for b in range(model.nbody) if model.body_rootid[b] == model.body("base").id}
         self.contacts = Contacts(self.model, self.robot_bodies, self.pads, self.bodies)
         self.obstacles = Obstacles(obstacles, self.model)
-        self._steps = self._fine
+        self._steps = FINE
         self.reset()
 
     def reset(self) -> None:
         """The layout of the seed, the robot at home, everything at rest."""
         mujoco.mj_resetData(self.model, self.data)
-        self._steps, self.model.opt.timestep = self._fine, DT / self._fine
+        self._steps, self.model.opt.timestep = FINE, DT / FINE
         home = (self.scene.home.x, self.scene.home.y, self.scene.home.theta, *self.home_arm)
         self.data.qpos[self.qpos_at] = home
         self.data.ctrl[self.ctrl_at] = home
@@ -76,7 +75,8 @@ class Physics:
             at = self.model.joint(body_name(p.spec)).qposadr[0]
             self.data.qpos[at : at + 3] = p.position
             self.data.qpos[at + 3 : at + 7] = (np.cos(p.yaw / 2), 0, 0, np.sin(p.yaw / 2))
-        mujoco.mj_step(self.model, self.data, SETTLE_TICKS * self._fine)
+        mujoco.mj_step(self.model, self.data, SETTLE_TICKS * FINE)
+        self.fingers.hold()
         self.contacts.forget()
         self.obstacles.reset()
 
@@ -89,7 +89,8 @@ class Physics:
         """Run the 10 ms from `now` [s] while the set-points (10,) of base and arm move from `start` to `end`."""
         model, data, ctrl, contacts = self.model, self.data, self._ctrl, self.contacts
         change = end - start
-        steps = self._coarse if self._alone(change) else self._fine
+        self.fingers.advance()
+        steps = COARSE if self._alone(change) else FINE
         if steps != self._steps:
             self._steps, model.opt.timestep = steps, DT / steps
         ctrl[:] = start + self._lead * change
@@ -111,8 +112,7 @@ class Physics:
 
     def grip(self, closed: float, effort: float) -> None:
         """Drive the fingers to `closed` (0..1) with at most `effort` newtons each."""
-        low, high = self.model.actuator_ctrlrange[self.gripper_ctrl].tolist()
-        self.data.ctrl[self.gripper_ctrl] = low + closed * (high - low)
+        self.fingers.close(closed)
         self.limit_effort(effort)
 
     def limit_effort(self, effort: float) -> None:
@@ -141,6 +141,7 @@ class Physics:
     def restore(self, state: NDArray[np.float64]) -> None:
         """Back to a snapshot of the same model."""
         mujoco.mj_setState(self.model, self.data, state, _STATE)
+        self.fingers.hold()
         mujoco.mj_forward(self.model, self.data)
 
 

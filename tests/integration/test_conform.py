@@ -15,7 +15,7 @@ from cli.link import Link
 from common import messages as m
 from common import topics
 from common.bus import codec
-from services.sim.robot import robot_mjcf
+from services.sim.model import own
 from tests.support import Site, eventually
 
 
@@ -153,7 +153,7 @@ def test_a_driver_that_does_not_obey_fails_each_command(here: Site) -> None:
     ],
 )
 def test_a_description_must_say_what_planning_needs(was: str, becomes: str, lacks: str) -> None:
-    mjcf = robot_mjcf()
+    mjcf = own().mjcf
     assert was in mjcf
     found = conformance.missing_in(mjcf.replace(was, becomes) if was else mjcf)
     assert lacks in found if lacks else not found

@@ -8,6 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 from math import pi
 from pathlib import Path
 
+import mujoco
 import numpy as np
 import pytest
 
@@ -15,14 +16,16 @@ from common import messages as m
 from common import topics
 from common.bus import codec
 from common.recording import Recorder, RecordingError
+from common.robot import Hand
 from common.scene import load_scene
 from services.dashboard.config import DashboardConfig
 from services.dashboard.replay.playback import opened
 from services.dashboard.service import DashboardService
 from services.dashboard.web.events import Click, Words
 from services.dashboard.web.server import Web
+from services.sim.model import own
 from services.sim.physics import Physics
-from services.sim.robot import HOME_ARM, JOINT_NAMES
+from services.sim.robot import JOINT_NAMES
 from tests.node import Node
 from tests.support import eventually
 
@@ -44,7 +47,7 @@ class Page(Node):
         self.run()
 
     def joints(self, t: float, width: float = 0.085, **moved: float) -> None:
-        values = dict(zip(JOINT_NAMES, (0.0, 0.0, 0.0, *HOME_ARM, width), strict=True)) | moved
+        values = dict(zip(JOINT_NAMES, (0.0, 0.0, 0.0, *own().home, width), strict=True)) | moved
         zeros = [0.0] * len(values)
         self.bus.send(
             topics.JOINT_STATES,
@@ -92,12 +95,13 @@ def test_the_robot_is_drawn_where_it_believes_to_be(drawn: Page) -> None:
 
 
 def test_the_fingers_are_as_far_apart_as_the_gripper_says(drawn: Page) -> None:
+    hand = Hand(mujoco.MjModel.from_xml_string(MJCF))
     for width in (0.085, 0.02, 0.0):
         drawn.joints(11.0 + width, width=width)
         drawn.step()
-        left, right = drawn.node("/left_finger"), drawn.node("/right_finger")
-        apart = left.position[1] - right.position[1]  # type: ignore[attr-defined]
-        assert apart == pytest.approx(width, abs=1e-3)
+        told = dict(zip(hand.joints, hand.posture(width), strict=True))["right_driver"]
+        w, x, _, _ = drawn.node("/right_driver").wxyz  # type: ignore[attr-defined]
+        assert 2 * np.arctan2(x, w) == pytest.approx(told, abs=1e-3)
 
 
 def test_objects_come_go_and_turn_into_ghosts(drawn: Page) -> None:
@@ -210,7 +214,7 @@ def test_a_recording_is_seen_on_the_page_and_nothing_of_it_commands_a_robot(tmp_
     recorder = Recorder(path)
     recorder.write("sim/model", codec.encode(topics.SIM_MODEL, SIM_MODEL), 0.0, 0.0)
     for n in range(101):
-        values = (n / 100, 0.0, 0.0, *HOME_ARM, 0.085)
+        values = (n / 100, 0.0, 0.0, *own().home, 0.085)
         zeros = [0.0] * len(values)
         joints = m.JointStates(t=n / 10, name=list(JOINT_NAMES), position=list(values), velocity=zeros, effort=zeros)
         recorder.write("joint_states", codec.encode(topics.JOINT_STATES, joints), n / 10, n / 10)

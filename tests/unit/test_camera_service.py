@@ -17,7 +17,6 @@ from common.scene import load_scene
 from services.camera.config import CameraConfig
 from services.camera.service import CameraService
 from services.sim.physics import Physics
-from services.sim.robot import HEAD_CAMERA, HEAD_FOVY, HEAD_PITCH
 from tests.node import Node
 
 TINY = """<mujoco><visual><quality offsamples="0"/></visual><worldbody>
@@ -114,10 +113,10 @@ def test_an_image_carries_intrinsics_and_the_pose_of_its_frame(
     node.ask()
     image = node.sent(topics.HEAD_RGBD)[-1]
     assert (image.id, image.camera, image.t, image.backend) == ("r", "head", 1.5, "raycast")
-    assert image.fy == pytest.approx(24 / math.tan(math.radians(HEAD_FOVY) / 2))
-    assert image.position == pytest.approx(HEAD_CAMERA, abs=1e-3)
+    assert image.fy == pytest.approx(24 / math.tan(math.radians(62.0) / 2))
+    assert image.position == pytest.approx((-0.1687, 0.0, 1.30), abs=1e-3)
     forward = quat_matrix(image.orientation)[:, 2]
-    assert forward == pytest.approx([math.cos(HEAD_PITCH), 0.0, -math.sin(HEAD_PITCH)], abs=1e-3)
+    assert forward == pytest.approx([math.cos(0.62), 0.0, -math.sin(0.62)], abs=1e-3)
     depth = np.frombuffer(image.depth, "<u2").reshape(48, 64)
     assert len(image.rgb) == 64 * 48 * 3
     u, v = 5, 44

@@ -88,4 +88,7 @@ def test_the_official_model_is_looked_for(
     (tmp_path / doctor.ROBOT).mkdir()
     if there:
         (tmp_path / doctor.ROBOT / "tidybot.xml").write_text("<mujoco/>")
-    assert [f.level for f in doctor.robots()] == [level]
+    monkeypatch.setenv("TIDYBOT__SIM__ROBOT", "official")
+    robot, model = doctor.robots()
+    assert (robot.level, robot.state) == ("ok", "sim.robot = official: TidyBot, drawn as the official meshes")
+    assert model.level == level

@@ -36,7 +36,7 @@ def test_links_stand_where_mujoco_puts_them(mjcf: str, drawing: Drawing, seed: i
     data = mujoco.MjData(model)
     rng = np.random.default_rng(seed)
     q = {joint.name: float(rng.uniform(-1, 1)) for link in drawing.links for joint in link.joints}
-    assert {"base_x", "base_yaw", "joint_1", "joint_7", "left_finger", "right_finger"} <= q.keys()
+    assert {"base_x", "base_yaw", "joint_1", "joint_7", "left_driver", "right_driver"} <= q.keys()
     for name, value in q.items():
         data.qpos[model.joint(name).qposadr[0]] = value
     mujoco.mj_kinematics(model, data)

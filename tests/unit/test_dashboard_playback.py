@@ -21,8 +21,9 @@ from common.scene import load_scene
 from common.time.lockstep import DT
 from common.topics import Topic
 from services.dashboard.replay.playback import Tape, TapeIo, wanted_keys
+from services.sim.model import own
 from services.sim.physics import Physics
-from services.sim.robot import HOME_ARM, JOINT_NAMES
+from services.sim.robot import JOINT_NAMES
 
 
 def write(path: Path, *, failed: bool = False) -> Path:
@@ -41,7 +42,7 @@ def write(path: Path, *, failed: bool = False) -> Path:
     recorder.presence("sim", True, 0.0, 1000.0)
     for n in range(300):
         t = n / 10
-        values = (t / 10, 0.0, 0.0, *HOME_ARM, 0.085)
+        values = (t / 10, 0.0, 0.0, *own().home, 0.085)
         zeros = [0.0] * len(values)
         joints = m.JointStates(t=t, name=list(JOINT_NAMES), position=list(values), velocity=zeros, effort=zeros)
         put(t, topics.JOINT_STATES, joints)

@@ -9,13 +9,13 @@ from services.manipulation.arm_model import ArmModel
 from services.manipulation.robot import Failure
 from services.manipulation.touch import MET, TOO_HEAVY, TOUCHED, Guard, Reaction, load_limit
 from services.manipulation.trajectory import back_along
-from services.sim.robot import robot_mjcf
+from services.sim.model import own
 from tests.unit.test_manipulation_service import CONFIG, Arm
 
 
 @pytest.fixture(scope="module")
 def arm() -> ArmModel:
-    return ArmModel(robot_mjcf())
+    return ArmModel(own().mjcf)
 
 
 def torques(arm: ArmModel, force: tuple[float, float, float]) -> np.ndarray:

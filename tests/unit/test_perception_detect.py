@@ -15,6 +15,7 @@ from services.perception.detect import ClassicalDetector, Detection
 from services.perception.view import View
 from services.sim import robot
 from services.sim.layout import Placement, place_objects
+from services.sim.model import own
 from services.sim.world import world_mjcf
 
 mujoco = pytest.importorskip("mujoco")
@@ -33,7 +34,7 @@ def world(seed: int) -> tuple[Scene, list[Placement], object, object]:
 def view(seed: int, x: float, y: float, theta: float, camera: str = "head") -> View:
     """What a camera of a robot at (x, y, theta) sees."""
     _, _, model, data = world(seed)
-    for name, value in zip(robot.JOINT_NAMES[:10], (x, y, theta, *robot.HOME_ARM), strict=True):
+    for name, value in zip(robot.JOINT_NAMES[:10], (x, y, theta, *own().home), strict=True):
         data.qpos[model.joint(name).qposadr[0]] = value  # type: ignore[attr-defined]
     mujoco.mj_kinematics(model, data)
     mujoco.mj_camlight(model, data)
@@ -64,8 +65,8 @@ def before(seed: int, on: str, distance: float = 1.1) -> tuple[View, list[Placem
 
 def detect(seen: View, seed: int) -> list[Detection]:
     scene = world(seed)[0]
-    body = Body(robot.robot_mjcf())
-    body.pose(np.array(robot.HOME_ARM), 0.085)
+    body = Body(own().mjcf)
+    body.pose(np.array(own().home), 0.085)
     turn = math.atan2(seen.rotation[1, 2], seen.rotation[0, 2])
     base = (
         float(seen.position[0] - HEAD[0] * math.cos(turn)),
@@ -99,12 +100,12 @@ def test_an_empty_floor_and_the_robot_itself_are_nothing() -> None:
 @pytest.mark.parametrize("camera", ["head", "wrist"])
 def test_no_edge_of_the_body_is_left_in_the_picture(camera: str) -> None:
     seen = view(0, 0.0, 0.0, 0.0, camera)
-    body = Body(robot.robot_mjcf())
-    body.pose(np.array(robot.HOME_ARM), 0.085)
+    body = Body(own().mjcf)
+    body.pose(np.array(own().home), 0.085)
     points = seen.points.reshape(-1, 3).astype(np.float64)
     close = np.flatnonzero(np.hypot(points[:, 0], points[:, 1]) < 1.0)
-    own = close[np.min([body.distance_to(points[close], g) for g in body.solid], axis=0) < 0.002]
-    assert len(own) > 300 and body.mask(seen, (0.0, 0.0, 0.0)).reshape(-1)[own].all()
+    touching = close[np.min([body.distance_to(points[close], g) for g in body.solid], axis=0) < 0.002]
+    assert len(touching) > 300 and body.mask(seen, (0.0, 0.0, 0.0)).reshape(-1)[touching].all()
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ from common.robot import ARM
 from common.scene import load_scene
 from services.perception.posture import Posture
 from services.perception.service import PerceptionService
-from services.sim.robot import robot_mjcf
+from services.sim.model import own
 from tests.node import Node
 
 
@@ -31,7 +31,7 @@ class Robot(Node):
     def __init__(self) -> None:
         super().__init__(Feeling, None, load_scene("minimal"))
         self.posture: Posture = self.service.posture
-        self.bus.send(topics.ROBOT_DESCRIPTION, m.RobotDescription(mjcf=robot_mjcf()))
+        self.bus.send(topics.ROBOT_DESCRIPTION, m.RobotDescription(mjcf=own().mjcf))
 
     def feel(self, x: float, shoulder: float, width: float = 0.0, force: float = 0.0) -> bool:
         """A tenth of a second later the base is at `x`, heading at x rad, and the second joint at `shoulder`."""
