@@ -149,7 +149,7 @@ def test_a_driver_that_does_not_obey_fails_each_command(here: Site) -> None:
         ("<worldbody>", "<world>", "MuJoCo cannot read it"),
         ('<key name="home"', '<key name="rest"', "keyframe home"),
         ('<site name="pinch"', '<site name="tool"', "site pinch"),
-        ('name="left_pad"', 'name="left_tip"', "geom left_pad"),
+        ('name="left_pad', 'name="left_tip', "geom left_pad"),
     ],
 )
 def test_a_description_must_say_what_planning_needs(was: str, becomes: str, lacks: str) -> None:
