@@ -17,7 +17,7 @@ from scipy.spatial.transform import Rotation
 
 from common.geometry import quat_matrix
 from common.messages import Rgbd
-from common.robot import ARM, HOME, Hand
+from common.robot import ARM, HOME, Hand, subtree
 
 Array = NDArray[np.float64]
 
@@ -102,6 +102,8 @@ class Arm:
         self._fingers = [int(self.model.joint(name).qposadr[0]) for name in self._hand.joints]
         self.open = self._hand.open
         self._base = int(self.model.body("base").id)
+        first = self.model.body(int(self.model.jnt_bodyid[self.model.joint(ARM[0]).id])).name
+        self._moving = np.isin(self.model.geom_bodyid, list(subtree(self.model, first)))
         self._groups = np.array([1, 1, 1, 1, 0, 0], np.uint8)
         limits = [self.model.joint(name) for name in ARM]
         free = np.array([not self.model.jnt_limited[j.id] for j in limits])
@@ -125,7 +127,7 @@ class Arm:
 
     def reach(self) -> tuple[float, float]:
         """Lowest point of the arm, and its farthest one from the base's middle [m], by bounding spheres."""
-        outer = self.model.geom_bodyid != self._base
+        outer = self._moving
         centres, radii = self.data.geom_xpos[outer], self.model.geom_rbound[outer]
         return float((centres[:, 2] - radii).min()), float((np.hypot(centres[:, 0], centres[:, 1]) + radii).max())
 
