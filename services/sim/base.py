@@ -7,6 +7,13 @@ from common.geometry import Pose2, compose, inverse, wrap
 from services.sim.config import SimConfig
 
 SETPOINT_LEAD = 0.05
+MASS = 69.0
+"""Of the whole robot [kg]."""
+YIELD = 120.0
+"""Force [N] beyond what its own acceleration takes at which the base gives way: less than that are the arm's motions,
+more is somebody who pushes."""
+PUSHED = 0.03
+"""For how long [s] that has to be so: three readings, longer than a knock of the arm."""
 _STILL = 0.02
 STREAM = 5  # targets in a row
 
@@ -24,10 +31,16 @@ class BaseDriver:
     target: Pose2 | None = None
     target_id: str = ""
     stopped: bool = False
+    yielding: bool = False
+    """The set-point goes where the base goes: the wheels only brake."""
     _twist: tuple[float, float, float] = field(default=(0.0, 0.0, 0.0))
     _twist_until: float = -1.0
     _targeted_at: float = -math.inf
     _targets_in_a_row: int = 0
+    _was: Pose2 | None = None
+    _braking: bool = False
+    _pushed: float = 0.0
+    _inertia: tuple[float, float] = (0.0, 0.0)
 
     def go_to(self, x: float, y: float, theta: float, target_id: str, now: float) -> None:
         """Run to a pose; replaces whatever was asked before.
@@ -46,9 +59,9 @@ class BaseDriver:
         self._twist, self._twist_until = (vx, vy, omega), now + self.config.stream_timeout
 
     def halt(self, actual: Pose2) -> None:
-        """Brake as hard as the wheels can: the set-point stays where the base is now."""
+        """Brake as hard as the wheels can, and stay where that ends."""
         if not self.stopped:
-            self.pose, self.velocity = actual, (0.0, 0.0, 0.0)
+            self.pose, self.velocity, self._braking = actual, (0.0, 0.0, 0.0), True
         self.target, self._twist_until, self.stopped = None, -1.0, True
 
     def reached(self, odometry: Pose2) -> bool:
@@ -59,8 +72,22 @@ class BaseDriver:
         close = math.hypot(odometry[0] - x, odometry[1] - y) <= self.config.position_tolerance
         return close and abs(wrap(odometry[2] - yaw)) <= self.config.angle_tolerance
 
-    def advance(self, actual: Pose2, odometry: Pose2, now: float, dt: float) -> Pose2:
-        """The set-point after `dt` seconds; `actual` is where the servos are, `odometry` what the wheels report."""
+    def advance(
+        self, actual: Pose2, odometry: Pose2, now: float, dt: float, force: tuple[float, float] | None = None
+    ) -> Pose2:
+        """The set-point after `dt` seconds.
+
+        `actual` is where the servos are, `odometry` what the wheels report, `force` (x, y) [N] what they push with,
+        where that is known.
+        """
+        moving = self._was is not None and math.dist(actual[:2], self._was[:2]) > _STILL * dt
+        self._was = actual
+        self._braking = self._braking and moving
+        self.yielding = self._braking or self._gives_way(force, dt)
+        if self.yielding:
+            self.pose, self.velocity, self._inertia = actual, (0.0, 0.0, 0.0), (0.0, 0.0)
+            return self.pose
+        before = self.velocity
         wanted, limit, turn_limit = self._wanted(actual, odometry, now, dt)
         vx, vy = _towards(self.velocity[:2], wanted[:2], limit * dt)
         omega = self.velocity[2] + max(-turn_limit * dt, min(turn_limit * dt, wanted[2] - self.velocity[2]))
@@ -74,7 +101,14 @@ class BaseDriver:
             yaw = actual[2] + math.copysign(2 * SETPOINT_LEAD, yaw - actual[2])
             omega *= 0.5
         self.pose, self.velocity = (x, y, yaw), (vx, vy, omega)
+        self._inertia = MASS * (vx - before[0]) / dt, MASS * (vy - before[1]) / dt
         return self.pose
+
+    def _gives_way(self, force: tuple[float, float] | None, dt: float) -> bool:
+        """True while the wheels push against something other than the robot's own mass."""
+        beyond = force is not None and math.hypot(force[0] - self._inertia[0], force[1] - self._inertia[1]) > YIELD
+        self._pushed = self._pushed + dt if beyond else 0.0
+        return self._pushed >= PUSHED
 
     def _abandoned(self, now: float) -> bool:
         """A stream of targets fell silent; the last one stands again when the stream goes on."""

@@ -8,6 +8,8 @@ from common.geometry import Pose2, compose, inverse, wrap
 from services.sim.config import SimConfig
 
 _TURN_RADIUS = 0.2
+SLIP = 0.1
+"""Share of the way that the wheels miss while they slide (chosen: what an anti-lock brake of a car aims at)."""
 
 
 class WheelOdometry:
@@ -25,8 +27,8 @@ class WheelOdometry:
         """Go on from a known pose with what was believed there."""
         self._true, self.believed = true, believed
 
-    def update(self, true: Pose2) -> Pose2:
-        """The believed pose after the robot has moved to `true`."""
+    def update(self, true: Pose2, sliding: bool = False) -> Pose2:
+        """The believed pose after the robot has moved to `true`, on wheels at the end of their grip if `sliding`."""
         if self._exact:
             self.believed = true[0], true[1], wrap(true[2])
             return self.believed
@@ -36,7 +38,7 @@ class WheelOdometry:
         if moved < 1e-7:
             return self.believed
         ex, ey, eturn = self._rng.normal(0.0, self._noise * math.sqrt(moved), 3).tolist()
-        a, b, c = self._scale.tolist()
+        a, b, c = (self._scale * (1.0 - SLIP * sliding)).tolist()
         step = dx * a + ex, dy * b + ey, turn * c + self._veer * moved + eturn
         self.believed = compose(self.believed, step)
         return self.believed

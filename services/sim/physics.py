@@ -50,7 +50,7 @@ class Physics:
         self.forces = view(self.data.actuator_force, np.append(self.ctrl_at, self.gripper_ctrl))
         self._ctrl = view(self.data.ctrl, self.ctrl_at)
         self._lead = servo_lead(model, self.ctrl_at, self.qvel_at) / DT
-        self._lead[: len(BASE)] = 0.0  # the base's set-point is led by its own driver
+        self._grip_limit = 0.99 * float(model.actuator_forcerange[self.ctrl_at[0], 1])
         self.lidar_site = model.site("lidar").id
         self.pads = pads(model)
         self.fingers = Fingers(model, self.data)
@@ -119,6 +119,11 @@ class Physics:
         """The most that each finger presses [N]; not part of MuJoCo's state."""
         most = effort * self.fingers.per_newton
         self.model.actuator_forcerange[self.gripper_ctrl] = (-most, most)
+
+    def sliding(self) -> bool:
+        """True while the base's wheels push or brake with all that their tyres hold."""
+        fx, fy, *_ = self.forces.tolist()
+        return bool(max(abs(fx), abs(fy)) >= self._grip_limit)
 
     def width(self) -> float:
         """Distance between the pads [m]."""

@@ -30,7 +30,7 @@ class Sensors:
         io, physics = self._io, self._physics
         arm = physics.joints.tolist()
         actual = (arm[0], arm[1], arm[2])
-        x, y, yaw = self.odometry.update(actual)
+        x, y, yaw = self.odometry.update(actual, physics.sliding())
         cos, sin = math.cos(actual[2]), math.sin(actual[2])
         velocity = physics.rates.tolist()
         vx, vy, omega = velocity[:3]

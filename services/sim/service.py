@@ -150,7 +150,10 @@ class SimService:
         physics = self.physics
         x, y, yaw, *_ = physics.joints.tolist()
         after = np.empty(10)
-        after[:3] = self._base.advance((x, y, yaw), self.sensors.odometry.believed, now, DT)
+        fx, fy, *_ = physics.forces.tolist()
+        after[:3] = self._base.advance((x, y, yaw), self.sensors.odometry.believed, now, DT, (fx, fy))
+        if self._base.yielding:
+            self._setpoint[:3] = after[:3]
         after[3:] = self._arm.advance(now, DT)
         physics.obstacles.advance(physics.data, (x, y), DT)
         physics.advance(self._setpoint, after, now)
