@@ -1,6 +1,5 @@
 """The brain: receives, ticks the tree, shows state and tree."""
 
-import msgspec
 from py_trees.common import Status
 
 from common import messages as m
@@ -11,6 +10,7 @@ from common.language.normalise import normalise
 from common.time.clock import unix_time
 from services.brain.config import BrainConfig
 from services.brain.journal.open import open_journal
+from services.brain.journal.queries import MissionQueries
 from services.brain.journal.records import Journal
 from services.brain.mission.channel import Channel, GoalStatus, Result
 from services.brain.mission.context import Context
@@ -42,7 +42,7 @@ class BrainService:
         self._ticks = 0
         self._sim_stopped = False
         self._resumption = self._unfinished()
-        io.serve(topics.BRAIN_MISSIONS, self._answer_missions)
+        io.serve(topics.BRAIN_MISSIONS, MissionQueries(self._journal, self.context.pictures).answer)
 
     def step(self, now: float) -> None:
         self.context.heartbeat.stalled = 0.0
@@ -228,20 +228,3 @@ class BrainService:
             self.tree.stop(Status.INVALID)
         ctx.voice.listen_after = ctx.now + ctx.config.settle
         ctx.voice.command = None
-
-    # --- queries
-    def _answer_missions(self, payload: bytes) -> bytes:
-        """All missions, the timeline of the one whose id is asked for, or a picture of it by name (base64)."""
-        wanted = payload.decode().strip()
-        if wanted.startswith("{"):
-            asked = msgspec.json.decode(payload)
-            if picture := asked.get("picture"):
-                return msgspec.json.encode(self.context.pictures.load(str(picture)))
-            wanted = str(asked.get("id", ""))
-        missions = self._journal.missions()
-        if wanted == "last":
-            wanted = missions[-1].id if missions else wanted
-        if wanted:
-            return msgspec.json.encode(self._journal.mission(wanted))
-        rows = [{k: v for k, v in msgspec.to_builtins(record).items() if k != "entries"} for record in missions]
-        return msgspec.json.encode(rows)

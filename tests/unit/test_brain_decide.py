@@ -17,11 +17,11 @@ from services.brain.resume.policy import (
     TURNED,
     Change,
     Decision,
-    Seen,
+    Observation,
     apply,
     decide,
-    earlier,
     refusal,
+    step_to_repeat,
 )  # fmt: skip
 
 MUG, CAN = "red mug", "green can"
@@ -59,8 +59,10 @@ def left(path: list[PathNode], plan: bool = True, **more: object) -> Checkpoint:
     return Checkpoint(mission=mission, path=path, **fields)  # type: ignore[arg-type]
 
 
-def seen(fingers: bool | None = None, base: Pose | None = HOME, t: float = 51.0, arm_answered: bool = False) -> Seen:
-    return Seen(fingers, base, t, arm_answered)
+def seen(
+    fingers: bool | None = None, base: Pose | None = HOME, t: float = 51.0, arm_answered: bool = False
+) -> Observation:
+    return Observation(fingers, base, t, arm_answered)
 
 
 def sent(peer: str) -> SentGoal:
@@ -185,20 +187,20 @@ def test_a_move_counts_only_when_nobody_answers_for_it() -> None:
     ],
 )  # fmt: skip
 def test_the_step_that_has_to_be_done_again(k: int, change: Change, step: int) -> None:
-    assert earlier(PLAN, k, change) == step
+    assert step_to_repeat(PLAN, k, change) == step
 
 
 def test_the_step_to_do_again_without_a_find_or_a_drive() -> None:
     grasp, release = PlanStep(action="grasp", object=MUG), PlanStep(action="release")
-    assert earlier([grasp, release], 1, "lost") == 0
-    assert earlier([grasp, release], 1, "moved") == 1
-    assert earlier([release], 0, "lost") == 0
-    assert earlier([release, release], 1, "lost") == 1
+    assert step_to_repeat([grasp, release], 1, "lost") == 0
+    assert step_to_repeat([grasp, release], 1, "moved") == 1
+    assert step_to_repeat([release], 0, "lost") == 0
+    assert step_to_repeat([release, release], 1, "lost") == 1
     again = [PlanStep(action="find", object=MUG), PlanStep(action="find", object=CAN), PLAN[0], grasp, PLAN[0]]
-    assert earlier(again, 3, "lost") == 2, "the nearest find before the grasp"
+    assert step_to_repeat(again, 3, "lost") == 2, "the nearest find before the grasp"
     drives = [PLAN[2], PLAN[6], PLAN[2], release]
-    assert earlier(drives, 3, "moved") == 2, "the nearest drive"
-    assert earlier([release, PLAN[6]], 0, "moved") == 0
+    assert step_to_repeat(drives, 3, "moved") == 2, "the nearest drive"
+    assert step_to_repeat([release, PLAN[6]], 0, "moved") == 0
 
 
 # --- what is believed from then on

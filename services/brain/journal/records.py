@@ -100,14 +100,17 @@ class Journal(Protocol):
 
     boot: int
 
-    def begin(self, mission: Mission) -> None: ...
+    def begin(self, mission: Mission) -> None:
+        """A mission has begun."""
 
     def resume(self, mission: Mission) -> None:
         """Go on with a mission that an earlier process began, or that had been ended by a stop."""
 
-    def note(self, mission_id: str, entry: Entry) -> object: ...
+    def note(self, mission_id: str, entry: Entry) -> object:
+        """Add to a mission's timeline, as far as there is room."""
 
-    def end(self, mission: Mission, outcome: Outcome, reason: str, t: float) -> None: ...
+    def end(self, mission: Mission, outcome: Outcome, reason: str, t: float) -> None:
+        """A mission has ended at robot time `t` [s]."""
 
     def save(self, checkpoint: Checkpoint) -> bool:
         """False when the medium refused it."""
@@ -118,12 +121,14 @@ class Journal(Protocol):
     def missions(self) -> list[Record]:
         """The newest missions, oldest first, without their timelines."""
 
-    def mission(self, mission_id: str) -> Record | None: ...
+    def mission(self, mission_id: str) -> Record | None:
+        """A mission with its timeline; None when it is not known."""
 
     def last(self) -> Record | None:
         """The newest mission that has ended."""
 
-    def close(self) -> None: ...
+    def close(self) -> None:
+        """Let go of the medium."""
 
 
 class MemoryJournal:

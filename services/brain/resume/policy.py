@@ -21,7 +21,7 @@ CLOCK_SLACK = 2.0
 Change = Literal["", "lost", "holding", "moved", "new world"]
 
 
-class Seen(msgspec.Struct, frozen=True):
+class Observation(msgspec.Struct, frozen=True):
     """What the world says: the fingers, the base, robot time, and whether a peer still has or has done our arm goal."""
 
     fingers: bool | None
@@ -52,7 +52,7 @@ def refusal(left: Checkpoint, config: BrainConfig, now: float) -> Failure | None
     return None
 
 
-def decide(left: Checkpoint, seen: Seen) -> Decision:
+def decide(left: Checkpoint, seen: Observation) -> Decision:
     """Go on at the same leaf unless the world has changed: then no further back than the change makes necessary."""
     mission, hand, path = left.mission, left.gripper, left.path
     under_way = {sent.peer for sent in left.sent}
@@ -108,12 +108,15 @@ def _back(path: list[PathNode], mission: Mission, change: Change) -> list[PathNo
     """The place from which the rest of the mission can be done again: in a plan the step that needs it."""
     plan = _plan(path)
     if plan is not None:
-        return [*path[: plan + 1], PathNode(PLAN_STEP, earlier(mission.planning.steps, path[plan + 1].ordinal, change))]
+        return [
+            *path[: plan + 1],
+            PathNode(PLAN_STEP, step_to_repeat(mission.planning.steps, path[plan + 1].ordinal, change)),
+        ]
     return path[: _at(path, DO) + 1] if _at(path, AS_ASKED) >= 0 else path
 
 
-def earlier(plan: Sequence[PlanStep], k: int, change: Change) -> int:
-    """The step, not after `k`, that has to be done again."""
+def step_to_repeat(plan: Sequence[PlanStep], k: int, change: Change) -> int:
+    """Index of the step, not after `k`, from which the plan has to be done again."""
     if change == "moved" and plan[k].action == "release":
         return next((j for j in range(k, -1, -1) if plan[j].action in ("return", "navigate")), k)
     if change == "moved":
@@ -122,8 +125,8 @@ def earlier(plan: Sequence[PlanStep], k: int, change: Change) -> int:
     grasp = max((j for j in grasps if j <= k), default=None) if change == "lost" else k
     if grasp is None:
         return k
-    thing = plan[grasp].object
-    finds = [j for j in range(grasp + 1) if plan[j].action == "find" and plan[j].object == thing]
+    item = plan[grasp].object
+    finds = [j for j in range(grasp + 1) if plan[j].action == "find" and plan[j].object == item]
     return max(finds, default=grasp)
 
 

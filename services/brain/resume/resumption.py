@@ -8,7 +8,7 @@ from common.time.clock import unix_time
 from services.brain.journal.records import Checkpoint, PathNode
 from services.brain.mission.context import Context
 from services.brain.mission.mission import Failure, GripperState, Mission, gripper_holds
-from services.brain.resume.policy import Decision, Seen, apply, decide, refusal
+from services.brain.resume.policy import Decision, Observation, apply, decide, refusal
 from services.brain.tree.path import MISSION, REPORT_FAILURE, PathNotFound, start_at
 
 LOOK = 0.6
@@ -100,7 +100,7 @@ class Resumption:
         ctx, left = self._ctx, self.left
         here = ctx.io.latest(topics.POSE)
         arm = ctx.peers.manipulation
-        seen = Seen(
+        seen = Observation(
             fingers=next(iter(self._readings)) if len(self._readings) == 1 else None,
             base=(here.x, here.y, here.theta) if here else None,
             t=ctx.now,
@@ -141,7 +141,7 @@ class Resumption:
         ctx.end_mission("cancelled" if failure.code == "CANCELLED" else "failed", reason)
 
 
-def _account(decision: Decision, seen: Seen, hand: GripperState) -> str:
+def _account(decision: Decision, seen: Observation, hand: GripperState) -> str:
     """What was seen, in words for the timeline."""
     fingers = {True: "the fingers hold something", False: "the fingers are empty", None: "the fingers say nothing"}
     where = "" if seen.base is None else f", base at ({seen.base[0]:.2f}, {seen.base[1]:.2f})"
