@@ -1,4 +1,4 @@
-"""What each sentence form does to the builder of a plan. Pure."""
+"""What each action of the wordings does to the plan under construction. Pure."""
 
 from common.language.normalise import DETERMINERS, enumeration
 from common.language.noun_phrase import PLURAL_PRONOUNS, PRONOUNS
@@ -7,7 +7,7 @@ from common.messages import PlanStep
 from common.scene import Receptacle
 from services.planner.phrases import Phrase, read
 from services.planner.plan_builder import PlanBuilder, Refusal
-from services.planner.resolve import Meant, one, spot, things
+from services.planner.resolve import Referent, referent, referents, spot
 from services.planner.vocabulary import Spot
 
 
@@ -22,39 +22,39 @@ def fetch_named(builder: PlanBuilder, slots: Slots) -> None:
 
 
 def fetch(builder: PlanBuilder, slots: Slots) -> None:
-    everything = things(builder, slots["thing"], prefer_held=True)
+    everything = referents(builder, slots["thing"], prefer_held=True)
     for meant in everything:
         take(builder, meant)
         builder.hand_over()
-    builder.last = [m.thing for m in everything]
+    builder.last = [m.object for m in everything]
 
 
 def deliver(builder: PlanBuilder, slots: Slots) -> None:
     """Take things to a place, a room, a surface or the person."""
-    _deliver(builder, things(builder, slots["thing"], prefer_held=True), spot(builder, slots["spot"]))
+    _deliver(builder, referents(builder, slots["thing"], prefer_held=True), spot(builder, slots["spot"]))
 
 
 def deliver_there(builder: PlanBuilder, slots: Slots) -> None:
     """`take the mug there` and `go to the kitchen with the mug`."""
     if builder.spot is None:
         raise Refusal("I do not know which place you mean by there")
-    _deliver(builder, things(builder, slots["thing"], prefer_held=True), builder.spot)
+    _deliver(builder, referents(builder, slots["thing"], prefer_held=True), builder.spot)
 
 
 def put(builder: PlanBuilder, slots: Slots) -> None:
     """Put things in or on something that holds things."""
-    everything = things(builder, slots["thing"], prefer_held=True)
+    everything = referents(builder, slots["thing"], prefer_held=True)
     where = _surface(builder, slots)
     for meant in everything:
         _put(builder, meant, where)
-    builder.last = [m.thing for m in everything]
+    builder.last = [m.object for m in everything]
 
 
 def put_near(builder: PlanBuilder, slots: Slots) -> None:
     """Next to a thing: on what that stands on."""
     if builder.vocabulary.spot(slots["spot"]) or builder.vocabulary.furniture(slots["spot"]):
         raise Refusal(f"I cannot put things on the floor next to the {' '.join(slots['spot'][1:] or slots['spot'])}")
-    moved, anchor = things(builder, slots["thing"], prefer_held=True), one(builder, slots["spot"]).thing
+    moved, anchor = referents(builder, slots["thing"], prefer_held=True), referent(builder, slots["spot"]).object
     where = builder.world.receptacle_of(anchor)
     if where is None:
         builder.search_first([PlanStep(action="find", object=anchor.label)])
@@ -64,14 +64,14 @@ def put_near(builder: PlanBuilder, slots: Slots) -> None:
 
 
 def pick_up(builder: PlanBuilder, slots: Slots) -> None:
-    everything = things(builder, slots["thing"], prefer_held=True)
+    everything = referents(builder, slots["thing"], prefer_held=True)
     meant = everything[0]
     if len(everything) > 1:
-        builder.collect([m.thing for m in everything])
+        builder.collect([m.object for m in everything])
         return
-    if meant.thing.held:
-        builder.say(f"I am holding the {meant.thing.label} already.")
-        builder.last = [meant.thing]
+    if meant.object.held:
+        builder.say(f"I am holding the {meant.object.label} already.")
+        builder.last = [meant.object]
         return
     if builder.world.held and any(s.action == "grasp" for s in builder.steps):
         raise Refusal("I can hold only one thing at a time")
@@ -82,9 +82,9 @@ def put_down(builder: PlanBuilder, slots: Slots) -> None:
     if "thing" not in slots or " ".join(slots["thing"]) in PRONOUNS | PLURAL_PRONOUNS:
         builder.release()
         return
-    meant = one(builder, slots["thing"], prefer_held=True)
-    if not meant.thing.held:
-        raise Refusal(f"I am not holding the {meant.thing.label}")
+    meant = referent(builder, slots["thing"], prefer_held=True)
+    if not meant.object.held:
+        raise Refusal(f"I am not holding the {meant.object.label}")
     builder.release()
 
 
@@ -110,8 +110,8 @@ def go(builder: PlanBuilder, slots: Slots) -> None:
     except Refusal:
         if not isinstance(read(slots["spot"], builder.vocabulary), Phrase):
             raise
-        meant = one(builder, slots["spot"])
-        builder.approach(meant.thing)
+        meant = referent(builder, slots["spot"])
+        builder.approach(meant.object)
         return
     builder.go(place)
 
@@ -131,12 +131,12 @@ def wait_there(builder: PlanBuilder, slots: Slots) -> None:
 
 
 def find(builder: PlanBuilder, slots: Slots) -> None:
-    everything = things(builder, slots["thing"])
+    everything = referents(builder, slots["thing"])
     for meant in everything:
         if meant.at is not None:
             builder.go(meant.at)
-        builder.find(meant.thing, meant.words)
-    builder.last = [m.thing for m in everything]
+        builder.find(meant.object, meant.words)
+    builder.last = [m.object for m in everything]
 
 
 def say(builder: PlanBuilder, slots: Slots) -> None:
@@ -157,28 +157,28 @@ def untidy(builder: PlanBuilder, slots: Slots) -> None:
 
 
 # --- parts of the above
-def take(builder: PlanBuilder, meant: Meant) -> None:
-    if meant.at is not None and not meant.thing.seen:
+def take(builder: PlanBuilder, meant: Referent) -> None:
+    if meant.at is not None and not meant.object.seen:
         builder.go(meant.at)
-    builder.take(meant.thing, meant.words)
+    builder.take(meant.object, meant.words)
 
 
-def _put(builder: PlanBuilder, meant: Meant, where: Receptacle) -> None:
-    if meant.thing.on == where.name and not meant.thing.held:
-        builder.say(f"The {meant.thing.label} is there already.")
-        builder.last = [meant.thing]
+def _put(builder: PlanBuilder, meant: Referent, where: Receptacle) -> None:
+    if meant.object.on == where.name and not meant.object.held:
+        builder.say(f"The {meant.object.label} is there already.")
+        builder.last = [meant.object]
         return
     take(builder, meant)
     builder.place(where)
 
 
-def _deliver(builder: PlanBuilder, everything: list[Meant], where: Spot) -> None:
+def _deliver(builder: PlanBuilder, everything: list[Referent], where: Spot) -> None:
     for meant in everything:
         if where.receptacle is not None:
             _put(builder, meant, where.receptacle)
             continue
-        if where.room and builder.world.room_of(meant.thing) == where.name and not meant.thing.held:
-            builder.say(f"The {meant.thing.label} is in the {where.name} already.")
+        if where.room and builder.world.room_of(meant.object) == where.name and not meant.object.held:
+            builder.say(f"The {meant.object.label} is in the {where.name} already.")
             continue
         take(builder, meant)
         if where.home:
@@ -188,7 +188,7 @@ def _deliver(builder: PlanBuilder, everything: list[Meant], where: Spot) -> None
         else:
             builder.go(where)
             builder.release()
-    builder.last = [m.thing for m in everything]
+    builder.last = [m.object for m in everything]
 
 
 def _surface(builder: PlanBuilder, slots: Slots) -> Receptacle:

@@ -5,20 +5,21 @@ from common.language.pattern import Slots
 from common.messages import PlanStep
 from services.planner.phrases import Phrase, read
 from services.planner.plan_builder import PlanBuilder, Refusal
-from services.planner.resolve import Meant, spot, things, unknown
-from services.planner.world import Thing
+from services.planner.resolve import Referent, referents, spot, unknown
+from services.planner.world import BelievedObject
 
 MANY = 8
+"""Objects told at once (chosen: more nobody listens to)."""
 
 
 def seen(builder: PlanBuilder, slots: Slots) -> None:
     """What is in view, and what was seen before."""
     _not_after_moving(builder)
-    fresh = [t for t in builder.world.things if not t.held and builder.world.now - t.seen_at <= builder.config.fresh]
+    fresh = [t for t in builder.world.objects if not t.held and builder.world.now - t.seen_at <= builder.config.fresh]
     if fresh:
         builder.say(f"I see {_inventory(builder, fresh)}.")
         return
-    known = [t for t in builder.world.things if not t.held]
+    known = [t for t in builder.world.objects if not t.held]
     if known:
         builder.say(f"From here I see nothing that I know. I remember {_inventory(builder, known)}.")
     else:
@@ -30,10 +31,10 @@ def contents(builder: PlanBuilder, slots: Slots) -> None:
     _not_after_moving(builder)
     place = spot(builder, slots["spot"])
     if place.receptacle is not None:
-        there = [t for t in builder.world.things if t.on == place.name]
+        there = [t for t in builder.world.objects if t.on == place.name]
         look = [place.receptacle]
     else:
-        there = [t for t in builder.world.things if not t.held and builder.world.room_of(t) == place.name]
+        there = [t for t in builder.world.objects if not t.held and builder.world.room_of(t) == place.name]
         look = builder.vocabulary.surfaces(place.name)
     builder.look_at(look)
     if not there:
@@ -59,16 +60,16 @@ def where(builder: PlanBuilder, slots: Slots) -> None:
     """Where something is; what nobody has seen is looked for."""
     phrase = read(slots["thing"], builder.vocabulary)
     for meant in _all_meant(builder, slots) if isinstance(phrase, Phrase) else ():
-        thing = meant.thing
-        if thing.held:
-            builder.say(f"The {thing.label} is in my hand.")
-        elif thing.seen and (thing.position or thing.on):
-            builder.say(f"The {thing.label} is {place_of(builder, thing)}.")
+        item = meant.object
+        if item.held:
+            builder.say(f"The {item.label} is in my hand.")
+        elif item.seen and (item.position or item.on):
+            builder.say(f"The {item.label} is {place_of(builder, item)}.")
         else:
-            builder.search_first([PlanStep(action="find", object=thing.label, text=meant.words)])
-            builder.find(thing, meant.words)
-            builder.say(f"I have found the {thing.label}.")
-        builder.last = [thing]
+            builder.search_first([PlanStep(action="find", object=item.label, text=meant.words)])
+            builder.find(item, meant.words)
+            builder.say(f"I have found the {item.label}.")
+        builder.last = [item]
     if not isinstance(phrase, Phrase):
         if builder.vocabulary.spot(slots["thing"]):
             _place(builder, slots)
@@ -81,21 +82,21 @@ def found(builder: PlanBuilder) -> None:
     if builder.done is None:
         return
     builder.search_first(builder.steps)
-    told: list[Thing] = []
+    told: list[BelievedObject] = []
     for step in builder.steps:
-        alike = [t for t in builder.world.things if t.seen and not t.held and step.object in (t.label, t.kind)]
+        alike = [t for t in builder.world.objects if t.seen and not t.held and step.object in (t.label, t.kind)]
         told += [max(alike, key=lambda t: t.seen_at)] if alike else []
     if told and len(told) == len(builder.steps):
         builder.steps.clear()
-        for thing in told:
-            builder.say(f"The {thing.label} is {place_of(builder, thing)}.")
+        for item in told:
+            builder.say(f"The {item.label} is {place_of(builder, item)}.")
 
 
-def _all_meant(builder: PlanBuilder, slots: Slots) -> list[Meant]:
+def _all_meant(builder: PlanBuilder, slots: Slots) -> list[Referent]:
     """For "where is the mug" every mug that was seen."""
-    meant = things(builder, slots["thing"], prefer_held=True)
-    several = [t for t in builder.world.things if t.kind == meant[0].thing.label != t.label]
-    return things(builder, ("all", *without_determiners(slots["thing"]))) if len(meant) == 1 and several else meant
+    meant = referents(builder, slots["thing"], prefer_held=True)
+    several = [t for t in builder.world.objects if t.kind == meant[0].object.label != t.label]
+    return referents(builder, ("all", *without_determiners(slots["thing"]))) if len(meant) == 1 and several else meant
 
 
 def number(builder: PlanBuilder, slots: Slots) -> None:
@@ -104,16 +105,16 @@ def number(builder: PlanBuilder, slots: Slots) -> None:
     if not isinstance(phrase, Phrase):
         raise Refusal(unknown(builder, slots["thing"], phrase))
     try:
-        known = [m.thing for m in things(builder, ("all", *slots["thing"])) if m.thing.seen]
+        known = [m.object for m in referents(builder, ("all", *slots["thing"])) if m.object.seen]
     except Refusal:
         known = []
     names = f": {enumeration([f'the {t.label}' for t in known])}" if 0 < len(known) <= MANY else ""
     builder.say(f"I know of {len(known) or 'no'} {phrase.noun}{names}.")
 
 
-def place_of(builder: PlanBuilder, thing: Thing) -> str:
+def place_of(builder: PlanBuilder, item: BelievedObject) -> str:
     """`on the counter in the kitchen`."""
-    receptacle, room = builder.world.receptacle_of(thing), builder.world.room_of(thing)
+    receptacle, room = builder.world.receptacle_of(item), builder.world.room_of(item)
     if receptacle is None:
         return f"in the {room}" if room else "somewhere I cannot name"
     spoken = f"{'in' if receptacle.depth else 'on'} the {receptacle.name}"
@@ -127,11 +128,11 @@ def _place(builder: PlanBuilder, slots: Slots) -> None:
     builder.say(f"The {place.name} is in the {room.name}." if room else f"I know how to get to the {place.name}.")
 
 
-def _inventory(builder: PlanBuilder, known: list[Thing]) -> str:
+def _inventory(builder: PlanBuilder, known: list[BelievedObject]) -> str:
     """Grouped by where they are."""
     groups: dict[str, list[str]] = {}
-    for thing in sorted(known, key=lambda t: (builder.world.distance(t), t.label))[:MANY]:
-        groups.setdefault(place_of(builder, thing), []).append(_a(thing))
+    for item in sorted(known, key=lambda t: (builder.world.distance(t), t.label))[:MANY]:
+        groups.setdefault(place_of(builder, item), []).append(_a(item))
     more = f" and {len(known) - MANY} more" if len(known) > MANY else ""
     return enumeration([f"{enumeration(names)} {place}" for place, names in groups.items()]) + more
 
@@ -141,11 +142,11 @@ def _not_after_moving(builder: PlanBuilder) -> None:
         raise Refusal("I can only tell you that when I am there, so ask me again then")
 
 
-def _a(thing: Thing) -> str:
-    return f"{'an' if thing.label[:1] in 'aeiou' else 'a'} {thing.label}"
+def _a(item: BelievedObject) -> str:
+    return f"{'an' if item.label[:1] in 'aeiou' else 'a'} {item.label}"
 
 
-def _be(known: list[Thing]) -> str:
+def _be(known: list[BelievedObject]) -> str:
     return "is" if len(known) == 1 else "are"
 
 

@@ -6,6 +6,7 @@ from typing import TypeVar
 T = TypeVar("T")
 R = TypeVar("R")
 MAX_RUNS = 64
+"""Most combinations of choices that are tried (chosen: far more than a mission has attempts)."""
 
 
 class ChoicePoints:

@@ -17,8 +17,11 @@ from services.planner.world import World
 
 SOURCE = "grammar"
 MAX_CHARACTERS = 2000
+"""Longest text that is read (chosen: a minute of speech has a thousand characters)."""
 MAX_WORDS = 60
+"""Longest clause (chosen: the readings of a pattern grow with the square of its words)."""
 MAX_EFFORT = 120
+"""Most clauses tried for one text (chosen: bounds the time for long lists)."""
 _THING_STARTS = DETERMINERS | PRONOUNS | PLURAL_PRONOUNS | {"all", "every", "two", "three"}
 
 

@@ -18,6 +18,7 @@ from services.planner.vocabulary import Vocabulary
 from services.planner.world import World
 
 POLL = 0.05
+"""How often a question under way looks whether it was cancelled [s of wall time] (chosen)."""
 CONNECT = 1.0
 """Limit for the connection [s of wall time], as for a look at the endpoint."""
 _FENCE = re.compile(r"^\s*```(?:json)?\s*(.*?)\s*```\s*$", re.DOTALL)

@@ -27,7 +27,7 @@ def checked(steps: Sequence[PlanStep], world: World, vocabulary: Vocabulary, max
             named.append(_named(step, world, vocabulary))
         except Impossible as impossible:
             raise Impossible(f"step {number}: {impossible}") from None
-    known = known_world(world.scene, [t.label for t in world.things], world.held.label if world.held else "")
+    known = known_world(world.scene, [t.label for t in world.objects], world.held.label if world.held else "")
     if named and (against := objection(named, known, world.scene, max_steps)):
         raise Impossible(str(against))
     return named
@@ -35,16 +35,16 @@ def checked(steps: Sequence[PlanStep], world: World, vocabulary: Vocabulary, max
 
 def _named(step: PlanStep, world: World, vocabulary: Vocabulary) -> PlanStep:
     """Aliases and odd spellings become the scene's names."""
-    thing, target = step.object, step.target
+    item, target = step.object, step.target
     match step.action:
         case "grasp" | "release" if step.hand_alone:
             return PlanStep(action=step.action, target=GRIPPER)
         case "find" | "grasp":
-            return msgspec.structs.replace(step, object=_thing(thing or target, world, vocabulary), target="", text="")
+            return msgspec.structs.replace(step, object=_thing(item or target, world, vocabulary), target="", text="")
         case "place":
-            receptacle = world.scene.receptacle(normalise(target or thing))
+            receptacle = world.scene.receptacle(normalise(target or item))
             if receptacle is None:
-                raise Impossible(f"there is no {target or thing or 'place'} to put things on")
+                raise Impossible(f"there is no {target or item or 'place'} to put things on")
             return msgspec.structs.replace(step, object="", target=receptacle.name)
         case "navigate":
             spots = vocabulary.spot(tuple(normalise(target).split())) if target else []
@@ -52,9 +52,9 @@ def _named(step: PlanStep, world: World, vocabulary: Vocabulary) -> PlanStep:
                 home = spots[0].home
                 return PlanStep(action="return") if home else PlanStep(action="navigate", target=spots[0].name)
             try:
-                return PlanStep(action="navigate", object=_thing(target or thing, world, vocabulary))
+                return PlanStep(action="navigate", object=_thing(target or item, world, vocabulary))
             except Impossible:
-                raise Impossible(f"I know no place {target or thing!r}") from None
+                raise Impossible(f"I know no place {target or item!r}") from None
         case "say":
             return PlanStep(action="say", text=step.text)
         case _:
@@ -64,7 +64,7 @@ def _named(step: PlanStep, world: World, vocabulary: Vocabulary) -> PlanStep:
 def _thing(name: str, world: World, vocabulary: Vocabulary) -> str:
     if not name:
         raise Impossible("no object is named")
-    known = [*world.things, *world.specs]
+    known = [*world.objects, *world.specs]
     wanted = normalise(name).removeprefix("the ")
     spec = world.scene.object(wanted)
     label = spec.name if spec else next((t.label for t in known if normalise(t.label) == wanted), "")

@@ -10,7 +10,7 @@ from common.scene import Receptacle
 from services.planner.choice_points import ChoicePoints
 from services.planner.config import PlannerConfig, Rule
 from services.planner.vocabulary import Spot, Vocabulary
-from services.planner.world import Thing, World
+from services.planner.world import BelievedObject, World
 
 
 class Refusal(Exception):
@@ -38,7 +38,7 @@ class PlanBuilder:
     ) -> None:
         self.world, self.vocabulary, self.config, self.choices, self.done = world, vocabulary, config, choices, done
         self.steps: list[PlanStep] = []
-        self.last: list[Thing] = []
+        self.last: list[BelievedObject] = []
         self.spot: Spot | None = None
         self.moved = False
         self.effort = [0]
@@ -70,37 +70,37 @@ class PlanBuilder:
         self.moved = True
         self.steps.append(PlanStep(action="return") if spot.home else PlanStep(action="navigate", target=spot.name))
 
-    def approach(self, thing: Thing) -> None:
-        """Find a thing and drive up to it."""
-        self.find(thing)
+    def approach(self, item: BelievedObject) -> None:
+        """Find an object and drive up to it."""
+        self.find(item)
         self.moved = True
-        self.steps.append(PlanStep(action="navigate", object=thing.label))
+        self.steps.append(PlanStep(action="navigate", object=item.label))
 
-    def find(self, thing: Thing, words: str = "") -> None:
+    def find(self, item: BelievedObject, words: str = "") -> None:
         """`words` are the whole phrase where the label alone does not tell which one is meant."""
-        self.last = [thing]
-        if thing.label not in self._found:
-            self._found.add(thing.label)
-            self.steps.append(PlanStep(action="find", object=thing.label, text=words))
+        self.last = [item]
+        if item.label not in self._found:
+            self._found.add(item.label)
+            self.steps.append(PlanStep(action="find", object=item.label, text=words))
             self.moved = True
 
-    def collect(self, things: list[Thing]) -> None:
-        """Several things at once, one after the other, once it is said where to; the hand holds one."""
-        self.last, self.collecting = things, {t.label for t in things}
+    def collect(self, items: list[BelievedObject]) -> None:
+        """Several objects at once, one after the other, once it is said where to; the hand holds one."""
+        self.last, self.collecting = items, {t.label for t in items}
 
-    def take(self, thing: Thing, words: str = "") -> None:
+    def take(self, item: BelievedObject, words: str = "") -> None:
         """Have it in the hand; what else is there is put down first."""
-        self.collecting.discard(thing.label)
+        self.collecting.discard(item.label)
         held = self.world.held
-        if held is not None and held.label == thing.label:
+        if held is not None and held.label == item.label:
             self.last = [held]
             return
         if held is not None:
             self.place(self._set_down(held))
-        self.find(thing, words)
-        self.steps.append(PlanStep(action="grasp", object=thing.label))
-        self.world.grasp(thing.label)
-        self.last = [thing]
+        self.find(item, words)
+        self.steps.append(PlanStep(action="grasp", object=item.label))
+        self.world.grasp(item.label)
+        self.last = [item]
 
     def place(self, receptacle: Receptacle) -> None:
         """Put what is held there."""
@@ -129,21 +129,21 @@ class PlanBuilder:
         """Close or open the empty hand."""
         self.steps.append(PlanStep(action=action, target=GRIPPER))
 
-    def _held(self) -> Thing:
+    def _held(self) -> BelievedObject:
         held = self.world.held
         if held is None:
             raise Refusal("there is nothing in my hand")
         return held
 
     # --- where things go
-    def destination(self, thing: Thing, rules: tuple[Rule, ...]) -> Receptacle:
+    def destination(self, item: BelievedObject, rules: tuple[Rule, ...]) -> Receptacle:
         """By the first rule that fits the thing and the scene."""
         for rule in rules:
-            if (rule.kinds and thing.kind not in rule.kinds) or (rule.colours and thing.colour not in rule.colours):
+            if (rule.kinds and item.kind not in rule.kinds) or (rule.colours and item.colour not in rule.colours):
                 continue
             if options := self._named(rule.to):
                 return self.choices.pick(options)
-        raise Refusal(f"I do not know where the {thing.label} goes")
+        raise Refusal(f"I do not know where the {item.label} goes")
 
     def in_room(self, room: str) -> Receptacle:
         """A surface of a room to put something on."""
@@ -154,7 +154,7 @@ class PlanBuilder:
             raise Refusal(f"there is nothing in the {room} to put things on")
         return self.choices.pick(options)
 
-    def _set_down(self, held: Thing) -> Receptacle:
+    def _set_down(self, held: BelievedObject) -> Receptacle:
         """The nearest surface for something that is in the way."""
         x, y, _ = self.world.pose
         found = sorted(self.vocabulary.surfaces(), key=lambda r: (r.center[0] - x) ** 2 + (r.center[1] - y) ** 2)

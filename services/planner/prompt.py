@@ -50,10 +50,10 @@ def messages(command: str, world: World, config: PlannerConfig, rejected: list[R
     told: dict[str, object] = {
         "objects": [
             {"name": t.label, "kind": t.kind, "colour": t.colour, "where": t.on or world.room_of(t)}
-            for t in world.things
+            for t in world.objects
             if not t.held
         ],
-        "objects_not_seen_yet": [n for n in _objects(world) if n not in {t.label for t in world.things}],
+        "objects_not_seen_yet": [n for n in _objects(world) if n not in {t.label for t in world.objects}],
         "in_hand": world.held.label if world.held else "",
         "receptacles": [r.name for r in world.scene.receptacles],
         "places": [n for n in _targets(world) if world.scene.receptacle(n) is None],
@@ -73,7 +73,7 @@ def _rule(rule: Rule) -> str:
 
 
 def _objects(world: World) -> list[str]:
-    return list(dict.fromkeys(t.label for t in (*world.things, *world.specs)))
+    return list(dict.fromkeys(t.label for t in (*world.objects, *world.specs)))
 
 
 def _targets(world: World) -> list[str]:

@@ -1,4 +1,4 @@
-"""Which of several things is left, nearest, biggest, next to something. Pure."""
+"""Spatial relations and superlatives: which of several objects is left, nearest, biggest, next to something. Pure."""
 
 import cmath
 import math
@@ -8,13 +8,15 @@ from common.language.normalise import enumeration
 from services.planner.phrases import Phrase
 from services.planner.plan_builder import PlanBuilder, Refusal
 from services.planner.vocabulary import Spot
-from services.planner.world import Thing
+from services.planner.world import BelievedObject
 
 NEAR = 1.5
+"""Farthest an object is "near" a place [m] (chosen: a step and an arm's length)."""
 BESIDE = 0.6
+"""Farthest an object is "next to" another [m] (chosen: both within one reach)."""
 
 
-def superlative(builder: PlanBuilder, phrase: Phrase, seen: Sequence[Thing]) -> Thing:
+def superlative(builder: PlanBuilder, phrase: Phrase, seen: Sequence[BelievedObject]) -> BelievedObject:
     if phrase.which in ("biggest", "smallest"):
         by_size = sorted(seen, key=lambda t: math.prod(t.size))
         if math.isclose(math.prod(by_size[0].size), math.prod(by_size[-1].size), rel_tol=0.05) and len(seen) > 1:
@@ -34,35 +36,35 @@ def superlative(builder: PlanBuilder, phrase: Phrase, seen: Sequence[Thing]) -> 
     return placed[index]
 
 
-def _bearing(builder: PlanBuilder, thing: Thing, group: Sequence[Thing]) -> float:
+def _bearing(builder: PlanBuilder, item: BelievedObject, group: Sequence[BelievedObject]) -> float:
     """Angle to the left of the middle of a group, as the robot would see it from where it stands [rad]."""
     x, y, _ = builder.world.pose
-    rays = [complex(t.position[0] - x, t.position[1] - y) for t in (thing, *group) if t.position]
+    rays = [complex(t.position[0] - x, t.position[1] - y) for t in (item, *group) if t.position]
     middle = sum(ray / max(abs(ray), 1e-9) for ray in rays[1:])
     return cmath.phase(rays[0] / middle) if abs(middle) > 1e-9 else cmath.phase(rays[0])
 
 
-def holds(builder: PlanBuilder, relation: str, thing: Thing, anchor: Thing) -> bool:
+def holds(builder: PlanBuilder, relation: str, item: BelievedObject, anchor: BelievedObject) -> bool:
     if relation in ("left of", "right of"):
-        turn = _bearing(builder, thing, (thing, anchor)) - _bearing(builder, anchor, (thing, anchor))
+        turn = _bearing(builder, item, (item, anchor)) - _bearing(builder, anchor, (item, anchor))
         return (turn > 0) == (relation == "left of")
     if relation in ("behind", "front of"):
-        farther = builder.world.distance(thing) > builder.world.distance(anchor)
+        farther = builder.world.distance(item) > builder.world.distance(anchor)
         return farther == (relation == "behind")
-    return between(thing, anchor) < BESIDE if relation == "near" else thing.on == anchor.label
+    return between(item, anchor) < BESIDE if relation == "near" else item.on == anchor.label
 
 
-def is_near(builder: PlanBuilder, thing: Thing, place: Spot) -> bool:
+def is_near(builder: PlanBuilder, item: BelievedObject, place: Spot) -> bool:
     """On a surface or a step away from it, or from a standing place; in a room."""
     if place.room:
-        return builder.world.room_of(thing) == place.name
+        return builder.world.room_of(item) == place.name
     where = builder.vocabulary.position(place)
-    if thing.on == place.name or where is None or thing.position is None:
-        return thing.on == place.name
-    return math.dist(where, thing.position[:2]) < NEAR
+    if item.on == place.name or where is None or item.position is None:
+        return item.on == place.name
+    return math.dist(where, item.position[:2]) < NEAR
 
 
-def between(a: Thing, b: Thing) -> float:
+def between(a: BelievedObject, b: BelievedObject) -> float:
     assert a.position is not None and b.position is not None
     return math.dist(a.position, b.position)
 

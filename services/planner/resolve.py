@@ -1,4 +1,4 @@
-"""Which things and which spots a phrase means, in the believed world. Pure."""
+"""Reference resolution: the objects and places of the believed world that a phrase means. Pure."""
 
 from collections.abc import Callable
 
@@ -10,21 +10,23 @@ from services.planner.phrases import Phrase, read
 from services.planner.plan_builder import PlanBuilder, Refusal
 from services.planner.relations import away, between, holds, is_near, spoken, superlative
 from services.planner.vocabulary import Spot
-from services.planner.world import Thing
+from services.planner.world import BelievedObject
 
 MAX_QUESTION = 4
+"""Objects named in a question between several (chosen: what one remembers)."""
 LONGEST_NAME = 4
+"""Words above which an unknown name is taken for a sentence that was not understood (chosen)."""
 
 
-class Meant(msgspec.Struct, frozen=True):
-    """A thing that is meant; `words` where its name alone does not tell; `at` where to look for it first."""
+class Referent(msgspec.Struct, frozen=True):
+    """An object that is meant; `words` where its name alone does not tell; `at` where to look for it first."""
 
-    thing: Thing
+    object: BelievedObject
     words: str = ""
     at: Spot | None = None
 
 
-def things(builder: PlanBuilder, words: Words, prefer_held: bool = False) -> list[Meant]:
+def referents(builder: PlanBuilder, words: Words, prefer_held: bool = False) -> list[Referent]:
     """Everything that is meant, at least one.
 
     Raises:
@@ -39,15 +41,15 @@ def things(builder: PlanBuilder, words: Words, prefer_held: bool = False) -> lis
     for at in range(1, len(words) - 1):
         if words[at] == "and":
             try:
-                return [*things(builder, words[:at], prefer_held), *things(builder, words[at + 1 :], prefer_held)]
+                return [*referents(builder, words[:at], prefer_held), *referents(builder, words[at + 1 :], prefer_held)]
             except Refusal:
                 continue
     raise Refusal(unknown(builder, words, phrase))
 
 
-def one(builder: PlanBuilder, words: Words, prefer_held: bool = False) -> Meant:
-    """The single thing that is meant."""
-    meant = things(builder, words, prefer_held)
+def referent(builder: PlanBuilder, words: Words, prefer_held: bool = False) -> Referent:
+    """The single object that is meant."""
+    meant = referents(builder, words, prefer_held)
     if len(meant) > 1:
         raise Refusal("I can only do that with one thing at a time")
     return meant[0]
@@ -94,15 +96,15 @@ def unknown(builder: PlanBuilder, words: Words, noun: str) -> str:
     return f"I know no {noun}" if noun else "I did not hear which thing you mean"
 
 
-def _pronoun(builder: PlanBuilder, plural: bool) -> list[Meant]:
+def _pronoun(builder: PlanBuilder, plural: bool) -> list[Referent]:
     if builder.last:
-        return [Meant(builder.world.current(t)) for t in (builder.last if plural else builder.last[-1:])]
+        return [Referent(builder.world.current(t)) for t in (builder.last if plural else builder.last[-1:])]
     if held := builder.world.held:
-        return [Meant(held)]
+        return [Referent(held)]
     raise Refusal("I do not know what you mean by that" if plural else "I do not know what you mean by it")
 
 
-def _resolve(builder: PlanBuilder, phrase: Phrase, prefer_held: bool) -> list[Meant]:
+def _resolve(builder: PlanBuilder, phrase: Phrase, prefer_held: bool) -> list[Referent]:
     sense = phrase.sense
     if sense.every and phrase.noun in ("one", "ones") and builder.last:
         sense = msgspec.structs.replace(sense, every=False, kinds=frozenset(t.kind for t in builder.last))
@@ -110,8 +112,8 @@ def _resolve(builder: PlanBuilder, phrase: Phrase, prefer_held: bool) -> list[Me
     fits = _fitting(phrase)
     held = builder.world.held
     if prefer_held and held and fits(held) and not phrase.relation and not phrase.which and phrase.count == 1:
-        return [Meant(held)]
-    seen = [t for t in builder.world.things if fits(t) and not t.held]
+        return [Referent(held)]
+    seen = [t for t in builder.world.objects if fits(t) and not t.held]
     if held and fits(held) and not phrase.relation and phrase.which != "other":
         seen = [held, *seen]
     specs = [t for t in builder.world.specs if fits(t)]
@@ -122,18 +124,20 @@ def _resolve(builder: PlanBuilder, phrase: Phrase, prefer_held: bool) -> list[Me
     return _choose(builder, phrase, seen, specs)
 
 
-def _fitting(phrase: Phrase) -> Callable[[Thing], bool]:
+def _fitting(phrase: Phrase) -> Callable[[BelievedObject], bool]:
     sense, colours = phrase.sense, phrase.colours
 
-    def fits(thing: Thing) -> bool:
-        named = sense.every or thing.label in sense.names or thing.kind in sense.kinds
-        return named and (not colours or thing.colour in colours)
+    def fits(item: BelievedObject) -> bool:
+        named = sense.every or item.label in sense.names or item.kind in sense.kinds
+        return named and (not colours or item.colour in colours)
 
     return fits
 
 
-def _related(builder: PlanBuilder, phrase: Phrase, seen: list[Thing], specs: list[Thing]) -> list[Meant]:
-    """Things on, in, near or left of something."""
+def _related(
+    builder: PlanBuilder, phrase: Phrase, seen: list[BelievedObject], specs: list[BelievedObject]
+) -> list[Referent]:
+    """Objects on, in, near or left of something."""
     spots = builder.vocabulary.spot(phrase.anchor)
     if phrase.relation == "on" and spots:
         names = {s.name for s in spots}
@@ -150,17 +154,23 @@ def _related(builder: PlanBuilder, phrase: Phrase, seen: list[Thing], specs: lis
     if phrase.relation == "near" and spots:
         near = [t for t in seen if any(is_near(builder, t, s) for s in spots)]
         return _choose(builder, phrase, near, specs) if near else [_unseen(builder, phrase, specs, spots[0])]
-    anchor = one(builder, phrase.anchor).thing
+    anchor = referent(builder, phrase.anchor).object
     placed = [t for t in seen if t.position and t.label != anchor.label]
     if anchor.position is None or not placed:
         raise Refusal(f"I have not seen which {phrase.noun} is {spoken(phrase.relation)} the {anchor.label}")
     beside = [t for t in placed if holds(builder, phrase.relation, t, anchor)]
     if not beside:
         raise Refusal(f"I see no {phrase.noun} {spoken(phrase.relation)} the {anchor.label}")
-    return [Meant(min(beside, key=lambda t: between(t, anchor)))] if phrase.count == 1 else [Meant(t) for t in beside]
+    return (
+        [Referent(min(beside, key=lambda t: between(t, anchor)))]
+        if phrase.count == 1
+        else [Referent(t) for t in beside]
+    )
 
 
-def _choose(builder: PlanBuilder, phrase: Phrase, seen: list[Thing], specs: list[Thing]) -> list[Meant]:
+def _choose(
+    builder: PlanBuilder, phrase: Phrase, seen: list[BelievedObject], specs: list[BelievedObject]
+) -> list[Referent]:
     """From the candidates those that are meant."""
     if phrase.which == "other":
         seen = [t for t in seen if t.label not in {x.label for x in builder.last}]
@@ -169,42 +179,42 @@ def _choose(builder: PlanBuilder, phrase: Phrase, seen: list[Thing], specs: list
             builder.look_first(builder.vocabulary.surfaces(), f"I have seen no {phrase.singular} yet")
         return [_unseen(builder, phrase, specs, None)]
     if phrase.which and phrase.which != "other":
-        return [Meant(superlative(builder, phrase, seen))]
+        return [Referent(superlative(builder, phrase, seen))]
     near = sorted(seen, key=lambda t: (not t.held, builder.world.distance(t), t.label))
     if phrase.count != 1:
         if phrase.count > len(near):
             raise Refusal(f"I know of only {len(near)} of the {phrase.count} {phrase.noun}")
-        return [Meant(t) for t in (near[: phrase.count] if phrase.count else near)]
+        return [Referent(t) for t in (near[: phrase.count] if phrase.count else near)]
     if len(near) == 1 or phrase.any_one:
-        return [Meant(builder.choices.pick(near))]
+        return [Referent(builder.choices.pick(near))]
     preferred = [t for t in near if t.label == phrase.sense.prefer]
     if preferred and not phrase.colours and not phrase.relation:
-        return [Meant(preferred[0])]
+        return [Referent(preferred[0])]
     names = [t.label for t in sorted(near, key=lambda t: t.label)[:MAX_QUESTION]]
     if len(set(names)) == 1:
-        return [Meant(near[0])]
+        return [Referent(near[0])]
     kinds = {t.kind for t in near}
     if len(kinds) == 1 and kinds == phrase.sense.kinds and not phrase.colours:
         # Perception will find several and the brain asks which one.
         kind, words = next(iter(kinds)), " ".join(without_determiners(tuple(phrase.text.split())))
-        return [Meant(Thing(label=kind, kind=kind, size=near[0].size), "" if words == kind else words)]
+        return [Referent(BelievedObject(label=kind, kind=kind, size=near[0].size), "" if words == kind else words)]
     raise Refusal(f"I do not know which one you mean: {enumeration([f'the {n}' for n in names], 'or')}")
 
 
-def _unseen(builder: PlanBuilder, phrase: Phrase, specs: list[Thing], at: Spot | None) -> Meant:
+def _unseen(builder: PlanBuilder, phrase: Phrase, specs: list[BelievedObject], at: Spot | None) -> Referent:
     """Something nobody has seen yet: by its name if the scene has one of the kind, else any of the kind in view."""
     if not specs:
         raise Refusal(f"I have seen no {phrase.noun}")
     where = at if at is None or not at.home else None
     words = " ".join(without_determiners(tuple(phrase.text.split()))) if phrase.which or phrase.relation else ""
     if len(specs) == 1:
-        return Meant(specs[0], at=where)
+        return Referent(specs[0], at=where)
     preferred = [t for t in specs if t.label == phrase.sense.prefer]
     if preferred and not (phrase.colours or phrase.relation or phrase.which):
-        return Meant(preferred[0])
+        return Referent(preferred[0])
     kinds = sorted({t.kind for t in specs})
     if phrase.colours or (len(kinds) > 1 and not phrase.any_one):
         names = enumeration([f"the {t.label}" for t in specs[:MAX_QUESTION]], "or")
         raise Refusal(f"I do not know which one you mean: {names}")
     kind = builder.choices.pick(kinds)
-    return Meant(Thing(label=kind, kind=kind, seen=False), words, where)
+    return Referent(BelievedObject(label=kind, kind=kind, seen=False), words, where)

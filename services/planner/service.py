@@ -15,7 +15,9 @@ from services.planner.llm import Call, LlmError, NoAnswer, Reply
 from services.planner.world import World, believed
 
 REMEMBERED = 32
+"""Requests whose answers and rejections are kept (chosen: more than a mission asks)."""
 GRACE = 1.0
+"""Time beyond the model's own limit after which its answer is given up [s] (chosen: ten steps)."""
 
 
 class Pending(msgspec.Struct):

@@ -1,4 +1,4 @@
-"""Putting things where they belong: tidying up, putting away, throwing away. Pure."""
+"""Actions that put objects where they belong: tidying up, putting away, throwing away. Pure."""
 
 from collections.abc import Iterable
 
@@ -9,16 +9,16 @@ from common.scene import Receptacle
 from services.planner.actions import take
 from services.planner.config import Rule
 from services.planner.plan_builder import PlanBuilder, Refusal
-from services.planner.resolve import Meant, spot, things
+from services.planner.resolve import Referent, referents, spot
 from services.planner.vocabulary import Spot
 
 
 def put_away(builder: PlanBuilder, slots: Slots) -> None:
-    _sort(builder, things(builder, slots["thing"], prefer_held=True), builder.config.tidy)
+    _sort(builder, referents(builder, slots["thing"], prefer_held=True), builder.config.tidy)
 
 
 def throw_away(builder: PlanBuilder, slots: Slots) -> None:
-    _sort(builder, things(builder, slots["thing"], prefer_held=True), builder.config.throw)
+    _sort(builder, referents(builder, slots["thing"], prefer_held=True), builder.config.throw)
 
 
 def tidy(builder: PlanBuilder, slots: Slots) -> None:
@@ -27,31 +27,31 @@ def tidy(builder: PlanBuilder, slots: Slots) -> None:
     surfaces = builder.vocabulary.surfaces() if where is None else _surfaces_of(builder, where)
     name = "place" if where is None else where.name
     names = {r.name for r in surfaces}
-    there = [t for t in builder.world.things if t.on in names and not t.held]
+    there = [t for t in builder.world.objects if t.on in names and not t.held]
     builder.look_at(surfaces)
     if not there:
         builder.look_first(surfaces, f"I have not seen what lies on the {name} yet, so send me there first")
     near = sorted(there, key=lambda t: (builder.world.distance(t), t.label))
-    _sort(builder, [Meant(t) for t in near], builder.config.tidy, quiet=True)
+    _sort(builder, [Referent(t) for t in near], builder.config.tidy, quiet=True)
     if not any(t.on != _now(builder, t.label) for t in there):
         builder.say(f"The {name} is tidy already.")
 
 
 def _now(builder: PlanBuilder, label: str) -> str:
-    return next((t.on for t in builder.world.things if t.label == label), "")
+    return next((t.on for t in builder.world.objects if t.label == label), "")
 
 
-def _sort(builder: PlanBuilder, everything: Iterable[Meant], rules: tuple[Rule, ...], quiet: bool = False) -> None:
+def _sort(builder: PlanBuilder, everything: Iterable[Referent], rules: tuple[Rule, ...], quiet: bool = False) -> None:
     """Each where its rule says; what is there already stays."""
     moved = list(everything)
     for meant in moved:
-        where = builder.destination(meant.thing, rules)
-        if meant.thing.on != where.name or meant.thing.held:
+        where = builder.destination(meant.object, rules)
+        if meant.object.on != where.name or meant.object.held:
             take(builder, meant)
             builder.place(where)
         elif not quiet:
-            builder.say(f"The {meant.thing.label} is in its place already.")
-    builder.last = [m.thing for m in moved]
+            builder.say(f"The {meant.object.label} is in its place already.")
+    builder.last = [m.object for m in moved]
 
 
 def _area(builder: PlanBuilder, slots: Slots) -> Spot | None:

@@ -1,4 +1,4 @@
-"""The words for things and spots: all of them from the scene, from what was seen, and from the configuration. Pure."""
+"""The words for objects and places: from the scene, from what was seen, and from the configuration. Pure."""
 
 from collections.abc import Iterable
 
@@ -15,7 +15,7 @@ _HERE = frozenset({"me", "us", "here", "home", "start", "over here", "back"})
 
 
 class Sense(msgspec.Struct, frozen=True):
-    """What a noun can mean: things of these kinds, or of these names; `every`: any thing at all."""
+    """What a noun can mean: objects of these kinds, or of these names; `every`: any object at all."""
 
     kinds: frozenset[str] = frozenset()
     names: frozenset[str] = frozenset()
@@ -37,14 +37,14 @@ class Vocabulary:
 
     def __init__(self, world: World, config: PlannerConfig) -> None:
         self._scene = scene = world.scene
-        known = [*world.specs, *world.things]
+        known = [*world.specs, *world.objects]
         self.kinds = {t.kind for t in known if t.kind}
         self.colours = {c: c for c in {*(t.colour for t in known), *(r.colour for r in scene.receptacles)} if c}
         self.colours |= {word: c for word, c in config.colours.items() if c in self.colours}
         self._nouns: dict[str, Sense] = {}
         self._aliases(scene)
-        for thing in known:
-            self._nouns.setdefault(normalise(thing.label), Sense(names=frozenset({thing.label})))
+        for item in known:
+            self._nouns.setdefault(normalise(item.label), Sense(names=frozenset({item.label})))
         for kind in self.kinds:
             named = self._nouns.get(kind, Sense())
             only = next(iter(named.names)) if len(named.names) == 1 else ""

@@ -10,9 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 RATE = 16000
+"""Samples per second of everything inside: what the networks were trained on."""
 MIN_RATE, MAX_RATE = 4000, 192000
+"""Samples per second that are accepted (chosen: telephone to studio)."""
 ZERO_CROSSINGS, KAISER_BETA = 10, 5.0
-"""Length of the filter to each side, and the window's shape: `scipy.signal.resample_poly`'s own."""
+"""Length of the filter to each side, and the shape of its window, as in `scipy.signal.resample_poly`."""
 CHUNK = 16000
 """Outputs worked out at once, by which memory is bounded: a second of sound."""
 Samples = NDArray[np.int16]

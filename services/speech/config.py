@@ -9,10 +9,14 @@ class SpeechConfig(Config, frozen=True):
     """`commands` are the patterns of the grammar, around those of `common/language/wordings.py` (`<verb>` and
     `<utterance>`); the lists extend the scene's vocabulary. Times in seconds.
 
-    `tempo_weight` and `rare` (what a word costs) weigh sentences that sound alike. `wake_window`:
-    how long after the wake word a command may begin. `interrupt_pause`: the pause after a short utterance at which it
-    is already examined for "stop" and "cancel"; `interrupt_longest`: how short. `preload`: load the models at start
-    rather than when somebody speaks.
+    `accept_score`, `ask_score`: log-likelihood ratios per token above which a command is accepted or asked about.
+    `beam`: hypotheses of the search. `tempo_weight` and `rare` (what a word costs, a negative log-probability)
+    weigh sentences that sound alike. `wake_threshold`: score 0..1 of the wake word; `wake_window`: how long after
+    it a command may begin. `interrupt_pause`: the pause after a short utterance at which it is already examined for
+    "stop" and "cancel"; `interrupt_longest`: how short. `recognition_seconds`, `interrupt_seconds`,
+    `synthesis_seconds`: modelled times in lockstep. `typed_memory`: how long typed text waits for a listener.
+    `wav`: a recording to hear instead of a microphone. `preload`: load the models at start rather than when
+    somebody speaks.
     """
 
     recogniser: Literal["moonshine", "pocketsphinx"] = "moonshine"

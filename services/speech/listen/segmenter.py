@@ -9,6 +9,7 @@ from services.speech.listen.vad import FRAME, Endpointer, VoiceDetector
 from services.speech.listen.wake_word import WakeWord
 
 PRE_ROLL = int(0.4 * RATE)
+"""Samples kept from before an utterance is noticed (chosen: the detector's delay and a soft beginning)."""
 
 
 @dataclass(frozen=True)

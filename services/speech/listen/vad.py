@@ -1,4 +1,4 @@
-"""Voice activity: Silero's detector on 32 ms frames, and the end of an utterance."""
+"""Voice activity by Silero's network (https://github.com/snakers4/silero-vad), and where an utterance ends."""
 
 from dataclasses import dataclass, field
 
@@ -7,8 +7,13 @@ from numpy.typing import NDArray
 
 RATE = 16000
 FRAME = 512
+"""Samples that the detector takes at once: 32 ms, fixed by Silero's network."""
 START_AT, STOP_AT = 0.5, 0.35
+"""Probabilities at which speech begins and below which it pauses: Silero's default, and its 0.15 of hysteresis."""
 START_FRAMES = 3
+"""Voiced frames that make speech of a sound (chosen: a tenth of a second, longer than a click)."""
+RECENT_FRAMES = 5
+"""Frames among which these are counted (chosen: a voiceless consonant may lie between)."""
 
 
 class VoiceDetector:
@@ -51,7 +56,7 @@ class Endpointer:
 
     def push(self, probability: float) -> bool:
         if not self.speaking:
-            self._recent = [*self._recent[-4:], probability > START_AT]
+            self._recent = [*self._recent[1 - RECENT_FRAMES :], probability > START_AT]
             if sum(self._recent) >= START_FRAMES:
                 self.speaking, self.quiet, self._length = True, 0, 0
             return False

@@ -8,7 +8,9 @@ from numpy.typing import NDArray
 from common.runtime import StartError
 
 CHUNK = 1280
+"""Samples that the detector takes at once: 80 ms, fixed by openWakeWord."""
 MEMORY = 48000
+"""Samples of silence that the detector begins with; its network sees the last 2 s."""
 
 
 class WakeWord:

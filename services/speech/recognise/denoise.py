@@ -10,10 +10,15 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float32]
 WINDOW, HOP = 512, 128
+"""Samples of a frame (32 ms) and between two: root-Hann windows overlap by three quarters."""
 SMOOTHING = 0.96
+"""Weight of the frame before in the a-priori ratio (Ephraim and Malah have 0.98)."""
 FLOOR = 0.3
+"""Least gain (chosen: lower ones leave musical tones)."""
 MIN_NOISE_FRAMES = 8
+"""Frames without speech from which a spectrum of noise is estimated (chosen)."""
 MIN_NOISE = 2048
+"""Samples without speech from which the loudness of noise is estimated (chosen: 128 ms)."""
 _HANN = np.sqrt(np.hanning(WINDOW + 1)[:-1])
 
 

@@ -10,6 +10,7 @@ from services.speech.sound_card import Speakers
 from services.speech.speak.voice import Voice
 
 CHUNK = RATE // 10
+"""Samples published per step: the service steps at 10 Hz."""
 
 
 class TtsPlayer:

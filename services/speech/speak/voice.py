@@ -8,7 +8,9 @@ from services.speech.audio import RATE, Samples, resample
 from services.speech.recognise.packed_network import return_memory, session
 
 MAX_CHARACTERS = 400
+"""Longest text that is spoken (chosen: half a minute)."""
 MAX_DIGITS = 20
+"""Digits of a long number that are spoken (chosen)."""
 LONG_NUMBER = re.compile(r"\d{7,}")
 
 
