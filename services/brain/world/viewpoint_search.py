@@ -9,7 +9,7 @@ from common.viewpoints import Viewpoints
 from services.brain.world.standing_poses import clearance
 
 CLEARANCE = 0.48
-"""Free floor around a viewpoint [m]; chosen: the footprint's radius 0.37 and what an unknown chair takes of it."""
+"""Free floor around a viewpoint [m]; chosen: the footprint's radius 0.29 and what an unknown chair takes of it."""
 ROOM_CHANGE = 3.0
 """What a door on the way costs [m of way]; chosen: about the detour that it makes of a straight line."""
 
