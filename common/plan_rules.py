@@ -4,12 +4,11 @@ from collections.abc import Sequence
 
 import msgspec
 
+from common.grip import OPENING
 from common.kinds import kind_of
 from common.messages import KnownWorld, PlanStep
 from common.scene import Scene
 
-GRIPPER_WIDTH = 0.085
-"""Widest object between the pads [m]: the stroke of the Robotiq 2F-85 (data sheet)."""
 MAX_STEPS = 60
 """Chosen: 15 objects of four steps each, more than any scene has."""
 
@@ -113,6 +112,6 @@ def _not_a_thing(thing: str, world: KnownWorld, scene: Scene) -> str:
 def _too_big(thing: str, scene: Scene) -> str:
     """Bowls are gripped at the rim; everything else between the pads."""
     spec = scene.object(thing)
-    if spec is None or kind_of(spec.kind).by_the_rim or min(spec.size) <= GRIPPER_WIDTH:
+    if spec is None or kind_of(spec.kind).by_the_rim or min(spec.size) <= OPENING:
         return ""
     return f"the {thing} does not fit into the gripper"

@@ -19,7 +19,6 @@ class ManipulationConfig(Config, frozen=True):
     approach_distance: float = 0.10
     lift_height: float = 0.10
     grip_effort: float = 25.0
-    empty_width: float = 0.003
     slip_width: float = 0.004
     blocked_error: float = 0.12
     planning_seconds: float = 0.5

@@ -69,7 +69,7 @@ def _around(robot: Robot, held: Held, where: str) -> list[Obstacle]:
 def _execute_place(robot: Robot, plan: PlacePlan, held: Held, name: str, surface: float) -> Steps[str]:
     config = robot.config
     yield from robot.follow(plan.reach, config.joint_speed * 0.8)
-    if robot.grip.width <= config.empty_width:
+    if robot.grip.empty:
         robot.held = None
         raise Failure("SLIPPED", f"the {held.label} was lost on the way")
     yield from _lower(robot, plan, held)

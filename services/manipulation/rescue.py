@@ -10,7 +10,6 @@ from services.manipulation.held import USUAL_SIZE, Held
 from services.manipulation.plan import PlanError, Planner
 from services.manipulation.robot import Failure, Robot, Steps, go_home
 from services.manipulation.surroundings import obstacles
-from services.manipulation.verify import holds
 
 NEAR = 0.15
 
@@ -58,7 +57,7 @@ def bring_up(robot: Robot, wanted: ObjectRef | None) -> Steps[str]:
         path = yield from robot.work(out_of_there, planner, held, robot.joints.copy(), around, config.lift_height)
         yield from robot.follow(path, config.joint_speed * 0.5)
         yield from robot.wait(0.2)
-        if not holds(robot.grip, config):
+        if not robot.grip.holds():
             robot.held = None
             raise Failure("SLIPPED", f"the {held.label} was lost on the way to the carry pose")
         robot.held = held

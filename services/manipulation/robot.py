@@ -9,6 +9,7 @@ from common import messages as m
 from common import topics
 from common.bus.port import Io
 from common.geometry import Pose2
+from common.grip import Grip
 from services.manipulation.arm_model import Array
 from services.manipulation.config import ManipulationConfig
 from services.manipulation.contacts import ContactLog
@@ -18,7 +19,6 @@ from services.manipulation.plan import PlanError, Planner
 from services.manipulation.surroundings import obstacles
 from services.manipulation.touch import MET, Guard
 from services.manipulation.trajectory import timed
-from services.manipulation.verify import Grip
 
 T = TypeVar("T")
 Steps = Generator[None, None, T]

@@ -18,7 +18,7 @@ from services.manipulation.sighting import MISTAKEN, aimed, sighted
 from services.manipulation.surroundings import obstacles, target_of
 from services.manipulation.touch import TOO_HEAVY, TOUCHED, load_limit
 from services.manipulation.trajectory import back_along
-from services.manipulation.verify import WIDTH_ERROR, held_badly, holds, judge
+from services.manipulation.verify import WIDTH_ERROR, held_badly, judge
 
 BAD_HOLD = "BAD_HOLD"
 TOO_WIDE = "TOO_WIDE"
@@ -67,7 +67,7 @@ def grab(robot: Robot, goal: m.ManipulationGoal, wanted: str) -> Steps[str]:
                 raise
             last = failure
             robot.io.log.warning("grasp failed", code=failure.code, detail=failure.detail, grasp=plan.grasp.name)
-            if failure.code == "BLOCKED" and robot.held is not None and holds(robot.grip, config):
+            if failure.code == "BLOCKED" and robot.held is not None and robot.grip.holds():
                 return (yield from _carry_again(robot, robot.held, around))
             robot.phase = "retract"
             robot.held = None
@@ -120,7 +120,7 @@ def _execute_grab(
         yield from robot.wait(0.2)
         _judge(robot, plan, closed.width)
     except Failure as failure:
-        if failure.code in ("SLIPPED", BAD_HOLD, TOO_HEAVY) and holds(robot.grip, config):
+        if failure.code in ("SLIPPED", BAD_HOLD, TOO_HEAVY) and robot.grip.holds():
             yield from _set_back(robot, plan, way, free)
         raise
     robot.contacts.clear()
@@ -194,7 +194,7 @@ def _carry_again(robot: Robot, held: Held, around: list[Obstacle]) -> Steps[str]
     robot.forget_command()
     path = yield from robot.work(planner_of(robot).carry, held, robot.joints.copy(), around)
     yield from robot.follow(path, robot.config.joint_speed * 0.5)
-    if not holds(robot.grip, robot.config):
+    if not robot.grip.holds():
         raise Failure("SLIPPED", f"the {held.label} was lost on the way to the carry pose")
     robot.source.remember(held.label, None, "", robot.now)
     return f"{held.label} held: width {robot.grip.width * 1000:.1f} mm, force {robot.grip.force:.0f} N"

@@ -9,13 +9,13 @@ from common import topics
 from common.bus.port import Io, Job
 from common.geometry import Pose2
 from common.goal_inbox import GoalInbox
+from common.grip import Grip
 from services.manipulation import placing, rescue, routines
 from services.manipulation.config import ManipulationConfig
 from services.manipulation.memo import HandMemo
 from services.manipulation.object_source import ObjectSource
 from services.manipulation.plan import Planner
 from services.manipulation.robot import Failure, Robot, Steps, T, go_home
-from services.manipulation.verify import Grip, holds
 
 ARM = tuple(f"joint_{i}" for i in range(1, 8))
 DESCRIPTION_PATIENCE = 3.0
@@ -103,7 +103,7 @@ class ManipulationService:
         if len(states.effort) > max(arm):
             robot.torques = np.array([states.effort[i] for i in arm])
         robot.grip = Grip(states.position[gripper], effort)
-        if first and holds(robot.grip, self._config):
+        if first and robot.grip.holds():
             robot.held = self._memo.recall(robot.grip.width, self._config.slip_width)
 
     def _base(self, now: float) -> Pose2:
@@ -135,7 +135,7 @@ class ManipulationService:
             return
         self._io.log.info("goal", goal=goal.goal, id=goal.id, attempt=goal.attempt)
         self._steps, self._waiting_since = steps, robot.now
-        robot.phase, robot.held = "start", robot.held if holds(robot.grip, self._config) else None
+        robot.phase, robot.held = "start", robot.held if robot.grip.holds() else None
         robot.forget_command()
         self._publish("executing", "start")
 
@@ -160,7 +160,7 @@ class ManipulationService:
     def _grab(self) -> Steps[str]:
         robot, goal = self._robot, self._goal
         wanted = goal.object.label if goal.object else self._looked_for
-        if holds(robot.grip, self._config):
+        if robot.grip.holds():
             label = robot.held.label if robot.held else ""
             if not label or not wanted or label == wanted or goal.attempt > 1:
                 return (yield from self._with_planner(rescue.bring_up(robot, goal.object)))
@@ -169,7 +169,7 @@ class ManipulationService:
 
     def _release(self) -> Steps[str]:
         robot = self._robot
-        if not holds(robot.grip, self._config):
+        if not robot.grip.holds():
             yield from self._with_planner(rescue.fold(robot))
             if self._let_go():
                 return "put down by an earlier attempt, the gripper is open"
@@ -185,7 +185,7 @@ class ManipulationService:
         if self._io.scene.receptacle(where) is None:
             known = ", ".join(r.name for r in self._io.scene.receptacles)
             raise Failure("UNKNOWN_PLACE", f"no receptacle {where!r}; known: {known}")
-        if not holds(robot.grip, self._config):
+        if not robot.grip.holds():
             if self._let_go():
                 yield from self._with_planner(rescue.fold(robot))
                 return "put down by an earlier attempt, the gripper is open"

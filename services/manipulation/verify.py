@@ -1,31 +1,17 @@
 """What the gripper's width and force say: nothing between the fingers, something held, something lost."""
 
-from dataclasses import dataclass
 from typing import Literal
 
+from common.grip import EMPTY_WIDTH, Grip
 from common.kinds import kind_of
 from services.manipulation.config import ManipulationConfig
 
-HOLDING_FORCE = 3.0
 TOO_WIDE = 0.006
 WIDTH_ERROR = 0.0008
 """Most [m] that the width after the lift may be over what the object measures there: beyond it the hold is bad
 (measured over reach-grasp-lift trials)."""
 FLEX = 0.003
 """Most [m] that it may be under that: the motor goes on by 2 mm while the fingers' linkage gives under the grip."""
-
-
-@dataclass(frozen=True)
-class Grip:
-    """Width between the pads [m] and closing force of a finger [N]."""
-
-    width: float
-    force: float
-
-
-def holds(grip: Grip, config: ManipulationConfig) -> bool:
-    """Something keeps the closing fingers apart."""
-    return grip.force > HOLDING_FORCE and grip.width > config.empty_width
 
 
 def judge(
@@ -36,9 +22,9 @@ def judge(
     `at_close` is the width when the fingers had closed: after the lift it must not have changed. A `nominal` of 0 is
     a rim of unknown slope, which turns between the fingers as its weight comes on them.
     """
-    if grip.width <= config.empty_width:
-        return "SLIPPED" if at_close is not None and at_close > config.empty_width else "EMPTY_GRASP"
-    if grip.force <= HOLDING_FORCE:
+    if grip.empty:
+        return "SLIPPED" if at_close is not None and at_close > EMPTY_WIDTH else "EMPTY_GRASP"
+    if not grip.pressing:
         return "EMPTY_GRASP" if at_close is None else "SLIPPED"
     if nominal > 0 and at_close is not None and abs(grip.width - at_close) > config.slip_width:
         return "SLIPPED"

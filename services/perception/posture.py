@@ -8,13 +8,11 @@ from common import messages as m
 from common import topics
 from common.bus.port import Io, Job
 from common.geometry import Array, Pose2, wrap
+from common.grip import Grip
 from common.robot import ARM
 from services.perception.body import Body
 
 HISTORY = 100
-# Fingers that stand neither closed nor open hold something [m].
-CLOSED, PLAY = 0.003, 0.005
-HELD_FORCE = 5.0
 
 
 class Posture:
@@ -84,7 +82,7 @@ class Posture:
 
     def holds(self, body: Body) -> bool:
         """True when the fingers press on something."""
-        return CLOSED < self._joints[-1][2] < body.open - PLAY and abs(self._force) > HELD_FORCE
+        return Grip(self._joints[-1][2], abs(self._force)).holds(body.open)
 
     def _loaded(self, now: float) -> Body | None:
         if self._model is None or not self._model.poll(now):

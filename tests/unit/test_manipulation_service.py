@@ -10,6 +10,7 @@ from bench.mission import Robot
 from common import messages as m
 from common import topics
 from common.bus.memory import MemoryIo
+from common.grip import Grip
 from common.scene import load_scene
 from evaluation.stack import Stack
 from services.manipulation.arm_model import ArmModel, Obstacle, Pose
@@ -19,7 +20,7 @@ from services.manipulation.ik import InverseKinematics, seeds
 from services.manipulation.memo import HandMemo
 from services.manipulation.service import ManipulationService
 from services.manipulation.trajectory import connect, free_line, timed
-from services.manipulation.verify import Grip, held_badly, holds, judge
+from services.manipulation.verify import held_badly, judge
 from services.perception.config import PerceptionConfig
 from services.sim.model import own
 from services.sim.robot import JOINT_NAMES
@@ -155,8 +156,8 @@ def test_a_width_that_is_not_the_bodys_is_a_bad_hold(kind: str, nominal: float, 
 
 
 def test_an_open_hand_holds_nothing() -> None:
-    assert not holds(Grip(0.085, 0.0), CONFIG)
-    assert holds(Grip(0.05, 25.0), CONFIG)
+    assert not Grip(0.085, 0.0).holds()
+    assert Grip(0.05, 25.0).holds()
 
 
 class Arm(Node):

@@ -4,7 +4,7 @@ import msgspec
 import pytest
 
 from common.messages import KnownWorld, PlanStep
-from common.plan_rules import GRIPPER_WIDTH, MAX_STEPS, is_destination, known_world, objection
+from common.plan_rules import MAX_STEPS, OPENING, is_destination, known_world, objection
 from common.scene import ObjectSpec, Place, Receptacle, Room, Scene
 
 COLOUR = (1.0, 0.0, 0.0, 1.0)
@@ -29,7 +29,7 @@ SCENE = Scene(
         Receptacle(name="bin", kind="bin", center=(0, 0, 0), size=(1, 1), depth=0.4),
     ),
     objects=(
-        spec("red mug", "mug", GRIPPER_WIDTH, "red cup"), spec("crate", "box", GRIPPER_WIDTH + 0.001),
+        spec("red mug", "mug", OPENING, "red cup"), spec("crate", "box", OPENING + 0.001),
         spec("red bowl", "bowl", 0.2),
     ),
 )  # fmt: skip

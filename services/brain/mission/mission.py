@@ -6,6 +6,7 @@ from typing import Literal
 import msgspec
 
 from common import messages as m
+from common.grip import grip_of
 
 Outcome = Literal["delivered", "failed", "cancelled"]
 
@@ -25,12 +26,6 @@ SYSTEM_STATE: Mapping[m.BrainStateName, m.SystemStateName] = {
 }
 """The brain's states folded onto the eight names of `system_status`."""
 
-GRIPPER_EMPTY = 0.003
-"""Width [m] below which the pads have met (chosen: every object is wider)."""
-GRIPPER_OPEN = 0.080
-"""Width [m] from which the hand is open (chosen: just under the stroke of 85 mm)."""
-HOLDING_FORCE = 2.0
-"""Force [N] above which the pads press on something (chosen: above what closing fingers feel, far below a grip)."""
 LOST_AFTER = 0.5
 """s for which the fingers must be empty before the object counts as lost (chosen: longer than a bump of the base)."""
 PERMANENT = frozenset(
@@ -194,17 +189,7 @@ class GripperState(msgspec.Struct, rename={"grasp_uncertain": "uncertain"}):
         )
 
 
-def gripper(joints: m.JointStates | None) -> tuple[float, float] | None:
-    """Width between the pads [m] and force [N] of the gripper; None: no gripper reported."""
-    if joints is None or "gripper" not in joints.name:
-        return None
-    index = joints.name.index("gripper")
-    if index >= len(joints.position):
-        return None
-    return joints.position[index], abs(joints.effort[index]) if index < len(joints.effort) else 0.0
-
-
 def gripper_holds(joints: m.JointStates | None) -> bool | None:
-    """Do width and force of the gripper speak of an object between the pads? None: no gripper reported."""
-    grip = gripper(joints)
-    return None if grip is None else GRIPPER_EMPTY < grip[0] < GRIPPER_OPEN and grip[1] > HOLDING_FORCE
+    """True when width and force of the gripper speak of an object between the pads; None: no gripper reported."""
+    grip = grip_of(joints)
+    return None if grip is None else grip.holds()

@@ -9,10 +9,11 @@ from py_trees.common import Status
 
 from common import messages as m
 from common import topics
+from common.grip import OPEN_PLAY, OPENING, Grip, grip_of
 from services.brain.language.dialogue import reply
 from services.brain.mission.channel import Result
 from services.brain.mission.context import Context
-from services.brain.mission.mission import GRIPPER_EMPTY, GRIPPER_OPEN, HOLDING_FORCE, Failure, gripper, gripper_holds
+from services.brain.mission.mission import Failure, gripper_holds
 from services.brain.steps.ask import AskQuestion, HearAnswer
 from services.brain.steps.leaf import Leaf
 from services.brain.steps.motion import Release
@@ -49,8 +50,8 @@ class MoveGripper(Leaf):
         if self.elapsed - self._told_at >= AGAIN:
             self._told_at = self.elapsed
             ctx.io.publish(topics.GRIPPER_COMMAND, m.GripperCommand(position=float(self._closed)))
-        grip = gripper(ctx.io.latest(topics.JOINT_STATES))
-        if grip is not None and ctx.io.age(topics.JOINT_STATES, ctx.now) < self.elapsed and self._there(*grip):
+        grip = grip_of(ctx.io.latest(topics.JOINT_STATES))
+        if grip is not None and ctx.io.age(topics.JOINT_STATES, ctx.now) < self.elapsed and self._there(grip):
             return self._done(*grip)
         if self.elapsed < PATIENCE:
             return Status.RUNNING
@@ -61,17 +62,18 @@ class MoveGripper(Leaf):
         )
         return Status.FAILURE
 
-    def _there(self, width: float, force: float) -> bool:
+    def _there(self, grip: Grip) -> bool:
+        width = grip.width
         if abs(width - self._width) > STILL:
             self._width, self._still_since = width, self.ctx.now
         if not self._closed:
-            return width >= GRIPPER_OPEN
+            return width >= OPENING - OPEN_PLAY
         stands = self.ctx.now - self._still_since >= REST
-        return width <= GRIPPER_EMPTY or (stands and width < GRIPPER_OPEN and force > HOLDING_FORCE)
+        return grip.empty or (stands and grip.holds())
 
     def _done(self, width: float, force: float) -> Status:
         ctx = self.ctx
-        if self._closed and width > GRIPPER_EMPTY:
+        if self._closed and not Grip(width, force).empty:
             ctx.gripper.mark_grasped(SOMETHING)
         else:
             ctx.mission.delivery.released = ctx.mission.delivery.released or self._full

@@ -1,0 +1,47 @@
+"""What width and force of the gripper say of an object between its fingers: one rule for every service."""
+
+from typing import NamedTuple
+
+from common.messages import JointStates
+
+GRIPPER = "gripper"
+"""Name of the gripper's joint in `joint_states`: its position is the width between the pads [m]."""
+OPENING = 0.085
+"""Width between the open pads [m]: the stroke of the Robotiq 2F-85 (data sheet)."""
+EMPTY_WIDTH = 0.003
+"""Width [m] up to which nothing is between closed fingers: less than any wall that is gripped, more than the play."""
+OPEN_PLAY = 0.005
+"""How much narrower than open [m] fingers must stand to be kept apart by something: twice what open ones give way."""
+HOLDING_FORCE = 3.0
+"""Force of a finger [N] from which it presses on something: free fingers show less than 2 while they move."""
+
+
+class Grip(NamedTuple):
+    """`width` between the pads [m] and `force` with which a finger closes [N]."""
+
+    width: float
+    force: float
+
+    @property
+    def empty(self) -> bool:
+        """Closed on nothing."""
+        return self.width <= EMPTY_WIDTH
+
+    @property
+    def pressing(self) -> bool:
+        """The fingers press on something, be it on each other."""
+        return self.force > HOLDING_FORCE
+
+    def holds(self, opening: float = OPENING) -> bool:
+        """Something keeps the closing fingers of a gripper that opens to `opening` [m] apart."""
+        return EMPTY_WIDTH < self.width < opening - OPEN_PLAY and self.pressing
+
+
+def grip_of(joints: JointStates | None) -> Grip | None:
+    """What joint states say of the gripper; None when they report none."""
+    if joints is None or GRIPPER not in joints.name:
+        return None
+    index = joints.name.index(GRIPPER)
+    if index >= len(joints.position):
+        return None
+    return Grip(joints.position[index], abs(joints.effort[index]) if index < len(joints.effort) else 0.0)
