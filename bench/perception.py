@@ -1,6 +1,6 @@
 """Perception on random views: `python -m bench.perception --views 200`.
 
-Each view shows a random layout from a random place before a piece of furniture, by the sensor's model. The table
+Each view shows a random layout from a random place before a segment of furniture, by the sensor's model. The table
 compares what is detected with the simulation's own poses, and asks for things that are not there. The peer gets the
 same pixels of each thing and takes the middle of the visible points and the nearest colour for its answer.
 """
@@ -19,9 +19,9 @@ from common.messages import WorldObject
 from common.rendering.renderer import Renderer
 from common.scene import Receptacle, Scene, load_scene
 from services.camera.sensor import StereoCamera
-from services.perception import colour, segment
+from services.perception import colour, segmentation
 from services.perception.detect import ClassicalDetector
-from services.perception.ground import ground
+from services.perception.grounding import ground
 from services.perception.view import View
 from services.sim.layout import Placement, place_objects
 from services.sim.model import own
@@ -122,11 +122,11 @@ def visible(view: View, placement: Placement) -> bool:
 
 
 def naive(view: View, scene: Scene, placement: Placement) -> tuple[float, bool] | None:
-    """The peer: error and rightness for the piece at an object's place."""
-    for piece in segment.pieces(view, scene, RANGE):
-        middle = piece.points.mean(axis=0)
+    """The peer: error and rightness for the segment at an object's place."""
+    for segment in segmentation.segments(view, scene, RANGE):
+        middle = segment.points.mean(axis=0)
         if math.hypot(middle[0] - placement.position[0], middle[1] - placement.position[1]) < NEAR:
-            rgb = colour.typical(view.rgb[piece.rows, piece.columns])
+            rgb = colour.typical(view.rgb[segment.rows, segment.columns])
             named = min(scene.objects, key=lambda o: colour.difference(rgb, o.rgba))
             return math.dist(middle, placement.position), named.name == placement.spec.name
     return None

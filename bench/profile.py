@@ -39,9 +39,9 @@ PARTS = {
     "common.rendering.renderer:Renderer.load": "state",
     "common.rendering.renderer:Renderer.rgbd": "drawing",
     "services.perception.detect:ClassicalDetector.detect": "detection",
-    "services.perception.body:Body.mask": "its own body",
-    "services.perception.body:Body.pose": "its own body",
-    "services.perception.posture:Posture.feel": "posture",
+    "services.perception.self_filter:RobotModel.mask": "its own body",
+    "services.perception.self_filter:RobotModel.pose": "its own body",
+    "services.perception.state_buffer:StateBuffer.feel": "posture",
     "services.navigation.localisation.localise:Localiser.predict": "localisation",
     "services.navigation.localisation.localise:Localiser.correct": "localisation",
     "services.navigation.planning.costmap:Costmap.see": "costmap",
@@ -55,7 +55,7 @@ PARTS = {
     "common.bus.memory:MemoryBus.put": "delivery",
     "common.rendering.offscreen:Offscreen.__init__": "opening GL",
     "common.rendering.renderer:Renderer.__init__": "its model",
-    "services.perception.body:Body.__init__": "its model",
+    "services.perception.self_filter:RobotModel.__init__": "its model",
 }
 """Where the parts are, and what each is called; parts of one name are added up."""
 

@@ -8,23 +8,23 @@ import numpy as np
 from services.manipulation.arm_model import Array, Obstacle
 from services.manipulation.contacts import new_sides_first
 from services.manipulation.grasp import Grasp, Target
-from services.manipulation.held import Held, grasped
+from services.manipulation.grasped_object import GraspedObject, attach
 from services.manipulation.ik import seeds
-from services.manipulation.plan import PlanError, Planner, counted
-from services.manipulation.surroundings import with_thing
+from services.manipulation.motion_planner import PlanError, Planner, counted
+from services.manipulation.planning_scene import with_object
 from services.manipulation.trajectory import connect
 
 
 @dataclass(frozen=True)
 class GrabPlan:
-    """Joint paths of the phases, and what will be held."""
+    """Joint paths (lists of (7,)) of the phases, and the object as it will be attached to the hand."""
 
     grasp: Grasp
     reach: list[Array]
     insert: list[Array]
     lift: list[Array]
     carry: list[Array]
-    held: Held
+    grasped: GraspedObject
 
 
 def plan_grab(
@@ -94,18 +94,18 @@ def _try_grab(
         return "no straight lift"
     if any(arm.collides(q) for q in back):
         return "approach collides"
-    planner.surround(with_thing(around, own), back[-1])
+    planner.surround(with_object(around, own), back[-1])
     there = connect(arm, now, back[-1], rng)
     if there is None:
         return "no path to the pre-grasp"
-    held = grasped(target, grasp)
-    arm.hold(*held.box())
+    attached = attach(target, grasp)
+    arm.hold(*attached.box())
     planner.surround(around, up[-1])
     away = planner.to_carry(up[-1], rng)
     arm.hold(None)
     if away is None:
         return "no path to the carry pose"
-    return GrabPlan(grasp, there, [at, *back][::-1], [at, *up], away, held)
+    return GrabPlan(grasp, there, [at, *back][::-1], [at, *up], away, attached)
 
 
 def refine(planner: Planner, plan: GrabPlan, shift: tuple[float, float], approach: float, lift: float) -> GrabPlan:

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from services.manipulation.arm_model import Array, Obstacle, Pose
-from services.manipulation.held import Held
+from services.manipulation.grasped_object import GraspedObject
 from services.manipulation.ik import seeds
-from services.manipulation.plan import PlanError, Planner, counted
-from services.manipulation.surroundings import with_thing
+from services.manipulation.motion_planner import PlanError, Planner, counted
+from services.manipulation.planning_scene import with_object
 from services.manipulation.trajectory import connect
 
 
@@ -26,7 +26,7 @@ class PlacePlan:
 
 def plan_place(
     planner: Planner,
-    held: Held,
+    held: GraspedObject,
     spots: Sequence[tuple[float, float]],
     surface: float,
     drop: float,
@@ -52,7 +52,7 @@ def plan_place(
 
 def _try_place(
     planner: Planner,
-    held: Held,
+    held: GraspedObject,
     spot: tuple[float, float],
     height: float,
     turn: float,
@@ -93,7 +93,7 @@ def _try_place(
     tilted = abs(approach[2]) < 0.85
     away = -0.10 * target.rotation[:, 2] if tilted else np.array([0.0, 0.0, 0.12])
     stands = Obstacle((*spot, height + held.size[2] / 2), held.size, held.yaw + delta)
-    beside = with_thing(around, stands)
+    beside = with_object(around, stands)
     back = _leave(planner, target, away, [*down[-2::-1], high], down[-1], beside)
     if back is None:
         return "no way back"

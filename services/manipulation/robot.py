@@ -13,10 +13,10 @@ from common.grip import Grip
 from services.manipulation.arm_model import Array
 from services.manipulation.config import ManipulationConfig
 from services.manipulation.contacts import ContactLog
-from services.manipulation.held import Held
+from services.manipulation.grasped_object import GraspedObject
+from services.manipulation.motion_planner import PlanError, Planner
 from services.manipulation.object_source import ObjectSource
-from services.manipulation.plan import PlanError, Planner
-from services.manipulation.surroundings import obstacles
+from services.manipulation.planning_scene import obstacles
 from services.manipulation.touch import MET, Guard
 from services.manipulation.trajectory import timed
 
@@ -45,7 +45,7 @@ class Robot:
         self.grip = Grip(0.0, 0.0)
         self.base: Pose2 = (0.0, 0.0, 0.0)
         self.phase = ""
-        self.held: Held | None = None
+        self.grasped: GraspedObject | None = None
         self.contacts = ContactLog()
         self.planner: Planner | None = None
         self._command: Array | None = None

@@ -10,11 +10,11 @@ from common.bus.port import Io, Job
 from common.geometry import Pose2
 from common.goal_inbox import GoalInbox
 from common.grip import Grip
-from services.manipulation import placing, rescue, routines
+from services.manipulation import grasp_executor, place_executor, recovery
 from services.manipulation.config import ManipulationConfig
-from services.manipulation.memo import HandMemo
+from services.manipulation.grasp_store import GraspStore
+from services.manipulation.motion_planner import Planner
 from services.manipulation.object_source import ObjectSource
-from services.manipulation.plan import Planner
 from services.manipulation.robot import Failure, Robot, Steps, T, go_home
 
 ARM = tuple(f"joint_{i}" for i in range(1, 8))
@@ -35,7 +35,7 @@ class ManipulationService:
         self._config, self._io = config, io
         self._source = ObjectSource(io.scene)
         self._robot = Robot(config, io, self._source)
-        self._memo = HandMemo(io.state_dir, lambda why: io.log.warning("not kept what is in the hand", reason=why))
+        self._store = GraspStore(io.state_dir, lambda why: io.log.warning("not kept what is in the hand", reason=why))
         self._loading: Job[Planner] | None = None
         self._description: m.RobotDescription | None = None
         self._steps: Steps[str] | None = None
@@ -63,7 +63,7 @@ class ManipulationService:
         if self._steps is not None:
             self._advance(now)
         if self._indices is not None:
-            self._memo.keep(robot.held, robot.grip.width)
+            self._store.keep(robot.grasped, robot.grip.width)
 
     # --- sensing
     def _sense(self, now: float) -> None:
@@ -104,7 +104,7 @@ class ManipulationService:
             robot.torques = np.array([states.effort[i] for i in arm])
         robot.grip = Grip(states.position[gripper], effort)
         if first and robot.grip.holds():
-            robot.held = self._memo.recall(robot.grip.width, self._config.slip_width)
+            robot.grasped = self._store.recall(robot.grip.width, self._config.slip_width)
 
     def _base(self, now: float) -> Pose2:
         pose = self._io.latest(topics.POSE)
@@ -135,7 +135,7 @@ class ManipulationService:
             return
         self._io.log.info("goal", goal=goal.goal, id=goal.id, attempt=goal.attempt)
         self._steps, self._waiting_since = steps, robot.now
-        robot.phase, robot.held = "start", robot.held if robot.grip.holds() else None
+        robot.phase, robot.grasped = "start", robot.grasped if robot.grip.holds() else None
         robot.forget_command()
         self._publish("executing", "start")
 
@@ -161,24 +161,24 @@ class ManipulationService:
         robot, goal = self._robot, self._goal
         wanted = goal.object.label if goal.object else self._looked_for
         if robot.grip.holds():
-            label = robot.held.label if robot.held else ""
+            label = robot.grasped.label if robot.grasped else ""
             if not label or not wanted or label == wanted or goal.attempt > 1:
-                return (yield from self._with_planner(rescue.bring_up(robot, goal.object)))
+                return (yield from self._with_planner(recovery.retract_grasped(robot, goal.object)))
             raise Failure("HAND_FULL", f"the {label} is in the gripper")
-        return (yield from self._with_planner(routines.grab(robot, goal, self._looked_for)))
+        return (yield from self._with_planner(grasp_executor.grab(robot, goal, self._looked_for)))
 
     def _release(self) -> Steps[str]:
         robot = self._robot
         if not robot.grip.holds():
-            yield from self._with_planner(rescue.fold(robot))
+            yield from self._with_planner(recovery.retract_empty(robot))
             if self._let_go():
                 return "put down by an earlier attempt, the gripper is open"
             raise Failure("LOST_OBJECT", "nothing was held, the gripper is open")
-        return (yield from self._with_planner(placing.place(robot, "")))
+        return (yield from self._with_planner(place_executor.place(robot, "")))
 
     def _let_go(self) -> bool:
         """An earlier attempt of this goal has opened the fingers over its place."""
-        return bool(self._goal.id) and self._memo.released() == self._goal.id
+        return bool(self._goal.id) and self._store.released() == self._goal.id
 
     def _place(self, where: str) -> Steps[str]:
         robot = self._robot
@@ -187,10 +187,10 @@ class ManipulationService:
             raise Failure("UNKNOWN_PLACE", f"no receptacle {where!r}; known: {known}")
         if not robot.grip.holds():
             if self._let_go():
-                yield from self._with_planner(rescue.fold(robot))
+                yield from self._with_planner(recovery.retract_empty(robot))
                 return "put down by an earlier attempt, the gripper is open"
             raise Failure("NOT_HOLDING", "nothing is in the gripper")
-        return (yield from self._with_planner(placing.place(robot, where)))
+        return (yield from self._with_planner(place_executor.place(robot, where)))
 
     # --- running
     def _advance(self, now: float) -> None:
@@ -213,7 +213,7 @@ class ManipulationService:
         else:
             if self._robot.phase != phase:
                 if self._robot.phase == LETTING_GO:
-                    self._memo.release(self._goal.id)
+                    self._store.release(self._goal.id)
                 self._publish("executing", self._robot.phase)
 
     def _end(self, failure: Failure) -> None:

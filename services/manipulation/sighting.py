@@ -6,8 +6,8 @@ from common import messages as m
 from common.kinds import kind_of
 from common.messages import WorldObject
 from services.manipulation.plan_grab import GrabPlan, refine
+from services.manipulation.planning_scene import target_of, turned
 from services.manipulation.robot import Failure, Robot, Steps, planner_of
-from services.manipulation.surroundings import target_of, turned
 
 MISTAKEN = "MISTAKEN"
 """Code: the object is not where the grasp was planned for; a new plan is needed, no attempt was made."""

@@ -15,16 +15,16 @@ import numpy as np
 from common.geometry import Array
 from common.kinds import KINDS, kind_of
 from common.scene import ObjectSpec, Scene, Vec3
-from services.perception import colour, segment, shapes, toppled
-from services.perception.segment import Piece
+from services.perception import colour, segmentation, shapes, toppled
+from services.perception.segmentation import Segment
 from services.perception.view import Mask, View
 
 SHAPE_SCALE, HEIGHT_SCALE, COLOUR_SCALE = 0.0035, 0.010, 0.07
 WORST, SOUND = 3.2, 2.0
 LYING = math.pi / 2
 """Tilt [rad] of what lies on its side."""
-STRANGE_CONFIDENCE = 0.45
-STRANGE_KINDS = (KINDS["can"], KINDS["box"])
+UNKNOWN_CONFIDENCE = 0.45
+UNKNOWN_KINDS = (KINDS["can"], KINDS["box"])
 
 
 @dataclass(frozen=True)
@@ -52,20 +52,23 @@ class Detection:
 
 
 @dataclass(frozen=True)
-class Stance:
+class RestingPose:
     """How a thing may rest on a surface: its full extents there, and the tilt [rad] of its own axis."""
 
     size: Vec3
     tilt: float = 0.0
 
 
+RestingPoses = Callable[[ObjectSpec], list[RestingPose]]
+
+
 @dataclass(frozen=True)
-class Guess:
-    """A thing of the household in one stance that may explain a piece; `score` in standard deviations."""
+class Hypothesis:
+    """A thing of the household in one rest that may explain a segment; `score` in standard deviations."""
 
     score: float
     spec: ObjectSpec
-    stance: Stance
+    rest: RestingPose
     fit: shapes.Fit
 
 
@@ -87,37 +90,37 @@ class ClassicalDetector:
 
     def detect(self, view: View, robot: Mask | None = None) -> list[Detection]:
         found = []
-        for piece in segment.pieces(view, self._scene, self._max_range, robot):
-            detection = self._explain(view, piece)
+        for segment in segmentation.segments(view, self._scene, self._max_range, robot):
+            detection = self._explain(view, segment)
             if detection is not None:
                 found.append(detection)
         return found
 
-    def _explain(self, view: View, piece: Piece) -> Detection | None:
-        rgb = colour.typical(view.rgb[piece.rows, piece.columns])
-        height = float(np.percentile(piece.points[:, 2], 98)) - piece.surface.height
-        guesses = self._guesses(view, piece, rgb, height, _stances)
-        if not guesses or guesses[0].score > SOUND:
+    def _explain(self, view: View, segment: Segment) -> Detection | None:
+        rgb = colour.typical(view.rgb[segment.rows, segment.columns])
+        height = float(np.percentile(segment.points[:, 2], 98)) - segment.surface.height
+        hypotheses = self._hypotheses(view, segment, rgb, height, _standing)
+        if not hypotheses or hypotheses[0].score > SOUND:
             # Nothing stands there that explains it well.
-            more = self._guesses(view, piece, rgb, height, _toppled)
-            guesses = sorted([*guesses, *more], key=lambda g: g.score)
-        if not guesses or guesses[0].score > WORST:
-            return self._strange(view, piece, rgb, height)
-        best = guesses[0]
-        score, spec, size, fit = best.score, best.spec, best.stance.size, best.fit
-        tilt, kind = best.stance.tilt, kind_of(spec.kind)
+            more = self._hypotheses(view, segment, rgb, height, _toppled)
+            hypotheses = sorted([*hypotheses, *more], key=lambda g: g.score)
+        if not hypotheses or hypotheses[0].score > WORST:
+            return self._unknown(view, segment, rgb, height)
+        best = hypotheses[0]
+        score, spec, size, fit = best.score, best.spec, best.rest.size, best.fit
+        tilt, kind = best.rest.tilt, kind_of(spec.kind)
         either_way = "upside down" in kind.rests and kind.straight
-        if either_way and not tilt and toppled.closed_above(kind, size, piece.points, piece.surface.height, fit):
+        if either_way and not tilt and toppled.closed_above(kind, size, segment.points, segment.surface.height, fit):
             # The walls look alike either way up.
             tilt = math.pi
-        second = next((rival.score for rival in guesses if rival.spec is not spec), WORST)
+        second = next((rival.score for rival in hypotheses if rival.spec is not spec), WORST)
         # Sure when the fit is good and nothing else in the house comes close.
         confidence = math.exp(-0.5 * (score / 2.2) ** 2) * (1 - math.exp(-2.0 * (second - score) - 0.4))
-        pixels = min(1.0, len(piece.rows) / 120)
+        pixels = min(1.0, len(segment.rows) / 120)
         yaw = fit.yaw
         if kind.handle and not tilt:
-            yaw = shapes.handle_yaw(size, piece.points, fit.x, fit.y, view.position)
-        position = (fit.x, fit.y, piece.surface.height + size[2] / 2)
+            yaw = shapes.handle_yaw(size, segment.points, fit.x, fit.y, view.position)
+        position = (fit.x, fit.y, segment.surface.height + size[2] / 2)
         return Detection(
             label=spec.name,
             kind=spec.kind,
@@ -125,91 +128,98 @@ class ClassicalDetector:
             position=position,
             yaw=yaw,
             size=size,
-            confidence=confidence * (0.55 + 0.45 * pixels) * (0.6 if piece.cut else 1.0),
-            on=piece.surface.name,
+            confidence=confidence * (0.55 + 0.45 * pixels) * (0.6 if segment.cut else 1.0),
+            on=segment.surface.name,
             distance=_distance(view, fit),
-            whole=not piece.cut and score < SOUND,
-            share=min(1.0, len(piece.rows) / _pixels(view, position, size)),
+            whole=not segment.cut and score < SOUND,
+            share=min(1.0, len(segment.rows) / _pixels(view, position, size)),
             tilt=tilt,
         )
 
-    def _guesses(
-        self, view: View, piece: Piece, rgb: Array, height: float, stances: Callable[[ObjectSpec], list[Stance]]
-    ) -> list[Guess]:
-        """What may explain the piece, the best first."""
+    def _hypotheses(
+        self,
+        view: View,
+        segment: Segment,
+        rgb: Array,
+        height: float,
+        resting_poses: Callable[[ObjectSpec], list[RestingPose]],
+    ) -> list[Hypothesis]:
+        """What may explain the segment, the best first."""
         found = []
         for spec in self._scene.objects:
             # In standard deviations.
             off = colour.difference(rgb, spec.rgba) / COLOUR_SCALE
-            for stance in stances(spec) if off <= WORST else ():
-                tall = _too_tall(spec, stance, height) / HEIGHT_SCALE
-                if piece.cut:
+            for rest in resting_poses(spec) if off <= WORST else ():
+                tall = _too_tall(spec, rest, height) / HEIGHT_SCALE
+                if segment.cut:
                     tall = min(tall, 1.0)
                 if tall <= WORST:
-                    fit = _fit(spec, stance, view, piece)
-                    if stance.tilt == math.pi and not toppled.closed_above(
-                        kind_of(spec.kind), spec.size, piece.points, piece.surface.height, fit
+                    fit = _fit(spec, rest, view, segment)
+                    if rest.tilt == math.pi and not toppled.closed_above(
+                        kind_of(spec.kind), spec.size, segment.points, segment.surface.height, fit
                     ):
                         continue
                     score = math.sqrt((fit.residual / SHAPE_SCALE) ** 2 + tall**2 + off**2)
-                    found.append(Guess(score, spec, stance, fit))
+                    found.append(Hypothesis(score, spec, rest, fit))
         return sorted(found, key=lambda g: g.score)
 
-    def _strange(self, view: View, piece: Piece, rgb: Array, height: float) -> Detection | None:
+    def _unknown(self, view: View, segment: Segment, rgb: Array, height: float) -> Detection | None:
         """A thing that is not of the household, by its measured size."""
-        if piece.cut or len(piece.rows) < 2 * segment.MIN_PIXELS:
+        if segment.cut or len(segment.rows) < 2 * segmentation.MIN_PIXELS:
             return None
-        low, high = piece.points[:, :2].min(axis=0), piece.points[:, :2].max(axis=0)
+        low, high = segment.points[:, :2].min(axis=0), segment.points[:, :2].max(axis=0)
         width = float(np.clip(np.max(high - low), 0.02, 0.25))
         size = (width, width, max(0.02, height))
-        fits = [shapes.fit(k, size, piece.points, piece.surface.height, view.position) for k in STRANGE_KINDS]
+        fits = [shapes.fit(k, size, segment.points, segment.surface.height, view.position) for k in UNKNOWN_KINDS]
         fit = min(fits, key=lambda f: f.residual)
         word = colour.name(rgb)
         return Detection(
             label=f"{word} thing",
             kind="thing",
             colour=word,
-            position=(fit.x, fit.y, piece.surface.height + size[2] / 2),
+            position=(fit.x, fit.y, segment.surface.height + size[2] / 2),
             yaw=fit.yaw,
             size=size,
-            confidence=STRANGE_CONFIDENCE,
-            on=piece.surface.name,
+            confidence=UNKNOWN_CONFIDENCE,
+            on=segment.surface.name,
             distance=_distance(view, fit),
             known=False,
         )
 
 
-def _stances(spec: ObjectSpec) -> list[Stance]:
+def _standing(spec: ObjectSpec) -> list[RestingPose]:
     """An object as it stands, and what may lie on another face."""
     x, y, z = spec.size
     if "face" not in kind_of(spec.kind).rests:
-        return [Stance(spec.size)]
-    return [Stance(size, 0.0 if size[2] == z else LYING) for size in dict.fromkeys([(x, y, z), (z, y, x), (z, x, y)])]
+        return [RestingPose(spec.size)]
+    return [
+        RestingPose(size, 0.0 if size[2] == z else LYING) for size in dict.fromkeys([(x, y, z), (z, y, x), (z, x, y)])
+    ]
 
 
-def _toppled(spec: ObjectSpec) -> list[Stance]:
+def _toppled(spec: ObjectSpec) -> list[RestingPose]:
     """A round thing on its side, or upside down."""
     rests = kind_of(spec.kind).rests
-    found = [Stance(toppled.extents(spec.size), LYING)] if "side" in rests else []
-    return found + ([Stance(spec.size, math.pi)] if "upside down" in rests else [])
+    found = [RestingPose(toppled.extents(spec.size), LYING)] if "side" in rests else []
+    return found + ([RestingPose(spec.size, math.pi)] if "upside down" in rests else [])
 
 
-def _too_tall(spec: ObjectSpec, stance: Stance, height: float) -> float:
-    """How far [m] a measured height is from a stance's."""
-    low = high = stance.size[2]
+def _too_tall(spec: ObjectSpec, rest: RestingPose, height: float) -> float:
+    """How far [m] a measured height is from a rest's."""
+    low = high = rest.size[2]
     kind = kind_of(spec.kind)
-    if stance.tilt == LYING and "side" in kind.rests:
+    if rest.tilt == LYING and "side" in kind.rests:
         low, high = toppled.heights(kind, spec.size)
     return max(low - height, height - high, 0.0)
 
 
-def _fit(spec: ObjectSpec, stance: Stance, view: View, piece: Piece) -> shapes.Fit:
-    kind, floor, camera = kind_of(spec.kind), piece.surface.height, view.position
-    if stance.tilt == math.pi:
-        return toppled.fit_upside_down(kind, spec.size, piece.points, floor, camera)
-    if stance.tilt and "side" in kind.rests:
-        return toppled.fit(kind, spec.size, piece.points, floor, camera)
-    return shapes.fit(kind, stance.size, piece.points, floor, camera, piece.ends)
+def _fit(spec: ObjectSpec, rest: RestingPose, view: View, segment: Segment) -> shapes.Fit:
+    kind, floor, camera = kind_of(spec.kind), segment.surface.height, view.position
+    if rest.tilt == math.pi:
+        return toppled.fit_upside_down(kind, spec.size, segment.points, floor, camera)
+    if rest.tilt and "side" in kind.rests:
+        return toppled.fit(kind, spec.size, segment.points, floor, camera)
+    return shapes.fit(kind, rest.size, segment.points, floor, camera, segment.ends)
 
 
 def _pixels(view: View, position: Vec3, size: Vec3) -> float:

@@ -13,13 +13,13 @@ from common.geometry import Pose2, wrap
 from common.goal_inbox import GoalInbox
 from common.kinds import kind_of
 from common.runtime import StartError
-from services.perception.body import Body
 from services.perception.config import PerceptionConfig
 from services.perception.detect import ClassicalDetector, Detection, Detector
-from services.perception.ground import Grounding, ground
-from services.perception.memory import SURE, Memory
+from services.perception.grounding import Grounding, ground
+from services.perception.object_tracker import SURE, ObjectTracker
 from services.perception.picture import jpeg
-from services.perception.posture import Posture
+from services.perception.self_filter import RobotModel
+from services.perception.state_buffer import StateBuffer
 from services.perception.view import View, view_of
 
 MOVING = 0.02
@@ -44,7 +44,7 @@ class PerceptionService:
         self._detector = load_detector(config.detector)(io.scene, config.max_range)
         self._world = ""
         self._forget()
-        self._posture = Posture(io)
+        self._state = StateBuffer(io)
         self._hand: tuple[float, float, float] | None = None
         self._picture = ""
         self._asked_at = -1e9
@@ -55,7 +55,7 @@ class PerceptionService:
         )
 
     def _forget(self) -> None:
-        self._memory = Memory(self._io.scene, self._config.gone_after, self._config.min_confidence)
+        self._memory = ObjectTracker(self._io.scene, self._config.gone_after, self._config.min_confidence)
         self._shown: list[m.WorldObject] = []
         self._io.publish(topics.WORLD_OBJECTS, m.WorldObjects(t=0.0, objects=[], source="perception"))
 
@@ -70,7 +70,7 @@ class PerceptionService:
 
     # --- the robot
     def _sense(self, now: float) -> None:
-        io, posture = self._io, self._posture
+        io, posture = self._io, self._state
         felt = posture.feel()
         status = io.latest(topics.SIM_STATUS)
         if status is not None and status.world != self._world:
@@ -98,8 +98,8 @@ class PerceptionService:
         """Request the next picture when one is due."""
         config = self._config
         waiting = bool(self._picture) and now - self._asked_at < config.picture_timeout
-        here = self._posture.base
-        if waiting or self._detecting is not None or here is None or self._posture.turning() > config.max_turn:
+        here = self._state.base
+        if waiting or self._detecting is not None or here is None or self._state.turning() > config.max_turn:
             return
         phase = self._working()
         resting = self._looked_from is not None and _near(self._looked_from[0], here) and self._looked_from[1] == phase
@@ -114,7 +114,7 @@ class PerceptionService:
 
     def _receive(self, now: float) -> None:
         for key, image in ((t.key, image) for t in PICTURES for image in self._io.take_all(t)):
-            base = self._posture.base_at(image.t)
+            base = self._state.base_at(image.t)
             if not self._picture or image.id != self._picture or base is None:
                 continue
             self._picture = ""
@@ -123,7 +123,7 @@ class PerceptionService:
             except ValueError as error:
                 self._io.count_drop(key, str(error))
                 continue
-            body = self._posture.body(now, image.t)
+            body = self._state.body(now, image.t)
             self._detecting = self._io.submit(
                 detect, self._detector, view, base, body, seconds=self._config.detection_seconds
             )
@@ -179,12 +179,12 @@ class PerceptionService:
         self._io.publish(topics.OBJECT_POSE, answer)
 
     def _ground(self, query: m.ObjectQuery) -> Grounding:
-        base = self._posture.base or (0.0, 0.0, 0.0)
+        base = self._state.base or (0.0, 0.0, 0.0)
         objects = self._memory.objects(query.since or -math.inf)
         return ground(query.query, objects, self._io.scene, base, self._config.synonyms)
 
 
-def detect(detector: Detector, view: View, base: Pose2, body: Body | None) -> tuple[View, list[Detection]]:
+def detect(detector: Detector, view: View, base: Pose2, body: RobotModel | None) -> tuple[View, list[Detection]]:
     """The worker's part: find the robot in the view, then the objects beside it."""
     return view, detector.detect(view, body.mask(view, base) if body is not None else None)
 

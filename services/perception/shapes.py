@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from common.kinds import Kind
 from common.scene import Vec3
-from services.perception.solve import solve
+from services.perception.least_squares import solve
 
 Array = NDArray[np.float64]
 Ends = tuple[bool, bool]

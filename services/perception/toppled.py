@@ -15,8 +15,8 @@ from common.geometry import Array
 from common.kinds import Kind
 from common.scene import Vec3
 from services.perception import shapes
+from services.perception.least_squares import solve
 from services.perception.shapes import ROBUST, SAMPLE, STRAY, TINY, TRIES, Fit
-from services.perception.solve import solve
 
 STARTS = (0.0, math.pi / 4, math.pi / 2, 3 * math.pi / 4)
 """Directions of the axis [rad] from which the fit begins, each both ways round."""

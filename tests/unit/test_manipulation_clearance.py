@@ -6,7 +6,7 @@ import pytest
 from services.manipulation.arm_model import Pose
 from services.manipulation.clearance import GAP, MOST
 from services.manipulation.grasp import Grasp, Target, approach_rotation
-from services.manipulation.plan import Planner
+from services.manipulation.motion_planner import Planner
 from services.sim.model import own
 
 PLANNER = Planner(own().mjcf, seed=0)

@@ -16,11 +16,11 @@ from evaluation.stack import Stack
 from services.manipulation.arm_model import ArmModel, Obstacle, Pose
 from services.manipulation.config import ManipulationConfig
 from services.manipulation.grasp import Target, approach_rotation, candidates
+from services.manipulation.grasp_store import GraspStore
+from services.manipulation.grasp_verification import held_badly, judge
 from services.manipulation.ik import InverseKinematics, seeds
-from services.manipulation.memo import HandMemo
 from services.manipulation.service import ManipulationService
 from services.manipulation.trajectory import connect, free_line, timed
-from services.manipulation.verify import held_badly, judge
 from services.perception.config import PerceptionConfig
 from services.sim.model import own
 from services.sim.robot import JOINT_NAMES
@@ -264,7 +264,7 @@ def test_release_with_an_empty_hand_opens_it_and_says_that_the_object_is_lost(tm
 
 @pytest.mark.parametrize("goal", ["release", "place table"])
 def test_what_an_earlier_attempt_put_down_is_not_lost(goal: str, tmp_path: Path) -> None:
-    HandMemo(tmp_path, lambda why: None).release("a.1")
+    GraspStore(tmp_path, lambda why: None).release("a.1")
     assert Arm(state_dir=tmp_path).ask(goal, attempt=2).status == "done"
     assert Arm(state_dir=tmp_path).ask(goal, "a.2").code in ("LOST_OBJECT", "NOT_HOLDING")
 

@@ -10,8 +10,8 @@ from common.kinds import KINDS
 from common.rendering.raycast import render
 from common.scene import Scene, load_scene
 from services.perception import colour, shapes
-from services.perception.body import Body
 from services.perception.detect import ClassicalDetector, Detection
+from services.perception.self_filter import RobotModel
 from services.perception.view import View
 from services.sim import robot
 from services.sim.layout import Placement, place_objects
@@ -65,7 +65,7 @@ def before(seed: int, on: str, distance: float = 1.1) -> tuple[View, list[Placem
 
 def detect(seen: View, seed: int) -> list[Detection]:
     scene = world(seed)[0]
-    body = Body(own().mjcf)
+    body = RobotModel(own().mjcf)
     body.pose(np.array(own().home), 0.085)
     turn = math.atan2(seen.rotation[1, 2], seen.rotation[0, 2])
     base = (
@@ -100,7 +100,7 @@ def test_an_empty_floor_and_the_robot_itself_are_nothing() -> None:
 @pytest.mark.parametrize("camera", ["head", "wrist"])
 def test_no_edge_of_the_body_is_left_in_the_picture(camera: str) -> None:
     seen = view(0, 0.0, 0.0, 0.0, camera)
-    body = Body(own().mjcf)
+    body = RobotModel(own().mjcf)
     body.pose(np.array(own().home), 0.085)
     points = seen.points.reshape(-1, 3).astype(np.float64)
     close = np.flatnonzero(np.hypot(points[:, 0], points[:, 1]) < 1.0)

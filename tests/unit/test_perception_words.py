@@ -10,8 +10,8 @@ from common.geometry import yaw_quat
 from common.messages import WorldObject
 from common.scene import load_scene
 from services.perception.detect import Detection
-from services.perception.ground import ground
-from services.perception.memory import Memory
+from services.perception.grounding import ground
+from services.perception.object_tracker import ObjectTracker
 from services.perception.view import View
 
 SCENE = load_scene("apartment")
@@ -100,7 +100,7 @@ def empty_view(far: float = 3.0) -> View:
 
 
 def test_looks_add_up_and_nearer_ones_count_more() -> None:
-    memory = Memory(SCENE, 3, 0.6)
+    memory = ObjectTracker(SCENE, 3, 0.6)
     memory.look(empty_view(), [detection("red mug", 1.00, 0.0, distance=3.0)], 1.0)
     memory.look(empty_view(), [detection("red mug", 1.03, 0.0, distance=0.8)], 2.0)
     memory.look(empty_view(), [detection("red mug", 1.00, 0.0, distance=3.0)], 3.0)
@@ -110,7 +110,7 @@ def test_looks_add_up_and_nearer_ones_count_more() -> None:
 
 
 def test_a_sliver_of_a_thing_neither_moves_nor_doubles_what_was_seen_whole() -> None:
-    memory = Memory(SCENE, 3, 0.6)
+    memory = ObjectTracker(SCENE, 3, 0.6)
     memory.look(empty_view(), [detection("yellow bowl", 4.0, 1.0, 0.97, distance=1.2)], 0.0)
     for t, aside in ((1.0, 0.04), (2.0, 0.13)):
         sliver = replace(detection("yellow bowl", 4.0 + aside, 1.0, 0.5, distance=0.7), whole=False, share=0.03)
@@ -120,7 +120,7 @@ def test_a_sliver_of_a_thing_neither_moves_nor_doubles_what_was_seen_whole() -> 
 
 
 def test_one_wrong_name_does_not_rename() -> None:
-    memory = Memory(SCENE, 3, 0.6)
+    memory = ObjectTracker(SCENE, 3, 0.6)
     for t in range(3):
         memory.look(empty_view(), [detection("red mug", 1.0, 0.0)], float(t))
     memory.look(empty_view(), [detection("red can", 1.0, 0.0, confidence=0.7)], 3.0)
@@ -128,13 +128,13 @@ def test_one_wrong_name_does_not_rename() -> None:
 
 
 def test_a_doubtful_sighting_is_not_reported() -> None:
-    memory = Memory(SCENE, 3, 0.6)
+    memory = ObjectTracker(SCENE, 3, 0.6)
     memory.look(empty_view(), [detection("white mug", 1.0, 0.0, confidence=0.2, distance=3.0)], 0.0)
     assert memory.objects() == []
 
 
 def test_a_thing_is_gone_after_looks_through_its_place_only() -> None:
-    memory = Memory(SCENE, 3, 0.6)
+    memory = ObjectTracker(SCENE, 3, 0.6)
     memory.look(empty_view(), [detection("red mug", 1.2, 0.0)], 0.0)
     for t in range(5):
         memory.look(empty_view(far=0.8), [], 1.0 + t)  # something stands in front
@@ -145,7 +145,7 @@ def test_a_thing_is_gone_after_looks_through_its_place_only() -> None:
 
 
 def test_a_moved_thing_is_in_its_new_place_only() -> None:
-    memory = Memory(SCENE, 3, 0.6)
+    memory = ObjectTracker(SCENE, 3, 0.6)
     memory.look(empty_view(), [detection("red mug", 1.2, 0.0)], 0.0)
     memory.look(empty_view(far=0.5), [detection("red mug", 1.2, 0.8)], 5.0)
     (found,) = memory.objects()
@@ -153,7 +153,7 @@ def test_a_moved_thing_is_in_its_new_place_only() -> None:
 
 
 def test_a_held_thing_moves_with_the_hand_and_stays_where_it_is_let_go() -> None:
-    memory = Memory(SCENE, 3, 0.6)
+    memory = ObjectTracker(SCENE, 3, 0.6)
     memory.look(empty_view(), [detection("red mug", 1.2, 0.0)], 0.0)
     memory.carry((1.2, 0.0, 0.82), True, 1.0)
     memory.carry((0.4, 0.0, 0.9), True, 2.0)
@@ -165,7 +165,7 @@ def test_a_held_thing_moves_with_the_hand_and_stays_where_it_is_let_go() -> None
 
 
 def test_a_closed_hand_far_from_everything_holds_nothing_known() -> None:
-    memory = Memory(SCENE, 3, 0.6)
+    memory = ObjectTracker(SCENE, 3, 0.6)
     memory.look(empty_view(), [detection("red mug", 1.2, 0.0)], 0.0)
     memory.carry((0.0, 1.0, 0.9), True, 1.0)
     assert [o.held for o in memory.objects()] == [False]

@@ -9,8 +9,8 @@ from common import messages as m
 from common import topics
 from common.robot import ARM
 from common.scene import load_scene
-from services.perception.posture import Posture
 from services.perception.service import PerceptionService
+from services.perception.state_buffer import StateBuffer
 from services.sim.model import own
 from tests.node import Node
 
@@ -19,7 +19,7 @@ class Feeling(PerceptionService):
     """Perception with its eyes shut."""
 
     def __init__(self, config: None, io: Any) -> None:
-        self.posture = Posture(io)
+        self.posture = StateBuffer(io)
 
     def step(self, now: float) -> None:
         self.felt = self.posture.feel()
@@ -30,7 +30,7 @@ class Robot(Node):
 
     def __init__(self) -> None:
         super().__init__(Feeling, None, load_scene("minimal"))
-        self.posture: Posture = self.service.posture
+        self.posture: StateBuffer = self.service.posture
         self.bus.send(topics.ROBOT_DESCRIPTION, m.RobotDescription(mjcf=own().mjcf))
 
     def feel(self, x: float, shoulder: float, width: float = 0.0, force: float = 0.0) -> bool:

@@ -11,14 +11,14 @@ from services.manipulation.arm_model import Array, Obstacle
 from services.manipulation.clearance import PAD
 from services.manipulation.contacts import Contact, came_around
 from services.manipulation.grasp import shown
-from services.manipulation.held import Held
+from services.manipulation.grasp_verification import WIDTH_ERROR, held_badly, judge
+from services.manipulation.grasped_object import GraspedObject
 from services.manipulation.plan_grab import GrabPlan, plan_grab
+from services.manipulation.planning_scene import obstacles, target_of
 from services.manipulation.robot import Failure, Robot, Steps, go_home, planner_of
 from services.manipulation.sighting import MISTAKEN, aimed, sighted
-from services.manipulation.surroundings import obstacles, target_of
 from services.manipulation.touch import TOO_HEAVY, TOUCHED, load_limit
 from services.manipulation.trajectory import back_along
-from services.manipulation.verify import WIDTH_ERROR, held_badly, judge
 
 BAD_HOLD = "BAD_HOLD"
 TOO_WIDE = "TOO_WIDE"
@@ -67,10 +67,10 @@ def grab(robot: Robot, goal: m.ManipulationGoal, wanted: str) -> Steps[str]:
                 raise
             last = failure
             robot.io.log.warning("grasp failed", code=failure.code, detail=failure.detail, grasp=plan.grasp.name)
-            if failure.code == "BLOCKED" and robot.held is not None and robot.grip.holds():
-                return (yield from _carry_again(robot, robot.held, around))
+            if failure.code == "BLOCKED" and robot.grasped is not None and robot.grip.holds():
+                return (yield from _carry_again(robot, robot.grasped, around))
             robot.phase = "retract"
-            robot.held = None
+            robot.grasped = None
             yield from robot.move_gripper(0.0)
             yield from go_home(robot)
             if failure.code == TOO_HEAVY:
@@ -106,7 +106,7 @@ def _execute_grab(
         yield from _withdraw(robot, plan)
         raise
     closed = robot.grip
-    robot.held = plan.held
+    robot.grasped = plan.grasped
     robot.phase = "retract"
     way = [plan.lift]
     try:
@@ -124,14 +124,14 @@ def _execute_grab(
             yield from _set_back(robot, plan, way, free)
         raise
     robot.contacts.clear()
-    robot.source.remember(plan.held.label, None, "", robot.now)
-    return f"{plan.held.label} held: width {robot.grip.width * 1000:.1f} mm, force {robot.grip.force:.0f} N"
+    robot.source.remember(plan.grasped.label, None, "", robot.now)
+    return f"{plan.grasped.label} held: width {robot.grip.width * 1000:.1f} mm, force {robot.grip.force:.0f} N"
 
 
 def _note_contact(robot: Robot, plan: GrabPlan, found: WorldObject) -> None:
     """Remember that the open fingers touched the object, or something before it, on their way around it."""
     hand, wanted = planner_of(robot).reaction.position(robot.joints), plan.grasp.pose
-    around = came_around(hand, wanted.position, plan.held.size, PAD)
+    around = came_around(hand, wanted.position, plan.grasped.size, PAD)
     turn = quat_matrix(yaw_quat(robot.base[2]))
     robot.contacts.add(found.label, Contact(turn @ wanted.rotation, found.seen_at, around))
     robot.io.log.info(
@@ -168,7 +168,7 @@ def _set_back(robot: Robot, plan: GrabPlan, way: list[list[Array]], free: Array)
         except Failure as failure:
             if failure.code != TOUCHED:
                 raise
-            robot.io.log.info("set back", object=plan.held.label, felt=failure.detail)
+            robot.io.log.info("set back", object=plan.grasped.label, felt=failure.detail)
     yield from _withdraw(robot, plan)
 
 
@@ -178,7 +178,7 @@ def _check_width(robot: Robot, plan: GrabPlan, widths: list[float]) -> None:
     Raises:
         Failure: BAD_HOLD.
     """
-    held, width = plan.held, robot.grip.width
+    held, width = plan.grasped, robot.grip.width
     spec = robot.io.scene.object(held.label)
     if spec is None or kind_of(held.kind).by_the_rim or not held_badly(robot.grip, plan.grasp.width, spec.kind):
         return
@@ -189,7 +189,7 @@ def _check_width(robot: Robot, plan: GrabPlan, widths: list[float]) -> None:
     raise Failure(BAD_HOLD, f"width {1000 * width:.1f} mm where the {held.label} has {1000 * plan.grasp.width:.1f}")
 
 
-def _carry_again(robot: Robot, held: Held, around: list[Obstacle]) -> Steps[str]:
+def _carry_again(robot: Robot, held: GraspedObject, around: list[Obstacle]) -> Steps[str]:
     """Something was in the way with the object in hand: another path to the carry pose, without letting go."""
     robot.forget_command()
     path = yield from robot.work(planner_of(robot).carry, held, robot.joints.copy(), around)
@@ -201,7 +201,7 @@ def _carry_again(robot: Robot, held: Held, around: list[Obstacle]) -> Steps[str]
 
 
 def _judge(robot: Robot, plan: GrabPlan, at_close: float | None) -> None:
-    nominal = 0.0 if kind_of(plan.held.kind).by_the_rim else plan.grasp.width
+    nominal = 0.0 if kind_of(plan.grasped.kind).by_the_rim else plan.grasp.width
     code = judge(robot.grip, nominal, at_close, robot.config)
     if code:
         was = "" if at_close is None else f", was {at_close * 1000:.1f} mm"

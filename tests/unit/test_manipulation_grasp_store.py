@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from services.manipulation.grasp import approach_rotation
-from services.manipulation.held import Held
-from services.manipulation.memo import HandMemo
+from services.manipulation.grasp_store import GraspStore
+from services.manipulation.grasped_object import GraspedObject
 from tests.unit.test_manipulation_service import Arm
 
-BOTTLE = Held(
+BOTTLE = GraspedObject(
     "green bottle", "bottle", approach_rotation(0.3, 0.2), np.array([0.0, 0.01, 0.084]), (0.064, 0.064, 0.2), 0.064, 0.1
 )  # fmt: skip
 
@@ -21,16 +21,16 @@ def told() -> list[str]:
 
 
 def test_it_comes_back_as_it_was_while_the_fingers_stay_where_they_are(tmp_path: Path, told: list[str]) -> None:
-    HandMemo(tmp_path / "state", told.append).keep(BOTTLE, 0.0638)
-    found = HandMemo(tmp_path / "state", told.append).recall(0.0631, 0.004)
+    GraspStore(tmp_path / "state", told.append).keep(BOTTLE, 0.0638)
+    found = GraspStore(tmp_path / "state", told.append).recall(0.0631, 0.004)
     assert found is not None and (found.label, found.kind, found.size) == ("green bottle", "bottle", BOTTLE.size)
     assert np.array_equal(found.rotation, BOTTLE.rotation) and np.array_equal(found.offset, BOTTLE.offset)
-    assert HandMemo(tmp_path / "state", told.append).recall(0.05, 0.004) is None
+    assert GraspStore(tmp_path / "state", told.append).recall(0.05, 0.004) is None
     assert not told
 
 
 def test_an_empty_hand_leaves_nothing(tmp_path: Path, told: list[str]) -> None:
-    memo = HandMemo(tmp_path, told.append)
+    memo = GraspStore(tmp_path, told.append)
     memo.keep(BOTTLE, 0.0638)
     memo.keep(None, 0.085)
     assert memo.recall(0.0638, 0.004) is None and not list(tmp_path.iterdir())
@@ -39,18 +39,18 @@ def test_an_empty_hand_leaves_nothing(tmp_path: Path, told: list[str]) -> None:
 @pytest.mark.parametrize("junk", [b"", b"\xff\x00", b"\x80", b"{}"])
 def test_a_torn_file_is_none(junk: bytes, tmp_path: Path, told: list[str]) -> None:
     (tmp_path / "hand").write_bytes(junk)
-    assert HandMemo(tmp_path, told.append).recall(0.0638, 0.004) is None
+    assert GraspStore(tmp_path, told.append).recall(0.0638, 0.004) is None
 
 
 def test_where_nothing_can_be_written_it_says_so_and_goes_on(tmp_path: Path, told: list[str]) -> None:
     (tmp_path / "state").write_text("a file where the folder should be")
-    memo = HandMemo(tmp_path / "state", told.append)
+    memo = GraspStore(tmp_path / "state", told.append)
     memo.keep(BOTTLE, 0.0638)
     assert len(told) == 1 and memo.recall(0.0638, 0.004) is None
 
 
 def test_a_fresh_process_knows_what_the_hand_holds(tmp_path: Path, told: list[str]) -> None:
-    HandMemo(tmp_path, told.append).keep(BOTTLE, 0.0638)
+    GraspStore(tmp_path, told.append).keep(BOTTLE, 0.0638)
     node = Arm(state_dir=tmp_path)
     node.width, node.force = 0.0636, 25.0
     node.step(0.1)

@@ -10,7 +10,7 @@ from common.geometry import Array
 from common.kinds import KINDS
 from common.scene import Vec3
 from services.perception import shapes
-from services.perception.solve import solve
+from services.perception.least_squares import solve
 
 SIZES: dict[str, Vec3] = {
     "mug": (0.074, 0.074, 0.095), "bowl": (0.14, 0.14, 0.06), "bottle": (0.066, 0.066, 0.22),

@@ -8,7 +8,7 @@ import numpy as np
 from services.manipulation.arm_model import ArmModel, Array, Obstacle, Pose
 from services.manipulation.clearance import HandClearance
 from services.manipulation.grasp import Grasp, Target, candidates
-from services.manipulation.held import Held
+from services.manipulation.grasped_object import GraspedObject
 from services.manipulation.ik import InverseKinematics
 from services.manipulation.touch import Reaction
 from services.manipulation.trajectory import connect
@@ -66,7 +66,7 @@ class Planner:
                 return
         self.arm.set_obstacles(around)
 
-    def carry(self, held: Held, now: Array, around: Sequence[Obstacle]) -> list[Array]:
+    def carry(self, held: GraspedObject, now: Array, around: Sequence[Obstacle]) -> list[Array]:
         """A path to a carry pose with the object in hand, from wherever the arm is.
 
         Raises:

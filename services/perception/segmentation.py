@@ -1,7 +1,7 @@
 """Which pixels stand up from a surface, cut into things. Pure.
 
 The furniture of the floor plan says where surfaces can be; the image says how high they are. Everything above a
-surface, inside its edges and not too tall is kept, cut where the depth jumps, and pieces that stand in the same
+surface, inside its edges and not too tall is kept, cut where the depth jumps, and segments that stand in the same
 spot are joined again.
 """
 
@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from common.scene import Scene
-from services.perception.plan import Cloud, Nearby, corners, inside
 from services.perception.view import Mask, View, Window
+from services.perception.visible_plan import Cloud, Nearby, corners, inside
 
 CLEARANCE = 0.008
 MAX_HEIGHT = 0.30
@@ -38,7 +38,7 @@ class Surface:
 
 
 @dataclass(frozen=True)
-class Piece:
+class Segment:
     """One thing on a surface: its pixels (rows, columns) and their points (n, 3) in frame map.
 
     `cut`: the picture's edge or something nearer hides a part of it; `ends`: its right and its left end are in view.
@@ -52,12 +52,12 @@ class Piece:
     ends: tuple[bool, bool]
 
 
-def pieces(view: View, scene: Scene, max_range: float, robot: Mask | None = None) -> list[Piece]:
+def segments(view: View, scene: Scene, max_range: float, robot: Mask | None = None) -> list[Segment]:
     """The things that stand on the surfaces of the scene. `robot` marks the pixels that show the robot itself."""
     near = Nearby(scene, float(view.position[0]), float(view.position[1]), max_range)
     own = robot if robot is not None else np.zeros(view.shape, bool)
     usable = (view.depth > 0.05) & (view.depth < max_range) & ~own
-    found: list[Piece] = []
+    found: list[Segment] = []
     for r in near.receptacles:
         box, low, high = r.outline.grown(-0.012), r.center[2] - PLANE_SEARCH, r.center[2] + MAX_HEIGHT
         window = view.window(corners(box, low, high))
@@ -76,7 +76,7 @@ def _between(view: View, usable: Mask, low: float, high: float, window: Window) 
     return Cloud(pixels, x[rows, columns], y[rows, columns], z[rows, columns])
 
 
-def _on(view: View, expected: Surface, cloud: Cloud, near: Nearby, own: Mask) -> list[Piece]:
+def _on(view: View, expected: Surface, cloud: Cloud, near: Nearby, own: Mask) -> list[Segment]:
     """Pieces above one surface, its height measured where enough of it is visible."""
     z = cloud.z
     level = z[np.abs(z - expected.height) < PLANE_SEARCH] if expected.name else z[:0]
@@ -104,10 +104,10 @@ def _on(view: View, expected: Surface, cloud: Cloud, near: Nearby, own: Mask) ->
     return [p for p in _join(view, surface, parts, own) if len(p.rows) >= MIN_PIXELS and _is_thing(p)]
 
 
-def _is_thing(piece: Piece) -> bool:
+def _is_thing(segment: Segment) -> bool:
     """Neither as wide as furniture nor reaching up like a wall."""
-    wide, deep, _ = np.ptp(piece.points, axis=0)
-    top = float(piece.points[:, 2].max()) - piece.surface.height
+    wide, deep, _ = np.ptp(segment.points, axis=0)
+    top = float(segment.points[:, 2].max()) - segment.surface.height
     return bool(max(wide, deep) < MAX_EXTENT and top < MAX_HEIGHT - 0.01)
 
 
@@ -128,7 +128,7 @@ def _cut(mask: Mask, depth: NDArray[np.float32]) -> Mask:
 
 def _join(
     view: View, surface: Surface, parts: list[tuple[NDArray[np.intp], NDArray[np.intp]]], own: Mask
-) -> list[Piece]:
+) -> list[Segment]:
     """Parts of one thing, such as the two sides of a mug's rim or a bottle's cap, stand in the same spot."""
     clouds = [view.points[rows, columns].astype(np.float64) for rows, columns in parts]
     low = np.array([c[:, :2].min(axis=0) for c in clouds])
@@ -153,12 +153,12 @@ def _join(
         covered = _covered(view, rows, columns, own)
         ends = not covered[2] and int(columns.max()) < w - 2, not covered[1] and int(columns.min()) > 1
         cut = bool(covered[0] or rows.min() <= 1 or rows.max() >= h - 2 or not all(ends))
-        found.append(Piece(surface, rows, columns, np.concatenate([clouds[k] for k in members]), cut, ends))
+        found.append(Segment(surface, rows, columns, np.concatenate([clouds[k] for k in members]), cut, ends))
     return found
 
 
 def _covered(view: View, rows: NDArray[np.intp], columns: NDArray[np.intp], own: Mask) -> tuple[bool, bool, bool]:
-    """Whether something nearer, or the robot itself (`own`), covers a part of the piece, its left, its right end."""
+    """Whether something nearer, or the robot itself (`own`), covers a part of the segment, its left, its right end."""
     top, left = max(0, int(rows.min()) - RIM), max(0, int(columns.min()) - RIM)
     window = (slice(top, int(rows.max()) + RIM + 1), slice(left, int(columns.max()) + RIM + 1))
     depth = view.depth[window]

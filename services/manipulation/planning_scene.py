@@ -78,7 +78,7 @@ def obstacles(
     return near[:MOST_FURNITURE] + sorted((t for t in things if _near(t) < RANGE), key=_near)
 
 
-def with_thing(around: Sequence[Obstacle], thing: Obstacle) -> list[Obstacle]:
+def with_object(around: Sequence[Obstacle], thing: Obstacle) -> list[Obstacle]:
     """One thing more, after the furniture and before the other things."""
     return [*around[:MOST_FURNITURE], thing, *around[MOST_FURNITURE:]]
 

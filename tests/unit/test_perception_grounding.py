@@ -6,7 +6,7 @@ import pytest
 
 from common.messages import WorldObject
 from common.scene import Place, Receptacle, Room, Scene
-from services.perception.ground import Grounding, ground
+from services.perception.grounding import Grounding, ground
 
 SCENE = Scene(
     name="small", low=(-5, -5), high=(5, 5), home=Place(name="home", x=0, y=0),

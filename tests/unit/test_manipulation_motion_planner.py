@@ -6,15 +6,15 @@ import numpy as np
 
 from services.manipulation.arm_model import Obstacle
 from services.manipulation.grasp import approach_rotation
-from services.manipulation.held import Held
-from services.manipulation.plan import Planner
+from services.manipulation.grasped_object import GraspedObject
+from services.manipulation.motion_planner import Planner
 from services.manipulation.plan_place import plan_place
 from services.sim.model import own
 
 
 def test_where_the_arm_is_stretched_it_leaves_the_way_it_came() -> None:
     planner = Planner(own().mjcf, 0)
-    held = Held(
+    held = GraspedObject(
         "box", "box", approach_rotation(0.0, np.pi / 2), np.array([0.0, 0.0, 0.06]), (0.06, 0.06, 0.10), 0.06, 0.0
     )
     plan = plan_place(planner, held, [(0.5, 0.0)], 0.65, 0.004, [], planner.arm.home.copy())
@@ -26,7 +26,7 @@ def test_where_the_arm_is_stretched_it_leaves_the_way_it_came() -> None:
 def test_on_its_way_home_the_arm_keeps_clear_of_what_it_put_down() -> None:
     planner = Planner(own().mjcf, 0)
     size, yaw, spot = (0.06, 0.08, 0.13), 1.5875, (0.520, 0.001)
-    held = Held("box", "box", approach_rotation(0.0167, np.pi / 6), np.array([0.0, 0.0, 0.078]), size, 0.06, yaw)
+    held = GraspedObject("box", "box", approach_rotation(0.0167, np.pi / 6), np.array([0.0, 0.0, 0.078]), size, 0.06, yaw)
     plan = plan_place(planner, held, [spot], 0.46, 0.004, [], planner.arm.home.copy())
     planner.arm.set_obstacles([Obstacle((*spot, 0.46 + size[2] / 2), size, yaw)])
     way = [plan.retreat[-1], *plan.home]

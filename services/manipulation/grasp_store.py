@@ -8,15 +8,15 @@ import msgspec
 import numpy as np
 
 from common import atomic_file
-from services.manipulation.held import Held
+from services.manipulation.grasped_object import GraspedObject
 
 NAME, VERSION = "hand", 1
 RELEASED = "released"
 """File with the id of the goal for which the fingers were last opened."""
 
 
-class Memo(msgspec.Struct):
-    """A `Held` in plain numbers, and the width [m] at which the fingers came to rest on it."""
+class StoredGrasp(msgspec.Struct):
+    """A `GraspedObject` in plain numbers, and the width [m] at which the fingers came to rest on it."""
 
     label: str
     kind: str
@@ -29,14 +29,14 @@ class Memo(msgspec.Struct):
     version: int = VERSION
 
 
-class HandMemo:
+class GraspStore:
     """What is held, and for which goal the fingers were last opened: files in `directory`; None: only in memory."""
 
     def __init__(self, directory: Path | None, report: Callable[[str], None]) -> None:
         self._path, self._report = directory / NAME if directory else None, report
         self._released_path = directory / RELEASED if directory else None
         self._released: str | None = None
-        self._kept: Held | None = None
+        self._kept: GraspedObject | None = None
         self._settled = False
 
     def release(self, goal_id: str) -> None:
@@ -59,7 +59,7 @@ class HandMemo:
                     self._released = self._released_path.read_text(encoding="utf-8")
         return self._released
 
-    def keep(self, held: Held | None, closed: float) -> None:
+    def keep(self, held: GraspedObject | None, closed: float) -> None:
         """Write what is held now, where it has changed."""
         if self._path is None or (self._settled and held is self._kept):
             return
@@ -67,7 +67,7 @@ class HandMemo:
         why = ""
         if held is not None:
             rotation, offset = held.rotation.tolist(), held.offset.tolist()
-            memo = Memo(held.label, held.kind, rotation, offset, held.size, held.width, held.yaw, closed)
+            memo = StoredGrasp(held.label, held.kind, rotation, offset, held.size, held.width, held.yaw, closed)
             with contextlib.suppress(OSError):
                 self._path.parent.mkdir(parents=True, exist_ok=True)
             why = atomic_file.replace(self._path, msgspec.msgpack.encode(memo))
@@ -79,12 +79,12 @@ class HandMemo:
         if why:
             self._report(why)
 
-    def recall(self, width: float, within: float) -> Held | None:
+    def recall(self, width: float, within: float) -> GraspedObject | None:
         """What a former process held, when the fingers are still where it closed them [m]."""
         if self._path is None:
             return None
         try:
-            memo = msgspec.msgpack.decode(self._path.read_bytes(), type=Memo)
+            memo = msgspec.msgpack.decode(self._path.read_bytes(), type=StoredGrasp)
         except (OSError, msgspec.DecodeError):
             return None
         rotation, offset = np.array(memo.rotation), np.array(memo.offset)
@@ -92,5 +92,5 @@ class HandMemo:
         if not sound or abs(width - memo.closed) > within:
             return None
         self._settled = True
-        self._kept = Held(memo.label, memo.kind, rotation, offset, memo.size, memo.width, memo.yaw)
+        self._kept = GraspedObject(memo.label, memo.kind, rotation, offset, memo.size, memo.width, memo.yaw)
         return self._kept

@@ -15,7 +15,7 @@ REACH = 1.1
 MARGIN = 0.025
 
 
-class Body:
+class RobotModel:
     """Kinematics of the robot with its base at the origin."""
 
     def __init__(self, mjcf: str) -> None:

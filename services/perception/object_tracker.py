@@ -64,7 +64,7 @@ class Track:
         return best / max(sum(self.scores.values()), 1e-9) * (1 - math.exp(-3.0 * best))
 
 
-class Memory:
+class ObjectTracker:
     """What is where, as far as it was seen."""
 
     def __init__(self, scene: Scene, gone_after: int, min_confidence: float) -> None:

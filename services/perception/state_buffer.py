@@ -10,17 +10,17 @@ from common.bus.port import Io, Job
 from common.geometry import Array, Pose2, wrap
 from common.grip import Grip
 from common.robot import ARM
-from services.perception.body import Body
+from services.perception.self_filter import RobotModel
 
 HISTORY = 100
 
 
-class Posture:
+class StateBuffer:
     """Reads pose, joints and the robot's description; the model loads in the worker."""
 
     def __init__(self, io: Io) -> None:
         self._io = io
-        self._model: Job[Body] | None = None
+        self._model: Job[RobotModel] | None = None
         self._description: m.RobotDescription | None = None
         self._poses: deque[tuple[float, Pose2]] = deque(maxlen=HISTORY)
         self._joints: deque[tuple[float, Array, float]] = deque(maxlen=20)
@@ -34,7 +34,7 @@ class Posture:
         description = io.latest(topics.ROBOT_DESCRIPTION)
         if self._model is None and description is not None and description is not self._description:
             self._description = description
-            self._model = io.submit(Body, description.mjcf, seconds=0.2)
+            self._model = io.submit(RobotModel, description.mjcf, seconds=0.2)
         joints = io.latest(topics.JOINT_STATES)
         if (
             joints is None
@@ -71,7 +71,7 @@ class Posture:
         (t0, a), (t1, b) = self._poses[-4], self._poses[-1]
         return abs(wrap(b[2] - a[2])) / max(t1 - t0, 1e-3)
 
-    def body(self, now: float, t: float | None = None) -> Body | None:
+    def body(self, now: float, t: float | None = None) -> RobotModel | None:
         """The robot's model with its arm as it is, or was at `t`; None while it loads or nothing was felt."""
         body = self._loaded(now) if self._joints else None
         if body is not None:
@@ -80,11 +80,11 @@ class Posture:
             body.pose(arm, width)
         return body
 
-    def holds(self, body: Body) -> bool:
+    def holds(self, body: RobotModel) -> bool:
         """True when the fingers press on something."""
         return Grip(self._joints[-1][2], abs(self._force)).holds(body.open)
 
-    def _loaded(self, now: float) -> Body | None:
+    def _loaded(self, now: float) -> RobotModel | None:
         if self._model is None or not self._model.poll(now):
             return None
         try:

@@ -7,10 +7,10 @@ import numpy as np
 from common.geometry import compose
 from services.manipulation.arm_model import Obstacle
 from services.manipulation.grasp import approach_rotation
-from services.manipulation.held import USUAL_SIZE, Held
+from services.manipulation.grasped_object import USUAL_SIZE, GraspedObject
 from services.manipulation.plan_place import PlacePlan, plan_place
+from services.manipulation.planning_scene import obstacles, spots
 from services.manipulation.robot import Failure, Robot, Steps, go_home, planner_of
-from services.manipulation.surroundings import obstacles, spots
 from services.manipulation.touch import TOUCHED
 
 FLOOR_SPOTS = ((0.48, 0.0), (0.48, 0.2), (0.48, -0.2))
@@ -25,7 +25,7 @@ down in the hand, or have been taken so far above its foot."""
 def place(robot: Robot, where: str) -> Steps[str]:
     """Set the held object down on a receptacle, or with "" on the delivery surface or whatever is in reach."""
     planner, scene = planner_of(robot), robot.io.scene
-    held = robot.held or _unknown(robot)
+    held = robot.grasped or _unknown(robot)
     robot.phase = "place"
     footprint = max(held.size[0], held.size[1])
     known = [o for o in robot.source.objects() if o.label != held.label]
@@ -58,7 +58,7 @@ def place(robot: Robot, where: str) -> Steps[str]:
     raise last
 
 
-def _around(robot: Robot, held: Held, where: str) -> list[Obstacle]:
+def _around(robot: Robot, held: GraspedObject, where: str) -> list[Obstacle]:
     """What the arm must not touch while it puts something down; what lies in a bin may be covered."""
     r = robot.io.scene.receptacle(where)
     inside = where if r is not None and r.depth else None
@@ -66,20 +66,20 @@ def _around(robot: Robot, held: Held, where: str) -> list[Obstacle]:
     return obstacles(robot.io.scene, robot.base, objects, without=held.label, margin=0.0)
 
 
-def _execute_place(robot: Robot, plan: PlacePlan, held: Held, name: str, surface: float) -> Steps[str]:
+def _execute_place(robot: Robot, plan: PlacePlan, held: GraspedObject, name: str, surface: float) -> Steps[str]:
     config = robot.config
     yield from robot.follow(plan.reach, config.joint_speed * 0.8)
     if robot.grip.empty:
-        robot.held = None
+        robot.grasped = None
         raise Failure("SLIPPED", f"the {held.label} was lost on the way")
     yield from _lower(robot, plan, held)
     yield from robot.wait(0.2)
     robot.phase = "release"
     yield from robot.move_gripper(0.0)
     if robot.grip.width < min(planner_of(robot).arm.widest, held.width) + 0.004:
-        # Held as before, for whoever tries again.
+        # GraspedObject as before, for whoever tries again.
         raise Failure("STUCK", f"the gripper opened to {robot.grip.width * 1000:.0f} mm only")
-    robot.held = None
+    robot.grasped = None
     robot.phase = "retract"
     try:
         yield from robot.follow(plan.retreat, config.joint_speed * 0.5)
@@ -94,7 +94,7 @@ def _execute_place(robot: Robot, plan: PlacePlan, held: Held, name: str, surface
     return f"{held.label} on the {name}, gripper open at {robot.grip.width * 1000:.0f} mm"
 
 
-def _lower(robot: Robot, plan: PlacePlan, held: Held) -> Steps[None]:
+def _lower(robot: Robot, plan: PlacePlan, held: GraspedObject) -> Steps[None]:
     """Down until it stands: at the end of the way, or a little before that where it is felt to.
 
     Raises:
@@ -112,9 +112,9 @@ def _lower(robot: Robot, plan: PlacePlan, held: Held) -> Steps[None]:
         robot.io.log.info("set down", object=held.label, felt=failure.detail, above_mm=round(1000 * above, 1))
 
 
-def _unknown(robot: Robot) -> Held:
+def _unknown(robot: Robot) -> GraspedObject:
     """Something is in the gripper that a former process grasped: assume it hangs straight down from the hand."""
     name = next((o.label for o in robot.source.objects() if o.held), "object")
     size = next((o.size for o in robot.source.objects() if o.held), USUAL_SIZE)
     offset = np.array([0.0, 0.0, size[2] / 2])
-    return Held(name, "", approach_rotation(0.0, np.pi / 2), offset, size, robot.grip.width, 0.0)
+    return GraspedObject(name, "", approach_rotation(0.0, np.pi / 2), offset, size, robot.grip.width, 0.0)

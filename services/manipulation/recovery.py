@@ -6,10 +6,10 @@ import numpy as np
 
 from common.messages import ObjectRef
 from services.manipulation.arm_model import Array, Obstacle
-from services.manipulation.held import USUAL_SIZE, Held
-from services.manipulation.plan import PlanError, Planner
+from services.manipulation.grasped_object import USUAL_SIZE, GraspedObject
+from services.manipulation.motion_planner import PlanError, Planner
+from services.manipulation.planning_scene import obstacles
 from services.manipulation.robot import Failure, Robot, Steps, go_home
-from services.manipulation.surroundings import obstacles
 
 NEAR = 0.15
 
@@ -19,15 +19,15 @@ def at_carry(planner: Planner, joints: Array) -> bool:
     return any(float(np.abs(planner.arm.nearest_turn(c, joints) - joints).max()) < NEAR for c in planner.carries)
 
 
-def in_hand(planner: Planner, joints: Array, width: float, wanted: ObjectRef | None) -> Held:
+def in_hand(planner: Planner, joints: Array, width: float, wanted: ObjectRef | None) -> GraspedObject:
     """What is in the gripper as far as can be said: the wanted object, standing upright, taken at half its height."""
     size = wanted.size if wanted is not None and min(wanted.size) > 0 else USUAL_SIZE
     label, kind = (wanted.label, wanted.kind) if wanted is not None else ("object", "")
     rotation = planner.arm.pose(joints).rotation
-    return Held(label or "object", kind, rotation, np.array([0.0, 0.0, size[2] / 2]), size, width, 0.0)
+    return GraspedObject(label or "object", kind, rotation, np.array([0.0, 0.0, size[2] / 2]), size, width, 0.0)
 
 
-def out_of_there(planner: Planner, held: Held, now: Array, around: Sequence[Obstacle], lift: float) -> list[Array]:
+def retreat(planner: Planner, held: GraspedObject, now: Array, around: Sequence[Obstacle], lift: float) -> list[Array]:
     """Straight up first, then to a carry pose.
 
     Raises:
@@ -46,26 +46,26 @@ def out_of_there(planner: Planner, held: Held, now: Array, around: Sequence[Obst
     return planner.carry(held, now, around)
 
 
-def bring_up(robot: Robot, wanted: ObjectRef | None) -> Steps[str]:
+def retract_grasped(robot: Robot, wanted: ObjectRef | None) -> Steps[str]:
     """Lift and fold in what the hand was found to hold. Returns the evidence; SLIPPED, BLOCKED when that fails."""
     planner, config = robot.planner, robot.config
-    label = robot.held.label if robot.held else ""
+    label = robot.grasped.label if robot.grasped else ""
     if planner is not None and not at_carry(planner, robot.joints):
-        held = robot.held or in_hand(planner, robot.joints, robot.grip.width, wanted)
+        held = robot.grasped or in_hand(planner, robot.joints, robot.grip.width, wanted)
         around = obstacles(robot.io.scene, robot.base, robot.source.objects(), without=held.label)
         robot.phase = "retract"
-        path = yield from robot.work(out_of_there, planner, held, robot.joints.copy(), around, config.lift_height)
+        path = yield from robot.work(retreat, planner, held, robot.joints.copy(), around, config.lift_height)
         yield from robot.follow(path, config.joint_speed * 0.5)
         yield from robot.wait(0.2)
         if not robot.grip.holds():
-            robot.held = None
+            robot.grasped = None
             raise Failure("SLIPPED", f"the {held.label} was lost on the way to the carry pose")
-        robot.held = held
+        robot.grasped = held
         robot.source.remember(held.label, None, "", robot.now)
     return f"already holding {label or 'something'}: width {robot.grip.width * 1000:.1f} mm"
 
 
-def fold(robot: Robot) -> Steps[None]:
+def retract_empty(robot: Robot) -> Steps[None]:
     """Open an empty hand and take the arm back, if there is a way."""
     yield from robot.move_gripper(0.0)
     if robot.planner is not None and not at_carry(robot.planner, robot.joints):
