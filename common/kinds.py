@@ -41,7 +41,7 @@ class Kind:
 
     `shape`: the solid that stands for it, `turned` about its vertical axis by `outline` (a cylinder without one).
     `upright`: it has an upper side and is to stand on its foot. `rests`: how else it may come to rest: a box on any
-    `face`, round things on their `side` or `upside down`. `ends_alike`: top and bottom cannot be told apart.
+    `face`, round objects on their `side` or `upside down`. `ends_alike`: top and bottom cannot be told apart.
     `lean` [rad] and `wall` [m] of a vessel's wall; `handle`: how far one reaches beyond the body [m]. `facets`: how
     much wider [m] than `size` a grip around it may be: the simulated wall has flat pieces. Lying it is taken
     `lying_point` of its length from the middle towards the top, from `lying_angles` [deg] below horizontal.

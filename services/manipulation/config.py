@@ -8,7 +8,7 @@ class ManipulationConfig(Config, frozen=True):
 
     A sighting of the object is good for `fresh` seconds; a newer one is waited for at most `look_patience`.
     With the hand in front of it the wrist camera's sighting is waited for `aim_patience`; a shift between
-    `aim_least` and `aim_most` corrects the grasp; more, or a turn of a flat-sided thing by `aim_turn` [rad], has it
+    `aim_least` and `aim_most` corrects the grasp; more, or a turn of a flat-sided object by `aim_turn` [rad], has it
     planned anew.
     """
 

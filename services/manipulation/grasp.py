@@ -1,4 +1,4 @@
-"""Candidate grasps for an object of known kind, size and pose: side grasps for upright things, tilted ones for mugs,
+"""Candidate grasps for an object of known kind, size and pose: side grasps for upright objects, tilted ones for mugs,
 from above for low ones, at the rim for bowls. Angles were measured in simulation for a 85 mm parallel gripper."""
 
 import math
@@ -14,8 +14,10 @@ from common.kinds import GraspRule, kind_of
 from services.manipulation.arm_model import Array, Pose
 
 HANDLE_CONE = math.radians(50)
+"""Angle [rad] between a finger and a handle below which the finger would land on it. Chosen: a handle's width and a
+finger's, seen from the axis of a mug."""
 LYING_FROM = 0.7
-"""Tilt [rad] from which, and up to which before upside down, a thing lies on its side."""
+"""Tilt [rad] from which, and up to which before upside down, an object lies on its side."""
 RIM_DEPTH = 0.012
 """How far [m] below a rim the pads take hold: more than half of a pad's length is on the wall."""
 
@@ -134,7 +136,7 @@ def _round(target: Target, facing: float, rule: GraspRule) -> list[Grasp]:
 
 
 def _lying(target: Target, facing: float) -> list[Grasp]:
-    """Fingers on either side of a lying thing's axis, the hand leaning towards its foot: so it can be set upright."""
+    """Fingers on either side of a lying object's axis, the hand leaning towards its foot: so it can be set upright."""
     found, kind = [], kind_of(target.kind)
     along = kind.lying_point * target.size[0]
     x, y, _ = target.position

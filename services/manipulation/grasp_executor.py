@@ -1,4 +1,4 @@
-"""Grabbing: reach, aim, grasp, retract; another candidate after a miss."""
+"""Grasp executor: reach, aim, grasp, retract; another candidate after a miss."""
 
 import numpy as np
 
@@ -21,7 +21,9 @@ from services.manipulation.touch import TOO_HEAVY, TOUCHED, load_limit
 from services.manipulation.trajectory import back_along
 
 BAD_HOLD = "BAD_HOLD"
+"""Code within an attempt: the fingers hold the object by something else than its body; another grasp is tried."""
 TOO_WIDE = "TOO_WIDE"
+"""Code: the object does not fit between the open fingers."""
 CLOSING_EFFORT = 8.0
 """Force [N] with which the fingers come before they grip: slow enough that they do not knock (in simulation 0.16 m/s
 each, three times what they do with the whole grip force)."""

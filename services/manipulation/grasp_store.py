@@ -1,4 +1,4 @@
-"""How the hand holds what is in it, on disk: a process that was killed is succeeded by one that knows."""
+"""Grasp store: the grasped object on disk, for the process that succeeds one that was killed."""
 
 import contextlib
 from collections.abc import Callable
@@ -11,6 +11,7 @@ from common import atomic_file
 from services.manipulation.grasped_object import GraspedObject
 
 NAME, VERSION = "hand", 1
+"""File with the grasped object, and the version of its layout: another one is not read."""
 RELEASED = "released"
 """File with the id of the goal for which the fingers were last opened."""
 

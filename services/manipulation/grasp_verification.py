@@ -1,4 +1,4 @@
-"""What the gripper's width and force say: nothing between the fingers, something held, something lost."""
+"""Grasp verification by the gripper's width and force: nothing between the fingers, an object held, an object lost."""
 
 from typing import Literal
 
@@ -7,6 +7,8 @@ from common.kinds import kind_of
 from services.manipulation.config import ManipulationConfig
 
 TOO_WIDE = 0.006
+"""How much wider [m] than the object the fingers may stand, else they are on a handle or a rim. Chosen: more than the
+corners of a round wall, less than any handle adds."""
 WIDTH_ERROR = 0.0008
 """Most [m] that the width after the lift may be over what the object measures there: beyond it the hold is bad
 (measured over reach-grasp-lift trials)."""

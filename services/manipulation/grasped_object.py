@@ -8,8 +8,8 @@ from services.manipulation.arm_model import Array
 from services.manipulation.grasp import Grasp, Target
 
 SHRINK = 0.008
-"""How much smaller [m] than the object its collision box is on every side. Chosen: the errors of size and grasp, so that
-the box is clear of the surface that the object stands on."""
+"""How much smaller [m] than the object its collision box is on every side. Chosen: the errors of size and grasp, so
+that the box is clear of the surface that the object stands on."""
 LEAST_HALF = 0.004
 """Least half extent [m] of that box. Chosen: half of the thinnest object that is carried."""
 USUAL_SIZE = (0.06, 0.06, 0.10)

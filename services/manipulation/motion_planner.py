@@ -14,9 +14,14 @@ from services.manipulation.touch import Reaction
 from services.manipulation.trajectory import connect
 
 CARTESIAN_STEP = 0.02
+"""Distance [m] between the configurations along a straight line. Chosen: joints in between hardly leave it."""
 MAX_JUMP = 0.6
+"""Largest change of a joint [rad] from one of them to the next. Chosen: more is another branch of the inverse
+kinematics."""
 TRANSIT_MARGINS = (0.02, 0.01, 0.005)
-# Close to the body; for long things the hand is turned or tips up so that they stay clear of the arm.
+"""Margins [m] around obstacles in free motion, widest first. Chosen: from the error of a sighting at 2 m down to that
+of one at arm's length."""
+# Tip and turn [rad] of the hand at the carry pose: for long objects it is turned or tips up, so that they stay clear.
 _CARRY = tuple((tip, turn) for tip in (0.0, 0.4, 0.8) for turn in (0.0, np.pi / 2, -np.pi / 2))
 
 

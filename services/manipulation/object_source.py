@@ -12,8 +12,12 @@ from common.naming import match_object
 from common.scene import Scene
 
 FRONT = 1.2
+"""How far [m] ahead of the base an unnamed object to grab may be. Chosen: the arm's reach and its place on the base."""
 SHIFTED = 0.4
+"""How far [m] from where a goal describes an object a newer sighting of it still means the same one. Chosen: farther
+than an object is shoved, nearer than the next surface."""
 DEFAULT_SIZE = (0.06, 0.06, 0.08)
+"""Full extents [m] of an object that nobody described. Chosen: near those of a can."""
 
 
 class ObjectSource:

@@ -1,4 +1,4 @@
-"""Setting down what is held: on a receptacle, or wherever there is room; the hand opens only when it stands."""
+"""Place executor: the grasped object is set on a receptacle or where there is room; the hand opens when it stands."""
 
 from itertools import product
 
@@ -16,7 +16,9 @@ from services.manipulation.touch import TOUCHED
 FLOOR_SPOTS = ((0.48, 0.0), (0.48, 0.2), (0.48, -0.2))
 """Where things are put on the floor, from the arm's first joint [m]: in front of the base and clear of it."""
 DROP = 0.004
+"""Height [m] above a surface at which the way down ends. Chosen: the error of the surface's measured height."""
 BIN_DROP = 0.06
+"""Height [m] above a bin's rim at which the hand lets go. Chosen: the fingers stay clear of the rim."""
 STANDS = 0.03
 """Height [m] above the end of the way down at which what is met is what the object is put on: it may have slid so far
 down in the hand, or have been taken so far above its foot."""

@@ -1,4 +1,4 @@
-"""What stands around the robot, as boxes in the base frame, from the scene's furniture and the known objects."""
+"""The planning scene: boxes in the base frame for furniture, walls and known objects around the robot."""
 
 import math
 from collections.abc import Iterable, Sequence
@@ -12,9 +12,18 @@ from services.manipulation.arm_model import Obstacle
 from services.manipulation.grasp import Target
 
 RANGE = 1.4
+"""Distance [m] from the base's centre up to which boxes count. Chosen: the arm's reach, its place on the base and an
+object."""
 SLAB = 0.14
+"""Depth [m] below a surface that is modelled as solid. Chosen: more than the height of the hand, which cannot pass
+under."""
 MARGIN = 0.01
+"""How much [m] known objects grow on every side. Chosen: the error of a sighting at arm's length."""
 MOST_FURNITURE = 14
+"""Boxes of furniture and walls, nearest first; the rest of the `arm_model.BOXES` is for objects."""
+BIN_WALL = 0.03
+"""Thickness [m] of a bin's walls in the planning scene. Chosen: twice that of the walls themselves,
+`floor_plan.BIN_WALL`."""
 EASY = 0.54
 """Distance [m] in front of the arm that is reached most easily at the height of tables: the middle of its reach."""
 
@@ -30,7 +39,7 @@ def target_of(found: WorldObject, base: Pose2, scene: Scene) -> Target:
 
 
 def turned(was: Target, new: Target) -> float:
-    """The angle [rad] between two poses of a thing with flat sides; equal sides are not told apart."""
+    """The angle [rad] between two poses of an object with flat sides; equal sides are not told apart."""
     alike = math.isclose(new.size[0], new.size[1])
     return abs(math.remainder(new.yaw - was.yaw, math.pi / 2 if alike else math.pi))
 
@@ -52,7 +61,7 @@ def _receptacle(r: Receptacle, base: Pose2) -> list[Obstacle]:
         return [_box(base, (x, y, z - SLAB / 2), (sx, sy, SLAB), r.yaw)]
     walls = []
     for i, j in ((1, 0), (-1, 0), (0, 1), (0, -1)):
-        size = (0.03 if i else sx, 0.03 if j else sy, r.depth)
+        size = (BIN_WALL if i else sx, BIN_WALL if j else sy, r.depth)
         walls.append(_box(base, (*r.outline.to_map(i * sx / 2, j * sy / 2), r.depth / 2), size, r.yaw))
     return walls
 
@@ -69,18 +78,18 @@ def obstacles(
         x, y, length, width, yaw = wall.outline
         found.append(_box(base, (x, y, wall.height / 2), (length, width, wall.height), yaw))
     near = sorted((b for b in found if _near(b) < RANGE), key=_near)
-    things = []
+    boxes = []
     for o in objects:
         if o.label != without and not o.held:
             target = target_of(o, base, scene)
             size = (o.size[0] + 2 * margin, o.size[1] + 2 * margin, o.size[2] + margin)
-            things.append(Obstacle(target.position, size, target.yaw))
-    return near[:MOST_FURNITURE] + sorted((t for t in things if _near(t) < RANGE), key=_near)
+            boxes.append(Obstacle(target.position, size, target.yaw))
+    return near[:MOST_FURNITURE] + sorted((b for b in boxes if _near(b) < RANGE), key=_near)
 
 
-def with_object(around: Sequence[Obstacle], thing: Obstacle) -> list[Obstacle]:
-    """One thing more, after the furniture and before the other things."""
-    return [*around[:MOST_FURNITURE], thing, *around[MOST_FURNITURE:]]
+def with_object(around: Sequence[Obstacle], box: Obstacle) -> list[Obstacle]:
+    """The obstacles with the box of one more object, after the furniture and before the other objects."""
+    return [*around[:MOST_FURNITURE], box, *around[MOST_FURNITURE:]]
 
 
 def spots(

@@ -1,4 +1,4 @@
-"""Going on where a former process or a stop left the arm: a full hand comes to the carry pose, an empty one home."""
+"""Recovery of an arm that a former process or a stop left somewhere: with an object to the carry pose, empty home."""
 
 from collections.abc import Sequence
 
@@ -12,15 +12,17 @@ from services.manipulation.planning_scene import obstacles
 from services.manipulation.robot import Failure, Robot, Steps, go_home
 
 NEAR = 0.15
+"""Largest joint angle [rad] off a carry pose at which the arm counts as retracted. Chosen: no joint's lag is as
+large."""
 
 
 def at_carry(planner: Planner, joints: Array) -> bool:
-    """The arm is folded already."""
+    """True when the arm is retracted to a carry pose."""
     return any(float(np.abs(planner.arm.nearest_turn(c, joints) - joints).max()) < NEAR for c in planner.carries)
 
 
 def in_hand(planner: Planner, joints: Array, width: float, wanted: ObjectRef | None) -> GraspedObject:
-    """What is in the gripper as far as can be said: the wanted object, standing upright, taken at half its height."""
+    """The most likely object in the gripper: the wanted one, upright, grasped at half its height."""
     size = wanted.size if wanted is not None and min(wanted.size) > 0 else USUAL_SIZE
     label, kind = (wanted.label, wanted.kind) if wanted is not None else ("object", "")
     rotation = planner.arm.pose(joints).rotation
@@ -28,7 +30,7 @@ def in_hand(planner: Planner, joints: Array, width: float, wanted: ObjectRef | N
 
 
 def retreat(planner: Planner, held: GraspedObject, now: Array, around: Sequence[Obstacle], lift: float) -> list[Array]:
-    """Straight up first, then to a carry pose.
+    """A joint path straight up by `lift` [m], then to a carry pose.
 
     Raises:
         PlanError: BLOCKED.
@@ -47,7 +49,7 @@ def retreat(planner: Planner, held: GraspedObject, now: Array, around: Sequence[
 
 
 def retract_grasped(robot: Robot, wanted: ObjectRef | None) -> Steps[str]:
-    """Lift and fold in what the hand was found to hold. Returns the evidence; SLIPPED, BLOCKED when that fails."""
+    """Lift what the hand was found to hold and retract. Returns the evidence; SLIPPED, BLOCKED when that fails."""
     planner, config = robot.planner, robot.config
     label = robot.grasped.label if robot.grasped else ""
     if planner is not None and not at_carry(planner, robot.joints):

@@ -87,7 +87,7 @@ class Robot:
             raise Failure("BLOCKED", f"joint_{worst + 1} is {error[worst]:.2f} rad behind")
 
     def guard(self, rest: Array, most: float = MET, lifting: bool = False) -> Guard | None:
-        """For a motion near things; `rest`: torques (7,) [Nm] of the arm in the air."""
+        """For a motion near objects; `rest`: torques (7,) [Nm] of the arm in the air."""
         return Guard(self.planner.reaction, rest, most, lifting) if self.planner is not None else None
 
     def _check_touched(self, guard: Guard | None) -> None:

@@ -1,6 +1,6 @@
 """Objects in one RGB-D view: the seam for detectors, and the classical one. Pure.
 
-`ClassicalDetector` cuts the view into the things that stand on surfaces, then asks which thing of the household
+`ClassicalDetector` cuts the view into the objects that stand on surfaces, then asks which object of the household
 (`scene.objects`: kind, size, colour) explains the points and the colour best. What fits none is reported by its
 measured size and its nearest kind, with little confidence.
 """
@@ -20,10 +20,14 @@ from services.perception.segmentation import Segment
 from services.perception.view import Mask, View
 
 SHAPE_SCALE, HEIGHT_SCALE, COLOUR_SCALE = 0.0035, 0.010, 0.07
+"""Standard deviations of a fit's mean distance [m], of the height [m], and of the colour's difference (`colour`)."""
 WORST, SOUND = 3.2, 2.0
+"""Score, in standard deviations, beyond which a hypothesis explains nothing, and below which no other pose is tried."""
 LYING = math.pi / 2
 """Tilt [rad] of what lies on its side."""
 UNKNOWN_CONFIDENCE = 0.45
+"""Confidence of an unknown object. Chosen: below the least at which `world/objects` lists one after a single
+sighting."""
 UNKNOWN_KINDS = (KINDS["can"], KINDS["box"])
 
 
@@ -53,7 +57,7 @@ class Detection:
 
 @dataclass(frozen=True)
 class RestingPose:
-    """How a thing may rest on a surface: its full extents there, and the tilt [rad] of its own axis."""
+    """How an object may rest on a surface: its full extents there, and the tilt [rad] of its own axis."""
 
     size: Vec3
     tilt: float = 0.0
@@ -64,7 +68,7 @@ RestingPoses = Callable[[ObjectSpec], list[RestingPose]]
 
 @dataclass(frozen=True)
 class Hypothesis:
-    """A thing of the household in one rest that may explain a segment; `score` in standard deviations."""
+    """An object of the household in one resting pose that may explain a segment; `score` in standard deviations."""
 
     score: float
     spec: ObjectSpec
@@ -164,7 +168,7 @@ class ClassicalDetector:
         return sorted(found, key=lambda g: g.score)
 
     def _unknown(self, view: View, segment: Segment, rgb: Array, height: float) -> Detection | None:
-        """A thing that is not of the household, by its measured size."""
+        """An object that is not of the household, by its measured size."""
         if segment.cut or len(segment.rows) < 2 * segmentation.MIN_PIXELS:
             return None
         low, high = segment.points[:, :2].min(axis=0), segment.points[:, :2].max(axis=0)
@@ -198,7 +202,7 @@ def _standing(spec: ObjectSpec) -> list[RestingPose]:
 
 
 def _toppled(spec: ObjectSpec) -> list[RestingPose]:
-    """A round thing on its side, or upside down."""
+    """A round object on its side, or upside down."""
     rests = kind_of(spec.kind).rests
     found = [RestingPose(toppled.extents(spec.size), LYING)] if "side" in rests else []
     return found + ([RestingPose(spec.size, math.pi)] if "upside down" in rests else [])
@@ -223,7 +227,7 @@ def _fit(spec: ObjectSpec, rest: RestingPose, view: View, segment: Segment) -> s
 
 
 def _pixels(view: View, position: Vec3, size: Vec3) -> float:
-    """How many pixels a thing of that size covers from the front when nothing hides it."""
+    """How many pixels an object of that size covers from the front when nothing hides it."""
     scale = view.focal[0] / math.dist(position, view.position)
     return scale * scale * min(size[0], size[1]) * size[2]
 

@@ -1,4 +1,4 @@
-"""Words to an object: colour, kind, size, side, place and other names; says so when nothing or several match. Pure."""
+"""Grounding: the object that words refer to, by colour, kind, size, side, place and other names; or why none. Pure."""
 
 import re
 from collections.abc import Callable, Mapping, Sequence

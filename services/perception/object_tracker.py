@@ -1,4 +1,4 @@
-"""The objects over time: seen, seen again, moved, held, gone. Pure."""
+"""Object tracks over time: seen, seen again, moved, grasped, gone. Pure."""
 
 import math
 from collections.abc import Sequence
@@ -13,25 +13,38 @@ from services.perception.detect import Detection
 from services.perception.view import View
 
 SAME = 0.12
+"""Distance [m] on the floor plan within which a detection belongs to a track. Chosen: below the spacing of
+neighbours."""
 MOVED = 0.05
+"""Distance [m] from which an object has moved, rather than been measured differently. Chosen: three times the error of
+a sighting from 2 m."""
 FELL = 0.7
-"""A change of the tilt [rad] that is no error of measurement: things stand, lie (1.57) or are upside down (3.14)."""
+"""A change of the tilt [rad] that is no error of measurement: objects stand, lie (1.57) or are upside down (3.14)."""
 LIKELY = 0.4
-"""Confidence from which a view may say that a thing fell; rendered lying things get 0.55 and more half hidden by the
-arm, and in 37 rendered views of standing things none was taken for a lying one."""
+"""Confidence from which a view may say that an object fell; rendered lying objects get 0.55 and more half hidden by the
+arm, and in 37 rendered views of standing objects none was taken for a lying one."""
 HELD_RANGE = 0.12
+"""Distance [m] from the hand within which the object that it closed on was believed to be."""
 SURE = 0.55
+"""Confidence from which a detection's name, and with it its position, counts in full."""
 TRUST = 4.0
+"""Weight of a track's position, in best sightings, beyond which further ones no longer add to it."""
 PARTIAL = 0.1
+"""Weight of a sighting of a part, of that of the whole; times the squared share that was seen."""
 POORER = 0.5
+"""Weight of a sighting, of the best one, from which it may still turn the object."""
 EDGE_PIXELS = 30
+"""Distance [pixels] from the picture's edge within which a missing object says nothing."""
 LOOK_RANGE = 2.5
+"""Distance [m] up to which a missing object says something."""
 SEEN_THROUGH = 0.04
+"""How far [m] behind an object's centre the camera must see for the object to be gone. Chosen: above its depth noise
+there."""
 
 
 @dataclass
 class Track:
-    """One thing in one place, with the evidence for its name.
+    """One object in one place, with the evidence for its name.
 
     `seen_at` is the time of the newest evidence, be it the hand's; `looked_at` that of the newest picture of it [s].
     """
@@ -73,7 +86,7 @@ class ObjectTracker:
         self._count = 0
 
     def look(self, view: View, detections: Sequence[Detection], now: float) -> set[str]:
-        """Take in what a view shows; ids of the things that were seen."""
+        """Take in what a view shows; ids of the objects that were seen."""
         seen: set[str] = set()
         free = [t for t in self._tracks if not t.held]
         pairs = sorted(
@@ -120,7 +133,7 @@ class ObjectTracker:
         held.position = (hand[0], hand[1], height + held.size[2] / 2)
 
     def objects(self, since: float = -math.inf) -> list[WorldObject]:
-        """What is believed, one place for each thing of the household, the newest that was sure.
+        """What is believed, one place for each object of the household, the newest that was sure.
 
         `since`: only what a picture has shown at that robot time [s] or later.
         """

@@ -1,4 +1,4 @@
-"""Which pixels stand up from a surface, cut into things. Pure.
+"""Segments of a view: the pixels that stand up from a surface, cut into objects. Pure.
 
 The furniture of the floor plan says where surfaces can be; the image says how high they are. Everything above a
 surface, inside its edges and not too tall is kept, cut where the depth jumps, and segments that stand in the same
@@ -16,17 +16,35 @@ from services.perception.view import Mask, View, Window
 from services.perception.visible_plan import Cloud, Nearby, corners, inside
 
 CLEARANCE = 0.008
+"""Height [m] above a surface from which points belong to objects. Chosen: twice the depth noise at 1.5 m."""
 MAX_HEIGHT = 0.30
+"""Height [m] above a surface up to which points belong to objects. Chosen: above the tallest bottle."""
 PLANE_SEARCH = 0.025
+"""How far [m] from the floor plan's height the surface itself is looked for. Chosen: errors of camera pose and
+furniture."""
 MIN_PLANE = 60
+"""Pixels from which the height of a surface is measured rather than taken from the floor plan."""
 MIN_PIXELS = 24
+"""Pixels of the smallest segment. Chosen: about a can of 66 mm at 3.5 m, half hidden."""
 JUMP = 0.022
+"""Step of depth [m] between neighbouring pixels that separates two objects; `JUMP_PER_METRE` is added per metre [m/m],
+as depth noise and the slope between two pixels grow with the distance."""
 JUMP_PER_METRE = 0.012
 JOIN = 0.02
+"""Gap [m] on the floor plan up to which two segments belong to one object: a rim's two sides, a bottle and its cap."""
 JOINED_EXTENT = 0.17
+"""Largest extent [m] on the floor plan of what is joined. Chosen: a bowl and its noise."""
 MAX_EXTENT = 0.30
-RIM, NEARER, HIDDEN, HIDDEN_END = 3, 0.03, 0.06, 0.25
+"""Extent [m] on the floor plan from which a segment is furniture and no object."""
+RIM = 3
+"""Width [pixels] of the band around a segment in which something nearer is looked for."""
+NEARER = 0.03
+"""How much nearer [m] than the segment a neighbour must be to hide a part of it."""
+HIDDEN, HIDDEN_END = 0.06, 0.25
+"""Shares of that band, and of the band at its left or right end, from which the segment counts as cut."""
 FLOOR_RANGE = 2.2
+"""Distance [m] up to which objects on the floor are looked for. Chosen: beyond it the floor's depth noise exceeds
+CLEARANCE."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +57,7 @@ class Surface:
 
 @dataclass(frozen=True)
 class Segment:
-    """One thing on a surface: its pixels (rows, columns) and their points (n, 3) in frame map.
+    """One object on a surface: its pixels (rows, columns) and their points (n, 3) in frame map.
 
     `cut`: the picture's edge or something nearer hides a part of it; `ends`: its right and its left end are in view.
     """
@@ -53,7 +71,7 @@ class Segment:
 
 
 def segments(view: View, scene: Scene, max_range: float, robot: Mask | None = None) -> list[Segment]:
-    """The things that stand on the surfaces of the scene. `robot` marks the pixels that show the robot itself."""
+    """The objects that stand on the surfaces of the scene. `robot` marks the pixels that show the robot itself."""
     near = Nearby(scene, float(view.position[0]), float(view.position[1]), max_range)
     own = robot if robot is not None else np.zeros(view.shape, bool)
     usable = (view.depth > 0.05) & (view.depth < max_range) & ~own
@@ -129,7 +147,7 @@ def _cut(mask: Mask, depth: NDArray[np.float32]) -> Mask:
 def _join(
     view: View, surface: Surface, parts: list[tuple[NDArray[np.intp], NDArray[np.intp]]], own: Mask
 ) -> list[Segment]:
-    """Parts of one thing, such as the two sides of a mug's rim or a bottle's cap, stand in the same spot."""
+    """Parts of one object, such as the two sides of a mug's rim or a bottle's cap, stand in the same spot."""
     clouds = [view.points[rows, columns].astype(np.float64) for rows, columns in parts]
     low = np.array([c[:, :2].min(axis=0) for c in clouds])
     high = np.array([c[:, :2].max(axis=0) for c in clouds])

@@ -1,4 +1,4 @@
-"""The robot's own body: which pixels show it, and where its hand is. Made from `robot/description`."""
+"""Robot self-filter: which pixels show the robot, and where its hand is, by the model of `robot/description`."""
 
 import mujoco
 import numpy as np
@@ -11,8 +11,12 @@ from common.robot import ARM, Hand
 from services.perception.view import Mask, View
 
 STEP = 4
+"""Every so many rows and columns of a picture are tested; the gaps are filled [pixels]."""
 REACH = 1.1
+"""Distance [m] from the base's axis beyond which no part of the robot is."""
 MARGIN = 0.025
+"""Distance [m] from the robot's geoms up to which pixels are its own. Chosen: errors of depth and of joint angles in
+motion."""
 
 
 class RobotModel:

@@ -23,11 +23,17 @@ from services.perception.state_buffer import StateBuffer
 from services.perception.view import View, view_of
 
 MOVING = 0.02
+"""Change of the base's pose [m, rad] from which it moves. Chosen: above the noise of localisation at rest."""
 HAND_RANGE = 0.35
+"""Distance [m] from a working hand within which the head camera's detections are left out. Chosen: it may hide a part
+of them."""
 CLEAR = ("", "start", "look")
-# The hand is in front of the thing and waits for what its own camera sees.
+"""Phases of manipulation in which the arm is retracted."""
 AIM = "aim"
+"""Phase in which the hand is in front of the object and waits for the wrist camera's sighting."""
 REFINED = 0.05
+"""Most [m] that the wrist camera's sighting may be off the believed position of the object that it refines. Chosen:
+less than the distance to a neighbour."""
 PICTURES = (topics.HEAD_RGBD, topics.WRIST_RGBD)
 
 
@@ -133,14 +139,14 @@ class PerceptionService:
         if view.camera == "wrist":
             detections = [d for d in detections if self._refines(d)]
         elif self._working() not in CLEAR and self._hand is not None:
-            # Half hidden by the hand, a thing looks like another.
+            # Half hidden by the hand, an object looks like another.
             detections = [d for d in detections if math.dist(d.position, self._hand) > HAND_RANGE]
         seen = self._memory.look(view, detections, view.t)
         self._show(now, bool(seen))
         self._answer(seen, view)
 
     def _refines(self, d: Detection) -> bool:
-        """True for what the wrist camera may say of a thing: where it is more exactly, and of round things from any
+        """True for what the wrist camera may say of an object: where it is more exactly, and of round objects from any
         part of them."""
         known = any(o.label == d.label and math.dist(o.position, d.position) < REFINED for o in self._shown)
         return known and (kind_of(d.kind).straight or (d.whole and d.confidence >= SURE))

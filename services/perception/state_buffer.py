@@ -1,4 +1,4 @@
-"""Where the robot's base and arm are and were: by that a picture is placed in the map, and the robot found in it."""
+"""Robot state at a stamp: pose of the base and joint angles when a picture was taken, and the model posed by them."""
 
 from collections import deque
 
@@ -13,6 +13,7 @@ from common.robot import ARM
 from services.perception.self_filter import RobotModel
 
 HISTORY = 100
+"""Poses that are kept: 5 s at 20 Hz, longer than a picture is under way."""
 
 
 class StateBuffer:

@@ -14,6 +14,7 @@ Mask = NDArray[np.bool_]
 # Rows and columns
 Window = tuple[slice, slice]
 NEAR = 0.05
+"""Depth [m] below which the projection of a corner says nothing: the window is then the whole picture."""
 
 
 @dataclass(frozen=True)
