@@ -128,10 +128,10 @@ def _round(target: Target, facing: float, rule: GraspRule) -> list[Grasp]:
         tilt = math.radians(degrees)
         for turn in (0.0, 25.0, -25.0, 50.0, -50.0):
             azimuth = facing + math.radians(turn)
-            if kind_of(target.kind).handle and _closes_on(target.yaw, azimuth):
-                continue
             name = f"{degrees:.0f} deg at {turn:+.0f}"
-            found.append(_make(target, target.size[2] * rule.height, azimuth, tilt, 0.0, width, name))
+            grasp = _make(target, target.size[2] * rule.height, azimuth, tilt, 0.0, width, name)
+            if not on_handle(target, grasp.pose.rotation):
+                found.append(grasp)
     return found
 
 
@@ -159,9 +159,13 @@ def _off(angle: float, other: float) -> float:
     return math.remainder(angle - other, math.tau)
 
 
-def _closes_on(handle: float, azimuth: float) -> bool:
-    """True when a finger would land on a handle that points along `handle`."""
-    return abs(math.cos(handle - azimuth - math.pi / 2)) > math.cos(HANDLE_CONE)
+def on_handle(target: Target, rotation: Array) -> bool:
+    """True when a hand of this rotation (3, 3) would close on the handle of an upright object, which points along its
+    yaw."""
+    if not kind_of(target.kind).handle:
+        return False
+    closing = math.atan2(rotation[1, 1], rotation[0, 1])
+    return abs(math.cos(target.yaw - closing)) > math.cos(HANDLE_CONE)
 
 
 def _flat(target: Target, facing: float, rule: GraspRule) -> list[Grasp]:

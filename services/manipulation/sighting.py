@@ -5,6 +5,7 @@ import math
 from common import messages as m
 from common.kinds import kind_of
 from common.messages import WorldObject
+from services.manipulation.grasp import on_handle
 from services.manipulation.plan_grab import GrabPlan, refine
 from services.manipulation.planning_scene import target_of, turned
 from services.manipulation.robot import Failure, Robot, Steps, planner_of
@@ -50,6 +51,8 @@ def aimed(robot: Robot, plan: GrabPlan, goal: m.ManipulationGoal, found: WorldOb
     off, turn = math.hypot(*shift), turned(was, new) if kind_of(found.kind).shape == "box" else 0.0
     if off > config.aim_most or turn > config.aim_turn:
         raise Failure(MISTAKEN, f"{found.label} is {1000 * off:.0f} mm and {math.degrees(turn):.0f} deg from there")
+    if on_handle(new, plan.grasp.pose.rotation):
+        raise Failure(MISTAKEN, f"a finger would land on the handle of the {found.label}")
     if off < config.aim_least:
         return plan
     robot.io.log.info("aim corrected", object=found.label, by_mm=round(1000 * off, 1))

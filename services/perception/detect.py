@@ -37,7 +37,7 @@ class Detection:
 
     `tilt`: angle [rad] of its own axis to the vertical. Of what lies on its side the first extent is along that axis,
     which points along `yaw`. `whole`: all of it was in view, so that the position can be trusted; `share`: about how
-    much of it was.
+    much of it was. `yaw_seen`: the yaw is no guess, as that of a mug whose handle is hidden.
     """
 
     label: str
@@ -53,6 +53,7 @@ class Detection:
     whole: bool = True
     share: float = 1.0
     tilt: float = 0.0
+    yaw_seen: bool = True
 
 
 @dataclass(frozen=True)
@@ -121,9 +122,9 @@ class ClassicalDetector:
         # Sure when the fit is good and nothing else in the house comes close.
         confidence = math.exp(-0.5 * (score / 2.2) ** 2) * (1 - math.exp(-2.0 * (second - score) - 0.4))
         pixels = min(1.0, len(segment.rows) / 120)
-        yaw = fit.yaw
+        yaw, yaw_seen = fit.yaw, True
         if kind.handle and not tilt:
-            yaw = shapes.handle_yaw(size, segment.points, fit.x, fit.y, view.position)
+            yaw, yaw_seen = shapes.handle_yaw(size, segment.points, fit.x, fit.y, view.position)
         position = (fit.x, fit.y, segment.surface.height + size[2] / 2)
         return Detection(
             label=spec.name,
@@ -138,6 +139,7 @@ class ClassicalDetector:
             whole=not segment.cut and score < SOUND,
             share=min(1.0, len(segment.rows) / _pixels(view, position, size)),
             tilt=tilt,
+            yaw_seen=yaw_seen,
         )
 
     def _hypotheses(

@@ -63,6 +63,7 @@ class Track:
     sightings: int = 0
     held: bool = False
     tilt: float = 0.0
+    yaw_seen: bool = False
     looked_at: float = -math.inf
 
     @property
@@ -128,6 +129,7 @@ class ObjectTracker:
             return
         # Where the hand let go; the next look says better.
         held.held, held.misses, held.weight, held.seen_at = False, 0, 0.0, now
+        held.yaw_seen = False
         surface = self._scene.surface_at(*hand)
         held.on, height = (surface.name, surface.center[2]) if surface else ("", 0.0)
         held.position = (hand[0], hand[1], height + held.size[2] / 2)
@@ -179,7 +181,9 @@ def _see(track: Track, d: Detection, now: float) -> None:
     old, new = np.array(track.position), np.array(d.position)
     x, y, z = (float(v) for v in old + share * (new - old))
     track.position, track.on = (x, y, z), d.on
-    track.yaw = d.yaw if fell or (share and weight >= POORER * track.best) else track.yaw
+    guess = track.yaw_seen and not d.yaw_seen and shift <= MOVED
+    if fell or (share and weight >= POORER * track.best and not guess):
+        track.yaw, track.yaw_seen = d.yaw, d.yaw_seen
     track.seen_at, track.misses, track.sightings = now, 0, track.sightings + 1
     track.looked_at = now
     # Close looks count more, slivers less, and old mistakes fade.

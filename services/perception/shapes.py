@@ -168,11 +168,11 @@ def fit(kind: Kind, size: Vec3, points: Array, floor: float, camera: Array, ends
     return Fit(x, y, math.remainder(yaw, math.pi), float(left.mean()))
 
 
-def handle_yaw(size: Vec3, points: Array, x: float, y: float, camera: Array) -> float:
-    """Where a mug's handle points: to the points outside its wall, or away from the camera when none are seen."""
+def handle_yaw(size: Vec3, points: Array, x: float, y: float, camera: Array) -> tuple[float, bool]:
+    """Direction [rad] of a mug's handle, and whether it was seen: without points off the wall, away from `camera`."""
     dx, dy = points[:, 0] - x, points[:, 1] - y
     rho = np.hypot(dx, dy)
     outside = (rho > size[0] / 2 + 0.006) & (rho < size[0] / 2 + 0.04)
     if np.count_nonzero(outside) >= 6:
-        return math.atan2(float(dy[outside].mean()), float(dx[outside].mean()))
-    return math.atan2(y - float(camera[1]), x - float(camera[0]))
+        return math.atan2(float(dy[outside].mean()), float(dx[outside].mean())), True
+    return math.atan2(y - float(camera[1]), x - float(camera[0])), False

@@ -13,6 +13,7 @@ from services.manipulation.grasp import (
     Target,
     approach_rotation,
     candidates,
+    on_handle,
     shown,
 )  # fmt: skip
 
@@ -190,3 +191,11 @@ def test_what_is_shown_is_in_the_map_with_what_became_of_it() -> None:
         assert candidate.position == pytest.approx(turn @ grasp.pose.position + [2.0, 3.0, 0.0])
         assert np.allclose(quat_matrix(candidate.orientation), turn @ grasp.pose.rotation)
         assert candidate.width == grasp.width
+
+
+@pytest.mark.parametrize(("yaw", "lands"), [(-33, True), (147, True), (25, False), (90, False), (-90, False)])
+def test_a_handle_seen_from_in_front_of_a_mug_says_whether_a_finger_would_land_on_it(yaw: int, lands: bool) -> None:
+    """Fetch seed 36: a grasp along 65 degrees of a mug whose handle points along -33."""
+    rotation = approach_rotation(math.radians(65), math.radians(40))
+    assert on_handle(target("mug", (0.074, 0.074, 0.095), math.radians(yaw)), rotation) is lands
+    assert not on_handle(target("can", (0.066, 0.066, 0.115), math.radians(yaw)), rotation)

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from common.geometry import yaw_quat
+from common.geometry import quat_yaw, yaw_quat
 from common.messages import WorldObject
 from common.scene import load_scene
 from services.perception.detect import Detection
@@ -169,3 +169,17 @@ def test_a_closed_hand_far_from_everything_holds_nothing_known() -> None:
     memory.look(empty_view(), [detection("red mug", 1.2, 0.0)], 0.0)
     memory.carry((0.0, 1.0, 0.9), True, 1.0)
     assert [o.held for o in memory.objects()] == [False]
+
+
+def test_a_handle_that_was_seen_stays_where_it_is_while_it_is_hidden() -> None:
+    tracker = ObjectTracker(SCENE, 3, 0.6)
+    view = empty_view()
+    seen, hidden = detection("red mug", 1.0, 0.5), replace(detection("red mug", 1.0, 0.5), yaw=1.5, yaw_seen=False)
+
+    def yaw(d: Detection) -> float:
+        tracker.look(view, [d], 1.0)
+        return quat_yaw(tracker.objects()[0].orientation)
+
+    moved = replace(hidden, position=(1.09, 0.5, 0.8))
+    assert yaw(hidden) == pytest.approx(1.5), "a guess is better than nothing"
+    assert [yaw(d) for d in (replace(seen, yaw=-0.6), hidden, moved)] == pytest.approx([-0.6, -0.6, 1.5])
