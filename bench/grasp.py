@@ -19,6 +19,7 @@ from common import topics
 from common.approach import EDGE_DISTANCE, STAND_OFF
 from common.bus.memory import MemoryBus, MemoryIo
 from common.geometry import compose, inverse, yaw_quat
+from common.kinds import KINDS
 from common.scene import ObjectSpec, Scene, body_name, load_scene
 from common.time.clock import ManualClock
 from common.time.lockstep import DT, InProcess
@@ -148,7 +149,7 @@ def trial(scene: Scene, spec: ObjectSpec, seed: int, config: ManipulationConfig)
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--trials", type=int, default=10)
-    parser.add_argument("--kinds", default="mug,can,bottle,apple,block,box,ball,bowl")
+    parser.add_argument("--kinds", default=",".join(KINDS))
     parser.add_argument("--peer", action="store_true", help="also run with a single candidate grasp")
     args = parser.parse_args()
     scene = load_scene("apartment")

@@ -41,7 +41,7 @@ PARTS = {
     "services.perception.detect:ClassicalDetector.detect": "detection",
     "services.perception.self_filter:RobotModel.mask": "its own body",
     "services.perception.self_filter:RobotModel.pose": "its own body",
-    "services.perception.state_buffer:StateBuffer.feel": "posture",
+    "services.perception.state_buffer:StateBuffer.update": "robot state",
     "services.navigation.localisation.localise:Localiser.predict": "localisation",
     "services.navigation.localisation.localise:Localiser.correct": "localisation",
     "services.navigation.planning.costmap:Costmap.see": "costmap",

@@ -18,9 +18,7 @@ ROOM = FOOTPRINT + 0.02
 BIN_RIM = 0.02
 """Thickness of a bin's walls, which its `size` does not contain [m]: 15 mm and the play of the map's grid."""
 LATERAL = (0.0, 0.10, -0.10, 0.20, -0.20)
-"""Offsets [m] of the pose along the edge: the arm reaches past furniture at its side."""
 RING = 16
-"""Poses around an object on the floor."""
 
 
 def poses_for(

@@ -86,7 +86,7 @@ class ObjectTracker:
         self._tracks: list[Track] = []
         self._count = 0
 
-    def look(self, view: View, detections: Sequence[Detection], now: float) -> set[str]:
+    def update(self, view: View, detections: Sequence[Detection], now: float) -> set[str]:
         """Take in what a view shows; ids of the objects that were seen."""
         seen: set[str] = set()
         free = [t for t in self._tracks if not t.held]

@@ -49,65 +49,65 @@ class PerceptionService:
         self._config, self._io = config, io
         self._detector = load_detector(config.detector)(io.scene, config.max_range)
         self._world = ""
-        self._forget()
+        self._reset()
         self._state = StateBuffer(io)
-        self._hand: tuple[float, float, float] | None = None
+        self._hand_at: tuple[float, float, float] | None = None
         self._picture = ""
         self._asked_at = -1e9
         self._detecting: Job[tuple[View, list[Detection]]] | None = None
         self._looked_from: tuple[Pose2, str] | None = None
         self._inbox: GoalInbox[m.ObjectQuery, m.ObjectPose] = GoalInbox(
-            io, (topics.OBJECT_QUERY,), self._take, self._repeat
+            io, (topics.OBJECT_QUERY,), self._take_query, self._repeat
         )
 
-    def _forget(self) -> None:
-        self._memory = ObjectTracker(self._io.scene, self._config.gone_after, self._config.min_confidence)
-        self._shown: list[m.WorldObject] = []
+    def _reset(self) -> None:
+        self._tracker = ObjectTracker(self._io.scene, self._config.gone_after, self._config.min_confidence)
+        self._published: list[m.WorldObject] = []
         self._io.publish(topics.WORLD_OBJECTS, m.WorldObjects(t=0.0, objects=[], source="perception"))
 
     def step(self, now: float) -> None:
-        self._sense(now)
+        self._update_state(now)
         self._inbox.receive()
-        self._receive(now)
+        self._receive_picture(now)
         if self._detecting is not None and self._detecting.poll(now):
-            self._see(self._detecting, now)
+            self._track_objects(self._detecting, now)
             self._detecting = None
-        self._ask(now)
+        self._request_picture(now)
 
     # --- the robot
-    def _sense(self, now: float) -> None:
-        io, posture = self._io, self._state
-        felt = posture.feel()
+    def _update_state(self, now: float) -> None:
+        io, state = self._io, self._state
+        known = state.update()
         status = io.latest(topics.SIM_STATUS)
         if status is not None and status.world != self._world:
             if self._world:
-                self._forget()
+                self._reset()
                 io.log.info("another world", world=status.world)
             self._world = status.world
-        base = posture.base
+        base = state.base
         # While a picture is looked at, the model belongs to the worker.
-        if not felt or base is None or self._detecting is not None:
+        if not known or base is None or self._detecting is not None:
             return
-        body = posture.body(now)
-        if body is not None:
-            self._hand = body.hand(base)
-            self._memory.carry(self._hand, posture.holds(body), now)
-            self._show(now)
+        robot = state.robot(now)
+        if robot is not None:
+            self._hand_at = robot.hand(base)
+            self._tracker.carry(self._hand_at, state.holds(robot), now)
+            self._publish_objects(now)
 
-    def _working(self) -> str:
+    def _phase(self) -> str:
         """The phase of the manipulation under way, "" when the arm rests."""
         status = self._io.latest(topics.MANIPULATION_STATUS)
         return status.phase or "working" if status is not None and status.status == "executing" else ""
 
     # --- pictures
-    def _ask(self, now: float) -> None:
+    def _request_picture(self, now: float) -> None:
         """Request the next picture when one is due."""
         config = self._config
         waiting = bool(self._picture) and now - self._asked_at < config.picture_timeout
         here = self._state.base
         if waiting or self._detecting is not None or here is None or self._state.turning() > config.max_turn:
             return
-        phase = self._working()
+        phase = self._phase()
         resting = self._looked_from is not None and _near(self._looked_from[0], here) and self._looked_from[1] == phase
         period = config.idle_period if resting else config.period
         if self._inbox.active is None and now - self._asked_at < period and phase != AIM:
@@ -118,7 +118,7 @@ class PerceptionService:
         request = m.CameraRequest(id=self._picture, camera=camera, width=config.width, height=config.height)
         self._io.publish(topics.CAMERA_REQUEST, request)
 
-    def _receive(self, now: float) -> None:
+    def _receive_picture(self, now: float) -> None:
         for key, image in ((t.key, image) for t in PICTURES for image in self._io.take_all(t)):
             base = self._state.base_at(image.t)
             if not self._picture or image.id != self._picture or base is None:
@@ -129,33 +129,33 @@ class PerceptionService:
             except ValueError as error:
                 self._io.count_drop(key, str(error))
                 continue
-            body = self._state.body(now, image.t)
+            robot = self._state.robot(now, image.t)
             self._detecting = self._io.submit(
-                detect, self._detector, view, base, body, seconds=self._config.detection_seconds
+                detect, self._detector, view, base, robot, seconds=self._config.detection_seconds
             )
 
-    def _see(self, job: Job[tuple[View, list[Detection]]], now: float) -> None:
+    def _track_objects(self, job: Job[tuple[View, list[Detection]]], now: float) -> None:
         view, detections = job.result()
         if view.camera == "wrist":
             detections = [d for d in detections if self._refines(d)]
-        elif self._working() not in CLEAR and self._hand is not None:
+        elif self._phase() not in CLEAR and self._hand_at is not None:
             # Half hidden by the hand, an object looks like another.
-            detections = [d for d in detections if math.dist(d.position, self._hand) > HAND_RANGE]
-        seen = self._memory.look(view, detections, view.t)
-        self._show(now, bool(seen))
-        self._answer(seen, view)
+            detections = [d for d in detections if math.dist(d.position, self._hand_at) > HAND_RANGE]
+        seen = self._tracker.update(view, detections, view.t)
+        self._publish_objects(now, bool(seen))
+        self._answer_query(seen, view)
 
     def _refines(self, d: Detection) -> bool:
         """True for what the wrist camera may say of an object: where it is more exactly, and of round objects from any
         part of them."""
-        known = any(o.label == d.label and math.dist(o.position, d.position) < REFINED for o in self._shown)
+        known = any(o.label == d.label and math.dist(o.position, d.position) < REFINED for o in self._published)
         return known and (kind_of(d.kind).straight or (d.whole and d.confidence >= SURE))
 
-    def _show(self, now: float, seen: bool = False) -> None:
+    def _publish_objects(self, now: float, seen: bool = False) -> None:
         """Publish what is believed when it has changed or was `seen` again."""
-        objects = self._memory.objects()
-        if seen or [_outline(o) for o in objects] != [_outline(o) for o in self._shown]:
-            self._shown = objects
+        objects = self._tracker.objects()
+        if seen or [_outline(o) for o in objects] != [_outline(o) for o in self._published]:
+            self._published = objects
             self._io.publish(topics.WORLD_OBJECTS, m.WorldObjects(t=now, objects=objects, source="perception"))
 
     # --- queries
@@ -163,11 +163,11 @@ class PerceptionService:
         if answer is not None:
             self._io.publish(topics.OBJECT_POSE, answer)
 
-    def _take(self, query: m.ObjectQuery) -> None:
+    def _take_query(self, query: m.ObjectQuery) -> None:
         # A picture that is under way was not taken for this question.
         self._pictures, self._picture = 0, ""
 
-    def _answer(self, seen: set[str], view: View) -> None:
+    def _answer_query(self, seen: set[str], view: View) -> None:
         query = self._inbox.active
         if query is None or view.t < query.since:
             return
@@ -186,13 +186,13 @@ class PerceptionService:
 
     def _ground(self, query: m.ObjectQuery) -> Grounding:
         base = self._state.base or (0.0, 0.0, 0.0)
-        objects = self._memory.objects(query.since or -math.inf)
+        objects = self._tracker.objects(query.since or -math.inf)
         return ground(query.query, objects, self._io.scene, base, self._config.synonyms)
 
 
-def detect(detector: Detector, view: View, base: Pose2, body: RobotModel | None) -> tuple[View, list[Detection]]:
+def detect(detector: Detector, view: View, base: Pose2, robot: RobotModel | None) -> tuple[View, list[Detection]]:
     """The worker's part: find the robot in the view, then the objects beside it."""
-    return view, detector.detect(view, body.mask(view, base) if body is not None else None)
+    return view, detector.detect(view, robot.mask(view, base) if robot is not None else None)
 
 
 def load_detector(name: str) -> type[Detector]:

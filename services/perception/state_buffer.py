@@ -27,7 +27,7 @@ class StateBuffer:
         self._joints: deque[tuple[float, Array, float]] = deque(maxlen=20)
         self._force = 0.0
 
-    def feel(self) -> bool:
+    def update(self) -> bool:
         """Take in what was measured; True when the joints are known now."""
         io = self._io
         for pose in io.take_all(topics.POSE):
@@ -72,18 +72,18 @@ class StateBuffer:
         (t0, a), (t1, b) = self._poses[-4], self._poses[-1]
         return abs(wrap(b[2] - a[2])) / max(t1 - t0, 1e-3)
 
-    def body(self, now: float, t: float | None = None) -> RobotModel | None:
+    def robot(self, now: float, t: float | None = None) -> RobotModel | None:
         """The robot's model with its arm as it is, or was at `t`; None while it loads or nothing was felt."""
-        body = self._loaded(now) if self._joints else None
-        if body is not None:
+        robot = self._loaded(now) if self._joints else None
+        if robot is not None:
             newest = self._joints[-1]
             _, arm, width = newest if t is None else min(self._joints, key=lambda row: abs(row[0] - t))
-            body.pose(arm, width)
-        return body
+            robot.pose(arm, width)
+        return robot
 
-    def holds(self, body: RobotModel) -> bool:
+    def holds(self, robot: RobotModel) -> bool:
         """True when the fingers press on something."""
-        return Grip(self._joints[-1][2], abs(self._force)).holds(body.open)
+        return Grip(self._joints[-1][2], abs(self._force)).holds(robot.open)
 
     def _loaded(self, now: float) -> RobotModel | None:
         if self._model is None or not self._model.poll(now):

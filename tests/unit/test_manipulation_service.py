@@ -11,6 +11,7 @@ from common import messages as m
 from common import topics
 from common.bus.memory import MemoryIo
 from common.grip import Grip
+from common.kinds import KINDS
 from common.scene import load_scene
 from evaluation.stack import Stack
 from services.manipulation.arm_model import ArmModel, Obstacle, Pose
@@ -73,7 +74,7 @@ def test_inverse_kinematics_finds_reachable_poses_to_the_millimetre(arm: ArmMode
     assert solved >= 24
 
 
-@pytest.mark.parametrize("kind", ["mug", "can", "bottle", "apple", "ball", "block", "box", "bowl"])
+@pytest.mark.parametrize("kind", KINDS)
 def test_every_kind_has_grasps_that_fit_the_gripper(kind: str) -> None:
     spec = next(o for o in load_scene("apartment").objects if o.kind == kind)
     target = Target(spec.name, kind, (0.6, 0.05, 0.6 + spec.size[2] / 2), 0.4, spec.size)

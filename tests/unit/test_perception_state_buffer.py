@@ -19,10 +19,10 @@ class Feeling(PerceptionService):
     """Perception with its eyes shut."""
 
     def __init__(self, config: None, io: Any) -> None:
-        self.posture = StateBuffer(io)
+        self.state = StateBuffer(io)
 
     def step(self, now: float) -> None:
-        self.felt = self.posture.feel()
+        self.felt = self.state.update()
 
 
 class Robot(Node):
@@ -30,7 +30,7 @@ class Robot(Node):
 
     def __init__(self) -> None:
         super().__init__(Feeling, None, load_scene("minimal"))
-        self.posture: StateBuffer = self.service.posture
+        self.state: StateBuffer = self.service.state
         self.bus.send(topics.ROBOT_DESCRIPTION, m.RobotDescription(mjcf=own().mjcf))
 
     def feel(self, x: float, shoulder: float, width: float = 0.0, force: float = 0.0) -> bool:
@@ -45,7 +45,7 @@ class Robot(Node):
         return bool(self.service.felt)
 
     def hand(self, t: float | None = None) -> tuple[float, float, float]:
-        body = self.posture.body(self.now + 1.0, t)
+        body = self.state.robot(self.now + 1.0, t)
         assert body is not None
         return body.hand((0.0, 0.0, 0.0))
 
@@ -56,7 +56,7 @@ def robot() -> Robot:
 
 
 def test_the_arm_is_as_it_was_felt_last_or_when_a_picture_was_taken(robot: Robot) -> None:
-    assert robot.posture.body(0.0) is None and robot.posture.base is None
+    assert robot.state.robot(0.0) is None and robot.state.base is None
     seen = []
     for shoulder in (0.0, 0.5, 1.0):
         assert robot.feel(0.0, shoulder)
@@ -68,20 +68,20 @@ def test_the_arm_is_as_it_was_felt_last_or_when_a_picture_was_taken(robot: Robot
 def test_the_base_is_between_the_estimates_around_a_picture(robot: Robot) -> None:
     for x in (0.0, 0.1, 0.2, 0.4):
         robot.feel(x, 0.0)
-    assert robot.posture.base == (0.4, 0.0, 0.4)
-    assert robot.posture.base_at(0.35) == pytest.approx((0.3, 0.0, 0.3))
-    assert robot.posture.base_at(9.0) == (0.4, 0.0, 0.4) and robot.posture.base_at(0.0) == (0.0, 0.0, 0.0)
-    assert robot.posture.turning() == pytest.approx(0.4 / 0.3)
+    assert robot.state.base == (0.4, 0.0, 0.4)
+    assert robot.state.base_at(0.35) == pytest.approx((0.3, 0.0, 0.3))
+    assert robot.state.base_at(9.0) == (0.4, 0.0, 0.4) and robot.state.base_at(0.0) == (0.0, 0.0, 0.0)
+    assert robot.state.turning() == pytest.approx(0.4 / 0.3)
 
 
 @pytest.mark.parametrize(("width", "force", "holds"), [(0.05, 30.0, True), (0.05, 0.0, False), (0.001, 30.0, False)])
 def test_fingers_hold_what_keeps_them_apart(robot: Robot, width: float, force: float, holds: bool) -> None:
     robot.feel(0.0, 0.0, width, force)
-    body = robot.posture.body(1.0)
-    assert body is not None and robot.posture.holds(body) is holds
+    body = robot.state.robot(1.0)
+    assert body is not None and robot.state.holds(body) is holds
 
 
 def test_joints_of_another_robot_are_none(robot: Robot) -> None:
     robot.bus.send(topics.JOINT_STATES, m.JointStates(t=0.0, name=["wheel"], position=[0.0], velocity=[], effort=[]))
     robot.step()
-    assert not robot.service.felt and robot.posture.body(1.0) is None
+    assert not robot.service.felt and robot.state.robot(1.0) is None

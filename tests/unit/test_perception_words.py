@@ -100,75 +100,75 @@ def empty_view(far: float = 3.0) -> View:
 
 
 def test_looks_add_up_and_nearer_ones_count_more() -> None:
-    memory = ObjectTracker(SCENE, 3, 0.6)
-    memory.look(empty_view(), [detection("red mug", 1.00, 0.0, distance=3.0)], 1.0)
-    memory.look(empty_view(), [detection("red mug", 1.03, 0.0, distance=0.8)], 2.0)
-    memory.look(empty_view(), [detection("red mug", 1.00, 0.0, distance=3.0)], 3.0)
-    (found,) = memory.objects()
+    tracker = ObjectTracker(SCENE, 3, 0.6)
+    tracker.update(empty_view(), [detection("red mug", 1.00, 0.0, distance=3.0)], 1.0)
+    tracker.update(empty_view(), [detection("red mug", 1.03, 0.0, distance=0.8)], 2.0)
+    tracker.update(empty_view(), [detection("red mug", 1.00, 0.0, distance=3.0)], 3.0)
+    (found,) = tracker.objects()
     assert abs(found.position[0] - 1.03) < 0.005
     assert found.seen_at == 3.0
 
 
 def test_a_sliver_of_a_thing_neither_moves_nor_doubles_what_was_seen_whole() -> None:
-    memory = ObjectTracker(SCENE, 3, 0.6)
-    memory.look(empty_view(), [detection("yellow bowl", 4.0, 1.0, 0.97, distance=1.2)], 0.0)
+    tracker = ObjectTracker(SCENE, 3, 0.6)
+    tracker.update(empty_view(), [detection("yellow bowl", 4.0, 1.0, 0.97, distance=1.2)], 0.0)
     for t, aside in ((1.0, 0.04), (2.0, 0.13)):
         sliver = replace(detection("yellow bowl", 4.0 + aside, 1.0, 0.5, distance=0.7), whole=False, share=0.03)
-        memory.look(empty_view(), [sliver], t)
-    bowl = next(o for o in memory.objects() if o.label == "yellow bowl")
+        tracker.update(empty_view(), [sliver], t)
+    bowl = next(o for o in tracker.objects() if o.label == "yellow bowl")
     assert math.dist(bowl.position[:2], (4.0, 1.0)) < 0.002
 
 
 def test_one_wrong_name_does_not_rename() -> None:
-    memory = ObjectTracker(SCENE, 3, 0.6)
+    tracker = ObjectTracker(SCENE, 3, 0.6)
     for t in range(3):
-        memory.look(empty_view(), [detection("red mug", 1.0, 0.0)], float(t))
-    memory.look(empty_view(), [detection("red can", 1.0, 0.0, confidence=0.7)], 3.0)
-    assert [o.label for o in memory.objects()] == ["red mug"]
+        tracker.update(empty_view(), [detection("red mug", 1.0, 0.0)], float(t))
+    tracker.update(empty_view(), [detection("red can", 1.0, 0.0, confidence=0.7)], 3.0)
+    assert [o.label for o in tracker.objects()] == ["red mug"]
 
 
 def test_a_doubtful_sighting_is_not_reported() -> None:
-    memory = ObjectTracker(SCENE, 3, 0.6)
-    memory.look(empty_view(), [detection("white mug", 1.0, 0.0, confidence=0.2, distance=3.0)], 0.0)
-    assert memory.objects() == []
+    tracker = ObjectTracker(SCENE, 3, 0.6)
+    tracker.update(empty_view(), [detection("white mug", 1.0, 0.0, confidence=0.2, distance=3.0)], 0.0)
+    assert tracker.objects() == []
 
 
 def test_a_thing_is_gone_after_looks_through_its_place_only() -> None:
-    memory = ObjectTracker(SCENE, 3, 0.6)
-    memory.look(empty_view(), [detection("red mug", 1.2, 0.0)], 0.0)
+    tracker = ObjectTracker(SCENE, 3, 0.6)
+    tracker.update(empty_view(), [detection("red mug", 1.2, 0.0)], 0.0)
     for t in range(5):
-        memory.look(empty_view(far=0.8), [], 1.0 + t)  # something stands in front
-    assert len(memory.objects()) == 1
+        tracker.update(empty_view(far=0.8), [], 1.0 + t)  # something stands in front
+    assert len(tracker.objects()) == 1
     for t in range(3):
-        memory.look(empty_view(far=3.0), [], 10.0 + t)
-    assert memory.objects() == []
+        tracker.update(empty_view(far=3.0), [], 10.0 + t)
+    assert tracker.objects() == []
 
 
 def test_a_moved_thing_is_in_its_new_place_only() -> None:
-    memory = ObjectTracker(SCENE, 3, 0.6)
-    memory.look(empty_view(), [detection("red mug", 1.2, 0.0)], 0.0)
-    memory.look(empty_view(far=0.5), [detection("red mug", 1.2, 0.8)], 5.0)
-    (found,) = memory.objects()
+    tracker = ObjectTracker(SCENE, 3, 0.6)
+    tracker.update(empty_view(), [detection("red mug", 1.2, 0.0)], 0.0)
+    tracker.update(empty_view(far=0.5), [detection("red mug", 1.2, 0.8)], 5.0)
+    (found,) = tracker.objects()
     assert found.position[1] == 0.8
 
 
 def test_a_held_thing_moves_with_the_hand_and_stays_where_it_is_let_go() -> None:
-    memory = ObjectTracker(SCENE, 3, 0.6)
-    memory.look(empty_view(), [detection("red mug", 1.2, 0.0)], 0.0)
-    memory.carry((1.2, 0.0, 0.82), True, 1.0)
-    memory.carry((0.4, 0.0, 0.9), True, 2.0)
-    (held,) = memory.objects()
+    tracker = ObjectTracker(SCENE, 3, 0.6)
+    tracker.update(empty_view(), [detection("red mug", 1.2, 0.0)], 0.0)
+    tracker.carry((1.2, 0.0, 0.82), True, 1.0)
+    tracker.carry((0.4, 0.0, 0.9), True, 2.0)
+    (held,) = tracker.objects()
     assert held.held and held.position == (0.4, 0.0, 0.9)
-    memory.carry((0.7, 0.1, 0.52), False, 3.0)
-    (found,) = memory.objects()
+    tracker.carry((0.7, 0.1, 0.52), False, 3.0)
+    (found,) = tracker.objects()
     assert not found.held and found.on == "delivery tray"
 
 
 def test_a_closed_hand_far_from_everything_holds_nothing_known() -> None:
-    memory = ObjectTracker(SCENE, 3, 0.6)
-    memory.look(empty_view(), [detection("red mug", 1.2, 0.0)], 0.0)
-    memory.carry((0.0, 1.0, 0.9), True, 1.0)
-    assert [o.held for o in memory.objects()] == [False]
+    tracker = ObjectTracker(SCENE, 3, 0.6)
+    tracker.update(empty_view(), [detection("red mug", 1.2, 0.0)], 0.0)
+    tracker.carry((0.0, 1.0, 0.9), True, 1.0)
+    assert [o.held for o in tracker.objects()] == [False]
 
 
 def test_a_handle_that_was_seen_stays_where_it_is_while_it_is_hidden() -> None:
@@ -177,7 +177,7 @@ def test_a_handle_that_was_seen_stays_where_it_is_while_it_is_hidden() -> None:
     seen, hidden = detection("red mug", 1.0, 0.5), replace(detection("red mug", 1.0, 0.5), yaw=1.5, yaw_seen=False)
 
     def yaw(d: Detection) -> float:
-        tracker.look(view, [d], 1.0)
+        tracker.update(view, [d], 1.0)
         return quat_yaw(tracker.objects()[0].orientation)
 
     moved = replace(hidden, position=(1.09, 0.5, 0.8))

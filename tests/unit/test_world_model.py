@@ -1,0 +1,79 @@
+"""Rectangles on the floor plan, the surface under a point, and what the gripper holds."""
+
+import math
+
+import pytest
+
+from common import messages as m
+from common.floor_plan import Place, Receptacle
+from common.geometry import Rectangle
+from common.grip import Grip, grip_of
+from common.scene import Scene
+
+TURNED = Rectangle(1.0, 2.0, 2.0, 1.0, math.pi / 6)
+SHELF = Receptacle(name="shelf", kind="shelf", center=(0.0, 0.0, 0.8), size=(1.0, 0.4), yaw=math.pi / 4)
+BIN = Receptacle(name="bin", kind="bin", center=(3.0, 0.0, 0.02), size=(0.3, 0.3), depth=0.4)
+SCENE = Scene(name="s", low=(-5, -5), high=(5, 5), home=Place(name="home", x=0, y=0), receptacles=(SHELF, BIN))
+ALONG = (0.45 * math.sqrt(0.5), 0.45 * math.sqrt(0.5))
+"""A point of the turned shelf that would be beside it if its yaw were ignored."""
+
+
+def test_a_rectangles_own_frame_and_the_maps_are_each_others_inverse() -> None:
+    x, y = TURNED.to_map(1.0, 0.5)
+    assert (x, y) == pytest.approx((1 + math.cos(math.pi / 6) - 0.25, 2 + 0.5 + 0.5 * math.cos(math.pi / 6)))
+    assert TURNED.to_local(x, y) == pytest.approx((1.0, 0.5))
+    assert TURNED.direction(1.0, 0.0) == pytest.approx((math.cos(math.pi / 6), 0.5))
+
+
+@pytest.mark.parametrize(
+    ("local", "inside", "distance"),
+    [((0.99, 0.49), True, 0.0), ((1.2, 0.0), False, 0.2), ((0.0, -0.8), False, 0.3), ((1.3, 0.9), False, 0.5)],
+)
+def test_containing_and_distance_follow_the_yaw(local: tuple[float, float], inside: bool, distance: float) -> None:
+    point = TURNED.to_map(*local)
+    assert TURNED.contains(*point) is inside
+    assert TURNED.distance(*point) == pytest.approx(distance, abs=1e-9)
+    assert TURNED.contains(*point, margin=distance + 1e-9)
+    assert TURNED.grown(distance + 1e-9).contains(*point)
+
+
+@pytest.mark.parametrize(
+    ("x", "y", "z", "name"),
+    [
+        (*ALONG, 0.85, "shelf"),
+        (ALONG[0], -ALONG[1], 0.85, ""),
+        (*ALONG, 1.3, ""),
+        (*ALONG, 0.70, ""),
+        (0.0, 0.235 * math.sqrt(2), 0.85, ""),
+        (3.1, 0.1, 0.39, "bin"),
+        (3.1, 0.1, 0.45, ""),
+        (3.165, 0.0, 0.1, "bin"),
+    ],
+)
+def test_the_surface_on_which_an_object_rests(x: float, y: float, z: float, name: str) -> None:
+    found = SCENE.resting_place((x, y, z))
+    assert (found.name if found else "") == name
+
+
+def test_without_a_height_the_surface_is_the_one_over_or_under_the_point() -> None:
+    assert SCENE.surface_at(*ALONG) is SHELF and SCENE.surface_at(3.0, 0.0) is BIN
+    assert SCENE.surface_at(3.165, 0.0) is None and SCENE.surface_at(3.165, 0.0, margin=0.02) is BIN
+    assert SCENE.surface_at(*ALONG, 3.0) is SHELF, "a hand high above it"
+
+
+@pytest.mark.parametrize(
+    ("width", "effort", "holds"),
+    [(0.05, 25.0, True), (0.05, -25.0, True), (0.05, 2.5, False), (0.002, 25.0, False), (0.083, 25.0, False)],
+)
+def test_the_gripper_holds_what_keeps_pressing_fingers_apart(width: float, effort: float, holds: bool) -> None:
+    joints = m.JointStates(t=0.0, name=["joint_1", "gripper"], position=[0.0, width], velocity=[], effort=[0.0, effort])
+    grip = grip_of(joints)
+    assert grip == Grip(width, abs(effort)) and grip.holds() is holds
+
+
+def test_no_gripper_is_reported_by_joints_without_one() -> None:
+    assert grip_of(None) is None
+    assert grip_of(m.JointStates(t=0.0, name=["joint_1"], position=[0.0], velocity=[], effort=[])) is None
+    assert grip_of(m.JointStates(t=0.0, name=["a", "gripper"], position=[0.0], velocity=[], effort=[])) is None
+    bare = grip_of(m.JointStates(t=0.0, name=["gripper"], position=[0.04], velocity=[], effort=[]))
+    assert bare == Grip(0.04, 0.0) and not bare.holds()
