@@ -26,7 +26,8 @@ def test_where_the_arm_is_stretched_it_leaves_the_way_it_came() -> None:
 def test_on_its_way_home_the_arm_keeps_clear_of_what_it_put_down() -> None:
     planner = Planner(own().mjcf, 0)
     size, yaw, spot = (0.06, 0.08, 0.13), 1.5875, (0.520, 0.001)
-    held = GraspedObject("box", "box", approach_rotation(0.0167, np.pi / 6), np.array([0.0, 0.0, 0.078]), size, 0.06, yaw)
+    turn, offset = approach_rotation(0.0167, np.pi / 6), np.array([0.0, 0.0, 0.078])
+    held = GraspedObject("box", "box", turn, offset, size, 0.06, yaw)
     plan = plan_place(planner, held, [spot], 0.46, 0.004, [], planner.arm.home.copy())
     planner.arm.set_obstacles([Obstacle((*spot, 0.46 + size[2] / 2), size, yaw)])
     way = [plan.retreat[-1], *plan.home]

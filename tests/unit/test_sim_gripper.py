@@ -3,6 +3,7 @@
 import mujoco
 import numpy as np
 import pytest
+from services.perception.body import Body
 
 from cli import conformance
 from common import messages as m
@@ -11,7 +12,6 @@ from common.bus import codec
 from common.robot import Hand
 from services.dashboard.scene.drawing import draw
 from services.manipulation.arm_model import ArmModel
-from services.perception.body import Body
 from services.sim.model import own
 from tests.simulation import Simulation
 
