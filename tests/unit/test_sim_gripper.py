@@ -3,7 +3,6 @@
 import mujoco
 import numpy as np
 import pytest
-from services.perception.body import Body
 
 from cli import conformance
 from common import messages as m
@@ -12,6 +11,7 @@ from common.bus import codec
 from common.robot import Hand
 from services.dashboard.scene.drawing import draw
 from services.manipulation.arm_model import ArmModel
+from services.perception.self_filter import RobotModel
 from services.sim.model import own
 from tests.simulation import Simulation
 
@@ -57,7 +57,7 @@ def test_a_closed_empty_hand_presses_on_itself_with_no_more_than_its_motor() -> 
 
 
 def test_perception_knows_this_body() -> None:
-    body = Body(own().mjcf)
+    body = RobotModel(own().mjcf)
     body.pose(np.array(own().home), 0.04)
     arm = ArmModel(own().mjcf)
     assert np.allclose(body.hand((0.0, 0.0, 0.0)), arm.pose(np.array(own().home)).position, atol=1e-6)
