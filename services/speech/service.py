@@ -24,6 +24,7 @@ from services.speech.recognise.recogniser import Recognition, grammars
 from services.speech.sound_card import Microphone
 from services.speech.speak.player import CHUNK, TtsPlayer
 
+NOT_UNDERSTOOD = "Sorry, I did not understand that. Please say it again."
 _FAILURES = {"silence": "NO_SPEECH", "ask": "UNCERTAIN", "reject": "NO_COMMAND"}
 
 
@@ -53,6 +54,7 @@ class SpeechService:
         )
         self._listening = False
         self._now = self._deadline = 0.0
+        self._asked_again = False
         self._typed: deque[tuple[float, str]] = deque(maxlen=8)
         self._status = m.SpeechStatus(state="idle")
         io.publish(topics.SPEECH_STATUS, self._status)
@@ -69,7 +71,10 @@ class SpeechService:
             self._act(utterance, now)
         if self._listening:
             self._listen(now)
-        self._show(now, "said" if self._player.step(now) else "")
+        said = self._player.step(now)
+        if said and self._asked_again:
+            self._queue.open_window(now)
+        self._show(now, "said" if said else "")
 
     # --- goals
     def _repeat(self, goal: m.SpeechGoal, answer: m.SpeechResult | None) -> None:
@@ -163,10 +168,20 @@ class SpeechService:
         elif found == "command":
             self._queue.close_window(now)
             self._command(text, recognition.confidence)
-        elif found in ("awake", "again"):
+        elif found == "awake":
             self._queue.open_window(now)
-            if found == "again":
-                self._set("listening", f"understood {free!r}", _FAILURES[verdict])
+        elif found == "again":
+            self._queue.open_window(now)
+            self._set("listening", f"understood {free!r}", _FAILURES[verdict])
+            self._ask_again()
+        if found in ("awake", "command"):
+            self._asked_again = False
+
+    def _ask_again(self) -> None:
+        """Say that an utterance was not understood: once, so that no television is talked to for ever."""
+        if not self._asked_again and not self._queue.busy:
+            self._asked_again = True
+            self._player.say(NOT_UNDERSTOOD)
 
     def _end_listening(self, recognition: Recognition) -> None:
         self._listening = False

@@ -60,6 +60,7 @@ def test_a_doubtful_command_goes_to_the_brain_which_asks() -> None:
 
 def test_the_wake_word_alone_opens_the_window_and_nonsense_after_it_keeps_it_open() -> None:
     assert consequence(Recognition("", "accept", 0.9), None, "woken", WOKEN) == "awake"
+    assert consequence(Recognition("", "ask", 0.4, "hey charlotte"), None, "woken", WOKEN) == "awake"
     assert (
         consequence(Recognition("take a bowl", "reject", 0.1, "the weather is fine"), None, "woken", WOKEN) == "again"
     )

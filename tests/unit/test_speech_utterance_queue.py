@@ -101,11 +101,18 @@ def test_speech_to_somebody_else_is_ignored(robot: Robot, said: dict[str, Sample
 
 
 @pytest.mark.slow
-def test_nonsense_after_the_wake_word_is_said_so_and_the_window_stays(robot: Robot, said: dict[str, Samples]) -> None:
-    robot.hear(said["hey jarvis, the weather is nice today"])
+def test_nonsense_after_the_wake_word_is_said_so_once_and_the_window_stays(
+    robot: Robot, said: dict[str, Samples]
+) -> None:
+    robot.hear(said["hey jarvis, the weather is nice today"], after=8.0)
     assert not robot.commands
-    status = msgspec.json.decode(robot.statuses[-1], type=m.SpeechStatus)
-    assert status.state == "listening" and status.code == "NO_COMMAND"
+    statuses = [msgspec.json.decode(p, type=m.SpeechStatus) for p in robot.statuses]
+    assert [s.code for s in statuses if s.code] == ["NO_COMMAND"]
+    assert robot.states()[-2:] == ["speaking", "listening"]
+    robot.hear(said["the weather is nice today"])
+    assert robot.states().count("speaking") == 1, "it does not talk to a television for ever"
+    robot.hear(said["bring me the red mug"])
+    assert robot.commanded() == ["bring me the red mug"]
     robot.step(CONFIG.wake_window + 1)
     assert robot.states()[-1] == "idle"
 

@@ -54,4 +54,6 @@ def consequence(
         return "awake"
     if context.listening:
         return "answer"
+    if recognition.verdict == "ask" and not recognition.text:
+        return "awake"  # the detector heard the wake word, and nothing that the grammar knows sounds more like it
     return "command" if recognition.verdict in ("accept", "ask") and recognition.text else "again"
