@@ -16,6 +16,8 @@ more than the error of any sighting, less than the 50 degrees between the outerm
 AIM_ERROR = 0.010
 """Most [m] that a grasp's own position may be off when the fingers are said to have been around the object: the error
 of a sighting from 0.6 m with the object's size unknown by 15 mm."""
+LASTING = 300.0
+"""How long [s] a contact is evidence. Chosen: a mission with its retries, not the next day's."""
 KEPT = 8
 """Contacts that are remembered: those of two goals with four grasps each."""
 
@@ -44,6 +46,8 @@ class ContactLog:
         """One more contact with the object of that label; those with another one are forgotten."""
         if label != self._label:
             self.clear()
+        while self._contacts and self._contacts[0].seen_at < contact.seen_at - LASTING:
+            self._contacts.popleft()
         self._label = label
         self._contacts.append(contact)
 

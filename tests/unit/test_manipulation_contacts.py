@@ -38,6 +38,7 @@ def test_too_wide_takes_two_sides_two_sightings_and_fingers_around_the_object() 
     assert not log(first, Contact(side, 1.0, True)).too_wide(), "the same sighting"
     assert not log(first, Contact(side, 2.0, False)).too_wide(), "something was met before the object"
     assert log(first, Contact(FRONT, 2.0, False), Contact(side, 3.0, True)).too_wide()
+    assert not log(first, Contact(side, 400.0, True)).too_wide(), "another mission"
 
 
 def test_contacts_with_another_object_or_before_a_grasp_around_it_are_forgotten() -> None:
