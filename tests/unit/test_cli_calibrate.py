@@ -63,6 +63,7 @@ def off(mount: Mount, sensor: StereoCamera) -> tuple[float, float]:
     return 1000 * float(np.linalg.norm(offset)), float(np.linalg.norm(turn))
 
 
+@pytest.mark.slow
 def test_both_mounts_are_found_to_a_millimetre(studio: Studio, views: list[Array]) -> None:
     arm = studio.arm
     shots = [studio.shot("head", joints, n) for n, joints in enumerate(views)]
