@@ -78,7 +78,9 @@ def _objection(step: PlanStep, held: str, found: set[str], world: KnownWorld, sc
         case "place":
             if not held:
                 return "there is nothing in the hand to place"
-            return "" if scene.receptacle(step.target) else f"there is no {step.target or 'place'} to put things on"
+            if scene.receptacle(step.target) is None:
+                return f"there is no {step.target or 'place'} to put things on"
+            return _not_a_thing(step.near, world, scene) if step.near else ""
         case "release":
             return "" if held else "there is nothing in the hand to release"
         case "navigate":

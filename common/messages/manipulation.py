@@ -9,7 +9,10 @@ ManipStatus = Literal["idle", "executing", "done", "failed"]
 
 
 class ManipulationGoal(Message):
-    """`grab`, `release`, `place <receptacle>`, `home` or `stop`."""
+    """`grab`, `release`, `place <receptacle>`, `home` or `stop`.
+
+    `object`: which to grab, or next to which to place.
+    """
 
     goal: str
     id: str = ""

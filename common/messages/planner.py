@@ -28,12 +28,16 @@ class RejectedPlan(Message):
 
 
 class PlanStep(Message):
-    """One step of a plan. `grasp` and `release` with the target `gripper` close and open the hand around nothing."""
+    """One step of a plan. `grasp` and `release` with the target `gripper` close and open the hand around nothing.
+
+    `near`: of `place`, the object on the target next to which; "" anywhere on it.
+    """
 
     action: StepAction
     object: str = ""
     target: str = ""
     text: str = ""
+    near: str = ""
 
     @property
     def hand_alone(self) -> bool:

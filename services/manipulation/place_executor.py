@@ -5,6 +5,7 @@ from itertools import product
 import numpy as np
 
 from common.geometry import compose
+from common.messages import ObjectRef
 from services.manipulation.arm_model import Obstacle
 from services.manipulation.grasp import approach_rotation
 from services.manipulation.grasped_object import USUAL_SIZE, GraspedObject
@@ -24,14 +25,18 @@ STANDS = 0.03
 down in the hand, or have been taken so far above its foot."""
 
 
-def place(robot: Robot, where: str) -> Steps[str]:
-    """Set the held object down on a receptacle, or with "" on the delivery surface or whatever is in reach."""
+def place(robot: Robot, where: str, beside: ObjectRef | None = None) -> Steps[str]:
+    """Set the held object down on a receptacle, or with "" on the delivery surface or whatever is in reach.
+
+    `beside`: the object, in frame map, next to which; where it was seen last counts more.
+    """
     planner, scene = planner_of(robot), robot.io.scene
     held = robot.grasped or _unknown(robot)
     robot.phase = "place"
     footprint = max(held.size[0], held.size[1])
     known = [o for o in robot.source.objects() if o.label != held.label]
     names = [where] if where else [scene.delivery, *(r.name for r in scene.receptacles if not r.depth)]
+    anchor = next((o for o in known if beside and o.label == beside.label), beside)
     choices: list[tuple[str, list[tuple[float, float]], float, float]] = []
     for name in dict.fromkeys(names):
         r = scene.receptacle(name)
@@ -39,13 +44,14 @@ def place(robot: Robot, where: str) -> Steps[str]:
             continue
         taken = [] if r.depth else known
         surface, drop = (r.depth, BIN_DROP) if r.depth else (r.center[2], DROP)
-        free = spots(r, robot.base, footprint if not r.depth else max(r.size), taken, planner.arm.forward)
+        free = spots(r, robot.base, footprint if not r.depth else max(r.size), taken, planner.arm.forward, anchor)
         if free:
             choices.append((r.name, free, surface, drop))
     if not where:
         choices.append(("floor", [(planner.arm.forward + x, y) for x, y in FLOOR_SPOTS], 0.0, DROP))
     if not choices:
-        raise Failure("UNREACHABLE", f"no free spot of the {where} is within reach from here")
+        near = f" next to the {anchor.label}" if anchor else ""
+        raise Failure("UNREACHABLE", f"no free spot of the {where}{near} is within reach from here")
     last = Failure("UNREACHABLE", "nothing within reach")
     stances = [held, held.as_found] if held.as_found is not None else [held]
     for held, (name, free, surface, drop) in product(stances, choices):

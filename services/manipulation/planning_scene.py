@@ -2,11 +2,12 @@
 
 import math
 from collections.abc import Iterable, Sequence
+from itertools import product
 
 import numpy as np
 
 from common.geometry import Pose2, Rectangle, compose, inverse, quat_yaw
-from common.messages import WorldObject
+from common.messages import ObjectRef, WorldObject
 from common.scene import Receptacle, Scene
 from services.manipulation.arm_model import Obstacle
 from services.manipulation.grasp import Target
@@ -24,6 +25,9 @@ MOST_FURNITURE = 14
 BIN_WALL = 0.03
 """Thickness [m] of a bin's walls in the planning scene. Chosen: twice that of the walls themselves,
 `floor_plan.BIN_WALL`."""
+DIRECTIONS, GAPS = 16, (0.05, 0.08, 0.12)
+"""In how many directions a spot beside an object is looked for, and how far [m] beyond both outlines. Chosen: room for
+a finger and the error of a sighting at least."""
 EASY = 0.54
 """Distance [m] in front of the arm that is reached most easily at the height of tables: the middle of its reach."""
 
@@ -93,18 +97,38 @@ def with_object(around: Sequence[Obstacle], box: Obstacle) -> list[Obstacle]:
 
 
 def spots(
-    r: Receptacle, base: Pose2, footprint: float, taken: Iterable[WorldObject], forward: float
+    r: Receptacle,
+    base: Pose2,
+    footprint: float,
+    taken: Iterable[WorldObject],
+    forward: float,
+    beside: WorldObject | ObjectRef | None = None,
 ) -> list[tuple[float, float]]:
-    """Free points of a surface in the base frame, those easiest to reach first; the arm stands `forward` [m] on it."""
+    """Free points of a surface in the base frame, those easiest to reach first; the arm stands `forward` [m] on it.
+
+    `beside`: only points around this object, which is given in frame map.
+    """
     others = [(o.position[0], o.position[1], max(o.size[0], o.size[1]) / 2) for o in taken if not o.held]
     radius = footprint / 2
     grid = []
     half = [max(0.0, v / 2 - radius - 0.02) for v in r.size]
-    for u in np.linspace(-half[0], half[0], 5):
-        for v in np.linspace(-half[1], half[1], 7):
-            x, y = r.outline.to_map(float(u), float(v))
-            if all(math.hypot(x - ox, y - oy) > radius + other + 0.03 for ox, oy, other in others):
-                bx, by, _ = compose(inverse(base), (x, y, 0.0))
-                ideal = math.hypot(bx - forward - EASY, 0.6 * by)
-                grid.append((ideal, (bx, by)))
+    rows = product(np.linspace(-half[0], half[0], 5), np.linspace(-half[1], half[1], 7))
+    for u, v in _around(r, radius, beside) if beside else rows:
+        if abs(u) > half[0] + 1e-9 or abs(v) > half[1] + 1e-9:
+            continue
+        x, y = r.outline.to_map(float(u), float(v))
+        if all(math.hypot(x - ox, y - oy) > radius + other + 0.03 for ox, oy, other in others):
+            bx, by, _ = compose(inverse(base), (x, y, 0.0))
+            ideal = math.hypot(bx - forward - EASY, 0.6 * by)
+            grid.append((ideal, (bx, by)))
     return [spot for ideal, spot in sorted(grid) if ideal < 0.6]
+
+
+def _around(r: Receptacle, radius: float, beside: WorldObject | ObjectRef) -> list[tuple[float, float]]:
+    """Points on a receptacle, in its own frame, around an object with room for another of `radius` [m]."""
+    cx, cy = r.outline.to_local(beside.position[0], beside.position[1])
+    near = max(beside.size[0], beside.size[1]) / 2 + radius
+    turns = np.linspace(0.0, 2 * math.pi, DIRECTIONS, endpoint=False)
+    return [
+        (cx + (near + gap) * math.cos(turn), cy + (near + gap) * math.sin(turn)) for gap in GAPS for turn in turns
+    ]  # fmt: skip

@@ -181,7 +181,9 @@ class ManipulationService:
         return bool(self._goal.id) and self._store.released() == self._goal.id
 
     def _place(self, where: str) -> Steps[str]:
-        robot = self._robot
+        robot, beside = self._robot, self._goal.object
+        if beside is not None and beside.frame != "map":
+            raise Failure("UNKNOWN_PLACE", f"where the {beside.label} is must be told in frame map, not {beside.frame}")
         if self._io.scene.receptacle(where) is None:
             known = ", ".join(r.name for r in self._io.scene.receptacles)
             raise Failure("UNKNOWN_PLACE", f"no receptacle {where!r}; known: {known}")
@@ -190,7 +192,7 @@ class ManipulationService:
                 yield from self._with_planner(recovery.retract_empty(robot))
                 return "put down by an earlier attempt, the gripper is open"
             raise Failure("NOT_HOLDING", "nothing is in the gripper")
-        return (yield from self._with_planner(place_executor.place(robot, where)))
+        return (yield from self._with_planner(place_executor.place(robot, where, beside)))
 
     # --- running
     def _advance(self, now: float) -> None:

@@ -7,6 +7,7 @@ from common.messages import PlanStep
 from common.scene import Receptacle
 from services.planner.phrases import Phrase, read
 from services.planner.plan_builder import PlanBuilder, Refusal
+from services.planner.relations import BESIDE, between
 from services.planner.resolve import Referent, referent, referents, spot
 from services.planner.vocabulary import Spot
 
@@ -60,7 +61,13 @@ def put_near(builder: PlanBuilder, slots: Slots) -> None:
         builder.search_first([PlanStep(action="find", object=anchor.label)])
         raise Refusal(f"I have not seen where the {anchor.label} stands")
     for meant in moved:
-        _put(builder, meant, where)
+        item = meant.object
+        if item.on == where.name and not item.held and between(item, anchor) < BESIDE:
+            builder.say(f"The {item.label} is there already.")
+            continue
+        take(builder, meant)
+        builder.place(where, near=anchor.label)
+    builder.last = [m.object for m in moved]
 
 
 def pick_up(builder: PlanBuilder, slots: Slots) -> None:

@@ -45,7 +45,8 @@ def _named(step: PlanStep, world: World, vocabulary: Vocabulary) -> PlanStep:
             receptacle = world.scene.receptacle(normalise(target or item))
             if receptacle is None:
                 raise Impossible(f"there is no {target or item or 'place'} to put things on")
-            return msgspec.structs.replace(step, object="", target=receptacle.name)
+            near = _thing(step.near, world, vocabulary) if step.near else ""
+            return msgspec.structs.replace(step, object="", target=receptacle.name, near=near)
         case "navigate":
             spots = vocabulary.spot(tuple(normalise(target).split())) if target else []
             if spots:

@@ -102,10 +102,10 @@ class PlanBuilder:
         self.world.grasp(item.label)
         self.last = [item]
 
-    def place(self, receptacle: Receptacle) -> None:
-        """Put what is held there."""
+    def place(self, receptacle: Receptacle, near: str = "") -> None:
+        """Put what is held there, next to an object if one is named."""
         held = self._held()
-        self.steps.append(PlanStep(action="place", object=held.label, target=receptacle.name))
+        self.steps.append(PlanStep(action="place", object=held.label, target=receptacle.name, near=near))
         self.world.put(receptacle.name)
         self._found.discard(held.label)
         self.last, self.spot, self.moved = [held], Spot(receptacle.name, receptacle=receptacle), True

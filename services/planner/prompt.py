@@ -10,8 +10,9 @@ from services.planner.world import World
 
 RULES = """\
 You plan for a household robot with one arm. Answer with JSON only: {"steps": [...], "detail": "..."}.
-Actions: find (object), grasp (object), place (target: a receptacle), release (set down here), return (to the person),
-navigate (target: a place, room or receptacle), say (text), wait. Unused fields are "".
+Actions: find (object), grasp (object), place (target: a receptacle; near: the object on it to put it next to),
+release (set down here), return (to the person), navigate (target: a place, room or receptacle), say (text), wait.
+Unused fields are "".
 - A thing must be found before it is grasped; the hand holds one thing; place and release empty it.
 - Bringing something to the person is: find, grasp, return, release.
 - The empty hand alone is opened by release and closed by grasp, both with the target "gripper".

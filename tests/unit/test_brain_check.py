@@ -51,6 +51,13 @@ def test_what_is_seen_is_judged_by_place_and_stance(label: str, target: str, see
     assert label in finding.words and "tilt" in finding.measured
 
 
+@pytest.mark.parametrize(("x", "fault"), [(0.4, ""), (1.2, "MISPLACED")])
+def test_what_belongs_next_to_something_is_judged_by_its_distance(x: float, fault: str) -> None:
+    anchor = m.ObjectRef(label="apple", position=(x, 0.0, 0.5))
+    finding = judge_placement(pose(label="red mug"), "red mug", "delivery tray", SCENE, anchor)
+    assert finding.fault == fault and "apple" in finding.words
+
+
 def test_into_a_bin_nobody_sees() -> None:
     assert judge_absence("red mug", "bin", SCENE).fault == ""
     assert judge_absence("red mug", "delivery tray", SCENE).fault == "NOT_SEEN"

@@ -57,7 +57,10 @@ def ask(
 
 def text(plan: ActionPlan) -> str:
     """`find red mug; grasp red mug; ...`, or `no: <reason>`."""
-    rows = [" ".join(p for p in (s.action, s.object, s.target, s.text) if p) for s in plan.steps]
+    rows = [
+        " ".join(p for p in (s.action, s.object, s.target, s.text, s.near and f"near {s.near}") if p)
+        for s in plan.steps
+    ]
     return "; ".join(rows) or f"no: {plan.detail}"
 
 
@@ -91,7 +94,7 @@ def test_fetching(command: str) -> None:
         ("put the red mug on the counter", put("red mug", "counter")),
         ("put the red mug on the table in the kitchen", put("red mug", "kitchen table")),
         ("move the yellow block to the toy box", put("yellow block", "toy box")),
-        ("place the red mug next to the apple", put("red mug", "kitchen table")),
+        ("place the red mug next to the apple", put("red mug", "kitchen table near apple")),
         ("take the red mug to the kitchen", put("red mug", "counter")),
         ("bring the apple to the sofa", "find apple; grasp apple; navigate sofa; release"),
         ("throw away the green can", put("green can", "recycling bin")),
@@ -357,7 +360,7 @@ def test_what_something_is_put_beside_is_looked_for_first() -> None:
     command = "put the red mug next to the apple"
     first = ask(command, objects=WORLD[:1], done=[])
     assert first.again and text(first) == "find apple"
-    assert text(ask(command, done=first.steps)) == put("red mug", "kitchen table")
+    assert text(ask(command, done=first.steps)) == put("red mug", "kitchen table near apple")
     assert "I have not seen where the apple stands" in text(ask(command, objects=WORLD[:1], done=first.steps))
 
 

@@ -1,6 +1,7 @@
 """The steps of a plan as subtrees, each with its recoveries."""
 
 from collections.abc import Iterator
+from functools import partial
 
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
@@ -66,8 +67,10 @@ def step_tree(ctx: Context, step: PlanStep, carried: str, at_home: bool = False)
         case "grasp":
             return grasp(ctx, step.object)
         case "place":
-            there = Condition("go_there", go_and_settle(ctx, step.target), lambda: ctx.mission.at != step.target)
-            down = put_down(ctx, carried, lambda: go_and_settle(ctx, step.target), f"place {step.target}", step.target)
+            stand = step.near or step.target
+            there = Condition("go_there", stand_before(ctx, step), lambda: ctx.mission.at != stand)
+            back, goal = partial(stand_before, ctx, step), f"place {step.target}"
+            down = put_down(ctx, carried, back, goal, step.target, step.near)
             return Sequence(PLAN_STEP, there, down, name=name)
         case "release" if step.hand_alone:
             return Sequence(PLAN_STEP, open_hand(ctx), Settle("settle", ctx), name=name)
@@ -128,9 +131,14 @@ def release(ctx: Context, carried: str, at_home: bool, name: str) -> Sequence:
     return Sequence(PLAN_STEP, set_down_or_open(ctx), Settle("settle", ctx), known, name=name)
 
 
-def put_down(ctx: Context, item: str, back: Subtree, goal: str, target: str) -> Behaviour:
+def stand_before(ctx: Context, step: PlanStep) -> Behaviour:
+    """Drive to where a `place` step can be carried out: before the object next to which, or before the receptacle."""
+    return approach(ctx, step.near) if step.near else go_and_settle(ctx, step.target)
+
+
+def put_down(ctx: Context, item: str, back: Subtree, goal: str, target: str, near: str = "") -> Behaviour:
     """Carry out the `goal` that opens the hand and look; what is lost or misplaced is brought `back` again."""
-    first = release_and_verify(ctx, "put_down", goal, target)
+    first = release_and_verify(ctx, "put_down", goal, target, near)
     if not item:
         return first
     task = Task(
@@ -138,8 +146,8 @@ def put_down(ctx: Context, item: str, back: Subtree, goal: str, target: str) -> 
         find=lambda: find(ctx, item),
         grasp=lambda: grasp(ctx, item),
         carry_back=back,
-        put_down=lambda: release_and_verify(ctx, "put_down_at_last", goal, target),
-        in_place=lambda: AlreadyInPlace("in_place_already", ctx, item, target),
+        put_down=lambda: release_and_verify(ctx, "put_down_at_last", goal, target, near),
+        in_place=lambda: AlreadyInPlace("in_place_already", ctx, item, target, near),
     )
     return with_recoveries("put_down_item", ctx, first, AFTER_PUTTING_DOWN, task, name=f"put down {item}")
 

@@ -123,7 +123,7 @@ class Approach(Navigate):
         return f"approach {label_of(self.ctx, self._item)}"
 
     def goal(self, goal_id: str) -> tuple[Topic[Any], m.Message]:
-        ctx, ref = self.ctx, object_ref(self.ctx, self._item)
+        ctx, ref = self.ctx, object_in_map(self.ctx, self._item)
         if ref is None or ref.frame != "map":
             return super().goal(goal_id)  # nobody has said where in the map it is: navigation looks for it
         x, y, theta = standing_pose(ctx.io.scene, (ref.position[0], ref.position[1]), ctx.robot_pose)
@@ -143,3 +143,11 @@ def object_ref(ctx: Context, item: str) -> m.ObjectRef | None:
         return None
     fields = {k: getattr(pose, k) for k in ("label", "position", "orientation", "size", "frame", "tilt")}
     return msgspec.convert(fields, m.ObjectRef)
+
+
+def object_in_map(ctx: Context, label: str) -> m.ObjectRef | None:
+    """Where an object is: as it was found in this mission, else as perception last surveyed it; None if neither."""
+    ref, known = object_ref(ctx, label), ctx.known_object(label) if label else None
+    if ref is not None or known is None:
+        return ref
+    return m.ObjectRef(label=known.label, position=known.position, size=known.size, kind=known.kind, tilt=known.tilt)

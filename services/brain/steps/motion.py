@@ -131,10 +131,16 @@ class Grab(Manipulate):
 
 
 class Release(Manipulate):
-    """`release` or `place <receptacle>`; while it is not `done` the object counts as held."""
+    """`release`, or `place <receptacle>` next to the object `near`; until it is `done` the object counts as held."""
 
-    def __init__(self, node_id: str, ctx: Context, text: Text = lambda: "release") -> None:
-        super().__init__(node_id, ctx, text, lambda: None, state="RELEASING", retries=ctx.config.release_retries)
+    def __init__(
+        self,
+        node_id: str,
+        ctx: Context,
+        text: Text = lambda: "release",
+        near: Callable[[], m.ObjectRef | None] = lambda: None,
+    ) -> None:
+        super().__init__(node_id, ctx, text, near, state="RELEASING", retries=ctx.config.release_retries)
 
     def update(self) -> Status:
         ctx, hand = self.ctx, self.ctx.gripper

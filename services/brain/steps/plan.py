@@ -90,7 +90,9 @@ class PlanIsComplete(Leaf):
 
 def describe_step(step: m.PlanStep) -> str:
     """A step as `brain/state` and the journal show it."""
-    return " ".join(part for part in (step.action, step.object, step.target, step.text) if part)
+    return " ".join(
+        part for part in (step.action, step.object, step.target, step.text, step.near and f"near {step.near}") if part
+    )
 
 
 class CompleteWithEvidence(Leaf):

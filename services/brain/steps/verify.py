@@ -12,6 +12,7 @@ from common.topics import Topic
 from services.brain.mission.channel import Result
 from services.brain.mission.context import Context
 from services.brain.mission.mission import Failure
+from services.brain.steps.find import object_in_map
 from services.brain.steps.leaf import Leaf, SendGoal, Settle
 from services.brain.steps.motion import Release
 from services.brain.tree.composites import Condition, Retry, Sequence
@@ -33,9 +34,9 @@ class VerifyPlacement(SendGoal):
     more than the hand felt. One that was alive and does not answer is `UNCHECKED`.
     """
 
-    def __init__(self, node_id: str, ctx: Context, target: str) -> None:
+    def __init__(self, node_id: str, ctx: Context, target: str, near: str = "") -> None:
         super().__init__(node_id, ctx, ctx.peers.perception, state="RELEASING", timeout=ctx.config.check_timeout)
-        self._target = target
+        self._target, self._near = target, near
 
     def update(self) -> Status:
         ctx = self.ctx
@@ -57,9 +58,10 @@ class VerifyPlacement(SendGoal):
         label = ctx.mission.delivery.put_down
         if pose.found and pose.seen_at <= ctx.gripper.put_down.get(label, math.inf):
             return self._unchecked("what was seen is older than the release")
-        finding = judge_placement(pose, label, self._target, ctx.io.scene) if pose.found else judge_absence(
-            label, self._target, ctx.io.scene
-        )  # fmt: skip
+        if pose.found:
+            finding = judge_placement(pose, label, self._target, ctx.io.scene, object_in_map(ctx, self._near))
+        else:
+            finding = judge_absence(label, self._target, ctx.io.scene)
         return record_finding(ctx, finding, pose.picture)
 
     def fail_with(self, failure: Failure) -> Status:
@@ -106,16 +108,16 @@ class TurnAside(SendGoal):
 class AlreadyInPlace(Leaf):
     """SUCCESS when the object, as it was found, is already where it belongs."""
 
-    def __init__(self, node_id: str, ctx: Context, item: str, target: str) -> None:
+    def __init__(self, node_id: str, ctx: Context, item: str, target: str, near: str = "") -> None:
         super().__init__(node_id, ctx)
-        self._item, self._target = item, target
+        self._item, self._target, self._near = item, target, near
 
     def update(self) -> Status:
         ctx, pose = self.ctx, self.ctx.mission.search.found.get(self._item)
         label = ctx.mission.delivery.put_down
         if pose is None or pose.label != label or pose.seen_at <= ctx.gripper.put_down.get(label, math.inf):
             return Status.FAILURE
-        finding = judge_placement(pose, label, self._target, ctx.io.scene)
+        finding = judge_placement(pose, label, self._target, ctx.io.scene, object_in_map(ctx, self._near))
         if finding.fault:
             return Status.FAILURE
         return record_finding(ctx, finding, b"")
@@ -136,25 +138,25 @@ def record_finding(ctx: Context, finding: Finding, picture: bytes) -> Status:
     return Status.FAILURE
 
 
-def verify_placement(ctx: Context, target: str) -> Behaviour:
+def verify_placement(ctx: Context, target: str, near: str = "") -> Behaviour:
     """Look once physics has settled; a fault is believed when another picture shows it too.
 
     What is not to be seen is looked for from a little aside.
     """
     aside = Sequence("aside", TurnAside("turn_aside", ctx), Settle("come_to_rest", ctx))
     moved = Condition("hidden_by_the_arm", aside, lambda: looks.used > 0 and unseen(ctx))
-    look = Sequence("look", moved, VerifyPlacement("check", ctx, target))
+    look = Sequence("look", moved, VerifyPlacement("check", ctx, target, near))
     looks = Retry("look_at_it", ctx, look, LOOKS - 1, again=lambda: is_misplaced(ctx))
     return looks
 
 
-def release_and_verify(ctx: Context, node_id: str, goal: str, target: str) -> Behaviour:
+def release_and_verify(ctx: Context, node_id: str, goal: str, target: str, near: str = "") -> Behaviour:
     """Carry out the `goal` that opens the hand, let physics settle, look.
 
-    `target`: the receptacle where the object belongs; "" anywhere.
+    `target`: the receptacle where the object belongs, `near`: the object next to which; "" anywhere.
     """
-    release = Release(node_id, ctx, lambda: goal)
-    look = verify_placement(ctx, target)
+    release = Release(node_id, ctx, lambda: goal, lambda: object_in_map(ctx, near))
+    look = verify_placement(ctx, target, near)
     return Sequence(f"{node_id}_and_look", release, Settle("settle", ctx), look)
 
 

@@ -6,7 +6,7 @@ from typing import Literal
 
 from common.geometry import quat_matrix
 from common.kinds import kind_of
-from common.messages import ObjectPose
+from common.messages import ObjectPose, ObjectRef
 from common.scene import Scene
 
 Fault = Literal["", "NOT_SEEN", "MISPLACED", "TOPPLED"]
@@ -14,6 +14,11 @@ TIPPED = 0.35
 """Tilt [rad] from which an object does not stand; perception tells standing, lying (1.57) and upside down (3.14)."""
 UPSIDE_DOWN = 2.4
 """Tilt [rad] from which an object is upside down rather than on its side: half-way between the two."""
+
+
+BESIDE = 0.4
+"""Distance [m] between the middles of two objects up to which one is next to the other. Chosen: a hand's breadth or two
+between them, with room for the fingers."""
 
 
 @dataclass(frozen=True)
@@ -30,8 +35,13 @@ class Finding:
         return f"{self.words}, {self.measured}" if self.measured else self.words
 
 
-def judge_placement(pose: ObjectPose, label: str, target: str, scene: Scene) -> Finding:
-    """Judge an object that was seen after it was put down on `target`; "": anywhere will do."""
+def judge_placement(
+    pose: ObjectPose, label: str, target: str, scene: Scene, beside: ObjectRef | None = None
+) -> Finding:
+    """Judge an object that was seen after it was put down on `target`; "": anywhere will do.
+
+    `beside`: the object, with its place in frame map, next to which it belongs.
+    """
     spec, wanted = scene.object(label), scene.receptacle(target)
     on = scene.receptacle(pose.on) or scene.resting_place(pose.position)
     where = f"on the {on.name}" if on else "on the floor"
@@ -45,6 +55,11 @@ def judge_placement(pose: ObjectPose, label: str, target: str, scene: Scene) -> 
     if spec is not None and kind_of(spec.kind).upright and tilt > TIPPED and not (on and on.depth):
         lies = "stands upside down" if tilt > UPSIDE_DOWN else "lies on its side"
         return Finding("TOPPLED", f"the {label} {lies} {where}", measured)
+    if beside is not None:
+        apart = math.dist((x, y), beside.position[:2])
+        if apart > BESIDE:
+            return Finding("MISPLACED", f"the {label} is {apart:.1f} m from the {beside.label}", measured)
+        where += f" next to the {beside.label}"
     return Finding("", f"the {label} is {where}", measured)
 
 

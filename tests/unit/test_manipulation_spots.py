@@ -1,0 +1,33 @@
+"""Where on a surface something can be put down."""
+
+import math
+
+import pytest
+
+from common import messages as m
+from common.scene import load_scene
+from services.manipulation.planning_scene import GAPS, spots
+
+SCENE = load_scene("apartment")
+TABLE = SCENE.receptacle("kitchen table")
+FORWARD = 0.1
+
+
+def apple(x: float, y: float) -> m.WorldObject:
+    assert TABLE is not None
+    position = (TABLE.center[0] + x, TABLE.center[1] + y, TABLE.center[2] + 0.04)
+    return m.WorldObject(label="apple", kind="apple", colour="red", position=position, size=(0.08, 0.08, 0.08))
+
+
+@pytest.mark.parametrize("near", [False, True])
+def test_spots_lie_on_the_surface_and_clear_of_what_stands_there(near: bool) -> None:
+    assert TABLE is not None
+    anchor = apple(0.1, 0.1)
+    base = (TABLE.center[0] - TABLE.size[0] / 2 - 0.35, TABLE.center[1], 0.0)
+    found = spots(TABLE, base, 0.08, [anchor], FORWARD, anchor if near else None)
+    assert found
+    for x, y in found:
+        there = base[0] + x, base[1] + y
+        apart = math.dist(there, anchor.position[:2])
+        assert TABLE.contains(*there) and apart > 0.08 + 0.03
+        assert not near or apart < 0.08 + max(GAPS) + 0.01
