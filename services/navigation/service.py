@@ -39,6 +39,7 @@ class NavigationService:
         self._approaches = ApproachHistory()
         self._navigator: Navigator | None = None
         self._search: Search | None = None
+        self._found: Search | None = None
         self._inbox: GoalInbox[Goal, m.NavigationStatus] = GoalInbox(
             io, (topics.NAVIGATION_GOAL, topics.NAV_GOAL), self._take, self._repeat, self._preempted
         )
@@ -63,6 +64,8 @@ class NavigationService:
         self._inbox.receive()
         reached = io.take_all(topics.GOAL_REACHED)
         try:
+            if self._found is not None:
+                self._still_there(self._found)
             if self._search is not None:
                 self._look_for(self._search, now)
             if self._navigator is not None:
@@ -117,14 +120,18 @@ class NavigationService:
             raise Ended("failed", "UNKNOWN_GOAL", f"{text!r}: expected find, goto, return_to_start or stop")
 
     def _find(self, item: str) -> None:
-        if choices := self._approaches_to(item):
+        choices = self._approaches_to(item)
+        if self._io.peer(PERCEPTION) is None:
+            self._go(choices or self._goals.spot(item))
+            return
+        self._coverage.viewpoints = viewpoints_of(self._io.scene, self._io.latest(topics.ROBOT_DESCRIPTION))
+        search = Search(item, self._coverage, self._config, self._now)
+        if choices:
+            self._found = search
             self._go(choices)
-        elif self._io.peer(PERCEPTION) is not None:
-            self._io.log.info("search", item=item)
-            self._coverage.viewpoints = viewpoints_of(self._io.scene, self._io.latest(topics.ROBOT_DESCRIPTION))
-            self._search = Search(item, self._coverage, self._config, self._now)
         else:
-            self._go(self._goals.spot(item))
+            self._io.log.info("search", item=item)
+            self._search = search
 
     def _approaches_to(self, item: str) -> Choices:
         return self._approaches.penalised(self._status.goal_id, self._goals.seen(item, self._objects()))
@@ -144,7 +151,7 @@ class NavigationService:
         """One step of a search; raises `Ended` when it is over without result."""
         if choices := self._approaches_to(search.item):
             self._io.log.info("found", item=search.item, views=search.looked)
-            self._search = None
+            self._search, self._found = None, search
             self._leave(self._navigator)
             self._go(choices)
             return
@@ -161,6 +168,14 @@ class NavigationService:
             view = search.next(pose, self._planner, self._map)
             self._io.log.info("view", item=search.item, number=search.looked, x=view[0], y=view[1])
             self._go([(0.0, view)])
+
+    def _still_there(self, found: Search) -> None:
+        """Search on when perception, from nearer, no longer takes anything for what is driven to."""
+        if self._io.peer(PERCEPTION) is None or self._approaches_to(found.item):
+            return
+        self._io.log.info("not there after all", item=found.item)
+        self._leave(self._navigator)
+        self._search, self._found, self._navigator = found, None, None
 
     def _leave(self, navigator: Navigator | None) -> None:
         self._recoveries += navigator.recoveries if navigator else 0
@@ -201,7 +216,7 @@ class NavigationService:
             self._feedback()
 
     def _finish(self, ended: Ended) -> None:
-        navigator, self._search = self._navigator, None
+        navigator, self._search, self._found = self._navigator, None, None
         self._leave(navigator)
         self._navigator = None
         if ended.status == "arrived":
@@ -216,7 +231,7 @@ class NavigationService:
 
     def _hold(self) -> None:
         """Brake: a velocity stream that falls silent at once."""
-        self._navigator = self._search = None
+        self._navigator = self._search = self._found = None
         self._io.publish(topics.CMD_VEL, m.CmdVel(vx=0.0, vy=0.0, omega=0.0))
 
     def _report(self, status: m.NavStatus, code: str, detail: str) -> None:

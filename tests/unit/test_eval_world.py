@@ -80,7 +80,7 @@ def test_a_robot_that_drives_into_furniture_has_hit_it() -> None:
     touches = world.sim.physics.contacts.touches
     worst = max(touches, key=lambda t: t.force)
     assert worst.force > 65.0 and worst.impulse > 0.0 and worst.kind == "furniture" and worst.depth > 0.0
-    assert worst.seconds <= worst.last - worst.first + 0.0026, "counted in steps of 2.5 ms"
+    assert worst.seconds <= worst.last - worst.first + 0.0051, "counted in steps of up to 5 ms"
 
 
 def test_what_another_object_knocks_over_is_disturbed() -> None:
@@ -102,7 +102,7 @@ def test_an_arm_on_its_own_base_is_a_hit_and_the_log_outlives_the_process(tmp_pa
     world = Watched(state_dir=tmp_path, run="one")
     home = world.sim.physics.home_arm
     assert world.watch(0.5).touches == [], "at home the robot does not touch itself"
-    folded = [home[0], -2.2, home[2], -2.5, *home[4:]]
+    folded = [home[0], 0.9, *home[2:]]
     for n in range(100):
         share = min(1.0, n / 60)
         aim = [a + share * (b - a) for a, b in zip(home, folded, strict=True)]

@@ -196,6 +196,19 @@ def test_an_object_that_nobody_knows_of_is_looked_for_and_stood_before() -> None
     assert abs(math.remainder(bearing - flat.true[2], math.tau)) < 0.1, "it faces the mug"
 
 
+def test_what_turns_out_to_be_something_else_on_the_way_is_searched_on() -> None:
+    flat = Flat()
+    mug = (-2.45, 3.1, 0.77)
+    eyes = Eyes(flat, "red mug", mug)
+    taken = m.WorldObject(label="red mug", kind="mug", colour="", position=(1.14, 4.2, 0.64), on="", id="red mug")
+    flat.bus.send(topics.WORLD_OBJECTS, m.WorldObjects(t=flat.now, objects=[taken], source="perception"))
+    flat.ask("find red mug")
+    assert search(flat, Eyes(flat, "red mug", None), 3.0).status == "navigating"
+    flat.bus.send(topics.WORLD_OBJECTS, m.WorldObjects(t=flat.now, objects=[], source="perception"))
+    assert search(flat, eyes, 250.0).status == "arrived"
+    assert math.dist(flat.true[:2], mug[:2]) < 0.9
+
+
 def test_a_search_without_result_ends_after_every_surface_was_looked_at() -> None:
     flat = Flat(scene=load_scene("minimal"))
     eyes = Eyes(flat, "red mug", None)
