@@ -1,0 +1,44 @@
+"""Noise and a camera that sits a little off make no objects of the floor."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from common.scene import load_scene
+from services.camera.sensor import StereoCamera
+from services.perception.segmentation import segments
+from services.perception.view import View
+
+SCENE = load_scene("minimal")
+WIDTH, HEIGHT, FOCAL = 640, 480, 400.0
+DOWN = np.array([[0.0, -0.62, 0.785], [-1.0, 0.0, 0.0], [0.0, -0.785, -0.62]])
+PLACE = np.array([-0.5, -1.2, 1.3])
+
+
+def floor(seed: int, box: float = 0.0) -> View:
+    """The floor, and on it 1.2 m ahead a cube of `box` [m], as a camera sees them that is off by its mount's error."""
+    camera = StereoCamera(seed)
+    turned = DOWN @ Rotation.from_rotvec(camera.turn).as_matrix()
+    u, v = np.meshgrid((np.arange(WIDTH) + 0.5 - WIDTH / 2) / FOCAL, (np.arange(HEIGHT) + 0.5 - HEIGHT / 2) / FOCAL)
+    rays = np.stack([u, v, np.ones_like(u)], axis=-1) @ turned.T
+    depth = np.where(rays[..., 2] < -0.05, -PLACE[2] / np.minimum(rays[..., 2], -0.05), 0.0)
+    top = (box - PLACE[2]) / np.minimum(rays[..., 2], -0.05)
+    on_top = np.abs(rays[..., :2] * top[..., None] - np.array([1.2, 0.0])).max(axis=-1) < box / 2
+    depth[on_top] = top[on_top]
+    taken = camera.expose(np.full((HEIGHT, WIDTH, 3), 120, np.uint8), depth, FOCAL, seed)
+    measured = (taken.depth / 1000.0).astype(np.float32)
+    return View(taken.rgb, measured, (FOCAL, FOCAL), (WIDTH / 2, HEIGHT / 2), PLACE, DOWN)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_an_empty_floor_is_empty(seed: int) -> None:
+    assert segments(floor(seed), SCENE, 3.5) == []
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_block_on_the_floor_is_one_object(seed: int) -> None:
+    (found,) = segments(floor(seed, 0.06), SCENE, 3.5)
+    assert found.surface.name == ""
+    assert math.dist(found.points[:, :2].mean(axis=0), (PLACE[0] + 1.2, PLACE[1])) < 0.03
