@@ -11,8 +11,8 @@ FOOTPRINT = 0.29
 STAND_OFF = 0.55
 """From the base's centre to the object [m]: nearer, flat grasps of low tables are out of the arm's reach, farther away
 those from above on high ones."""
-EDGE_DISTANCE = FOOTPRINT + 0.03
-"""From the base's centre to the edge it stands before [m]."""
+EDGE_DISTANCE = FOOTPRINT + 0.06
+"""From the base's centre to the edge it stands before [m]: what navigation plans with, and a cell of its grid."""
 ROOM = FOOTPRINT + 0.02
 """Clearance that the base's centre needs [m], as navigation plans with."""
 BIN_RIM = 0.02
