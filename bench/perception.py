@@ -92,8 +92,8 @@ def _view(renderer: Renderer, pose: Pose2, args: argparse.Namespace, rng: np.ran
         data.qpos[model.joint(name).qposadr[0]] = value
     renderer.load(data.qpos.copy().tobytes(), b"")
     rgb, depth = renderer.rgbd("head", args.width, args.height)
+    focal = renderer.focal("head", args.height)
     if args.sensors == "bought":
-        focal = args.height / 2 / math.tan(math.radians(float(renderer.model.camera("head").fovy[0])) / 2)
         taken = StereoCamera(int(rng.integers(2**32))).expose(rgb, depth, focal, 0)
         rgb, depth = taken.rgb, taken.depth / 1000.0
     position, rotation = renderer.optical_pose("head")
@@ -101,7 +101,6 @@ def _view(renderer: Renderer, pose: Pose2, args: argparse.Namespace, rng: np.ran
     x, y, theta = (v + float(rng.normal(0.0, args.pose_noise)) for v in pose)
     c, s = math.cos(theta), math.sin(theta)
     turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-    focal = args.height / 2 / math.tan(math.radians(float(model.camera("head").fovy[0])) / 2)
     return View(
         rgb=rgb,
         depth=(np.round(np.maximum(depth, 0.0) * 1000) / 1000).astype(np.float32),

@@ -24,6 +24,7 @@ REST, PATIENCE = 0.6, 15.0
 AT_HOME = 0.15
 """Largest deviation of a joint from the carry pose [rad] at the start."""
 WIDTH, HEIGHT = 640, 480
+"""Size of the pictures [px]: those that perception works with."""
 
 
 class Photographer:
@@ -117,7 +118,7 @@ def _check(mounts: dict[str, Mount]) -> int:
     """Exit status 1 when what was seen contradicts the calibration in use."""
     wrong = [name for name, mount in mounts.items() if not mount.as_drawn()]
     for name, mount in mounts.items():
-        print(f"{name:6} {_sure(mount).replace('its drawing', 'its calibration')}")
+        print(f"{name:6} {_sure(mount, 'calibration')}")
     if not wrong:
         print("the calibration in use is right; nothing is written")
         return 0
@@ -150,14 +151,14 @@ def _vector(values: Array) -> calibration.Vector:
     return float(values[0]), float(values[1]), float(values[2])
 
 
-def _sure(mount: Mount) -> str:
-    """The mount and its 95 % limits in words."""
+def _sure(mount: Mount, believed: str = "drawing") -> str:
+    """How far a camera sits off where it is `believed` to be, and the 95 % limits, in words."""
     off, turned = 1000 * float(np.linalg.norm(mount.offset)), np.degrees(float(np.linalg.norm(mount.turn)))
     by, about = (
         1960 * float(np.linalg.norm(mount.offset_deviation)),
         1.96 * np.degrees(float(np.linalg.norm(mount.turn_deviation))),
     )
     return (
-        f"{off:.1f} mm (+- {by:.1f}) and {turned:.2f} deg (+- {about:.2f}) off its drawing, "
+        f"{off:.1f} mm (+- {by:.1f}) and {turned:.2f} deg (+- {about:.2f}) off its {believed}, "
         f"from {mount.pictures} pictures, residual {1000 * mount.residual:.1f} mm"
     )

@@ -7,7 +7,7 @@ et al., "KinectFusion", 2011.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Protocol
 
 import mujoco
 import numpy as np
@@ -17,7 +17,7 @@ from scipy.spatial.transform import Rotation
 
 from common.geometry import quat_matrix
 from common.messages import Rgbd
-from common.robot import ARM, HOME, Hand, subtree
+from common.robot import ARM, RobotKinematics, arm_limits, home_arm, subtree
 
 Array = NDArray[np.float64]
 
@@ -91,34 +91,18 @@ class Mount:
         return off < TRUE_OFFSET + by and turned < TRUE_TURN + about
 
 
-class Arm:
-    """The arm and hand as surfaces, with the base at the origin; `lowest` and `highest` joint angles (7,) [rad]."""
+class Arm(RobotKinematics):
+    """The arm and hand as surfaces; `lowest` and `highest` joint angles (7,) [rad], `home` the carry pose (7,)."""
 
     def __init__(self, mjcf: str) -> None:
-        self.model: Any = mujoco.MjModel.from_xml_string(mjcf)
-        self.data: Any = mujoco.MjData(self.model)
-        self._arm = [int(self.model.joint(name).qposadr[0]) for name in ARM]
-        self._hand = Hand(self.model)
-        self._fingers = [int(self.model.joint(name).qposadr[0]) for name in self._hand.joints]
-        self.open = self._hand.open
+        super().__init__(mjcf)
         self._base = int(self.model.body("base").id)
         first = self.model.body(int(self.model.jnt_bodyid[self.model.joint(ARM[0]).id])).name
         self._moving = np.isin(self.model.geom_bodyid, list(subtree(self.model, first)))
         self._groups = np.array([1, 1, 1, 1, 0, 0], np.uint8)
-        limits = [self.model.joint(name) for name in ARM]
-        free = np.array([not self.model.jnt_limited[j.id] for j in limits])
-        ranges = np.array([self.model.jnt_range[j.id] for j in limits])
-        self.lowest = np.where(free, -np.inf, ranges[:, 0] + FROM_LIMIT)
-        self.highest = np.where(free, np.inf, ranges[:, 1] - FROM_LIMIT)
-        self.home: Array = self.model.key(HOME).qpos[self._arm].copy()
-
-    def pose(self, joints: Array, width: float) -> None:
-        """Take joint angles (7,) [rad] and the gripper's width [m]."""
-        self.data.qpos[:] = 0.0
-        self.data.qpos[self._arm] = joints
-        self.data.qpos[self._fingers] = self._hand.posture(width)
-        mujoco.mj_kinematics(self.model, self.data)
-        mujoco.mj_comPos(self.model, self.data)
+        low, high = arm_limits(self.model)
+        self.lowest, self.highest = low + FROM_LIMIT, high - FROM_LIMIT
+        self.home = home_arm(self.model)
 
     def collides(self) -> bool:
         """The arm touches the robot or itself."""

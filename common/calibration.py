@@ -5,6 +5,8 @@ import tomllib
 from pathlib import Path
 
 Vector = tuple[float, float, float]
+Mounts = dict[str, tuple[Vector, Vector]]
+"""Offset [m] and turn [deg, a rotation vector] of each camera from its drawing, in its optical frame."""
 CAMERAS = ("head", "wrist")
 LARGEST_OFFSET, LARGEST_TURN = 0.05, 10.0
 """What a mount may be off its drawing [m, deg] before the file is taken for nonsense; chosen: ten bad brackets."""
@@ -14,8 +16,8 @@ class CalibrationError(ValueError):
     """The file cannot be used; says why."""
 
 
-def read(path: Path) -> dict[str, tuple[Vector, Vector]]:
-    """Offset [m] and turn [deg, a rotation vector] of each camera from its drawing, in its optical frame.
+def read(path: Path) -> Mounts:
+    """The mounts that a file tells.
 
     Raises:
         CalibrationError: no such file, no TOML, or numbers that no mount has.
@@ -47,7 +49,7 @@ def _vector(path: Path, camera: str, table: object, key: str, largest: float) ->
     return float(values[0]), float(values[1]), float(values[2])
 
 
-def text(mounts: dict[str, tuple[Vector, Vector]], remarks: dict[str, str]) -> str:
+def text(mounts: Mounts, remarks: dict[str, str]) -> str:
     """The file's content; `remarks` say how sure each camera's numbers are."""
     lines = ["# Where the cameras sit, seen from their drawing, in their optical frames (x right, y down, z forward)."]
     for name, (offset, turn) in mounts.items():

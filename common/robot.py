@@ -56,6 +56,28 @@ def pads(model: Any) -> tuple[frozenset[int], frozenset[int]]:
     return left, right
 
 
+class RobotKinematics:
+    """The robot of a description with its base at the origin, in one posture after the other.
+
+    `open`: the gripper's largest width [m].
+    """
+
+    def __init__(self, mjcf: str) -> None:
+        self.model: Any = mujoco.MjModel.from_xml_string(mjcf)
+        self.data: Any = mujoco.MjData(self.model)
+        self._hand = Hand(self.model)
+        self.open = self._hand.open
+        self._arm = [self.model.joint(name).qposadr[0] for name in ARM]
+        self._fingers = [self.model.joint(name).qposadr[0] for name in self._hand.joints]
+
+    def pose(self, arm: Array, width: float) -> None:
+        """Take the arm's joint angles (7,) [rad] and the gripper's width [m]."""
+        self.data.qpos[:] = 0.0
+        self.data.qpos[self._arm] = arm
+        self.data.qpos[self._fingers] = self._hand.posture(width)
+        mujoco.mj_kinematics(self.model, self.data)
+
+
 class Hand:
     """The gripper's joints as a function of the width between its pads [m]."""
 

@@ -136,6 +136,10 @@ class Renderer:
         self.data.cam_xpos[number] += optical @ offset
         self.data.cam_xmat[number] = (optical @ Rotation.from_rotvec(turn).as_matrix() @ flip).ravel()
 
+    def focal(self, camera: str, height: int) -> float:
+        """Focal length [px] of a camera's pictures of so many rows."""
+        return height / 2 / float(np.tan(np.radians(float(self.model.camera(camera).fovy[0])) / 2))
+
     def _in_sight(self, camera: int, aspect: float) -> NDArray[np.bool_]:
         """The geoms (n,) whose bounding sphere reaches into a camera's view; GL without a GPU is slow to find out."""
         model, data = self.model, self.data

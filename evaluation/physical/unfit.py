@@ -1,6 +1,7 @@
 """Objects too heavy or too wide for the hand, and obstacles: only the scene is changed, and what follows is watched."""
 
 import math
+from functools import cached_property
 from itertools import pairwise
 from typing import Any
 
@@ -79,6 +80,10 @@ class InTheWay(Injector):
         self._since: tuple[float, float] | None = None
         self._resting = 0.0
 
+    @cached_property
+    def _plan(self) -> FloorPlan:
+        return FloorPlan(self.physics.scene)
+
     def step(self, now: float, state: str) -> str:
         if state not in ("NAVIGATING", "RETURNING", "GROUNDING"):
             self._since = None
@@ -97,7 +102,7 @@ class InTheWay(Injector):
         if self._since is None or self._resting < DROVE:
             return ""
         start, self._since = self._since, None
-        path = FloorPlan(self.physics.scene).path(start, [here])
+        path = self._plan.path(start, [here])
         self.over = any(_from_line((x, y), a, b) < max(found["size"][:2]) / 2 for a, b in pairwise(path))
         return f"the {self.fault.thing} on the shortest path of a drive, which went round it" if self.over else ""
 

@@ -12,15 +12,12 @@ from common.bus.port import Io, Job
 from common.geometry import matrix_quat
 from common.rendering.renderer import Renderer
 from common.runtime import StartError
+from common.time.lockstep import DT
 from services.camera.config import CameraConfig
 from services.camera.sensor import StereoCamera, exact
 
-Mounts = dict[str, tuple[calibration.Vector, calibration.Vector]]
 MAX_WAITING = 8
 """Requests that may wait; chosen: more than are asked for at the same time."""
-CAMERAS = ("head", "wrist")
-TICKS = 100
-"""Ticks per second of robot time."""
 
 
 class Shutter:
@@ -29,10 +26,10 @@ class Shutter:
     `mounts`: offset [m] and turn [deg] of the calibrated cameras from their drawing.
     """
 
-    def __init__(self, backend: str, seed: int | None, mounts: Mounts) -> None:
+    def __init__(self, backend: str, seed: int | None, mounts: calibration.Mounts) -> None:
         self._backend, self._mjcf, self._mounts = backend, "", mounts
         self._renderer: Renderer | None = None
-        self._sensors = {} if seed is None else {c: StereoCamera(seed + i) for i, c in enumerate(CAMERAS)}
+        self._sensors = {} if seed is None else {c: StereoCamera(seed + i) for i, c in enumerate(calibration.CAMERAS)}
 
     def take(self, model: m.SimModel, state: m.SimState, request: m.CameraRequest) -> m.Rgbd:
         """Render one image."""
@@ -52,16 +49,16 @@ class Shutter:
             position = position + rotation @ np.array(mount[0])
             rotation = rotation @ Rotation.from_rotvec(mount[1], degrees=True).as_matrix()
         x, y, z = (float(v) for v in position)
-        focal = height / 2 / np.tan(np.radians(float(renderer.model.camera(request.camera).fovy[0])) / 2)
-        picture = sensor.expose(rgb, depth, float(focal), round(state.t * TICKS)) if sensor else exact(rgb, depth)
+        focal = renderer.focal(request.camera, height)
+        picture = sensor.expose(rgb, depth, focal, round(state.t / DT)) if sensor else exact(rgb, depth)
         return m.Rgbd(
             t=state.t,
             id=request.id,
             camera=request.camera,
             width=width,
             height=height,
-            fx=float(focal),
-            fy=float(focal),
+            fx=focal,
+            fy=focal,
             cx=width / 2,
             cy=height / 2,
             position=(x, y, z),
@@ -130,7 +127,7 @@ class CameraService:
         self._io.submit(self._shutter.close, seconds=0.0)
 
 
-def _mounts(path: str) -> Mounts:
+def _mounts(path: str) -> calibration.Mounts:
     """What a calibration file says; nothing without a path.
 
     Raises:

@@ -113,7 +113,7 @@ def spots(
     grid = []
     half = [max(0.0, v / 2 - radius - 0.02) for v in r.size]
     rows = product(np.linspace(-half[0], half[0], 5), np.linspace(-half[1], half[1], 7))
-    for u, v in _around(r, radius, beside) if beside else rows:
+    for u, v in _ring_of(r, radius, beside) if beside else rows:
         if abs(u) > half[0] + 1e-9 or abs(v) > half[1] + 1e-9:
             continue
         x, y = r.outline.to_map(float(u), float(v))
@@ -124,7 +124,7 @@ def spots(
     return [spot for ideal, spot in sorted(grid) if ideal < 0.6]
 
 
-def _around(r: Receptacle, radius: float, beside: WorldObject | ObjectRef) -> list[tuple[float, float]]:
+def _ring_of(r: Receptacle, radius: float, beside: WorldObject | ObjectRef) -> list[tuple[float, float]]:
     """Points on a receptacle, in its own frame, around an object with room for another of `radius` [m]."""
     cx, cy = r.outline.to_local(beside.position[0], beside.position[1])
     near = max(beside.size[0], beside.size[1]) / 2 + radius

@@ -74,6 +74,10 @@ class Goals:
             for choice in self._before((o.position[0], o.position[1]), self._places.receptacle_of(o))
         ]
 
+    def known(self, item: str, objects: list[m.WorldObject]) -> bool:
+        """The words can mean one of the objects."""
+        return bool(self._places.matching(item, objects))
+
     def spot(self, item: str) -> Choices:
         """Where an item is looked for without eyes."""
         return [(0.0, self._places.spot(item) or self._config.find_spot)]

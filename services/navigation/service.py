@@ -171,7 +171,7 @@ class NavigationService:
 
     def _still_there(self, found: Search) -> None:
         """Search on when perception, from nearer, no longer takes anything for what is driven to."""
-        if self._io.peer(PERCEPTION) is None or self._approaches_to(found.item):
+        if self._io.peer(PERCEPTION) is None or self._goals.known(found.item, self._objects()):
             return
         self._io.log.info("not there after all", item=found.item)
         self._leave(self._navigator)

@@ -7,7 +7,7 @@ from scipy import ndimage
 from scipy.spatial import ConvexHull
 
 from common.geometry import Array, Pose2
-from common.robot import ARM, Hand
+from common.robot import RobotKinematics
 from services.perception.view import Mask, View
 
 STEP = 4
@@ -19,29 +19,17 @@ MARGIN = 0.025
 motion."""
 
 
-class RobotModel:
-    """Kinematics of the robot with its base at the origin."""
+class RobotModel(RobotKinematics):
+    """The robot's geoms as what a picture of it shows."""
 
     def __init__(self, mjcf: str) -> None:
-        self._model = mujoco.MjModel.from_xml_string(mjcf)
-        self._data = mujoco.MjData(self._model)
-        self._arm = [self._model.joint(name).qposadr[0] for name in ARM]
-        self._hand = Hand(self._model)
-        self.open = self._hand.open
-        self._fingers = [self._model.joint(name).qposadr[0] for name in self._hand.joints]
-        self._faces = {g: _faces(self._model, g) for g in range(self._model.ngeom) if _is_mesh(self._model, g)}
-        self.solid = [g for g in range(self._model.ngeom) if self._model.geom_type[g] != mujoco.mjtGeom.mjGEOM_PLANE]
-
-    def pose(self, arm: Array, width: float) -> None:
-        """Take the arm's joint angles (7,) and the gripper's width [m]."""
-        self._data.qpos[:] = 0.0
-        self._data.qpos[self._arm] = arm
-        self._data.qpos[self._fingers] = self._hand.posture(width)
-        mujoco.mj_kinematics(self._model, self._data)
+        super().__init__(mjcf)
+        self._faces = {g: _faces(self.model, g) for g in range(self.model.ngeom) if _is_mesh(self.model, g)}
+        self.solid = [g for g in range(self.model.ngeom) if self.model.geom_type[g] != mujoco.mjtGeom.mjGEOM_PLANE]
 
     def hand(self, base: Pose2) -> tuple[float, float, float]:
         """Where the middle between the finger pads is, in frame map."""
-        x, y, z = self._data.site("pinch").xpos
+        x, y, z = self.data.site("pinch").xpos
         c, s = np.cos(base[2]), np.sin(base[2])
         return float(base[0] + c * x - s * y), float(base[1] + s * x + c * y), float(z)
 
@@ -63,7 +51,7 @@ class RobotModel:
     def _touched(self, points: Array) -> Mask:
         """Which of the points (n, 3) in the base frame are within MARGIN of the body's geoms."""
         touched = np.zeros(len(points), bool)
-        centres, reaches = self._data.geom_xpos[self.solid], self._model.geom_rbound[self.solid] + MARGIN
+        centres, reaches = self.data.geom_xpos[self.solid], self.model.geom_rbound[self.solid] + MARGIN
         apart = (points**2).sum(axis=1)[:, None] - 2 * points @ centres.T + (centres**2).sum(axis=1)
         # A geom is near the points within its bounding sphere only; the last digits of `apart` are not to be trusted.
         around = apart < (reaches + 1e-6) ** 2
@@ -74,11 +62,11 @@ class RobotModel:
 
     def distance_to(self, points: Array, g: int) -> Array:
         """Distance [m] of points (n, 3) in the base frame from a geom."""
-        local = (points - self._data.geom_xpos[g]) @ self._data.geom_xmat[g].reshape(3, 3)
+        local = (points - self.data.geom_xpos[g]) @ self.data.geom_xmat[g].reshape(3, 3)
         if g in self._faces:
             normals, offsets = self._faces[g]
             return np.asarray(np.maximum((local @ normals.T + offsets).max(axis=1), 0.0))
-        return _outside(np.abs(local), int(self._model.geom_type[g]), self._model.geom_size[g])
+        return _outside(np.abs(local), int(self.model.geom_type[g]), self.model.geom_size[g])
 
 
 def _is_mesh(model: mujoco.MjModel, geom: int) -> bool:

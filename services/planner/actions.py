@@ -10,6 +10,7 @@ from services.planner.plan_builder import PlanBuilder, Refusal
 from services.planner.relations import BESIDE, between
 from services.planner.resolve import Referent, referent, referents, spot
 from services.planner.vocabulary import Spot
+from services.planner.world import BelievedObject
 
 
 # --- moving things
@@ -61,12 +62,7 @@ def put_near(builder: PlanBuilder, slots: Slots) -> None:
         builder.search_first([PlanStep(action="find", object=anchor.label)])
         raise Refusal(f"I have not seen where the {anchor.label} stands")
     for meant in moved:
-        item = meant.object
-        if item.on == where.name and not item.held and between(item, anchor) < BESIDE:
-            builder.say(f"The {item.label} is there already.")
-            continue
-        take(builder, meant)
-        builder.place(where, near=anchor.label)
+        _put(builder, meant, where, anchor)
     builder.last = [m.object for m in moved]
 
 
@@ -170,13 +166,15 @@ def take(builder: PlanBuilder, meant: Referent) -> None:
     builder.take(meant.object, meant.words)
 
 
-def _put(builder: PlanBuilder, meant: Referent, where: Receptacle) -> None:
-    if meant.object.on == where.name and not meant.object.held:
-        builder.say(f"The {meant.object.label} is there already.")
-        builder.last = [meant.object]
+def _put(builder: PlanBuilder, meant: Referent, where: Receptacle, near: BelievedObject | None = None) -> None:
+    """On a receptacle, next to what stands `near` there; what is there already stays."""
+    item = meant.object
+    if item.on == where.name and not item.held and (near is None or between(item, near) < BESIDE):
+        builder.say(f"The {item.label} is there already.")
+        builder.last = [item]
         return
     take(builder, meant)
-    builder.place(where)
+    builder.place(where, near.label if near is not None else "")
 
 
 def _deliver(builder: PlanBuilder, everything: list[Referent], where: Spot) -> None:

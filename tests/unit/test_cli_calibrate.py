@@ -37,7 +37,7 @@ class Studio:
         sensor = self.sensors[camera]
         if moved:
             self.renderer.move(camera, sensor.offset, sensor.turn)
-        focal = HEIGHT / 2 / np.tan(np.radians(float(model.camera(camera).fovy[0])) / 2)
+        focal = self.renderer.focal(camera, HEIGHT)
         taken = sensor.expose(*self.renderer.rgbd(camera, WIDTH, HEIGHT), focal, moment)
         image = Rgbd(
             t=0.0, id="", camera=camera, width=WIDTH, height=HEIGHT, fx=focal, fy=focal, cx=WIDTH / 2, cy=HEIGHT / 2,

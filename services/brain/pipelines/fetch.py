@@ -10,6 +10,7 @@ from services.brain.mission.context import Context
 from services.brain.mission.mission import Failure, gripper_holds
 from services.brain.pipelines.shared import drive_home, report_failure
 from services.brain.recoveries.regrasp import grab_failed
+from services.brain.steps.find import reference_to
 from services.brain.steps.leaf import Call, Leaf, Settle
 from services.brain.steps.motion import Grab, Listen, Navigate, Ready, Release, Wait
 from services.brain.steps.verify import is_misplaced, verify_placement
@@ -141,7 +142,4 @@ def object_ref(ctx: Context) -> m.ObjectRef | None:
     known = ctx.known_object(ctx.mission.task.label)
     if known is None or known.seen_at <= ctx.gripper.put_down.get(known.label, -1.0):
         return None
-    return m.ObjectRef(
-        label=known.label, position=known.position, orientation=known.orientation, size=known.size, kind=known.kind,
-        tilt=known.tilt,
-    )  # fmt: skip
+    return reference_to(known)

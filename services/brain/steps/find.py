@@ -150,4 +150,12 @@ def object_in_map(ctx: Context, label: str) -> m.ObjectRef | None:
     ref, known = object_ref(ctx, label), ctx.known_object(label) if label else None
     if ref is not None or known is None:
         return ref
-    return m.ObjectRef(label=known.label, position=known.position, size=known.size, kind=known.kind, tilt=known.tilt)
+    return reference_to(known)
+
+
+def reference_to(known: m.WorldObject) -> m.ObjectRef:
+    """A surveyed object, as goals name one."""
+    return m.ObjectRef(
+        label=known.label, position=known.position, orientation=known.orientation, size=known.size, kind=known.kind,
+        tilt=known.tilt,
+    )  # fmt: skip
