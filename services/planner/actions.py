@@ -167,8 +167,8 @@ def take(builder: PlanBuilder, meant: Referent) -> None:
 
 
 def _put(builder: PlanBuilder, meant: Referent, where: Receptacle, near: BelievedObject | None = None) -> None:
-    """On a receptacle, next to what stands `near` there; what is there already stays."""
-    item = meant.object
+    """On a receptacle, next to what stands `near` there, but into a bin anywhere; what is there already stays."""
+    item, near = meant.object, None if where.depth else near
     if item.on == where.name and not item.held and (near is None or between(item, near) < BESIDE):
         builder.say(f"The {item.label} is there already.")
         builder.last = [item]

@@ -364,6 +364,11 @@ def test_what_something_is_put_beside_is_looked_for_first() -> None:
     assert "I have not seen where the apple stands" in text(ask(command, objects=WORLD[:1], done=first.steps))
 
 
+def test_next_to_what_lies_in_a_bin_is_into_the_bin() -> None:
+    binned = [*WORLD[:-1], seen("apple", "bin", (6.6, -2.3, 0.1))]
+    assert text(ask("put the red mug next to the apple", objects=binned)) == put("red mug", "bin")
+
+
 def test_where_one_of_several_is_told_of_the_one_that_was_found() -> None:
     first = ask("find a mug", objects=[], done=[])
     assert first.again and text(first) == "find mug"
