@@ -4,11 +4,14 @@ from typing import Literal
 
 from common.messages.base import IDENTITY, Message, Quat, Vec3
 
+ShapeFamily = Literal["", "round", "box", "bowl", "ball", "long", "irregular"]
+"""The family of a measured shape: turned about its axis, box, open vessel, ball, longer than wide, none of these."""
+
 
 class ObjectRef(Message):
     """What manipulation is told about the object to grab: `position` is its centre, `size` full extent.
 
-    `tilt` as in `WorldObject`.
+    `tilt`, `shape` and `points` as in `WorldObject`.
     """
 
     label: str
@@ -18,6 +21,8 @@ class ObjectRef(Message):
     kind: str = ""
     frame: str = "map"
     tilt: float = 0.0
+    shape: ShapeFamily = ""
+    points: bytes = b""
 
 
 class WorldObject(Message):
@@ -25,6 +30,11 @@ class WorldObject(Message):
 
     `tilt` [rad]: angle of its own upward axis to the vertical, 0 when it stands. Of what lies on its side, the first
     extent of `size` is along that axis, which points along the yaw of `orientation`.
+
+    `label` is unique in one list: what looks alike is "red mug" and "red mug 2". `names`: what it is called beside its
+    label, as taught by a person; `text`: what was read on it; `colours`: the words of its colours, the largest first.
+    `measured`: `size` was measured and not looked up in the household; `spread`: standard deviation [m] of its extents
+    and position. `points`: what was seen of its surface, int16 (n, 3) [mm], little endian, in map axes from `position`.
     """
 
     label: str
@@ -39,6 +49,13 @@ class WorldObject(Message):
     held: bool = False
     id: str = ""
     tilt: float = 0.0
+    shape: ShapeFamily = ""
+    names: list[str] = []
+    text: str = ""
+    colours: list[str] = []
+    measured: bool = False
+    spread: float = 0.0
+    points: bytes = b""
 
 
 class WorldObjects(Message):
