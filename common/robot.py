@@ -104,6 +104,14 @@ class Hand:
         widths, _, postures = self.table
         return np.array([np.interp(width, widths[::-1], column[::-1]) for column in postures.T])
 
+    def share(self, width: float) -> float:
+        """How far the motor is from open (0) to closed (1) at this width [m]."""
+        if self.table is None:
+            return float(np.clip(1.0 - width / self.open, 0.0, 1.0))
+        widths, lengths, _ = self.table
+        length = np.interp(width, widths[::-1], lengths[::-1])
+        return float((length - lengths[0]) / (lengths[-1] - lengths[0]))
+
     def advance(self, width: float) -> float:
         """How far along the approach the middle of the pads is beyond the site `pinch` at this width [m].
 

@@ -1,9 +1,9 @@
-"""The arm for planning: kinematics and collision checks in the base frame, with boxes for what stands around."""
+"""The arm for planning: kinematics and collision checks in the base frame, with solids for what stands around."""
 
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import mujoco
 import numpy as np
@@ -18,13 +18,39 @@ FAR = 50.0
 FINGER_ROOM = 0.009
 
 
+Solid = Literal["box", "cylinder", "ellipsoid"]
+"""What stands for an object or a piece of furniture where distances and collisions are computed."""
+
+
 @dataclass(frozen=True)
 class Obstacle:
-    """A box in the base frame: centre, full extents, yaw."""
+    """A solid in the base frame: centre, full extents, yaw. The axis of a cylinder is vertical; if it `lies`, it is
+    along its own x. `label` names the object that it stands for, "" furniture and walls.
+    """
 
     center: tuple[float, float, float]
     size: tuple[float, float, float]
     yaw: float = 0.0
+    solid: Solid = "box"
+    lies: bool = False
+    label: str = ""
+
+    def geom(self) -> tuple[int, Array, Array, tuple[float, float, float, float]]:
+        """MuJoCo's geom type and size (3,), half extents (3,) of the box around it [m], quaternion of its pose."""
+        half = np.array(self.size) / 2
+        c, s = math.cos(self.yaw / 2), math.sin(self.yaw / 2)
+        upright = (c, 0.0, 0.0, s)
+        if self.solid == "ellipsoid":
+            return int(mujoco.mjtGeom.mjGEOM_ELLIPSOID), half, half, upright
+        if self.solid == "box":
+            return int(mujoco.mjtGeom.mjGEOM_BOX), half, half, upright
+        radius, length = (max(half[1], half[2]), half[0]) if self.lies else (max(half[0], half[1]), half[2])
+        # The yaw after a quarter turn about y, which takes z to x.
+        w, x, y, z = (v / math.sqrt(2) for v in (c, -s, c, s)) if self.lies else upright
+        return (
+            int(mujoco.mjtGeom.mjGEOM_CYLINDER), np.array([radius, length, 0.0]), np.array([radius, radius, length]),
+            (w, x, y, z),
+        )  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -90,7 +116,9 @@ class ArmModel:
         self.home = home_arm(self.model)
         mujoco.mj_kinematics(self.model, self.data)
         self.forward = arm_forward(self.model, self.data)
-        self.widest = Hand(self.model).open - FINGER_ROOM
+        self.hand = Hand(self.model)
+        self.widest = self.hand.open - FINGER_ROOM
+        self._fingers = [self.model.joint(name).qposadr[0] for name in self.hand.joints]
         self.pinch = self.model.site("pinch").id
         self._held = self.model.geom("held").id
         self._held_at = self.model.geom_pos[self._held].copy()
@@ -99,19 +127,21 @@ class ArmModel:
         self._held_turn = turn.reshape(3, 3)
         self._boxes = [self.model.geom(f"box_{i}").id for i in range(BOXES)]
         self._mocap = [self.model.body(f"box_{i}").mocapid[0] for i in range(BOXES)]
+        self._around: Sequence[Obstacle] = ()
         self.set_obstacles(())
         self.hold(None)
 
     def set_obstacles(self, obstacles: Sequence[Obstacle]) -> None:
-        """Put boxes around the robot, the most important first; those over the limit are left out."""
-        nearest = obstacles[:BOXES]
+        """Put solids around the robot, the most important first; those over the limit are left out."""
+        nearest = self._around = obstacles[:BOXES]
         for i, (geom, mocap) in enumerate(zip(self._boxes, self._mocap, strict=True)):
             if i < len(nearest):
-                box = nearest[i]
-                half = np.array(box.size) / 2
+                kind, size, half, turn = nearest[i].geom()
+                self.model.geom_type[geom] = kind
                 self._resize(geom, half)
-                self.data.mocap_pos[mocap] = box.center
-                self.data.mocap_quat[mocap] = (math.cos(box.yaw / 2), 0, 0, math.sin(box.yaw / 2))
+                self.model.geom_size[geom] = size
+                self.data.mocap_pos[mocap] = nearest[i].center
+                self.data.mocap_quat[mocap] = turn
             else:
                 self.data.mocap_pos[mocap] = (FAR, FAR, i)
 
@@ -130,6 +160,10 @@ class ArmModel:
         if geom != self._held:
             # The broad phase looks at the body's bounding volume, which the compiler sized.
             self.model.bvh_aabb[self.model.body_bvhadr[self.model.geom_bodyid[geom]]] = (0, 0, 0, *half)
+
+    def open_fingers(self, width: float | None = None) -> None:
+        """Every following configuration has the fingers this far apart [m], as far as they go unless told."""
+        self.data.qpos[self._fingers] = 0.0 if width is None else self.hand.posture(width)
 
     def hand_geoms(self) -> list[str | int]:
         """What of the arm must keep away from things: the palm and the last links, without the fingers."""
@@ -158,6 +192,11 @@ class ArmModel:
         self.place(q)
         mujoco.mj_collision(self.model, self.data)
         return bool(self.data.ncon)
+
+    def met(self) -> set[str]:
+        """Labels of the obstacles that the configuration asked about last touches; "" for furniture."""
+        touched = {int(g) for pair in self.data.contact.geom[: self.data.ncon] for g in pair}
+        return {o.label for o, geom in zip(self._around, self._boxes, strict=False) if geom in touched}
 
     def contact_names(self, q: Array) -> list[tuple[str, str]]:
         """Which geoms touch, for messages and tests."""

@@ -5,6 +5,7 @@ from dataclasses import replace
 import mujoco
 import numpy as np
 
+from common.geometry import quat_matrix
 from common.kinds import kind_of
 from common.robot import Hand, pads, subtree
 from services.manipulation.arm_model import STAND_IN, ArmModel, Array, Pose
@@ -39,8 +40,10 @@ class HandClearance:
         ]
         self._arm_at, self._home = arm.qpos_at, arm.home
 
-    def clear(self, target: Target, grasp: Grasp) -> Grasp | None:
+    def clear(self, target: Target, grasp: Grasp, opening: float | None = None) -> Grasp | None:
         """The grasp with its pinch point where the pads meet, kept back as far as the hand needs; None if too far.
+
+        `opening` [m]: how far apart the fingers come, None as far as they go.
 
         The pads' middle runs along an arc while they close: the site is put so far behind that at the grasp's width
         they are where the grasp wants them.
@@ -48,17 +51,17 @@ class HandClearance:
         advance = self.hand.advance(grasp.width)
         pose = grasp.pose.moved(-advance * grasp.pose.rotation[:, 2])
         if not kind_of(target.kind).by_the_rim:  # there the hand is inside the object's own bounding shape
-            back = self._needed(target, pose, grasp.width)
+            back = self._needed(target, pose, (opening or self.hand.open, grasp.width))
             if back is None:
                 return None
             pose = pose.moved(-back * pose.rotation[:, 2])
         return replace(grasp, pose=pose)
 
-    def _needed(self, target: Target, pose: Pose, width: float) -> float | None:
+    def _needed(self, target: Target, pose: Pose, widths: tuple[float, float]) -> float | None:
         back, most = 0.0, _most(target, pose)
         while True:
             kept = pose.moved(-back * pose.rotation[:, 2])
-            free = min(self._room(target, kept, w) for w in (self.hand.open, width))
+            free = min(self._room(target, kept, w) for w in widths)
             if free >= GAP:
                 return back
             # Nothing of the hand comes nearer than it moves: the distance missing is the least that helps.
@@ -80,25 +83,18 @@ class HandClearance:
 
     def _place(self, target: Target, centre: Array, turn: Array) -> int:
         """Put the geom that stands for the object at `centre`, `turn` being the base frame in the hand's world."""
-        model, data, kinds = self._model, self._data, mujoco.mjtGeom
+        model, data = self._model, self._data
         shape = int(model.geom(STAND_IN).id)
-        size = np.array(target.size) / 2
-        model.geom_type[shape], model.geom_size[shape] = kinds.mjGEOM_BOX, size
-        solid = kind_of(target.kind).shape
-        if solid == "turned" and not target.lies:
-            model.geom_type[shape], model.geom_size[shape] = kinds.mjGEOM_CYLINDER, (size[:2].max(), size[2], 0)
-        elif solid == "sphere":
-            model.geom_type[shape] = kinds.mjGEOM_ELLIPSOID
-        model.geom_rbound[shape] = float(np.linalg.norm(model.geom_size[shape]))
-        c, s = np.cos(target.yaw), np.sin(target.yaw)
+        model.geom_type[shape], model.geom_size[shape], half, quat = target.grown(0.0).geom()
+        model.geom_rbound[shape] = float(np.linalg.norm(half))
         data.geom_xpos[shape] = centre
-        data.geom_xmat[shape] = (turn @ np.array([[c, -s, 0], [s, c, 0], [0, 0, 1.0]])).reshape(-1)
+        data.geom_xmat[shape] = (turn @ quat_matrix(quat)).reshape(-1)
         return shape
 
 
 def _most(target: Target, pose: Pose) -> float:
     """How far [m] the pads' middle may stay before the object's and still hold it."""
-    if kind_of(target.kind).shape != "box":
+    if target.solid != "box":
         return MOST
     c, s = np.cos(target.yaw), np.sin(target.yaw)
     own = np.array([[c, s, 0], [-s, c, 0], [0, 0, 1.0]])

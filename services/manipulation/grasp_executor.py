@@ -14,7 +14,7 @@ from services.manipulation.grasp import shown
 from services.manipulation.grasp_verification import WIDTH_ERROR, held_badly, judge
 from services.manipulation.grasped_object import GraspedObject
 from services.manipulation.plan_grab import GrabPlan, plan_grab
-from services.manipulation.planning_scene import obstacles, target_of
+from services.manipulation.planning_scene import MARGINS, obstacles, target_of
 from services.manipulation.robot import Failure, Robot, Steps, go_home, planner_of
 from services.manipulation.sighting import MISTAKEN, aimed, sighted
 from services.manipulation.touch import TOO_HEAVY, TOUCHED, load_limit
@@ -45,7 +45,7 @@ def grab(robot: Robot, goal: m.ManipulationGoal, wanted: str) -> Steps[str]:
         found = yield from sighted(robot, goal, wanted, since)
         robot.phase = "reach"
         target = target_of(found, robot.base, robot.io.scene)
-        around = obstacles(robot.io.scene, robot.base, robot.source.objects(), without=found.label)
+        around = surroundings(robot, found.label)
         try:
             plan = yield from robot.work(
                 plan_grab, planner, target, around, robot.joints.copy(), config.approach_distance, config.lift_height,
@@ -70,7 +70,7 @@ def grab(robot: Robot, goal: m.ManipulationGoal, wanted: str) -> Steps[str]:
             last = failure
             robot.io.log.warning("grasp failed", code=failure.code, detail=failure.detail, grasp=plan.grasp.name)
             if failure.code == "BLOCKED" and robot.grasped is not None and robot.grip.holds():
-                return (yield from _carry_again(robot, robot.grasped, around))
+                return (yield from _carry_again(robot, robot.grasped, around[-1]))
             robot.phase = "retract"
             robot.grasped = None
             yield from robot.move_gripper(0.0)
@@ -87,6 +87,12 @@ def grab(robot: Robot, goal: m.ManipulationGoal, wanted: str) -> Steps[str]:
     raise last
 
 
+def surroundings(robot: Robot, without: str) -> list[list[Obstacle]]:
+    """What the arm keeps clear of, with each of the margins, but for the object of that label."""
+    objects = robot.source.objects()
+    return [obstacles(robot.io.scene, robot.base, objects, without, margin) for margin in MARGINS]
+
+
 def _execute_grab(
     robot: Robot, plan: GrabPlan, goal: m.ManipulationGoal, found: WorldObject, widths: list[float]
 ) -> Steps[str]:
@@ -97,6 +103,8 @@ def _execute_grab(
     plan = yield from aimed(robot, plan, goal, found)
     free = robot.torques.copy()
     try:
+        if plan.opening is not None:
+            yield from robot.move_gripper(planner_of(robot).arm.hand.share(plan.opening))
         yield from robot.follow(plan.insert, config.joint_speed * INSERTING, robot.guard(free))
         robot.phase = "grasp"
         yield from robot.move_gripper(1.0, CLOSING_EFFORT)

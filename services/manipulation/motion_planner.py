@@ -2,6 +2,7 @@
 
 from collections import Counter
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -26,17 +27,17 @@ _CARRY = tuple((tip, turn) for tip in (0.0, 0.4, 0.8) for turn in (0.0, np.pi / 
 
 
 class PlanError(Exception):
-    """No plan; `code` is the status code, the text says why."""
+    """No plan; `code` is the status code, the text says why, `blockers` the objects in the way, the worst first."""
 
-    def __init__(self, code: str, detail: str) -> None:
+    def __init__(self, code: str, detail: str, blockers: Sequence[str] = ()) -> None:
         super().__init__(detail)
-        self.code = code
+        self.code, self.blockers = code, tuple(blockers)
 
 
 def inflated(around: Sequence[Obstacle], margin: float) -> list[Obstacle]:
-    """The boxes grown by the margin kept in transit."""
+    """The solids grown by the margin kept in transit."""
     grow = 2 * margin
-    return [Obstacle(o.center, (o.size[0] + grow, o.size[1] + grow, o.size[2] + grow), o.yaw) for o in around]
+    return [replace(o, size=(o.size[0] + grow, o.size[1] + grow, o.size[2] + grow)) for o in around]
 
 
 def counted(reasons: Iterable[str]) -> str:

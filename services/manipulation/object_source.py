@@ -6,6 +6,8 @@ Without one the latched `world/objects` is asked for what was last looked for.
 
 import math
 
+from msgspec import structs
+
 from common.geometry import Pose2, to_frame
 from common.messages import ManipulationGoal, ObjectRef, WorldObject, WorldObjects
 from common.naming import match_object
@@ -53,18 +55,10 @@ class ObjectSource:
             return
         # What lay is held, and put down, as it stands.
         size = known.size[::-1] if known.tilt else known.size
-        self._moved[label] = WorldObject(
-            label=label,
-            kind=known.kind,
-            colour=known.colour,
-            position=position or known.position,
-            orientation=known.orientation,
-            size=size,
-            on=on,
-            seen_at=now,
+        self._moved[label] = structs.replace(
+            known, position=position or known.position, size=size, tilt=0.0, points=b"", on=on, seen_at=now,
             held=position is None,
-            id=known.id,
-        )
+        )  # fmt: skip
 
     def resolve(self, goal: ManipulationGoal, wanted: str, base: Pose2, since: float = math.inf) -> WorldObject | None:
         """The object of a goal: the one it describes, the one last looked for, or the nearest in front.
@@ -86,6 +80,7 @@ class ObjectSource:
 
     def _described(self, ref: ObjectRef) -> WorldObject:
         known = next((o for o in self.objects() if o.label == ref.label), None)
+        near = known is not None and _close(known.position, ref.position)
         size = ref.size if min(ref.size) > 0 else (known.size if known else DEFAULT_SIZE)
         return WorldObject(
             label=ref.label,
@@ -94,8 +89,12 @@ class ObjectSource:
             position=ref.position,
             orientation=ref.orientation,
             size=size,
-            on=known.on if known and _close(known.position, ref.position) else "",
+            on=known.on if known and near else "",
             tilt=ref.tilt,
+            shape=ref.shape or (known.shape if known else ""),
+            points=ref.points or (known.points if known and near else b""),
+            spread=known.spread if known else 0.0,
+            measured=known.measured if known else bool(ref.shape),
         )
 
 

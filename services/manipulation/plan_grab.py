@@ -1,5 +1,6 @@
 """Plans a whole grab: a candidate grasp within reach, collision-free paths to it and away with the object."""
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -14,10 +15,17 @@ from services.manipulation.motion_planner import PlanError, Planner, counted
 from services.manipulation.planning_scene import with_object
 from services.manipulation.trajectory import connect
 
+FINGER_PLAY = 0.012
+"""How much wider [m] than the object on either side the fingers stand that go into a crowd partly closed. Chosen: the
+error of a sighting and of the arm."""
+
 
 @dataclass(frozen=True)
 class GrabPlan:
-    """Joint paths (lists of (7,)) of the phases, and the object as it will be attached to the hand."""
+    """Joint paths (lists of (7,)) of the phases, and the object as it will be attached to the hand.
+
+    `opening` [m]: how far apart the fingers are on the way in, None as far as they go; `around`: what is kept clear of.
+    """
 
     grasp: Grasp
     reach: list[Array]
@@ -25,12 +33,35 @@ class GrabPlan:
     lift: list[Array]
     carry: list[Array]
     grasped: GraspedObject
+    opening: float | None = None
+    around: Sequence[Obstacle] = ()
+
+
+@dataclass(frozen=True)
+class Miss:
+    """Why a grasp cannot be planned; `met` are labels of the obstacles that it would touch."""
+
+    reason: str
+    met: frozenset[str] = frozenset()
+
+
+@dataclass(frozen=True)
+class Way:
+    """How the hand goes in: `approach` and `lift` are the straight ways before and after it closes [m].
+
+    `around` is what it must not touch; `shaped`: with the fingers no wider than the object needs.
+    """
+
+    around: Sequence[Obstacle]
+    shaped: bool
+    approach: float
+    lift: float
 
 
 def plan_grab(
     planner: Planner,
     target: Target,
-    around: Sequence[Obstacle],
+    around: Sequence[Sequence[Obstacle]],
     now: Array,
     approach: float,
     lift: float,
@@ -39,6 +70,9 @@ def plan_grab(
     touched: list[Array],
 ) -> GrabPlan:
     """The first candidate grasp that can be reached and carried away.
+
+    `around`: what is not to be touched, with the widest margins first. With each of them every grasp is tried with the
+    fingers wide open, then those that met something with them partly closed.
 
     `skip` names grasps that are not tried; `touched` are rotations (3, 3) of the hand in the base frame with which the
     open fingers touched the object: grasps from other sides come first.
@@ -53,59 +87,72 @@ def plan_grab(
     options = [left[n] for n in new_sides_first((g.pose.rotation for g in left), touched)]
     if not options:
         raise PlanError("UNREACHABLE", f"no grasp left to try on {target.label}")
-    failures: list[str] = []
-    for grasp in options:
-        plan = _try_grab(planner, target, grasp, around, now, approach, lift)
-        if isinstance(plan, GrabPlan):
-            return plan
-        failures.append(plan)
-    reasons = counted(failures)
-    raise PlanError("UNREACHABLE", f"no reachable grasp of {target.label} at {distance:.2f} m: {reasons}")
+    misses: dict[str, Miss] = {}
+    for solids in around:
+        for shaped in (False, True):
+            way = Way(solids, shaped, approach, lift)
+            for grasp in options:
+                if grasp.name in misses and not misses[grasp.name].met:
+                    continue  # neither a narrower hand nor a smaller margin helps
+                plan = _try_grab(planner, target, grasp, way, now)
+                if isinstance(plan, GrabPlan):
+                    return plan
+                misses[grasp.name] = plan
+    reasons = counted(miss.reason for miss in misses.values())
+    blockers = Counter(label for miss in misses.values() for label in sorted(miss.met) if label)
+    names = [label for label, _ in blockers.most_common()]
+    behind = f"; in the way: {', '.join(names)}" if names else ""
+    raise PlanError(
+        "UNREACHABLE", f"no reachable grasp of {target.label} at {distance:.2f} m: {reasons}{behind}", names
+    )
 
 
-def _try_grab(
-    planner: Planner,
-    target: Target,
-    wanted: Grasp,
-    around: Sequence[Obstacle],
-    now: Array,
-    approach: float,
-    lift: float,
-) -> "GrabPlan | str":
+def _try_grab(planner: Planner, target: Target, wanted: Grasp, way: Way, now: Array) -> "GrabPlan | Miss":
     arm = planner.arm
-    rng = planner.rng()
-    grasp = planner.clearance.clear(target, wanted)
+    opening = min(wanted.width + 2 * FINGER_PLAY, arm.hand.open) if way.shaped else None
+    grasp = planner.clearance.clear(target, wanted, opening)
     if grasp is None:
-        return "too deep for the hand"
-    own = Obstacle(target.position, target.size, target.yaw)
+        return Miss("too deep for the hand")
     arm.hold(None)
+    arm.open_fingers(opening)
+    try:
+        return _plan(planner, target, grasp, way, opening, now)
+    finally:
+        arm.open_fingers()
+
+
+def _plan(
+    planner: Planner, target: Target, grasp: Grasp, way: Way, opening: float | None, now: Array
+) -> "GrabPlan | Miss":
+    arm, around, rng = planner.arm, way.around, planner.rng()
     arm.set_obstacles(around)
     at = planner.ik.solve(grasp.pose, seeds(arm, grasp.pose, now), avoid=True)
     if at is None:
-        return "no IK"
+        return Miss("no IK")
     at = arm.nearest_turn(at, now)
     if arm.collides(at):
-        return "grasp collides"
-    back = planner.straight(at, grasp.pose, grasp.pose.moved(-approach * grasp.pose.rotation[:, 2]))
+        return Miss("grasp collides", frozenset(arm.met()))
+    back = planner.straight(at, grasp.pose, grasp.pose.moved(-way.approach * grasp.pose.rotation[:, 2]))
     if back is None:
-        return "no straight approach"
-    up = planner.straight(at, grasp.pose, grasp.pose.moved(np.array([0.0, 0.0, lift])))
+        return Miss("no straight approach")
+    up = planner.straight(at, grasp.pose, grasp.pose.moved(np.array([0.0, 0.0, way.lift])))
     if up is None:
-        return "no straight lift"
+        return Miss("no straight lift")
     if any(arm.collides(q) for q in back):
-        return "approach collides"
-    planner.surround(with_object(around, own), back[-1])
+        return Miss("approach collides", frozenset(arm.met()))
+    arm.open_fingers()
+    planner.surround(with_object(around, target.grown(0.0)), back[-1])
     there = connect(arm, now, back[-1], rng)
     if there is None:
-        return "no path to the pre-grasp"
+        return Miss("no path to the pre-grasp")
     attached = attach(target, grasp)
     arm.hold(*attached.box())
     planner.surround(around, up[-1])
     away = planner.to_carry(up[-1], rng)
     arm.hold(None)
     if away is None:
-        return "no path to the carry pose"
-    return GrabPlan(grasp, there, [at, *back][::-1], [at, *up], away, attached)
+        return Miss("no path to the carry pose")
+    return GrabPlan(grasp, there, [at, *back][::-1], [at, *up], away, attached, opening, around)
 
 
 def refine(planner: Planner, plan: GrabPlan, shift: tuple[float, float], approach: float, lift: float) -> GrabPlan:
@@ -115,11 +162,17 @@ def refine(planner: Planner, plan: GrabPlan, shift: tuple[float, float], approac
         PlanError: UNREACHABLE.
     """
     grasp = replace(plan.grasp, pose=plan.grasp.pose.moved(np.array([*shift, 0.0])))
-    planner.arm.hold(None)
-    at = planner.ik.solve(grasp.pose, [plan.insert[-1]])
-    if at is not None:
-        back = planner.straight(at, grasp.pose, grasp.pose.moved(-approach * grasp.pose.rotation[:, 2]))
-        up = planner.straight(at, grasp.pose, grasp.pose.moved(np.array([0.0, 0.0, lift])))
-        if back is not None and up is not None and not any(planner.arm.collides(q) for q in (at, *back)):
-            return replace(plan, grasp=grasp, insert=[at, *back][::-1], lift=[at, *up])
+    arm = planner.arm
+    arm.hold(None)
+    arm.set_obstacles(plan.around)
+    arm.open_fingers(plan.opening)
+    try:
+        at = planner.ik.solve(grasp.pose, [plan.insert[-1]])
+        if at is not None:
+            back = planner.straight(at, grasp.pose, grasp.pose.moved(-approach * grasp.pose.rotation[:, 2]))
+            up = planner.straight(at, grasp.pose, grasp.pose.moved(np.array([0.0, 0.0, lift])))
+            if back is not None and up is not None and not any(arm.collides(q) for q in (at, *back)):
+                return replace(plan, grasp=grasp, insert=[at, *back][::-1], lift=[at, *up])
+    finally:
+        arm.open_fingers()
     raise PlanError("UNREACHABLE", "the corrected grasp is out of reach")

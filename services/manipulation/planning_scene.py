@@ -1,4 +1,4 @@
-"""The planning scene: boxes in the base frame for furniture, walls and known objects around the robot."""
+"""The planning scene: solids in the base frame for furniture, walls and known objects around the robot."""
 
 import math
 from collections.abc import Iterable, Sequence
@@ -6,10 +6,10 @@ from itertools import product
 
 import numpy as np
 
-from common.geometry import Pose2, Rectangle, compose, inverse, quat_yaw
+from common.geometry import Pose2, Rectangle, compose, inverse, quat_matrix, quat_yaw, yaw_quat
 from common.messages import ObjectRef, WorldObject
 from common.scene import Receptacle, Scene
-from services.manipulation.arm_model import Obstacle
+from services.manipulation.arm_model import Array, Obstacle
 from services.manipulation.grasp import Target
 
 RANGE = 1.4
@@ -18,13 +18,16 @@ object."""
 SLAB = 0.14
 """Depth [m] below a surface that is modelled as solid. Chosen: more than the height of the hand, which cannot pass
 under."""
-MARGIN = 0.01
-"""How much [m] known objects grow on every side. Chosen: the error of a sighting at arm's length."""
+MARGINS = (0.004, 0.0)
+"""How much [m] known objects grow on every side beyond the spread of what was measured, in the order of trying.
+Chosen: twice the error of a sighting at arm's length; in a crowd that may be all the room there is."""
 MOST_FURNITURE = 14
 """Boxes of furniture and walls, nearest first; the rest of the `arm_model.BOXES` is for objects."""
 BIN_WALL = 0.03
 """Thickness [m] of a bin's walls in the planning scene. Chosen: twice that of the walls themselves,
 `floor_plan.BIN_WALL`."""
+LEAST_POINTS = 12
+"""Fewer surface points say nothing of a shape."""
 DIRECTIONS, GAPS = 16, (0.05, 0.08, 0.12)
 """In how many directions a spot beside an object is looked for, and how far [m] beyond both outlines. Chosen: room for
 a finger and the error of a sighting at least."""
@@ -39,7 +42,16 @@ def target_of(found: WorldObject, base: Pose2, scene: Scene) -> Target:
     receptacle = scene.receptacle(found.on)
     if receptacle is not None and not receptacle.depth:
         z = receptacle.center[2] + found.size[2] / 2
-    return Target(found.label, found.kind, (x, y, z), yaw, found.size, found.tilt)
+    return Target(
+        found.label, found.kind, (x, y, z), yaw, found.size, found.tilt, found.shape, _points(found.points, base),
+        found.spread,
+    )  # fmt: skip
+
+
+def _points(raw: bytes, base: Pose2) -> Array | None:
+    """The surface points (n, 3) [m] of a message along the axes of the base frame; None when there are too few."""
+    points = np.frombuffer(raw[: len(raw) // 6 * 6], "<i2").reshape(-1, 3) / 1000.0
+    return points @ quat_matrix(yaw_quat(base[2])) if len(points) >= LEAST_POINTS else None
 
 
 def turned(was: Target, new: Target) -> float:
@@ -71,9 +83,10 @@ def _receptacle(r: Receptacle, base: Pose2) -> list[Obstacle]:
 
 
 def obstacles(
-    scene: Scene, base: Pose2, objects: Iterable[WorldObject], without: str = "", margin: float = MARGIN
+    scene: Scene, base: Pose2, objects: Iterable[WorldObject], without: str = "", margin: float = MARGINS[0]
 ) -> list[Obstacle]:
-    """Everything within reach, nearest first; the objects grow by `margin`, `without` names the one to leave out."""
+    """Everything within reach, nearest first; the objects are solids of their family that grow by `margin` and, unless
+    that is 0, by the spread of their measures; `without` names the one to leave out."""
     found: list[Obstacle] = []
     for r in scene.receptacles:
         found += _receptacle(r, base)
@@ -85,9 +98,7 @@ def obstacles(
     boxes = []
     for o in objects:
         if o.label != without and not o.held:
-            target = target_of(o, base, scene)
-            size = (o.size[0] + 2 * margin, o.size[1] + 2 * margin, o.size[2] + margin)
-            boxes.append(Obstacle(target.position, size, target.yaw))
+            boxes.append(target_of(o, base, scene).grown(margin + min(o.spread, margin)))
     return near[:MOST_FURNITURE] + sorted((b for b in boxes if _near(b) < RANGE), key=_near)
 
 

@@ -27,11 +27,11 @@ GRIPPER_TICKS = 5
 
 
 class Failure(Exception):
-    """The goal failed; `code` is the status code."""
+    """The goal failed; `code` is the status code, `blockers` the objects in the way, the worst first."""
 
-    def __init__(self, code: str, detail: str) -> None:
+    def __init__(self, code: str, detail: str, blockers: Sequence[str] = ()) -> None:
         super().__init__(detail)
-        self.code, self.detail = code, detail
+        self.code, self.detail, self.blockers = code, detail, tuple(blockers)
 
 
 class Robot:
@@ -129,7 +129,7 @@ class Robot:
         try:
             return job.result()
         except PlanError as error:
-            raise Failure(error.code, str(error)) from None
+            raise Failure(error.code, str(error), error.blockers) from None
 
 
 def go_home(robot: Robot) -> Steps[str]:

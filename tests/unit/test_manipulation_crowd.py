@@ -1,0 +1,110 @@
+"""Grasps in a crowd: neighbours are the solids that they are, and what is in the way has a name."""
+
+import math
+
+import numpy as np
+import pytest
+
+from common import messages as m
+from common.geometry import yaw_quat
+from common.scene import load_scene
+from services.manipulation.arm_model import Obstacle
+from services.manipulation.grasp import Target
+from services.manipulation.motion_planner import PlanError, Planner
+from services.manipulation.plan_grab import GrabPlan, plan_grab
+from services.manipulation.planning_scene import MARGINS, obstacles, target_of
+from services.sim.model import own
+
+PLANNER = Planner(own().mjcf, seed=0)
+ARM = PLANNER.arm
+TABLE = Obstacle((0.75, 0.0, 0.53), (0.6, 1.0, 0.14))
+CAN = Target("green can", "can", (0.6, 0.0, 0.66), 0.0, (0.066, 0.066, 0.12))
+
+
+def beside(bearing: float, gap: float, label: str) -> Target:
+    """Another can in the direction `bearing` [deg], with `gap` [m] of free space between the two."""
+    far, angle = CAN.size[0] + gap, math.radians(bearing)
+    at = (CAN.position[0] + far * math.cos(angle), CAN.position[1] + far * math.sin(angle), CAN.position[2])
+    return Target(label, "can", at, 0.0, CAN.size)
+
+
+def grab(*others: Target) -> GrabPlan:
+    around = [[TABLE, *(o.grown(margin) for o in others)] for margin in MARGINS]
+    return plan_grab(PLANNER, CAN, around, ARM.home.copy(), 0.1, 0.1, 1.0, frozenset(), [])
+
+
+def meets(*around: Obstacle) -> bool:
+    ARM.set_obstacles(around)
+    found = ARM.collides(ARM.home)
+    ARM.set_obstacles(())
+    return found
+
+
+def test_a_round_neighbour_has_no_corners() -> None:
+    x, y, z = (float(v) for v in ARM.pose(ARM.home).position)
+    for solid, hit in (("box", True), ("cylinder", True), ("ellipsoid", False)):
+        assert meets(Obstacle((x + 0.05, y, z), (0.1, 0.1, 0.1), 0.0, solid)) is hit  # type: ignore[arg-type]
+    # A roller along y reaches sideways where one along x does not.
+    for yaw, hit in ((math.pi / 2, True), (0.0, False)):
+        assert meets(Obstacle((x, y + 0.1, z), (0.1, 0.04, 0.04), yaw, "cylinder", lies=True)) is hit
+
+
+def test_a_lying_cylinder_is_as_long_and_as_thick_as_it_was_measured() -> None:
+    _, size, half, _ = Obstacle((0, 0, 0), (0.2, 0.06, 0.06), 0.3, "cylinder", lies=True).geom()
+    assert size[:2] == pytest.approx([0.03, 0.1]) and half == pytest.approx([0.03, 0.03, 0.1])
+    _, size, half, _ = Obstacle((0, 0, 0), (0.06, 0.06, 0.2), 0.3, "cylinder").geom()
+    assert size[:2] == pytest.approx([0.03, 0.1]) and half == pytest.approx([0.03, 0.03, 0.1])
+
+
+def test_fingers_go_in_wide_open_where_there_is_room_and_partly_closed_where_there_is_not() -> None:
+    assert grab().opening is None
+    assert grab(beside(90.0, 0.06, "red can")).opening is None
+    crowd = [beside(bearing, 0.017, f"can {bearing}") for bearing in range(0, 360, 60)]
+    try:
+        plan = grab(*crowd)
+    except PlanError as error:
+        assert error.blockers
+    else:
+        assert plan.opening is not None and CAN.size[0] < plan.opening < ARM.hand.open
+
+
+def test_what_is_in_the_way_has_a_name_and_furniture_has_none() -> None:
+    ring = [beside(bearing, 0.004, f"can {n}") for n, bearing in enumerate(range(0, 360, 45))]
+    tall = [Target(t.label, t.kind, t.position, 0.0, (0.066, 0.066, 0.3)) for t in ring]
+    with pytest.raises(PlanError) as failed:
+        grab(*tall)
+    assert failed.value.code == "UNREACHABLE"
+    assert set(failed.value.blockers) <= {t.label for t in ring} and failed.value.blockers
+    assert failed.value.blockers[0] in str(failed.value)
+    with pytest.raises(PlanError) as alone:
+        walls = [Obstacle((0.6 + dx, dy, 0.7), (0.02, 0.02, 0.4)) for dx in (-0.05, 0.05) for dy in (-0.05, 0.05)]
+        plan_grab(PLANNER, CAN, [[TABLE, *walls]], ARM.home.copy(), 0.1, 0.1, 1.0, frozenset(), [])
+    assert alone.value.blockers == ()
+
+
+def test_objects_grow_by_the_spread_of_what_was_measured() -> None:
+    scene, base = load_scene("apartment"), (0.0, 0.0, 0.0)
+    seen = m.WorldObject(
+        label="toy",
+        kind="",
+        colour="red",
+        position=(0.6, 0.0, 0.7),
+        size=(0.05, 0.06, 0.07),
+        shape="ball",
+        spread=0.003,
+    )
+    for margin, size in ((0.004, 0.05 + 2 * 0.007), (0.0, 0.05)):
+        (found,) = [o for o in obstacles(scene, base, [seen], margin=margin) if o.label]
+        assert found.label == "toy" and found.solid == "ellipsoid" and found.size[0] == pytest.approx(size)
+
+
+def test_surface_points_come_along_the_axes_of_the_base() -> None:
+    scene, base = load_scene("apartment"), (1.0, 0.0, math.pi / 2)
+    points = np.array([[10, 0, 0]] * 20, "<i2").tobytes()
+    seen = m.WorldObject(
+        label="toy", kind="", colour="red", position=(1.0, 0.6, 0.7), size=(0.05, 0.06, 0.07), points=points,
+        orientation=yaw_quat(0.4),
+    )  # fmt: skip
+    found = target_of(seen, base, scene)
+    assert found.points is not None and found.points[0] == pytest.approx([0.0, -0.01, 0.0], abs=1e-9)
+    assert target_of(m.WorldObject("x", "", "", (1.0, 0.6, 0.7), points=points[:60]), base, scene).points is None
