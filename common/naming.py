@@ -17,9 +17,12 @@ def normalise(text: str) -> str:
 
 
 def match_object(query: str, objects: Iterable[WorldObject], scene: Scene) -> list[WorldObject]:
-    """The known objects that a phrase can mean: by name or alias, else by colour and kind, else by kind."""
+    """The known objects that a phrase can mean: by taught name, by name or alias, else by colour and kind, else by
+    kind."""
     wanted = normalise(query)
     known = list(objects)
+    if taught := [o for o in known if wanted in o.names]:
+        return taught
     spec = next((o for o in scene.objects if wanted == normalise(o.name) or wanted in map(normalise, o.aliases)), None)
     names = {wanted, normalise(spec.name)} if spec else {wanted}
     exact = [o for o in known if normalise(o.label) in names]

@@ -129,6 +129,9 @@ SYSTEM_STATUS = _event("system_status", m.SystemStatus, by="brain")
 WORLD_OBJECTS = _event(
     "world/objects", m.WorldObjects, by="perception", to="brain planner navigation manipulation dashboard"
 )
+TEACH = _goal("perception/teach", m.TeachRequest, by="*", to="perception", text="name", latched=False)
+TAUGHT = _event("perception/taught", m.TeachResult, by="perception")
+HOUSEHOLD_NAMES = _event("household/names", m.TaughtNames, by="perception")
 
 BASE_TARGET = _goal("base/target_pose", m.BaseTarget, by="navigation", to="sim", latched=False)
 GOAL_REACHED = _event("base/goal_reached", m.GoalReached, by="sim", to="navigation")

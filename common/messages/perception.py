@@ -90,6 +90,7 @@ class ObjectPose(Message):
     seen_at: float = 0.0
     detail: str = ""
     candidates: list[str] = []
+    unsure: list[str] = []
     on: str = ""
     tilt: float = 0.0
     picture: bytes = b""

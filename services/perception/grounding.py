@@ -14,6 +14,8 @@ _SIDE = re.compile(r"^(?:(?P<a>left|right|middle|nearest|closest|near|far|farthe
 _PLACE = re.compile(r"^(?P<thing>.+?) (?:on top|on|in|inside|from|at|by|near|next)(?: of)? (?P<place>.+)$")
 _SIZE = {"big": -1, "large": -1, "bigger": -1, "biggest": -1, "small": 1, "little": 1, "smaller": 1, "smallest": 1}
 
+Match = Callable[[str, Sequence[WorldObject]], list[WorldObject]]
+
 
 @dataclass(frozen=True)
 class Grounding:
@@ -25,9 +27,18 @@ class Grounding:
 
 
 def ground(
-    query: str, objects: Sequence[WorldObject], scene: Scene, base: Pose2, synonyms: Mapping[str, str]
+    query: str,
+    objects: Sequence[WorldObject],
+    scene: Scene,
+    base: Pose2,
+    synonyms: Mapping[str, str],
+    matching: Match | None = None,
 ) -> Grounding:
-    """The object that `query` names among those known; `base` decides what is left, right and near."""
+    """The object that `query` names among those known; `base` decides what is left, right and near.
+
+    `matching` finds the objects that a noun with its colours can mean, by default `match_object`.
+    """
+    match_noun = matching or (lambda noun, known: match_object(noun, known, scene))
     words = _plain(query, synonyms)
     if not words:
         return Grounding(None, "no object was named")
@@ -38,12 +49,12 @@ def ground(
     assert match is not None
     side = match["a"] or match["b"] or ""
     thing = match["rest"] if side and match["rest"] else words
-    found = [o for o in match_object(thing, objects, scene) if not o.held]
+    found = [o for o in match_noun(thing, objects) if not o.held]
     if place:
         found = [o for o in found if _is_at(o, place, scene)]
     where = f" on the {place}" if place else ""
     if not found:
-        held = any(o.held for o in match_object(thing, objects, scene))
+        held = any(o.held for o in match_noun(thing, objects))
         return Grounding(None, f"the {thing} is in the gripper" if held else f"no {thing} is seen{where}")
     if len(found) > 1 and size:
         found = sorted(found, key=lambda o: _SIZE[size] * o.size[0] * o.size[1] * o.size[2])[:1]

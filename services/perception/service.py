@@ -2,6 +2,7 @@
 
 import importlib
 import math
+from dataclasses import dataclass
 from typing import Literal
 
 import msgspec
@@ -16,6 +17,7 @@ from common.runtime import StartError
 from services.perception.config import PerceptionConfig
 from services.perception.detect import ClassicalDetector, Detection, Detector
 from services.perception.grounding import Grounding, ground
+from services.perception.naming.naming import Naming
 from services.perception.object_tracker import SURE, ObjectTracker
 from services.perception.picture import jpeg
 from services.perception.self_filter import RobotModel
@@ -37,6 +39,16 @@ less than the distance to a neighbour."""
 PICTURES = (topics.HEAD_RGBD, topics.WRIST_RGBD)
 
 
+@dataclass
+class Reading:
+    """A query whose answer waits for print to be read, after a picture (`view`) that showed the objects `seen`;
+    `taken`: the finer picture for it has come."""
+
+    seen: set[str]
+    view: View
+    taken: bool = False
+
+
 class PerceptionService:
     """Pictures to objects, objects over time, words to an object."""
 
@@ -49,10 +61,13 @@ class PerceptionService:
         self._config, self._io = config, io
         self._detector = load_detector(config.detector)(io.scene, config.max_range)
         self._world = ""
+        self._naming = Naming(io, config.read, config.synonyms)
         self._reset()
         self._state = StateBuffer(io)
         self._hand_at: tuple[float, float, float] | None = None
         self._picture = ""
+        self._fine = False
+        self._looked_for_name = 0
         self._asked_at = -1e9
         self._detecting: Job[tuple[View, list[Detection]]] | None = None
         self._looked_from: tuple[Pose2, str] | None = None
@@ -63,6 +78,8 @@ class PerceptionService:
     def _reset(self) -> None:
         self._tracker = ObjectTracker(self._io.scene, self._config.gone_after, self._config.min_confidence)
         self._published: list[m.WorldObject] = []
+        self._naming.reset()
+        self._reading: Reading | None = None
         self._io.publish(topics.WORLD_OBJECTS, m.WorldObjects(t=0.0, objects=[], source="perception"))
 
     def step(self, now: float) -> None:
@@ -72,6 +89,9 @@ class PerceptionService:
         if self._detecting is not None and self._detecting.poll(now):
             self._track_objects(self._detecting, now)
             self._detecting = None
+        if self._naming.step(now):
+            self._publish_objects(now)
+        self._finish_reading()
         self._request_picture(now)
 
     # --- the robot
@@ -105,18 +125,32 @@ class PerceptionService:
         config = self._config
         waiting = bool(self._picture) and now - self._asked_at < config.picture_timeout
         here = self._state.base
-        if waiting or self._detecting is not None or here is None or self._state.turning() > config.max_turn:
+        if (
+            waiting
+            or self._detecting is not None
+            or self._naming.busy
+            or here is None
+            or self._state.turning() > config.max_turn
+        ):
             return
         phase = self._phase()
         resting = self._looked_from is not None and _near(self._looked_from[0], here) and self._looked_from[1] == phase
         period = config.idle_period if resting else config.period
-        if self._inbox.active is None and now - self._asked_at < period and phase != AIM:
+        wanted = self._inbox.active is not None or self._naming.wants_picture
+        if not wanted and now - self._asked_at < period and phase != AIM:
             return
         self._looked_from = here, phase
-        self._picture, self._asked_at = self._io.new_id("picture"), now
-        camera: Literal["head", "wrist"] = "wrist" if phase == AIM and self._inbox.active is None else "head"
-        request = m.CameraRequest(id=self._picture, camera=camera, width=config.width, height=config.height)
+        self._picture, self._asked_at, self._fine = self._io.new_id("picture"), now, self._wants_fine_picture()
+        camera: Literal["head", "wrist"] = "wrist" if phase == AIM and not wanted else "head"
+        width, height = (config.fine_width, config.fine_height) if self._fine else (config.width, config.height)
+        request = m.CameraRequest(id=self._picture, camera=camera, width=width, height=height)
         self._io.publish(topics.CAMERA_REQUEST, request)
+
+    def _wants_fine_picture(self) -> bool:
+        """Print is to be read, or what a name is taught for was seen and is to be seen better."""
+        if self._reading is not None:
+            return not self._reading.taken
+        return self._naming.wants_picture and self._looked_for_name >= self._config.query_pictures
 
     def _receive_picture(self, now: float) -> None:
         for key, image in ((t.key, image) for t in PICTURES for image in self._io.take_all(t)):
@@ -128,6 +162,11 @@ class PerceptionService:
                 view = view_of(image, base)
             except ValueError as error:
                 self._io.count_drop(key, str(error))
+                continue
+            if self._fine:
+                self._naming.see(view, self._tracker.objects(), now, base, fine=True)
+                if self._reading is not None:
+                    self._reading.taken = True
                 continue
             robot = self._state.robot(now, image.t)
             self._detecting = self._io.submit(
@@ -142,6 +181,10 @@ class PerceptionService:
             # Half hidden by the hand, an object looks like another.
             detections = [d for d in detections if math.dist(d.position, self._hand_at) > HAND_RANGE]
         seen = self._tracker.update(view, detections, view.t)
+        base = self._state.base_at(view.t)
+        if base is not None:
+            self._naming.see(view, self._tracker.objects(), now, base)
+        self._looked_for_name = self._looked_for_name + 1 if self._naming.wants_picture else 0
         self._publish_objects(now, bool(seen))
         self._answer_query(seen, view)
 
@@ -153,7 +196,7 @@ class PerceptionService:
 
     def _publish_objects(self, now: float, seen: bool = False) -> None:
         """Publish what is believed when it has changed or was `seen` again."""
-        objects = self._tracker.objects()
+        objects = self._naming.annotated(self._tracker.objects())
         if seen or [_outline(o) for o in objects] != [_outline(o) for o in self._published]:
             self._published = objects
             self._io.publish(topics.WORLD_OBJECTS, m.WorldObjects(t=now, objects=objects, source="perception"))
@@ -166,6 +209,7 @@ class PerceptionService:
     def _take_query(self, query: m.ObjectQuery) -> None:
         # A picture that is under way was not taken for this question.
         self._pictures, self._picture = 0, ""
+        self._reading = None
 
     def _answer_query(self, seen: set[str], view: View) -> None:
         query = self._inbox.active
@@ -178,16 +222,28 @@ class PerceptionService:
             return
         if found is not None and found.id not in seen and self._pictures < self._config.query_pictures:
             return
+        if found is None and not result.candidates and self._reading is None and self._naming.unread(query.query):
+            self._reading = Reading(seen, view)
+            return
         answer = _pose_answer(query, result, jpeg(view) if query.since else b"")
+        if found is None and not result.candidates:
+            answer.unsure = self._naming.unsure(query.query, self._tracker.objects())
+        self._reading = None
         # Kept for a query that is sent again, without what costs memory.
         self._inbox.end(query, msgspec.structs.replace(answer, picture=b""))
         self._io.log.info("asked", query=query.query, found=answer.label, detail=answer.detail)
         self._io.publish(topics.OBJECT_POSE, answer)
 
+    def _finish_reading(self) -> None:
+        """Answer the query once the fine picture for it was read."""
+        reading = self._reading
+        if reading is not None and reading.taken and not self._naming.busy:
+            self._answer_query(reading.seen, reading.view)
+
     def _ground(self, query: m.ObjectQuery) -> Grounding:
         base = self._state.base or (0.0, 0.0, 0.0)
-        objects = self._tracker.objects(query.since or -math.inf)
-        return ground(query.query, objects, self._io.scene, base, self._config.synonyms)
+        objects = self._naming.annotated(self._tracker.objects(query.since or -math.inf))
+        return ground(query.query, objects, self._io.scene, base, self._config.synonyms, self._naming.match)
 
 
 def detect(detector: Detector, view: View, base: Pose2, robot: RobotModel | None) -> tuple[View, list[Detection]]:
@@ -232,4 +288,4 @@ def _near(a: Pose2, b: Pose2) -> bool:
 def _outline(o: m.WorldObject) -> tuple[object, ...]:
     """What others care about: a change below 2 mm is none."""
     x, y, z = (round(v / 0.002) for v in o.position)
-    return o.id, o.label, o.on, o.held, round(o.tilt, 1), x, y, z
+    return o.id, o.label, o.on, o.held, round(o.tilt, 1), x, y, z, *o.names, o.text

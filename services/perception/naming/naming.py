@@ -1,0 +1,134 @@
+"""Names of objects beside their labels: taught by a person, or read off the objects.
+
+`Naming` is what the perception service has to do with that: it shows it its pictures and believed objects and gets
+these back with `names` and `text`.
+"""
+
+from collections.abc import Mapping, Sequence
+
+import msgspec
+
+from common import messages as m
+from common import topics
+from common.bus.port import Io
+from common.geometry import Pose2
+from common.naming import match_object, normalise
+from services.perception.naming import reader
+from services.perception.naming.appearance import Look
+from services.perception.naming.memory import NameMemory
+from services.perception.naming.observer import Observer
+from services.perception.naming.recognise import Match, matches
+from services.perception.naming.teaching import Teacher
+from services.perception.naming.text import LIKELY, SURE, likeness, printed_words, shown
+from services.perception.naming.vocabulary import common_words, printable, taken
+from services.perception.view import View
+
+
+class Naming:
+    """Taught names and printed words of the objects in sight. `read`: print is read when a question needs it."""
+
+    def __init__(self, io: Io, read: bool, synonyms: Mapping[str, str]) -> None:
+        self._io, self._synonyms = io, synonyms
+        if read and not reader.installed():
+            io.log.warning(reader.MISSING)
+        self._reader = reader.Reader() if read and reader.installed() else None
+        self._memory = NameMemory(io.state_dir, lambda why: io.log.warning("names", reason=why))
+        self.reset()
+        self._publish()
+
+    def reset(self) -> None:
+        """Another world: no object is known by sight any more; the names are."""
+        self._observer = Observer(self._io, self._reader, self._learn)
+        self._teacher = Teacher(
+            self._io, self._memory, self._observer, lambda n: taken(n, self._io.scene, self._synonyms), self._publish
+        )
+        self._matches: dict[str, Match] = {}
+
+    @property
+    def wants_picture(self) -> bool:
+        """A fine picture is wanted, of what a name is taught for."""
+        return self._teacher.wants_picture
+
+    @property
+    def busy(self) -> bool:
+        """The worker looks at objects."""
+        return self._observer.busy
+
+    def step(self, now: float) -> bool:
+        """Take requests and what the worker has seen; True when objects may have other names or texts than before."""
+        changed = self._observer.step(now)
+        names = len(self._memory.names), *self._memory.names
+        self._teacher.step(now)
+        if changed or names != (len(self._memory.names), *self._memory.names):
+            self._matches = matches(self._memory.names, self._observer.sights.by_id, self._teacher.bound)
+            return True
+        return False
+
+    def see(self, view: View, objects: list[m.WorldObject], now: float, base: Pose2, fine: bool = False) -> None:
+        """Take a picture and the objects believed in; a `fine` one was asked for to read or to be taught."""
+        if view.camera != "head":
+            return
+        visible = self._observer.see(view, objects)
+        if fine or self._memory.names:
+            self._observer.look(visible, now, read=fine)
+        if fine:
+            self._teacher.see(objects, visible, base)
+
+    def annotated(self, objects: list[m.WorldObject]) -> list[m.WorldObject]:
+        """The objects with the names they have and the text that was read on them."""
+        found = []
+        for o in objects:
+            sight, match = self._observer.sight(o.id), self._matches.get(o.id, Match())
+            text = shown(sight.lines) if sight is not None else ""
+            found.append(msgspec.structs.replace(o, names=list(match.names), text=text) if match.names or text else o)
+        return found
+
+    # --- questions
+    def match(self, phrase: str, objects: Sequence[m.WorldObject]) -> list[m.WorldObject]:
+        """The objects that a phrase can mean: by their names and words, else by what is printed on them."""
+        known = list(objects)
+        if found := match_object(phrase, known, self._io.scene):
+            return found
+        words = self._printed(phrase)
+        if not words:
+            return []
+        scores = {o.id: likeness(words, o.text) for o in known}
+        best = max(scores.values(), default=0.0)
+        # One that reads exactly so is meant rather than one that nearly does.
+        return [o for o in known if scores[o.id] >= max(SURE, min(best, 0.99))]
+
+    def unread(self, query: str) -> bool:
+        """A look at what is printed could answer the query, and there is a reader."""
+        return self._observer.can_read and bool(self._printed(query))
+
+    def unsure(self, query: str, objects: Sequence[m.WorldObject]) -> list[str]:
+        """Labels of objects that could be meant and have to be seen from nearer to tell, the likeliest first."""
+        words, name = self._printed(query), normalise(query)
+        said = frozenset(name.split())
+        found: list[tuple[float, str]] = []
+        for o in objects:
+            if not o.held and name in self._matches.get(o.id, Match()).perhaps:
+                found.append((1.0, o.label))
+            elif not o.held and words and self._observer.can_read and printable(o, said):
+                sight, score = self._observer.sight(o.id), likeness(words, o.text)
+                if score >= LIKELY or sight is None or not sight.read:
+                    found.append((score, o.label))
+        return [label for _, label in sorted(found, key=lambda row: (-row[0], row[1]))]
+
+    def _printed(self, query: str) -> list[str]:
+        """The words of a query that may be print; those of a taught name are not."""
+        if normalise(query) in self._memory.names:
+            return []
+        return printed_words(query, common_words(self._io.scene, self._synonyms))
+
+    # --- names
+    def _learn(self, key: str, look: Look) -> None:
+        """What was followed since it was taught is known better with each side that it shows."""
+        for name, bound in self._teacher.bound.items():
+            sight = self._observer.sight(key)
+            if bound == key and sight is not None and name in self._memory.names:
+                self._memory.learn(name, look, sight.lines)
+
+    def _publish(self) -> None:
+        names = [taught.message for taught in self._memory.names.values()]
+        self._io.publish(topics.HOUSEHOLD_NAMES, m.TaughtNames(names=names))

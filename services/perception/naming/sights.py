@@ -1,0 +1,66 @@
+"""What is known of how each object looks: crops of its sides, and what was made of them."""
+
+from dataclasses import dataclass, field
+
+from common.messages import WorldObject
+from services.perception.naming.appearance import Look
+from services.perception.naming.crop import Crop, crop_of
+from services.perception.naming.memory import with_look
+from services.perception.naming.text import Line, merged
+from services.perception.view import View
+
+RENEWED = 3.0
+"""Time [s] after which an object is looked at anew though it shows no other side. Chosen: three pictures under way."""
+MAX_SIDES = 4
+"""Looks kept of an object in sight; the newest count."""
+LEGIBLE = 1000.0
+"""Pixels per metre from which print of a package is legible: letters of 8 mm have 8 pixels."""
+
+
+@dataclass
+class Sight:
+    """One object: the newest crop, `looks` at its sides, `lines` read on it.
+
+    `looked_at`: robot time [s] of the newest look; `legible`: pixels per metre of the finest crop that was read.
+    """
+
+    crop: Crop | None = None
+    looks: list[Look] = field(default_factory=list)
+    lines: list[Line] = field(default_factory=list)
+    looked_at: float = -1e9
+    legible: float = 0.0
+
+    @property
+    def read(self) -> bool:
+        """It was near enough, or fine enough a picture, for its print to be read if it has any on this side."""
+        return self.legible >= LEGIBLE
+
+    def add(self, look: Look, now: float) -> None:
+        """Take a look: in place of one from the same side, else beside the others."""
+        kept = with_look(self.looks, look)
+        self.looks = [*(other for other in kept if other is not look), look][-MAX_SIDES:]
+        self.looked_at = now
+
+    def add_lines(self, lines: list[Line], crop: Crop) -> None:
+        """Take what was read on a crop, be it nothing."""
+        self.lines = merged(self.lines, lines)
+        self.legible = max(self.legible, crop.pixels_per_metre)
+
+
+class Sights:
+    """All objects in sight, by their id in `world/objects`."""
+
+    def __init__(self) -> None:
+        self.by_id: dict[str, Sight] = {}
+
+    def see(self, view: View, objects: list[WorldObject]) -> list[str]:
+        """Cut the objects out of a view; ids of those that it shows. What is held is not cut: fingers are before it."""
+        known = {o.id for o in objects}
+        self.by_id = {key: sight for key, sight in self.by_id.items() if key in known}
+        shown = []
+        for o in objects:
+            crop = None if o.held or not o.id else crop_of(view, o)
+            if crop is not None:
+                self.by_id.setdefault(o.id, Sight()).crop = crop
+                shown.append(o.id)
+        return shown

@@ -1,0 +1,88 @@
+"""Printed words: what was read on an object over several looks, and whether it is what somebody asked for. Pure.
+
+Words are compared by rapidfuzz, which is there where something can be read (the extra `ocr`).
+"""
+
+import re
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple
+
+from common.naming import normalise
+
+MAX_LINES = 12
+"""Lines kept of one object. Chosen: more than a package shows of its front in letters that can be read."""
+SAME_LINE = 75.0
+"""Likeness (of 100) from which two readings are of one line."""
+SHORT = 3
+"""Letters up to which a word has to be read exactly: "tea" is one letter from "pea" and "ten"."""
+SURE, LIKELY = 0.85, 0.72
+"""Likeness of the words asked for to what was read, from which it is that and from which a nearer look is worth it.
+Chosen: one wrong letter in seven, and one in four (bench.naming)."""
+WORST_WORD = 0.7
+"""Likeness that each of the words must have: "tomato" to "potato" has .67."""
+
+
+class Line(NamedTuple):
+    """A line as read, and how sure of it the reader is, 0 to 1."""
+
+    text: str
+    confidence: float
+
+
+def merged(known: Sequence[Line], read: Iterable[Line]) -> list[Line]:
+    """Lines of several looks; of two readings of one line the surer counts."""
+    from rapidfuzz import fuzz
+
+    lines = list(known)
+    for line in read:
+        alike = [i for i, other in enumerate(lines) if fuzz.ratio(line.text.lower(), other.text.lower()) >= SAME_LINE]
+        if not alike:
+            lines.append(line)
+        elif line.confidence > lines[alike[0]].confidence:
+            lines[alike[0]] = line
+    return sorted(lines, key=lambda line: -line.confidence * len(line.text))[:MAX_LINES]
+
+
+def shown(lines: Iterable[Line]) -> str:
+    """What was read, for `WorldObject.text`."""
+    return " / ".join(line.text for line in lines)
+
+
+def likeness(words: Sequence[str], text: str) -> float:
+    """How much the text reads like all of the words, 0 to 1; 0 when one of them is not there.
+
+    A word may be broken or glued to its neighbours in the text, and a letter in seven may be wrong.
+    """
+    tokens = normalise(text).split()
+    if not tokens or not words:
+        return 0.0
+    glued = "".join(tokens)
+    found = [_word_in(word, tokens, glued) for word in words]
+    if min(found) < WORST_WORD:
+        return 0.0
+    return sum(f * len(w) for f, w in zip(found, words, strict=True)) / sum(map(len, words))
+
+
+def _word_in(word: str, tokens: Sequence[str], glued: str) -> float:
+    """Likeness of a word to the part of the text that is most like it."""
+    if len(word) <= SHORT:
+        return float(word in tokens)
+    from rapidfuzz import fuzz
+    from rapidfuzz.distance import Levenshtein
+
+    best = max(Levenshtein.normalized_similarity(form, token) for token in tokens for form in _forms(word))
+    within = fuzz.partial_ratio(word, glued) / 100 if len(glued) >= len(word) else 0.0
+    # Found within other words it may be a chance: "rice" is in "price".
+    return max(best, within * 0.95)
+
+
+def _forms(word: str) -> tuple[str, ...]:
+    """A word and its plural or singular: people ask for corn flakes and for a corn flake."""
+    return (word, word.removesuffix("s")) if word.endswith("s") else (word, f"{word}s")
+
+
+def printed_words(query: str, common: Iterable[str]) -> list[str]:
+    """The words of a query that a label could have: those that are not `common` words, which name kinds, colours,
+    places and relations."""
+    plain = {w for phrase in common for w in normalise(phrase).split()}
+    return [w for w in normalise(query).split() if w not in plain and not re.fullmatch(r"\d", w)]

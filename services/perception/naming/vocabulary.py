@@ -1,0 +1,58 @@
+"""Words that name no single object: kinds, colours, places, relations. What else is in a query may be a name or a
+print."""
+
+from collections.abc import Mapping
+
+from common.kinds import KINDS
+from common.messages import WorldObject
+from common.naming import normalise
+from common.scene import Scene
+
+COLOURS = (
+    "red", "orange", "yellow", "green", "blue", "purple", "pink", "brown", "black", "white", "grey", "gray", "beige",
+    "turquoise", "violet",
+)  # fmt: skip
+RELATIONS = (
+    "on in at of from by near next beside behind front under left right middle top bottom inside and or with that which"
+    " is are one other another first second third last nearest closest farthest big bigger biggest small smaller"
+    " smallest large little tall short thing things object objects something anything box can bottle jar carton packet"
+    " package bag tin pack tube cup mug bowl plate book toy tool labelled labeled called says marked"
+)
+"""Words between and around nouns, and those for containers that a print is on."""
+
+
+BARE = frozenset({"apple", "orange", "banana", "lemon", "fruit", "ball", "bowl", "plate"})
+"""Kinds on which nothing is printed."""
+
+
+def common_words(scene: Scene, synonyms: Mapping[str, str]) -> frozenset[str]:
+    """Every such word, normalised; the words of listed things too, which are known without reading."""
+    listed = [n for o in scene.objects for n in (o.name, *o.aliases)]
+    phrases = (*KINDS, *COLOURS, RELATIONS, *synonyms, *synonyms.values(), *_spots(scene), *listed)
+    return frozenset(word for phrase in phrases for word in normalise(phrase).split())
+
+
+def printable(o: WorldObject, said: frozenset[str]) -> bool:
+    """The object could have the print that is asked for: it is of a kind that has any, and of the colour that was
+    `said`."""
+    colours = said & {*COLOURS}
+    return o.kind not in BARE and (not colours or bool(colours & {o.colour, *o.colours}))
+
+
+def taken(name: str, scene: Scene, synonyms: Mapping[str, str]) -> str:
+    """What a name stands for already, so that it cannot be taught; "" when it is free."""
+    words = normalise(name)
+    if words in map(normalise, _spots(scene)):
+        return "a place"
+    if words in KINDS or words in synonyms:
+        return f"every {words}"
+    if words in {normalise(n) for o in scene.objects for n in (o.name, *o.aliases)}:
+        return "another thing"
+    return ""
+
+
+def _spots(scene: Scene) -> list[str]:
+    """Names of rooms, of what things are put on, and of standing places."""
+    named = [(r.name, r.aliases) for r in scene.receptacles] + [(r.name, r.aliases) for r in scene.rooms]
+    named += [(p.name, p.aliases) for p in (scene.home, *scene.places)]
+    return [n for name, aliases in named for n in (name, *aliases)]
