@@ -27,6 +27,8 @@ PROBE_AFTER = 2.0
 sooner."""
 PROBE_PERIOD = 30.0
 """Time between two reports of why there is no router [s]; chosen: rarely enough not to flood a log."""
+ATTEMPT = 2.0
+"""Longest single attempt to connect [s]; the lease of config/zenoh: who takes longer to answer is taken for frozen."""
 
 
 class BusError(ValueError):
@@ -108,9 +110,9 @@ def open_session(
 ) -> Iterator[zenoh.Session]:
     """An open session that is closed whatever happens: an open one keeps the process from ending.
 
-    Zenoh blocks until the first connection, deaf to signals, so it opens in a thread of its own. A node passes
-    `wait(seconds) -> stop?` and waits for its router as long as that is False; a tool waits `patience` seconds.
-    With keys the session shows the certificate of `name`.
+    Zenoh is deaf to signals while it connects, so it opens in a thread of its own, in attempts that end by themselves.
+    A node passes `wait(seconds) -> stop?` and waits for its router as long as that is False; a tool waits `patience`
+    seconds. With keys the session shows the certificate of `name`.
 
     Raises:
         BusError: a bad endpoint or certificate, or no router in time.
@@ -119,7 +121,30 @@ def open_session(
     opening: Future[zenoh.Session] = Future()
     shown = identity_for(connect, name, namespace)
     config = client_config(connect, namespace, shown=shown)
-    Thread(target=_open, args=(config, opening), name="zenoh-open", daemon=True).start()
+    attempt = ATTEMPT if wait is not None else min(ATTEMPT, patience)
+    # No daemon: a thread that comes back from Zenoh while Python ends aborts the process, so Python waits for it.
+    Thread(target=_open, args=(config, opening, attempt), name="zenoh-open").start()
+    try:
+        opened = _awaited(opening, connect, name, shown, wait, patience)
+    except zenoh.ZError as error:
+        raise BusError(f"cannot connect to {connect}: {error}") from None
+    except BaseException:
+        if not opening.cancel() and opening.exception() is None:
+            opening.result().close()  # type: ignore[no-untyped-call]
+        raise
+    with opened:
+        yield opened
+
+
+def _awaited(
+    opening: "Future[zenoh.Session]",
+    connect: str,
+    name: str,
+    shown: "Identity | None",
+    wait: Callable[[float], bool] | None,
+    patience: float,
+) -> zenoh.Session:
+    """The session once it is open; meanwhile reports why there is none (see `open_session`)."""
     began = monotonic()
     asked = began + PROBE_AFTER
     while not opening.done():
@@ -138,12 +163,7 @@ def open_session(
             futures_wait([opening], 0.05)
         elif wait(0.05):
             raise NoRouter("stopped before a router was there")
-    try:
-        opened = opening.result()
-    except zenoh.ZError as error:
-        raise BusError(f"cannot connect to {connect}: {error}") from None
-    with opened:
-        yield opened
+    return opening.result()
 
 
 def _trouble(connect: str, shown: "Identity | None") -> str:
@@ -152,11 +172,24 @@ def _trouble(connect: str, shown: "Identity | None") -> str:
     return next((why for why in found if why), "")
 
 
-def _open(config: zenoh.Config, opening: "Future[zenoh.Session]") -> None:
-    try:
-        opening.set_result(zenoh.open(config))
-    except zenoh.ZError as error:
-        opening.set_exception(error)
+def _open(config: zenoh.Config, opening: "Future[zenoh.Session]", attempt: float) -> None:
+    """Attempts of so many seconds until one succeeds or nobody waits any more; what comes too late is closed."""
+    config.insert_json5("connect/timeout_ms", _json(round(1e3 * attempt)))
+    while not opening.cancelled():
+        began = monotonic()
+        try:
+            opened = zenoh.open(config)
+        except zenoh.ZError as error:
+            # No router takes all the time there is, anything else fails at once.
+            if monotonic() < began + attempt and opening.set_running_or_notify_cancel():
+                opening.set_exception(error)
+                return
+        else:
+            if opening.set_running_or_notify_cancel():
+                opening.set_result(opened)
+            else:
+                opened.close()  # type: ignore[no-untyped-call]
+            return
 
 
 def _json(value: object) -> str:

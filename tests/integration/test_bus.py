@@ -2,6 +2,7 @@
 
 import signal
 import subprocess
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 
@@ -13,7 +14,7 @@ from common import messages as m
 from common import topics
 from common.bus import codec, delivery
 from common.bus.delivery import Publisher
-from tests.support import Site, eventually
+from tests.support import ROOT, Site, eventually
 
 STATUS = topics.NAVIGATION_STATUS.key
 SCENE = 'name="t"\nlow=[-1.0,-1.0]\nhigh=[1.0,1.0]\nhome={name="home",x=0.0,y=0.0}\n'
@@ -148,6 +149,34 @@ def test_a_node_started_before_its_router_keeps_trying(here: Site) -> None:
     here.start_router()
     with here.session() as session:
         here.wait_alive(session, "echo")
+
+
+LATE = """
+import os, signal, sys, time
+from common.bus.session import BusError, open_session
+
+class Waker:
+    # Deleted when Python already ends: the router wakes then, and what still waits for it has half a second to return.
+    def __del__(self, wake=os.kill, number=signal.SIGCONT, router=int(sys.argv[2]), sleep=time.sleep):
+        wake(router, number)
+        sleep(0.5)
+
+waker = Waker()
+try:
+    with open_session(sys.argv[1], patience=0.3):
+        sys.exit(3)
+except BusError as error:
+    sys.exit(str(error))
+"""
+
+
+def test_a_router_that_wakes_while_a_tool_ends_does_not_abort_it(here: Site) -> None:
+    router = here.processes[0]
+    router.send_signal(signal.SIGSTOP)
+    line = [sys.executable, "-c", LATE, here.connect, str(router.pid)]
+    ended = subprocess.run(line, env=here.environment(), cwd=ROOT, capture_output=True, text=True, timeout=60)
+    assert (ended.returncode, "FATAL" in ended.stderr) == (1, False), ended.stderr
+    assert "nothing answers at" in ended.stderr
 
 
 def test_an_error_in_a_step_is_logged_and_survived(here: Site) -> None:
