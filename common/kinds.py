@@ -7,8 +7,10 @@ for a box without an upper side (`UNKNOWN`).
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal
+
+from common.looks import Look
 
 Shape = Literal["box", "sphere", "turned"]
 Rest = Literal["face", "side", "upside down"]
@@ -44,7 +46,8 @@ class Kind:
     `face`, round objects on their `side` or `upside down`. `ends_alike`: top and bottom cannot be told apart.
     `lean` [rad] and `wall` [m] of a vessel's wall; `handle`: how far one reaches beyond the body [m]. `facets`: how
     much wider [m] than `size` a grip around it may be: the simulated wall has flat pieces. Lying it is taken
-    `lying_point` of its length from the middle towards the top, from `lying_angles` [deg] below horizontal.
+    `lying_point` of its length from the middle towards the top, from `lying_angles` [deg] below horizontal. `look`: the
+    measures by which perception takes an object that nobody listed for one of this kind; without it, it never does.
     """
 
     name: str
@@ -60,6 +63,7 @@ class Kind:
     facets: float = 0.0
     lying_angles: tuple[int, ...] = (75, 90, 60)
     lying_point: float = 0.0
+    look: Look | None = field(default=None, compare=False)
 
     @property
     def by_the_rim(self) -> bool:
@@ -104,32 +108,102 @@ _ROLLING = (GraspRule("around", (90, 65, 45, 30)),)
 # What is low is taken from above, what is tall from the side.
 _ON_FACES = (GraspRule("faces", (90, 65, 45, 30), most=0.09), GraspRule("faces", (15, 30, 45), least=0.09))
 UNKNOWN = Kind("", "box", _ON_FACES, upright=False)
+_HOLLOW, _OPEN_OR_HID = (1.0, 0.45), (1.0, 0.6)
+"""An open vessel's inside is seen from above, not from afar."""
 _TABLE = (
     Kind(
         "mug", "turned", (GraspRule("around", (40, 55, 25), 0.55),), _mug, rests=frozenset({"side", "upside down"}),
         wall=0.004, handle=0.024, facets=0.002, lying_angles=(60, 75, 90, 50),
+        look=Look(
+            {"round": 1, "bowl": 0.3}, (0.062, 0.115), (0.065, 0.13), (0.7, 1.7), hollow=_HOLLOW, handle=(1, 0.5),
+        ),
     ),
     Kind(
         "can", "turned", (GraspRule("around", (15, 25, 5, 40), 0.55),), rests=frozenset({"side"}), ends_alike=True,
         lying_angles=(75, 60, 90),
+        look=Look({"round": 1, "long": 1}, (0.045, 0.105), (0.055, 0.19), (0.6, 2.8), handle=(0.03, 1)),
     ),
     Kind(
         "bottle", "turned", (GraspRule("around", (15, 25, 5, 40), 0.42),), _bottle, rests=frozenset({"side"}),
         lying_angles=(75, 90, 60), lying_point=-0.14,
+        look=Look(
+            {"round": 1, "long": 1, "box": 0.1, "irregular": 0.2}, (0.03, 0.13), (0.1, 0.38), (1.6, 8.0),
+            neck=(1, 0.35), handle=(0.3, 1),
+        ),
     ),
-    Kind("apple", "sphere", _ROLLING, upright=False),
-    Kind("ball", "sphere", _ROLLING, upright=False),
-    Kind("block", "box", _ON_FACES, upright=False, ends_alike=True),
+    Kind(
+        "apple", "sphere", _ROLLING, upright=False,
+        look=Look({"ball": 1, "round": 0.3, "irregular": 0.1}, (0.055, 0.105), (0.045, 0.105), (0.75, 1.2),
+                  colours=frozenset({"red", "green", "yellow"}), share=0.8),
+    ),
+    Kind(
+        "ball", "sphere", _ROLLING, upright=False,
+        look=Look({"ball": 1, "round": 0.15}, (0.025, 0.25), (0.025, 0.25), (0.8, 1.25), share=0.9),
+    ),
+    Kind(
+        "block", "box", _ON_FACES, upright=False, ends_alike=True,
+        look=Look({"box": 1}, (0.02, 0.085), (0.02, 0.11), (1.0, 1.7)),
+    ),
     Kind(
         "box", "box", (GraspRule("faces", (15, 30, 45), 0.6), GraspRule("faces", (90, 70), 0.8)),
         rests=frozenset({"face"}), ends_alike=True,
+        look=Look({"box": 1}, (0.025, 0.3), (0.07, 0.45), (1.0, 7.0)),
     ),
     Kind(
         "bowl", "turned", (GraspRule("rim", (65, 72, 58, 80, 90)),), _bowl, rests=frozenset({"upside down"}),
         lean=0.55, wall=0.006,
+        look=Look({"bowl": 1, "round": 0.3}, (0.09, 0.3), (0.03, 0.14), (0.2, 0.8), hollow=_OPEN_OR_HID),
+    ),
+    Kind(
+        "cup", "turned", (GraspRule("around", (40, 55, 25), 0.55),), rests=frozenset({"side", "upside down"}),
+        look=Look({"round": 1, "bowl": 0.5}, (0.05, 0.105), (0.05, 0.15), (0.6, 2.0), hollow=_HOLLOW, share=0.6),
+    ),
+    Kind(
+        "jar", "turned", (GraspRule("around", (15, 25, 5, 40), 0.55),), rests=frozenset({"side"}),
+        look=Look(
+            {"round": 1, "long": 0.5}, (0.045, 0.13), (0.05, 0.2), (0.7, 2.2), hollow=(0.15, 1), neck=(0.3, 1),
+            share=0.5,
+        ),
+    ),
+    Kind(
+        "carton", "box", (GraspRule("faces", (15, 30, 45), 0.6), GraspRule("faces", (90, 70), 0.8)),
+        rests=frozenset({"face"}),
+        look=Look({"box": 1, "irregular": 0.2}, (0.045, 0.13), (0.09, 0.33), (1.2, 4.0), (1.0, 1.7), share=0.8),
+    ),
+    Kind(
+        "book", "box", _ON_FACES, rests=frozenset({"face"}), upright=False, ends_alike=True,
+        look=Look({"box": 1}, (0.008, 0.06), (0.11, 0.36), (2.8, 30.0), (2.2, 25.0)),
+    ),
+    Kind(
+        "plate", "turned", (GraspRule("rim", (65, 72, 58, 80, 90)),), upright=False,
+        look=Look({"bowl": 1, "round": 1, "irregular": 0.2}, (0.13, 0.33), (0.008, 0.045), (0.0, 0.2), hollow=(1, 1)),
+    ),
+    Kind(
+        "orange", "sphere", _ROLLING, upright=False,
+        look=Look({"ball": 1, "round": 0.3, "irregular": 0.1}, (0.055, 0.105), (0.05, 0.105), (0.8, 1.2),
+                  colours=frozenset({"orange"})),
+    ),
+    Kind(
+        "lemon", "sphere", _ROLLING, upright=False,
+        look=Look({"ball": 1, "round": 0.5, "long": 1, "irregular": 0.3}, (0.04, 0.075), (0.045, 0.1), (0.9, 1.7),
+                  colours=frozenset({"yellow"}), share=0.7),
+    ),
+    Kind(
+        "banana", "box", _ON_FACES, upright=False,
+        look=Look({"long": 1, "irregular": 1, "box": 0.4}, (0.025, 0.07), (0.11, 0.25), (2.2, 8.0),
+                  colours=frozenset({"yellow"})),
+    ),
+    Kind(
+        "toy", "box", _ON_FACES, upright=False,
+        look=Look({"irregular": 1}, (0.02, 0.2), (0.04, 0.3), hollow=(0.5, 1), neck=(1, 1), handle=(1, 1), share=0.7),
+    ),
+    Kind(
+        "tool", "box", _ON_FACES, upright=False,
+        look=Look({"long": 0.7, "irregular": 0.8, "box": 0.2}, (0.006, 0.07), (0.09, 0.42), (3.2, 50.0), neck=(1, 1)),
     ),
 )  # fmt: skip
 KINDS = {kind.name: kind for kind in _TABLE}
+LOOKS = {kind.name: kind.look for kind in _TABLE if kind.look is not None}
 
 
 def kind_of(name: str) -> Kind:

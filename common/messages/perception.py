@@ -32,9 +32,10 @@ class WorldObject(Message):
     extent of `size` is along that axis, which points along the yaw of `orientation`.
 
     `label` is unique in one list: what looks alike is "red mug" and "red mug 2". `names`: what it is called beside its
-    label, as taught by a person; `text`: what was read on it; `colours`: the words of its colours, the largest first.
-    `measured`: `size` was measured and not looked up in the household; `spread`: standard deviation [m] of its extents
-    and position. `points`: what was seen of its surface, int16 (n, 3) [mm], little endian, in map axes from `position`.
+    label, as taught by a person; `text`: what was read on it; `colours`: the words of its colours, the largest first;
+    `kinds`: what it may be by its looks, the likeliest first. `measured`: `size` was measured and not looked up in the
+    household; `spread`: standard deviation [m] of its extents and position. `points`: what was seen of its surface,
+    int16 (n, 3) [mm], little endian, in map axes from `position`.
     """
 
     label: str
@@ -53,6 +54,7 @@ class WorldObject(Message):
     names: list[str] = []
     text: str = ""
     colours: list[str] = []
+    kinds: list[str] = []
     measured: bool = False
     spread: float = 0.0
     points: bytes = b""

@@ -163,8 +163,10 @@ def _cut(mask: Mask, depth: NDArray[np.float32]) -> Mask:
         first, second = tuple(a), tuple(b)
         step = depth[second] - depth[first]
         limit = JUMP + JUMP_PER_METRE * np.minimum(depth[first], depth[second])
-        kept[second] &= ~(step > limit)
-        kept[first] &= ~(step < -limit)
+        # Where there is no depth there is no step.
+        known = (depth[second] > 0) & (depth[first] > 0)
+        kept[second] &= ~(known & (step > limit))
+        kept[first] &= ~(known & (step < -limit))
     return kept
 
 

@@ -72,7 +72,9 @@ def test_a_rule_of_ones_own_says_where_it_goes(tmp_path: Path) -> None:
 
 
 USUAL = (0.06, 0.06, 0.1)
-SIZES = {"bowl": (0.16, 0.16, 0.07), "apple": (0.07, 0.07, 0.07), "ball": (0.07, 0.07, 0.07)}
+SIZES = {"bowl": (0.16, 0.16, 0.07), "apple": (0.07, 0.07, 0.07), "ball": (0.07, 0.07, 0.07)} | dict.fromkeys(
+    ("orange", "lemon"), (0.07, 0.07, 0.07)
+)
 
 
 def surface(kind: str) -> np.ndarray:

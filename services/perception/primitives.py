@@ -1,0 +1,204 @@
+"""Primitives with free parameters, fitted to the points that were seen of an object on a surface. Pure.
+
+Each has a distance of points from its surface for many parameter vectors at once, so that the solver gets its slopes
+by differences in one pass. Points are in a frame whose z is the height above the surface; `h` is the measured top.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from common.geometry import Array
+from services.perception.least_squares import solve
+
+# Parameters (m, k) and points (n, 3) to distances (m, n).
+Distances = Callable[[Array, Array], Array]
+STEP = 1e-5
+"""Difference [m, rad] by which slopes are taken."""
+ROBUST = 0.004
+"""Distance [m] beyond which a point counts less. Chosen: twice the depth noise at 1.2 m."""
+TRIES = 12
+"""Steps of the solver."""
+INNER = 0.012
+"""Distance [m] behind the surface beyond which a point is of the inside of a hollow object, and pulls nothing."""
+END_WEIGHT = 4.0
+"""Weight of a visible end of the silhouette, in points."""
+
+
+@dataclass(frozen=True)
+class Silhouette:
+    """Bearings [rad] of an object's right and left end from `camera` (2,) about `ahead`; nan where it is hidden."""
+
+    camera: Array
+    ahead: float
+    ends: Array
+    distance: float
+
+
+@dataclass(frozen=True)
+class Solution:
+    """Parameters (k,), their covariance (k, k), and the mean distance [m] of the points from the surface."""
+
+    p: Array
+    covariance: Array
+    residual: float
+
+
+def silhouette(points: Array, camera: Array, seen: tuple[bool, bool], half_pixel: float) -> Silhouette:
+    """The ends of points (n, 3) from `camera` (3,); `half_pixel` [rad]: how far a pixel reaches beyond its centre."""
+    middle = points[:, :2].mean(axis=0)
+    ahead = math.atan2(middle[1] - camera[1], middle[0] - camera[0])
+    bearings = np.arctan2(points[:, 1] - camera[1], points[:, 0] - camera[0]) - ahead
+    bearings = np.remainder(bearings + math.pi, 2 * math.pi) - math.pi
+    ends = np.array([bearings.min() - half_pixel, bearings.max() + half_pixel])
+    ends[~np.array(seen)] = np.nan
+    distance = math.hypot(middle[0] - camera[0], middle[1] - camera[1])
+    return Silhouette(camera[:2], ahead, ends, distance)
+
+
+def _round_ends(outline: Silhouette, x: Array, y: Array, r: Array) -> Array:
+    """How far [m] the tangents of circles (m,) are from the silhouette's ends (m, e)."""
+    dx, dy = x - outline.camera[0], y - outline.camera[1]
+    far = np.maximum(np.hypot(dx, dy), 1e-3)
+    bearing = np.remainder(np.arctan2(dy, dx) - outline.ahead + math.pi, 2 * math.pi) - math.pi
+    half = np.arcsin(np.clip(r / far, -0.99, 0.99))
+    ends = np.stack([bearing - half, bearing + half], axis=1) - outline.ends
+    return outline.distance * ends[:, ~np.isnan(outline.ends)]
+
+
+def turned(h: float) -> Distances:
+    """Turned about the vertical: p = (x, y, radius at half height, growth of the radius with height)."""
+
+    def distances(p: Array, points: Array) -> Array:
+        x, y, r, grows = (p[:, i, None] for i in range(4))
+        rho = np.hypot(points[:, 0] - x, points[:, 1] - y)
+        side = rho - r - grows * (points[:, 2] - h / 2)
+        cap = points[:, 2] - h
+        # Within the outline the top is as good as the wall; deep below it the inside of something hollow is seen.
+        inside = np.minimum(np.minimum(-side, np.abs(cap)), INNER)
+        return np.where(side > 0, np.hypot(side, np.maximum(cap, 0.0)), inside)
+
+    return distances
+
+
+def ball() -> Distances:
+    """A ball that lies on the surface: p = (x, y, radius)."""
+
+    def distances(p: Array, points: Array) -> Array:
+        x, y, r = (p[:, i, None] for i in range(3))
+        dx, dy, dz = points[:, 0] - x, points[:, 1] - y, points[:, 2] - r
+        return np.sqrt(dx * dx + dy * dy + dz * dz) - r
+
+    return distances
+
+
+def box(h: float) -> Distances:
+    """An upright box: p = (x, y, yaw, length, width)."""
+
+    def distances(p: Array, points: Array) -> Array:
+        x, y, yaw, length, width = (p[:, i, None] for i in range(5))
+        c, s = np.cos(yaw), np.sin(yaw)
+        dx, dy = points[:, 0] - x, points[:, 1] - y
+        u, v = np.abs(c * dx + s * dy) - length / 2, np.abs(c * dy - s * dx) - width / 2
+        w = np.broadcast_to(points[:, 2] - h, u.shape)
+        deep = np.maximum(np.maximum(u, v), w)
+        outside = np.sqrt(np.maximum(u, 0) ** 2 + np.maximum(v, 0) ** 2 + np.maximum(w, 0) ** 2)
+        return np.where(deep > 0, outside, np.minimum(-deep, INNER))
+
+    return distances
+
+
+def lying() -> Distances:
+    """Turned about a horizontal axis, on the surface: p = (x, y, yaw of the axis, radius, length)."""
+
+    def distances(p: Array, points: Array) -> Array:
+        x, y, yaw, r, length = (p[:, i, None] for i in range(5))
+        c, s = np.cos(yaw), np.sin(yaw)
+        dx, dy = points[:, 0] - x, points[:, 1] - y
+        along = np.abs(c * dx + s * dy) - length / 2
+        side = np.hypot(c * dy - s * dx, points[:, 2] - r) - r
+        outside = np.hypot(np.maximum(side, 0.0), np.maximum(along, 0.0))
+        deep = np.maximum(side, along)
+        return np.where(deep > 0, outside, np.minimum(-deep, INNER))
+
+    return distances
+
+
+def _corner_ends(outline: Silhouette, p: Array) -> Array:
+    """How far [m] the outermost corners of boxes (m, 5) are from the silhouette's ends (m, e)."""
+    x, y, yaw, length, width = p.T
+    c, s = np.cos(yaw)[:, None], np.sin(yaw)[:, None]
+    a, b = np.array([1, 1, -1, -1]) * length[:, None] / 2, np.array([1, -1, 1, -1]) * width[:, None] / 2
+    u = x[:, None] + c * a - s * b - outline.camera[0]
+    v = y[:, None] + s * a + c * b - outline.camera[1]
+    bearings = np.remainder(np.arctan2(v, u) - outline.ahead + math.pi, 2 * math.pi) - math.pi
+    ends = np.stack([bearings.min(axis=1), bearings.max(axis=1)], axis=1) - outline.ends
+    return outline.distance * ends[:, ~np.isnan(outline.ends)]
+
+
+def fit(
+    distances: Distances,
+    start: Array,
+    points: Array,
+    outline: Silhouette,
+    noise: float,
+    prior: tuple[Array, Array] | None = None,
+    half: float = 0.0,
+) -> Solution:
+    """The parameters that explain points (n, 3) and the silhouette best, from `start` (k,).
+
+    `noise` [m]: the points'. `prior`: expected parameters (k,) and their standard deviations, for what no point shows.
+    `half` [m]: half the height of what grows with it.
+    """
+    count = len(start)
+    shifts = np.concatenate([np.zeros((1, count)), STEP * np.eye(count)])
+
+    def ends(p: Array) -> Array:
+        if count == 3:
+            return _round_ends(outline, p[:, 0], p[:, 1], p[:, 2])
+        if count == 4:
+            # The widest part makes the silhouette.
+            return _round_ends(outline, p[:, 0], p[:, 1], p[:, 2] + np.abs(p[:, 3]) * half)
+        return _corner_ends(outline, p)
+
+    def off(p: Array) -> tuple[Array, Array]:
+        many = p + shifts
+        parts = [distances(many, points), END_WEIGHT * ends(many)]
+        if prior is not None:
+            parts.append(noise * (many - prior[0]) / prior[1])
+        apart = np.concatenate(parts, axis=1)
+        return apart[0], ((apart[1:] - apart[0]) / STEP).T
+
+    p = solve(off, start, max(ROBUST, 1.5 * noise), TRIES)[0]
+    apart, slopes = off(p)
+    left = np.abs(apart[: len(points)])
+    # Neighbouring points share their noise: a fifth of them counts.
+    scale = max(noise, float(np.sqrt(np.mean(np.minimum(left, 0.02) ** 2))))
+    weight = 1.0 / (1.0 + (apart / ROBUST) ** 2)
+    information = (slopes * weight[:, None]).T @ slopes / (5 * scale * scale) + np.eye(count) * 25.0
+    covariance = np.linalg.inv(information)
+    return Solution(p, np.asarray(covariance, np.float64), float(np.minimum(left, 0.02).mean()))
+
+
+def rectangle(plan: Array, turns: int) -> list[tuple[float, float, Array, Array]]:
+    """Rectangles around points (n, 2): area [m2], yaw [rad], extents (2,) and middle (2,), the smallest first."""
+    found = []
+    for yaw in np.arange(turns) * (math.pi / 2 / turns):
+        c, s = math.cos(yaw), math.sin(yaw)
+        local = plan @ np.array([[c, -s], [s, c]])
+        low, high = np.percentile(local, (1.5, 98.5), axis=0)
+        middle = np.array([[c, -s], [s, c]]) @ ((low + high) / 2)
+        extents = high - low
+        found.append((float(extents[0] * extents[1]), float(yaw), extents, middle))
+    return sorted(found, key=lambda r: r[0])
+
+
+def top_of(points: Array, noise: float) -> float:
+    """Height [m] of the top of points (n, 3): of its flat part when there is one. `noise` [m]: of the heights."""
+    z = points[:, 2]
+    high = float(np.percentile(z, 98))
+    flat: NDArray[np.float64] = z[z > high - 3.5 * noise - 0.002]
+    return float(np.median(flat)) if len(flat) > 0.25 * len(z) else high
