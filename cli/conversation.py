@@ -93,6 +93,19 @@ class Conversation:
             self._link.send(topics.SPEECH_TEXT, m.TypedText(text=text))
         return self.mission_id
 
+    def ended(self) -> m.MissionOutcome | None:
+        """How the accepted mission ended, None while it is under way.
+
+        Raises:
+            CliError: another mission took its place.
+        """
+        last = self.state.last
+        if last is not None and last.id == self.mission_id:
+            return last
+        if self.state.mission_id not in ("", self.mission_id):
+            raise CliError(f"mission {self.state.mission_id} took the place of {self.mission_id}")
+        return None
+
     def outcome(self, timeout: float, idle: Callable[[], None] = lambda: None) -> m.MissionOutcome:
         """How the accepted mission ended.
 
@@ -101,14 +114,12 @@ class Conversation:
         """
         end = monotonic() + timeout
         while True:
-            last = self.state.last
-            if last is not None and last.id == self.mission_id:
-                return last
+            ended = self.ended()
+            if ended is not None:
+                return ended
             if monotonic() > end:
                 raise CliError(f"no outcome after {timeout:.0f} s; the robot is {self.state.state}")
-            if self.state.mission_id not in ("", self.mission_id):
-                raise CliError(f"mission {self.state.mission_id} took the place of {self.mission_id}")
-            self._next(0.2)
+            self.refresh()
             idle()
 
 

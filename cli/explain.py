@@ -53,14 +53,24 @@ def pictures(link: Link, record: dict[str, Any]) -> list[tuple[float, str, str]]
     return found
 
 
+def mission_record(link: Link, mission_id: str) -> dict[str, Any]:
+    """A mission as the brain's journal tells it.
+
+    Raises:
+        CliError: the brain does not answer, or knows no such mission.
+    """
+    record: dict[str, Any] | None = link.query(topics.BRAIN_MISSIONS, {"id": mission_id})
+    if record is not None:
+        return record
+    known = [row["id"] for row in link.query(topics.BRAIN_MISSIONS)]
+    if not known:
+        raise CliError("there has been no mission yet")
+    raise CliError(f"no mission {mission_id!r}{near(mission_id, known)}; `tidybot missions` lists all")
+
+
 def explain(args: argparse.Namespace) -> int:
     with linked(args) as link:
-        record = link.query(topics.BRAIN_MISSIONS, {"id": args.id})
-        if record is None:
-            known = [row["id"] for row in link.query(topics.BRAIN_MISSIONS)]
-            if not known:
-                raise CliError("there has been no mission yet")
-            raise CliError(f"no mission {args.id!r}{near(args.id, known)}; `tidybot missions` lists all")
+        record = mission_record(link, args.id)
         seen = pictures(link, record) if args.html else []
     if args.html:
         # Jinja2 is not for every command to load.

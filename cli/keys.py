@@ -10,20 +10,23 @@ import msgspec
 from cli.authority import Authority, hosts_of
 from cli.errors import CliError
 from cli.services import NAMES
-from common.security.access import OPERATOR, ROUTER, Role, Subject
+from common.security.access import AGENT, OPERATOR, ROUTER, Role, Subject
 from common.security.keys import OFF, default_directory
 
 DAYS = 365.0
 """Validity of a certificate [days]."""
+CLIENTS: tuple[tuple[str, Role], ...] = ((OPERATOR, "operator"), (AGENT, "agent"))
+"""The clients that every robot has, with their roles."""
 _WORD = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]*")
 _HOST = re.compile(r"[A-Za-z0-9:][A-Za-z0-9:._-]*")
 
 
 def everybody(namespace: str) -> list[Subject]:
-    """Who a robot consists of: the router, its services, and one operator."""
+    """Who a robot consists of: the router, its services, one operator, and the agents' way in (`tidybot mcp`)."""
     services = [Subject(name=n, namespace=namespace) for n in NAMES if n != ROUTER]
     router = Subject(name=ROUTER, role="router")
-    return [router, *services, Subject(name=OPERATOR, role="operator", namespace=namespace)]
+    clients = [Subject(name=n, role=r, namespace=namespace) for n, r in CLIENTS]
+    return [router, *services, *clients]
 
 
 def keys(args: argparse.Namespace) -> int:
@@ -68,10 +71,12 @@ def _check(args: argparse.Namespace) -> None:
         raise CliError(f"--days {args.days:g}: expected a positive number")
     if args.observer and not args.client:
         raise CliError("--observer goes with --client NAME")
+    if args.agent and (args.observer or not args.client):
+        raise CliError("--agent goes with --client NAME and without --observer")
 
 
 def _client(args: argparse.Namespace) -> Subject:
-    role: Role = "observer" if args.observer else "operator"
+    role: Role = "observer" if args.observer else "agent" if args.agent else "operator"
     return Subject(name=args.client, role=role, namespace=args.namespace)
 
 
@@ -139,6 +144,9 @@ def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") ->
     parser.add_argument("--dir", metavar="DIR", help="where (default: TIDYBOT_KEYS, TIDYBOT_KEYS_DIR, or run/keys)")
     parser.add_argument("--client", metavar="NAME", default="", help="add a client: a person's laptop, a tool")
     parser.add_argument("--observer", action="store_true", help="that client may only look")
+    parser.add_argument(
+        "--agent", action="store_true", help="that client is a program: it commands in words, and stops"
+    )
     parser.add_argument("--namespace", metavar="NAME", default="", help="for the robot of that namespace")
     parser.add_argument("--host", action="append", default=[], metavar="NAME", help="the router's name or address")
     parser.add_argument("--days", type=float, default=DAYS, metavar="N", help="validity (default %(default)s)")

@@ -15,6 +15,7 @@ from common import messages as m
 from common import topics
 from common.bus import codec, delivery
 from common.bus.session import default_connect, open_session
+from common.security.access import OPERATOR
 from common.security.keys import OFF
 from common.time.clock import monotonic
 from common.topics import Topic
@@ -132,14 +133,14 @@ def use_keys(directory: str) -> None:
 
 
 @contextmanager
-def linked(args: argparse.Namespace, patience: float = 3.0) -> Iterator[Link]:
-    """A link to the robot.
+def linked(args: argparse.Namespace, patience: float = 3.0, name: str = OPERATOR) -> Iterator[Link]:
+    """A link to the robot, under the certificate of `name` where there are keys.
 
     Raises:
         BusError: no router, or a bad endpoint.
     """
     connect, namespace = address(args)
-    with open_session(connect, namespace, patience=patience) as session:
+    with open_session(connect, namespace, patience=patience, name=name) as session:
         yield Link(session, connect)
 
 

@@ -26,6 +26,7 @@ from cli import (
     up,
     watch,
 )
+from cli.agents import command as agents
 from cli.errors import CliError, near
 from common.bus.session import BusError
 
@@ -67,6 +68,7 @@ def parser() -> argparse.ArgumentParser:
         replay,
         doctor,
         keys,
+        agents,
         calibrate,
         conform,
         demo,

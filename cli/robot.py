@@ -3,7 +3,7 @@
 import argparse
 
 from cli.errors import CliError
-from cli.link import Watch, add_options, linked
+from cli.link import Link, Watch, add_options, linked
 from common import messages as m
 from common import topics
 from common.time.clock import monotonic
@@ -14,11 +14,20 @@ CONFIRM = 3.0
 
 def stop(args: argparse.Namespace) -> int:
     with linked(args) as link:
-        watch = Watch(link, topics.SIM_STATUS)
-        link.send(topics.ROBOT_STOP, m.RobotStop(reason=args.reason, source="tidybot"))
-        _confirm(watch, "stopped")
+        brake(link, args.reason, "tidybot")
     print("stopped; `tidybot resume` goes on with the mission, `tidybot resume --cancel` only releases the brake")
     return 0
+
+
+def brake(link: Link, reason: str, source: str) -> None:
+    """Brake base and arm, and return when the simulation says that they stand.
+
+    Raises:
+        CliError: it does not in time.
+    """
+    watch = Watch(link, topics.SIM_STATUS)
+    link.send(topics.ROBOT_STOP, m.RobotStop(reason=reason, source=source))
+    _confirm(watch, "stopped")
 
 
 def resume(args: argparse.Namespace) -> int:

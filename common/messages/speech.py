@@ -58,9 +58,14 @@ class AudioChunk(Message):
 
 
 class VoiceCommand(Message):
-    """A command in words; `confirmed`: the sender vouches for them (typed text), so nobody asks "Did you say ...?"."""
+    """A command in words; `confirmed`: the sender vouches for them (typed text), so nobody asks "Did you say ...?".
+
+    `question`: `text` is no command but a question that the robot puts to the person; the answer is the outcome's
+    `reason`.
+    """
 
     text: str
     confidence: float = 1.0
     id: str = ""
     confirmed: bool = False
+    question: bool = False

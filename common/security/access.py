@@ -2,8 +2,9 @@
 
 A certificate's common name is `<service>`, or `<namespace>/<service>` for a robot that has a namespace. What is not
 granted here is denied: a service writes and reads the topics whose row names it, and answers its own queries. Clients
-are people's tools: an operator reads everything and writes what `*` may write, an observer only reads. Routers, which
-link with each other, pass everything.
+are people's tools: an operator reads everything and writes what `*` may write, an observer only reads. An agent is a
+program that commands the robot in words: it may say what a person may say and stop the robot, and drives nothing.
+Routers, which link with each other, pass everything.
 """
 
 from collections.abc import Iterable
@@ -13,13 +14,20 @@ import msgspec
 
 from common import topics as t
 
-Role = Literal["service", "operator", "observer", "router"]
-ROUTER, OPERATOR, EAR = "router", "operator", "ear"
+Role = Literal["service", "operator", "observer", "agent", "router"]
+ROUTER, OPERATOR, AGENT, EAR = "router", "operator", "agent", "ear"
 
 CHANGING = tuple(q.key for q in t.QUERIES if q.changing)
 ALL_HEALTH, ALL_ALIVE = t.HEALTH.key, t.ALIVE_KEY.format(name="*")
 ADVANCED = "@adv/**"  # caches, heartbeats and tokens of advanced publishers live below the key
 EVERYTHING = ("**", f"**/{ADVANCED}")
+AGENT_PUTS = (t.VOICE_COMMAND, t.ROBOT_STOP, t.CAMERA_REQUEST)
+"""Words, which brain and planner check as a person's, the brake, and the wish for a picture. Not `robot/resume`: what
+was stopped goes on when a person says so."""
+AGENT_READS = (
+    t.BRAIN_STATE, t.SYSTEM_STATUS, t.SPEECH_STATUS, t.SIM_STATUS, t.WORLD_OBJECTS, t.POSE, t.COSTMAP, t.HEAD_RGBD,
+    t.WRIST_RGBD,
+)  # fmt: skip
 
 
 class Subject(msgspec.Struct, frozen=True):
@@ -48,6 +56,13 @@ def grants(subject: Subject) -> Grants:
     """What the table gives a subject that is not a router."""
     if subject.role == "service":
         return _service(subject.name)
+    if subject.role == "agent":
+        reads = tuple(topic.key for topic in AGENT_READS)
+        return Grants(
+            puts=tuple(topic.key for topic in AGENT_PUTS),
+            reads=(*reads, ALL_HEALTH, ALL_ALIVE),
+            asks=(*reads, ALL_HEALTH, t.BRAIN_MISSIONS),
+        )
     questions = tuple(q.key for q in t.QUERIES if not q.changing)
     if subject.role == "observer":
         return Grants(reads=EVERYTHING, asks=(*questions, *(topic.key for topic in t.TABLE), ALL_HEALTH))

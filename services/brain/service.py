@@ -202,6 +202,8 @@ class BrainService:
             asked = asks_for(words, "stop", "cancel", "come_back")
             if not words:
                 self._io.count_drop(topics.VOICE_COMMAND.key, "no words")
+            elif command.question:
+                self._receive_question(command)
             elif ctx.mission.active and asked:
                 self._interrupt(f"asked to {words}")
                 ctx.voice.command = command if asked == "come_back" else None
@@ -213,6 +215,14 @@ class BrainService:
                 ctx.voice.command = command
             else:
                 self._io.log.warning("command ignored", text=command.text, state=ctx.state)
+
+    def _receive_question(self, command: m.VoiceCommand) -> None:
+        """Put a client's question to the person, when nothing else is under way: it answers and stops nothing."""
+        ctx = self.context
+        if ctx.config.pipeline == "vla" and ctx.state in ("WAITING", "LISTENING", "COMPLETED", "ERROR"):
+            ctx.voice.command = command
+        else:
+            self._io.log.warning("question ignored", text=command.text, state=ctx.state)
 
     def _interrupt(self, reason: str) -> None:
         """End the mission under way and everything that is done for it."""

@@ -27,7 +27,12 @@ QUESTIONS = {
 }  # fmt: skip
 KEYS = [t.key for t in topics.TABLE] + [k.format(n) for n in SERVICES for k in PER_SERVICE] + list(QUESTIONS)
 CLOCKS = {t.key for t in topics.CLOCKS}
-SUBJECTS = (*SERVICES, "operator", "looker")
+SUBJECTS = (*SERVICES, "operator", "looker", "agent")
+AGENT_WRITES = {"voice_command", "robot/stop", "camera/request"}
+AGENT_READS = {
+    "brain/state", "system_status", "speech/status", "sim/status", "world/objects", "navigation/pose",
+    "navigation/costmap", "camera/head/rgbd", "camera/wrist/rgbd",
+}  # fmt: skip
 
 
 def kind(name: str) -> Any:
@@ -39,6 +44,8 @@ def kind(name: str) -> Any:
 def may_write(subject: str) -> set[str]:
     if subject == "looker":
         return set()
+    if subject == "agent":
+        return AGENT_WRITES
     if subject == "operator":
         return {t.key for t in topics.TABLE if "*" in t.writers}
     clocks = CLOCKS if subject == "sim" else {topics.LOCKSTEP_ACK.key}
@@ -49,6 +56,8 @@ def may_write(subject: str) -> set[str]:
 def may_read(subject: str) -> set[str]:
     if subject in ("operator", "looker"):
         return set(KEYS)
+    if subject == "agent":
+        return AGENT_READS | {f"service/{n}/health" for n in SERVICES}
     clocks = {topics.LOCKSTEP_ACK.key} if subject == "sim" else CLOCKS
     read = {t.key for t in kind(subject).READS if t.key in topics.BY_KEY}
     return read | clocks | {f"service/{n}/health" for n in SERVICES}
@@ -60,11 +69,11 @@ def may_ask(subject: str) -> set[str]:
     if subject == "looker":
         changing = {topics.SIM_RESET, topics.SIM_PAUSE, topics.SIM_SNAPSHOT}
         return set(KEYS) - changing - {f"log/{n}" for n in SERVICES}
-    return may_read(subject) | ({topics.BRAIN_MISSIONS} if subject == "dashboard" else set())
+    return may_read(subject) | ({topics.BRAIN_MISSIONS} if subject in ("dashboard", "agent") else set())
 
 
 def may_answer(subject: str) -> set[str]:
-    if subject in ("operator", "looker"):
+    if subject in ("operator", "looker", "agent"):
         return set()
     own = kind(subject).WRITES
     latched = {t.key for t in topics.TABLE if t.latched and (subject in t.writers or t in own)}

@@ -119,7 +119,8 @@ def test_the_contracts_sequence() -> None:
 
 def test_the_tree_is_the_contracts_sequence_of_steps() -> None:
     root = asked().last(topics.BRAIN_TREE).root
-    do = root.children[-1].children[0]
+    question, do = root.children[-1].children[:2]
+    assert question.name == "if question"
     assert (root.type, do.type) == ("Sequence", "Sequence")
     assert [child.name for child in root.children] == ["ready", "listen", "mission"]
     assert [child.name for child in do.children] == [

@@ -103,7 +103,7 @@ class Context:
         """The mission begins with this command; `source`: who brought it, for the timeline."""
         mission = self.mission
         self.voice.reply = None
-        mission.heard = Heard(confidence=command.confidence, confirmed=command.confirmed)
+        mission.heard = Heard(confidence=command.confidence, confirmed=command.confirmed, question=command.question)
         mission.command, mission.started = command.text.strip(), self.now
         self.suspended = None
         self.journal.begin(mission)

@@ -55,11 +55,15 @@ class Failure(msgspec.Struct, frozen=True):
 
 
 class Heard(msgspec.Struct):
-    """How sure the command is: `confidence` 0 to 1 of speech, `confirmed` by a person, `repeat`: to be said again."""
+    """How sure the command is: `confidence` 0 to 1 of speech, `confirmed` by a person, `repeat`: to be said again.
+
+    `question`: it is no command, but what a client wants to know from the person.
+    """
 
     confidence: float = 1.0
     confirmed: bool = False
     repeat: bool = False
+    question: bool = False
 
 
 class Task(msgspec.Struct):

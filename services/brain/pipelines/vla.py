@@ -1,11 +1,12 @@
 """The VLA pipeline as a tree: listen, confirm, plan, then the plan's steps, each with its recoveries, then report."""
 
 from py_trees.behaviour import Behaviour
+from py_trees.common import Status
 
 from services.brain.mission.context import Context
 from services.brain.pipelines.plan_steps import RunPlan
 from services.brain.pipelines.shared import report_failure
-from services.brain.steps.ask import AskQuestion, HearConfirmation, question
+from services.brain.steps.ask import AskQuestion, HearConfirmation, HearPerson, question
 from services.brain.steps.leaf import Say, Settle
 from services.brain.steps.motion import Ready
 from services.brain.steps.plan import AwaitCommand, CompleteWithEvidence, PlanIsComplete, RequestPlan, describe_step
@@ -31,8 +32,20 @@ def vla_tree(ctx: Context) -> Behaviour:
         "vla_pipeline",
         Ready("ready", ctx),
         AwaitCommand("listen", ctx),
-        Selector("mission", do, report_failure(ctx)),
+        Selector("mission", ask_person(ctx), do, report_failure(ctx)),
     )
+
+
+def ask_person(ctx: Context) -> Behaviour:
+    """A client's question: say it, hear the answer; FAILURE for what is a command."""
+    ask = Sequence(
+        "ask_person",
+        AskQuestion("put_question", ctx, lambda: ctx.mission.command),
+        HearPerson("hear_person", ctx),
+        Settle("settle_answer", ctx),
+    )
+    asked = Selector("question_answered", ask, report_failure(ctx))
+    return Condition("if_question", asked, lambda: ctx.mission.heard.question, otherwise=Status.FAILURE)
 
 
 def success(ctx: Context) -> str:

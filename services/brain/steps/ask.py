@@ -133,6 +133,26 @@ class HearChoice(HearAnswer):
         return Status.SUCCESS
 
 
+class HearPerson(HearAnswer):
+    """The person's answer to a client's question; it ends the mission, and is its outcome's reason."""
+
+    def step(self) -> str:
+        return self.ctx.mission.command
+
+    def spoken(self) -> str:
+        return "I did not hear an answer."
+
+    def succeed(self, result: Result) -> Status:
+        heard = result.message
+        assert isinstance(heard, m.SpeechResult)
+        if reply(heard.text)[0] == "cancel":
+            return self.refuse("CANCELLED", "", "All right.")
+        self.ctx.note(f"answered: {heard.text}", self.ctx.mission.command, "heard")
+        self.ctx.end_mission("delivered", heard.text)
+        self.ctx.show_state("COMPLETED", detail=heard.text)
+        return Status.SUCCESS
+
+
 def question(ctx: Context) -> str:
     """The question that confirms a command."""
     return "Please say it again." if ctx.mission.heard.repeat else f"Did you say {ctx.mission.command}?"

@@ -19,8 +19,8 @@ import numpy as np
 import viser
 from aiohttp import ClientSession, web
 
+from common.security import web_access as access
 from services.dashboard.config import DashboardConfig
-from services.dashboard.web import access
 from services.dashboard.web.events import Asked, Click, Event
 from services.dashboard.web.listener import PageError, guarded, listen
 from services.dashboard.web.view_proxy import proxied

@@ -1,4 +1,4 @@
-"""Who may open the page: decisions about addresses, origins and tokens."""
+"""Who may use a web server of the robot, the page's or the agents': decisions about addresses, origins and tokens."""
 
 import hmac
 import ipaddress

@@ -2,7 +2,7 @@
 
 import pytest
 
-from services.dashboard.web import access
+from common.security import web_access as access
 
 
 @pytest.mark.parametrize("host", ["127.0.0.1", "127.3.2.1", "::1", "[::1]", "localhost", "ip6-localhost"])

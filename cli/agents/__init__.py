@@ -1,0 +1,1 @@
+"""The robot for agents: a server of the Model Context Protocol, `tidybot mcp`."""

@@ -1,0 +1,155 @@
+"""What an agent may know of the robot: pictures, objects, the map, its state. Each function asks the bus once."""
+
+import io
+import uuid
+import zlib
+from typing import Any, Literal
+
+import numpy as np
+from PIL import Image
+
+from cli.errors import CliError
+from cli.explain import mission_record, told
+from cli.link import Link, Watch
+from cli.mission import status_record
+from cli.payload import fields
+from common import messages as m
+from common import topics
+from common.scene import Scene, SceneError, load_scene
+from common.time.clock import monotonic
+
+Camera = Literal["head", "wrist"]
+PICTURE_SIZE = (640, 480)
+"""Width and height [pixels] of a picture."""
+PICTURE_LIMIT = 10.0
+"""Time [s] for the camera to answer; chosen: far above the slowest, which casts rays."""
+MAP_LIMIT = 3.0
+"""Time [s] for the costmap, which comes at 1 Hz."""
+JPEG_QUALITY = 85
+
+
+def picture(link: Link, camera: Camera) -> bytes:
+    """A fresh picture of one camera as JPEG.
+
+    Raises:
+        CliError: the camera does not answer.
+    """
+    topic = topics.HEAD_RGBD if camera == "head" else topics.WRIST_RGBD
+    watch = Watch(link, topic)
+    request = m.CameraRequest(
+        id=f"agent-{uuid.uuid4().hex[:8]}", camera=camera, width=PICTURE_SIZE[0], height=PICTURE_SIZE[1]
+    )
+    link.send(topics.CAMERA_REQUEST, request)
+    end = monotonic() + PICTURE_LIMIT
+    while monotonic() < end:
+        seen = watch.next(0.2)
+        if seen is not None and seen.id == request.id:
+            image = Image.frombytes("RGB", (seen.width, seen.height), seen.rgb)
+            out = io.BytesIO()
+            image.save(out, "JPEG", quality=JPEG_QUALITY)
+            return out.getvalue()
+    raise CliError(f"the {camera} camera does not answer; see `tidybot ps`")
+
+
+def objects(link: Link) -> list[dict[str, Any]]:
+    """What the robot remembers to have seen, the newest first: where, how sure, how many seconds ago.
+
+    Raises:
+        CliError: perception does not answer.
+    """
+    world, pose = link.latest(topics.WORLD_OBJECTS), link.latest(topics.POSE)
+    if world is None:
+        raise CliError("perception does not answer; see `tidybot ps`")
+    now = max(world.t, pose.t if pose is not None else 0.0)
+    return [
+        {
+            "label": o.label, "kind": o.kind, "colour": o.colour, "names": o.names, "text": o.text, "on": o.on,
+            "held": o.held, "position": [round(v, 3) for v in o.position], "size": [round(v, 3) for v in o.size],
+            "confidence": round(o.confidence, 2), "seconds_ago": round(max(0.0, now - o.seen_at), 1),
+        }
+        for o in sorted(world.objects, key=lambda o: -o.seen_at)
+    ]  # fmt: skip
+
+
+def whereabouts(link: Link, words: str) -> list[dict[str, Any]]:
+    """The remembered objects that all the words fit: of label, kind, colour, taught names, or what is printed on it."""
+    wanted = set(words.lower().split())
+    found = []
+    for one in objects(link):
+        said = " ".join([one["label"], one["kind"], one["colour"], one["text"], *one["names"]]).lower().split()
+        if wanted <= set(said):
+            found.append(one)
+    return found
+
+
+def household(link: Link) -> dict[str, Any]:
+    """The map in words: rooms, places and surfaces [m, frame map], the robot's pose, what was seen where."""
+    scene, pose = _scene(link), link.latest(topics.POSE)
+    record: dict[str, Any] = {
+        "pose": None if pose is None else {"x": pose.x, "y": pose.y, "theta": pose.theta},
+        "objects": objects(link),
+    }
+    if scene is not None:
+        record["rooms"] = [{"name": r.name, "low": list(r.low), "high": list(r.high)} for r in scene.rooms]
+        record["places"] = [{"name": p.name, "x": p.x, "y": p.y} for p in scene.places]
+        record["surfaces"] = [
+            {"name": r.name, "aliases": list(r.aliases), "center": list(r.center)} for r in scene.receptacles
+        ]
+    return record
+
+
+def map_picture(link: Link) -> bytes:
+    """The costmap as PNG, north up: white is room for the base's centre, black is not; the robot is red.
+
+    Raises:
+        CliError: navigation does not publish one.
+    """
+    seen = Watch(link, topics.COSTMAP).next(MAP_LIMIT)
+    if seen is None:
+        raise CliError("navigation publishes no costmap; see `tidybot ps`")
+    cells = np.frombuffer(zlib.decompress(seen.cells), np.uint8).reshape(seen.height, seen.width)
+    shown = np.repeat(cells[:, :, None], 3, axis=2)
+    pose = link.latest(topics.POSE)
+    if pose is not None:
+        row, column = (int((v - o) / seen.resolution) for v, o in ((pose.y, seen.y), (pose.x, seen.x)))
+        shown[max(0, row - 2) : row + 3, max(0, column - 2) : column + 3] = (255, 0, 0)
+    out = io.BytesIO()
+    Image.fromarray(shown[::-1]).save(out, "PNG")
+    return out.getvalue()
+
+
+def status(link: Link) -> dict[str, Any]:
+    """What the robot is doing, how the last mission ended, whether its brake is on.
+
+    Raises:
+        CliError: the brain does not answer.
+    """
+    state = link.latest(topics.BRAIN_STATE)
+    if state is None:
+        raise CliError("the brain does not answer; see `tidybot ps`")
+    sim = link.latest(topics.SIM_STATUS)
+    return {
+        **status_record(state, link.latest(topics.SYSTEM_STATUS)),
+        "stopped": sim is not None and sim.state == "stopped",
+        "stop_reason": sim.detail if sim is not None and sim.state == "stopped" else "",
+    }
+
+
+def explanation(link: Link, mission: str) -> str:
+    """A mission's timeline: what was heard, planned, seen and done, and why it failed."""
+    return told(mission_record(link, mission))
+
+
+def missions(link: Link) -> list[dict[str, Any]]:
+    """Every mission of the journal, the oldest first."""
+    rows: list[dict[str, Any]] = fields(link.query(topics.BRAIN_MISSIONS))
+    return rows
+
+
+def _scene(link: Link) -> Scene | None:
+    """The household's plan, None when its file is not on this machine."""
+    running = link.latest(topics.SIM_STATUS)
+    try:
+        return load_scene(running.scene) if running is not None and running.scene else None
+    except SceneError:
+        return None
