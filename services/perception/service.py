@@ -41,12 +41,15 @@ PICTURES = (topics.HEAD_RGBD, topics.WRIST_RGBD)
 
 @dataclass
 class Reading:
-    """A query whose answer waits for print to be read, after a picture (`view`) that showed the objects `seen`;
-    `taken`: the finer picture for it has come."""
+    """A query whose answer waits until the worker has looked at the objects that a picture (`view`) has shown (`seen`).
+
+    `fine`: it waits for a finer picture as well, to read what is printed; `taken`: that has come, or none is needed.
+    """
 
     seen: set[str]
     view: View
     taken: bool = False
+    fine: bool = True
 
 
 class PerceptionService:
@@ -67,6 +70,7 @@ class PerceptionService:
         self._hand_at: tuple[float, float, float] | None = None
         self._picture = ""
         self._fine = False
+        self._pictures = 0
         self._looked_for_name = 0
         self._asked_at = -1e9
         self._detecting: Job[tuple[View, list[Detection]]] | None = None
@@ -186,7 +190,10 @@ class PerceptionService:
             self._naming.see(view, self._tracker.objects(), now, base)
         self._looked_for_name = self._looked_for_name + 1 if self._naming.wants_picture else 0
         self._publish_objects(now, bool(seen))
-        self._answer_query(seen, view)
+        query = self._inbox.active
+        if query is not None and view.t >= query.since:
+            self._pictures += 1
+            self._answer_query(seen, view)
 
     def _refines(self, d: Detection) -> bool:
         """True for what the wrist camera may say of an object: where it is more exactly, and of round objects from any
@@ -213,16 +220,19 @@ class PerceptionService:
 
     def _answer_query(self, seen: set[str], view: View) -> None:
         query = self._inbox.active
-        if query is None or view.t < query.since:
+        if query is None:
             return
-        self._pictures += 1
+        if self._naming.busy:
+            self._reading = Reading(seen, view, taken=True, fine=self._reading is not None and self._reading.fine)
+            return
         result = self._ground(query)
         found = result.found
         if found is None and not result.candidates and self._pictures < self._config.query_pictures:
             return
         if found is not None and found.id not in seen and self._pictures < self._config.query_pictures:
             return
-        if found is None and not result.candidates and self._reading is None and self._naming.unread(query.query):
+        read = self._reading is not None and self._reading.fine
+        if found is None and not result.candidates and not read and self._naming.unread(query.query):
             self._reading = Reading(seen, view)
             return
         answer = _pose_answer(query, result, jpeg(view) if query.since else b"")
@@ -238,6 +248,8 @@ class PerceptionService:
         """Answer the query once the fine picture for it was read."""
         reading = self._reading
         if reading is not None and reading.taken and not self._naming.busy:
+            if not reading.fine:
+                self._reading = None
             self._answer_query(reading.seen, reading.view)
 
     def _ground(self, query: m.ObjectQuery) -> Grounding:

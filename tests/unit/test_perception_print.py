@@ -1,0 +1,59 @@
+"""What is printed on objects: read by the reader, compared with the words that somebody asked for."""
+
+import pytest
+
+pytest.importorskip("rapidfuzz", reason="the extra `ocr`")
+
+from common.scene import load_scene
+from services.perception.naming.text import LIKELY, SURE, Line, likeness, merged, printed_words
+from services.perception.naming.vocabulary import common_words, taken
+
+COMMON = common_words(load_scene("apartment"), {"cup": "mug"})
+
+
+@pytest.mark.parametrize(
+    ("asked", "read"),
+    [
+        ("tomato soup", "TOMATO SOUP"), ("tomato soup", "SOUP / TOMATO"), ("tomato soup", "TOMATOSOUP 400g"),
+        ("corn flakes", "Crispy CORN / FLAKES"), ("corn flake", "CORN FLAKES"), ("parmesan cheese", "PARMESAN CHEESF"),
+        ("milk", "fresh MILK 1.5 %"), ("earl grey", "EARL GREY TEA"),
+    ],
+)  # fmt: skip
+def test_what_is_asked_for_is_known_by_its_print(asked: str, read: str) -> None:
+    assert likeness(asked.split(), read) >= SURE
+
+
+@pytest.mark.parametrize(
+    ("asked", "read"),
+    [
+        ("tomato soup", "POTATO SOUP"), ("tomato soup", "TOMATO KETCHUP"), ("corn flakes", "BRAN FLAKES"),
+        ("tea", "PEA SOUP"), ("tea", "TEN BISCUITS"), ("rice", "SALT"), ("milk", ""), ("", "MILK"),
+        ("orange juice", "APPLE JUICE"), ("salt", "MALT"),
+    ],
+)  # fmt: skip
+def test_what_reads_otherwise_is_not_it(asked: str, read: str) -> None:
+    assert likeness(asked.split(), read) < LIKELY or (asked, read) == ("salt", "MALT")
+    assert likeness(asked.split(), read) < SURE
+
+
+def test_a_word_that_is_half_legible_is_worth_a_nearer_look() -> None:
+    assert likeness(["mustard"], "MUSFARD") >= LIKELY and LIKELY <= likeness(["beans"], "BEAMS") < SURE
+
+
+def test_only_words_that_name_no_kind_colour_or_place_can_be_print() -> None:
+    assert printed_words("the red box of corn flakes on the kitchen counter", COMMON) == ["corn", "flakes"]
+    assert printed_words("my red mug", COMMON) == []
+    assert printed_words("the small blue cup next to the bowl", COMMON) == []
+
+
+def test_of_two_readings_of_a_line_the_surer_one_stays() -> None:
+    lines = merged([Line("T0MATO", 0.7), Line("400g", 0.9)], [Line("TOMATO", 0.98), Line("SOUP", 0.9)])
+    assert {line.text for line in lines} == {"TOMATO", "SOUP", "400g"}
+
+
+@pytest.mark.parametrize(
+    ("name", "means"), [("mug", "every mug"), ("kitchen counter", "a place"), ("cup", "every cup")]
+)
+def test_a_name_that_means_something_already_is_taken(name: str, means: str) -> None:
+    assert taken(name, load_scene("apartment"), {"cup": "mug"}) == means
+    assert taken("vitamin box", load_scene("apartment"), {}) == ""
