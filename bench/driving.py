@@ -8,6 +8,7 @@ import msgspec
 from common import config, topics
 from common import messages as m
 from common.bus.memory import MemoryBus, MemoryIo
+from common.household import told
 from common.scene import Obstacle, load_scene
 from common.time.clock import ManualClock
 from common.time.lockstep import DT, InProcess
@@ -47,8 +48,8 @@ class Driver:
         for kind in (SimService, NavigationService):
             parameters = config.load(kind.NAME, kind.CONFIG, config.config_dir(), changes)
             io = MemoryIo(
-                self.bus, kind.NAME, kind.READS, kind.WRITES, scene=self.scene, seed=seed, clock=clock,
-                log_level=log_level,
+                self.bus, kind.NAME, kind.READS, kind.WRITES, household=told(self.scene), world=self.scene, seed=seed,
+                clock=clock, log_level=log_level,
             )  # fmt: skip
             if kind is SimService:
                 io.out_stamp = -1

@@ -19,6 +19,7 @@ from common import topics
 from common.approach import EDGE_DISTANCE, STAND_OFF
 from common.bus.memory import MemoryBus, MemoryIo
 from common.geometry import compose, inverse, yaw_quat
+from common.household import told
 from common.kinds import KINDS
 from common.scene import ObjectSpec, Scene, body_name, load_scene
 from common.time.clock import ManualClock
@@ -50,18 +51,16 @@ class Bench:
         alone = msgspec.structs.replace(scene, objects=(spec,), receptacles=receptacles)
         self.spec = spec
         self.bus, clock = MemoryBus(), ManualClock()
-        sim_io = MemoryIo(self.bus, "sim", simulation.READS, simulation.WRITES, scene=alone, seed=seed, clock=clock)
+        home: dict[str, Any] = {"household": told(alone), "seed": seed, "clock": clock}
+        sim_io = MemoryIo(self.bus, "sim", simulation.READS, simulation.WRITES, world=alone, **home)
         sim_io.out_stamp = -1
         # No navigation corrects the odometry here.
         exact = SimConfig(odometry_slip=0.0, odometry_veer=0.0, odometry_noise=0.0)
         self.sim = simulation(exact, sim_io)
         self.world = InProcess(self.sim, sim_io, clock)
-        io = MemoryIo(
-            self.bus, "manipulation", ManipulationService.READS, ManipulationService.WRITES, scene=alone, seed=seed,
-            clock=clock,
-        )  # fmt: skip
+        io = MemoryIo(self.bus, "manipulation", ManipulationService.READS, ManipulationService.WRITES, **home)
         self.world.add(ManipulationService(config, io), io)
-        io = MemoryIo(self.bus, Watch.NAME, Watch.READS, Watch.WRITES, scene=alone, seed=seed, clock=clock)
+        io = MemoryIo(self.bus, Watch.NAME, Watch.READS, Watch.WRITES, world=alone, **home)
         watch = Watch(WatchConfig(), io)
         self.world.add(watch, io)
         self.observer = watch.observer
@@ -121,7 +120,7 @@ def trial(scene: Scene, spec: ObjectSpec, seed: int, config: ManipulationConfig)
     bench = Bench(scene, spec, float(rng.uniform(0.45, 0.76)), seed, config)
     placed = bench.sim.physics.placements[0]
     x, y, _ = placed.position
-    surface = next(r for r in bench.sim._io.scene.receptacles if r.name == placed.on)
+    surface = next(r for r in bench.sim._io.world.receptacles if r.name == placed.on)
     along = max(surface.approach, key=lambda a: a[0] * (x - surface.center[0]) + a[1] * (y - surface.center[1]))
     facing = math.atan2(-along[1], -along[0])
     half = surface.size[0] / 2 if along[0] else surface.size[1] / 2

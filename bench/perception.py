@@ -15,6 +15,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from common.geometry import Pose2
+from common.household import told
 from common.messages import WorldObject
 from common.rendering.renderer import Renderer
 from common.scene import Receptacle, Scene, load_scene
@@ -143,7 +144,8 @@ def main() -> int:
     parser.add_argument("--verbose", "-v", action="store_true", help="name every mistake")
     args = parser.parse_args()
     scene = load_scene("apartment")
-    detector = ClassicalDetector(scene, 3.5)
+    household = told(scene)
+    detector = ClassicalDetector(household, 3.5)
     ours, peer = Score(), Score()
     seen = total = false = absent = abstained = 0
     seconds: list[float] = []
@@ -178,7 +180,7 @@ def main() -> int:
             u, v, z = (float(a) for a in view.project(np.array([p.position]))[0])
             if z <= 0.0 or not (-60 < u < args.width + 60 and -60 < v < args.height + 60):
                 absent += 1
-                abstained += ground(p.spec.name, world, scene, (0.0, 0.0, 0.0), {}).found is None
+                abstained += ground(p.spec.name, world, household, (0.0, 0.0, 0.0), {}).found is None
     print(f"{seen} views, {total} visible objects within {RANGE:.0f} m, {args.width} x {args.height}")
     print(f"{'':28} {'found':>7} {'named':>7} {'median cm':>9} {'mean':>7} {'p95':>7}")
     print(ours.row("fitted models", total))

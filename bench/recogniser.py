@@ -20,7 +20,7 @@ import psutil  # type: ignore[import-untyped]
 
 from bench.speech import CORPUS, MISSING, NOTHING
 from common import config
-from common.scene import load_scene
+from common.household import load_household
 from services.speech.audio import RATE, read_wav
 from services.speech.config import SpeechConfig
 from services.speech.recognise import moonshine
@@ -85,7 +85,7 @@ def measure(variant: str, corpus: Path, limit: int) -> str:
         networks = shipped()
         moonshine.networks = lambda threads: networks  # type: ignore[assignment]
     parameters = config.load("speech", SpeechConfig, config.config_dir(), {})
-    reader = Reader(parameters, load_scene("apartment"))
+    reader = Reader(parameters, load_household("apartment"))
     loading = time.process_time() - began
     with (corpus / "manifest.tsv").open(encoding="utf-8") as file:
         recordings = [r for r in csv.DictReader(file, delimiter="\t") if r["kind"] == "cmd"]

@@ -17,8 +17,8 @@ from pathlib import Path
 import psutil  # type: ignore[import-untyped]
 
 from common import config
+from common.household import load_household
 from common.language.normalise import normalise
-from common.scene import load_scene
 from services.speech.audio import RATE, read_wav
 from services.speech.config import SpeechConfig
 from services.speech.recognise.front_end import without_wake
@@ -51,7 +51,7 @@ def main() -> int:
         print(MISSING.format(args.corpus), file=sys.stderr)
         return NOTHING
     parameters = config.load("speech", SpeechConfig, config.config_dir(), {})
-    reader = Reader(parameters, load_scene("apartment"))
+    reader = Reader(parameters, load_household("apartment"))
     with manifest.open(encoding="utf-8") as file:
         recordings = list(csv.DictReader(file, delimiter="\t"))
     random.Random(0).shuffle(recordings)

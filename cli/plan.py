@@ -40,8 +40,9 @@ class Plan:
         settings["TIDYBOT_KEYS"] = self.keys or OFF
         settings["TIDYBOT_STATE_DIR"] = os.environ.get("TIDYBOT_STATE_DIR") or str(run_dir())
         settings["TIDYBOT__BRAIN__RUN"] = settings["TIDYBOT__SIM__RUN"] = uuid.uuid4().hex
-        if args.scene:
-            settings["TIDYBOT__RUNTIME__SCENE"] = args.scene
+        for name in ("scene", "world", "household"):
+            if path := getattr(args, name, None):
+                settings[f"TIDYBOT__RUNTIME__{name.upper()}"] = path
         if args.seed is not None:
             settings["TIDYBOT__RUNTIME__SEED"] = str(args.seed)
         settings |= _overrides(machine(args))

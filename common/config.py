@@ -23,12 +23,37 @@ class Config(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tr
 
 
 class RuntimeConfig(Config, frozen=True):
-    """Parameters that every process shares (section `runtime`)."""
+    """Parameters that every process shares (section `runtime`).
+
+    `world` is what the simulation builds, `household` what the robot is told of it: files, or names of shipped ones.
+    `scene` is one file for both, where they are not given: everything in it is told.
+    """
 
     scene: str = "apartment"
+    world: str = ""
+    household: str = ""
     seed: int = 0
     lockstep: bool = False
     log_level: Literal["debug", "info", "warning", "error"] = "info"
+
+    @property
+    def world_file(self) -> str:
+        """What the simulation builds."""
+        return self.world or self.scene
+
+    @property
+    def household_file(self) -> str:
+        """What the robot is told.
+
+        Raises:
+            ConfigError: a world of its own and no household: the robot would be told of another home.
+        """
+        if self.world and not self.household:
+            raise ConfigError(
+                f"runtime.world = {self.world} needs runtime.household, the file with what the robot is told; "
+                "runtime.scene takes one file as both"
+            )
+        return self.household or self.scene
 
 
 def parse_value(text: str) -> Any:

@@ -4,11 +4,13 @@ All lengths in metres, angles in radians, everything in frame `map`.
 """
 
 import math
+from collections.abc import Iterable
 from typing import Literal
 
 import msgspec
 
 from common.geometry import Rectangle
+from common.kinds import KINDS
 
 Vec2 = tuple[float, float]
 Vec3 = tuple[float, float, float]
@@ -17,6 +19,13 @@ ReceptacleKind = Literal["table", "counter", "shelf", "bin", "tray", "sink"]
 # How furniture is built: a table's legs and how far inside the top's edge they stand, how far a cabinet's body stays
 # behind its top, the thickness of a bin's walls [m].
 LEG, LEG_INSET, BODY_INSET, BIN_WALL = 0.05, 0.04, 0.01, 0.015
+
+SUNK = 0.05
+"""How far [m] below a surface the centre of what rests on it may be seen: the error of its height."""
+TALLEST = 0.35
+"""How far [m] above a surface the centre of what rests on it is looked for: beyond half of the tallest object."""
+SIGHTING_ERROR = 0.02
+"""How far [m] over the edge of a surface the centre of what rests on it may be seen: the error at arm's length."""
 
 
 class Strict(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
@@ -129,3 +138,104 @@ class Obstacle(Strict, frozen=True):
     polite: bool = True
     placed: bool = True
     rgba: Rgba = (0.55, 0.35, 0.60, 1.0)
+
+
+class Thing(Strict, frozen=True, kw_only=True):
+    """An object by words and look: `kind` is one of `common.kinds`, `size` its full extent (x, y, z) upright."""
+
+    name: str
+    kind: str
+    colour: str
+    size: Vec3
+    rgba: Rgba
+    aliases: tuple[str, ...] = ()
+
+
+class FloorPlan(Strict, frozen=True, kw_only=True):
+    """A building as a map has it: what stands firmly in it, and how people call its parts.
+
+    `home` is where the robot starts, `delivery` the receptacle that it brings things to.
+    """
+
+    name: str
+    low: Vec2
+    high: Vec2
+    home: Place
+    walls: tuple[Wall, ...] = ()
+    furniture: tuple[Box, ...] = ()
+    rooms: tuple[Room, ...] = ()
+    places: tuple[Place, ...] = ()
+    receptacles: tuple[Receptacle, ...] = ()
+    delivery: str = ""
+
+    def receptacle(self, name: str) -> Receptacle | None:
+        """The receptacle called `name` or by that alias, None if unknown."""
+        return next((r for r in self.receptacles if name == r.name or name in r.aliases), None)
+
+    def surface_at(
+        self,
+        x: float,
+        y: float,
+        z: float | None = None,
+        margin: float = 0.0,
+        below: float = SUNK,
+        above: float = math.inf,
+    ) -> Receptacle | None:
+        """The receptacle whose usable surface is under the point (x, y, z) [map]; without `z` at whatever height.
+
+        Distances in metres: the point is at most `margin` beyond the surface's sides, `below` under it and `above` over
+        it, or in a bin between its walls.
+        """
+        for r in self.receptacles:
+            if r.contains(x, y, margin) and (
+                z is None or r.center[2] - below <= z <= max(r.center[2] + above, r.depth)
+            ):
+                return r
+        return None
+
+    def resting_place(self, position: Vec3) -> Receptacle | None:
+        """The receptacle on or in which an object with its centre at `position` [map] was seen to rest."""
+        return self.surface_at(*position, margin=SIGHTING_ERROR, above=TALLEST)
+
+    @property
+    def footprints(self) -> list[Rectangle]:
+        """Where receptacles and furniture stand on the floor plan."""
+        return [r.outline for r in self.receptacles] + [f.outline for f in self.furniture]
+
+    def room_at(self, x: float, y: float) -> Room | None:
+        """The room that contains the point (x, y)."""
+        inside = (r for r in self.rooms if r.low[0] <= x <= r.high[0] and r.low[1] <= y <= r.high[1])
+        return next(inside, None)
+
+    def fault(self) -> str:
+        """What makes the plan impossible, in words; "" when nothing does."""
+        for label, names in (
+            ("receptacle", [r.name for r in self.receptacles]), ("place", [p.name for p in self.places]),
+            ("room", [r.name for r in self.rooms]),
+        ):  # fmt: skip
+            if twice := doubled(names):
+                return f"{label} {twice!r} is defined twice"
+        if not (self.low[0] < self.high[0] and self.low[1] < self.high[1]):
+            return f"low {self.low} is not below and left of high {self.high}"
+        if self.delivery and self.receptacle(self.delivery) is None:
+            return f"delivery {self.delivery!r} is no receptacle"
+        return ""
+
+
+def doubled(names: Iterable[str]) -> str:
+    """The first name that comes twice, "" when none does."""
+    seen: set[str] = set()
+    for name in names:
+        if name in seen:
+            return name
+        seen.add(name)
+    return ""
+
+
+def kind_fault(thing: Thing) -> str:
+    """What is wrong with kind or size of an object, in words; "" when nothing is."""
+    if thing.kind not in KINDS:
+        return f"{thing.name!r} is a {thing.kind!r}; known kinds: {', '.join(KINDS)}"
+    if min(thing.size) <= 0 or not all(map(math.isfinite, thing.size)):
+        return f"{thing.name!r} needs a positive size"
+    return ""

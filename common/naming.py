@@ -1,11 +1,11 @@
-"""Names people use for objects and places, matched to the scene's."""
+"""Names people use for objects and places, matched to the household's."""
 
 import difflib
 import re
 from collections.abc import Iterable
 
+from common.household import Household
 from common.messages import WorldObject
-from common.scene import Scene
 
 _FILLER = {"the", "a", "an", "my", "that", "this", "some", "please", "to", "of"}
 
@@ -16,14 +16,16 @@ def normalise(text: str) -> str:
     return " ".join(w for w in words if w not in _FILLER)
 
 
-def match_object(query: str, objects: Iterable[WorldObject], scene: Scene) -> list[WorldObject]:
+def match_object(query: str, objects: Iterable[WorldObject], household: Household) -> list[WorldObject]:
     """The known objects that a phrase can mean: by taught name, by name or alias, else by colour and kind, else by
     kind."""
     wanted = normalise(query)
     known = list(objects)
     if taught := [o for o in known if wanted in o.names]:
         return taught
-    spec = next((o for o in scene.objects if wanted == normalise(o.name) or wanted in map(normalise, o.aliases)), None)
+    spec = next(
+        (o for o in household.things if wanted == normalise(o.name) or wanted in map(normalise, o.aliases)), None
+    )
     names = {wanted, normalise(spec.name)} if spec else {wanted}
     exact = [o for o in known if normalise(o.label) in names]
     if exact:

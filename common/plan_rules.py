@@ -5,12 +5,12 @@ from collections.abc import Sequence
 import msgspec
 
 from common.grip import OPENING
+from common.household import Household
 from common.kinds import kind_of
 from common.messages import KnownWorld, PlanStep
-from common.scene import Scene
 
 MAX_STEPS = 60
-"""Chosen: 15 objects of four steps each, more than any scene has."""
+"""Chosen: 15 objects of four steps each, more than any household has."""
 
 
 class Objection(msgspec.Struct, frozen=True):
@@ -23,23 +23,23 @@ class Objection(msgspec.Struct, frozen=True):
         return f"step {self.step}: {self.reason}" if self.step else self.reason
 
 
-def known_world(scene: Scene, seen: Sequence[str], held: str) -> KnownWorld:
+def known_world(household: Household, seen: Sequence[str], held: str) -> KnownWorld:
     """What the planner is told and plans are checked against."""
-    places = [scene.home.name, *(p.name for p in scene.places), *(r.name for r in scene.rooms)]
+    places = [household.home.name, *(p.name for p in household.places), *(r.name for r in household.rooms)]
     return KnownWorld(
         objects=list(dict.fromkeys(seen)),
         places=list(dict.fromkeys(places)),
-        receptacles=[r.name for r in scene.receptacles],
+        receptacles=[r.name for r in household.receptacles],
         held=held,
     )
 
 
 def objection(
-    steps: Sequence[PlanStep], world: KnownWorld, scene: Scene, max_steps: int = MAX_STEPS
+    steps: Sequence[PlanStep], world: KnownWorld, household: Household, max_steps: int = MAX_STEPS
 ) -> Objection | None:
     """The first objection to a plan; None when it can be carried out.
 
-    Names are the scene's, its aliases, kinds of objects, or labels in `world`.
+    Names are the household's, its aliases, kinds of objects, or labels in `world`.
     """
     if not steps:
         return Objection(0, "the plan has no steps")
@@ -47,13 +47,13 @@ def objection(
         return Objection(0, f"the plan has {len(steps)} steps")
     held, found = world.held, set[str]()
     for number, step in enumerate(steps, 1):
-        reason = _objection(step, held, found, world, scene)
+        reason = _objection(step, held, found, world, household)
         if reason:
             return Objection(number, reason)
         if step.hand_alone:
             continue
         if step.action == "find":
-            found.add(_name(step.object, scene))
+            found.add(_name(step.object, household))
         elif step.action == "grasp":
             held = step.object
         elif step.action in ("place", "release"):
@@ -61,59 +61,65 @@ def objection(
     return None
 
 
-def _objection(step: PlanStep, held: str, found: set[str], world: KnownWorld, scene: Scene) -> str:
+def _objection(step: PlanStep, held: str, found: set[str], world: KnownWorld, household: Household) -> str:
     match step.action:
         case "grasp" | "release" if step.hand_alone:
             return f"the hand holds the {held}, which has to be put down" if held else ""
         case "find":
-            return _not_a_thing(step.object, world, scene)
+            return _not_a_thing(step.object, world, household)
         case "grasp":
-            if not_a_thing := _not_a_thing(step.object, world, scene):
+            if not_a_thing := _not_a_thing(step.object, world, household):
                 return not_a_thing
             if held:
                 return f"the hand already holds the {held}"
-            if _name(step.object, scene) not in found:
+            if _name(step.object, household) not in found:
                 return f"the {step.object} must be found before it can be grasped"
-            return _too_big(step.object, scene)
+            return _too_big(step.object, household)
         case "place":
             if not held:
                 return "there is nothing in the hand to place"
-            if scene.receptacle(step.target) is None:
+            if household.receptacle(step.target) is None:
                 return f"there is no {step.target or 'place'} to put things on"
-            return _not_a_thing(step.near, world, scene) if step.near else ""
+            return _not_a_thing(step.near, world, household) if step.near else ""
         case "release":
             return "" if held else "there is nothing in the hand to release"
         case "navigate":
             where = step.target or step.object
-            return "" if is_destination(where, scene) or not _not_a_thing(where, world, scene) else f"I know no {where}"
+            return (
+                ""
+                if is_destination(where, household) or not _not_a_thing(where, world, household)
+                else f"I know no {where}"
+            )
         case "say":
             return "" if step.text.strip() else "there is nothing to say"
         case _:
             return ""
 
 
-def is_destination(name: str, scene: Scene) -> bool:
+def is_destination(name: str, household: Household) -> bool:
     """A place, room or receptacle, by name or alias."""
-    places = any(name == p.name or name in p.aliases for p in (scene.home, *scene.places))
-    return places or any(name == r.name or name in r.aliases for r in scene.rooms) or bool(scene.receptacle(name))
+    places = any(name == p.name or name in p.aliases for p in (household.home, *household.places))
+    return (
+        places or any(name == r.name or name in r.aliases for r in household.rooms) or bool(household.receptacle(name))
+    )
 
 
-def _name(thing: str, scene: Scene) -> str:
-    spec = scene.object(thing)
+def _name(thing: str, household: Household) -> str:
+    spec = household.thing(thing)
     return spec.name if spec else thing
 
 
-def _not_a_thing(thing: str, world: KnownWorld, scene: Scene) -> str:
+def _not_a_thing(thing: str, world: KnownWorld, household: Household) -> str:
     if not thing:
         return "no object is named"
-    if scene.object(thing) or thing in world.objects or thing in {o.kind for o in scene.objects}:
+    if household.thing(thing) or thing in world.objects or thing in {o.kind for o in household.things}:
         return ""
     return f"I know no {thing} that I could pick up"
 
 
-def _too_big(thing: str, scene: Scene) -> str:
+def _too_big(thing: str, household: Household) -> str:
     """Bowls are gripped at the rim; everything else between the pads."""
-    spec = scene.object(thing)
+    spec = household.thing(thing)
     if spec is None or kind_of(spec.kind).by_the_rim or min(spec.size) <= OPENING:
         return ""
     return f"the {thing} does not fit into the gripper"

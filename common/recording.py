@@ -126,7 +126,7 @@ class Recorder:
         self._writer.add_metadata(name, facts)
 
     def attach(self, name: str, data: bytes, wall: float) -> None:
-        """A whole file, for example the scene."""
+        """A whole file, for example the household."""
         self._writer.flush()
         self._writer.add_attachment(round(wall * NANO), max(0, round(self.last * NANO)), name, "application/toml", data)
 

@@ -8,6 +8,7 @@ import msgspec
 
 from common import config
 from common.bus.session import BusError, NoRouter, default_connect, open_session
+from common.household import load_household
 from common.process import StopSignal, die_with_parent
 from common.scene import SceneError, load_scene
 from common.service_process import Process, ServiceClass
@@ -29,7 +30,8 @@ def main(kind: ServiceClass) -> None:
         changes = config.overrides(environ, args.set)
         directory = config.config_dir(environ)
         shared = config.load("runtime", config.RuntimeConfig, directory, changes)
-        scene = load_scene(shared.scene)
+        household = load_household(shared.household_file, directory)
+        world = load_scene(shared.world_file) if getattr(kind, "KNOWS_WORLD", False) else None
         parameters = config.load(kind.NAME, kind.CONFIG, directory, changes)
         # A service for people keeps their time: it goes on while the simulation pauses, and never holds it up.
         clock_name = getattr(kind, "CLOCK", "") or environ.get("TIDYBOT_CLOCK", "sim")
@@ -40,7 +42,7 @@ def main(kind: ServiceClass) -> None:
         namespace = environ.get("TIDYBOT_NAMESPACE", "")
         with open_session(connect, namespace, wait=stop.wait, name=kind.NAME) as opened:
             state_dir = config.state_dir(environ, connect, namespace)
-            _run(Process(kind, parameters, shared, scene, opened, clock, stop, state_dir), clock)
+            _run(Process(kind, parameters, shared, household, opened, clock, stop, state_dir, world), clock)
     except NoRouter:
         sys.exit(0)
     except (config.ConfigError, SceneError, BusError, StartError) as error:

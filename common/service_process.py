@@ -15,6 +15,7 @@ from common import messages as m
 from common.bus import codec
 from common.bus.base import health_of
 from common.bus.zenoh_io import ZenohIo
+from common.household import Household
 from common.process import SILENCE, StopSignal, limit_silence, rss_mb
 from common.scene import Scene
 from common.time.clock import Clock, Pacer, SimClock, monotonic
@@ -32,7 +33,7 @@ STALLED = 1.0
 # A class with NAME, HZ, CONFIG, READS, WRITES, a constructor (config, io) and `step(now)`, which takes its input,
 # decides, publishes and never blocks; `now` is robot time [s]. With `stalled(seconds)` it is also told, some ten times
 # a second, for how long robot time has stood still [s of wall time]. The simulation also has `paused`, `start_time`
-# and `pace()`.
+# and `pace()`. With `KNOWS_WORLD` it is given the world as it really is: the simulation, and judges.
 ServiceClass = type[Any]
 
 
@@ -44,11 +45,12 @@ class Process:
         kind: ServiceClass,
         parameters: Any,
         shared: config.RuntimeConfig,
-        scene: Scene,
+        household: Household,
         opened: zenoh.Session,
         clock: Clock,
         stop: StopSignal,
         state_dir: Path,
+        world: Scene | None = None,
     ) -> None:
         self._kind, self._session, self._clock, self._stop = kind, opened, clock, stop
         self.io = ZenohIo(
@@ -56,7 +58,8 @@ class Process:
             kind.NAME,
             kind.READS,
             kind.WRITES,
-            scene=scene,
+            household=household,
+            world=world,
             seed=shared.seed,
             lockstep=shared.lockstep and isinstance(clock, SimClock),
             clock=clock,

@@ -1,4 +1,4 @@
-"""Viewpoint planner: where the base stands so that the head camera sees the surfaces of a scene. Pure.
+"""Viewpoint planner: where the base stands so that the head camera sees the surfaces of a floor plan. Pure.
 
 The surfaces are sample points, a viewpoint is a base pose (x, y, theta) [map] and the points that it shows. Whoever
 searches keeps what was looked at and asks `Viewpoints.best` for the next pose.
@@ -13,9 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.approach import BIN_RIM
+from common.floor_plan import FloorPlan, Receptacle
 from common.geometry import Array, Pose2, Rectangle
 from common.messages import CameraMount, RobotDescription
-from common.scene import Receptacle, Scene
 
 Mask = NDArray[np.bool_]
 NOMINAL = CameraMount(x=-0.12, z=1.30, pitch=0.62, fovy=math.radians(62))
@@ -48,25 +48,25 @@ HEADINGS = 12
 """Directions that are compared when the robot turns on the spot [count]: 30 degrees, half of what a picture shows."""
 
 
-def viewpoints_of(scene: Scene, robot: RobotDescription | None) -> "Viewpoints":
-    """The viewpoints of a scene for a robot's head camera; they take a while to work out and are made once."""
+def viewpoints_of(floor_plan: FloorPlan, robot: RobotDescription | None) -> "Viewpoints":
+    """The viewpoints of a floor plan for a robot's head camera; they take a while to work out and are made once."""
     camera = robot.head_camera if robot is not None else None
-    return _made(scene, msgspec.structs.astuple(camera if camera is not None else NOMINAL))
+    return _made(floor_plan, msgspec.structs.astuple(camera if camera is not None else NOMINAL))
 
 
 @lru_cache(maxsize=4)
-def _made(scene: Scene, camera: tuple[float, ...]) -> "Viewpoints":
-    return Viewpoints(scene, CameraMount(**dict(zip(CameraMount.__struct_fields__, camera, strict=True))))
+def _made(floor_plan: FloorPlan, camera: tuple[float, ...]) -> "Viewpoints":
+    return Viewpoints(floor_plan, CameraMount(**dict(zip(CameraMount.__struct_fields__, camera, strict=True))))
 
 
 class Viewpoints:
     """`points` (p, 3) [m] on the surfaces, `poses` (v) to look from, `shows` (v, p): which points each pose shows."""
 
-    def __init__(self, scene: Scene, camera: CameraMount) -> None:
+    def __init__(self, floor_plan: FloorPlan, camera: CameraMount) -> None:
         self._camera = camera
-        self._surfaces = [r for r in scene.receptacles if r.kind != "bin"]
+        self._surfaces = [r for r in floor_plan.receptacles if r.kind != "bin"]
         self.points: Array = np.concatenate([_points_on(r) for r in self._surfaces] or [np.empty((0, 3))])
-        self._screens = _screens(scene, camera.z)
+        self._screens = _screens(floor_plan, camera.z)
         self._across = math.tan(USED * math.atan(math.tan(camera.fovy / 2) * ASPECT))
         self._upright = math.tan(USED * camera.fovy / 2)
 
@@ -160,10 +160,10 @@ def _poses_before(r: Receptacle) -> list[Pose2]:
     return found
 
 
-def _screens(scene: Scene, height: float) -> list[Rectangle]:
+def _screens(floor_plan: FloorPlan, height: float) -> list[Rectangle]:
     """What a camera at `height` [m] does not look over: walls, and furniture nearly as high."""
-    tall = [box.outline for box in scene.furniture if box.center[2] + box.size[2] / 2 > height - SEE_OVER]
-    return [wall.footprint for wall in scene.walls] + tall
+    tall = [box.outline for box in floor_plan.furniture if box.center[2] + box.size[2] / 2 > height - SEE_OVER]
+    return [wall.footprint for wall in floor_plan.walls] + tall
 
 
 def _crosses(eye: Array, points: Array, rectangle: Rectangle) -> Mask:

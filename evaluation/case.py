@@ -4,6 +4,7 @@ from typing import Literal
 
 import msgspec
 
+from common.household import Household
 from common.scene import Scene
 from evaluation.fault_reports import FaultReport
 from evaluation.faults import Rule
@@ -68,7 +69,8 @@ class Case(msgspec.Struct, kw_only=True):
     """`lines` are what the person says, `thing` what they really want, `expect` what physics should show.
 
     `shown`: all that is wanted is delivered and all `effects` are seen. `wants` and `effects` are as things should be
-    at the end. Without a `scene` it is the shipped flat. `honest`: a spoken, published failure counts as well as a
+    at the end. Without a `scene` (the world) it is the shipped flat; without a `household` the robot is
+    told all of it. `honest`: a spoken, published failure counts as well as a
     delivery.
     `replaced`: classes that stand in for services, see `Stack`. `wake`: a command that opens a dialogue starts with
     the wake word. `silent`: the person answers no question.
@@ -96,6 +98,7 @@ class Case(msgspec.Struct, kw_only=True):
     settings: tuple[str, ...] = ()
     replaced: tuple[str, ...] = ()
     scene: Scene | None = None
+    household: Household | None = None
     limit: float = 600.0
 
     @property

@@ -34,6 +34,7 @@ class Examiner:
     NAME = "examiner"
     HZ = 20
     CONFIG = ExaminerConfig
+    KNOWS_WORLD = True
     READS = (
         topics.SIM_MODEL, topics.SIM_STATE, topics.SIM_STATUS, topics.SPEECH_STATUS, topics.BRAIN_STATE,
         topics.SYSTEM_STATUS, topics.SIM_CONTACTS,
@@ -45,8 +46,8 @@ class Examiner:
         self._case, self._io = self.case, io
         manner: Manner = "reject" if self._case.name == "rejection" else "correct"
         manner = "silent" if self._case.silent else manner
-        self._user = SimulatedUser(self._case.command, self._case.thing, io.scene, manner)
-        self._observer = Observer(io.scene)
+        self._user = SimulatedUser(self._case.command, self._case.thing, io.world, manner)
+        self._observer = Observer(io.world)
         self._begun = False
         self._lines = deque(self._case.lines)
         self._due: deque[tuple[float, str]] = deque()
@@ -95,7 +96,7 @@ class Examiner:
         """The shortest way [m] of a base that makes all deliveries; 0 where there is none."""
         wants = self._case.wants
         deliveries = [(sample.things[w.thing].position[:2], sample.things[w.thing].on, w.goals[0]) for w in wants]
-        found = FloorPlan(self._io.scene).mission(sample.base, deliveries)
+        found = FloorPlan(self._io.world).mission(sample.base, deliveries)
         return round(found, 3) if np.isfinite(found) else 0.0
 
     # --- the robot's words and states

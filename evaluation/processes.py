@@ -22,6 +22,7 @@ from cli.up import bring_up
 from common import config, topics
 from common.bus import delivery
 from common.bus.session import BusError, open_session
+from common.household import load_words, told
 from common.process import StopSignal
 from common.scene import load_scene
 from common.service_process import Process
@@ -87,12 +88,15 @@ def run(case: Case, progress: Progress = lambda t, state: None) -> Result:
 
 def _run(case: Case, directory: Path, supervision: Supervision, progress: Progress, began: float) -> Result:
     plan = _plan(case, directory)
-    scene = case.scene or load_scene("apartment")
+    world = case.scene or load_scene("apartment")
+    household = case.household or told(world, load_words(config.config_dir()))
     bring_up(supervision, plan, lambda text: None)
     stop, clock = Ended(progress), SimClock()
     shared = config.RuntimeConfig(seed=case.seed, lockstep=True, log_level="error")
     with open_session(plan.connect, plan.namespace) as session:
-        process = Process(examiner_of(case), ExaminerConfig(), shared, scene, session, clock, stop, directory)
+        process = Process(
+            examiner_of(case), ExaminerConfig(), shared, household, session, clock, stop, directory, world
+        )
         examiner: Examiner = process.service
         injected = FaultReportFile(directory / FAULT_REPORTS)
         injector = ProcessFaultInjector(supervision, case.timed_faults, directory, injected.report)
@@ -130,12 +134,13 @@ def _plan(case: Case, directory: Path) -> Plan:
     """`tidybot up` for the case: the services with rules behind their doors, the examiner awaited as well."""
     file = directory / "case.json"
     file.write_bytes(msgspec.json.encode(case))
-    scene = ""
-    if case.scene is not None:
-        scene = str(directory / "scene.toml")
-        Path(scene).write_text(to_toml(case.scene), encoding="utf-8")
+    files = {"scene": case.scene, "household": case.household}
+    given = {name: str(directory / f"{name}.toml") if it is not None else "" for name, it in files.items()}
+    for name, it in files.items():
+        if it is not None:
+            Path(given[name]).write_text(to_toml(it), encoding="utf-8")
     args = argparse.Namespace(
-        port=free_port(), namespace=f"eval-{uuid.uuid4().hex[:8]}", speed="max", only="", without="", scene=scene,
+        port=free_port(), namespace=f"eval-{uuid.uuid4().hex[:8]}", speed="max", only="", without="", **given,
         seed=case.seed, viewer=False, set=list(case.settings),
     )  # fmt: skip
     plan = Plan(args)

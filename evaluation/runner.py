@@ -84,8 +84,9 @@ def _run(case: Case, progress: Progress, began: float, state_dir: Path | None) -
     reports: list[FaultReport] = []
     try:
         stack = Stack(
-            case.scene or "apartment", case.seed, case.settings, swaps=_swaps(case, reports.append),
-            without=idle_services(case), state_dir=state_dir, replaced=case.replaced,
+            case.scene or "apartment", case.seed, case.settings, household=case.household,
+            swaps=_swaps(case, reports.append), without=idle_services(case), state_dir=state_dir,
+            replaced=case.replaced,
         )  # fmt: skip
     except Exception as error:
         return judge(case, Observed(crash=_words(error)), monotonic() - began)

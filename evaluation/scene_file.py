@@ -1,16 +1,16 @@
-"""A scene as the TOML that `load_scene` reads, for processes that get their scene from a file."""
+"""A world or household as TOML, for processes that get theirs from a file."""
 
 import json
 from typing import Any
 
 import msgspec
 
-from common.scene import Scene
+from common.floor_plan import FloorPlan
 
 
-def to_toml(scene: Scene) -> str:
+def to_toml(plan: FloorPlan) -> str:
     """The file's text; fields at their defaults are left out."""
-    fields: dict[str, Any] = msgspec.to_builtins(scene)
+    fields: dict[str, Any] = msgspec.to_builtins(plan)
     lists = {k: v for k, v in fields.items() if isinstance(v, list) and v and isinstance(v[0], dict)}
     rows = [f"{k} = {_value(v)}" for k, v in fields.items() if k not in lists]
     rows += [f"{k} = [\n{''.join(f'  {_value(row)},{chr(10)}' for row in v)}]" for k, v in lists.items()]
@@ -19,7 +19,7 @@ def to_toml(scene: Scene) -> str:
 
 def _value(value: Any) -> str:
     if isinstance(value, dict):
-        return "{ " + ", ".join(f"{k} = {_value(v)}" for k, v in value.items()) + " }"
+        return "{ " + ", ".join(f"{json.dumps(k)} = {_value(v)}" for k, v in value.items()) + " }"
     if isinstance(value, (list, tuple)):
         return "[" + ", ".join(map(_value, value)) + "]"
     return json.dumps(value)

@@ -13,6 +13,7 @@ from cli.services import SERVICES
 from common import config, topics
 from common import messages as m
 from common.bus.memory import MemoryIo
+from common.household import Household, load_words, told
 from common.rendering.renderer import choose
 from common.scene import Scene, load_scene
 from common.time.clock import ManualClock
@@ -51,7 +52,8 @@ def paced_services() -> tuple[str, ...]:
 class Stack:
     """A simulation and the services around it. `advance` makes time pass; nothing else does.
 
-    `replaced` are classes that stand in for services, as `package.module:Class`.
+    `scene` is the world; without a `household` the robot is told all of it. `replaced` are classes that stand in for
+    services, as `package.module:Class`.
 
     `kill`, `hang` and `start` do to a service object what signals and the supervisor do to its process; `restart_sim`,
     `cut`, `fill_disk` and `jump` are the other things that can happen. What services keep on disk goes to `state_dir`,
@@ -64,6 +66,7 @@ class Stack:
         seed: int = 0,
         settings: tuple[str, ...] = (),
         *,
+        household: Household | None = None,
         without: tuple[str, ...] = (),
         replaced: tuple[str, ...] = (),
         swaps: Mapping[str, Swap] | None = None,
@@ -71,6 +74,7 @@ class Stack:
         log_level: str = "error",
     ) -> None:
         self.scene = load_scene(scene) if isinstance(scene, str) else scene
+        self.household = household or told(self.scene, load_words(config.config_dir()))
         self.seed, self._log_level, self._state_dir = seed, log_level, state_dir
         kept = ("sim.run=stack", "brain.run=stack") if state_dir else ()
         # Many a run never hears or says anything.
@@ -95,8 +99,8 @@ class Stack:
         kind = self._swaps.get(kind.NAME, lambda same: same)(kind)
         parameters = config.load(kind.NAME, kind.CONFIG, config.config_dir(), self._changes)
         io = MemoryIo(
-            self.bus, kind.NAME, kind.READS, kind.WRITES, scene=self.scene, seed=self.seed, clock=self._clock,
-            log_level=self._log_level,
+            self.bus, kind.NAME, kind.READS, kind.WRITES, household=self.household, seed=self.seed, clock=self._clock,
+            world=self.scene if getattr(kind, "KNOWS_WORLD", False) else None, log_level=self._log_level,
         )  # fmt: skip
         if kind.NAME == "sim":
             io.out_stamp = -1

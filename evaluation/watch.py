@@ -19,6 +19,7 @@ class Watch:
     NAME = "watch"
     HZ = 20
     CONFIG = WatchConfig
+    KNOWS_WORLD = True
     READS = (
         topics.SIM_MODEL, topics.SIM_STATE, topics.SIM_CONTACTS, topics.SPEECH_STATUS, topics.BRAIN_STATE,
         topics.SYSTEM_STATUS,
@@ -28,11 +29,11 @@ class Watch:
     def __init__(self, config: WatchConfig, io: Io) -> None:
         self._io = io
         self._saying = ""
-        self.observer = Observer(io.scene)
+        self.observer = Observer(io.world)
 
     def renew(self) -> Observer:
         """Judge from here on alone."""
-        self.observer = Observer(self._io.scene)
+        self.observer = Observer(self._io.world)
         return self.observer
 
     def step(self, now: float) -> None:

@@ -7,6 +7,7 @@ from typing import Any, TypeVar
 from common import messages as m
 from common.bus import codec
 from common.bus.memory import MemoryBus, MemoryIo
+from common.household import Household
 from common.scene import Scene
 from common.time.clock import ManualClock
 from common.time.lockstep import DT, period_of
@@ -28,8 +29,9 @@ class Node:
         self,
         kind: Any,
         config: Any,
-        scene: Scene,
+        household: Household,
         *,
+        world: Scene | None = None,
         lockstep: bool = True,
         bus: MemoryBus | None = None,
         tick: int = 0,
@@ -42,7 +44,15 @@ class Node:
         self._published = {topic.key: self.bus.tap(topic) for topic in kind.WRITES}
         self._decoded: dict[str, list[Any]] = {}
         self.io = MemoryIo(
-            self.bus, kind.NAME, kind.READS, kind.WRITES, scene=scene, seed=seed, clock=self.clock, lockstep=lockstep
+            self.bus,
+            kind.NAME,
+            kind.READS,
+            kind.WRITES,
+            household=household,
+            world=world,
+            seed=seed,
+            clock=self.clock,
+            lockstep=lockstep,
         )
         self.io.state_dir = state_dir
         self.service = kind(config, self.io)

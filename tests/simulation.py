@@ -7,6 +7,7 @@ from typing import Any
 import msgspec
 
 from common import topics
+from common.household import told
 from common.scene import Scene, load_scene
 from common.time.lockstep import DT
 from services.sim.config import SimConfig
@@ -22,7 +23,7 @@ class Simulation(Node):
     ) -> None:
         loaded = load_scene(scene) if isinstance(scene, str) else scene
         config = msgspec.convert(parameters, SimConfig)
-        super().__init__(SimService, config, loaded, seed=seed, state_dir=state_dir, tick=-1)
+        super().__init__(SimService, config, told(loaded), world=loaded, seed=seed, state_dir=state_dir, tick=-1)
         self.sim: SimService = self.service
         self.tick = round(self.sim.start_time / DT) - 1
 

@@ -18,6 +18,7 @@ from common import messages as m
 from common.bus import codec
 from common.bus.mailbox import Mailbox
 from common.bus.port import Handler
+from common.household import Household
 from common.logs import Logger
 from common.scene import Scene
 from common.time.clock import Clock, monotonic
@@ -60,14 +61,16 @@ class IoBase:
         reads: Iterable[Topic[Any]],
         writes: Iterable[Topic[Any]],
         *,
-        scene: Scene,
+        household: Household,
+        world: Scene | None = None,
         seed: int,
         lockstep: bool,
         clock: Clock,
         log_level: str = "info",
         stderr: bool = True,
     ) -> None:
-        self.name, self.scene, self.seed, self.lockstep, self.clock = name, scene, seed, lockstep, clock
+        self.name, self.household, self.seed, self.lockstep, self.clock = name, household, seed, lockstep, clock
+        self._world = world
         self.epoch = uuid.uuid4().hex[:12]
         digest = hashlib.sha256(f"{seed}/{name}".encode()).digest()
         self.rng = np.random.default_rng(int.from_bytes(digest[:8], "little"))
@@ -82,6 +85,21 @@ class IoBase:
         self._worker: ThreadPoolExecutor | None = None
         self._ids = 0
         self._warned: dict[str, float] = {}
+
+    @property
+    def world(self) -> Scene:
+        """The world as it really is, for the simulation and its judges alone.
+
+        Raises:
+            LookupError: this process is neither.
+        """
+        if self._world is None:
+            raise LookupError(f"{self.name} is not told what the world is made of; it has to look")
+        return self._world
+
+    @world.setter
+    def world(self, changed: Scene) -> None:
+        self._world = changed
 
     # --- reading
     def begin(self, tick: int | None, now: float) -> None:

@@ -8,6 +8,7 @@ from common.bus import codec
 from common.bus.base import IoBase, WorkerJob
 from common.bus.mailbox import UNSTAMPED, Mailbox
 from common.bus.port import Handler
+from common.household import Household
 from common.scene import Scene
 from common.time.clock import ManualClock
 from common.topics import Topic
@@ -73,7 +74,8 @@ class MemoryIo(IoBase):
         reads: Iterable[Topic[Any]],
         writes: Iterable[Topic[Any]],
         *,
-        scene: Scene,
+        household: Household,
+        world: Scene | None = None,
         seed: int = 0,
         clock: ManualClock | None = None,
         log_level: str = "error",
@@ -83,7 +85,8 @@ class MemoryIo(IoBase):
             name,
             reads,
             writes,
-            scene=scene,
+            household=household,
+            world=world,
             seed=seed,
             lockstep=lockstep,
             clock=clock or ManualClock(),

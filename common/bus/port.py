@@ -7,6 +7,7 @@ from typing import Any, Protocol, TypeVar
 import numpy as np
 
 from common import messages as m
+from common.household import Household
 from common.scene import Scene
 from common.topics import Topic
 
@@ -36,13 +37,16 @@ class Job(Protocol[R_co]):
 class Io(Protocol):
     """A service's bus, worker, randomness and logger. `fresh`: something arrived for this step.
 
-    `state_dir`: where a process keeps files that outlive it; None within an evaluation.
+    `household`: what the robot is told of its home. `world`: what is really there; with a `LookupError` for all but the
+    simulation and its judges (`KNOWS_WORLD`). `state_dir`: where a process keeps files that outlive it; None within an
+    evaluation.
     """
 
     name: str
     epoch: str
     seed: int
-    scene: Scene
+    household: Household
+    world: Scene
     rng: np.random.Generator
     log: Log
     lockstep: bool

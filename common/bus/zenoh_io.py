@@ -14,6 +14,7 @@ from common.bus import codec, delivery
 from common.bus.base import IoBase, WorkerJob
 from common.bus.mailbox import CAPACITY, UNSTAMPED, Mailbox
 from common.bus.port import Handler
+from common.household import Household
 from common.scene import Scene
 from common.time.clock import Clock, unix_time
 from common.topics import Topic
@@ -31,7 +32,8 @@ class ZenohIo(IoBase):
         reads: Iterable[Topic[Any]],
         writes: Iterable[Topic[Any]],
         *,
-        scene: Scene,
+        household: Household,
+        world: Scene | None = None,
         seed: int,
         lockstep: bool,
         clock: Clock,
@@ -41,7 +43,15 @@ class ZenohIo(IoBase):
         self._session = opened
         self._log_publisher: Any = opened.declare_publisher(topics.LOG.of(name), encoding=codec.JSON)
         super().__init__(
-            name, reads, writes, scene=scene, seed=seed, lockstep=lockstep, clock=clock, log_level=log_level
+            name,
+            reads,
+            writes,
+            household=household,
+            world=world,
+            seed=seed,
+            lockstep=lockstep,
+            clock=clock,
+            log_level=log_level,
         )
         self._started = unix_time()
         self.out_tick: int | None = None

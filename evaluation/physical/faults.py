@@ -33,7 +33,7 @@ def with_physical_faults(kind: Any, faults: tuple[PhysicalFault, ...], report: R
 
         def __init__(self, config: Any, io: Any) -> None:
             for fault in faults:
-                io.scene = fault.world(io.scene)
+                io.world = fault.world(io.world)
             super().__init__(config, io)
             self._injectors = [INJECTORS[f.kind](f, self.physics) for f in faults]
             self._told_io = io

@@ -12,6 +12,7 @@ from pathlib import Path
 
 from cli.errors import CliError
 from common import config, topics
+from common.household import load_household
 from common.recording import Recording, RecordingError
 from common.scene import SceneError, load_scene
 from common.time.clock import monotonic
@@ -46,16 +47,17 @@ def prepared(args: argparse.Namespace, workspace: Path) -> Player:
     try:
         changes = config.overrides(recording.facts.get("settings", {}), args.set)
         shared = config.load("runtime", config.RuntimeConfig, directory, changes)
-        scene = load_scene(_scene(workspace) or run.get("scene") or shared.scene)
-        return Player(
-            kind, config.load(name, kind.CONFIG, directory, changes), recording, scene, _seed(run, shared.seed)
-        )
+        file = _file(workspace, "scene") or run.get("scene", "")
+        household = load_household(_file(workspace, "household") or file or shared.household_file, directory)
+        world = load_scene(file or shared.world_file) if getattr(kind, "KNOWS_WORLD", False) else None
+        parameters = config.load(name, kind.CONFIG, directory, changes)
+        return Player(kind, parameters, recording, household, _seed(run, shared.seed), world)
     except (config.ConfigError, SceneError) as error:
         raise CliError(str(error)) from None
 
 
-def _scene(workspace: Path) -> str:
-    files = sorted((workspace / "scene").glob("*.toml"))
+def _file(workspace: Path, folder: str) -> str:
+    files = sorted((workspace / folder).glob("*.toml"))
     return str(files[0]) if files else ""
 
 

@@ -12,6 +12,7 @@ from common import messages as m
 from common import topics
 from common.bus.mailbox import UNSTAMPED
 from common.bus.memory import MemoryBus, MemoryIo
+from common.household import Household
 from common.recording import Recording, Row
 from common.scene import Scene
 from common.time.clock import ManualClock
@@ -73,7 +74,15 @@ class ReplayIo(MemoryIo):
 class Player:
     """A service object and the recording it hears."""
 
-    def __init__(self, kind: Any, parameters: Any, recording: Recording, scene: Scene, seed: int) -> None:
+    def __init__(
+        self,
+        kind: Any,
+        parameters: Any,
+        recording: Recording,
+        household: Household,
+        seed: int,
+        world: Scene | None = None,
+    ) -> None:
         self.kind, self.recording = kind, recording
         self.lockstep = recording.facts.get("run", {}).get("lockstep") == "true"
         self.bus, self.clock = MemoryBus(), ManualClock()
@@ -84,8 +93,8 @@ class Player:
         first = self._ticks[0] if self._ticks else 0
         self.clock.advance(max(0, first - 1) * DT if first > 1 else 0.0)
         self.io = ReplayIo(
-            self.bus, kind.NAME, kind.READS, kind.WRITES, scene=scene, seed=seed, clock=self.clock, log_level="error",
-            ids=list(self._ids()), seeded=self.lockstep, peers=_peers(recording),
+            self.bus, kind.NAME, kind.READS, kind.WRITES, household=household, world=world, seed=seed, clock=self.clock,
+            log_level="error", ids=list(self._ids()), seeded=self.lockstep, peers=_peers(recording),
         )  # fmt: skip
         self.io.first = {key: span.first for key, span in recording.spans.items()}
         if first > 2 * period_of(kind.HZ):  # the recording starts in the middle of a run

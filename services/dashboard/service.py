@@ -52,7 +52,7 @@ class DashboardService:
         except PageError as error:
             raise StartError(str(error)) from None
         self.view, self._layers = View(self.web.viser), Layers(self.web.viser)
-        self._camera = FollowCamera(self.web.viser, io.scene)
+        self._camera = FollowCamera(self.web.viser, io.household)
         self.panels = Panels(self.web.viser, config.camera_width, config.camera_height)
         self._cameras = Cameras(config, io, self.panels)
         self._transcript, self._health, self._reasons = Transcript(), HealthRecords(), TreeReasons()

@@ -44,7 +44,7 @@ def grab(robot: Robot, goal: m.ManipulationGoal, wanted: str) -> Steps[str]:
     for _ in range(config.max_candidates):
         found = yield from sighted(robot, goal, wanted, since)
         robot.phase = "reach"
-        target = target_of(found, robot.base, robot.io.scene)
+        target = target_of(found, robot.base, robot.io.household)
         around = surroundings(robot, found.label)
         try:
             plan = yield from robot.work(
@@ -90,7 +90,7 @@ def grab(robot: Robot, goal: m.ManipulationGoal, wanted: str) -> Steps[str]:
 def surroundings(robot: Robot, without: str) -> list[list[Obstacle]]:
     """What the arm keeps clear of, with each of the margins, but for the object of that label."""
     objects = robot.source.objects()
-    return [obstacles(robot.io.scene, robot.base, objects, without, margin) for margin in MARGINS]
+    return [obstacles(robot.io.household, robot.base, objects, without, margin) for margin in MARGINS]
 
 
 def _execute_grab(
@@ -189,7 +189,7 @@ def _check_width(robot: Robot, plan: GrabPlan, widths: list[float]) -> None:
         Failure: BAD_HOLD.
     """
     held, width = plan.grasped, robot.grip.width
-    spec = robot.io.scene.object(held.label)
+    spec = robot.io.household.thing(held.label)
     if spec is None or kind_of(held.kind).by_the_rim or not held_badly(robot.grip, plan.grasp.width, spec.kind):
         return
     if any(abs(width - other) < WIDTH_ERROR for other in widths):

@@ -9,9 +9,9 @@ import math
 from msgspec import structs
 
 from common.geometry import Pose2, to_frame
+from common.household import Household
 from common.messages import ManipulationGoal, ObjectRef, WorldObject, WorldObjects
 from common.naming import match_object
-from common.scene import Scene
 
 FRONT = 1.2
 """How far [m] ahead of the base an unnamed object to grab may be. Chosen: the arm's reach and its place on the base."""
@@ -25,8 +25,8 @@ DEFAULT_SIZE = (0.06, 0.06, 0.08)
 class ObjectSource:
     """Knows the objects that were reported and where held or placed ones have gone since."""
 
-    def __init__(self, scene: Scene) -> None:
-        self._scene = scene
+    def __init__(self, household: Household) -> None:
+        self._household = household
         self._moved: dict[str, WorldObject] = {}
         self._reported: WorldObjects | None = None
 
@@ -70,7 +70,7 @@ class ObjectSource:
             if seen is not None and seen.seen_at >= since and _close(seen.position, goal.object.position, SHIFTED):
                 return seen
             return self._described(goal.object)
-        found = match_object(wanted, self.objects(), self._scene) if wanted else self.objects()
+        found = match_object(wanted, self.objects(), self._household) if wanted else self.objects()
         near = []
         for o in found:
             x, y = to_frame(base, (o.position[0], o.position[1]))

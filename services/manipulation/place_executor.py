@@ -30,16 +30,16 @@ def place(robot: Robot, where: str, beside: ObjectRef | None = None) -> Steps[st
 
     `beside`: the object, in frame map, next to which; where it was seen last counts more.
     """
-    planner, scene = planner_of(robot), robot.io.scene
+    planner, household = planner_of(robot), robot.io.household
     held = robot.grasped or _unknown(robot)
     robot.phase = "place"
     footprint = max(held.size[0], held.size[1])
     known = [o for o in robot.source.objects() if o.label != held.label]
-    names = [where] if where else [scene.delivery, *(r.name for r in scene.receptacles if not r.depth)]
+    names = [where] if where else [household.delivery, *(r.name for r in household.receptacles if not r.depth)]
     anchor = next((o for o in known if beside and o.label == beside.label), beside)
     choices: list[tuple[str, list[tuple[float, float]], float, float]] = []
     for name in dict.fromkeys(names):
-        r = scene.receptacle(name)
+        r = household.receptacle(name)
         if r is None:
             continue
         taken = [] if r.depth else known
@@ -68,10 +68,10 @@ def place(robot: Robot, where: str, beside: ObjectRef | None = None) -> Steps[st
 
 def _around(robot: Robot, held: GraspedObject, where: str) -> list[Obstacle]:
     """What the arm must not touch while it puts something down; what lies in a bin may be covered."""
-    r = robot.io.scene.receptacle(where)
+    r = robot.io.household.receptacle(where)
     inside = where if r is not None and r.depth else None
     objects = [o for o in robot.source.objects() if o.on != inside]
-    return obstacles(robot.io.scene, robot.base, objects, without=held.label, margin=0.0)
+    return obstacles(robot.io.household, robot.base, objects, without=held.label, margin=0.0)
 
 
 def _execute_place(robot: Robot, plan: PlacePlan, held: GraspedObject, name: str, surface: float) -> Steps[str]:

@@ -6,9 +6,9 @@ from itertools import product
 
 import numpy as np
 
+from common.floor_plan import FloorPlan, Receptacle
 from common.geometry import Pose2, Rectangle, compose, inverse, quat_matrix, quat_yaw, yaw_quat
 from common.messages import ObjectRef, WorldObject
-from common.scene import Receptacle, Scene
 from services.manipulation.arm_model import Array, Obstacle
 from services.manipulation.grasp import Target
 
@@ -35,11 +35,11 @@ EASY = 0.54
 """Distance [m] in front of the arm that is reached most easily at the height of tables: the middle of its reach."""
 
 
-def target_of(found: WorldObject, base: Pose2, scene: Scene) -> Target:
+def target_of(found: WorldObject, base: Pose2, floor_plan: FloorPlan) -> Target:
     """An object in the base frame; its height is snapped to the surface that it is said to stand on."""
     x, y, yaw = compose(inverse(base), (found.position[0], found.position[1], quat_yaw(found.orientation)))
     z = found.position[2]
-    receptacle = scene.receptacle(found.on)
+    receptacle = floor_plan.receptacle(found.on)
     if receptacle is not None and not receptacle.depth:
         z = receptacle.center[2] + found.size[2] / 2
     return Target(
@@ -83,22 +83,22 @@ def _receptacle(r: Receptacle, base: Pose2) -> list[Obstacle]:
 
 
 def obstacles(
-    scene: Scene, base: Pose2, objects: Iterable[WorldObject], without: str = "", margin: float = MARGINS[0]
+    floor_plan: FloorPlan, base: Pose2, objects: Iterable[WorldObject], without: str = "", margin: float = MARGINS[0]
 ) -> list[Obstacle]:
     """Everything within reach, nearest first; the objects are solids of their family that grow by `margin` and, unless
     that is 0, by the spread of their measures; `without` names the one to leave out."""
     found: list[Obstacle] = []
-    for r in scene.receptacles:
+    for r in floor_plan.receptacles:
         found += _receptacle(r, base)
-    found += [_box(base, f.center, f.size, f.yaw) for f in scene.furniture]
-    for wall in scene.walls:
+    found += [_box(base, f.center, f.size, f.yaw) for f in floor_plan.furniture]
+    for wall in floor_plan.walls:
         x, y, length, width, yaw = wall.outline
         found.append(_box(base, (x, y, wall.height / 2), (length, width, wall.height), yaw))
     near = sorted((b for b in found if _near(b) < RANGE), key=_near)
     boxes = []
     for o in objects:
         if o.label != without and not o.held:
-            boxes.append(target_of(o, base, scene).grown(margin + min(o.spread, margin)))
+            boxes.append(target_of(o, base, floor_plan).grown(margin + min(o.spread, margin)))
     return near[:MOST_FURNITURE] + sorted((b for b in boxes if _near(b) < RANGE), key=_near)
 
 

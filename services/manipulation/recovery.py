@@ -54,7 +54,7 @@ def retract_grasped(robot: Robot, wanted: ObjectRef | None) -> Steps[str]:
     label = robot.grasped.label if robot.grasped else ""
     if planner is not None and not at_carry(planner, robot.joints):
         held = robot.grasped or in_hand(planner, robot.joints, robot.grip.width, wanted)
-        around = obstacles(robot.io.scene, robot.base, robot.source.objects(), without=held.label)
+        around = obstacles(robot.io.household, robot.base, robot.source.objects(), without=held.label)
         robot.phase = "retract"
         path = yield from robot.work(retreat, planner, held, robot.joints.copy(), around, config.lift_height)
         yield from robot.follow(path, config.joint_speed * 0.5)

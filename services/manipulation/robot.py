@@ -134,7 +134,7 @@ class Robot:
 
 def go_home(robot: Robot) -> Steps[str]:
     """The carry pose, by a path around what is known."""
-    around = obstacles(robot.io.scene, robot.base, robot.source.objects(), margin=0.0)
+    around = obstacles(robot.io.household, robot.base, robot.source.objects(), margin=0.0)
     path = yield from robot.work(planner_of(robot).to_home, robot.joints.copy(), around)
     yield from robot.follow(path, robot.config.joint_speed)
     return "arm at home"

@@ -33,7 +33,7 @@ class ManipulationService:
 
     def __init__(self, config: ManipulationConfig, io: Io) -> None:
         self._config, self._io = config, io
-        self._source = ObjectSource(io.scene)
+        self._source = ObjectSource(io.household)
         self._robot = Robot(config, io, self._source)
         self._store = GraspStore(io.state_dir, lambda why: io.log.warning("not kept what is in the hand", reason=why))
         self._loading: Job[Planner] | None = None
@@ -184,8 +184,8 @@ class ManipulationService:
         robot, beside = self._robot, self._goal.object
         if beside is not None and beside.frame != "map":
             raise Failure("UNKNOWN_PLACE", f"where the {beside.label} is must be told in frame map, not {beside.frame}")
-        if self._io.scene.receptacle(where) is None:
-            known = ", ".join(r.name for r in self._io.scene.receptacles)
+        if self._io.household.receptacle(where) is None:
+            known = ", ".join(r.name for r in self._io.household.receptacles)
             raise Failure("UNKNOWN_PLACE", f"no receptacle {where!r}; known: {known}")
         if not robot.grip.holds():
             if self._let_go():

@@ -46,7 +46,7 @@ def aimed(robot: Robot, plan: GrabPlan, goal: m.ManipulationGoal, found: WorldOb
         seen = closer if closer is not None and closer.label == found.label and closer.seen_at >= since else None
     if seen is None:
         return plan
-    was, new = (target_of(o, robot.base, robot.io.scene) for o in (found, seen))
+    was, new = (target_of(o, robot.base, robot.io.household) for o in (found, seen))
     shift = new.position[0] - was.position[0], new.position[1] - was.position[1]
     off, turn = math.hypot(*shift), turned(was, new) if kind_of(found.kind).shape == "box" else 0.0
     if off > config.aim_most or turn > config.aim_turn:

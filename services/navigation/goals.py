@@ -4,8 +4,9 @@ import math
 
 from common import messages as m
 from common.approach import poses_for
+from common.floor_plan import Receptacle
 from common.geometry import Pose2
-from common.scene import Receptacle, Scene
+from common.household import Household
 from services.navigation.config import NavigationConfig
 from services.navigation.ended import Ended
 from services.navigation.places import Places
@@ -23,8 +24,8 @@ LAST_RESORT = 100.0
 class Goals:
     """Every method raises `Ended` when the goal cannot be meant."""
 
-    def __init__(self, scene: Scene, places: Places, config: NavigationConfig) -> None:
-        self._scene, self._places, self._config = scene, places, config
+    def __init__(self, household: Household, places: Places, config: NavigationConfig) -> None:
+        self._household, self._places, self._config = household, places, config
 
     def home(self) -> Choices:
         return [(0.0, self._places.home)]
@@ -36,7 +37,7 @@ class Goals:
             raise Ended("failed", "UNKNOWN_PLACE", f"no place {name!r}; known: {self._places.similar(name)}")
         if not isinstance(place, Receptacle):
             return [(0.0, place)]
-        if place.name == self._scene.delivery:
+        if place.name == self._household.delivery:
             return self.home()
         return self._before((place.center[0], place.center[1]), place)
 
@@ -47,7 +48,7 @@ class Goals:
         """
         if goal.frame != "map":
             raise Ended("failed", "BAD_POSE", f"frame {goal.frame!r}: only map is known")
-        low, high = self._scene.low, self._scene.high
+        low, high = self._household.low, self._household.high
         if not all(map(math.isfinite, (goal.x, goal.y, goal.theta))):
             raise Ended("failed", "BAD_POSE", "the pose is not finite")
         if not (low[0] <= goal.x <= high[0] and low[1] <= goal.y <= high[1]):
@@ -64,7 +65,7 @@ class Goals:
         for o in objects:
             if o.label == ref.label and not o.held and math.dist((x, y), o.position[:2]) < SAME:
                 return self._before((o.position[0], o.position[1]), self._places.receptacle_of(o))
-        return self._before((x, y), self._scene.surface_at(x, y))
+        return self._before((x, y), self._household.surface_at(x, y))
 
     def seen(self, item: str, objects: list[m.WorldObject]) -> Choices:
         """Before each object that the words can mean; empty when none is known."""

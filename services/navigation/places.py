@@ -1,4 +1,4 @@
-"""Names to places: rooms, surfaces and poses of the scene, places and items of places.toml, objects that were seen."""
+"""Names to places: rooms, surfaces and poses of the household, of places.toml, and objects that were seen."""
 
 import tomllib
 from pathlib import Path
@@ -6,10 +6,11 @@ from pathlib import Path
 import msgspec
 
 from common.config import ConfigError
+from common.floor_plan import Receptacle
 from common.geometry import Pose2
+from common.household import Household
 from common.messages import WorldObject
 from common.naming import match_object, near_names, normalise
-from common.scene import Receptacle, Scene
 
 
 class Spot(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -43,23 +44,23 @@ def load_places(directory: Path) -> PlacesFile:
 class Places:
     """Looks names up; what it returns is a pose, a receptacle or an object to stand at."""
 
-    def __init__(self, scene: Scene, file: PlacesFile) -> None:
-        self._scene = scene
+    def __init__(self, household: Household, file: PlacesFile) -> None:
+        self._household = household
         self._items = {normalise(k): v for k, v in file.items.items()}
         self._poses: dict[str, Pose2] = {}
-        for place in (scene.home, *scene.places):
+        for place in (household.home, *household.places):
             for name in (place.name, *place.aliases):
                 self._poses[normalise(name)] = (place.x, place.y, place.theta)
         self._poses |= {normalise(k): (v.x, v.y, v.theta) for k, v in file.places.items()}
-        self._receptacles = {normalise(n): r for r in scene.receptacles for n in (r.name, *r.aliases)}
-        for room in scene.rooms:
+        self._receptacles = {normalise(n): r for r in household.receptacles for n in (r.name, *r.aliases)}
+        for room in household.rooms:
             middle = ((room.low[0] + room.high[0]) / 2, (room.low[1] + room.high[1]) / 2, 0.0)
             for name in (room.name, *room.aliases):
                 self._poses.setdefault(normalise(name), middle)
 
     @property
     def home(self) -> Pose2:
-        return self._scene.home.x, self._scene.home.y, self._scene.home.theta
+        return self._household.home.x, self._household.home.y, self._household.home.theta
 
     def place(self, name: str) -> Pose2 | Receptacle | None:
         """A named place."""
@@ -73,18 +74,18 @@ class Places:
 
     def matching(self, name: str, objects: list[WorldObject]) -> list[WorldObject]:
         """The known objects that the name can mean and that nobody holds."""
-        return [o for o in match_object(name, objects, self._scene) if not o.held]
+        return [o for o in match_object(name, objects, self._household) if not o.held]
 
     def spot(self, name: str) -> Pose2 | None:
         """The spot of places.toml for an item."""
         spot = self._items.get(normalise(name))
         if spot is None:
-            spec = self._scene.object(normalise(name))
+            spec = self._household.thing(normalise(name))
             spot = self._items.get(normalise(spec.name)) if spec else None
         return (spot.x, spot.y, spot.theta) if spot else None
 
     def receptacle_of(self, o: WorldObject) -> Receptacle | None:
         """What an object stands on: as reported, else the surface under it."""
         if o.on:
-            return self._scene.receptacle(o.on)
-        return self._scene.surface_at(o.position[0], o.position[1])
+            return self._household.receptacle(o.on)
+        return self._household.surface_at(o.position[0], o.position[1])

@@ -31,11 +31,11 @@ class NavigationService:
 
     def __init__(self, config: NavigationConfig, io: Io) -> None:
         self._config, self._io = config, io
-        self._goals = Goals(io.scene, Places(io.scene, load_places(config_dir())), config)
-        self._map = Costmap(io.scene, config.resolution, config.obstacle_memory)
+        self._goals = Goals(io.household, Places(io.household, load_places(config_dir())), config)
+        self._map = Costmap(io.household, config.resolution, config.obstacle_memory)
         self._planner = PathPlanner(self._map, config.footprint_radius + config.clearance, config.inflation)
         self._state = StateEstimator(config, io, self._map)
-        self._coverage = SearchCoverage(viewpoints_of(io.scene, None))
+        self._coverage = SearchCoverage(viewpoints_of(io.household, None))
         self._approaches = ApproachHistory()
         self._navigator: Navigator | None = None
         self._search: Search | None = None
@@ -124,7 +124,7 @@ class NavigationService:
         if self._io.peer(PERCEPTION) is None:
             self._go(choices or self._goals.spot(item))
             return
-        self._coverage.viewpoints = viewpoints_of(self._io.scene, self._io.latest(topics.ROBOT_DESCRIPTION))
+        self._coverage.viewpoints = viewpoints_of(self._io.household, self._io.latest(topics.ROBOT_DESCRIPTION))
         search = Search(item, self._coverage, self._config, self._now)
         if choices:
             self._found = search

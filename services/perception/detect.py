@@ -1,7 +1,7 @@
 """Objects in one RGB-D view: the seam for detectors, and the classical one. Pure.
 
 `ClassicalDetector` cuts the view into the objects that stand on surfaces, then asks which object of the household
-(`scene.objects`: kind, size, colour) explains the points and the colour best. What fits none is reported by its
+(`household.things`: kind, size, colour) explains the points and the colour best. What fits none is reported by its
 measured size and its nearest kind, with little confidence.
 """
 
@@ -12,9 +12,10 @@ from typing import Protocol
 
 import numpy as np
 
+from common.floor_plan import Thing, Vec3
 from common.geometry import Array
+from common.household import Household
 from common.kinds import KINDS, kind_of
-from common.scene import ObjectSpec, Scene, Vec3
 from services.perception import colour, segmentation, shapes, toppled
 from services.perception.segmentation import Segment
 from services.perception.view import Mask, View
@@ -64,7 +65,7 @@ class RestingPose:
     tilt: float = 0.0
 
 
-RestingPoses = Callable[[ObjectSpec], list[RestingPose]]
+RestingPoses = Callable[[Thing], list[RestingPose]]
 
 
 @dataclass(frozen=True)
@@ -72,15 +73,15 @@ class Hypothesis:
     """An object of the household in one resting pose that may explain a segment; `score` in standard deviations."""
 
     score: float
-    spec: ObjectSpec
+    spec: Thing
     rest: RestingPose
     fit: shapes.Fit
 
 
 class Detector(Protocol):
-    """What a detector is: made from the scene's vocabulary, then asked view by view."""
+    """What a detector is: made from the household's vocabulary, then asked view by view."""
 
-    def __init__(self, scene: Scene, max_range: float) -> None: ...
+    def __init__(self, household: Household, max_range: float) -> None: ...
 
     def detect(self, view: View, robot: Mask | None = None) -> list[Detection]:
         """Objects in a view. `robot` (h, w) marks the pixels that show the robot itself."""
@@ -90,12 +91,12 @@ class Detector(Protocol):
 class ClassicalDetector:
     """Segmentation above surfaces and model fitting."""
 
-    def __init__(self, scene: Scene, max_range: float) -> None:
-        self._scene, self._max_range = scene, max_range
+    def __init__(self, household: Household, max_range: float) -> None:
+        self._household, self._max_range = household, max_range
 
     def detect(self, view: View, robot: Mask | None = None) -> list[Detection]:
         found = []
-        for segment in segmentation.segments(view, self._scene, self._max_range, robot):
+        for segment in segmentation.segments(view, self._household, self._max_range, robot):
             detection = self._explain(view, segment)
             if detection is not None:
                 found.append(detection)
@@ -148,11 +149,11 @@ class ClassicalDetector:
         segment: Segment,
         rgb: Array,
         height: float,
-        resting_poses: Callable[[ObjectSpec], list[RestingPose]],
+        resting_poses: Callable[[Thing], list[RestingPose]],
     ) -> list[Hypothesis]:
         """What may explain the segment, the best first."""
         found = []
-        for spec in self._scene.objects:
+        for spec in self._household.things:
             # In standard deviations.
             off = colour.difference(rgb, spec.rgba) / COLOUR_SCALE
             for rest in resting_poses(spec) if off <= WORST else ():
@@ -193,7 +194,7 @@ class ClassicalDetector:
         )
 
 
-def _standing(spec: ObjectSpec) -> list[RestingPose]:
+def _standing(spec: Thing) -> list[RestingPose]:
     """An object as it stands, and what may lie on another face."""
     x, y, z = spec.size
     if "face" not in kind_of(spec.kind).rests:
@@ -203,14 +204,14 @@ def _standing(spec: ObjectSpec) -> list[RestingPose]:
     ]
 
 
-def _toppled(spec: ObjectSpec) -> list[RestingPose]:
+def _toppled(spec: Thing) -> list[RestingPose]:
     """A round object on its side, or upside down."""
     rests = kind_of(spec.kind).rests
     found = [RestingPose(toppled.extents(spec.size), LYING)] if "side" in rests else []
     return found + ([RestingPose(spec.size, math.pi)] if "upside down" in rests else [])
 
 
-def _too_tall(spec: ObjectSpec, rest: RestingPose, height: float) -> float:
+def _too_tall(spec: Thing, rest: RestingPose, height: float) -> float:
     """How far [m] a measured height is from a rest's."""
     low = high = rest.size[2]
     kind = kind_of(spec.kind)
@@ -219,7 +220,7 @@ def _too_tall(spec: ObjectSpec, rest: RestingPose, height: float) -> float:
     return max(low - height, height - high, 0.0)
 
 
-def _fit(spec: ObjectSpec, rest: RestingPose, view: View, segment: Segment) -> shapes.Fit:
+def _fit(spec: Thing, rest: RestingPose, view: View, segment: Segment) -> shapes.Fit:
     kind, floor, camera = kind_of(spec.kind), segment.surface.height, view.position
     if rest.tilt == math.pi:
         return toppled.fit_upside_down(kind, spec.size, segment.points, floor, camera)

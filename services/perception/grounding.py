@@ -5,9 +5,9 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from common.geometry import Pose2, to_frame
+from common.household import Household
 from common.messages import WorldObject
 from common.naming import match_object, normalise
-from common.scene import Scene
 
 _SIDE = re.compile(r"^(?:(?P<a>left|right|middle|nearest|closest|near|far|farthest|other) )?(?P<rest>.*?)"
                    r"(?: (?:on|at|in|from)? ?(?P<b>left|right|middle))?$")  # fmt: skip
@@ -29,7 +29,7 @@ class Grounding:
 def ground(
     query: str,
     objects: Sequence[WorldObject],
-    scene: Scene,
+    household: Household,
     base: Pose2,
     synonyms: Mapping[str, str],
     matching: Match | None = None,
@@ -38,11 +38,11 @@ def ground(
 
     `matching` finds the objects that a noun with its colours can mean, by default `match_object`.
     """
-    match_noun = matching or (lambda noun, known: match_object(noun, known, scene))
+    match_noun = matching or (lambda noun, known: match_object(noun, known, household))
     words = _plain(query, synonyms)
     if not words:
         return Grounding(None, "no object was named")
-    place, words = _take_place(words, scene)
+    place, words = _take_place(words, household)
     size = next((w for w in words.split() if w in _SIZE), "")
     words = " ".join(w for w in words.split() if w not in _SIZE)
     match = _SIDE.match(words)
@@ -51,7 +51,7 @@ def ground(
     thing = match["rest"] if side and match["rest"] else words
     found = [o for o in match_noun(thing, objects) if not o.held]
     if place:
-        found = [o for o in found if _is_at(o, place, scene)]
+        found = [o for o in found if _is_at(o, place, household)]
     where = f" on the {place}" if place else ""
     if not found:
         held = any(o.held for o in match_noun(thing, objects))
@@ -75,23 +75,23 @@ def _plain(query: str, synonyms: Mapping[str, str]) -> str:
     return words
 
 
-def _take_place(words: str, scene: Scene) -> tuple[str, str]:
+def _take_place(words: str, household: Household) -> tuple[str, str]:
     """The receptacle or room that a phrase ends with, and the phrase without it."""
     match = _PLACE.match(words)
     if match is None:
         return "", words
     wanted = match["place"]
-    names = [(r.name, r.aliases) for r in scene.receptacles] + [(r.name, r.aliases) for r in scene.rooms]
+    names = [(r.name, r.aliases) for r in household.receptacles] + [(r.name, r.aliases) for r in household.rooms]
     for name, aliases in names:
         if wanted in map(normalise, (name, *aliases)):
             return name, match["thing"]
     return "", words
 
 
-def _is_at(o: WorldObject, place: str, scene: Scene) -> bool:
+def _is_at(o: WorldObject, place: str, household: Household) -> bool:
     if o.on == place:
         return True
-    room = scene.room_at(o.position[0], o.position[1])
+    room = household.room_at(o.position[0], o.position[1])
     return room is not None and room.name == place
 
 

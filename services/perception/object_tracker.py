@@ -6,9 +6,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from common.floor_plan import Vec3
 from common.geometry import yaw_quat
+from common.household import Household
 from common.messages import WorldObject, WorldObjects
-from common.scene import Scene, Vec3
 from services.perception.detect import Detection
 from services.perception.view import View
 
@@ -81,8 +82,8 @@ class Track:
 class ObjectTracker:
     """What is where, as far as it was seen."""
 
-    def __init__(self, scene: Scene, gone_after: int, min_confidence: float) -> None:
-        self._scene, self._gone_after, self._min = scene, gone_after, min_confidence
+    def __init__(self, household: Household, gone_after: int, min_confidence: float) -> None:
+        self._household, self._gone_after, self._min = household, gone_after, min_confidence
         self._tracks: list[Track] = []
         self._count = 0
 
@@ -130,7 +131,7 @@ class ObjectTracker:
         # Where the hand let go; the next look says better.
         held.held, held.misses, held.weight, held.seen_at = False, 0, 0.0, now
         held.yaw_seen = False
-        surface = self._scene.surface_at(*hand)
+        surface = self._household.surface_at(*hand)
         held.on, height = (surface.name, surface.center[2]) if surface else ("", 0.0)
         held.position = (hand[0], hand[1], height + held.size[2] / 2)
 
@@ -144,7 +145,7 @@ class ObjectTracker:
         others: list[Track] = []
         for track in sure:
             label = track.name[0]
-            if self._scene.object(label) is None:
+            if self._household.thing(label) is None:
                 others.append(track)
                 continue
             rival = best.get(label)

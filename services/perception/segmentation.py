@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from common.scene import Scene
+from common.floor_plan import FloorPlan
 from services.perception.view import Mask, View, Window
 from services.perception.visible_plan import Cloud, Nearby, corners, inside
 
@@ -76,9 +76,9 @@ class Segment:
     ends: tuple[bool, bool]
 
 
-def segments(view: View, scene: Scene, max_range: float, robot: Mask | None = None) -> list[Segment]:
-    """The objects that stand on the surfaces of the scene. `robot` marks the pixels that show the robot itself."""
-    near = Nearby(scene, float(view.position[0]), float(view.position[1]), max_range)
+def segments(view: View, floor_plan: FloorPlan, max_range: float, robot: Mask | None = None) -> list[Segment]:
+    """The objects that stand on the surfaces of the floor plan. `robot` marks the pixels that show the robot itself."""
+    near = Nearby(floor_plan, float(view.position[0]), float(view.position[1]), max_range)
     own = robot if robot is not None else np.zeros(view.shape, bool)
     usable = (view.depth > 0.05) & (view.depth < max_range) & ~own
     found: list[Segment] = []

@@ -62,7 +62,7 @@ class PerceptionService:
 
     def __init__(self, config: PerceptionConfig, io: Io) -> None:
         self._config, self._io = config, io
-        self._detector = load_detector(config.detector)(io.scene, config.max_range)
+        self._detector = load_detector(config.detector)(io.household, config.max_range)
         self._world = ""
         self._naming = Naming(io, config.read, config.synonyms)
         self._reset()
@@ -80,7 +80,7 @@ class PerceptionService:
         )
 
     def _reset(self) -> None:
-        self._tracker = ObjectTracker(self._io.scene, self._config.gone_after, self._config.min_confidence)
+        self._tracker = ObjectTracker(self._io.household, self._config.gone_after, self._config.min_confidence)
         self._published: list[m.WorldObject] = []
         self._naming.reset()
         self._reading: Reading | None = None
@@ -255,7 +255,7 @@ class PerceptionService:
     def _ground(self, query: m.ObjectQuery) -> Grounding:
         base = self._state.base or (0.0, 0.0, 0.0)
         objects = self._naming.annotated(self._tracker.objects(query.since or -math.inf))
-        return ground(query.query, objects, self._io.scene, base, self._config.synonyms, self._naming.match)
+        return ground(query.query, objects, self._io.household, base, self._config.synonyms, self._naming.match)
 
 
 def detect(detector: Detector, view: View, base: Pose2, robot: RobotModel | None) -> tuple[View, list[Detection]]:

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from common.floor_plan import FloorPlan
 from common.geometry import Rectangle
-from common.scene import Scene
 
 WALL_MARGIN = 0.035
 """How far [m] from a wall's face its own points are measured: depth noise at the limit of the camera's range."""
@@ -64,12 +64,12 @@ def corners(box: Rectangle, low: float, high: float) -> NDArray[np.float64]:
 class Nearby:
     """What of the floor plan a view can show: surfaces, wall strips, and the floor that furniture takes."""
 
-    def __init__(self, scene: Scene, x: float, y: float, reach: float) -> None:
+    def __init__(self, floor_plan: FloorPlan, x: float, y: float, reach: float) -> None:
         def close(box: Rectangle) -> bool:
             return math.hypot(box.x - x, box.y - y) < reach + math.hypot(box.length, box.width) / 2
 
-        self.receptacles = [r for r in scene.receptacles if close(r.outline)]
-        ends = [w.footprint for w in scene.walls]
+        self.receptacles = [r for r in floor_plan.receptacles if close(r.outline)]
+        ends = [w.footprint for w in floor_plan.walls]
         self.walls = [w for wall in ends if close(w := wall.grown(WALL_MARGIN))]
-        taken = [*ends, *scene.footprints]
+        taken = [*ends, *floor_plan.footprints]
         self.boxes = [b for box in taken if close(b := box.grown(FLOOR_MARGIN))]

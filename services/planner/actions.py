@@ -120,7 +120,7 @@ def go(builder: PlanBuilder, slots: Slots) -> None:
 
 
 def come_back(builder: PlanBuilder, slots: Slots) -> None:
-    builder.go(Spot(builder.world.scene.home.name, home=True))
+    builder.go(Spot(builder.world.household.home.name, home=True))
 
 
 def wait(builder: PlanBuilder, slots: Slots) -> None:
@@ -210,6 +210,6 @@ def _surface(builder: PlanBuilder, slots: Slots) -> Receptacle:
     if where.room:
         return builder.in_room(where.name)
     if where.receptacle is None:
-        known = enumeration([r.name for r in builder.world.scene.receptacles], "or")
+        known = enumeration([r.name for r in builder.world.household.receptacles], "or")
         raise Refusal(f"I cannot put things on the {where.name}, only on or in the {known}")
     return where.receptacle

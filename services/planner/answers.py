@@ -52,7 +52,7 @@ def holding(builder: PlanBuilder, slots: Slots) -> None:
 def whereabouts(builder: PlanBuilder, slots: Slots) -> None:
     _not_after_moving(builder)
     x, y, _ = builder.world.pose
-    room = builder.world.scene.room_at(x, y)
+    room = builder.world.household.room_at(x, y)
     builder.say(f"I am in the {room.name}." if room else "I do not know which room I am in.")
 
 
@@ -123,8 +123,8 @@ def place_of(builder: PlanBuilder, item: BelievedObject) -> str:
 
 def _place(builder: PlanBuilder, slots: Slots) -> None:
     place = spot(builder, slots["thing"])
-    scene = builder.world.scene
-    room = scene.room_at(*place.receptacle.center[:2]) if place.receptacle else None
+    household = builder.world.household
+    room = household.room_at(*place.receptacle.center[:2]) if place.receptacle else None
     builder.say(f"The {place.name} is in the {room.name}." if room else f"I know how to get to the {place.name}.")
 
 

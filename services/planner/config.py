@@ -1,4 +1,4 @@
-"""Parameters of the planner: where things go, what words mean beyond the scene's, and the optional language model."""
+"""Parameters of the planner: where things go, words beyond the household's, and the optional language model."""
 
 from typing import Literal
 
@@ -6,7 +6,7 @@ from common.config import Config
 
 
 class Rule(Config, frozen=True):
-    """Things of these kinds and colours (empty: any) go to the first of `to` that the scene has: a name or a kind."""
+    """Things of these kinds and colours (empty: any) go to the first of `to` in the household: a name or a kind."""
 
     to: tuple[str, ...]
     kinds: tuple[str, ...] = ()

@@ -1,4 +1,4 @@
-"""Plans of a language model: odd names become the scene's, then the rules for all plans decide. Pure."""
+"""Plans of a language model: odd names become the household's, then the rules for all plans decide. Pure."""
 
 from collections.abc import Sequence
 
@@ -16,7 +16,7 @@ class Impossible(Exception):
 
 
 def checked(steps: Sequence[PlanStep], world: World, vocabulary: Vocabulary, max_steps: int) -> list[PlanStep]:
-    """The steps with every name as the scene has it; no steps are no plan, and nothing to object to.
+    """The steps with every name as the household has it; no steps are no plan, and nothing to object to.
 
     Raises:
         Impossible: an unknown name, or what `common.plan_rules` objects to.
@@ -27,14 +27,14 @@ def checked(steps: Sequence[PlanStep], world: World, vocabulary: Vocabulary, max
             named.append(_named(step, world, vocabulary))
         except Impossible as impossible:
             raise Impossible(f"step {number}: {impossible}") from None
-    known = known_world(world.scene, [t.label for t in world.objects], world.held.label if world.held else "")
-    if named and (against := objection(named, known, world.scene, max_steps)):
+    known = known_world(world.household, [t.label for t in world.objects], world.held.label if world.held else "")
+    if named and (against := objection(named, known, world.household, max_steps)):
         raise Impossible(str(against))
     return named
 
 
 def _named(step: PlanStep, world: World, vocabulary: Vocabulary) -> PlanStep:
-    """Aliases and odd spellings become the scene's names."""
+    """Aliases and odd spellings become the household's names."""
     item, target = step.object, step.target
     match step.action:
         case "grasp" | "release" if step.hand_alone:
@@ -42,7 +42,7 @@ def _named(step: PlanStep, world: World, vocabulary: Vocabulary) -> PlanStep:
         case "find" | "grasp":
             return msgspec.structs.replace(step, object=_thing(item or target, world, vocabulary), target="", text="")
         case "place":
-            receptacle = world.scene.receptacle(normalise(target or item))
+            receptacle = world.household.receptacle(normalise(target or item))
             if receptacle is None:
                 raise Impossible(f"there is no {target or item or 'place'} to put things on")
             near = _thing(step.near, world, vocabulary) if step.near else ""
@@ -67,7 +67,7 @@ def _thing(name: str, world: World, vocabulary: Vocabulary) -> str:
         raise Impossible("no object is named")
     known = [*world.objects, *world.specs]
     wanted = normalise(name).removeprefix("the ")
-    spec = world.scene.object(wanted)
+    spec = world.household.thing(wanted)
     label = spec.name if spec else next((t.label for t in known if normalise(t.label) == wanted), "")
     if label:
         return label

@@ -137,7 +137,7 @@ class PlanBuilder:
 
     # --- where things go
     def destination(self, item: BelievedObject, rules: tuple[Rule, ...]) -> Receptacle:
-        """By the first rule that fits the thing and the scene."""
+        """By the first rule that fits the thing and the household."""
         for rule in rules:
             if (rule.kinds and item.kind not in rule.kinds) or (rule.colours and item.colour not in rule.colours):
                 continue
@@ -163,11 +163,11 @@ class PlanBuilder:
         return self.choices.pick(found)
 
     def _named(self, wanted: tuple[str, ...]) -> list[Receptacle]:
-        scene = self.world.scene
+        household = self.world.household
         found: list[Receptacle] = []
         for name in wanted:
-            exact = scene.receptacle(name)
-            found += [exact] if exact else [r for r in scene.receptacles if r.kind == name and r.spawn]
+            exact = household.receptacle(name)
+            found += [exact] if exact else [r for r in household.receptacles if r.kind == name and r.spawn]
         return list(dict.fromkeys(found))
 
     # --- looking first

@@ -56,8 +56,8 @@ def messages(command: str, world: World, config: PlannerConfig, rejected: list[R
         ],
         "objects_not_seen_yet": [n for n in _objects(world) if n not in {t.label for t in world.objects}],
         "in_hand": world.held.label if world.held else "",
-        "receptacles": [r.name for r in world.scene.receptacles],
-        "places": [n for n in _targets(world) if world.scene.receptacle(n) is None],
+        "receptacles": [r.name for r in world.household.receptacles],
+        "places": [n for n in _targets(world) if world.household.receptacle(n) is None],
         "where_things_go": [_rule(r) for r in config.tidy],
         "where_rubbish_goes": [_rule(r) for r in config.throw],
         "command": command,
@@ -78,6 +78,8 @@ def _objects(world: World) -> list[str]:
 
 
 def _targets(world: World) -> list[str]:
-    scene = world.scene
-    names = [r.name for r in scene.receptacles] + [r.name for r in scene.rooms] + [p.name for p in scene.places]
-    return list(dict.fromkeys([*names, *world.places, scene.home.name]))
+    household = world.household
+    names = (
+        [r.name for r in household.receptacles] + [r.name for r in household.rooms] + [p.name for p in household.places]
+    )
+    return list(dict.fromkeys([*names, *world.places, household.home.name]))

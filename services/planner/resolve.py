@@ -202,7 +202,7 @@ def _choose(
 
 
 def _unseen(builder: PlanBuilder, phrase: Phrase, specs: list[BelievedObject], at: Spot | None) -> Referent:
-    """Something nobody has seen yet: by its name if the scene has one of the kind, else any of the kind in view."""
+    """Something nobody has seen yet: by its name if the household has one of the kind, else any of the kind in view."""
     if not specs:
         raise Refusal(f"I have seen no {phrase.noun}")
     where = at if at is None or not at.home else None

@@ -66,7 +66,7 @@ def _area(builder: PlanBuilder, slots: Slots) -> Spot | None:
         return None
     if phrase in ("room", "here"):
         x, y, _ = builder.world.pose
-        room = builder.world.scene.room_at(x, y)
+        room = builder.world.household.room_at(x, y)
         return Spot(room.name, room=True) if room else None
     where = spot(builder, words)
     if where.receptacle is None and not where.room:

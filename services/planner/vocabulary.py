@@ -1,11 +1,12 @@
-"""The words for objects and places: from the scene, from what was seen, and from the configuration. Pure."""
+"""The words for objects and places: from the household, from what was seen, and from the configuration. Pure."""
 
 from collections.abc import Iterable
 
 import msgspec
 
+from common.floor_plan import Receptacle
+from common.household import Household
 from common.language.normalise import Words, enumeration, normalise, without_determiners
-from common.scene import Receptacle, Scene
 from services.planner.config import PlannerConfig
 from services.planner.world import World
 
@@ -36,13 +37,13 @@ class Vocabulary:
     """Built for one request."""
 
     def __init__(self, world: World, config: PlannerConfig) -> None:
-        self._scene = scene = world.scene
+        self._household = household = world.household
         known = [*world.specs, *world.objects]
         self.kinds = {t.kind for t in known if t.kind}
-        self.colours = {c: c for c in {*(t.colour for t in known), *(r.colour for r in scene.receptacles)} if c}
+        self.colours = {c: c for c in {*(t.colour for t in known), *(r.colour for r in household.receptacles)} if c}
         self.colours |= {word: c for word, c in config.colours.items() if c in self.colours}
         self._nouns: dict[str, Sense] = {}
-        self._aliases(scene)
+        self._aliases(household)
         for item in known:
             self._nouns.setdefault(normalise(item.label), Sense(names=frozenset({item.label})))
         for kind in self.kinds:
@@ -53,10 +54,10 @@ class Vocabulary:
             if members := frozenset(k for k in group if k in self.kinds):
                 self._nouns.setdefault(normalise(word), Sense(kinds=members))
         self._mass = frozenset(map(normalise, config.mass))
-        self._places = self._standing(scene, world.places)
+        self._places = self._standing(household, world.places)
 
-    def _aliases(self, scene: Scene) -> None:
-        for spec in scene.objects:
+    def _aliases(self, household: Household) -> None:
+        for spec in household.things:
             for alias in (spec.name, *spec.aliases):
                 self._nouns[normalise(alias)] = Sense(names=frozenset({spec.name}))
             for alias in spec.aliases:
@@ -64,14 +65,14 @@ class Vocabulary:
                 if noun != normalise(alias):
                     self._nouns.setdefault(noun, Sense(kinds=frozenset({spec.kind})))
 
-    def _standing(self, scene: Scene, told: Iterable[str]) -> dict[str, Spot]:
-        spots = {normalise(p): Spot(p) for p in told if scene.receptacle(p) is None}
-        for place in scene.places:
+    def _standing(self, household: Household, told: Iterable[str]) -> dict[str, Spot]:
+        spots = {normalise(p): Spot(p) for p in told if household.receptacle(p) is None}
+        for place in household.places:
             spots |= {normalise(n): Spot(place.name) for n in (place.name, *place.aliases)}
-        for room in scene.rooms:
+        for room in household.rooms:
             spots |= {normalise(n): Spot(room.name, room=True) for n in (room.name, *room.aliases)}
-        home = Spot(scene.home.name, home=True)
-        return spots | {normalise(n): home for n in (scene.home.name, *scene.home.aliases, *_HERE)}
+        home = Spot(household.home.name, home=True)
+        return spots | {normalise(n): home for n in (household.home.name, *household.home.aliases, *_HERE)}
 
     # --- nouns
     def noun(self, phrase: str) -> tuple[Sense, str, bool] | None:
@@ -98,12 +99,12 @@ class Vocabulary:
                 return self.spot(tuple(head.split()), where.name)
         if not room and (place := self._places.get(phrase)):
             return [place]
-        named = [r for r in self._scene.receptacles if phrase in map(normalise, (r.name, *r.aliases))]
+        named = [r for r in self._household.receptacles if phrase in map(normalise, (r.name, *r.aliases))]
         colour, _, rest = phrase.partition(" ")
         meant = self.colours.get(colour)
         kin = [
             r
-            for r in self._scene.receptacles
+            for r in self._household.receptacles
             if r.kind == phrase
             or f" {normalise(r.name)}".endswith(f" {phrase}")
             or (meant and _coloured(r, meant, rest))
@@ -113,27 +114,29 @@ class Vocabulary:
         return [Spot(r.name, receptacle=r) for r in named or kin]
 
     def _is_in(self, r: Receptacle, room: str) -> bool:
-        found = self._scene.room_at(r.center[0], r.center[1])
+        found = self._household.room_at(r.center[0], r.center[1])
         return found is not None and found.name == room
 
     def furniture(self, words: Words) -> str:
         """The furniture meant, which is in the way but no place to put things."""
         phrase = " ".join(without_determiners(words))
-        return next((f.name for f in self._scene.furniture if phrase and phrase in normalise(f.name)), "")
+        return next((f.name for f in self._household.furniture if phrase and phrase in normalise(f.name)), "")
 
     def position(self, place: Spot) -> tuple[float, float] | None:
         """The middle of a surface, or where one stands at a place [m]; None for a room."""
         if place.receptacle is not None:
             return place.receptacle.center[0], place.receptacle.center[1]
-        stands = (self._scene.home, *self._scene.places)
+        stands = (self._household.home, *self._household.places)
         return next(((p.x, p.y) for p in stands if p.name == place.name and not place.room), None)
 
     def surfaces(self, room: str = "") -> list[Receptacle]:
         """Where things may lie, in a room or everywhere."""
-        return [r for r in self._scene.receptacles if r.spawn and not r.depth and (not room or self._is_in(r, room))]
+        return [
+            r for r in self._household.receptacles if r.spawn and not r.depth and (not room or self._is_in(r, room))
+        ]
 
     def receptacles_named(self) -> str:
-        return enumeration([r.name for r in self._scene.receptacles], "or")
+        return enumeration([r.name for r in self._household.receptacles], "or")
 
 
 def _coloured(r: Receptacle, colour: str, rest: str) -> bool:

@@ -4,14 +4,15 @@ from collections.abc import Sequence
 
 import msgspec
 
+from common.floor_plan import Receptacle
+from common.household import Household
 from common.messages import KnownWorld, Vec3, WorldObject
-from common.scene import Receptacle, Scene
 
 Pose2 = tuple[float, float, float]
 
 
 class BelievedObject(msgspec.Struct, frozen=True):
-    """An object by the name that plans use. `seen` is False for one that the scene names and nobody has seen."""
+    """An object by the name that plans use. `seen` is False for one that the household names and nobody has seen."""
 
     label: str
     kind: str
@@ -25,9 +26,9 @@ class BelievedObject(msgspec.Struct, frozen=True):
 
 
 class World(msgspec.Struct):
-    """`objects` are what has been seen or is held, `specs` what the scene names; `pose` is the robot's in the map."""
+    """`objects`: seen or held; `specs`: the known things of the household; `pose`: the robot's in the map."""
 
-    scene: Scene
+    household: Household
     objects: list[BelievedObject] = []
     specs: list[BelievedObject] = []
     places: list[str] = []
@@ -40,14 +41,14 @@ class World(msgspec.Struct):
 
     def receptacle_of(self, item: BelievedObject) -> Receptacle | None:
         """What a thing stands on or in."""
-        return self.scene.receptacle(item.on) if item.on else None
+        return self.household.receptacle(item.on) if item.on else None
 
     def room_of(self, item: BelievedObject) -> str:
         """The room a thing is in, "" when unknown."""
         where = item.position
         if where is None and (r := self.receptacle_of(item)):
             where = r.center
-        room = self.scene.room_at(where[0], where[1]) if where else None
+        room = self.household.room_at(where[0], where[1]) if where else None
         return room.name if room else ""
 
     def distance(self, item: BelievedObject) -> float:
@@ -85,25 +86,31 @@ class World(msgspec.Struct):
 
 
 def believed(
-    scene: Scene, told: KnownWorld, objects: Sequence[WorldObject], pose: Pose2 = (0.0, 0.0, 0.0), now: float = 0.0
+    household: Household,
+    told: KnownWorld,
+    objects: Sequence[WorldObject],
+    pose: Pose2 = (0.0, 0.0, 0.0),
+    now: float = 0.0,
 ) -> World:
     """The world from a request's own list and the latest `world/objects`; the request says what is held."""
-    specs = [BelievedObject(label=o.name, kind=o.kind, colour=o.colour, size=o.size, seen=False) for o in scene.objects]
+    specs = [
+        BelievedObject(label=o.name, kind=o.kind, colour=o.colour, size=o.size, seen=False) for o in household.things
+    ]
     named = {t.label: t for t in specs}
-    held = _canonical(told.held, scene)
+    held = _canonical(told.held, household)
     found: list[BelievedObject] = []
     for o in objects:
         if not o.label:
             continue
-        spec = named.get(_canonical(o.label, scene))
-        in_hand = bool(held) and _canonical(o.label, scene) == held and not any(t.held for t in found)
+        spec = named.get(_canonical(o.label, household))
+        in_hand = bool(held) and _canonical(o.label, household) == held and not any(t.held for t in found)
         found.append(
             BelievedObject(
                 label=spec.label if spec else o.label,
                 kind=o.kind or (spec.kind if spec else ""),
                 colour=o.colour or (spec.colour if spec else ""),
                 position=None if in_hand else o.position,
-                on="" if in_hand else o.on or _resting_on(o.position, scene),
+                on="" if in_hand else o.on or _resting_on(o.position, household),
                 size=o.size if any(o.size) else (spec.size if spec else o.size),
                 seen_at=o.seen_at,
                 held=in_hand,
@@ -111,20 +118,20 @@ def believed(
         )
     labels = {t.label for t in found}
     for label in (*told.objects, told.held):
-        name = _canonical(label, scene)
+        name = _canonical(label, household)
         if name and name not in labels:
             labels.add(name)
             spec = named.get(name, BelievedObject(name, name))
             found.append(msgspec.structs.replace(spec, seen=True, held=name == held))
-    return World(scene=scene, objects=found, specs=specs, places=list(told.places), pose=pose, now=now)
+    return World(household=household, objects=found, specs=specs, places=list(told.places), pose=pose, now=now)
 
 
-def _canonical(label: str, scene: Scene) -> str:
-    spec = scene.object(label)
+def _canonical(label: str, household: Household) -> str:
+    spec = household.thing(label)
     return spec.name if spec else label
 
 
-def _resting_on(position: Vec3, scene: Scene) -> str:
+def _resting_on(position: Vec3, household: Household) -> str:
     """Name of the surface that an object rests on; "" when there is none."""
-    surface = scene.resting_place(position)
+    surface = household.resting_place(position)
     return surface.name if surface else ""

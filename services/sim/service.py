@@ -42,6 +42,7 @@ class SimService:
     NAME = "sim"
     HZ = 100
     CONFIG = SimConfig
+    KNOWS_WORLD = True
     READS, WRITES = topics.subscribed(NAME), topics.published(NAME)
 
     def __init__(self, config: SimConfig, io: Io) -> None:
@@ -49,7 +50,7 @@ class SimService:
         self._speed = _speed(config.speed)
         self.paused = False
         self.start_time = 0.0
-        self.physics = Physics(io.scene, io.seed, chosen(io.scene, config.obstacles), _robot(config.robot))
+        self.physics = Physics(io.world, io.seed, chosen(io.world, config.obstacles), _robot(config.robot))
         self._viewer = Viewer(self.physics) if config.viewer else None
         self._tick = 0
         self._model = checkpoint.fingerprint(self.physics.mjcf)
@@ -71,7 +72,7 @@ class SimService:
         """Drivers and sensors of a world that has just been laid out."""
         config, io = self._config, self._io
         self._world = io.new_id(io.epoch)
-        home = io.scene.home
+        home = io.world.home
         pose = (home.x, home.y, home.theta)
         self._base = BaseDriver(config, pose)
         self._arm = ArmDriver(np.array(self.physics.home_arm), config.stream_timeout, self.physics.arm_limits)
@@ -82,7 +83,7 @@ class SimService:
         physics = self.physics
         description = m.RobotDescription(mjcf=physics.robot.mjcf, head_camera=head_camera(physics.model))
         io.publish(topics.ROBOT_DESCRIPTION, description)
-        model = m.SimModel(scene=io.scene.name, seed=physics.seed, epoch=io.epoch, mjcf=physics.mjcf)
+        model = m.SimModel(scene=io.world.name, seed=physics.seed, epoch=io.epoch, mjcf=physics.mjcf)
         io.publish(topics.SIM_MODEL, model)
         io.publish(topics.GOAL_REACHED, m.GoalReached(reached=False))
         self._publish_status("running")
@@ -136,7 +137,7 @@ class SimService:
             state=state,
             speed=self._config.speed,
             epoch=self._io.epoch,
-            scene=self._io.scene.name,
+            scene=self._io.world.name,
             seed=self.physics.seed,
             world=self._world,
             detail=detail,
@@ -232,7 +233,7 @@ class SimService:
         wanted = msgspec.json.decode(payload or b"{}", type=Reset)
         self.physics.reseed(self.physics.seed if wanted.seed is None else wanted.seed)
         self._begin()
-        return msgspec.json.encode({"seed": self.physics.seed, "scene": self._io.scene.name})
+        return msgspec.json.encode({"seed": self.physics.seed, "scene": self._io.world.name})
 
     def _answer_snapshot(self, payload: bytes) -> bytes:
         state = self.physics.snapshot()

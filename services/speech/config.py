@@ -7,7 +7,7 @@ from common.config import Config
 
 class SpeechConfig(Config, frozen=True):
     """`commands` are the patterns of the grammar, around those of `common/language/wordings.py` (`<verb>` and
-    `<utterance>`); the lists extend the scene's vocabulary. Times in seconds.
+    `<utterance>`); the lists extend the household's vocabulary. Times in seconds.
 
     `accept_score`, `ask_score`: log-likelihood ratios per token above which a command is accepted or asked about.
     `beam`: hypotheses of the search. `tempo_weight` and `rare` (what a word costs, a negative log-probability)

@@ -39,14 +39,14 @@ class SpeechService:
     def __init__(self, config: SpeechConfig, io: Io) -> None:
         self._config, self._io = config, io
         try:
-            found = grammars(config, io.scene)
+            found = grammars(config, io.household)
             self._recording: Samples | None = read_wav(Path(config.wav)) if config.wav else None
         except (PatternError, AudioError) as error:
             raise StartError(f"speech: {error}") from None
         if config.wake_word and not find_spec("pyopen_wakeword"):
             raise StartError("speech.wake_word needs pyopen-wakeword; install it, or set speech.wake_word = false")
         self._microphone = Microphone() if config.microphone else None
-        self._queue = UtteranceQueue(config, io, lambda: FrontEnd(config, io.scene, found))
+        self._queue = UtteranceQueue(config, io, lambda: FrontEnd(config, io.household, found))
         self._player = TtsPlayer(io, config.speakers, config.synthesis_seconds, config.preload)
         self._goal = m.SpeechGoal(goal="")
         self._inbox: GoalInbox[m.SpeechGoal, m.SpeechResult] = GoalInbox(

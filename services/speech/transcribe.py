@@ -8,9 +8,10 @@ from pathlib import Path
 import msgspec
 
 from common import config
+from common.household import Household, load_household
 from common.language.pattern import PatternError
 from common.runtime import BAD_CONFIGURATION, StartError
-from common.scene import Scene, SceneError, load_scene
+from common.scene import SceneError
 from services.speech.audio import AudioError, Samples, read_wav
 from services.speech.config import SpeechConfig
 from services.speech.listen.wake_word import WakeWord
@@ -21,9 +22,9 @@ from services.speech.recognise.recogniser import Recognition, grammars
 class Reader:
     """Recordings of one utterance each, taken as meant for the robot with or without the wake word."""
 
-    def __init__(self, parameters: SpeechConfig, scene: Scene) -> None:
+    def __init__(self, parameters: SpeechConfig, household: Household) -> None:
         self._threshold = parameters.wake_threshold
-        self._front_end = FrontEnd(parameters, scene, grammars(parameters, scene))
+        self._front_end = FrontEnd(parameters, household, grammars(parameters, household))
         self._wake = WakeWord() if parameters.wake_word else None
 
     def __call__(self, samples: Samples) -> tuple[Recognition, bool]:
@@ -45,8 +46,9 @@ def main() -> int:
         changes = config.overrides(os.environ, ())
         directory = config.config_dir()
         shared = config.load("runtime", config.RuntimeConfig, directory, changes)
-        parameters, scene = config.load("speech", SpeechConfig, directory, changes), load_scene(shared.scene)
-        reader = Reader(parameters, scene)
+        parameters = config.load("speech", SpeechConfig, directory, changes)
+        household = load_household(shared.household_file, directory)
+        reader = Reader(parameters, household)
     except (config.ConfigError, SceneError, PatternError, StartError, FileNotFoundError) as error:
         print(f"transcribe: {error}", file=sys.stderr)
         return BAD_CONFIGURATION

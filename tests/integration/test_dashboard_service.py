@@ -15,6 +15,7 @@ import pytest
 from common import messages as m
 from common import topics
 from common.bus import codec
+from common.household import load_household
 from common.recording import Recorder, RecordingError
 from common.robot import Hand
 from common.scene import load_scene
@@ -40,7 +41,9 @@ class Page(Node):
     """The service and its clock."""
 
     def __init__(self) -> None:
-        super().__init__(DashboardService, DashboardConfig(port=0), load_scene("minimal"), lockstep=False, tick=10_000)
+        super().__init__(
+            DashboardService, DashboardConfig(port=0), load_household("minimal"), lockstep=False, tick=10_000
+        )
 
     def step(self, seconds: float = 0.04, fed: bool = True) -> None:  # longer than a frame: what is new is drawn
         self.later(seconds)

@@ -18,7 +18,7 @@ from websockets.typing import Origin, Subprotocol
 from common import messages as m
 from common import topics
 from common.bus.memory import MemoryBus, MemoryIo
-from common.scene import load_scene
+from common.household import load_household
 from services.dashboard.config import DashboardConfig
 from services.dashboard.service import DashboardService
 from services.dashboard.web.events import Sound, Words
@@ -239,7 +239,12 @@ def test_beyond_loopback_a_token_is_made_up() -> None:
 def test_stop_on_the_page_is_a_stop_on_the_bus_within_one_step() -> None:
     bus = MemoryBus()
     io = MemoryIo(
-        bus, "dashboard", DashboardService.READS, DashboardService.WRITES, scene=load_scene("minimal"), lockstep=False
+        bus,
+        "dashboard",
+        DashboardService.READS,
+        DashboardService.WRITES,
+        household=load_household("minimal"),
+        lockstep=False,
     )
     stops = bus.tap(topics.ROBOT_STOP)
     service = DashboardService(DashboardConfig(port=0), io)

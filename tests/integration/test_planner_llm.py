@@ -13,8 +13,8 @@ import pytest
 from cli import doctor
 from common import messages as m
 from common import topics
+from common.household import load_household
 from common.runtime import StartError
-from common.scene import load_scene
 from services.planner import diagnosis
 from services.planner.config import PlannerConfig
 from services.planner.endpoint import EVERY, REST, installed, look
@@ -22,7 +22,7 @@ from services.planner.service import GRACE, PlannerService
 from tests.node import Node
 from tests.support import Site, eventually, free_port
 
-SCENE = load_scene("apartment")
+SCENE = load_household("apartment")
 MUG = [
     {"action": "find", "object": "red mug", "target": "", "text": ""},
     {"action": "grasp", "object": "red mug", "target": "", "text": ""},

@@ -6,7 +6,7 @@ import pytest
 from common import config, topics
 from common import messages as m
 from common.bus.memory import MemoryBus, MemoryIo
-from common.scene import load_scene
+from common.household import load_household
 from common.time.lockstep import DT
 from services.brain.config import BrainConfig
 from services.brain.service import BrainService
@@ -14,7 +14,7 @@ from services.planner.config import PlannerConfig
 from services.planner.service import PlannerService
 from tests.node import Node
 
-SCENE = load_scene("apartment")
+SCENE = load_household("apartment")
 PLANNER = config.load("planner", PlannerConfig, config.DEFAULT_DIR, {})
 PERIOD = 0.1
 
@@ -36,9 +36,9 @@ class World:
         self.goals = (
             topics.NAVIGATION_GOAL, topics.NAV_GOAL, topics.MANIPULATION_GOAL, topics.OBJECT_QUERY, topics.SPEECH_GOAL,
         )  # fmt: skip
-        self.io = MemoryIo(self.bus, "peers", self.goals, writes, scene=SCENE, lockstep=False)
+        self.io = MemoryIo(self.bus, "peers", self.goals, writes, household=SCENE, lockstep=False)
         for name in ("navigation", "manipulation", "perception", "speech"):
-            MemoryIo(self.bus, name, (), (), scene=SCENE, lockstep=False)
+            MemoryIo(self.bus, name, (), (), household=SCENE, lockstep=False)
         brain = BrainConfig(pipeline="vla", enable_confirmation=False, settle=0.1)
         self.nodes = [
             Node(kind, config, SCENE, bus=self.bus, lockstep=False, tick=round(self.now / DT))
@@ -123,7 +123,7 @@ class World:
     def _show(self) -> None:
         rows = []
         for name in sorted(self.seen):
-            spec, r = SCENE.object(name), SCENE.receptacle(self.on[name])
+            spec, r = SCENE.thing(name), SCENE.receptacle(self.on[name])
             assert spec is not None
             x, y, z = r.center if r else (0.0, 0.0, 1.0)
             rows.append(

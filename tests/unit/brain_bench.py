@@ -5,7 +5,7 @@ from typing import Any, TypeVar
 
 from common import messages as m
 from common import topics
-from common.scene import load_scene
+from common.household import load_household
 from common.topics import Topic
 from services.brain.config import BrainConfig
 from services.brain.service import BrainService
@@ -24,7 +24,7 @@ class Bench(Node):
     """
 
     def __init__(self, config: BrainConfig | None = None, joints: bool = True) -> None:
-        scene = load_scene("apartment")
+        scene = load_household("apartment")
         super().__init__(BrainService, config or BrainConfig(pipeline="fetch"), scene, lockstep=False, tick=START)
         self.brain: BrainService = self.service
         self.joints: m.JointStates | None = JOINTS if joints else None

@@ -8,13 +8,13 @@ from common import messages as m
 from common import topics
 from common.bus import codec
 from common.bus.memory import MemoryBus, MemoryIo
-from common.scene import load_scene
+from common.household import load_household
 from common.time.lockstep import DT
 from services.brain.config import BrainConfig
 from services.brain.service import BrainService
 from tests.node import Node
 
-SCENE = load_scene("apartment")
+SCENE = load_household("apartment")
 ITEM = "red mug"
 TRAY = (0.7, 0.0, 0.51)
 PERIOD = 0.05
@@ -32,7 +32,7 @@ class Peer:
 
     def __init__(self, world: "World", name: str, reads: tuple[Any, ...], writes: tuple[Any, ...]) -> None:
         self.world, self.name = world, name
-        self.io = MemoryIo(world.bus, name, reads, writes, scene=SCENE, lockstep=False)
+        self.io = MemoryIo(world.bus, name, reads, writes, household=SCENE, lockstep=False)
         self.goals = reads
         self.seen: set[tuple[str, int]] = set()
         self.answers: dict[tuple[str, int], Callable[[], None]] = {}

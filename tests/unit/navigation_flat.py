@@ -8,13 +8,13 @@ import numpy as np
 from common import messages as m
 from common import topics
 from common.geometry import Pose2, Rectangle, compose, inverse, wrap
-from common.scene import Scene, load_scene
+from common.household import Household, load_household
 from services.navigation.config import NavigationConfig
 from services.navigation.localisation.distance_field import rectangles
 from services.navigation.service import NavigationService
 from tests.node import Node
 
-SCENE = load_scene("apartment")
+SCENE = load_household("apartment")
 ANGLES = -math.pi + np.arange(360) * math.radians(1)
 SPEED, TURN = 0.5, 1.5
 
@@ -42,13 +42,15 @@ def ends(ranges: np.ndarray) -> np.ndarray:
 class Flat(Node):
     """The navigation service in the apartment; `boxes` is what its map does not have, `wheels` its odometry."""
 
-    def __init__(self, boxes: list[Rectangle] | None = None, scene: Scene = SCENE, **parameters: object) -> None:
-        self.boxes, self.scene = boxes or [], scene
-        super().__init__(NavigationService, msgspec.convert(parameters, NavigationConfig), scene)
+    def __init__(
+        self, boxes: list[Rectangle] | None = None, household: Household = SCENE, **parameters: object
+    ) -> None:
+        self.boxes = boxes or []
+        super().__init__(NavigationService, msgspec.convert(parameters, NavigationConfig), household)
         self.feedbacks = self.bus.tap(topics.NAVIGATION_FEEDBACK)
         self._targets = self.bus.tap(topics.BASE_TARGET)
         self._stops = self.bus.tap(topics.CMD_VEL)
-        self._plan = rectangles(scene, 0.2)
+        self._plan = rectangles(household, 0.2)
         self.true: Pose2 = (0.0, 0.0, 0.0)
         self.wheels: Pose2 = (0.0, 0.0, 0.0)
         self._target: m.BaseTarget | None = None

@@ -9,7 +9,7 @@ import pytest
 from common import messages as m
 from common import topics
 from common.bus.memory import MemoryIo
-from common.scene import load_scene
+from common.household import load_household
 from services.brain.config import BrainConfig
 from services.brain.journal.pictures import KEPT, LARGEST, START, Pictures
 from services.brain.steps.verify import ASIDE
@@ -17,7 +17,7 @@ from services.brain.world.placement import judge_absence, judge_placement
 from tests.unit.brain_bench import Bench
 from tests.unit.test_brain_vla import FETCH, MANIP, POSE, QUERY, SPEECH, approach, planned, see
 
-SCENE = load_scene("apartment")
+SCENE = load_household("apartment")
 TRAY = (0.7, 0.0, 0.51)
 LYING = math.pi / 2
 SIDE = (math.sqrt(0.5), 0.0, math.sqrt(0.5), 0.0)
@@ -65,7 +65,7 @@ def test_into_a_bin_nobody_sees() -> None:
 
 def with_perception(bench: Bench) -> None:
     """Its process is alive: it holds the token."""
-    MemoryIo(bench.bus, "perception", (), (), scene=SCENE)
+    MemoryIo(bench.bus, "perception", (), (), household=SCENE)
 
 
 def brought(alive: bool = True) -> Bench:

@@ -5,7 +5,7 @@ import pytest
 from common import messages as m
 from common import topics
 from common.bus.memory import MemoryIo
-from common.scene import load_scene
+from common.household import load_household
 from tests.unit.brain_bench import Bench
 
 NAV, MANIP, SPEECH = topics.NAVIGATION_GOAL, topics.MANIPULATION_GOAL, topics.SPEECH_GOAL
@@ -275,7 +275,7 @@ def test_speech_status_ends_the_error_as_soon_as_it_is_said() -> None:
 
 
 def peer(bench: Bench, name: str) -> MemoryIo:
-    return MemoryIo(bench.bus, name, (), (), scene=load_scene("apartment"))
+    return MemoryIo(bench.bus, name, (), (), household=load_household("apartment"))
 
 
 def test_a_restarted_peer_gets_the_goal_again_with_the_next_attempt() -> None:

@@ -5,8 +5,8 @@ import pytest
 from common import messages as m
 from common import topics
 from common.bus.memory import MemoryIo
+from common.household import load_household
 from common.plan_rules import known_world, objection
-from common.scene import load_scene
 from services.brain.config import BrainConfig
 from tests.unit.brain_bench import Bench
 
@@ -103,7 +103,7 @@ def test_a_full_hand_sets_down_first() -> None:
 def gone(answer: str) -> GripperState:
     """Asked to put down the mug while manipulation dies for good; the person answers the question."""
     hand = GripperState(AROUND, [PUT_DOWN], holding="red mug")
-    arm = MemoryIo(hand.bus, "manipulation", (), (), scene=hand.io.scene, lockstep=False)
+    arm = MemoryIo(hand.bus, "manipulation", (), (), household=hand.io.household, lockstep=False)
     hand.manip(1)
     hand.step(0.5)
     hand.bus.detach(arm)
@@ -139,7 +139,7 @@ def test_without_a_yes_it_holds_on() -> None:
 
 
 def test_plans_of_the_hand_alone() -> None:
-    scene = load_scene("apartment")
+    scene = load_household("apartment")
     empty, full = known_world(scene, [], ""), known_world(scene, [], "red mug")
     assert objection([OPEN, CLOSE], empty, scene) is None
     assert "has to be put down" in str(objection([OPEN], full, scene))

@@ -101,7 +101,7 @@ def test_robot_time_that_stands_still_is_a_loss_when_the_simulation_alone_is_gon
 ) -> None:
     world = begun("vla", tmp_path / "j.db")
     world.until(lambda: world.state.state == "NAVIGATING")
-    kept = MemoryIo(world.bus, "sim", (), (), scene=SCENE, lockstep=False) if sim else None
+    kept = MemoryIo(world.bus, "sim", (), (), household=SCENE, lockstep=False) if sim else None
     if not others:
         for peer in world.peers.values():
             world.bus.ios.pop(peer.name)

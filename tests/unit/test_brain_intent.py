@@ -2,10 +2,10 @@
 
 import pytest
 
-from common.scene import load_scene
+from common.household import load_household
 from services.brain.language.intent import parse
 
-SCENE = load_scene("apartment")
+SCENE = load_household("apartment")
 
 
 @pytest.mark.parametrize(
@@ -35,7 +35,7 @@ SCENE = load_scene("apartment")
 def test_fetch(text: str, item: str) -> None:
     intent = parse(text, SCENE)
     assert (intent.kind, intent.item) == ("fetch", item)
-    assert SCENE.object(intent.label) is not None
+    assert SCENE.thing(intent.label) is not None
 
 
 @pytest.mark.parametrize(

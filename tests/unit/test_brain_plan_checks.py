@@ -2,10 +2,10 @@
 
 import pytest
 
-from common.scene import load_scene
+from common.household import load_household
 from services.brain.language.dialogue import chosen, corrected, reply
 
-SCENE = load_scene("apartment")
+SCENE = load_household("apartment")
 
 
 @pytest.mark.parametrize(

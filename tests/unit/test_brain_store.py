@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 from common.bus.memory import MemoryBus, MemoryIo
-from common.scene import load_scene
+from common.household import load_household
 from services.brain.config import BrainConfig
 from services.brain.journal.open import open_journal
 from services.brain.journal.records import ENTRIES_KEPT, Checkpoint, Entry, Journal, MemoryJournal, PathNode
@@ -22,11 +22,11 @@ from services.brain.mission.channel import SentGoal
 from services.brain.mission.mission import GripperState, Mission, Task
 from tests.support import ROOT
 
-SCENE = load_scene("apartment")
+SCENE = load_household("apartment")
 
 
 def io() -> MemoryIo:
-    return MemoryIo(MemoryBus(), "brain", (), (), scene=SCENE, log_level="error")
+    return MemoryIo(MemoryBus(), "brain", (), (), household=SCENE, log_level="error")
 
 
 @pytest.fixture

@@ -8,6 +8,7 @@ import pytest
 from common import messages as m
 from common import topics
 from common.approach import ROOM
+from common.household import told
 from common.scene import load_scene
 from services.brain.config import BrainConfig
 from services.brain.world.standing_poses import clearance, place_pose, standing_pose
@@ -15,7 +16,8 @@ from services.sim.layout import place_objects
 from tests.unit.brain_bench import Bench
 
 SPEECH, NAV, MANIP, POSE = topics.SPEECH_GOAL, topics.NAVIGATION_GOAL, topics.MANIPULATION_GOAL, topics.NAV_GOAL
-SCENE = load_scene("apartment")
+WORLD = load_scene("apartment")
+SCENE = told(WORLD)
 PLAN, QUERY = topics.PLAN_REQUEST, topics.OBJECT_QUERY
 MUG = {"object": "red mug"}
 MUG_AT = (-1.5, -2.3, 0.6)
@@ -355,7 +357,7 @@ def test_retries_of_several_attempts_add_up_and_other_failures_are_counted_alone
 
 def test_the_standing_pose_is_free_and_faces_the_thing() -> None:
     """Any navigator could drive there: no part of the base is in furniture, a surface or a wall."""
-    for placed in (p for seed in range(20) for p in place_objects(SCENE, seed)):
+    for placed in (p for seed in range(20) for p in place_objects(WORLD, seed)):
         x, y, _ = placed.position
         pose = standing_pose(SCENE, (x, y), (0.0, 0.0, 0.0))
         assert clearance(SCENE, pose[0], pose[1]) >= ROOM, f"{placed.spec.name} on {placed.on}"

@@ -11,6 +11,7 @@ import pytest
 from common import messages as m
 from common import topics
 from common.geometry import quat_matrix
+from common.household import load_household
 from common.rendering import raycast
 from common.rendering import renderer as render
 from common.scene import load_scene
@@ -91,7 +92,7 @@ class Lens(Node):
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setenv("MUJOCO_GL", "")
-        super().__init__(CameraService, CameraConfig(backend="raycast"), load_scene("minimal"))
+        super().__init__(CameraService, CameraConfig(backend="raycast"), load_household("minimal"))
 
     def state(self, physics: Physics) -> None:
         model = m.SimModel(scene="minimal", seed=0, epoch="e", mjcf=physics.mjcf)

@@ -44,7 +44,7 @@ class FakeLink:
 def told(*said: tuple[Topic[Any], m.Message], seconds: float = verdict.WATCH + 1.0) -> verdict.Verdict:
     """The verdict over a world in which nothing happens, while this is said."""
     simulation, link = Simulation("minimal", 0), FakeLink()
-    witness = Witness(link, simulation.io.scene, "yellow block")  # type: ignore[arg-type]
+    witness = Witness(link, simulation.io.world, "yellow block")  # type: ignore[arg-type]
     link.put(topics.SIM_MODEL, simulation.last(topics.SIM_MODEL))
     simulation.step(0.05)
     state = simulation.last(topics.SIM_STATE)

@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from common.scene import load_scene
+from common.household import load_household
 from services.dashboard.scene.follow_camera import FollowCamera, opening_view
 
-APARTMENT = load_scene("apartment")
+APARTMENT = load_household("apartment")
 
 
 def on_screen(point: tuple[float, float, float], eye: Any, target: Any, aspect: float) -> tuple[float, float]:

@@ -10,7 +10,7 @@ from common import messages as m
 from common import topics
 from common.bus import codec
 from common.bus.memory import MemoryBus, MemoryIo
-from common.scene import load_scene
+from common.household import load_household
 from common.topics import Topic
 from services.dashboard.commands import CHUNK, LONGEST, TRAILING, Commands
 from services.dashboard.panels.history_buffers import Transcript
@@ -25,7 +25,7 @@ class Desk:
 
     def __init__(self) -> None:
         self.bus = MemoryBus()
-        self.io = MemoryIo(self.bus, "dashboard", (), WRITES, scene=load_scene("minimal"), lockstep=False)
+        self.io = MemoryIo(self.bus, "dashboard", (), WRITES, household=load_household("minimal"), lockstep=False)
         self.transcript = Transcript()
         self.commands = Commands(self.io, self.transcript)
         self._taps = {topic.key: self.bus.tap(topic) for topic in WRITES}

@@ -4,6 +4,7 @@ import mujoco
 import numpy as np
 import pytest
 
+from common.household import load_household
 from common.scene import load_scene
 from services.dashboard.scene.drawing import Drawing, Mesh, draw, posture
 from services.dashboard.scene.shapes import COLOURS, fallback
@@ -65,7 +66,7 @@ def test_cameras_look_where_mujocos_do(mjcf: str, drawing: Drawing) -> None:
 def test_what_moves_by_itself_is_not_part_of_the_flat(drawing: Drawing) -> None:
     assert set(drawing.objects) == {o.name for o in load_scene("minimal").objects}
     assert drawing.flat is not None
-    table = next(r for r in load_scene("minimal").receptacles if r.name == "table")
+    table = next(r for r in load_household("minimal").receptacles if r.name == "table")
     above = drawing.flat.vertices[:, 2] > table.center[2] + 0.01
     assert not above.any(), "something that stands on the table was drawn as furniture"
 

@@ -8,7 +8,7 @@ import pytest
 
 from common import messages as m
 from common.geometry import matrix_quat
-from common.scene import load_scene
+from common.household import load_household
 from services.dashboard.panels.tracking_error import arm_error, off_path
 from services.dashboard.scene.layers import FOOTPRINT, STATES, forks, picture
 from services.manipulation.grasp import Target, candidates, shown
@@ -16,7 +16,7 @@ from services.navigation.planning.costmap import Costmap
 
 
 def test_the_costmap_is_opaque_at_obstacles_and_clear_in_the_open() -> None:
-    scene = load_scene("apartment")
+    scene = load_household("apartment")
     costmap = Costmap(scene, 0.05, 30.0)
     sent = costmap.picture(3.0)
     image = picture(sent)

@@ -8,7 +8,7 @@ import pytest
 
 from common import topics
 from common.bus.memory import MemoryBus, MemoryIo
-from common.scene import load_scene
+from common.household import load_household
 from services.dashboard.background_requests import BackgroundRequests
 from services.dashboard.panels import markup
 from services.dashboard.panels.history_buffers import ServiceRow
@@ -73,7 +73,7 @@ def test_a_dead_socket_is_nobody(tmp_path: Path) -> None:
 
 def carer(told: list[str], supervisor: Supervisor) -> tuple[BackgroundRequests, MemoryBus, MemoryIo]:
     bus = MemoryBus()
-    io = MemoryIo(bus, "dashboard", (), (), scene=load_scene("minimal"), lockstep=True)
+    io = MemoryIo(bus, "dashboard", (), (), household=load_household("minimal"), lockstep=True)
     return BackgroundRequests(io, supervisor, told.append), bus, io
 
 

@@ -11,6 +11,7 @@ from rich.console import Console
 
 from common import messages as m
 from common import topics
+from common.scene import Scene
 from evaluation.case import Case, Line, Observed, Result, TimedFault
 from evaluation.chaos import CELLS, CHAOS_SERVICES, CHAOS_STATES, EVERY, MISTREATED, TRAFFIC, chaos
 from evaluation.examiner import Examiner, ExaminerConfig, examiner_of
@@ -153,7 +154,9 @@ def test_recovered_is_the_next_step_of_the_mission() -> None:
     case = Case(suite="chaos", seed=0, name="brain NAVIGATING", command="fetch", lines=(Line("fetch"),))
     # The states alone: there is no simulation to be seen.
     following = type("Following", (examiner_of(case),), {"step": Examiner.follow})
-    node = Node(following, ExaminerConfig(), SCENE)
+    node = Node(
+        following, ExaminerConfig(), SCENE, world=Scene(name="empty", low=SCENE.low, high=SCENE.high, home=SCENE.home)
+    )
     examiner: Examiner = node.service
 
     def show(state: str, step: str, mission: str = "m-1") -> None:

@@ -7,12 +7,13 @@ import pytest
 from common import messages as m
 from common import topics
 from common.bus.port import Io
-from common.scene import Place, Scene
+from common.floor_plan import Place
+from common.household import Household
 from evaluation.fault_reports import FaultReport, ignore
 from evaluation.faults import Kind, Rule, faulty
 from tests.node import Node
 
-SCENE = Scene(name="empty", low=(-1, -1), high=(1, 1), home=Place(name="home", x=0, y=0))
+SCENE = Household(name="empty", low=(-1, -1), high=(1, 1), home=Place(name="home", x=0, y=0))
 STATUS = topics.NAVIGATION_STATUS
 
 

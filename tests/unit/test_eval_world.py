@@ -26,7 +26,7 @@ class World(Simulation):
 
     def __init__(self, scene: str, seed: int) -> None:
         super().__init__(scene, seed)
-        self.replica = Replica(self.last(topics.SIM_MODEL).mjcf, self.io.scene)
+        self.replica = Replica(self.last(topics.SIM_MODEL).mjcf, self.io.world)
 
     def look(self) -> Sample:
         self.step(0.05)
@@ -51,7 +51,7 @@ class Watched(Simulation):
 
     def __init__(self, scene: str = "minimal", **more: Any) -> None:
         super().__init__(scene, 0, **more)
-        self.observer = Observer(self.io.scene)
+        self.observer = Observer(self.io.world)
         self.observer.model(self.last(topics.SIM_MODEL))
 
     def watch(self, seconds: float) -> Evidence:
@@ -86,7 +86,7 @@ def test_a_robot_that_drives_into_furniture_has_hit_it() -> None:
 def test_what_another_object_knocks_over_is_disturbed() -> None:
     """The robot touches neither: a can slides into a bottle, and the bottle goes over."""
     world = Watched("apartment")
-    table = next(r for r in world.io.scene.receptacles if r.kind == "table")
+    table = next(r for r in world.io.world.receptacles if r.kind == "table")
     x, y, z = table.center
     world.move("green can", (x - 0.12, y, z + 0.06), (0.0, 0.0, 0.0))
     world.move("blue bottle", (x, y, z + 0.107), (0.0, 0.0, 0.0))

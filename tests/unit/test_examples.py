@@ -11,6 +11,7 @@ import pytest
 from bench.mission import Robot, fetch
 from common import config, topics
 from common import messages as m
+from common.household import load_household, told
 from common.kinds import KINDS
 from common.plan_rules import known_world
 from common.scene import ObjectSpec, load_scene
@@ -28,7 +29,7 @@ RULE = '[[tidy]]\nkinds = ["can"]\ncolours = ["orange"]\nto = ["tea shelf"]\n\n'
 
 
 def test_the_odometer_adds_up_a_circle() -> None:
-    node = Node(OdometerService, OdometerConfig(report_every=0.5), load_scene("minimal"))
+    node = Node(OdometerService, OdometerConfig(report_every=0.5), load_household("minimal"))
     for n in range(201):
         a = 2 * pi * n / 200
         node.send(topics.ODOMETRY, m.Odometry(t=n * 0.05, x=cos(a), y=sin(a), theta=0.0))
@@ -60,11 +61,12 @@ def test_a_rule_of_ones_own_says_where_it_goes(tmp_path: Path) -> None:
     tin = m.WorldObject(
         label="tea tin", kind=spec.kind, colour=spec.colour, size=spec.size, on="table", position=(2.2, 0.3, 0.65)
     )
-    told = known_world(scene, ["tea tin"], "")
+    household = told(scene)
+    known = known_world(household, ["tea tin"], "")
     targets = {}
     for name, where in (("before", config.DEFAULT_DIR), ("after", directory)):
         parameters = config.load("planner", PlannerConfig, where, {})
-        world = believed(scene, told, [tin], (0.0, 0.0, 0.0), 1.0)
+        world = believed(household, known, [tin], (0.0, 0.0, 0.0), 1.0)
         plan = grammar.plan("put the tea tin away", world, parameters, (), None, "r")
         targets[name] = [s.target for s in plan.steps if s.action == "place"]
     assert targets["after"] == ["tea shelf"]

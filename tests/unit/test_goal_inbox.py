@@ -4,9 +4,9 @@ from common import messages as m
 from common import topics
 from common.bus.memory import MemoryBus, MemoryIo
 from common.goal_inbox import GoalInbox
-from common.scene import load_scene
+from common.household import load_household
 
-SCENE = load_scene("minimal")
+SCENE = load_household("minimal")
 
 
 class Receiver:
@@ -14,7 +14,7 @@ class Receiver:
 
     def __init__(self, capacity: int = 8) -> None:
         self.bus = MemoryBus()
-        self.io = io = MemoryIo(self.bus, "navigation", (topics.NAVIGATION_GOAL, topics.NAV_GOAL), (), scene=SCENE)
+        self.io = io = MemoryIo(self.bus, "navigation", (topics.NAVIGATION_GOAL, topics.NAV_GOAL), (), household=SCENE)
         self.told: list[tuple[str, ...]] = []
         self.inbox: GoalInbox[m.NavigationGoal, str] = GoalInbox(
             io,

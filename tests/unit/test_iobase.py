@@ -10,7 +10,7 @@ from tests.unit.test_lockstep import SCENE
 def make(lockstep: bool = False) -> tuple[MemoryBus, MemoryIo]:
     bus = MemoryBus()
     reads = (topics.NAVIGATION_GOAL, topics.JOINT_STATES)
-    io = MemoryIo(bus, "x", reads, (topics.NAVIGATION_STATUS,), scene=SCENE, lockstep=lockstep)
+    io = MemoryIo(bus, "x", reads, (topics.NAVIGATION_STATUS,), household=SCENE, lockstep=lockstep)
     return bus, io
 
 

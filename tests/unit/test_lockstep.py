@@ -5,11 +5,12 @@ import pytest
 from common import messages as m
 from common import topics
 from common.bus.memory import MemoryBus, MemoryIo
-from common.scene import Place, Scene
+from common.floor_plan import Place
+from common.household import Household
 from common.time.clock import ManualClock
 from common.time.lockstep import Barrier, InProcess, period_of
 
-SCENE = Scene(name="empty", low=(-1, -1), high=(1, 1), home=Place(name="home", x=0, y=0))
+SCENE = Household(name="empty", low=(-1, -1), high=(1, 1), home=Place(name="home", x=0, y=0))
 
 
 class Relay:
@@ -52,7 +53,7 @@ def run(talker_first: bool) -> list[tuple[int, str]]:
     bus, clock = MemoryBus(), ManualClock()
 
     def io(name: str, reads: tuple, writes: tuple) -> MemoryIo:
-        return MemoryIo(bus, name, reads, writes, scene=SCENE, clock=clock)
+        return MemoryIo(bus, name, reads, writes, household=SCENE, clock=clock)
 
     sim_io = io("sim", (topics.NAVIGATION_GOAL,), (topics.GOAL_REACHED,))
     sim = World(sim_io)

@@ -7,7 +7,7 @@ import pytest
 
 from common import messages as m
 from common.geometry import yaw_quat
-from common.scene import load_scene
+from common.household import load_household
 from services.manipulation.arm_model import Obstacle
 from services.manipulation.grasp import Target
 from services.manipulation.motion_planner import PlanError, Planner
@@ -83,7 +83,7 @@ def test_what_is_in_the_way_has_a_name_and_furniture_has_none() -> None:
 
 
 def test_objects_grow_by_the_spread_of_what_was_measured() -> None:
-    scene, base = load_scene("apartment"), (0.0, 0.0, 0.0)
+    scene, base = load_household("apartment"), (0.0, 0.0, 0.0)
     seen = m.WorldObject(
         label="toy",
         kind="",
@@ -99,7 +99,7 @@ def test_objects_grow_by_the_spread_of_what_was_measured() -> None:
 
 
 def test_surface_points_come_along_the_axes_of_the_base() -> None:
-    scene, base = load_scene("apartment"), (1.0, 0.0, math.pi / 2)
+    scene, base = load_household("apartment"), (1.0, 0.0, math.pi / 2)
     points = np.array([[10, 0, 0]] * 20, "<i2").tobytes()
     seen = m.WorldObject(
         label="toy", kind="", colour="red", position=(1.0, 0.6, 0.7), size=(0.05, 0.06, 0.07), points=points,

@@ -11,8 +11,8 @@ from common import messages as m
 from common import topics
 from common.bus.memory import MemoryIo
 from common.grip import Grip
+from common.household import load_household
 from common.kinds import KINDS
-from common.scene import load_scene
 from evaluation.stack import Stack
 from services.manipulation.arm_model import ArmModel, Obstacle, Pose
 from services.manipulation.config import ManipulationConfig
@@ -27,7 +27,7 @@ from services.sim.model import own
 from services.sim.robot import JOINT_NAMES
 from tests.node import Node
 
-SCENE = load_scene("minimal")
+SCENE = load_household("minimal")
 CONFIG = ManipulationConfig()
 FORWARD, WIDEST = 0.0, 0.0761
 
@@ -76,7 +76,7 @@ def test_inverse_kinematics_finds_reachable_poses_to_the_millimetre(arm: ArmMode
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_kind_has_grasps_that_fit_the_gripper(kind: str) -> None:
-    known = {o.kind: o.size for o in load_scene("apartment").objects}
+    known = {o.kind: o.size for o in load_household("apartment").things}
     size = known.get(kind, (0.22, 0.22, 0.03) if kind == "plate" else (0.06, 0.06, 0.06))
     target = Target(kind, kind, (0.6, 0.05, 0.6 + size[2] / 2), 0.4, size)
     found = candidates(target, FORWARD, WIDEST)

@@ -5,10 +5,10 @@ import math
 import pytest
 
 from common import messages as m
-from common.scene import load_scene
+from common.household import load_household
 from services.manipulation.planning_scene import GAPS, spots
 
-SCENE = load_scene("apartment")
+SCENE = load_household("apartment")
 TABLE = SCENE.receptacle("kitchen table")
 FORWARD = 0.1
 

@@ -7,7 +7,8 @@ import zlib
 import numpy as np
 import pytest
 
-from common.scene import Box, Place, Receptacle, Scene, Wall
+from common.floor_plan import Box, Place, Receptacle, Wall
+from common.household import Household
 from services.navigation.planning.costmap import Costmap
 from services.navigation.planning.planner import SPACING, PathPlanner, Point
 
@@ -17,11 +18,11 @@ FAR_AWAY = 20.0
 EAST = np.radians(np.arange(360.0))
 
 
-def flat(width: float = 2.0, height: float = 1.0, **more: object) -> Scene:
-    return Scene(name="x", low=(0.0, 0.0), high=(width, height), home=Place(name="home", x=0, y=0), **more)  # type: ignore[arg-type]
+def flat(width: float = 2.0, height: float = 1.0, **more: object) -> Household:
+    return Household(name="x", low=(0.0, 0.0), high=(width, height), home=Place(name="home", x=0, y=0), **more)  # type: ignore[arg-type]
 
 
-def costmap(scene: Scene | None = None, memory: float = 30.0) -> Costmap:
+def costmap(scene: Household | None = None, memory: float = 30.0) -> Costmap:
     return Costmap(scene or flat(), CELL, memory)
 
 
@@ -29,7 +30,7 @@ def centre(row: int, column: int) -> Point:
     return ORIGIN + (column + 0.5) * CELL, ORIGIN + (row + 0.5) * CELL
 
 
-def inside(scene: Scene, rectangle: tuple[float, float, float, float, float]) -> set[tuple[int, int]]:
+def inside(scene: Household, rectangle: tuple[float, float, float, float, float]) -> set[tuple[int, int]]:
     """Cells of the flat whose centre is in a rectangle (x, y, length, width, yaw)."""
     x, y, length, width, yaw = rectangle
     found = set()
@@ -43,7 +44,7 @@ def inside(scene: Scene, rectangle: tuple[float, float, float, float, float]) ->
     return found
 
 
-def occupied(scene: Scene) -> set[tuple[int, int]]:
+def occupied(scene: Household) -> set[tuple[int, int]]:
     """Cells of the flat that its static map counts as occupied."""
     grid = costmap(scene).static
     cells = zip(*(axis.tolist() for axis in np.nonzero(grid)), strict=True)
@@ -59,7 +60,7 @@ def test_the_map_is_larger_than_the_flat_and_what_is_outside_is_occupied() -> No
         x, y = centre(*cell)
         assert made.static[cell] == (not (0 <= x <= 2 and 0 <= y <= 1)), (x, y)
         assert made.point(*cell) == pytest.approx((x, y))
-    shifted = Costmap(Scene(name="x", low=(1, -2), high=(2, 1), home=Place(name="home", x=1, y=0)), 0.25, 1.0)
+    shifted = Costmap(Household(name="x", low=(1, -2), high=(2, 1), home=Place(name="home", x=1, y=0)), 0.25, 1.0)
     assert shifted.shape == (15, 7) and shifted.origin == pytest.approx((0.7, -2.3))
 
 
@@ -283,12 +284,12 @@ def test_points_near_something_unmapped_are_told_from_those_near_a_wall() -> Non
 RADIUS, INFLATION = 0.3, 0.6
 
 
-def planner(scene: Scene = ROOM) -> tuple[Costmap, PathPlanner]:
+def planner(scene: Household = ROOM) -> tuple[Costmap, PathPlanner]:
     made = costmap(scene)
     return made, PathPlanner(made, RADIUS, INFLATION)
 
 
-def cost(a: Point, b: Point, scene: Scene = ROOM) -> float:
+def cost(a: Point, b: Point, scene: Household = ROOM) -> float:
     paths = planner(scene)[1]
     return paths.cost_to(paths.field(*a), b)
 

@@ -7,7 +7,7 @@ from common import messages as m
 from common import topics
 from common.bus.port import Io
 from common.geometry import Pose2, Rectangle, compose, inverse, wrap
-from common.scene import load_scene
+from common.household import load_household
 from services.navigation.config import NavigationConfig
 from services.navigation.localisation.distance_field import REACH, DistanceField, distance_field, rectangles
 from services.navigation.localisation.localise import Localiser
@@ -18,7 +18,7 @@ from services.navigation.service import NavigationService
 from tests.node import Node
 from tests.unit.navigation_flat import cast, ends
 
-SCENE = load_scene("apartment")
+SCENE = load_household("apartment")
 HEIGHT = 0.2
 FIELD = distance_field(SCENE, HEIGHT)
 
@@ -115,7 +115,7 @@ class Hearing:
     READS, WRITES = (topics.ODOMETRY, topics.JOINT_STATES, topics.SCAN), (topics.POSE,)
 
     def __init__(self, config: NavigationConfig, io: Io) -> None:
-        self.senses = StateEstimator(config, io, Costmap(io.scene, config.resolution, 4.0))
+        self.senses = StateEstimator(config, io, Costmap(io.household, config.resolution, 4.0))
         self.step = self.senses.step
 
 
@@ -210,5 +210,5 @@ def test_a_scan_that_fits_nowhere_moves_nothing() -> None:
 
 
 def test_any_scene_has_a_field() -> None:
-    small = load_scene("minimal")
+    small = load_household("minimal")
     assert DistanceField(small, HEIGHT).at(np.array([[2.3, 0.0]]))[0][0] > 0.1, "under the table"

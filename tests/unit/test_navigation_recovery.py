@@ -8,7 +8,7 @@ import pytest
 from common import messages as m
 from common import topics
 from common.bus.memory import MemoryIo
-from common.scene import load_scene
+from common.household import load_household
 from common.viewpoints import viewpoints_of
 from services.navigation.config import NavigationConfig
 from services.navigation.motion.collision_avoidance import avoid
@@ -153,10 +153,10 @@ class Eyes:
 
     def __init__(self, flat: Flat, label: str, position: tuple[float, float, float] | None) -> None:
         self._flat, self._label, self._position = flat, label, position
-        self._views = viewpoints_of(flat.scene, None)
+        self._views = viewpoints_of(flat.io.household, None)
         self._still, self._last = 0, flat.true
         self.looked = np.zeros(len(self._views.points), bool)
-        MemoryIo(flat.bus, "perception", (), (topics.WORLD_OBJECTS,), scene=flat.scene)
+        MemoryIo(flat.bus, "perception", (), (topics.WORLD_OBJECTS,), household=flat.io.household)
 
     def step(self) -> None:
         flat = self._flat
@@ -210,7 +210,7 @@ def test_what_turns_out_to_be_something_else_on_the_way_is_searched_on() -> None
 
 
 def test_a_search_without_result_ends_after_every_surface_was_looked_at() -> None:
-    flat = Flat(scene=load_scene("minimal"))
+    flat = Flat(household=load_household("minimal"))
     eyes = Eyes(flat, "red mug", None)
     flat.ask("find red mug")
     status = search(flat, eyes, 160.0)

@@ -9,6 +9,7 @@ from common import messages as m
 from common import topics
 from common.approach import poses_for
 from common.geometry import quat_yaw
+from common.household import told
 from common.scene import load_scene
 from services.navigation.config import NavigationConfig
 from services.navigation.motion.path_follower import PathFollower
@@ -18,7 +19,8 @@ from services.navigation.service import NavigationService
 from services.sim.layout import place_objects
 from tests.node import Node
 
-SCENE = load_scene("apartment")
+WORLD = load_scene("apartment")
+SCENE = told(WORLD)
 CONFIG = NavigationConfig()
 RADIUS = CONFIG.footprint_radius + CONFIG.clearance
 
@@ -67,7 +69,7 @@ def test_every_object_has_a_stand_that_is_free_reachable_and_close(
     seed: int, planner: tuple[Costmap, PathPlanner]
 ) -> None:
     field = planner[1].field(0.0, 0.0)
-    for p in place_objects(SCENE, seed):
+    for p in place_objects(WORLD, seed):
         x, y, _ = p.position
         stands = poses_for((x, y), SCENE.receptacle(p.on), CONFIG.stand_off, CONFIG.edge_distance)
         good = [
@@ -170,7 +172,7 @@ def test_arrived_comes_only_from_the_base() -> None:
 
 def sighted() -> tuple[Pilot, Point]:
     """A robot that knows where the red mug is."""
-    node, mug = Pilot(), place_objects(SCENE, 0)[0]
+    node, mug = Pilot(), place_objects(WORLD, 0)[0]
     seen = m.WorldObject(
         label="red mug", kind="mug", colour="red", position=mug.position, size=mug.spec.size, on=mug.on
     )

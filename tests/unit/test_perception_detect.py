@@ -6,6 +6,7 @@ from functools import cache
 import numpy as np
 import pytest
 
+from common.household import told
 from common.kinds import KINDS
 from common.rendering.raycast import render
 from common.scene import Scene, load_scene
@@ -73,7 +74,7 @@ def detect(seen: View, seed: int) -> list[Detection]:
         float(seen.position[1] - HEAD[0] * math.sin(turn)),
         turn,
     )
-    return ClassicalDetector(scene, 3.5).detect(seen, body.mask(seen, base))
+    return ClassicalDetector(told(scene), 3.5).detect(seen, body.mask(seen, base))
 
 
 @pytest.mark.parametrize("seed", range(6))

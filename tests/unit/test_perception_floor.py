@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from common.scene import load_scene
+from common.household import load_household
 from services.camera.sensor import StereoCamera
 from services.perception.segmentation import segments
 from services.perception.view import View
 
-SCENE = load_scene("minimal")
+SCENE = load_household("minimal")
 WIDTH, HEIGHT, FOCAL = 640, 480, 400.0
 DOWN = np.array([[0.0, -0.62, 0.785], [-1.0, 0.0, 0.0], [0.0, -0.785, -0.62]])
 PLACE = np.array([-0.5, -1.2, 1.3])

@@ -4,11 +4,12 @@ import math
 
 import pytest
 
+from common.floor_plan import Place, Receptacle, Room
+from common.household import Household
 from common.messages import WorldObject
-from common.scene import Place, Receptacle, Room, Scene
 from services.perception.grounding import Grounding, ground
 
-SCENE = Scene(
+SCENE = Household(
     name="small", low=(-5, -5), high=(5, 5), home=Place(name="home", x=0, y=0),
     rooms=(
         Room(name="hall", low=(-5, -5), high=(2.5, 5)),

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from scipy.optimize import least_squares
 
+from common.floor_plan import Vec3
 from common.geometry import Array
 from common.kinds import KINDS
-from common.scene import Vec3
 from services.perception import shapes
 from services.perception.least_squares import solve
 

@@ -4,7 +4,7 @@ import pytest
 
 from common import messages as m
 from common import topics
-from common.scene import load_scene
+from common.household import load_household
 from services.perception.config import PerceptionConfig
 from services.perception.service import PerceptionService
 from tests.node import Node
@@ -14,7 +14,7 @@ class Eyes(Node):
     """The service, where it knows its pose and has asked for a picture."""
 
     def __init__(self) -> None:
-        super().__init__(PerceptionService, PerceptionConfig(), load_scene("minimal"))
+        super().__init__(PerceptionService, PerceptionConfig(), load_household("minimal"))
         self.until(lambda: self.count(topics.CAMERA_REQUEST))
         self.asked = self.sent(topics.CAMERA_REQUEST)[-1]
 

@@ -7,8 +7,8 @@ import pytest
 
 from common import messages as m
 from common import topics
+from common.household import load_household
 from common.robot import ARM
-from common.scene import load_scene
 from services.perception.service import PerceptionService
 from services.perception.state_buffer import StateBuffer
 from services.sim.model import own
@@ -29,7 +29,7 @@ class Robot(Node):
     """What the drivers and navigation say to perception."""
 
     def __init__(self) -> None:
-        super().__init__(Feeling, None, load_scene("minimal"))
+        super().__init__(Feeling, None, load_household("minimal"))
         self.state: StateBuffer = self.service.state
         self.bus.send(topics.ROBOT_DESCRIPTION, m.RobotDescription(mjcf=own().mjcf))
 

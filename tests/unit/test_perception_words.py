@@ -7,19 +7,19 @@ import numpy as np
 import pytest
 
 from common.geometry import quat_yaw, yaw_quat
+from common.household import load_household
 from common.messages import WorldObject
-from common.scene import load_scene
 from services.perception.detect import Detection
 from services.perception.grounding import ground
 from services.perception.object_tracker import ObjectTracker
 from services.perception.view import View
 
-SCENE = load_scene("apartment")
+SCENE = load_household("apartment")
 SYNONYMS = {"cup": "mug", "tin": "can"}
 
 
 def known(label: str, x: float, y: float, on: str = "counter", held: bool = False) -> WorldObject:
-    spec = SCENE.object(label)
+    spec = SCENE.thing(label)
     assert spec is not None
     return WorldObject(
         label=label, kind=spec.kind, colour=spec.colour, position=(x, y, 0.8), orientation=yaw_quat(0.0),
@@ -82,7 +82,7 @@ def test_what_the_hand_holds_is_not_offered() -> None:
 
 
 def detection(label: str, x: float, y: float, confidence: float = 0.9, distance: float = 1.0) -> Detection:
-    spec = SCENE.object(label)
+    spec = SCENE.thing(label)
     assert spec is not None
     return Detection(label, spec.kind, spec.colour, (x, y, 0.8), 0.0, spec.size, confidence, "counter", distance)
 

@@ -3,22 +3,23 @@
 import msgspec
 import pytest
 
+from common.floor_plan import Place, Receptacle, Room, Thing
+from common.household import Household
 from common.messages import KnownWorld, PlanStep
 from common.plan_rules import MAX_STEPS, OPENING, is_destination, known_world, objection
-from common.scene import ObjectSpec, Place, Receptacle, Room, Scene
 
 COLOUR = (1.0, 0.0, 0.0, 1.0)
 
 
-def spec(name: str, kind: str, width: float, *aliases: str) -> ObjectSpec:
+def spec(name: str, kind: str, width: float, *aliases: str) -> Thing:
     size = (width, width, 0.3)
     return msgspec.convert(
-        {"name": name, "kind": kind, "colour": "red", "size": size, "mass": 0.2, "rgba": COLOUR, "aliases": aliases},
-        ObjectSpec,
+        {"name": name, "kind": kind, "colour": "red", "size": size, "rgba": COLOUR, "aliases": aliases},
+        Thing,
     )
 
 
-SCENE = Scene(
+SCENE = Household(
     name="small", low=(-1, -1), high=(1, 1), home=Place(name="home", x=0, y=0, aliases=("dock",)),
     places=(Place(name="sofa", x=1, y=0, aliases=("couch",)), Place(name="hall", x=0, y=1)),
     rooms=(
@@ -28,7 +29,7 @@ SCENE = Scene(
         Receptacle(name="desk", kind="table", center=(0, 0, 1), size=(1, 1), aliases=("bureau",)),
         Receptacle(name="bin", kind="bin", center=(0, 0, 0), size=(1, 1), depth=0.4),
     ),
-    objects=(
+    things=(
         spec("red mug", "mug", OPENING, "red cup"), spec("crate", "box", OPENING + 0.001),
         spec("red bowl", "bowl", 0.2),
     ),

@@ -5,22 +5,22 @@ from pathlib import Path
 import pytest
 
 from common import config
+from common.household import Household, load_household
 from common.messages import ActionPlan, KnownWorld, PlanStep, RejectedPlan, WorldObject
 from common.plan_rules import known_world, objection
-from common.scene import Scene, load_scene
 from services.planner import grammar
 from services.planner.config import PlannerConfig
 from services.planner.world import believed
 
 CONFIG = config.load("planner", PlannerConfig, config.DEFAULT_DIR, {})
-SCENE = load_scene("apartment")
+SCENE = load_household("apartment")
 NOW = 20.0
 
 
 def seen(
-    label: str, on: str, position: tuple[float, float, float], seen_at: float = NOW, scene: Scene = SCENE
+    label: str, on: str, position: tuple[float, float, float], seen_at: float = NOW, scene: Household = SCENE
 ) -> WorldObject:
-    spec = scene.object(label)
+    spec = scene.thing(label)
     assert spec is not None
     return WorldObject(
         label=label, kind=spec.kind, colour=spec.colour, size=spec.size, on=on, position=position, seen_at=seen_at
@@ -43,7 +43,7 @@ def ask(
     objects: list[WorldObject] = WORLD,
     rejected: tuple[RejectedPlan, ...] = (),
     done: list[PlanStep] | None = None,
-    scene: Scene = SCENE,
+    scene: Household = SCENE,
 ) -> ActionPlan:
     told = known_world(scene, [o.label for o in objects], held)
     plan = grammar.plan(command, believed(scene, told, objects, (0.0, 0.0, 0.0), NOW), CONFIG, rejected, done, "r")
@@ -295,7 +295,7 @@ def test_what_cannot_be_planned_is_refused_in_plain_words(command: str, reason: 
 
 
 def test_another_scene_has_another_vocabulary() -> None:
-    scene = load_scene("minimal")
+    scene = load_household("minimal")
     assert text(ask("bring me the mug", objects=[], scene=scene)) == bring("red mug")
     assert "I know no apple" in ask("bring me the apple", objects=[], scene=scene).detail
     assert "I know no kitchen" in ask("go to the kitchen", objects=[], scene=scene).detail

@@ -2,17 +2,17 @@
 
 import pytest
 
+from common.household import load_household
 from common.language.normalise import clauses, infinitive
 from common.language.pattern import Pattern, PatternError
 from common.messages import KnownWorld, PlanStep
-from common.scene import load_scene
 from services.planner.choice_points import MAX_RUNS, ChoicePoints, every
 from services.planner.config import PlannerConfig
 from services.planner.llm_plan import Impossible, checked
 from services.planner.vocabulary import Vocabulary
 from services.planner.world import believed
 
-SCENE = load_scene("apartment")
+SCENE = load_household("apartment")
 
 
 def readings(pattern: str, text: str) -> list[dict[str, str]]:

@@ -8,9 +8,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from common import config
+from common.household import load_household
 from common.messages import ActionPlan, RejectedPlan, WorldObject
 from common.plan_rules import known_world, objection
-from common.scene import load_scene
 from services.planner import grammar
 from services.planner.config import PlannerConfig
 from services.planner.world import believed
@@ -19,7 +19,7 @@ from services.speech.recognise.grammar import vocabulary
 
 CONFIG = config.load("planner", PlannerConfig, config.DEFAULT_DIR, {})
 SPEECH = config.load("speech", SpeechConfig, config.DEFAULT_DIR, {})
-SCENE = load_scene("apartment")
+SCENE = load_household("apartment")
 _TOKEN = re.compile(r"<(\w+)>|([()\[\]|])|([a-z0-9']+)")
 _NAMED = re.compile(r"^(\w+)\s*=\s*(.+)$")
 
@@ -71,7 +71,7 @@ def world(rng: random.Random) -> list[WorldObject]:
     """Some objects on some surfaces."""
     shelves = [r for r in SCENE.receptacles if r.spawn]
     rows = []
-    for spec in rng.sample(SCENE.objects, rng.randint(0, len(SCENE.objects))):
+    for spec in rng.sample(SCENE.things, rng.randint(0, len(SCENE.things))):
         r = rng.choice(shelves)
         x, y = r.center[0] + rng.uniform(-0.2, 0.2), r.center[1] + rng.uniform(-0.2, 0.2)
         position = (x, y, r.center[2] + 0.05)

@@ -6,12 +6,12 @@ import pytest
 from common import config, topics
 from common import messages as m
 from common.goal_inbox import CAPACITY
-from common.scene import load_scene
+from common.household import load_household
 from services.planner.config import PlannerConfig
 from services.planner.service import PlannerService
 from tests.node import Node
 
-SCENE = load_scene("apartment")
+SCENE = load_household("apartment")
 CONFIG = config.load("planner", PlannerConfig, config.DEFAULT_DIR, {})
 
 

@@ -22,6 +22,7 @@ import mujoco, numpy as np
 from common import config
 from common.kinds import KINDS, kind_of
 from common.messages import KnownWorld, ObjectPose
+from common.household import told
 from common.scene import load_scene
 from services.brain.world import placement
 from services.manipulation.grasp import Target, candidates
@@ -46,7 +47,7 @@ for x in np.linspace(-0.08, 0.08, 40):
 seen = fit(kind_of("spoon"), spec.size, np.array(points), -spec.size[2] / 2, camera)
 held = candidates(Target("spoon", "spoon", (0.6, 0.0, 0.6), 0.3, spec.size), 0.12, 0.076)
 parameters = config.load("planner", PlannerConfig, config.DEFAULT_DIR, {})
-plan = grammar.plan("bring me the spoon", believed(scene, KnownWorld(), []), parameters)
+plan = grammar.plan("bring me the spoon", believed(told(scene), KnownWorld(), []), parameters)
 lying = ObjectPose(query_id="q", found=True, position=(0.7, 0.0, 0.47), on="delivery tray", tilt=1.57)
 print(json.dumps({
     "geoms": model.ngeom,
@@ -54,7 +55,7 @@ print(json.dumps({
     "turned": round(abs(float(np.sin(seen.yaw))), 1),
     "grasps": len(held) >= 3 and all(g.width == 0.03 for g in held),
     "plan": [" ".join((s.action, s.object)).strip() for s in plan.steps],
-    "fault": placement.judge_placement(lying, "wooden spoon", "delivery tray", scene).fault,
+    "fault": placement.judge_placement(lying, "wooden spoon", "delivery tray", told(scene)).fault,
     "dishes": "spoon" in parameters.groups["dish"],
 }))
 """

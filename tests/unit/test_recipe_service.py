@@ -10,12 +10,12 @@ from math import isclose
 from cli.services import SERVICES
 from common import messages as m
 from common import topics
-from common.scene import load_scene
+from common.household import load_household
 from common.security.access import Subject, grants
 from services.odometer import OdometerConfig, OdometerService
 from tests.node import Node
 
-node = Node(OdometerService, OdometerConfig(), load_scene("minimal"), lockstep=False)
+node = Node(OdometerService, OdometerConfig(), load_household("minimal"), lockstep=False)
 for x in (0.0, 0.3, 0.6):
     node.send(topics.ODOMETRY, m.Odometry(t=0.0, x=x, y=0.0, theta=0.0))
     node.step()

@@ -6,7 +6,7 @@ from tests.recipes import Recipe
 
 ASK = """
 from common import interfaces, topics
-from common.scene import load_scene
+from common.household import load_household
 from common.security.access import Subject, grants
 from services.navigation.config import NavigationConfig
 from services.navigation.service import NavigationService
@@ -14,7 +14,7 @@ from tests.node import Node
 from tests.simulation import Simulation
 
 sim = Simulation()
-navigation = Node(NavigationService, NavigationConfig(), load_scene("minimal"), bus=sim.bus, lockstep=False)
+navigation = Node(NavigationService, NavigationConfig(), load_household("minimal"), bus=sim.bus, lockstep=False)
 for _ in range(20):
     sim.step()
 navigation.step()

@@ -12,7 +12,7 @@ ASK = """
 import json
 from common import config
 from common.messages import KnownWorld
-from common.scene import load_scene
+from common.household import load_household
 from services.brain.language.intent import parse
 from services.planner import grammar
 from services.planner.config import PlannerConfig
@@ -20,7 +20,7 @@ from services.planner.world import believed
 from services.speech.config import SpeechConfig
 from services.speech.recognise.recogniser import grammars
 
-scene, said = load_scene("apartment"), "i could use the red mug"
+scene, said = load_household("apartment"), "i could use the red mug"
 plan = grammar.plan(said, believed(scene, KnownWorld(), []), PlannerConfig())
 speech = config.load("speech", SpeechConfig, config.DEFAULT_DIR, {})
 intent = parse(said, scene)

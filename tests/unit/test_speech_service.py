@@ -9,9 +9,9 @@ import pytest
 from common import config, topics
 from common import messages as m
 from common.bus.memory import MemoryIo
+from common.household import load_household
 from common.language.pattern import PatternError
 from common.runtime import StartError
-from common.scene import load_scene
 from services.speech.audio import RATE, AudioError, read_wav, write_wav
 from services.speech.config import SpeechConfig
 from services.speech.listen.vad import Endpointer
@@ -23,7 +23,7 @@ from tests.node import Node
 
 ROOT = Path(__file__).parents[2]
 VOICE = ROOT / "docs" / "audio" / "bring_me_the_red_mug.wav"
-SCENE = load_scene("apartment")
+SCENE = load_household("apartment")
 CONFIG = config.load("speech", SpeechConfig, ROOT / "config", config.overrides({}, ["speech.preload=false"]))
 
 
@@ -33,7 +33,7 @@ def grammar() -> Grammar:
 
 
 def test_every_object_and_surface_of_the_scene_can_be_named(grammar: Grammar) -> None:
-    for o in SCENE.objects:
+    for o in SCENE.things:
         for name in (o.name, *o.aliases):
             assert grammar.accepts(f"bring me the {name}")
     for r in SCENE.receptacles:

@@ -8,7 +8,7 @@ import pytest
 
 from common import config, topics
 from common import messages as m
-from common.scene import load_scene
+from common.household import load_household
 from services.speech.audio import RATE, Samples
 from services.speech.config import SpeechConfig
 from services.speech.listen.segmenter import Segment, Segmenter
@@ -17,7 +17,7 @@ from services.speech.speak.voice import Voice
 from tests.node import Node
 from tests.support import ROOT
 
-SCENE = load_scene("apartment")
+SCENE = load_household("apartment")
 CONFIG = config.load("speech", SpeechConfig, ROOT / "config", config.overrides({}, ["speech.preload=false"]))
 BREATH, PAUSE = np.zeros(RATE // 2, np.int16), np.zeros(RATE, np.int16)
 SENTENCES = (

@@ -9,12 +9,12 @@ import pytest
 
 from common import messages as m
 from common.geometry import Pose2
-from common.scene import load_scene
+from common.household import load_household
 from common.viewpoints import NOMINAL, REACH, Viewpoints, viewpoints_of
 from services.brain.world import viewpoint_search
 from services.sim.mounts import head_camera
 
-SCENE = load_scene("apartment")
+SCENE = load_household("apartment")
 HOME = (0.0, 0.0, 0.0)
 VIEWPOINTS = viewpoints_of(SCENE, None)
 

@@ -8,12 +8,12 @@ from common import messages as m
 from common.floor_plan import Place, Receptacle
 from common.geometry import Rectangle
 from common.grip import Grip, grip_of
-from common.scene import Scene
+from common.household import Household
 
 TURNED = Rectangle(1.0, 2.0, 2.0, 1.0, math.pi / 6)
 SHELF = Receptacle(name="shelf", kind="shelf", center=(0.0, 0.0, 0.8), size=(1.0, 0.4), yaw=math.pi / 4)
 BIN = Receptacle(name="bin", kind="bin", center=(3.0, 0.0, 0.02), size=(0.3, 0.3), depth=0.4)
-SCENE = Scene(name="s", low=(-5, -5), high=(5, 5), home=Place(name="home", x=0, y=0), receptacles=(SHELF, BIN))
+SCENE = Household(name="s", low=(-5, -5), high=(5, 5), home=Place(name="home", x=0, y=0), receptacles=(SHELF, BIN))
 ALONG = (0.45 * math.sqrt(0.5), 0.45 * math.sqrt(0.5))
 """A point of the turned shelf that would be beside it if its yaw were ignored."""
 

@@ -4,9 +4,9 @@ import re
 from collections.abc import Sequence
 from typing import Literal
 
+from common.household import Household
 from common.language.meaning import asks_for
 from common.language.normalise import normalise, without_determiners
-from common.scene import Scene
 
 Reply = Literal["yes", "no", "cancel", "correction"]
 _CORRECTION = re.compile(r"^(?:no|nope|wrong|not that|i said|i meant|i mean|actually|rather)\s+")
@@ -27,13 +27,13 @@ def reply(text: str) -> tuple[Reply, str]:
     return "correction", rest
 
 
-def corrected(command: str, correction: str, scene: Scene) -> str:
+def corrected(command: str, correction: str, household: Household) -> str:
     """The command with its object exchanged for the corrected one; a whole new command replaces it."""
     thing = " ".join(without_determiners(tuple(correction.split())))
-    if scene.object(thing) is None:
+    if household.thing(thing) is None:
         return correction
     words = normalise(command)
-    names = sorted((n for o in scene.objects for n in (o.name, *o.aliases)), key=len, reverse=True)
+    names = sorted((n for o in household.things for n in (o.name, *o.aliases)), key=len, reverse=True)
     for name in names:
         if re.search(rf"\b{re.escape(name)}\b", words):
             return re.sub(rf"\b{re.escape(name)}\b", thing, words, count=1)

@@ -5,6 +5,8 @@ from typing import Literal
 
 import msgspec
 
+from common.floor_plan import Thing
+from common.household import Household
 from common.language.meaning import VERBS, asks_for, readings
 from common.language.normalise import (
     Words,
@@ -18,7 +20,6 @@ from common.language.normalise import (
 )
 from common.language.noun_phrase import WHICH, related
 from common.language.wordings import Action
-from common.scene import ObjectSpec, Scene
 
 Kind = Literal["fetch", "return", "stop", "cancel", "none"]
 
@@ -28,7 +29,7 @@ _INDEFINITE = re.compile(r"\b(?:a|an|any|some)\s+\w")
 
 
 class Intent(msgspec.Struct, frozen=True):
-    """`item` is the object as spoken, `label` its name in the scene; `reason` says why there is no intent."""
+    """`item` is the object as spoken, `label` its name in the household; `reason` says why there is no intent."""
 
     kind: Kind
     item: str = ""
@@ -36,7 +37,7 @@ class Intent(msgspec.Struct, frozen=True):
     reason: str = ""
 
 
-def parse(text: str, scene: Scene) -> Intent:
+def parse(text: str, household: Household) -> Intent:
     """The intent of a sentence; kind `none` with a reason that can be spoken when there is none."""
     if action := asks_for(text, *_CONTROLS):
         return Intent(_CONTROLS[action])
@@ -44,11 +45,11 @@ def parse(text: str, scene: Scene) -> Intent:
     any_one = _INDEFINITE.search(" ".join(words)) is not None
     named = _object_phrases(words)
     for candidate in (item for variants in named for item in variants):
-        label, _ = find_object(candidate, scene, any_one)
+        label, _ = find_object(candidate, household, any_one)
         if label:
-            exact = scene.object(candidate) is not None
+            exact = household.thing(candidate) is not None
             return Intent("fetch", item=candidate if exact else label, label=label)
-    return Intent("none", reason=find_object(named[0][-1] if named else "", scene)[1])
+    return Intent("none", reason=find_object(named[0][-1] if named else "", household)[1])
 
 
 def _object_phrases(words: Words) -> list[list[str]]:
@@ -64,40 +65,40 @@ def _variants(phrase: Words) -> list[str]:
     return [" ".join(phrase), " ".join(bare), " ".join(w for w in bare if w not in WHICH)]
 
 
-def find_object(thing: str, scene: Scene, any_one: bool = False) -> tuple[str, str]:
-    """(scene name, "") of the object meant, else ("", why not); with `any_one` the first of several will do."""
-    known = scene.object(thing)
+def find_object(thing: str, household: Household, any_one: bool = False) -> tuple[str, str]:
+    """(household name, "") of the object meant, else ("", why not); with `any_one` the first of several will do."""
+    known = household.thing(thing)
     if known is not None:
         return known.name, ""
     words = thing.split()
     if not words:
         return "", "I did not hear what to bring."
-    nouns = _nouns(scene)
-    colours = {o.colour for o in scene.objects}
+    nouns = _nouns(household)
+    colours = {o.colour for o in household.things}
     for split in range(len(words)):
         noun = " ".join(words[split:])
         kind = nouns.get(noun) or nouns.get(noun.removesuffix("s"))
         if kind is None or not set(words[:split]) <= colours:
             continue
-        named = [o for o in scene.objects if o.kind == kind and (not split or o.colour in words[:split])]
+        named = [o for o in household.things if o.kind == kind and (not split or o.colour in words[:split])]
         if len(named) == 1 or (named and any_one):
             return named[0].name, ""
         if named:
             return "", f"Which {noun}: {_choice(named)}?"
     if len(words) == 2 and words[1] in nouns:
-        return "", f"I know no {thing}, only the {_choice([o for o in scene.objects if o.kind == nouns[words[1]]])}."
+        return "", f"I know no {thing}, only the {_choice([o for o in household.things if o.kind == nouns[words[1]]])}."
     return "", f"I do not know what {thing!r} is."
 
 
-def _nouns(scene: Scene) -> dict[str, str]:
+def _nouns(household: Household) -> dict[str, str]:
     """Words for kinds of objects: the kinds, and what aliases leave when the colour is taken off."""
-    nouns: dict[str, str] = {o.kind: o.kind for o in scene.objects}
-    for spec in scene.objects:
+    nouns: dict[str, str] = {o.kind: o.kind for o in household.things}
+    for spec in household.things:
         for name in (spec.name, *spec.aliases):
             if name.startswith(f"{spec.colour} "):
                 nouns.setdefault(name.removeprefix(f"{spec.colour} "), spec.kind)
     return nouns
 
 
-def _choice(specs: list[ObjectSpec]) -> str:
+def _choice(specs: list[Thing]) -> str:
     return enumeration([s.name for s in specs], "or")

@@ -64,7 +64,7 @@ class Context:
     @property
     def viewpoints(self) -> Viewpoints:
         """Where the robot's head camera may look from."""
-        return viewpoints_of(self.io.scene, self.io.latest(topics.ROBOT_DESCRIPTION))
+        return viewpoints_of(self.io.household, self.io.latest(topics.ROBOT_DESCRIPTION))
 
     @property
     def robot_pose(self) -> Pose2:

@@ -67,7 +67,7 @@ class Heard(msgspec.Struct):
 
 
 class Task(msgspec.Struct):
-    """What the fetch pipeline understood: `kind` of intent, `item` as spoken, `label` as the scene has it."""
+    """What the fetch pipeline understood: `kind` of intent, `item` as spoken, `label` as the household has it."""
 
     kind: str = ""
     item: str = ""

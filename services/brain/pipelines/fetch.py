@@ -54,7 +54,7 @@ def carry_out(ctx: Context) -> Behaviour:
 
 def deliver(ctx: Context) -> Behaviour:
     """Get it, bring it, put it down; where perception is alive, look whether it stands there."""
-    look = Sequence("look", Settle("settle", ctx), verify_placement(ctx, ctx.io.scene.delivery))
+    look = Sequence("look", Settle("settle", ctx), verify_placement(ctx, ctx.io.household.delivery))
     return Sequence(
         "deliver",
         Condition("get_it", acquire(ctx), lambda: not ctx.gripper.holding and not ctx.mission.delivery.released),
@@ -94,7 +94,7 @@ class ParseCommand(Leaf):
     def update(self) -> Status:
         ctx = self.ctx
         ctx.gripper.resolve_uncertainty(gripper_holds(ctx.io.latest(topics.JOINT_STATES)))
-        intent = parse(ctx.mission.command, ctx.io.scene)
+        intent = parse(ctx.mission.command, ctx.io.household)
         ctx.note(f"understood: {intent.kind}", intent.item or intent.reason, "planned")
         if intent.kind == "none":
             ctx.record_failure(Failure("UNDERSTANDING", "NOT_UNDERSTOOD", spoken=intent.reason))

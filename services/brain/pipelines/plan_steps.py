@@ -87,7 +87,7 @@ def step_tree(ctx: Context, step: PlanStep, carried: str, at_home: bool = False)
 
 def navigate(ctx: Context, where: str, name: str) -> Sequence:
     """Drive to a place, or up to an object that is looked for first."""
-    if is_destination(where, ctx.io.scene):
+    if is_destination(where, ctx.io.household):
         return Sequence(PLAN_STEP, go_to(ctx, where), Settle("settle", ctx), name=name)
     unseen = Condition("find_it", find(ctx, where), lambda: where not in ctx.mission.search.found)
     return Sequence(PLAN_STEP, unseen, approach(ctx, where), name=name)
@@ -122,12 +122,12 @@ def grasp(ctx: Context, item: str) -> Node:
 
 def release(ctx: Context, carried: str, at_home: bool, name: str) -> Sequence:
     """Let go of what was grasped, and look; of what somebody else put into the hand, look only if it is known."""
-    target = ctx.io.scene.delivery if at_home else ""
+    target = ctx.io.household.delivery if at_home else ""
     if carried:
         down = put_down(ctx, carried, lambda: home_and_settle(ctx), "release", target)
         return Sequence(PLAN_STEP, down, name=name)
     look = verify_placement(ctx, target)
-    known = Condition("look", look, lambda: ctx.io.scene.object(ctx.mission.delivery.put_down) is not None)
+    known = Condition("look", look, lambda: ctx.io.household.thing(ctx.mission.delivery.put_down) is not None)
     return Sequence(PLAN_STEP, set_down_or_open(ctx), Settle("settle", ctx), known, name=name)
 
 

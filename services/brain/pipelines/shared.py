@@ -17,7 +17,7 @@ def drive_home(ctx: Context) -> Behaviour:
         text=lambda: "return_to_start",
         spoken=lambda: "I could not come back" + (f" with the {ctx.gripper.holding}." if ctx.gripper.holding else "."),
         state="RETURNING",
-        place=ctx.io.scene.home.name,
+        place=ctx.io.household.home.name,
     )
 
 

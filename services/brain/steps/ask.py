@@ -99,7 +99,7 @@ class HearConfirmation(HearAnswer):
         if kind == "yes" and not mission.heard.repeat:
             return Status.SUCCESS
         if kind == "correction":
-            mission.command = rest if mission.heard.repeat else corrected(mission.command, rest, self.ctx.io.scene)
+            mission.command = rest if mission.heard.repeat else corrected(mission.command, rest, self.ctx.io.household)
             mission.heard.repeat = False
         elif kind == "no":
             mission.heard.repeat = True

@@ -67,7 +67,7 @@ class MoveToViewpoint(SendGoal):
         ctx, mission, pose = self.ctx, self.ctx.mission, self.ctx.robot_pose
         looked_from = [*mission.search.visited, pose]
         if self._elsewhere:
-            self._target = viewpoint_search.elsewhere(ctx.io.scene, ctx.viewpoints, pose, looked_from)
+            self._target = viewpoint_search.elsewhere(ctx.io.household, ctx.viewpoints, pose, looked_from)
         else:
             self._target = viewpoint_search.turn(ctx.viewpoints, pose, looked_from)
         # A view that cannot be reached is not tried a second time either.
@@ -126,7 +126,7 @@ class Approach(Navigate):
         ctx, ref = self.ctx, object_in_map(self.ctx, self._item)
         if ref is None or ref.frame != "map":
             return super().goal(goal_id)  # nobody has said where in the map it is: navigation looks for it
-        x, y, theta = standing_pose(ctx.io.scene, (ref.position[0], ref.position[1]), ctx.robot_pose)
+        x, y, theta = standing_pose(ctx.io.household, (ref.position[0], ref.position[1]), ctx.robot_pose)
         return topics.NAV_GOAL, m.NavGoal(id=goal_id, x=x, y=y, theta=theta, object=ref)
 
 

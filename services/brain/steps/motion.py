@@ -54,7 +54,7 @@ class Navigate(SendGoal):
     def goal(self, goal_id: str) -> tuple[Topic[Any], m.Message]:
         ctx = self.ctx
         if self._place and ctx.config.drive_by == "poses":
-            pose = place_pose(ctx.io.scene, self._place, ctx.robot_pose)
+            pose = place_pose(ctx.io.household, self._place, ctx.robot_pose)
             if pose is not None:
                 return topics.NAV_GOAL, m.NavGoal(id=goal_id, x=pose[0], y=pose[1], theta=pose[2])
         return topics.NAVIGATION_GOAL, m.NavigationGoal(goal=self._text(), id=goal_id)

@@ -57,7 +57,7 @@ class RequestPlan(SendGoal):
     def succeed(self, result: Result) -> Status:
         ctx, plan = self.ctx, result.message
         assert isinstance(plan, m.ActionPlan)
-        wrong = objection(plan.steps, self._world(), ctx.io.scene)
+        wrong = objection(plan.steps, self._world(), ctx.io.household)
         if wrong is None:
             ctx.mission.planning.steps, ctx.mission.planning.look_again = plan.steps, plan.again
             if plan.again:
@@ -78,7 +78,7 @@ class RequestPlan(SendGoal):
     def _world(self) -> m.KnownWorld:
         ctx = self.ctx
         world = ctx.io.latest(topics.WORLD_OBJECTS)
-        return known_world(ctx.io.scene, [o.label for o in world.objects] if world else [], ctx.gripper.holding)
+        return known_world(ctx.io.household, [o.label for o in world.objects] if world else [], ctx.gripper.holding)
 
 
 class PlanIsComplete(Leaf):

@@ -59,9 +59,9 @@ class VerifyPlacement(SendGoal):
         if pose.found and pose.seen_at <= ctx.gripper.put_down.get(label, math.inf):
             return self._unchecked("what was seen is older than the release")
         if pose.found:
-            finding = judge_placement(pose, label, self._target, ctx.io.scene, object_in_map(ctx, self._near))
+            finding = judge_placement(pose, label, self._target, ctx.io.household, object_in_map(ctx, self._near))
         else:
-            finding = judge_absence(label, self._target, ctx.io.scene)
+            finding = judge_absence(label, self._target, ctx.io.household)
         return record_finding(ctx, finding, pose.picture)
 
     def fail_with(self, failure: Failure) -> Status:
@@ -117,7 +117,7 @@ class AlreadyInPlace(Leaf):
         label = ctx.mission.delivery.put_down
         if pose is None or pose.label != label or pose.seen_at <= ctx.gripper.put_down.get(label, math.inf):
             return Status.FAILURE
-        finding = judge_placement(pose, label, self._target, ctx.io.scene, object_in_map(ctx, self._near))
+        finding = judge_placement(pose, label, self._target, ctx.io.household, object_in_map(ctx, self._near))
         if finding.fault:
             return Status.FAILURE
         return record_finding(ctx, finding, b"")

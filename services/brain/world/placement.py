@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from typing import Literal
 
 from common.geometry import quat_matrix
+from common.household import Household
 from common.kinds import kind_of
 from common.messages import ObjectPose, ObjectRef
-from common.scene import Scene
 
 Fault = Literal["", "NOT_SEEN", "MISPLACED", "TOPPLED"]
 TIPPED = 0.35
@@ -36,14 +36,14 @@ class Finding:
 
 
 def judge_placement(
-    pose: ObjectPose, label: str, target: str, scene: Scene, beside: ObjectRef | None = None
+    pose: ObjectPose, label: str, target: str, household: Household, beside: ObjectRef | None = None
 ) -> Finding:
     """Judge an object that was seen after it was put down on `target`; "": anywhere will do.
 
     `beside`: the object, with its place in frame map, next to which it belongs.
     """
-    spec, wanted = scene.object(label), scene.receptacle(target)
-    on = scene.receptacle(pose.on) or scene.resting_place(pose.position)
+    spec, wanted = household.thing(label), household.receptacle(target)
+    on = household.receptacle(pose.on) or household.resting_place(pose.position)
     where = f"on the {on.name}" if on else "on the floor"
     if on and on.depth:
         where = f"in the {on.name}"
@@ -63,9 +63,9 @@ def judge_placement(
     return Finding("", f"the {label} is {where}", measured)
 
 
-def judge_absence(label: str, target: str, scene: Scene) -> Finding:
+def judge_absence(label: str, target: str, household: Household) -> Finding:
     """Judge that an object is not to be seen. Into a bin the camera hardly looks: there the hand's word counts."""
-    wanted = scene.receptacle(target)
+    wanted = household.receptacle(target)
     if wanted is not None and wanted.depth:
         return Finding("", f"the {label} was let go over the {wanted.name} and is nowhere else to be seen")
     return Finding("NOT_SEEN", f"the {label} is not to be seen" + (f" on the {wanted.name}" if wanted else ""))

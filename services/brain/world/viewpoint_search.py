@@ -3,8 +3,8 @@
 import math
 from collections.abc import Collection
 
+from common.floor_plan import FloorPlan
 from common.geometry import Array, Pose2
-from common.scene import Scene
 from common.viewpoints import Viewpoints
 from services.brain.world.standing_poses import clearance
 
@@ -19,19 +19,21 @@ def turn(viewpoints: Viewpoints, here: Pose2, looked_from: Collection[Pose2]) ->
     return viewpoints.turn(here, _unseen(viewpoints, looked_from))
 
 
-def elsewhere(scene: Scene, viewpoints: Viewpoints, here: Pose2, looked_from: Collection[Pose2]) -> Pose2 | None:
+def elsewhere(
+    floor_plan: FloorPlan, viewpoints: Viewpoints, here: Pose2, looked_from: Collection[Pose2]
+) -> Pose2 | None:
     """The viewpoint that shows most that is new for the way there; None when everything has been looked at."""
-    room = scene.room_at(here[0], here[1])
+    room = floor_plan.room_at(here[0], here[1])
 
     def cost(to: Pose2) -> float:
-        other = scene.room_at(to[0], to[1]) is not room
+        other = floor_plan.room_at(to[0], to[1]) is not room
         return math.dist(here[:2], to[:2]) + ROOM_CHANGE * other
 
     return viewpoints.best(
         _unseen(viewpoints, looked_from),
         looked_from,
         cost,
-        free=lambda to: clearance(scene, to[0], to[1]) >= CLEARANCE,
+        free=lambda to: clearance(floor_plan, to[0], to[1]) >= CLEARANCE,
     )
 
 

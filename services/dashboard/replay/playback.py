@@ -17,12 +17,12 @@ from common import topics
 from common.bus import codec
 from common.bus.base import WorkerJob
 from common.bus.memory import MemoryBus, MemoryIo
+from common.household import load_household
 from common.mission_log import recorded
 from common.mission_log.states import OTHER_STATE, STATE_COLOURS, spans
 from common.process import StopSignal
 from common.recording import Recording, RecordingError, Row
 from common.runtime import StartError
-from common.scene import load_scene
 from common.time.clock import monotonic
 from services.dashboard.config import DashboardConfig
 from services.dashboard.panels.history_buffers import Transcript
@@ -42,7 +42,13 @@ class TapeIo(MemoryIo):
     def __init__(self, bus: MemoryBus, missions: list[recorded.Record]) -> None:
         reads, writes = DashboardService.READS, DashboardService.WRITES
         super().__init__(
-            bus, DashboardService.NAME, reads, writes, scene=load_scene("minimal"), lockstep=False, log_level="warning"
+            bus,
+            DashboardService.NAME,
+            reads,
+            writes,
+            household=load_household("minimal"),
+            lockstep=False,
+            log_level="warning",
         )
         self._missions = missions
         self.alive: dict[str, bool] = {}

@@ -7,8 +7,8 @@ import numpy as np
 import viser
 from numpy.typing import NDArray
 
+from common.floor_plan import FloorPlan
 from common.geometry import Pose2
-from common.scene import Scene
 
 Array = NDArray[np.float64]
 AZIMUTH, ELEVATION = 225.0, 48.0
@@ -16,7 +16,7 @@ AZIMUTH, ELEVATION = 225.0, 48.0
 HEIGHT = 0.4
 """Of the point looked at [m]: the middle of the robot."""
 SPAN = 5.0
-"""Width [m] of a room where the scene names none; chosen: a living room's."""
+"""Width [m] of a room where the floor plan names none; chosen: a living room's."""
 FILLED = 0.95
 """Share of the view's narrower side that the room's width takes up at the point looked at; chosen: only the near
 corners of the floor are cut off."""
@@ -30,13 +30,15 @@ AWAY = 0.5
 """Distance [m] of the robot from where "reset view" leads, after which it leads there anew."""
 
 
-def opening_view(base: Pose2, scene: Scene, fov: float = radians(FIELD), aspect: float = 1.0) -> tuple[Array, Array]:
+def opening_view(
+    base: Pose2, floor_plan: FloorPlan, fov: float = radians(FIELD), aspect: float = 1.0
+) -> tuple[Array, Array]:
     """Position (3,) and point looked at (3,) [m], frame map, for a robot at `base`.
 
     `fov`: vertical field of view [rad], `aspect`: width by height of the view.
     """
     x, y, _ = base
-    room = scene.room_at(x, y)
+    room = floor_plan.room_at(x, y)
     span, middle = SPAN, (x, y)
     if room is not None:
         span = max(room.high[0] - room.low[0], room.high[1] - room.low[1])
@@ -50,8 +52,8 @@ def opening_view(base: Pose2, scene: Scene, fov: float = radians(FIELD), aspect:
 class FollowCamera:
     """Moves the cameras of a viser server's visitors; every call is from the service's thread."""
 
-    def __init__(self, server: viser.ViserServer, scene: Scene) -> None:
-        self._server, self._scene = server, scene
+    def __init__(self, server: viser.ViserServer, floor_plan: FloorPlan) -> None:
+        self._server, self._floor_plan = server, floor_plan
         self._followed: dict[int, Pose2] = {}
         self._reset: Pose2 | None = None
 
@@ -77,7 +79,7 @@ class FollowCamera:
 
     def _open(self, client: Any, base: Pose2) -> None:
         camera = client.camera
-        position, target = opening_view(base, self._scene, float(camera.fov), float(camera.aspect))
+        position, target = opening_view(base, self._floor_plan, float(camera.fov), float(camera.aspect))
         with client.atomic():
             camera.position = position
             camera.look_at = target
@@ -87,4 +89,4 @@ class FollowCamera:
         if self._reset is None or hypot(base[0] - self._reset[0], base[1] - self._reset[1]) > AWAY:
             self._reset = base
             camera = self._server.initial_camera
-            camera.position, camera.look_at = opening_view(base, self._scene)
+            camera.position, camera.look_at = opening_view(base, self._floor_plan)

@@ -1,4 +1,4 @@
-"""The static map as the lidar sees it: a horizontal cut through the scene, as a signed distance field."""
+"""The static map as the lidar sees it: a horizontal cut through the floor plan, as a signed distance field."""
 
 import math
 from functools import lru_cache
@@ -6,9 +6,8 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from common.floor_plan import BIN_WALL, BODY_INSET, LEG, LEG_INSET
+from common.floor_plan import BIN_WALL, BODY_INSET, LEG, LEG_INSET, FloorPlan, Receptacle
 from common.geometry import Rectangle
-from common.scene import Receptacle, Scene
 
 Array = NDArray[np.float64]
 RESOLUTION = 0.025
@@ -17,12 +16,12 @@ REACH = 0.6
 """Greatest distance that is told apart [m]; chosen: more than the widest weights of localisation."""
 
 
-def rectangles(scene: Scene, height: float) -> list[Rectangle]:
+def rectangles(floor_plan: FloorPlan, height: float) -> list[Rectangle]:
     """What a horizontal ray at `height` [m] can hit."""
     found: list[Rectangle] = []
-    found += [wall.footprint for wall in scene.walls]
-    found += [box.outline for box in scene.furniture if abs(height - box.center[2]) <= box.size[2] / 2]
-    for r in scene.receptacles:
+    found += [wall.footprint for wall in floor_plan.walls]
+    found += [box.outline for box in floor_plan.furniture if abs(height - box.center[2]) <= box.size[2] / 2]
+    for r in floor_plan.receptacles:
         found += [Rectangle(*r.outline.to_map(x, y), length, width, r.yaw) for x, y, length, width in _parts(r, height)]
     return found
 
@@ -47,14 +46,14 @@ def _parts(r: Receptacle, height: float) -> list[tuple[float, float, float, floa
 class DistanceField:
     """Signed distance [m] to what the lidar can hit, up to REACH: exact at the nodes, bilinear between them."""
 
-    def __init__(self, scene: Scene, height: float, resolution: float = RESOLUTION) -> None:
+    def __init__(self, floor_plan: FloorPlan, height: float, resolution: float = RESOLUTION) -> None:
         self._resolution = resolution
-        self._origin = np.array(scene.low) - REACH
-        columns, rows = (np.ceil((np.array(scene.high) + REACH - self._origin) / resolution)).astype(int) + 1
+        self._origin = np.array(floor_plan.low) - REACH
+        columns, rows = (np.ceil((np.array(floor_plan.high) + REACH - self._origin) / resolution)).astype(int) + 1
         field = np.full((rows, columns), REACH)
         xs = self._origin[0] + np.arange(columns) * resolution
         ys = self._origin[1] + np.arange(rows) * resolution
-        for r in rectangles(scene, height):
+        for r in rectangles(floor_plan, height):
             c, s = abs(math.cos(r.yaw)), abs(math.sin(r.yaw))
             wide = (c * r.length + s * r.width) / 2 + REACH
             high = (s * r.length + c * r.width) / 2 + REACH
@@ -94,6 +93,6 @@ class DistanceField:
 
 
 @lru_cache(maxsize=4)
-def distance_field(scene: Scene, height: float) -> DistanceField:
-    """The field of a scene, made once."""
-    return DistanceField(scene, height)
+def distance_field(floor_plan: FloorPlan, height: float) -> DistanceField:
+    """The field of a floor plan, made once."""
+    return DistanceField(floor_plan, height)

@@ -35,8 +35,8 @@ class StateEstimator:
 
     def __init__(self, config: NavigationConfig, io: Io, costmap: Costmap) -> None:
         self._config, self._io, self._map = config, io, costmap
-        self._field = distance_field(io.scene, config.lidar_height)
-        home = io.scene.home
+        self._field = distance_field(io.household, config.lidar_height)
+        home = io.household.home
         self.localiser = Localiser(self._field, (home.x, home.y, home.theta))
         self._good_at, self._doubt_after = 0.0, DOUBT
         self._asked: Job[tuple[Pose2, float]] | None = None
@@ -136,7 +136,7 @@ class StateEstimator:
         elif now - self._good_at > self._doubt_after and len(seen) > MIN_RAYS:
             io.log.warning("lost", fit=round(localiser.fit, 2))
             self._asked_from = localiser.pose
-            self._asked = io.submit(relocalise, self._field, seen, io.scene.low, io.scene.high, seconds=0.3)
+            self._asked = io.submit(relocalise, self._field, seen, io.household.low, io.household.high, seconds=0.3)
 
 
 def _sane(*values: float) -> bool:

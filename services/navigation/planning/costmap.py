@@ -1,4 +1,4 @@
-"""Costmap: the scene's static map, what the lidar sees beyond it, and the clearance from both."""
+"""Costmap: the floor plan's static map, what the lidar sees beyond it, and the clearance from both."""
 
 import math
 import zlib
@@ -9,13 +9,13 @@ from scipy import ndimage
 
 from common import messages as m
 from common.approach import BIN_RIM
+from common.floor_plan import FloorPlan
 from common.geometry import Pose2
-from common.scene import Scene
 
 Grid = NDArray[np.bool_]
 Array = NDArray[np.float64]
 _PAD = 0.3
-"""Margin around the scene [m]; chosen: less than a footprint, so that nothing drives there."""
+"""Margin around the floor plan [m]; chosen: less than a footprint, so that nothing drives there."""
 _EXPLAINED = 0.12
 """Distance from the static map within which it explains a lidar point [m]: two cells and the lidar's noise."""
 _REACH = 0.8
@@ -31,13 +31,13 @@ _FAR = 1.0
 class Costmap:
     """Cells of `resolution`; `static_distance` [m] is from each cell to the nearest obstacle of the static map."""
 
-    def __init__(self, scene: Scene, resolution: float, memory: float) -> None:
+    def __init__(self, floor_plan: FloorPlan, resolution: float, memory: float) -> None:
         self.resolution, self._memory = resolution, memory
-        self.origin = (scene.low[0] - _PAD, scene.low[1] - _PAD)
-        width = math.ceil((scene.high[0] - scene.low[0] + 2 * _PAD) / resolution)
-        height = math.ceil((scene.high[1] - scene.low[1] + 2 * _PAD) / resolution)
+        self.origin = (floor_plan.low[0] - _PAD, floor_plan.low[1] - _PAD)
+        width = math.ceil((floor_plan.high[0] - floor_plan.low[0] + 2 * _PAD) / resolution)
+        height = math.ceil((floor_plan.high[1] - floor_plan.low[1] + 2 * _PAD) / resolution)
         self.shape = (height, width)
-        self.static = self._rasterise(scene)
+        self.static = self._rasterise(floor_plan)
         self.static_distance = self._distance_to(self.static, resolution)
         self._seen_at = np.full(self.shape, -np.inf)
         self._first_at = np.full(self.shape, np.inf)
@@ -48,17 +48,19 @@ class Costmap:
         self._disc: Array = np.hypot(offsets, offsets[:, None])
         self._disc_reach = reach
 
-    def _rasterise(self, scene: Scene) -> Grid:
+    def _rasterise(self, floor_plan: FloorPlan) -> Grid:
         grid = np.zeros(self.shape, bool)
         xs = self.origin[0] + (np.arange(self.shape[1]) + 0.5) * self.resolution
         ys = self.origin[1] + (np.arange(self.shape[0]) + 0.5) * self.resolution
         gx, gy = np.meshgrid(xs, ys)
-        outside = (gx < scene.low[0]) | (gx > scene.high[0]) | (gy < scene.low[1]) | (gy > scene.high[1])
+        outside = (
+            (gx < floor_plan.low[0]) | (gx > floor_plan.high[0]) | (gy < floor_plan.low[1]) | (gy > floor_plan.high[1])
+        )
         grid |= outside
-        boxes = [f.outline for f in scene.furniture]
+        boxes = [f.outline for f in floor_plan.furniture]
         # A table counts with its whole top: the lidar sees only its legs.
-        boxes += [r.outline.grown(BIN_RIM if r.depth else 0.0) for r in scene.receptacles]
-        boxes += [wall.footprint for wall in scene.walls]
+        boxes += [r.outline.grown(BIN_RIM if r.depth else 0.0) for r in floor_plan.receptacles]
+        boxes += [wall.footprint for wall in floor_plan.walls]
         for box in boxes:
             u, v = box.to_local(gx, gy)
             grid |= (np.abs(u) <= box.length / 2) & (np.abs(v) <= box.width / 2)

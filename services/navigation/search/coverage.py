@@ -16,7 +16,7 @@ STILL, STILL_ANGLE = 0.03, 0.04
 class SearchCoverage:
     """Over all searches; a point is looked at when the camera has stood still before it for a while.
 
-    `viewpoints` may be exchanged for those of another camera in the same scene.
+    `viewpoints` may be exchanged for those of another camera in the same household.
     """
 
     def __init__(self, viewpoints: Viewpoints) -> None:

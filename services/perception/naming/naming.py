@@ -40,7 +40,11 @@ class Naming:
         """Another world: no object is known by sight any more; the names are."""
         self._observer = Observer(self._io, self._reader, self._learn)
         self._teacher = Teacher(
-            self._io, self._memory, self._observer, lambda n: taken(n, self._io.scene, self._synonyms), self._publish
+            self._io,
+            self._memory,
+            self._observer,
+            lambda n: taken(n, self._io.household, self._synonyms),
+            self._publish,
         )
         self._matches: dict[str, Match] = {}
 
@@ -87,7 +91,7 @@ class Naming:
     def match(self, phrase: str, objects: Sequence[m.WorldObject]) -> list[m.WorldObject]:
         """The objects that a phrase can mean: by their names and words, else by what is printed on them."""
         known = list(objects)
-        if found := match_object(phrase, known, self._io.scene):
+        if found := match_object(phrase, known, self._io.household):
             return found
         words = self._printed(phrase)
         if not words:
@@ -119,7 +123,7 @@ class Naming:
         """The words of a query that may be print; those of a taught name are not."""
         if normalise(query) in self._memory.names:
             return []
-        return printed_words(query, common_words(self._io.scene, self._synonyms))
+        return printed_words(query, common_words(self._io.household, self._synonyms))
 
     # --- names
     def _learn(self, key: str, look: Look) -> None:

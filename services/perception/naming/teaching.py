@@ -8,8 +8,8 @@ from common import topics
 from common.bus.port import Io
 from common.geometry import Pose2, to_frame
 from common.goal_inbox import GoalInbox
+from common.household import Household
 from common.naming import match_object, normalise
-from common.scene import Scene
 from services.perception.naming.memory import NameMemory, Taught
 from services.perception.naming.observer import Observer
 from services.perception.naming.sights import Sight
@@ -66,7 +66,7 @@ class Teacher:
         """A picture has come that shows the objects with the ids `shown`."""
         if self._waiting is None or self._target is not None:
             return
-        found = meant(self._waiting, objects, shown, base, self._io.scene)
+        found = meant(self._waiting, objects, shown, base, self._io.household)
         if len(found) > 1:
             labels = sorted(o.label for o in found)
             self._refuse("AMBIGUOUS", f"it could be the {' or the '.join(labels)}", labels)
@@ -137,12 +137,12 @@ class Teacher:
 
 
 def meant(
-    request: m.TeachRequest, objects: Sequence[m.WorldObject], shown: Sequence[str], base: Pose2, scene: Scene
+    request: m.TeachRequest, objects: Sequence[m.WorldObject], shown: Sequence[str], base: Pose2, household: Household
 ) -> list[m.WorldObject]:
     """The object that a request is about; several when it could be each of them, none when there is none."""
     if request.label:
         exact = [o for o in objects if o.label == request.label]
-        return exact or match_object(request.label, objects, scene)
+        return exact or match_object(request.label, objects, household)
     if request.position is not None:
         x, y, _ = request.position
         near = sorted(objects, key=lambda o: math.hypot(o.position[0] - x, o.position[1] - y))

@@ -3,10 +3,10 @@ print."""
 
 from collections.abc import Mapping
 
+from common.household import Household
 from common.kinds import KINDS
 from common.messages import WorldObject
 from common.naming import normalise
-from common.scene import Scene
 
 COLOURS = (
     "red", "orange", "yellow", "green", "blue", "purple", "pink", "brown", "black", "white", "grey", "gray", "beige",
@@ -25,10 +25,10 @@ BARE = frozenset({"apple", "orange", "banana", "lemon", "fruit", "ball", "bowl",
 """Kinds on which nothing is printed."""
 
 
-def common_words(scene: Scene, synonyms: Mapping[str, str]) -> frozenset[str]:
+def common_words(household: Household, synonyms: Mapping[str, str]) -> frozenset[str]:
     """Every such word, normalised; the words of listed things too, which are known without reading."""
-    listed = [n for o in scene.objects for n in (o.name, *o.aliases)]
-    phrases = (*KINDS, *COLOURS, RELATIONS, *synonyms, *synonyms.values(), *_spots(scene), *listed)
+    listed = [n for o in household.things for n in (o.name, *o.aliases)]
+    phrases = (*KINDS, *COLOURS, RELATIONS, *synonyms, *synonyms.values(), *_spots(household), *listed)
     return frozenset(word for phrase in phrases for word in normalise(phrase).split())
 
 
@@ -39,20 +39,20 @@ def printable(o: WorldObject, said: frozenset[str]) -> bool:
     return o.kind not in BARE and (not colours or bool(colours & {o.colour, *o.colours}))
 
 
-def taken(name: str, scene: Scene, synonyms: Mapping[str, str]) -> str:
+def taken(name: str, household: Household, synonyms: Mapping[str, str]) -> str:
     """What a name stands for already, so that it cannot be taught; "" when it is free."""
     words = normalise(name)
-    if words in map(normalise, _spots(scene)):
+    if words in map(normalise, _spots(household)):
         return "a place"
     if words in KINDS or words in synonyms:
         return f"every {words}"
-    if words in {normalise(n) for o in scene.objects for n in (o.name, *o.aliases)}:
+    if words in {normalise(n) for o in household.things for n in (o.name, *o.aliases)}:
         return "another thing"
     return ""
 
 
-def _spots(scene: Scene) -> list[str]:
+def _spots(household: Household) -> list[str]:
     """Names of rooms, of what things are put on, and of standing places."""
-    named = [(r.name, r.aliases) for r in scene.receptacles] + [(r.name, r.aliases) for r in scene.rooms]
-    named += [(p.name, p.aliases) for p in (scene.home, *scene.places)]
+    named = [(r.name, r.aliases) for r in household.receptacles] + [(r.name, r.aliases) for r in household.rooms]
+    named += [(p.name, p.aliases) for p in (household.home, *household.places)]
     return [n for name, aliases in named for n in (name, *aliases)]

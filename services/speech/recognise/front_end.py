@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from common.scene import Scene
+from common.household import Household
 from services.speech.config import SpeechConfig
 from services.speech.listen.vad import RATE, VoiceDetector, speech_span
 from services.speech.recognise.denoise import noise_ratio, reduce_noise
@@ -70,11 +70,11 @@ def prepare(audio: Array, detector: VoiceDetector) -> PreparedUtterance | None:
 class FrontEnd:
     """The whole path from samples to a verdict; models load at construction, so make it in the worker."""
 
-    def __init__(self, config: SpeechConfig, scene: Scene, found: dict[Scope, Grammar]) -> None:
+    def __init__(self, config: SpeechConfig, household: Household, found: dict[Scope, Grammar]) -> None:
         self._detector, self._wake = VoiceDetector(), config.wake
         self._recogniser: Recogniser
         if config.recogniser == "pocketsphinx":
-            self._recogniser = SphinxRecogniser(config, scene)
+            self._recogniser = SphinxRecogniser(config, household)
         else:
             self._recogniser = MoonshineRecogniser(config, found)
 

@@ -8,10 +8,10 @@ import re
 from collections.abc import Iterable, Mapping
 from copy import copy
 
+from common.household import Household
 from common.language.meaning import heard_parts
 from common.language.normalise import normalise
 from common.language.pattern import Either, Node, PatternError, Sequence, Slot, Word, parse
-from common.scene import Scene
 
 State = frozenset[int]
 _WORDS = re.compile(r"^[\w' ]+$")
@@ -146,23 +146,23 @@ class Grammar:
 
 
 def vocabulary(
-    scene: Scene, objects: Iterable[str], places: Iterable[str], colours: Iterable[str]
+    household: Household, objects: Iterable[str], places: Iterable[str], colours: Iterable[str]
 ) -> dict[str, list[str]]:
     """The parts that patterns need not define: <verb> and <utterance> from the wordings' table, and as names and
-    aliases of the scene with the configured ones <object>, <place>, <surface>, <container> and <colour>.
+    aliases of the household with the configured ones <object>, <place>, <surface>, <container> and <colour>.
 
     Anything can be put on a receptacle; bins and rooms can hold things.
     """
-    things = [n for o in scene.objects for n in (o.name, o.kind, *o.aliases)]
-    surfaces = [n for r in scene.receptacles for n in (r.name, *r.aliases)]
-    rooms = [n for r in scene.rooms for n in (r.name, *r.aliases)]
-    bins = [n for r in scene.receptacles if r.kind in ("bin", "tray") for n in (r.name, *r.aliases)]
-    spots = [n for p in (scene.home, *scene.places) for n in (p.name, *p.aliases)]
+    things = [n for o in household.things for n in (o.name, o.kind, *o.aliases)]
+    surfaces = [n for r in household.receptacles for n in (r.name, *r.aliases)]
+    rooms = [n for r in household.rooms for n in (r.name, *r.aliases)]
+    bins = [n for r in household.receptacles if r.kind in ("bin", "tray") for n in (r.name, *r.aliases)]
+    spots = [n for p in (household.home, *household.places) for n in (p.name, *p.aliases)]
     return {
         **heard_parts(),
         "object": [normalise(n) for n in (*things, *objects)],
         "place": [normalise(n) for n in (*surfaces, *rooms, *spots, *places)],
         "surface": [normalise(n) for n in surfaces],
         "container": [normalise(n) for n in (*bins, *rooms)],
-        "colour": [normalise(n) for n in (*(o.colour for o in scene.objects), *colours) if n],
+        "colour": [normalise(n) for n in (*(o.colour for o in household.things), *colours) if n],
     }

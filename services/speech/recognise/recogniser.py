@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Literal, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from common.household import Household
 from common.language.wordings import INTERRUPTS
-from common.scene import Scene
 from services.speech.config import SpeechConfig
 from services.speech.recognise.grammar import Grammar, vocabulary
 from services.speech.recognise.scoring import prior_cost, rescored, time_scaled
@@ -110,13 +110,13 @@ def patterns(config: SpeechConfig, scope: Scope) -> list[str]:
     return [f"{wake} [{_either(sentences)}]", *(line for line in config.commands if _is_part(line))]
 
 
-def grammars(config: SpeechConfig, scene: Scene) -> dict[Scope, Grammar]:
+def grammars(config: SpeechConfig, household: Household) -> dict[Scope, Grammar]:
     """One grammar for each scope.
 
     Raises:
         PatternError: a pattern that cannot be used.
     """
-    words = vocabulary(scene, config.objects, config.places, config.colours)
+    words = vocabulary(household, config.objects, config.places, config.colours)
     commands = Grammar(patterns(config, "command"), words)
     interrupts = Grammar(patterns(config, "interrupt"), {})
     return {"command": commands, "woken": commands.introduced(config.wake), "interrupt": interrupts}

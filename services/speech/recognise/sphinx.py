@@ -2,16 +2,16 @@
 
 import numpy as np
 
+from common.household import Household
 from common.runtime import StartError
-from common.scene import Scene
 from services.speech.config import SpeechConfig
 from services.speech.recognise.grammar import vocabulary
 from services.speech.recognise.recogniser import PreparedUtterance, Recognition, Scope, patterns
 
 
-def jsgf(config: SpeechConfig, scene: Scene, scope: Scope = "command") -> str:
+def jsgf(config: SpeechConfig, household: Household, scope: Scope = "command") -> str:
     """The patterns of a scope as a JSGF grammar."""
-    parts = vocabulary(scene, config.objects, config.places, config.colours)
+    parts = vocabulary(household, config.objects, config.places, config.colours)
     sentences = []
     for line in patterns(config, scope):
         name, equals, pattern = line.partition("=")
@@ -26,7 +26,7 @@ def jsgf(config: SpeechConfig, scene: Scene, scope: Scope = "command") -> str:
 class SphinxRecogniser:
     """Loads the model that ships in the `pocketsphinx` wheel."""
 
-    def __init__(self, config: SpeechConfig, scene: Scene) -> None:
+    def __init__(self, config: SpeechConfig, household: Household) -> None:
         try:
             from pocketsphinx import Decoder
         except ImportError:
@@ -34,7 +34,7 @@ class SphinxRecogniser:
         self._decoder = Decoder(lm=None, loglevel="FATAL")
         scopes: tuple[Scope, ...] = ("command", "woken", "interrupt")
         for scope in scopes:
-            self._decoder.add_jsgf_string(scope, jsgf(config, scene, scope))
+            self._decoder.add_jsgf_string(scope, jsgf(config, household, scope))
 
     def recognise(self, utterance: PreparedUtterance, scope: Scope) -> Recognition:
         self._decoder.activate_search(scope)
