@@ -9,9 +9,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from common.floor_plan import Vec3
 from common.geometry import Array
 from common.messages import ShapeFamily
-from common.scene import Vec3
 from services.perception import primitives
 from services.perception.primitives import Silhouette, Solution
 

@@ -11,8 +11,8 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
+from common.floor_plan import Vec3
 from common.kinds import Kind
-from common.scene import Vec3
 from services.perception.least_squares import solve
 
 Array = NDArray[np.float64]

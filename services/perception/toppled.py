@@ -11,9 +11,9 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
+from common.floor_plan import Vec3
 from common.geometry import Array
 from common.kinds import Kind
-from common.scene import Vec3
 from services.perception import shapes
 from services.perception.least_squares import solve
 from services.perception.shapes import ROBUST, SAMPLE, STRAY, TINY, TRIES, Fit

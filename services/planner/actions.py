@@ -1,10 +1,10 @@
 """What each action of the wordings does to the plan under construction. Pure."""
 
+from common.floor_plan import Receptacle
 from common.language.normalise import DETERMINERS, enumeration
 from common.language.noun_phrase import PLURAL_PRONOUNS, PRONOUNS
 from common.language.pattern import Slots
 from common.messages import PlanStep
-from common.scene import Receptacle
 from services.planner.phrases import Phrase, read
 from services.planner.plan_builder import PlanBuilder, Refusal
 from services.planner.relations import BESIDE, between

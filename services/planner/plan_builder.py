@@ -4,9 +4,9 @@ from typing import Literal
 
 import msgspec
 
+from common.floor_plan import Receptacle
 from common.language.normalise import enumeration
 from common.messages import GRIPPER, PlanStep
-from common.scene import Receptacle
 from services.planner.choice_points import ChoicePoints
 from services.planner.config import PlannerConfig, Rule
 from services.planner.vocabulary import Spot, Vocabulary

@@ -2,10 +2,10 @@
 
 from collections.abc import Iterable
 
+from common.floor_plan import Receptacle
 from common.language.normalise import without_determiners
 from common.language.noun_phrase import related
 from common.language.pattern import Slots
-from common.scene import Receptacle
 from services.planner.actions import take
 from services.planner.config import Rule
 from services.planner.plan_builder import PlanBuilder, Refusal
