@@ -1,15 +1,16 @@
 """How far the hand keeps back from a grasp, so that open and closed nothing but its pads comes near the object."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import mujoco
 import numpy as np
 
 from common.geometry import quat_matrix
-from common.kinds import kind_of
 from common.robot import Hand, pads, subtree
-from services.manipulation.arm_model import STAND_IN, ArmModel, Array, Pose
+from services.manipulation.arm_model import STAND_IN, ArmModel, Array, Obstacle, Pose
 from services.manipulation.grasp import Grasp, Target
+from services.manipulation.surface import surface
 
 GAP = 0.002
 """Free space [m] kept between the object and every part of the hand but the pads: the pose error of a good sighting."""
@@ -19,6 +20,8 @@ PAD = 0.019
 """Half the length [m] of a pad along the approach (Robotiq 2F-85: two boxes of 18.75 mm)."""
 MOST = 0.016
 """Farthest [m] that the hand keeps back from something round: its widest line stays 3 mm within the pads."""
+HAND = 0.22
+"""No part of the hand is farther [m] from the pinch point (Robotiq 2F-85: 163 mm from its flange)."""
 OVERLAP = 0.6
 """Least share of a pad's length that lies on a flat face."""
 
@@ -29,6 +32,7 @@ class HandClearance:
     def __init__(self, arm: ArmModel) -> None:
         model = arm.model
         self._model, self._data = model, mujoco.MjData(model)
+        self._shape = int(model.geom(STAND_IN).id)
         self.hand = Hand(model)
         self._joints = [model.joint(name).qposadr[0] for name in self.hand.joints]
         gripping = set().union(*pads(model))
@@ -38,7 +42,11 @@ class HandClearance:
             for g in range(model.ngeom)
             if int(model.geom_bodyid[g]) in bodies and g not in gripping and model.geom(g).name != "held"
         ]
+        self._all = [
+            g for g in range(model.ngeom) if int(model.geom_bodyid[g]) in bodies and model.geom(g).name != "held"
+        ]
         self._arm_at, self._home = arm.qpos_at, arm.home
+        self._known: tuple[Target, Array] | None = None
 
     def clear(self, target: Target, grasp: Grasp, opening: float | None = None) -> Grasp | None:
         """The grasp with its pinch point where the pads meet, kept back as far as the hand needs; None if too far.
@@ -50,18 +58,19 @@ class HandClearance:
         """
         advance = self.hand.advance(grasp.width)
         pose = grasp.pose.moved(-advance * grasp.pose.rotation[:, 2])
-        if not kind_of(target.kind).by_the_rim:  # there the hand is inside the object's own bounding shape
-            back = self._needed(target, pose, (opening or self.hand.open, grasp.width))
+        if not grasp.rim:  # there the hand is inside the object's own bounding shape
+            back = self._needed(target, pose, (opening or self.hand.open, grasp.width), grasp.on_surface)
             if back is None:
                 return None
             pose = pose.moved(-back * pose.rotation[:, 2])
         return replace(grasp, pose=pose)
 
-    def _needed(self, target: Target, pose: Pose, widths: tuple[float, float]) -> float | None:
-        back, most = 0.0, _most(target, pose)
+    def _needed(self, target: Target, pose: Pose, widths: tuple[float, float], on_surface: bool) -> float | None:
+        back, most = 0.0, MOST if on_surface else _most(target, pose)
+        room = self._room_on_surface if on_surface else self._room
         while True:
             kept = pose.moved(-back * pose.rotation[:, 2])
-            free = min(self._room(target, kept, w) for w in widths)
+            free = min(room(target, kept, w) for w in widths)
             if free >= GAP:
                 return back
             # Nothing of the hand comes nearer than it moves: the distance missing is the least that helps.
@@ -69,27 +78,56 @@ class HandClearance:
             if back > most:
                 return None
 
+    def met(self, pose: Pose, width: float, around: Sequence[Obstacle]) -> set[str]:
+        """Labels of the obstacles that the hand alone, `width` [m] open at a pose, would touch; "" for furniture."""
+        self._spread(width)
+        found = set()
+        for obstacle in around:
+            far = float(np.linalg.norm(pose.position - np.array(obstacle.center)))
+            if (
+                far - float(np.linalg.norm(obstacle.size)) / 2 < HAND
+                and self._distance(obstacle, pose, self._all) <= 0.0
+            ):
+                found.add(obstacle.label)
+        return found
+
     def _room(self, target: Target, pose: Pose, width: float) -> float:
         """Distance [m] from the object to the nearest part of the hand but its pads; negative inside, at most 0.05."""
-        model, data = self._model, self._data
-        data.qpos[self._arm_at] = self._home
-        data.qpos[self._joints] = self.hand.posture(width)
-        mujoco.mj_kinematics(model, data)
-        site = data.site("pinch")
-        turn = site.xmat.reshape(3, 3) @ pose.rotation.T
-        centre = site.xpos + turn @ (np.array(target.position) - pose.position)
-        shape = self._place(target, centre, turn)
-        return min(float(mujoco.mj_geomDistance(model, data, g, shape, 0.05, None)) for g in self._parts)
+        self._spread(width)
+        return self._distance(target.grown(0.0), pose, self._parts)
 
-    def _place(self, target: Target, centre: Array, turn: Array) -> int:
-        """Put the geom that stands for the object at `centre`, `turn` being the base frame in the hand's world."""
+    def _room_on_surface(self, target: Target, pose: Pose, width: float) -> float:
+        """The same for the completed surface of the object; every part of the hand counts as the box around it."""
+        if self._known is None or self._known[0] is not target:
+            self._known = target, surface(target)
+        self._spread(width)
         model, data = self._model, self._data
-        shape = int(model.geom(STAND_IN).id)
-        model.geom_type[shape], model.geom_size[shape], half, quat = target.grown(0.0).geom()
+        site = data.site("pinch")
+        points = (self._known[1] - pose.position) @ pose.rotation @ site.xmat.reshape(3, 3).T + site.xpos
+        least = 0.05
+        for part in self._parts:
+            box = model.geom_aabb[part]
+            beyond = np.abs((points - data.geom_xpos[part]) @ data.geom_xmat[part].reshape(3, 3) - box[:3]) - box[3:]
+            inside = np.minimum(beyond.max(axis=1), 0.0)
+            least = min(least, float((np.linalg.norm(np.maximum(beyond, 0.0), axis=1) + inside).min()))
+        return least
+
+    def _spread(self, width: float) -> None:
+        """Put the fingers `width` [m] apart."""
+        self._data.qpos[self._arm_at] = self._home
+        self._data.qpos[self._joints] = self.hand.posture(width)
+        mujoco.mj_kinematics(self._model, self._data)
+
+    def _distance(self, solid: Obstacle, pose: Pose, parts: Sequence[int]) -> float:
+        """Distance [m] from a solid to the nearest of the hand's `parts` at a pose, at most 0.05."""
+        model, data = self._model, self._data
+        site, shape = data.site("pinch"), self._shape
+        turn = site.xmat.reshape(3, 3) @ pose.rotation.T
+        model.geom_type[shape], model.geom_size[shape], half, quat = solid.geom()
         model.geom_rbound[shape] = float(np.linalg.norm(half))
-        data.geom_xpos[shape] = centre
+        data.geom_xpos[shape] = site.xpos + turn @ (np.array(solid.center) - pose.position)
         data.geom_xmat[shape] = (turn @ quat_matrix(quat)).reshape(-1)
-        return shape
+        return min(float(mujoco.mj_geomDistance(model, data, g, shape, 0.05, None)) for g in parts)
 
 
 def _most(target: Target, pose: Pose) -> float:

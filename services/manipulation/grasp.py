@@ -10,7 +10,7 @@ import numpy as np
 
 from common import messages as m
 from common.geometry import Pose2, matrix_quat, quat_matrix, yaw_quat
-from common.kinds import GraspRule, Shape, kind_of
+from common.kinds import KINDS, UNKNOWN, GraspRule, Kind, Shape, kind_of
 from common.messages.perception import ShapeFamily
 from services.manipulation.arm_model import Array, Obstacle, Pose, Solid
 
@@ -25,6 +25,24 @@ FAMILIES: dict[Shape, ShapeFamily] = {"turned": "round", "sphere": "ball", "box"
 """The family of a kind whose shape was not measured."""
 SOLIDS: dict[str, Solid] = {"round": "cylinder", "bowl": "cylinder", "ball": "ellipsoid"}
 """The solid that stands for a family; for the others it is a box."""
+FITTING: dict[Shape, tuple[ShapeFamily, ...]] = {
+    "turned": ("round", "bowl"),
+    "sphere": ("ball", "round"),
+    "box": ("box",),
+}
+"""What an object of a kind may be measured as."""
+_BESIDE, _ABOVE = (15, 25, 40, 60, 90), (90, 65, 45, 30)
+BY_SHAPE: dict[str, tuple[GraspRule, ...]] = {
+    "round": (GraspRule("around", _ABOVE, most=0.07), GraspRule("around", _BESIDE, least=0.07)),
+    "box": UNKNOWN.grasps,
+    "ball": (GraspRule("around", _ABOVE),),
+    "bowl": KINDS["bowl"].grasps,
+}
+"""How a shape is grasped whose kind is not known. What is long or irregular only has its measured surface."""
+OPEN_VESSEL = (GraspRule("rim", (90, 80, 70)),)
+"""How a vessel with an upright wall is grasped that does not fit between the fingers."""
+USUAL_VESSEL = KINDS["bowl"]
+"""Whose wall is taken for that of a vessel of a kind that has none."""
 
 
 @dataclass(frozen=True)
@@ -76,7 +94,8 @@ class Target:
 class Grasp:
     """Where the pinch point goes, how wide the object is there, and its height above the object's underside.
 
-    `axis`: where the upper end of a lying object points [rad]; None when it stands.
+    `axis`: where the upper end of a lying object points [rad]; None when it stands. `rim`: one finger is inside the
+    object, `width` is that of its wall; `on_surface`: found on the measured surface and not by the rule of a kind.
     """
 
     pose: Pose
@@ -85,6 +104,8 @@ class Grasp:
     tilt: float
     name: str
     axis: float | None = None
+    rim: bool = False
+    on_surface: bool = False
 
 
 def approach_rotation(azimuth: float, tilt: float, roll: float = 0.0) -> Array:
@@ -101,20 +122,32 @@ def approach_rotation(azimuth: float, tilt: float, roll: float = 0.0) -> Array:
 
 
 def candidates(target: Target, forward: float, widest: float) -> list[Grasp]:
-    """Grasps in the order to try them; empty when nothing of the object fits between the fingers.
+    """Grasps by the rules of the object's kind, or of the shape that was measured, in the order to try them; empty when
+    there are none for it, or nothing of it fits between the fingers.
 
     `forward`: where the arm stands on the base [m]; `widest`: what fits into the hand [m].
     """
-    return [g for g in _candidates(target, forward) if g.width <= widest]
+    return [g for g in _candidates(target, forward, widest) if g.width <= widest]
 
 
-def _candidates(target: Target, forward: float) -> list[Grasp]:
+def _candidates(target: Target, forward: float, widest: float) -> list[Grasp]:
     facing = math.atan2(target.position[1], target.position[0] - forward)
     if target.lies:
         return _lying(target, facing)
-    kind, tall = kind_of(target.kind), target.size[2]
+    tall = target.size[2]
     makers = {"around": _round, "faces": _flat, "rim": _rim}
-    return [g for r in kind.grasps if r.least <= tall < r.most for g in makers[r.hold](target, facing, r)]
+    rules = _rules(target)
+    if kind_of(target.kind).wall and min(target.size[:2]) > widest and all(r.hold != "rim" for r in rules):
+        rules = (*rules, *OPEN_VESSEL)
+    return [g for r in rules if r.least <= tall < r.most for g in makers[r.hold](target, facing, r)]
+
+
+def _rules(target: Target) -> tuple[GraspRule, ...]:
+    """Those of the kind, unless another shape was measured than the kind has."""
+    kind = kind_of(target.kind)
+    if not target.shape or (kind.name and target.shape in (*FITTING[kind.shape], "irregular", "long")):
+        return kind.grasps
+    return BY_SHAPE.get(target.shape, ())
 
 
 def shown(
@@ -221,17 +254,24 @@ def _flat(target: Target, facing: float, rule: GraspRule) -> list[Grasp]:
 def _rim(target: Target, facing: float, rule: GraspRule) -> list[Grasp]:
     """Fingers on either side of a vessel's wall at the rim, along its slope: the near side first."""
     x, y, _ = target.position
-    height = target.size[2] - RIM_DEPTH
-    kind = kind_of(target.kind)
-    radius = target.size[0] / 2 - RIM_DEPTH * math.tan(kind.lean) - kind.wall / 2
+    height, vessel = target.size[2] - RIM_DEPTH, _vessel(target)
+    radius = target.size[0] / 2 - RIM_DEPTH * math.tan(vessel.lean) - vessel.wall / 2
     found = []
     for degrees in rule.angles:
         tilt = math.radians(degrees)
         for turn in (0.0, 25.0, -25.0, 50.0, -50.0):
             azimuth = facing + math.radians(turn)
+            if vessel.handle and abs(_off(azimuth + math.pi, target.yaw)) < HANDLE_CONE:
+                continue
             point = np.array([x - radius * math.cos(azimuth), y - radius * math.sin(azimuth), target.bottom + height])
             for roll in (math.pi / 2, -math.pi / 2):
                 rotation = approach_rotation(azimuth, tilt, roll)
                 name = f"rim at {turn:+.0f}, {degrees} deg, {'palm up' if roll < 0 else 'palm down'}"
-                found.append(Grasp(Pose(point, rotation), kind.wall, height, tilt, name))
+                found.append(Grasp(Pose(point, rotation), vessel.wall, height, tilt, name, rim=True))
     return found
+
+
+def _vessel(target: Target) -> Kind:
+    """The kind whose wall the object's is like."""
+    kind = kind_of(target.kind)
+    return kind if kind.wall else USUAL_VESSEL

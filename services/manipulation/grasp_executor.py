@@ -5,7 +5,6 @@ import numpy as np
 from common import messages as m
 from common import topics
 from common.geometry import quat_matrix, yaw_quat
-from common.kinds import kind_of
 from common.messages import WorldObject
 from services.manipulation.arm_model import Array, Obstacle
 from services.manipulation.clearance import PAD
@@ -53,8 +52,8 @@ def grab(robot: Robot, goal: m.ManipulationGoal, wanted: str) -> Steps[str]:
             )  # fmt: skip
         except Failure as failure:
             raise (failure if not tried else last) from None
-        options, name = planner.candidates(target), plan.grasp.name
-        robot.io.publish(topics.GRASPS, shown(target, options, robot.base, robot.now, tried, name, goal.id))
+        candidates = shown(target, plan.options, robot.base, robot.now, tried, plan.grasp.name, goal.id)
+        robot.io.publish(topics.GRASPS, candidates)
         tried.add(plan.grasp.name)
         robot.io.log.info("grasp chosen", object=found.label, grasp=plan.grasp.name)
         try:
@@ -190,7 +189,7 @@ def _check_width(robot: Robot, plan: GrabPlan, widths: list[float]) -> None:
     """
     held, width = plan.grasped, robot.grip.width
     spec = robot.io.household.thing(held.label)
-    if spec is None or kind_of(held.kind).by_the_rim or not held_badly(robot.grip, plan.grasp.width, spec.kind):
+    if spec is None or plan.grasp.rim or not held_badly(robot.grip, plan.grasp.width, spec.kind):
         return
     if any(abs(width - other) < WIDTH_ERROR for other in widths):
         robot.io.log.warning("not as wide as it should be", object=held.label, mm=round(1000 * width, 1))
@@ -211,8 +210,8 @@ def _carry_again(robot: Robot, held: GraspedObject, around: list[Obstacle]) -> S
 
 
 def _judge(robot: Robot, plan: GrabPlan, at_close: float | None) -> None:
-    nominal = 0.0 if kind_of(plan.grasped.kind).by_the_rim else plan.grasp.width
-    code = judge(robot.grip, nominal, at_close, robot.config)
+    nominal = 0.0 if plan.grasp.rim else plan.grasp.width
+    code = judge(robot.grip, nominal, at_close, robot.config, plan.doubt)
     if code:
         was = "" if at_close is None else f", was {at_close * 1000:.1f} mm"
         detail = f"width {robot.grip.width * 1000:.1f} mm{was}, force {robot.grip.force:.0f} N"

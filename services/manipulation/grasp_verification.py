@@ -9,6 +9,9 @@ from services.manipulation.config import ManipulationConfig
 TOO_WIDE = 0.006
 """How much wider [m] than the object the fingers may stand, else they are on a handle or a rim. Chosen: more than the
 corners of a round wall, less than any handle adds."""
+MEASURED = 0.006
+"""How far [m] a width found on a measured surface may be off beyond the spread of the measures. Chosen: two cells of
+the completed surface, and the noise of depth at arm's length."""
 WIDTH_ERROR = 0.0008
 """Most [m] that the width after the lift may be over what the object measures there: beyond it the hold is bad
 (measured over reach-grasp-lift trials)."""
@@ -17,12 +20,13 @@ FLEX = 0.003
 
 
 def judge(
-    grip: Grip, nominal: float, at_close: float | None, config: ManipulationConfig
+    grip: Grip, nominal: float, at_close: float | None, config: ManipulationConfig, doubt: float = 0.0
 ) -> Literal["", "EMPTY_GRASP", "SLIPPED"]:
     """The failure code of a grasp on something `nominal` metres wide; "" when it is good.
 
     `at_close` is the width when the fingers had closed: after the lift it must not have changed. A `nominal` of 0 is
-    a rim of unknown slope, which turns between the fingers as its weight comes on them.
+    a rim of unknown slope, which turns between the fingers as its weight comes on them. `doubt` [m] is how far off
+    `nominal` may be where it was measured.
     """
     if grip.empty:
         return "SLIPPED" if at_close is not None and at_close > EMPTY_WIDTH else "EMPTY_GRASP"
@@ -30,9 +34,9 @@ def judge(
         return "EMPTY_GRASP" if at_close is None else "SLIPPED"
     if nominal > 0 and at_close is not None and abs(grip.width - at_close) > config.slip_width:
         return "SLIPPED"
-    if nominal > 0 and grip.width < nominal * 0.4:
+    if nominal > 0 and grip.width < (nominal - doubt) * 0.4:
         return "SLIPPED"
-    if nominal > 0 and grip.width > nominal + TOO_WIDE:
+    if nominal > 0 and grip.width > nominal + TOO_WIDE + doubt:
         # On a handle or a rim, not around the body.
         return "EMPTY_GRASP" if at_close is None else "SLIPPED"
     return ""

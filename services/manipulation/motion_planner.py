@@ -1,11 +1,12 @@
 """Collision-free motions of the arm, with and without something in the hand: what grabbing and placing are made of."""
 
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
 
+from services.manipulation.antipodal import antipodal
 from services.manipulation.arm_model import ArmModel, Array, Obstacle, Pose
 from services.manipulation.clearance import HandClearance
 from services.manipulation.grasp import Grasp, Target, candidates
@@ -60,9 +61,18 @@ class Planner:
         """The same draws for every plan."""
         return np.random.default_rng(self._seed)
 
-    def candidates(self, target: Target) -> list[Grasp]:
-        """Every grasp that this hand could try."""
-        return candidates(target, self.arm.forward, self.arm.widest)
+    def candidates(self, target: Target) -> Iterator[list[Grasp]]:
+        """Every grasp that this hand could try, in stages: by the rules of kind and shape, and on the measured surface,
+        which comes first where no rule knows the shape.
+        """
+        arm = self.arm
+        rules = candidates(target, arm.forward, arm.widest)
+        shapeless = target.shape in ("long", "irregular") and not target.lies
+        if not shapeless:
+            yield rules
+        yield antipodal(target, arm.forward, arm.hand.open, arm.widest)
+        if shapeless:
+            yield rules
 
     def surround(self, around: Sequence[Obstacle], end: Array) -> None:
         """Boxes with the widest transit margin that leaves `end` free, or as they are."""

@@ -9,6 +9,7 @@ import numpy as np
 from services.manipulation.arm_model import Array, Obstacle
 from services.manipulation.contacts import new_sides_first
 from services.manipulation.grasp import Grasp, Target
+from services.manipulation.grasp_verification import MEASURED
 from services.manipulation.grasped_object import GraspedObject, attach
 from services.manipulation.ik import seeds
 from services.manipulation.motion_planner import PlanError, Planner, counted
@@ -24,7 +25,8 @@ error of a sighting and of the arm."""
 class GrabPlan:
     """Joint paths (lists of (7,)) of the phases, and the object as it will be attached to the hand.
 
-    `opening` [m]: how far apart the fingers are on the way in, None as far as they go; `around`: what is kept clear of.
+    `opening` [m]: how far apart the fingers are on the way in, None as far as they go; `around`: what is kept clear of;
+    `options`: the grasps that were considered; `doubt` [m]: how far off the width between the pads may be.
     """
 
     grasp: Grasp
@@ -35,6 +37,8 @@ class GrabPlan:
     grasped: GraspedObject
     opening: float | None = None
     around: Sequence[Obstacle] = ()
+    options: tuple[Grasp, ...] = ()
+    doubt: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -83,21 +87,32 @@ def plan_grab(
     distance = float(np.hypot(target.position[0] - planner.arm.forward, target.position[1]))
     if distance > reach:
         raise PlanError("UNREACHABLE", f"{target.label} is {distance:.2f} m from the arm, reach is {reach:.2f} m")
-    left = [g for g in planner.candidates(target) if g.name not in skip]
-    options = [left[n] for n in new_sides_first((g.pose.rotation for g in left), touched)]
-    if not options:
-        raise PlanError("UNREACHABLE", f"no grasp left to try on {target.label}")
     misses: dict[str, Miss] = {}
-    for solids in around:
-        for shaped in (False, True):
-            way = Way(solids, shaped, approach, lift)
-            for grasp in options:
-                if grasp.name in misses and not misses[grasp.name].met:
-                    continue  # neither a narrower hand nor a smaller margin helps
-                plan = _try_grab(planner, target, grasp, way, now)
-                if isinstance(plan, GrabPlan):
-                    return plan
-                misses[grasp.name] = plan
+    tried: list[Grasp] = []
+    options: list[Grasp] = []
+
+    def attempt(some: Sequence[Grasp], way: Way) -> GrabPlan | None:
+        for grasp in some:
+            plan = _try_grab(planner, target, grasp, way, now)
+            if isinstance(plan, GrabPlan):
+                return replace(plan, options=tuple(options))
+            misses[grasp.name] = plan
+        return None
+
+    ways = [Way(solids, shaped, approach, lift) for solids in around for shaped in (False, True)]
+    for stage in planner.candidates(target):
+        options += stage
+        left = [g for g in stage if g.name not in skip]
+        left = [left[n] for n in new_sides_first((g.pose.rotation for g in left), touched)]
+        tried += left
+        if plan := attempt(left, ways[0]):
+            return plan
+    for way in ways[1:]:
+        # Where nothing was met neither a narrower hand nor a smaller margin helps.
+        if plan := attempt([g for g in tried if misses[g.name].met], way):
+            return plan
+    if not tried:
+        raise PlanError("UNREACHABLE", f"no grasp left to try on {target.label}")
     reasons = counted(miss.reason for miss in misses.values())
     blockers = Counter(label for miss in misses.values() for label in sorted(miss.met) if label)
     names = [label for label, _ in blockers.most_common()]
@@ -113,6 +128,8 @@ def _try_grab(planner: Planner, target: Target, wanted: Grasp, way: Way, now: Ar
     grasp = planner.clearance.clear(target, wanted, opening)
     if grasp is None:
         return Miss("too deep for the hand")
+    if met := planner.clearance.met(grasp.pose, opening or arm.hand.open, way.around):
+        return Miss("grasp collides", frozenset(met))
     arm.hold(None)
     arm.open_fingers(opening)
     try:
@@ -152,7 +169,8 @@ def _plan(
     arm.hold(None)
     if away is None:
         return Miss("no path to the carry pose")
-    return GrabPlan(grasp, there, [at, *back][::-1], [at, *up], away, attached, opening, around)
+    doubt = MEASURED + 2 * target.spread if target.shape or grasp.on_surface else 0.0
+    return GrabPlan(grasp, there, [at, *back][::-1], [at, *up], away, attached, opening, around, doubt=doubt)
 
 
 def refine(planner: Planner, plan: GrabPlan, shift: tuple[float, float], approach: float, lift: float) -> GrabPlan:

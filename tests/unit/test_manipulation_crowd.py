@@ -108,3 +108,12 @@ def test_surface_points_come_along_the_axes_of_the_base() -> None:
     found = target_of(seen, base, scene)
     assert found.points is not None and found.points[0] == pytest.approx([0.0, -0.01, 0.0], abs=1e-9)
     assert target_of(m.WorldObject("x", "", "", (1.0, 0.6, 0.7), points=points[:60]), base, scene).points is None
+
+
+def test_a_neighbour_at_two_centimetres_leaves_room_for_a_finger() -> None:
+    for bearing in (90.0, -90.0, 180.0):
+        plan = grab(beside(bearing, 0.02, "red can"))
+        ARM.set_obstacles([beside(bearing, 0.02, "red can").grown(0.0)])
+        ARM.open_fingers(plan.opening)
+        assert not any(ARM.collides(q) for q in plan.insert)
+        ARM.open_fingers()

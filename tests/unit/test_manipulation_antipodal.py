@@ -1,0 +1,141 @@
+"""Grasps on measured surfaces: where the pads come to lie on things of no known kind."""
+
+import math
+
+import numpy as np
+import pytest
+
+from common.geometry import quat_matrix, yaw_quat
+from services.manipulation.antipodal import LONGEST, PLAY, STEEPEST, antipodal
+from services.manipulation.arm_model import Array
+from services.manipulation.clearance import PAD
+from services.manipulation.grasp import Grasp, Target
+from services.manipulation.surface import SPACING, surface
+
+OPENING, WIDEST = 0.085, 0.0761
+AT = (0.6, 0.1, 0.7)
+
+
+def target(shape: str, size: tuple[float, float, float], points: Array | None = None, **more: float) -> Target:
+    return Target("thing", "", AT, more.get("yaw", 0.0), size, more.get("tilt", 0.0), shape, points)  # type: ignore[arg-type]
+
+
+def grasps(of: Target) -> list[Grasp]:
+    return antipodal(of, 0.0, OPENING, WIDEST)
+
+
+def visible(points: Array, rng: np.random.Generator, noise: float = 0.0015) -> Array:
+    """A sample of what a camera sees that looks down from the robot's side."""
+    keep = points[rng.choice(len(points), min(200, len(points)), replace=False)]
+    return keep + rng.normal(0.0, noise, keep.shape)
+
+
+def rod(length: float, radius: float, yaw: float) -> Array:
+    """The upper half of a lying rod."""
+    turns, along = np.meshgrid(np.linspace(0.0, math.pi, 9), np.linspace(-length / 2, length / 2, 60))
+    points = np.stack([along, radius * np.cos(turns), radius * np.sin(turns)], axis=-1).reshape(-1, 3)
+    return points @ quat_matrix(yaw_quat(yaw)).T
+
+
+def between(of: Target, grasp: Grasp) -> Array:
+    """Points of the surface where the pads of a grasp come to lie (n, 3), along the hand's axes."""
+    local = (surface(of) - grasp.pose.position) @ grasp.pose.rotation
+    found: Array = local[(np.abs(local[:, 0]) < 0.011) & (np.abs(local[:, 2]) < PAD)]
+    return found
+
+
+SHAPES = {
+    "can": target("round", (0.066, 0.066, 0.12)),
+    "lid": target("round", (0.06, 0.06, 0.02)),
+    "carton": target("box", (0.05, 0.09, 0.16), yaw=0.4),
+    "ball": target("ball", (0.07, 0.07, 0.07)),
+    "rod": target("long", (0.2, 0.03, 0.03), visible(rod(0.2, 0.015, 0.7), np.random.default_rng(1)), yaw=0.7),
+    "lying can": target("round", (0.12, 0.06, 0.06), tilt=math.pi / 2, yaw=-0.5),
+}
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_both_pads_lie_on_the_surface_and_the_tips_stay_off_the_table(name: str) -> None:
+    thing = SHAPES[name]
+    found = grasps(thing)
+    assert found, "it is narrower than the hand"
+    for grasp in found:
+        held = between(thing, grasp)
+        assert held[:, 1].max() == pytest.approx(grasp.width / 2, abs=SPACING)
+        assert held[:, 1].min() == pytest.approx(-grasp.width / 2, abs=SPACING)
+        assert 0.0 < grasp.width <= WIDEST
+        tip = grasp.pose.position + PAD * grasp.pose.rotation[:, 2]
+        assert tip[2] >= thing.bottom + PLAY - 1e-6
+    assert len({g.name for g in found}) == len(found)
+
+
+@pytest.mark.parametrize(
+    "wide",
+    [
+        target("box", (0.09, 0.1, 0.12), yaw=0.3), target("round", (0.1, 0.1, 0.1)), target("ball", (0.09, 0.09, 0.09)),
+        target("box", (0.2, 0.15, 0.03)),
+    ],
+)  # fmt: skip
+def test_what_is_too_wide_everywhere_has_no_grasp_not_even_at_a_corner(wide: Target) -> None:
+    assert grasps(wide) == []
+
+
+def test_a_book_on_its_spine_is_taken_across_its_thickness() -> None:
+    found = grasps(target("box", (0.03, 0.14, 0.2), yaw=0.5))
+    assert found[0].width == pytest.approx(0.03, abs=0.002)
+    closing = found[0].pose.rotation[:, 1]
+    assert abs(closing @ [math.cos(0.5), math.sin(0.5), 0.0]) > 0.97
+
+
+def test_a_long_thing_is_taken_across_near_its_middle_from_above() -> None:
+    thing = SHAPES["rod"]
+    best = grasps(thing)[0]
+    assert best.tilt > math.radians(60)
+    across = best.pose.rotation[:, 1] @ [math.cos(0.7), math.sin(0.7), 0.0]
+    assert abs(across) < math.sin(math.radians(20))
+    assert np.linalg.norm(best.pose.position[:2] - AT[:2]) < LONGEST
+    assert best.width == pytest.approx(0.03, abs=0.012)
+
+
+def test_a_waist_is_taken_where_it_is_narrow() -> None:
+    """A vase of 100 mm with a neck of 40 mm, seen from its front."""
+    heights = np.linspace(-0.1, 0.1, 60)
+    radii = np.where(heights > 0.02, 0.02, 0.05)
+    turns = np.linspace(math.pi / 2, 3 * math.pi / 2, 12)
+    points = np.array(
+        [(r * math.cos(t), r * math.sin(t), h) for h, r in zip(heights, radii, strict=True) for t in turns]
+    )
+    vase = target("round", (0.1, 0.1, 0.2), visible(points, np.random.default_rng(0)))
+    found = grasps(vase)
+    assert found
+    assert all(g.width < 0.06 and g.pose.position[2] > AT[2] for g in found)
+
+
+def test_a_wedge_is_not_pinched_where_it_would_slip_out() -> None:
+    """Faces 30 degrees off the closing direction on either side: the pads would squeeze it away."""
+    x, z = np.meshgrid(np.linspace(-0.06, 0.06, 40), np.linspace(-0.03, 0.03, 12))
+    half = (x + 0.07) * math.tan(math.radians(30))
+    points = np.stack([np.stack([x, s * half, z], -1) for s in (-1, 1)]).reshape(-1, 3)
+    wedge = target("irregular", (0.12, 0.15, 0.06), points)
+    for grasp in grasps(wedge):
+        across = abs(float(grasp.pose.rotation[:, 1] @ [0.0, 1.0, 0.0]))
+        assert across < math.cos(math.atan(STEEPEST) / 2) or grasp.width < 0.03
+
+
+def test_what_was_seen_is_completed_down_to_what_it_rests_on_and_no_wider() -> None:
+    rng = np.random.default_rng(3)
+    seen = visible(rng.uniform((-0.03, -0.02, 0.03), (0.03, 0.02, 0.03), (400, 3)), rng, 0.0)
+    found = surface(target("irregular", (0.06, 0.04, 0.06), seen, yaw=0.0)) - AT
+    assert found[:, 2].min() == pytest.approx(-0.03, abs=SPACING) and found[:, 2].max() == pytest.approx(
+        0.03, abs=SPACING
+    )
+    assert np.ptp(found[:, 0]) == pytest.approx(0.06, abs=2 * SPACING)
+    assert np.ptp(found[:, 1]) == pytest.approx(0.04, abs=2 * SPACING)
+
+
+def test_the_turn_of_an_object_turns_its_grasps() -> None:
+    def closing(yaw: float) -> float:
+        rotation = grasps(target("box", (0.05, 0.12, 0.05), yaw=yaw))[0].pose.rotation
+        return math.atan2(rotation[1, 1], rotation[0, 1]) - yaw
+
+    assert math.remainder(closing(0.2) - closing(0.5), math.pi) == pytest.approx(0.0, abs=0.02)
