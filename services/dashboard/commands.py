@@ -28,6 +28,7 @@ class Commands:
         self._io, self._transcript = io, transcript
         self._sound = b""
         self._sent = 0
+        self.naming = ""
 
     def use_transcript(self, transcript: Transcript) -> None:
         """From now on, what visitors do is noted there."""
@@ -45,8 +46,11 @@ class Commands:
             self.say(do, t)
         elif do == "say" and text.strip():
             self.say(text.strip()[:500], t)
+        elif do == "name" and text.strip():
+            self.naming = text.strip()[:500]
+            self._transcript.add(t, "robot", f"click on what is called {self.naming}")
         else:
-            self._io.count_drop("page", f"{do!r}: expected stop, resume, go on, yes, no or say with words")
+            self._io.count_drop("page", f"{do!r}: expected stop, resume, go on, yes, no, or say or name with words")
 
     def say(self, text: str, t: float) -> None:
         """A person typed it, so nobody needs to ask whether it was heard right."""
@@ -54,9 +58,13 @@ class Commands:
         self._transcript.add(t, "typed", text)
 
     def picked(self, picked: Picked, base: Pose2, state: m.BrainState | None, t: float) -> None:
-        """A click: fetch the object, or drive to the place when no mission is under way."""
+        """A click: the object gets the name that was typed; without one it is fetched, or the robot drives to the
+        place, when no mission is under way."""
         ready = state is not None and state.state in OPEN
         if not (picked.label or picked.point):
+            return
+        if self.naming:
+            self._teach(picked, t)
             return
         if not ready:
             self._transcript.add(t, "robot", "busy: clicks do nothing during a mission")
@@ -67,6 +75,20 @@ class Commands:
             theta = atan2(y - base[1], x - base[0])
             self._io.publish(topics.NAV_GOAL, m.NavGoal(id=self._io.new_id("page"), x=x, y=y, theta=theta))
             self._transcript.add(t, "typed", f"go to {x:.1f}, {y:.1f}")
+
+    def _teach(self, picked: Picked, t: float) -> None:
+        name, self.naming = self.naming, ""
+        if not picked.label:
+            self._transcript.add(t, "robot", f"no thing was clicked on: nothing is called {name}")
+            return
+        request = m.TeachRequest(id=self._io.new_id("page"), name=name, label=picked.label)
+        self._io.publish(topics.TEACH, request)
+        self._transcript.add(t, "typed", f"the {picked.label} is called {name}")
+
+    def taught(self, result: m.TeachResult, t: float) -> None:
+        """What came of a name, whoever taught it."""
+        done = f"forgot {result.name}" if not result.label else f"the {result.label} is the {result.name} from now on"
+        self._transcript.add(t, "robot", done if result.ok else f"{result.name} was not learnt: {result.detail}")
 
     def sound(self, data: bytes, t: float) -> None:
         """From the microphone; an empty piece ends the utterance, which is then padded with silence."""

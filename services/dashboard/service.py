@@ -117,6 +117,8 @@ class DashboardService:
             self._transcript.add_goal(t, goal)
         for result in io.take_all(topics.SPEECH_RESULT):
             self._transcript.add_result(t, result)
+        for taught in io.take_all(topics.TAUGHT):
+            self._commands.taught(taught, t)
         for health in io.take_all(topics.HEALTH):
             self._health.take(health)
         for chunk in io.take_all(topics.AUDIO_OUT):
@@ -141,7 +143,7 @@ class DashboardService:
                 self._handle_action(event)
             elif isinstance(event, Sound):
                 self._commands.sound(event.data, self._t)
-            elif isinstance(event, Click) and self.panels.clicks:
+            elif isinstance(event, Click) and (self.panels.clicks or self._commands.naming):
                 world = self._io.latest(topics.WORLD_OBJECTS)
                 objects = world.objects if world is not None else []
                 picked = pick(event.origin, event.direction, self.view.drawing.flat, objects)

@@ -16,7 +16,7 @@ from services.dashboard.commands import CHUNK, LONGEST, TRAILING, Commands
 from services.dashboard.panels.history_buffers import Transcript
 from services.dashboard.scene.picking import Picked
 
-WRITES = (topics.VOICE_COMMAND, topics.ROBOT_STOP, topics.ROBOT_RESUME, topics.NAV_GOAL, topics.AUDIO_PCM)
+WRITES = (topics.VOICE_COMMAND, topics.ROBOT_STOP, topics.ROBOT_RESUME, topics.NAV_GOAL, topics.AUDIO_PCM, topics.TEACH)
 READY = m.BrainState(state="LISTENING")
 
 
@@ -70,6 +70,31 @@ def test_anything_else_is_counted_and_does_nothing(desk: Desk, do: str, text: st
     desk.commands.words(do, text, 1.0)
     assert desk.everything() == 0
     assert desk.io.drops["page"] == 1
+
+
+def test_a_name_goes_to_what_is_clicked_on_next_also_during_a_mission(desk: Desk) -> None:
+    busy = m.BrainState(state="NAVIGATING")
+    desk.commands.words("name", " vitamin box ", 1.0)
+    desk.commands.picked(Picked("white box"), (0.0, 0.0, 0.0), busy, 2.0)
+    desk.commands.picked(Picked("red mug"), (0.0, 0.0, 0.0), busy, 3.0)
+    (request,) = desk.sent(topics.TEACH)
+    assert (request.name, request.label, request.forget) == ("vitamin box", "white box", False) and request.id
+    assert desk.sent(topics.VOICE_COMMAND) == []
+
+
+def test_a_name_and_a_click_on_the_floor_do_nothing(desk: Desk) -> None:
+    desk.commands.words("name", "vitamin box", 1.0)
+    desk.commands.picked(Picked(point=(1.0, 3.0)), (0.0, 0.0, 0.0), READY, 2.0)
+    assert desk.everything() == 0 and "vitamin box" in desk.transcript.lines[-1].text
+
+
+def test_what_came_of_a_name_is_told(desk: Desk) -> None:
+    desk.commands.taught(m.TeachResult(goal_id="a", ok=True, name="vitamin box", label="white box"), 1.0)
+    desk.commands.taught(m.TeachResult(goal_id="b", ok=False, name="mug", detail="mug means every mug already"), 2.0)
+    assert [line.text for line in desk.transcript.lines] == [
+        "the white box is the vitamin box from now on",
+        "mug was not learnt: mug means every mug already",
+    ]
 
 
 def test_a_click_on_the_floor_drives_there_facing_away(desk: Desk) -> None:

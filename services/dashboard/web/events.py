@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 
 
 class Words(msgspec.Struct, frozen=True):
-    """What a visitor did: `do` is stop, resume, go on, say, yes, no or restart; `text` goes with say and restart."""
+    """What a visitor did: `do` is stop, resume, go on, say, name, yes, no or restart; `text` goes with say, name and
+    restart."""
 
     do: str
     text: str = ""

@@ -71,6 +71,11 @@ $("say").onsubmit = (event) => {
   if (text) act("say", text);
   $("text").value = "";
 };
+$("name").onclick = () => {
+  const text = $("text").value.trim();
+  if (text) act("name", text);
+  $("text").value = "";
+};
 
 // keys.js, here and in the view, says when the space bar was pressed.
 window.addEventListener("message", (event) => {

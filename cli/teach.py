@@ -1,0 +1,105 @@
+"""`tidybot teach` and `forget`: names for things, beside what perception calls them."""
+
+import argparse
+import uuid
+
+import msgspec
+
+from cli.errors import CliError
+from cli.link import Link, Watch, add_options, linked
+from common import messages as m
+from common import topics
+from common.time.clock import monotonic
+
+ANSWER = 20.0
+"""Time [s] for perception to look at the thing and to answer: three pictures at a tenth of real time."""
+
+
+def teach(args: argparse.Namespace) -> int:
+    name = " ".join(args.name)
+    with linked(args) as link:
+        if not name:
+            return _list(link, args.json)
+        label = _label(link, args.label) if args.label else ""
+        return _ask(link, m.TeachRequest(name=name, id=_fresh_id(), label=label), args.json)
+
+
+def forget(args: argparse.Namespace) -> int:
+    with linked(args) as link:
+        return _ask(link, m.TeachRequest(name=" ".join(args.name), id=_fresh_id(), forget=True), args.json)
+
+
+def _fresh_id() -> str:
+    return f"cli-{uuid.uuid4().hex[:8]}"
+
+
+def _label(link: Link, wanted: str) -> str:
+    """The label as perception has it.
+
+    Raises:
+        CliError: it knows no such thing; with the labels that it knows.
+    """
+    world = link.latest(topics.WORLD_OBJECTS)
+    labels = sorted(o.label for o in world.objects) if world is not None else []
+    if wanted not in labels:
+        raise CliError(f"perception knows no {wanted!r}, but: {', '.join(labels) or 'nothing so far'}")
+    return wanted
+
+
+def _ask(link: Link, request: m.TeachRequest, as_json: bool) -> int:
+    watch = Watch(link, topics.TAUGHT)
+    link.send(topics.TEACH, request)
+    end = monotonic() + ANSWER
+    while monotonic() < end:
+        result = watch.next(0.5)
+        if result is None or result.goal_id != request.id:
+            continue
+        if as_json:
+            print(msgspec.json.encode(result).decode())
+        elif result.ok:
+            print(f"forgotten: {result.name}" if request.forget else f"the {result.label} is the {result.name}")
+        else:
+            print(f"not done: {result.detail}{_remedy(result)}")
+        return 0 if result.ok else 1
+    raise CliError(f"perception did not answer within {ANSWER:.0f} s; see `tidybot ps`")
+
+
+def _remedy(result: m.TeachResult) -> str:
+    match result.code:
+        case "AMBIGUOUS":
+            return "; say which with --label"
+        case "NOT_SEEN":
+            return "; put it on something within 2 m in front of the robot, or name it with --label"
+        case "UNKNOWN_NAME":
+            return "; `tidybot teach` lists the names"
+        case _:
+            return ""
+
+
+def _list(link: Link, as_json: bool) -> int:
+    known = link.latest(topics.HOUSEHOLD_NAMES)
+    if known is None:
+        raise CliError("perception does not answer; see `tidybot ps`")
+    if as_json:
+        print(msgspec.json.encode(known.names).decode())
+        return 0
+    for one in known.names:
+        size = " x ".join(f"{v * 100:.0f}" for v in one.size)
+        print(f"{one.name:24} {one.colour} {one.kind}, {size} cm, {one.views} views")
+    if not known.names:
+        print('no names so far; put a thing before the robot and `tidybot teach "vitamin box"`')
+    return 0
+
+
+def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+    parser = commands.add_parser("teach", help="give the thing before the robot a name; without a name list them")
+    parser.add_argument("name", nargs="*", help='what it is called, such as "vitamin box"')
+    parser.add_argument("--label", help="the thing meant, as `tidybot topic echo world/objects` names it")
+    parser.add_argument("--json", action="store_true")
+    add_options(parser)
+    parser.set_defaults(run=teach)
+    parser = commands.add_parser("forget", help="forget a taught name")
+    parser.add_argument("name", nargs="+")
+    parser.add_argument("--json", action="store_true")
+    add_options(parser)
+    parser.set_defaults(run=forget)
