@@ -51,6 +51,23 @@ def test_with_every_way_shut_it_waits_backs_off_tries_twice_and_says_so() -> Non
     assert flat.closest > CHASSIS
 
 
+def test_it_does_not_back_off_into_what_has_come_up_behind_it() -> None:
+    flat = Flat([KITCHEN_DOOR, STUDY_DOOR])
+    flat.ask("goto kitchen")
+    while "BACKING_OFF" not in doings(flat):
+        flat.step()
+    before = flat.true
+    for _ in range(8):
+        flat.step()
+    x, y, _ = flat.true
+    way = math.atan2(y - before[1], x - before[0])
+    assert math.dist((x, y), before[:2]) > 0.02
+    flat.boxes.append((x + 0.55 * math.cos(way), y + 0.55 * math.sin(way), 0.2, 0.2, way))
+    for _ in range(60):
+        flat.step()
+    assert flat.closest > CHASSIS - 0.02
+
+
 def test_waiting_for_somebody_who_passes_costs_no_retry() -> None:
     passer, here = person(1.0, 0.0, 0.0, 0.5), (0.0, 0.0)
 

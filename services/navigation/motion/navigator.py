@@ -11,7 +11,7 @@ from services.navigation.motion.blind_base import BlindBase
 from services.navigation.motion.breadcrumbs import Breadcrumbs
 from services.navigation.motion.collision_avoidance import avoid
 from services.navigation.motion.obstacle_tracker import Obstacle
-from services.navigation.motion.path_follower import Lookahead
+from services.navigation.motion.path_follower import KEEP, Lookahead, room, towards
 from services.navigation.motion.progress import BlockedTimer, Progress
 from services.navigation.motion.route import DETOUR_PAUSE, Route
 from services.navigation.planning.costmap import Array, Costmap
@@ -115,7 +115,7 @@ class Navigator:
 
     def _go_on(self, pose: Pose2, points: Array | None, obstacles: Sequence[Obstacle], now: float) -> m.BaseTarget:
         if self._retreat is not None:
-            return self._go_back(*self._retreat, pose, now)
+            return self._go_back(*self._retreat, pose, points, now)
         if self._route.follower is None:
             return self._wait(pose, obstacles, now)
         return self._follow(pose, points, obstacles, now)
@@ -229,12 +229,16 @@ class Navigator:
         back = self._breadcrumbs.retreat(pose, self._map, config.footprint_radius, config.back_off)
         self._retreat = now + config.back_off_time, back
 
-    def _go_back(self, until: float, back: Pose2, pose: Pose2, now: float) -> m.BaseTarget:
-        """Towards `back` until that robot time [s], then another plan."""
+    def _go_back(self, until: float, back: Pose2, pose: Pose2, points: Array | None, now: float) -> m.BaseTarget:
+        """Towards `back`, as far as the lidar sees nothing there, until that robot time [s], then another plan."""
         if now >= until:
             self._retreat = None
             self._progress.restart(now)
             self._route.follower = None
             self._plan(pose, now)
             self._blocked.clear()
-        return self._hold_at(back)
+        here, target = (pose[0], pose[1]), (back[0], back[1])
+        free = room(here, target, points, self._config.corridor)
+        if free < math.dist(here, target):
+            target = towards(here, target, max(0.0, free - KEEP))
+        return self._hold_at((*target, back[2]))

@@ -78,33 +78,36 @@ class PathFollower:
         turn = abs(wrap(heading - pose[2]))
         final = reach == len(self.path) - 1
         if turn > SLOW_TURN and not near_end:
-            target = _towards(here, target, max(MIN_STEP, TURNING_STEP * math.cos(min(turn, math.pi / 2))))
+            target = towards(here, target, max(MIN_STEP, TURNING_STEP * math.cos(min(turn, math.pi / 2))))
             final = False
-        room = self._room(here, target, points)
+        free = room(here, target, points, self._corridor)
         distance = math.hypot(target[0] - here[0], target[1] - here[1])
-        if room < distance:
-            stop = max(0.0, room - KEEP)
-            target = _towards(here, target, stop)
+        if free < distance:
+            stop = max(0.0, free - KEEP)
+            target = towards(here, target, stop)
             return Lookahead((target[0], target[1], heading), False, stop < STOPPED, remaining)
         pose_to = self.goal if final else (target[0], target[1], heading)
         return Lookahead(pose_to, final, False, remaining)
 
-    def _room(self, here: Point, target: Point, points: Array | None) -> float:
-        """How far the base can go towards `target` before it touches a lidar point."""
-        length = math.hypot(target[0] - here[0], target[1] - here[1])
-        if points is None or not len(points) or length < 1e-6:
-            return math.inf
-        ux, uy = (target[0] - here[0]) / length, (target[1] - here[1]) / length
-        x, y = points[:, 0] - here[0], points[:, 1] - here[1]
-        along, across = x * ux + y * uy, np.abs(y * ux - x * uy)
-        ahead = (along > 0) & (across < self._corridor)
-        if not ahead.any():
-            return math.inf
-        touch = along[ahead] - np.sqrt(np.maximum(self._corridor**2 - np.square(across[ahead]), 0.0))
-        return float(max(0.0, touch.min()))
+
+def room(here: Point, target: Point, points: Array | None, corridor: float) -> float:
+    """How far [m] the base can go towards `target` before lidar `points` (n, 2) come into a corridor of that half
+    width [m]; inf when there are none."""
+    length = math.hypot(target[0] - here[0], target[1] - here[1])
+    if points is None or not len(points) or length < 1e-6:
+        return math.inf
+    ux, uy = (target[0] - here[0]) / length, (target[1] - here[1]) / length
+    x, y = points[:, 0] - here[0], points[:, 1] - here[1]
+    along, across = x * ux + y * uy, np.abs(y * ux - x * uy)
+    ahead = (along > 0) & (across < corridor)
+    if not ahead.any():
+        return math.inf
+    touch = along[ahead] - np.sqrt(np.maximum(corridor**2 - np.square(across[ahead]), 0.0))
+    return float(max(0.0, touch.min()))
 
 
-def _towards(here: Point, target: Point, distance: float) -> Point:
+def towards(here: Point, target: Point, distance: float) -> Point:
+    """The point `distance` [m] from `here` on the way to `target`, which is the farthest."""
     length = math.hypot(target[0] - here[0], target[1] - here[1])
     if length <= distance or length < 1e-9:
         return target
