@@ -7,6 +7,7 @@ ends up tells.
 """
 
 import itertools
+import math
 from typing import Any
 
 import mujoco
@@ -104,16 +105,19 @@ class Contacts:
         return None
 
     def _note(self, data: Any, pairs: tuple[tuple[int, Pair], ...], now: float) -> None:
-        forces: dict[Pair, tuple[float, float]] = {}
+        forces: dict[Pair, float] = {}
+        depths: dict[Pair, float] = {}
+        nets: dict[Pair, NDArray[np.float64]] = {}
         for index, pair in pairs:
             mujoco.mj_contactForce(self._model, data, index, self._force)
-            force, depth = forces.get(pair, (0.0, 0.0))
-            pressed = float(np.linalg.norm(self._force[:3]))
-            forces[pair] = force + pressed, max(depth, -float(data.contact.dist[index]))
+            forces[pair] = forces.get(pair, 0.0) + float(np.linalg.norm(self._force[:3]))
+            depths[pair] = max(depths.get(pair, 0.0), -float(data.contact.dist[index]))
+            if pair[2] == "held":
+                nets[pair] = nets.get(pair, np.zeros(3)) + self._on(pair[0], data.contact[index])
         span = float(self._model.opt.timestep)
-        for pair, (pressed, depth) in forces.items():
-            # What stands on a surface presses on it with its own weight, whoever holds it.
-            force = max(0.0, pressed - self._weight[pair[0]]) if pair[2] == "held" else pressed
+        for pair, pressed in forces.items():
+            depth = depths[pair]
+            force = self._beyond_weight(pair[0], nets[pair]) if pair in nets else pressed
             touch = self._current.get(pair)
             if touch is None or now - touch.last > GAP:
                 part, thing, kind = pair
@@ -124,6 +128,19 @@ class Contacts:
             touch.force, touch.impulse = max(touch.force, force), touch.impulse + force * span
             touch.depth = max(touch.depth, depth)
             self._fresh[touch.id] = touch
+
+    def _on(self, thing: str, contact: Any) -> NDArray[np.float64]:
+        """The normal force (3,) [N] of the contact just read on an object, in the world's frame: what is dragged over
+        the surface that it stands on does not press on it."""
+        # The normal points to the contact's second geom.
+        sign = 1.0 if self._object[contact.geom[1]] == thing else -1.0
+        force: NDArray[np.float64] = sign * self._force[0] * contact.frame[:3]
+        return force
+
+    def _beyond_weight(self, thing: str, net: NDArray[np.float64]) -> float:
+        """What of the force (3,) [N] on an object is not its surface bearing all or a part of its weight."""
+        upward = float(net[2])
+        return math.hypot(float(net[0]), float(net[1]), max(0.0, upward - self._weight[thing], -upward))
 
     def take(self) -> list[m.Touch]:
         """The touches that began or went on since the last call."""
