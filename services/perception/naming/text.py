@@ -73,7 +73,7 @@ def _word_in(word: str, tokens: Sequence[str], glued: str) -> float:
     best = max(Levenshtein.normalized_similarity(form, token) for token in tokens for form in _forms(word))
     within = fuzz.partial_ratio(word, glued) / 100 if len(glued) >= len(word) else 0.0
     # Found within other words it may be a chance: "rice" is in "price".
-    return max(best, within * 0.95)
+    return float(max(best, within * 0.95))
 
 
 def _forms(word: str) -> tuple[str, ...]:
