@@ -8,7 +8,7 @@ from cli.errors import CliError, checked
 from cli.plan import add_machine_options
 from cli.programs import become
 
-SUITES = ("seed", "fetch", "tidy", "faults", "dialogue", "chaos", "commands", "spoken")
+SUITES = ("seed", "fetch", "tidy", "faults", "dialogue", "chaos", "commands", "spoken", "sizes", "clutter", "lying")
 EXAMPLES = """examples:
   tidybot eval --suite seed                                  the five scenarios of the VLA contract, with their logs
   tidybot eval --suite fetch --scenarios 100 --seed 7 --jobs 2
@@ -17,6 +17,7 @@ EXAMPLES = """examples:
   tidybot eval --suite fetch --scenarios 3 --processes       the same seeds with every service a process
   tidybot eval --suite commands                              every line of docs/COMMANDS.md, judged by its effect
   tidybot eval --suite spoken -n 20 --voices DIR --snr 10    recordings with a manifest.tsv, from sound to delivery
+  tidybot eval --suite clutter -n 8                          things of which nobody told the robot; also sizes, lying
   tidybot eval -n 1000 --cluster tcp://HOST:8786             on the workers of a Dask scheduler; local: some here
 
 Case i has the seed SEED + i. Success is what physics shows: lifted, carried in the hand, upright and at rest in the

@@ -6,6 +6,8 @@ be away. The world that the simulator builds is another file (`common.scene`), w
 
 from pathlib import Path
 
+import msgspec
+
 from common.config import config_dir
 from common.floor_plan import FloorPlan, Thing, doubled, kind_fault
 from common.scene import SCENES, Scene, SceneError, checked, parse, read
@@ -35,11 +37,16 @@ class Household(FloorPlan, frozen=True, kw_only=True):
         return next((f"thing {found}" for t in self.things if (found := kind_fault(t))), "")
 
 
+def mapped(plan: FloorPlan, words: Words | None = None) -> Household:
+    """The household of someone who was told the floor plan and words, and of no thing that is there."""
+    shared = {name: getattr(plan, name) for name in FloorPlan.__struct_fields__}
+    return Household(**shared, words=words or Words())
+
+
 def told(world: Scene, words: Words | None = None) -> Household:
     """The household of someone who was told all about a world: its objects are known things."""
-    shared = {name: getattr(world, name) for name in FloorPlan.__struct_fields__}
     things = tuple(Thing(**{n: getattr(o, n) for n in Thing.__struct_fields__}) for o in world.objects)
-    return Household(**shared, things=things, words=words or Words())
+    return msgspec.structs.replace(mapped(world, words), things=things)
 
 
 def household_path(name: str) -> Path:

@@ -8,7 +8,7 @@ origin).
 import math
 import tomllib
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, Literal, TypeVar
 
 import msgspec
 
@@ -41,11 +41,23 @@ class SceneError(ValueError):
     """A world or household file that cannot be used; the message names file, entry and remedy."""
 
 
+FLOOR = "floor"
+"""What `on` says of an object that stands on the floor."""
+Pose = Literal["upright", "side", "upside down"]
+
+
 class ObjectSpec(Thing, frozen=True, kw_only=True):
-    """An object that the simulation builds: its mass [kg], and on which receptacle it stands ("": on any)."""
+    """An object that the simulation builds, with its mass [kg].
+
+    `on`: the receptacle, piece of furniture or `floor` that it stands on; "" for whichever receptacle the seed draws.
+    `position` (x, y) [map] and `yaw` [rad] are drawn as well where they are not given. `pose`: how it rests.
+    """
 
     mass: float
     on: str = ""
+    position: Vec2 | None = None
+    yaw: float | None = None
+    pose: Pose = "upright"
 
 
 def body_name(spec: Thing) -> str:
@@ -63,6 +75,23 @@ class Scene(FloorPlan, frozen=True, kw_only=True):
         """The object called `name` or by that alias, None if unknown."""
         return next((o for o in self.objects if name == o.name or name in o.aliases), None)
 
+    def surface(self, name: str) -> Receptacle | None:
+        """The receptacle of that name, or the floor or the top of a piece of furniture as one."""
+        if found := self.receptacle(name):
+            return found
+        if name == FLOOR:
+            (left, below), (right, above) = self.low, self.high
+            middle, size = ((left + right) / 2, (below + above) / 2, 0.0), (right - left, above - below)
+            return Receptacle(name=FLOOR, kind="table", center=middle, size=size)
+        box = next((f for f in self.furniture if f.name == name), None)
+        if box is None:
+            return None
+        (x, y, z), (sx, sy, sz) = box.center, box.size
+        sides = ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0))
+        return Receptacle(
+            name=name, kind="table", center=(x, y, z + sz / 2), size=(sx, sy), yaw=box.yaw, approach=sides
+        )
+
     def fault(self) -> str:
         """What makes the world impossible, in words; "" when nothing does."""
         if found := super().fault():
@@ -78,8 +107,12 @@ class Scene(FloorPlan, frozen=True, kw_only=True):
                 return f"object {found}"
             if not (0 < spec.mass < math.inf):
                 return f"object {spec.name!r} needs a positive size and mass"
-            if spec.on and self.receptacle(spec.on) is None:
-                return f"object {spec.name!r} is on {spec.on!r}, which is no receptacle"
+            if spec.on and self.surface(spec.on) is None:
+                return f"object {spec.name!r} is on {spec.on!r}, which is no receptacle or furniture"
+            if spec.position is not None and not spec.on:
+                return f"object {spec.name!r} has a position and needs `on`: the surface at that place"
+            if spec.on == FLOOR and spec.position is None:
+                return f"object {spec.name!r} is on the floor and needs a position"
         return ""
 
 

@@ -19,7 +19,8 @@ def to_toml(plan: FloorPlan) -> str:
 
 def _value(value: Any) -> str:
     if isinstance(value, dict):
-        return "{ " + ", ".join(f"{json.dumps(k)} = {_value(v)}" for k, v in value.items()) + " }"
+        given = {k: v for k, v in value.items() if v is not None}
+        return "{ " + ", ".join(f"{json.dumps(k)} = {_value(v)}" for k, v in given.items()) + " }"
     if isinstance(value, (list, tuple)):
         return "[" + ", ".join(map(_value, value)) + "]"
     return json.dumps(value)

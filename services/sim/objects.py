@@ -4,6 +4,7 @@ import math
 
 from common.kinds import kind_of
 from common.scene import ObjectSpec, body_name
+from services.sim.layout import Placement
 
 _CONTACT = 'condim="4" friction="1 .02 .0005" solref=".005 1" solimp=".95 .99 .001"'
 _WALLS = 16
@@ -94,8 +95,8 @@ def geoms(spec: ObjectSpec) -> str:
     return _geom(spec, f'type="box" size="{x} {y} {z}"', 1.0)
 
 
-def body_xml(spec: ObjectSpec, position: tuple[float, float, float], yaw: float) -> str:
-    """A free body at a pose."""
-    name = body_name(spec)
-    x, y, z = position
-    return f'<body name="{name}" pos="{x} {y} {z}" euler="0 0 {yaw}"><freejoint name="{name}"/>{geoms(spec)}</body>'
+def body_xml(placed: Placement) -> str:
+    """A free body at its pose."""
+    name = body_name(placed.spec)
+    pos, quat = (" ".join(map(str, values)) for values in (placed.position, placed.quat))
+    return f'<body name="{name}" pos="{pos}" quat="{quat}"><freejoint name="{name}"/>{geoms(placed.spec)}</body>'

@@ -74,7 +74,7 @@ class Physics:
         for p in self.placements:
             at = self.model.joint(body_name(p.spec)).qposadr[0]
             self.data.qpos[at : at + 3] = p.position
-            self.data.qpos[at + 3 : at + 7] = (np.cos(p.yaw / 2), 0, 0, np.sin(p.yaw / 2))
+            self.data.qpos[at + 3 : at + 7] = p.quat
         mujoco.mj_step(self.model, self.data, SETTLE_TICKS * FINE)
         self.fingers.hold()
         self.contacts.forget()

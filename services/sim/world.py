@@ -102,7 +102,7 @@ def world_mjcf(scene: Scene, placements: Sequence[Placement], mocap: str = "", r
     )
     center = ((scene.low[0] + scene.high[0]) / 2, (scene.low[1] + scene.high[1]) / 2)
     extent = (scene.high[0] - scene.low[0] + 2, scene.high[1] - scene.low[1] + 2)
-    bodies = "".join(objects.body_xml(p.spec, p.position, p.yaw) for p in placements)
+    bodies = "".join(objects.body_xml(p) for p in placements)
     return f"""<mujoco model="{scene.name}">
 <compiler angle="radian" autolimits="true"/>
 <option timestep="0.0025" integrator="implicitfast" cone="elliptic" impratio="10" jacobian="dense"/>

@@ -1,0 +1,87 @@
+"""Objects that no household lists: kind, size, colour and mass drawn within what shops sell and the hand can hold."""
+
+import colorsys
+from dataclasses import dataclass
+
+import numpy as np
+
+from common.floor_plan import Rgba
+from common.scene import ObjectSpec
+
+Range = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Measures:
+    """Ranges [m] of width, depth and height of a kind, and of its mass as density [kg/m^3] of its bounding box.
+
+    No `depth`: as deep as wide. No `height`: as high as wide. `colours`: the words that it comes in, all if empty.
+    """
+
+    width: Range
+    depth: Range | None = None
+    height: Range | None = None
+    density: Range = (250.0, 700.0)
+    colours: tuple[str, ...] = ()
+
+
+FRUIT = (700.0, 950.0)
+MEASURES: dict[str, Measures] = {
+    "mug": Measures((0.066, 0.080), height=(0.075, 0.110), density=(450, 750)),
+    "can": Measures((0.052, 0.074), height=(0.085, 0.150), density=(300, 800)),
+    "bottle": Measures((0.055, 0.074), height=(0.160, 0.250), density=(300, 750)),
+    "apple": Measures((0.062, 0.076), density=FRUIT, colours=("red", "green", "yellow")),
+    "ball": Measures((0.045, 0.072), density=(150, 400)),
+    "block": Measures((0.036, 0.060), density=(400, 700)),
+    "box": Measures((0.080, 0.140), (0.042, 0.068), (0.110, 0.190), density=(150, 450)),
+    "bowl": Measures((0.120, 0.165), height=(0.048, 0.068), density=(250, 450)),
+}
+"""Sizes of household goods (supermarket and kitchen shelves) whose narrowest side the hand of 85 mm takes."""
+LAID = ("mug", "can", "bottle", "box")
+"""Kinds that stand and may be found lying."""
+ALIKE = ({"mug"}, {"can"}, {"bottle"}, {"apple", "ball"}, {"block", "box"}, {"bowl"})
+"""Of one colour, a world has one of each group: what a person would call by the same words is no fair command."""
+HUES: dict[str, tuple[Range, Range, Range]] = {
+    "red": ((-0.015, 0.015), (0.75, 0.92), (0.55, 0.85)), "orange": ((0.065, 0.085), (0.80, 0.95), (0.85, 0.98)),
+    "yellow": ((0.135, 0.160), (0.70, 0.90), (0.80, 0.95)), "green": ((0.30, 0.40), (0.60, 0.85), (0.35, 0.65)),
+    "blue": ((0.58, 0.64), (0.65, 0.90), (0.50, 0.80)), "purple": ((0.75, 0.80), (0.50, 0.75), (0.40, 0.65)),
+    "white": ((0.0, 1.0), (0.0, 0.05), (0.88, 0.97)), "black": ((0.0, 1.0), (0.0, 0.15), (0.06, 0.12)),
+}  # fmt: skip
+"""Hue, saturation and value [0..1] of what people call by a colour word, well within it: Berlin and Kay, "Basic Color
+Terms", 1969; the values are chosen."""
+
+
+def colour(word: str, rng: np.random.Generator) -> Rgba:
+    """A shade that people call by the word."""
+    hue, saturation, value = (float(rng.uniform(*HUES[word][i])) for i in range(3))
+    red, green, blue = colorsys.hsv_to_rgb(hue % 1.0, saturation, value)
+    return round(red, 3), round(green, 3), round(blue, 3), 1.0
+
+
+def thing(kind: str, word: str, rng: np.random.Generator) -> ObjectSpec:
+    """An object of a kind and a colour word; it is called by both."""
+    measures = MEASURES[kind]
+    width = float(rng.uniform(*measures.width))
+    depth = float(rng.uniform(*measures.depth)) if measures.depth else width
+    height = float(rng.uniform(*measures.height)) if measures.height else width
+    mass = float(rng.uniform(*measures.density)) * width * depth * height
+    size = (round(depth, 4), round(width, 4), round(height, 4))
+    return ObjectSpec(
+        name=f"{word} {kind}", kind=kind, colour=word, size=size, mass=round(mass, 3), rgba=colour(word, rng)
+    )
+
+
+def things(count: int, rng: np.random.Generator, first: tuple[str, ...] = ()) -> list[ObjectSpec]:
+    """So many objects that differ in their words; the first is of one of the kinds `first`, if there are any."""
+    found: list[ObjectSpec] = []
+    taken: set[tuple[int, str]] = set()
+    while len(found) < count:
+        kinds = first if first and not found else tuple(MEASURES)
+        kind = kinds[int(rng.integers(len(kinds)))]
+        words = MEASURES[kind].colours or tuple(HUES)
+        word = words[int(rng.integers(len(words)))]
+        group = next(n for n, names in enumerate(ALIKE) if kind in names)
+        if (group, word) not in taken:
+            taken.add((group, word))
+            found.append(thing(kind, word, rng))
+    return found
