@@ -92,6 +92,8 @@ def _objection(step: PlanStep, held: str, found: set[str], world: KnownWorld, ho
             )
         case "say":
             return "" if step.text.strip() else "there is nothing to say"
+        case "teach" | "forget":
+            return "" if step.text.strip() else "no name was said"
         case _:
             return ""
 

@@ -129,8 +129,8 @@ SYSTEM_STATUS = _event("system_status", m.SystemStatus, by="brain")
 WORLD_OBJECTS = _event(
     "world/objects", m.WorldObjects, by="perception", to="brain planner navigation manipulation dashboard"
 )
-TEACH = _goal("perception/teach", m.TeachRequest, by="dashboard *", to="perception", text="name", latched=False)
-TAUGHT = _event("perception/taught", m.TeachResult, by="perception", to="dashboard")
+TEACH = _goal("perception/teach", m.TeachRequest, by="brain dashboard *", to="perception", text="name", latched=False)
+TAUGHT = _event("perception/taught", m.TeachResult, by="perception", to="brain dashboard")
 HOUSEHOLD_NAMES = _event("household/names", m.TaughtNames, by="perception")
 
 BASE_TARGET = _goal("base/target_pose", m.BaseTarget, by="navigation", to="sim", latched=False)

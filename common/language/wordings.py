@@ -30,7 +30,7 @@ Action = Literal[
     "stop", "cancel", "continue", "yes", "no", "refuse",
     "open_hand", "close_hand", "seen", "contents", "holding", "whereabouts", "where", "number", "say", "wait",
     "wait_there", "come_back", "go", "remark", "untidy", "throw_away", "put_away", "tidy", "put", "put_near",
-    "put_down", "deliver", "deliver_there", "fetch", "fetch_named", "pick_up", "find",
+    "put_down", "deliver", "deliver_there", "fetch", "fetch_named", "pick_up", "find", "teach", "forget",
 ]  # fmt: skip
 """What a wording asks for; `services/planner/rules.py` has a function for each that can be planned."""
 Kind = Literal["command", "reply", "name"]
@@ -124,6 +124,18 @@ WORDINGS: tuple[Wording, ...] = (
     Wording(
         "number", "how many <thing> (are there | do you see | can you see | do you know | are <words>)", heard=""
     ),
+    # Names of things.
+    Wording(
+        "teach",
+        "[(remember | learn | look) [that | and]] (this | that) [<thing>] is [called] (my | our) <words>"
+        " | [(remember | learn) [that | and]] (this | that) [<thing>] is (called | named) <words>"
+        " | <thing> is (called | named) [my | our | the] <words> | (the | this | that) <thing> is (my | our) <words>"
+        " | (call | name) (this | that | it) [<thing>] [my | our | the] <words>"
+        " | (remember | learn) (this | that) [<thing>] as [my | our | the] <words>",
+        heard="",
+    ),
+    Wording("forget", "(forget | unlearn) [about] [the name [of] | what is] (my | our) <words>", heard=""),
+    Wording("forget", "(forget | unlearn) the name [of] [the] <words>", heard=""),
     # What is said beside a command.
     Wording("untidy", "<spot> (is | looks) (a mess | messy | untidy | dirty | a tip)", heard=""),
     Wording("remark", "(i'm | i am | we're | we are | it's | it is) <words>", heard=""),

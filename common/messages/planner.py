@@ -7,7 +7,7 @@ import msgspec
 from common.messages.base import Message
 
 PlannerBackend = Literal["grammar", "llm"]
-StepAction = Literal["navigate", "find", "grasp", "place", "release", "say", "wait", "return"]
+StepAction = Literal["navigate", "find", "grasp", "place", "release", "say", "wait", "return", "teach", "forget"]
 GRIPPER = "gripper"
 """The target of a step that only opens or closes the hand."""
 
@@ -30,7 +30,8 @@ class RejectedPlan(Message):
 class PlanStep(Message):
     """One step of a plan. `grasp` and `release` with the target `gripper` close and open the hand around nothing.
 
-    `near`: of `place`, the object on the target next to which; "" anywhere on it.
+    `near`: of `place`, the object on the target next to which; "" anywhere on it. `text`: of `say` what is said, of
+    `teach` and `forget` the name; `teach` gives it to `object`, or with "" to what stands before the robot or is held.
     """
 
     action: StepAction

@@ -147,6 +147,9 @@ class BrainService:
             peers.planner.handle_status(plan.request_id, 0, Result("ok", message=plan))
         for pose in io.take_all(topics.OBJECT_POSE):
             peers.perception.handle_status(pose.query_id, 0, Result("ok", message=pose))
+        for taught in io.take_all(topics.TAUGHT):
+            if taught.goal_id == peers.perception.goal_id:  # the page and the command line teach as well
+                peers.perception.handle_status(taught.goal_id, taught.attempt, Result("ok", message=taught))
         io.take_all(topics.WORLD_OBJECTS)
 
     @staticmethod

@@ -6,7 +6,7 @@ from common.language.meaning import readings
 from common.language.normalise import Words
 from common.language.pattern import Slots
 from common.language.wordings import Action, Kind
-from services.planner import actions, answers, tidying
+from services.planner import actions, answers, teaching, tidying
 from services.planner.plan_builder import PlanBuilder, Refusal
 
 ACTIONS: dict[Action, Callable[[PlanBuilder, Slots], None]] = {
@@ -37,6 +37,8 @@ ACTIONS: dict[Action, Callable[[PlanBuilder, Slots], None]] = {
     "fetch_named": actions.fetch_named,
     "pick_up": actions.pick_up,
     "find": actions.find,
+    "teach": teaching.teach,
+    "forget": teaching.forget,
 }
 
 

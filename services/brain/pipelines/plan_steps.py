@@ -17,6 +17,7 @@ from services.brain.steps.gripper import MoveGripper, open_hand, set_down_or_ope
 from services.brain.steps.leaf import Leaf, Say, Settle
 from services.brain.steps.motion import Grab, Navigate
 from services.brain.steps.plan import describe_step
+from services.brain.steps.teach import forget, teach
 from services.brain.steps.verify import AlreadyInPlace, release_and_verify, verify_placement
 from services.brain.tree.composites import Condition, Selector, Sequence
 from services.brain.tree.path import PLAN_STEP
@@ -80,6 +81,10 @@ def step_tree(ctx: Context, step: PlanStep, carried: str, at_home: bool = False)
             return Say(PLAN_STEP, ctx, lambda: step.text, name=name)
         case "wait":
             return Settle(PLAN_STEP, ctx, name=name)
+        case "teach":
+            return teach(ctx, step, PLAN_STEP, name)
+        case "forget":
+            return forget(ctx, step, PLAN_STEP, name)
         case "return":
             at_start = RememberPlace("at_home", ctx, "home")
             return Sequence(PLAN_STEP, drive_home(ctx), at_start, Settle("settle", ctx), name=name)

@@ -14,8 +14,8 @@ from services.perception.view import View
 
 LOOK_SECONDS, READ_SECONDS = 0.005, 0.2
 """Robot time [s] that a look and a reading take in lockstep; measured on one core by bench.naming."""
-MAX_READ = 12
-"""Objects that are read in one go, the nearest first. Chosen: three seconds."""
+MAX_READ = 8
+"""Objects that are read in one go, the nearest first. Chosen: two seconds."""
 
 
 @dataclass(frozen=True)

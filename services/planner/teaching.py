@@ -1,0 +1,32 @@
+"""Names of things: what they are taught for, and which are forgotten. Pure."""
+
+from common.language.normalise import without_determiners
+from common.language.pattern import Slots
+from common.messages import PlanStep
+from services.planner.phrases import Phrase, read
+from services.planner.plan_builder import PlanBuilder, Refusal
+
+
+def teach(builder: PlanBuilder, slots: Slots) -> None:
+    """The thing that is named, or "this", gets a name. Which one that is perception decides, which sees it."""
+    thing = " ".join(without_determiners(slots.get("thing", ())))
+    if thing and not isinstance(read(slots["thing"], builder.vocabulary), Phrase):
+        raise Refusal(f"I know no {thing} that could have a name")
+    builder.steps.append(PlanStep(action="teach", object=thing, text=_name(builder, slots)))
+
+
+def forget(builder: PlanBuilder, slots: Slots) -> None:
+    """A name that was taught is forgotten."""
+    builder.steps.append(PlanStep(action="forget", text=_name(builder, slots)))
+
+
+def _name(builder: PlanBuilder, slots: Slots) -> str:
+    """The name as it is to be kept.
+
+    Raises:
+        Refusal: it is a place.
+    """
+    words = without_determiners(slots["words"])
+    if not words or builder.vocabulary.spot(words):
+        raise Refusal(f"{' '.join(slots['words'])} is no name for a thing")
+    return " ".join(words)
