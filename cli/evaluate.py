@@ -8,7 +8,9 @@ from cli.errors import CliError, checked
 from cli.plan import add_machine_options
 from cli.programs import become
 
-SUITES = ("seed", "fetch", "tidy", "faults", "dialogue", "chaos", "commands", "spoken", "sizes", "clutter", "lying")
+SUITES = (
+    "seed", "fetch", "tidy", "faults", "dialogue", "chaos", "commands", "spoken", "sizes", "clutter", "lying", "homes",
+)  # fmt: skip
 EXAMPLES = """examples:
   tidybot eval --suite seed                                  the five scenarios of the VLA contract, with their logs
   tidybot eval --suite fetch --scenarios 100 --seed 7 --jobs 2

@@ -61,9 +61,19 @@ def clutter(seed: int) -> Case:
     return fetch(seed, "clutter", draw, rng)
 
 
-def fetch(seed: int, suite: str, draw: Callable[[], list[ObjectSpec]], rng: np.random.Generator) -> Case:
-    """The case of a world whose first object is wanted. A draw for which there is no room is drawn again."""
-    plan = flat()
+def fetch(
+    seed: int,
+    suite: str,
+    draw: Callable[[], list[ObjectSpec]],
+    rng: np.random.Generator,
+    plan: Scene | None = None,
+    settings: tuple[str, ...] = (VLA,),
+) -> Case:
+    """The case of a world whose first object is wanted. A draw for which there is no room is drawn again.
+
+    `plan` is the flat without its objects, None: the shipped one.
+    """
+    plan = plan or flat()
     for _ in range(TRIES):
         world = msgspec.structs.replace(plan, objects=tuple(draw()))
         try:
@@ -77,7 +87,7 @@ def fetch(seed: int, suite: str, draw: Callable[[], list[ObjectSpec]], rng: np.r
     command = WORDINGS[int(rng.integers(len(WORDINGS)))].format(wanted.name)
     return Case(
         suite=suite, seed=seed, name=wanted.kind, command=command, lines=(Line(command),), thing=wanted.name,
-        wants=(Want(wanted.name, (plan.delivery,)),), scene=world, household=nothing_listed(plan), settings=(VLA,),
+        wants=(Want(wanted.name, (plan.delivery,)),), scene=world, household=nothing_listed(plan), settings=settings,
     )  # fmt: skip
 
 

@@ -1,0 +1,101 @@
+"""The floor of a home that is being furnished: what is taken, and where the robot still gets. Pure."""
+
+import math
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from common.approach import EDGE_DISTANCE, ROOM
+from common.floor_plan import Room, Vec2, Wall
+from common.geometry import Rectangle
+
+Mask = NDArray[np.bool_]
+CELL = 0.05
+"""Side of a cell [m], that of navigation's grid."""
+PASSAGE = ROOM + 0.05
+"""Clearance [m] of the base's centre on a way that counts as free: navigation's and one cell."""
+SIDES = ((0, -1), (1, 0), (-1, 0), (0, 1))
+
+
+class Floor:
+    """A grid of `size` (x, y) [m] whose cells are taken by walls and furniture or kept free before doors."""
+
+    def __init__(self, size: Vec2, walls: Iterable[Wall]) -> None:
+        rows, columns = math.ceil(size[1] / CELL), math.ceil(size[0] / CELL)
+        y, x = np.mgrid[:rows, :columns]
+        self._x, self._y = (x + 0.5) * CELL, (y + 0.5) * CELL
+        self._taken: Mask = np.zeros((rows, columns), bool)
+        self._kept: Mask = self._taken.copy()
+        for wall in walls:
+            self._taken |= self._inside(wall.footprint)
+
+    def _inside(self, area: Rectangle, margin: float = 0.0) -> Mask:
+        u, v = area.to_local(self._x, self._y)
+        found: Mask = (np.abs(u) <= area.length / 2 + margin) & (np.abs(v) <= area.width / 2 + margin)
+        return found
+
+    def keep(self, area: Rectangle) -> None:
+        """Nothing is to be put into this area."""
+        self._kept |= self._inside(area)
+
+    def fits(self, area: Rectangle, room: Room, margin: float) -> bool:
+        """True when the area lies in the room and is free, as is `margin` [m] around it but for walls at its back."""
+        corners = [
+            area.to_map(i * area.length / 2, j * area.width / 2) for i, j in ((1, 1), (1, -1), (-1, 1), (-1, -1))
+        ]
+        if not all(room.low[k] < c[k] < room.high[k] for c in corners for k in (0, 1)):
+            return False
+        wide = area._replace(length=area.length + 2 * margin)
+        return not bool(((self._taken | self._kept) & self._inside(wide)).any())
+
+    def take(self, area: Rectangle) -> None:
+        """Something stands there now."""
+        self._taken |= self._inside(area)
+
+    def copy(self) -> "Floor":
+        """The same floor, to try something on."""
+        other = object.__new__(Floor)
+        other.__dict__ = self.__dict__ | {"_taken": self._taken.copy(), "_kept": self._kept.copy()}
+        return other
+
+    def reached(self, start: Vec2) -> Mask:
+        """Cells on which the base's centre can be when it starts at `start`."""
+        labels, _ = ndimage.label(self.clearance() >= PASSAGE)
+        mine = labels[self.cell(start)]
+        return np.asarray(labels == mine) if mine else np.zeros_like(self._taken)
+
+    def clearance(self) -> NDArray[np.float64]:
+        """Distance [m] of each cell to what is taken or outside."""
+        return np.asarray(ndimage.distance_transform_edt(np.pad(~self._taken, 1))[1:-1, 1:-1] * CELL)
+
+    def cell(self, point: Vec2) -> tuple[int, int]:
+        """Row and column of a point, clipped to the grid."""
+        rows, columns = self._taken.shape
+        return (
+            int(np.clip(point[1] / CELL, 0, rows - 1)),
+            int(np.clip(point[0] / CELL, 0, columns - 1)),
+        )
+
+    def roomiest(self, room: Room, within: Mask) -> Vec2 | None:
+        """The point of a room farthest from everything, among the cells `within`; None when there is none."""
+        inside = within & (self._x > room.low[0]) & (self._x < room.high[0])
+        inside &= (self._y > room.low[1]) & (self._y < room.high[1])
+        if not inside.any():
+            return None
+        where = np.unravel_index(int(np.argmax(np.where(inside, self.clearance(), -1.0))), inside.shape)
+        return float(self._x[where]), float(self._y[where])
+
+    def approaches(self, area: Rectangle, within: Mask, sides: Sequence[tuple[int, int]] = SIDES) -> list[Vec2]:
+        """Directions in the area's own frame from whose edge the base reaches it from cells `within`."""
+        found = []
+        for i, j in sides:
+            off = (area.length if i else area.width) / 2 + EDGE_DISTANCE + CELL
+            along = (area.width if i else area.length) / 2
+            # At the middle of the edge and half-way to its ends.
+            shifts = (0.0, 0.5 * along, -0.5 * along)
+            points = [area.to_map(i * off + abs(j) * s, j * off + abs(i) * s) for s in shifts]
+            if all(within[self.cell(p)] for p in points):
+                found.append((float(i), float(j)))
+        return found

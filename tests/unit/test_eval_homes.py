@@ -1,0 +1,70 @@
+"""Drawn homes: the same for a seed, all of it within the robot's reach, and such that files carry them."""
+
+from pathlib import Path
+
+import pytest
+
+from common.approach import EDGE_DISTANCE, FOOTPRINT, STAND_OFF, poses_for
+from common.scene import Scene, load_scene
+from evaluation.blocks import flat
+from evaluation.homes.home import draw_home
+from evaluation.homes.rooms import NoHome
+from evaluation.homes.suite import homes
+from evaluation.scene_file import to_toml
+from services.navigation.planning.costmap import Costmap
+from services.navigation.planning.planner import PathPlanner
+from services.sim.layout import place_objects
+
+OBJECTS = flat().objects[:6]
+DRAWN = [draw_home(seed, OBJECTS) for seed in range(12)]
+
+
+def test_a_seed_draws_the_same_home_again_and_another_seed_another() -> None:
+    assert draw_home(3, OBJECTS) == DRAWN[3]
+    assert len({(h.low, h.high) for h in DRAWN}) == len(DRAWN)
+
+
+@pytest.mark.parametrize("rooms", range(1, 7))
+def test_a_home_has_as_many_rooms_as_asked_for(rooms: int) -> None:
+    home = draw_home(40 + rooms, OBJECTS, rooms)
+    named = [r.name for r in home.rooms if r.name != "corridor"]
+    assert len(named) == rooms == len(set(named)) and "living room" in named
+    assert {p.name for p in home.places} == {r.name for r in home.rooms}
+
+
+@pytest.mark.parametrize("home", DRAWN, ids=lambda h: h.name)
+def test_navigation_reaches_every_room_and_every_surface(home: Scene) -> None:
+    costmap = Costmap(home, 0.05, 1.0)
+    planner = PathPlanner(costmap, FOOTPRINT + 0.02, 0.65)
+    assert costmap.clearance(0.0, 0.0) > FOOTPRINT + 0.1, "the robot starts there"
+    spots = [[(p.x, p.y)] for p in home.places]
+    for r in home.receptacles:
+        poses = poses_for((r.center[0], r.center[1]), r, STAND_OFF, EDGE_DISTANCE)
+        spots.append([(pose[0], pose[1]) for _, pose in poses])
+    for choices in spots:
+        assert planner.possible((0.0, 0.0), choices), choices
+
+
+@pytest.mark.parametrize("home", DRAWN[:6], ids=lambda h: h.name)
+def test_nothing_stands_in_anything_else(home: Scene) -> None:
+    outlines = [r.outline for r in home.receptacles]
+    outlines += [b.outline for b in home.furniture if not b.name.startswith("chair") and not b.name.endswith("back")]
+    for i, a in enumerate(outlines):
+        for b in outlines[i + 1 :]:
+            corners = [a.to_map(u * a.length / 2, v * a.width / 2) for u in (-1, 0, 1) for v in (-1, 0, 1)]
+            assert not any(b.contains(*c, margin=-0.03) for c in corners), (a, b)
+
+
+def test_a_home_is_read_again_from_its_file_and_its_things_find_a_place(tmp_path: Path) -> None:
+    home = homes(5).scene
+    assert home is not None
+    path = tmp_path / "home.toml"
+    path.write_text(to_toml(home))
+    assert load_scene(str(path)) == home
+    assert len(place_objects(home, 5)) == len(home.objects) >= 6
+
+
+def test_too_many_rooms_for_a_home_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("evaluation.homes.home.DRAWS", 0)
+    with pytest.raises(NoHome, match="no home of 3 rooms"):
+        draw_home(0, OBJECTS, 3)
