@@ -11,6 +11,7 @@ from services.sim.config import SimConfig
 from services.sim.lidar import RANGE_MAX, RANGE_MIN, RAYS, Lidar
 from services.sim.odometry import WheelOdometry
 from services.sim.physics import Physics
+from services.sim.proprioception import Proprioception
 
 _NAMES = [*BASE, *ARM, "gripper"]
 
@@ -22,6 +23,8 @@ class Sensors:
         self._physics, self._io = physics, io
         self.odometry = WheelOdometry(start, config, physics.seed)
         bought = config.sensors == "bought"
+        largest = physics.model.actuator_forcerange[physics.ctrl_at, 1]
+        self._felt = Proprioception(physics.seed, largest) if bought else None
         noise, missing = (config.lidar_noise, config.lidar_missing) if bought else (0.0, 0.0)
         self._lidar = Lidar(physics.model, physics.lidar_site, noise, missing, io.rng)
 
@@ -36,14 +39,20 @@ class Sensors:
         vx, vy, omega = velocity[:3]
         odometry = m.Odometry(t=t, x=x, y=y, theta=yaw, vx=cos * vx + sin * vy, vy=cos * vy - sin * vx, omega=omega)
         io.publish(topics.ODOMETRY, odometry)
+        angles, efforts, finger, width = arm[3:], physics.forces[:-1], physics.finger_force(), physics.width()
+        felt = self._felt
+        if felt is not None:
+            # The base's own are in its odometry.
+            angles, velocity[3:] = felt.angles(physics.joints)[3:].tolist(), felt.rates(physics.rates)[3:].tolist()
+            efforts, finger, width = felt.efforts(efforts), felt.finger(finger), felt.width(width)
         io.publish(
             topics.JOINT_STATES,
             m.JointStates(
                 t=t,
                 name=_NAMES,
-                position=[x, y, yaw, *arm[3:], physics.width()],
+                position=[x, y, yaw, *angles, width],
                 velocity=[*velocity, physics.width_rate()],
-                effort=[*physics.forces[:-1].tolist(), physics.finger_force()],
+                effort=[*efforts.tolist(), finger],
             ),
         )
 
