@@ -8,6 +8,8 @@ from common.scene import Receptacle
 Point = tuple[float, float]
 FOOTPRINT = 0.29
 """Radius of the circle around the base [m]: its bumper's rounded corners are 0.284 from its centre."""
+HALF_WIDTH = 0.24
+"""Half of the base's width and length over the bumper [m]: what is nearer to its centre on both axes is its own."""
 STAND_OFF = 0.55
 """From the base's centre to the object [m]: nearer, flat grasps of low tables are out of the arm's reach, farther away
 those from above on high ones."""

@@ -33,12 +33,13 @@ class Strict(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tr
 
 
 class Wall(Strict, frozen=True):
-    """A straight wall from `start` to `end`; doors are gaps between walls."""
+    """A straight wall from `start` to `end`; doors are gaps between walls. One of `glass` is not seen by a lidar."""
 
     start: Vec2
     end: Vec2
     thickness: float = 0.12
     height: float = 2.4
+    glass: bool = False
 
     @property
     def outline(self) -> Rectangle:

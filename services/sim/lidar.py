@@ -1,4 +1,4 @@
-"""A 2-D lidar by MuJoCo ray casting; the robot's own geoms are in a group that the rays skip."""
+"""A 2-D lidar by MuJoCo ray casting, in a slot of the chassis: its posts and the low arm are in the way."""
 
 import math
 from typing import Any
@@ -8,42 +8,73 @@ import numpy as np
 from numpy.typing import NDArray
 
 from services.sim.objects import GROUP
-from services.sim.robot import HULL_GROUP, ROBOT_GROUP
+from services.sim.robot import GLASS_GROUP, HULL_GROUP, POST, ROBOT_GROUP
 
 RAYS, RANGE_MIN, RANGE_MAX = 360, 0.05, 10.0
 _TAKES_NORMAL = "normal" in (mujoco.mj_multiRay.__doc__ or "")
+Array = NDArray[np.float64]
 
 
 def cast(
-    model: Any, data: Any, origin: NDArray[np.float64], directions: NDArray[np.float64], groups: NDArray[np.uint8]
-) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
-    """Distances [m] (-1: nothing) and geom ids along unit `directions` (n, 3) from `origin` (3,)."""
+    model: Any, data: Any, origin: Array, directions: Array, groups: NDArray[np.uint8], without: int = -1
+) -> tuple[Array, NDArray[np.int32]]:
+    """Distances [m] (-1: nothing) and geom ids along unit `directions` (n, 3) from `origin` (3,).
+
+    `groups` (6,) are those of the geoms that count, `without` the number of a body that does not.
+    """
     n = len(directions)
     geom, distance = np.empty(n, np.int32), np.empty(n)
     flat = np.ascontiguousarray(directions, dtype=np.float64).reshape(-1)
     middle = (geom, distance, None) if _TAKES_NORMAL else (geom, distance)
-    mujoco.mj_multiRay(model, data, origin, flat, groups, 1, -1, *middle, n, 100.0)
+    mujoco.mj_multiRay(model, data, origin, flat, groups, 1, without, *middle, n, 100.0)
     return distance, geom
 
 
 class Lidar:
     """360 rays counter-clockwise from -pi in the lidar's frame; `noise` [m], of each ray `missing` is the probability
-    that it does not return."""
+    that it does not return. What stands on tables does not reach it, glass does not return its light."""
 
     def __init__(self, model: Any, site: int, noise: float, missing: float, rng: np.random.Generator) -> None:
         self._site, self._noise, self._missing, self._rng = site, noise, missing, rng
         angles = -math.pi + np.arange(RAYS) * (2 * math.pi / RAYS)
         self._local = np.stack([np.cos(angles), np.sin(angles), np.zeros(RAYS)], axis=1)
         self._groups = np.ones(6, np.uint8)
-        self._groups[[ROBOT_GROUP, HULL_GROUP, GROUP]] = 0
+        self._groups[[GLASS_GROUP, ROBOT_GROUP, HULL_GROUP, GROUP]] = 0
+        self._arm_groups = np.zeros(6, np.uint8)
+        self._arm_groups[[ROBOT_GROUP, HULL_GROUP]] = 1
+        self._base = int(model.site_bodyid[site])
+        self._posts = to_posts(model, site, self._local)
+        root = model.body_rootid[self._base]
+        of_arm = (model.body_rootid[model.geom_bodyid] == root) & (model.geom_bodyid != self._base)
+        self._arm = np.flatnonzero(of_arm & (model.geom_contype != 0))
 
     def scan(self, model: Any, data: Any) -> NDArray[np.float32]:
         """Ranges (360,) [m]; values above RANGE_MAX mean nothing was seen."""
         rotation = data.site_xmat[self._site].reshape(3, 3)
         origin = data.site_xpos[self._site].copy()
-        distance, _ = cast(model, data, origin, self._local @ rotation.T, self._groups)
-        hit = (distance >= 0) & (distance <= RANGE_MAX)
+        directions = self._local @ rotation.T
+        distance, _ = cast(model, data, origin, directions, self._groups)
+        distance[distance < 0] = np.inf
+        np.minimum(distance, self._posts, out=distance)
+        if (data.geom_xpos[self._arm, 2] - model.geom_rbound[self._arm] < origin[2]).any():
+            arm, _ = cast(model, data, origin, directions, self._arm_groups, self._base)
+            np.minimum(distance, np.where(arm < 0, np.inf, arm), out=distance)
+        hit = distance <= RANGE_MAX
         noisy = distance + self._rng.normal(0.0, self._noise, RAYS) if self._noise else distance
         if self._missing:
             hit &= self._rng.random(RAYS) >= self._missing
         return np.where(hit, np.clip(noisy, RANGE_MIN, RANGE_MAX), RANGE_MAX + 1.0).astype(np.float32)
+
+
+def to_posts(model: Any, site: int, directions: Array) -> Array:
+    """Distances (n,) [m] along unit `directions` (n, 3) to the upright posts around the lidar, inf past them."""
+    found = np.full(len(directions), np.inf)
+    for g in range(model.ngeom):
+        if not model.geom(g).name.startswith(POST):
+            continue
+        centre, radius = (model.geom_pos[g] - model.site_pos[site])[:2], float(model.geom_size[g, 0])
+        along = directions[:, :2] @ centre
+        aside = radius**2 - (centre @ centre - along**2)
+        met = (along > 0) & (aside > 0)
+        found[met] = np.minimum(found[met], along[met] - np.sqrt(aside[met]))
+    return found

@@ -6,8 +6,12 @@ from common.robot import ARM, BASE
 
 MODEL = Path(__file__).parent / "robots" / "tidybot.xml"
 JOINT_NAMES = (*BASE, *ARM, "gripper")
+GLASS_GROUP = 2
+"""Geoms that the lidar's light goes through."""
 ROBOT_GROUP = 3
 MAST = ("mast", "mast_arm", "head")
 """Geoms that carry the head camera, on a corner of the base where the elbow does not come; Stanford's has them not."""
 HULL_GROUP = 4
 """Geoms that collide but are not to be seen, for bodies with meshes to look at; nobody draws this group."""
+POST = "post_"
+"""How the names of the geoms begin that stand in the lidar's slot."""

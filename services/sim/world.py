@@ -8,17 +8,20 @@ from common.scene import Receptacle, Scene
 from services.sim import objects
 from services.sim.layout import Placement
 from services.sim.model import Robot, own
+from services.sim.robot import GLASS_GROUP
 
 STATIC = 'contype="1" conaffinity="3"'
 _WOOD, _WHITE, _STEEL = "0.62 0.46 0.32 1", "0.90 0.89 0.86 1", "0.72 0.74 0.76 1"
 _COLOURS = {"grey": "0.45 0.46 0.48 1", "green": "0.25 0.50 0.30 1", "yellow": "0.80 0.68 0.25 1"}
+_GLASS = "0.75 0.85 0.88 0.2"
 _TOP = 0.03
 
 
-def _box(name: str, center: Sequence[float], size: Sequence[float], rgba: str, yaw: float = 0.0) -> str:
+def _box(name: str, center: Sequence[float], size: Sequence[float], rgba: str, yaw: float = 0.0, group: int = 0) -> str:
     half = " ".join(f"{v / 2:.4f}" for v in size)
     pos = " ".join(f"{v:.4f}" for v in center)
-    return f'<geom name="{name}" type="box" pos="{pos}" size="{half}" euler="0 0 {yaw}" rgba="{rgba}" {STATIC}/>'
+    kind = f'type="box" group="{group}" rgba="{rgba}"'
+    return f'<geom name="{name}" {kind} pos="{pos}" size="{half}" euler="0 0 {yaw}" {STATIC}/>'
 
 
 def _apart(box: str) -> str:
@@ -33,7 +36,8 @@ def _walls(scene: Scene) -> str:
         length = math.hypot(dx, dy) + wall.thickness
         center = ((wall.start[0] + wall.end[0]) / 2, (wall.start[1] + wall.end[1]) / 2, wall.height / 2)
         size = (length, wall.thickness, wall.height)
-        parts.append(_apart(_box(f"wall_{n}", center, size, "0.86 0.84 0.80 1", math.atan2(dy, dx))))
+        rgba, group = (_GLASS, GLASS_GROUP) if wall.glass else ("0.86 0.84 0.80 1", 0)
+        parts.append(_apart(_box(f"wall_{n}", center, size, rgba, math.atan2(dy, dx), group)))
     return "".join(parts)
 
 

@@ -19,7 +19,7 @@ REACH = 0.6
 def rectangles(floor_plan: FloorPlan, height: float) -> list[Rectangle]:
     """What a horizontal ray at `height` [m] can hit."""
     found: list[Rectangle] = []
-    found += [wall.footprint for wall in floor_plan.walls]
+    found += [wall.footprint for wall in floor_plan.walls if not wall.glass]
     found += [box.outline for box in floor_plan.furniture if abs(height - box.center[2]) <= box.size[2] / 2]
     for r in floor_plan.receptacles:
         found += [Rectangle(*r.outline.to_map(x, y), length, width, r.yaw) for x, y, length, width in _parts(r, height)]

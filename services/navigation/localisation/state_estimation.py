@@ -4,6 +4,7 @@ import numpy as np
 
 from common import messages as m
 from common import topics
+from common.approach import HALF_WIDTH
 from common.bus.port import Io, Job
 from common.geometry import Pose2, compose, inverse
 from services.navigation.config import NavigationConfig
@@ -94,8 +95,10 @@ class StateEstimator:
             self._layout = layout
             self._angles = np.asarray(scan.angle_min + np.arange(len(ranges)) * scan.angle_increment, np.float64)
             self._directions = np.stack([np.cos(self._angles), np.sin(self._angles)], axis=1)
-        hit = (ranges <= scan.range_max) & (ranges > scan.range_min)
-        seen = self._directions[hit] * ranges[hit, None] + (scan.x, scan.y)
+        ends = self._directions * ranges[:, None] + (scan.x, scan.y)
+        own = np.abs(ends).max(axis=1) < HALF_WIDTH
+        hit = (ranges <= scan.range_max) & (ranges > scan.range_min) & ~own
+        seen = ends[hit]
         # The scan is older than the odometry by `late`: moved to where the robot is now.
         if late and odometry is not None:
             back = (-odometry.vx * late, -odometry.vy * late, -odometry.omega * late)
@@ -108,7 +111,7 @@ class StateEstimator:
         unknown = near & ~self._field.near(placed, EXPLAINED)
         self.tracker.update(placed[unknown], (pose[0], pose[1]), now)
         lidar = compose(pose, (scan.x, scan.y, 0.0))
-        self._map.see(lidar, self._angles, ranges, scan.range_max, now)
+        self._map.see(lidar, self._angles, np.where(own, 0.0, ranges), scan.range_max, now)
         self.points = placed[near]
 
     # --- lost

@@ -124,8 +124,11 @@ class Costmap:
 
     # --- lidar
     def see(self, pose: Pose2, angles: Array, ranges: Array, range_max: float, now: float) -> None:
-        """Mark what the static map does not explain, clear what the rays passed through, forget what is old."""
-        hit = ranges <= range_max
+        """Mark what the static map does not explain, clear what the rays passed through, forget what is old.
+
+        A range of 0 is a ray that the robot's own body holds up: it tells nothing of what is behind.
+        """
+        hit = (ranges <= range_max) & (ranges > 0.0)
         directions = angles[hit] + pose[2]
         xs, ys = pose[0] + ranges[hit] * np.cos(directions), pose[1] + ranges[hit] * np.sin(directions)
         columns = ((xs - self.origin[0]) / self.resolution).astype(int)
@@ -136,7 +139,7 @@ class Costmap:
         before = self._seen_at > -np.inf
         if not new.any() and not before.any():
             return
-        self._clear(pose, angles, np.where(hit, ranges, range_max), now)
+        self._clear(pose, angles, np.minimum(ranges, range_max), now)
         marked = rows[new], columns[new]
         self._seen_at[marked] = now
         self._first_at[marked] = np.minimum(self._first_at[marked], now)
