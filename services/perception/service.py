@@ -237,7 +237,7 @@ class PerceptionService:
             return
         answer = _pose_answer(query, result, jpeg(view) if query.since else b"")
         if found is None and not result.candidates:
-            answer.unsure = self._naming.unsure(query.query, self._tracker.objects())
+            answer.unsure = self._naming.unsure(query.query, self._published, self._state.base or (0.0, 0.0, 0.0))
         self._reading = None
         # Kept for a query that is sent again, without what costs memory.
         self._inbox.end(query, msgspec.structs.replace(answer, picture=b""))

@@ -1,9 +1,12 @@
 """The brain's part in names: the request to perception, the question which thing is meant, what is said of it."""
 
+import math
+
 import pytest
 
 from common import messages as m
 from common import topics
+from common.geometry import wrap
 from tests.unit.brain_bench import Bench
 from tests.unit.test_brain_vla import answer_plan, asked
 
@@ -71,3 +74,58 @@ def test_what_the_page_has_taught_is_no_answer_to_the_brain() -> None:
     assert bench.state.last is None and not any("know" in line for line in said(bench))
     answer(bench, 1, ok=True, label="white box")
     assert ended(bench).outcome == "delivered"
+
+
+# --- objects that have to be looked at from nearer
+FIND = [m.PlanStep(action="find", object="tomato soup")]
+
+
+def thing(label: str, x: float, y: float) -> m.WorldObject:
+    return m.WorldObject(label=label, kind="can", colour="red", position=(x, y, 0.6), on="living table")
+
+
+def looking(*things: m.WorldObject) -> Bench:
+    bench = asked("find the tomato soup", enable_confirmation=False)
+    bench.send(topics.WORLD_OBJECTS, m.WorldObjects(t=bench.now, objects=[thing("tomato soup", -9.0, 9.0), *things]))
+    bench.send(topics.POSE, m.PoseEstimate(t=bench.now, x=0.0, y=0.0, theta=0.0))
+    answer_plan(bench, 1, FIND)
+    return bench
+
+
+def see(bench: Bench, count: int, label: str = "", unsure: tuple[str, ...] = ()) -> None:
+    query = bench.next_goal(topics.OBJECT_QUERY, count)
+    pose = m.ObjectPose(
+        query_id=query.id, found=bool(label), label=label, position=(-1.5, -2.3, 0.6), unsure=list(unsure)
+    )
+    bench.send(topics.OBJECT_POSE, pose)
+    bench.step()
+
+
+def arrive(bench: Bench, count: int, status: m.NavStatus = "arrived") -> m.NavGoal:
+    goal = bench.next_goal(topics.NAV_GOAL, count)
+    bench.send(topics.NAVIGATION_FEEDBACK, m.NavigationFeedback(goal_id=goal.id, status=status, code="BLOCKED"))
+    bench.step()
+    return goal
+
+
+def test_what_cannot_be_read_from_here_is_looked_at_from_nearer_before_anything_is_searched() -> None:
+    bench = looking(thing("red can", -1.5, -2.3), thing("red can 2", -1.1, -2.2))
+    see(bench, 1, unsure=("red can", "red can 2"))
+    goal = arrive(bench, 1)
+    assert math.dist((goal.x, goal.y), (-1.5, -2.3)) < 0.9
+    assert abs(wrap(math.atan2(-2.3 - goal.y, -1.5 - goal.x) - goal.theta)) < 0.1
+    see(bench, 2, label="red can")
+    assert ended(bench).outcome == "delivered"
+
+
+def test_each_is_looked_at_once_and_one_that_cannot_be_reached_is_passed_over() -> None:
+    bench = looking(thing("red can", -1.5, -2.3), thing("red can 2", 4.5, -3.1))
+    see(bench, 1, unsure=("red can", "red can 2"))
+    arrive(bench, 1, "failed")
+    second = arrive(bench, 2)
+    assert math.dist((second.x, second.y), (4.5, -3.1)) < 0.9
+    see(bench, 2, unsure=("red can", "red can 2"))
+    # Both have been looked at: now it searches, which begins with a turn on the spot or another viewpoint.
+    third = bench.next_goal(topics.NAV_GOAL, 3)
+    assert math.dist((third.x, third.y), (-1.5, -2.3)) > 0.9 or third.theta != second.theta
+    assert "search" in bench.state.step

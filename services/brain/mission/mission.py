@@ -86,6 +86,8 @@ class Planning(msgspec.Struct):
 class Search(msgspec.Struct):
     """What looking has shown: `found` objects and the `chosen` one of several `options`, by the plan's name for them.
 
+    `unsure`: labels of objects that may be meant and can be told from nearer only; `inspected`: those that were.
+
     `visited`: poses (x, y, theta) [m, rad] in map that the robot has looked from.
     """
 
@@ -93,6 +95,8 @@ class Search(msgspec.Struct):
     visited: list[tuple[float, float, float]] = []
     options: list[str] = []
     chosen: dict[str, str] = {}
+    unsure: list[str] = []
+    inspected: list[str] = []
 
 
 class Delivery(msgspec.Struct):

@@ -4,6 +4,7 @@ from py_trees.behaviour import Behaviour
 
 from services.brain.mission.context import Context
 from services.brain.recoveries.clarify import ask_which, several_match
+from services.brain.recoveries.look_closer import look_closer, unsure
 from services.brain.recoveries.recovery import Recovery, Task, with_recoveries
 from services.brain.steps.find import LocateObject, MoveToViewpoint, ReportNotFound
 from services.brain.steps.leaf import Settle
@@ -11,7 +12,10 @@ from services.brain.tree.composites import Retry, Selector, Sequence
 
 VIEWPOINTS = (2, 5, 9)
 """Viewpoints of each search attempt, the last for all that follow (chosen: near and cheap first)."""
-SEVERAL = (Recovery("several_match", several_match, ask_which),)
+AFTER_A_GLANCE = (
+    Recovery("several_match", several_match, ask_which),
+    Recovery("look_closer", unsure, look_closer),
+)
 
 
 def search(ctx: Context, task: Task) -> Behaviour:
@@ -27,7 +31,7 @@ def _attempt(ctx: Context, task: Task, number: int) -> Behaviour:
         "view",
         MoveToViewpoint("viewpoint", ctx, number > 1, name=label),
         Settle("settle", ctx),
-        with_recoveries("look_or_ask", ctx, looked, SEVERAL, task),
+        with_recoveries("look_or_ask", ctx, looked, AFTER_A_GLANCE, task),
         name=f"view of {label}",
     )
     retries = VIEWPOINTS[min(number, len(VIEWPOINTS)) - 1] - 1

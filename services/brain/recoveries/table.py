@@ -4,6 +4,7 @@ To add one: write its two functions in a module beside this one, and a row here 
 """
 
 from services.brain.recoveries.clarify import ask_which, several_match
+from services.brain.recoveries.look_closer import look_closer, unsure
 from services.brain.recoveries.put_right import needs_replacing, put_right
 from services.brain.recoveries.recovery import Recovery
 from services.brain.recoveries.regrasp import grab_failed, regrasp
@@ -11,6 +12,7 @@ from services.brain.recoveries.search import can_go_on, report_not_found, search
 
 AFTER_LOOKING = (
     Recovery("several_match", several_match, ask_which),
+    Recovery("look_closer", unsure, look_closer),
     Recovery("search", can_go_on, search),
     Recovery("not_found", can_go_on, report_not_found),
 )

@@ -39,12 +39,14 @@ class LocateObject(SendGoal):
     def succeed(self, result: Result) -> Status:
         ctx, pose = self.ctx, result.message
         assert isinstance(pose, m.ObjectPose)
-        ctx.mission.search.options = pose.candidates
+        search = ctx.mission.search
+        search.options = pose.candidates
+        search.unsure = [label for label in pose.unsure if label not in search.inspected]
         if not pose.found:
             self.feedback_message = pose.detail or "not seen"
             code = "AMBIGUOUS" if pose.candidates else "NOT_FOUND"
             return self.fail_with(Failure("GROUNDING", code, pose.detail, self.spoken()))
-        ctx.mission.search.found[self._item] = pose
+        search.found[self._item] = pose
         x, y, z = pose.position
         evidence = f"{pose.label} at ({x:.2f}, {y:.2f}, {z:.2f}), confidence {pose.confidence:.2f}"
         ctx.note(f"found {self._item}", evidence, "saw")

@@ -77,8 +77,12 @@ class RequestPlan(SendGoal):
 
     def _world(self) -> m.KnownWorld:
         ctx = self.ctx
-        world = ctx.io.latest(topics.WORLD_OBJECTS)
-        return known_world(ctx.io.household, [o.label for o in world.objects] if world else [], ctx.gripper.holding)
+        world, taught = ctx.io.latest(topics.WORLD_OBJECTS), ctx.io.latest(topics.HOUSEHOLD_NAMES)
+        seen = world.objects if world else []
+        named = {name for o in seen for name in o.names}
+        # What was taught and is not in sight is an object all the same.
+        hidden = [one.name for one in taught.names if one.name not in named] if taught else []
+        return known_world(ctx.io.household, [*(o.label for o in seen), *hidden], ctx.gripper.holding)
 
 
 class PlanIsComplete(Leaf):

@@ -4,6 +4,7 @@
 these back with `names` and `text`.
 """
 
+import math
 from collections.abc import Mapping, Sequence
 
 import msgspec
@@ -105,19 +106,21 @@ class Naming:
         """A look at what is printed could answer the query, and there is a reader."""
         return self._observer.can_read and bool(self._printed(query))
 
-    def unsure(self, query: str, objects: Sequence[m.WorldObject]) -> list[str]:
-        """Labels of objects that could be meant and have to be seen from nearer to tell, the likeliest first."""
+    def unsure(self, query: str, objects: Sequence[m.WorldObject], base: Pose2) -> list[str]:
+        """Labels of objects that could be meant and have to be seen from nearer to tell, the likeliest first, of equal
+        ones that which is nearest to `base`."""
         words, name = self._printed(query), normalise(query)
         said = frozenset(name.split())
-        found: list[tuple[float, str]] = []
+        found: list[tuple[float, float, str]] = []
         for o in objects:
+            away = math.hypot(o.position[0] - base[0], o.position[1] - base[1])
             if not o.held and name in self._matches.get(o.id, Match()).perhaps:
-                found.append((1.0, o.label))
+                found.append((-1.0, away, o.label))
             elif not o.held and words and self._observer.can_read and printable(o, said):
                 sight, score = self._observer.sight(o.id), likeness(words, o.text)
                 if score >= LIKELY or sight is None or not sight.read:
-                    found.append((score, o.label))
-        return [label for _, label in sorted(found, key=lambda row: (-row[0], row[1]))]
+                    found.append((-score, away, o.label))
+        return [label for _, _, label in sorted(found)]
 
     def _printed(self, query: str) -> list[str]:
         """The words of a query that may be print; those of a taught name are not."""

@@ -13,7 +13,7 @@ RENEWED = 3.0
 """Time [s] after which an object is looked at anew though it shows no other side. Chosen: three pictures under way."""
 MAX_SIDES = 4
 """Looks kept of an object in sight; the newest count."""
-LEGIBLE = 1000.0
+LEGIBLE = 850.0
 """Pixels per metre from which print of a package is legible: letters of 8 mm have 8 pixels."""
 
 
