@@ -1,8 +1,7 @@
 """Objects in one RGB-D view: the seam for detectors, and the classical one. Pure.
 
 `ClassicalDetector` cuts the view into the objects that stand on surfaces, then asks which object of the household
-(`household.things`: kind, size, colour) explains the points and the colour best. What fits none is reported by its
-measured size and its nearest kind, with little confidence.
+(`household.things`: kind, size, colour) explains the points and the colour best. What none explains is measured.
 """
 
 import math
@@ -15,8 +14,9 @@ import numpy as np
 from common.floor_plan import Thing, Vec3
 from common.geometry import Array
 from common.household import Household
-from common.kinds import KINDS, kind_of
-from services.perception import colour, segmentation, shapes, toppled
+from common.kinds import kind_of
+from services.perception import colour, segmentation, shapes, toppled, unlisted
+from services.perception.detection import Detection
 from services.perception.segmentation import Segment
 from services.perception.view import Mask, View
 
@@ -26,35 +26,6 @@ WORST, SOUND = 3.2, 2.0
 """Score, in standard deviations, beyond which a hypothesis explains nothing, and below which no other pose is tried."""
 LYING = math.pi / 2
 """Tilt [rad] of what lies on its side."""
-UNKNOWN_CONFIDENCE = 0.45
-"""Confidence of an unknown object. Chosen: below the least at which `world/objects` lists one after a single
-sighting."""
-UNKNOWN_KINDS = (KINDS["can"], KINDS["box"])
-
-
-@dataclass(frozen=True)
-class Detection:
-    """An object in frame map: `position` is its centre, `size` its full extent, `yaw` about z; `on` its surface.
-
-    `tilt`: angle [rad] of its own axis to the vertical. Of what lies on its side the first extent is along that axis,
-    which points along `yaw`. `whole`: all of it was in view, so that the position can be trusted; `share`: about how
-    much of it was. `yaw_seen`: the yaw is no guess, as that of a mug whose handle is hidden.
-    """
-
-    label: str
-    kind: str
-    colour: str
-    position: Vec3
-    yaw: float
-    size: Vec3
-    confidence: float
-    on: str
-    distance: float
-    known: bool = True
-    whole: bool = True
-    share: float = 1.0
-    tilt: float = 0.0
-    yaw_seen: bool = True
 
 
 @dataclass(frozen=True)
@@ -95,14 +66,13 @@ class ClassicalDetector:
         self._household, self._max_range = household, max_range
 
     def detect(self, view: View, robot: Mask | None = None) -> list[Detection]:
-        found = []
-        for segment in segmentation.segments(view, self._household, self._max_range, robot):
-            detection = self._explain(view, segment)
-            if detection is not None:
-                found.append(detection)
-        return found
+        gains = colour.light(view.rgb)
+        segments = segmentation.segments(view, self._household, self._max_range, robot)
+        found = (self._explain(view, s) or unlisted.describe(view, s, gains) for s in segments)
+        return [d for d in found if d is not None]
 
     def _explain(self, view: View, segment: Segment) -> Detection | None:
+        """The object of the household that explains a segment; None if none does."""
         rgb = colour.typical(view.rgb[segment.rows, segment.columns])
         height = float(np.percentile(segment.points[:, 2], 98)) - segment.surface.height
         hypotheses = self._hypotheses(view, segment, rgb, height, _standing)
@@ -111,7 +81,7 @@ class ClassicalDetector:
             more = self._hypotheses(view, segment, rgb, height, _toppled)
             hypotheses = sorted([*hypotheses, *more], key=lambda g: g.score)
         if not hypotheses or hypotheses[0].score > WORST:
-            return self._unknown(view, segment, rgb, height)
+            return None
         best = hypotheses[0]
         score, spec, size, fit = best.score, best.spec, best.rest.size, best.fit
         tilt, kind = best.rest.tilt, kind_of(spec.kind)
@@ -141,6 +111,10 @@ class ClassicalDetector:
             share=min(1.0, len(segment.rows) / _pixels(view, position, size)),
             tilt=tilt,
             yaw_seen=yaw_seen,
+            shape=unlisted.family_of(kind, size),
+            kinds={spec.kind: 1.0},
+            colours={spec.colour: 1.0},
+            points=unlisted.thinned(segment.points),
         )
 
     def _hypotheses(
@@ -169,29 +143,6 @@ class ClassicalDetector:
                     score = math.sqrt((fit.residual / SHAPE_SCALE) ** 2 + tall**2 + off**2)
                     found.append(Hypothesis(score, spec, rest, fit))
         return sorted(found, key=lambda g: g.score)
-
-    def _unknown(self, view: View, segment: Segment, rgb: Array, height: float) -> Detection | None:
-        """An object that is not of the household, by its measured size."""
-        if segment.cut or len(segment.rows) < 2 * segmentation.MIN_PIXELS:
-            return None
-        low, high = segment.points[:, :2].min(axis=0), segment.points[:, :2].max(axis=0)
-        width = float(np.clip(np.max(high - low), 0.02, 0.25))
-        size = (width, width, max(0.02, height))
-        fits = [shapes.fit(k, size, segment.points, segment.surface.height, view.position) for k in UNKNOWN_KINDS]
-        fit = min(fits, key=lambda f: f.residual)
-        word = colour.name(rgb)
-        return Detection(
-            label=f"{word} thing",
-            kind="thing",
-            colour=word,
-            position=(fit.x, fit.y, segment.surface.height + size[2] / 2),
-            yaw=fit.yaw,
-            size=size,
-            confidence=UNKNOWN_CONFIDENCE,
-            on=segment.surface.name,
-            distance=_distance(view, fit),
-            known=False,
-        )
 
 
 def _standing(spec: Thing) -> list[RestingPose]:

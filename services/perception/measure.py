@@ -19,8 +19,8 @@ SAMPLE = 180
 """Points of a segment that are used, evenly spread. Chosen: more only takes longer."""
 SLICES = 8
 """Pieces of the height in which the radius of a turned shape is read off."""
-NECK = 0.62
-"""Radius of the upper end, of the widest, below which a turned shape has a neck. Chosen: bottles have .2 to .5."""
+LEVEL = math.pi / 2
+"""Tilt [rad] of what lies on its side."""
 IRREGULAR, IRREGULAR_NOISE = 0.0035, 1.3
 """Mean distance [m], plus that of noise, from which on no primitive explains the points."""
 LONG = 1.6
@@ -30,6 +30,9 @@ CAVITY = 0.06
 shows three times as much."""
 HANDLE = 0.012
 """Distance [m] beyond the wall from which points belong to a handle."""
+SOLID, GAPS = 0.86, 0.02
+"""Share of its convex hull that the outline of a convex shape covers at least, and the distance [m] that what is
+missing counts as. Chosen: boxes and balls have .90 and more, crossed arms half."""
 COMPLEX = 0.06
 """What each free parameter costs, as a share of the residual: the simpler of two equal shapes is taken."""
 
@@ -79,7 +82,8 @@ def measure(
         shapes.append(_ball(used, h, outline, noise))
     if wide > 1.15 * h:
         shapes += _lying(used, h, outline, noise)
-    best = min(shapes, key=lambda s: _cost(s, noise))
+    gaps = GAPS * max(0.0, SOLID - primitives.solidity(local, eye))
+    best = min(shapes, key=lambda s: _cost(s, noise) + (gaps if s.family in ("box", "ball") or s.tilt else 0.0))
     return replace(best, yaw=math.remainder(best.yaw, math.tau))
 
 
@@ -109,8 +113,8 @@ def _start(points: Array, outline: Silhouette) -> tuple[Array, float]:
 def _turned(points: Array, h: float, outline: Silhouette, eye: Array, noise: float) -> Measurement:
     (x, y), r = _start(points, outline)
     solution = primitives.fit(
-        primitives.turned(h), np.array([x, y, r, 0.0]), points, outline, noise,
-        (np.array([x, y, r, 0.0]), np.array([1.0, 1.0, 1.0, 0.5])), h / 2,
+        primitives.turned(h), primitives.round_ends(h / 2), np.array([x, y, r, 0.0]), points, outline, noise,
+        (np.array([x, y, r, 0.0]), np.array([1.0, 1.0, 1.0, 0.5])),
     )  # fmt: skip
     x, y, r, grows = (float(v) for v in solution.p)
     rho = np.hypot(points[:, 0] - x, points[:, 1] - y)
@@ -173,7 +177,8 @@ def _profile(points: Array, rho: Array, h: float, outline: Silhouette, x: float,
 
 def _ball(points: Array, h: float, outline: Silhouette, noise: float) -> Measurement:
     (x, y), r = _start(points, outline)
-    solution = primitives.fit(primitives.ball(), np.array([x, y, (r + h / 2) / 2]), points, outline, noise)
+    start = np.array([x, y, (r + h / 2) / 2])
+    solution = primitives.fit(primitives.ball(), primitives.round_ends(0.0), start, points, outline, noise)
     x, y, r = (float(v) for v in solution.p)
     off = solution.residual + 0.3 * max(0.0, abs(2 * r - h) - 0.004 - noise)
     return Measurement("ball", x, y, 0.0, (2 * r, 2 * r, 2 * r), off, _spread(solution, slice(0, 3)), free=3)
@@ -181,7 +186,7 @@ def _ball(points: Array, h: float, outline: Silhouette, noise: float) -> Measure
 
 def _box(points: Array, h: float, outline: Silhouette, noise: float) -> Measurement:
     away = np.array([math.cos(outline.ahead), math.sin(outline.ahead)])
-    tried = []
+    tried, ends = [], primitives.corner_ends(lies=False)
     for _, yaw, extents, middle in primitives.rectangle(points[:, :2], 12)[:2]:
         # Of what shows one face only the depth is a guess: as deep as it is wide, moved back.
         length, width = (max(float(e), 0.01) for e in extents)
@@ -192,7 +197,7 @@ def _box(points: Array, h: float, outline: Silhouette, noise: float) -> Measurem
             guess = 0.7 * max(length, width)
             start[:2] += away * (guess - start[thin]) / 2
             start[thin], wide[thin] = guess, 0.02
-        tried.append(primitives.fit(primitives.box(h), start, points, outline, noise, (start, wide)))
+        tried.append(primitives.fit(primitives.box(h), ends, start, points, outline, noise, (start, wide)))
     solution = min(tried, key=lambda s: s.residual)
     x, y, yaw, length, width = (float(v) for v in solution.p)
     length, width = max(0.008, abs(length)), max(0.008, abs(width))
@@ -215,9 +220,8 @@ def _lying(points: Array, h: float, outline: Silhouette, noise: float) -> list[M
     if extents[1] > extents[0]:
         yaw, extents = yaw + math.pi / 2, extents[::-1]
     start = np.array([*middle, yaw, h / 2, float(extents[0])])
-    solution = primitives.fit(
-        primitives.lying(), start, points, outline, noise, (start, np.array([1.0, 1.0, 1.0, 0.004, 0.5]))
-    )
+    wide, ends = np.array([1.0, 1.0, 1.0, 0.004, 0.5]), primitives.corner_ends(lies=True)
+    solution = primitives.fit(primitives.lying(), ends, start, points, outline, noise, (start, wide))
     x, y, yaw, r, length = (float(v) for v in solution.p)
     if r < 0.006 or length < LONG * 0.7 * 2 * r:
         return []
@@ -240,7 +244,7 @@ def _lying(points: Array, h: float, outline: Silhouette, noise: float) -> list[M
     r = float(radii.max())
     found = Measurement(
         "long" if length > LONG * 2 * r else "round", x, y, yaw, (length, 2 * r, 2 * r),
-        float(np.minimum(off, 0.02).mean()), _spread(solution, slice(0, 4)), tilt=math.pi / 2,
+        float(np.minimum(off, 0.02).mean()), _spread(solution, slice(0, 4)), tilt=LEVEL,
         profile=tuple(round(float(v) / max(r, 1e-3), 2) for v in radii), free=6,
     )  # fmt: skip
     return [found]

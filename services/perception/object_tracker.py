@@ -10,12 +10,24 @@ from common.floor_plan import Vec3
 from common.geometry import yaw_quat
 from common.household import Household
 from common.messages import WorldObject, WorldObjects
-from services.perception.detect import Detection
+from services.perception.descriptor import Descriptor
+from services.perception.detection import Detection
 from services.perception.view import View
 
 SAME = 0.12
-"""Distance [m] on the floor plan within which a detection belongs to a track. Chosen: below the spacing of
-neighbours."""
+"""Distance [m] on the floor plan within which a detection belongs to a track that looks the same. Chosen: below the
+spacing of neighbours."""
+OVERLAP = 0.6
+"""Distance, by the half widths of both, within which a detection is the same object whatever it looks like, and two
+tracks are one. Chosen: neighbours that touch are 1 apart."""
+ALIKE = 0.3
+"""Share of the colours' votes that a detection and a track have in common if they look the same."""
+UNLIKE = 0.08
+"""Distance [m] that looking different counts as."""
+UNLISTED = ("", "", "")
+"""Stands for the name of an object that was not listed, in the evidence for names."""
+CERTAIN = 0.8
+"""Confidence from which an object that was not listed is told of after one sighting."""
 MOVED = 0.05
 """Distance [m] from which an object has moved, rather than been measured differently. Chosen: three times the error of
 a sighting from 2 m."""
@@ -66,6 +78,18 @@ class Track:
     tilt: float = 0.0
     yaw_seen: bool = False
     looked_at: float = -math.inf
+    label: str = ""
+    looks: Descriptor = field(default_factory=lambda: Descriptor((0.0, 0.0, 0.0)))
+
+    @property
+    def known(self) -> bool:
+        """It is an object of the household."""
+        return self.name != UNLISTED
+
+    @property
+    def half_width(self) -> float:
+        """Half of what it takes up on the floor plan [m]."""
+        return (self.size[0] + self.size[1]) / 4
 
     @property
     def name(self) -> tuple[str, str, str]:
@@ -92,13 +116,14 @@ class ObjectTracker:
         seen: set[str] = set()
         free = [t for t in self._tracks if not t.held]
         pairs = sorted(
-            (math.hypot(d.position[0] - t.position[0], d.position[1] - t.position[1]), n, k)
+            (apart, n, k)
             for n, d in enumerate(detections)
             for k, t in enumerate(free)
+            if (apart := _apart(d, t)) is not None
         )
         matched: dict[int, Track] = {}
-        for distance, n, k in pairs:
-            if distance < SAME and n not in matched and free[k].id not in seen:
+        for _, n, k in pairs:
+            if n not in matched and free[k].id not in seen:
                 matched[n] = free[k]
                 seen.add(free[k].id)
         for n, d in enumerate(detections):
@@ -125,6 +150,7 @@ class ObjectTracker:
                 held.held, held.on, held.seen_at = True, "", now
         if held is None:
             return
+        held.looks.points = np.empty((0, 3))
         if holding:
             held.position = hand
             return
@@ -145,7 +171,7 @@ class ObjectTracker:
         others: list[Track] = []
         for track in sure:
             label = track.name[0]
-            if self._household.thing(label) is None:
+            if not track.known:
                 others.append(track)
                 continue
             rival = best.get(label)
@@ -153,18 +179,70 @@ class ObjectTracker:
                 rival.held, rival.confidence >= SURE, rival.seen_at, rival.confidence
             ):  # fmt: skip
                 best[label] = track
-        chosen = [*best.values(), *(t for t in others if t.sightings > 1)]
-        return [_as_object(t) for t in sorted(chosen, key=lambda t: t.id)]
+        chosen = list(best.values())
+        for track in sorted(others, key=lambda t: (-t.sightings * t.confidence, t.id)):
+            told = track.held or track.sightings > 1 or track.confidence >= CERTAIN
+            if told and not any(_overlap(track, other) for other in chosen):
+                chosen.append(track)
+        return [_as_object(t, label) for t, label in _labelled(sorted(chosen, key=_age))]
 
     def report(self, now: float) -> WorldObjects:
         return WorldObjects(t=now, objects=self.objects(), source="perception")
+
+
+def _age(track: Track) -> int:
+    return int(track.id.rpartition("-")[2])
+
+
+def _alike(d: Detection, track: Track) -> bool:
+    """A detection and a track have the same label, or colours in common."""
+    if d.known and track.known:
+        return d.label == track.name[0]
+    total, seen = sum(track.looks.colours.values()), sum(d.colours.values())
+    common = sum(min(v / seen, track.looks.colours.get(c, 0.0) / max(total, 1e-9)) for c, v in d.colours.items())
+    return common >= ALIKE
+
+
+def _apart(d: Detection, track: Track) -> float | None:
+    """How far [m] a detection is from being a track's object; None when it is another."""
+    distance = math.hypot(d.position[0] - track.position[0], d.position[1] - track.position[1])
+    if distance < SAME and _alike(d, track):
+        return distance
+    half = (d.size[0] + d.size[1]) / 4 + track.half_width
+    above = abs(d.position[2] - track.position[2]) > (d.size[2] + track.size[2]) / 2
+    return distance + UNLIKE if distance < min(SAME, OVERLAP * half) and not above else None
+
+
+def _overlap(a: Track, b: Track) -> bool:
+    """Two tracks take up the same space: they are one object."""
+    distance = math.hypot(a.position[0] - b.position[0], a.position[1] - b.position[1])
+    high = (a.size[2] + b.size[2]) / 2
+    return distance < OVERLAP * (a.half_width + b.half_width) and abs(a.position[2] - b.position[2]) < 0.8 * high
+
+
+def _labelled(tracks: Sequence[Track]) -> list[tuple[Track, str]]:
+    """Each track with a label that no other has: the household's, or its colour and kind, numbered if need be."""
+    taken = {t.name[0] for t in tracks if t.known}
+    found = []
+    for t in tracks:
+        if t.known:
+            t.label = t.name[0]
+        else:
+            kind, main = t.looks.name()
+            plain = f"{main} {kind}".strip()
+            numbered = (f"{plain} {n}" for n in range(2, len(tracks) + 2))
+            kept = t.label if t.label == plain or t.label.startswith(plain + " ") else ""
+            t.label = kept if kept and kept not in taken else next(x for x in (plain, *numbered) if x not in taken)
+        taken.add(t.label)
+        found.append((t, t.label))
+    return found
 
 
 def _see(track: Track, d: Detection, now: float) -> None:
     weight = 1.0 / max(0.2, d.distance) ** 2 * (0.3 if d.confidence < SURE else 1.0)
     weight *= 1.0 if d.whole else PARTIAL * d.share**2
     shift = math.hypot(d.position[0] - track.position[0], d.position[1] - track.position[1])
-    key = (d.label, d.kind, d.colour)
+    key = (d.label, d.kind, d.colour) if d.known else UNLISTED
     fell = abs(d.tilt - track.tilt) > FELL and d.confidence >= LIKELY and (not track.scores or key == track.name)
     if fell:
         # It does not rest as it did: what was known of its pose is of no use.
@@ -182,17 +260,18 @@ def _see(track: Track, d: Detection, now: float) -> None:
     old, new = np.array(track.position), np.array(d.position)
     x, y, z = (float(v) for v in old + share * (new - old))
     track.position, track.on = (x, y, z), d.on
-    guess = track.yaw_seen and not d.yaw_seen and shift <= MOVED
-    if fell or (share and weight >= POORER * track.best and not guess):
-        track.yaw, track.yaw_seen = d.yaw, d.yaw_seen
-    track.seen_at, track.misses, track.sightings = now, 0, track.sightings + 1
-    track.looked_at = now
     # Close looks count more, slivers less, and old mistakes fade.
     evidence = d.confidence * min(2.0, 1.5 / max(0.3, d.distance)) * (1.0 if d.whole else d.share)
+    track.looks.add(d, evidence, fell or shift > MOVED)
+    guess = track.yaw_seen and not d.yaw_seen and shift <= MOVED
+    if fell or (share and weight >= POORER * track.best and not guess):
+        track.yaw, track.yaw_seen = d.yaw if d.known else track.looks.turned(d), d.yaw_seen
+    track.seen_at, track.misses, track.sightings = now, 0, track.sightings + 1
+    track.looked_at = now
     track.scores = {k: v * 0.9 for k, v in track.scores.items()}
     track.scores[key] = track.scores.get(key, 0.0) + evidence
     if track.name == key and abs(d.tilt - track.tilt) <= FELL:
-        track.size, track.tilt = d.size, d.tilt
+        track.size, track.tilt = (d.size if d.known else track.looks.size), d.tilt
 
 
 def _should_show(track: Track, view: View) -> bool:
@@ -206,9 +285,11 @@ def _should_show(track: Track, view: View) -> bool:
     return bool(len(seen) > 12 and float(np.median(seen)) > z + SEEN_THROUGH)
 
 
-def _as_object(t: Track) -> WorldObject:
-    label, kind, colour = t.name
+def _as_object(t: Track, label: str) -> WorldObject:
+    kind, colour = t.name[1:] if t.known else t.looks.named
     return WorldObject(
         label=label, kind=kind, colour=colour, position=t.position, orientation=yaw_quat(t.yaw), size=t.size, on=t.on,
-        confidence=round(t.confidence, 3), seen_at=t.seen_at, held=t.held, id=t.id, tilt=t.tilt,
+        confidence=round(t.confidence, 3), seen_at=t.seen_at, held=t.held, id=t.id, tilt=t.tilt, shape=t.looks.shape,
+        colours=[colour] if t.known else t.looks.main_colours, kinds=[] if t.known else t.looks.likely_kinds,
+        measured=not t.known, spread=0.0 if t.known else round(t.looks.spread, 4), points=t.looks.packed(t.position),
     )  # fmt: skip

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import ConvexHull
 
 from common.geometry import Array
 from services.perception.least_squares import solve
@@ -24,6 +25,8 @@ TRIES = 12
 """Steps of the solver."""
 INNER = 0.012
 """Distance [m] behind the surface beyond which a point is of the inside of a hollow object, and pulls nothing."""
+CELLS = 14.0
+"""Cells along the longer side of an outline in which it is counted what is covered."""
 END_WEIGHT = 4.0
 """Weight of a visible end of the silhouette, in points."""
 
@@ -36,6 +39,10 @@ class Silhouette:
     ahead: float
     ends: Array
     distance: float
+
+
+# The silhouette and parameters (m, k) to how far [m] their ends are from it (m, e).
+Ends = Callable[[Silhouette, Array], Array]
 
 
 @dataclass(frozen=True)
@@ -59,14 +66,43 @@ def silhouette(points: Array, camera: Array, seen: tuple[bool, bool], half_pixel
     return Silhouette(camera[:2], ahead, ends, distance)
 
 
-def _round_ends(outline: Silhouette, x: Array, y: Array, r: Array) -> Array:
-    """How far [m] the tangents of circles (m,) are from the silhouette's ends (m, e)."""
-    dx, dy = x - outline.camera[0], y - outline.camera[1]
-    far = np.maximum(np.hypot(dx, dy), 1e-3)
-    bearing = np.remainder(np.arctan2(dy, dx) - outline.ahead + math.pi, 2 * math.pi) - math.pi
-    half = np.arcsin(np.clip(r / far, -0.99, 0.99))
-    ends = np.stack([bearing - half, bearing + half], axis=1) - outline.ends
-    return outline.distance * ends[:, ~np.isnan(outline.ends)]
+def _bearings(outline: Silhouette, x: Array, y: Array) -> Array:
+    """Bearings [rad] of points from the camera, about where the silhouette is."""
+    bearings = np.arctan2(y - outline.camera[1], x - outline.camera[0]) - outline.ahead
+    return np.asarray(np.remainder(bearings + math.pi, 2 * math.pi) - math.pi)
+
+
+def _apart(outline: Silhouette, ends: Array) -> Array:
+    """How far [m] right and left ends (m, 2) [rad] are from those of the silhouette that are in view (m, e)."""
+    return outline.distance * (ends - outline.ends)[:, ~np.isnan(outline.ends)]
+
+
+def round_ends(half: float) -> Ends:
+    """Tangents of a turned shape, p as in `turned` for half its height [m] or in `ball`: its widest part has them."""
+
+    def ends(outline: Silhouette, p: Array) -> Array:
+        x, y, r = p.T[:3]
+        widest = r + np.abs(p[:, 3]) * half if p.shape[1] > 3 else r
+        far = np.maximum(np.hypot(x - outline.camera[0], y - outline.camera[1]), 1e-3)
+        angle = np.arcsin(np.clip(widest / far, -0.99, 0.99))
+        bearing = _bearings(outline, x, y)
+        return _apart(outline, np.stack([bearing - angle, bearing + angle], axis=1))
+
+    return ends
+
+
+def corner_ends(lies: bool) -> Ends:
+    """The outermost corners of a box, or of one around what `lies`."""
+
+    def ends(outline: Silhouette, p: Array) -> Array:
+        x, y, yaw, *sides = p.T
+        length, width = (sides[1], 2 * sides[0]) if lies else sides
+        c, s = np.cos(yaw)[:, None], np.sin(yaw)[:, None]
+        a, b = np.array([1, 1, -1, -1]) * length[:, None] / 2, np.array([1, -1, 1, -1]) * width[:, None] / 2
+        bearings = _bearings(outline, x[:, None] + c * a - s * b, y[:, None] + s * a + c * b)
+        return _apart(outline, np.stack([bearings.min(axis=1), bearings.max(axis=1)], axis=1))
+
+    return ends
 
 
 def turned(h: float) -> Distances:
@@ -127,46 +163,25 @@ def lying() -> Distances:
     return distances
 
 
-def _corner_ends(outline: Silhouette, p: Array) -> Array:
-    """How far [m] the outermost corners of boxes (m, 5) are from the silhouette's ends (m, e)."""
-    x, y, yaw, length, width = p.T
-    c, s = np.cos(yaw)[:, None], np.sin(yaw)[:, None]
-    a, b = np.array([1, 1, -1, -1]) * length[:, None] / 2, np.array([1, -1, 1, -1]) * width[:, None] / 2
-    u = x[:, None] + c * a - s * b - outline.camera[0]
-    v = y[:, None] + s * a + c * b - outline.camera[1]
-    bearings = np.remainder(np.arctan2(v, u) - outline.ahead + math.pi, 2 * math.pi) - math.pi
-    ends = np.stack([bearings.min(axis=1), bearings.max(axis=1)], axis=1) - outline.ends
-    return outline.distance * ends[:, ~np.isnan(outline.ends)]
-
-
 def fit(
     distances: Distances,
+    ends: Ends,
     start: Array,
     points: Array,
     outline: Silhouette,
     noise: float,
     prior: tuple[Array, Array] | None = None,
-    half: float = 0.0,
 ) -> Solution:
     """The parameters that explain points (n, 3) and the silhouette best, from `start` (k,).
 
     `noise` [m]: the points'. `prior`: expected parameters (k,) and their standard deviations, for what no point shows.
-    `half` [m]: half the height of what grows with it.
     """
     count = len(start)
     shifts = np.concatenate([np.zeros((1, count)), STEP * np.eye(count)])
 
-    def ends(p: Array) -> Array:
-        if count == 3:
-            return _round_ends(outline, p[:, 0], p[:, 1], p[:, 2])
-        if count == 4:
-            # The widest part makes the silhouette.
-            return _round_ends(outline, p[:, 0], p[:, 1], p[:, 2] + np.abs(p[:, 3]) * half)
-        return _corner_ends(outline, p)
-
     def off(p: Array) -> tuple[Array, Array]:
         many = p + shifts
-        parts = [distances(many, points), END_WEIGHT * ends(many)]
+        parts = [distances(many, points), END_WEIGHT * ends(outline, many)]
         if prior is not None:
             parts.append(noise * (many - prior[0]) / prior[1])
         apart = np.concatenate(parts, axis=1)
@@ -202,3 +217,18 @@ def top_of(points: Array, noise: float) -> float:
     high = float(np.percentile(z, 98))
     flat: NDArray[np.float64] = z[z > high - 3.5 * noise - 0.002]
     return float(np.median(flat)) if len(flat) > 0.25 * len(z) else high
+
+
+def solidity(points: Array, eye: Array) -> float:
+    """Area that points (n, 3) cover as seen from `eye` (3,), by that of its convex hull: 1 for what is convex."""
+    rays = points - eye
+    away = rays.mean(axis=0)
+    away /= np.linalg.norm(away)
+    side = np.cross(away, (0.0, 0.0, 1.0))
+    side /= max(1e-6, float(np.linalg.norm(side)))
+    flat = np.stack([rays @ side, rays @ np.cross(side, away)], axis=1) / (rays @ away)[:, None]
+    low, extent = flat.min(axis=0), float(np.ptp(flat, axis=0).max())
+    cell = extent / float(np.clip(math.sqrt(len(points)) / 1.8, 3.0, CELLS))
+    grid = np.unique(np.floor((flat - low) / cell), axis=0)
+    corners = (grid[:, None] + [(0, 0), (0, 1), (1, 0), (1, 1)]).reshape(-1, 2)
+    return float(len(grid) / ConvexHull(corners).volume)

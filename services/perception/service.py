@@ -15,7 +15,8 @@ from common.goal_inbox import GoalInbox
 from common.kinds import kind_of
 from common.runtime import StartError
 from services.perception.config import PerceptionConfig
-from services.perception.detect import ClassicalDetector, Detection, Detector
+from services.perception.detect import ClassicalDetector, Detector
+from services.perception.detection import Detection
 from services.perception.grounding import Grounding, ground
 from services.perception.naming.naming import Naming
 from services.perception.object_tracker import SURE, ObjectTracker

@@ -1,0 +1,101 @@
+"""What a segment is that nothing the robot was told of explains: its shape, kinds and colours. Pure."""
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+
+from common.geometry import Array
+from common.kinds import LOOKS, Kind
+from common.looks import Measures, likely
+from common.messages import ShapeFamily
+from services.perception import colour
+from services.perception.detection import Detection
+from services.perception.measure import LEVEL, Measurement, measure
+from services.perception.segmentation import DEPTH_NOISE, MIN_PIXELS, Segment
+from services.perception.view import View
+
+SURE, FEW, LIKE_NOTHING = 0.9, 180, 0.75
+"""Confidence of what is seen whole and near, the pixels below which it falls, and its share for what has no shape."""
+CUT, CUT_SPREAD = 0.6, 0.02
+"""Share of the confidence of what is seen in part, and the least spread [m] of its extents."""
+NECK, NECK_UPPER = 0.66, 2
+"""Radius of the upper slices by that of the widest, below which there is a neck, and how many slices are looked at."""
+VOXEL = 0.005
+"""Side [m] of the cells in which points are averaged. Chosen: a third of a finger pad."""
+MOST_POINTS = 200
+"""Points of an object that are told to others."""
+
+
+def describe(view: View, segment: Segment, gains: Array) -> Detection | None:
+    """The object that a segment shows, by its looks alone; None where too little of it is seen.
+
+    `gains` (3,): what makes the picture's neutral surfaces grey (`colour.light`).
+    """
+    if len(segment.rows) < MIN_PIXELS:
+        return None
+    found = measured(view, segment)
+    shares = colour.shares(view.rgb[segment.rows, segment.columns], gains)
+    words = colour.main_words(shares)
+    spread = found.spread if not segment.cut else max(found.spread, CUT_SPREAD)
+    kinds = likely(LOOKS, measures_of(found, spread), words) or {"thing": 1.0}
+    height = found.size[1] if found.tilt else found.size[2]
+    confidence = SURE * (0.45 + 0.55 * min(1.0, len(segment.rows) / FEW)) * (CUT if segment.cut else 1.0)
+    kind = next(iter(kinds))
+    return Detection(
+        label="",
+        kind=kind,
+        colour=words[0],
+        position=(found.x, found.y, segment.surface.height + height / 2),
+        yaw=found.yaw if math.isnan(found.handle) else found.handle,
+        size=found.size,
+        confidence=confidence * (LIKE_NOTHING if found.family == "irregular" else 1.0),
+        on=segment.surface.name,
+        distance=math.hypot(found.x - float(view.position[0]), found.y - float(view.position[1])),
+        known=False,
+        whole=not segment.cut,
+        tilt=found.tilt,
+        yaw_seen=found.family != "round" or found.tilt > 0 or not math.isnan(found.handle),
+        shape=found.family,
+        kinds=kinds,
+        colours=shares,
+        spread=spread,
+        points=thinned(segment.points),
+    )
+
+
+def measured(view: View, segment: Segment) -> Measurement:
+    """The shape of a segment, its noise by its distance."""
+    far = float(np.linalg.norm(segment.points.mean(axis=0) - view.position))
+    half_pixel = 0.5 / view.focal[0]
+    return measure(
+        segment.points, segment.surface.height, view.position, segment.ends, half_pixel, DEPTH_NOISE * far * far
+    )
+
+
+def measures_of(m: Measurement, error: float) -> Measures:
+    """The measures in the object's own frame, by which its kind is told."""
+    if m.family in ("round", "bowl", "ball") or (m.family == "long" and m.profile):
+        across, along = (m.size[1], m.size[0]) if m.tilt == LEVEL else (m.size[0], m.size[2])
+        upper = m.profile[-NECK_UPPER:]
+        neck = bool(upper) and max(upper) < NECK
+        return Measures(m.family, across, along, 1.0, m.hollow, neck, not math.isnan(m.handle), error)
+    shortest, middle, longest = sorted(m.size)
+    return Measures(m.family, shortest, longest, middle / shortest, error=error)
+
+
+def thinned(points: Array) -> Array:
+    """At most MOST_POINTS of points (n, 3), evenly spread, each the mean of its cell."""
+    cells = np.floor(points / VOXEL).astype(np.int64)
+    _, place, counts = np.unique(cells, axis=0, return_inverse=True, return_counts=True)
+    place = place.reshape(-1)
+    means = np.stack([np.bincount(place, points[:, i]) for i in range(3)], axis=1) / counts[:, None]
+    if len(means) <= MOST_POINTS:
+        return means
+    return np.asarray(means[np.linspace(0, len(means) - 1, MOST_POINTS).astype(int)])
+
+
+def family_of(kind: Kind, size: tuple[float, float, float]) -> ShapeFamily:
+    """The shape family of an object of a known kind and extents."""
+    families: Mapping[str, ShapeFamily] = {"box": "box", "sphere": "ball"}
+    return families.get(kind.shape, "bowl" if kind.lean and size[0] > size[2] else "round")

@@ -1,0 +1,133 @@
+"""Shapes measured from the points of one view: sizes that are in no scene, noise of a bought camera, no CAD."""
+
+import math
+
+import numpy as np
+import pytest
+
+from common.geometry import Array
+from common.kinds import LOOKS
+from common.looks import likely
+from services.perception.measure import Measurement, measure
+from services.perception.unlisted import measures_of, thinned
+
+CAMERA = np.array([-1.0, -0.4, 1.3])
+FLOOR, NOISE = 0.72, 0.0025
+
+
+def facing(points: Array, normals: Array) -> Array:
+    """What of a surface the camera sees, along the line of sight by as much off as its noise."""
+    rays = points - CAMERA
+    seen = points[(rays * normals).sum(axis=1) < 0]
+    away = seen - CAMERA
+    away /= np.linalg.norm(away, axis=1, keepdims=True)
+    return np.asarray(seen + away * np.random.default_rng(len(seen)).normal(0.0, NOISE, (len(seen), 1)))
+
+
+def cylinder(x: float, y: float, r: float, h: float) -> Array:
+    rng = np.random.default_rng(1)
+    turn, up, out = rng.uniform(0, 2 * math.pi, 1500), rng.uniform(0, h, 1500), r * np.sqrt(rng.uniform(0, 1, 500))
+    wall = np.stack([x + r * np.cos(turn), y + r * np.sin(turn), FLOOR + up], 1)
+    round_about = np.stack([np.cos(turn), np.sin(turn), 0 * turn], 1)
+    lid = np.stack([x + out * np.cos(turn[:500]), y + out * np.sin(turn[:500]), np.full(500, FLOOR + h)], 1)
+    return np.concatenate([facing(wall, round_about), facing(lid, np.tile([0.0, 0, 1], (500, 1)))])
+
+
+def lying(x: float, y: float, yaw: float, r: float, length: float) -> Array:
+    rng = np.random.default_rng(2)
+    turn, along = rng.uniform(0, 2 * math.pi, 2000), rng.uniform(-length / 2, length / 2, 2000)
+    ahead, side, up = (
+        np.array([math.cos(yaw), math.sin(yaw), 0]),
+        np.array([-math.sin(yaw), math.cos(yaw), 0]),
+        [0, 0, 1],
+    )
+    normals = np.outer(np.cos(turn), side) + np.outer(np.sin(turn), up)
+    points = np.outer(along, ahead) + r * normals + [x, y, FLOOR + r]
+    return facing(points, normals)
+
+
+def box(x: float, y: float, yaw: float, size: tuple[float, float, float]) -> Array:
+    rng = np.random.default_rng(3)
+    c, s = math.cos(yaw), math.sin(yaw)
+    turn = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1.0]])
+    found = []
+    for axis in range(3):
+        for sign in (-1, 1):
+            local = rng.uniform(-0.5, 0.5, (700, 3)) * size
+            local[:, axis] = sign * size[axis] / 2
+            points = local @ turn.T + [x, y, FLOOR + size[2] / 2]
+            found.append(facing(points, np.tile(sign * turn[:, axis], (700, 1))))
+    return np.concatenate(found)
+
+
+def ball(x: float, y: float, r: float) -> Array:
+    normals = np.random.default_rng(4).normal(size=(2500, 3))
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    return facing(normals * r + [x, y, FLOOR + r], normals)
+
+
+def look(points: Array) -> Measurement:
+    return measure(points, FLOOR, CAMERA, (True, True), 0.0, NOISE)
+
+
+def near(m: Measurement, x: float, y: float, size: tuple[float, float, float]) -> None:
+    assert math.dist((m.x, m.y), (x, y)) < 0.006
+    assert sorted(m.size) == pytest.approx(sorted(size), abs=0.009)
+
+
+@pytest.mark.parametrize(("r", "h"), [(0.033, 0.12), (0.045, 0.10), (0.06, 0.17), (0.025, 0.08)])
+def test_a_can_of_any_size_is_round_and_as_wide_as_it_is(r: float, h: float) -> None:
+    m = look(cylinder(0.2, 0.1, r, h))
+    assert m.family == "round"
+    assert not m.hollow
+    near(m, 0.2, 0.1, (2 * r, 2 * r, h))
+
+
+@pytest.mark.parametrize("yaw", [0.0, 0.4, 1.1, 2.6])
+@pytest.mark.parametrize("size", [(0.07, 0.07, 0.2), (0.05, 0.05, 0.05), (0.19, 0.06, 0.24), (0.2, 0.13, 0.03)])
+def test_a_box_of_any_size_keeps_its_sides(yaw: float, size: tuple[float, float, float]) -> None:
+    m = look(box(0.15, -0.1, yaw, size))
+    assert m.family == "box"
+    near(m, 0.15, -0.1, size)
+    if size[0] > 1.5 * size[1]:
+        assert abs(math.remainder(m.yaw - yaw, math.pi)) < 0.1
+
+
+@pytest.mark.parametrize("r", [0.03, 0.037, 0.05])
+def test_a_ball_is_one(r: float) -> None:
+    m = look(ball(0.3, 0.0, r))
+    assert m.family == "ball"
+    near(m, 0.3, 0.0, (2 * r, 2 * r, 2 * r))
+
+
+@pytest.mark.parametrize("yaw", [0.2, 1.2, 2.3])
+def test_what_is_long_and_round_lies(yaw: float) -> None:
+    m = look(lying(0.2, 0.0, yaw, 0.032, 0.22))
+    assert m.family == "long"
+    assert m.tilt == pytest.approx(math.pi / 2)
+    assert m.size == pytest.approx((0.22, 0.064, 0.064), abs=0.012)
+    assert abs(math.remainder(m.yaw - yaw, math.pi)) < 0.1
+    assert "bottle" in likely(LOOKS, measures_of(m, m.spread), ["green"])
+
+
+def test_what_no_primitive_explains_is_irregular_and_still_has_extents() -> None:
+    arms = np.concatenate([box(0.2, 0.0, 0.0, (0.2, 0.02, 0.02)), box(0.2, 0.0, math.pi / 2, (0.2, 0.02, 0.09))])
+    m = look(arms)
+    assert m.family == "irregular"
+    # The smallest rectangle around a cross stands at 45 degrees to its arms.
+    assert m.size[:2] == pytest.approx((0.156, 0.156), abs=0.03)
+
+
+def test_a_hidden_end_does_not_make_a_can_narrow() -> None:
+    points = cylinder(0.2, 0.0, 0.04, 0.11)
+    bearing = np.arctan2(points[:, 1] - CAMERA[1], points[:, 0] - CAMERA[0])
+    half = points[bearing > np.median(bearing)]
+    m = measure(half, FLOOR, CAMERA, (False, True), 0.0, NOISE)
+    assert math.dist((m.x, m.y), (0.2, 0.0)) < 0.03
+
+
+def test_points_are_few_and_on_the_surface() -> None:
+    points = thinned(cylinder(0.2, 0.1, 0.04, 0.12))
+    assert 50 < len(points) <= 200
+    rho = np.hypot(points[:, 0] - 0.2, points[:, 1] - 0.1)
+    assert np.median(np.abs(rho[points[:, 2] < FLOOR + 0.11] - 0.04)) < 0.003

@@ -1,0 +1,103 @@
+"""Objects that nobody listed, over time: one track each, fused extents, labels that are unique and stay."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from common.household import load_household
+from common.messages import WorldObject
+from services.perception.detection import Detection
+from services.perception.object_tracker import ObjectTracker
+from services.perception.view import View
+
+SCENE = load_household("apartment")
+
+
+def sighting(
+    x: float, y: float, kinds: dict[str, float], colours: dict[str, float], spread: float = 0.004
+) -> Detection:
+    return Detection(
+        label="", kind=next(iter(kinds)), colour=next(iter(colours)), position=(x, y, 0.81), yaw=0.0,
+        size=(0.07, 0.07, 0.1), confidence=0.9, on="counter", distance=1.2, known=False, shape="round", kinds=kinds,
+        colours=colours, spread=spread, points=np.array([[x - 0.035, y, 0.8], [x, y, 0.86]]),
+    )  # fmt: skip
+
+
+def looking(x: float, y: float) -> View:
+    """A view that shows nothing: no depth anywhere."""
+    return View(
+        np.zeros((48, 64, 3), np.uint8), np.zeros((48, 64), np.float32), (50.0, 50.0), (32.0, 24.0),
+        np.array([x, y, 1.3]), np.eye(3),
+    )  # fmt: skip
+
+
+def seen(*views: list[Detection]) -> tuple[ObjectTracker, list[WorldObject]]:
+    tracker = ObjectTracker(SCENE, 3, 0.6)
+    for n, detections in enumerate(views):
+        tracker.update(looking(0.0, 0.0), detections, float(n))
+    return tracker, tracker.objects()
+
+
+MUG, CAN = {"can": 0.55, "mug": 0.45}, {"can": 1.0}
+RED, BLUE = {"red": 0.8, "white": 0.2}, {"blue": 1.0}
+
+
+def test_what_looks_alike_gets_labels_of_its_own_that_stay() -> None:
+    tracker, first = seen([sighting(4.0, -3.0, CAN, RED), sighting(4.4, -3.0, CAN, RED)])
+    assert [o.label for o in first] == ["red can", "red can 2"]
+    # A third view sees them in the other order, and one more between.
+    third = [sighting(4.4, -3.0, CAN, RED), sighting(4.2, -3.0, CAN, RED), sighting(4.0, -3.0, CAN, RED)]
+    for n in (3, 4):
+        tracker.update(looking(0.0, 0.0), third, float(n))
+    places = {o.label: o.position[0] for o in tracker.objects()}
+    assert places == {"red can": pytest.approx(4.0), "red can 2": pytest.approx(4.4), "red can 3": pytest.approx(4.2)}
+
+
+def test_a_label_stays_until_another_kind_is_much_likelier() -> None:
+    tracker, first = seen([sighting(4.0, -3.0, MUG, RED)])
+    assert first[0].label == "red can"
+    assert first[0].kinds == ["can", "mug"]
+    tracker.update(looking(0.0, 0.0), [sighting(4.0, -3.0, {"mug": 0.6, "can": 0.4}, RED)], 1.0)
+    assert tracker.objects()[0].label == "red can"
+    for n in range(2, 8):
+        tracker.update(looking(0.0, 0.0), [sighting(4.0, -3.0, {"mug": 1.0}, RED)], float(n))
+    assert tracker.objects()[0].label == "red mug"
+
+
+def test_neighbours_that_nearly_touch_stay_two_whatever_was_seen_of_one_of_them() -> None:
+    both = [sighting(4.0, -3.0, CAN, RED), sighting(4.075, -3.0, CAN, BLUE)]
+    tracker, _ = seen(both, both)
+    tracker.update(looking(0.0, 0.0), [sighting(4.07, -3.0, CAN, BLUE)], 2.0)
+    assert {o.label: round(o.position[0], 2) for o in tracker.objects()} == {"red can": 4.0, "blue can": 4.07}
+
+
+def test_views_are_fused_and_the_surer_one_counts_more() -> None:
+    rough = replace(sighting(4.0, -3.0, CAN, RED, spread=0.01), size=(0.09, 0.09, 0.1))
+    fine = replace(sighting(4.0, -3.0, CAN, RED, spread=0.003), size=(0.07, 0.07, 0.1))
+    _, [o] = seen([rough], [fine])
+    assert o.size[0] == pytest.approx(0.0717, abs=0.001)
+    assert o.spread < 0.003
+    assert o.measured
+
+
+def test_a_box_seen_from_the_side_keeps_its_axes() -> None:
+    front = replace(sighting(4.0, -3.0, {"box": 1.0}, RED), shape="box", size=(0.11, 0.08, 0.1), yaw=0.1)
+    # Its hidden depth came out longer than its width: the longer side is now across.
+    side = replace(front, size=(0.1, 0.09, 0.1), yaw=0.1 + math.pi / 2)
+    _, [o] = seen([front], [side])
+    assert o.size[0] == pytest.approx(0.10, abs=0.002)
+    assert o.size[1] == pytest.approx(0.09, abs=0.002)
+
+
+def test_points_travel_relative_to_the_object() -> None:
+    _, [o] = seen([sighting(4.0, -3.0, CAN, RED)])
+    points = np.frombuffer(o.points, "<i2").reshape(-1, 3)
+    assert sorted(points.tolist()) == [[-35, 0, -10], [0, 0, 50]]
+
+
+def test_pieces_of_one_object_are_reported_once() -> None:
+    part = replace(sighting(4.02, -3.0, CAN, BLUE), size=(0.03, 0.03, 0.05), confidence=0.3, whole=False)
+    _, found = seen([sighting(4.0, -3.0, CAN, RED)], [part], [sighting(4.0, -3.0, CAN, RED)])
+    assert len(found) == 1
