@@ -65,7 +65,7 @@ class PerceptionService:
         self._config, self._io = config, io
         self._detector = load_detector(config.detector)(io.household, config.max_range)
         self._world = ""
-        self._naming = Naming(io, config.read, config.synonyms)
+        self._naming = Naming(io, config.read)
         self._reset()
         self._state = StateBuffer(io)
         self._hand_at: tuple[float, float, float] | None = None

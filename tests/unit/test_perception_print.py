@@ -4,11 +4,11 @@ import pytest
 
 pytest.importorskip("rapidfuzz", reason="the extra `ocr`")
 
-from common.scene import load_scene
+from common.household import load_household
 from services.perception.naming.text import LIKELY, SURE, Line, likeness, merged, printed_words
 from services.perception.naming.vocabulary import common_words, taken
 
-COMMON = common_words(load_scene("apartment"), {"cup": "mug"})
+COMMON = common_words(load_household("apartment"))
 
 
 @pytest.mark.parametrize(
@@ -55,5 +55,5 @@ def test_of_two_readings_of_a_line_the_surer_one_stays() -> None:
     ("name", "means"), [("mug", "every mug"), ("kitchen counter", "a place"), ("cup", "every cup")]
 )
 def test_a_name_that_means_something_already_is_taken(name: str, means: str) -> None:
-    assert taken(name, load_scene("apartment"), {"cup": "mug"}) == means
-    assert taken("vitamin box", load_scene("apartment"), {}) == ""
+    assert taken(name, load_household("apartment")) == means
+    assert taken("vitamin box", load_household("apartment")) == ""

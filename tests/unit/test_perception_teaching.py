@@ -8,7 +8,7 @@ import pytest
 
 from common import messages as m
 from common import topics
-from common.scene import Scene, load_scene
+from common.household import Household, load_household
 from services.perception.config import PerceptionConfig
 from services.perception.detect import Detection
 from services.perception.naming.reader import installed
@@ -26,7 +26,7 @@ class ShownBoxes:
 
     boxes: ClassVar[list[Box]] = []
 
-    def __init__(self, scene: Scene, max_range: float) -> None:
+    def __init__(self, household: Household, max_range: float) -> None:
         pass
 
     def detect(self, view: View, robot: Mask | None = None) -> list[Detection]:
@@ -45,7 +45,7 @@ class Shown(Node):
     def __init__(self, *boxes: Box, state_dir: Path | None = None) -> None:
         ShownBoxes.boxes = list(boxes)
         config = PerceptionConfig(detector=f"{__name__}:ShownBoxes")
-        super().__init__(PerceptionService, config, load_scene("minimal"), state_dir=state_dir)
+        super().__init__(PerceptionService, config, load_household("minimal"), state_dir=state_dir)
         self._taken = 0
         self.sizes: list[tuple[int, int]] = []
 

@@ -5,7 +5,7 @@ these back with `names` and `text`.
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import msgspec
 
@@ -28,8 +28,8 @@ from services.perception.view import View
 class Naming:
     """Taught names and printed words of the objects in sight. `read`: print is read when a question needs it."""
 
-    def __init__(self, io: Io, read: bool, synonyms: Mapping[str, str]) -> None:
-        self._io, self._synonyms = io, synonyms
+    def __init__(self, io: Io, read: bool) -> None:
+        self._io = io
         if read and not reader.installed():
             io.log.warning(reader.MISSING)
         self._reader = reader.Reader() if read and reader.installed() else None
@@ -44,7 +44,7 @@ class Naming:
             self._io,
             self._memory,
             self._observer,
-            lambda n: taken(n, self._io.household, self._synonyms),
+            lambda n: taken(n, self._io.household),
             self._publish,
         )
         self._matches: dict[str, Match] = {}
@@ -126,7 +126,7 @@ class Naming:
         """The words of a query that may be print; those of a taught name are not."""
         if normalise(query) in self._memory.names:
             return []
-        return printed_words(query, common_words(self._io.household, self._synonyms))
+        return printed_words(query, common_words(self._io.household))
 
     # --- names
     def _learn(self, key: str, look: Look) -> None:

@@ -1,8 +1,6 @@
 """Words that name no single object: kinds, colours, places, relations. What else is in a query may be a name or a
 print."""
 
-from collections.abc import Mapping
-
 from common.household import Household
 from common.kinds import KINDS
 from common.messages import WorldObject
@@ -25,10 +23,12 @@ BARE = frozenset({"apple", "orange", "banana", "lemon", "fruit", "ball", "bowl",
 """Kinds on which nothing is printed."""
 
 
-def common_words(household: Household, synonyms: Mapping[str, str]) -> frozenset[str]:
+def common_words(household: Household) -> frozenset[str]:
     """Every such word, normalised; the words of listed things too, which are known without reading."""
     listed = [n for o in household.things for n in (o.name, *o.aliases)]
-    phrases = (*KINDS, *COLOURS, RELATIONS, *synonyms, *synonyms.values(), *_spots(household), *listed)
+    words = household.words
+    told = [w for table in (words.kinds, words.colours) for word, others in table.items() for w in (word, *others)]
+    phrases = (*KINDS, *COLOURS, RELATIONS, *told, *words.groups, *_spots(household), *listed)
     return frozenset(word for phrase in phrases for word in normalise(phrase).split())
 
 
@@ -39,12 +39,12 @@ def printable(o: WorldObject, said: frozenset[str]) -> bool:
     return o.kind not in BARE and (not colours or bool(colours & {o.colour, *o.colours}))
 
 
-def taken(name: str, household: Household, synonyms: Mapping[str, str]) -> str:
+def taken(name: str, household: Household) -> str:
     """What a name stands for already, so that it cannot be taught; "" when it is free."""
     words = normalise(name)
     if words in map(normalise, _spots(household)):
         return "a place"
-    if words in KINDS or words in synonyms:
+    if words in KINDS or words in household.words.groups or household.words.kind(words):
         return f"every {words}"
     if words in {normalise(n) for o in household.things for n in (o.name, *o.aliases)}:
         return "another thing"
