@@ -7,7 +7,7 @@ import msgspec
 from common.grip import OPENING
 from common.household import Household
 from common.kinds import kind_of
-from common.messages import KnownWorld, PlanStep
+from common.messages import AROUND, KnownWorld, PlanStep
 
 MAX_STEPS = 60
 """Chosen: 15 objects of four steps each, more than any household has."""
@@ -39,7 +39,8 @@ def objection(
 ) -> Objection | None:
     """The first objection to a plan; None when it can be carried out.
 
-    Names are the household's, its aliases, kinds of objects, or labels in `world`.
+    Names are the household's, its aliases, kinds of objects, labels in `world`, or words for a thing that nobody has
+    listed: whether there is one only looking can tell.
     """
     if not steps:
         return Objection(0, "the plan has no steps")
@@ -83,13 +84,12 @@ def _objection(step: PlanStep, held: str, found: set[str], world: KnownWorld, ho
             return _not_a_thing(step.near, world, household) if step.near else ""
         case "release":
             return "" if held else "there is nothing in the hand to release"
+        case "navigate" if step.target == AROUND:
+            return ""
         case "navigate":
             where = step.target or step.object
-            return (
-                ""
-                if is_destination(where, household) or not _not_a_thing(where, world, household)
-                else f"I know no {where}"
-            )
+            known = is_destination(where, household) or where in found or _is_listed(where, world, household)
+            return "" if known else f"I know no {where}"
         case "say":
             return "" if step.text.strip() else "there is nothing to say"
         case "teach" | "forget":
@@ -111,12 +111,18 @@ def _name(thing: str, household: Household) -> str:
     return spec.name if spec else thing
 
 
+def _is_listed(thing: str, world: KnownWorld, household: Household) -> bool:
+    """Is it named in the household, by kind or name, or has it been seen?"""
+    return bool(household.thing(thing)) or thing in world.objects or thing in {o.kind for o in household.things}
+
+
 def _not_a_thing(thing: str, world: KnownWorld, household: Household) -> str:
     if not thing:
         return "no object is named"
-    if household.thing(thing) or thing in world.objects or thing in {o.kind for o in household.things}:
+    if _is_listed(thing, world, household):
         return ""
-    return f"I know no {thing} that I could pick up"
+    fixed = is_destination(thing, household) or any(thing in (f.name, *f.name.split()) for f in household.furniture)
+    return f"I know no {thing} that I could pick up" if fixed else ""
 
 
 def _too_big(thing: str, household: Household) -> str:

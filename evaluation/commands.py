@@ -70,6 +70,7 @@ TASKS: tuple[Task, ...] = (
     Task("go to the kitchen and then come back", effects=(Effect("visits", "kitchen"), HOME)),
     Task("come here", effects=(HOME,)),
     Task("find the apple", effects=(Effect("tells where", "apple"),)),
+    Task("find the banana", effects=(Effect("says", "I could not find the banana"),)),
     Task("where is the apple", effects=(Effect("tells where", "apple"),)),
     Task("what is on the counter", effects=(Effect("tells what is on", "counter"),)),
     Task("what do you see", effects=(Effect("tells what it sees"), STILL)),
@@ -78,7 +79,6 @@ TASKS: tuple[Task, ...] = (
     Task("close the gripper", effects=(Effect("hand", "closed"), STILL)),
     Task("wait", effects=(STILL,)),
     Task("say dinner is ready", effects=(Effect("says", "dinner is ready"), STILL)),
-    Task("bring me the banana", effects=(Effect("says", "I know no banana"), STILL)),
     Task(
         "put the apple in the bowl",
         effects=(Effect("says", "I cannot put things on or in the bowl"), STILL),

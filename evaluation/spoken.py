@@ -60,8 +60,8 @@ SENTENCES: dict[str, Sentence] = {
     "close the fridge": _say("I cannot open or close"),
     "follow me": _say("I cannot follow people"),
     "put the apple in the bowl": _say("I cannot put things on or in the bowl"),
-    "hand me the phone": _say("I know no phone"),
-    "find my keys": _say("I know no keys"),
+    "hand me the phone": Sentence(effects=(Effect("says", "I could not find the phone"),)),
+    "find my keys": Sentence(effects=(Effect("says", "I could not find the keys"),)),
 }
 """Of the shared recordings, those that have one outcome in every layout of the flat."""
 

@@ -4,11 +4,11 @@ BRING = "bring | fetch | get | give | hand | pass | grab | take | carry | retrie
 """Verbs of bringing that need a receiver: `grab me the mug`."""
 FETCH = "bring | fetch | get | give | hand | pass | carry | retrieve | collect | gather"
 """Verbs of bringing that need none."""
-PICK = "(get | fetch | take | grab | pick | pick up)"
+PICK = "(get | fetch | take | grab | pick | pick up | collect | gather)"
 """The first half of moving something: `get the mug and put it away`."""
 PUT = (
-    "put | place | set | throw | toss | drop | lay | stick | move | stack | pop | slide | leave | shift | chuck | dump"
-    " | relocate"
+    "put | sort | place | set | throw | toss | drop | lay | stick | move | stack | pop | slide | leave | shift"
+    " | chuck | dump | relocate"
 )
 MOVE = "bring | take | carry | deliver | transport | move | get | fetch | return | shift | relocate | transfer"
 """Verbs of moving to a place that is named with "to"."""
@@ -16,7 +16,8 @@ THROW = "throw | toss | chuck"
 DISCARD = "trash | discard | recycle | bin | get rid of | dispose of"
 TIDY = "tidy | clean | clear | declutter | straighten | neaten | sort out"
 GO = "drive | navigate | move | walk | return | head | come | roll | run | nip | pop | travel | proceed"
-SEEK = "find | search for | look for | locate | show me"
+SEEK = "find | search for | look for | locate | show me | track down | hunt for"
+LOOK = "(look | check | see | have a look | take a look | find out | verify)"
 MODAL = "(can | could | may | might)"
 WISH = "(want | need | would like | would love | fancy | could do with | could really do with)"
 # Words around them.
@@ -25,4 +26,28 @@ NEAR = "(next to | near | beside | close to | by)"
 BACK = "[back | over | straight | down | away]"
 """Particles between an object and its place that change nothing."""
 IT = "(<thing> | it | them)"
-ASK = "[tell me | do you (know | remember) | [have you got] any idea | find out | i wonder]"
+ASK = (
+    "[(can | could) you tell me | tell me | do you (know | remember | happen to know) | [have you got] any idea"
+    " | find out | i wonder | see | so | and]"
+)
+BE = "(is | are | was | were)"
+LYING = "lying | standing | sitting | left"
+"""What things do where they are."""
+WHAT_DID = "(did you [just] (do | finish) | have you [just] (done | finished)) [last | before | just now | now | there]"
+COMMANDING: frozenset[str] = frozenset(
+    option.split()[0]
+    for verbs in (
+        BRING,
+        FETCH,
+        PUT,
+        MOVE,
+        THROW,
+        DISCARD,
+        TIDY,
+        GO,
+        SEEK,
+        "pick | wait | say | tell | sort | check | put",
+    )
+    for option in verbs.split(" | ")
+) - {"bin", "roll", "pop"}
+"""First words that make a clause a command; without those that are rather nouns."""

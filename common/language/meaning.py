@@ -1,17 +1,31 @@
 """Which of the table's wordings a text is. Pure."""
 
+import re
 from collections.abc import Iterator
 
-from common.language.normalise import Words, expand, normalise, without_fillers, without_politeness
-from common.language.pattern import ANY, Pattern, Slots, first_words
-from common.language.wordings import WORDINGS, Action, Kind, Wording
+from common.language.normalise import DETERMINERS, Words, expand, normalise, without_fillers, without_politeness
+from common.language.noun_phrase import SIDES, SMALL, WHICH
+from common.language.pattern import ANY, Pattern, Slots, first_words, words_of
+from common.language.wording import QUESTIONS, Action, Kind, Wording
+from common.language.wordings import WORDINGS
 
+_INTERROGATIVE = re.compile(
+    r"^(?:(?:tell me |do you know )?(?:what(?! about)|where|who|whose|why|which|when did|how(?! about))"
+    r"|is|are|was|were|did|does|has|have you|do (?:you|we) (?:see|know|have|remember))\b"
+)
+"""How questions begin that are no orders in the form of one."""
 _RULES = tuple((wording, Pattern(wording.pattern)) for wording in WORDINGS)
 VERBS: frozenset[str] = frozenset[str]().union(*(first_words(p.tree) for w, p in _RULES if w.kind == "command")) - {
     "",
     ANY,
 }
 """Words with which a command may begin."""
+
+
+WORDS: frozenset[str] = frozenset[str]().union(
+    *(words_of(p.tree) for _, p in _RULES), DETERMINERS, WHICH, SIDES, *SMALL
+)
+"""Words of the wordings and between nouns: all but names and colours."""
 
 
 def readings(words: Words, *kinds: Kind) -> Iterator[tuple[Wording, Slots]]:
@@ -31,6 +45,12 @@ def asks_for(text: str, *actions: Action) -> Action | None:
             if wording.action == action and any(next(pattern.matches(words), None) is not None for words in said):
                 return action
     return None
+
+
+def is_question(text: str) -> bool:
+    """Is a whole text answered in words alone, whatever it is about?"""
+    bare = expand(without_fillers(normalise(text)))
+    return asks_for(text, *QUESTIONS) is not None or _INTERROGATIVE.match(without_politeness(bare)) is not None
 
 
 def heard_parts() -> dict[str, list[str]]:

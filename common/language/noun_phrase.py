@@ -6,14 +6,29 @@ from typing import Literal
 from common.language.normalise import Words
 
 Which = Literal[
-    "", "left", "right", "nearest", "farthest", "biggest", "smallest", "first", "second", "third", "last", "other"
+    "",
+    "left",
+    "right",
+    "nearest",
+    "farthest",
+    "biggest",
+    "smallest",
+    "tallest",
+    "shortest",
+    "first",
+    "second",
+    "third",
+    "last",
+    "other",
 ]
 PRONOUNS = frozenset({"it", "that", "this", "him", "her"})
 PLURAL_PRONOUNS = frozenset({"them", "those", "these", "both", "all of them", "both of them", "them all", "all of it"})
 WHICH: dict[str, Which] = {
     "left": "left", "leftmost": "left", "right": "right", "rightmost": "right", "nearest": "nearest",
     "closest": "nearest", "next": "nearest", "farthest": "farthest", "furthest": "farthest", "biggest": "biggest",
-    "big": "biggest", "large": "biggest", "largest": "biggest", "bigger": "biggest", "tallest": "biggest",
+    "big": "biggest", "large": "biggest", "largest": "biggest", "bigger": "biggest", "huge": "biggest",
+    "larger": "biggest", "tall": "tallest", "tallest": "tallest", "taller": "tallest", "high": "tallest",
+    "short": "shortest", "shortest": "shortest", "shorter": "shortest", "tiny": "smallest",
     "smallest": "smallest", "small": "smallest", "little": "smallest", "smaller": "smallest", "first": "first",
     "second": "second", "third": "third", "last": "last", "other": "other", "another": "other",
 }  # fmt: skip
@@ -33,8 +48,59 @@ SIDES: dict[str, Which] = {
     "on the right": "right", "from the right": "right", "to the right": "right", "on the right side": "right",
     "on your left": "left", "on your right": "right", "to your left": "left", "to your right": "right",
 }  # fmt: skip
+_BUT = ("but not", "except for", "except", "apart from", "other than", "besides", "excluding", "without", "but", "not")
+"""Words before what is left out."""
+_MEASURES = frozenset(
+    {"piece", "pieces", "bit", "pair", "couple", "lot", "one", "some", "any", "all", "both", "each", "kind"}
+)
+"""Words before "of" that say how much of it."""
 _TAILS = ("over there", "there", "you see", "you can see", "you found", "you have found", "you are holding", "you hold")
-_CLAUSES = ("that is", "that are", "that's", "which is", "which are", "lying", "standing", "that you see")
+_CLAUSES = (
+    "that is lying",
+    "that is standing",
+    "that is sitting",
+    "which is lying",
+    "which is standing",
+    "that stands",
+    "that lies",
+    "that are lying",
+    "that are standing",
+    "you left",
+    "i left",
+    "i put",
+    "that i left",
+    "that i put",
+    "sitting",
+    "that sits",
+    "that was",
+    "that were",
+    "which was",
+    "that is",
+    "that are",
+    "that's",
+    "which is",
+    "which are",
+    "lying",
+    "standing",
+    "that you see",
+)
+
+
+SMALL = tuple(
+    frozenset(phrase.split())
+    for phrase in (
+        *(r for r, _ in RELATIONS),
+        *SIDES,
+        *_BUT,
+        *_CLAUSES,
+        *_TAILS,
+        *NUMBERS,
+        *PRONOUNS,
+        *PLURAL_PRONOUNS,
+        "and or then please all every each",
+    )
+)
+"""Words between nouns."""
 
 
 def without_tail(words: Words) -> Words:
@@ -56,6 +122,39 @@ def without_clause(words: Words) -> Words:
     for clause in _CLAUSES:
         if text.startswith(f"{clause} "):
             return tuple(text.removeprefix(f"{clause} ").split())
+    return words
+
+
+def without_exceptions(words: Words) -> tuple[Words, tuple[Words, ...]]:
+    """Words before `except the red one and the can`, and each of the phrases that follow it."""
+    for at in range(1, len(words)):
+        rest = without_clause(words[at:])
+        for spoken in _BUT:
+            width = len(spoken.split())
+            if " ".join(rest[:width]) == spoken and len(rest) > width:
+                return words[:at], _listed(rest[width:])
+    return words, ()
+
+
+def _listed(words: Words) -> tuple[Words, ...]:
+    """Phrases joined by and, or and nor."""
+    found: list[Words] = []
+    start = 0
+    for at, word in enumerate((*words, "and")):
+        if word in ("and", "or", "nor"):
+            found += [words[start:at]] if at > start else []
+            start = at + 1
+    return tuple(found)
+
+
+def without_measure(words: Words) -> Words:
+    """`a piece of fruit` as `one fruit`, `one of the mugs` as `one mugs`; other words stay."""
+    for at, word in enumerate(words[:-1]):
+        if word == "of" and at and words[at - 1] in _MEASURES:
+            before = words[at - 1]
+            if before in ("piece", "bit", "kind", "one", "some", "any"):
+                return ("one", *(w for w in words[at + 1 :] if w not in ("the", "my", "our", "your", "those", "these")))
+            return (*words[: at - 1], before, *words[at + 1 :]) if before != "lot" else words[at + 1 :]
     return words
 
 

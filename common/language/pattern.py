@@ -134,6 +134,18 @@ def _match_all(parts: tuple[Node, ...], depth: int, words: Words, at: int, slots
         yield from _match_all(parts, depth + 1, words, end, found)
 
 
+def words_of(node: Node) -> set[str]:
+    """Every word of a pattern."""
+    match node:
+        case Word(text):
+            return {text}
+        case Slot(_):
+            return set()
+        case _:
+            parts = node.options if isinstance(node, Either) else node.parts
+            return set[str]().union(*map(words_of, parts))
+
+
 def first_words(node: Node) -> set[str]:
     """Words with which a sentence of the pattern may begin: ANY where that is a slot, "" where it may be empty."""
     match node:

@@ -4,16 +4,16 @@ The planner turns them into plans, speech listens for them, the brain takes answ
 commands from them. A new wording is one more row.
 """
 
-from typing import Literal, NamedTuple
+from typing import Literal
 
 from common.language.lexicon import (
-    ASK,
     BACK,
     BRING,
     DISCARD,
     FETCH,
     GO,
     IT,
+    LOOK,
     MODAL,
     MOVE,
     NEAR,
@@ -25,32 +25,8 @@ from common.language.lexicon import (
     TIDY,
     WISH,
 )
-
-Action = Literal[
-    "stop", "cancel", "continue", "yes", "no", "refuse",
-    "open_hand", "close_hand", "seen", "contents", "holding", "whereabouts", "where", "number", "say", "wait",
-    "wait_there", "come_back", "go", "remark", "untidy", "throw_away", "put_away", "tidy", "put", "put_near",
-    "put_down", "deliver", "deliver_there", "fetch", "fetch_named", "pick_up", "find", "teach", "forget",
-]  # fmt: skip
-"""What a wording asks for; `services/planner/rules.py` has a function for each that can be planned."""
-Kind = Literal["command", "reply", "name"]
-
-
-class Wording(NamedTuple):
-    """Sentences of `pattern` ask for `action`; in order of trial: the first that fits and can be done counts.
-
-    `heard` is the part of it that the speech recogniser listens for, which hears each sentence the better the fewer
-    there are: None the whole pattern, "" nothing (typed only). Its slots are the parts of `speech.commands`.
-    `kind`: a "command" may be joined to others by "and"; a "reply" is heard by itself only; a "name" is understood
-    where nothing else was said. `reason`: why the planner has no plan for it, as a clause.
-    """
-
-    action: Action
-    pattern: str
-    heard: str | None = None
-    kind: Kind = "command"
-    reason: str = ""
-
+from common.language.questions import ABOUT_ITSELF, ABOUT_THE_WORLD
+from common.language.wording import Wording
 
 WORDINGS: tuple[Wording, ...] = (
     Wording(
@@ -73,7 +49,8 @@ WORDINGS: tuple[Wording, ...] = (
     ),
     Wording(
         "yes",
-        "(yes | yeah | yep) [please | i did | it is] | correct | [that is] right | exactly | sure | okay | ok"
+        "(yes | yeah | yep | yup) [please | i did | it is | that is right | please do | do | do that | "
+        "exactly | go ahead] | correct | [that is] right | exactly | sure | okay | ok"
         " | go ahead | do it | do | affirmative",
         heard="yes [please | it is] | yeah | correct", kind="reply", reason="I did not ask anything",
     ),
@@ -86,44 +63,15 @@ WORDINGS: tuple[Wording, ...] = (
     Wording("refuse", "(if | when | unless) <words>", heard="", reason="I cannot wait for conditions"),
     Wording("refuse", "follow <words>", heard="follow me", reason="I cannot follow people"),
     Wording(
-        "open_hand", "(open | let go [of] | release) [the | your] (gripper | hand | fingers)",
+        "open_hand", "(open [up] | let go [of] | release) [the | your] (gripper | hand | fingers)",
         heard="open (the | your) (hand | gripper)",
     ),
     Wording(
         "close_hand", "(close | shut) [the | your] (gripper | hand | fingers)",
         heard="close (the | your) (hand | gripper)",
     ),
-    # Questions.
-    Wording(
-        "seen",
-        "[tell me] what (do | can) you see [now | right now | here | from (here | there | where you are)] | look around"
-        " | tell me what you [can] see", heard="what (do | can) you see"
-    ),
-    Wording(
-        "contents", "[tell me] (what | which (things | objects)) (is | are | lies | do you see) [lying | standing]"
-        " (on | in | at) <spot>"
-        " | is there (anything | something) (on | in | at) <spot>",
-        heard="",
-    ),
-    Wording("holding", "what are you holding | what do you (have | hold) [in your (hand | gripper)]", heard=""),
-    Wording("holding", "are you (holding | carrying) (anything | something)", heard=""),
-    Wording("holding", "what (is | have you got | do you have) in your (hand | gripper)", heard=""),
-    Wording("whereabouts", "where are you", heard=""),
-    Wording("where", f"{ASK} (where | whereabouts) (is | are) <thing>", heard="where (is | are) <thing>"),
-    Wording("where", f"{ASK} where <thing> (is | are | went | has gone | might be | could be)", heard=""),
-    Wording("where", f"{ASK} where (has | have) <thing> (gone | been | got to | ended up)", heard=""),
-    Wording(
-        "where", f"{ASK} where (did | do | would | can) (you | i | we) (see | put | leave | have | find) <thing>",
-        heard="",
-    ),
-    Wording("where", f"{ASK} (which | what) room (is | are) <thing> in", heard=""),
-    Wording("where", "have you (seen | found | got) <thing> [anywhere]", heard=""),
-    Wording("where", "(do | can) you (see | know) <thing>", heard=""),
-    Wording("where", "(is | are) there <thing>", heard=""),
-    Wording("where", "(is | are) <thing> (in | on | at) <spot>", heard=""),
-    Wording(
-        "number", "how many <thing> (are there | do you see | can you see | do you know | are <words>)", heard=""
-    ),
+    *ABOUT_ITSELF,
+    *ABOUT_THE_WORLD,
     # Names of things.
     Wording(
         "teach",
@@ -137,11 +85,65 @@ WORDINGS: tuple[Wording, ...] = (
     Wording("forget", "(forget | unlearn) [about] [the name [of] | what is] (my | our) <words>", heard=""),
     Wording("forget", "(forget | unlearn) the name [of] [the] <words>", heard=""),
     # What is said beside a command.
+    Wording(
+        "mention",
+        "there (is | are | should be | must be) <thing> | (i | we) (left | put | saw | forgot | dropped) <thing>"
+        " | <thing> (is | are) (in | on | at) <spot>",
+        heard="",
+    ),
     Wording("untidy", "<spot> (is | looks) (a mess | messy | untidy | dirty | a tip)", heard=""),
+    Wording(
+        "again",
+        "[do] (that | it | the same [thing]) [once] (again | more) [with <thing>] | do (that | "
+        "the same [thing])"
+        " with <thing> | [try | repeat] (that | it) (again | once more) | (try | do it) (again | once more) | retry"
+        " | repeat (that | it) [with <thing>] | once more | again | (have | give it) another (go | try)",
+        heard="try again | do that again",
+    ),
     Wording("remark", "(i'm | i am | we're | we are | it's | it is) <words>", heard=""),
     # The robot itself.
-    Wording("say", "(say | announce) <words>", heard=""),
-    Wording("wait", "wait [here | a moment | a bit | for me | a second]", heard="wait"),
+    Wording(
+        "say",
+        "(say | announce) <words> | tell (them | everybody | everyone | people | us | me) that <words>",
+        heard="",
+    ),
+    Wording("wait", "(wait | pause) [here | there | a moment | a bit | a while | for me]", heard="wait"),
+    Wording(
+        "wait",
+        "(wait | pause | sleep | stay [here | there] | hang around) [here | there] [for] <words>",
+        heard="",
+    ),
+    Wording(
+        "look_around",
+        "(look | take a look | have a look | go and look | glance | scan | search) [all] (around | about | round)"
+        " [the (room | flat | place | apartment) | you | here | in here]"
+        " | (look | search | scan) [around] everywhere | scan the (room | surroundings)",
+        heard="[take a] look around",
+    ),
+    Wording(
+        "go_and_see",
+        f"[go [and] | come and] {LOOK} [around | round] [in | at | on | inside | into] <spot>"
+        f" | go [and] {LOOK} what (is | lies | there is) [lying | standing] (on | in | at) <spot>"
+        f" | (search | inspect | survey | scan | explore) <spot>",
+        heard="",
+    ),
+    Wording(
+        "check",
+        f"[go [over] [and | to]] {LOOK} (if | whether) (there is | there are | you (see | find) | "
+        f"we have) [still] <thing>"
+        f" [left]",
+        heard="",
+    ),
+    Wording(
+        "check",
+        f"[go [over] [and | to]] {LOOK} (if | whether) <thing> (is | are) [still] (in | on | at) <spot>",
+        heard="",
+    ),
+    Wording(
+        "find",
+        f"[go [and] | help me [to] | try [to | and]] {LOOK} (if | whether) you can (find | see | spot) <thing>",
+        heard="",
+    ),
     Wording("wait_there", "[go and] wait (in | at | by | near) <spot>", heard=""),
     Wording("come_back", "(come | go | drive) [back] home", heard="go home"),
     Wording(
@@ -202,7 +204,26 @@ WORDINGS: tuple[Wording, ...] = (
     Wording(
         "put_away", f"(put | {TIDY}) away <thing> | (put | {TIDY}) <thing> away", heard=f"put {IT} away",
     ),
-    Wording("put_away", "put <thing> (back | where it belongs | where they belong | in its place)", heard=""),
+    Wording(
+        "put_back",
+        "(put | take | bring | return | set | place | move | carry) <thing> [back] (where | to where)"
+        " (it | they | that) (was | were | came from | had been | stood | has been | belongs | used to be) [before]"
+        " | (put | take | bring | return | set | place | move | carry) <thing> [back] (where | to where) (you | i)"
+        " (found | got | took | had | picked | took) (it | them | that) [up] [from]"
+        " | (put | place | set | take) <thing> back | return <thing>"
+        " | (put | take | bring | return) <thing> [back] (to its place | in its place)",
+        heard="put (it | that) back [where it was]",
+    ),
+    Wording(
+        "put_away",
+        "put <thing> (where it belongs | where they belong | in its place | to its place | "
+        "in order)", heard="",
+    ),
+    Wording("put_away", "sort [out] <thing> | <thing> (needs | need) (putting | to be put) away", heard=""),
+    Wording(
+        "put_where",
+        f"({PUT} | bring | take | carry) <thing> [over] [to] where <spot> (is | are | stands | lies)", heard="",
+    ),
     # Bringing.
     Wording("deliver_there", f"({MOVE} | {PUT}) <thing> [over] there", heard=""),
     Wording(
@@ -223,17 +244,35 @@ WORDINGS: tuple[Wording, ...] = (
         heard="(bring | take | carry) <thing> to <spot>",
     ),
     Wording("put", f"({MOVE}) <thing> {BACK} (on | onto | in) <spot>", heard=""),
-    Wording("put", f"<thing> (belongs | belong | goes | go | can go | should be | should go) {ON} <spot>", heard=""),
+    Wording(
+        "put",
+        f"<thing> (belongs | belong | goes | go | can go | should be | should go | must go) ({ON} | to) <spot>",
+        heard="",
+    ),
     Wording("put", f"(can | could | should) <thing> (go | be) {ON} <spot>", heard=""),
     Wording("put", f"make sure [that] <thing> (is | are | ends up | end up) {ON} <spot>", heard=""),
     Wording(
         "pick_up", "(pick | take | grab | lift) up <thing> | pick <thing> up | lift <thing> [up]",
         heard="pick (up <thing> | <thing> up)",
     ),
-    Wording("pick_up", "(get | take | grab) hold of <thing>", heard=""),
+    Wording(
+        "pick_up",
+        "(get | take | grab) hold of <thing> | (hold | hang) on to <thing> | hold onto <thing>",
+        heard="",
+    ),
     Wording("pick_up", "(grab | grasp | take | hold | pick) <thing>", heard="(grab | take) <thing>"),
     Wording("find", f"({SEEK}) <thing>", heard="find <thing>"),
+    Wording("find", "(i | we) (can not | cannot | could not | did not) find <thing> [anywhere]", heard=""),
+    Wording("find", "(i | we) [have] (lost | misplaced | mislaid) <thing>", heard=""),
+    Wording("find", "show me where <thing> (is | are)", heard=""),
+    Wording("find", "(help me | try to) (look for | find | search for | locate) <thing>", heard=""),
+    Wording("find", "(search | look | look around) [through | in] <spot> for <thing>", heard=""),
     Wording("fetch", f"({FETCH} | get) <thing>", heard=""),
+    Wording(
+        "wish_at",
+        f"(i | we) {WISH} <thing> [to be] {ON} <spot> | (i'd | we'd) (like | love) <thing> {ON} <spot>",
+        heard="",
+    ),
     Wording("fetch", f"(i | we) {WISH} <thing> [[over] here] | (i'd | we'd) (like | love) <thing>", heard=""),
     Wording("fetch", f"{MODAL} (i | we) (have | get) <thing> | let (me | us) have <thing>", heard=""),
     Wording("fetch", f"{MODAL} i trouble you for <thing> | gimme <thing> | how about <thing>", heard=""),

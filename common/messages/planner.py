@@ -5,11 +5,14 @@ from typing import Literal
 import msgspec
 
 from common.messages.base import Message
+from common.messages.brain import MissionOutcome
 
 PlannerBackend = Literal["grammar", "llm"]
 StepAction = Literal["navigate", "find", "grasp", "place", "release", "say", "wait", "return", "teach", "forget"]
 GRIPPER = "gripper"
 """The target of a step that only opens or closes the hand."""
+AROUND = "around"
+"""The target of a `navigate` that turns on the spot to look all around."""
 
 
 class KnownWorld(Message):
@@ -32,6 +35,7 @@ class PlanStep(Message):
 
     `near`: of `place`, the object on the target next to which; "" anywhere on it. `text`: of `say` what is said, of
     `teach` and `forget` the name; `teach` gives it to `object`, or with "" to what stands before the robot or is held.
+    `seconds`: how long to `wait`, 0 for a moment.
     """
 
     action: StepAction
@@ -39,11 +43,27 @@ class PlanStep(Message):
     target: str = ""
     text: str = ""
     near: str = ""
+    seconds: float = 0.0
 
     @property
     def hand_alone(self) -> bool:
         """A step of the gripper that needs no arm and names no object."""
         return self.action in ("grasp", "release") and self.target == GRIPPER and not self.object
+
+
+class History(Message):
+    """What a command may refer to beyond itself: `it`, `put it back`, `why did you fail`, `what are you doing`.
+
+    `doing`: the command under way, `step` what is done for it at the moment, both "" when nothing is. `last`: how the
+    last mission ended. `objects`: labels that it handled, in order. `taken_from`: the receptacle that each thing stood
+    on before it was grasped, by label, the latest last.
+    """
+
+    doing: str = ""
+    step: str = ""
+    last: MissionOutcome | None = None
+    objects: list[str] = []
+    taken_from: dict[str, str] = {}
 
 
 class PlanRequest(Message):
@@ -58,16 +78,21 @@ class PlanRequest(Message):
     rejected: RejectedPlan | None = None
     done: list["PlanStep"] | None = None
     mission_id: str = ""
+    history: History = msgspec.field(default_factory=History)
 
 
 class ActionPlan(Message):
-    """`again`: these steps only go and look; the command has to be planned anew with what they show."""
+    """`again`: these steps only go and look; the command has to be planned anew with what they show.
+
+    `suggestion`: without steps, the known command that comes nearest to what was said, to be asked about first.
+    """
 
     request_id: str
     steps: list[PlanStep]
     source: str = ""
     detail: str = ""
     again: bool = False
+    suggestion: str = ""
 
 
 class PlannerStatus(Message):

@@ -4,11 +4,12 @@ from common.floor_plan import Receptacle
 from common.language.normalise import DETERMINERS, enumeration
 from common.language.noun_phrase import PLURAL_PRONOUNS, PRONOUNS
 from common.language.pattern import Slots
+from common.language.quantities import LONGEST, duration
 from common.messages import PlanStep
 from services.planner.phrases import Phrase, read
 from services.planner.plan_builder import PlanBuilder, Refusal
 from services.planner.relations import BESIDE, between
-from services.planner.resolve import Referent, referent, referents, spot
+from services.planner.resolve import Referent, fitting, referent, referents, spot
 from services.planner.vocabulary import Spot
 from services.planner.world import BelievedObject
 
@@ -66,6 +67,31 @@ def put_near(builder: PlanBuilder, slots: Slots) -> None:
     builder.last = [m.object for m in moved]
 
 
+def put_back(builder: PlanBuilder, slots: Slots) -> None:
+    """Put things where they stood before the robot took them."""
+    moved = referents(builder, slots["thing"], prefer_held=True)
+    for meant in moved:
+        origin = builder.world.history.taken_from.get(meant.object.label, "")
+        where = builder.world.household.receptacle(origin)
+        if where is None:
+            raise Refusal(f"I do not know where the {meant.object.label} was before")
+        _put(builder, meant, where)
+    builder.last = [m.object for m in moved]
+
+
+def wish_at(builder: PlanBuilder, slots: Slots) -> None:
+    """`I want the box on the shelf`: the one that stands there is brought, one that stands elsewhere is put there."""
+    words = (*slots["thing"], "on", *slots["spot"])
+    phrase = read(words, builder.vocabulary)
+    names = {s.name for s in builder.vocabulary.spot(slots["spot"])}
+    if isinstance(phrase, Phrase) and not phrase.sense.new:
+        fits = fitting(builder, phrase)
+        if any(fits(t) and (t.on in names or builder.world.room_of(t) in names) for t in builder.world.objects):
+            fetch(builder, {"thing": words})
+            return
+    put(builder, slots)
+
+
 def pick_up(builder: PlanBuilder, slots: Slots) -> None:
     everything = referents(builder, slots["thing"], prefer_held=True)
     meant = everything[0]
@@ -111,7 +137,8 @@ def go(builder: PlanBuilder, slots: Slots) -> None:
     try:
         place = spot(builder, slots["spot"])
     except Refusal:
-        if not isinstance(read(slots["spot"], builder.vocabulary), Phrase):
+        phrase = read(slots["spot"], builder.vocabulary)
+        if not isinstance(phrase, Phrase) or phrase.sense.new:
             raise
         meant = referent(builder, slots["spot"])
         builder.approach(meant.object)
@@ -124,7 +151,13 @@ def come_back(builder: PlanBuilder, slots: Slots) -> None:
 
 
 def wait(builder: PlanBuilder, slots: Slots) -> None:
-    builder.wait()
+    """For as long as was said, else for a moment."""
+    seconds = duration(slots["words"]) if "words" in slots else 0.0
+    if seconds is None:
+        raise Refusal(f"I do not understand how long {' '.join(slots['words'])!r} is")
+    if seconds > LONGEST:
+        raise Refusal(f"I wait {LONGEST / 60:.0f} minutes at most")
+    builder.wait(seconds)
 
 
 def wait_there(builder: PlanBuilder, slots: Slots) -> None:
@@ -149,14 +182,29 @@ def say(builder: PlanBuilder, slots: Slots) -> None:
 
 # --- what is said beside a command
 def remark(builder: PlanBuilder, slots: Slots) -> None:
-    """Nothing: a reason for what is asked next, such as "I'm thirsty"."""
+    """A reason for what is asked next, such as "I'm thirsty"; a need that is known is met if nothing else is asked."""
     if "and" in slots["words"]:
         raise Refusal("I do not understand that")
+    builder.need = next((n for w, n in builder.config.needs.items() if w in slots["words"]), builder.need)
+
+
+def mention(builder: PlanBuilder, slots: Slots) -> None:
+    """A thing that is spoken of next as "it"; where it is said to be is where it is looked for."""
+    words = (*slots["thing"], "on", *slots["spot"]) if "spot" in slots else slots["thing"]
+    try:
+        builder.last = [m.object for m in referents(builder, words)]
+    except Refusal:
+        builder.last = [m.object for m in referents(builder, slots["thing"])]
 
 
 def untidy(builder: PlanBuilder, slots: Slots) -> None:
     """The place that is spoken of next as "it"."""
     builder.spot = spot(builder, slots["spot"])
+
+
+def again(builder: PlanBuilder, slots: Slots) -> None:
+    """What was done before is worked out from its words, before any clause is read."""
+    raise Refusal("I have done nothing yet that I could do again")
 
 
 # --- parts of the above

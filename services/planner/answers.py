@@ -1,15 +1,21 @@
 """What the robot says about what it has seen. Pure."""
 
-from common.language.normalise import enumeration, without_determiners
+from common.floor_plan import Receptacle
+from common.language.normalise import Words, enumeration, without_determiners
+from common.language.noun_phrase import related
 from common.language.pattern import Slots
 from common.messages import PlanStep
 from services.planner.phrases import Phrase, read
 from services.planner.plan_builder import PlanBuilder, Refusal
-from services.planner.resolve import Referent, referents, spot, unknown
+from services.planner.relations import between, holds, spoken
+from services.planner.resolve import Referent, fitting, referent, referents, spot, unknown
+from services.planner.vocabulary import Spot
 from services.planner.world import BelievedObject
 
 MANY = 8
 """Objects told at once (chosen: more nobody listens to)."""
+MAX_BESIDE = 3
+"""Neighbours told at once (chosen)."""
 
 
 def seen(builder: PlanBuilder, slots: Slots) -> None:
@@ -26,21 +32,41 @@ def seen(builder: PlanBuilder, slots: Slots) -> None:
         builder.say("I have seen nothing that I know yet.")
 
 
-def contents(builder: PlanBuilder, slots: Slots) -> None:
-    """What is on a surface or in a room."""
+def recall(builder: PlanBuilder, slots: Slots) -> None:
+    """What was seen on a surface or in a room; a look is taken only when nothing was."""
     _not_after_moving(builder)
-    place = spot(builder, slots["spot"])
+    place, there, look = _things_at(builder, slots["spot"])
+    if not there:
+        builder.look_at(look)
+        builder.look_first(look, f"I have seen nothing there so far, so I would have to go to the {place.name} first")
+    builder.say(_told(there, place))
+
+
+def contents(builder: PlanBuilder, slots: Slots) -> None:
+    """All that is on a surface or in a room, which is looked at first."""
+    _not_after_moving(builder)
+    place, there, look = _things_at(builder, slots["spot"])
+    builder.look_at(look)
+    if not there:
+        builder.look_first(look, f"I have seen nothing there so far, so I would have to go to the {place.name} first")
+    builder.say(_told(there, place))
+
+
+def _things_at(builder: PlanBuilder, words: Words) -> tuple[Spot, list[BelievedObject], list[Receptacle]]:
+    """The place that is meant, what was seen there, and the surfaces to look at for more."""
+    place = spot(builder, words)
     if place.receptacle is not None:
         there = [t for t in builder.world.objects if t.on == place.name]
         look = [place.receptacle]
     else:
         there = [t for t in builder.world.objects if not t.held and builder.world.room_of(t) == place.name]
         look = builder.vocabulary.surfaces(place.name)
-    builder.look_at(look)
-    if not there:
-        builder.look_first(look, f"I have seen nothing there so far, so I would have to go to the {place.name} first")
+    return place, there, look
+
+
+def _told(there: list[BelievedObject], place: Spot) -> str:
     where = "in" if place.receptacle is None or place.receptacle.depth else "on"
-    builder.say(f"{_capital(enumeration([_a(t) for t in there]))} {_be(there)} {where} the {place.name}.")
+    return f"{_capital(enumeration([_a(t) for t in there]))} {_be(there)} {where} the {place.name}."
 
 
 def holding(builder: PlanBuilder, slots: Slots) -> None:
@@ -101,15 +127,92 @@ def _all_meant(builder: PlanBuilder, slots: Slots) -> list[Referent]:
 
 def number(builder: PlanBuilder, slots: Slots) -> None:
     _not_after_moving(builder)
-    phrase = read(slots["thing"], builder.vocabulary)
+    words = (*slots["thing"], "on", *slots["spot"]) if "spot" in slots else slots["thing"]
+    phrase = read(words, builder.vocabulary)
     if not isinstance(phrase, Phrase):
-        raise Refusal(unknown(builder, slots["thing"], phrase))
+        raise Refusal(unknown(builder, words, phrase))
     try:
-        known = [m.object for m in referents(builder, ("all", *slots["thing"])) if m.object.seen]
+        known = [m.object for m in referents(builder, ("all", *words)) if m.object.seen]
     except Refusal:
         known = []
     names = f": {enumeration([f'the {t.label}' for t in known])}" if 0 < len(known) <= MANY else ""
     builder.say(f"I know of {len(known) or 'no'} {phrase.noun}{names}.")
+
+
+def colour(builder: PlanBuilder, slots: Slots) -> None:
+    """What colours something has."""
+    _not_after_moving(builder)
+    for meant in referents(builder, slots["thing"], prefer_held=True):
+        item = meant.object
+        colours = [item.colour, *sorted(item.colours - {item.colour})] if item.colour else []
+        if not colours:
+            raise Refusal(f"I have not seen what colour the {item.label} has")
+        builder.say(f"The {item.label} is {enumeration(colours)}.")
+        builder.last = [item]
+
+
+def beside(builder: PlanBuilder, slots: Slots) -> None:
+    """What stands next to, left of or behind something."""
+    _not_after_moving(builder)
+    for _, relation, words in related(("thing", *slots["words"])):
+        anchor = referent(builder, words).object
+        others = [t for t in builder.world.objects if t.label != anchor.label and t.position and not t.held]
+        if anchor.position is None:
+            raise Refusal(f"I have not seen where the {anchor.label} is")
+        same = [t for t in others if t.on == anchor.on and holds(builder, relation, t, anchor)]
+        near = sorted(same, key=lambda t: between(t, anchor))[:MAX_BESIDE]
+        where = f"{spoken(relation)} the {anchor.label}"
+        builder.say(
+            f"{_capital(enumeration([_a(t) for t in near]))} {_be(near)} {where}."
+            if near
+            else f"I see nothing {where}."
+        )
+        return
+    raise Refusal(f"I do not understand {' '.join(slots['words'])!r}")
+
+
+def check(builder: PlanBuilder, slots: Slots) -> None:
+    """Go and look whether something is there, and tell."""
+    thing = slots["thing"]
+    phrase = read((*thing, "on", *slots["spot"]) if "spot" in slots else thing, builder.vocabulary)
+    if not isinstance(phrase, Phrase):
+        raise Refusal(unknown(builder, thing, phrase))
+    spots = builder.vocabulary.spot(phrase.anchor) if phrase.relation in ("on", "near") else []
+    if not spots:
+        where(builder, slots)
+        return
+    place, known, surfaces = _things_at(builder, phrase.anchor)
+    builder.look_at(surfaces)
+    fits = fitting(builder, phrase)
+    there = [t for t in known if fits(t)]
+    at = f"{'in' if place.receptacle is None or place.receptacle.depth else 'on'} the {place.name}"
+    if there:
+        builder.say(f"Yes, there {_be(there)} {enumeration([_a(t) for t in there])} {at}.")
+    else:
+        builder.say(f"No, I see no {phrase.singular or phrase.noun} {at}.")
+    builder.last = there
+
+
+def look_around(builder: PlanBuilder, slots: Slots) -> None:
+    """Turn on the spot, then tell what is there."""
+    builder.turn_around([])
+    seen(builder, slots)
+
+
+def go_and_see(builder: PlanBuilder, slots: Slots) -> None:
+    """Go to a place, look, and tell what is there."""
+    place = spot(builder, slots["spot"])
+    if place.receptacle is None:
+        builder.turn_around(
+            [PlanStep(action="return") if place.home else PlanStep(action="navigate", target=place.name)]
+        )
+        if not place.room:
+            seen(builder, slots)
+            return
+        _, there, _ = _things_at(builder, slots["spot"])
+        builder.say(_told(there, place) if there else f"I see nothing that I know in the {place.name}.")
+        return
+    contents(builder, slots)
 
 
 def place_of(builder: PlanBuilder, item: BelievedObject) -> str:

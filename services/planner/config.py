@@ -19,7 +19,9 @@ class PlannerConfig(Config, frozen=True):
     `llm_tries` answers are asked for within `llm_timeout`; in lockstep they show after `llm_seconds`.
 
     `tidy` and `throw` are tried in order; `groups` are words for several kinds, `mass` those of them
-    that mean all there is. Times in seconds."""
+    that mean all there is; `needs` say what helps somebody who is "thirsty". With `open_vocabulary` a thing that
+    nobody has named is looked for by its words, else only what the scene names or perception has seen is known.
+    Times in seconds."""
 
     backend: Literal["auto", "grammar", "llm"] = "auto"
     tidy: tuple[Rule, ...] = ()
@@ -27,6 +29,8 @@ class PlannerConfig(Config, frozen=True):
     groups: dict[str, tuple[str, ...]] = {}
     mass: tuple[str, ...] = ()
     colours: dict[str, str] = {}
+    needs: dict[str, str] = {}
+    open_vocabulary: bool = True
     set_down: tuple[str, ...] = ("counter", "table", "shelf")
     max_steps: int = 60
     fresh: float = 5.0

@@ -1,9 +1,11 @@
 """The embedded planner: a sentence and the believed world in, a plan or the reason against it out. Pure."""
 
 from collections.abc import Sequence
+from contextlib import suppress
 
-from common.language.meaning import VERBS
-from common.language.normalise import DETERMINERS, Words, clauses, infinitive, without_politeness
+from common.language.discourse import commands
+from common.language.meaning import VERBS, WORDS
+from common.language.normalise import DETERMINERS, Words, infinitive, normalise, without_politeness
 from common.language.noun_phrase import PLURAL_PRONOUNS, PRONOUNS
 from common.language.simplify import simplified
 from common.messages import ActionPlan, PlanStep, RejectedPlan
@@ -11,7 +13,9 @@ from services.planner import answers
 from services.planner.choice_points import ChoicePoints, every
 from services.planner.config import PlannerConfig
 from services.planner.plan_builder import LookFirst, PlanBuilder, Refusal, same
+from services.planner.repetition import repeated
 from services.planner.rules import apply_first
+from services.planner.spelling import corrected
 from services.planner.vocabulary import Vocabulary
 from services.planner.world import World
 
@@ -23,6 +27,14 @@ MAX_WORDS = 60
 MAX_EFFORT = 120
 """Most clauses tried for one text (chosen: bounds the time for long lists)."""
 _THING_STARTS = DETERMINERS | PRONOUNS | PLURAL_PRONOUNS | {"all", "every", "two", "three"}
+
+
+class Suggestion(Refusal):
+    """`meant`: the command that comes nearest to what was said, to be asked about first."""
+
+    def __init__(self, reason: str, meant: str) -> None:
+        super().__init__(reason)
+        self.meant = meant
 
 
 class _Failure(Exception):
@@ -44,14 +56,16 @@ def plan(
     """The preferred plan that differs from every rejected one; without steps when there is none, with the reason."""
     vocabulary = Vocabulary(world, config)
 
+    literally = any(not r.steps for r in rejected)
+
     def run(choices: ChoicePoints) -> ActionPlan:
-        builder = PlanBuilder(world.copy(), vocabulary, config, choices, done)
         try:
-            steps = _steps(command, builder)
+            steps = _Attempts(command, world, vocabulary, config, choices, done).steps(literally)
         except LookFirst as look:
             return ActionPlan(request_id=request_id, steps=look.steps, source=SOURCE, again=True)
         except Refusal as refusal:
-            return ActionPlan(request_id=request_id, steps=[], source=SOURCE, detail=str(refusal))
+            meant = refusal.meant if isinstance(refusal, Suggestion) else ""
+            return ActionPlan(request_id=request_id, steps=[], source=SOURCE, detail=str(refusal), suggestion=meant)
         if len(steps) > config.max_steps:
             detail = f"that is too much at once: {len(steps)} steps"
             return ActionPlan(request_id=request_id, steps=[], source=SOURCE, detail=detail)
@@ -82,8 +96,77 @@ def _culprit(rejected: RejectedPlan) -> PlanStep | None:
     return rejected.steps[rejected.step - 1] if 0 < rejected.step <= len(rejected.steps) else None
 
 
+class _Attempts:
+    """Readings of one command, the more literal first, each with a plan builder of its own."""
+
+    def __init__(
+        self,
+        command: str,
+        world: World,
+        vocabulary: Vocabulary,
+        config: PlannerConfig,
+        choices: ChoicePoints,
+        done: list[PlanStep] | None,
+    ) -> None:
+        self._command, self._world, self._vocabulary, self._config = command, world, vocabulary, config
+        self._choices, self._done = choices, done
+
+    def steps(self, literally: bool) -> list[PlanStep]:
+        """By what is known, as it stands; without slips of typing; with things that nobody has listed or seen.
+
+        `literally`: a slip in a name was asked about and is none.
+
+        Raises:
+            Suggestion: the words are one slip in a name away from a command.
+            Refusal: none of it helps, with the reason against the words as they stand.
+        """
+        try:
+            return self._read(self._command)
+        except Refusal as refusal:
+            taken = self._choices.taken
+            if (read := self._without_slips(refusal, literally)) is not None:
+                return read
+            if self._config.open_vocabulary:
+                with suppress(Refusal):
+                    return self._read(self._command, new_nouns=True)
+            self._choices.taken = taken
+            raise
+
+    def _read(self, text: str, new_nouns: bool = False) -> list[PlanStep]:
+        builder = PlanBuilder(self._world.copy(), self._vocabulary, self._config, self._choices.fork(), self._done)
+        self._vocabulary.new_nouns = new_nouns
+        try:
+            return _steps(text, builder)
+        finally:
+            self._choices.taken = builder.choices.taken
+            self._vocabulary.new_nouns = False
+
+    def _without_slips(self, refusal: Refusal, literally: bool) -> list[PlanStep] | None:
+        """Slips in verbs and small words are undone; a name is never exchanged for another unasked."""
+        words = normalise(self._command[:MAX_CHARACTERS], ",;.!?").split()
+        bare = [w.strip(",;.!?") for w in words]
+        colours, names = self._vocabulary.words()
+        right, named = corrected(bare, colours | WORDS, names)
+        if right == bare or (named and literally):
+            return None
+        text = " ".join(w.replace(b, r) for w, b, r in zip(words, bare, right, strict=True))
+        try:
+            steps = self._read(text)
+        except Refusal:
+            return None
+        if named:
+            raise Suggestion(str(refusal), text)
+        return steps
+
+
 def _steps(command: str, builder: PlanBuilder) -> list[PlanStep]:
-    sentences = clauses(command[:MAX_CHARACTERS])
+    def is_place(words: Words) -> bool:
+        return bool(builder.vocabulary.spot(words))
+
+    sentences = commands(command[:MAX_CHARACTERS], is_place)
+    again = repeated(command, sentences, builder.world.history, is_place)
+    if again is not command:
+        sentences = commands(again, is_place)
     if not sentences:
         raise Refusal("I did not hear a command")
     if len(command) > MAX_CHARACTERS or any(len(s.split()) > MAX_WORDS for s in sentences):
@@ -93,6 +176,8 @@ def _steps(command: str, builder: PlanBuilder) -> list[PlanStep]:
         _whole(words, builder, alone=len(sentences) == 1, started=number > 0)
     if builder.collecting:
         raise Refusal("I can hold only one thing at a time")
+    if not builder.steps and builder.need:
+        _whole(("bring", "me", *builder.need.split()), builder, alone=True, started=False)
     if not builder.steps:
         raise Refusal("there is nothing to do")
     if all(step.action == "find" for step in builder.steps):

@@ -14,13 +14,18 @@ from common.language.noun_phrase import (
     Which,
     related,
     without_clause,
+    without_exceptions,
+    without_measure,
     without_tail,
 )
 from services.planner.vocabulary import Sense, Vocabulary
 
 
 class Phrase(msgspec.Struct, frozen=True):
-    """`count` 0 means all of them; `any_one`: no matter which; `anchor` are the words after a relation."""
+    """`count` 0 means all of them; `any_one`: no matter which; `anchor` are the words after a relation.
+
+    `but`: phrases for what is left out.
+    """
 
     sense: Sense
     noun: str
@@ -33,12 +38,18 @@ class Phrase(msgspec.Struct, frozen=True):
     side: Which = ""
     relation: Relation | Literal[""] = ""
     anchor: Words = ()
+    but: tuple[Words, ...] = ()
     text: str = ""
 
 
 def read(words: Words, vocabulary: Vocabulary) -> Phrase | str:
     """The phrase, or the noun that nobody knows."""
-    words = without_tail(words)
+    words, but = without_exceptions(without_tail(words))
+    phrase = _read(words, vocabulary)
+    return msgspec.structs.replace(phrase, but=but) if but and isinstance(phrase, Phrase) else phrase
+
+
+def _read(words: Words, vocabulary: Vocabulary) -> Phrase | str:
     if (whole := _head(words, vocabulary)) is not None:
         return whole
     for at in range(1, len(words)):
@@ -46,10 +57,27 @@ def read(words: Words, vocabulary: Vocabulary) -> Phrase | str:
         if side and (phrase := _head(words[:at], vocabulary)):
             which = phrase.which if phrase.which in ("first", "second", "third", "last") else side
             return msgspec.structs.replace(phrase, which=which, side=side, text=" ".join(words))
+    if phrase := _with_colours(words, vocabulary):
+        return phrase
     for head, relation, anchor in related(words):
-        if phrase := _head(head, vocabulary):
+        if phrase := _head(head, vocabulary) or _with_colours(head, vocabulary):
             return msgspec.structs.replace(phrase, relation=relation, anchor=anchor, text=" ".join(words))
     return _noun_of(words)
+
+
+def _with_colours(words: Words, vocabulary: Vocabulary) -> Phrase | None:
+    """`something yellow`, `the mug that is red`."""
+    for at in range(1, len(words)):
+        if (predicate := _coloured(words[at:], vocabulary)) and (phrase := _head(words[:at], vocabulary)):
+            return msgspec.structs.replace(phrase, colours=(*phrase.colours, *predicate), text=" ".join(words))
+    return None
+
+
+def _coloured(words: Words, vocabulary: Vocabulary) -> tuple[str, ...]:
+    """Colours that follow what they belong to: `(anything) blue`, `(the mug) that is red`."""
+    rest = without_clause(words)
+    colours = tuple(vocabulary.colours[w] for w in rest if w in vocabulary.colours)
+    return colours if colours and all(w in vocabulary.colours or w in ("and", "or", "in") for w in rest) else ()
 
 
 def _noun_of(words: Words) -> str:
@@ -66,7 +94,25 @@ def _noun_of(words: Words) -> str:
 
 def _head(words: Words, vocabulary: Vocabulary) -> Phrase | None:
     """A phrase without relations: quantity, determiners, order, size, colours, noun."""
-    rest, count, any_one, every, number = words, 1, False, False, False
+    return _known_head(words, vocabulary) or _new_head(words, vocabulary)
+
+
+def _new_head(words: Words, vocabulary: Vocabulary) -> Phrase | None:
+    """The name of a thing that nobody has listed or seen, with a determiner or without."""
+    rest = without_measure(words)
+    any_one = rest[:1] in (("a",), ("an",), ("some",), ("any",), ("one",))
+    while len(rest) > 1 and (rest[0] in DETERMINERS or rest[0] in NUMBERS):
+        rest = rest[1:]
+    colours = tuple(vocabulary.colours[w] for w in rest[:-1] if w in vocabulary.colours)
+    noun = tuple(w for w in rest if w not in vocabulary.colours) if colours else rest
+    sense = vocabulary.new_noun(noun)
+    if sense is None:
+        return None
+    return Phrase(sense=sense, noun=" ".join(noun), any_one=any_one, colours=colours, text=" ".join(words))
+
+
+def _known_head(words: Words, vocabulary: Vocabulary) -> Phrase | None:
+    rest, count, any_one, every, number = without_measure(words), 1, False, False, False
     colours: list[str] = []
     which: Which = ""
     while rest:
@@ -87,6 +133,8 @@ def _head(words: Words, vocabulary: Vocabulary) -> Phrase | None:
                 text=" ".join(words),
             )
         word, rest = rest[0], rest[1:]
+        if word in ("left", "right") and rest[:1] == ("of",):  # a relation
+            return None
         if word in ("all", "every", "each"):
             every = True
         elif word == "both":

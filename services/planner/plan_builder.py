@@ -6,7 +6,7 @@ import msgspec
 
 from common.floor_plan import Receptacle
 from common.language.normalise import enumeration
-from common.messages import GRIPPER, PlanStep
+from common.messages import AROUND, GRIPPER, PlanStep
 from services.planner.choice_points import ChoicePoints
 from services.planner.config import PlannerConfig, Rule
 from services.planner.vocabulary import Spot, Vocabulary
@@ -40,6 +40,7 @@ class PlanBuilder:
         self.steps: list[PlanStep] = []
         self.last: list[BelievedObject] = []
         self.spot: Spot | None = None
+        self.need = ""
         self.moved = False
         self.effort = [0]
         self.collecting: set[str] = set()
@@ -49,6 +50,7 @@ class PlanBuilder:
         """A copy to try something on; its choices count only when it is adopted."""
         other = PlanBuilder(self.world.copy(), self.vocabulary, self.config, self.choices.fork(), self.done)
         other.steps, other.last, other.spot = list(self.steps), list(self.last), self.spot
+        other.need = self.need
         other.moved, other._found, other.effort = self.moved, set(self._found), self.effort
         other.collecting = set(self.collecting)
         return other
@@ -56,14 +58,14 @@ class PlanBuilder:
     def adopt(self, other: "PlanBuilder") -> None:
         self.world, self.steps, self.last, self.spot = other.world, other.steps, other.last, other.spot
         self.moved, self._found, self.collecting = other.moved, other._found, other.collecting
-        self.choices.taken = other.choices.taken
+        self.choices.taken, self.need = other.choices.taken, other.need
 
     # --- steps
     def say(self, text: str) -> None:
         self.steps.append(PlanStep(action="say", text=text))
 
-    def wait(self) -> None:
-        self.steps.append(PlanStep(action="wait"))
+    def wait(self, seconds: float = 0.0) -> None:
+        self.steps.append(PlanStep(action="wait", seconds=seconds))
 
     def go(self, spot: Spot) -> None:
         self.spot = spot
@@ -177,6 +179,11 @@ class PlanBuilder:
         there = [PlanStep(action="navigate", target=r.name) for r in spots if r.name not in visited]
         if there and self.done is not None:
             raise LookFirst([step for going in there for step in (going, PlanStep(action="wait"))])
+
+    def turn_around(self, way: list[PlanStep]) -> None:
+        """Go there and look around before anything is said, unless that was done or the sender would not ask again."""
+        if self.done is not None and not any(s.target == AROUND for s in self.done):
+            raise LookFirst([*way, PlanStep(action="navigate", target=AROUND)])
 
     def search_first(self, searches: list[PlanStep]) -> None:
         """Find things before anything is said of them, unless that was done or the sender would not ask again."""

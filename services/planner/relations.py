@@ -22,6 +22,11 @@ def superlative(builder: PlanBuilder, phrase: Phrase, seen: Sequence[BelievedObj
         if math.isclose(math.prod(by_size[0].size), math.prod(by_size[-1].size), rel_tol=0.05) and len(seen) > 1:
             raise Refusal(f"they are all of the same size: {enumeration([f'the {t.label}' for t in by_size])}")
         return by_size[-1 if phrase.which == "biggest" else 0]
+    if phrase.which in ("tallest", "shortest"):
+        by_height = sorted(seen, key=lambda t: t.size[2])
+        if math.isclose(by_height[0].size[2], by_height[-1].size[2], rel_tol=0.05) and len(seen) > 1:
+            raise Refusal(f"they are all of the same height: {enumeration([f'the {t.label}' for t in by_height])}")
+        return by_height[-1 if phrase.which == "tallest" else 0]
     if phrase.which in ("nearest", "farthest"):
         by_distance = sorted(seen, key=builder.world.distance)
         return by_distance[0 if phrase.which == "nearest" else -1]

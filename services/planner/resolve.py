@@ -9,13 +9,11 @@ from common.language.noun_phrase import PLURAL_PRONOUNS, PRONOUNS
 from services.planner.phrases import Phrase, read
 from services.planner.plan_builder import PlanBuilder, Refusal
 from services.planner.relations import away, between, holds, is_near, spoken, superlative
-from services.planner.vocabulary import Spot
+from services.planner.vocabulary import LONGEST_NAME, Spot
 from services.planner.world import BelievedObject
 
 MAX_QUESTION = 4
 """Objects named in a question between several (chosen: what one remembers)."""
-LONGEST_NAME = 4
-"""Words above which an unknown name is taken for a sentence that was not understood (chosen)."""
 
 
 class Referent(msgspec.Struct, frozen=True):
@@ -40,11 +38,19 @@ def referents(builder: PlanBuilder, words: Words, prefer_held: bool = False) -> 
         return _resolve(builder, phrase, prefer_held)
     for at in range(1, len(words) - 1):
         if words[at] == "and":
+            if _is_named(builder, words[:at]) and not _is_named(builder, words[at + 1 :]):
+                continue
             try:
                 return [*referents(builder, words[:at], prefer_held), *referents(builder, words[at + 1 :], prefer_held)]
             except Refusal:
                 continue
     raise Refusal(unknown(builder, words, phrase))
+
+
+def _is_named(builder: PlanBuilder, words: Words) -> bool:
+    """Do the words begin like a name, or name something known? `dance` of `the red mug and dance` does not."""
+    phrase = read(words, builder.vocabulary)
+    return not isinstance(phrase, Phrase) or not phrase.sense.new or words[0] in DETERMINERS
 
 
 def referent(builder: PlanBuilder, words: Words, prefer_held: bool = False) -> Referent:
@@ -101,15 +107,30 @@ def _pronoun(builder: PlanBuilder, plural: bool) -> list[Referent]:
         return [Referent(builder.world.current(t)) for t in (builder.last if plural else builder.last[-1:])]
     if held := builder.world.held:
         return [Referent(held)]
+    if before := _handled_before(builder):
+        return [Referent(t) for t in (before if plural else before[-1:])]
     raise Refusal("I do not know what you mean by that" if plural else "I do not know what you mean by it")
+
+
+def _handled_before(builder: PlanBuilder) -> list[BelievedObject]:
+    """What the last mission handled."""
+    named = [BelievedObject(label, "", seen=False) for label in builder.world.history.objects]
+    return [builder.world.current(t) for t in named]
+
+
+def _mentioned(builder: PlanBuilder) -> list[BelievedObject]:
+    """What `one` and `other` refer to: the things of this command, else those of the last."""
+    return builder.last or _handled_before(builder)
 
 
 def _resolve(builder: PlanBuilder, phrase: Phrase, prefer_held: bool) -> list[Referent]:
     sense = phrase.sense
-    if sense.every and phrase.noun in ("one", "ones") and builder.last:
-        sense = msgspec.structs.replace(sense, every=False, kinds=frozenset(t.kind for t in builder.last))
+    if sense.every and phrase.noun in ("one", "ones") and (mentioned := _mentioned(builder)):
+        sense = msgspec.structs.replace(sense, every=False, kinds=frozenset(t.kind for t in mentioned))
         phrase = msgspec.structs.replace(phrase, sense=sense)
-    fits = _fitting(phrase)
+    if sense.new:
+        return [_new(builder, phrase)]
+    fits = fitting(builder, phrase)
     held = builder.world.held
     if prefer_held and held and fits(held) and not phrase.relation and not phrase.which and phrase.count == 1:
         return [Referent(held)]
@@ -124,14 +145,55 @@ def _resolve(builder: PlanBuilder, phrase: Phrase, prefer_held: bool) -> list[Re
     return _choose(builder, phrase, seen, specs)
 
 
-def _fitting(phrase: Phrase) -> Callable[[BelievedObject], bool]:
-    sense, colours = phrase.sense, phrase.colours
+def _new(builder: PlanBuilder, phrase: Phrase) -> Referent:
+    """A thing that nobody has listed or seen, by its own words."""
+    label = " ".join((*phrase.colours, phrase.noun))
+    thing = next((t for t in builder.world.objects if t.label == label), BelievedObject(label, "", seen=False))
+    spots = builder.vocabulary.spot(phrase.anchor) if phrase.relation else []
+    words = " ".join(without_determiners(tuple(phrase.text.split()))) if phrase.relation else ""
+    return Referent(thing, words, spots[0] if spots and not spots[0].home else None)
+
+
+def fitting(builder: PlanBuilder, phrase: Phrase) -> Callable[[BelievedObject], bool]:
+    """Whether an object is of the kind, the names and the colours of a phrase, and none that it leaves out."""
+    sense, colours, left_out = phrase.sense, phrase.colours, _left_out(builder, phrase)
 
     def fits(item: BelievedObject) -> bool:
         named = sense.every or item.label in sense.names or item.kind in sense.kinds
-        return named and (not colours or item.colour in colours)
+        return named and (not colours or any(map(item.is_of, colours))) and not left_out(item)
 
     return fits
+
+
+def _left_out(builder: PlanBuilder, phrase: Phrase) -> Callable[[BelievedObject], bool]:
+    """What the phrases after "except" mean.
+
+    Raises:
+        Refusal: one of them means nothing.
+    """
+    names, colours = set[str](), set[str]()
+    for words in phrase.but:
+        bare = [w for w in words if w not in DETERMINERS]
+        if all(w in builder.vocabulary.colours for w in bare):
+            colours |= {builder.vocabulary.colours[w] for w in bare}
+            continue
+        meant = read(("all", *without_determiners(words)), builder.vocabulary)
+        if not isinstance(meant, Phrase):
+            raise Refusal(unknown(builder, words, meant))
+        if meant.noun in ("one", "ones"):
+            meant = msgspec.structs.replace(meant, sense=phrase.sense)
+        names |= _labels(builder, meant)
+    return lambda item: item.label in names or any(map(item.is_of, colours))
+
+
+def _labels(builder: PlanBuilder, phrase: Phrase) -> set[str]:
+    """Labels of everything that a phrase means."""
+    fits = fitting(builder, phrase)
+    known = [t for t in (*builder.world.objects, *builder.world.specs) if fits(t)]
+    if phrase.relation and (spots := builder.vocabulary.spot(phrase.anchor)):
+        names = {s.name for s in spots}
+        known = [t for t in known if t.on in names or builder.world.room_of(t) in names]
+    return {t.label for t in known}
 
 
 def _related(
@@ -173,7 +235,7 @@ def _choose(
 ) -> list[Referent]:
     """From the candidates those that are meant."""
     if phrase.which == "other":
-        seen = [t for t in seen if t.label not in {x.label for x in builder.last}]
+        seen = [t for t in seen if t.label not in {x.label for x in _mentioned(builder)}]
     if not seen:
         if phrase.count != 1:
             builder.look_first(builder.vocabulary.surfaces(), f"I have seen no {phrase.singular} yet")

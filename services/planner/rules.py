@@ -5,8 +5,8 @@ from collections.abc import Callable
 from common.language.meaning import readings
 from common.language.normalise import Words
 from common.language.pattern import Slots
-from common.language.wordings import Action, Kind
-from services.planner import actions, answers, teaching, tidying
+from common.language.wording import Action, Kind
+from services.planner import about_itself, actions, answers, teaching, tidying
 from services.planner.plan_builder import PlanBuilder, Refusal
 
 ACTIONS: dict[Action, Callable[[PlanBuilder, Slots], None]] = {
@@ -39,6 +39,28 @@ ACTIONS: dict[Action, Callable[[PlanBuilder, Slots], None]] = {
     "find": actions.find,
     "teach": teaching.teach,
     "forget": teaching.forget,
+    "mention": actions.mention,
+    "put_back": actions.put_back,
+    "put_where": actions.put_near,
+    "wish_at": actions.wish_at,
+    "again": actions.again,
+    "look_around": answers.look_around,
+    "go_and_see": answers.go_and_see,
+    "check": answers.check,
+    "recall": answers.recall,
+    "exists": answers.where,
+    "is_at": answers.where,
+    "colour": answers.colour,
+    "beside": answers.beside,
+    "kinds": answers.number,
+    "doing": about_itself.doing,
+    "done": about_itself.done,
+    "why": about_itself.why,
+    "origin": about_itself.origin,
+    "abilities": about_itself.abilities,
+    "identity": about_itself.identity,
+    "rooms": about_itself.rooms,
+    "thanks": about_itself.thanks,
 }
 
 

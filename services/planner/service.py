@@ -125,7 +125,7 @@ class PlannerService:
         seen, pose = self._io.latest(topics.WORLD_OBJECTS), self._io.latest(topics.POSE)
         home = self._io.household.home
         where = (pose.x, pose.y, pose.theta) if pose else (home.x, home.y, home.theta)
-        return believed(self._io.household, request.world, seen.objects if seen else [], where, now)
+        return believed(self._io.household, request.world, seen.objects if seen else [], where, now, request.history)
 
     def _rejections(self, request: m.PlanRequest) -> list[m.RejectedPlan]:
         """Every plan rejected so far for this command of this mission, the newest last."""

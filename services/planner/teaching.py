@@ -10,7 +10,8 @@ from services.planner.plan_builder import PlanBuilder, Refusal
 def teach(builder: PlanBuilder, slots: Slots) -> None:
     """The thing that is named, or "this", gets a name. Which one that is perception decides, which sees it."""
     thing = " ".join(without_determiners(slots.get("thing", ())))
-    if thing and not isinstance(read(slots["thing"], builder.vocabulary), Phrase):
+    phrase = read(slots["thing"], builder.vocabulary) if thing else None
+    if thing and (not isinstance(phrase, Phrase) or phrase.sense.new):
         raise Refusal(f"I know no {thing} that could have a name")
     builder.steps.append(PlanStep(action="teach", object=thing, text=_name(builder, slots)))
 

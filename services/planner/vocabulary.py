@@ -6,22 +6,42 @@ import msgspec
 
 from common.floor_plan import Receptacle
 from common.household import Household
-from common.language.normalise import Words, enumeration, normalise, without_determiners
+from common.language.lexicon import COMMANDING
+from common.language.normalise import DETERMINERS, Words, enumeration, normalise, without_determiners
+from common.language.noun_phrase import WHICH
 from services.planner.config import PlannerConfig
 from services.planner.world import World
 
 ANY = frozenset({"thing", "object", "item", "stuff", "mess", "one"})
 WHOLE = frozenset({"everything", "anything", "something", "all", "mess"})
+SHORTEST_NAME = 3
+"""Letters of the longest word of a name (chosen: shorter is a word misheard)."""
+LONGEST_NAME = 4
+"""Words of the longest name of a thing (chosen: more are a sentence that was not understood)."""
+_SMALL = (
+    "all and anything are as at away back be been before behind below both but by can could did do does down each every"
+    " everything everywhere for from front had has have he her here him how i if in instead into is it left me more"
+    " near next no nobody none not nothing of off on once onto or other our out over right she should so some somebody"
+    " something somewhere still than then there they to too under until up us was we were what when where whether"
+    " which while who why will with without would yes you yourself again ago bit bring fetch get give go going help"
+    " like make put take tell thanks please want need try yet now just only also else"
+)
+NO_NOUN = DETERMINERS | frozenset(_SMALL.split())
+"""Words that are part of no thing's name."""
 _HERE = frozenset({"me", "us", "here", "home", "start", "over here", "back"})
 
 
 class Sense(msgspec.Struct, frozen=True):
-    """What a noun can mean: objects of these kinds, or of these names; `every`: any object at all."""
+    """What a noun can mean: objects of these kinds, or of these names; `every`: any object at all.
+
+    `new`: nobody has listed or seen such a thing, and the words are all that is known of it.
+    """
 
     kinds: frozenset[str] = frozenset()
     names: frozenset[str] = frozenset()
     every: bool = False
     prefer: str = ""
+    new: bool = False
 
 
 class Spot(msgspec.Struct, frozen=True):
@@ -37,15 +57,20 @@ class Vocabulary:
     """Built for one request."""
 
     def __init__(self, world: World, config: PlannerConfig) -> None:
+        self.new_nouns = False
         self._household = household = world.household
         known = [*world.specs, *world.objects]
         self.kinds = {t.kind for t in known if t.kind}
         self.colours = {c: c for c in {*(t.colour for t in known), *(r.colour for r in household.receptacles)} if c}
         self.colours |= {word: c for word, c in config.colours.items() if c in self.colours}
         self._nouns: dict[str, Sense] = {}
+        self._printed: dict[str, set[str]] = {}
         self._aliases(household)
         for item in known:
             self._nouns.setdefault(normalise(item.label), Sense(names=frozenset({item.label})))
+            for name in item.names:
+                self._name(normalise(name), item.label)
+        self._read(world)
         for kind in self.kinds:
             named = self._nouns.get(kind, Sense())
             only = next(iter(named.names)) if len(named.names) == 1 else ""
@@ -55,6 +80,20 @@ class Vocabulary:
                 self._nouns.setdefault(normalise(word), Sense(kinds=members))
         self._mass = frozenset(map(normalise, config.mass))
         self._places = self._standing(household, world.places)
+
+    def _name(self, noun: str, label: str) -> None:
+        """One more thing that has this name."""
+        before = self._nouns.get(noun, Sense())
+        self._nouns[noun] = Sense(names=before.names | {label}, kinds=before.kinds)
+
+    def _read(self, world: World) -> None:
+        """Words printed on things: any run of up to three of them names the thing, unless it is a word already."""
+        for item in world.objects:
+            words = normalise(item.text).split()
+            runs = {" ".join(words[i : i + n]) for n in (1, 2, 3) for i in range(len(words) - n + 1)}
+            for run in runs - self._nouns.keys() - self.kinds - self.colours.keys():
+                if len(run) > 2 and run not in NO_NOUN:
+                    self._printed.setdefault(run, set()).add(item.label)
 
     def _aliases(self, household: Household) -> None:
         for spec in household.things:
@@ -78,13 +117,33 @@ class Vocabulary:
     def noun(self, phrase: str) -> tuple[Sense, str, bool] | None:
         """(meaning, singular form, is it a plural) of a noun without colours; None if unknown."""
         if phrase in WHOLE:
-            return Sense(every=True), "thing", phrase in ("everything", "all", "mess")
+            return Sense(every=True), "thing", phrase in ("everything", "all", "mess", "all of it", "it all")
         for form, plural in _singulars(phrase):
             if form in ANY:
                 return Sense(every=True), form, plural
             if sense := self._nouns.get(form):
                 return sense, form, plural or form in self._mass
+        for form, plural in _singulars(phrase):
+            if labels := self._printed.get(form):
+                return Sense(names=frozenset(labels)), form, plural
         return None
+
+    def new_noun(self, words: Words) -> Sense | None:
+        """The words as the name of a thing that nobody has listed or seen; None for a place or a part of a sentence."""
+        if not self.new_nouns or not 0 < len(words) <= LONGEST_NAME or words[0] in COMMANDING:
+            return None
+        if not all(w.strip("'").isalnum() for w in words) or max(map(len, words)) < SHORTEST_NAME:
+            return None
+        if NO_NOUN & set(words) or words[-1] in self.colours or words[-1] in WHICH or words[-1] in ANY | WHOLE:
+            return None
+        known = self.spot(words) or self.furniture(words)
+        return None if known else Sense(names=frozenset({" ".join(words)}), new=True)
+
+    def words(self) -> tuple[set[str], set[str]]:
+        """(colours, words of names) that are known."""
+        places = [n for r in self._household.receptacles for n in (r.name, *r.aliases)]
+        names = {w for n in (*self._nouns, *self._printed, *self._places, *places, *ANY, *WHOLE) for w in n.split()}
+        return set(self.colours), names | {f"{n}s" for n in names}
 
     # --- spots
     def spot(self, words: Words, room: str = "") -> list[Spot]:

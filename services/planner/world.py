@@ -6,7 +6,7 @@ import msgspec
 
 from common.floor_plan import Receptacle
 from common.household import Household
-from common.messages import KnownWorld, Vec3, WorldObject
+from common.messages import History, KnownWorld, Vec3, WorldObject
 
 Pose2 = tuple[float, float, float]
 
@@ -23,6 +23,13 @@ class BelievedObject(msgspec.Struct, frozen=True):
     seen: bool = True
     seen_at: float = 0.0
     held: bool = False
+    names: tuple[str, ...] = ()
+    text: str = ""
+    colours: frozenset[str] = frozenset()
+
+    def is_of(self, colour: str) -> bool:
+        """Is it of this colour, or is it one of several on it?"""
+        return colour == self.colour or colour in self.colours
 
 
 class World(msgspec.Struct):
@@ -34,6 +41,7 @@ class World(msgspec.Struct):
     places: list[str] = []
     pose: Pose2 = (0.0, 0.0, 0.0)
     now: float = 0.0
+    history: History = msgspec.field(default_factory=History)
 
     @property
     def held(self) -> BelievedObject | None:
@@ -91,6 +99,7 @@ def believed(
     objects: Sequence[WorldObject],
     pose: Pose2 = (0.0, 0.0, 0.0),
     now: float = 0.0,
+    history: History | None = None,
 ) -> World:
     """The world from a request's own list and the latest `world/objects`; the request says what is held."""
     specs = [
@@ -114,6 +123,9 @@ def believed(
                 size=o.size if any(o.size) else (spec.size if spec else o.size),
                 seen_at=o.seen_at,
                 held=in_hand,
+                names=tuple(o.names),
+                text=o.text,
+                colours=frozenset(o.colours),
             )
         )
     labels = {t.label for t in found}
@@ -123,7 +135,8 @@ def believed(
             labels.add(name)
             spec = named.get(name, BelievedObject(name, name))
             found.append(msgspec.structs.replace(spec, seen=True, held=name == held))
-    return World(household=household, objects=found, specs=specs, places=list(told.places), pose=pose, now=now)
+    told_of = history or History()
+    return World(household, found, specs, list(told.places), pose, now, told_of)
 
 
 def _canonical(label: str, household: Household) -> str:

@@ -8,7 +8,8 @@ from common.language.meaning import asks_for, heard_parts, readings
 from common.language.normalise import clauses
 from common.language.pattern import ANY, Node, Sequence, Slot, Word, first_words, parse
 from common.language.simplify import simplified
-from common.language.wordings import INTERRUPTS, WORDINGS, Action, Wording
+from common.language.wording import Action, Wording
+from common.language.wordings import INTERRUPTS, WORDINGS
 from services.planner.rules import ACTIONS
 
 

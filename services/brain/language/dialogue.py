@@ -5,11 +5,20 @@ from collections.abc import Sequence
 from typing import Literal
 
 from common.household import Household
+from common.language.discourse import PREPOSITIONS, commands, replaced
+from common.language.lexicon import COMMANDING
 from common.language.meaning import asks_for
-from common.language.normalise import normalise, without_determiners
+from common.language.normalise import DETERMINERS, Words, infinitive, normalise, without_determiners, without_politeness
+from common.language.noun_phrase import related
+from common.messages import WorldObject
+from common.plan_rules import is_destination
 
 Reply = Literal["yes", "no", "cancel", "correction"]
 _CORRECTION = re.compile(r"^(?:no|nope|wrong|not that|i said|i meant|i mean|actually|rather)\s+")
+
+
+_NO_NAME = frozenset({"one", "the", "please", "that", "this", "mean", "i", "want"})
+_SAID = re.compile(r"\s+i (?:said|meant)$")
 
 
 def reply(text: str) -> tuple[Reply, str]:
@@ -24,27 +33,60 @@ def reply(text: str) -> tuple[Reply, str]:
             return "cancel", ""
     while (shorter := _CORRECTION.sub("", rest)) != rest:
         rest = shorter
-    return "correction", rest
+    return "correction", _SAID.sub("", rest)
 
 
 def corrected(command: str, correction: str, household: Household) -> str:
-    """The command with its object exchanged for the corrected one; a whole new command replaces it."""
-    thing = " ".join(without_determiners(tuple(correction.split())))
-    if household.thing(thing) is None:
+    """The command with the thing or place exchanged that the correction names; a whole new command replaces it."""
+
+    def is_place(words: Words) -> bool:
+        return is_destination(" ".join(words), household)
+
+    if correction.split()[:1] in (["not"], ["but"]):
+        return commands(correction)[0] if commands(correction) else correction
+    thing = correction if correction.split()[:1] and correction.split()[0] in DETERMINERS else f"the {correction}"
+    if _is_command(correction):
         return correction
-    words = normalise(command)
-    names = sorted((n for o in household.things for n in (o.name, *o.aliases)), key=len, reverse=True)
-    for name in names:
-        if re.search(rf"\b{re.escape(name)}\b", words):
-            return re.sub(rf"\b{re.escape(name)}\b", thing, words, count=1)
-    return correction
+    exchanged = replaced(normalise(command), correction if correction.split()[0] in PREPOSITIONS else thing, is_place)
+    return exchanged or correction
 
 
-def chosen(answer: str, options: Sequence[str]) -> str | None:
-    """The one option that the answer's words single out; "the first" and "the second one" count too."""
-    words = set(without_determiners(tuple(normalise(answer).split()))) - {"one", "the", "please"}
+def _is_command(text: str) -> bool:
+    words = without_politeness(text).split()
+    return bool(words) and len(words) > 1 and infinitive(words[0], COMMANDING) in COMMANDING
+
+
+def chosen(
+    answer: str, options: Sequence[str], known: Sequence[WorldObject] = (), household: Household | None = None
+) -> str | None:
+    """The one option that the answer's words single out, by name, number, side of "not", or where it stands."""
+    bare = reply(answer)[1]
+    words = set(without_determiners(tuple(bare.split()))) - _NO_NAME
     for n, ordinal in enumerate(("first", "second", "third", "fourth")):
         if words == {ordinal} and n < len(options):
             return options[n]
+    if "last" in words and words <= {"last"}:
+        return options[-1]
+    if bare.startswith("not "):
+        left = [o for o in options if not words - {"not"} <= set(o.split())]
+        return left[0] if len(left) == 1 and words - {"not"} else None
     matching = [o for o in options if words and words <= set(o.split())]
+    if not matching and household is not None:
+        matching = [o for o in options if _stands_where(o, bare, known, household)]
     return matching[0] if len(matching) == 1 else None
+
+
+def _stands_where(option: str, answer: str, known: Sequence[WorldObject], household: Household) -> bool:
+    """Does the option stand where the answer says, `the one on the counter`?"""
+    for head, relation, anchor in related(tuple(answer.split())):
+        names = set(without_determiners(head)) - _NO_NAME
+        where = " ".join(without_determiners(anchor))
+        if relation != "on" or not names <= set(option.split()):
+            continue
+        receptacle = household.receptacle(where)
+        rooms = {r.name for r in household.rooms if where == r.name or where in r.aliases}
+        for item in (o for o in known if o.label == option):
+            room = household.room_at(item.position[0], item.position[1])
+            if (receptacle and item.on == receptacle.name) or (room is not None and room.name in rooms):
+                return True
+    return False

@@ -19,7 +19,7 @@ from common.language.normalise import (
     without_politeness,
 )
 from common.language.noun_phrase import WHICH, related
-from common.language.wordings import Action
+from common.language.wording import Action
 
 Kind = Literal["fetch", "return", "stop", "cancel", "none"]
 

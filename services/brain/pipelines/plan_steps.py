@@ -6,15 +6,15 @@ from functools import partial
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from common.messages import PlanStep
+from common.messages import AROUND, PlanStep
 from common.plan_rules import is_destination
 from services.brain.mission.context import Context
 from services.brain.pipelines.shared import drive_home
 from services.brain.recoveries.recovery import Subtree, Task, with_recoveries
 from services.brain.recoveries.table import AFTER_GRASPING, AFTER_LOOKING, AFTER_PUTTING_DOWN
-from services.brain.steps.find import Approach, LocateObject, label_of, object_ref
+from services.brain.steps.find import Approach, LocateObject, MoveToViewpoint, label_of, object_ref
 from services.brain.steps.gripper import MoveGripper, open_hand, set_down_or_open
-from services.brain.steps.leaf import Leaf, Say, Settle
+from services.brain.steps.leaf import Call, Leaf, Say, Settle
 from services.brain.steps.motion import Grab, Navigate
 from services.brain.steps.plan import describe_step
 from services.brain.steps.teach import forget, teach
@@ -24,6 +24,10 @@ from services.brain.tree.path import PLAN_STEP
 
 Node = Sequence | Selector | Leaf
 """What a step of a plan may be."""
+
+
+TURNS = 4
+"""Views of a look around (chosen: with the one at the start a camera of 75 degrees has seen the whole circle)."""
 
 
 class RunPlan(Sequence):
@@ -60,6 +64,8 @@ def step_tree(ctx: Context, step: PlanStep, carried: str, at_home: bool = False)
     match step.action:
         case "find":
             return find(ctx, step.object)
+        case "navigate" if step.target == AROUND:
+            return look_around(ctx)
         case "navigate":
             return navigate(ctx, step.target or step.object, name)
         case "grasp" if step.hand_alone:
@@ -80,7 +86,7 @@ def step_tree(ctx: Context, step: PlanStep, carried: str, at_home: bool = False)
         case "say":
             return Say(PLAN_STEP, ctx, lambda: step.text, name=name)
         case "wait":
-            return Settle(PLAN_STEP, ctx, name=name)
+            return Settle(PLAN_STEP, ctx, name=name, seconds=step.seconds)
         case "teach":
             return teach(ctx, step, PLAN_STEP, name)
         case "forget":
@@ -96,6 +102,19 @@ def navigate(ctx: Context, where: str, name: str) -> Sequence:
         return Sequence(PLAN_STEP, go_to(ctx, where), Settle("settle", ctx), name=name)
     unseen = Condition("find_it", find(ctx, where), lambda: where not in ctx.mission.search.found)
     return Sequence(PLAN_STEP, unseen, approach(ctx, where), name=name)
+
+
+def look_around(ctx: Context) -> Sequence:
+    """Turn on the spot until everything around has been in view, or nothing new is left to see from here."""
+    views = [
+        Selector(
+            "view",
+            Sequence("turn_and_settle", MoveToViewpoint("viewpoint", ctx, False, name="turn"), Settle("settle", ctx)),
+            Call("seen_it_all", ctx, lambda: None),
+        )
+        for _ in range(TURNS)
+    ]
+    return Sequence(PLAN_STEP, *views, name="look around")
 
 
 def find(ctx: Context, item: str) -> Selector:

@@ -39,10 +39,15 @@ class Leaf(Behaviour):
 
 
 class Settle(Leaf):
-    """Lets physics come to rest before the next goal."""
+    """Lets physics come to rest before the next goal, or waits for longer when `seconds` say so."""
+
+    def __init__(self, node_id: str, ctx: Context, name: str = "", seconds: float = 0.0) -> None:
+        super().__init__(node_id, ctx, name)
+        self._seconds = seconds
 
     def update(self) -> Status:
-        return Status.SUCCESS if self.elapsed >= self.ctx.config.settle else Status.RUNNING
+        enough = max(self._seconds, self.ctx.config.settle)
+        return Status.SUCCESS if self.elapsed >= enough else Status.RUNNING
 
 
 class Call(Leaf):

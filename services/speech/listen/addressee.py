@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Literal
 
-from common.language.wordings import Action
+from common.language.wording import Action
 from services.speech.recognise.recogniser import Recognition, Scope
 
 Consequence = Literal["stop", "cancel", "answer", "command", "awake", "again", "nothing"]

@@ -1,0 +1,187 @@
+"""A text as the commands that it asks for, in the order in which they are to be done.
+
+Repairs ("the red mug, no wait, the blue one"), contrasts ("not the red mug, the blue one") and orders of time ("before
+you ...", "after you have ...") are worked out here; what a clause asks for is none of it. Pure.
+"""
+
+import re
+from collections.abc import Callable
+
+from common.language.lexicon import COMMANDING
+from common.language.normalise import (
+    DETERMINERS,
+    LONG_SPEECH,
+    Words,
+    cut_clauses,
+    expand,
+    infinitive,
+    normalise,
+    without_fillers,
+    without_politeness,
+)
+
+PREPOSITIONS = frozenset(
+    {
+        "on",
+        "in",
+        "to",
+        "into",
+        "onto",
+        "at",
+        "from",
+        "next",
+        "near",
+        "beside",
+        "under",
+        "behind",
+        "with",
+        "inside",
+        "off",
+    }
+)
+"""Words that end a noun phrase."""
+_REPAIR = re.compile(
+    r"(?:,\s*(?:no|sorry|actually|rather)(?:,\s*|\s+)|,\s*(?:oh|well|hold on|hang on),\s*"
+    r"|,?\s+(?:no,? wait|wait,? no|oh,? wait|no,? sorry|sorry,? no|sorry,? i mean(?:t)?|or rather|"
+    r"i mean(?:t)?|make that|scratch that|correction|no,? i mean(?:t)?|no,? make (?:that|it)|no,? not that|"
+    r"on second thoughts?)(?:,\s*|\s+))"
+    r"(?:i mean(?:t)?|i said|make (?:that|it)|rather|actually|sorry|wait|no)?,?\s*"
+)
+"""Between what was said and what was meant."""
+_CONTRAST = re.compile(
+    r"^(?:i (?:said|meant|mean|want|wanted) )?not (?P<wrong>.+?)(?:,\s*(?:but\s+)?|\s+but\s+)(?:rather )?(?P<right>.+)$"
+)
+_DO_NOT = re.compile(r"^(?:do not|don't) (?P<wrong>\w+ .+?)(?:,\s*(?:but\s+)?|\s+but\s+)(?:rather )?(?P<right>.+)$")
+_FIRST = re.compile(
+    r"^(?P<word>after|once|when|as soon as|before) you(?: are| have|'re|'ve)?(?: all)?(?: done| finished)?"
+    r" (?P<rest>.+)$"
+)
+_LATER = re.compile(r"^(?P<first>.+?),? (?P<word>before|after) you(?: have)? (?P<second>.+)$")
+_EXCEPT = re.compile(r",\s*(?:and |but )?(?=(?:not|except|but not|apart from|other than)\b)")
+_NEXT = frozenset(
+    {"me", "us", "it", "them", "to", "into", "back", "here", "all", "up", "out", "everything", "away", "down"}
+)
+
+IsPlace = Callable[[Words], bool]
+"""Do the words name a place?"""
+
+
+def commands(text: str, is_place: IsPlace = lambda _: False) -> list[str]:
+    """The clauses of a text in the order in which they are to be done, each without its politeness."""
+    whole = without_fillers(expand(normalise(text, ",;.!?")))
+    if LONG_SPEECH.match(without_politeness(whole)):
+        return cut_clauses(whole)
+    return [clause for part in _in_order(whole) for clause in cut_clauses(_settled(part, is_place))]
+
+
+def _in_order(text: str) -> list[str]:
+    """The text cut at "before you" and "after you have", the earlier part first."""
+    bare = without_politeness(text)
+    if found := _FIRST.match(bare):
+        cut = _second_clause(found["rest"])
+        if cut is not None:
+            one, other = cut
+            return [other, one] if found["word"] == "before" else [one, other]
+    if (found := _LATER.match(bare)) and _verb_first(found["second"]):
+        first, second = found["first"], _with_infinitive(found["second"])
+        return [first, second] if found["word"] == "before" else [second, first]
+    return [text]
+
+
+def _second_clause(text: str) -> tuple[str, str] | None:
+    """`put it there, bring me that` as its two commands; None if there are not two."""
+    for comma in re.finditer(r",\s*(?:then\s+)?(?:please\s+)?", text):
+        head, tail = text[: comma.start()], without_politeness(text[comma.end() :])
+        if _verb_first(head) and _verb_first(tail):
+            return _with_infinitive(head), tail
+    words = text.replace(",", " ").split()
+    for at in range(2, len(words) - 1):
+        if words[at] in COMMANDING and (words[at + 1] in DETERMINERS or words[at + 1] in _NEXT):
+            head = " ".join(words[:at])
+            return (_with_infinitive(head), " ".join(words[at:])) if _verb_first(head) else None
+    return None
+
+
+def _verb_first(text: str) -> bool:
+    words = text.split()
+    return bool(words) and infinitive(words[0], COMMANDING) in COMMANDING
+
+
+def _with_infinitive(text: str) -> str:
+    first, _, rest = text.strip(" ,").partition(" ")
+    return f"{infinitive(first, COMMANDING)} {rest}"
+
+
+# --- repairs
+def _settled(text: str, is_place: IsPlace) -> str:
+    """The text without what was taken back."""
+    text = _EXCEPT.sub(" but ", text).replace(" but but ", " but ")
+    bare = without_politeness(text)
+    if found := (_CONTRAST.match(bare) or _DO_NOT.match(bare)):
+        text = _contrasted(found["wrong"], found["right"])
+    for _ in range(3):
+        found = (None, *_REPAIR.finditer(text))[-1]
+        if found is None or not text[: found.start()].strip() or not text[found.end() :].strip(" ,.!?"):
+            return text
+        if (repaired := replaced(text[: found.start()], text[found.end() :].strip(" ,.!?"), is_place)) is None:
+            return text
+        text = repaired
+    return text
+
+
+def _contrasted(wrong: str, right: str) -> str:
+    """`not the red mug, the blue one` is the blue mug; a verb that was said only with the wrong one is kept."""
+    verb, _, thing = wrong.partition(" ")
+    right = without_politeness(right)
+    if verb in COMMANDING and not _verb_first(right):
+        words = wrong.split()
+        receiver = f"{words[1]} " if len(words) > 2 and words[1] in ("me", "us") else ""
+        return f"{verb} {receiver}{_filled(right, thing)}"
+    return _filled(right, wrong)
+
+
+def replaced(said: str, meant: str, is_place: IsPlace = lambda _: False) -> str | None:
+    """What was said with the part exchanged that `meant` stands for: a command, a place or a thing; None if none."""
+    meant = without_politeness(meant)
+    words, new = said.strip(" ,").split(), meant.split()
+    if not new:
+        return None
+    if _verb_first(meant) and not (len(new) == 1 or new[1] in ("one", "ones")):
+        return meant
+    if new[0] in PREPOSITIONS:
+        at = next((i for i in range(len(words) - 1, 0, -1) if words[i] in PREPOSITIONS), len(words))
+        return " ".join((*words[:at], *new))
+    spans = noun_phrases(words)
+    if not spans:
+        return None
+    bare = tuple(w for w in new if w not in DETERMINERS)
+    start, end = spans[-1] if len(spans) > 1 and is_place(bare) else spans[0]
+    return " ".join((*words[:start], *_filled(meant, " ".join(words[start:end])).split(), *words[end:]))
+
+
+def noun_phrases(words: list[str]) -> list[tuple[int, int]]:
+    """(begin, end) of each phrase that begins with a determiner and ends before the next preposition or "and"."""
+    found = []
+    at = 0
+    while at < len(words):
+        if words[at].strip(",") in DETERMINERS:
+            end = at + 1
+            while end < len(words) and words[end] not in PREPOSITIONS and words[end] not in ("and", "that", "which"):
+                end += 1
+            found.append((at, end))
+            at = end
+        at += 1
+    return found
+
+
+def _filled(phrase: str, other: str) -> str:
+    """`the blue one` with the noun of the other phrase, `the red mug`."""
+    head = other.split()
+    if spans := noun_phrases(head):
+        head = head[spans[0][0] : spans[0][1]]
+    elif head:
+        head = head[: next((i for i, w in enumerate(head) if w in PREPOSITIONS), len(head))]
+    noun = head[-1] if head else ""
+    if not noun or noun in ("one", "ones") or noun in DETERMINERS:
+        return phrase
+    return re.sub(r"\bone\b", noun, phrase, count=1)

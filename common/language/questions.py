@@ -1,0 +1,149 @@
+"""The wordings of questions: what is where, what the robot sees, and what it does, did and can do."""
+
+from common.language.lexicon import ASK, BE, LYING, WHAT_DID
+from common.language.wording import Wording
+
+ABOUT_THE_WORLD: tuple[Wording, ...] = (
+    Wording(
+        "seen",
+        "[tell me] what (do | can) you see [now | right now | here | from (here | there | where you are)]"
+        " | tell me what you [can] see", heard="what (do | can) you see"
+    ),
+    Wording(
+        "contents",
+        f"{ASK} (what | which (things | objects)) ({BE} | lies | lie | do you see)"
+        f" [{LYING}] (on | in | at) <spot>"
+        f" | {ASK} what <spot> (has | holds | contains) [on it | in it]",
+        heard="what is (on | in) [the] <place>",
+    ),
+    Wording(
+        "recall",
+        f"{ASK} (is | are) there (anything | something) [{LYING}] (on | in | at) <spot>"
+        f" | {ASK} what {BE} (that | this | those | these | there) [thing | things | stuff] [{LYING}] (on | "
+        f"in | at) <spot>"
+        f" | {ASK} what (have | did) you [last] (see | seen | find | found | notice | noticed) (on | in | at) <spot>",
+        heard="what is that (on | in) [the] <place>",
+    ),
+    Wording("where", f"{ASK} (where | whereabouts) (is | are) <thing>", heard="where (is | are) <thing>"),
+    Wording("where", f"{ASK} where <thing> (is | are | went | has gone | have gone | might be | could be)", heard=""),
+    Wording("where", f"{ASK} where (has | have) <thing> (gone | been | got to | ended up)", heard=""),
+    Wording(
+        "where",
+        f"{ASK} (where | when) (did | do | would | can | could | have) (you | i | we) [last]"
+        " (see | seen | put | leave | left | have | find | found | notice) <thing> [last]",
+        heard="where did you [last] see <thing>",
+    ),
+    Wording(
+        "where",
+        f"{ASK} (which | what) (room | place | surface | shelf | table) {BE} <thing> [in | on]",
+        heard="",
+    ),
+    Wording(
+        "where",
+        "have you (seen | found | got | noticed | come across) <thing> [anywhere | somewhere]",
+        heard="",
+    ),
+    Wording("where", "(do | can) you (see | know) <thing> [anywhere | somewhere]", heard=""),
+    Wording("where", "(did you see | any sign of | what about | what happened to) <thing> [anywhere]", heard=""),
+    Wording(
+        "exists",
+        f"{ASK} (is | are) there [still] <thing> [left | anywhere | around | here | somewhere]",
+        heard="",
+    ),
+    Wording(
+        "exists",
+        "(do we | have we | do i | do you) (have | got) <thing> [left | anywhere | somewhere]",
+        heard="",
+    ),
+    Wording("is_at", f"{ASK} (is | are) <thing> [still] [{LYING}] (in | on | at) <spot> [still]", heard=""),
+    Wording("number", f"how many <thing> [{BE}] [there | {LYING}] (on | in | at) <spot>", heard=""),
+    Wording(
+        "number",
+        f"how many <thing> [(are there | do you (see | know | remember) | can you see | have you seen | do we have |"
+        f" {BE} (left | here | around))] [left]",
+        heard="",
+    ),
+    Wording(
+        "colour",
+        f"{ASK} (what | which) (colour | color) {BE} <thing> | {ASK} what {BE} the (colour | color) of <thing>",
+        heard="",
+    ),
+    Wording(
+        "kinds",
+        "(which | what) <thing> (do you know [of | about] | have you seen | do you see | can you see | are there |"
+        " do we have)",
+        heard="",
+    ),
+    Wording("beside", f"{ASK} what {BE} [{LYING}] <words>", heard=""),
+)  # fmt: skip
+"""Where things are, what and how many there are."""
+
+ABOUT_ITSELF: tuple[Wording, ...] = (
+    Wording("holding", "what are you (holding | carrying)", heard="what are you holding"),
+    Wording("holding", "what do you (have | hold) [in your (hand | hands | gripper)]", heard=""),
+    Wording(
+        "holding",
+        "(are you (holding | carrying) | do you (have | hold | carry) | have you got | is there)"
+        " (anything | something | it) [in your (hand | hands | gripper)]",
+        heard="",
+    ),
+    Wording("holding", "what (is | have you got | do you have) in your (hand | hands | gripper)", heard=""),
+    Wording("whereabouts", f"{ASK} where (are you | you are) | which room are you in", heard="where are you"),
+    Wording(
+        "doing",
+        "what (are you | you are) (doing | up to | working on | busy with) [there | here | right now | now |"
+        " at the moment | currently] | what is going on | how is it going | how are you (doing | getting on)"
+        " | how far (are you | have you (got | come)) | are you (done | busy | finished | ready) [yet]"
+        " | what is (happening | your (task | job | mission | status)) | what is taking [you] so long | "
+        "status [report]",
+        heard="what are you doing",
+    ),
+    Wording(
+        "done",
+        f"what {WHAT_DID} | what (was | is) (the last thing you did | your last (task | job | mission | command))"
+        " | (did | have) you (manage | managed | succeed | succeeded | finish | finished | do | done) [it | that |"
+        " (to | in) <words>] | did (it | that) work [out] | (did | have) you (bring | brought | put | fetch "
+        "| fetched |"
+        " find | found | tidy | tidied | throw | thrown) <words> [already | yet]"
+        " | what have you (done | been doing) [today | so far | lately] | did everything go well",
+        heard="what did you [just] do",
+    ),
+    Wording(
+        "why",
+        "why (did | have) you [just] (fail | failed | stop | stopped | give up | given up)"
+        " | why (did | could | have | do) (not you | you not) <words> | why did (it | that) (fail | not work "
+        "| go wrong)"
+        " | what (went wrong | was the (problem | matter | trouble | reason) | is the (matter | problem) | happened"
+        " [there]) | why not | why (were you not able | are you not able) to <words> | how come [<words>]",
+        heard="why did you fail | what went wrong",
+    ),
+    Wording(
+        "origin",
+        "(where | which place | what place) (did | do | have) you (get | got | take | taken | find | found | pick |"
+        " fetch | have | had) <thing> [up] [from]",
+        heard="",
+    ),
+    Wording(
+        "abilities",
+        "what (can | could) you do [for (me | us)] | what are you (able to do | capable of | good (at | for))"
+        " | how can you help [me | us] | what (do you know how to do | can i (ask [you] [for | to do] | "
+        "say [to you]))"
+        " | help [me] | what are your (skills | abilities | capabilities)",
+        heard="what can you do",
+    ),
+    Wording("identity", "who are you | what are you | what is your name | introduce yourself", heard="who are you"),
+    Wording(
+        "rooms",
+        "(which | what) (rooms | places) (are there | do you know | can you go to | are in <words>)"
+        " | where can you go [to] | how many rooms (are there | do you know)",
+        heard="",
+    ),
+    Wording(
+        "thanks",
+        "(thank you | thanks | cheers) [very much | a lot | so much | robot] | (well | good) (done | job)"
+        " | good (robot | boy | morning | evening | night) | hello | hi [there]",
+        heard="",
+        kind="reply",
+    ),
+)  # fmt: skip
+"""What the robot does, did, holds and can do."""

@@ -1,0 +1,39 @@
+"""What a wording is: a sentence pattern, what it asks for, and what of it can be heard."""
+
+from typing import Literal, NamedTuple
+
+Action = Literal[
+    "stop", "cancel", "continue", "yes", "no", "refuse",
+    "open_hand", "close_hand", "seen", "contents", "holding", "whereabouts", "where", "number", "say", "wait",
+    "wait_there", "come_back", "go", "remark", "untidy", "throw_away", "put_away", "tidy", "put", "put_near",
+    "put_down", "deliver", "deliver_there", "fetch", "fetch_named", "pick_up", "find", "teach", "forget",
+    "look_around", "check", "go_and_see", "mention", "put_back", "put_where", "again", "thanks",
+    "recall", "wish_at",
+    "exists", "is_at", "colour", "beside", "kinds", "rooms", "doing", "done", "why", "origin", "abilities", "identity",
+]  # fmt: skip
+"""What a wording asks for; `services/planner/rules.py` has a function for each that can be planned."""
+Kind = Literal["command", "reply", "name"]
+QUESTIONS: frozenset[Action] = frozenset(
+    {
+        "seen", "contents", "holding", "whereabouts", "where", "number", "recall", "exists", "is_at", "colour",
+        "beside", "kinds",
+        "rooms", "doing", "done", "why", "origin", "abilities", "identity",
+    }
+)  # fmt: skip
+"""What is answered in words."""
+
+
+class Wording(NamedTuple):
+    """Sentences of `pattern` ask for `action`; in order of trial: the first that fits and can be done counts.
+
+    `heard` is the part of it that the speech recogniser listens for, which hears each sentence the better the fewer
+    there are: None the whole pattern, "" nothing (typed only). Its slots are the parts of `speech.commands`.
+    `kind`: a "command" may be joined to others by "and"; a "reply" is heard by itself only; a "name" is understood
+    where nothing else was said. `reason`: why the planner has no plan for it, as a clause.
+    """
+
+    action: Action
+    pattern: str
+    heard: str | None = None
+    kind: Kind = "command"
+    reason: str = ""

@@ -1,0 +1,52 @@
+"""What is said to a robot that is at work: stop, something for later, something else instead, or a question. Pure."""
+
+import re
+from typing import Literal
+
+import msgspec
+
+from common.language.meaning import asks_for, is_question
+from common.language.normalise import expand, normalise, without_fillers
+
+Kind = Literal["stop", "cancel", "come_back", "queue", "replace", "aside"]
+_LATER = re.compile(
+    r"^(?:and )?(?:then|after(?:wards?| that| this| it)?|next|later(?: on)?|"
+    r"(?:when|once|as soon as|after) you(?: are|'re| have|'ve)?(?: all)? (?:done|finished|ready|through|free|back)"
+    r"(?: with (?:that|this|it))?|when that is done|in addition|on top of that)\b[, ]*"
+)
+"""Words before a command that put it behind the one under way."""
+_LATER_END = re.compile(
+    r"[, ]+(?:after(?:wards| that| this)|next|later(?: on)?|too|as well|"
+    r"(?:when|once) you(?: are|'re| have|'ve) (?:done|finished|ready))$"
+)
+"""The same behind it."""
+_INSTEAD = re.compile(
+    r"^(?:no|stop|wait|sorry|hold on|hang on|"
+    r"(?:forget|scrap|leave|drop|cancel|never mind|skip) (?:about )?(?:that|it|this)|never ?mind|"
+    r"scratch that|i(?: have|'ve)? changed my mind|actually|on second thoughts?|instead|rather|"
+    r"(?:do not|don't) (?:do that|bother)(?: and)?)\b[, ]+(?:and |but )?"
+)
+"""Words before a command that puts it in the place of the one under way."""
+_INSTEAD_END = re.compile(r"[, ]+(?:instead(?: of (?:that|it|this))?|rather)$")
+
+
+class Interjection(msgspec.Struct, frozen=True):
+    """`text`: the command or question without the words that say when."""
+
+    kind: Kind
+    text: str
+
+
+def interjection(said: str) -> Interjection:
+    """What a sentence means to a mission under way; a command without a word about when is for later."""
+    if control := asks_for(said, "stop", "cancel", "come_back"):
+        return Interjection(control, said)  # type: ignore[arg-type]
+    words = without_fillers(expand(normalise(said, ",")))
+    for kind, begin, end in (("replace", _INSTEAD, _INSTEAD_END), ("queue", _LATER, _LATER_END)):
+        rest = words
+        while (shorter := begin.sub("", rest)) != rest:
+            rest = shorter
+        bare = end.sub("", rest)
+        if bare and bare != words:
+            return Interjection(kind, bare)  # type: ignore[arg-type]
+    return Interjection("aside" if is_question(said) else "queue", said)

@@ -1,0 +1,35 @@
+"""Commands that repeat the last one: `do that again`, `try again`, `and the blue one too`. Pure."""
+
+import re
+from collections.abc import Sequence
+
+from common.language.discourse import IsPlace, replaced
+from common.language.meaning import readings
+from common.language.normalise import DETERMINERS, expand, normalise, without_politeness
+from common.messages import History
+
+_TOO = re.compile(
+    r"^(?:and |now |then )?(?P<thing>.+?) (?:too|as well|also)(?: please)?$|^(?:and|what about) (?P<other>.+)$"
+)
+
+
+def repeated(command: str, clauses: Sequence[str], told: History, is_place: IsPlace) -> str:
+    """The command that is meant, by the last one where it refers to that; else the command as it is."""
+    last = told.last.command if told.last is not None else ""
+    if not last or len(clauses) != 1:
+        return command
+    for wording, slots in readings(tuple(clauses[0].split()), "command"):
+        if wording.action == "again":
+            return (replaced(last, " ".join(slots["thing"]), is_place) or last) if "thing" in slots else last
+    if found := _TOO.match(without_politeness_at_end(command)):
+        thing = found["thing"] or found["other"]
+        if thing.split()[0] in DETERMINERS:
+            return replaced(normalise(last), thing, is_place) or command
+    return command
+
+
+def without_politeness_at_end(text: str) -> str:
+    """The text from its first word on, which may be "and", without what is polite behind it."""
+    words = expand(normalise(text))
+    first, _, rest = words.partition(" ")
+    return f"{first} {without_politeness(rest)}" if first in ("and", "now", "then") else without_politeness(words)

@@ -1,0 +1,301 @@
+"""What the robot makes of everyday sentences, and whether that is right by the notation of tests/data/*.tsv."""
+
+import re
+from collections import Counter
+from itertools import permutations
+from pathlib import Path
+from typing import Literal, NamedTuple
+
+from common import config
+from common.household import load_household
+from common.messages import ActionPlan, History, MissionOutcome, PlanStep, WorldObject
+from common.plan_rules import known_world, objection
+from services.brain.language.dialogue import chosen, corrected, reply
+from services.brain.language.interjection import interjection
+from services.planner import grammar
+from services.planner.config import PlannerConfig
+from services.planner.world import believed
+
+Verdict = Literal["right", "asked back", "not understood", "wrong"]
+DATA = Path(__file__).parent / "data"
+CONFIG = config.load("planner", PlannerConfig, config.DEFAULT_DIR, {})
+HOME = load_household("apartment")
+NOW = 500.0
+MUG, CAN, BLOCK, BOTTLE, BOX = (
+    (0.08, 0.08, 0.095), (0.066, 0.066, 0.115), (0.05, 0.05, 0.05), (0.064, 0.064, 0.21), (0.06, 0.08, 0.13),
+)  # fmt: skip
+BALL, APPLE, BOWL = (0.066, 0.066, 0.066), (0.072, 0.072, 0.072), (0.14, 0.14, 0.06)
+
+
+def _object(
+    label: str, on: str, x: float, y: float, z: float, size: tuple[float, float, float], names: str = "", text: str = ""
+) -> WorldObject:
+    colour, kind = ("red", "apple") if label == "apple" else label.split()
+    return WorldObject(
+        label=label, kind=kind, colour=colour, position=(x, y, z + size[2] / 2), size=size, on=on,
+        seen_at=NOW - 60.0, names=[names] if names else [], text=text, colours=[colour],
+    )  # fmt: skip
+
+
+FLAT = [
+    _object("red mug", "living table", -1.9, -2.2, 0.5, MUG),
+    _object("green can", "living table", -1.6, -2.3, 0.5, CAN),
+    _object("white box", "living table", -1.1, -2.3, 0.5, BOX), _object("blue mug", "counter", 3.8, -3.1, 0.76, MUG),
+    _object("red can", "counter", 4.2, -3.1, 0.76, CAN), _object("yellow bowl", "counter", 4.7, -3.1, 0.76, BOWL),
+    _object("blue bottle", "counter", 5.1, -3.1, 0.76, BOTTLE),
+    _object("apple", "kitchen table", 5.0, -0.7, 0.72, APPLE),
+    _object("yellow block", "kitchen table", 5.4, -0.7, 0.72, BLOCK),
+    _object("white mug", "desk", -2.6, 2.7, 0.72, MUG),
+    _object("orange box", "desk", -2.6, 3.2, 0.72, BOX, names="vitamin box"),
+    _object("red ball", "bookshelf", 1.2, 1.74, 0.7, BALL),
+    _object("blue block", "bookshelf", 1.7, 1.74, 0.7, (0.04, 0.04, 0.04)),
+    _object("green bottle", "bedside table", 4.7, 4.18, 0.55, BOTTLE),
+    _object("white can", "dresser", 6.7, 1.5, 0.74, CAN, text="TOMATO SOUP"),
+    _object("white bottle", "dresser", 6.7, 2.0, 0.74, (0.07, 0.07, 0.26)),
+]  # fmt: skip
+"""The flat that the head of everyday_sentences.tsv describes."""
+
+
+class Sentence(NamedTuple):
+    context: str
+    said: str
+    right: str
+
+
+def sentences(name: str) -> list[Sentence]:
+    """The rows of a file of tests/data."""
+    lines = (DATA / name).read_text(encoding="utf-8").splitlines()
+    return [Sentence(*line.split("\t")) for line in lines if line and not line.startswith("#")]
+
+
+class Understood(NamedTuple):
+    """What the robot makes of a sentence. `kind`: "queue", "replace" or another word that stands before it, "" none.
+
+    `looks` are steps that only go and look before the plan proper; `reason` says why there is no plan.
+    """
+
+    kind: str
+    looks: list[PlanStep]
+    steps: list[PlanStep]
+    reason: str = ""
+    asks: str = ""
+
+
+def understand(sentence: Sentence) -> Understood:
+    """What the brain and the planner make of a sentence in its context."""
+    tag, _, about = sentence.context.partition(":")
+    match tag:
+        case "heard":
+            kind, rest = reply(sentence.said)
+            if kind == "correction":
+                return _planned(corrected(about, rest, HOME), FLAT, "", History())
+            return Understood(kind, [], [])
+        case "which":
+            options = about.split("|")
+            label = chosen(sentence.said, options, FLAT, HOME)
+            return Understood(f"pick {label}", [], []) if label else Understood("", [], [], "no choice")
+        case "busy":
+            said = interjection(sentence.said)
+            if said.kind in ("queue", "replace", "aside"):
+                history = History(doing=about, step=f"find {about}") if said.kind == "aside" else History()
+                found = _planned(said.text, FLAT, "", history)
+                return found._replace(kind="" if said.kind == "aside" else said.kind)
+            return Understood(said.kind, [], [])
+    return _planned(sentence.said, *_after(tag, about))
+
+
+def _after(tag: str, about: str) -> tuple[list[WorldObject], str, History]:
+    """Flat, what is in the hand, and history of a context."""
+    flat = list(FLAT)
+    if tag == "held":
+        history = History(taken_from={about: next(o.on for o in FLAT if o.label == about)})
+        return [o for o in flat if o.label != about], about, history
+    if tag not in ("last", "failed"):
+        return flat, "", History()
+    done = _planned(about, FLAT, "", History())
+    label = next(s.object for s in done.steps if s.object)
+    origin = next(o.on for o in FLAT if o.label == label)
+    target = next((s.target for s in done.steps if s.action == "place"), HOME.delivery)
+    if tag == "failed":
+        spoken = f"I could not find the {label}."
+        last = MissionOutcome(id="m", command=about, outcome="failed", reason=spoken, spoken=spoken, t=NOW - 5)
+        return flat, "", History(last=last, objects=[label])
+    receptacle = HOME.receptacle(target)
+    assert receptacle is not None
+    x, y, z = receptacle.center
+    moved = [
+        o if o.label != label else WorldObject(label=o.label, kind=o.kind, colour=o.colour, position=(x, y, z + 0.05),
+                                               size=o.size, on=receptacle.name, seen_at=NOW - 5)
+        for o in flat
+    ]  # fmt: skip
+    last = MissionOutcome(id="m", command=about, outcome="delivered", reason="", t=NOW - 5)
+    return moved, "", History(last=last, objects=[label], taken_from={label: origin})
+
+
+def _planned(command: str, objects: list[WorldObject], held: str, history: History) -> Understood:
+    """The planner's last word, after it has looked where it wanted to."""
+    told = known_world(HOME, [o.label for o in objects], held)
+    world = believed(HOME, told, objects, (0.0, 0.0, 0.0), NOW, history)
+    looked: list[PlanStep] = []
+    for _ in range(5):
+        plan: ActionPlan = grammar.plan(command, world, CONFIG, (), looked)
+        wrong = objection(plan.steps, told, HOME)
+        assert not plan.steps or wrong is None, f"{command!r}: the brain objects: {wrong}"
+        if not plan.again:
+            break
+        looked += plan.steps
+    return Understood("", looked, plan.steps, plan.detail, plan.suggestion)
+
+
+# --- right or wrong
+def verdict(sentence: Sentence, found: Understood) -> Verdict:
+    """Whether what was understood is one of the readings that are right."""
+    if any(_fits(reading.strip(), sentence, found) for reading in sentence.right.split("||")):
+        return "right"
+    acts = [s for s in found.steps if s.action != "say"]
+    if found.asks or (not acts and not found.kind and re.search(r"which|do you mean", found.reason)):
+        return "asked back"
+    if not acts and not found.kind:
+        return "wrong" if found.steps and "answer" not in sentence.right else "not understood"
+    return "wrong"
+
+
+def _fits(reading: str, sentence: Sentence, found: Understood) -> bool:
+    kind, colon, rest = reading.partition(": ")
+    if colon and kind in ("queue", "replace"):
+        return found.kind == kind and _fits(rest, sentence, found._replace(kind=""))
+    if reading in ("stop()", "yes()", "no()"):
+        return found.kind in {"stop()": ("stop", "cancel"), "yes()": ("yes",), "no()": ("no",)}[reading]
+    if choice := re.fullmatch(r"pick\((.+)\)", reading):
+        return found.kind == f"pick {choice[1]}"
+    if found.kind or not found.steps:
+        return reading == "refuse()" and not found.kind
+    if tidied := re.fullmatch(r"tidy\((.+)\)", reading):
+        reading = _tidied(tidied[1])
+    wanted = re.findall(r"(\w+)\(([^)]*)\)", reading)
+    answers = all(name in ("answer", "say") for name, _ in wanted)
+    plans = [[*found.looks, *found.steps], *([] if answers else [found.steps])]
+    orders = permutations(wanted) if "&" in reading else [tuple(wanted)]
+    tag, _, about = sentence.context.partition(":")
+    held = about if tag == "held" else ""
+    done = [_acts(plan, held) for plan in plans]
+    done += [_acts(plan, held, looks=False) for plan in ([] if answers else plans)]
+    if "&" in reading and len(wanted) > 4:
+        keys = [Counter(name for name, _ in acts) for acts in done]
+        orders = [_aligned(wanted, acts) for acts, _ in zip(done, keys, strict=True)]
+    return any(_same(order, acts) for order in orders for acts in done)
+
+
+def _aligned(wanted: list[tuple[str, str]], acts: list[tuple[str, ...]]) -> tuple[tuple[str, str], ...]:
+    """The wanted acts in the order of what was done, as far as they can be found there."""
+    left, found = list(wanted), []
+    for act in acts:
+        match = next((w for w in left if _same((w,), [act])), None)
+        if match is not None:
+            left.remove(match)
+            found.append(match)
+    return (*found, *left)
+
+
+def _tidied(surface: str) -> str:
+    """Everything on a surface where the rules of the configuration say, worked out without the grammar."""
+    moved = []
+    for o in (o for o in FLAT if o.on == surface):
+        rule = next(r for r in CONFIG.tidy if not r.kinds or o.kind in r.kinds)
+        target = next(r for name in rule.to for r in HOME.receptacles if name in (r.name, *r.aliases, r.kind))
+        if target.name != surface:
+            moved.append(f"put({o.label}, {target.name})")
+    return " & ".join(moved) if moved else "answer(tidy)"
+
+
+def _acts(steps: list[PlanStep], held: str = "", looks: bool = True) -> list[tuple[str, ...]]:
+    """Steps as acts of the notation; without `looks`, going somewhere before a search is a part of the search."""
+    found: list[tuple[str, ...]] = []
+    text: dict[str, str] = {}
+    for at, step in enumerate(steps):
+        following = steps[at + 1].action if at + 1 < len(steps) else ""
+        match step.action:
+            case "find":
+                text[step.object] = step.text
+                found.append(("find", step.object, step.text))
+            case "grasp" if step.hand_alone:
+                found.append(("grip", "close"))
+            case "release" if step.hand_alone:
+                found.append(("grip", "open"))
+            case "grasp":
+                found = [a for a in found if a[:2] != ("find", step.object)]
+                found.append(("take", step.object, text.get(step.object, "")))
+                held = step.object
+            case "place":
+                found = [a for a in found if a[:2] not in (("take", held), ("find", step.near))]
+                where = f"{step.target} near {step.near}" if step.near else step.target
+                found.append(("put", step.object or held, where, text.get(held, "")))
+            case "return":
+                found.append(("return",))
+            case "release":
+                before = found.pop() if found and found[-1][0] in ("return", "goto") else None
+                found = [a for a in found if a[:2] != ("take", held)]
+                if before is None:
+                    found.append(("drop",))
+                elif before[0] == "return":
+                    found.append(("fetch", held or step.object, text.get(held, "")))
+                else:
+                    found.append(("put", held or step.object, before[1], text.get(held, "")))
+            case "navigate":
+                if step.target == "around":
+                    found.append(("look",))
+                elif looks or following not in ("find", "place"):
+                    found.append(("goto", step.target or step.object))
+            case "wait":
+                if step.seconds:
+                    found.append(("wait", f"{step.seconds:g}"))
+            case "say":
+                found.append(("say", step.text))
+    return found
+
+
+def _same(wanted: tuple[tuple[str, str], ...], acts: list[tuple[str, ...]]) -> bool:
+    acts = [a for a in acts if a[0] != "say"] if all(n not in ("say", "answer") for n, _ in wanted) else acts
+    acts = _by_room(acts, {args for name, args in wanted if name == "goto"})
+    said = " ".join(a[1] for a in acts if a[0] == "say").lower()
+    if any(n == "answer" for n, _ in wanted):  # an answer may be several sentences
+        acts = [a for a in acts if a[0] != "say"] + [("say", said)]
+    if [n for n, _ in wanted if n == "look"] and any(a[0] == "say" for a in acts):
+        acts = [a for a in acts if a[0] != "say"]
+    return len(wanted) == len(acts) and all(_one(n, args, a) for (n, args), a in zip(wanted, acts, strict=True))
+
+
+def _by_room(acts: list[tuple[str, ...]], rooms: set[str]) -> list[tuple[str, ...]]:
+    """Going to one surface of a wanted room after the other is going to the room."""
+    found: list[tuple[str, ...]] = []
+    for act in acts:
+        receptacle = HOME.receptacle(act[1]) if act[0] == "goto" else None
+        room = HOME.room_at(*receptacle.center[:2]) if receptacle else None
+        act = ("goto", room.name) if room is not None and room.name in rooms else act
+        found += [] if found and act[0] == "goto" and found[-1] == act else [act]
+    return found
+
+
+def _one(name: str, args: str, act: tuple[str, ...]) -> bool:
+    first, _, second = args.partition(", ")
+    match name:
+        case "answer":
+            said = act[1].lower() if act[0] == "say" else ""
+            return bool(said) and all(any(w.lower() in said for w in part.split("|")) for part in args.split(", "))
+        case "say":
+            return act[0] == "say" and re.sub(r"\W+", " ", act[1].lower()).strip() == first
+        case "put":
+            return act[0] == "put" and _named(first, act[1], act[3]) and act[2] in second.split("/")
+        case "fetch" | "take" | "find":
+            return act[0] == name and _named(first, act[1], act[2])
+        case "drop" | "return" | "look":
+            return act[0] == name
+        case "wait" | "goto" | "grip":
+            return act[:2] == (name, first)
+        case _:
+            return False
+
+
+def _named(options: str, label: str, words: str) -> bool:
+    """Is the object, or the description handed on with it, one of the options?"""
+    return bool({label, words} & set(options.split("/")))
