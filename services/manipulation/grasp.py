@@ -52,7 +52,8 @@ class Target:
     With a `tilt` [rad] it lies: its own axis points along `yaw`, and its first extent is along that.
 
     `shape`: the family that was measured, "" if none was; `points` (n, 3) [m]: what was seen of its surface, from
-    `position` along the axes of the base frame; `spread`: standard deviation [m] of extents and position.
+    `position` along the axes of the base frame; `spread`: standard deviation [m] of extents and position; `measured`:
+    the extents are, they were not told.
     """
 
     label: str
@@ -64,6 +65,7 @@ class Target:
     shape: ShapeFamily = ""
     points: Array | None = field(default=None, compare=False, repr=False)
     spread: float = 0.0
+    measured: bool = False
 
     @property
     def family(self) -> ShapeFamily:
@@ -73,6 +75,8 @@ class Target:
     @property
     def solid(self) -> Solid:
         """The solid that contains it."""
+        if self.lies and self.family == "long":
+            return "cylinder"
         return SOLIDS.get(self.family, "box")
 
     def grown(self, margin: float) -> Obstacle:
@@ -209,9 +213,9 @@ def _lying(target: Target, facing: float) -> list[Grasp]:
                 pose = Pose(point, approach_rotation(azimuth, math.radians(degrees)))
                 name = f"lying, {degrees} deg at {math.degrees(_off(azimuth, facing)):+.0f}"
                 height = target.size[2] / 2
-                found.append(
-                    Grasp(pose, target.size[1], height, math.radians(degrees), name, math.remainder(axis, math.tau))
-                )
+                # What has no upper side is put down as it lies.
+                upwards = math.remainder(axis, math.tau) if kind.upright else None
+                found.append(Grasp(pose, target.size[1], height, math.radians(degrees), name, upwards))
     return found
 
 

@@ -189,7 +189,7 @@ def _check_width(robot: Robot, plan: GrabPlan, widths: list[float]) -> None:
     """
     held, width = plan.grasped, robot.grip.width
     spec = robot.io.household.thing(held.label)
-    if spec is None or plan.grasp.rim or not held_badly(robot.grip, plan.grasp.width, spec.kind):
+    if spec is None or plan.grasp.rim or plan.doubt or not held_badly(robot.grip, plan.grasp.width, spec.kind):
         return
     if any(abs(width - other) < WIDTH_ERROR for other in widths):
         robot.io.log.warning("not as wide as it should be", object=held.label, mm=round(1000 * width, 1))

@@ -169,7 +169,7 @@ def _plan(
     arm.hold(None)
     if away is None:
         return Miss("no path to the carry pose")
-    doubt = MEASURED + 2 * target.spread if target.shape or grasp.on_surface else 0.0
+    doubt = MEASURED + 2 * target.spread if target.measured or grasp.on_surface else 0.0
     return GrabPlan(grasp, there, [at, *back][::-1], [at, *up], away, attached, opening, around, doubt=doubt)
 
 

@@ -44,7 +44,7 @@ def target_of(found: WorldObject, base: Pose2, floor_plan: FloorPlan) -> Target:
         z = receptacle.center[2] + found.size[2] / 2
     return Target(
         found.label, found.kind, (x, y, z), yaw, found.size, found.tilt, found.shape, _points(found.points, base),
-        found.spread,
+        found.spread, found.measured,
     )  # fmt: skip
 
 

@@ -27,6 +27,8 @@ def surface(target: Target) -> Array:
     """
     makers: dict[str, Callable[[Target], Array]] = {"round": _turned, "bowl": _turned, "ball": _ball, "box": _box}
     make = makers.get(target.family, _box if target.points is None else _columns)
+    if target.lies and target.family == "long":
+        make = _turned
     return np.array(target.position) + make(target) @ _yaw(target.yaw).T
 
 
