@@ -40,6 +40,9 @@ CELL = np.array([2 * PAD_HALF / CELLS[0], 2 * PAD / CELLS[1]])
 """Size of a cell [m]."""
 PADDING = np.array([CELLS[0] - 1, CELLS[1] - 1])
 """Empty cells around an object, so that pads may reach beyond it."""
+HAND_DEPTH = 0.036
+"""How far [m] an object may reach into the hand from the pads' middle (Robotiq 2F-85: the inner links are 30 mm behind
+it, and the hand may keep back a little)."""
 LONGEST = 0.06
 """Farthest [m] from an object's middle that it is taken: beyond, its weight turns it between the pads."""
 KEPT, APART, TURNED = 28, 0.012, math.radians(20)
@@ -122,11 +125,13 @@ def _contacts(local: Array, floor: tuple[Array, float], opening: float) -> list[
     least = tuple(2 if np.ptp(local[:, axis]) > 2 * size else 1 for axis, size in zip((0, 2), CELL, strict=True))
     shares, slopes = zip(*(_touched(pad, top, least) for pad, top in zip(pads, tops, strict=True)), strict=True)
     share, slope = np.minimum(*shares), np.maximum(*slopes)
+    first = _first(np.isfinite(left))
     found = []
     for i, k in zip(*np.nonzero(fits & (width > 0) & (slope <= STEEPEST)), strict=True):
         along = float(low[0] + (i + CELLS[0] / 2 - PADDING[0]) * CELL[0])
         deep = float(low[1] + (k + CELLS[1] / 2 - PADDING[1]) * CELL[1])
-        if abs(along) <= LONGEST and deep <= _deepest(up, level, along) + 1e-6:
+        within = (k + CELLS[1] / 2 - first[i]) * CELL[1] <= HAND_DEPTH
+        if within and abs(along) <= LONGEST and deep <= _deepest(up, level, along) + 1e-6:
             at = np.array([along, float(middle[i, k]), deep])
             found.append((at, Contact(float(width[i, k]), float(share[i, k]), float(slope[i, k]))))
     return found
@@ -138,6 +143,14 @@ def _deepest(up: Array, level: float, along: float) -> float:
     # The lowest corner of the tips: PAD beyond the middle, half a finger to either side.
     tip = float(up[0]) * along - abs(float(up[0])) * FINGER_HALF
     return (tip - level) / down - PAD if down > 1e-3 else math.inf
+
+
+def _first(filled: Array) -> Array:
+    """For every place of the pads across their width, the first cells along the approach that the hand comes upon."""
+    reached = np.where(filled.any(axis=1), filled.argmax(axis=1), filled.shape[1])
+    wide = np.pad(reached, 1, constant_values=filled.shape[1])
+    found: Array = np.lib.stride_tricks.sliding_window_view(wide, CELLS[0] + 2).min(axis=1)
+    return found
 
 
 def _passed(side: Array) -> Array:

@@ -63,7 +63,8 @@ class Planner:
 
     def candidates(self, target: Target) -> Iterator[list[Grasp]]:
         """Every grasp that this hand could try, in stages: by the rules of kind and shape, and on the measured surface,
-        which comes first where no rule knows the shape.
+        which comes first where no rule knows the shape. What was seen, without what its shape family makes of it, comes
+        last.
         """
         arm = self.arm
         rules = candidates(target, arm.forward, arm.widest)
@@ -73,6 +74,9 @@ class Planner:
         yield antipodal(target, arm.forward, arm.hand.open, arm.widest)
         if shapeless:
             yield rules
+        elif target.points is not None:
+            as_seen = antipodal(replace(target, shape="irregular"), arm.forward, arm.hand.open, arm.widest)
+            yield [replace(g, name=f"as seen, {g.name}") for g in as_seen]
 
     def surround(self, around: Sequence[Obstacle], end: Array) -> None:
         """Boxes with the widest transit margin that leaves `end` free, or as they are."""

@@ -12,11 +12,14 @@ from services.manipulation.grasp import Target
 
 SPACING = 0.004
 """Distance [m] between neighbouring points of a completed surface: a fifth of a pad's width."""
-GAP = 0.007
+GAP = 0.009
 """Half the widest gap [m] between points that were seen which is taken for surface as well: some 200 points on the
 visible half of an object of 10 cm lie 7 mm apart."""
 BAND = 0.010
 """Height [m] of the bands in which the radius of a round object is measured: each holds a dozen points."""
+UPPER, THINNER = 8, 0.012
+"""Points on the upper face of a box from which it counts as seen, and how much thinner [m] than its extents what was
+seen of it must be that these do not count: more than points 7 mm apart leave out on either side."""
 
 
 def surface(target: Target) -> Array:
@@ -25,11 +28,24 @@ def surface(target: Target) -> Array:
     What is round is turned about its axis with the radius that was seen at each height; a box and a ball are what was
     measured of them; of anything else what was seen from above is taken to reach down to what it rests on.
     """
-    makers: dict[str, Callable[[Target], Array]] = {"round": _turned, "bowl": _turned, "ball": _ball, "box": _box}
-    make = makers.get(target.family, _box if target.points is None else _columns)
-    if target.lies and target.family == "long":
-        make = _turned
-    return np.array(target.position) + make(target) @ _yaw(target.yaw).T
+    return np.array(target.position) + _maker(target)(target) @ _yaw(target.yaw).T
+
+
+def _maker(target: Target) -> Callable[[Target], Array]:
+    if target.family in ("round", "bowl") or (target.lies and target.family == "long"):
+        return _turned
+    if target.family == "ball":
+        return _ball
+    if target.points is None or (target.family == "box" and not _thinner(target)):
+        return _box
+    return _columns
+
+
+def _thinner(target: Target) -> bool:
+    """What was seen of a box, its upper face included, is thinner than its extents, which then are a guess."""
+    seen, half = _own(target), np.array(target.size) / 2
+    upper = bool(np.count_nonzero(seen[:, 2] > half[2] - BAND) >= UPPER)
+    return upper and bool((np.ptp(seen[:, :2], axis=0) < 2 * half[:2] - THINNER).any())
 
 
 def _yaw(yaw: float) -> Array:
