@@ -173,7 +173,7 @@ def demo(args: argparse.Namespace) -> int:
     args.namespace = f"demo-{uuid.uuid4().hex[:6]}" if args.port != 7447 else ""
     args.only, args.keys = "", OFF if args.namespace and "TIDYBOT_KEYS" not in os.environ else None
     try:
-        scene = load_scene(args.scene or "apartment")
+        scene = load_scene(args.world or args.scene or "apartment")
     except SceneError as error:
         raise CliError(str(error)) from None
     thing, text, recording = choose(args, scene)

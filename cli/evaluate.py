@@ -20,6 +20,7 @@ EXAMPLES = """examples:
   tidybot eval --suite commands                              every line of docs/COMMANDS.md, judged by its effect
   tidybot eval --suite spoken -n 20 --voices DIR --snr 10    recordings with a manifest.tsv, from sound to delivery
   tidybot eval --suite clutter -n 8                          things of which nobody told the robot; also sizes, lying
+  tidybot eval --world examples/worlds                       worlds from outside, and what is asked for in each
   tidybot eval -n 1000 --cluster tcp://HOST:8786             on the workers of a Dask scheduler; local: some here
 
 Case i has the seed SEED + i. Success is what physics shows: lifted, carried in the hand, upright and at rest in the
@@ -37,6 +38,8 @@ def evaluate(args: argparse.Namespace) -> int:
         raise CliError("--replace works in one process; leave --processes out")
     if args.cluster and args.cluster != "local" and not args.cluster.startswith(("tcp://", "tls://")):
         raise CliError(f"--cluster {args.cluster}: expected tcp://HOST:PORT of a Dask scheduler, or local")
+    if args.world and not args.world.is_dir():
+        raise CliError(f"--world {args.world}: no such directory; docs/WORLDS.md has what it holds")
     words = sys.argv[sys.argv.index("eval") + 1 :]
     become("evaluation", *words)
 
@@ -72,6 +75,7 @@ def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") ->
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )  # fmt: skip
     parser.add_argument("--suite", default="fetch", metavar="NAME", help=f"one of {', '.join(SUITES)} (%(default)s)")
+    parser.add_argument("--world", type=Path, metavar="DIR", help="worlds of your own instead (docs/WORLDS.md)")
     parser.add_argument("--scenarios", "-n", type=_positive, metavar="N", help="how many (default: the suite's own)")
     parser.add_argument("--seed", type=int, default=0, metavar="S", help="of the first case (default %(default)s)")
     parser.add_argument("--jobs", "-j", type=_positive, default=1, metavar="J", help="worker processes")

@@ -6,11 +6,15 @@ import os
 import uuid
 from collections.abc import Sequence
 
+import msgspec
+
 from cli.errors import CliError, checked
 from cli.link import use_keys
 from cli.services import NAMES, SECTIONS, SERVICES, Service
 from cli.supervision import RunInfo, run_dir
 from common import config
+from common.household import load_household
+from common.scene import SceneError, load_scene
 from common.security import keys
 from common.security.access import OPERATOR, ROUTER
 from common.security.keys import OFF
@@ -40,9 +44,7 @@ class Plan:
         settings["TIDYBOT_KEYS"] = self.keys or OFF
         settings["TIDYBOT_STATE_DIR"] = os.environ.get("TIDYBOT_STATE_DIR") or str(run_dir())
         settings["TIDYBOT__BRAIN__RUN"] = settings["TIDYBOT__SIM__RUN"] = uuid.uuid4().hex
-        for name in ("scene", "world", "household"):
-            if path := getattr(args, name, None):
-                settings[f"TIDYBOT__RUNTIME__{name.upper()}"] = path
+        settings |= home(args)
         if args.seed is not None:
             settings["TIDYBOT__RUNTIME__SEED"] = str(args.seed)
         settings |= _overrides(machine(args))
@@ -72,6 +74,23 @@ class Plan:
             keys=self.keys,
             settings={k: v for k, v in self.environ.items() if k.startswith(config.PREFIX)},
         )
+
+
+def home(args: argparse.Namespace) -> dict[str, str]:
+    """The environment for `--scene`, or `--world` and `--household`, whose files are read once to see that they can be.
+
+    Raises:
+        CliError: one that cannot be used, or a world without what the robot is told of it.
+    """
+    given = {name: path for name in ("scene", "world", "household") if (path := getattr(args, name, None))}
+    try:
+        shared = msgspec.convert(given, config.RuntimeConfig)
+        if given:
+            load_scene(shared.world_file)
+            load_household(shared.household_file)
+    except (config.ConfigError, SceneError) as error:
+        raise CliError(str(error)) from None
+    return {f"{config.PREFIX}RUNTIME__{name.upper()}": path for name, path in given.items()}
 
 
 def _speed(text: str) -> str:
@@ -138,7 +157,9 @@ def _overrides(settings: Sequence[str]) -> dict[str, str]:
 def add_start_options(parser: argparse.ArgumentParser) -> None:
     """Options that `up` and `demo` share."""
     parser.add_argument("--speed", default="realtime", metavar="realtime|N|max", help="other than realtime: lockstep")
-    parser.add_argument("--scene", help="a shipped scene's name or a path")
+    parser.add_argument("--scene", help="a shipped scene's name or a path: the world, and all of it is told")
+    parser.add_argument("--world", metavar="FILE", help="what the simulation builds (docs/WORLDS.md)")
+    parser.add_argument("--household", metavar="FILE", help="what the robot is told of it")
     parser.add_argument("--seed", type=int, help="object layout and noise")
     parser.add_argument("--pipeline", choices=PIPELINES, help="the brain's flow (default: brain.toml's, else vla)")
     add_machine_options(parser)

@@ -11,11 +11,14 @@ from cli.errors import CliError
 from cli.link import Link, add_options, address
 from cli.supervision import Supervision, run_dir
 from cli.tape import BATCH, FLUSH, Listener, Progress, Tape
+from common import config
 from common.bus.session import NoRouter, open_session
 from common.config import config_dir
+from common.household import load_household
+from common.plan_file import to_toml
 from common.process import StopSignal
 from common.recording import Recorder, RecordingError
-from common.scene import scene_path
+from common.scene import SceneError, load_scene
 from common.time.clock import monotonic, unix_time
 
 
@@ -96,13 +99,22 @@ def _run(args: argparse.Namespace, recorder: Recorder, link: Link, stop: StopSig
 
 
 def _attach(recorder: Recorder, tape: Tape) -> None:
-    """The configuration and the scene of this machine, so that a replay elsewhere runs with the same."""
+    """The configuration, world and household of this machine, so that a replay elsewhere runs with the same."""
     now = unix_time()
     for file in sorted(config_dir().glob("*.toml")):
         recorder.attach(f"config/{file.name}", file.read_bytes(), now)
-    scene = scene_path(tape.status.scene) if tape.status is not None else None
-    if scene is not None and scene.exists():
-        recorder.attach(f"scene/{scene.name}", scene.read_bytes(), now)
+    if tape.status is None:
+        return
+    try:
+        changes = config.overrides(settings_of(os.environ), ())
+        shared = config.load("runtime", config.RuntimeConfig, config_dir(), changes)
+        world, household = load_scene(shared.world_file), load_household(shared.household_file)
+    except (config.ConfigError, SceneError):
+        # A robot that another machine simulates: what it is told is not known here.
+        return
+    if world.name == tape.status.scene:
+        recorder.attach("scene/world.toml", to_toml(world).encode(), now)
+        recorder.attach("household/household.toml", to_toml(household).encode(), now)
 
 
 def _close(recorder: Recorder) -> None:

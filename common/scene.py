@@ -33,7 +33,8 @@ __all__ = [
     "Box", "ObjectSpec", "Obstacle", "Place", "Receptacle", "Rgba", "Room", "Scene", "SceneError", "Vec2",
     "Vec3", "Wall", "body_name", "load_scene", "scene_path",
 ]  # fmt: skip
-SCENES = Path(__file__).resolve().parent.parent / "services" / "sim" / "scenes"
+ROOT = Path(__file__).resolve().parent.parent
+SCENES, FLOOR_PLANS = ROOT / "services" / "sim" / "scenes", ROOT / "config" / "floor_plans"
 S = TypeVar("S", bound=Strict)
 
 
@@ -132,20 +133,40 @@ def load_scene(name: str) -> Scene:
 
 
 def read(path: Path) -> dict[str, Any]:
-    """The TOML of a world or household file.
+    """The TOML of a world or household file, with the floor plan that its `plan` names: one of ours, or a file.
 
     Raises:
         SceneError: no such file, or bad TOML.
     """
+    tables = _tables(path, "scene", SCENES)
+    named = tables.pop("plan", None)
+    if named is None:
+        return tables
+    if not isinstance(named, str):
+        raise SceneError(f"{path}: plan: expected the name of a floor plan or a file")
+    if "/" in named or named.endswith(".toml"):
+        file = path.parent / named
+    else:
+        file = FLOOR_PLANS / f"{named}.toml"
+    try:
+        plan = _tables(file, "floor plan", FLOOR_PLANS)
+    except SceneError as error:
+        raise SceneError(f"{path}: plan: {error}") from None
+    return {k: v for k, v in plan.items() if k in FloorPlan.__struct_fields__} | tables
+
+
+def _tables(path: Path, what: str, shipped: Path) -> dict[str, Any]:
     try:
         return tomllib.loads(path.read_text(encoding="utf-8"))
     except (FileNotFoundError, IsADirectoryError, NotADirectoryError):
-        known = ", ".join(sorted(p.stem for p in SCENES.glob("*.toml")))
-        raise SceneError(f"no scene file {path}; shipped scenes: {known}") from None
+        known = ", ".join(sorted(p.stem for p in shipped.glob("*.toml")))
+        raise SceneError(f"no {what} file {path}; shipped {what}s: {known}") from None
     except OSError as error:
         raise SceneError(f"{path}: {error.strerror}") from None
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise SceneError(f"{path}: not valid TOML: {error}") from None
+    except ValueError as error:
+        raise SceneError(f"{path}: {error}") from None
 
 
 def parse(raw: dict[str, Any], kind: type[S], path: Path) -> S:

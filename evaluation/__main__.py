@@ -17,13 +17,13 @@ from cli.plan import machine
 from cli.up import Stopped, interruptible
 from common.config import ConfigError
 from common.time.clock import monotonic
-from evaluation import cluster, html_report, pool, processes, report, runner
+from evaluation import cluster, html_report, pool, processes, report, runner, worlds
 from evaluation.case import Case, Result
 from evaluation.lane import Run
 from evaluation.pool import Progressed, Repeated, Said
 from evaluation.process_faults import unavailable
 from evaluation.stack import replacement
-from evaluation.suites import BARS, DEFAULT_SCENARIOS, cases
+from evaluation.suites import BARS, DEFAULT_SCENARIOS, cases, dressed
 
 PERIOD = 30.0
 """Seconds between lines of progress where there is no terminal to draw a bar on."""
@@ -70,17 +70,18 @@ class Board:
 def main(argv: list[str]) -> int:
     """Exit status 0 when the bar is met, 1 when fewer did as expected or a claim was false, 130 after Ctrl-C."""
     args = parser().parse_args(["eval", *argv])
+    args.suite = "world" if args.world else args.suite
     console = Console(stderr=bool(args.json == "-"), soft_wrap=True)
     for target in (args.json, args.html):
         if target and target != "-" and not Path(target).resolve().parent.is_dir():
             print(f"tidybot: {target}: no such directory", file=sys.stderr)
             return FAILED
-    count = args.scenarios or DEFAULT_SCENARIOS.get(args.suite, 10)
     settings = (*machine(args), *args.set)
     try:
         for entry in args.replace:
             replacement(entry)
-        todo = cases(args.suite, count, args.seed, settings, args.pipeline, args.voices, args.snr, tuple(args.replace))
+        todo = _cases(args, settings)
+        count = len(todo)
         if args.processes:
             todo = _available(todo, console)
             count = len(todo)
@@ -104,6 +105,16 @@ def main(argv: list[str]) -> int:
         console.print(f"[yellow]interrupted after {len(results)} of {count} scenarios[/]")
         return INTERRUPTED
     return 0 if found["passed"] else FAILED
+
+
+def _cases(args: argparse.Namespace, settings: tuple[str, ...]) -> list[Case]:
+    """Of the suite, or of the worlds in a directory."""
+    replaced = tuple(args.replace)
+    if args.world:
+        found = worlds.cases(args.world, args.scenarios, args.seed)
+        return [dressed(case, settings, args.pipeline, replaced) for case in found]
+    count = args.scenarios or DEFAULT_SCENARIOS.get(args.suite, 10)
+    return cases(args.suite, count, args.seed, settings, args.pipeline, args.voices, args.snr, replaced)
 
 
 def _available(todo: list[Case], console: Console) -> list[Case]:

@@ -21,7 +21,7 @@ def fingerprint() -> dict[str, str]:
     """What decides a seed's outcome: Python, packages, and a hash of the project's sources and configuration."""
     digest = hashlib.sha256()
     files = {p.relative_to(ROOT).as_posix(): p for top in SOURCES for p in (ROOT / top).rglob("*.*")}
-    files |= {f"config/{p.name}": p for p in config_dir().glob("*.toml")}
+    files |= {f"config/{p.relative_to(config_dir())}": p for p in config_dir().rglob("*.toml")}
     for name, path in sorted(files.items()):
         if path.suffix in (".py", ".toml"):
             digest.update(name.encode() + b"\0" + path.read_bytes() + b"\0")

@@ -23,6 +23,7 @@ from common import config, topics
 from common.bus import delivery
 from common.bus.session import BusError, open_session
 from common.household import load_words, told
+from common.plan_file import to_toml
 from common.process import StopSignal
 from common.scene import load_scene
 from common.service_process import Process
@@ -35,7 +36,6 @@ from evaluation.node import CASE, FAULT_REPORTS
 from evaluation.picture import last_picture
 from evaluation.process_faults import ProcessFaultInjector, unavailable
 from evaluation.runner import REPORT, Progress, idle_services, timeline
-from evaluation.scene_file import to_toml
 from evaluation.stack import paced_services
 from evaluation.verdict import judge
 

@@ -19,6 +19,7 @@ from common.scene import ObjectSpec, Receptacle, Scene, SceneError
 from evaluation.blocks import VLA, WORDINGS, flat, random
 from evaluation.case import Case, Line
 from evaluation.drawn import LAID, things
+from judge.effects import Effect
 from judge.evidence import Want
 from services.sim.layout import Placement, place_objects
 
@@ -50,7 +51,7 @@ def lying(seed: int) -> Case:
 
 
 def clutter(seed: int) -> Case:
-    """Two to four neighbours stand 1.5 to 5 cm from the one that is wanted."""
+    """Two to four neighbours stand 1.5 to 5 cm from the one that is wanted; they may be moved, and stand in the end."""
     rng = random(seed, 23)
 
     def draw() -> list[ObjectSpec]:
@@ -84,10 +85,12 @@ def fetch(
     else:
         raise SceneError(f"{suite}, seed {seed}: no room for the objects in {TRIES} draws")
     wanted = world.objects[0]
+    stay = tuple(Effect("remains", o.name, o.on) for o in world.objects[1:] if o.position is not None)
     command = WORDINGS[int(rng.integers(len(WORDINGS)))].format(wanted.name)
     return Case(
         suite=suite, seed=seed, name=wanted.kind, command=command, lines=(Line(command),), thing=wanted.name,
-        wants=(Want(wanted.name, (plan.delivery,)),), scene=world, household=nothing_listed(plan), settings=settings,
+        wants=(Want(wanted.name, (plan.delivery,)),), effects=stay, scene=world, household=nothing_listed(plan),
+        settings=settings,
     )  # fmt: skip
 
 

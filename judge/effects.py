@@ -11,12 +11,12 @@ import msgspec
 
 from common.scene import Scene
 from judge.evidence import Sample
-from judge.track import distance
+from judge.track import TOPPLED, distance
 from judge.words import plain
 
 Kind = Literal[
     "visits", "ends", "says", "tells where", "tells what is on", "tells what it sees", "holds", "beside", "rests",
-    "hand", "still", "stands", "left alone",
+    "hand", "still", "stands", "left alone", "remains",
 ]  # fmt: skip
 AT_PLACE = 0.5
 """Distance [m] from a named standing pose that counts as there: half the diagonal of the base, 0.57 x 0.53 m, more."""
@@ -108,6 +108,8 @@ class Watcher:
             case "rests":
                 now = last.things[effect.what]
                 return "" if now.on not in ("", "floor") and not now.touched else f"the {effect.what} is not put down"
+            case "remains":
+                return _away(last, effect.what, effect.other)
             case "beside":
                 return self._apart(last, effect.what, effect.other)
             case "hand":
@@ -184,6 +186,16 @@ class Watcher:
                     if what == "thing" and sample.things[name].on != where:
                         return f"said the {name} is on the {where}, it is on the {sample.things[name].on}"
                 return ""
+
+
+def _away(last: Sample, name: str, surface: str) -> str:
+    """Why an object is not where it was, put back perhaps: on its surface, let go and, if it did, standing."""
+    now = last.things[name]
+    if now.held:
+        return f"the {name} is in the hand"
+    if now.on != surface:
+        return f"the {name} is on {now.on or 'nothing'}, not on the {surface}"
+    return f"the {name} went over" if now.tilt > TOPPLED else ""
 
 
 def at(scene: Scene, name: str, x: float, y: float) -> bool:

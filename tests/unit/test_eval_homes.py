@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import pytest
+from evaluation.scene_file import to_toml
 
 from common.approach import EDGE_DISTANCE, FOOTPRINT, STAND_OFF, poses_for
 from common.scene import Scene, load_scene
@@ -10,7 +11,6 @@ from evaluation.blocks import flat
 from evaluation.homes.home import draw_home
 from evaluation.homes.rooms import NoHome
 from evaluation.homes.suite import homes
-from evaluation.scene_file import to_toml
 from services.navigation.planning.costmap import Costmap
 from services.navigation.planning.planner import PathPlanner
 from services.sim.layout import place_objects

@@ -6,12 +6,12 @@ import pytest
 from common import topics
 from common.bus.codec import decode, encode
 from common.config import config_dir, load, overrides
+from common.plan_file import to_toml
 from common.scene import load_scene
 from evaluation.blocks import destination
 from evaluation.case import Case
 from evaluation.chaos import CHAOS_SERVICES
 from evaluation.faults import Rule
-from evaluation.scene_file import to_toml
 from evaluation.stack import replacement, service_class
 from evaluation.suites import DIALOGUES, FAULTS, NAMED, SUITES, cases
 from services.sim.layout import place_objects

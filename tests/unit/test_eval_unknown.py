@@ -12,10 +12,10 @@ from scipy.spatial.distance import cdist
 from common.config import config_dir
 from common.household import load_household, load_words
 from common.kinds import kind_of
+from common.plan_file import to_toml
 from common.scene import ObjectSpec, load_scene
 from evaluation.case import Case
 from evaluation.drawn import HUES, MEASURES
-from evaluation.scene_file import to_toml
 from evaluation.suites import SUITES, cases
 from evaluation.unknown import GAP, outline
 from services.sim.physics import Physics

@@ -1,4 +1,4 @@
-"""A world or household as TOML, for processes that get theirs from a file."""
+"""A world or household as TOML, whole in one file: for processes that get theirs from one, and for recordings."""
 
 import json
 from typing import Any
