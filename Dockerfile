@@ -9,7 +9,8 @@ WORKDIR /app
 COPY requirements.lock pyproject.toml build/wheel[s] /wheels/
 # What runs, not what tests: the lock file says in which version.
 RUN python -c "import tomllib; p = tomllib.load(open('/wheels/pyproject.toml', 'rb'))['project']; \
-print('\n'.join(p['dependencies'] + p['optional-dependencies']['llm']))" > /wheels/wanted \
+extras = sum((p['optional-dependencies'][e] for e in ('llm', 'ros2')), []); \
+print('\n'.join(p['dependencies'] + extras))" > /wheels/wanted \
     && if ls /wheels/*.whl >/dev/null 2>&1; then offline="--no-index --find-links /wheels"; fi \
     && pip install --no-cache-dir $offline -r /wheels/wanted -c /wheels/requirements.lock setuptools \
     && find /opt/venv -type d -name tests -path '*/site-packages/*' -prune -exec rm -rf {} +

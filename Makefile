@@ -72,7 +72,7 @@ bench: setup ## every benchmark, each prints a table; fails when one of them doe
 lock: ## requirements.lock anew from pyproject.toml
 	rm -rf build/lock && $(PYTHON) -m venv build/lock
 	build/lock/bin/python -m pip install --quiet --upgrade pip setuptools wheel
-	build/lock/bin/python -m pip install --quiet --no-build-isolation -e '.[llm,cluster,test,mutants,check]'
+	build/lock/bin/python -m pip install --quiet --no-build-isolation -e '.[llm,ros2,cluster,test,mutants,check]'
 	{ echo "# made by \`make lock\`"; build/lock/bin/python -m pip freeze --exclude-editable; \
 	  build/lock/bin/python -m pip freeze --all | grep -E '^(setuptools|wheel)=='; } > requirements.lock.new
 	mv requirements.lock.new requirements.lock

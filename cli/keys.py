@@ -21,9 +21,9 @@ _WORD = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]*")
 _HOST = re.compile(r"[A-Za-z0-9:][A-Za-z0-9:._-]*")
 
 
-def everybody(namespace: str) -> list[Subject]:
+def everybody(namespace: str, domain: int = 0) -> list[Subject]:
     """Who a robot consists of: the router, its services, one operator, and the agents' way in (`tidybot mcp`)."""
-    services = [Subject(name=n, namespace=namespace) for n in NAMES if n != ROUTER]
+    services = [Subject(name=n, namespace=namespace, domain=domain) for n in NAMES if n != ROUTER]
     router = Subject(name=ROUTER, role="router")
     clients = [Subject(name=n, role=r, namespace=namespace) for n, r in CLIENTS]
     return [router, *services, *clients]
@@ -36,10 +36,10 @@ def keys(args: argparse.Namespace) -> int:
     if args.list:
         return _show(authority, args.json)
     known = authority.subjects()
-    asked = [_client(args)] if args.client else everybody(args.namespace)
+    asked = [_client(args)] if args.client else everybody(args.namespace, args.ros_domain)
     if args.force or not authority.exists:
         # Everybody who had a certificate gets a new one: the old authority is no longer trusted.
-        made = _merged(known, everybody(args.namespace), asked)
+        made = _merged(known, everybody(args.namespace, args.ros_domain), asked)
         authority.found(max(args.days, DAYS) * 3)
     else:
         made = [s for s in asked if not authority.has(s)]
@@ -69,13 +69,16 @@ def _check(args: argparse.Namespace) -> None:
         raise CliError(f"{args.client} is a service; a client needs another name")
     if args.days <= 0:
         raise CliError(f"--days {args.days:g}: expected a positive number")
-    if args.observer and not args.client:
-        raise CliError("--observer goes with --client NAME")
-    if args.agent and (args.observer or not args.client):
-        raise CliError("--agent goes with --client NAME and without --observer")
+    kinds = [option for option in ("observer", "agent", "ros") if getattr(args, option)]
+    if kinds and not args.client:
+        raise CliError(f"--{kinds[0]} goes with --client NAME")
+    if len(kinds) > 1:
+        raise CliError(f"--{kinds[0]} and --{kinds[1]} are two kinds of client; choose one")
 
 
 def _client(args: argparse.Namespace) -> Subject:
+    if args.ros:
+        return Subject(name=args.client, role="ros", domain=args.ros_domain)
     role: Role = "observer" if args.observer else "agent" if args.agent else "operator"
     return Subject(name=args.client, role=role, namespace=args.namespace)
 
@@ -147,6 +150,8 @@ def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") ->
     parser.add_argument(
         "--agent", action="store_true", help="that client is a program: it commands in words, and stops"
     )
+    parser.add_argument("--ros", action="store_true", help="that client is a ROS 2 peer, and reaches its domain only")
+    parser.add_argument("--ros-domain", type=int, default=0, metavar="N", help="ROS_DOMAIN_ID (default %(default)s)")
     parser.add_argument("--namespace", metavar="NAME", default="", help="for the robot of that namespace")
     parser.add_argument("--host", action="append", default=[], metavar="NAME", help="the router's name or address")
     parser.add_argument("--days", type=float, default=DAYS, metavar="N", help="validity (default %(default)s)")

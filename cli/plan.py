@@ -2,6 +2,7 @@
 
 import argparse
 import contextlib
+import importlib.util
 import os
 import uuid
 from collections.abc import Sequence
@@ -10,7 +11,7 @@ import msgspec
 
 from cli.errors import CliError, checked
 from cli.link import use_keys
-from cli.services import NAMES, SECTIONS, SERVICES, Service
+from cli.services import NAMES, OPTIONAL, SECTIONS, SERVICES, Service
 from cli.supervision import RunInfo, run_dir
 from common import config
 from common.household import load_household
@@ -36,7 +37,7 @@ class Plan:
     def __init__(self, args: argparse.Namespace) -> None:
         self.port, self.namespace = args.port, args.namespace or os.environ.get("TIDYBOT_NAMESPACE", "")
         self.speed = _speed(args.speed)
-        self.services = _selection(args.only, args.without)
+        self.services = _selection(args.only, args.without, [n for n in OPTIONAL if getattr(args, n, False)])
         self.keys = certificates(getattr(args, "keys", OFF), self.names, self.namespace)
         self.connect = f"{'tls' if self.keys else 'tcp'}/127.0.0.1:{self.port}"
         settings = {"OMP_NUM_THREADS": "1", "PYTHONUNBUFFERED": "1"}
@@ -134,10 +135,15 @@ def machine(args: argparse.Namespace) -> list[str]:
     return [*robot, *(f"{section}.sensors={sensors}" for section in ("camera", "sim") if sensors)]
 
 
-def _selection(only: str, without: str) -> list[Service]:
-    chosen = [checked(n, NAMES, "service") for n in only.split(",") if n] or list(NAMES)
+def _selection(only: str, without: str, besides: Sequence[str]) -> list[Service]:
+    default = [n for n in NAMES if n not in OPTIONAL]
+    chosen = [checked(n, NAMES, "service") for n in only.split(",") if n] or default
     dropped = [checked(n, NAMES, "service") for n in without.split(",") if n]
-    return [s for s in SERVICES if s.name in chosen and s.name not in dropped]
+    found = [s for s in SERVICES if s.name in (*chosen, *besides) and s.name not in dropped]
+    for service in found:
+        if service.needs and importlib.util.find_spec(service.needs) is None:
+            raise CliError(f"{service.name} needs a package: pip install 'tidybot-zenoh[{service.name}]'")
+    return found
 
 
 def _overrides(settings: Sequence[str]) -> dict[str, str]:

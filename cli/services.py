@@ -5,13 +5,15 @@ import msgspec
 
 class Service(msgspec.Struct, frozen=True):
     """A process `python -m <module>`. `paced`: follows the simulation in lockstep. `token`: shows itself on the bus.
-    `renders`: with OpenGL; the others do not load it."""
+    `renders`: with OpenGL; the others do not load it. `needs`: off by default, and of the extra of its name, whose
+    package that is."""
 
     name: str
     module: str
     paced: bool = True
     token: bool = True
     renders: bool = False
+    needs: str = ""
 
 
 SERVICES = (
@@ -25,6 +27,8 @@ SERVICES = (
     Service("perception", "services.perception"),
     Service("brain", "services.brain"),
     Service("dashboard", "services.dashboard", paced=False),
+    Service("ros2", "services.ros2", paced=False, needs="rosbags"),
 )
 NAMES = tuple(s.name for s in SERVICES)
+OPTIONAL = tuple(s.name for s in SERVICES if s.needs)
 SECTIONS = ("runtime", *(n for n in NAMES if n != "router"))

@@ -12,7 +12,7 @@ from cli.link import Link, Watch
 from cli.plan import Plan, add_start_options
 from cli.ports import port_is_free
 from cli.programs import ROOT, socket_path
-from cli.services import NAMES
+from cli.services import NAMES, OPTIONAL
 from cli.supervision import Supervision, run_dir
 from common import messages as m
 from common import topics
@@ -21,7 +21,7 @@ from common.time.clock import monotonic, sleep
 
 READY_LIMIT = 120.0
 """Time [s] for all processes to be ready; chosen: far above the 3 to 5 s of a calm machine."""
-EXTRA = {"camera", "dashboard"}  # the brain starts missions without these
+EXTRA = {"camera", "dashboard", *OPTIONAL}  # the brain starts missions without these
 
 
 class Stopped(Exception):
@@ -206,6 +206,7 @@ def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") ->
     )
     parser.add_argument("--namespace", metavar="NAME", help="all keys of this robot go below this name")
     parser.add_argument("--keys", nargs="?", const="", metavar="DIR", help="insist on certificates (default: if there)")
+    parser.add_argument("--ros2", action="store_true", help="with the gateway to ROS 2 tools (docs/ROS2.md)")
     parser.add_argument("--detach", "-d", action="store_true", help="return when ready; `tidybot down` stops it")
     parser.add_argument("--only", default="", metavar="A,B", help=f"start only these of {', '.join(NAMES)}")
     parser.add_argument("--without", default="", metavar="A,B", help="start all but these")

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 Pose2 = tuple[float, float, float]
+IDENTITY_POSE: Pose2 = (0.0, 0.0, 0.0)
 Number = TypeVar("Number", float, NDArray[np.floating])
 """A coordinate, or an array of them of any shape."""
 

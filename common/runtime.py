@@ -3,10 +3,12 @@
 import argparse
 import os
 import sys
+from functools import partial
 
 import msgspec
 
 from common import config
+from common.bus.port import Outside
 from common.bus.session import BusError, NoRouter, default_connect, open_session
 from common.household import load_household
 from common.process import StopSignal, die_with_parent
@@ -42,7 +44,9 @@ def main(kind: ServiceClass) -> None:
         namespace = environ.get("TIDYBOT_NAMESPACE", "")
         with open_session(connect, namespace, wait=stop.wait, name=kind.NAME) as opened:
             state_dir = config.state_dir(environ, connect, namespace)
-            _run(Process(kind, parameters, shared, household, opened, clock, stop, state_dir, world), clock)
+            again = partial(open_session, connect, namespace, wait=stop.wait, name=kind.NAME, prefixed=False)
+            outside = Outside(namespace, again)
+            _run(Process(kind, parameters, shared, household, opened, clock, stop, state_dir, world, outside), clock)
     except NoRouter:
         sys.exit(0)
     except (config.ConfigError, SceneError, BusError, StartError) as error:

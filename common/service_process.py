@@ -14,6 +14,7 @@ from common import config, topics
 from common import messages as m
 from common.bus import codec
 from common.bus.base import health_of
+from common.bus.port import Outside
 from common.bus.zenoh_io import ZenohIo
 from common.household import Household
 from common.process import SILENCE, StopSignal, limit_silence, rss_mb
@@ -32,8 +33,9 @@ STALLED = 1.0
 
 # A class with NAME, HZ, CONFIG, READS, WRITES, a constructor (config, io) and `step(now)`, which takes its input,
 # decides, publishes and never blocks; `now` is robot time [s]. With `stalled(seconds)` it is also told, some ten times
-# a second, for how long robot time has stood still [s of wall time]. The simulation also has `paused`, `start_time`
-# and `pace()`. With `KNOWS_WORLD` it is given the world as it really is: the simulation, and judges.
+# a second, for how long robot time has stood still [s of wall time]. Topics in ON_DEMAND, which are also in READS, are
+# subscribed to when the service says so (`Io.demand`). The simulation also has `paused`, `start_time` and `pace()`.
+# With `KNOWS_WORLD` it is given the world as it really is: the simulation, and judges.
 ServiceClass = type[Any]
 
 
@@ -51,6 +53,7 @@ class Process:
         stop: StopSignal,
         state_dir: Path,
         world: Scene | None = None,
+        outside: Outside | None = None,
     ) -> None:
         self._kind, self._session, self._clock, self._stop = kind, opened, clock, stop
         self.io = ZenohIo(
@@ -64,8 +67,10 @@ class Process:
             lockstep=shared.lockstep and isinstance(clock, SimClock),
             clock=clock,
             log_level=shared.log_level,
+            on_demand=getattr(kind, "ON_DEMAND", ()),
         )
         self.io.state_dir = state_dir
+        self.io.outside = outside
         self._health = opened.declare_publisher(topics.HEALTH.of(kind.NAME), encoding=codec.JSON)
         self._last_health = b""
         self._health_queryable = opened.declare_queryable(self._health.key_expr, self._answer_health)

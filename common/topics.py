@@ -99,13 +99,15 @@ def _row(key: str, type: type[M], by: str, to: str, **how: Any) -> Topic[M]:
     return Topic(key=key, type=type, writers=tuple(by.split()), readers=tuple(to.split()), **how)
 
 
-SPEECH_GOAL = _goal("brain/speech_goal", m.SpeechGoal, by="brain", to="speech dashboard", text="goal")
+SPEECH_GOAL = _goal("brain/speech_goal", m.SpeechGoal, by="brain ros2", to="speech dashboard", text="goal")
 SPEECH_RESULT = _event("brain/speech_result", m.SpeechResult, by="speech", to="brain dashboard", text="text")
 NAVIGATION_GOAL = _goal(
-    "brain/navigation_goal", m.NavigationGoal, by="brain", to="navigation manipulation", text="goal"
+    "brain/navigation_goal", m.NavigationGoal, by="brain ros2", to="navigation manipulation", text="goal"
 )
 NAVIGATION_STATUS = _event("brain/navigation_status", m.NavigationStatus, by="navigation", to="brain", text="status")
-MANIPULATION_GOAL = _goal("brain/manipulation_goal", m.ManipulationGoal, by="brain", to="manipulation", text="goal")
+MANIPULATION_GOAL = _goal(
+    "brain/manipulation_goal", m.ManipulationGoal, by="brain ros2", to="manipulation", text="goal"
+)
 MANIPULATION_STATUS = _event(
     "brain/manipulation_status", m.ManipulationStatus, by="manipulation", to="brain perception dashboard", text="status"
 )
@@ -117,13 +119,20 @@ SPEECH_TEXT = _goal("speech/text", m.TypedText, by="*", to="speech", text="text"
 AUDIO_PCM = _sound("audio/pcm", by="dashboard *", to="speech")
 AUDIO_OUT = _sound("audio/out", by="speech", to="dashboard")
 
-VOICE_COMMAND = _goal("voice_command", m.VoiceCommand, by="speech dashboard *", to="brain", text="text", latched=False)
+VOICE_COMMAND = _goal(
+    "voice_command",
+    m.VoiceCommand,
+    by="speech dashboard ros2 *",
+    to="brain",
+    text="text",
+    latched=False,
+)
 PLAN_REQUEST = _goal("plan_request", m.PlanRequest, by="brain", to="planner")
-ACTION_PLAN = _event("action_plan", m.ActionPlan, by="planner", to="brain dashboard")
+ACTION_PLAN = _event("action_plan", m.ActionPlan, by="planner ros2", to="brain dashboard")
 PLANNER_STATUS = _event("planner/status", m.PlannerStatus, by="planner")
 OBJECT_QUERY = _goal("object_query", m.ObjectQuery, by="brain", to="perception")
 OBJECT_POSE = _event("object_pose", m.ObjectPose, by="perception", to="brain")
-NAV_GOAL = _goal("nav_goal", m.NavGoal, by="brain dashboard *", to="navigation")
+NAV_GOAL = _goal("nav_goal", m.NavGoal, by="brain dashboard ros2 *", to="navigation")
 NAVIGATION_FEEDBACK = _event("navigation_feedback", m.NavigationFeedback, by="navigation", to="brain dashboard")
 SYSTEM_STATUS = _event("system_status", m.SystemStatus, by="brain")
 WORLD_OBJECTS = _event(
@@ -135,7 +144,7 @@ HOUSEHOLD_NAMES = _event("household/names", m.TaughtNames, by="perception", to="
 
 BASE_TARGET = _goal("base/target_pose", m.BaseTarget, by="navigation", to="sim", latched=False)
 GOAL_REACHED = _event("base/goal_reached", m.GoalReached, by="sim", to="navigation")
-CMD_VEL = _stream("base/cmd_vel", m.CmdVel, by="navigation", to="sim", rate=20.0, binary=False)
+CMD_VEL = _stream("base/cmd_vel", m.CmdVel, by="navigation ros2", to="sim", rate=20.0, binary=False)
 ARM_COMMAND = _stream("arm/command", m.ArmCommand, by="manipulation", to="sim dashboard", rate=50.0)
 GRIPPER_COMMAND = _goal("gripper_command", m.GripperCommand, by="brain manipulation", to="sim", latched=False)
 JOINT_STATES = _stream(
@@ -163,12 +172,12 @@ SCAN = _stream("scan", m.LaserScan, by="sim", to="navigation dashboard", rate=10
 ROBOT_STOP = _goal(
     "robot/stop",
     m.RobotStop,
-    by="speech dashboard *",
+    by="speech dashboard ros2 *",
     to="brain navigation manipulation sim",
     text="reason",
     latched=False,
 )
-ROBOT_RESUME = _goal("robot/resume", m.RobotResume, by="dashboard *", to="brain sim", text="source", latched=False)
+ROBOT_RESUME = _goal("robot/resume", m.RobotResume, by="dashboard ros2 *", to="brain sim", text="source", latched=False)
 ROBOT_DESCRIPTION = _event(
     "robot/description", m.RobotDescription, by="sim", to="brain perception navigation manipulation"
 )
@@ -188,7 +197,7 @@ SLOWER_CLOCKS = {2: SIM_CLOCK_50HZ, 5: SIM_CLOCK_20HZ, 10: SIM_CLOCK_10HZ}
 CLOCKS = (SIM_CLOCK, *SLOWER_CLOCKS.values())
 LOCKSTEP_ACK = _row("sim/ack", m.LockstepAck, f"{EACH} {ANYONE}", "sim", binary=True, recover=False)
 
-CAMERA_REQUEST = _goal("camera/request", m.CameraRequest, by="perception dashboard *", to="camera", latched=False)
+CAMERA_REQUEST = _goal("camera/request", m.CameraRequest, by="perception dashboard ros2 *", to="camera", latched=False)
 HEAD_RGBD = _stream("camera/head/rgbd", m.Rgbd, by="camera", to="perception dashboard", rate=10.0, bulk=True)
 WRIST_RGBD = _stream("camera/wrist/rgbd", m.Rgbd, by="camera", to="perception dashboard", rate=10.0, bulk=True)
 
@@ -205,6 +214,8 @@ ALIVE_KEY = "service/{name}/alive"
 
 BRAIN_MISSIONS = "brain/missions"
 SIM_RESET, SIM_PAUSE, SIM_SNAPSHOT, SIM_TRUTH = "sim/reset", "sim/pause", "sim/snapshot", "sim/truth"
+VIEWERS = ("ros2",)
+"""Services that show people's tools whatever these ask for: they may read every topic but those for evaluators."""
 QUERIES = (
     Query(BRAIN_MISSIONS, "brain", ("dashboard",)),
     Query(SIM_RESET, "sim", changing=True),
@@ -216,7 +227,9 @@ QUERIES = (
 
 def subscribed(service: str) -> tuple[Topic[Any], ...]:
     """What a service reads, in the order of the table; clock and acknowledgements are the runtime's."""
-    return tuple(t for t in (*TABLE, *PER_SERVICE) if service in t.readers and t is not LOCKSTEP_ACK)
+    viewer = service in VIEWERS
+    hidden = (SIM_CONTACTS, LOCKSTEP_ACK, *(CLOCKS if viewer else ()))
+    return tuple(t for t in (*TABLE, *PER_SERVICE) if (viewer or service in t.readers) and t not in hidden)
 
 
 def published(service: str) -> tuple[Topic[Any], ...]:

@@ -17,7 +17,7 @@ import numpy as np
 from common import messages as m
 from common.bus import codec
 from common.bus.mailbox import Mailbox
-from common.bus.port import Handler
+from common.bus.port import Handler, Outside
 from common.household import Household
 from common.logs import Logger
 from common.scene import Scene
@@ -54,6 +54,7 @@ class IoBase:
     """Subclasses add `_send`, `serve`, `peer`."""
 
     state_dir: Path | None = None
+    outside: Outside | None = None
 
     def __init__(
         self,
@@ -174,6 +175,9 @@ class IoBase:
 
     def has_subscribers(self, topic: Topic[Any]) -> bool:
         """True when somebody subscribes to what this process publishes there."""
+        raise NotImplementedError
+
+    def demand(self, topic: Topic[Any], wanted: bool) -> None:
         raise NotImplementedError
 
     # --- the rest

@@ -110,6 +110,9 @@ class MemoryIo(IoBase):
         answer = self.bus.get(key, request)
         return self.submit(lambda: answer)
 
+    def demand(self, topic: Topic[Any], wanted: bool) -> None:
+        """Nothing: in memory every topic that a service reads is delivered."""
+
     def peer(self, name: str) -> str | None:
         other = self.bus.ios.get(name)
         return other.epoch if other else None

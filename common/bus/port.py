@@ -1,8 +1,9 @@
 """What a service sees of the outside world: the same protocol over Zenoh and over memory."""
 
 from collections.abc import Callable
+from contextlib import AbstractContextManager
 from pathlib import Path
-from typing import Any, Protocol, TypeVar
+from typing import Any, NamedTuple, Protocol, TypeVar
 
 import numpy as np
 
@@ -15,6 +16,13 @@ M = TypeVar("M", bound=m.Message)
 R = TypeVar("R")
 R_co = TypeVar("R_co", covariant=True)
 Handler = Callable[[bytes], bytes]
+
+
+class Outside(NamedTuple):
+    """`open` opens a session of this service on the robot's router whose keys are not below the robot's `namespace`."""
+
+    namespace: str
+    open: Callable[[], AbstractContextManager[Any]]
 
 
 class Log(Protocol):
@@ -39,7 +47,7 @@ class Io(Protocol):
 
     `household`: what the robot is told of its home. `world`: what is really there; with a `LookupError` for all but the
     simulation and its judges (`KNOWS_WORLD`). `state_dir`: where a process keeps files that outlive it; None within an
-    evaluation.
+    evaluation. `outside`: what gateways to other wires need of the router; None where there is none.
     """
 
     name: str
@@ -52,6 +60,7 @@ class Io(Protocol):
     lockstep: bool
     fresh: bool
     state_dir: Path | None
+    outside: Outside | None
 
     def take_all(self, topic: Topic[M]) -> list[M]:
         """Every message received since the last step, oldest first."""
@@ -78,6 +87,12 @@ class Io(Protocol):
 
     def has_subscribers(self, topic: Topic[Any]) -> bool:
         """True when somebody subscribes to what this process publishes on the topic."""
+
+    def demand(self, topic: Topic[Any], wanted: bool) -> None:
+        """Subscribe, or no longer, to a topic of the service's ON_DEMAND; of a latched one the present value comes.
+
+        Nothing that was published before is delivered, and what an outage swallowed is not sent again.
+        """
 
     def new_id(self, prefix: str) -> str: ...
 

@@ -107,12 +107,14 @@ def open_session(
     wait: Callable[[float], bool] | None = None,
     patience: float = 3.0,
     name: str = OPERATOR,
+    prefixed: bool = True,
 ) -> Iterator[zenoh.Session]:
     """An open session that is closed whatever happens: an open one keeps the process from ending.
 
     Zenoh is deaf to signals while it connects, so it opens in a thread of its own, in attempts that end by themselves.
     A node passes `wait(seconds) -> stop?` and waits for its router as long as that is False; a tool waits `patience`
-    seconds. With keys the session shows the certificate of `name`.
+    seconds. With keys the session shows the certificate of `name`. One that is not `prefixed` has its keys outside of
+    the namespace.
 
     Raises:
         BusError: a bad endpoint or certificate, or no router in time.
@@ -120,7 +122,7 @@ def open_session(
     """
     opening: Future[zenoh.Session] = Future()
     shown = identity_for(connect, name, namespace)
-    config = client_config(connect, namespace, shown=shown)
+    config = client_config(connect, namespace if prefixed else "", shown=shown)
     attempt = ATTEMPT if wait is not None else min(ATTEMPT, patience)
     # No daemon: a thread that comes back from Zenoh while Python ends aborts the process, so Python waits for it.
     Thread(target=_open, args=(config, opening, attempt), name="zenoh-open").start()

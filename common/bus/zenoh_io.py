@@ -38,8 +38,9 @@ class ZenohIo(IoBase):
         lockstep: bool,
         clock: Clock,
         log_level: str = "info",
+        on_demand: Iterable[Topic[Any]] = (),
     ) -> None:
-        reads, writes = tuple(reads), tuple(writes)
+        reads, writes, later = tuple(reads), tuple(writes), {t.key for t in on_demand}
         self._session = opened
         self._log_publisher: Any = opened.declare_publisher(topics.LOG.of(name), encoding=codec.JSON)
         super().__init__(
@@ -60,8 +61,10 @@ class ZenohIo(IoBase):
         self._kept: list[Any] = []
         self._streams: list[tuple[Any, Mailbox[Any]]] = []
         self._publishers = {t.key: delivery.Publisher(opened, t, lossless=lockstep) for t in writes}
+        self._demanded: dict[str, Any] = {}
         for topic in reads:
-            self._subscribe(topic)
+            if topic.key not in later:
+                self._subscribe(topic)
         self._kept.append(delivery.watch_tokens(opened, self._on_token))
         self._kept.append(delivery.listen(opened, topics.HEALTH.key, self._on_health))
 
@@ -72,7 +75,7 @@ class ZenohIo(IoBase):
             waiting: Any = handlers.RingChannel(CAPACITY if self.lockstep else 1)
             self._streams.append((self._session.declare_subscriber(topic.key, waiting), box))
             if topic.latched:
-                self._session.get(topic.key, lambda reply: _keep(box, reply.ok) if reply.ok is not None else None)
+                self._present(topic, box)
             return
         started, stale_key = self._started, f"{topic.key} (stale)"
 
@@ -83,6 +86,28 @@ class ZenohIo(IoBase):
             _keep(box, sample)
 
         self._kept.append(delivery.subscribe(self._session, topic, receive))
+
+    def demand(self, topic: Topic[Any], wanted: bool) -> None:
+        if wanted == (topic.key in self._demanded):
+            return
+        if not wanted:
+            gone = self._demanded.pop(topic.key)
+            self._streams = [(stream, box) for stream, box in self._streams if stream is not gone]
+            gone.undeclare()
+            return
+        box = self._boxes[topic.key]
+        if topic.keep == "latest":
+            waiting: Any = handlers.RingChannel(CAPACITY if self.lockstep else 1)
+            self._demanded[topic.key] = self._session.declare_subscriber(topic.key, waiting)
+            self._streams.append((self._demanded[topic.key], box))
+        else:
+            self._demanded[topic.key] = delivery.listen(self._session, topic.key, lambda sample: _keep(box, sample))
+        if topic.latched and not topic.command:
+            self._present(topic, box)
+
+    def _present(self, topic: Topic[Any], box: Mailbox[Any]) -> None:
+        """Ask for the latched value; the answer comes into the mailbox."""
+        self._session.get(topic.key, lambda reply: _keep(box, reply.ok) if reply.ok is not None else None)
 
     def begin(self, tick: int | None, now: float) -> None:
         for stream, box in self._streams:

@@ -3,8 +3,9 @@
 A certificate's common name is `<service>`, or `<namespace>/<service>` for a robot that has a namespace. What is not
 granted here is denied: a service writes and reads the topics whose row names it, and answers its own queries. Clients
 are people's tools: an operator reads everything and writes what `*` may write, an observer only reads. An agent is a
-program that commands the robot in words: it may say what a person may say and stop the robot, and drives nothing.
-Routers, which link with each other, pass everything.
+program that commands the robot in words: it may say what a person may say and stop the robot, and drives nothing. A
+ROS peer has the keys of its ROS domain and nothing of the robot's own: the gateway stands between. Routers, which link
+with each other, pass everything.
 """
 
 from collections.abc import Iterable
@@ -14,8 +15,8 @@ import msgspec
 
 from common import topics as t
 
-Role = Literal["service", "operator", "observer", "agent", "router"]
-ROUTER, OPERATOR, AGENT, EAR = "router", "operator", "agent", "ear"
+Role = Literal["service", "operator", "observer", "agent", "router", "ros"]
+ROUTER, OPERATOR, AGENT, EAR, GATEWAY = "router", "operator", "agent", "ear", "ros2"
 
 CHANGING = tuple(q.key for q in t.QUERIES if q.changing)
 ALL_HEALTH, ALL_ALIVE = t.HEALTH.key, t.ALIVE_KEY.format(name="*")
@@ -31,11 +32,12 @@ AGENT_READS = (
 
 
 class Subject(msgspec.Struct, frozen=True):
-    """One certificate. `name` without the namespace; `common_name` with it."""
+    """One certificate. `name` without the namespace; `common_name` with it. `domain`: of those who speak ROS."""
 
     name: str
     role: Role = "service"
     namespace: str = ""
+    domain: int = 0
 
     @property
     def common_name(self) -> str:
@@ -63,6 +65,8 @@ def grants(subject: Subject) -> Grants:
             reads=(*reads, ALL_HEALTH, ALL_ALIVE),
             asks=(*reads, ALL_HEALTH, t.BRAIN_MISSIONS),
         )
+    if subject.role == "ros":
+        return Grants()
     questions = tuple(q.key for q in t.QUERIES if not q.changing)
     if subject.role == "observer":
         return Grants(reads=EVERYTHING, asks=(*questions, *(topic.key for topic in t.TABLE), ALL_HEALTH))
@@ -73,16 +77,21 @@ def grants(subject: Subject) -> Grants:
 def _service(name: str) -> Grants:
     """What the rows that name a service, or each, give it: the other side of a row of each does not get both."""
     written = [row.key for row in t.TABLE if name in row.writers or (t.EACH in row.writers and name not in row.readers)]
-    read = [row.key for row in t.TABLE if name in row.readers or (t.EACH in row.readers and name not in row.writers)]
+    own_rows = t.subscribed(name)
+    read = [row.key for row in t.TABLE if row in own_rows or _reads(row, name)]
     latched = [key for key in written if t.BY_KEY[key].latched]
     own, health = [row.of(name) for row in t.PER_SERVICE], t.HEALTH.of(name)
     return Grants(
         puts=(*written, *own),
-        reads=(*read, ALL_HEALTH, ALL_ALIVE),
+        reads=(*read, *(row.key for row in t.PER_SERVICE if row in (*own_rows, t.HEALTH)), ALL_ALIVE),
         answers=(*latched, health, *(q.key for q in t.QUERIES if q.server == name)),
         asks=(*read, ALL_HEALTH, *(q.key for q in t.QUERIES if name in q.askers)),
         tokens=(t.ALIVE_KEY.format(name=name),),
     )
+
+
+def _reads(row: t.Topic[Any], name: str) -> bool:
+    return name in row.readers or (t.EACH in row.readers and name not in row.writers)
 
 
 def acl(subjects: Iterable[Subject]) -> dict[str, Any]:
@@ -110,9 +119,17 @@ def _open(name: str) -> dict[str, Any]:
     return _rule(f"{name}: everything", MESSAGES, ("ingress", "egress"), (*EVERYTHING, "@/**"))
 
 
+def _ros(name: str, domain: int) -> dict[str, Any]:
+    """The keys of one ROS domain, which are below no robot's namespace: what gateways do is said by their own rows."""
+    keys = (f"{domain}/**", f"{domain}/**/{ADVANCED}", f"@ros2_lv/{domain}/**")
+    return _rule(f"{name}: ros domain {domain}", MESSAGES, ("ingress", "egress"), keys)
+
+
 def _rules(subject: Subject, robots: list[str]) -> list[dict[str, Any]]:
     """Ingress is what the subject sends to the router, egress what it gets from it."""
     granted, name = grants(subject), subject.common_name
+    if subject.role == "ros":
+        return [_ros(name, subject.domain)]
 
     def below(keys: Iterable[str], advanced: bool = False) -> tuple[str, ...]:
         """The keys in the robot's namespace, with those of advanced publishers below them."""
@@ -142,6 +159,8 @@ def _rules(subject: Subject, robots: list[str]) -> list[dict[str, Any]]:
         ("finds", ("declare_queryable",), ("egress",), (*asks, *histories)),
     )
     made = [_rule(f"{name}: {what}", messages, flows, keys) for what, messages, flows, keys in parts if keys]
+    if subject.role == "service" and subject.name == GATEWAY:
+        made.append(_ros(name, subject.domain))
     others = [f"{r}/**" for r in robots if r and r != subject.namespace and not subject.namespace.startswith(f"{r}/")]
     if others and "**" in reads:
         denied = (*others, *(f"{k}/{ADVANCED}" for k in others))

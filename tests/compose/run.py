@@ -13,14 +13,14 @@ from collections.abc import Callable
 from pathlib import Path
 
 from cli.link import Link
-from cli.services import NAMES
+from cli.services import NAMES, OPTIONAL
 from common.bus.session import open_session
 from tests.compose.engine import Engine, download_wheels, install, note, run
 from tests.compose.mission import carry_out
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 PROJECT, IMAGE, BASE = "tidybot-test", "tidybot-zenoh:dev", "tidybot-base"
-NODES = tuple(name for name in NAMES if name != "router")
+NODES = tuple(name for name in NAMES if name != "router" and name not in OPTIONAL)
 SPEED = "2"
 TOKEN = "a-token-for-this-test"
 

@@ -13,12 +13,12 @@ import pytest
 import yaml
 
 from cli.link import Link
-from cli.services import NAMES
+from cli.services import NAMES, OPTIONAL
 from common.bus.session import open_session
 from tests.compose.mission import carry_out
 from tests.support import ROOT, eventually, free_port
 
-NODES = tuple(name for name in NAMES if name != "router")
+NODES = tuple(name for name in NAMES if name != "router" and name not in OPTIONAL)
 SHELL = {
     "TIDYBOT_SPEED": "8",
     "TIDYBOT_LOCKSTEP": "true",
@@ -46,7 +46,9 @@ def compose() -> dict[str, Any]:
 def test_each_node_is_a_container_with_a_healthcheck_and_comes_back(compose: dict[str, Any]) -> None:
     started = {name: service for name, service in compose.items() if "profiles" not in service}
     assert set(started) == {"keys", "router", *NODES}
-    for name, service in started.items():
+    for name in OPTIONAL:
+        assert compose[name]["profiles"] == [name]
+    for name, service in {**started, **{name: compose[name] for name in OPTIONAL}}.items():
         if name == "keys":
             continue
         assert service["restart"] == "unless-stopped"
@@ -59,7 +61,7 @@ def test_each_node_is_a_container_with_a_healthcheck_and_comes_back(compose: dic
 
 
 def test_each_container_sees_its_own_certificate_only(compose: dict[str, Any]) -> None:
-    for name in ("router", *NODES):
+    for name in ("router", *NODES, *OPTIONAL):
         keys = [v for v in compose[name]["volumes"] if v.split(":")[1].startswith("/keys")]
         folder = name if name == "router" else f"./{name}"
         assert keys == [f"./run/keys/{folder}:/keys:ro"]

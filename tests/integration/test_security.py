@@ -60,6 +60,8 @@ def may_read(subject: str) -> set[str]:
         return AGENT_READS | {f"service/{n}/health" for n in SERVICES}
     clocks = {topics.LOCKSTEP_ACK.key} if subject == "sim" else CLOCKS
     read = {t.key for t in kind(subject).READS if t.key in topics.BY_KEY}
+    if subject in topics.VIEWERS:
+        read |= {f"log/{n}" for n in SERVICES}
     return read | clocks | {f"service/{n}/health" for n in SERVICES}
 
 

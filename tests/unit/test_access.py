@@ -55,9 +55,10 @@ def test_an_observer_changes_nothing() -> None:
 
 
 def test_only_clients_and_services_for_people_write_what_anyone_may() -> None:
-    anyone = {t.key for t in topics.TABLE if "*" in t.writers and set(t.writers) <= {"*", "dashboard"}}
+    for_people = {"dashboard", *topics.VIEWERS}
+    anyone = {t.key for t in topics.TABLE if "*" in t.writers and set(t.writers) <= {"*", *for_people}}
     assert set(access.grants(Subject(name="alice", role="operator")).puts) >= anyone
-    for name in set(SERVICES) - {"dashboard"}:
+    for name in set(SERVICES) - for_people:
         assert not set(access.grants(Subject(name=name)).puts) & anyone, name
 
 
@@ -91,7 +92,8 @@ def test_no_key_hides_behind_another() -> None:
     for name in SERVICES:
         granted = access.grants(Subject(name=name))
         assert not [k for k in (*granted.puts, *granted.answers, *granted.tokens) if "*" in k]
-        assert {k for k in granted.reads if "*" in k} == {access.ALL_HEALTH, access.ALL_ALIVE}
+        logs = {topics.LOG.key} if name in topics.VIEWERS else set()
+        assert {k for k in granted.reads if "*" in k} == {access.ALL_HEALTH, access.ALL_ALIVE} | logs
 
 
 def test_what_is_really_so_is_for_evaluators_alone() -> None:
@@ -112,6 +114,15 @@ def test_only_the_page_may_ask_for_the_missions_and_it_answers_for_nobody() -> N
     granted = access.grants(Subject(name="dashboard"))
     assert not set(granted.asks) & {*access.CHANGING, topics.SIM_TRUTH}
     assert topics.BRAIN_MISSIONS not in granted.answers
+
+
+def test_a_ros_peer_has_the_keys_of_its_domain_and_nothing_of_the_robot() -> None:
+    who = [Subject(name="ros2", domain=7), Subject(name="laptop", role="ros", domain=7), Subject(name="speech")]
+    made = access.acl(who)
+    (peer,) = rules(made, "laptop")
+    assert peer["key_exprs"] == ["7/**", "7/**/@adv/**", "@ros2_lv/7/**"]
+    assert peer["key_exprs"] in [r["key_exprs"] for r in rules(made, "ros2")]
+    assert not [r for r in rules(made, "speech") if any("ros" in key for key in r["key_exprs"])]
 
 
 # --- written out in full: what the router is told of one certificate of each sort

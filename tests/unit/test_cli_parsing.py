@@ -11,7 +11,7 @@ import pytest
 from cli import main, ports, programs, supervision
 from cli import plan as plans
 from cli.errors import CliError, checked
-from cli.services import NAMES, SERVICES
+from cli.services import NAMES, OPTIONAL, SERVICES
 
 
 def plan(*words: str) -> plans.Plan:
@@ -94,7 +94,21 @@ def test_options_become_the_environment_of_the_services() -> None:
 
 def test_only_and_without_choose_in_the_order_of_the_table() -> None:
     assert plan("--only", "brain,router").names == ["router", "brain"]
-    assert plan("--without", "sim").names == [n for n in NAMES if n != "sim"]
+    assert plan("--without", "sim").names == [n for n in NAMES if n not in ("sim", *OPTIONAL)]
+
+
+def test_optional_services_are_started_when_asked_for_and_their_package_is_there(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("cli.plan.importlib.util.find_spec", lambda name: object())
+    assert not {*plan().names} & {*OPTIONAL}
+    for name in OPTIONAL:
+        assert plan(f"--{name}").names == [n for n in NAMES if n == name or n not in OPTIONAL]
+        assert plan("--only", "router", f"--{name}").names == ["router", name]
+    monkeypatch.setattr("cli.plan.importlib.util.find_spec", lambda name: None)
+    for name in OPTIONAL:
+        with pytest.raises(CliError, match=rf"pip install 'tidybot-zenoh\[{name}\]'"):
+            plan(f"--{name}")
 
 
 def test_the_generated_configuration_has_one_program_a_service(tmp_path: Path) -> None:

@@ -1,0 +1,29 @@
+"""Pictures for watchers: each camera is asked while somebody looks at its topic, and not otherwise."""
+
+from typing import Any
+
+from common import messages as m
+from common import topics
+from common.bus.port import Io
+from common.topics import Topic
+
+PICTURES = {"head": topics.HEAD_RGBD, "wrist": topics.WRIST_RGBD}
+
+
+class PictureRequests:
+    """Asks for pictures of `width` x `height` at `rate` [Hz]; 0: for none."""
+
+    def __init__(self, io: Io, rate: float, width: int, height: int) -> None:
+        self._io, self._rate, self._width, self._height = io, rate, width, height
+        self._asked: dict[str, float] = {}
+
+    def step(self, now: float, watched: set[Topic[Any]]) -> None:
+        """Ask each camera whose topic is watched, when it is due."""
+        for name, topic in PICTURES.items():
+            if topic not in watched or (now - self._asked.get(name, float("-inf"))) * self._rate < 1:
+                continue
+            self._asked[name] = now
+            camera: Any = name
+            own = self._io.new_id(self._io.name)
+            request = m.CameraRequest(id=own, camera=camera, width=self._width, height=self._height)
+            self._io.publish(topics.CAMERA_REQUEST, request)

@@ -1,0 +1,135 @@
+"""What ROS peers may ask of the robot: one row for each ROS topic, checked as what any other client sends."""
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import msgspec
+
+from common import messages as m
+from common import topics
+from common.bus import codec
+from common.bus.port import Io
+from common.bus.validation import bad_field
+from common.geometry import quat_yaw
+from common.robot_frames import MAP
+from common.topics import Topic
+from services.ros2.outgoing import POSE, STRING
+from services.ros2.types import Types
+
+READY = ("IDLE", "WAITING", "LISTENING", "COMPLETED", "ERROR")
+"""States of the brain in which no mission is under way, so that others may move the robot."""
+LEVEL = 0.1
+"""How far from level a pose on the floor may be, and a quaternion's length from 1 [1]; chosen: rounding and no more."""
+
+LONGEST = 200
+"""Characters of a stop's reason that are passed on; chosen."""
+
+
+class Row(NamedTuple):
+    """ROS topic `name` of `type`: `convert` makes of its message one for `topic`. `moves`: not during a mission."""
+
+    name: str
+    type: str
+    topic: Topic[Any]
+    convert: Callable[[Io, Any], m.Message]
+    moves: bool = False
+
+
+def words(topic: Topic[Any]) -> Callable[[Io, Any], m.Message]:
+    """Words, or the message as JSON, as Zenoh clients send them."""
+
+    def convert(io: Io, message: Any) -> m.Message:
+        found: m.Message = codec.decode(topic, message.data.encode())
+        return found
+
+    return convert
+
+
+def pose(io: Io, message: Any) -> m.NavGoal:
+    """A standing pose in the map.
+
+    Raises:
+        ValueError: in another frame, or not on the floor.
+    """
+    frame, p, q = message.header.frame_id.lstrip("/"), message.pose.position, message.pose.orientation
+    if frame != MAP:
+        raise ValueError(f"a pose in frame {frame!r}: expected {MAP}")
+    length = q.w**2 + q.x**2 + q.y**2 + q.z**2
+    if not abs(length - 1) < LEVEL or abs(q.x) > LEVEL or abs(q.y) > LEVEL:
+        raise ValueError("an orientation that is no rotation about the vertical")
+    return m.NavGoal(x=p.x, y=p.y, theta=quat_yaw((q.w, q.x, q.y, q.z)))
+
+
+def twist(io: Io, message: Any) -> m.CmdVel:
+    """Base velocity; the driver limits it and holds when the stream falls silent."""
+    linear, angular = message.linear, message.angular
+    return m.CmdVel(vx=linear.x, vy=linear.y, omega=angular.z)
+
+
+def twist_stamped(io: Io, message: Any) -> m.CmdVel:
+    return twist(io, message.twist)
+
+
+def plan(io: Io, message: Any) -> m.ActionPlan:
+    """A plan as JSON, or the bare list of its steps as an answer to the last request that went to `plan_request`.
+
+    Raises:
+        ValueError: neither, or a list that nobody asked for.
+    """
+    text = message.data.encode()
+    if not text.lstrip().startswith(b"["):
+        return codec.decode(topics.ACTION_PLAN, text)
+    asked = io.latest(topics.PLAN_REQUEST)
+    if asked is None:
+        raise ValueError("a list of steps, and no plan was requested")
+    try:
+        steps = msgspec.json.decode(text, type=list[m.PlanStep])
+    except msgspec.DecodeError as error:
+        raise ValueError(str(error)) from None
+    return m.ActionPlan(request_id=asked.id, steps=steps, source="ros2")
+
+
+def stop(io: Io, message: Any) -> m.RobotStop:
+    """Whatever it says, it is a stop."""
+    return m.RobotStop(reason=message.data[:LONGEST] or "stop", source=io.name)
+
+
+def resume(io: Io, message: Any) -> m.RobotResume:
+    """Releases the brake alone; the mission goes on by `tidybot resume`."""
+    return m.RobotResume(source=io.name)
+
+
+ROWS = (
+    Row("voice_command", STRING, topics.VOICE_COMMAND, words(topics.VOICE_COMMAND)),
+    Row("brain/speech_goal", STRING, topics.SPEECH_GOAL, words(topics.SPEECH_GOAL), moves=True),
+    Row("brain/navigation_goal", STRING, topics.NAVIGATION_GOAL, words(topics.NAVIGATION_GOAL), moves=True),
+    Row("brain/manipulation_goal", STRING, topics.MANIPULATION_GOAL, words(topics.MANIPULATION_GOAL), moves=True),
+    Row("nav_goal", POSE, topics.NAV_GOAL, pose, moves=True),
+    Row("goal_pose", POSE, topics.NAV_GOAL, pose, moves=True),
+    Row("cmd_vel", "geometry_msgs/msg/Twist", topics.CMD_VEL, twist, moves=True),
+    Row("cmd_vel", "geometry_msgs/msg/TwistStamped", topics.CMD_VEL, twist_stamped, moves=True),
+    Row("action_plan", STRING, topics.ACTION_PLAN, plan),
+    Row("robot/stop", STRING, topics.ROBOT_STOP, stop),
+    Row("robot/resume", STRING, topics.ROBOT_RESUME, resume),
+)
+
+
+def message_of(row: Row, types: Types, io: Io, payload: bytes) -> m.Message:
+    """What a peer's payload asks for, with an id of its own where it has none.
+
+    Raises:
+        ValueError: no message of the row's type, or one that cannot be meant; the text is the reason.
+    """
+    message = row.convert(io, types.decode(row.type, payload))
+    if where := bad_field(message):
+        raise ValueError(f"{where} is not a finite number of a sane size")
+    if getattr(message, "id", None) == "":
+        message.id = io.new_id("ros2")  # type: ignore[attr-defined]
+    return message
+
+
+def refusal(row: Row, state: m.BrainState | None) -> str:
+    """Why a row's message may not go through now, "" when it may."""
+    if row.moves and state is not None and state.state not in READY:
+        return f"a mission is under way ({state.state}); cancel it first"
+    return ""
