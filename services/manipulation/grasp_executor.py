@@ -55,7 +55,8 @@ def grab(robot: Robot, goal: m.ManipulationGoal, wanted: str) -> Steps[str]:
         candidates = shown(target, plan.options, robot.base, robot.now, tried, plan.grasp.name, goal.id)
         robot.io.publish(topics.GRASPS, candidates)
         tried.add(plan.grasp.name)
-        robot.io.log.info("grasp chosen", object=found.label, grasp=plan.grasp.name)
+        opening = round(1000 * plan.opening) if plan.opening else None
+        robot.io.log.info("grasp chosen", object=found.label, grasp=plan.grasp.name, opening_mm=opening)
         try:
             return (yield from _execute_grab(robot, plan, goal, found, widths))
         except Failure as failure:
@@ -100,10 +101,10 @@ def _execute_grab(
     yield from robot.move_gripper(0.0)
     yield from robot.follow(plan.reach, config.joint_speed)
     plan = yield from aimed(robot, plan, goal, found)
+    if plan.opening is not None:
+        yield from robot.move_gripper(planner_of(robot).arm.hand.share(plan.opening))
     free = robot.torques.copy()
     try:
-        if plan.opening is not None:
-            yield from robot.move_gripper(planner_of(robot).arm.hand.share(plan.opening))
         yield from robot.follow(plan.insert, config.joint_speed * INSERTING, robot.guard(free))
         robot.phase = "grasp"
         yield from robot.move_gripper(1.0, CLOSING_EFFORT)
