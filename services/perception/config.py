@@ -4,7 +4,12 @@ from common.config import Config
 
 
 class PerceptionConfig(Config, frozen=True):
-    """`detector` is `classical` or `package.module:Class` of a detector of one's own (see detect.Detector).
+    """`grounder` is asked which object is meant where words, names and print do not tell: `words` nobody, `clip` the
+    ONNX export in the folder or of the hub's name `clip_model`, believed from the confidence `clip_least` on, `vision`
+    the model `vision_model` at the OpenAI-compatible endpoint `vision_url`, with `vision_key`, for `vision_timeout`
+    seconds. In lockstep an answer takes `grounder_seconds`.
+
+    `detector` is `classical` or `package.module:Class` of a detector of one's own (see detect.Detector).
 
     A picture is taken every `period` seconds while the robot moves or works, every `idle_period` while it rests,
     and at once for a query; one of `fine_width` x `fine_height` to `read` what is printed on objects, when words are
@@ -24,6 +29,14 @@ class PerceptionConfig(Config, frozen=True):
     min_confidence: float = 0.6
     gone_after: int = 3
     read: bool = True
+    grounder: str = "words"
+    clip_model: str = ""
+    clip_least: float = 0.5
+    vision_url: str = ""
+    vision_model: str = ""
+    vision_key: str = ""
+    vision_timeout: float = 6.0
+    grounder_seconds: float = 1.0
     fine_width: int = 1280
     fine_height: int = 960
     synonyms: dict[str, str] = {}

@@ -65,7 +65,7 @@ class PerceptionService:
         self._config, self._io = config, io
         self._detector = load_detector(config.detector)(io.household, config.max_range)
         self._world = ""
-        self._naming = Naming(io, config.read)
+        self._naming = Naming(io, config)
         self._reset()
         self._state = StateBuffer(io)
         self._hand_at: tuple[float, float, float] | None = None
@@ -236,6 +236,9 @@ class PerceptionService:
         if found is None and not result.candidates and not read and self._naming.unread(query.query):
             self._reading = Reading(seen, view)
             return
+        if found is None and not result.candidates and self._naming.consult(query, self._published):
+            self._reading = Reading(seen, view, taken=True, fine=read)
+            return
         answer = _pose_answer(query, result, jpeg(view) if query.since else b"")
         if found is None and not result.candidates:
             answer.unsure = self._naming.unsure(query.query, self._published, self._state.base or (0.0, 0.0, 0.0))
@@ -256,7 +259,12 @@ class PerceptionService:
     def _ground(self, query: m.ObjectQuery) -> Grounding:
         base = self._state.base or (0.0, 0.0, 0.0)
         objects = self._naming.annotated(self._tracker.objects(query.since or -math.inf))
-        return ground(query.query, objects, self._io.household, base, self._config.synonyms, self._naming.match)
+        result = ground(query.query, objects, self._io.household, base, self._config.synonyms, self._naming.match)
+        return (
+            result
+            if result.found or result.candidates
+            else Grounding(self._naming.chosen(query, objects), result.reason)
+        )
 
 
 def detect(detector: Detector, view: View, base: Pose2, robot: RobotModel | None) -> tuple[View, list[Detection]]:

@@ -1,7 +1,9 @@
 """The perception service before painted boxes: names are taught, known again, forgotten; print is read on request."""
 
+from collections.abc import Mapping
 from pathlib import Path
-from typing import ClassVar
+from types import MappingProxyType
+from typing import Any, ClassVar
 
 import numpy as np
 import pytest
@@ -42,9 +44,11 @@ class ShownBoxes:
 class Shown(Node):
     """The service with a camera before which boxes stand."""
 
-    def __init__(self, *boxes: Box, state_dir: Path | None = None) -> None:
+    def __init__(
+        self, *boxes: Box, state_dir: Path | None = None, settings: Mapping[str, Any] = MappingProxyType({})
+    ) -> None:
         ShownBoxes.boxes = list(boxes)
-        config = PerceptionConfig(detector=f"{__name__}:ShownBoxes")
+        config = PerceptionConfig(detector=f"{__name__}:ShownBoxes", **settings)
         super().__init__(PerceptionService, config, load_household("minimal"), state_dir=state_dir)
         self._taken = 0
         self.sizes: list[tuple[int, int]] = []

@@ -26,7 +26,7 @@ class Crop:
 
     `size`: full extents [m], the first two in no order, the last along the axis; `distance` [m] from the camera;
     `bearing`: unit vector (3,) from the object to the camera in frame map; `seen`: share of the box's outline that
-    shows the object, 0 to 1.
+    shows the object, 0 to 1; `box`: its left, top, right and bottom [pixels] in the picture.
     """
 
     rgb: NDArray[np.uint8]
@@ -36,6 +36,7 @@ class Crop:
     distance: float
     bearing: Array
     seen: float
+    box: tuple[int, int, int, int] = (0, 0, 0, 0)
 
     @property
     def colours(self) -> NDArray[np.uint8]:
@@ -83,4 +84,13 @@ def crop_of(view: View, o: WorldObject, robot: Mask | None = None) -> Crop | Non
     return Crop(
         rgb=view.rgb[window].copy(), mask=mask, along=along, size=(a, b, c), distance=distance,
         bearing=away / distance, seen=min(1.0, float(np.count_nonzero(mask)) / max(1.0, 0.6 * float(whole))),
+        box=_box(mask, left, top),
+    )  # fmt: skip
+
+
+def _box(mask: Mask, left: int, top: int) -> tuple[int, int, int, int]:
+    """Where the pixels of a mask are in the picture that it was cut from at `left` and `top`."""
+    rows, columns = np.nonzero(mask)
+    return (
+        left + int(columns.min()), top + int(rows.min()), left + int(columns.max()) + 1, top + int(rows.max()) + 1,
     )  # fmt: skip

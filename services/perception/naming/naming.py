@@ -14,8 +14,11 @@ from common import topics
 from common.bus.port import Io
 from common.geometry import Pose2
 from common.naming import match_object, normalise
+from services.perception.config import PerceptionConfig
 from services.perception.naming import reader
 from services.perception.naming.appearance import Look
+from services.perception.naming.consult import Consultant
+from services.perception.naming.grounders.grounder import load_grounder
 from services.perception.naming.memory import NameMemory
 from services.perception.naming.observer import Observer
 from services.perception.naming.recognise import Match, matches
@@ -26,10 +29,15 @@ from services.perception.view import View
 
 
 class Naming:
-    """Taught names and printed words of the objects in sight. `read`: print is read when a question needs it."""
+    """Taught names and printed words of the objects in sight.
 
-    def __init__(self, io: Io, read: bool) -> None:
-        self._io = io
+    Raises:
+        StartError: the grounder of the configuration cannot be used.
+    """
+
+    def __init__(self, io: Io, config: PerceptionConfig) -> None:
+        self._io, read = io, config.read
+        self._consultant = Consultant(io, load_grounder(config), config.grounder_seconds)
         if read and not reader.installed():
             io.log.warning(reader.MISSING)
         self._reader = reader.Reader() if read and reader.installed() else None
@@ -56,12 +64,13 @@ class Naming:
 
     @property
     def busy(self) -> bool:
-        """The worker looks at objects."""
-        return self._observer.busy
+        """The worker looks at objects, or thinks about a question."""
+        return self._observer.busy or self._consultant.busy
 
     def step(self, now: float) -> bool:
         """Take requests and what the worker has seen; True when objects may have other names or texts than before."""
         changed = self._observer.step(now)
+        self._consultant.step(now)
         names = len(self._memory.names), *self._memory.names
         self._teacher.step(now)
         if changed or names != (len(self._memory.names), *self._memory.names):
@@ -101,6 +110,14 @@ class Naming:
         best = max(scores.values(), default=0.0)
         # One that reads exactly so is meant rather than one that nearly does.
         return [o for o in known if scores[o.id] >= max(SURE, min(best, 0.99))]
+
+    def consult(self, query: m.ObjectQuery, objects: Sequence[m.WorldObject]) -> bool:
+        """Ask the configured grounder about the newest picture; True when an answer is to be waited for."""
+        return self._consultant.ask(query, self._observer.sights, objects)
+
+    def chosen(self, query: m.ObjectQuery, objects: Sequence[m.WorldObject]) -> m.WorldObject | None:
+        """What the grounder has chosen for the query."""
+        return self._consultant.chosen(query, objects)
 
     def unread(self, query: str) -> bool:
         """A look at what is printed could answer the query, and there is a reader."""

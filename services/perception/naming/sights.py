@@ -48,19 +48,22 @@ class Sight:
 
 
 class Sights:
-    """All objects in sight, by their id in `world/objects`."""
+    """All objects in sight, by their id in `world/objects`; the newest `view`, and the ids of those that it has
+    `shown`."""
 
     def __init__(self) -> None:
         self.by_id: dict[str, Sight] = {}
+        self.view: View | None = None
+        self.shown: list[str] = []
 
     def see(self, view: View, objects: list[WorldObject]) -> list[str]:
         """Cut the objects out of a view; ids of those that it shows. What is held is not cut: fingers are before it."""
+        self.view, self.shown = view, []
         known = {o.id for o in objects}
         self.by_id = {key: sight for key, sight in self.by_id.items() if key in known}
-        shown = []
         for o in objects:
             crop = None if o.held or not o.id else crop_of(view, o)
             if crop is not None:
                 self.by_id.setdefault(o.id, Sight()).crop = crop
-                shown.append(o.id)
-        return shown
+                self.shown.append(o.id)
+        return self.shown
