@@ -30,13 +30,15 @@ class Words(Strict, frozen=True):
     """`kinds` and `colours`: the word that the robot uses, and other words for the same.
 
     `groups`: words that stand for several kinds. `mass`: those of them that mean everything of the kind ("rubbish").
-    `tidy` and `throw`: where things go that are put away or thrown away; the first rule that fits counts.
+    `needs`: what helps somebody who is "thirsty". `tidy` and `throw`: where things go that are put away or thrown away;
+    the first rule that fits counts.
     """
 
     kinds: dict[str, tuple[str, ...]] = {}
     colours: dict[str, tuple[str, ...]] = {}
     groups: dict[str, tuple[str, ...]] = {}
     mass: tuple[str, ...] = ()
+    needs: dict[str, str] = {}
     tidy: tuple[Destination, ...] = ()
     throw: tuple[Destination, ...] = ()
 
@@ -65,6 +67,7 @@ class Words(Strict, frozen=True):
             colours={**self.colours, **more.colours},
             groups={**self.groups, **more.groups},
             mass=(*self.mass, *more.mass),
+            needs={**self.needs, **more.needs},
             tidy=more.tidy or self.tidy,
             throw=more.throw or self.throw,
         )

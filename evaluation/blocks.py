@@ -8,6 +8,7 @@ import numpy as np
 
 from common.config import config_dir
 from common.scene import ObjectSpec, Receptacle, Scene, load_scene
+from common.words import words_path
 from evaluation.case import Case, Line
 from evaluation.faults import Rule
 from judge.evidence import Want
@@ -78,7 +79,7 @@ def hallucinated(plan: list[dict[str, str]]) -> tuple[Rule, ...]:
 
 def destination(spec: ObjectSpec, scene: Scene, path: Path | None = None) -> str:
     """Where an object belongs by the tidying rules: the first receptacle of the first rule; "" when none fits."""
-    for rule in _rules(path or config_dir() / "planner.toml"):
+    for rule in _rules(path or words_path(config_dir())):
         if spec.kind not in rule.get("kinds", [spec.kind]) or spec.colour not in rule.get("colours", [spec.colour]):
             continue
         for name in rule["to"]:

@@ -195,7 +195,7 @@ def dialogue(seed: int) -> Case:
 
 
 def tidy(seed: int) -> Case:
-    """Four objects from the living table to where the rules of `config/planner.toml` want them."""
+    """Four objects from the living table to where the rules of `config/words.toml` want them."""
     scene, rng = flat(), random(seed, 5)
     table = "living table"
     order = [scene.objects[int(i)] for i in rng.permutation(len(scene.objects))]

@@ -201,7 +201,7 @@ def _tidied(surface: str) -> str:
     """Everything on a surface where the rules of the configuration say, worked out without the grammar."""
     moved = []
     for o in (o for o in FLAT if o.on == surface):
-        rule = next(r for r in CONFIG.tidy if not r.kinds or o.kind in r.kinds)
+        rule = next(r for r in HOME.words.tidy if not r.kinds or o.kind in r.kinds)
         target = next(r for name in rule.to for r in HOME.receptacles if name in (r.name, *r.aliases, r.kind))
         if target.name != surface:
             moved.append(f"put({o.label}, {target.name})")

@@ -185,7 +185,8 @@ def remark(builder: PlanBuilder, slots: Slots) -> None:
     """A reason for what is asked next, such as "I'm thirsty"; a need that is known is met if nothing else is asked."""
     if "and" in slots["words"]:
         raise Refusal("I do not understand that")
-    builder.need = next((n for w, n in builder.config.needs.items() if w in slots["words"]), builder.need)
+    needs = builder.world.household.words.needs
+    builder.need = next((n for w, n in needs.items() if w in slots["words"]), builder.need)
 
 
 def mention(builder: PlanBuilder, slots: Slots) -> None:

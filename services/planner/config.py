@@ -1,16 +1,8 @@
-"""Parameters of the planner: where things go, words beyond the household's, and the optional language model."""
+"""Parameters of the planner and of the optional language model."""
 
 from typing import Literal
 
 from common.config import Config
-
-
-class Rule(Config, frozen=True):
-    """Things of these kinds and colours (empty: any) go to the first of `to` in the household: a name or a kind."""
-
-    to: tuple[str, ...]
-    kinds: tuple[str, ...] = ()
-    colours: tuple[str, ...] = ()
 
 
 class PlannerConfig(Config, frozen=True):
@@ -18,18 +10,11 @@ class PlannerConfig(Config, frozen=True):
 
     `llm_tries` answers are asked for within `llm_timeout`; in lockstep they show after `llm_seconds`.
 
-    `tidy` and `throw` are tried in order; `groups` are words for several kinds, `mass` those of them
-    that mean all there is; `needs` say what helps somebody who is "thirsty". With `open_vocabulary` a thing that
-    nobody has named is looked for by its words, else only what the scene names or perception has seen is known.
-    Times in seconds."""
+    With `open_vocabulary` a thing that nobody has named is looked for by its words, else only what the household names
+    or perception has seen is known. Times in seconds.
+    """
 
     backend: Literal["auto", "grammar", "llm"] = "auto"
-    tidy: tuple[Rule, ...] = ()
-    throw: tuple[Rule, ...] = ()
-    groups: dict[str, tuple[str, ...]] = {}
-    mass: tuple[str, ...] = ()
-    colours: dict[str, str] = {}
-    needs: dict[str, str] = {}
     open_vocabulary: bool = True
     set_down: tuple[str, ...] = ("counter", "table", "shelf")
     max_steps: int = 60

@@ -67,7 +67,7 @@ class Llm:
             LlmError: no JSON of the right form, or nothing possible.
         """
         config, vocabulary = self._config, Vocabulary(world, self._config)
-        talk, form = messages(command, world, config, rejected), schema(world)
+        talk, form = messages(command, world, rejected), schema(world)
         end = self._clock() + config.llm_timeout
         wrong = ""
         for _ in range(max(1, config.llm_tries)):

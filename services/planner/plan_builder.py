@@ -7,8 +7,9 @@ import msgspec
 from common.floor_plan import Receptacle
 from common.language.normalise import enumeration
 from common.messages import AROUND, GRIPPER, PlanStep
+from common.words import Destination
 from services.planner.choice_points import ChoicePoints
-from services.planner.config import PlannerConfig, Rule
+from services.planner.config import PlannerConfig
 from services.planner.vocabulary import Spot, Vocabulary
 from services.planner.world import BelievedObject, World
 
@@ -138,7 +139,7 @@ class PlanBuilder:
         return held
 
     # --- where things go
-    def destination(self, item: BelievedObject, rules: tuple[Rule, ...]) -> Receptacle:
+    def destination(self, item: BelievedObject, rules: tuple[Destination, ...]) -> Receptacle:
         """By the first rule that fits the thing and the household."""
         for rule in rules:
             if (rule.kinds and item.kind not in rule.kinds) or (rule.colours and item.colour not in rule.colours):

@@ -5,7 +5,7 @@ from typing import Any
 import msgspec
 
 from common.messages import GRIPPER, RejectedPlan, StepAction
-from services.planner.config import PlannerConfig, Rule
+from common.words import Destination
 from services.planner.world import World
 
 RULES = """\
@@ -47,7 +47,7 @@ def schema(world: World) -> dict[str, Any]:
     return {**root, "$defs": parts}
 
 
-def messages(command: str, world: World, config: PlannerConfig, rejected: list[RejectedPlan]) -> list[dict[str, str]]:
+def messages(command: str, world: World, rejected: list[RejectedPlan]) -> list[dict[str, str]]:
     """System and user message; the latter is the world and the command as JSON."""
     told: dict[str, object] = {
         "objects": [
@@ -59,8 +59,8 @@ def messages(command: str, world: World, config: PlannerConfig, rejected: list[R
         "in_hand": world.held.label if world.held else "",
         "receptacles": [r.name for r in world.household.receptacles],
         "places": [n for n in _targets(world) if world.household.receptacle(n) is None],
-        "where_things_go": [_rule(r) for r in config.tidy],
-        "where_rubbish_goes": [_rule(r) for r in config.throw],
+        "where_things_go": [_rule(r) for r in world.household.words.tidy],
+        "where_rubbish_goes": [_rule(r) for r in world.household.words.throw],
         "command": command,
     }
     if rejected:
@@ -69,7 +69,7 @@ def messages(command: str, world: World, config: PlannerConfig, rejected: list[R
     return [{"role": "system", "content": RULES}, {"role": "user", "content": user}]
 
 
-def _rule(rule: Rule) -> str:
+def _rule(rule: Destination) -> str:
     which = " ".join((*rule.colours, *(rule.kinds or ("anything else",))))
     return f"{which}: {' or '.join(rule.to)}"
 

@@ -138,6 +138,8 @@ def _resolve(builder: PlanBuilder, phrase: Phrase, prefer_held: bool) -> list[Re
     if held and fits(held) and not phrase.relation and phrase.which != "other":
         seen = [held, *seen]
     specs = [t for t in builder.world.specs if fits(t)]
+    if not seen and not specs and builder.vocabulary.new_nouns and not sense.every:
+        return _never_seen(builder, phrase)
     if not seen and not specs:
         raise Refusal(unknown(builder, tuple(phrase.text.split()), " ".join((*phrase.colours, phrase.noun))))
     if phrase.relation:
@@ -147,11 +149,20 @@ def _resolve(builder: PlanBuilder, phrase: Phrase, prefer_held: bool) -> list[Re
 
 def _new(builder: PlanBuilder, phrase: Phrase) -> Referent:
     """A thing that nobody has listed or seen, by its own words."""
-    label = " ".join((*phrase.colours, phrase.noun))
+    label = " ".join((*phrase.colours, phrase.singular or phrase.noun))
     thing = next((t for t in builder.world.objects if t.label == label), BelievedObject(label, "", seen=False))
     spots = builder.vocabulary.spot(phrase.anchor) if phrase.relation else []
-    words = " ".join(without_determiners(tuple(phrase.text.split()))) if phrase.relation else ""
+    words = " ".join(without_determiners(tuple(phrase.text.split()))) if phrase.relation or phrase.which else ""
     return Referent(thing, words, spots[0] if spots and not spots[0].home else None)
+
+
+def _never_seen(builder: PlanBuilder, phrase: Phrase) -> list[Referent]:
+    """Of a kind whose word is known, but of which none is listed or seen: one is looked for, all are not."""
+    if phrase.count != 1:
+        builder.look_first(builder.vocabulary.surfaces(), f"I have seen no {phrase.singular} yet")
+    if phrase.sense.kinds and phrase.singular in builder.vocabulary.groups:
+        phrase = msgspec.structs.replace(phrase, singular=builder.choices.pick(sorted(phrase.sense.kinds)))
+    return [_new(builder, phrase)]
 
 
 def fitting(builder: PlanBuilder, phrase: Phrase) -> Callable[[BelievedObject], bool]:

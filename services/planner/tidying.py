@@ -6,19 +6,19 @@ from common.floor_plan import Receptacle
 from common.language.normalise import without_determiners
 from common.language.noun_phrase import related
 from common.language.pattern import Slots
+from common.words import Destination
 from services.planner.actions import take
-from services.planner.config import Rule
 from services.planner.plan_builder import PlanBuilder, Refusal
 from services.planner.resolve import Referent, referents, spot
 from services.planner.vocabulary import Spot
 
 
 def put_away(builder: PlanBuilder, slots: Slots) -> None:
-    _sort(builder, referents(builder, slots["thing"], prefer_held=True), builder.config.tidy)
+    _sort(builder, referents(builder, slots["thing"], prefer_held=True), builder.world.household.words.tidy)
 
 
 def throw_away(builder: PlanBuilder, slots: Slots) -> None:
-    _sort(builder, referents(builder, slots["thing"], prefer_held=True), builder.config.throw)
+    _sort(builder, referents(builder, slots["thing"], prefer_held=True), builder.world.household.words.throw)
 
 
 def tidy(builder: PlanBuilder, slots: Slots) -> None:
@@ -32,7 +32,7 @@ def tidy(builder: PlanBuilder, slots: Slots) -> None:
     if not there:
         builder.look_first(surfaces, f"I have not seen what lies on the {name} yet, so send me there first")
     near = sorted(there, key=lambda t: (builder.world.distance(t), t.label))
-    _sort(builder, [Referent(t) for t in near], builder.config.tidy, quiet=True)
+    _sort(builder, [Referent(t) for t in near], builder.world.household.words.tidy, quiet=True)
     if not any(t.on != _now(builder, t.label) for t in there):
         builder.say(f"The {name} is tidy already.")
 
@@ -41,7 +41,9 @@ def _now(builder: PlanBuilder, label: str) -> str:
     return next((t.on for t in builder.world.objects if t.label == label), "")
 
 
-def _sort(builder: PlanBuilder, everything: Iterable[Referent], rules: tuple[Rule, ...], quiet: bool = False) -> None:
+def _sort(
+    builder: PlanBuilder, everything: Iterable[Referent], rules: tuple[Destination, ...], quiet: bool = False
+) -> None:
     """Each where its rule says; what is there already stays."""
     moved = list(everything)
     for meant in moved:

@@ -60,9 +60,10 @@ class Vocabulary:
         self.new_nouns = False
         self._household = household = world.household
         known = [*world.specs, *world.objects]
-        self.kinds = {t.kind for t in known if t.kind}
+        words = household.words
+        self.kinds = {t.kind for t in known if t.kind} | set(words.kinds)
         self.colours = {c: c for c in {*(t.colour for t in known), *(r.colour for r in household.receptacles)} if c}
-        self.colours |= {word: c for word, c in config.colours.items() if c in self.colours}
+        self.colours |= {word: c for c, others in words.colours.items() for word in (c, *others)}
         self._nouns: dict[str, Sense] = {}
         self._printed: dict[str, set[str]] = {}
         self._aliases(household)
@@ -75,11 +76,21 @@ class Vocabulary:
             named = self._nouns.get(kind, Sense())
             only = next(iter(named.names)) if len(named.names) == 1 else ""
             self._nouns[kind] = Sense(kinds=frozenset({kind}), prefer=only)
-        for word, group in config.groups.items():
-            if members := frozenset(k for k in group if k in self.kinds):
-                self._nouns.setdefault(normalise(word), Sense(kinds=members))
-        self._mass = frozenset(map(normalise, config.mass))
+        for kind, others in words.kinds.items():
+            for word in others:
+                self._mean(word, (kind,))
+        for word, group in words.groups.items():
+            self._mean(word, group)
+        self.groups = frozenset(map(normalise, words.groups))
+        self._mass = frozenset(map(normalise, words.mass))
         self._places = self._standing(household, world.places)
+
+    def _mean(self, word: str, kinds: Iterable[str]) -> None:
+        """A word for objects of these kinds, beside what it means already."""
+        noun = normalise(word)
+        before = self._nouns.get(noun, Sense())
+        if not before.names or before.kinds:
+            self._nouns[noun] = Sense(kinds=before.kinds | frozenset(kinds), prefer=before.prefer)
 
     def _name(self, noun: str, label: str) -> None:
         """One more thing that has this name."""

@@ -11,7 +11,7 @@ import pytest
 from bench.mission import Robot, fetch
 from common import config, topics
 from common import messages as m
-from common.household import load_household, told
+from common.household import load_household, load_words, told
 from common.kinds import KINDS
 from common.plan_rules import known_world
 from common.scene import ObjectSpec, load_scene
@@ -53,7 +53,7 @@ def test_a_tea_tin_of_ones_own_is_fetched() -> None:
 def test_a_rule_of_ones_own_says_where_it_goes(tmp_path: Path) -> None:
     directory = tmp_path / "config"
     shutil.copytree(config.DEFAULT_DIR, directory)
-    rules = directory / "planner.toml"
+    rules = directory / "words.toml"
     rules.write_text(rules.read_text().replace("[[tidy]]\n", f"{RULE}[[tidy]]\n", 1))
     scene = load_scene(TEA)
     spec = scene.object("tea tin")
@@ -61,10 +61,10 @@ def test_a_rule_of_ones_own_says_where_it_goes(tmp_path: Path) -> None:
     tin = m.WorldObject(
         label="tea tin", kind=spec.kind, colour=spec.colour, size=spec.size, on="table", position=(2.2, 0.3, 0.65)
     )
-    household = told(scene)
-    known = known_world(household, ["tea tin"], "")
     targets = {}
     for name, where in (("before", config.DEFAULT_DIR), ("after", directory)):
+        household = told(scene, load_words(where))
+        known = known_world(household, ["tea tin"], "")
         parameters = config.load("planner", PlannerConfig, where, {})
         world = believed(household, known, [tin], (0.0, 0.0, 0.0), 1.0)
         plan = grammar.plan("put the tea tin away", world, parameters, (), None, "r")

@@ -11,7 +11,7 @@ import pytest
 
 from tests.support import ROOT
 
-TABLE, BODIES, DISH = "_TABLE = (\n", "_BODIES = {\n", 'dish = ["mug", "bowl"]\n'
+TABLE, BODIES, DISH = "_TABLE = (\n", "_BODIES = {\n", 'dish = ["mug", "cup", "bowl", "plate"]\n'
 SPOON = (
     '  { name = "wooden spoon", kind = "spoon", colour = "brown", size = [0.15, 0.03, 0.02], mass = 0.05, '
     'rgba = [0.45, 0.3, 0.18, 1.0], aliases = ["spoon"] },\n'
@@ -22,7 +22,7 @@ import mujoco, numpy as np
 from common import config
 from common.kinds import KINDS, kind_of
 from common.messages import KnownWorld, ObjectPose
-from common.household import told
+from common.household import load_words, told
 from common.scene import load_scene
 from services.brain.world import placement
 from services.manipulation.grasp import Target, candidates
@@ -56,7 +56,7 @@ print(json.dumps({
     "grasps": len(held) >= 3 and all(g.width == 0.03 for g in held),
     "plan": [" ".join((s.action, s.object)).strip() for s in plan.steps],
     "fault": placement.judge_placement(lying, "wooden spoon", "delivery tray", told(scene)).fault,
-    "dishes": "spoon" in parameters.groups["dish"],
+    "dishes": "spoon" in load_words(config.DEFAULT_DIR).groups["dish"],
 }))
 """
 
@@ -96,7 +96,7 @@ def test_the_recipe_for_a_kind_touches_three_files_and_makes_a_spoon(tmp_path: P
     row, body, name, words = blocks()
     insert(folder / "common" / "kinds.py", TABLE, TABLE + row)
     insert(folder / "services" / "sim" / "objects.py", BODIES, f"{body}\n\n{BODIES}{name}")
-    insert(folder / "config" / "planner.toml", DISH, words)
+    insert(folder / "config" / "words.toml", DISH, words)
     found = ask(folder)
     assert found.returncode == 0, found.stderr
     answers = json.loads(found.stdout)
