@@ -11,14 +11,16 @@ import sys
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 
+from bench import unknown_objects
 from common.geometry import Pose2
 from common.household import told
 from common.messages import WorldObject
 from common.rendering.renderer import Renderer
-from common.scene import Receptacle, Scene, load_scene
+from common.scene import Receptacle, Scene, body_name, load_scene
 from services.camera.sensor import StereoCamera
 from services.perception import colour, segmentation
 from services.perception.detect import ClassicalDetector
@@ -112,6 +114,21 @@ def _view(renderer: Renderer, pose: Pose2, args: argparse.Namespace, rng: np.ran
     )
 
 
+def look_at(
+    args: argparse.Namespace,
+    renderer: Renderer,
+    chosen: Placement,
+    placements: list[Placement],
+    rng: np.random.Generator,
+) -> View | None:
+    """A view of an object of a world that is the shipped flat with other objects; None from another room."""
+    for p in placements:
+        row = renderer.model.joint(body_name(p.spec)).qposadr[0]
+        renderer.data.qpos[row : row + 7] = (*p.position, *p.quat)
+    pose = stand(rng, load_scene("apartment"), chosen)
+    return _view(renderer, pose, args, rng) if pose is not None else None
+
+
 def visible(view: View, placement: Placement) -> bool:
     """Its centre is in the picture, not far, and nothing stands before it."""
     u, v, z = (float(a) for a in view.project(np.array([placement.position]))[0])
@@ -142,7 +159,11 @@ def main() -> int:
     parser.add_argument("--pose-noise", type=float, default=0.0, help="of the robot's own pose [m and rad]")
     parser.add_argument("--backend", default="auto", choices=("auto", "egl", "osmesa", "raycast"))
     parser.add_argument("--verbose", "-v", action="store_true", help="name every mistake")
+    parser.add_argument("--unknown", choices=unknown_objects.SUITES, help="worlds that perception is not told about")
     args = parser.parse_args()
+    if args.unknown:
+        unknown_objects.measure(args, partial(look_at, args), visible)
+        return 0
     scene = load_scene("apartment")
     household = told(scene)
     detector = ClassicalDetector(household, 3.5)
