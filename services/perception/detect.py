@@ -15,7 +15,7 @@ from common.floor_plan import Thing, Vec3
 from common.geometry import Array
 from common.household import Household
 from common.kinds import kind_of
-from services.perception import colour, segmentation, shapes, toppled, unlisted
+from services.perception import colour, segmentation, separate, shapes, toppled, unlisted
 from services.perception.detection import Detection
 from services.perception.segmentation import Segment
 from services.perception.view import Mask, View
@@ -68,8 +68,18 @@ class ClassicalDetector:
     def detect(self, view: View, robot: Mask | None = None) -> list[Detection]:
         gains = colour.light(view.rgb)
         segments = segmentation.segments(view, self._household, self._max_range, robot)
-        found = (self._explain(view, s) or unlisted.describe(view, s, gains) for s in segments)
-        return [d for d in found if d is not None]
+        found: list[Detection] = []
+        for segment in segments:
+            known = self._explain(view, segment)
+            found += [known] if known is not None else self._measured(view, segment, gains)
+        return found
+
+    def _measured(self, view: View, segment: Segment, gains: Array) -> list[Detection]:
+        """The objects of a segment that no object of the household explains as a whole."""
+        found = separate.pieces(view, segment)
+        if len(found) == 1:
+            return [unlisted.describe(view, segment, found[0].shape, gains)]
+        return [self._explain(view, p.segment) or unlisted.describe(view, p.segment, p.shape, gains) for p in found]
 
     def _explain(self, view: View, segment: Segment) -> Detection | None:
         """The object of the household that explains a segment; None if none does."""

@@ -21,7 +21,7 @@ SLICES = 8
 """Pieces of the height in which the radius of a turned shape is read off."""
 LEVEL = math.pi / 2
 """Tilt [rad] of what lies on its side."""
-IRREGULAR, IRREGULAR_NOISE = 0.0035, 1.3
+IRREGULAR, IRREGULAR_NOISE = 0.003, 0.8
 """Mean distance [m], plus that of noise, from which on no primitive explains the points."""
 LONG = 1.6
 """Length by width from which what lies is long. Chosen: cans on their side have 1.4 and more."""
@@ -73,7 +73,7 @@ def measure(
     eye = camera - (0.0, 0.0, floor)
     steep = abs(eye[2] - local[:, 2].mean()) / max(1e-3, float(np.linalg.norm(eye - local.mean(axis=0))))
     h = max(0.008, primitives.top_of(local, noise * steep))
-    shapes = [_box(used, h, outline, noise), _irregular(used, h, noise)]
+    shapes = [_box(used, h, outline, noise)]
     _, _, extents, _ = primitives.rectangle(used[:, :2], 12)[0]
     wide, narrow = float(extents.max()), float(extents.min())
     if narrow > 0.45 * wide or not all(seen):
@@ -83,13 +83,11 @@ def measure(
     if wide > 1.15 * h:
         shapes += _lying(used, h, outline, noise)
     gaps = GAPS * max(0.0, SOLID - primitives.solidity(local, eye))
-    best = min(shapes, key=lambda s: _cost(s, noise) + (gaps if s.family in ("box", "ball") or s.tilt else 0.0))
+    shapes = [replace(s, residual=s.residual + gaps) if s.family != "round" or s.tilt else s for s in shapes]
+    best = min(shapes, key=lambda s: s.residual + COMPLEX * s.free * (0.001 + 0.3 * noise))
+    if best.residual > IRREGULAR + IRREGULAR_NOISE * noise:
+        best = _irregular(used, h, noise, best.residual)
     return replace(best, yaw=math.remainder(best.yaw, math.tau))
-
-
-def _cost(m: Measurement, noise: float) -> float:
-    limit = IRREGULAR + IRREGULAR_NOISE * noise
-    return limit if m.family == "irregular" else m.residual + COMPLEX * m.free * (0.001 + 0.3 * noise)
 
 
 def _spread(solution: Solution, entries: slice) -> float:
@@ -240,7 +238,10 @@ def _lying(points: Array, h: float, outline: Silhouette, noise: float) -> list[M
         # The narrow end is the top, where the axis points to.
         radii, along, yaw = radii[::-1], -along, yaw + math.pi
     steps = np.interp(along / length + 0.5, (at + 0.5) / SLICES, radii)
-    off = np.hypot(np.maximum(np.abs(along) - length / 2, 0.0), rho - steps)
+    beyond = np.abs(along) - length / 2
+    # The end that faces the camera is flat, or open.
+    end = np.minimum(np.abs(beyond), primitives.INNER)
+    off = np.where(rho < steps, np.minimum(steps - rho, end), np.hypot(rho - steps, np.maximum(beyond, 0.0)))
     r = float(radii.max())
     found = Measurement(
         "long" if length > LONG * 2 * r else "round", x, y, yaw, (length, 2 * r, 2 * r),
@@ -250,11 +251,11 @@ def _lying(points: Array, h: float, outline: Silhouette, noise: float) -> list[M
     return [found]
 
 
-def _irregular(points: Array, h: float, noise: float) -> Measurement:
-    """Oriented extents of what is no primitive."""
+def _irregular(points: Array, h: float, noise: float, residual: float) -> Measurement:
+    """Oriented extents of what is no primitive: the best of these leaves `residual` [m]."""
     _, yaw, extents, middle = primitives.rectangle(points[:, :2], 12)[0]
     length, width = (max(float(e), 0.01) for e in extents)
     if width > length:
         length, width, yaw = width, length, yaw + math.pi / 2
     x, y = (float(v) for v in middle)
-    return Measurement("irregular", x, y, math.remainder(yaw, math.pi), (length, width, h), 0.01, 0.01 + noise)
+    return Measurement("irregular", x, y, math.remainder(yaw, math.pi), (length, width, h), residual, 0.01 + noise)

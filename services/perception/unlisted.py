@@ -12,7 +12,7 @@ from common.messages import ShapeFamily
 from services.perception import colour
 from services.perception.detection import Detection
 from services.perception.measure import LEVEL, Measurement, measure
-from services.perception.segmentation import DEPTH_NOISE, MIN_PIXELS, Segment
+from services.perception.segmentation import DEPTH_NOISE, Segment
 from services.perception.view import View
 
 SURE, FEW, LIKE_NOTHING = 0.9, 180, 0.75
@@ -27,14 +27,11 @@ MOST_POINTS = 200
 """Points of an object that are told to others."""
 
 
-def describe(view: View, segment: Segment, gains: Array) -> Detection | None:
-    """The object that a segment shows, by its looks alone; None where too little of it is seen.
+def describe(view: View, segment: Segment, found: Measurement, gains: Array) -> Detection:
+    """The object that a segment shows, by its looks alone: its shape as `found`.
 
     `gains` (3,): what makes the picture's neutral surfaces grey (`colour.light`).
     """
-    if len(segment.rows) < MIN_PIXELS:
-        return None
-    found = measured(view, segment)
     shares = colour.shares(view.rgb[segment.rows, segment.columns], gains)
     words = colour.main_words(shares)
     spread = found.spread if not segment.cut else max(found.spread, CUT_SPREAD)
@@ -66,11 +63,20 @@ def describe(view: View, segment: Segment, gains: Array) -> Detection | None:
 
 def measured(view: View, segment: Segment) -> Measurement:
     """The shape of a segment, its noise by its distance."""
-    far = float(np.linalg.norm(segment.points.mean(axis=0) - view.position))
-    half_pixel = 0.5 / view.focal[0]
     return measure(
-        segment.points, segment.surface.height, view.position, segment.ends, half_pixel, DEPTH_NOISE * far * far
+        segment.points,
+        segment.surface.height,
+        view.position,
+        segment.ends,
+        0.5 / view.focal[0],
+        noise_of(view, segment),
     )
+
+
+def noise_of(view: View, segment: Segment) -> float:
+    """Standard deviation [m] of a segment's points along the line of sight."""
+    far = float(np.linalg.norm(segment.points.mean(axis=0) - view.position))
+    return DEPTH_NOISE * far * far
 
 
 def measures_of(m: Measurement, error: float) -> Measures:

@@ -1,0 +1,148 @@
+"""Objects that touch: one segment into the pieces that are objects of their own. Pure.
+
+A segment stays whole when one shape explains it, whatever is printed on it. Otherwise pieces of one colour each, and
+pieces on both sides of a valley, are tried: what they are must be explained much better one by one.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from common.geometry import Array
+from services.perception.measure import Measurement
+from services.perception.segmentation import MIN_PIXELS, Segment
+from services.perception.unlisted import measured, noise_of
+from services.perception.view import View
+
+CHROMA = 0.05
+"""Difference of chromaticity (red and green by the sum) of two pixels from which a colour ends between them. Chosen:
+five times the noise of a pixel, smoothed, in a lit room."""
+BRIGHT = 0.30
+"""Difference of brightness, by that of both, from which a colour ends: black beside white has no other."""
+LEAST_SHARE = 0.08
+"""Share of the segment's pixels that a piece has at least."""
+MOST_PIECES = 4
+GAIN, NOISE_GAIN = 0.0008, 0.3
+"""How much less [m], plus that of the noise, the mean distance from the shapes must be for pieces to be objects."""
+VALLEY = 0.75
+"""Height on the line between two pieces, by that of the lower one, below which there is a valley."""
+BAND = 0.006
+"""Half width [m] of that line."""
+SPLITS = 2
+"""How often pieces are cut again."""
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A segment and what was measured of it."""
+
+    segment: Segment
+    shape: Measurement
+
+
+def pieces(view: View, segment: Segment, again: int = SPLITS) -> list[Piece]:
+    """The objects that a segment consists of, at least one."""
+    whole = Piece(segment, measured(view, segment))
+    if again == 0 or len(segment.rows) < 2 * MIN_PIXELS:
+        return [whole]
+    noise = noise_of(view, segment)
+    for cut in (by_colour(view, segment), by_valley(segment)):
+        if cut is None:
+            continue
+        parts = [Piece(s, measured(view, s)) for s in _cut(segment, cut)]
+        share = np.array([len(p.segment.rows) for p in parts]) / len(segment.rows)
+        residual = float(share @ [p.shape.residual for p in parts])
+        better = whole.shape.residual - residual > GAIN + NOISE_GAIN * noise
+        shaped = all(p.shape.family != "irregular" for p in parts)
+        if better or (whole.shape.family == "irregular" and shaped):
+            return [found for p in parts for found in pieces(view, p.segment, again - 1)]
+    return [whole]
+
+
+def _cut(segment: Segment, cut: NDArray[np.intp]) -> list[Segment]:
+    """The parts of a segment by the number (n,) of each pixel's; a side on which another part lies is hidden or not,
+    which is not known: the segment's own word is kept."""
+    found = []
+    for n in range(int(cut.max()) + 1):
+        own = cut == n
+        found.append(replace(segment, rows=segment.rows[own], columns=segment.columns[own], points=segment.points[own]))
+    return found
+
+
+def by_colour(view: View, segment: Segment) -> NDArray[np.intp] | None:
+    """Number (n,) of the patch of one colour that each pixel belongs to; None if there is only one."""
+    top, left = int(segment.rows.min()), int(segment.columns.min())
+    shape = int(segment.rows.max()) - top + 1, int(segment.columns.max()) - left + 1
+    window = slice(top, top + shape[0]), slice(left, left + shape[1])
+    rgb = view.rgb[window].astype(np.float32) / np.float32(255)
+    mask = np.zeros(shape, bool)
+    mask[segment.rows - top, segment.columns - left] = True
+    smooth = _smoothed(rgb, mask)
+    total = np.maximum(smooth.sum(axis=-1), 0.02)
+    red, green = smooth[..., 0] / total, smooth[..., 1] / total
+    edge = np.zeros(shape, bool)
+    for axis in (0, 1):
+        step = np.abs(np.diff(red, axis=axis)) + np.abs(np.diff(green, axis=axis))
+        a, b = (np.take(total, range(*r), axis=axis) for r in ((1, shape[axis]), (0, shape[axis] - 1)))
+        ends = (step > CHROMA) | (np.abs(a - b) > BRIGHT * (a + b))
+        edge[(slice(None, -1), slice(None)) if axis == 0 else (slice(None), slice(None, -1))] |= ends
+    labels = ndimage.label(mask & ~edge)[0]
+    counts = np.bincount(labels[mask], minlength=1)
+    counts[0] = 0
+    large = np.flatnonzero(counts >= max(MIN_PIXELS, LEAST_SHARE * len(segment.rows)))
+    if not 2 <= len(large) <= MOST_PIECES:
+        return None
+    # What belongs to no large patch joins the nearest in the picture.
+    numbered = np.full(shape, -1)
+    for n, label in enumerate(large):
+        numbered[labels == label] = n
+    nearest = ndimage.distance_transform_edt(numbered < 0, return_distances=False, return_indices=True)
+    found: NDArray[np.intp] = numbered[tuple(nearest)][segment.rows - top, segment.columns - left].astype(np.intp)
+    return _alike_joined(found, smooth[segment.rows - top, segment.columns - left].astype(np.float64))
+
+
+def _smoothed(rgb: NDArray[np.float32], mask: NDArray[np.bool_]) -> NDArray[np.float32]:
+    """Mean colour of the 3 x 3 pixels of the mask around each."""
+    weight = ndimage.uniform_filter(mask.astype(np.float32), 3)
+    planes = [ndimage.uniform_filter(rgb[..., i] * mask, 3) / np.maximum(weight, 1e-3) for i in range(3)]
+    return np.stack(planes, axis=-1)
+
+
+def _alike_joined(cut: NDArray[np.intp], rgb: Array) -> NDArray[np.intp] | None:
+    """Patches of the same colour are one: print or a rim may lie between them."""
+    colours = []
+    for n in range(int(cut.max()) + 1):
+        middle = np.median(rgb[cut == n], axis=0)
+        colours.append(np.append(middle[:2] / max(0.02, middle.sum()), 0.1 * middle.sum()))
+    joined = np.arange(len(colours))
+    for i in range(len(colours)):
+        for j in range(i):
+            if np.abs(colours[i] - colours[j]).sum() < CHROMA:
+                joined[joined == joined[i]] = joined[j]
+    names, found = np.unique(joined[cut], return_inverse=True)
+    return found.reshape(-1).astype(np.intp) if len(names) > 1 else None
+
+
+def by_valley(segment: Segment) -> NDArray[np.intp] | None:
+    """Number (n,) of the side of a valley, seen from above, on which each point lies; None if there is none."""
+    plan = segment.points[:, :2]
+    middle = plan.mean(axis=0)
+    axis = np.linalg.eigh(np.cov((plan - middle).T))[1][:, 1]
+    along = (plan - middle) @ axis
+    height = segment.points[:, 2] - segment.surface.height
+    low, high = np.percentile(along, (15, 85))
+    if high - low < 4 * BAND:
+        return None
+    best, depth = 0.0, 1.0
+    for at in np.linspace(low, high, 13):
+        before, after = along < at, along >= at
+        tops = [float(np.percentile(height[side], 95)) for side in (before, after)]
+        band = height[np.abs(along - at) < BAND]
+        ratio = (float(np.percentile(band, 95)) if len(band) > 3 else 0.0) / max(min(tops), 1e-3)
+        if ratio < depth:
+            best, depth = float(at), ratio
+    side = (along >= best).astype(np.intp)
+    few = min(np.count_nonzero(side), np.count_nonzero(side == 0))
+    return side if depth < VALLEY and few >= max(MIN_PIXELS, LEAST_SHARE * len(side)) else None

@@ -1,0 +1,78 @@
+"""Objects that touch in the picture are cut apart; what is printed on one does not cut it."""
+
+import math
+
+import numpy as np
+import pytest
+
+from common.geometry import Array
+from services.perception.segmentation import Segment, Surface
+from services.perception.separate import pieces
+from services.perception.view import View
+
+FLOOR, FOCAL = 0.72, 400.0
+EYE = np.array([0.0, 0.0, 1.35])
+Solid = tuple[float, float, float, float, tuple[int, int, int]]
+"""Middle x, y, radius and height [m] of a can, and its colour."""
+
+
+def rotation() -> Array:
+    pitch = 0.6
+    ahead = np.array([math.cos(pitch), 0.0, -math.sin(pitch)])
+    right = np.array([0.0, -1.0, 0.0])
+    return np.stack([right, np.cross(ahead, right), ahead], axis=1)
+
+
+def picture(cans: list[Solid], band: bool = False) -> tuple[View, Segment]:
+    """Cans cast by rays, 200 x 200, with the noise of a bought camera; all of them are one segment."""
+    h = w = 200
+    u, v = np.meshgrid(np.arange(w) + 0.5 - w / 2, np.arange(h) + 0.5 - h / 2)
+    rays = np.stack([u / FOCAL, v / FOCAL, np.ones_like(u)], -1) @ rotation().T
+    depth, rgb = np.full((h, w), np.inf), np.zeros((h, w, 3), np.uint8)
+    for x, y, r, high, colour in cans:
+        with np.errstate(divide="ignore", invalid="ignore"):
+            lid = (FLOOR + high - EYE[2]) / rays[..., 2]
+            on_lid = np.hypot(lid * rays[..., 0] - x, lid * rays[..., 1] - y) < r
+            a = rays[..., 0] ** 2 + rays[..., 1] ** 2
+            b = rays[..., 0] * x + rays[..., 1] * y
+            wall = (b - np.sqrt(b * b - a * (x * x + y * y - r * r))) / a
+        z = EYE[2] + wall * rays[..., 2] - FLOOR
+        far = np.where(on_lid, lid, np.where((z > 0) & (z < high), wall, np.inf))
+        nearer = far < depth
+        depth[nearer], rgb[nearer] = far[nearer], colour
+        if band:
+            rgb[nearer & (z > 0.3 * high) & (z < 0.7 * high)] = (240, 240, 235)
+    seen = np.isfinite(depth)
+    rng = np.random.default_rng(1)
+    depth[seen] *= 1 + rng.normal(0.0, 0.0015, np.count_nonzero(seen))
+    depth[~seen] = 0.0
+    view = View(rgb, depth.astype(np.float32), (FOCAL, FOCAL), (w / 2, h / 2), EYE, rotation())
+    rows, columns = np.nonzero(seen)
+    points = view.points[rows, columns].astype(np.float64)
+    return view, Segment(Surface("table", FLOOR), rows, columns, points, False, (True, True))
+
+
+RED, GREEN = (190, 30, 30), (30, 150, 50)
+
+
+def middles(cans: list[Solid], band: bool = False) -> list[tuple[float, float]]:
+    found = pieces(*picture(cans, band))
+    return sorted((p.shape.x, p.shape.y) for p in found)
+
+
+@pytest.mark.parametrize("colours", [(RED, GREEN), (RED, RED)], ids=["two colours", "one colour"])
+def test_neighbours_are_two_objects(colours: tuple[tuple[int, int, int], tuple[int, int, int]]) -> None:
+    cans = [(1.0, -0.042, 0.035, 0.11, colours[0]), (1.0, 0.042, 0.035, 0.11, colours[1])]
+    found = middles(cans)
+    assert len(found) == 2
+    for x, y, *_ in cans:
+        assert min(math.dist(at, (x, y)) for at in found) < 0.01
+
+
+def test_one_that_hides_a_part_of_another_is_told_apart() -> None:
+    found = middles([(0.95, 0.0, 0.03, 0.08, RED), (1.03, 0.03, 0.04, 0.15, GREEN)])
+    assert len(found) == 2
+
+
+def test_what_is_printed_on_a_can_does_not_cut_it() -> None:
+    assert middles([(1.0, 0.0, 0.04, 0.13, RED)], band=True) == [pytest.approx((1.0, 0.0), abs=0.006)]
