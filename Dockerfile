@@ -6,13 +6,10 @@ RUN python3 -m venv /opt/venv
 ENV PATH=/opt/venv/bin:$PATH
 WORKDIR /app
 # `make wheels` fills build/wheels; then nothing is fetched here. An empty one means the package index.
-COPY requirements.lock pyproject.toml build/wheel[s] /wheels/
-# What runs, not what tests: the lock file says in which version.
-RUN python -c "import tomllib; p = tomllib.load(open('/wheels/pyproject.toml', 'rb'))['project']; \
-extras = sum((p['optional-dependencies'][e] for e in ('llm', 'ros2')), []); \
-print('\n'.join(p['dependencies'] + extras))" > /wheels/wanted \
-    && if ls /wheels/*.whl >/dev/null 2>&1; then offline="--no-index --find-links /wheels"; fi \
-    && pip install --no-cache-dir $offline -r /wheels/wanted -c /wheels/requirements.lock setuptools \
+COPY requirements.image.lock build/wheel[s] /wheels/
+# What runs, not what tests.
+RUN if ls /wheels/*.whl >/dev/null 2>&1; then offline="--no-index --find-links /wheels"; fi \
+    && pip install --no-cache-dir $offline -r /wheels/requirements.image.lock \
     && find /opt/venv -type d -name tests -path '*/site-packages/*' -prune -exec rm -rf {} +
 COPY pyproject.toml README.m[d] ./
 COPY common common
@@ -22,8 +19,8 @@ COPY evaluation evaluation
 COPY judge judge
 COPY services services
 COPY docs/audio docs/audio
-RUN pip install --no-cache-dir --no-deps --no-build-isolation $offline -e . && python -m compileall -q /app \
-    && pip uninstall --quiet --yes setuptools pip
+RUN pip install --no-cache-dir --no-deps --no-build-isolation -e . && python -m compileall -q /app \
+    && python -m common.speech_weights && pip uninstall --quiet --yes hatchling pip
 
 FROM ${BASE_IMAGE}
 # libegl1 libgl1-mesa-dri give the cameras OpenGL; without them they use ray casting. "" leaves them out.

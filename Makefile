@@ -10,7 +10,7 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check
 ARGS ?=
 BENCHES ?= physics bus processes fetch grasp speech
 
-.PHONY: help setup demo test test-slow test-all mutants check test-compose bench lock wheels clean
+.PHONY: help setup demo test test-slow test-all mutants check test-compose bench lock image wheels clean
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 16
@@ -25,6 +25,7 @@ $(STAMP): requirements.lock pyproject.toml
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
 	$(PIP) install --quiet -r requirements.lock
 	$(PIP) install --quiet --no-deps --no-build-isolation -e .
+	$(BIN)/python -m common.speech_weights >/dev/null
 	@touch $(STAMP)
 	@echo "ready: $(BIN)/tidybot"
 
@@ -53,11 +54,12 @@ test-slow: setup ## the others: whole missions, matrices, machines in network na
 
 test-all: test test-slow ## everything
 
-check: setup ## lint, format, types, imports
+check: setup ## lint, format, types, imports, and the lock file on every platform
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+	$(BIN)/python -m tests.platforms
 
 mutants: setup ## what the tests of the pure modules do not notice; ARGS='validate access' for some
 	$(BIN)/python -m tests.mutants $(ARGS)
@@ -69,17 +71,18 @@ bench: setup ## every benchmark, each prints a table; fails when one of them doe
 	@failed=; for name in $(BENCHES); do echo "== bench.$$name"; $(BIN)/python -m bench.$$name || failed="$$failed $$name"; done; \
 	test -z "$$failed" || { echo "failed:$$failed"; exit 1; }
 
-lock: ## requirements.lock anew from pyproject.toml
-	rm -rf build/lock && $(PYTHON) -m venv build/lock
-	build/lock/bin/python -m pip install --quiet --upgrade pip setuptools wheel
-	build/lock/bin/python -m pip install --quiet --no-build-isolation -e '.[llm,ros2,cluster,test,mutants,check]'
-	{ echo "# made by \`make lock\`"; build/lock/bin/python -m pip freeze --exclude-editable; \
-	  build/lock/bin/python -m pip freeze --all | grep -E '^(setuptools|wheel)=='; } > requirements.lock.new
-	mv requirements.lock.new requirements.lock
-	rm -rf build/lock
+# --universal: one file for every platform; the environment markers say what belongs where.
+LOCK := $(BIN)/uv --quiet pip compile pyproject.toml --universal --python-version 3.11 --generate-hashes --no-emit-index-url \
+    --no-annotate --custom-compile-command "make lock"
+lock: setup ## both lock files anew from pyproject.toml; ARGS='-P mujoco' for one package alone
+	echo hatchling | $(LOCK) - --all-extras $(or $(ARGS),--upgrade) --output-file requirements.lock
+	echo hatchling | $(LOCK) - --extra llm --extra ros2 --constraint requirements.lock --upgrade --output-file requirements.image.lock
+
+image: ## one image for x86-64 and one for aarch64, see docker-bake.hcl; ARGS='--push' with a registry in TIDYBOT_IMAGE
+	docker buildx bake $(ARGS)
 
 wheels: setup ## build/wheels: everything the image needs, so that it builds without a network
-	$(PIP) download --quiet --dest build/wheels -r requirements.lock
+	$(PIP) download --quiet --dest build/wheels -r requirements.image.lock
 
 clean: ## what was made here
 	rm -rf $(VENV) build out run .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis *.egg-info

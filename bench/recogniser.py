@@ -19,7 +19,7 @@ import numpy as np
 import psutil  # type: ignore[import-untyped]
 
 from bench.speech import CORPUS, MISSING, NOTHING
-from common import config
+from common import config, speech_weights
 from common.household import load_household
 from services.speech.audio import RATE, read_wav
 from services.speech.config import SpeechConfig
@@ -73,7 +73,7 @@ class ShippedDecoder:
 
 def shipped() -> tuple[Any, ShippedDecoder]:
     """Encoder and decoder from the wheel's files."""
-    folder = moonshine.models()
+    folder = speech_weights.folder()
     encoder, decoder = (session(folder / name, 1) for name in ("encoder_model.ort", "decoder_model_merged.ort"))
     return encoder, ShippedDecoder(decoder)
 

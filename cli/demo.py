@@ -14,22 +14,22 @@ from cli.errors import CliError, near, port_number
 from cli.link import Link, Watch
 from cli.plan import Plan, add_start_options
 from cli.ports import free_port, port_is_free
-from cli.programs import ROOT
 from cli.supervision import Supervision, run_dir
 from cli.up import Stopped, bring_up, check_free, interruptible, state_line
 from cli.verdict import Verdict, Witness
 from common import messages as m
 from common import topics
 from common.bus.session import open_session
+from common.installation import ROOT, shipped, workspace
 from common.scene import Scene, SceneError, load_scene
 from common.security.keys import OFF
 from common.time.clock import monotonic
 from judge.observer import WATCH
 
-VOICE = ROOT / "docs" / "audio" / "bring_me_the_red_mug.wav"
-YES = ROOT / "docs" / "audio" / "yes.wav"
+VOICE = shipped("audio") / "bring_me_the_red_mug.wav"
+YES = shipped("audio") / "yes.wav"
 SPOKEN = "red mug"
-OUT = ROOT / "out"
+OUT = (workspace() or Path.cwd()) / "out"
 PROGRESS = 10.0
 """Time [s] between two lines of progress where the output is no terminal."""
 
@@ -190,7 +190,7 @@ def demo(args: argparse.Namespace) -> int:
             with open_session(plan.connect, plan.namespace) as session:
                 link = Link(session, plan.connect)
                 verdict = Demo(link, screen, scene, thing).perform(text, chunks, args.timeout)
-                screen.say(take_picture(plan, args.out))
+                screen.say(take_picture(plan, args.out.resolve()))
             good = verdict.delivered
     except CliError as error:
         verdict = Verdict(False, str(error))

@@ -19,9 +19,10 @@ import msgspec
 from cli.authority import Authority
 from cli.errors import CliError
 from cli.ports import port_is_free
-from cli.programs import ROOT
 from cli.supervision import Supervision, run_dir
+from common import speech_weights
 from common.config import config_dir
+from common.installation import ROOT
 from common.security import keys
 from common.time.clock import unix_time
 
@@ -51,13 +52,15 @@ def python() -> Iterator[Finding]:
 
 def packages() -> Iterator[Finding]:
     """Every locked package is there in the locked version."""
+    from packaging.markers import Marker  # not for every command to load
+
     lock = ROOT / "requirements.lock"
     missing, other, count = [], [], 0
     for line in lock.read_text(encoding="utf-8").splitlines() if lock.exists() else ():
-        name, equals, rest = line.strip().partition("==")
-        if not equals or name.startswith("#"):
+        pinned, _, marker = line.removesuffix("\\").partition(";")
+        name, equals, wanted = (part.strip() for part in pinned.partition("=="))
+        if not equals or name.startswith(("#", "--")) or (marker.strip() and not Marker(marker).evaluate()):
             continue
-        wanted = rest.split()[0]
         count += 1
         try:
             if (found := metadata.version(name)) != wanted:
@@ -69,8 +72,17 @@ def packages() -> Iterator[Finding]:
     if other:
         yield Finding("note", "packages", f"not the locked versions: {', '.join(other)}", "make setup")
     if not missing and not other:
-        state = f"all {count} as locked" if count else "no requirements.lock here"
+        state = f"all {count} as locked" if count else "installed without a lock file"
         yield Finding("ok" if count else "note", "packages", state)
+
+
+def speech() -> Iterator[Finding]:
+    """The recogniser's weights."""
+    found = speech_weights.find()
+    if found is None:
+        yield Finding("note", "speech weights", "not here yet", "nothing: `tidybot up` fetches them once (55 MB)")
+    else:
+        yield Finding("ok", "speech weights", str(found))
 
 
 def graphics() -> Iterator[Finding]:
@@ -222,7 +234,7 @@ def language_model() -> Iterator[Finding]:
 
 
 def doctor(args: argparse.Namespace) -> int:
-    looks = (python, packages, graphics, audio, port, certificates, machine, robots, language_model)
+    looks = (python, packages, speech, graphics, audio, port, certificates, machine, robots, language_model)
     findings = [f for look in looks for f in look()]
     if args.json:
         print(msgspec.json.encode(findings).decode())

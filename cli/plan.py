@@ -6,6 +6,7 @@ import importlib.util
 import os
 import uuid
 from collections.abc import Sequence
+from pathlib import Path
 
 import msgspec
 
@@ -91,7 +92,13 @@ def home(args: argparse.Namespace) -> dict[str, str]:
             load_household(shared.household_file)
     except (config.ConfigError, SceneError) as error:
         raise CliError(str(error)) from None
-    return {f"{config.PREFIX}RUNTIME__{name.upper()}": path for name, path in given.items()}
+    return {f"{config.PREFIX}RUNTIME__{name.upper()}": _absolute(path) for name, path in given.items()}
+
+
+def _absolute(name: str) -> str:
+    """A file of the user's stands where this command runs, which is not where the services do."""
+    path = Path(name)
+    return str(path.resolve()) if path.exists() and path.suffix else name
 
 
 def _speed(text: str) -> str:

@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import NoReturn
 
 from cli.services import Service
+from common.installation import ROOT
 
-ROOT = Path(__file__).resolve().parent.parent
 SOCKET_PATH_LIMIT = 100
 """Characters of a Unix socket's path: Linux allows 107, supervisord adds a suffix."""
 ROUTER_SOCKET, ENDPOINT_PATH = "router.sock", re.compile(r"[\w./-]+", re.ASCII)

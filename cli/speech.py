@@ -6,7 +6,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from cli.programs import ROOT
+from common.installation import ROOT
 
 MODULE = "services.speech.transcribe"
 

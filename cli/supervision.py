@@ -13,9 +13,10 @@ from typing import Any
 import msgspec
 
 from cli.errors import CliError
-from cli.programs import ROOT, ROUTER_SOCKET, WATCHDOG, endpoints, render_config, socket_path
+from cli.programs import ROUTER_SOCKET, WATCHDOG, endpoints, render_config, socket_path
 from cli.services import Service
 from common import supervisor
+from common.installation import ROOT, workspace
 from common.time import clock
 
 STATES = {
@@ -52,11 +53,11 @@ class ProcessState(msgspec.Struct):
 
 
 def run_dir(environ: Mapping[str, str] = os.environ) -> Path:
-    """Where a run keeps its socket and logs: TIDYBOT_RUN_DIR, or `run/` in the project, or one of the user's own."""
+    """Where a run keeps its socket and logs: TIDYBOT_RUN_DIR, or `run/` in the checkout, or one of the user's own."""
     if environ.get("TIDYBOT_RUN_DIR"):
         return Path(environ["TIDYBOT_RUN_DIR"]).resolve()
-    if os.access(ROOT, os.W_OK):
-        return ROOT / "run"
+    if (ours := workspace()) is not None:
+        return ours / "run"
     return Path(environ.get("XDG_RUNTIME_DIR") or tempfile.gettempdir()) / f"tidybot-{os.getuid()}"
 
 

@@ -11,12 +11,13 @@ from cli.errors import CliError, port_number
 from cli.link import Link, Watch
 from cli.plan import Plan, add_start_options
 from cli.ports import port_is_free
-from cli.programs import ROOT, socket_path
+from cli.programs import socket_path
 from cli.services import NAMES, OPTIONAL
 from cli.supervision import Supervision, run_dir
 from common import messages as m
-from common import topics
+from common import speech_weights, topics
 from common.bus.session import NoRouter, open_session
+from common.installation import ROOT
 from common.time.clock import monotonic, sleep
 
 READY_LIMIT = 120.0
@@ -65,12 +66,28 @@ def check_free(supervision: Supervision, plan: Plan) -> None:
             raise CliError(f"{service.module} is not there; leave it out with `--without {service.name}`")
 
 
+def require_weights(plan: Plan, say: Callable[[str], None]) -> None:
+    """Fetch the weights of speech recognition where no package could bring them.
+
+    Raises:
+        CliError: they cannot be had.
+    """
+    if "speech" not in plan.names or speech_weights.find() is not None:
+        return
+    say("fetching the weights of speech recognition, once (55 MB)")
+    try:
+        say(f"  they are in {speech_weights.fetch()}")
+    except speech_weights.WeightsError as error:
+        raise CliError(f"{error}; `--without speech` starts a robot that is only typed to") from None
+
+
 def bring_up(supervision: Supervision, plan: Plan, say: Callable[[str], None], detach: bool = False) -> float:
     """Start everything and wait until every service is alive and the brain takes commands; seconds it took.
 
     Raises:
         CliError: a process failed, or was not ready in time; with its last log lines.
     """
+    require_weights(plan, say)
     began = monotonic()
     supervision.start(plan.services, plan.connect, plan.environ, plan.info(), detach)
     _until(lambda: supervision.pid() is not None, supervision, "the supervisor", began)

@@ -9,9 +9,11 @@ from typing import Any, Literal, TypeVar
 
 import msgspec
 
+from common.installation import shipped, workspace
+
 S = TypeVar("S", bound=msgspec.Struct)
 PREFIX = "TIDYBOT__"
-DEFAULT_DIR = Path(__file__).resolve().parent.parent / "config"
+DEFAULT_DIR = shipped("config")
 
 
 class ConfigError(ValueError):
@@ -95,8 +97,9 @@ def state_dir(environ: Mapping[str, str], connect: str, namespace: str) -> Path:
     """Where processes keep what outlives them: TIDYBOT_STATE_DIR, or a folder for each robot and router."""
     if environ.get("TIDYBOT_STATE_DIR"):
         return Path(environ["TIDYBOT_STATE_DIR"])
-    base = DEFAULT_DIR.parent / "run"
-    if not os.access(base if base.exists() else base.parent, os.W_OK):
+    ours = workspace()
+    base = ours / "run" if ours is not None else None
+    if base is None or (base.exists() and not os.access(base, os.W_OK)):
         base = Path(environ.get("XDG_STATE_HOME") or Path.home() / ".local" / "state") / "tidybot"
     return base / "state" / re.sub(r"[^\w.-]+", "-", f"{namespace or 'robot'}-{connect}")
 

@@ -10,10 +10,11 @@ import msgspec
 
 from common.config import config_dir
 from common.floor_plan import FloorPlan, Thing, doubled, kind_fault
-from common.scene import ROOT, SCENES, Scene, SceneError, checked, parse, read
+from common.installation import shipped
+from common.scene import SCENES, Scene, SceneError, checked, parse, read
 from common.words import Words, words_path
 
-HOUSEHOLDS = ROOT / "config" / "households"
+HOUSEHOLDS = shipped("config") / "households"
 WORLD_KEYS = frozenset({"objects", "obstacles"})
 """What only a world has: a file with one of these is a world that is told as it is."""
 

@@ -28,13 +28,13 @@ from common.floor_plan import (
     doubled,
     kind_fault,
 )
+from common.installation import ROOT, shipped
 
 __all__ = [
     "Box", "ObjectSpec", "Obstacle", "Place", "Receptacle", "Rgba", "Room", "Scene", "SceneError", "Vec2",
     "Vec3", "Wall", "body_name", "load_scene", "scene_path",
 ]  # fmt: skip
-ROOT = Path(__file__).resolve().parent.parent
-SCENES, FLOOR_PLANS = ROOT / "services" / "sim" / "scenes", ROOT / "config" / "floor_plans"
+SCENES, FLOOR_PLANS = ROOT / "services" / "sim" / "scenes", shipped("config") / "floor_plans"
 S = TypeVar("S", bound=Strict)
 
 

@@ -4,11 +4,10 @@ import hashlib
 import platform
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
-from pathlib import Path
 
 from common.config import config_dir
+from common.installation import ROOT
 
-ROOT = Path(__file__).resolve().parents[1]
 SOURCES = ("common", "services", "cli", "judge", "evaluation")
 DECIDES = (
     "mujoco", "mink", "daqp", "numpy", "scipy", "onnxruntime", "moonshine-cpp", "hibari-tts", "py_trees", "msgspec",

@@ -1,6 +1,7 @@
 """What an agent may know of the robot: pictures, objects, the map, its state. Each function asks the bus once."""
 
 import io
+import os
 import uuid
 import zlib
 from typing import Any, Literal
@@ -13,9 +14,11 @@ from cli.explain import mission_record, told
 from cli.link import Link, Watch
 from cli.mission import status_record
 from cli.payload import fields
+from cli.record import settings_of
+from common import config, topics
 from common import messages as m
-from common import topics
-from common.scene import Scene, SceneError, load_scene
+from common.household import Household, load_household
+from common.scene import SceneError
 from common.time.clock import monotonic
 
 Camera = Literal["head", "wrist"]
@@ -84,16 +87,16 @@ def whereabouts(link: Link, words: str) -> list[dict[str, Any]]:
 
 def household(link: Link) -> dict[str, Any]:
     """The map in words: rooms, places and surfaces [m, frame map], the robot's pose, what was seen where."""
-    scene, pose = _scene(link), link.latest(topics.POSE)
+    home, pose = _told(link), link.latest(topics.POSE)
     record: dict[str, Any] = {
         "pose": None if pose is None else {"x": pose.x, "y": pose.y, "theta": pose.theta},
         "objects": objects(link),
     }
-    if scene is not None:
-        record["rooms"] = [{"name": r.name, "low": list(r.low), "high": list(r.high)} for r in scene.rooms]
-        record["places"] = [{"name": p.name, "x": p.x, "y": p.y} for p in scene.places]
+    if home is not None:
+        record["rooms"] = [{"name": r.name, "low": list(r.low), "high": list(r.high)} for r in home.rooms]
+        record["places"] = [{"name": p.name, "x": p.x, "y": p.y} for p in home.places]
         record["surfaces"] = [
-            {"name": r.name, "aliases": list(r.aliases), "center": list(r.center)} for r in scene.receptacles
+            {"name": r.name, "aliases": list(r.aliases), "center": list(r.center)} for r in home.receptacles
         ]
     return record
 
@@ -146,10 +149,15 @@ def missions(link: Link) -> list[dict[str, Any]]:
     return rows
 
 
-def _scene(link: Link) -> Scene | None:
-    """The household's plan, None when its file is not on this machine."""
+def _told(link: Link) -> Household | None:
+    """What the robot was told of its home, None when that is not known on this machine."""
     running = link.latest(topics.SIM_STATUS)
     try:
-        return load_scene(running.scene) if running is not None and running.scene else None
-    except SceneError:
+        settings = settings_of(os.environ)
+        changes = config.overrides(settings, ())
+        shared = config.load("runtime", config.RuntimeConfig, config.config_dir(), changes)
+        chosen = any(f"{config.PREFIX}RUNTIME__{name}" in settings for name in ("SCENE", "HOUSEHOLD"))
+        ours = chosen or (running is not None and running.scene == shared.world_file)
+        return load_household(shared.household_file) if ours else None
+    except (config.ConfigError, SceneError):
         return None

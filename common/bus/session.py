@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import msgspec
 import zenoh
 
+from common.installation import shipped
 from common.security import keys, tls_diagnosis
 from common.security.access import OPERATOR
 from common.time.clock import monotonic
@@ -19,7 +20,7 @@ from common.time.clock import monotonic
 if TYPE_CHECKING:
     from common.security.certificate import Identity
 
-CONFIGS = Path(__file__).resolve().parents[2] / "config" / "zenoh"
+CONFIGS = shipped("config") / "zenoh"
 DEFAULT_CONNECT = "tcp/127.0.0.1:7447"
 DEFAULT_SECURE = "tls/127.0.0.1:7447"
 PROBE_AFTER = 2.0

@@ -8,6 +8,8 @@ import os
 from collections.abc import Mapping
 from pathlib import Path
 
+from common.installation import workspace
+
 OFF = "off"
 CA, CERT, KEY = "ca.pem", "cert.pem", "key.pem"
 
@@ -35,13 +37,13 @@ def directory(environ: Mapping[str, str] = os.environ, default: Path | None = No
 
 
 def default_directory(environ: Mapping[str, str] = os.environ) -> Path:
-    """`keys` in the run directory: TIDYBOT_KEYS_DIR, or below TIDYBOT_RUN_DIR, or `run/` of the project."""
+    """`keys` in the run directory: TIDYBOT_KEYS_DIR, or below TIDYBOT_RUN_DIR, the checkout's `run/`, or the user's."""
     if environ.get("TIDYBOT_KEYS_DIR"):
         return Path(environ["TIDYBOT_KEYS_DIR"]).resolve()
     if environ.get("TIDYBOT_RUN_DIR"):
         return Path(environ["TIDYBOT_RUN_DIR"]).resolve() / "keys"
-    project = Path(__file__).resolve().parents[2]
-    return project / "run" / "keys" if os.access(project, os.W_OK) else Path.home() / ".config" / "tidybot" / "keys"
+    ours = workspace()
+    return ours / "run" / "keys" if ours is not None else Path.home() / ".config" / "tidybot" / "keys"
 
 
 def folder(keys: Path, name: str, namespace: str = "") -> Path:

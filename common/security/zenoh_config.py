@@ -8,10 +8,11 @@ from typing import Any
 import msgspec
 import zenoh
 
+from common.installation import shipped
 from common.security import access
 from common.security.keys import CA, CERT, KEY, KeysError
 
-ROUTER_CONFIG = Path(__file__).resolve().parents[2] / "config" / "zenoh" / "router.json5"
+ROUTER_CONFIG = shipped("config") / "zenoh" / "router.json5"
 SUBJECTS = "subjects.json"
 """File beside the router's certificate that lists who else has one."""
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from common import messages as m
-from common import topics
+from common import speech_weights, topics
 from common.bus.port import Io
 from common.goal_inbox import GoalInbox
 from common.language.meaning import asks_for
@@ -45,6 +45,8 @@ class SpeechService:
             raise StartError(f"speech: {error}") from None
         if config.wake_word and not find_spec("pyopen_wakeword"):
             raise StartError("speech.wake_word needs pyopen-wakeword; install it, or set speech.wake_word = false")
+        if config.recogniser == "moonshine" and speech_weights.find() is None:
+            raise StartError(f"speech: {speech_weights.MISSING}")
         self._microphone = Microphone() if config.microphone else None
         self._queue = UtteranceQueue(config, io, lambda: FrontEnd(config, io.household, found))
         self._player = TtsPlayer(io, config.speakers, config.synthesis_seconds, config.preload)

@@ -12,6 +12,7 @@ from common.household import Household, load_household
 from common.language.pattern import PatternError
 from common.runtime import BAD_CONFIGURATION, StartError
 from common.scene import SceneError
+from common.speech_weights import WeightsError
 from services.speech.audio import AudioError, Samples, read_wav
 from services.speech.config import SpeechConfig
 from services.speech.listen.wake_word import WakeWord
@@ -49,7 +50,7 @@ def main() -> int:
         parameters = config.load("speech", SpeechConfig, directory, changes)
         household = load_household(shared.household_file, directory)
         reader = Reader(parameters, household)
-    except (config.ConfigError, SceneError, PatternError, StartError, FileNotFoundError) as error:
+    except (config.ConfigError, SceneError, PatternError, StartError, WeightsError) as error:
         print(f"transcribe: {error}", file=sys.stderr)
         return BAD_CONFIGURATION
     failed = False

@@ -96,7 +96,7 @@ def wait_until(done: Callable[[], object], what: str, patience: float = 90) -> N
 
 def build(engine: Engine) -> None:
     engine.base_image(BASE)
-    download_wheels(ROOT / "requirements.lock", ROOT / "build" / "wheels")
+    download_wheels(ROOT / "requirements.image.lock", ROOT / "build" / "wheels")
     note("docker build")
     began = time.monotonic()
     arguments = ["--build-arg", f"BASE_IMAGE={BASE}", "--build-arg", "APT_PACKAGES="]

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
+from common.speech_weights import folder as models
 from services.speech.recognise.grammar import Grammar
-from services.speech.recognise.moonshine import models, networks
+from services.speech.recognise.moonshine import networks
 from services.speech.recognise.packed_network import BLOCK, NetworkBuilder, session
 from services.speech.recognise.token_trie import BOS
 from services.speech.speak.voice import Voice

