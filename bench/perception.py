@@ -97,7 +97,8 @@ def _view(renderer: Renderer, pose: Pose2, args: argparse.Namespace, rng: np.ran
     rgb, depth = renderer.rgbd("head", args.width, args.height)
     focal = renderer.focal("head", args.height)
     if args.sensors == "bought":
-        taken = StereoCamera(int(rng.integers(2**32))).expose(rgb, depth, focal, 0)
+        surfaces = renderer.surfaces("head", args.width, args.height)
+        taken = StereoCamera(int(rng.integers(2**32))).expose(rgb, depth, focal, 0, surfaces)
         rgb, depth = taken.rgb, taken.depth / 1000.0
     position, rotation = renderer.optical_pose("head")
     # Where the robot believes to be is a little off.

@@ -8,7 +8,7 @@ origin).
 import math
 import tomllib
 from pathlib import Path
-from typing import Any, Literal, TypeVar
+from typing import Annotated, Any, Literal, TypeVar
 
 import msgspec
 
@@ -52,6 +52,7 @@ class ObjectSpec(Thing, frozen=True, kw_only=True):
 
     `on`: the receptacle, piece of furniture or `floor` that it stands on; "" for whichever receptacle the seed draws.
     `position` (x, y) [map] and `yaw` [rad] are drawn as well where they are not given. `pose`: how it rests.
+    `gloss` [0 matt .. 1 like a mirror] and `transparent` are what a depth camera has its trouble with.
     """
 
     mass: float
@@ -59,6 +60,8 @@ class ObjectSpec(Thing, frozen=True, kw_only=True):
     position: Vec2 | None = None
     yaw: float | None = None
     pose: Pose = "upright"
+    gloss: Annotated[float, msgspec.Meta(ge=0.0, le=1.0)] = 0.0
+    transparent: bool = False
 
 
 def body_name(spec: Thing) -> str:

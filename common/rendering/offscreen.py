@@ -40,6 +40,24 @@ class Offscreen:
         mujoco.mjr_readPixels(rgb, z, self._rect, self._context)
         return rgb[::-1], self._metres(z[::-1])
 
+    def geoms(self, data: Any, camera: Any, option: Any) -> NDArray[np.int32]:
+        """The geom (h, w) that each pixel shows, -1 for none; costs as much as a picture."""
+        self._gl.make_current()
+        flags, scene = self._scene.flags, self._scene
+        everything = mujoco.mjtCatBit.mjCAT_ALL.value
+        mujoco.mjv_updateScene(self._model, data, option, None, camera, everything, scene)
+        flags[mujoco.mjtRndFlag.mjRND_SEGMENT] = flags[mujoco.mjtRndFlag.mjRND_IDCOLOR] = True
+        rgb = np.empty((self._rect.height, self._rect.width, 3), np.uint8)
+        mujoco.mjr_render(self._rect, scene, self._context)
+        mujoco.mjr_readPixels(rgb, None, self._rect, self._context)
+        flags[mujoco.mjtRndFlag.mjRND_SEGMENT] = flags[mujoco.mjtRndFlag.mjRND_IDCOLOR] = False
+        numbers = np.full(scene.ngeom + 1, -1, np.int32)
+        for geom in scene.geoms[: scene.ngeom]:
+            if geom.objtype == mujoco.mjtObj.mjOBJ_GEOM:
+                numbers[geom.segid + 1] = geom.objid
+        shown = rgb[::-1].astype(np.int32) @ np.array([1, 1 << 8, 1 << 16], np.int32)
+        return numbers[np.where(shown <= scene.ngeom, shown, 0)]
+
     def _metres(self, z: NDArray[np.float32]) -> NDArray[np.float32]:
         """Undo the perspective of a reversed z-buffer (1 near, 0 far), as `mujoco.Renderer` does."""
         extent = self._model.stat.extent

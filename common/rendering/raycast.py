@@ -45,7 +45,7 @@ def _cast(
     return distance, geom, normal
 
 
-def render(
+def image(
     model: Any,
     data: Any,
     position: NDArray[np.float64],
@@ -54,8 +54,9 @@ def render(
     width: int,
     height: int,
     body: int = -1,
-) -> tuple[NDArray[np.uint8], NDArray[np.float64]]:
-    """RGB (height, width, 3) and depth (height, width) [m] along the optical axis, 0 where nothing is seen.
+) -> tuple[NDArray[np.uint8], NDArray[np.float64], NDArray[np.int32]]:
+    """RGB (height, width, 3), depth (height, width) [m] along the optical axis, 0 where nothing is seen, and geoms
+    (height, width), -1 for none. What is transparent is opaque here.
 
     `body`: the one the camera is built into, whose case does not hide the view.
     """
@@ -69,4 +70,10 @@ def render(
     colours = np.where(model.geom_matid[:, np.newaxis] >= 0, [0.70, 0.64, 0.56, 1.0], model.geom_rgba)[:, :3] * 255
     light = 0.55 + 0.45 * np.abs(normal @ _LIGHT) if _TAKES_NORMAL else np.full(len(rays), 0.85)
     rgb = np.where(seen[:, np.newaxis], colours[geom] * light[:, np.newaxis], _SKY)
-    return np.clip(rgb, 0, 255).astype(np.uint8).reshape(height, width, 3), depth
+    shown = np.where(seen, geom, -1).reshape(height, width)
+    return np.clip(rgb, 0, 255).astype(np.uint8).reshape(height, width, 3), depth, shown
+
+
+def render(*view: Any) -> tuple[NDArray[np.uint8], NDArray[np.float64]]:
+    """RGB and depth alone, of the same arguments as `image`."""
+    return image(*view)[:2]

@@ -3,6 +3,8 @@
 import os
 import subprocess
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
@@ -35,6 +37,25 @@ class View:
     distance: float
     azimuth: float
     elevation: float
+
+
+@dataclass(frozen=True)
+class Surfaces:
+    """What pixels show: `gloss` (h, w) [0 matt .. 1 like a mirror], `clear` (h, w) where it is transparent."""
+
+    gloss: Array
+    clear: NDArray[np.bool_]
+
+
+def looks(model: Any) -> tuple[Array, NDArray[np.bool_]]:
+    """The gloss (n,) [0 matt .. 1 like a mirror] of each geom, and whether (n,) it is transparent.
+
+    MuJoCo's materials have `specular` and `shininess` of .5 unless they say otherwise, which is matt here.
+    """
+    material = model.geom_matid
+    share = np.append(np.minimum(model.mat_specular, model.mat_shininess), 0.0)[material]
+    alpha = model.geom_rgba[:, 3]
+    return np.clip(2.0 * share - 1.0, 0.0, 1.0), (alpha > 0.0) & (alpha < 1.0)
 
 
 def works(backend: str) -> bool:
@@ -90,6 +111,7 @@ class Renderer:
         self._gl: dict[tuple[int, int], Any] = {}
         self._option = mujoco.MjvOption()
         self._option.geomgroup[:] = (1, 1, 1, 1, 0, 0)
+        self._gloss, self._clear = looks(self.model)
 
     def load(self, qpos: bytes, mocap: bytes) -> None:
         """Take a streamed state.
@@ -110,21 +132,57 @@ class Renderer:
         """RGB (height, width, 3) and depth (height, width) [m] of a camera of the model."""
         number = self.model.camera(camera).id
         if self.backend == "raycast":
-            from common.rendering.raycast import render
-
-            rotation = self.data.cam_xmat[number].reshape(3, 3)
-            fovy = float(self.model.cam_fovy[number])
-            body = int(self.model.cam_bodyid[number])
-            return render(self.model, self.data, self.data.cam_xpos[number], rotation, fovy, width, height, body)
-        fixed = self._mujoco.MjvCamera()
-        fixed.type, fixed.fixedcamid = self._mujoco.mjtCamera.mjCAMERA_FIXED, number
-        groups = self.model.geom_group.copy()
-        self.model.geom_group[~self._in_sight(number, width / height)] = HIDDEN
-        rgb, depth = self._offscreen(width, height).render(self.data, fixed, self._option, sky=False)
-        self.model.geom_group[:] = groups
+            return self._cast(number, width, height)[:2]
+        sight = self._in_sight(number, width / height)
+        rgb, depth = self._drawn(number, width, height, sight)
+        if (sight & self._clear).any():
+            depth = self._drawn(number, width, height, sight & ~self._clear)[1]
         empty = depth >= FAR
         rgb[empty], depth[empty] = SKY, 0.0
         return rgb, depth.astype(np.float64)
+
+    def surfaces(self, camera: str, width: int, height: int) -> Surfaces | None:
+        """Which pixels of a camera show what depth cameras have their trouble with; None: nothing of it in sight."""
+        number = self.model.camera(camera).id
+        sight = self._in_sight(number, width / height)
+        if not (sight & (self._clear | (self._gloss > 0.0))).any():
+            return None
+        if self.backend == "raycast":
+            shown = self._cast(number, width, height)[2]
+        else:
+            with self._only(sight):
+                shown = self._offscreen(width, height).geoms(self.data, self._fixed(number), self._option)
+        # The last entry is for pixels that show nothing, number -1.
+        return Surfaces(np.append(self._gloss, 0.0)[shown], np.append(self._clear, False)[shown])
+
+    def _fixed(self, camera: int) -> Any:
+        found = self._mujoco.MjvCamera()
+        found.type, found.fixedcamid = self._mujoco.mjtCamera.mjCAMERA_FIXED, camera
+        return found
+
+    @contextmanager
+    def _only(self, geoms: NDArray[np.bool_]) -> Iterator[None]:
+        """While it lasts nothing is drawn but these geoms (n,)."""
+        groups = self.model.geom_group.copy()
+        self.model.geom_group[~geoms] = HIDDEN
+        yield
+        self.model.geom_group[:] = groups
+
+    def _drawn(
+        self, camera: int, width: int, height: int, geoms: NDArray[np.bool_]
+    ) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
+        with self._only(geoms):
+            picture = self._offscreen(width, height).render(self.data, self._fixed(camera), self._option, sky=False)
+        return picture[0], picture[1]
+
+    def _cast(
+        self, camera: int, width: int, height: int
+    ) -> tuple[NDArray[np.uint8], NDArray[np.float64], NDArray[np.int32]]:
+        from common.rendering.raycast import image
+
+        rotation = self.data.cam_xmat[camera].reshape(3, 3)
+        fovy, body = float(self.model.cam_fovy[camera]), int(self.model.cam_bodyid[camera])
+        return image(self.model, self.data, self.data.cam_xpos[camera], rotation, fovy, width, height, body)
 
     def move(self, camera: str, offset: Array, turn: Array) -> None:
         """Displace a camera from where the model has it, until the next state is loaded.

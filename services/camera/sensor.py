@@ -11,6 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 from scipy import ndimage
+from scipy.special import ndtri
+
+from common.rendering.renderer import Surfaces
 
 Rgb = NDArray[np.uint8]
 Depth = NDArray[np.float64]
@@ -29,6 +32,11 @@ EDGE = 0.04
 """Ratio of neighbouring depths from which on an edge goes through the matching window, and no depth is found."""
 DARK, GLARE = 12, 250
 """Level (of 255) below which all channels are too dark to match, and above which all are saturated; chosen."""
+MIRRORED = 15.0
+"""Angle [deg] between a surface as glossy as a mirror and the line of sight below which the projector's light comes
+straight back and saturates the imagers; less gloss, less angle. Chosen: the stripe without depth on a tin."""
+GLOSS_LOST, CLEAR_LOST = 0.15, 0.5
+"""Shares of a mirror and of a transparent surface that find no match, as the pattern is elsewhere or twice; chosen."""
 PIXEL_NOISE = 2.0
 """Standard deviation of a pixel's level (of 255) at the gain of a lit room; chosen: what an 8-bit web camera has."""
 EXPOSURE, WHITE_BALANCE = 0.08, 0.04
@@ -70,17 +78,20 @@ class StereoCamera:
         self.turn = np.radians(rng.uniform(-MOUNT_TURN, MOUNT_TURN, 3))
         self._noise: dict[tuple[int, int], tuple[NDArray[np.float32], NDArray[np.int16]]] = {}
 
-    def expose(self, rgb: Rgb, depth: Depth, focal: float, moment: int) -> Picture:
+    def expose(self, rgb: Rgb, depth: Depth, focal: float, moment: int, surfaces: Surfaces | None = None) -> Picture:
         """What the sensor reports of a rendered `rgb` (h, w, 3) and `depth` (h, w) [m], 0 for nothing.
 
-        `focal` [px]; the same `moment` [ticks] repeats the same noise.
+        `focal` [px]; the same `moment` [ticks] repeats the same noise. `surfaces` None: all matt and opaque.
         """
         bumps, grain = self._drawn(depth.shape)
         row, column = np.random.default_rng([self._seed, moment]).integers(MARGIN, size=2)
         piece = slice(row, row + depth.shape[0]), slice(column, column + depth.shape[1])
         levels = np.asarray(Image.fromarray(rgb).point(self._levels)) + grain[piece]
         seen = np.clip(levels, 0, 255, out=levels).astype(np.uint8)
-        return Picture(seen, _measure(rgb, depth, focal, bumps[piece]))
+        measured = _measure(rgb, depth, focal, bumps[piece])
+        if surfaces is not None:
+            measured[_unmatched(surfaces, depth, focal, bumps[piece][::-1, ::-1])] = 0
+        return Picture(seen, measured)
 
     def _drawn(self, shape: tuple[int, ...]) -> tuple[NDArray[np.float32], NDArray[np.int16]]:
         """Noise of unit variance and of levels for pictures of a shape, always the same."""
@@ -128,3 +139,31 @@ def _edges(far: NDArray[np.float32]) -> NDArray[np.bool_]:
         here |= first > second * np.float32(1 + EDGE)
         there |= second > first * np.float32(1 + EDGE)
     return found
+
+
+def _unmatched(surfaces: Surfaces, depth: Depth, focal: float, noise: NDArray[np.float32]) -> NDArray[np.bool_]:
+    """Pixels (h, w) of glossy and of transparent surfaces that get no depth: in patches, where `noise` is low, and
+    where a glossy one mirrors the projector."""
+    found = surfaces.clear & (noise < ndtri(CLEAR_LOST))
+    rows, columns = np.nonzero(surfaces.gloss)
+    if len(rows):
+        box = slice(rows.min(), rows.max() + 1), slice(columns.min(), columns.max() + 1)
+        gloss = surfaces.gloss[box]
+        mirrored = _facing(depth, focal, *box) > np.cos(np.radians(MIRRORED * gloss))
+        found[box] |= (gloss > 0.0) & (mirrored | (noise[box] < ndtri(GLOSS_LOST * gloss)))
+    return np.asarray(found)
+
+
+def _facing(depth: Depth, focal: float, rows: slice, columns: slice) -> Depth:
+    """Cosine (n, k) of the angle between a surface's normal and the line of sight, in a piece of `depth` (h, w) [m]."""
+    z = depth[rows, columns]
+    if min(z.shape) < 2:
+        return np.zeros(z.shape)
+    height, width = depth.shape
+    u, v = np.arange(columns.start, columns.stop), np.arange(rows.start, rows.stop)
+    sight = np.ones((*z.shape, 3))
+    sight[..., 0], sight[..., 1] = (u + 0.5 - width / 2) / focal, ((v + 0.5 - height / 2) / focal)[:, None]
+    down, right = np.gradient(sight * z[..., None], axis=(0, 1))
+    normal = np.cross(right, down)
+    length = np.linalg.norm(normal, axis=-1) * np.linalg.norm(sight, axis=-1)
+    return np.asarray(np.abs((normal * sight).sum(axis=-1)) / np.maximum(length, 1e-12))

@@ -3,75 +3,15 @@
 from collections import deque
 from pathlib import Path
 
-import numpy as np
-from scipy.spatial.transform import Rotation
-
 from common import calibration, topics
 from common import messages as m
 from common.bus.port import Io, Job
-from common.geometry import matrix_quat
-from common.rendering.renderer import Renderer
 from common.runtime import StartError
-from common.time.lockstep import DT
 from services.camera.config import CameraConfig
-from services.camera.sensor import StereoCamera, exact
+from services.camera.shutter import Shutter
 
 MAX_WAITING = 8
 """Requests that may wait; chosen: more than are asked for at the same time."""
-
-
-class Shutter:
-    """Lives in the worker: a renderer for the model at hand and, unless `seed` is None, the sensors' models.
-
-    `mounts`: offset [m] and turn [deg] of the calibrated cameras from their drawing.
-    """
-
-    def __init__(self, backend: str, seed: int | None, mounts: calibration.Mounts) -> None:
-        self._backend, self._mjcf, self._mounts = backend, "", mounts
-        self._renderer: Renderer | None = None
-        self._sensors = {} if seed is None else {c: StereoCamera(seed + i) for i, c in enumerate(calibration.CAMERAS)}
-
-    def take(self, model: m.SimModel, state: m.SimState, request: m.CameraRequest) -> m.Rgbd:
-        """Render one image."""
-        if self._renderer is None or model.mjcf != self._mjcf:
-            if self._renderer is not None:
-                self._renderer.close()
-            self._renderer, self._mjcf = Renderer(model.mjcf, self._backend), model.mjcf
-        renderer, width, height = self._renderer, request.width, request.height
-        renderer.load(state.qpos, state.mocap)
-        position, rotation = renderer.optical_pose(request.camera)
-        sensor = self._sensors.get(request.camera)
-        if sensor is not None:
-            renderer.move(request.camera, sensor.offset, sensor.turn)
-        rgb, depth = renderer.rgbd(request.camera, width, height)
-        mount = self._mounts.get(request.camera)
-        if mount is not None:
-            position = position + rotation @ np.array(mount[0])
-            rotation = rotation @ Rotation.from_rotvec(mount[1], degrees=True).as_matrix()
-        x, y, z = (float(v) for v in position)
-        focal = renderer.focal(request.camera, height)
-        picture = sensor.expose(rgb, depth, focal, round(state.t / DT)) if sensor else exact(rgb, depth)
-        return m.Rgbd(
-            t=state.t,
-            id=request.id,
-            camera=request.camera,
-            width=width,
-            height=height,
-            fx=focal,
-            fy=focal,
-            cx=width / 2,
-            cy=height / 2,
-            position=(x, y, z),
-            orientation=matrix_quat(rotation),
-            rgb=picture.rgb.tobytes(),
-            depth=picture.depth.astype("<u2").tobytes(),
-            backend=renderer.backend,
-            calibrated=mount is not None,
-        )
-
-    def close(self) -> None:
-        if self._renderer is not None:
-            self._renderer.close()
 
 
 class CameraService:
@@ -87,6 +27,7 @@ class CameraService:
         seed = int(io.rng.integers(2**32)) if config.sensors == "bought" else None
         self._shutter = Shutter(config.backend, seed, _mounts(config.calibration))
         self._waiting: deque[m.CameraRequest] = deque(maxlen=MAX_WAITING)
+        self._states: deque[m.SimState] = deque(maxlen=2)
         self._job: Job[m.Rgbd] | None = None
         self._rendered = False
 
@@ -98,6 +39,9 @@ class CameraService:
                 self._io.count_drop(topics.CAMERA_REQUEST.key, f"{request.width} x {request.height}: up to {limit}")
                 continue
             self._waiting.append(request)
+        state = self._io.latest(topics.SIM_STATE)
+        if state is not None and not (self._states and self._states[-1].t == state.t):
+            self._states.append(state)
         if self._job is not None and self._job.poll(now):
             self._finish(self._job)
             self._job = None
@@ -105,12 +49,12 @@ class CameraService:
             self._start(self._waiting.popleft())
 
     def _start(self, request: m.CameraRequest) -> None:
-        model, state = self._io.latest(topics.SIM_MODEL), self._io.latest(topics.SIM_STATE)
-        if model is None or state is None:
+        model = self._io.latest(topics.SIM_MODEL)
+        if model is None or not self._states:
             self._io.count_drop(topics.CAMERA_REQUEST.key, "no picture before the first sim/model and sim/state")
             return
         seconds = self._config.render_seconds
-        self._job = self._io.submit(self._shutter.take, model, state, request, seconds=seconds)
+        self._job = self._io.submit(self._shutter.take, model, tuple(self._states), request, seconds=seconds)
 
     def _finish(self, job: Job[m.Rgbd]) -> None:
         try:

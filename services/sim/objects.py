@@ -1,12 +1,15 @@
 """Graspable objects as MJCF bodies of primitive geoms, origin at the centre of the bounding box."""
 
 import math
+from collections.abc import Iterable
 
 from common.kinds import kind_of
 from common.scene import ObjectSpec, body_name
 from services.sim.layout import Placement
 
 _CONTACT = 'condim="4" friction="1 .02 .0005" solref=".005 1" solimp=".95 .99 .001"'
+_CLEAR = 0.3
+"""Opacity of what is transparent [-]; chosen: tinted glass or a drink."""
 _WALLS = 16
 """Flat pieces of a round wall: across their corners it is 2 % wider than its diameter; with 10 it was 5 %, which the
 gripper takes for a bad hold."""
@@ -14,9 +17,22 @@ gripper takes for a bad hold."""
 GROUP = 1
 
 
+def material(spec: ObjectSpec) -> str:
+    """The name of the material that gives an object its gloss, "" for a matt one."""
+    return f"gloss_{round(100 * spec.gloss)}" if spec.gloss else ""
+
+
+def materials(specs: Iterable[ObjectSpec]) -> str:
+    """The materials of all objects that shine: a highlight as strong and as small as they are glossy."""
+    shares = {material(spec): 0.5 + spec.gloss / 2 for spec in specs if spec.gloss}
+    return "".join(f'<material name="{n}" specular="{s:g}" shininess="{s:g}"/>' for n, s in sorted(shares.items()))
+
+
 def _geom(spec: ObjectSpec, shape: str, share: float, rgba: tuple[float, ...] | None = None) -> str:
-    colour = " ".join(f"{v:g}" for v in rgba or spec.rgba)
-    return f'<geom {shape} mass="{spec.mass * share:.5f}" rgba="{colour}" group="{GROUP}" {_CONTACT} conaffinity="3"/>'
+    red, green, blue, alpha = rgba or spec.rgba
+    colour = f"{red:g} {green:g} {blue:g} {min(alpha, _CLEAR) if spec.transparent else alpha:g}"
+    looks = f'material="{material(spec)}" rgba="{colour}"' if spec.gloss else f'rgba="{colour}"'
+    return f'<geom {shape} mass="{spec.mass * share:.5f}" {looks} group="{GROUP}" {_CONTACT} conaffinity="3"/>'
 
 
 def _ring(

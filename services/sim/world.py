@@ -121,7 +121,7 @@ def world_mjcf(scene: Scene, placements: Sequence[Placement], mocap: str = "", r
   <texture name="sky" type="skybox" builtin="gradient" rgb1=".75 .82 .90" rgb2=".95 .96 .98" width="64" height="64"/>
   <texture name="floor" type="2d" builtin="checker" rgb1=".72 .66 .58" rgb2=".68 .62 .54" width="128" height="128"/>
   <material name="floor" texture="floor" texrepeat="{extent[0]:.0f} {extent[1]:.0f}"/>
-{robot.assets}</asset>
+{objects.materials(p.spec for p in placements)}{robot.assets}</asset>
 <worldbody>
   {lights}
   <geom name="floor" type="plane" pos="{center[0]} {center[1]} 0" size="{extent[0] / 2} {extent[1] / 2} 0.1"

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from common.rendering.renderer import Surfaces
 from services.camera.sensor import DARK, GLARE, LEAST_RANGE, NOISE_AT_1_M, StereoCamera, exact
 
 FOCAL = 433.0
@@ -58,3 +59,47 @@ def test_cameras_differ_in_exposure_and_white_balance() -> None:
 
 def test_an_ideal_sensor_rounds_to_millimetres() -> None:
     assert (exact(grey(), np.full(SHAPE, 1.2345)).depth == 1234).all()
+
+
+def surfaces(gloss: float = 0.0, clear: bool = False) -> Surfaces:
+    return Surfaces(np.full(SHAPE, gloss), np.full(SHAPE, clear))
+
+
+def cylinder(radius: float = 0.2, distance: float = 1.0) -> np.ndarray:
+    """Depth of an upright cylinder that fills the middle of the picture."""
+    ray = (np.arange(SHAPE[1]) + 0.5 - SHAPE[1] / 2) / FOCAL
+    a, b, c = 1 + ray**2, -2 * (distance + radius), (distance + radius) ** 2 - radius**2
+    inner = b**2 - 4 * a * c
+    depth = np.where(inner > 0, (-b - np.sqrt(np.maximum(inner, 0.0))) / (2 * a), 0.0)
+    return np.tile(depth, (SHAPE[0], 1))
+
+
+def missing(depth: np.ndarray, seen: Surfaces | None) -> np.ndarray:
+    picture = StereoCamera(1).expose(grey(), depth, FOCAL, 5, seen)
+    found: np.ndarray = (picture.depth == 0) & (depth > 0)
+    return found
+
+
+def test_a_tin_has_no_depth_along_the_stripe_that_mirrors_the_projector() -> None:
+    tin = cylinder()
+    matt, glossy, half = (missing(tin, s).mean(axis=0) for s in (None, surfaces(1.0), surfaces(0.5)))
+    middle = SHAPE[1] // 2
+    # The normal is 15 degrees off the line of sight where the surface is .2 m x sin(15) aside, nearly.
+    stripe = 0.2 * np.sin(np.radians(15)) * FOCAL / 1.0
+    rows = slice(80, 160)
+    lost = (missing(tin, surfaces(1.0))[rows] & ~missing(tin, None)[rows]).mean(axis=0) > 0.9
+    assert lost[middle] and lost.sum() == pytest.approx(2 * stripe * 0.83, rel=0.15)
+    assert matt[middle] == 0.0
+    beside = slice(middle + 40, middle + 60)
+    assert 0.08 < glossy[beside].mean() - matt[beside].mean() < 0.22
+    assert 0.03 < half[beside].mean() - matt[beside].mean() < 0.12
+
+
+def test_half_of_what_is_transparent_finds_no_match_in_patches() -> None:
+    lost = missing(np.full(SHAPE, 1.5), surfaces(clear=True))
+    assert lost.mean() == pytest.approx(0.5, abs=0.06)
+    assert (lost[:, 1:] != lost[:, :-1]).mean() < 0.3, "patches, not single pixels"
+
+
+def test_what_is_neither_loses_nothing() -> None:
+    assert not missing(np.full(SHAPE, 1.5), surfaces()).any()

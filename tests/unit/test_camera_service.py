@@ -153,3 +153,38 @@ def test_a_state_of_another_model_is_counted_and_the_next_one_works(
     node.state(physics)
     node.ask()
     assert node.count(topics.HEAD_RGBD) == 1
+
+
+SPECIAL = """<mujoco><visual><quality shadowsize="0" offsamples="0"/></visual>
+<asset><material name="tin" specular=".9" shininess=".9"/></asset><worldbody>
+<geom type="plane" size="3 3 .1" rgba="0 1 0 1"/>
+<geom type="box" size=".1 .1 .25" pos=".3 0 .25" material="tin" rgba="1 0 0 1"/>
+<geom type="box" size=".1 .1 .25" pos="-.3 0 .25" rgba="0 0 1 .3"/>
+<camera name="down" pos="0 0 2" xyaxes="1 0 0 0 1 0" fovy="60"/>
+<camera name="away" pos="0 1 .7" xyaxes="1 0 0 0 0 1" fovy="20"/>
+</worldbody></mujoco>"""
+LOOKS = f"""
+import mujoco, numpy
+from common.rendering.renderer import Renderer
+for backend in ("auto", "raycast"):
+    ours = Renderer('''{SPECIAL}''', backend)
+    ours.backend = backend if backend == "raycast" else ours.backend
+    ours.load(ours.data.qpos.tobytes(), b"")
+    seen = ours.surfaces("down", 80, 60)
+    assert abs(seen.gloss[30, 50] - 0.8) < 1e-6 and not seen.clear[30, 50], backend
+    assert seen.clear[30, 30] and seen.gloss[30, 30] == 0.0, backend
+    assert seen.gloss[2, 2] == 0.0 and not seen.clear[2, 2], backend
+    assert ours.surfaces("away", 80, 60) is None, backend
+    rgb, depth = ours.rgbd("down", 80, 60)
+    behind = 2.0 if backend == "auto" else 1.5
+    assert abs(depth[30, 50] - 1.5) < 0.002 and abs(depth[30, 30] - behind) < 0.002, (backend, depth[30, 30])
+    ours.close()
+"""
+
+
+def test_the_renderer_knows_what_is_glossy_and_looks_through_what_is_transparent() -> None:
+    backend = next((b for b in ("egl", "osmesa") if render.works(b)), None)
+    if backend is None:
+        pytest.skip("no GL library works here")
+    environ = os.environ | render.environment(backend)
+    subprocess.run([sys.executable, "-c", LOOKS], env=environ, check=True, timeout=60)

@@ -11,7 +11,7 @@ from judge.contacts import ContactBook, describe, is_hit
 from judge.effects import Effect, Shown
 from judge.evidence import Evidence, Recorder, Sample, ThingEvidence, Want, spl
 from judge.goal import Goal, shortfall
-from judge.track import Thing
+from judge.track import LIFTED, Thing
 
 WANT, MUG = Want("mug", ("tray", "desk")), frozenset({"mug"})
 KINDS = {"mug": "mug", "can": "can", "ball": "ball"}
@@ -91,6 +91,12 @@ def test_lifted_is_five_centimetres_in_the_hand(rise: float, lifted: bool) -> No
     low = changed(HELD, position=(3.0, 0.0, 0.7 + rise))
     assert mug([*GOOD[:2], sample(2.0, low), *GOOD[5:]]).lifted == lifted
     assert not mug([*GOOD[:2], sample(2.0, changed(low, held=False)), *GOOD[5:]]).lifted
+
+
+def test_five_centimetres_sharp_are_not_lifted() -> None:
+    floor = changed(ON_TABLE, position=(3.0, 0.0, 0.0))
+    low = changed(HELD, position=(3.0, 0.0, LIFTED))
+    assert not mug([sample(0.0, floor), sample(1.0, floor, 2.4), sample(2.0, low), *GOOD[5:]]).lifted
 
 
 def test_what_has_been_lifted_stays_so_and_is_carried_only_in_the_hand() -> None:
@@ -191,6 +197,12 @@ def test_what_went_over_is_disturbed(degrees: float, tipped: bool) -> None:
     leaning = changed(CAN, tilt=math.radians(degrees))
     turned = [sample(one.t, one.things["mug"], one.base[0], leaning if one.t > 1 else CAN) for one in GOOD]
     assert evidence(turned).disturbed == (["can"] if tipped else [])
+
+
+def test_what_leaned_before_is_disturbed_by_what_it_leans_more() -> None:
+    leaning = [changed(CAN, tilt=math.radians(degrees)) for degrees in (10, 20)]
+    turned = [sample(one.t, one.things["mug"], one.base[0], leaning[one.t > 1]) for one in GOOD]
+    assert evidence(turned).disturbed == []
 
 
 def test_a_ball_may_turn_on_the_spot() -> None:

@@ -48,6 +48,10 @@ def place(target: str) -> PlanStep:
     return PlanStep(action="place", target=target)
 
 
+def beside(target: str, near: str) -> PlanStep:
+    return PlanStep(action="place", target=target, near=near)
+
+
 def go(target: str = "", thing: str = "") -> PlanStep:
     return PlanStep(action="navigate", target=target, object=thing)
 
@@ -93,6 +97,12 @@ NOTHING = "step {}: there is nothing in the hand to release"
         ((place("desk"),), "", (), "step 1: there is nothing in the hand to place"),
         ((place("moon"),), "apple", (), "step 1: there is no moon to put things on"),
         ((place(""),), "apple", (), "step 1: there is no place to put things on"),
+        ((beside("desk", "red cup"),), "apple", (), ""),
+        ((beside("desk", "thimble"),), "apple", ("thimble",), ""),
+        ((beside("desk", "unicorn"),), "apple", (), "step 1: I know no unicorn that I could pick up"),
+        ((PlanStep(action="teach", text=" "),), "", (), "step 1: no name was said"),
+        ((PlanStep(action="forget"),), "", (), "step 1: no name was said"),
+        ((PlanStep(action="teach", text="vitamin box"), PlanStep(action="forget", text="it")), "", (), ""),
         ((place("desk"), place("desk")), "apple", (), "step 2: there is nothing in the hand to place"),
         ((place("desk"), RELEASE), "apple", (), "step 2: there is nothing in the hand to release"),
         ((RELEASE, RELEASE), "apple", (), "step 2: there is nothing in the hand to release"),
@@ -112,6 +122,12 @@ def test_the_first_step_that_cannot_be_done_is_named_with_the_reason(
     steps: tuple[PlanStep, ...], held: str, seen: tuple[str, ...], reason: str
 ) -> None:
     assert str(objection(steps, known_world(SCENE, seen, held), SCENE) or "") == reason
+
+
+@pytest.mark.parametrize("steps", [(), (WAIT,) * (MAX_STEPS + 1)], ids=["empty", "long"])
+def test_an_objection_to_the_whole_plan_has_number_0(steps: tuple[PlanStep, ...]) -> None:
+    found = objection(steps, known_world(SCENE, (), ""), SCENE)
+    assert found is not None and found.step == 0
 
 
 def test_the_known_world_lists_each_name_once_in_the_order_of_the_scene() -> None:
