@@ -186,6 +186,10 @@ class IoBase:
             self._worker = ThreadPoolExecutor(1, thread_name_prefix=f"{self.name}-worker")
         return WorkerJob(self._worker.submit(fn, *args), self.clock.now() + seconds, self.lockstep)
 
+    def dispose(self, fn: Callable[[], None]) -> None:
+        if self._worker is not None:
+            self._worker.submit(fn).result(WORKER_LIMIT)
+
     def new_id(self, prefix: str) -> str:
         self._ids += 1
         unique = f"{self.seed}-{self._ids}" if self.lockstep else f"{uuid.uuid4().hex[:8]}"

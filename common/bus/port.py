@@ -76,6 +76,12 @@ class Io(Protocol):
     def submit(self, fn: Callable[..., R], *args: Any, seconds: float = 0.2) -> Job[R]:
         """Run fn(*args) in the worker; in lockstep its result is visible exactly `seconds` later."""
 
+    def dispose(self, fn: Callable[[], None]) -> None:
+        """Run fn() in the worker, behind what it is doing, and wait: for what has to be freed where it was made.
+
+        Nothing happens where the worker never did anything.
+        """
+
     def serve(self, key: str, handler: Handler) -> None:
         """Answer zenoh `get` on `key`; the handler runs in the service's thread before a step."""
 

@@ -68,7 +68,7 @@ class CameraService:
         self._io.publish(topics.HEAD_RGBD if image.camera == "head" else topics.WRIST_RGBD, image)
 
     def close(self) -> None:
-        self._io.submit(self._shutter.close, seconds=0.0)
+        self._io.dispose(self._shutter.close)
 
 
 def _mounts(path: str) -> calibration.Mounts:

@@ -2,6 +2,7 @@ import math
 import os
 import subprocess
 import sys
+import threading
 
 import msgspec
 import mujoco
@@ -153,6 +154,18 @@ def test_a_state_of_another_model_is_counted_and_the_next_one_works(
     node.state(physics)
     node.ask()
     assert node.count(topics.HEAD_RGBD) == 1
+
+
+def test_the_renderer_is_freed_in_the_thread_that_made_it(physics: Physics, monkeypatch: pytest.MonkeyPatch) -> None:
+    closed: list[str] = []
+    monkeypatch.setattr(render.Renderer, "close", lambda self: closed.append(threading.current_thread().name))
+    node = Lens(monkeypatch)
+    node.state(physics)
+    node.ask()
+    node.ask(id="under way when it ends", width=320, height=240)
+    node.service.close()
+    node.io.shutdown()
+    assert len(closed) == 1 and closed[0].startswith("camera-worker")
 
 
 SPECIAL = """<mujoco><visual><quality shadowsize="0" offsamples="0"/></visual>

@@ -1,3 +1,5 @@
+import threading
+
 import pytest
 
 from common import messages as m
@@ -118,3 +120,16 @@ def test_goal_ids_name_the_mission_in_the_log() -> None:
     io.begin(None, 0.0)
     io.take_all(topics.NAVIGATION_GOAL)
     assert io.log.mission == "m-7"
+
+
+def test_what_is_disposed_of_runs_behind_the_work_and_is_waited_for() -> None:
+    _, io = make()
+    done: list[str] = []
+    gate = threading.Event()
+    io.dispose(lambda: done.append("nothing was ever made"))
+    assert done == []
+    io.submit(lambda: (gate.wait(10), done.append("work")))
+    threading.Timer(0.05, gate.set).start()
+    io.dispose(lambda: done.append("freed"))
+    io.shutdown()
+    assert done == ["work", "freed"]
