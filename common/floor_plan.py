@@ -123,6 +123,7 @@ class Obstacle(Strict, frozen=True):
     It stands at `position`, turned by `yaw`; `size` is its full extent. With a `path` it goes from there along these
     points at `speed`: after `start` seconds, and, if `near` is set, once the robot is so near to its place or path.
     `repeat`: to and fro for ever, else it stays at the end. `polite`: it waits while the robot is in its way.
+    `social`: a person who walks the path to and fro as people do, round others, the robot and furniture.
     With `placed = false` it is there only when `sim.obstacles` names it.
     """
 
@@ -137,6 +138,7 @@ class Obstacle(Strict, frozen=True):
     near: float = 0.0
     repeat: bool = False
     polite: bool = True
+    social: bool = False
     placed: bool = True
     rgba: Rgba = (0.55, 0.35, 0.60, 1.0)
 

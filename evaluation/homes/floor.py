@@ -20,12 +20,13 @@ SIDES = ((0, -1), (1, 0), (-1, 0), (0, 1))
 
 
 class Floor:
-    """A grid of `size` (x, y) [m] whose cells are taken by walls and furniture or kept free before doors."""
+    """A grid between the corners `low` and `high` [m] whose cells are taken by walls and furniture or kept free."""
 
-    def __init__(self, size: Vec2, walls: Iterable[Wall]) -> None:
-        rows, columns = math.ceil(size[1] / CELL), math.ceil(size[0] / CELL)
+    def __init__(self, low: Vec2, high: Vec2, walls: Iterable[Wall]) -> None:
+        rows, columns = math.ceil((high[1] - low[1]) / CELL), math.ceil((high[0] - low[0]) / CELL)
         y, x = np.mgrid[:rows, :columns]
-        self._x, self._y = (x + 0.5) * CELL, (y + 0.5) * CELL
+        self._low = low
+        self._x, self._y = low[0] + (x + 0.5) * CELL, low[1] + (y + 0.5) * CELL
         self._taken: Mask = np.zeros((rows, columns), bool)
         self._kept: Mask = self._taken.copy()
         for wall in walls:
@@ -74,8 +75,8 @@ class Floor:
         """Row and column of a point, clipped to the grid."""
         rows, columns = self._taken.shape
         return (
-            int(np.clip(point[1] / CELL, 0, rows - 1)),
-            int(np.clip(point[0] / CELL, 0, columns - 1)),
+            int(np.clip((point[1] - self._low[1]) / CELL, 0, rows - 1)),
+            int(np.clip((point[0] - self._low[0]) / CELL, 0, columns - 1)),
         )
 
     def roomiest(self, room: Room, within: Mask) -> Vec2 | None:
@@ -86,6 +87,12 @@ class Floor:
             return None
         where = np.unravel_index(int(np.argmax(np.where(inside, self.clearance(), -1.0))), inside.shape)
         return float(self._x[where]), float(self._y[where])
+
+    def somewhere(self, rng: np.random.Generator, within: Mask) -> Vec2:
+        """A random point of the cells `within`."""
+        rows, columns = np.nonzero(within)
+        n = int(rng.integers(len(rows)))
+        return float(self._x[rows[n], columns[n]]), float(self._y[rows[n], columns[n]])
 
     def approaches(self, area: Rectangle, within: Mask, sides: Sequence[tuple[int, int]] = SIDES) -> list[Vec2]:
         """Directions in the area's own frame from whose edge the base reaches it from cells `within`."""

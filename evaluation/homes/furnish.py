@@ -49,7 +49,7 @@ def furnish(rng: np.random.Generator, shell: Shell) -> Furnished:
     Raises:
         NoHome: a room cannot be reached, or there is no place for the tray.
     """
-    floor = Floor(shell.size, shell.walls)
+    floor = Floor((0.0, 0.0), shell.size, shell.walls)
     for door in shell.doors:
         length, width = (door.width, 2 * DOORWAY) if door.along == 0 else (2 * DOORWAY, door.width)
         floor.keep(Rectangle(*door.middle, length, width))

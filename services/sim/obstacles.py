@@ -1,13 +1,16 @@
 """Boxes and people that the robot's map does not have: kinematic bodies that stand, or walk their path."""
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from common.approach import FOOTPRINT
+from common.geometry import Rectangle
 from common.runtime import StartError
 from common.scene import Obstacle, Scene
+from services.sim.pedestrians import Pedestrian
 
 PREFIX = "obstacle "
 # A polite one stays this far from the robot's middle, beside its own radius [m].
@@ -100,11 +103,18 @@ class Walker:
 
 
 class Obstacles:
-    """All of them; `moving` tells whether any moved in the last step."""
+    """All of them; `moving` tells whether any moved in the last step. `solids` is what people walk round."""
 
-    def __init__(self, obstacles: tuple[Obstacle, ...], model: Any) -> None:
-        self._all = [Walker(o, int(model.body(PREFIX + o.name).mocapid[0])) for o in obstacles]
+    def __init__(self, obstacles: tuple[Obstacle, ...], model: Any, solids: Sequence[Rectangle] = ()) -> None:
+        self._all: list[Walker | Pedestrian] = []
+        solids = [*solids, *(Rectangle(*o.position, *o.size[:2], o.yaw) for o in obstacles if not o.path)]
+        for o in obstacles:
+            mocap = int(model.body(PREFIX + o.name).mocapid[0])
+            self._all.append(Pedestrian(o, mocap, solids) if o.social and o.path else Walker(o, mocap))
         self._walkers = [w for w in self._all if w.moves]
+        people = [w for w in self._all if isinstance(w, Pedestrian)]
+        for person in people:
+            person.others = people
         self.moving = False
 
     def reset(self) -> None:

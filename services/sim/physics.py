@@ -60,7 +60,7 @@ class Physics:
         self.gripper_bodies = subtree(model, "gripper")
         self.robot_bodies = {b for b in range(model.nbody) if model.body_rootid[b] == model.body("base").id}
         self.contacts = Contacts(self.model, self.robot_bodies, self.pads, self.bodies)
-        self.obstacles = Obstacles(obstacles, self.model)
+        self.obstacles = Obstacles(obstacles, self.model, [w.footprint for w in scene.walls] + scene.footprints)
         self._steps = FINE
         self.reset()
 

@@ -2,15 +2,17 @@
 
 from pathlib import Path
 
+import msgspec
 import pytest
-from evaluation.scene_file import to_toml
 
 from common.approach import EDGE_DISTANCE, FOOTPRINT, STAND_OFF, poses_for
+from common.floor_plan import Box
+from common.plan_file import to_toml
 from common.scene import Scene, load_scene
 from evaluation.blocks import flat
 from evaluation.homes.home import draw_home
 from evaluation.homes.rooms import NoHome
-from evaluation.homes.suite import homes
+from evaluation.homes.suite import aged, homes
 from services.navigation.planning.costmap import Costmap
 from services.navigation.planning.planner import PathPlanner
 from services.sim.layout import place_objects
@@ -68,3 +70,18 @@ def test_too_many_rooms_for_a_home_are_refused(monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.setattr("evaluation.homes.home.DRAWS", 0)
     with pytest.raises(NoHome, match="no home of 3 rooms"):
         draw_home(0, OBJECTS, 3)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_an_aged_home_has_what_its_map_has_not_and_the_robot_still_gets_about(seed: int) -> None:
+    case = aged(seed)
+    assert case.scene is not None and case.household is not None and case.scene.obstacles
+    standing = [o for o in case.scene.obstacles if not o.path]
+    people = [o for o in case.scene.obstacles if o.path]
+    assert people and all(p.social and len(p.path) > 1 for p in people)
+    boxes = tuple(Box(name=o.name, center=(*o.position, 0.3), size=o.size, yaw=o.yaw) for o in standing)
+    costmap = Costmap(msgspec.structs.replace(case.scene, furniture=case.scene.furniture + boxes), 0.05, 1.0)
+    planner = PathPlanner(costmap, FOOTPRINT + 0.02, 0.65)
+    assert all(planner.possible((0.0, 0.0), [(p.x, p.y)]) for p in case.scene.places)
+    for person in people:
+        assert min(costmap.clearance(*point) for point in (person.position, *person.path)) > 0.2

@@ -7,12 +7,15 @@ import pytest
 
 from common import config, topics
 from common import messages as m
+from common.approach import FOOTPRINT
+from common.geometry import Rectangle
 from common.runtime import StartError
 from common.scene import SCENES, Obstacle, load_scene
 from services.sim.base import BaseDriver
 from services.sim.config import SimConfig
 from services.sim.obstacles import DISTANCE, Walker, chosen
 from services.sim.odometry import WheelOdometry
+from services.sim.pedestrians import Pedestrian
 from tests.simulation import Simulation
 
 APARTMENT = load_scene("apartment")
@@ -181,3 +184,63 @@ def test_the_base_goes_by_its_wheels_and_not_by_where_it_is() -> None:
         wrong = (actual[1] - 1.0, 3.0 - actual[0], actual[2] - math.pi / 2)
     assert actual[:2] == pytest.approx((3.0, 2.0), abs=0.01)
     assert driver.reached(wrong)
+
+
+def crowd(*rows: dict[str, object]) -> list[Pedestrian]:
+    """People on a floor with one wall along y = 1."""
+    people = [
+        Pedestrian(msgspec.convert({"name": f"p{n}", "social": True, **row}, Obstacle), n, [WALL])
+        for n, row in enumerate(rows)
+    ]
+    for person in people:
+        person.others = people
+    return people
+
+
+WALL = Rectangle(0.0, 1.06, 20.0, 0.12)
+AWAY = (9.0, -9.0)
+
+
+def test_a_person_walks_to_and_fro_at_their_speed() -> None:
+    (one,) = crowd({"position": (0.0, -1.0), "path": [(3.0, -1.0)], "speed": 0.6})
+    xs = []
+    for _ in range(1200):
+        one.advance(AWAY, 0.01)
+        xs.append(one.place[0])
+    assert max(xs) == pytest.approx(3.0, abs=0.5) and min(xs[xs.index(max(xs)) :]) < 0.5
+    assert xs[300] - xs[200] == pytest.approx(0.6, abs=0.05)
+
+
+def test_people_go_round_a_robot_that_stands_in_their_way_and_do_not_touch_it() -> None:
+    (one,) = crowd({"position": (0.0, 0.0), "path": [(4.0, 0.02)], "speed": 0.8})
+    robot, gaps = (2.0, -0.05), []
+    for _ in range(900):
+        one.advance(robot, 0.01)
+        gaps.append(math.dist(one.place, robot))
+        if one.place[0] > 3.4:
+            break
+    assert one.place[0] > 3.4, "past it"
+    assert min(gaps) > FOOTPRINT + 0.2, "their own radius beside the robot's"
+
+
+def test_people_keep_apart_from_each_other_and_from_the_wall() -> None:
+    people = crowd(
+        {"position": (0.0, 0.5), "path": [(4.0, 0.5)], "speed": 0.8},
+        {"position": (4.0, 0.55), "path": [(0.0, 0.55)], "speed": 0.8},
+    )
+    gaps, walls = [], []
+    for _ in range(500):
+        for person in people:
+            person.advance(AWAY, 0.01)
+        gaps.append(math.dist(people[0].place, people[1].place))
+        walls.append(min(1.0 - p.place[1] for p in people))
+    assert min(gaps) > 0.4 and min(walls) > 0.2
+    assert people[0].place[0] > 2.5 and people[1].place[0] < 1.5, "they have passed"
+
+
+def test_who_cannot_get_on_turns_round() -> None:
+    (one,) = crowd({"position": (0.0, -1.0), "path": [(2.0, 2.0)], "speed": 0.6})
+    for _ in range(2000):
+        one.advance(AWAY, 0.01)
+    assert one.place[1] < 0.8, "the wall is between"
+    assert any(one.advance(AWAY, 0.01) for _ in range(5)), "and still walks"
