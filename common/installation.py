@@ -6,11 +6,11 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 """The folder of the packages: the checkout, or `site-packages`."""
 CHECKOUT = (ROOT / "pyproject.toml").exists()
-_IN_CHECKOUT = {"config": "config", "audio": "docs/audio", "examples": "examples"}
+_IN_CHECKOUT = {"config": "config", "audio": "docs/audio"}
 
 
 def shipped(name: str) -> Path:
-    """Files that come with the software: `config`, `audio` or `examples`, wherever the wheel has put them."""
+    """Files that come with the software: `config` or `audio`, wherever the wheel has put them."""
     return ROOT / _IN_CHECKOUT[name] if CHECKOUT else ROOT / "common" / "shipped" / name
 
 
