@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from services.manipulation.arm_model import Array, Pose
-from services.manipulation.clearance import PAD
+from services.manipulation.clearance import FLAT, PAD, PAD_HALF
 from services.manipulation.grasp import Grasp, Target, approach_rotation
 from services.manipulation.surface import surface
 
@@ -21,15 +21,10 @@ BEARINGS = (0, 25, -25, 50, -50, 75, -75)
 """From where [deg], off the way from the arm to the object, except straight from above."""
 ROLLS = tuple(range(-90, 90, 15))
 """How far the fingers are turned [deg] from above."""
-PAD_HALF = 0.011
-"""Half the width [m] of a pad (Robotiq 2F-85: 22 mm)."""
 FINGER_HALF = 0.0135
 """Half the width [m] of a finger."""
 PLAY = 0.003
 """Least distance [m] of open fingers from the object on either side, and of their tips from what it rests on."""
-FLAT = 0.003
-"""How far [m] a part of the surface may be behind the outermost and still touch the pad: the rubber gives way by 1 mm,
-the rest is noise of the sight."""
 STEP = 0.02
 """Depth [m] that counts for a part of the surface that lies deeper under the pad: an edge is no place for it."""
 STEEPEST = 0.45
@@ -45,7 +40,7 @@ HAND_DEPTH = 0.036
 it, and the hand may keep back a little)."""
 LONGEST = 0.06
 """Farthest [m] from an object's middle that it is taken: beyond, its weight turns it between the pads."""
-KEPT, APART, TURNED = 28, 0.012, math.radians(20)
+KEPT, APART, TURNED = 40, 0.012, math.radians(20)
 """How many grasps are proposed, and from where on [m, rad] two of them are different ones."""
 LOW = 0.09
 """Height [m] up to which an object is better taken from above."""

@@ -18,6 +18,15 @@ STEP = 0.002
 """Resolution [m] of the search along the approach: finer than the pose noise."""
 PAD = 0.019
 """Half the length [m] of a pad along the approach (Robotiq 2F-85: two boxes of 18.75 mm)."""
+PAD_HALF = 0.011
+"""Half the width [m] of a pad (Robotiq 2F-85: 22 mm)."""
+FLAT = 0.003
+"""How far [m] a part of the surface may be behind the outermost and still touch the pad: the rubber gives way by 1 mm,
+the rest is noise of the sight."""
+OUTWARD = 0.005
+"""How far [m] beyond the pads' middle what they touch should be: adaptive fingers stay parallel when pressed there, and
+fold around what presses nearer to the palm, which thin and round things slip out of (Robotiq 2F-85 manual, equilibrium
+line; measured with a ball of 57 mm and a cylinder of 39)."""
 MOST = 0.016
 """Farthest [m] that the hand keeps back from something round: its widest line stays 3 mm within the pads."""
 HAND = 0.22
@@ -66,7 +75,7 @@ class HandClearance:
         return replace(grasp, pose=pose)
 
     def _needed(self, target: Target, pose: Pose, widths: tuple[float, float], on_surface: bool) -> float | None:
-        back, most = 0.0, MOST if on_surface else _most(target, pose)
+        back, most = self._outward(target, pose, widths[1]), MOST if on_surface else _most(target, pose)
         room = self._room_on_surface if on_surface else self._room
         while True:
             kept = pose.moved(-back * pose.rotation[:, 2])
@@ -96,14 +105,28 @@ class HandClearance:
         self._spread(width)
         return self._distance(target.grown(0.0), pose, self._parts)
 
-    def _room_on_surface(self, target: Target, pose: Pose, width: float) -> float:
-        """The same for the completed surface of the object; every part of the hand counts as the box around it."""
+    def _outward(self, target: Target, pose: Pose, width: float) -> float:
+        """How far [m] back the hand goes so that the middle of what its pads touch is `OUTWARD` of their middle."""
+        points = self._local(target, pose) - (0.0, 0.0, self.hand.advance(width))
+        facing = points[(np.abs(points[:, 0]) <= PAD_HALF) & (np.abs(points[:, 2]) <= PAD)]
+        if not len(facing):
+            return 0.0
+        touched = facing[np.abs(facing[:, 1]) >= np.abs(facing[:, 1]).max() - FLAT]
+        return float(np.clip(OUTWARD - (touched[:, 2].max() + touched[:, 2].min()) / 2, 0.0, OUTWARD))
+
+    def _local(self, target: Target, pose: Pose) -> Array:
+        """Points (n, 3) [m] of the object's completed surface in the frame of the pinch point."""
         if self._known is None or self._known[0] is not target:
             self._known = target, surface(target)
+        found: Array = (self._known[1] - pose.position) @ pose.rotation
+        return found
+
+    def _room_on_surface(self, target: Target, pose: Pose, width: float) -> float:
+        """The same for the completed surface of the object; every part of the hand counts as the box around it."""
         self._spread(width)
         model, data = self._model, self._data
         site = data.site("pinch")
-        points = (self._known[1] - pose.position) @ pose.rotation @ site.xmat.reshape(3, 3).T + site.xpos
+        points = self._local(target, pose) @ site.xmat.reshape(3, 3).T + site.xpos
         least = 0.05
         for part in self._parts:
             box = model.geom_aabb[part]

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from services.manipulation.arm_model import Pose
-from services.manipulation.clearance import GAP, MOST
+from services.manipulation.clearance import GAP, MOST, OUTWARD
 from services.manipulation.grasp import Grasp, Target, approach_rotation
 from services.manipulation.motion_planner import Planner
 from services.sim.model import own
@@ -33,10 +33,19 @@ def box(deep: float) -> Target:
     return Target("box", "box", (0.5, 0.0, 0.5), 0.0, (deep, 0.05, 0.1))
 
 
-def test_what_the_hand_reaches_around_is_grasped_in_its_middle() -> None:
-    assert kept_back(box(0.05), 0.05) == pytest.approx(0.0)
+def test_what_the_hand_reaches_around_is_grasped_a_little_beyond_the_middle_of_its_pads() -> None:
+    assert kept_back(box(0.05), 0.05) == pytest.approx(OUTWARD, abs=0.001)
     can = Target("can", "can", (0.5, 0.0, 0.5), 0.0, (0.066, 0.066, 0.12))
-    assert kept_back(can, 0.066) == pytest.approx(0.0)
+    assert kept_back(can, 0.066) == pytest.approx(OUTWARD, abs=0.001)
+
+
+def test_what_lies_at_the_tips_of_the_pads_already_is_grasped_as_it_is() -> None:
+    flat = Target("lid", "", (0.5, 0.0, 0.5), 0.0, (0.05, 0.05, 0.012), shape="box")
+    above = Pose(np.array([0.5, 0.0, 0.51]), approach_rotation(0.0, np.pi / 2))
+    found = PLANNER.clearance.clear(flat, Grasp(above, 0.05, 0.016, np.pi / 2, "from above", on_surface=True))
+    assert found is not None
+    up = found.pose.position[2] - above.position[2]
+    assert up == pytest.approx(PLANNER.clearance.hand.advance(0.05), abs=1e-6)
 
 
 def test_the_hand_keeps_back_from_a_deep_box_as_far_as_its_knuckles_need() -> None:
@@ -62,7 +71,8 @@ def test_the_pads_of_a_linkage_meet_where_the_grasp_wants_them(monkeypatch: pyte
     monkeypatch.setattr(clearance.hand, "advance", lambda width: -0.1 * width)
     found = clearance.clear(box(0.03), grasp(box(0.03), 0.05))
     assert found is not None
-    assert found.pose.position[0] == pytest.approx(0.505), "the site goes 5 mm beyond, where pads lag by 5 mm"
+    beyond = found.pose.position[0] - 0.5
+    assert beyond == pytest.approx(0.005 - OUTWARD, abs=0.001), "the site goes 5 mm beyond, where pads lag by 5 mm"
 
 
 def test_asking_leaves_the_arms_model_as_it_was() -> None:

@@ -1,6 +1,7 @@
 """Grasps in a crowd: neighbours are the solids that they are, and what is in the way has a name."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -59,13 +60,16 @@ def test_a_lying_cylinder_is_as_long_and_as_thick_as_it_was_measured() -> None:
 def test_fingers_go_in_wide_open_where_there_is_room_and_partly_closed_where_there_is_not() -> None:
     assert grab().opening is None
     assert grab(beside(90.0, 0.06, "red can")).opening is None
-    crowd = [beside(bearing, 0.017, f"can {bearing}") for bearing in range(0, 360, 60)]
-    try:
-        plan = grab(*crowd)
-    except PlanError as error:
-        assert error.blockers
-    else:
-        assert plan.opening is not None and CAN.size[0] < plan.opening < ARM.hand.open
+    thin = replace(CAN, size=(0.03, 0.03, 0.12))
+    posts = [(0.6 + dx, dy, 0.66) for dx, dy in ((0.0, 0.07), (0.0, -0.07), (0.07, 0.0), (-0.07, 0.0))]
+    around = [TABLE, *(Obstacle(at, (0.05, 0.05, 0.12), 0.0, "cylinder", label="post") for at in posts)]
+    plan = plan_grab(PLANNER, thin, [around], ARM.home.copy(), 0.1, 0.1, 1.0, frozenset(), [])
+    assert plan.opening is not None and 0.03 < plan.opening < ARM.hand.open
+    ARM.set_obstacles(around)
+    assert any(ARM.collides(q) for q in plan.insert), "wide open they would not go in"
+    ARM.open_fingers(plan.opening)
+    assert not any(ARM.collides(q) for q in plan.insert)
+    ARM.open_fingers()
 
 
 def test_what_is_in_the_way_has_a_name_and_furniture_has_none() -> None:
