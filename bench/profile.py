@@ -38,6 +38,8 @@ PARTS = {
     "services.sim.contacts:Contacts.step": "contact log",
     "common.rendering.renderer:Renderer.load": "state",
     "common.rendering.renderer:Renderer.rgbd": "drawing",
+    "common.rendering.renderer:Renderer.surfaces": "drawing",
+    "services.camera.sensor:StereoCamera.expose": "sensor model",
     "services.perception.detect:ClassicalDetector.detect": "detection",
     "services.perception.self_filter:RobotModel.mask": "its own body",
     "services.perception.self_filter:RobotModel.pose": "its own body",
@@ -70,6 +72,8 @@ def probes(meter: Meter) -> Iterator[Callable[[], float]]:
     replaced: list[tuple[Any, str, Any]] = []
 
     def put(owner: Any, name: str, value: Any) -> None:
+        if isinstance(owner, type):
+            owner = next(kind for kind in owner.__mro__ if name in vars(kind))
         replaced.append((owner, name, vars(owner)[name]))
         setattr(owner, name, value)
 

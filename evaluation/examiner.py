@@ -1,5 +1,6 @@
 """The examiner takes part in the lockstep like any service: plays the person, watches physics, ends the case."""
 
+import math
 from collections import deque
 from typing import Any
 
@@ -10,10 +11,11 @@ from common import topics
 from common.bus.port import Io, Job
 from common.config import Config
 from evaluation.case import Case, Line, Observed
+from evaluation.ego_noise import EgoNoise
 from evaluation.fault_reports import FaultReport
 from evaluation.shortest import FloorPlan
 from evaluation.simulated_user import Manner, SimulatedUser
-from evaluation.voice import RATE, Samples, utter
+from evaluation.voice import RATE, Samples, loudness, utter
 from judge.evidence import Sample
 from judge.observer import WATCH, Observer
 
@@ -22,6 +24,8 @@ OVER = ("COMPLETED", "ERROR")
 REACTION, QUIET = 0.5, 40.0
 """Time [s] until the simulated user answers, and of quiet after which a case without an outcome is over."""
 WAKE = "hey jarvis, "
+IDEAL = "sim.sensors=ideal"
+"""The setting with which the robot's microphone does not hear the robot."""
 
 
 class ExaminerConfig(Config, frozen=True):
@@ -53,6 +57,8 @@ class Examiner:
         self._due: deque[tuple[float, str]] = deque()
         self._voice: Job[Samples] | None = None
         self._sound: deque[Samples] = deque()
+        self._ego: EgoNoise | None = None
+        self._speed, self._was = 0.0, (0.0, (0.0, 0.0))
         self._saying = ""
         self.active = False
         self._ended_at: float | None = None
@@ -85,6 +91,10 @@ class Examiner:
         for state in io.take_all(topics.SIM_STATE):
             first = not observer.ready
             sample = observer.world(state)
+            if sample is not None:
+                before, there = self._was
+                self._was = state.t, sample.base[:2]
+                self._speed = math.dist(there, sample.base[:2]) / max(state.t - before, 0.01) if before else 0.0
             if first and sample is not None:
                 self.observed.shortest = self._shortest(sample)
         for report in io.take_all(topics.SIM_CONTACTS):
@@ -171,6 +181,8 @@ class Examiner:
             if self._voice.poll(now):
                 samples, self._voice = self._voice.result(), None
                 size = RATE // self.HZ
+                if self._ego is None and IDEAL not in self._case.settings:
+                    self._ego = EgoNoise(self._case.seed, loudness(samples))
                 self._sound.extend(samples[i : i + size] for i in range(0, len(samples), size))
         elif self._due and self._due[0][0] <= now and not self._saying:
             self._say(self._due.popleft()[1], now)
@@ -197,6 +209,8 @@ class Examiner:
 
     def _play(self, now: float) -> None:
         part = self._sound.popleft()
+        if self._ego is not None:
+            part = self._ego.over(part, self._speed)
         chunk = m.AudioChunk(t=now, data=part.astype("<i2").tobytes(), rate=RATE, end=not self._sound)
         self._io.publish(topics.AUDIO_PCM, chunk)
         self._quiet_since = now

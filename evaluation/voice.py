@@ -47,9 +47,16 @@ def utter(text: str, noise: float | None = None, seed: int = 0, speaker: Speaker
     sound = _reverberant(whole, rng) if speaker.room else whole.astype(np.float64)
     if noise is not None:
         loudness = float(np.sqrt(np.mean(np.square(speech.astype(np.float64)))))
-        hiss = _hum(len(whole), rng) if speaker.room else rng.normal(0.0, 1.0, len(whole))
+        hiss = hum(len(whole), rng) if speaker.room else rng.normal(0.0, 1.0, len(whole))
         sound = sound + loudness * 10 ** (-noise / 20) * hiss
     return np.clip(sound, -32768, 32767).astype(np.int16)
+
+
+def loudness(samples: Samples) -> float:
+    """Root mean square [int16 steps] of what is louder than a hundredth of the loudest: of words, not of pauses."""
+    sound = np.abs(samples.astype(np.float64))
+    words = sound[sound > 0.01 * sound.max(initial=0.0)]
+    return float(np.sqrt(np.mean(np.square(words)))) if len(words) else 0.0
 
 
 def _spoken(text: str, speaker: Speaker) -> Samples:
@@ -83,7 +90,7 @@ def _reverberant(samples: Samples, rng: np.random.Generator) -> Floats:
     return heard
 
 
-def _hum(count: int, rng: np.random.Generator) -> Floats:
+def hum(count: int, rng: np.random.Generator) -> Floats:
     """Noise (n,) with a spectrum of 1/f from 20 Hz, root mean square 1: fans, fridge, street."""
     spectrum = np.fft.rfft(rng.normal(0.0, 1.0, count))
     frequency = np.maximum(np.fft.rfftfreq(count, 1 / RATE), 20.0)
