@@ -115,7 +115,7 @@ _TABLE = (
         "mug", "turned", (GraspRule("around", (40, 55, 25), 0.55),), _mug, rests=frozenset({"side", "upside down"}),
         wall=0.004, handle=0.024, facets=0.002, lying_angles=(60, 75, 90, 50),
         look=Look(
-            {"round": 1, "bowl": 0.3}, (0.062, 0.115), (0.065, 0.13), (0.7, 1.7), hollow=_HOLLOW, handle=(1, 0.5),
+            {"round": 1, "bowl": 0.3}, (0.062, 0.115), (0.065, 0.13), (0.7, 1.7), hollow=_HOLLOW, handle=(1, 0.7),
         ),
     ),
     Kind(
@@ -156,7 +156,7 @@ _TABLE = (
     ),
     Kind(
         "cup", "turned", (GraspRule("around", (40, 55, 25), 0.55),), rests=frozenset({"side", "upside down"}),
-        look=Look({"round": 1, "bowl": 0.5}, (0.05, 0.105), (0.05, 0.15), (0.6, 2.0), hollow=_HOLLOW, share=0.6),
+        look=Look({"round": 1, "bowl": 0.5}, (0.05, 0.105), (0.05, 0.15), (0.6, 2.0), hollow=_HOLLOW, share=0.5),
     ),
     Kind(
         "jar", "turned", (GraspRule("around", (15, 25, 5, 40), 0.55),), rests=frozenset({"side"}),

@@ -14,13 +14,6 @@ WORDS = ("red", "orange", "yellow", "green", "blue", "purple", "pink", "brown", 
 """Names of colours; `pixel_words` counts by their place here."""
 _HUES = ((0.035, 0), (0.115, 1), (0.19, 2), (0.45, 3), (0.70, 4), (0.80, 5), (0.93, 6), (1.01, 0))
 """Hue [turns] up to which a colour has that word."""
-ALIKE = {
-    "red": ("pink", "orange", "brown"), "orange": ("red", "yellow", "brown"), "yellow": ("orange", "green", "white"),
-    "green": ("yellow", "blue"), "blue": ("green", "purple", "black"), "purple": ("blue", "pink"),
-    "pink": ("red", "purple"), "brown": ("orange", "red", "black"), "black": ("grey", "blue", "brown"),
-    "grey": ("black", "white"), "white": ("grey", "yellow"),
-}  # fmt: skip
-"""Words that somebody else may use for a colour at the limit."""
 PART = 0.15
 """Share of an object's pixels from which a colour is one of its own. Chosen: highlights and edges stay below it."""
 NEUTRAL, FEW_NEUTRAL, MOST_CAST = 0.22, 0.04, 0.12

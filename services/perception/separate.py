@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from common.geometry import Array
-from services.perception.measure import Measurement
+from services.perception.measurement import Measurement
 from services.perception.segmentation import MIN_PIXELS, Segment
 from services.perception.unlisted import measured, noise_of
 from services.perception.view import View

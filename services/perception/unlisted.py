@@ -11,7 +11,8 @@ from common.looks import Measures, likely
 from common.messages import ShapeFamily
 from services.perception import colour
 from services.perception.detection import Detection
-from services.perception.measure import LEVEL, Measurement, measure
+from services.perception.measure import measure
+from services.perception.measurement import LEVEL, Measurement
 from services.perception.segmentation import DEPTH_NOISE, Segment
 from services.perception.view import View
 
@@ -44,7 +45,7 @@ def describe(view: View, segment: Segment, found: Measurement, gains: Array) -> 
         kind=kind,
         colour=words[0],
         position=(found.x, found.y, segment.surface.height + height / 2),
-        yaw=found.yaw if math.isnan(found.handle) else found.handle,
+        yaw=found.yaw if found.tilt or math.isnan(found.handle) else found.handle,
         size=found.size,
         confidence=confidence * (LIKE_NOTHING if found.family == "irregular" else 1.0),
         on=segment.surface.name,
@@ -84,7 +85,7 @@ def measures_of(m: Measurement, error: float) -> Measures:
     if m.family in ("round", "bowl", "ball") or (m.family == "long" and m.profile):
         across, along = (m.size[1], m.size[0]) if m.tilt == LEVEL else (m.size[0], m.size[2])
         upper = m.profile[-NECK_UPPER:]
-        neck = bool(upper) and max(upper) < NECK
+        neck = bool(upper) and max(upper) < NECK and not m.hollow
         return Measures(m.family, across, along, 1.0, m.hollow, neck, not math.isnan(m.handle), error)
     shortest, middle, longest = sorted(m.size)
     return Measures(m.family, shortest, longest, middle / shortest, error=error)

@@ -6,13 +6,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from common.household import load_household
+from common.household import load_household, mapped
 from common.messages import WorldObject
+from common.naming import match_object
 from services.perception.detection import Detection
 from services.perception.object_tracker import ObjectTracker
 from services.perception.view import View
 
 SCENE = load_household("apartment")
+NOTHING_LISTED = mapped(SCENE)
 
 
 def sighting(
@@ -101,3 +103,40 @@ def test_pieces_of_one_object_are_reported_once() -> None:
     part = replace(sighting(4.02, -3.0, CAN, BLUE), size=(0.03, 0.03, 0.05), confidence=0.3, whole=False)
     _, found = seen([sighting(4.0, -3.0, CAN, RED)], [part], [sighting(4.0, -3.0, CAN, RED)])
     assert len(found) == 1
+
+
+def unlisted(label: str, kinds: list[str], colours: list[str]) -> WorldObject:
+    colour, kind = label.split()[:2]
+    return WorldObject(
+        label=label, kind=kind, colour=colour, position=(1.0, 0.0, 0.8), kinds=kinds, colours=colours, id=label,
+        measured=True,
+    )  # fmt: skip
+
+
+SEEN = [
+    unlisted("red can", ["can", "mug", "jar"], ["red"]),
+    unlisted("green can", ["can", "bottle"], ["green", "white"]),
+    unlisted("orange ball", ["ball", "orange"], ["orange"]),
+    unlisted("blue can", ["can"], ["blue"]),
+]
+
+
+@pytest.mark.parametrize(
+    ("words", "labels"),
+    [
+        ("green bottle", ["green can"]),
+        ("mug", ["red can"]),
+        ("red mug", ["red can"]),
+        ("white can", ["green can"]),
+        ("something blue", ["blue can"]),
+        ("orange", ["orange ball"]),
+        ("red ball", ["orange ball"]),
+        ("can", ["red can", "green can", "blue can"]),
+        ("blue can", ["blue can"]),
+        ("black box", []),
+        ("something", []),
+        ("plate", []),
+    ],
+)
+def test_words_mean_what_they_fit_best_by_its_looks(words: str, labels: list[str]) -> None:
+    assert [o.label for o in match_object(words, SEEN, NOTHING_LISTED)] == labels
