@@ -131,9 +131,6 @@ class Stack:
         self.world.remove(service)
         self.bus.detach(io)
         io.shutdown()
-        handlers = self.bus.handlers
-        for key in [k for k, h in handlers.items() if getattr(h, "__self__", None) is service]:
-            del handlers[key]
         del service, io
         # What a process had open is closed by the system.
         gc.collect()

@@ -34,8 +34,12 @@ class MemoryBus:
                 box.put(self.last[key])
 
     def detach(self, io: "MemoryIo") -> None:
-        """As when the process dies: it reads nothing more and its token is gone."""
+        """As when the process dies: it reads and answers nothing more, and its token is gone."""
         self.ios.pop(io.name, None)
+        for key, handler in io.served.items():
+            if self.handlers.get(key) is handler:
+                del self.handlers[key]
+        io.served.clear()
         for key, box in io._boxes.items():
             self._readers[key].remove(box)
 
@@ -93,6 +97,7 @@ class MemoryIo(IoBase):
             log_level=log_level,
         )
         self.bus = bus
+        self.served: dict[str, Handler] = {}
         self.out_stamp: int | None = None
         bus.attach(self)
 
@@ -105,6 +110,7 @@ class MemoryIo(IoBase):
 
     def serve(self, key: str, handler: Handler) -> None:
         self.bus.handlers[key] = handler
+        self.served[key] = handler
 
     def ask(self, key: str, request: bytes = b"") -> WorkerJob[bytes | None]:
         answer = self.bus.get(key, request)

@@ -1,6 +1,8 @@
 """Services as objects of one process: killed, hung, started again, and a clock that jumps."""
 
+import weakref
 from collections.abc import Iterator
+from pathlib import Path
 
 import msgspec
 import pytest
@@ -48,6 +50,19 @@ def test_a_killed_service_forgets_and_its_successor_starts_afresh(stack: Stack) 
     assert status(stack).status == "idle", "a goal from before its start is not acted on"
     ids = {stack.members["navigation"][1].new_id("n") for _ in range(3)}
     assert not ids & {f"n-0-{k}" for k in range(1, 1000)}
+
+
+def test_nothing_of_a_killed_brain_stays_open(tmp_path: Path) -> None:
+    opened = Stack("minimal", without=tuple(n for n in paced_services() if n != "brain"), state_dir=tmp_path)
+    try:
+        opened.advance(0.1)
+        journal = weakref.ref(opened.members["brain"][0].__dict__["_journal"])
+        assert journal() is not None and opened.bus.get(topics.BRAIN_MISSIONS) is not None
+        opened.kill("brain")
+        assert journal() is None, "its file would stay locked"
+        assert opened.bus.get(topics.BRAIN_MISSIONS) is None
+    finally:
+        opened.close()
 
 
 def test_a_hung_service_catches_up(stack: Stack) -> None:
