@@ -1,5 +1,6 @@
 """The brain: receives, ticks the tree, shows state and tree."""
 
+import msgspec
 from py_trees.common import Status
 
 from common import messages as m
@@ -12,6 +13,7 @@ from services.brain.config import BrainConfig
 from services.brain.journal.open import open_journal
 from services.brain.journal.queries import MissionQueries
 from services.brain.journal.records import Journal
+from services.brain.mission.asides import Asides
 from services.brain.mission.channel import Channel, GoalStatus, Result
 from services.brain.mission.context import Context
 from services.brain.mission.mission import Failure, gripper_holds
@@ -41,6 +43,7 @@ class BrainService:
         self._shown: Signature | None = None
         self._ticks = 0
         self._sim_stopped = False
+        self._asides = Asides(self.context)
         self._resumption = self._unfinished()
         io.serve(topics.BRAIN_MISSIONS, MissionQueries(self._journal, self.context.pictures).answer)
 
@@ -67,6 +70,7 @@ class BrainService:
         self._receive_statuses()
         self._receive_stops()
         self._receive_commands()
+        self._asides.step()
         self._watch_heartbeat()
         if self._resumption is not None and self._resumption.step():
             if self._resumption.suspended:
@@ -100,6 +104,7 @@ class BrainService:
         if left.mission.active and (record is None or record.outcome is None):
             return Resumption(self.context, self.tree, left)
         self.context.gripper, self.context.suspended = left.gripper, left.suspended
+        self.context.previous = left.mission if left.mission.handled else None
         return None
 
     # --- the robot's body
@@ -144,7 +149,8 @@ class BrainService:
         for speech in io.take_all(topics.SPEECH_STATUS):
             self.context.voice.speaking = speech
         for plan in io.take_all(topics.ACTION_PLAN):
-            peers.planner.handle_status(plan.request_id, 0, Result("ok", message=plan))
+            if not self._asides.answered(plan):
+                peers.planner.handle_status(plan.request_id, 0, Result("ok", message=plan))
         for pose in io.take_all(topics.OBJECT_POSE):
             peers.perception.handle_status(pose.query_id, 0, Result("ok", message=pose))
         for taught in io.take_all(topics.TAUGHT):
@@ -216,8 +222,18 @@ class BrainService:
                 ctx.voice.reply = m.SpeechResult(text=command.text, confidence=command.confidence)
             elif ctx.state in ("WAITING", "LISTENING", "COMPLETED", "ERROR"):
                 ctx.voice.command = command
+            elif ctx.mission.active and ctx.config.pipeline == "vla":
+                self._interject(command)
             else:
                 self._io.log.warning("command ignored", text=command.text, state=ctx.state)
+
+    def _interject(self, command: m.VoiceCommand) -> None:
+        """What is said to a robot at work: a question or a command for later goes beside, another command instead."""
+        said = self._asides.hear(command)
+        if said is not None:
+            self._interrupt(f"asked for something else: {said.text}")
+            self._asides.speak(f"All right, instead of that: {said.text}.")
+            self.context.voice.command = msgspec.structs.replace(command, text=said.text)
 
     def _receive_question(self, command: m.VoiceCommand) -> None:
         """Put a client's question to the person, when nothing else is under way: it answers and stops nothing."""
@@ -234,6 +250,7 @@ class BrainService:
             ctx.stop_all()
             self.tree.stop(Status.INVALID)
             ctx.mission.failure = Failure(ctx.state, "CANCELLED", reason)
+            ctx.mission.queued.clear()
             held = ctx.gripper.holding or ctx.gripper.grasp_uncertain
             ctx.end_mission("cancelled", f"{reason}; holding the {held}" if held else reason)
         else:

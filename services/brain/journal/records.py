@@ -53,8 +53,8 @@ class Record(msgspec.Struct):
     entries: list[Entry] = []
 
 
-FORMAT = 2
-"""Version of what checkpoints mean: raised when an id of the trees changes; 1 had names of nodes for ids."""
+FORMAT = 3
+"""Version of what checkpoints mean: raised when an id of the trees changes (1: names for ids, 2: no guess)."""
 
 
 class PathNode(msgspec.Struct, frozen=True):
@@ -199,7 +199,12 @@ class MemoryJournal:
 def last_outcome(journal: Journal) -> MissionOutcome | None:
     """How the newest ended mission ended, also one of an earlier process."""
     last = journal.last()
-    if last is None or last.outcome is None:
+    return outcome_of(last) if last is not None else None
+
+
+def outcome_of(last: Record) -> MissionOutcome | None:
+    """How a mission ended; None if it has not."""
+    if last.outcome is None:
         return None
     return MissionOutcome(
         id=last.id,

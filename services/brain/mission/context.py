@@ -6,12 +6,14 @@ from common import messages as m
 from common import topics
 from common.bus.port import Io
 from common.geometry import Pose2
+from common.language.meaning import is_question
+from common.plan_rules import known_world
 from common.topics import Topic
 from common.viewpoints import Viewpoints, viewpoints_of
 from services.brain.config import BrainConfig
 from services.brain.journal.checkpoints import Checkpoints
 from services.brain.journal.open import open_pictures
-from services.brain.journal.records import Checkpoint, Entry, Journal, Kind, last_outcome
+from services.brain.journal.records import Checkpoint, Entry, Journal, Kind, last_outcome, outcome_of
 from services.brain.mission.channel import Channel
 from services.brain.mission.display import Display
 from services.brain.mission.heartbeat import Heartbeat
@@ -24,6 +26,7 @@ from services.brain.tree.path import plan_step
 class Context:
     """One per brain; `now` [s of robot time] is set before every tick of the tree.
 
+    `previous`: the last mission that was about objects, for commands that refer to it.
     `stopped`: why the robot is stopped, None when it is not. `suspended`: the mission that a stop has interrupted.
     """
 
@@ -37,6 +40,7 @@ class Context:
         self.now = 0.0
         self.mission = Mission(id=self._fresh_id())
         self.gripper = GripperState()
+        self.previous: Mission | None = None
         self.suspended: Checkpoint | None = None
         self.stopped: str | None = None
         self.display = Display(io, config.pipeline, last_outcome(journal))
@@ -77,6 +81,32 @@ class Context:
         world = self.io.latest(topics.WORLD_OBJECTS)
         return next((o for o in world.objects if o.label == label), None) if world else None
 
+    def known_world(self) -> m.KnownWorld:
+        """What the planner is told and plans are checked against."""
+        world, taught = self.io.latest(topics.WORLD_OBJECTS), self.io.latest(topics.HOUSEHOLD_NAMES)
+        seen = world.objects if world else []
+        named = {name for o in seen for name in o.names}
+        # What was taught and is not in sight is an object all the same.
+        hidden = [one.name for one in taught.names if one.name not in named] if taught else []
+        return known_world(self.io.household, [*(o.label for o in seen), *hidden], self.gripper.holding)
+
+    def origin_of(self, label: str) -> str:
+        """The receptacle on which an object that was found in this mission stood, "" if nobody knows."""
+        found = next((p for p in self.mission.search.found.values() if p.label == label and p.on), None)
+        known = self.known_object(label)
+        return found.on if found is not None else known.on if known is not None else ""
+
+    def history(self, at_work: bool = False) -> m.History:
+        """What commands may refer to; `at_work`: the mission under way is a part of it, not the one that asks."""
+        ended = [r for r in self.journal.missions() if r.outcome is not None and not is_question(r.command)]
+        return m.History(
+            doing=self.mission.command if at_work else "",
+            step=self.display.shown.step if at_work else "",
+            last=outcome_of(ended[-1]) if ended else None,
+            objects=self.mission.handled if at_work else self.previous.handled if self.previous else [],
+            taken_from=self.gripper.taken_from,
+        )
+
     # --- the journal
     def save(self, closed: bool = False) -> None:
         """Put on disk how the mission stands, if that has changed; before anything of it is said to others."""
@@ -97,7 +127,9 @@ class Context:
         """A fresh mission once the last one has ended."""
         if self.mission.outcome is not None:
             self.save()
-            self.mission, self.checkpoints.resumes = Mission(id=self._fresh_id()), 0
+            before = self.mission
+            self.previous = before if before.handled else self.previous
+            self.mission, self.checkpoints.resumes = Mission(id=self._fresh_id(), queued=before.queued), 0
 
     def start_mission(self, command: m.VoiceCommand, source: str) -> None:
         """The mission begins with this command; `source`: who brought it, for the timeline."""

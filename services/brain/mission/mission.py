@@ -28,6 +28,8 @@ SYSTEM_STATE: Mapping[m.BrainStateName, m.SystemStateName] = {
 
 LOST_AFTER = 0.5
 """s for which the fingers must be empty before the object counts as lost (chosen: longer than a bump of the base)."""
+ORIGINS_KEPT = 20
+"""Objects of which the gripper's state remembers where they stood (chosen: a day of use)."""
 PERMANENT = frozenset(
     {"PREEMPTED", "STOPPED", "CANCELLED", "NO_PEER", "TOO_HEAVY", "UNKNOWN_GOAL", "UNKNOWN_PLACE", "UNKNOWN_OBJECT"}
 )
@@ -75,12 +77,16 @@ class Task(msgspec.Struct):
 
 
 class Planning(msgspec.Struct):
-    """The accepted plan, the last rejected one, and the steps that went and looked before (`look_again`: they do)."""
+    """The accepted plan, the last rejected one, and the steps that went and looked before (`look_again`: they do).
+
+    `suggestion`: the command that comes nearest to what was said, while the person has not been asked about it.
+    """
 
     steps: list[m.PlanStep] = []
     rejected: m.RejectedPlan | None = None
     looked: list[m.PlanStep] = []
     look_again: bool = False
+    suggestion: str = ""
 
 
 class Search(msgspec.Struct):
@@ -113,7 +119,10 @@ class Delivery(msgspec.Struct):
 
 
 class Mission(msgspec.Struct):
-    """One command from hearing to outcome. Goal ids are `<id>.<n>`; `at`: the place or object the robot stands at."""
+    """One command from hearing to outcome. Goal ids are `<id>.<n>`; `at`: the place or object the robot stands at.
+
+    `queued`: commands that were given meanwhile and come after it.
+    """
 
     id: str
     command: str = ""
@@ -127,6 +136,13 @@ class Mission(msgspec.Struct):
     planning: Planning = msgspec.field(default_factory=Planning)
     search: Search = msgspec.field(default_factory=Search)
     delivery: Delivery = msgspec.field(default_factory=Delivery)
+    queued: list[m.VoiceCommand] = []
+
+    @property
+    def handled(self) -> list[str]:
+        """Labels of the objects that the plan is about, in its order, as perception has them where it found them."""
+        named = dict.fromkeys(s.object for s in self.planning.steps if s.object)
+        return [found.label if (found := self.search.found.get(n)) and found.label else n for n in named]
 
     def next_goal(self) -> str:
         """The id of the next goal."""
@@ -152,6 +168,7 @@ class Mission(msgspec.Struct):
 class GripperState(msgspec.Struct, rename={"grasp_uncertain": "uncertain"}):
     """What the brain believes is in the gripper. `uncertain` after an interrupted grab or release.
 
+    `taken_from`: the receptacle that each object stood on before it was last grasped, by label, the latest last.
     `felt`: since the grab the fingers have been seen to hold something; only then can they tell of a loss.
     """
 
@@ -160,9 +177,15 @@ class GripperState(msgspec.Struct, rename={"grasp_uncertain": "uncertain"}):
     felt: bool = False
     empty_since: float | None = None
     put_down: dict[str, float] = {}
+    taken_from: dict[str, str] = {}
 
-    def mark_grasped(self, label: str) -> None:
-        """Believe that `label` is in the hand."""
+    def mark_grasped(self, label: str, origin: str = "") -> None:
+        """Believe that `label` is in the hand; it stood on `origin`, "" if nobody knows."""
+        self.taken_from.pop(label, None)
+        if origin:
+            self.taken_from[label] = origin
+            while len(self.taken_from) > ORIGINS_KEPT:
+                del self.taken_from[next(iter(self.taken_from))]
         self.holding, self.grasp_uncertain = label, ""
         self.felt, self.empty_since = False, None
 

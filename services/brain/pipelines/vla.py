@@ -6,7 +6,7 @@ from py_trees.common import Status
 from services.brain.mission.context import Context
 from services.brain.pipelines.plan_steps import RunPlan
 from services.brain.pipelines.shared import report_failure
-from services.brain.steps.ask import AskQuestion, HearConfirmation, HearPerson, question
+from services.brain.steps.ask import AskQuestion, HearConfirmation, HearMeaning, HearPerson, meaning, question
 from services.brain.steps.leaf import Say, Settle
 from services.brain.steps.motion import Ready
 from services.brain.steps.plan import AwaitCommand, CompleteWithEvidence, PlanIsComplete, RequestPlan, describe_step
@@ -49,7 +49,9 @@ def ask_person(ctx: Context) -> Behaviour:
 
 
 def success(ctx: Context) -> str:
-    """What may be claimed at the end: no more than was seen."""
+    """What may be claimed at the end: no more than was seen; an answer needs no "done"."""
+    if all(step.action == "say" for step in ctx.mission.planning.steps):
+        return ""
     items = " and the ".join(dict.fromkeys(ctx.mission.delivery.unchecked))
     return f"I put down the {items}, but I could not check where it is." if items else "Done."
 
@@ -74,10 +76,21 @@ def confirm(ctx: Context) -> Behaviour:
 
 
 def plan(ctx: Context) -> Behaviour:
-    """Ask for a plan until one can be carried out."""
+    """Ask for a plan until one can be carried out; of a command that is only guessed the person is asked first."""
+    guessed = Sequence(
+        "ask_what_was_meant",
+        AskQuestion("meaning", ctx, lambda: meaning(ctx)),
+        HearMeaning("hear_meaning", ctx),
+        _plan_until_valid(ctx),
+    )
+    asked = Condition("guess", guessed, lambda: bool(ctx.mission.planning.suggestion), otherwise=Status.FAILURE)
+    return Selector("plan_and_validate", _plan_until_valid(ctx), asked)
+
+
+def _plan_until_valid(ctx: Context) -> Behaviour:
     retries = ctx.config.max_retry_attempts - 1
     request = RequestPlan("plan", ctx)
-    return Retry("plan_and_validate", ctx, request, retries, again=lambda: not ctx.mission.failed_for_good)
+    return Retry("plan_until_valid", ctx, request, retries, again=lambda: not ctx.mission.failed_for_good)
 
 
 def look_first(ctx: Context) -> Behaviour:

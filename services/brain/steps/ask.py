@@ -122,10 +122,11 @@ class HearChoice(HearAnswer):
     def succeed(self, result: Result) -> Status:
         mission, heard = self.ctx.mission, result.message
         assert isinstance(heard, m.SpeechResult)
-        kind, rest = reply(heard.text)
-        if kind == "cancel":
+        if reply(heard.text)[0] == "cancel":
             return self.refuse("CANCELLED", "", "All right, I will do nothing.")
-        label = chosen(rest, mission.search.options)
+        world = self.ctx.io.latest(topics.WORLD_OBJECTS)
+        known = world.objects if world is not None else []
+        label = chosen(heard.text, mission.search.options, known, self.ctx.io.household)
         if label is None:
             return self.refuse("NOT_CONFIRMED", heard.text, self.spoken())
         mission.search.chosen[self._item] = label
@@ -151,6 +152,37 @@ class HearPerson(HearAnswer):
         self.ctx.end_mission("delivered", heard.text)
         self.ctx.show_state("COMPLETED", detail=heard.text)
         return Status.SUCCESS
+
+
+class HearMeaning(HearAnswer):
+    """Whether the suggested command is what was meant; SUCCESS once there is a command to plan anew."""
+
+    def step(self) -> str:
+        return meaning(self.ctx)
+
+    def spoken(self) -> str:
+        return "I do not understand what I should do."
+
+    def succeed(self, result: Result) -> Status:
+        mission, heard = self.ctx.mission, result.message
+        assert isinstance(heard, m.SpeechResult)
+        kind, rest = reply(heard.text)
+        self.ctx.note(f"reply: {kind}", heard.text, "heard")
+        planning, mission.failure = mission.planning, None
+        if kind == "cancel":
+            return self.refuse("CANCELLED", "", "All right, I will do nothing.")
+        if kind == "no":
+            planning.rejected = m.RejectedPlan(steps=[], reason=planning.rejected.reason if planning.rejected else "")
+        else:
+            mission.command = planning.suggestion if kind == "yes" else rest
+            planning.rejected = None
+        planning.suggestion = ""
+        return Status.SUCCESS
+
+
+def meaning(ctx: Context) -> str:
+    """The question about a command that was not understood for sure."""
+    return f"Do you mean: {ctx.mission.planning.suggestion}?"
 
 
 def question(ctx: Context) -> str:

@@ -114,7 +114,8 @@ class Grab(Manipulate):
         self._label = label
 
     def succeed(self, result: Result) -> Status:
-        self.ctx.gripper.mark_grasped(self._label())
+        label = self._label()
+        self.ctx.gripper.mark_grasped(label, self.ctx.origin_of(label))
         self.ctx.mission.delivery.grabbed = True
         return Status.SUCCESS
 
@@ -238,8 +239,10 @@ class Listen(SendGoal):
 
 def take_command(ctx: Context) -> bool:
     """Begin the mission of a waiting `voice_command`, if there is one."""
-    command = ctx.voice.take_command()
+    command, source = ctx.voice.take_command(), "voice_command"
+    if command is None and ctx.mission.queued:
+        command, source = ctx.mission.queued.pop(0), "queued"
     if command is None:
         return False
-    ctx.start_mission(command, "voice_command")
+    ctx.start_mission(command, source)
     return True

@@ -7,7 +7,7 @@ from py_trees.common import Status
 
 from common import messages as m
 from common import topics
-from common.plan_rules import Objection, known_world, objection
+from common.plan_rules import Objection, objection
 from common.topics import Topic
 from services.brain.mission.channel import Result
 from services.brain.mission.context import Context
@@ -41,10 +41,11 @@ class RequestPlan(SendGoal):
         request = m.PlanRequest(
             id=goal_id,
             command=mission.command,
-            world=self._world(),
+            world=ctx.known_world(),
             rejected=mission.planning.rejected,
             done=mission.planning.looked,
             mission_id=mission.id,
+            history=ctx.history(),
         )
         return topics.PLAN_REQUEST, request
 
@@ -57,7 +58,7 @@ class RequestPlan(SendGoal):
     def succeed(self, result: Result) -> Status:
         ctx, plan = self.ctx, result.message
         assert isinstance(plan, m.ActionPlan)
-        wrong = objection(plan.steps, self._world(), ctx.io.household)
+        wrong = objection(plan.steps, ctx.known_world(), ctx.io.household)
         if wrong is None:
             ctx.mission.planning.steps, ctx.mission.planning.look_again = plan.steps, plan.again
             if plan.again:
@@ -67,6 +68,7 @@ class RequestPlan(SendGoal):
                     ctx.mission.search.chosen.setdefault(step.object, step.text)
             ctx.note("plan accepted", "; ".join(map(describe_step, plan.steps)), "planned")
             return Status.SUCCESS
+        ctx.mission.planning.suggestion = plan.suggestion
         if not plan.steps and plan.detail:
             wrong = Objection(0, plan.detail)
         ctx.mission.planning.rejected = m.RejectedPlan(steps=plan.steps, reason=wrong.reason, step=wrong.step)
@@ -74,15 +76,6 @@ class RequestPlan(SendGoal):
         self.feedback_message = reason
         code = "REJECTED" if plan.steps else "NO_PLAN"
         return self.fail_with(Failure("PLANNING", code, reason, spoken=f"I cannot do that: {reason}."))
-
-    def _world(self) -> m.KnownWorld:
-        ctx = self.ctx
-        world, taught = ctx.io.latest(topics.WORLD_OBJECTS), ctx.io.latest(topics.HOUSEHOLD_NAMES)
-        seen = world.objects if world else []
-        named = {name for o in seen for name in o.names}
-        # What was taught and is not in sight is an object all the same.
-        hidden = [one.name for one in taught.names if one.name not in named] if taught else []
-        return known_world(ctx.io.household, [*(o.label for o in seen), *hidden], ctx.gripper.holding)
 
 
 class PlanIsComplete(Leaf):

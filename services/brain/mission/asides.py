@@ -1,0 +1,78 @@
+"""What people say to a robot at work: a question is answered beside the mission, a command waits or takes its place."""
+
+from common import messages as m
+from common import topics
+from common.language.meaning import asks_for
+from services.brain.language.interjection import Interjection, interjection
+from services.brain.mission.context import Context
+
+MAX_QUEUED = 5
+"""Commands that wait (chosen: more nobody remembers)."""
+ANSWER_WITHIN = 10.0
+"""s until a question that the planner has not answered is given up (chosen: far above what an answer takes)."""
+
+
+class Asides:
+    """The questions under way beside a mission, one at a time; the queue is the mission's, so that it is on disk."""
+
+    def __init__(self, ctx: Context) -> None:
+        self._ctx = ctx
+        self._waiting: m.VoiceCommand | None = None
+        self._asked = ""
+        self._since = 0.0
+
+    def hear(self, command: m.VoiceCommand) -> Interjection | None:
+        """Take what was said while a mission is under way; an interjection that has to interrupt it is given back."""
+        if asks_for(command.text, "yes", "no", "continue", "thanks"):
+            return None
+        said = interjection(command.text)
+        match said.kind:
+            case "queue":
+                self._queue(command, said.text)
+            case "aside":
+                self._waiting, self._asked, self._since = command, "", self._ctx.now
+            case _:
+                return said
+        return None
+
+    def step(self) -> None:
+        """Send the question once the planner is free; give up after a while."""
+        ctx, waiting = self._ctx, self._waiting
+        if waiting is None:
+            return
+        if ctx.now - self._since > ANSWER_WITHIN:
+            self._waiting = None
+            self.speak("I cannot answer that now. Please ask me again.")
+        elif not self._asked and not ctx.peers.planner.outstanding:
+            self._asked = ctx.mission.next_goal()
+            request = m.PlanRequest(
+                id=self._asked, command=waiting.text, world=ctx.known_world(), history=ctx.history(at_work=True)
+            )
+            ctx.peers.planner.send_only(topics.PLAN_REQUEST, request)
+
+    def answered(self, plan: m.ActionPlan) -> bool:
+        """True for the answer to a question of ours: words are spoken, what takes more than words waits its turn."""
+        if not self._asked or plan.request_id != self._asked:
+            return False
+        command, self._waiting, self._asked = self._waiting, None, ""
+        if command is not None and plan.steps and any(s.action != "say" for s in plan.steps):
+            self._queue(command, command.text)
+        elif plan.steps:
+            self.speak(" ".join(s.text for s in plan.steps))
+        else:
+            self.speak(f"I cannot answer that: {plan.detail or 'I do not understand it'}.")
+        return True
+
+    def speak(self, text: str) -> None:
+        """Say something beside the mission."""
+        ctx = self._ctx
+        ctx.note("said aside", text)
+        ctx.send_only(ctx.peers.speech, topics.SPEECH_GOAL, f"say {text}")
+
+    def _queue(self, command: m.VoiceCommand, text: str) -> None:
+        queued = self._ctx.mission.queued
+        if len(queued) >= MAX_QUEUED:
+            self.speak(f"I have {len(queued)} more things to do already. Please tell me again later.")
+            return
+        queued.append(m.VoiceCommand(text=text, confidence=command.confidence, confirmed=command.confirmed))
+        self.speak(f"I will do that next: {text}." if len(queued) == 1 else f"I will do that later: {text}.")
