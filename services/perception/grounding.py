@@ -1,13 +1,14 @@
 """Grounding: the object that words refer to, by colour, kind, size, side, place and other names; or why none. Pure."""
 
+import math
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from common.geometry import Pose2, to_frame
 from common.household import Household
 from common.messages import WorldObject
-from common.naming import match_object, normalise
+from common.naming import ALIKE, match_object, normalise
 
 _SIDE = re.compile(r"^(?:(?P<a>left|right|middle|nearest|closest|near|far|farthest|other) )?(?P<rest>.*?)"
                    r"(?: (?:on|at|in|from)? ?(?P<b>left|right|middle))?$")  # fmt: skip
@@ -114,3 +115,17 @@ def _by_side(found: Sequence[WorldObject], side: str, base: Pose2) -> list[World
         return list(found)
     key, reverse = keys[side]
     return [sorted(found, key=key, reverse=reverse)[0]]
+
+
+def may_be_meant(
+    query: str, objects: Sequence[WorldObject], doubtful: Collection[str], household: Household, base: Pose2
+) -> list[str]:
+    """Labels of those objects, by their ids `doubtful`, that `query` may mean when they are seen better, nearest first.
+
+    A colour that is named must be among theirs, or near it; shape and kind are what is in doubt.
+    """
+    words = set(normalise(query).split())
+    shades = {household.words.colour(w) or w for w in words} & set(ALIKE)
+    held = [o for o in objects if o.id in doubtful and not o.held]
+    fit = [o for o in held if all(s in o.colours or any(s in ALIKE.get(c, ()) for c in o.colours) for s in shades)]
+    return [o.label for o in sorted(fit, key=lambda o: math.dist(o.position[:2], base[:2]))]

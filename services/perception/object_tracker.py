@@ -38,6 +38,8 @@ LIKELY = 0.4
 arm, and in 37 rendered views of standing objects none was taken for a lying one."""
 HELD_RANGE = 0.12
 """Distance [m] from the hand within which the object that it closed on was believed to be."""
+DOUBT = 0.45
+"""Weight of the best sighting [1/m2] below which kind and shape are in doubt: that of a whole view from 1.5 m."""
 SURE = 0.55
 """Confidence from which a detection's name, and with it its position, counts in full."""
 TRUST = 4.0
@@ -185,6 +187,10 @@ class ObjectTracker:
             if told and not any(_overlap(track, other) for other in chosen):
                 chosen.append(track)
         return [_as_object(t, label) for t, label in _labelled(sorted(chosen, key=_age))]
+
+    def doubtful(self) -> set[str]:
+        """Ids of objects that nobody listed and that no view has shown whole and near: they may be something else."""
+        return {t.id for t in self._tracks if not t.held and not t.known and (not t.whole or t.best < DOUBT)}
 
     def report(self, now: float) -> WorldObjects:
         return WorldObjects(t=now, objects=self.objects(), source="perception")

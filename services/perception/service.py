@@ -17,7 +17,7 @@ from common.runtime import StartError
 from services.perception.config import PerceptionConfig
 from services.perception.detect import ClassicalDetector, Detector
 from services.perception.detection import Detection
-from services.perception.grounding import Grounding, ground
+from services.perception.grounding import Grounding, ground, may_be_meant
 from services.perception.naming.naming import Naming
 from services.perception.object_tracker import SURE, ObjectTracker
 from services.perception.picture import jpeg
@@ -241,12 +241,19 @@ class PerceptionService:
             return
         answer = _pose_answer(query, result, jpeg(view) if query.since else b"")
         if found is None and not result.candidates:
-            answer.unsure = self._naming.unsure(query.query, self._published, self._state.base or (0.0, 0.0, 0.0))
+            answer.unsure = self._unsure(query.query)
         self._reading = None
         # Kept for a query that is sent again, without what costs memory.
         self._inbox.end(query, msgspec.structs.replace(answer, picture=b""))
         self._io.log.info("asked", query=query.query, found=answer.label, detail=answer.detail)
         self._io.publish(topics.OBJECT_POSE, answer)
+
+    def _unsure(self, query: str) -> list[str]:
+        """Labels of objects that have to be seen from nearer to tell whether they are meant."""
+        base, seen = self._state.base or (0.0, 0.0, 0.0), self._published
+        doubtful = self._tracker.doubtful()
+        blurred = may_be_meant(query, seen, doubtful, self._io.household, base)
+        return list(dict.fromkeys([*self._naming.unsure(query, seen, base), *blurred]))
 
     def _finish_reading(self) -> None:
         """Answer the query once the fine picture for it was read."""

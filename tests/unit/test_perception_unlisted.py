@@ -10,6 +10,7 @@ from common.household import load_household, mapped
 from common.messages import WorldObject
 from common.naming import match_object
 from services.perception.detection import Detection
+from services.perception.grounding import may_be_meant
 from services.perception.object_tracker import ObjectTracker
 from services.perception.view import View
 
@@ -140,3 +141,14 @@ SEEN = [
 )
 def test_words_mean_what_they_fit_best_by_its_looks(words: str, labels: list[str]) -> None:
     assert [o.label for o in match_object(words, SEEN, NOTHING_LISTED)] == labels
+
+
+def test_what_was_seen_from_afar_may_be_what_is_asked_for_and_what_was_seen_near_is_not() -> None:
+    far = replace(sighting(4.0, -3.0, CAN, RED), distance=2.4)
+    tracker, found = seen([far, sighting(4.4, -3.0, CAN, RED)], [far, sighting(4.4, -3.0, CAN, RED)])
+    assert may_be_meant("red bottle", found, tracker.doubtful(), NOTHING_LISTED, (0.0, 0.0, 0.0)) == ["red can"]
+    assert may_be_meant("bottle", found, tracker.doubtful(), NOTHING_LISTED, (0.0, 0.0, 0.0)) == ["red can"]
+    assert may_be_meant("green bottle", found, tracker.doubtful(), NOTHING_LISTED, (0.0, 0.0, 0.0)) == []
+    # From nearer it is a can for certain.
+    tracker.update(looking(0.0, 0.0), [sighting(4.0, -3.0, CAN, RED)], 5.0)
+    assert not tracker.doubtful()
