@@ -14,6 +14,7 @@ from common.geometry import Pose2, wrap
 from common.goal_inbox import GoalInbox
 from common.kinds import kind_of
 from common.runtime import StartError
+from services.perception.calibration_monitor import CalibrationMonitor
 from services.perception.config import PerceptionConfig
 from services.perception.detect import ClassicalDetector, Detector
 from services.perception.detection import Detection
@@ -68,6 +69,8 @@ class PerceptionService:
         self._naming = Naming(io, config)
         self._reset()
         self._state = StateBuffer(io)
+        self._monitor = CalibrationMonitor()
+        self._calibrated: dict[str, bool] = {}
         self._hand_at: tuple[float, float, float] | None = None
         self._picture = ""
         self._fine = False
@@ -173,6 +176,7 @@ class PerceptionService:
                 if self._reading is not None:
                     self._reading.taken = True
                 continue
+            self._calibrated[image.camera] = image.calibrated
             robot = self._state.robot(now, image.t)
             self._detecting = self._io.submit(
                 detect, self._detector, view, base, robot, seconds=self._config.detection_seconds
@@ -189,6 +193,9 @@ class PerceptionService:
         base = self._state.base_at(view.t)
         if base is not None:
             self._naming.see(view, self._tracker.objects(), now, base)
+            calibrated = self._calibrated.get(view.camera, False)
+            for camera, why in self._monitor.see(view, detections, base, calibrated).items():
+                self._io.log.warning(f"the {camera} camera contradicts its calibration", why=why)
         self._looked_for_name = self._looked_for_name + 1 if self._naming.wants_picture else 0
         self._publish_objects(now, bool(seen))
         query = self._inbox.active
