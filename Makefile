@@ -76,7 +76,7 @@ LOCK := $(BIN)/uv --quiet pip compile pyproject.toml --universal --python-versio
     --no-annotate --custom-compile-command "make lock"
 lock: setup ## both lock files anew from pyproject.toml; ARGS='-P mujoco' for one package alone
 	echo hatchling | $(LOCK) - --all-extras $(or $(ARGS),--upgrade) --output-file requirements.lock
-	echo hatchling | $(LOCK) - --extra llm --extra ros2 --constraint requirements.lock --upgrade --output-file requirements.image.lock
+	echo hatchling | $(LOCK) - --extra llm --extra ros2 --extra foxglove --constraint requirements.lock --upgrade --output-file requirements.image.lock
 
 image: ## one image for x86-64 and one for aarch64, see docker-bake.hcl; ARGS='--push' with a registry in TIDYBOT_IMAGE
 	docker buildx bake $(ARGS)

@@ -28,6 +28,7 @@ SERVICES = (
     Service("brain", "services.brain"),
     Service("dashboard", "services.dashboard", paced=False),
     Service("ros2", "services.ros2", paced=False, needs="rosbags"),
+    Service("foxglove", "services.foxglove", paced=False, needs="foxglove"),
 )
 NAMES = tuple(s.name for s in SERVICES)
 OPTIONAL = tuple(s.name for s in SERVICES if s.needs)

@@ -224,6 +224,7 @@ def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") ->
     parser.add_argument("--namespace", metavar="NAME", help="all keys of this robot go below this name")
     parser.add_argument("--keys", nargs="?", const="", metavar="DIR", help="insist on certificates (default: if there)")
     parser.add_argument("--ros2", action="store_true", help="with the gateway to ROS 2 tools (docs/ROS2.md)")
+    parser.add_argument("--foxglove", action="store_true", help="with a server for Foxglove (docs/FOXGLOVE.md)")
     parser.add_argument("--detach", "-d", action="store_true", help="return when ready; `tidybot down` stops it")
     parser.add_argument("--only", default="", metavar="A,B", help=f"start only these of {', '.join(NAMES)}")
     parser.add_argument("--without", default="", metavar="A,B", help="start all but these")

@@ -1,5 +1,6 @@
 """Configuration: TOML files, environment and `--set`, checked against frozen structs before anything starts."""
 
+import contextlib
 import os
 import re
 import tomllib
@@ -13,6 +14,8 @@ from common.installation import shipped, workspace
 
 S = TypeVar("S", bound=msgspec.Struct)
 PREFIX = "TIDYBOT__"
+_SECRET = re.compile(r"key|token|secret|password")
+"""Names of parameters whose values are for nobody's eyes."""
 DEFAULT_DIR = shipped("config")
 
 
@@ -124,6 +127,19 @@ def load(section: str, kind: type[S], directory: Path, changes: Mapping[str, Map
         values[key] = value
         _convert(values, kind, source, key)
     return _convert(values, kind, section)
+
+
+def settings(environ: Mapping[str, str] = os.environ) -> dict[str, Any]:
+    """What files and environment set, as `section.key`, but for tables and secrets; a default stands in no file."""
+    found: dict[str, Any] = {}
+    for path in sorted(config_dir(environ).glob("*.toml")):
+        with contextlib.suppress(tomllib.TOMLDecodeError, UnicodeDecodeError, OSError):
+            values = tomllib.loads(path.read_text(encoding="utf-8"))
+            found |= {f"{path.stem}.{key}": value for key, value in values.items()}
+    for section, changes in overrides(environ, ()).items():
+        found |= {f"{section}.{key}": value for key, (value, _) in changes.items()}
+    plain = {name: value for name, value in found.items() if isinstance(value, (bool, int, float, str))}
+    return {name: value for name, value in plain.items() if not _SECRET.search(name)}
 
 
 def _convert(values: dict[str, Any], kind: type[S], source: str, key: str = "") -> S:

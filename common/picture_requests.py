@@ -14,13 +14,13 @@ class PictureRequests:
     """Asks for pictures of `width` x `height` at `rate` [Hz]; 0: for none."""
 
     def __init__(self, io: Io, rate: float, width: int, height: int) -> None:
-        self._io, self._rate, self._width, self._height = io, rate, width, height
+        self._io, self.rate, self._width, self._height = io, rate, width, height
         self._asked: dict[str, float] = {}
 
     def step(self, now: float, watched: set[Topic[Any]]) -> None:
         """Ask each camera whose topic is watched, when it is due."""
         for name, topic in PICTURES.items():
-            if topic not in watched or (now - self._asked.get(name, float("-inf"))) * self._rate < 1:
+            if topic not in watched or (now - self._asked.get(name, float("-inf"))) * self.rate < 1:
                 continue
             self._asked[name] = now
             camera: Any = name

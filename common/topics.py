@@ -122,7 +122,7 @@ AUDIO_OUT = _sound("audio/out", by="speech", to="dashboard")
 VOICE_COMMAND = _goal(
     "voice_command",
     m.VoiceCommand,
-    by="speech dashboard ros2 *",
+    by="speech dashboard ros2 foxglove *",
     to="brain",
     text="text",
     latched=False,
@@ -132,7 +132,7 @@ ACTION_PLAN = _event("action_plan", m.ActionPlan, by="planner ros2", to="brain d
 PLANNER_STATUS = _event("planner/status", m.PlannerStatus, by="planner")
 OBJECT_QUERY = _goal("object_query", m.ObjectQuery, by="brain", to="perception")
 OBJECT_POSE = _event("object_pose", m.ObjectPose, by="perception", to="brain")
-NAV_GOAL = _goal("nav_goal", m.NavGoal, by="brain dashboard ros2 *", to="navigation")
+NAV_GOAL = _goal("nav_goal", m.NavGoal, by="brain dashboard ros2 foxglove *", to="navigation")
 NAVIGATION_FEEDBACK = _event("navigation_feedback", m.NavigationFeedback, by="navigation", to="brain dashboard")
 SYSTEM_STATUS = _event("system_status", m.SystemStatus, by="brain")
 WORLD_OBJECTS = _event(
@@ -144,7 +144,7 @@ HOUSEHOLD_NAMES = _event("household/names", m.TaughtNames, by="perception", to="
 
 BASE_TARGET = _goal("base/target_pose", m.BaseTarget, by="navigation", to="sim", latched=False)
 GOAL_REACHED = _event("base/goal_reached", m.GoalReached, by="sim", to="navigation")
-CMD_VEL = _stream("base/cmd_vel", m.CmdVel, by="navigation ros2", to="sim", rate=20.0, binary=False)
+CMD_VEL = _stream("base/cmd_vel", m.CmdVel, by="navigation ros2 foxglove", to="sim", rate=20.0, binary=False)
 ARM_COMMAND = _stream("arm/command", m.ArmCommand, by="manipulation", to="sim dashboard", rate=50.0)
 GRIPPER_COMMAND = _goal("gripper_command", m.GripperCommand, by="brain manipulation", to="sim", latched=False)
 JOINT_STATES = _stream(
@@ -172,12 +172,14 @@ SCAN = _stream("scan", m.LaserScan, by="sim", to="navigation dashboard", rate=10
 ROBOT_STOP = _goal(
     "robot/stop",
     m.RobotStop,
-    by="speech dashboard ros2 *",
+    by="speech dashboard ros2 foxglove *",
     to="brain navigation manipulation sim",
     text="reason",
     latched=False,
 )
-ROBOT_RESUME = _goal("robot/resume", m.RobotResume, by="dashboard ros2 *", to="brain sim", text="source", latched=False)
+ROBOT_RESUME = _goal(
+    "robot/resume", m.RobotResume, by="dashboard ros2 foxglove *", to="brain sim", text="source", latched=False
+)
 ROBOT_DESCRIPTION = _event(
     "robot/description", m.RobotDescription, by="sim", to="brain perception navigation manipulation"
 )
@@ -197,7 +199,9 @@ SLOWER_CLOCKS = {2: SIM_CLOCK_50HZ, 5: SIM_CLOCK_20HZ, 10: SIM_CLOCK_10HZ}
 CLOCKS = (SIM_CLOCK, *SLOWER_CLOCKS.values())
 LOCKSTEP_ACK = _row("sim/ack", m.LockstepAck, f"{EACH} {ANYONE}", "sim", binary=True, recover=False)
 
-CAMERA_REQUEST = _goal("camera/request", m.CameraRequest, by="perception dashboard ros2 *", to="camera", latched=False)
+CAMERA_REQUEST = _goal(
+    "camera/request", m.CameraRequest, by="perception dashboard ros2 foxglove *", to="camera", latched=False
+)
 HEAD_RGBD = _stream("camera/head/rgbd", m.Rgbd, by="camera", to="perception dashboard", rate=10.0, bulk=True)
 WRIST_RGBD = _stream("camera/wrist/rgbd", m.Rgbd, by="camera", to="perception dashboard", rate=10.0, bulk=True)
 
@@ -214,7 +218,7 @@ ALIVE_KEY = "service/{name}/alive"
 
 BRAIN_MISSIONS = "brain/missions"
 SIM_RESET, SIM_PAUSE, SIM_SNAPSHOT, SIM_TRUTH = "sim/reset", "sim/pause", "sim/snapshot", "sim/truth"
-VIEWERS = ("ros2",)
+VIEWERS = ("ros2", "foxglove")
 """Services that show people's tools whatever these ask for: they may read every topic but those for evaluators."""
 QUERIES = (
     Query(BRAIN_MISSIONS, "brain", ("dashboard",)),

@@ -13,9 +13,8 @@ import numpy as np
 from common.geometry import quat_matrix
 from common.messages.base import IDENTITY
 from common.robot_frames import BASE_BODY, FramePose, link_name
+from common.robot_shapes import Shape, shapes
 
-HIDDEN_GROUP = 4
-"""First MuJoCo geom group that is not drawn: collision shapes are in it and above."""
 PIVOT = "_pivot"
 _HINGE, _SLIDE = int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE)
 
@@ -30,12 +29,15 @@ def urdf(mjcf: str) -> str:
     model: Any = mujoco.MjModel.from_xml_string(mjcf)
     root = Xml.Element("robot", name="tidybot")
     base = model.body(BASE_BODY).id
+    links: dict[str, Xml.Element] = {}
     for body in range(model.nbody):
         if model.body_rootid[body] != base:
             continue
-        _link(root, model, body)
+        links[link_name(model, body)] = _link(root, model, body)
         if body != base:
             _joint(root, model, body)
+    for number, shape in enumerate(shapes(model)):
+        _visual(links[shape.link], shape, number)
     Xml.indent(root)
     return Xml.tostring(root, encoding="unicode", xml_declaration=True)
 
@@ -53,7 +55,7 @@ def pivots(mjcf: str) -> list[FramePose]:
     return found
 
 
-def _link(root: Xml.Element, model: Any, body: int) -> None:
+def _link(root: Xml.Element, model: Any, body: int) -> Xml.Element:
     link = Xml.SubElement(root, "link", name=link_name(model, body))
     if model.body_mass[body] > 0:
         inertial = Xml.SubElement(link, "inertial")
@@ -61,28 +63,22 @@ def _link(root: Xml.Element, model: Any, body: int) -> None:
         Xml.SubElement(inertial, "mass", value=_text(model.body_mass[body]))
         x, y, z = (_text(v) for v in model.body_inertia[body])
         Xml.SubElement(inertial, "inertia", ixx=x, iyy=y, izz=z, ixy="0", ixz="0", iyz="0")
-    for g in range(model.ngeom):
-        if model.geom_bodyid[g] == body and model.geom_group[g] < HIDDEN_GROUP:
-            _visual(link, model, g)
+    return link
 
 
-def _visual(link: Xml.Element, model: Any, g: int) -> None:
-    kinds, size = mujoco.mjtGeom, model.geom_size[g]
-    kind, place = model.geom_type[g], model.geom_pos[g].copy()
+def _visual(link: Xml.Element, shape: Shape, number: int) -> None:
     visual = Xml.SubElement(link, "visual")
-    shape = Xml.SubElement(visual, "geometry")
-    if kind == kinds.mjGEOM_SPHERE:
-        Xml.SubElement(shape, "sphere", radius=_text(size[0]))
-    elif kind in (kinds.mjGEOM_CYLINDER, kinds.mjGEOM_CAPSULE):
-        ends = size[0] if kind == kinds.mjGEOM_CAPSULE else 0.0
-        Xml.SubElement(shape, "cylinder", radius=_text(size[0]), length=_text(2 * (size[1] + ends)))
+    geometry = Xml.SubElement(visual, "geometry")
+    length, _, height = shape.size
+    if shape.form == "sphere":
+        Xml.SubElement(geometry, "sphere", radius=_text(length / 2))
+    elif shape.form == "cylinder":
+        Xml.SubElement(geometry, "cylinder", radius=_text(length / 2), length=_text(height))
     else:
-        around = model.geom_aabb[g]
-        place += quat_matrix(tuple(model.geom_quat[g])) @ around[:3]
-        Xml.SubElement(shape, "box", size=" ".join(_text(2 * v) for v in around[3:]))
-    _origin(visual, place, model.geom_quat[g])
-    material = Xml.SubElement(visual, "material", name=f"geom_{g}")
-    Xml.SubElement(material, "color", rgba=" ".join(_text(v) for v in model.geom_rgba[g]))
+        Xml.SubElement(geometry, "box", size=" ".join(_text(v) for v in shape.size))
+    _origin(visual, shape.position, shape.orientation)
+    material = Xml.SubElement(visual, "material", name=f"shape_{number}")
+    Xml.SubElement(material, "color", rgba=" ".join(_text(v) for v in shape.colour))
 
 
 def _joint(root: Xml.Element, model: Any, body: int) -> None:

@@ -9,20 +9,10 @@ from common import messages as m
 from common import topics
 from common.bus import codec
 from common.bus.port import Io
-from common.bus.validation import bad_field
-from common.geometry import quat_yaw
-from common.robot_frames import MAP
+from common.gateway import sound, standing_pose, stop
 from common.topics import Topic
 from services.ros2.outgoing import POSE, STRING
 from services.ros2.types import Types
-
-READY = ("IDLE", "WAITING", "LISTENING", "COMPLETED", "ERROR")
-"""States of the brain in which no mission is under way, so that others may move the robot."""
-LEVEL = 0.1
-"""How far from level a pose on the floor may be, and a quaternion's length from 1 [1]; chosen: rounding and no more."""
-
-LONGEST = 200
-"""Characters of a stop's reason that are passed on; chosen."""
 
 
 class Row(NamedTuple):
@@ -51,13 +41,8 @@ def pose(io: Io, message: Any) -> m.NavGoal:
     Raises:
         ValueError: in another frame, or not on the floor.
     """
-    frame, p, q = message.header.frame_id.lstrip("/"), message.pose.position, message.pose.orientation
-    if frame != MAP:
-        raise ValueError(f"a pose in frame {frame!r}: expected {MAP}")
-    length = q.w**2 + q.x**2 + q.y**2 + q.z**2
-    if not abs(length - 1) < LEVEL or abs(q.x) > LEVEL or abs(q.y) > LEVEL:
-        raise ValueError("an orientation that is no rotation about the vertical")
-    return m.NavGoal(x=p.x, y=p.y, theta=quat_yaw((q.w, q.x, q.y, q.z)))
+    p, q = message.pose.position, message.pose.orientation
+    return standing_pose(message.header.frame_id, p.x, p.y, (q.w, q.x, q.y, q.z))
 
 
 def twist(io: Io, message: Any) -> m.CmdVel:
@@ -89,9 +74,8 @@ def plan(io: Io, message: Any) -> m.ActionPlan:
     return m.ActionPlan(request_id=asked.id, steps=steps, source="ros2")
 
 
-def stop(io: Io, message: Any) -> m.RobotStop:
-    """Whatever it says, it is a stop."""
-    return m.RobotStop(reason=message.data[:LONGEST] or "stop", source=io.name)
+def brake(io: Io, message: Any) -> m.RobotStop:
+    return stop(io, message.data)
 
 
 def resume(io: Io, message: Any) -> m.RobotResume:
@@ -109,7 +93,7 @@ ROWS = (
     Row("cmd_vel", "geometry_msgs/msg/Twist", topics.CMD_VEL, twist, moves=True),
     Row("cmd_vel", "geometry_msgs/msg/TwistStamped", topics.CMD_VEL, twist_stamped, moves=True),
     Row("action_plan", STRING, topics.ACTION_PLAN, plan),
-    Row("robot/stop", STRING, topics.ROBOT_STOP, stop),
+    Row("robot/stop", STRING, topics.ROBOT_STOP, brake),
     Row("robot/resume", STRING, topics.ROBOT_RESUME, resume),
 )
 
@@ -120,16 +104,4 @@ def message_of(row: Row, types: Types, io: Io, payload: bytes) -> m.Message:
     Raises:
         ValueError: no message of the row's type, or one that cannot be meant; the text is the reason.
     """
-    message = row.convert(io, types.decode(row.type, payload))
-    if where := bad_field(message):
-        raise ValueError(f"{where} is not a finite number of a sane size")
-    if getattr(message, "id", None) == "":
-        message.id = io.new_id("ros2")  # type: ignore[attr-defined]
-    return message
-
-
-def refusal(row: Row, state: m.BrainState | None) -> str:
-    """Why a row's message may not go through now, "" when it may."""
-    if row.moves and state is not None and state.state not in READY:
-        return f"a mission is under way ({state.state}); cancel it first"
-    return ""
+    return sound(io, row.convert(io, types.decode(row.type, payload)))

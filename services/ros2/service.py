@@ -9,6 +9,7 @@ from common import messages as m
 from common import topics
 from common.bus import codec
 from common.bus.port import Io, Job
+from common.gateway import refusal
 from common.picture_requests import PICTURES, PictureRequests
 from common.robot_frames import BaseFrames, FramePose, LinkFrames, camera_pose, lidar_pose
 from common.runtime import StartError
@@ -127,7 +128,7 @@ class Ros2Service:
         while not self._waiting.empty():
             row, payload = self._waiting.get_nowait()
             name = f"ros:{row.name}"
-            if why := incoming.refusal(row, io.latest(topics.BRAIN_STATE)):
+            if why := row.moves and refusal(io.latest(topics.BRAIN_STATE)):
                 io.count_drop(name, why)
                 continue
             try:
@@ -153,12 +154,12 @@ class Ros2Service:
     def _pass_on(self, topic: Topic[Any], message: m.Message) -> None:
         if topic.command and codec.encode(topic, message) in self._sent:
             return  # a peer's own, which its subscribers have from the peer
-        self._newest[topic.key] = message
+        before, self._newest[topic.key] = self._newest.get(topic.key), message
         if isinstance(message, m.Odometry):
             self._base.odometry(message)
         elif isinstance(message, m.PoseEstimate):
             self._base.estimate(message)
-        elif isinstance(message, m.RobotDescription):
+        elif isinstance(message, m.RobotDescription) and message != before:
             self._reading = self._io.submit(describe, message.mjcf)
         elif isinstance(message, m.LaserScan):
             self._fix(lidar_pose(message))

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from common.colours import COLOURS, UNKNOWN_COLOUR
 from common.kinds import kind_of
 from services.dashboard.scene.drawing import Mesh
 
@@ -20,20 +21,5 @@ def fallback(kind: str, size: tuple[float, float, float], colour: str) -> Mesh:
     else:
         shape = trimesh.creation.box(extents=[x, y, z])
     vertices = np.asarray(shape.vertices, dtype=np.float64)
-    rgb = np.array(COLOURS.get(colour, (0.6, 0.6, 0.62)))
+    rgb = np.array(COLOURS.get(colour, UNKNOWN_COLOUR))
     return Mesh(vertices, np.asarray(shape.faces, dtype=np.int64), np.tile(rgb, (len(vertices), 1)))
-
-
-COLOURS = {
-    "red": (0.80, 0.12, 0.12),
-    "green": (0.12, 0.55, 0.20),
-    "blue": (0.15, 0.30, 0.80),
-    "yellow": (0.92, 0.78, 0.12),
-    "orange": (0.95, 0.50, 0.10),
-    "white": (0.92, 0.92, 0.90),
-    "black": (0.10, 0.10, 0.11),
-    "brown": (0.45, 0.30, 0.18),
-    "grey": (0.55, 0.55, 0.57),
-    "purple": (0.50, 0.25, 0.60),
-    "pink": (0.92, 0.55, 0.66),
-}

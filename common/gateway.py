@@ -1,0 +1,56 @@
+"""What gateways to other tools have in common: what these may ask of the robot, and when."""
+
+from typing import TypeVar
+
+from common import messages as m
+from common.bus.port import Io
+from common.bus.validation import bad_field
+from common.geometry import quat_yaw
+from common.messages.base import Quat
+from common.robot_frames import MAP
+
+M = TypeVar("M", bound=m.Message)
+READY = ("IDLE", "WAITING", "LISTENING", "COMPLETED", "ERROR")
+"""States of the brain in which no mission is under way, so that others may move the robot."""
+LEVEL = 0.1
+"""How far from level a pose on the floor may be, and a quaternion's length from 1 [1]; chosen: rounding and no more."""
+LONGEST = 200
+"""Characters of a stop's reason that are passed on; chosen."""
+
+
+def refusal(state: m.BrainState | None) -> str:
+    """Why others may not move the robot now, "" when they may."""
+    if state is not None and state.state not in READY:
+        return f"a mission is under way ({state.state}); cancel it first"
+    return ""
+
+
+def sound(io: Io, message: M) -> M:
+    """The message with an id of its own where it has none.
+
+    Raises:
+        ValueError: a number that nothing can act on.
+    """
+    if where := bad_field(message):
+        raise ValueError(f"{where} is not a finite number of a sane size")
+    if getattr(message, "id", None) == "":
+        message.id = io.new_id(io.name)  # type: ignore[attr-defined]
+    return message
+
+
+def standing_pose(frame: str, x: float, y: float, q: Quat) -> m.NavGoal:
+    """A goal from a stamped pose, orientation (w, x, y, z).
+
+    Raises:
+        ValueError: in another frame than the map, or not on the floor.
+    """
+    if frame.lstrip("/") != MAP:
+        raise ValueError(f"a pose in frame {frame!r}: expected {MAP}")
+    if not abs(sum(v * v for v in q) - 1) < LEVEL or abs(q[1]) > LEVEL or abs(q[2]) > LEVEL:
+        raise ValueError("an orientation that is no rotation about the vertical")
+    return m.NavGoal(x=x, y=y, theta=quat_yaw(q))
+
+
+def stop(io: Io, reason: str) -> m.RobotStop:
+    """The brake; whatever the reason says, it is a stop."""
+    return m.RobotStop(reason=reason[:LONGEST] or "stop", source=io.name)

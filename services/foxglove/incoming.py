@@ -1,0 +1,123 @@
+"""What visitors may ask of the robot: JSON that Foxglove's panels send, checked as what any other client sends."""
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import msgspec
+
+from common import messages as m
+from common import topics
+from common.bus import codec
+from common.bus.port import Io
+from common.gateway import sound, standing_pose, stop
+from common.topics import Topic
+
+
+class Vector(msgspec.Struct):
+    x: float = 0.0
+    y: float = 0.0
+    z: float = 0.0
+
+
+class Twist(msgspec.Struct):
+    """As the Teleop panel sends it: geometry_msgs/Twist."""
+
+    linear: Vector
+    angular: Vector
+
+
+class Quaternion(msgspec.Struct):
+    w: float
+    x: float = 0.0
+    y: float = 0.0
+    z: float = 0.0
+
+
+class Pose(msgspec.Struct):
+    position: Vector
+    orientation: Quaternion
+
+
+class Header(msgspec.Struct):
+    frame_id: str
+
+
+class PoseStamped(msgspec.Struct):
+    """As the 3D panel's Publish tool sends it: geometry_msgs/PoseStamped."""
+
+    header: Header
+    pose: Pose
+
+
+class Words(msgspec.Struct):
+    """As the Publish panel sends it: std_msgs/String."""
+
+    data: str = ""
+
+
+class Row(NamedTuple):
+    """A message of a visitor on `name` becomes one for `topic`. `always`: also where visitors may not command.
+
+    `moves`: not during a mission.
+    """
+
+    name: str
+    topic: Topic[Any]
+    convert: Callable[[Io, bytes], m.Message]
+    moves: bool = False
+    always: bool = False
+
+
+def twist(io: Io, data: bytes) -> m.CmdVel:
+    found = msgspec.json.decode(data, type=Twist)
+    return m.CmdVel(vx=found.linear.x, vy=found.linear.y, omega=found.angular.z)
+
+
+def pose(io: Io, data: bytes) -> m.NavGoal:
+    found = msgspec.json.decode(data, type=PoseStamped)
+    p, q = found.pose.position, found.pose.orientation
+    return standing_pose(found.header.frame_id, p.x, p.y, (q.w, q.x, q.y, q.z))
+
+
+def words(io: Io, data: bytes) -> m.VoiceCommand:
+    """A std_msgs/String, or the robot's own message; a person typed it, so nobody asks whether it was heard right."""
+    typed = msgspec.json.decode(data, type=Words).data
+    found = codec.decode(topics.VOICE_COMMAND, typed.encode() if typed else data)
+    found.confirmed = True
+    return found
+
+
+def brake(io: Io, data: bytes) -> m.RobotStop:
+    """A stop counts whatever it says."""
+    try:
+        return stop(io, msgspec.json.decode(data, type=Words).data)
+    except msgspec.DecodeError:
+        return stop(io, "")
+
+
+def resume(io: Io, data: bytes) -> m.RobotResume:
+    return m.RobotResume(source=io.name)
+
+
+ROWS = (
+    Row("voice_command", topics.VOICE_COMMAND, words),
+    Row("cmd_vel", topics.CMD_VEL, twist, moves=True),
+    Row("goal_pose", topics.NAV_GOAL, pose, moves=True),
+    Row("move_base_simple/goal", topics.NAV_GOAL, pose, moves=True),
+    Row("nav_goal", topics.NAV_GOAL, pose, moves=True),
+    Row("robot/stop", topics.ROBOT_STOP, brake, always=True),
+    Row("robot/resume", topics.ROBOT_RESUME, resume),
+)
+BY_NAME = {row.name: row for row in ROWS}
+
+
+def message_of(row: Row, io: Io, data: bytes) -> m.Message:
+    """What a visitor's JSON asks for.
+
+    Raises:
+        ValueError: not of the row's kind, or one that cannot be meant; the text is the reason.
+    """
+    try:
+        return sound(io, row.convert(io, data))
+    except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
+        raise ValueError(str(error)) from None

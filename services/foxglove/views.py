@@ -1,0 +1,106 @@
+"""The server with its channels: the topics as recordings have them, and well-known messages that panels can draw."""
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import foxglove
+from foxglove import channels
+from foxglove.websocket import Capability
+
+from common import topics
+from common.schemas import schema_of
+from common.topics import Topic
+from services.foxglove import drawing
+from services.foxglove.config import FoxgloveConfig
+from services.foxglove.listener import Listener
+
+NAME = "TidyBot"
+CAPABILITIES = (Capability.ClientPublish, Capability.Parameters, Capability.Time)
+
+
+class Row(NamedTuple):
+    """Channel `name` shows what `convert` makes of `topic`."""
+
+    name: str
+    channel: Callable[..., Any]
+    topic: Topic[Any]
+    convert: Callable[[Any], Any]
+
+
+def _camera(name: str, topic: Topic[Any]) -> tuple[Row, ...]:
+    return (
+        Row(f"viewer/{name}/image", channels.CompressedImageChannel, topic, drawing.image),
+        Row(f"viewer/{name}/depth", channels.RawImageChannel, topic, drawing.depth),
+        Row(f"viewer/{name}/calibration", channels.CameraCalibrationChannel, topic, drawing.calibration),
+    )
+
+
+ROWS = (
+    Row("viewer/map", channels.GridChannel, topics.COSTMAP, drawing.grid),
+    Row("viewer/scan", channels.LaserScanChannel, topics.SCAN, drawing.scan),
+    Row("viewer/path", channels.PosesInFrameChannel, topics.NAV_PATH, drawing.path),
+    Row("viewer/log", channels.LogChannel, topics.LOG, drawing.log),
+    *_camera("head", topics.HEAD_RGBD),
+    *_camera("wrist", topics.WRIST_RGBD),
+)
+"""Beside these, `viewer/tf` and `viewer/scene`, which are of several topics."""
+
+
+class Channel(NamedTuple):
+    """A channel that visitors may look at; without `convert` its messages go out as JSON."""
+
+    out: Any
+    topics: tuple[Topic[Any], ...]
+    convert: Callable[[Any], Any] | None = None
+
+
+class Server:
+    """The WebSocket server, open from the start; `close` ends it.
+
+    Raises:
+        OSError: the port is taken.
+    """
+
+    def __init__(self, config: FoxgloveConfig, listener: Listener, shown: tuple[Topic[Any], ...]) -> None:
+        self._context = foxglove.Context()
+        made = [self._json(topic) for topic in shown if not topic.bulk]
+        made += [Channel(row.channel(row.name, context=self._context), (row.topic,), row.convert) for row in ROWS]
+        moving = (topics.ODOMETRY, topics.POSE, topics.JOINT_STATES, topics.ROBOT_DESCRIPTION, topics.SCAN)
+        self.tf = Channel(channels.FrameTransformsChannel("viewer/tf", context=self._context), moving)
+        drawn = (topics.ROBOT_DESCRIPTION, topics.WORLD_OBJECTS)
+        self.scene = Channel(channels.SceneUpdateChannel("viewer/scene", context=self._context), drawn)
+        self.channels: dict[int, Channel] = {int(c.out.id()): c for c in (*made, self.tf, self.scene)}
+        try:
+            self._server = foxglove.start_server(
+                name=NAME,
+                host=config.host,
+                port=config.port,
+                capabilities=[*CAPABILITIES],
+                supported_encodings=["json"],
+                server_listener=listener,
+                context=self._context,
+            )
+        except RuntimeError as error:
+            raise OSError(str(error)) from None
+        self.url = f"ws://{config.host}:{self._server.port}"
+
+    def _json(self, topic: Topic[Any]) -> Channel:
+        kind: Any = topic.type
+        schema = foxglove.Schema(name=f"tidybot.{topic.type.__name__}", encoding="jsonschema", data=schema_of(kind))
+        out = foxglove.Channel(topic.key, schema=schema, message_encoding="json", context=self._context)
+        return Channel(out, (topic,))
+
+    def tell_time(self, t: float) -> None:
+        """Robot time [s]."""
+        self._server.broadcast_time(round(t * 1e9))
+
+    def tell_parameters(self, values: dict[str, Any]) -> None:
+        """Values as they are now, to whoever follows them."""
+        self._server.publish_parameter_values([foxglove.Parameter(n, value=v) for n, v in values.items()])
+
+    def warn(self, words: str) -> None:
+        """A line that every visitor sees."""
+        self._server.publish_status(words, foxglove.StatusLevel.Warning)
+
+    def close(self) -> None:
+        self._server.stop()
