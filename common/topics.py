@@ -140,7 +140,7 @@ WORLD_OBJECTS = _event(
 )
 TEACH = _goal("perception/teach", m.TeachRequest, by="brain dashboard *", to="perception", text="name", latched=False)
 TAUGHT = _event("perception/taught", m.TeachResult, by="perception", to="brain dashboard")
-HOUSEHOLD_NAMES = _event("household/names", m.TaughtNames, by="perception", to="brain")
+HOUSEHOLD_NAMES = _event("household/names", m.TaughtNames, by="perception", to="brain speech")
 
 BASE_TARGET = _goal("base/target_pose", m.BaseTarget, by="navigation", to="sim", latched=False)
 GOAL_REACHED = _event("base/goal_reached", m.GoalReached, by="sim", to="navigation")

@@ -54,6 +54,7 @@ class SpeechService:
         self._inbox: GoalInbox[m.SpeechGoal, m.SpeechResult] = GoalInbox(
             io, (topics.SPEECH_GOAL,), self._take, self._repeat
         )
+        self._names: tuple[str, ...] = ()
         self._listening = False
         self._now = self._deadline = 0.0
         self._asked_again = False
@@ -65,6 +66,8 @@ class SpeechService:
         io = self._io
         self._now = now
         self._inbox.receive()
+        for taught in io.take_all(topics.HOUSEHOLD_NAMES):
+            self._learn(tuple(one.name for one in taught.names))
         for typed in io.take_all(topics.SPEECH_TEXT):
             self._type(typed.text.strip(), now)
         key = self._goal.id, self._goal.attempt
@@ -77,6 +80,12 @@ class SpeechService:
         if said and self._asked_again:
             self._queue.open_window(now)
         self._show(now, "said" if said else "")
+
+    def _learn(self, names: tuple[str, ...]) -> None:
+        """Listen for the names of things that people have taught, and no more for those that are forgotten."""
+        if names != self._names:
+            self._names = names
+            self._queue.learn([name for one in names if (name := normalise(one))])
 
     # --- goals
     def _repeat(self, goal: m.SpeechGoal, answer: m.SpeechResult | None) -> None:

@@ -23,6 +23,7 @@ BREATH, PAUSE = np.zeros(RATE // 2, np.int16), np.zeros(RATE, np.int16)
 SENTENCES = (
     "hey jarvis", "hey jarvis, bring me the red mug", "hey jarvis, the weather is nice today", "hey jarvis, stop",
     "bring me the red mug", "the weather is nice today", "stop", "cancel", "yes",
+    "hey jarvis, bring me the vitamin box", "hey jarvis, this is my vitamin box",
 )  # fmt: skip
 
 
@@ -233,3 +234,24 @@ def test_a_segment_pauses_ends_and_carries_the_wake_word(said: dict[str, Samples
     assert [s.over for s in found] == [False, True, False, True]
     assert found[1].examined and found[3].examined
     assert found[1].wake < 0.1 < CONFIG.wake_threshold < found[3].wake
+
+
+# --- names that people teach
+def test_a_taught_name_is_heard_at_once_and_no_more_when_it_is_forgotten(
+    robot: Robot, said: dict[str, Samples]
+) -> None:
+    known, wanted = m.TaughtNames(names=[m.TaughtName(name="vitamin box")]), "bring me the vitamin box"
+    robot.send(topics.HOUSEHOLD_NAMES, known)
+    robot.hear(said["hey jarvis, bring me the vitamin box"])
+    assert robot.commanded() == [wanted]
+    robot.send(topics.HOUSEHOLD_NAMES, m.TaughtNames())
+    robot.hear(said["hey jarvis, bring me the vitamin box"])
+    assert robot.commanded()[1:] != [wanted]
+
+
+def test_a_sentence_that_teaches_a_name_is_taken_as_it_was_heard_and_to_be_asked_about(
+    robot: Robot, said: dict[str, Samples]
+) -> None:
+    robot.hear(said["hey jarvis, this is my vitamin box"])
+    assert robot.commanded() == ["this is my vitamin box"]
+    assert msgspec.json.decode(robot.commands[0], type=m.VoiceCommand).confidence <= 0.5

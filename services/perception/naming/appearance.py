@@ -19,12 +19,17 @@ from services.perception.naming.crop import Crop
 Cells = NDArray[np.intp]
 PARTS = 4
 """Parts along the axis with a colour histogram each: cap, neck, label, foot of a bottle."""
-CELLS = 8
+CELLS = 6
 """Cells of each of the two chromaticities of a histogram."""
 SPAN = 1.2
 """Largest opponent chromaticity that has a cell of its own: that of a saturated print."""
+FINER = 3.0
+"""How much finer the cells are near grey, where most colours of a home lie, than at SPAN. Chosen: a lamp's tint of
+8 % is a quarter of a cell there."""
 LEVELS = 4
-"""Cells of brightness, relative to the object's own: dark print on a light ground is told from a light one."""
+"""Cells of brightness relative to the object's median: dark print on a light ground is told from light on dark."""
+STOPS = 6.0
+"""Range of that brightness, in factors of two."""
 GREY = 12.0
 """Brightness (of 255) below which chromaticity is noise."""
 EXTENT_NOISE, EXTENT_SHARE = 0.007, 0.07
@@ -56,10 +61,10 @@ def look_of(crop: Crop) -> Look:
     # Opponent chromaticities: red against green, both against blue.
     first = np.clip((red - green) / level / SPAN, -1, 1) * weight
     second = np.clip(((red + green) / 2 - blue) / level / SPAN, -1, 1) * weight
-    bright = np.clip(level / max(float(np.percentile(level, 90)), 1.0), 0.0, 1.0)
+    bright = np.clip(np.log2(level / np.median(level)) / STOPS + 0.5, 0.0, 1.0)
     part = np.minimum((crop.along * PARTS).astype(np.intp), PARTS - 1)
     cube = np.zeros((PARTS, CELLS, CELLS, LEVELS))
-    for (i, f), (j, s), (k, g) in _soft(_spread(first), _spread(second), (bright * LEVELS - 0.5, LEVELS)):
+    for (i, f), (j, s), (k, g) in _soft(_spread(first), _spread(second), (bright * (LEVELS - 1), LEVELS)):
         np.add.at(cube, (part, i, j, k), f * s * g)
     cube /= len(colours)
     x, y, z = (float(v) for v in crop.bearing)
@@ -70,8 +75,8 @@ def look_of(crop: Crop) -> Look:
 
 
 def _spread(chroma: Array) -> tuple[Array, int]:
-    """Position among the cells; finer near grey, where most colours of a home lie."""
-    return (np.sign(chroma) * np.sqrt(np.abs(chroma)) / 2 + 0.5) * (CELLS - 1), CELLS
+    """Position among the cells, finer near grey."""
+    return (np.arcsinh(FINER * chroma) / math.asinh(FINER) / 2 + 0.5) * (CELLS - 1), CELLS
 
 
 def _soft(*axes: tuple[Array, int]) -> list[tuple[tuple[Cells, Array], ...]]:

@@ -13,10 +13,10 @@ from services.perception.naming.memory import Taught
 from services.perception.naming.sights import Sight
 from services.perception.naming.text import LIKELY, Line, likeness
 
-SAME, PERHAPS = 0.30, 0.42
+SAME, PERHAPS = 0.25, 0.34
 """Differences of appearance up to which an object is the one that was taught, and up to which it may be (bench.naming).
 """
-CLEAR = 0.07
+CLEAR = 0.06
 """How much more alike the best must be than the second for that to be another object (bench.naming)."""
 READ_SAME, READ_OTHER = -0.10, 0.20
 """What print adds to the difference: the same words as were read when it was taught, and other words."""

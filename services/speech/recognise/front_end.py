@@ -1,12 +1,14 @@
 """The front end of speech recognition: voice activity, gain, noise reduction, then the recogniser."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from common.household import Household
+from common.language.meaning import asks_for
+from common.language.normalise import normalise
 from services.speech.config import SpeechConfig
 from services.speech.listen.vad import RATE, VoiceDetector, speech_span
 from services.speech.recognise.denoise import noise_ratio, reduce_noise
@@ -30,6 +32,8 @@ NOISY = 20.0
 """Speech to noise [dB] below which a variant without the noise is recognised, too."""
 PEAK = 0.95
 """Amplitude to which every variant is scaled, of 1."""
+FREE = 0.5
+"""Confidence of words that no grammar has vouched for. Chosen: below that from which the brain does not ask."""
 SILENT_PEAK = 1e-4
 """Amplitude of what is silence whatever the detector says: a few steps of 16 bit."""
 
@@ -76,7 +80,7 @@ class FrontEnd:
         if config.recogniser == "pocketsphinx":
             self._recogniser = SphinxRecogniser(config, household)
         else:
-            self._recogniser = MoonshineRecogniser(config, found)
+            self._recogniser = MoonshineRecogniser(config, household, found)
 
     def recognise(self, samples: NDArray[np.int16], scope: Scope = "command") -> Recognition:
         """What 16 kHz int16 samples (n,) say, without the wake word."""
@@ -85,4 +89,15 @@ class FrontEnd:
             return Recognition("", "silence", 0.0)
         found = self._recogniser.recognise(utterance, scope)
         return_memory()
+        if scope != "interrupt" and found.verdict != "accept" and (naming := self._naming(found.free)):
+            return replace(found, text=naming, verdict="accept", confidence=FREE)
         return replace(found, text=without_wake(found.text, self._wake))
+
+    def learn(self, names: Sequence[str]) -> None:
+        """Listen for these names of things as well."""
+        self._recogniser.learn(names)
+
+    def _naming(self, free: str) -> str:
+        """The free transcription if it names a thing or forgets a name: a grammar has no name before it is taught."""
+        text = without_wake(normalise(free), self._wake)
+        return text if asks_for(text, "teach", "forget") else ""

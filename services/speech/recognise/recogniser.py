@@ -1,7 +1,7 @@
 """Recognition of one utterance under a grammar; a likelihood ratio decides between accept, ask and reject."""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, Protocol
 
@@ -60,17 +60,25 @@ class Recogniser(Protocol):
 
     def recognise(self, utterance: PreparedUtterance, scope: Scope) -> Recognition: ...
 
+    def learn(self, names: Sequence[str]) -> None:
+        """Listen for these names of things from now on, beside what the configuration and the household have."""
+
 
 class MoonshineRecogniser:
     """Moonshine base-en under the grammar of a scope."""
 
-    def __init__(self, config: SpeechConfig, grammars: dict[Scope, Grammar]) -> None:
+    def __init__(self, config: SpeechConfig, household: Household, grammars: dict[Scope, Grammar]) -> None:
         from services.speech.recognise.moonshine import Moonshine
         from services.speech.recognise.token_trie import TokenTrie
 
-        self._config = config
+        self._config, self._household = config, household
         self._model = Moonshine(config.beam)
-        self._tries = {scope: TokenTrie(self._model.tokens, grammar) for scope, grammar in grammars.items()}
+        self._trie: Callable[[Grammar], TokenTrie] = lambda grammar: TokenTrie(self._model.tokens, grammar)
+        self._tries = {scope: self._trie(grammar) for scope, grammar in grammars.items()}
+
+    def learn(self, names: Sequence[str]) -> None:
+        found = grammars(self._config, self._household, names)
+        self._tries = {scope: self._trie(grammar) for scope, grammar in found.items()}
 
     def recognise(self, utterance: PreparedUtterance, scope: Scope) -> Recognition:
         config = self._config
@@ -110,13 +118,13 @@ def patterns(config: SpeechConfig, scope: Scope) -> list[str]:
     return [f"{wake} [{_either(sentences)}]", *(line for line in config.commands if _is_part(line))]
 
 
-def grammars(config: SpeechConfig, household: Household) -> dict[Scope, Grammar]:
-    """One grammar for each scope.
+def grammars(config: SpeechConfig, household: Household, names: Sequence[str] = ()) -> dict[Scope, Grammar]:
+    """One grammar for each scope; `names` of things that people have taught are objects in it.
 
     Raises:
         PatternError: a pattern that cannot be used.
     """
-    words = vocabulary(household, config.objects, config.places, config.colours)
+    words = vocabulary(household, (*config.objects, *names), config.places, config.colours)
     commands = Grammar(patterns(config, "command"), words)
     interrupts = Grammar(patterns(config, "interrupt"), {})
     return {"command": commands, "woken": commands.introduced(config.wake), "interrupt": interrupts}

@@ -1,5 +1,7 @@
 """PocketSphinx with a JSGF grammar: the light fallback recogniser. It hears commands in other speech too: confirm."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from common.household import Household
@@ -9,9 +11,9 @@ from services.speech.recognise.grammar import vocabulary
 from services.speech.recognise.recogniser import PreparedUtterance, Recognition, Scope, patterns
 
 
-def jsgf(config: SpeechConfig, household: Household, scope: Scope = "command") -> str:
+def jsgf(config: SpeechConfig, household: Household, scope: Scope = "command", names: Sequence[str] = ()) -> str:
     """The patterns of a scope as a JSGF grammar."""
-    parts = vocabulary(household, config.objects, config.places, config.colours)
+    parts = vocabulary(household, (*config.objects, *names), config.places, config.colours)
     sentences = []
     for line in patterns(config, scope):
         name, equals, pattern = line.partition("=")
@@ -31,10 +33,14 @@ class SphinxRecogniser:
             from pocketsphinx import Decoder
         except ImportError:
             raise StartError('speech.recogniser = "pocketsphinx" needs: pip install pocketsphinx') from None
+        self._config, self._household = config, household
         self._decoder = Decoder(lm=None, loglevel="FATAL")
+        self.learn(())
+
+    def learn(self, names: Sequence[str]) -> None:
         scopes: tuple[Scope, ...] = ("command", "woken", "interrupt")
         for scope in scopes:
-            self._decoder.add_jsgf_string(scope, jsgf(config, household, scope))
+            self._decoder.add_jsgf_string(scope, jsgf(self._config, self._household, scope, names))
 
     def recognise(self, utterance: PreparedUtterance, scope: Scope) -> Recognition:
         self._decoder.activate_search(scope)
