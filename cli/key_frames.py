@@ -41,7 +41,8 @@ class RecordedWorld:
         self._times = [row.t for row in self._rows]
         if not models or not self._rows:
             raise CliError(f"{recording.path}: no sim/model and sim/state in it, so there is nothing to see")
-        self._renderer = Renderer(codec.decode(topics.SIM_MODEL, models[-1].payload).mjcf, "auto")
+        described = codec.decode(topics.SIM_MODEL, models[-1].payload)
+        self._renderer = Renderer(described.mjcf, "auto", described.files)
         self._azimuth = AZIMUTH
 
     def at(self, t: float, width: int, height: int) -> NDArray[np.uint8]:

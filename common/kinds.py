@@ -84,6 +84,10 @@ class Kind:
         return size[0] / 2 - size[2] * math.tan(self.lean)
 
 
+PLATE_FOOT = 0.6
+"""Radius of the flat of a plate, as a share of the whole; chosen: dinner plates have 0.55 to 0.7."""
+
+
 def _cylinder(kind: Kind, r: float, h: float) -> list[Segment]:
     return [((r, 0), (r, h)), ((r, h), (0, h))]
 
@@ -102,6 +106,11 @@ def _bowl(kind: Kind, r: float, h: float) -> list[Segment]:
 def _bottle(kind: Kind, r: float, h: float) -> list[Segment]:
     neck, low = 0.014, 0.72 * h
     return [((r, 0), (r, low)), ((r, low), (neck, low)), ((neck, low), (neck, h)), ((neck, h), (0, h))]
+
+
+def _plate(kind: Kind, r: float, h: float) -> list[Segment]:
+    foot, flat = PLATE_FOOT * r, 0.006
+    return [((foot, 0), (r, h)), ((0, flat), (foot, flat)), ((0, 0), (foot, 0))]
 
 
 _ROLLING = (GraspRule("around", (90, 65, 45, 30)),)
@@ -175,7 +184,7 @@ _TABLE = (
         look=Look({"box": 1}, (0.008, 0.06), (0.11, 0.36), (2.8, 30.0), (2.2, 25.0)),
     ),
     Kind(
-        "plate", "turned", (GraspRule("rim", (65, 72, 58, 80, 90)),), upright=False,
+        "plate", "turned", (GraspRule("rim", (65, 72, 58, 80, 90)),), _plate, upright=False,
         look=Look({"bowl": 1, "round": 1, "irregular": 0.2}, (0.13, 0.33), (0.008, 0.045), (0.0, 0.2), hollow=(1, 1)),
     ),
     Kind(

@@ -12,6 +12,7 @@ from typing import Annotated, Any, Literal, TypeVar
 
 import msgspec
 
+from common.body_file import BodyError, extents
 from common.floor_plan import (
     Box,
     FloorPlan,
@@ -45,6 +46,8 @@ class SceneError(ValueError):
 FLOOR = "floor"
 """What `on` says of an object that stands on the floor."""
 Pose = Literal["upright", "side", "upside down"]
+Pattern = Literal["plain", "band", "stripes", "dots", "check"]
+Form = Literal["banana", "duck", "car", "boat", "screwdriver", "hammer", "spoon", "brush"]
 
 
 class ObjectSpec(Thing, frozen=True, kw_only=True):
@@ -52,16 +55,27 @@ class ObjectSpec(Thing, frozen=True, kw_only=True):
 
     `on`: the receptacle, piece of furniture or `floor` that it stands on; "" for whichever receptacle the seed draws.
     `position` (x, y) [map] and `yaw` [rad] are drawn as well where they are not given. `pose`: how it rests.
-    `gloss` [0 matt .. 1 like a mirror] and `transparent` are what a depth camera has its trouble with.
+
+    What it looks like: `label` is printed on it; `pattern` in the colour `second`, which rims and lids have too.
+    `gloss` [0 matt .. 1 like a mirror] and `transparent` are what a depth camera has its trouble with. `form` is a body
+    of `services/sim/things/forms.py` that no kind has by itself. `model` is an MJCF file with the whole body, whose
+    extents and mass count where none are given.
     """
 
-    mass: float
+    size: Vec3 = (0.0, 0.0, 0.0)
+    rgba: Rgba = (0.8, 0.8, 0.8, 1.0)
+    mass: float = 0.0
     on: str = ""
     position: Vec2 | None = None
     yaw: float | None = None
     pose: Pose = "upright"
     gloss: Annotated[float, msgspec.Meta(ge=0.0, le=1.0)] = 0.0
     transparent: bool = False
+    label: str = ""
+    pattern: Pattern = "plain"
+    second: Rgba | None = None
+    form: Form | None = None
+    model: str = ""
 
 
 def body_name(spec: Thing) -> str:
@@ -109,7 +123,7 @@ class Scene(FloorPlan, frozen=True, kw_only=True):
         for spec in self.objects:
             if found := kind_fault(spec):
                 return f"object {found}"
-            if not (0 < spec.mass < math.inf):
+            if not (0 < spec.mass < math.inf) and not (spec.model and spec.mass == 0):
                 return f"object {spec.name!r} needs a positive size and mass"
             if spec.on and self.surface(spec.on) is None:
                 return f"object {spec.name!r} is on {spec.on!r}, which is no receptacle or furniture"
@@ -132,7 +146,27 @@ def load_scene(name: str) -> Scene:
         SceneError: no such file, bad TOML, an unknown key, a wrong type or an impossible layout.
     """
     path = scene_path(name)
-    return checked(parse(read(path), Scene, path), path)
+    return checked(_with_bodies(parse(read(path), Scene, path), path), path)
+
+
+def _with_bodies(scene: Scene, path: Path) -> Scene:
+    """The scene with body files found beside its own, and their extents.
+
+    Raises:
+        SceneError: a body file that cannot be used.
+    """
+    objects = []
+    for spec in scene.objects:
+        if not spec.model:
+            objects.append(spec)
+            continue
+        file = (path.parent / spec.model).resolve()
+        try:
+            size = spec.size if any(spec.size) else extents(file)
+        except BodyError as error:
+            raise SceneError(f"{path}: object {spec.name!r}: {error}") from None
+        objects.append(msgspec.structs.replace(spec, model=str(file), size=size))
+    return msgspec.structs.replace(scene, objects=tuple(objects))
 
 
 def read(path: Path) -> dict[str, Any]:

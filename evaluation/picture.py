@@ -25,7 +25,8 @@ def last_picture(get: Get) -> str:
     if not model or not state:
         return ""
     seen = codec.decode(topics.SIM_STATE, state)
-    renderer = Renderer(codec.decode(topics.SIM_MODEL, model).mjcf, "raycast")
+    described = codec.decode(topics.SIM_MODEL, model)
+    renderer = Renderer(described.mjcf, "raycast", described.files)
     try:
         renderer.load(seen.qpos, seen.mocap)
         picture = renderer.picture(free_view(renderer), WIDTH, HEIGHT)

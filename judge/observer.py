@@ -38,7 +38,7 @@ class Observer:
     # --- physics
     def model(self, model: m.SimModel) -> None:
         """The world's model; only the first one counts."""
-        self._replica = self._replica or Replica(model.mjcf, self._scene)
+        self._replica = self._replica or Replica(model.mjcf, self._scene, model.files)
 
     def world(self, state: m.SimState) -> Sample | None:
         """One state of the world; None before its model is known."""

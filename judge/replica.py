@@ -17,9 +17,9 @@ from judge.track import Thing
 class Replica:
     """Built from the MJCF that the simulation publishes."""
 
-    def __init__(self, mjcf: str, scene: Scene) -> None:
+    def __init__(self, mjcf: str, scene: Scene, files: dict[str, bytes] | None = None) -> None:
         self.scene = scene
-        self._model: Any = mujoco.MjModel.from_xml_string(mjcf)
+        self._model: Any = mujoco.MjModel.from_xml_string(mjcf, files or {})
         self._data: Any = mujoco.MjData(self._model)
         model = self._model
         self._specs: list[ObjectSpec] = list(scene.objects)

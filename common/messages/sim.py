@@ -46,10 +46,13 @@ class SimContacts(Message):
 
 
 class SimModel(Message):
+    """What is simulated, for who draws it: `files` are the pictures that `mjcf` names."""
+
     scene: str
     seed: int
     epoch: str
     mjcf: str
+    files: dict[str, bytes] = {}
 
 
 class SimStatus(Message):

@@ -6,6 +6,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from common.rendering.looks import geom_colours
 from common.rendering.renderer import SKY
 
 NEAR = 0.02
@@ -67,7 +68,7 @@ def image(
         distance[case], geom[case], normal[case] = _cast(model, data, position, rays[case], body)
     seen = (distance >= 0) & (distance < FAR)
     depth = np.where(seen, distance * (rays @ -rotation[:, 2]), 0.0).reshape(height, width)
-    colours = np.where(model.geom_matid[:, np.newaxis] >= 0, [0.70, 0.64, 0.56, 1.0], model.geom_rgba)[:, :3] * 255
+    colours = geom_colours(model) * 255
     light = 0.55 + 0.45 * np.abs(normal @ _LIGHT) if _TAKES_NORMAL else np.full(len(rays), 0.85)
     rgb = np.where(seen[:, np.newaxis], colours[geom] * light[:, np.newaxis], _SKY)
     shown = np.where(seen, geom, -1).reshape(height, width)

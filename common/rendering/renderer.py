@@ -101,12 +101,12 @@ def environment(backend: str) -> dict[str, str]:
 class Renderer:
     """Holds the model, the state and a GL context."""
 
-    def __init__(self, mjcf: str, wanted: str) -> None:
+    def __init__(self, mjcf: str, wanted: str, files: dict[str, bytes] | None = None) -> None:
         self.backend = choose(wanted)
         import mujoco
 
         self._mujoco = mujoco
-        self.model: Any = mujoco.MjModel.from_xml_string(mjcf)
+        self.model: Any = mujoco.MjModel.from_xml_string(mjcf, files or {})
         self.data: Any = mujoco.MjData(self.model)
         self._gl: dict[tuple[int, int], Any] = {}
         self._option = mujoco.MjvOption()

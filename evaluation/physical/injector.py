@@ -7,8 +7,8 @@ import numpy as np
 
 from common.time.lockstep import DT
 from evaluation.physical.fault import PhysicalFault
-from services.sim.objects import GROUP
 from services.sim.physics import Physics
+from services.sim.things.primitives import GROUP
 from services.sim.truth import touching
 
 ARRIVED = 0.06

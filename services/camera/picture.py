@@ -40,7 +40,7 @@ def main() -> int:
         return 2
     described = codec.decode(topics.SIM_MODEL, next(iter(model.values())))
     current = codec.decode(topics.SIM_STATE, next(iter(state.values())))
-    renderer = Renderer(described.mjcf, args.backend)
+    renderer = Renderer(described.mjcf, args.backend, described.files)
     renderer.load(current.qpos, current.mocap)
     if args.view in VIEWS:
         image = renderer.picture(VIEWS[args.view], args.width, args.height)

@@ -46,7 +46,7 @@ class Shutter:
         if self._renderer is None or model.mjcf != self._mjcf:
             if self._renderer is not None:
                 self._renderer.close()
-            self._renderer, self._mjcf = Renderer(model.mjcf, self._backend), model.mjcf
+            self._renderer, self._mjcf = Renderer(model.mjcf, self._backend, model.files), model.mjcf
         renderer, state, width, height = self._renderer, states[-1], request.width, request.height
         renderer.load(state.qpos, state.mocap)
         position, rotation = renderer.optical_pose(request.camera)

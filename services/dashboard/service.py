@@ -169,7 +169,7 @@ class DashboardService:
                 self._io.count_drop(topics.SIM_MODEL.key, str(error))
         if model is not None and model.mjcf != self._mjcf and self._drawn is None:
             self._mjcf = model.mjcf
-            self._drawn = self._io.submit(partial(draw, model.mjcf))
+            self._drawn = self._io.submit(partial(draw, model.mjcf, model.files))
 
     def _move(self, now: float) -> None:
         io, panels, view = self._io, self.panels, self.view

@@ -7,8 +7,8 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from services.sim.objects import GROUP
 from services.sim.robot import GLASS_GROUP, HULL_GROUP, POST, ROBOT_GROUP
+from services.sim.things.primitives import GROUP
 
 RAYS, RANGE_MIN, RANGE_MAX = 360, 0.05, 10.0
 _TAKES_NORMAL = "normal" in (mujoco.mj_multiRay.__doc__ or "")

@@ -14,7 +14,7 @@ from services.sim.fingers import Fingers, view
 from services.sim.layout import Placement, place_objects
 from services.sim.model import Robot, own
 from services.sim.obstacles import Obstacles, body_xml
-from services.sim.world import world_mjcf
+from services.sim.world import world_files, world_mjcf
 
 FINE, COARSE = 5, 2
 """Steps of a tick. 2 ms is half the time constant of the pads' contacts, the longest that MuJoCo takes for them; while
@@ -35,7 +35,8 @@ class Physics:
         self.scene, self.seed, self.robot = scene, seed, robot or own()
         self.placements: list[Placement] = place_objects(scene, seed)
         self.mjcf = world_mjcf(scene, self.placements, "".join(map(body_xml, obstacles)), self.robot)
-        self.model: Any = mujoco.MjModel.from_xml_string(self.mjcf)
+        self.files = world_files(self.placements)
+        self.model: Any = mujoco.MjModel.from_xml_string(self.mjcf, self.files)
         self.model.opt.enableflags |= mujoco.mjtEnableBit.mjENBL_SLEEP
         self.data: Any = mujoco.MjData(self.model)
         model = self.model

@@ -19,6 +19,7 @@ from services.sim.config import SimConfig
 from services.sim.menagerie import RobotError
 from services.sim.model import Robot, load_robot
 from services.sim.mounts import head_camera
+from services.sim.objects import made
 from services.sim.obstacles import chosen
 from services.sim.physics import Physics
 from services.sim.sensors import Sensors
@@ -51,6 +52,8 @@ class SimService:
         self.paused = False
         self.start_time = 0.0
         self.physics = Physics(io.world, io.seed, chosen(io.world, config.obstacles), _robot(config.robot))
+        for warning in filter(None, (made(p.spec).warning for p in self.physics.placements)):
+            io.log.warning("object", what=warning)
         self._viewer = Viewer(self.physics) if config.viewer else None
         self._tick = 0
         self._model = checkpoint.fingerprint(self.physics.mjcf)
@@ -83,7 +86,9 @@ class SimService:
         physics = self.physics
         description = m.RobotDescription(mjcf=physics.robot.mjcf, head_camera=head_camera(physics.model))
         io.publish(topics.ROBOT_DESCRIPTION, description)
-        model = m.SimModel(scene=io.world.name, seed=physics.seed, epoch=io.epoch, mjcf=physics.mjcf)
+        model = m.SimModel(
+            scene=io.world.name, seed=physics.seed, epoch=io.epoch, mjcf=physics.mjcf, files=physics.files
+        )
         io.publish(topics.SIM_MODEL, model)
         io.publish(topics.GOAL_REACHED, m.GoalReached(reached=False))
         self._publish_status("running")

@@ -9,6 +9,7 @@ from services.sim import objects
 from services.sim.layout import Placement
 from services.sim.model import Robot, own
 from services.sim.robot import GLASS_GROUP
+from services.sim.things import primitives
 
 STATIC = 'contype="1" conaffinity="3"'
 _WOOD, _WHITE, _STEEL = "0.62 0.46 0.32 1", "0.90 0.89 0.86 1", "0.72 0.74 0.76 1"
@@ -96,6 +97,11 @@ def _receptacle(r: Receptacle) -> str:
     return _cabinet(r, _WHITE if r.kind == "counter" else _WOOD, _STEEL if r.kind == "counter" else _WOOD)
 
 
+def world_files(placements: Sequence[Placement]) -> dict[str, bytes]:
+    """The pictures that the model of these objects refers to, by file name."""
+    return {name: data for p in placements for name, data in objects.made(p.spec).files.items()}
+
+
 def world_mjcf(scene: Scene, placements: Sequence[Placement], mocap: str = "", robot: Robot | None = None) -> str:
     """The complete model. `mocap` adds bodies of moving obstacles; `robot` None is our own."""
     robot = robot or own()
@@ -107,6 +113,7 @@ def world_mjcf(scene: Scene, placements: Sequence[Placement], mocap: str = "", r
     center = ((scene.low[0] + scene.high[0]) / 2, (scene.low[1] + scene.high[1]) / 2)
     extent = (scene.high[0] - scene.low[0] + 2, scene.high[1] - scene.low[1] + 2)
     bodies = "".join(objects.body_xml(p) for p in placements)
+    assets = "".join(objects.made(p.spec).assets for p in placements)
     return f"""<mujoco model="{scene.name}">
 <compiler angle="radian" autolimits="true"/>
 <option timestep="0.0025" integrator="implicitfast" cone="elliptic" impratio="10" jacobian="dense"/>
@@ -121,7 +128,7 @@ def world_mjcf(scene: Scene, placements: Sequence[Placement], mocap: str = "", r
   <texture name="sky" type="skybox" builtin="gradient" rgb1=".75 .82 .90" rgb2=".95 .96 .98" width="64" height="64"/>
   <texture name="floor" type="2d" builtin="checker" rgb1=".72 .66 .58" rgb2=".68 .62 .54" width="128" height="128"/>
   <material name="floor" texture="floor" texrepeat="{extent[0]:.0f} {extent[1]:.0f}"/>
-{objects.materials(p.spec for p in placements)}{robot.assets}</asset>
+{primitives.materials(p.spec for p in placements)}{robot.assets}{assets}</asset>
 <worldbody>
   {lights}
   <geom name="floor" type="plane" pos="{center[0]} {center[1]} 0" size="{extent[0] / 2} {extent[1] / 2} 0.1"

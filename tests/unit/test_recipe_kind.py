@@ -88,6 +88,7 @@ def test_the_recipe_for_a_kind_touches_three_files_and_makes_a_spoon(tmp_path: P
     for part in ("common", "services", "config"):
         shutil.copytree(ROOT / part, folder / part, ignore=shutil.ignore_patterns("__pycache__"))
     shutil.copy(ROOT / "examples" / "tea.toml", folder / "spoon.toml")
+    shutil.copy(ROOT / "pyproject.toml", folder)  # a checkout, and nothing installed
     insert(folder / "spoon.toml", "objects = [\n", "objects = [\n" + SPOON)
     refused = ask(folder)
     assert refused.returncode == 1

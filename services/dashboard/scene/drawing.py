@@ -79,7 +79,7 @@ class Drawing:
     hand: "Hand | None" = None
 
 
-def draw(mjcf: str) -> Drawing:
+def draw(mjcf: str, files: dict[str, bytes] | None = None) -> Drawing:
     """Everything of a model but what moves without the robot.
 
     Raises:
@@ -87,11 +87,13 @@ def draw(mjcf: str) -> Drawing:
     """
     import mujoco
 
+    from common.rendering.looks import geom_colours
     from common.robot import Hand
 
-    model: Any = mujoco.MjModel.from_xml_string(mjcf)
+    model: Any = mujoco.MjModel.from_xml_string(mjcf, files or {})
     data: Any = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
+    colours = geom_colours(model)
     roots = [model.body(int(model.body_rootid[b])).name for b in range(model.nbody)]
     flat: list[Mesh] = []
     walls: list[Mesh] = []
@@ -101,16 +103,16 @@ def draw(mjcf: str) -> Drawing:
         name = model.body(body).name
         geoms = [g for g in range(model.ngeom) if model.geom_bodyid[g] == body and model.geom_group[g] < HIDDEN_GROUP]
         if roots[body] == ROBOT_BODY:
-            links.append(_link(model, body, joined([_geom(model, g) for g in geoms])))
+            links.append(_link(model, body, joined([_geom(model, g, colours) for g in geoms])))
         elif _free(model, body):
-            shape = joined([_geom(model, g) for g in geoms])
+            shape = joined([_geom(model, g, colours) for g in geoms])
             if shape is not None:
                 objects[name.replace("_", " ")] = shape
         elif model.body_mocapid[model.body_rootid[body]] < 0:
             place, turn = data.xpos[body], data.xmat[body].reshape(3, 3)
             for g in geoms:
                 see_through = model.geom(g).name.startswith(SEE_THROUGH)
-                mesh = moved(_geom(model, g), place, turn)
+                mesh = moved(_geom(model, g, colours), place, turn)
                 (walls if see_through else flat).append(cut(mesh, CUT) if see_through else mesh)
     try:
         hand = Hand(model)
@@ -149,7 +151,7 @@ def _cameras(model: Any, roots: list[str]) -> list[Camera]:
     return found
 
 
-def _geom(model: Any, g: int) -> Mesh:
+def _geom(model: Any, g: int, colours: Array) -> Mesh:
     """A geom in its body's frame."""
     import mujoco
     import trimesh
@@ -177,9 +179,8 @@ def _geom(model: Any, g: int) -> Mesh:
         shape = trimesh.Trimesh(model.mesh_vert[a : a + n], model.mesh_face[b : b + k], process=False)
     else:
         shape = trimesh.Trimesh()
-    rgba = np.array([0.78, 0.72, 0.63]) if model.geom_matid[g] >= 0 else model.geom_rgba[g][:3]
     vertices = np.asarray(shape.vertices, dtype=np.float64)
-    mesh = Mesh(vertices, np.asarray(shape.faces, dtype=np.int64), np.tile(rgba, (len(vertices), 1)))
+    mesh = Mesh(vertices, np.asarray(shape.faces, dtype=np.int64), np.tile(colours[g], (len(vertices), 1)))
     return moved(mesh, model.geom_pos[g], quat_matrix(tuple(model.geom_quat[g])))
 
 

@@ -1,0 +1,74 @@
+"""An MJCF file that a world names as an object: read, checked and measured."""
+
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+class BodyError(ValueError):
+    """A body file that cannot be used; the message says why."""
+
+
+def load(path: Path) -> tuple[Any, Any]:
+    """The compiled model, and its data with everything in place.
+
+    Raises:
+        BodyError: no such file, or none that MuJoCo can read.
+    """
+    import mujoco
+
+    if not path.is_file():
+        raise BodyError(f"no body file {path}")
+    try:
+        model: Any = mujoco.MjModel.from_xml_path(str(path))
+    except ValueError as error:
+        raise BodyError(f"{path}: MuJoCo cannot read it: {error}") from None
+    data: Any = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    return model, data
+
+
+def bounds(model: Any, data: Any) -> tuple[Array, Array]:
+    """Lowest and highest corner (3,) [m] of all that is no plane."""
+    import mujoco
+
+    low, high = np.full(3, np.inf), np.full(3, -np.inf)
+    for g in range(model.ngeom):
+        if model.geom_type[g] == mujoco.mjtGeom.mjGEOM_PLANE:
+            continue
+        turn, at = data.geom_xmat[g].reshape(3, 3), data.geom_xpos[g]
+        if model.geom_type[g] == mujoco.mjtGeom.mjGEOM_MESH:
+            mesh = int(model.geom_dataid[g])
+            begin = int(model.mesh_vertadr[mesh])
+            points = model.mesh_vert[begin : begin + int(model.mesh_vertnum[mesh])] @ turn.T + at
+        else:
+            centre, half = model.geom_aabb[g, :3], model.geom_aabb[g, 3:]
+            signs = np.array(np.meshgrid((-1, 1), (-1, 1), (-1, 1))).reshape(3, -1).T
+            points = (centre + signs * half) @ turn.T + at
+        low, high = np.minimum(low, points.min(axis=0)), np.maximum(high, points.max(axis=0))
+    return low, high
+
+
+def middle(model: Any, data: Any) -> Array:
+    """The middle (3,) [m] of the bounding box."""
+    low, high = bounds(model, data)
+    return np.asarray((low + high) / 2)
+
+
+@cache
+def extents(path: Path) -> tuple[float, float, float]:
+    """Full extents (x, y, z) [m] of what a body file holds.
+
+    Raises:
+        BodyError: it cannot be read, or holds nothing.
+    """
+    low, high = bounds(*load(path))
+    if not np.isfinite(low).all():
+        raise BodyError(f"{path}: it has no geoms")
+    x, y, z = (round(float(v), 4) for v in high - low)
+    return x, y, z

@@ -1,0 +1,68 @@
+"""Convex parts of a mesh that nobody gave collision geoms, made once and kept on disk."""
+
+import hashlib
+import importlib
+import os
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import ConvexHull
+
+Array = NDArray[np.float64]
+Part = tuple[Array, NDArray[np.int64]]
+THRESHOLD = 0.05
+"""Concavity that CoACD leaves: its own default. A cup keeps its inside."""
+MOST = 24
+"""Parts of one mesh: collisions of more cost more than they are worth to a hand of two fingers."""
+VERSION = "1"
+
+
+def directory() -> Path:
+    """Where parts are kept: TIDYBOT_CACHE_DIR, or below XDG_CACHE_HOME or ~/.cache."""
+    if own := os.environ.get("TIDYBOT_CACHE_DIR"):
+        return Path(own).expanduser()
+    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "tidybot"
+
+
+def parts(vertices: Array, faces: NDArray[np.int64]) -> list[Part]:
+    """The parts, from disk if they were made before; the convex hull where CoACD is not installed."""
+    try:
+        coacd = importlib.import_module("coacd")
+    except ImportError:
+        return [_hull(vertices)]
+    digest = hashlib.sha256(f"{VERSION} {THRESHOLD} {MOST}".encode() + vertices.tobytes() + faces.tobytes()).hexdigest()
+    file = directory() / "convex" / f"{digest[:24]}.npz"
+    try:
+        with np.load(file) as kept:
+            return [(kept[f"v{n}"], kept[f"f{n}"]) for n in range(len(kept.files) // 2)]
+    except (OSError, ValueError, KeyError):
+        pass
+    coacd.set_log_level("error")
+    made = coacd.run_coacd(coacd.Mesh(vertices, faces), threshold=THRESHOLD, max_convex_hull=MOST, seed=0)
+    found = [(np.asarray(v, np.float64), np.asarray(f, np.int64)) for v, f in made]
+    _keep(file, found)
+    return found
+
+
+def _keep(file: Path, found: list[Part]) -> None:
+    """Whole or not at all: another process may make the same."""
+    own = file.with_suffix(f".{os.getpid()}.tmp")
+    try:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        with own.open("wb") as stream:
+            arrays: dict[str, Any] = {}
+            for n, (vertices, faces) in enumerate(found):
+                arrays |= {f"v{n}": vertices, f"f{n}": faces}
+            np.savez_compressed(stream, **arrays)
+        own.replace(file)
+    except OSError:
+        own.unlink(missing_ok=True)
+
+
+def _hull(vertices: Array) -> Part:
+    hull = ConvexHull(vertices)
+    corner = np.full(len(vertices), -1)
+    corner[hull.vertices] = np.arange(len(hull.vertices))
+    return vertices[hull.vertices], corner[hull.simplices]
