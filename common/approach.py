@@ -1,9 +1,10 @@
 """Approach poses: where the base stands so that the arm reaches an object or a surface. Pure."""
 
 import math
+from collections.abc import Iterator
 
+from common.floor_plan import FloorPlan, Receptacle
 from common.geometry import Pose2
-from common.scene import Receptacle
 
 Point = tuple[float, float]
 FOOTPRINT = 0.29
@@ -54,3 +55,21 @@ def poses_for(
             far = max(0.0, math.hypot(distance, side) - stand_off - 0.04)
             found.append((4.0 * far + 1.5 * abs(side), (bx, by, theta)))
     return found
+
+
+def clearance(floor_plan: FloorPlan, x: float, y: float) -> float:
+    """Distance [m] from a point on the floor to the nearest wall, furniture or surface; 0 within one."""
+    return min(_distances(floor_plan, x, y), default=math.inf)
+
+
+def _distances(floor_plan: FloorPlan, x: float, y: float) -> Iterator[float]:
+    for wall in floor_plan.walls:
+        yield max(0.0, _to_segment(x, y, wall.start, wall.end) - wall.thickness / 2)
+    for footprint in floor_plan.footprints:
+        yield footprint.distance(x, y)
+
+
+def _to_segment(x: float, y: float, a: Point, b: Point) -> float:
+    dx, dy = b[0] - a[0], b[1] - a[1]
+    t = min(1.0, max(0.0, ((x - a[0]) * dx + (y - a[1]) * dy) / max(dx * dx + dy * dy, 1e-9)))
+    return math.hypot(x - a[0] - t * dx, y - a[1] - t * dy)

@@ -21,12 +21,18 @@ class ManipulationGoal(Message):
 
 
 class ManipulationStatus(Message):
+    """`blockers`: labels of the objects in the way of what could not be grasped, the worst first; `stance`: a pose
+    (x, y, theta) of the base in frame map from which the arm reaches what it does not from here.
+    """
+
     status: ManipStatus
     goal_id: str = ""
     attempt: int = 0
     phase: str = ""
     code: str = ""
     detail: str = ""
+    blockers: list[str] = []
+    stance: Vec3 | None = None
 
 
 class GraspCandidate(Message):

@@ -12,7 +12,7 @@ import numpy as np
 
 from services.manipulation.arm_model import Array, Pose
 from services.manipulation.clearance import FLAT, PAD, PAD_HALF
-from services.manipulation.grasp import Grasp, Target, approach_rotation
+from services.manipulation.grasp import Grasp, Target, approach_rotation, on_handle
 from services.manipulation.surface import surface
 
 TILTS = (90, 75, 60, 45, 30, 15)
@@ -66,6 +66,8 @@ def antipodal(target: Target, forward: float, opening: float, widest: float) -> 
     facing = math.atan2(target.position[1], target.position[0] - forward)
     found: list[tuple[float, Grasp]] = []
     for rotation, tilt, off, name in _directions(target, facing):
+        if on_handle(target, rotation):
+            continue
         floor = rotation[2], target.bottom - target.position[2] + PLAY
         for place, contact in _contacts((points - centre) @ rotation, floor, opening):
             if contact.width > widest:

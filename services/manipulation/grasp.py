@@ -17,6 +17,9 @@ from services.manipulation.arm_model import Array, Obstacle, Pose, Solid
 HANDLE_CONE = math.radians(50)
 """Angle [rad] between a finger and a handle below which the finger would land on it. Chosen: a handle's width and a
 finger's, seen from the axis of a mug."""
+HANDLE_ROOM, HANDLE_POINTS = 0.008, 4
+"""How far [m] beyond the wall of a round object, and how many points there are, that a handle is taken to be: a finger
+goes through one, noise and the fit's error do not reach as far."""
 LYING_FROM = 0.7
 """Tilt [rad] from which, and up to which before upside down, an object lies on its side."""
 RIM_DEPTH = 0.012
@@ -224,12 +227,26 @@ def _off(angle: float, other: float) -> float:
 
 
 def on_handle(target: Target, rotation: Array) -> bool:
-    """True when a hand of this rotation (3, 3) would close on the handle of an upright object, which points along its
-    yaw."""
-    if not kind_of(target.kind).handle:
+    """True when a hand of this rotation (3, 3) would close on the handle of an upright object, or reach through it."""
+    handle = handle_of(target)
+    if handle is None or target.lies:
         return False
     closing = math.atan2(rotation[1, 1], rotation[0, 1])
-    return abs(math.cos(target.yaw - closing)) > math.cos(HANDLE_CONE)
+    return abs(math.cos(handle - closing)) > math.cos(HANDLE_CONE)
+
+
+def handle_of(target: Target) -> float | None:
+    """Where the handle of an upright object points [rad]: along its yaw if its kind has one, or what was seen of a
+    round one beyond its wall; None without.
+    """
+    if kind_of(target.kind).handle:
+        return target.yaw
+    if target.points is None or target.family not in ("round", "bowl"):
+        return None
+    beyond = target.points[np.hypot(target.points[:, 0], target.points[:, 1]) > max(target.size[:2]) / 2 + HANDLE_ROOM]
+    if len(beyond) < HANDLE_POINTS:
+        return None
+    return math.atan2(float(beyond[:, 1].mean()), float(beyond[:, 0].mean()))
 
 
 def _flat(target: Target, facing: float, rule: GraspRule) -> list[Grasp]:
@@ -258,14 +275,14 @@ def _flat(target: Target, facing: float, rule: GraspRule) -> list[Grasp]:
 def _rim(target: Target, facing: float, rule: GraspRule) -> list[Grasp]:
     """Fingers on either side of a vessel's wall at the rim, along its slope: the near side first."""
     x, y, _ = target.position
-    height, vessel = target.size[2] - RIM_DEPTH, _vessel(target)
+    height, vessel, handle = target.size[2] - RIM_DEPTH, _vessel(target), handle_of(target)
     radius = target.size[0] / 2 - RIM_DEPTH * math.tan(vessel.lean) - vessel.wall / 2
     found = []
     for degrees in rule.angles:
         tilt = math.radians(degrees)
         for turn in (0.0, 25.0, -25.0, 50.0, -50.0):
             azimuth = facing + math.radians(turn)
-            if vessel.handle and abs(_off(azimuth + math.pi, target.yaw)) < HANDLE_CONE:
+            if handle is not None and abs(_off(azimuth + math.pi, handle)) < HANDLE_CONE:
                 continue
             point = np.array([x - radius * math.cos(azimuth), y - radius * math.sin(azimuth), target.bottom + height])
             for roll in (math.pi / 2, -math.pi / 2):

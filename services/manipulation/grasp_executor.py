@@ -16,6 +16,7 @@ from services.manipulation.plan_grab import GrabPlan, plan_grab
 from services.manipulation.planning_scene import MARGINS, obstacles, target_of
 from services.manipulation.robot import Failure, Robot, Steps, go_home, planner_of
 from services.manipulation.sighting import MISTAKEN, aimed, sighted
+from services.manipulation.stances import other_stance
 from services.manipulation.touch import TOO_HEAVY, TOUCHED, load_limit
 from services.manipulation.trajectory import back_along
 
@@ -51,7 +52,7 @@ def grab(robot: Robot, goal: m.ManipulationGoal, wanted: str) -> Steps[str]:
                 config.reach, frozenset(tried), _touched(robot, found.label),
             )  # fmt: skip
         except Failure as failure:
-            raise (failure if not tried else last) from None
+            raise (last if tried else (yield from _from_elsewhere(robot, found, failure))) from None
         candidates = shown(target, plan.options, robot.base, robot.now, tried, plan.grasp.name, goal.id)
         robot.io.publish(topics.GRASPS, candidates)
         tried.add(plan.grasp.name)
@@ -85,6 +86,21 @@ def grab(robot: Robot, goal: m.ManipulationGoal, wanted: str) -> Steps[str]:
             # What was seen while the hand was at work may have been half hidden by it.
             since = robot.now
     raise last
+
+
+def _from_elsewhere(robot: Robot, found: m.WorldObject, failure: Failure) -> Steps[Failure]:
+    """The failure to plan a grasp, with where the base would have to stand for one, if that helps."""
+    if failure.code != "UNREACHABLE":
+        return failure
+    config, objects = robot.config, robot.source.objects()
+    stance = yield from robot.work(
+        other_stance, planner_of(robot), robot.io.household, found, objects, robot.base, robot.joints.copy(),
+        config.approach_distance, config.lift_height,
+    )  # fmt: skip
+    if stance is None:
+        return failure
+    where = f"within reach from ({stance[0]:.2f}, {stance[1]:.2f}), facing {np.degrees(stance[2]):.0f} deg"
+    return Failure(failure.code, f"{failure.detail}; {where}", failure.blockers, stance)
 
 
 def surroundings(robot: Robot, without: str) -> list[list[Obstacle]]:

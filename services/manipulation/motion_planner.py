@@ -63,18 +63,15 @@ class Planner:
 
     def candidates(self, target: Target) -> Iterator[list[Grasp]]:
         """Every grasp that this hand could try, in stages: by the rules of kind and shape, and on the measured surface,
-        which comes first where no rule knows the shape. What was seen, without what its shape family makes of it, comes
-        last.
+        which comes first where no rule knows the shape. Where neither has one, what was seen counts, without what its
+        shape family makes of it.
         """
         arm = self.arm
         rules = candidates(target, arm.forward, arm.widest)
+        on_surface = antipodal(target, arm.forward, arm.hand.open, arm.widest)
         shapeless = target.shape in ("long", "irregular") and not target.lies
-        if not shapeless:
-            yield rules
-        yield antipodal(target, arm.forward, arm.hand.open, arm.widest)
-        if shapeless:
-            yield rules
-        elif target.points is not None:
+        yield from ((on_surface, rules) if shapeless else (rules, on_surface))
+        if target.points is not None and not rules and not on_surface:
             as_seen = antipodal(replace(target, shape="irregular"), arm.forward, arm.hand.open, arm.widest)
             yield [replace(g, name=f"as seen, {g.name}") for g in as_seen]
 

@@ -1,8 +1,9 @@
 """Plans a whole grab: a candidate grasp within reach, collision-free paths to it and away with the object."""
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import numpy as np
 
@@ -16,6 +17,11 @@ from services.manipulation.motion_planner import PlanError, Planner, counted
 from services.manipulation.planning_scene import with_object
 from services.manipulation.trajectory import connect
 
+T = TypeVar("T")
+STANCE_GRASPS = 12
+"""Grasps of a stage that are tried from where the robot does not stand. Chosen: a quarter of a second for a stance."""
+CERTAIN = 0.006
+"""Largest spread [m] of measured extents from which an object is said to be too wide without a try."""
 FINGER_PLAY = 0.012
 """How much wider [m] than the object on either side the fingers stand that go into a crowd partly closed. Chosen: the
 error of a sighting and of the arm."""
@@ -82,7 +88,7 @@ def plan_grab(
     open fingers touched the object: grasps from other sides come first.
 
     Raises:
-        PlanError: UNREACHABLE.
+        PlanError: UNREACHABLE; TOO_WIDE, there is no grasp of it at all and the measures are certain.
     """
     distance = float(np.hypot(target.position[0] - planner.arm.forward, target.position[1]))
     if distance > reach:
@@ -93,7 +99,7 @@ def plan_grab(
 
     def attempt(some: Sequence[Grasp], way: Way) -> GrabPlan | None:
         for grasp in some:
-            plan = _try_grab(planner, target, grasp, way, now)
+            plan = _with_fingers(planner, target, grasp, way, now, _whole)
             if isinstance(plan, GrabPlan):
                 return replace(plan, options=tuple(options))
             misses[grasp.name] = plan
@@ -112,6 +118,10 @@ def plan_grab(
         if plan := attempt([g for g in tried if misses[g.name].met], way):
             return plan
     if not tried:
+        if certainly_too_wide(target, planner.arm.widest) and not skip:
+            raise PlanError(
+                "TOO_WIDE", f"{_in_mm(target)}, at most {1000 * planner.arm.widest:.0f} mm go into the hand"
+            )
         raise PlanError("UNREACHABLE", f"no grasp left to try on {target.label}")
     reasons = counted(miss.reason for miss in misses.values())
     blockers = Counter(label for miss in misses.values() for label in sorted(miss.met) if label)
@@ -122,27 +132,61 @@ def plan_grab(
     )
 
 
-def _try_grab(planner: Planner, target: Target, wanted: Grasp, way: Way, now: Array) -> "GrabPlan | Miss":
-    arm = planner.arm
-    opening = min(wanted.width + 2 * FINGER_PLAY, arm.hand.open) if way.shaped else None
+def certainly_too_wide(target: Target, widest: float) -> bool:
+    """Neither side of an object goes between the fingers, even if it is smaller than measured by twice the spread."""
+    return target.spread <= CERTAIN and min(target.size[:2]) - 2 * target.spread > widest
+
+
+def _in_mm(target: Target) -> str:
+    x, y, z = (1000 * v for v in target.size)
+    return f"{target.label} measures {x:.0f} x {y:.0f} x {z:.0f} mm"
+
+
+def feasible(planner: Planner, target: Target, way: Way, now: Array) -> bool:
+    """Some grasp can be come to and lifted straight; the way there and away is not looked for."""
+    for stage in planner.candidates(target):
+        for wanted in stage[:STANCE_GRASPS]:
+            if isinstance(_with_fingers(planner, target, wanted, way, now, _straight), Lines):
+                return True
+    return False
+
+
+@dataclass(frozen=True)
+class Lines:
+    """The straight parts of a grab: the grasp, `at` which joint angles (7,), the ways `back` and `up` from there."""
+
+    grasp: Grasp
+    at: Array
+    back: list[Array]
+    up: list[Array]
+
+
+Part = Callable[[Planner, Target, Grasp, Way, Array], "T | Miss"]
+
+
+def _with_fingers(planner: Planner, target: Target, wanted: Grasp, way: Way, now: Array, part: "Part[T]") -> "T | Miss":
+    """A part of the plan of a grasp that the hand has room for, with the fingers as they go in."""
+    opening = _opening(planner, wanted, way)
     grasp = planner.clearance.clear(target, wanted, opening)
     if grasp is None:
         return Miss("too deep for the hand")
-    if met := planner.clearance.met(grasp.pose, opening or arm.hand.open, way.around):
+    if met := planner.clearance.met(grasp.pose, opening or planner.arm.hand.open, way.around):
         return Miss("grasp collides", frozenset(met))
-    arm.hold(None)
-    arm.open_fingers(opening)
+    planner.arm.hold(None)
+    planner.arm.open_fingers(opening)
     try:
-        return _plan(planner, target, grasp, way, opening, now)
+        return part(planner, target, grasp, way, now)
     finally:
-        arm.open_fingers()
+        planner.arm.open_fingers()
 
 
-def _plan(
-    planner: Planner, target: Target, grasp: Grasp, way: Way, opening: float | None, now: Array
-) -> "GrabPlan | Miss":
-    arm, around, rng = planner.arm, way.around, planner.rng()
-    arm.set_obstacles(around)
+def _opening(planner: Planner, grasp: Grasp, way: Way) -> float | None:
+    return min(grasp.width + 2 * FINGER_PLAY, planner.arm.hand.open) if way.shaped else None
+
+
+def _straight(planner: Planner, target: Target, grasp: Grasp, way: Way, now: Array) -> "Lines | Miss":
+    arm = planner.arm
+    arm.set_obstacles(way.around)
     at = planner.ik.solve(grasp.pose, seeds(arm, grasp.pose, now), avoid=True)
     if at is None:
         return Miss("no IK")
@@ -157,6 +201,15 @@ def _plan(
         return Miss("no straight lift")
     if any(arm.collides(q) for q in back):
         return Miss("approach collides", frozenset(arm.met()))
+    return Lines(grasp, at, back, up)
+
+
+def _whole(planner: Planner, target: Target, grasp: Grasp, way: Way, now: Array) -> "GrabPlan | Miss":
+    lines = _straight(planner, target, grasp, way, now)
+    if isinstance(lines, Miss):
+        return lines
+    arm, around, rng = planner.arm, way.around, planner.rng()
+    at, back, up = lines.at, lines.back, lines.up
     arm.open_fingers()
     planner.surround(with_object(around, target.grown(0.0)), back[-1])
     there = connect(arm, now, back[-1], rng)
@@ -169,8 +222,11 @@ def _plan(
     arm.hold(None)
     if away is None:
         return Miss("no path to the carry pose")
-    doubt = MEASURED + 2 * target.spread if target.measured or grasp.on_surface else 0.0
-    return GrabPlan(grasp, there, [at, *back][::-1], [at, *up], away, attached, opening, around, doubt=doubt)
+    opening, doubt = _opening(planner, grasp, way), MEASURED + 2 * target.spread
+    return GrabPlan(
+        grasp, there, [at, *back][::-1], [at, *up], away, attached, opening, around,
+        doubt=doubt if target.measured or grasp.on_surface else 0.0,
+    )  # fmt: skip
 
 
 def refine(planner: Planner, plan: GrabPlan, shift: tuple[float, float], approach: float, lift: float) -> GrabPlan:

@@ -27,11 +27,14 @@ GRIPPER_TICKS = 5
 
 
 class Failure(Exception):
-    """The goal failed; `code` is the status code, `blockers` the objects in the way, the worst first."""
+    """The goal failed; `code` is the status code, `blockers` the objects in the way, the worst first.
 
-    def __init__(self, code: str, detail: str, blockers: Sequence[str] = ()) -> None:
+    `stance`: where the base would have to stand for it (x, y, theta) [map].
+    """
+
+    def __init__(self, code: str, detail: str, blockers: Sequence[str] = (), stance: Pose2 | None = None) -> None:
         super().__init__(detail)
-        self.code, self.detail, self.blockers = code, detail, tuple(blockers)
+        self.code, self.detail, self.blockers, self.stance = code, detail, tuple(blockers), stance
 
 
 class Robot:

@@ -1,6 +1,7 @@
 """Manipulation: takes goals from the brain, runs one sequence at a time, answers with evidence."""
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -225,13 +226,19 @@ class ManipulationService:
         self._steps = None
         self._robot.forget_command()
         self._io.log.warning("failed", goal=self._goal.goal, code=failure.code, detail=failure.detail)
-        self._publish("failed", self._robot.phase, failure.code, failure.detail)
+        self._publish(
+            "failed", self._robot.phase, failure.code, failure.detail, failure.blockers, failure.stance
+        )  # fmt: skip
 
-    def _publish(self, status: m.ManipStatus, phase: str, code: str = "", detail: str = "") -> None:
+    def _publish(
+        self, status: m.ManipStatus, phase: str, code: str = "", detail: str = "", blockers: Sequence[str] = (),
+        stance: Pose2 | None = None,
+    ) -> None:  # fmt: skip
         goal = self._goal
         self._status = m.ManipulationStatus(
-            status=status, goal_id=goal.id, attempt=goal.attempt, phase=phase, code=code, detail=detail
-        )
+            status=status, goal_id=goal.id, attempt=goal.attempt, phase=phase, code=code, detail=detail,
+            blockers=list(blockers), stance=stance,
+        )  # fmt: skip
         if status != "executing":
             self._inbox.end(goal, self._status)
         self._io.publish(topics.MANIPULATION_STATUS, self._status)

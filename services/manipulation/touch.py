@@ -15,9 +15,6 @@ MET = 20.0
 most 9 N, and a finger slides an object of 1 kg aside with less than 10."""
 GRIP_FRICTION = 0.6
 """Least friction of a pad that is counted on: rubber on smooth painted or plastic faces has 0.6 to 1."""
-WELL_CONDITIONED = 0.1
-"""Singular value of the Jacobian [m, or 1] below which its direction counts less and less: where the arm is nearly
-stretched, torques of 2 Nm from its own inertia would be 40 N along it. At the carry pose the least is 0.13."""
 
 
 class Reaction:
@@ -34,12 +31,9 @@ class Reaction:
         self._place(joints)
         mujoco.mj_comPos(model, data)
         mujoco.mj_jacSite(model, data, jacobian[:3], jacobian[3:], self._pinch)
-        into, scale, wrenches = np.linalg.svd(jacobian[:, self._dofs].T, full_matrices=False)
-        # Damped least squares: Nakamura and Hanafusa, "Inverse kinematic solutions with singularity robustness", 1986.
-        damping = np.maximum(0.0, WELL_CONDITIONED**2 - scale**2)
-        wrench: Any = wrenches.T @ (scale / (scale**2 + damping) * (into.T @ torques))
-        found: Array = wrench[:3]
-        return found
+        # A force at the pinch point alone: with a moment beside it, 2 Nm of the arm's own inertia pass for 20 to 36 N.
+        found: Any = np.linalg.lstsq(jacobian[:3, self._dofs].T, torques, rcond=None)[0]
+        return np.asarray(found)
 
     def position(self, joints: Array) -> Array:
         """The pinch point (3,) in the base frame [m]."""

@@ -7,11 +7,11 @@ import pytest
 
 from common import messages as m
 from common import topics
-from common.approach import ROOM
+from common.approach import ROOM, clearance
 from common.household import told
 from common.scene import load_scene
 from services.brain.config import BrainConfig
-from services.brain.world.standing_poses import clearance, place_pose, standing_pose
+from services.brain.world.standing_poses import place_pose, standing_pose
 from services.sim.layout import place_objects
 from tests.unit.brain_bench import Bench
 
@@ -305,6 +305,27 @@ def test_a_failed_grab_looks_again_and_drives_up_again() -> None:
         see(bench, count)
         approach(bench, count)
         bench.did(bench.manip(count), "failed", code)
+    see(bench, 3)
+    approach(bench, 3)
+    bench.did(bench.manip(3))
+    assert bench.nav(1).goal == "return_to_start"
+
+
+def test_the_next_grab_is_tried_from_the_stance_that_manipulation_told_and_only_that_one() -> None:
+    bench = planned()
+    see(bench, 1)
+    approach(bench, 1)
+    goal, stance = bench.manip(1), (-1.0, -1.7, 0.4)
+    bench.send(
+        topics.MANIPULATION_STATUS,
+        m.ManipulationStatus(status="failed", goal_id=goal.id, attempt=goal.attempt, code="UNREACHABLE", stance=stance),
+    )
+    bench.step()
+    see(bench, 2)
+    told = bench.next_goal(POSE, 2)
+    assert (told.x, told.y, told.theta) == stance and told.object is None
+    bench.send(topics.NAVIGATION_FEEDBACK, m.NavigationFeedback(goal_id=told.id, status="arrived"))
+    bench.did(bench.manip(2), "failed", "SLIPPED")
     see(bench, 3)
     approach(bench, 3)
     bench.did(bench.manip(3))

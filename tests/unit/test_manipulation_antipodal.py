@@ -149,3 +149,15 @@ def test_a_box_whose_depth_was_guessed_is_as_thin_as_what_was_seen_of_its_top() 
     book = target("box", (0.112, 0.1, 0.18), np.concatenate([front, top]))
     assert grasps(book)[0].width == pytest.approx(0.028, abs=2 * SPACING)
     assert grasps(target("box", (0.112, 0.1, 0.18), front)) == [], "of what is not seen nothing better is known"
+
+
+def test_no_finger_goes_through_a_handle_that_was_seen_on_what_nobody_named() -> None:
+    """Bench, mug of no known kind, seed 10: on its way out the finger took the mug along by its handle."""
+    rng = np.random.default_rng(0)
+    heights, turns = rng.uniform(-0.04, 0.04, 150), rng.uniform(math.pi / 2, 3 * math.pi / 2, 150)
+    wall = np.stack([0.033 * np.cos(turns), 0.033 * np.sin(turns), heights], axis=1)
+    bow = np.stack([np.zeros(12), rng.uniform(0.045, 0.055, 12), rng.uniform(-0.02, 0.02, 12)], axis=1)
+    plain, mug = (target("round", (0.066, 0.066, 0.08), seen) for seen in (wall, np.concatenate([wall, bow])))
+    across = [abs(float(g.pose.rotation[1, 1])) for g in grasps(plain)]
+    assert max(across) > 0.9, "without the handle the fingers may close across it"
+    assert grasps(mug) and all(abs(float(g.pose.rotation[1, 1])) < 0.75 for g in grasps(mug))

@@ -33,11 +33,18 @@ def test_torques_tell_the_force_on_the_hand(arm: ArmModel, force: tuple[float, f
     assert Reaction(arm).force(arm.home, torques(arm, force)) == pytest.approx(force, abs=0.1)
 
 
-def test_a_stretched_arm_takes_its_own_inertia_for_no_contact(arm: ArmModel) -> None:
-    """Bench, cylinder in a crowd, seed 21: these torques at the start of a motion in the air were 36 N."""
-    joints = np.array([0.04, 0.77, 3.43, -0.34, -0.23, -2.05, 0.13])
-    own_inertia = np.array([0.4, -0.5, 0.3, -1.6, 0.4, 0.6, 0.3])
-    assert np.linalg.norm(Reaction(arm).force(joints, own_inertia)) < MET / 2
+@pytest.mark.parametrize(
+    ("joints", "inertia"),
+    [
+        ((0.04, 0.77, 3.43, -0.34, -0.23, -2.05, 0.13), (0.4, -0.5, 0.3, -1.6, 0.4, 0.6, 0.3)),
+        ((0.02, 0.38, 3.12, -2.06, -0.09, 0.08, 1.67), (2.32, 2.35, -1.03, -0.77, -0.1, 0.38, 0.17)),
+    ],
+)
+def test_an_arm_takes_its_own_inertia_for_no_contact(
+    arm: ArmModel, joints: tuple[float, ...], inertia: tuple[float, ...]
+) -> None:
+    """Bench, stretched at the start of a motion, and on the way down with a can: torques of an arm in the air."""
+    assert np.linalg.norm(Reaction(arm).force(np.array(joints), np.array(inertia))) < MET / 2
 
 
 @pytest.mark.parametrize(

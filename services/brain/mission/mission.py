@@ -94,7 +94,8 @@ class Search(msgspec.Struct):
 
     `unsure`: labels of objects that may be meant and can be told from nearer only; `inspected`: those that were.
 
-    `visited`: poses (x, y, theta) [m, rad] in map that the robot has looked from.
+    `visited`: poses (x, y, theta) [m, rad] in map that the robot has looked from. `stances`: by label, the pose from
+    which manipulation says that it reaches an object that it did not reach.
     """
 
     found: dict[str, m.ObjectPose] = {}
@@ -103,6 +104,7 @@ class Search(msgspec.Struct):
     chosen: dict[str, str] = {}
     unsure: list[str] = []
     inspected: list[str] = []
+    stances: dict[str, tuple[float, float, float]] = {}
 
 
 class Delivery(msgspec.Struct):

@@ -128,6 +128,9 @@ class Approach(Navigate):
         ctx, ref = self.ctx, object_in_map(self.ctx, self._item)
         if ref is None or ref.frame != "map":
             return super().goal(goal_id)  # nobody has said where in the map it is: navigation looks for it
+        if told := ctx.mission.search.stances.get(ref.label):
+            # Whoever moves the arm has computed where: no other stance will do.
+            return topics.NAV_GOAL, m.NavGoal(id=goal_id, x=told[0], y=told[1], theta=told[2])
         x, y, theta = standing_pose(ctx.io.household, (ref.position[0], ref.position[1]), ctx.robot_pose)
         return topics.NAV_GOAL, m.NavGoal(id=goal_id, x=x, y=y, theta=theta, object=ref)
 

@@ -116,11 +116,21 @@ class Grab(Manipulate):
     def succeed(self, result: Result) -> Status:
         label = self._label()
         self.ctx.gripper.mark_grasped(label, self.ctx.origin_of(label))
+        self.ctx.mission.search.stances.pop(label, None)
         self.ctx.mission.delivery.grabbed = True
         return Status.SUCCESS
 
     def unfinished(self) -> None:
         self.ctx.gripper.mark_uncertain(self._label())
+
+    def _failed(self, code: str, detail: str) -> Status:
+        """Note where manipulation says that the base would have to stand."""
+        told = self.channel.result.message if self.channel.result is not None else None
+        stances = self.ctx.mission.search.stances
+        stances.pop(self._label(), None)
+        if isinstance(told, m.ManipulationStatus) and told.stance is not None:
+            stances[self._label()] = told.stance
+        return super()._failed(code, detail)
 
     def spoken(self) -> str:
         return f"I could not pick up the {self._label()}."

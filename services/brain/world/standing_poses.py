@@ -1,19 +1,13 @@
-"""Where the base can stand, by the floor plan: clearance on the floor, and a standing pose before an object. Pure."""
+"""Where the base can stand before an object, by the floor plan. Pure."""
 
 import math
-from collections.abc import Iterator
 
-from common.approach import ROOM, Point, poses_for
+from common.approach import ROOM, Point, clearance, poses_for
 from common.floor_plan import FloorPlan
 from common.geometry import Pose2
 
 WAY_COST = 0.15
 """What a metre of way adds to a pose's penalty [m/m]: the weight with which navigation compares its own poses."""
-
-
-def clearance(floor_plan: FloorPlan, x: float, y: float) -> float:
-    """Distance [m] from a point on the floor to the nearest wall, furniture or surface; 0 within one."""
-    return min(_distances(floor_plan, x, y), default=math.inf)
 
 
 def standing_pose(floor_plan: FloorPlan, point: Point, here: Pose2) -> Pose2:
@@ -49,16 +43,3 @@ def place_pose(floor_plan: FloorPlan, name: str, here: Pose2) -> Pose2 | None:
     if receptacle.name == floor_plan.delivery:
         return floor_plan.home.x, floor_plan.home.y, floor_plan.home.theta
     return standing_pose(floor_plan, (receptacle.center[0], receptacle.center[1]), here)
-
-
-def _distances(floor_plan: FloorPlan, x: float, y: float) -> Iterator[float]:
-    for wall in floor_plan.walls:
-        yield max(0.0, _to_segment(x, y, wall.start, wall.end) - wall.thickness / 2)
-    for footprint in floor_plan.footprints:
-        yield footprint.distance(x, y)
-
-
-def _to_segment(x: float, y: float, a: Point, b: Point) -> float:
-    dx, dy = b[0] - a[0], b[1] - a[1]
-    t = min(1.0, max(0.0, ((x - a[0]) * dx + (y - a[1]) * dy) / max(dx * dx + dy * dy, 1e-9)))
-    return math.hypot(x - a[0] - t * dx, y - a[1] - t * dy)

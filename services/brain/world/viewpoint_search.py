@@ -3,10 +3,10 @@
 import math
 from collections.abc import Collection
 
+from common.approach import clearance
 from common.floor_plan import FloorPlan
 from common.geometry import Array, Pose2
 from common.viewpoints import Viewpoints
-from services.brain.world.standing_poses import clearance
 
 CLEARANCE = 0.48
 """Free floor around a viewpoint [m]; chosen: the footprint's radius 0.29 and what an unknown chair takes of it."""

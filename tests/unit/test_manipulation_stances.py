@@ -1,0 +1,92 @@
+"""From where else an object is in reach, and what is too wide from anywhere."""
+
+import math
+
+import pytest
+
+from bench.grasp import Bench
+from common import messages as m
+from common.approach import ROOM, clearance
+from common.geometry import compose, inverse
+from common.household import told
+from common.scene import load_scene
+from services.manipulation.config import ManipulationConfig
+from services.manipulation.grasp import Target
+from services.manipulation.motion_planner import PlanError, Planner
+from services.manipulation.plan_grab import plan_grab
+from services.manipulation.planning_scene import obstacles, target_of
+from services.manipulation.stances import SAME, other_stance
+from services.sim.model import own
+
+PLANNER = Planner(own().mjcf, seed=0)
+HOME = told(load_scene("apartment"))
+TABLE = next(r for r in HOME.receptacles if r.name == "kitchen table")
+CONFIG = ManipulationConfig()
+REST = PLANNER.arm.home.copy()
+
+
+def bottle(u: float, v: float) -> m.WorldObject:
+    """A bottle at a place of the table's own frame."""
+    x, y = TABLE.outline.to_map(u, v)
+    at = (x, y, TABLE.center[2] + 0.11)
+    return m.WorldObject("bottle", "bottle", "green", at, size=(0.066, 0.066, 0.22), on=TABLE.name)
+
+
+def plan(found: m.WorldObject, base: tuple[float, float, float], *others: m.WorldObject) -> None:
+    around = [obstacles(HOME, base, others)]
+    plan_grab(
+        PLANNER, target_of(found, base, HOME), around, REST, CONFIG.approach_distance, CONFIG.lift_height,
+        CONFIG.reach, frozenset(), [],
+    )  # fmt: skip
+
+
+def test_what_is_out_of_reach_from_here_is_in_reach_from_the_stance_that_is_told() -> None:
+    ax, ay = TABLE.approach[0]
+    edge = TABLE.size[0] / 2 if ax else TABLE.size[1] / 2
+    found = bottle(ax * (edge - 0.12), ay * (edge - 0.12))
+    far = TABLE.outline.to_map(ax * (edge + 1.1), ay * (edge + 1.1))
+    theta = math.atan2(found.position[1] - far[1], found.position[0] - far[0])
+    base = (*far, theta)
+    with pytest.raises(PlanError):
+        plan(found, base)
+    stance = other_stance(PLANNER, HOME, found, [found], base, REST, CONFIG.approach_distance, CONFIG.lift_height)
+    assert stance is not None
+    assert clearance(HOME, *stance[:2]) >= ROOM
+    dx, dy, _ = compose(inverse(base), stance)
+    assert math.hypot(dx, dy) > SAME, "another one than where it stands"
+    plan(found, stance)
+
+
+def test_where_nothing_reaches_it_no_stance_is_told() -> None:
+    high = m.WorldObject("lamp", "box", "white", (*TABLE.center[:2], 2.1), size=(0.05, 0.05, 0.1))
+    args = ([high], (0.0, 0.0, 0.0), REST, CONFIG.approach_distance, CONFIG.lift_height)
+    assert other_stance(PLANNER, HOME, high, *args) is None
+
+
+@pytest.mark.parametrize(
+    ("size", "spread", "code"),
+    [
+        ((0.12, 0.15, 0.2), 0.002, "TOO_WIDE"), ((0.079, 0.09, 0.2), 0.004, "UNREACHABLE"),
+        ((0.12, 0.15, 0.2), 0.02, "UNREACHABLE"),
+    ],
+)  # fmt: skip
+def test_too_wide_is_said_before_a_try_where_the_measures_are_certain(
+    size: tuple[float, float, float], spread: float, code: str
+) -> None:
+    crate = Target("crate", "", (0.6, 0.0, 0.6 + size[2] / 2), 0.2, size, shape="box", spread=spread, measured=True)
+    with pytest.raises(PlanError) as failed:
+        plan_grab(PLANNER, crate, [[]], REST, 0.1, 0.1, 1.0, frozenset(), [])
+    assert failed.value.code == code
+    if code == "TOO_WIDE":
+        assert "120 x 150 x 200 mm" in str(failed.value)
+
+
+def test_the_status_tells_the_stance() -> None:
+    scene = load_scene("apartment")
+    bench = Bench(scene, next(o for o in scene.objects if o.kind == "can"), 0.6, 3, CONFIG)
+    x, y, _ = bench.sim.physics.placements[0].position
+    bench.stand((x - 1.3, y, 0.0))
+    status = bench.run("grab", "far")
+    assert (status.status, status.code) == ("failed", "UNREACHABLE")
+    assert status.stance is not None and math.dist(status.stance[:2], (x, y)) < 0.8
+    assert "within reach from" in status.detail
