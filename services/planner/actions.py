@@ -17,6 +17,8 @@ from services.planner.world import BelievedObject
 # --- moving things
 def fetch_named(builder: PlanBuilder, slots: Slots) -> None:
     """A thing's name alone; other words are no command."""
+    if isinstance(phrase := read(slots["thing"], builder.vocabulary), Phrase) and phrase.sense.new:
+        raise Refusal(f"I know no {phrase.noun}")
     last = builder.vocabulary.noun(slots["thing"][-1])
     named = slots["thing"][0] in DETERMINERS or slots["thing"][0] in builder.vocabulary.colours
     if last is None and not named and not isinstance(read(slots["thing"], builder.vocabulary), Phrase):

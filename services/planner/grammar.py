@@ -12,7 +12,7 @@ from common.messages import ActionPlan, PlanStep, RejectedPlan
 from services.planner import answers
 from services.planner.choice_points import ChoicePoints, every
 from services.planner.config import PlannerConfig
-from services.planner.plan_builder import LookFirst, PlanBuilder, Refusal, same
+from services.planner.plan_builder import NOT_UNDERSTOOD, LookFirst, PlanBuilder, Refusal, same
 from services.planner.repetition import repeated
 from services.planner.rules import apply_first
 from services.planner.spelling import corrected
@@ -232,7 +232,7 @@ def _command(words: Words, builder: PlanBuilder, verb: str, at: int, alone: bool
     if reason is None:
         return
     said = " ".join(words)
-    raise _Failure(at if reason else at - 1, reason or f"I do not understand {said!r}")
+    raise _Failure(at if reason else at - 1, reason or f"{NOT_UNDERSTOOD} {said!r}")
 
 
 def _apply(words: Words, builder: PlanBuilder, verb: str, alone: bool) -> str | None:

@@ -13,6 +13,9 @@ from services.planner.config import PlannerConfig
 from services.planner.vocabulary import Spot, Vocabulary
 from services.planner.world import BelievedObject, World
 
+NOT_UNDERSTOOD = "I do not understand"
+"""How the reason begins against words that fit no wording."""
+
 
 class Refusal(Exception):
     """Why there is no plan, as a clause that can be spoken after "I cannot do that:"."""

@@ -7,7 +7,7 @@ import msgspec
 from common.language.normalise import DETERMINERS, Words, enumeration, without_determiners
 from common.language.noun_phrase import PLURAL_PRONOUNS, PRONOUNS
 from services.planner.phrases import Phrase, read
-from services.planner.plan_builder import PlanBuilder, Refusal
+from services.planner.plan_builder import NOT_UNDERSTOOD, PlanBuilder, Refusal
 from services.planner.relations import away, between, holds, is_near, spoken, superlative
 from services.planner.vocabulary import LONGEST_NAME, Spot
 from services.planner.world import BelievedObject
@@ -88,7 +88,7 @@ def spot(builder: PlanBuilder, words: Words) -> Spot:
 def unknown(builder: PlanBuilder, words: Words, noun: str) -> str:
     """Why a phrase means nothing, with what there is instead."""
     if len(noun.split()) > LONGEST_NAME or DETERMINERS & set(noun.split()):
-        return f"I do not understand {' '.join(words)!r}"
+        return f"{NOT_UNDERSTOOD} {' '.join(words)!r}"
     *front, last = noun.split() or [""]
     known = builder.vocabulary.noun(last)
     if front and known is not None and not known[0].every:

@@ -262,6 +262,8 @@ def test_things_that_nobody_has_seen_are_looked_for() -> None:
 
 REFUSED = {
     "bring me the sofa": "I cannot pick up the sofa",
+    "my shoes": "I know no shoes",
+    "the cat sat on the mat": "I know no cat sat",
     "put the apple in the bowl": "I cannot put things on or in the bowl",
     "put the red mug in the fridge": "the fridge is no place that I can use",
     "put the red mug on the floor": "I cannot put things on the floor",
@@ -300,7 +302,6 @@ CLOSED_LIST = {
     "bring me the purple mug": "I know no purple mug, only the red mug, the blue mug and the white mug",
     "bring me the banana": "I know no banana",
     "no i said keys": "I know no keys",
-    "my shoes": "I know no shoes",
 }
 
 
