@@ -88,7 +88,7 @@ def understand(sentence: Sentence) -> Understood:
         case "heard":
             kind, rest = reply(sentence.said)
             if kind == "correction":
-                return _planned(corrected(about, rest, HOME), FLAT, "", History())
+                return planned(corrected(about, rest, HOME), FLAT, "", History())
             return Understood(kind, [], [])
         case "which":
             options = about.split("|")
@@ -98,10 +98,10 @@ def understand(sentence: Sentence) -> Understood:
             said = interjection(sentence.said)
             if said.kind in ("queue", "replace", "aside"):
                 history = History(doing=about, step=f"find {about}") if said.kind == "aside" else History()
-                found = _planned(said.text, FLAT, "", history)
+                found = planned(said.text, FLAT, "", history)
                 return found._replace(kind="" if said.kind == "aside" else said.kind)
             return Understood(said.kind, [], [])
-    return _planned(sentence.said, *_after(tag, about))
+    return planned(sentence.said, *_after(tag, about))
 
 
 def _after(tag: str, about: str) -> tuple[list[WorldObject], str, History]:
@@ -112,7 +112,7 @@ def _after(tag: str, about: str) -> tuple[list[WorldObject], str, History]:
         return [o for o in flat if o.label != about], about, history
     if tag not in ("last", "failed"):
         return flat, "", History()
-    done = _planned(about, FLAT, "", History())
+    done = planned(about, FLAT, "", History())
     label = next(s.object for s in done.steps if s.object)
     origin = next(o.on for o in FLAT if o.label == label)
     target = next((s.target for s in done.steps if s.action == "place"), HOME.delivery)
@@ -132,8 +132,11 @@ def _after(tag: str, about: str) -> tuple[list[WorldObject], str, History]:
     return moved, "", History(last=last, objects=[label], taken_from={label: origin})
 
 
-def _planned(command: str, objects: list[WorldObject], held: str, history: History) -> Understood:
+def planned(
+    command: str, objects: list[WorldObject] | None = None, held: str = "", history: History | None = None
+) -> Understood:
     """The planner's last word, after it has looked where it wanted to."""
+    objects = FLAT if objects is None else objects
     told = known_world(HOME, [o.label for o in objects], held)
     world = believed(HOME, told, objects, (0.0, 0.0, 0.0), NOW, history)
     looked: list[PlanStep] = []

@@ -46,7 +46,7 @@ COMMANDING: frozenset[str] = frozenset(
         TIDY,
         GO,
         SEEK,
-        "pick | wait | say | tell | sort | check | put",
+        "go | pick | wait | say | tell | sort | check | put",
     )
     for option in verbs.split(" | ")
 ) - {"bin", "roll", "pop"}

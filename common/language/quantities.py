@@ -10,9 +10,9 @@ _TENS = "twenty thirty forty fifty sixty seventy eighty ninety"
 NUMBERS: dict[str, float] = {
     **{word: float(n) for n, word in enumerate(_ONES.split())},
     **{word: 10.0 * n for n, word in enumerate(_TENS.split(), 2)},
-    "a": 1.0, "an": 1.0, "half": 0.5, "couple": 2.0, "few": 3.0, "some": 3.0, "hundred": 100.0,
+    "half": 0.5, "couple": 2.0, "few": 3.0, "some": 3.0, "hundred": 100.0,
 }  # fmt: skip
-"""Words for numbers; `a few` is taken for three (chosen)."""
+"""Words for numbers, beside `a`; `a few` is taken for three (chosen)."""
 UNITS = {"second": 1.0, "sec": 1.0, "s": 1.0, "moment": 2.0, "minute": 60.0, "min": 60.0, "hour": 3600.0}
 """Seconds of a unit; a moment is two (chosen)."""
 LONGEST = 3600.0
@@ -22,17 +22,18 @@ _BETWEEN = ("a", "an", "of", "and")
 
 def number(words: Words) -> float | None:
     """The number that the words name; None if they name none."""
-    total, found = 0.0, False
-    for word in words:
+    said = [w for w in words if w not in _BETWEEN]
+    total = 0.0
+    for word in said:
         if word.isdigit():
-            total, found = total + int(word), True
-        elif word == "hundred" and found:
+            total += int(word)
+        elif word == "hundred" and total:
             total *= 100
-        elif word in NUMBERS and not (found and word in _BETWEEN):
-            total, found = total + NUMBERS[word], True
-        elif word not in _BETWEEN:
+        elif word in NUMBERS:
+            total += NUMBERS[word]
+        else:
             return None
-    return total if found else None
+    return total if said else 1.0 if set(words) & {"a", "an"} else None
 
 
 def duration(words: Words) -> float | None:

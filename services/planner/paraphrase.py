@@ -67,7 +67,7 @@ def _named(words: Words, vocabulary: Vocabulary) -> tuple[list[str], list[str]]:
             bare = tuple(w for w in span if w not in DETERMINERS)
             if bare and (places := vocabulary.spot(bare)) and not places[0].home:
                 spots.append(f"the {' '.join(bare)}")
-            elif bare and isinstance(phrase := read(span, vocabulary), Phrase) and not phrase.sense.every:
+            elif bare and isinstance(phrase := read(span, vocabulary), Phrase) and _plain(phrase):
                 things.append(" ".join(span) if span[0] in DETERMINERS else f"the {' '.join(span)}")
             else:
                 continue
@@ -75,6 +75,11 @@ def _named(words: Words, vocabulary: Vocabulary) -> tuple[list[str], list[str]]:
             break
         at += 1
     return things, spots
+
+
+def _plain(phrase: Phrase) -> bool:
+    """Does it name a kind or a thing, without what that stands next to?"""
+    return not phrase.sense.every and not phrase.relation
 
 
 class Paraphraser:

@@ -2,7 +2,15 @@
 
 import pytest
 
-from tests.everyday import sentences, understand, verdict
+from common.language.discourse import commands, replaced
+from common.language.meaning import is_question
+from common.language.quantities import duration
+from services.brain.language.interjection import interjection
+from services.planner.paraphrase import Paraphraser, guesses, installed
+from services.planner.spelling import corrected, distance
+from services.planner.vocabulary import Vocabulary
+from services.planner.world import World
+from tests.everyday import CONFIG, HOME, planned, sentences, understand, verdict
 
 LISTS = ("everyday_sentences.tsv",)
 ENOUGH = 0.9
@@ -15,3 +23,115 @@ def test_everyday_sentences(name: str) -> None:
     assert not [row for row, v in verdicts.items() if v == "wrong"]
     missed = [row for row, v in verdicts.items() if v != "right"]
     assert len(missed) <= (1 - ENOUGH) * len(rows), "\n".join(map(str, missed))
+
+
+def test_the_judge_of_sentences_can_say_no() -> None:
+    first = sentences("everyday_sentences.tsv")[0]
+    assert verdict(first, understand(first)) == "right"
+    assert verdict(first._replace(right="fetch(green can)"), understand(first)) == "wrong"
+    assert verdict(first._replace(right="put(red mug, counter)"), understand(first)) == "wrong"
+    lost = first._replace(said="sing me a song of the sea and the sky")
+    assert verdict(lost, understand(lost)) == "not understood"
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("not the red mug, the blue one", ["the blue mug"]),
+        ("bring me the red mug no wait the blue one", ["bring me the blue mug"]),
+        ("do not bring me the red mug, bring the blue one", ["bring the blue mug"]),
+        ("put the apple on the desk, sorry, on the counter", ["put the apple on the counter"]),
+        ("put the apple on the desk, sorry, the counter", ["put the apple on the counter"]),
+        ("bring me the mug, I mean go to the kitchen", ["go to the kitchen"]),
+        ("before you come back put the mug in the bin", ["put the mug in the bin", "come back"]),
+        ("after you have brought me the mug, go to the kitchen", ["bring me the mug", "go to the kitchen"]),
+        ("go to the kitchen, wait, and come back", ["go to the kitchen and wait and come back"]),
+        ("say sorry, I mean it", ["say sorry, i mean it"]),
+        ("bring me a mug or a can", ["bring me a mug or a can"]),
+    ],
+)
+def test_what_is_meant_in_the_end(text: str, expected: list[str]) -> None:
+    assert commands(text, lambda words: words == ("counter",)) == expected
+
+
+def test_what_names_nothing_replaces_nothing() -> None:
+    assert replaced("come back", "the blue one") is None
+    assert replaced("bring me the mug", "") is None
+
+
+@pytest.mark.parametrize(
+    ("words", "seconds"),
+    [
+        ("five seconds", 5), ("a minute", 60), ("a minute and a half", 90), ("half a minute", 30), ("90 seconds", 90),
+        ("twenty five seconds", 25), ("a couple of minutes", 120), ("a hundred seconds", 100), ("two hours", 7200),
+        ("the bus", None), ("five", None), ("seconds", 1), ("", None),
+    ],
+)  # fmt: skip
+def test_durations(words: str, seconds: float | None) -> None:
+    assert duration(tuple(words.split())) == seconds
+
+
+def test_edit_distance_counts_slips() -> None:
+    assert [distance("the", w) for w in ("the", "teh", "he", "thee", "tha", "")] == [0, 1, 1, 1, 1, 3]
+
+
+def test_slips_are_undone_and_names_are_told_apart() -> None:
+    plain, names = {"bring", "the", "blue"}, {"bottle", "can", "mug"}
+    assert corrected(["brng", "teh", "blu", "bottle"], plain, names) == (["bring", "the", "blue", "bottle"], False)
+    assert corrected(["the", "botle"], plain, names) == (["the", "bottle"], True)
+    assert corrected(["the", "cat"], plain, names) == (["the", "cat"], False), "short names are left alone"
+
+
+def test_a_slip_in_a_name_is_asked_about_and_taken_literally_after_a_no() -> None:
+    asked = planned("bring me the bowle")
+    assert (asked.steps, asked.asks) == ([], "bring me the bowl")
+    assert planned("brinng me teh bowl").steps
+
+
+@pytest.mark.parametrize(
+    ("said", "kind", "text"),
+    [
+        ("stop", "stop", "stop"),
+        ("never mind", "cancel", "never mind"),
+        ("then go to the kitchen", "queue", "go to the kitchen"),
+        ("when you're done, go to the kitchen", "queue", "go to the kitchen"),
+        ("go to the kitchen afterwards", "queue", "go to the kitchen"),
+        ("bring me the apple", "queue", "bring me the apple"),
+        ("no, bring me the apple instead", "replace", "bring me the apple"),
+        ("forget that, bring me the apple", "replace", "bring me the apple"),
+        ("what are you doing", "aside", "what are you doing"),
+        ("where is the apple", "aside", "where is the apple"),
+    ],
+)
+def test_what_is_said_to_a_robot_at_work(said: str, kind: str, text: str) -> None:
+    found = interjection(said)
+    assert (found.kind, found.text) == (kind, text)
+
+
+def test_questions_and_orders_are_told_apart() -> None:
+    for text in (
+        "what's up with the mug",
+        "why?",
+        "Is the apple there?",
+        "did you do it",
+        "could you tell me who is there",
+    ):
+        assert is_question(text), text
+    for text in ("how about the apple", "could you bring me the mug", "bring me what is on the table", "go on"):
+        assert not is_question(text), text
+
+
+def test_guesses_name_the_things_and_places_that_were_said() -> None:
+    vocabulary = Vocabulary(World(HOME), CONFIG)
+    found = guesses("the kitchen table would look better with the red mug on it", vocabulary)
+    assert "put the red mug on the kitchen table" in found and "tidy up the kitchen table" in found
+    assert "bring me something to drink" in guesses("my throat is dry", vocabulary)
+
+
+@pytest.mark.skipif(not installed(), reason="the extra paraphrase is not installed")
+def test_a_paraphrase_is_nearest_to_what_it_means() -> None:
+    nearest = Paraphraser().nearest
+    forms = ["go to the bedroom", "tidy up the bedroom", "what is on the bedroom"]
+    assert nearest("relocate yourself to the bedroom", forms) == forms[0]
+    assert nearest("the capital of france is paris", forms) == ""
+    assert nearest("anything", []) == ""

@@ -25,6 +25,7 @@ class Desk(Node):
         )
         self.bus.send(topics.PLAN_REQUEST, request)
         self.step()
+        self.until(lambda: any(p.request_id == request_id for p in self.sent(topics.ACTION_PLAN)))
         plan = self.sent(topics.ACTION_PLAN)[-1]
         assert plan.request_id == request_id
         return plan
@@ -93,6 +94,22 @@ def test_a_request_that_does_not_decode_is_counted() -> None:
     node.bus.put(topics.PLAN_REQUEST, b"bring me the apple")
     node.step()
     assert node.io.drops["plan_request"] == 2 and not node.count(topics.ACTION_PLAN)
+
+
+def test_what_no_wording_covers_is_compared_with_known_commands() -> None:
+    """With a network by hand that finds the bottle's command nearest."""
+
+    class Nearest:
+        def nearest(self, said: str, candidates: list[str]) -> str:
+            return next(c for c in candidates if c.startswith("bring me"))
+
+    node = Desk()
+    node.service._paraphraser = Nearest()
+    plan = node.ask("my heart longs for the blue bottle")
+    assert (plan.steps, plan.suggestion) == ([], "bring me the blue bottle")
+    literally = {"steps": [], "reason": "not meant"}
+    assert node.ask("my heart longs for the blue bottle", "m.2", rejected=literally).suggestion == ""
+    assert node.ask("open the fridge", "n.1").suggestion == "", "what is understood and cannot be done is no riddle"
 
 
 @pytest.mark.parametrize(
