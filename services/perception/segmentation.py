@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from common.floor_plan import FloorPlan
+from common.geometry import Rectangle
 from services.perception.view import Mask, View, Window
 from services.perception.visible_plan import Cloud, Nearby, corners, inside
 
@@ -22,6 +23,10 @@ MAX_HEIGHT = 0.30
 PLANE_SEARCH = 0.025
 """How far [m] from the floor plan's height the surface itself is looked for. Chosen: errors of camera pose and
 furniture."""
+EDGE = 0.012
+"""How far [m] inside its edge a surface begins: its own front is seen there."""
+LOOKED_DOWN_ON = 0.2
+"""How far [m] below the camera furniture ends whose top is seen."""
 MIN_PLANE = 60
 """Pixels from which the height of a surface is measured rather than taken from the floor plan."""
 MIN_PIXELS = 24
@@ -42,6 +47,8 @@ NEARER = 0.03
 """How much nearer [m] than the segment a neighbour must be to hide a part of it."""
 HIDDEN, HIDDEN_END = 0.06, 0.25
 """Shares of that band, and of the band at its left or right end, from which the segment counts as cut."""
+FAR = 2.3
+"""Depth [m] from which its noise makes walls thick."""
 FLOOR_RANGE = 2.2
 """Distance [m] up to which objects on the floor are looked for. Chosen: beyond it depth noise hides small ones."""
 DEPTH_NOISE = 0.0015
@@ -83,12 +90,20 @@ def segments(view: View, floor_plan: FloorPlan, max_range: float, robot: Mask | 
     usable = (view.depth > 0.05) & (view.depth < max_range) & ~own
     found: list[Segment] = []
     for r in near.receptacles:
-        box, low, high = r.outline.grown(-0.012), r.center[2] - PLANE_SEARCH, r.center[2] + MAX_HEIGHT
-        window = view.window(corners(box, low, high))
-        x, y, _ = np.moveaxis(view.points[window], -1, 0)
-        over = _between(view, usable[window] & inside(x, y, box), low, high, window)
-        found += _on(view, Surface(r.name, r.center[2]), over, near, own)
+        surface = Surface(r.name, r.center[2])
+        found += _on(view, surface, _over(view, usable, r.outline, surface.height), near, own)
+    for f, on_it in near.tops(float(view.position[2]) - LOOKED_DOWN_ON):
+        surface = Surface(f.name, f.center[2] + f.size[2] / 2)
+        found += _on(view, surface, _over(view, usable, f.outline, surface.height).outside(on_it), near, own)
     return found + _on(view, Surface("", 0.0), _above_floor(view, usable).outside(near.boxes), near, own)
+
+
+def _over(view: View, usable: Mask, outline: Rectangle, height: float) -> Cloud:
+    """The usable pixels over a surface of that outline and height."""
+    box, low, high = outline.grown(-EDGE), height - PLANE_SEARCH, height + MAX_HEIGHT
+    window = view.window(corners(box, low, high))
+    x, y, _ = np.moveaxis(view.points[window], -1, 0)
+    return _between(view, usable[window] & inside(x, y, box), low, high, window)
 
 
 def _above_floor(view: View, usable: Mask) -> Cloud:
@@ -128,7 +143,12 @@ def _on(view: View, expected: Surface, cloud: Cloud, near: Nearby, own: Mask) ->
         peak = int(heights.argmax())
         level = level[np.abs(level - (edges[peak] + edges[peak + 1]) / 2) < 0.006]
         surface = Surface(expected.name, float(np.median(level)))
-    above = cloud.kept((z > surface.height + CLEARANCE) & (z < surface.height + MAX_HEIGHT)).outside(near.walls).pixels
+    noise = DEVIATIONS * DEPTH_NOISE * (float(view.position[2]) - surface.height) * view.depth.ravel()[cloud.pixels]
+    over = (z > surface.height + np.maximum(noise, CLEARANCE)) & (z < surface.height + MAX_HEIGHT)
+    kept = cloud.kept(over).outside(near.walls)
+    far = view.depth.ravel()[kept.pixels] > FAR
+    beyond = kept.kept(far).outside(near.far_walls).pixels
+    above = np.concatenate([kept.pixels[~far], beyond])
     if len(above) < MIN_PIXELS:
         return []
     rows, columns = np.unravel_index(above, view.shape)

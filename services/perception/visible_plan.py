@@ -7,13 +7,20 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from common.floor_plan import FloorPlan
+from common.floor_plan import Box, FloorPlan
 from common.geometry import Rectangle
 
 WALL_MARGIN = 0.035
-"""How far [m] from a wall's face its own points are measured: depth noise at the limit of the camera's range."""
+"""How far [m] from a wall's face its own points are measured: four standard deviations of depth at 2.3 m."""
+FAR_WALL_MARGIN = 0.075
+"""The same beyond the depth `segmentation.FAR`: four standard deviations of its noise at 3.5 m."""
 FLOOR_MARGIN = 0.10
 """Margin [m] around furniture in which nothing on the floor is looked for: its legs and edges are seen there."""
+
+SAME_TOP = 0.05
+"""Difference [m] of height up to which a receptacle and a piece of furniture have the same upper side."""
+LOWEST_TOP, NARROWEST = 0.12, 0.15
+"""Height [m] and width [m] of the lowest and narrowest furniture on which objects are looked for."""
 
 
 @dataclass(frozen=True)
@@ -71,5 +78,24 @@ class Nearby:
         self.receptacles = [r for r in floor_plan.receptacles if close(r.outline)]
         ends = [w.footprint for w in floor_plan.walls]
         self.walls = [w for wall in ends if close(w := wall.grown(WALL_MARGIN))]
+        self.far_walls = [w for wall in ends if close(w := wall.grown(FAR_WALL_MARGIN))]
         taken = [*ends, *floor_plan.footprints]
         self.boxes = [b for box in taken if close(b := box.grown(FLOOR_MARGIN))]
+        self.furniture = [f for f in floor_plan.furniture if close(f.outline)]
+
+    def tops(self, below: float) -> list[tuple[Box, list[Rectangle]]]:
+        """Furniture that ends lower than `below` [m] and is no receptacle, such as a bed, each with what stands on it:
+        a sofa's back stands on its seat."""
+        surfaces = [(r.center[2], r.outline) for r in self.receptacles]
+        found = []
+        for f in self.furniture:
+            top = _top(f)
+            used = any(abs(z - top) < SAME_TOP and box.contains(f.center[0], f.center[1]) for z, box in surfaces)
+            if LOWEST_TOP < top < below and min(f.size[:2]) > NARROWEST and not used:
+                found.append((f, [o.outline.grown(WALL_MARGIN) for o in self.furniture if _top(o) > top + SAME_TOP]))
+        return found
+
+
+def _top(box: Box) -> float:
+    """Height [m] of a box's upper side."""
+    return box.center[2] + box.size[2] / 2

@@ -10,6 +10,7 @@ from common.household import load_household
 from services.camera.sensor import StereoCamera
 from services.perception.segmentation import segments
 from services.perception.view import View
+from services.perception.visible_plan import Nearby
 
 SCENE = load_household("minimal")
 WIDTH, HEIGHT, FOCAL = 640, 480, 400.0
@@ -42,3 +43,12 @@ def test_a_block_on_the_floor_is_one_object(seed: int) -> None:
     (found,) = segments(floor(seed, 0.06), SCENE, 3.5)
     assert found.surface.name == ""
     assert math.dist(found.points[:, :2].mean(axis=0), (PLACE[0] + 1.2, PLACE[1])) < 0.03
+
+
+def test_objects_are_looked_for_on_beds_and_seats_and_not_where_a_back_stands_on_them() -> None:
+    near = Nearby(load_household("apartment"), 0.0, 1.0, 9.0)
+    tops = {f.name: on_it for f, on_it in near.tops(1.1)}
+    assert {"sofa seat", "bed"} <= set(tops)
+    assert not {"wardrobe", "fridge"} & set(tops)
+    assert any(box.contains(-2.84, 0.2) for box in tops["sofa seat"]), "the sofa's back"
+    assert not any(box.contains(-2.3, 0.2) for box in tops["sofa seat"])
