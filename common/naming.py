@@ -19,7 +19,7 @@ ALIKE = {
     "pink": ("red", "purple"), "brown": ("orange", "red", "black"), "black": ("grey", "blue", "brown"),
     "grey": ("black", "white"), "white": ("grey", "yellow"),
 }  # fmt: skip
-"""Words that somebody else may use for a measured colour at the limit."""
+"""Words that a colour may turn out to have from nearer and in better light."""
 
 
 def normalise(text: str) -> str:
@@ -52,18 +52,23 @@ def match_object(query: str, objects: Iterable[WorldObject], household: Househol
 
 
 def _fit(words: set[str], o: WorldObject) -> tuple[int, int]:
-    """How well words, none of which another object is better at, can mean an object: the less the better.
+    """How well words can mean an object, the less the better: `UNFIT` if they cannot.
 
-    First whether they are its label's words, then those of what it may be by its looks, then of colours that are near
-    its own; among equals, the place among its likely kinds of the one that is meant.
+    First whether they are its label's words; then whether kind and colours are among those that it has by its looks.
+    Among equals counts the place of the kind.
     """
-    own = {o.kind, o.colour, *normalise(o.label).split()}
-    looks = own | set(o.kinds) | set(o.colours)
-    near = looks | {word for shade in o.colours[:2] for word in ALIKE.get(shade, ())}
-    tier = next((n for n, known in enumerate((own, looks, near)) if words <= known), None)
-    if tier is None:
+    label = {o.kind, o.colour, *normalise(o.label).split()}
+    if words <= label:
+        return 0, 0
+    kinds = words & set(KINDS)
+    # "The orange can": what may be a colour is one beside another kind.
+    if len(kinds) > 1:
+        kinds -= set(ALIKE)
+    shades, likely = words - kinds, o.kinds or [o.kind]
+    if not kinds <= {*likely, o.kind}:
         return UNFIT
-    return tier, min((n for n, kind in enumerate(o.kinds) if kind in words), default=0)
+    place = min((n for n, kind in enumerate(likely) if kind in kinds), default=0)
+    return (1, place) if shades <= {*o.colours, *label} else UNFIT
 
 
 def near_names(query: str, names: Iterable[str]) -> list[str]:

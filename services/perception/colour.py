@@ -16,6 +16,13 @@ _HUES = ((0.035, 0), (0.115, 1), (0.19, 2), (0.45, 3), (0.70, 4), (0.80, 5), (0.
 """Hue [turns] up to which a colour has that word."""
 PART = 0.15
 """Share of an object's pixels from which a colour is one of its own. Chosen: highlights and edges stay below it."""
+SHADOW = 0.55
+"""Brightness of a coloured pixel, by that of the object's bright ones, below which it lies in shadow."""
+_SHADES = ((0.36, 0.0, 1.0), (0.16, -0.012, 1.0), (0.16, 0.012, 1.0), (0.16, 0.0, 0.88), (0.16, 0.0, 1.14))
+"""Weight, turn of the hue [turns] and gain of the brightness with which a colour is named: at the limit it has
+two words. Chosen: what light and camera leave uncertain."""
+MOST_PIXELS = 600
+"""Pixels of an object whose colours are named."""
 NEUTRAL, FEW_NEUTRAL, MOST_CAST = 0.22, 0.04, 0.12
 """Saturation up to which a pixel may be neutral, the share of the picture that must be, and the largest cast taken for
 one: beyond it the walls are painted."""
@@ -63,14 +70,15 @@ def _hsv(rgb: Array) -> tuple[Array, Array, Array]:
     return np.remainder(hue / 6, 1.0), (high - low) / np.maximum(high, 1e-9), high
 
 
-def pixel_words(rgb: Array) -> NDArray[np.intp]:
-    """Place in WORDS (n,) of the name of each colour (n, 3) in 0..1."""
+def pixel_words(rgb: Array, turn: float = 0.0) -> NDArray[np.intp]:
+    """Place in WORDS (n,) of the name of each colour (n, 3) in 0..1, its hue turned by `turn` [turns]."""
     hue, saturation, value = _hsv(np.clip(rgb, 0.0, 1.0))
+    hue = np.remainder(hue + turn, 1.0)
     limits = np.array([limit for limit, _ in _HUES])
     found = np.array([word for _, word in _HUES])[np.minimum(np.searchsorted(limits, hue), len(_HUES) - 1)]
     warm = (hue > 0.015) & (hue < 0.125)
     found[warm & ((value < 0.45) | (saturation < 0.6)) & (value < 0.85)] = WORDS.index("brown")
-    found[(hue > 0.125) & (hue < 0.2) & (value < 0.45)] = WORDS.index("green")
+    found[(hue > 0.125) & (hue < 0.2) & (value < 0.4)] = WORDS.index("green")
     reddish = (hue < 0.03) | (hue > 0.93)
     found[reddish & (saturation < 0.5) & (value > 0.7)] = WORDS.index("pink")
     # Cream and ivory are called white.
@@ -87,7 +95,13 @@ def pixel_words(rgb: Array) -> NDArray[np.intp]:
 def shares(rgb: NDArray[np.uint8], gains: Array) -> dict[str, float]:
     """The colours of pixels (n, 3) by name, with the share of the pixels that has each; the largest first."""
     values = rgb.astype(np.float64) / 255 * gains
-    counts = np.bincount(pixel_words(values), minlength=len(WORDS)) / max(1, len(values))
+    high = values.max(axis=1)
+    # What is in the shadow of its own is darker, and its hue is noise.
+    shadow = (high < SHADOW * np.percentile(high, 85)) & (high - values.min(axis=1) > 0.3 * high)
+    values = values[~shadow][:: max(1, len(values) // MOST_PIXELS)]
+    counts = np.zeros(len(WORDS))
+    for weight, turn, gain in _SHADES:
+        counts += weight * np.bincount(pixel_words(values * gain, turn), minlength=len(WORDS)) / max(1, len(values))
     return {WORDS[n]: float(counts[n]) for n in np.argsort(-counts, kind="stable") if counts[n] > 0.02}
 
 

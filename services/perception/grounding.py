@@ -5,6 +5,8 @@ import re
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 
+import msgspec
+
 from common.geometry import Pose2, to_frame
 from common.household import Household
 from common.messages import WorldObject
@@ -115,6 +117,11 @@ def _by_side(found: Sequence[WorldObject], side: str, base: Pose2) -> list[World
         return list(found)
     key, reverse = keys[side]
     return [sorted(found, key=key, reverse=reverse)[0]]
+
+
+def as_called(o: WorldObject) -> WorldObject:
+    """An object that can be meant by its label alone: what else it may be is in doubt until it is seen better."""
+    return msgspec.structs.replace(o, kinds=[], colours=[])
 
 
 def may_be_meant(

@@ -18,7 +18,7 @@ from services.perception.calibration_monitor import CalibrationMonitor
 from services.perception.config import PerceptionConfig
 from services.perception.detect import ClassicalDetector, Detector
 from services.perception.detection import Detection
-from services.perception.grounding import Grounding, ground, may_be_meant
+from services.perception.grounding import Grounding, as_called, ground, may_be_meant
 from services.perception.naming.naming import Naming
 from services.perception.object_tracker import SURE, ObjectTracker
 from services.perception.picture import jpeg
@@ -273,6 +273,8 @@ class PerceptionService:
     def _ground(self, query: m.ObjectQuery) -> Grounding:
         base = self._state.base or (0.0, 0.0, 0.0)
         objects = self._naming.annotated(self._tracker.objects(query.since or -math.inf))
+        doubtful = self._tracker.doubtful()
+        objects = [as_called(o) if o.id in doubtful else o for o in objects]
         result = ground(query.query, objects, self._io.household, base, self._config.synonyms, self._naming.match)
         return (
             result

@@ -1,0 +1,70 @@
+"""Colours in words: goods that are in no scene, in other light, of several colours."""
+
+import numpy as np
+import pytest
+
+from services.perception.colour import light, main_words, name, shares
+
+GOODS = {
+    "cardboard": ((0.72, 0.55, 0.38), "brown"),
+    "maroon": ((0.5, 0.05, 0.1), "red"),
+    "navy": ((0.1, 0.12, 0.35), "blue"),
+    "cream": ((0.95, 0.9, 0.75), "white"),
+    "orange peel": ((0.9, 0.5, 0.1), "orange"),
+    "tomato": ((0.85, 0.2, 0.12), "red"),
+    "banana": ((0.95, 0.85, 0.3), "yellow"),
+    "sky": ((0.5, 0.75, 0.95), "blue"),
+    "rose": ((0.95, 0.65, 0.7), "pink"),
+    "steel": ((0.5, 0.5, 0.52), "grey"),
+    "paper": ((0.88, 0.87, 0.86), "white"),
+    "chocolate": ((0.3, 0.18, 0.1), "brown"),
+    "grass": ((0.25, 0.55, 0.2), "green"),
+    "plum": ((0.4, 0.2, 0.5), "purple"),
+    "coal": ((0.1, 0.1, 0.11), "black"),
+}
+
+
+def pixels(rgb: tuple[float, float, float], count: int, seed: int = 0) -> np.ndarray:
+    """Pixels in light and shade with a camera's noise."""
+    rng = np.random.default_rng(seed)
+    shade = rng.uniform(0.85, 1.05, (count, 1))
+    return np.clip(np.array(rgb) * shade * 255 + rng.normal(0.0, 2.0, (count, 3)), 0, 255).astype(np.uint8)
+
+
+@pytest.mark.parametrize(("rgb", "word"), GOODS.values(), ids=GOODS)
+def test_goods_have_the_colour_that_people_call_them(rgb: tuple[float, float, float], word: str) -> None:
+    assert name(np.array(rgb)) == word
+    assert main_words(shares(pixels(rgb, 500), np.ones(3)))[0] == word
+
+
+def test_what_has_two_colours_has_two_words_the_larger_first() -> None:
+    both = np.concatenate([pixels((0.8, 0.1, 0.1), 300), pixels((0.9, 0.9, 0.9), 150)])
+    assert main_words(shares(both, np.ones(3))) == ["red", "white"]
+
+
+def test_a_highlight_is_no_colour() -> None:
+    glossy = np.concatenate([pixels((0.1, 0.2, 0.6), 300), pixels((1.0, 1.0, 1.0), 20)])
+    assert main_words(shares(glossy, np.ones(3))) == ["blue"]
+
+
+def test_the_shade_of_a_yellow_thing_is_not_green() -> None:
+    shaded = np.concatenate([pixels((0.9, 0.8, 0.1), 250), pixels((0.38, 0.35, 0.05), 150)])
+    assert main_words(shares(shaded, np.ones(3))) == ["yellow"]
+
+
+def test_at_the_limit_of_two_words_a_colour_has_both() -> None:
+    vermilion = main_words(shares(pixels((0.9, 0.27, 0.1), 400), np.ones(3)))
+    assert set(vermilion) == {"red", "orange"}
+
+
+def test_warm_light_does_not_turn_white_things_yellow() -> None:
+    warm = np.array([1.1, 1.0, 0.82])
+    wall = np.clip(np.full((120, 160, 3), 0.7) * warm * 255, 0, 255).astype(np.uint8)
+    gains = light(wall)
+    thing = np.clip(np.array((0.9, 0.9, 0.9)) * warm * 255, 0, 255).astype(np.uint8)[None].repeat(200, 0)
+    assert main_words(shares(thing, gains)) == ["white"]
+
+
+def test_a_painted_wall_is_not_taken_for_the_light() -> None:
+    wall = np.full((120, 160, 3), (180, 60, 50), np.uint8)
+    assert np.allclose(light(wall), 1.0)
