@@ -71,7 +71,8 @@ def may_ask(subject: str) -> set[str]:
     if subject == "looker":
         changing = {topics.SIM_RESET, topics.SIM_PAUSE, topics.SIM_SNAPSHOT}
         return set(KEYS) - changing - {f"log/{n}" for n in SERVICES}
-    return may_read(subject) | ({topics.BRAIN_MISSIONS} if subject in ("dashboard", "agent") else set())
+    logs = {f"log/{n}" for n in SERVICES}
+    return may_read(subject) - logs | ({topics.BRAIN_MISSIONS} if subject in ("dashboard", "agent") else set())
 
 
 def may_answer(subject: str) -> set[str]:
@@ -85,7 +86,7 @@ def may_answer(subject: str) -> set[str]:
 @pytest.fixture(scope="module")
 def directory(tmp_path_factory: pytest.TempPathFactory) -> Path:
     made = tmp_path_factory.mktemp("security") / "keys"
-    for words in ([], ["--client", "looker", "--observer"], ["--namespace", "kitchen"]):
+    for words in ([], ["--client", "looker", "--observer"], ["--client", "rviz", "--ros"], ["--namespace", "kitchen"]):
         assert tidybot(["keys", "--dir", str(made), *words]) == 0
     return made
 
@@ -228,6 +229,32 @@ def test_every_certificate_asks_and_answers_its_own_keys_and_no_other(guarded: G
     for subject in SUBJECTS:
         assert {k for s, k in asked if s == subject} == may_ask(subject), subject
     assert answered == expected
+
+
+def test_a_ros_peer_meets_the_gateway_in_its_domain_and_reaches_nothing_else(guarded: Guarded) -> None:
+    got: set[str] = set()
+    with ExitStack() as stack:
+        witness, peer = guarded.open(stack, "router"), guarded.open(stack, "rviz")
+        gateway = stack.enter_context(open_session(guarded.connect, name="ros2", prefixed=False, patience=20))
+        witness.declare_subscriber("**", lambda s: got.add(f"witness {s.key_expr}"))
+        gateway.declare_subscriber("0/**", lambda s: got.add(f"gateway {s.key_expr}"))
+        for key in ("**", "0/**"):  # what others send: its own it has anyway
+            peer.declare_subscriber(key, lambda s: got.add(f"peer {s.key_expr}"), allowed_origin=zenoh.Locality.REMOTE)
+        token = gateway.liveliness().declare_token("@ros2_lv/0/zid/0/0/NN/%/%/tidybot")
+
+        def both_ways() -> bool:
+            for key in (*KEYS, "1/chatter/type/hash"):
+                peer.put(key, "ros")
+            peer.put("0/chatter/type/hash", "ros")
+            gateway.put("0/answer/type/hash", "ros")
+            witness.put(topics.SYSTEM_STATUS.key, "secret")
+            nodes = [r.ok.key_expr for r in peer.liveliness().get("@ros2_lv/0/**", timeout=2.0) if r.ok is not None]
+            return {"gateway 0/chatter/type/hash", "peer 0/answer/type/hash"} <= got and bool(nodes)
+
+        eventually(both_ways, "peer and gateway meet")
+        token.undeclare()
+    allowed = {"0/chatter/type/hash", "0/answer/type/hash"}
+    assert {line for line in got if line.partition(" ")[2] not in allowed} <= {f"witness {topics.SYSTEM_STATUS.key}"}
 
 
 def test_a_question_to_many_reaches_all_of_them(guarded: Guarded) -> None:
