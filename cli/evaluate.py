@@ -9,8 +9,8 @@ from cli.plan import add_machine_options
 from cli.programs import become
 
 SUITES = (
-    "seed", "fetch", "tidy", "faults", "dialogue", "chaos", "commands", "spoken", "sizes", "clutter", "lying", "homes",
-    "aged",
+    "seed", "fetch", "tidy", "faults", "dialogue", "chaos", "commands", "spoken", "sizes", "clutter", "lying",
+    "labels", "homes", "aged",
 )  # fmt: skip
 EXAMPLES = """examples:
   tidybot eval --suite seed                                  the five scenarios of the VLA contract, with their logs

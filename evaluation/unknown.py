@@ -16,6 +16,7 @@ from common.config import config_dir
 from common.household import Household, load_words, mapped
 from common.kinds import kind_of
 from common.scene import ObjectSpec, Receptacle, Scene, SceneError
+from evaluation import catalogue
 from evaluation.blocks import VLA, WORDINGS, flat, random
 from evaluation.case import Case, Line
 from evaluation.drawn import LAID, things
@@ -60,6 +61,12 @@ def clutter(seed: int) -> Case:
         return [*crowd(flat(), wanted, others[:count], seed, rng), *others[count:]]
 
     return fetch(seed, "clutter", draw, rng)
+
+
+def labels(seed: int) -> Case:
+    """Groceries, crockery, toys and tools with faces; one is asked for by what is printed on it."""
+    rng = random(seed, 24)
+    return fetch(seed, "labels", lambda: catalogue.things(int(rng.integers(*IN_A_WORLD)), rng, printed=True), rng)
 
 
 def fetch(

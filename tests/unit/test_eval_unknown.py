@@ -14,6 +14,7 @@ from common.household import load_household, load_words
 from common.kinds import kind_of
 from common.plan_file import to_toml
 from common.scene import ObjectSpec, load_scene
+from evaluation import catalogue
 from evaluation.case import Case
 from evaluation.drawn import HUES, MEASURES
 from evaluation.suites import SUITES, cases
@@ -62,6 +63,28 @@ def _apart(a: np.ndarray, b: np.ndarray) -> float:
         np.concatenate([np.linspace(p, q, 40) for p, q in zip(s, np.roll(s, -1, axis=0), strict=True)]) for s in (a, b)
     )
     return float(cdist(one, two).min())
+
+
+def test_forty_things_with_faces_are_called_by_what_is_on_them() -> None:
+    rng = np.random.default_rng(3)
+    drawn = {item: [catalogue.draw(item, rng) for _ in range(6)] for item in catalogue.CATALOGUE}
+    assert len(drawn) == 40
+    for item, ones in drawn.items():
+        assert len({o.size for o in ones}) == 6, "sizes are drawn"
+        for o in ones:
+            assert o.kind == item.kind and (item.label.lower() in o.name)
+            assert kind_of(o.kind).by_the_rim or min(o.size) <= 0.080, f"{o.name} fits the hand"
+            assert 0.02 <= o.mass < 3.0
+    labels = [i.label.lower() for i in drawn if i.label]
+    assert len(set(labels)) == len(labels) >= 25
+
+
+def test_who_asks_for_a_label_means_one_thing() -> None:
+    for case in cases("labels", len(SEEDS), 0):
+        printed = [o for o in objects(case) if o.name == case.thing]
+        assert len(printed) == 1 and printed[0].label
+        assert case.household is not None and case.household.things == () and case.thing in case.command
+        assert not any(case.thing in o.name for o in objects(case) if o is not printed[0])
 
 
 def test_neighbours_are_near_and_do_not_touch() -> None:
