@@ -5,6 +5,7 @@ import os
 import sys
 import time
 from collections.abc import Callable
+from importlib.util import find_spec
 from pathlib import Path
 
 from cli.errors import CliError
@@ -20,6 +21,10 @@ from common.process import StopSignal
 from common.recording import Recorder, RecordingError
 from common.scene import SceneError, load_scene
 from common.time.clock import monotonic, unix_time
+
+CAMERAS = ("head", "wrist")
+FASTEST = 50
+"""Most frames a second of a dataset: half the rate of joint states."""
 
 
 def facts_of(link: Link, tape: Tape) -> dict[str, str]:
@@ -42,6 +47,8 @@ def settings_of(environ: "os._Environ[str]") -> dict[str, str]:
 
 
 def record(args: argparse.Namespace) -> int:
+    if args.lerobot is not None:
+        return _demonstrations(args)
     path = args.output or Path("out") / time.strftime("run-%Y%m%d-%H%M%S.mcap", time.localtime(unix_time()))
     stop = StopSignal()
     connect, namespace = address(args)
@@ -57,6 +64,23 @@ def record(args: argparse.Namespace) -> int:
         raise CliError("stopped before a router was there") from None
     finally:
         _close(recorder)
+
+
+def _demonstrations(args: argparse.Namespace) -> int:
+    """Missions as episodes of a dataset; pyarrow is an extra, and not for every command to load."""
+    if args.output is not None:
+        raise CliError("-o FILE and --lerobot DIR are two recordings; run two commands")
+    if find_spec("pyarrow") is None:
+        raise CliError("--lerobot needs the package pyarrow: pip install 'tidybot-zenoh[lerobot]'")
+    from cli.demonstrations.command import demonstrate
+
+    stop = StopSignal()
+    connect, namespace = address(args)
+    try:
+        with open_session(connect, namespace, wait=_patience(args.wait, stop, connect)) as session:
+            return demonstrate(args, Link(session, connect), stop)
+    except NoRouter:
+        raise CliError("stopped before a router was there") from None
 
 
 def _patience(seconds: float, stop: StopSignal, connect: str) -> Callable[[float], bool]:
@@ -129,6 +153,19 @@ def _close(recorder: Recorder) -> None:
         print("nothing was heard; no file is kept", file=sys.stderr)
 
 
+def _rate(text: str) -> int:
+    if not text.isdecimal() or not 1 <= int(text) <= FASTEST:
+        raise argparse.ArgumentTypeError(f"{text!r}: expected 1 to {FASTEST}")
+    return int(text)
+
+
+def _cameras(text: str) -> tuple[str, ...]:
+    found = tuple(dict.fromkeys(text.split(",")))
+    if not set(found) <= set(CAMERAS):
+        raise argparse.ArgumentTypeError(f"{text!r}: expected {' or '.join(CAMERAS)}, or both with a comma")
+    return found
+
+
 def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
     parser = commands.add_parser("record", help="every topic into an MCAP file, until Ctrl-C")
     parser.add_argument("-o", "--output", type=Path, metavar="FILE", help="default: out/run-<time>.mcap")
@@ -136,5 +173,12 @@ def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") ->
     parser.add_argument(
         "--wait", type=float, default=3.0, metavar="S", help="for the robot's router; 0: as long as it takes"
     )
+    learning = parser.add_argument_group("demonstrations for learning")
+    learning.add_argument(
+        "--lerobot", type=Path, metavar="DIR", help="missions as episodes of a LeRobotDataset, new or continued"
+    )
+    learning.add_argument("--fps", type=_rate, default=10, metavar="N", help="frames a second, 1 to 50 (%(default)s)")
+    learning.add_argument("--cameras", type=_cameras, default=CAMERAS, metavar="A,B", help="head, wrist or both (both)")
+    learning.add_argument("--all", action="store_true", help="also missions that failed or were cancelled")
     add_options(parser)
     parser.set_defaults(run=record)

@@ -1,0 +1,1 @@
+"""Demonstrations for learning: missions as episodes of a LeRobotDataset, `tidybot record --lerobot`."""

@@ -1,0 +1,119 @@
+"""`tidybot record --lerobot DIR`: follows the robot and writes each mission as an episode when it has ended."""
+
+import argparse
+import queue
+import sys
+import uuid
+from collections.abc import Sequence
+from typing import Any
+
+from cli.demonstrations.dataset import Dataset
+from cli.demonstrations.sampler import Episode, Sampler
+from cli.errors import CliError
+from cli.link import Link
+from common import messages as m
+from common import topics
+from common.bus import codec, delivery
+from common.process import StopSignal
+from common.time.clock import monotonic
+from common.topics import Topic
+
+PICTURE_SIZE = (320, 240)
+"""Width and height [pixels]."""
+RENEW = 2.0
+"""Time [s] after which a picture that did not come is asked for again."""
+FOLLOWED: tuple[Topic[Any], ...] = (
+    topics.JOINT_STATES, topics.ODOMETRY, topics.ARM_COMMAND, topics.GRIPPER_COMMAND, topics.BRAIN_STATE,
+    topics.HEAD_RGBD, topics.WRIST_RGBD,
+)  # fmt: skip
+
+
+class Pictures:
+    """Asks for pictures while a mission is under way, one at a time: the robot's own requests are served in between."""
+
+    def __init__(self, link: Link, cameras: Sequence[str]) -> None:
+        self._link, self._cameras = link, list(cameras)
+        self._wanted, self._asked = "", 0.0
+
+    def came(self, picture: m.Rgbd) -> None:
+        """A picture is there; if it is the one asked for, the next camera has its turn."""
+        if picture.id == self._wanted:
+            self._wanted = ""
+            self._cameras.append(self._cameras.pop(0))
+
+    def ask(self) -> None:
+        """Ask for one, unless one is under way."""
+        if self._wanted and monotonic() - self._asked < RENEW:
+            return
+        self._wanted, self._asked = f"demonstration-{uuid.uuid4().hex[:8]}", monotonic()
+        width, height = PICTURE_SIZE
+        request = m.CameraRequest(id=self._wanted, camera=self._cameras[0], width=width, height=height)  # type: ignore[arg-type]
+        self._link.send(topics.CAMERA_REQUEST, request)
+
+
+def demonstrate(args: argparse.Namespace, link: Link, stop: StopSignal) -> int:
+    """Until Ctrl-C or `--duration`; an episode whose mission has not ended by then is left out.
+
+    Raises:
+        CliError: the folder cannot be used, or the disk does not take it.
+    """
+    dataset = Dataset(args.lerobot, args.fps, dict.fromkeys(args.cameras, PICTURE_SIZE))
+    inbox: queue.SimpleQueue[tuple[Topic[Any], bytes]] = queue.SimpleQueue()
+    kept = [delivery.subscribe(link.session, topic, _into(inbox, topic)) for topic in FOLLOWED]
+    sampler, pictures = Sampler(args.fps, args.cameras), Pictures(link, args.cameras)
+    _say(f"demonstrations from {link.connect} into {args.lerobot}; Ctrl-C ends it")
+    end = monotonic() + args.duration if args.duration else float("inf")
+    while not stop.is_set() and monotonic() < end:
+        _drain(inbox, sampler, pictures, stop)
+        if sampler.recording:
+            pictures.ask()
+        for episode in sampler.ended():
+            _keep(dataset, episode, args.all)
+    for subscriber in kept:
+        subscriber.undeclare()
+    _say(f"{dataset.episodes} episodes, {dataset.frames} frames in {args.lerobot}")
+    return 0
+
+
+def _into(inbox: "queue.SimpleQueue[tuple[Topic[Any], bytes]]", topic: Topic[Any]) -> Any:
+    return lambda sample: inbox.put((topic, sample.payload.to_bytes()))
+
+
+def _drain(
+    inbox: "queue.SimpleQueue[tuple[Topic[Any], bytes]]", sampler: Sampler, pictures: Pictures, stop: StopSignal
+) -> None:
+    """Take what has come; wait a moment when nothing has."""
+    if inbox.empty():
+        stop.wait(0.01)
+    while not inbox.empty():
+        topic, payload = inbox.get()
+        try:
+            message = codec.decode(topic, payload)
+        except codec.DecodeError:
+            continue
+        if isinstance(message, m.Rgbd):
+            pictures.came(message)
+            if (message.width, message.height) != PICTURE_SIZE:
+                continue
+        sampler.take(message)
+
+
+def _keep(dataset: Dataset, episode: Episode, every: bool) -> None:
+    if episode.outcome != "delivered" and not every:
+        _say(f"left out, {episode.outcome}: {episode.task!r} (--all keeps such missions, too)")
+        return
+    if not episode.frames:
+        _say(f"left out, no pictures came: {episode.task!r}; see `tidybot ps` for the camera")
+        return
+    try:
+        dataset.add(episode)
+    except OSError as error:
+        raise CliError(f"{dataset.root}: {error}; the episodes written before are kept") from None
+    _say(
+        f"episode {dataset.episodes - 1}, {episode.outcome}: {episode.task!r}, {len(episode.frames)} frames, "
+        f"pictures at most {episode.late:.2f} s off"
+    )
+
+
+def _say(text: str) -> None:
+    print(text, file=sys.stderr, flush=True)
