@@ -257,6 +257,29 @@ def test_a_ros_peer_meets_the_gateway_in_its_domain_and_reaches_nothing_else(gua
     assert {line for line in got if line.partition(" ")[2] not in allowed} <= {f"witness {topics.SYSTEM_STATUS.key}"}
 
 
+def test_the_gateway_itself_carries_a_ros_peer_s_words_to_the_brain(guarded: Guarded) -> None:
+    pytest.importorskip("rosbags", reason="the extra ros2 is not installed")
+    words: list[bytes] = []
+    gateway = guarded.start("services.ros2")
+    with ExitStack() as stack:
+        brain, peer = guarded.open(stack, "brain"), guarded.open(stack, "rviz")
+        brain.declare_subscriber(topics.VOICE_COMMAND.key, lambda s: words.append(s.payload.to_bytes()))
+
+        def heard() -> bool:
+            found = peer.liveliness().get("@ros2_lv/0/*/*/*/MS/*/*/tidybot/%voice_command/**", timeout=2.0)
+            for reply in found:
+                if reply.ok is not None:
+                    _, _, kind, type_hash, _ = str(reply.ok.key_expr).rsplit("/", 4)
+                    # CDR, little endian: a string with its length and a zero at the end.
+                    peer.put(f"0/voice_command/{kind}/{type_hash}", b"\0\1\0\0" + b"\5\0\0\0stop\0")
+            return bool(words)
+
+        eventually(heard, "the words arrive")
+    assert b'"stop"' in words[0]
+    gateway.terminate()
+    assert gateway.wait(20) == 0
+
+
 def test_a_question_to_many_reaches_all_of_them(guarded: Guarded) -> None:
     with ExitStack() as stack:
         for name in SERVICES:
