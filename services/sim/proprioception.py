@@ -22,6 +22,8 @@ PLAY, PLAY_LIMIT = 0.0002, 0.00035
 travel is told, .5 mm in all."""
 PLAY_TRAVEL = 0.002
 """Travel of the pads after which they lie in their play as if never seen before [m]; chosen."""
+BLOCK = 500
+"""Readings whose errors are drawn at once [count]: one by one they would cost more than the reading."""
 
 
 class Proprioception:
@@ -29,25 +31,21 @@ class Proprioception:
 
     def __init__(self, seed: int, efforts: Array) -> None:
         rng = self._rng = np.random.default_rng([seed, 13])
-        self._zero: Array = rng.uniform(-ENCODER_ZERO, ENCODER_ZERO, len(efforts))
-        self._torque: Array = TORQUE_NOISE * efforts
+        count = len(efforts)
+        zero: Array = rng.uniform(-ENCODER_ZERO, ENCODER_ZERO, count)
+        self._mean = np.concatenate((zero, np.zeros(2 * count + 1)))
+        alike = np.full(count, ENCODER_NOISE), np.full(count, RATE_NOISE)
+        self._deviation = np.concatenate((*alike, TORQUE_NOISE * efforts, [FINGER_NOISE]))
         self._play, self._width = float(rng.normal(0.0, PLAY)), 0.0
+        self._errors, self._at = np.empty((0, len(self._mean))), 0
 
-    def angles(self, true: Array) -> Array:
-        """What the encoders say of joint angles (n,) [rad]."""
-        return np.asarray(true + self._zero + self._rng.normal(0.0, ENCODER_NOISE, len(true)))
-
-    def rates(self, true: Array) -> Array:
-        """Joint speeds (n,) [rad/s] as the driver works them out."""
-        return np.asarray(true + self._rng.normal(0.0, RATE_NOISE, len(true)))
-
-    def efforts(self, true: Array) -> Array:
-        """Joint torques (n,) [N m] as the motors' currents tell them."""
-        return np.asarray(true + self._rng.normal(0.0, 1.0, len(true)) * self._torque)
-
-    def finger(self, force: float) -> float:
-        """Force of a finger [N] as its motor's current tells it; never less than none."""
-        return force + float(self._rng.normal(0.0, FINGER_NOISE))
+    def read(self, true: Array) -> Array:
+        """What is measured (3 n + 1,) of angles [rad], speeds [rad/s], torques [N m] and a finger's force [N]."""
+        if self._at == len(self._errors):
+            drawn = self._rng.standard_normal((BLOCK, len(self._mean)))
+            self._errors, self._at = self._mean + self._deviation * drawn, 0
+        self._at += 1
+        return np.asarray(true + self._errors[self._at - 1])
 
     def width(self, told: float) -> float:
         """The width [m] that the gripper tells, from the one that its motor's travel stands for.

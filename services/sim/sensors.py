@@ -2,6 +2,8 @@
 
 import math
 
+import numpy as np
+
 from common import messages as m
 from common import topics
 from common.bus.port import Io
@@ -23,7 +25,7 @@ class Sensors:
         self._physics, self._io = physics, io
         self.odometry = WheelOdometry(start, config, physics.seed)
         bought = config.sensors == "bought"
-        largest = physics.model.actuator_forcerange[physics.ctrl_at, 1]
+        largest = physics.model.actuator_forcerange[physics.ctrl_at[3:], 1]
         self._felt = Proprioception(physics.seed, largest) if bought else None
         noise, missing = (config.lidar_noise, config.lidar_missing) if bought else (0.0, 0.0)
         self._lidar = Lidar(physics.model, physics.lidar_site, noise, missing, io.rng)
@@ -39,12 +41,14 @@ class Sensors:
         vx, vy, omega = velocity[:3]
         odometry = m.Odometry(t=t, x=x, y=y, theta=yaw, vx=cos * vx + sin * vy, vy=cos * vy - sin * vx, omega=omega)
         io.publish(topics.ODOMETRY, odometry)
-        angles, efforts, finger, width = arm[3:], physics.forces[:-1], physics.finger_force(), physics.width()
-        felt = self._felt
+        efforts, finger, width = physics.forces[:-1].tolist(), physics.finger_force(), physics.width()
+        angles, felt = arm[3:], self._felt
         if felt is not None:
             # The base's own are in its odometry.
-            angles, velocity[3:] = felt.angles(physics.joints)[3:].tolist(), felt.rates(physics.rates)[3:].tolist()
-            efforts, finger, width = felt.efforts(efforts), felt.finger(finger), felt.width(width)
+            read = felt.read(np.array([*angles, *velocity[3:], *efforts[3:], finger])).tolist()
+            n = len(angles)
+            angles, velocity[3:], efforts[3:], finger = read[:n], read[n : 2 * n], read[2 * n : 3 * n], read[-1]
+            width = felt.width(width)
         io.publish(
             topics.JOINT_STATES,
             m.JointStates(
@@ -52,7 +56,7 @@ class Sensors:
                 name=_NAMES,
                 position=[x, y, yaw, *angles, width],
                 velocity=[*velocity, physics.width_rate()],
-                effort=[*efforts.tolist(), finger],
+                effort=[*efforts, finger],
             ),
         )
 

@@ -8,6 +8,7 @@ import pytest
 
 from common import messages as m
 from common import topics
+from common.approach import HALF_WIDTH
 from common.runtime import StartError
 from common.scene import SCENES, SceneError, load_scene
 from common.support import MARGIN
@@ -117,7 +118,7 @@ def test_joint_states_name_every_joint_at_100_hz() -> None:
     assert state.position[-1] == pytest.approx(0.085, abs=0.002)
 
 
-def test_the_lidar_sees_walls_and_not_the_robot() -> None:
+def test_the_lidar_sees_walls_and_of_the_robot_only_the_posts_around_it() -> None:
     world = World()
     tap = world.bus.tap(topics.SCAN)
     world.step(0.2)
@@ -126,7 +127,8 @@ def test_the_lidar_sees_walls_and_not_the_robot() -> None:
     angles = scan.angle_min + np.arange(len(ranges)) * scan.angle_increment
     behind = ranges[np.abs(np.abs(angles) - math.pi) < 0.02]
     assert behind == pytest.approx(1.5 - 0.06, abs=0.03)
-    assert ranges.min() > 0.4
+    own = np.abs(np.stack([np.cos(angles), np.sin(angles)]) * ranges).max(axis=0) < HALF_WIDTH
+    assert own.mean() < 0.13 and ranges[~own].min() > 0.4
 
 
 @pytest.mark.parametrize(
