@@ -21,6 +21,10 @@ IRREGULAR, IRREGULAR_NOISE = 0.003, 0.8
 SOLID, GAPS = 0.86, 0.02
 """Share of its convex hull that the outline of a convex shape covers at least, and the distance [m] that what is
 missing counts as. Chosen: boxes and balls have .90 and more, crossed arms half."""
+DOUBT, DOUBT_NOISE = 0.0003, 0.12
+"""Difference [m] of two shapes' costs, plus that of noise, at which the worse one is 1/e as likely."""
+LEAST_RIVAL = 0.1
+"""Likelihood of another shape, by that of the best, from which it is told of."""
 COMPLEX = 0.06
 """What each free parameter costs, as a share of the residual: the simpler of two equal shapes is taken."""
 
@@ -49,7 +53,11 @@ def measure(
         shapes += turned.lying(used, h, outline, eye, noise)
     gaps = GAPS * max(0.0, SOLID - primitives.solidity(local, eye))
     shapes = [replace(s, residual=s.residual + gaps) if s.family in ("box", "ball") else s for s in shapes]
-    best = min(shapes, key=lambda s: (1 - s.credit) * s.residual + COMPLEX * s.free * (0.001 + 0.3 * noise))
+    costs = [(1 - s.credit) * s.residual + COMPLEX * s.free * (0.001 + 0.3 * noise) for s in shapes]
+    best = shapes[int(np.argmin(costs))]
+    shares = [math.exp((min(costs) - cost) / (DOUBT + DOUBT_NOISE * noise)) for cost in costs]
+    rivals = [(w, s) for w, s in zip(shares, shapes, strict=True) if w > LEAST_RIVAL and s.family != best.family]
+    best = replace(best, rivals=tuple(rivals))
     if best.residual > IRREGULAR + IRREGULAR_NOISE * noise:
         best = _irregular(used, h, noise, best.residual)
     return replace(best, yaw=math.remainder(best.yaw, math.tau))

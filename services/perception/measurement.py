@@ -19,7 +19,8 @@ class Measurement:
     `tilt` [rad] as in `WorldObject`; `residual` [m]: mean distance of the points; `spread` [m]: standard deviation of
     extents and position. `profile` (SLICES,): radius by the widest, from the foot up; `hollow`: it is open above;
     `handle`: yaw [rad] of one that was seen, nan without. `free`: parameters of the shape; `credit`: by how much of
-    its residual it is better than a shape that can take its place.
+    its residual it is better than a shape that can take its place. `rivals`: other shapes that explain the points
+    nearly as well, each with its likelihood by that of this one.
     """
 
     family: ShapeFamily
@@ -35,3 +36,4 @@ class Measurement:
     handle: float = math.nan
     free: int = 4
     credit: float = 0.0
+    rivals: "tuple[tuple[float, Measurement], ...]" = ()

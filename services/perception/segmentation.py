@@ -25,6 +25,8 @@ PLANE_SEARCH = 0.025
 furniture."""
 EDGE = 0.012
 """How far [m] inside its edge a surface begins: its own front is seen there."""
+WALL_EDGE = 0.035
+"""The same for a bin, whose walls are seen, and for furniture, whose edge is soft."""
 LOOKED_DOWN_ON = 0.2
 """How far [m] below the camera furniture ends whose top is seen."""
 MIN_PLANE = 60
@@ -91,19 +93,22 @@ def segments(view: View, floor_plan: FloorPlan, max_range: float, robot: Mask | 
     found: list[Segment] = []
     for r in near.receptacles:
         surface = Surface(r.name, r.center[2])
-        found += _on(view, surface, _over(view, usable, r.outline, surface.height), near, own)
+        outline = r.outline.grown(-WALL_EDGE if r.depth else -EDGE)
+        found += _on(view, surface, _over(view, usable, outline, surface.height), near, own)
     for f, on_it in near.tops(float(view.position[2]) - LOOKED_DOWN_ON):
         surface = Surface(f.name, f.center[2] + f.size[2] / 2)
-        found += _on(view, surface, _over(view, usable, f.outline, surface.height).outside(on_it), near, own)
+        found += _on(
+            view, surface, _over(view, usable, f.outline.grown(-WALL_EDGE), surface.height).outside(on_it), near, own
+        )
     return found + _on(view, Surface("", 0.0), _above_floor(view, usable).outside(near.boxes), near, own)
 
 
 def _over(view: View, usable: Mask, outline: Rectangle, height: float) -> Cloud:
     """The usable pixels over a surface of that outline and height."""
-    box, low, high = outline.grown(-EDGE), height - PLANE_SEARCH, height + MAX_HEIGHT
-    window = view.window(corners(box, low, high))
+    low, high = height - PLANE_SEARCH, height + MAX_HEIGHT
+    window = view.window(corners(outline, low, high))
     x, y, _ = np.moveaxis(view.points[window], -1, 0)
-    return _between(view, usable[window] & inside(x, y, box), low, high, window)
+    return _between(view, usable[window] & inside(x, y, outline), low, high, window)
 
 
 def _above_floor(view: View, usable: Mask) -> Cloud:

@@ -4,6 +4,8 @@ A segment stays whole when one shape explains it, whatever is printed on it. Oth
 pieces on both sides of a valley, are tried: what they are must be explained much better one by one.
 """
 
+import itertools
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -26,6 +28,9 @@ LEAST_SHARE = 0.08
 MOST_PIECES = 4
 GAIN, NOISE_GAIN = 0.0008, 0.3
 """How much less [m], plus that of the noise, the mean distance from the shapes must be for pieces to be objects."""
+BESIDE, APART = 0.2, 0.75
+"""Share of that gain which is enough for pieces that stand beside each other, and how far apart they do, by their half
+widths."""
 VALLEY = 0.75
 """Height on the line between two pieces, by that of the lower one, below which there is a valley."""
 BAND = 0.006
@@ -42,9 +47,13 @@ class Piece:
     shape: Measurement
 
 
-def pieces(view: View, segment: Segment, again: int = SPLITS) -> list[Piece]:
+def pieces(view: View, segment: Segment) -> list[Piece]:
     """The objects that a segment consists of, at least one."""
-    whole = Piece(segment, measured(view, segment))
+    return _pieces(view, Piece(segment, measured(view, segment)), SPLITS)
+
+
+def _pieces(view: View, whole: Piece, again: int) -> list[Piece]:
+    segment = whole.segment
     if again == 0 or len(segment.rows) < 2 * MIN_PIXELS:
         return [whole]
     noise = noise_of(view, segment)
@@ -54,11 +63,24 @@ def pieces(view: View, segment: Segment, again: int = SPLITS) -> list[Piece]:
         parts = [Piece(s, measured(view, s)) for s in _cut(segment, cut)]
         share = np.array([len(p.segment.rows) for p in parts]) / len(segment.rows)
         residual = float(share @ [p.shape.residual for p in parts])
-        better = whole.shape.residual - residual > GAIN + NOISE_GAIN * noise
         shaped = all(p.shape.family != "irregular" for p in parts)
+        ease = BESIDE if shaped and _beside(parts) else 1.0
+        better = whole.shape.residual - residual > ease * (GAIN + NOISE_GAIN * noise)
         if better or (whole.shape.family == "irregular" and shaped):
-            return [found for p in parts for found in pieces(view, p.segment, again - 1)]
+            return [found for p in parts for found in _pieces(view, p, again - 1)]
     return [whole]
+
+
+def _beside(parts: list[Piece]) -> bool:
+    """The shapes of the parts stand beside each other: what is printed on a thing has its place."""
+
+    def half(p: Piece) -> float:
+        return (p.shape.size[0] + p.shape.size[1]) / 4
+
+    return all(
+        math.hypot(a.shape.x - b.shape.x, a.shape.y - b.shape.y) > APART * (half(a) + half(b))
+        for a, b in itertools.combinations(parts, 2)
+    )
 
 
 def _cut(segment: Segment, cut: NDArray[np.intp]) -> list[Segment]:

@@ -36,7 +36,7 @@ def describe(view: View, segment: Segment, found: Measurement, gains: Array) -> 
     shares = colour.shares(view.rgb[segment.rows, segment.columns], gains)
     words = colour.main_words(shares)
     spread = found.spread if not segment.cut else max(found.spread, CUT_SPREAD)
-    kinds = likely(LOOKS, measures_of(found, spread), words) or {"thing": 1.0}
+    kinds = kinds_of(found, spread, words)
     height = found.size[1] if found.tilt else found.size[2]
     confidence = SURE * (0.45 + 0.55 * min(1.0, len(segment.rows) / FEW)) * (CUT if segment.cut else 1.0)
     kind = next(iter(kinds))
@@ -60,6 +60,17 @@ def describe(view: View, segment: Segment, found: Measurement, gains: Array) -> 
         spread=spread,
         points=thinned(segment.points),
     )
+
+
+def kinds_of(found: Measurement, spread: float, words: list[str]) -> dict[str, float]:
+    """What an object may be, the likeliest first, by its shape and those that explain it nearly as well."""
+    votes: dict[str, float] = {}
+    for weight, shape in ((1.0, found), *found.rivals):
+        for kind, share in likely(LOOKS, measures_of(shape, spread), words).items():
+            votes[kind] = votes.get(kind, 0.0) + weight * share
+    total = sum(votes.values())
+    ordered = sorted(votes, key=lambda kind: (-votes[kind], kind))
+    return {kind: votes[kind] / total for kind in ordered if votes[kind] > 0.04 * total} or {"thing": 1.0}
 
 
 def measured(view: View, segment: Segment) -> Measurement:
