@@ -173,8 +173,10 @@ def _fits(reading: str, sentence: Sentence, found: Understood) -> bool:
         return found.kind == f"pick {choice[1]}"
     if found.kind or not found.steps:
         return reading == "refuse()" and not found.kind
-    if tidied := re.fullmatch(r"tidy\((.+)\)", reading):
+    if tidied := re.fullmatch(r"tidy\(([^)]+)\)", reading):
         reading = _tidied(tidied[1])
+    elif tidied := re.match(r"tidy\((.+?)\); (.+)", reading):
+        reading = f"{_tidied(tidied[1])}; {tidied[2]}".replace(" & ", "; ")
     wanted = re.findall(r"(\w+)\(([^)]*)\)", reading)
     answers = all(name in ("answer", "say") for name, _ in wanted)
     plans = [[*found.looks, *found.steps], *([] if answers else [found.steps])]

@@ -62,6 +62,15 @@ _NEXT = frozenset(
     {"me", "us", "it", "them", "to", "into", "back", "here", "all", "up", "out", "everything", "away", "down"}
 )
 
+_REFINEMENT = re.compile(
+    r"^(?P<said>[^,]+?)(?:,\s*|\s+)(?:(?:you know|well|that is),?\s*)?(?P<one>(?:the|a|an) (?:\w+ ){1,2}one)"
+    r"(?P<rest>,?(?: and .*)?)$"
+)
+"""A thing, and which one of its kind."""
+_ANSWERS = frozenset({"no", "yes", "not", "if", "when", "unless", "after", "before", "once", "first"})
+LONGEST_LEAD = 4
+"""Words before a comma that may be left out (chosen)."""
+
 IsPlace = Callable[[Words], bool]
 """Do the words name a place?"""
 
@@ -115,6 +124,7 @@ def _with_infinitive(text: str) -> str:
 # --- repairs
 def _settled(text: str, is_place: IsPlace) -> str:
     """The text without what was taken back."""
+    text = _refined(_without_lead(text))
     text = _EXCEPT.sub(" but ", text).replace(" but but ", " but ")
     bare = without_politeness(text)
     if found := (_CONTRAST.match(bare) or _DO_NOT.match(bare)):
@@ -127,6 +137,33 @@ def _settled(text: str, is_place: IsPlace) -> str:
             return text
         text = repaired
     return text
+
+
+def _without_lead(text: str) -> str:
+    """The text without words before its first comma that name nothing, such as `yo, could you ...`."""
+    head, comma, rest = text.partition(",")
+    words = without_politeness(head).split()
+    strange = 0 < len(words) <= LONGEST_LEAD and not DETERMINERS & set(words) and words[0] not in _ANSWERS
+    if (
+        comma
+        and strange
+        and not _verb_first(head)
+        and not PREPOSITIONS & set(words[:1])
+        and _verb_first(without_politeness(rest))
+    ):
+        return rest
+    return text
+
+
+def _refined(text: str) -> str:
+    """`the can, the red one` as `the red can`."""
+    found = _REFINEMENT.match(text)
+    if found is None:
+        return text
+    spans = noun_phrases(found["said"].split())
+    if not spans or spans[-1][1] - spans[-1][0] != 2:
+        return text
+    return f"{replaced(found['said'], found['one']) or found['said']}{found['rest']}"
 
 
 def _contrasted(wrong: str, right: str) -> str:

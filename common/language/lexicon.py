@@ -1,6 +1,6 @@
 """Words that ask for the same, as options of a pattern: a synonym is one more word here and stands in every wording."""
 
-BRING = "bring | fetch | get | give | hand | pass | grab | take | carry | retrieve"
+BRING = "bring | fetch | get | give | hand | pass | grab | take | carry | retrieve | chuck | toss | throw | slide"
 """Verbs of bringing that need a receiver: `grab me the mug`."""
 FETCH = "bring | fetch | get | give | hand | pass | carry | retrieve | collect | gather"
 """Verbs of bringing that need none."""
@@ -19,7 +19,16 @@ GO = "drive | navigate | move | walk | return | head | come | roll | run | nip |
 SEEK = "find | search for | look for | locate | show me | track down | hunt for"
 LOOK = "(look | check | see | have a look | take a look | find out | verify)"
 MODAL = "(can | could | may | might)"
-WISH = "(want | need | would like | would love | fancy | could do with | could really do with)"
+WISH = (
+    "(want | wants | need | needs | require | would like | would love | would prefer | prefer | fancy | could [really]"
+    " (use | do with) | am after | would rather have)"
+)
+PERSON = (
+    "(i | we | he | she | they | (my | our | the) (wife | husband | partner | mother | father | mum | mom | dad | son |"
+    " daughter | child | kids | children | baby | boss | guest | guests | friend | grandma | grandpa | boy | girl))"
+)
+"""Who wants something."""
+MOVED = "(put | placed | moved | brought | taken | carried | set | returned | transferred | dropped | left)"
 # Words around them.
 ON = "(in | into | inside | on top of | on | onto | upon)"
 NEAR = "(next to | near | beside | close to | by)"
@@ -28,7 +37,8 @@ BACK = "[back | over | straight | down | away]"
 IT = "(<thing> | it | them)"
 ASK = (
     "[(can | could) you tell me | tell me | do you (know | remember | happen to know) | [have you got] any idea"
-    " | find out | i wonder | see | so | and]"
+    " | find out | i wonder | see | so | and"
+    " | (did | do) you (see | notice | remember)]"
 )
 BE = "(is | are | was | were)"
 LYING = "lying | standing | sitting | left"

@@ -17,7 +17,10 @@ _OPENINGS = (
     # Whom it is said to, and what carries no meaning.
     "hey|hello|hi|ok|okay|alright|jarvis|robot|tidybot|please|now|so|well|and|then|also|finally|just|kindly|quickly",
     "maybe|thanks|thank you|great|good|perfect|could it be that|listen|look here|excuse me|sorry|by the way|next",
-    r"perhaps|actually|whoa|woah|oi|(?:hold|hang) on(?! to\b)|first(?=\s+\w+\s+\w)|wait(?=\s+(?:stop|cancel|no)\b)",
+    r"perhaps|actually|whoa|woah|oi|(?:hold|hang) on(?! (?:to|for)\b)",
+    r"first(?=\s+\w+\s+\w)|wait(?=\s+(?:stop|cancel|no)\b)",
+    r"(?:go|come|run)(?: ahead| over| on)?(?: and)?"
+    r"(?=\s+(?:find|get|fetch|bring|grab|pick|take|put|tidy|clean|clear|throw)\b)",
     # What makes a question or a wish of an order.
     r"(?:would|do) you mind|mind(?=\s+\w+ing\b)|would you be (?:so|kind|good|enough|as|to|\s)+",
     r"(?:why do not|why don't|how about|what if) (?:you|we)(?=\s+\w)|(?:can|could|would|will) (?:you|someone|somebody)",
@@ -37,6 +40,7 @@ _OPENINGS = (
 """Politeness before a command: words that may be left out without changing what is asked for."""
 _ENDINGS = (
     "please|right now|now|quickly|at once|for me|for us|thanks|thank you|robot|jarvis|then|anyway|and|will you please",
+    "a (?:little )?bit|a little|somewhat|for a (?:bit|while)",
     "(?<!try )(?<!it )(?<!that )(?<!same )(?<!thing )(?<!once )again|as soon as (?:you can|possible)",
     "(?:will|would|could|can) you|if you can|if possible|if you (?:don't|do not|wouldn't) mind",
     r"when you (?:can|(?:have|get) (?:a )?\w+)|(?:for )?(?:a|one) (?:second|sec|moment)",
@@ -44,6 +48,8 @@ _ENDINGS = (
 """Politeness after a command."""
 _LEAD = re.compile(rf"^(?:(?:{'|'.join(_OPENINGS)})\s+)+")
 _TAIL = re.compile(rf"(?:\s+(?:{'|'.join(_ENDINGS)}))+$")
+_FOR_ME = re.compile(r"^(?:grab|take|pick up|reach|snatch|grasp) (?!me\b)(.+?) for (?:me|us)(?= please$|$)")
+"""Taking something for somebody is bringing it."""
 _PART = re.compile(r"\s*[;.!?]+\s*(?:and\s+)?(?:then\s+)?|,?\s+(?:and\s+)?(?:then|after that|afterwards),?\s+")
 _COMMA = re.compile(r"\s*,[\s,]*(?:and\s+)?")
 _CONTRACTIONS = tuple(
@@ -61,7 +67,7 @@ _CONTRACTIONS = tuple(
         (r"\b(want|go|got)(?:na|ta)\b", r"\1 to"),
     )
 )
-LONG_SPEECH = re.compile(r"^(?:say|announce|tell (?:them|everybody|everyone|people|us|me) that)\s+(.+)$")
+LONG_SPEECH = re.compile(r"^(?:(?:say|announce)(?: that)?|tell (?:them|everybody|everyone|people|us|me) that)\s+(.+)$")
 """A clause whose words are to be spoken and not understood."""
 
 
@@ -119,6 +125,7 @@ def _commas_as_and(text: str) -> str:
 def without_politeness(text: str) -> str:
     """A clause without "could you please ..." and "... right now"; "" when nothing else is in it."""
     bare = _LEAD.sub("", text.strip(" ,;.!?") + " ").strip()
+    bare = _FOR_ME.sub(r"bring me \1", bare)
     while (shorter := _TAIL.sub("", bare)) != bare:
         bare = shorter
     return bare
@@ -137,6 +144,8 @@ def infinitive(word: str, verbs: Container[str]) -> str:
         return word
     if word in _PAST:
         return _PAST[word]
+    if word.endswith("ied") and f"{word[:-3]}y" in verbs:
+        return f"{word[:-3]}y"
     if word.endswith("ed"):
         return next((v for v in (word[:-2], word[:-1], word[:-3]) if v in verbs), word)
     stem = word.removesuffix("ing")

@@ -48,13 +48,38 @@ SIDES: dict[str, Which] = {
     "on the right": "right", "from the right": "right", "to the right": "right", "on the right side": "right",
     "on your left": "left", "on your right": "right", "to your left": "left", "to your right": "right",
 }  # fmt: skip
-_BUT = ("but not", "except for", "except", "apart from", "other than", "besides", "excluding", "without", "but", "not")
+_BUT = (
+    "but not",
+    "but no",
+    "except for",
+    "except",
+    "apart from",
+    "other than",
+    "besides",
+    "excluding",
+    "without",
+    "but",
+    "not",
+)
 """Words before what is left out."""
 _MEASURES = frozenset(
     {"piece", "pieces", "bit", "pair", "couple", "lot", "one", "some", "any", "all", "both", "each", "kind"}
 )
 """Words before "of" that say how much of it."""
-_TAILS = ("over there", "there", "you see", "you can see", "you found", "you have found", "you are holding", "you hold")
+_TAILS = (
+    "over there",
+    "there",
+    "you see",
+    "you can see",
+    "you found",
+    "you have found",
+    "you are holding",
+    "you hold",
+    "you can find",
+    "you have got",
+    "you have",
+    "you know",
+)
 _CLAUSES = (
     "that is lying",
     "that is standing",

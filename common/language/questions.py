@@ -11,7 +11,7 @@ ABOUT_THE_WORLD: tuple[Wording, ...] = (
     ),
     Wording(
         "contents",
-        f"{ASK} (what | which (things | objects)) ({BE} | lies | lie | do you see)"
+        f"{ASK} (what | which (things | objects)) ({BE} | lies | lie | do you see | do we have | have we got)"
         f" [{LYING}] (on | in | at) <spot>"
         f" | {ASK} what <spot> (has | holds | contains) [on it | in it]",
         heard="what is (on | in) [the] <place>",
@@ -37,6 +37,9 @@ ABOUT_THE_WORLD: tuple[Wording, ...] = (
         "where",
         f"{ASK} (which | what) (room | place | surface | shelf | table) {BE} <thing> [in | on]",
         heard="",
+    ),
+    Wording(
+        "where", f"{ASK} where (i | we | you) [have] [last] (left | put | saw | seen | have | had) <thing>", heard=""
     ),
     Wording(
         "where",

@@ -5,7 +5,9 @@ from common.language.normalise import Words
 _ADVERBS = frozenset({"just", "very", "quite", "rather", "perhaps", "maybe", "please", "also", "too", "straight"})
 _NO_ADVERBS = frozenset({"only", "family", "early"})
 _PARTICLES = frozenset({"back", "over", "out", "up", "down", "on", "along", "off", "away", "round", "across", "right"})
-_AFTER_PARTICLE = frozenset({"to", "on", "onto", "in", "into", "at", "from", "here", "there"})
+_AFTER_PARTICLE = frozenset(
+    {"to", "on", "onto", "in", "into", "at", "from", "here", "there", "beside", "next", "near", "behind"}
+)
 _RECEIVERS = frozenset({"me", "us"})
 
 

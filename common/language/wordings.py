@@ -16,8 +16,10 @@ from common.language.lexicon import (
     LOOK,
     MODAL,
     MOVE,
+    MOVED,
     NEAR,
     ON,
+    PERSON,
     PICK,
     PUT,
     SEEK,
@@ -88,7 +90,8 @@ WORDINGS: tuple[Wording, ...] = (
     Wording(
         "mention",
         "there (is | are | should be | must be) <thing> | (i | we) (left | put | saw | forgot | dropped) <thing>"
-        " | <thing> (is | are) (in | on | at) <spot>",
+        " | <thing> (is | are) (in | on | at) <spot> | <thing> (is | are | was | were | looks | look | has | "
+        "have) <words>",
         heard="",
     ),
     Wording("untidy", "<spot> (is | looks) (a mess | messy | untidy | dirty | a tip)", heard=""),
@@ -104,13 +107,13 @@ WORDINGS: tuple[Wording, ...] = (
     # The robot itself.
     Wording(
         "say",
-        "(say | announce) <words> | tell (them | everybody | everyone | people | us | me) that <words>",
+        "(say | announce) [that] <words> | tell (them | everybody | everyone | people | us | me) that <words>",
         heard="",
     ),
     Wording("wait", "(wait | pause) [here | there | a moment | a bit | a while | for me]", heard="wait"),
     Wording(
         "wait",
-        "(wait | pause | sleep | stay [here | there] | hang around) [here | there] [for] <words>",
+        "(wait | pause | sleep | hold on | hang on | stay [here | there] | hang around) [here | there] [for] <words>",
         heard="",
     ),
     Wording(
@@ -123,7 +126,7 @@ WORDINGS: tuple[Wording, ...] = (
     Wording(
         "go_and_see",
         f"[go [and] | come and] {LOOK} [around | round] [in | at | on | inside | into] <spot>"
-        f" | go [and] {LOOK} what (is | lies | there is) [lying | standing] (on | in | at) <spot>"
+        f" | [go [and]] {LOOK} what (is | lies | there is) [lying | standing] (on | in | at) <spot>"
         f" | (search | inspect | survey | scan | explore) <spot>",
         heard="",
     ),
@@ -180,6 +183,7 @@ WORDINGS: tuple[Wording, ...] = (
         f"({GO} | off you go) [over | back | along] (to | into | towards) <spot>",
         heard="drive [back] to [the] <place>",
     ),
+    Wording("go", "(swing | drop | stop | pop | pass | come | go) by <spot> | visit <spot>", heard=""),
     Wording("go", "(approach | look at) <spot>", heard=""),
     Wording("go", "(i | we) (need | want) you (in | at | by) <spot>", heard=""),
     Wording("go", "(make your way | get yourself | take yourself) [over | back] (to | into) <spot>", heard=""),
@@ -250,6 +254,19 @@ WORDINGS: tuple[Wording, ...] = (
         heard="",
     ),
     Wording("put", f"(can | could | should) <thing> (go | be) {ON} <spot>", heard=""),
+    Wording(
+        "put",
+        f"(can | could | should | must | may | shall | would) <thing> be {MOVED} {BACK} ({ON} | to) <spot>"
+        f" | <thing> (should | must | has to | have to | needs to | need to | "
+        f"ought to) be {MOVED} {BACK} ({ON} | to) <spot>",
+        heard="",
+    ),
+    Wording(
+        "fetch",
+        f"(can | could | should | would) <thing> be {MOVED} (here | over | to (me | us)) | have <thing> [over "
+        f"| brought] [here]",
+        heard="",
+    ),
     Wording("put", f"make sure [that] <thing> (is | are | ends up | end up) {ON} <spot>", heard=""),
     Wording(
         "pick_up", "(pick | take | grab | lift) up <thing> | pick <thing> up | lift <thing> [up]",
@@ -260,7 +277,7 @@ WORDINGS: tuple[Wording, ...] = (
         "(get | take | grab) hold of <thing> | (hold | hang) on to <thing> | hold onto <thing>",
         heard="",
     ),
-    Wording("pick_up", "(grab | grasp | take | hold | pick) <thing>", heard="(grab | take) <thing>"),
+    Wording("pick_up", "(grab | grasp | take | hold | pick | reach [for]) <thing>", heard="(grab | take) <thing>"),
     Wording("find", f"({SEEK}) <thing>", heard="find <thing>"),
     Wording("find", "(i | we) (can not | cannot | could not | did not) find <thing> [anywhere]", heard=""),
     Wording("find", "(i | we) [have] (lost | misplaced | mislaid) <thing>", heard=""),
@@ -270,10 +287,15 @@ WORDINGS: tuple[Wording, ...] = (
     Wording("fetch", f"({FETCH} | get) <thing>", heard=""),
     Wording(
         "wish_at",
-        f"(i | we) {WISH} <thing> [to be] {ON} <spot> | (i'd | we'd) (like | love) <thing> {ON} <spot>",
+        f"{PERSON} {WISH} <thing> [to be] {ON} <spot> | (i'd | we'd) (like | love | prefer | "
+        f"rather have) <thing> {ON} <spot>",
         heard="",
     ),
-    Wording("fetch", f"(i | we) {WISH} <thing> [[over] here] | (i'd | we'd) (like | love) <thing>", heard=""),
+    Wording(
+        "fetch",
+        f"{PERSON} {WISH} <thing> [[over] here] | (i'd | we'd) (like | love | prefer | rather have) <thing>",
+        heard="",
+    ),
     Wording("fetch", f"{MODAL} (i | we) (have | get) <thing> | let (me | us) have <thing>", heard=""),
     Wording("fetch", f"{MODAL} i trouble you for <thing> | gimme <thing> | how about <thing>", heard=""),
     Wording("fetch", "<thing> would be (nice | great | good | lovely | perfect)", heard=""),

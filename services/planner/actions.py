@@ -7,7 +7,7 @@ from common.language.pattern import Slots
 from common.language.quantities import LONGEST, duration
 from common.messages import PlanStep
 from services.planner.phrases import Phrase, read
-from services.planner.plan_builder import PlanBuilder, Refusal
+from services.planner.plan_builder import NOT_UNDERSTOOD, PlanBuilder, Refusal
 from services.planner.relations import BESIDE, between
 from services.planner.resolve import Referent, fitting, referent, referents, spot
 from services.planner.vocabulary import Spot
@@ -193,6 +193,8 @@ def remark(builder: PlanBuilder, slots: Slots) -> None:
 
 def mention(builder: PlanBuilder, slots: Slots) -> None:
     """A thing that is spoken of next as "it"; where it is said to be is where it is looked for."""
+    if "and" in slots.get("words", ()):
+        raise Refusal(f"{NOT_UNDERSTOOD} that")
     words = (*slots["thing"], "on", *slots["spot"]) if "spot" in slots else slots["thing"]
     try:
         builder.last = [m.object for m in referents(builder, words)]

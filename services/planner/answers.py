@@ -4,7 +4,7 @@ from common.floor_plan import Receptacle
 from common.language.normalise import Words, enumeration, without_determiners
 from common.language.noun_phrase import related
 from common.language.pattern import Slots
-from common.messages import PlanStep
+from common.messages import AROUND, PlanStep
 from services.planner.phrases import Phrase, read
 from services.planner.plan_builder import PlanBuilder, Refusal
 from services.planner.relations import between, holds, spoken
@@ -194,7 +194,10 @@ def check(builder: PlanBuilder, slots: Slots) -> None:
 
 
 def look_around(builder: PlanBuilder, slots: Slots) -> None:
-    """Turn on the spot, then tell what is there."""
+    """Turn on the spot, then tell what is there; after driving somewhere there is no telling yet."""
+    if builder.moved:
+        builder.steps.append(PlanStep(action="navigate", target=AROUND))
+        return
     builder.turn_around([])
     seen(builder, slots)
 

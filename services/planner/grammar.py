@@ -179,7 +179,7 @@ def _steps(command: str, builder: PlanBuilder) -> list[PlanStep]:
     if not builder.steps and builder.need:
         _whole(("bring", "me", *builder.need.split()), builder, alone=True, started=False)
     if not builder.steps:
-        raise Refusal("there is nothing to do")
+        raise Refusal(f"{NOT_UNDERSTOOD} what I should do")
     if all(step.action == "find" for step in builder.steps):
         answers.found(builder)
     return builder.steps

@@ -3,11 +3,12 @@
 import re
 from collections.abc import Sequence
 
-from common.language.discourse import IsPlace, replaced
+from common.language.discourse import PREPOSITIONS, IsPlace, replaced
 from common.language.meaning import readings
 from common.language.normalise import DETERMINERS, expand, normalise, without_politeness
 from common.messages import History
 
+_NO = re.compile(r"^(?:no )?i (?:said|meant|mean) (?P<rest>.+)$")
 _TOO = re.compile(
     r"^(?:and |now |then )?(?P<thing>.+?) (?:too|as well|also)(?: please)?$|^(?:and|what about) (?P<other>.+)$"
 )
@@ -21,6 +22,8 @@ def repeated(command: str, clauses: Sequence[str], told: History, is_place: IsPl
     for wording, slots in readings(tuple(clauses[0].split()), "command"):
         if wording.action == "again":
             return (replaced(last, " ".join(slots["thing"]), is_place) or last) if "thing" in slots else last
+    if (found := _NO.match(expand(normalise(command)))) and found["rest"].split()[0] in DETERMINERS | PREPOSITIONS:
+        return replaced(normalise(last), found["rest"], is_place) or command
     if found := _TOO.match(without_politeness_at_end(command)):
         thing = found["thing"] or found["other"]
         if thing.split()[0] in DETERMINERS:

@@ -134,6 +134,8 @@ class Vocabulary:
                 return Sense(every=True), form, plural
             if sense := self._nouns.get(form):
                 return sense, form, plural or form in self._mass
+        if phrase.startswith("anything ") and (sense := self._nouns.get(phrase.replace("any", "some", 1))):
+            return sense, phrase, False
         for form, plural in _singulars(phrase):
             if labels := self._printed.get(form):
                 return Sense(names=frozenset(labels)), form, plural

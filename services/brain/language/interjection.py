@@ -11,6 +11,7 @@ from common.language.normalise import expand, normalise, without_fillers
 Kind = Literal["stop", "cancel", "come_back", "queue", "replace", "aside"]
 _LATER = re.compile(
     r"^(?:and )?(?:then|after(?:wards?| that| this| it)?|next|later(?: on)?|"
+    r"(?:when|once|as soon as|after) (?:that|this|it)(?: is| has)?(?: been)? (?:done|finished|over|ready)|"
     r"(?:when|once|as soon as|after) you(?: are|'re| have|'ve)?(?: all)? (?:done|finished|ready|through|free|back)"
     r"(?: with (?:that|this|it))?|when that is done|in addition|on top of that)\b[, ]*"
 )
@@ -23,7 +24,8 @@ _LATER_END = re.compile(
 _INSTEAD = re.compile(
     r"^(?:no|stop|wait|sorry|hold on|hang on|"
     r"(?:forget|scrap|leave|drop|cancel|never mind|skip) (?:about )?(?:that|it|this)|never ?mind|"
-    r"scratch that|i(?: have|'ve)? changed my mind|actually|on second thoughts?|instead|rather|"
+    r"scratch that|change of plans?|new plan|i(?: have|'ve)? changed my mind|actually|on second thoughts?|"
+    r"instead|rather|"
     r"(?:do not|don't) (?:do that|bother)(?: and)?)\b[, ]+(?:and |but )?"
 )
 """Words before a command that puts it in the place of the one under way."""
