@@ -3,9 +3,9 @@
 import msgspec
 import pytest
 
-from common.floor_plan import Place, Receptacle, Room, Thing
+from common.floor_plan import Box, Place, Receptacle, Room, Thing
 from common.household import Household
-from common.messages import KnownWorld, PlanStep
+from common.messages import AROUND, KnownWorld, PlanStep
 from common.plan_rules import MAX_STEPS, OPENING, is_destination, known_world, objection
 
 COLOUR = (1.0, 0.0, 0.0, 1.0)
@@ -25,6 +25,7 @@ SCENE = Household(
     rooms=(
         Room(name="hall", low=(0, 0), high=(1, 1)), Room(name="study", low=(-1, 0), high=(0, 1), aliases=("office",)),
     ),
+    furniture=(Box(name="wine fridge", center=(0, 0, 1), size=(1, 1, 2), rgba=COLOUR),),
     receptacles=(
         Receptacle(name="desk", kind="table", center=(0, 0, 1), size=(1, 1), aliases=("bureau",)),
         Receptacle(name="bin", kind="bin", center=(0, 0, 0), size=(1, 1), depth=0.4),
@@ -112,6 +113,10 @@ NOTHING = "step {}: there is nothing in the hand to release"
         ((go("ballroom"),), "", (), "step 1: I know no ballroom"),
         ((go("ballroom", "red mug"),), "", (), "step 1: I know no ballroom"),
         ((go(),), "", (), "step 1: I know no "),
+        ((go(AROUND),), "", (), ""),
+        ((find("fridge"),), "", (), "step 1: I know no fridge that I could pick up"),
+        ((find("wine fridge"),), "", (), "step 1: I know no wine fridge that I could pick up"),
+        ((find("fridges"),), "", (), ""),
         ((say(" "),), "", (), "step 1: there is nothing to say"),
         ((CLOSE, OPEN, *MUG), "", (), ""),
         ((CLOSE, find("red mug"), grasp("red mug"), RELEASE, OPEN, RELEASE), "", (), NOTHING.format(6)),
