@@ -20,7 +20,8 @@ LONGEST = 200
 
 def refusal(state: m.BrainState | None) -> str:
     """Why others may not move the robot now, "" when they may."""
-    if state is not None and state.state not in READY:
+    suspended = state is not None and state.state == "IDLE" and state.mission_id
+    if state is not None and (state.state not in READY or suspended):
         return f"a mission is under way ({state.state}); cancel it first"
     return ""
 

@@ -69,7 +69,7 @@ class Ros2Service:
             raise StartError(MISSING) from None
         if io.outside is None:
             raise StartError("the ROS 2 gateway needs a router")
-        namespace = config.namespace.strip("/") or ros_name(io.outside.namespace)
+        namespace = ros_name(config.namespace or io.outside.namespace)
         self._prefix = f"/{namespace}" if namespace else ""
         self._node = RosNode(io.outside.open(), NODE, self._prefix, config.domain)
         self._outlets = [(row, self._outlet(row.name, row.type, row.qos)) for row in outgoing.ROWS]
