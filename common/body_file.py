@@ -33,41 +33,49 @@ def load(path: Path) -> tuple[Any, Any]:
     return model, data
 
 
-def bounds(model: Any, data: Any) -> tuple[Array, Array]:
-    """Lowest and highest corner (3,) [m] of all that is no plane."""
+def standing(up: str) -> Array:
+    """The rotation (3, 3) that turns the file's axis `up` (x, y or z) upwards."""
+    return {
+        "x": np.array([[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]]),
+        "y": np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]]),
+    }.get(up, np.eye(3))
+
+
+def bounds(model: Any, data: Any, turn: Array) -> tuple[Array, Array]:
+    """Lowest and highest corner (3,) [m] of all that is no plane, after the rotation `turn` (3, 3)."""
     import mujoco
 
     low, high = np.full(3, np.inf), np.full(3, -np.inf)
     for g in range(model.ngeom):
         if model.geom_type[g] == mujoco.mjtGeom.mjGEOM_PLANE:
             continue
-        turn, at = data.geom_xmat[g].reshape(3, 3), data.geom_xpos[g]
+        own, at = turn @ data.geom_xmat[g].reshape(3, 3), turn @ data.geom_xpos[g]
         if model.geom_type[g] == mujoco.mjtGeom.mjGEOM_MESH:
             mesh = int(model.geom_dataid[g])
             begin = int(model.mesh_vertadr[mesh])
-            points = model.mesh_vert[begin : begin + int(model.mesh_vertnum[mesh])] @ turn.T + at
+            points = model.mesh_vert[begin : begin + int(model.mesh_vertnum[mesh])] @ own.T + at
         else:
             centre, half = model.geom_aabb[g, :3], model.geom_aabb[g, 3:]
             signs = np.array(np.meshgrid((-1, 1), (-1, 1), (-1, 1))).reshape(3, -1).T
-            points = (centre + signs * half) @ turn.T + at
+            points = (centre + signs * half) @ own.T + at
         low, high = np.minimum(low, points.min(axis=0)), np.maximum(high, points.max(axis=0))
     return low, high
 
 
-def middle(model: Any, data: Any) -> Array:
-    """The middle (3,) [m] of the bounding box."""
-    low, high = bounds(model, data)
+def middle(model: Any, data: Any, turn: Array) -> Array:
+    """The middle (3,) [m] of the bounding box after the rotation `turn` (3, 3)."""
+    low, high = bounds(model, data, turn)
     return np.asarray((low + high) / 2)
 
 
 @cache
-def extents(path: Path) -> tuple[float, float, float]:
-    """Full extents (x, y, z) [m] of what a body file holds.
+def extents(path: Path, up: str = "z") -> tuple[float, float, float]:
+    """Full extents (x, y, z) [m] of what a body file holds, standing with its axis `up` upwards.
 
     Raises:
         BodyError: it cannot be read, or holds nothing.
     """
-    low, high = bounds(*load(path))
+    low, high = bounds(*load(path), standing(up))
     if not np.isfinite(low).all():
         raise BodyError(f"{path}: it has no geoms")
     x, y, z = (round(float(v), 4) for v in high - low)

@@ -59,7 +59,7 @@ class ObjectSpec(Thing, frozen=True, kw_only=True):
     What it looks like: `label` is printed on it; `pattern` in the colour `second`, which rims and lids have too.
     `gloss` [0 matt .. 1 like a mirror] and `transparent` are what a depth camera has its trouble with. `form` is a body
     of `services/sim/things/forms.py` that no kind has by itself. `model` is an MJCF file with the whole body, whose
-    extents and mass count where none are given.
+    extents and mass count where none are given, and whose axis `up` points upwards when it stands.
     """
 
     size: Vec3 = (0.0, 0.0, 0.0)
@@ -76,6 +76,7 @@ class ObjectSpec(Thing, frozen=True, kw_only=True):
     second: Rgba | None = None
     form: Form | None = None
     model: str = ""
+    up: Literal["x", "y", "z"] = "z"
 
 
 def body_name(spec: Thing) -> str:
@@ -162,7 +163,7 @@ def _with_bodies(scene: Scene, path: Path) -> Scene:
             continue
         file = (path.parent / spec.model).resolve()
         try:
-            size = spec.size if any(spec.size) else extents(file)
+            size = spec.size if any(spec.size) else extents(file, spec.up)
         except BodyError as error:
             raise SceneError(f"{path}: object {spec.name!r}: {error}") from None
         objects.append(msgspec.structs.replace(spec, model=str(file), size=size))

@@ -16,7 +16,7 @@ from common.config import config_dir
 from common.household import Household, load_words, mapped
 from common.kinds import kind_of
 from common.scene import ObjectSpec, Receptacle, Scene, SceneError
-from evaluation import catalogue
+from evaluation import catalogue, groceries
 from evaluation.blocks import VLA, WORDINGS, flat, random
 from evaluation.case import Case, Line
 from evaluation.drawn import LAID, things
@@ -67,6 +67,16 @@ def labels(seed: int) -> Case:
     """Groceries, crockery, toys and tools with faces; one is asked for by what is printed on it."""
     rng = random(seed, 24)
     return fetch(seed, "labels", lambda: catalogue.things(int(rng.integers(*IN_A_WORLD)), rng, printed=True), rng)
+
+
+def scanned(seed: int) -> Case:
+    """Groceries, crockery and books that were scanned, asked for by print or by colour and kind.
+
+    Raises:
+        AssetsMissing: the extra `things` is not installed.
+    """
+    rng = random(seed, 25)
+    return fetch(seed, "things", lambda: groceries.things(int(rng.integers(*IN_A_WORLD)), rng), rng)
 
 
 def fetch(

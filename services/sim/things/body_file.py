@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from PIL import Image
 from scipy.spatial import cKDTree
 
-from common.body_file import load, middle
+from common.body_file import load, middle, standing
 from common.scene import ObjectSpec, body_name
 from services.sim.robot import HULL_GROUP
 from services.sim.things.convex import parts
@@ -26,7 +26,11 @@ from services.sim.things.primitives import CONTACT, GROUP
 
 Array = NDArray[np.float64]
 FACES = 2000
-"""Triangles that a mesh to look at may have; twelve such cost a picture about as much as the flat does."""
+"""Triangles that all meshes to look at of one body may have; twelve such cost a picture about as much as the flat."""
+REACH = 12.0
+"""How far, in sides of an old triangle, its coordinates are taken to go on: a new one is some ten times as large."""
+LEAST_FACES = 60
+"""Triangles below which a mesh is left as it is."""
 CARE = 3
 """How hard fast_simplification may collapse edges, as for the robot's meshes (`services/sim/skin.py`)."""
 PIXELS = 512
@@ -46,9 +50,12 @@ class Built:
         self.files: dict[str, bytes] = {}
         self._spec, self._name = spec, body_name(spec)
         self._model, self._data = load(Path(spec.model))
-        self._middle = middle(self._model, self._data)
+        self._turn = standing(spec.up)
+        self._middle = middle(self._model, self._data, self._turn)
         self._made: set[str] = set()
         seen, solid = _roles(self._model)
+        looks = {int(self._model.geom_dataid[g]) for g in seen if self._model.geom_dataid[g] >= 0}
+        self._share = FACES / max(FACES, sum(int(self._model.mesh_facenum[n]) for n in looks))
         for g in seen:
             self._look(g)
         if solid:
@@ -76,9 +83,9 @@ class Built:
         return f'<inertial pos="0 0 0" mass="{self.mass:.5f}" diaginertia="{moments}"/>'
 
     def _place(self, g: int) -> str:
-        at = self._data.geom_xpos[g] - self._middle
+        at = self._turn @ self._data.geom_xpos[g] - self._middle
         quat = np.zeros(4)
-        mujoco.mju_mat2Quat(quat, self._data.geom_xmat[g])
+        mujoco.mju_mat2Quat(quat, (self._turn @ self._data.geom_xmat[g].reshape(3, 3)).ravel())
         return f'pos="{_text(at, 6)}" quat="{_text(quat, 6)}"'
 
     def _look(self, g: int) -> None:
@@ -129,7 +136,7 @@ class Built:
         name = f"look_{self._name}_{number}"
         if name not in self._made:
             self._made.add(name)
-            self.assets += xml(name, simplified(self._model, number))
+            self.assets += xml(name, simplified(self._model, number, self._share))
         return name
 
     def _material(self, number: int) -> str:
@@ -198,29 +205,49 @@ def _corners(model: Any, number: int) -> tuple[Array, NDArray[np.int64]]:
     return np.array(model.mesh_vert[at : at + count], np.float64), np.array(model.mesh_face[begin : begin + faces])
 
 
-def simplified(model: Any, number: int) -> Mesh:
-    """A compiled mesh with its texture coordinates, of at most `FACES` triangles or little more.
-
-    Each triangle has corners of its own: at a seam of the texture two neighbours have different coordinates.
-    """
+def simplified(model: Any, number: int, share: float) -> Mesh:
+    """A compiled mesh with its texture coordinates, and about a `share` of its triangles."""
     vertices, faces = _corners(model, number)
     begin, start = int(model.mesh_faceadr[number]), int(model.mesh_texcoordadr[number])
-    flat = np.arange(3 * len(faces)).reshape(-1, 3)
     if start < 0:
         uv = np.zeros((3 * len(faces), 2))
     else:
         uv = np.array(model.mesh_texcoord[start:][model.mesh_facetexcoord[begin : begin + len(faces)].ravel()])
-    if len(faces) <= FACES:
-        return Mesh(vertices[faces.ravel()], flat, uv)
-    fewer, left = fast_simplification.simplify(vertices, faces, target_count=FACES, agg=CARE)
+    target = int(share * len(faces))
+    if share == 1.0 or target < LEAST_FACES:
+        return _shared(vertices[faces.ravel()], uv)
+    # Along the seams of its picture a mesh is cut: sewn up first, or it would tear there.
+    sewn, index = np.unique(np.round(vertices, 6), axis=0, return_inverse=True)
+    fewer, left = fast_simplification.simplify(sewn, index.ravel()[faces], target_count=target, agg=CARE)
     fewer = np.clip(fewer, vertices.min(axis=0), vertices.max(axis=0))
-    # A corner takes the coordinates of the nearest old one on the side of its own triangle.
-    old = vertices[faces]
-    inward = 0.8 * old + 0.2 * old.mean(axis=1, keepdims=True)
-    new = fewer[left]
-    asked = 0.8 * new + 0.2 * new.mean(axis=1, keepdims=True)
-    _, nearest = cKDTree(inward.reshape(-1, 3)).query(asked.reshape(-1, 3))
-    return Mesh(new.reshape(-1, 3), np.arange(3 * len(left)).reshape(-1, 3), uv[nearest])
+    return _shared(fewer[left].reshape(-1, 3), _mapped(vertices[faces], uv.reshape(-1, 3, 2), fewer[left]))
+
+
+def _mapped(old: Array, uv: Array, new: Array) -> Array:
+    """Texture coordinates (3 k, 2) for triangles `new` (k, 3, 3) from triangles `old` (n, 3, 3) with `uv` (n, 3, 2).
+
+    A new triangle lies on that old one whose middle is nearest to its own: its corners get what the plane through the
+    old one's coordinates has there, so that the picture runs on without a break within it.
+    """
+    _, nearest = cKDTree(old.mean(axis=1)).query(new.mean(axis=1))
+    a, b, c = (old[nearest, i] for i in range(3))
+    e, f = b - a, c - a
+    ee, ef, ff = (e * e).sum(1), (e * f).sum(1), (f * f).sum(1)
+    det = np.maximum(ee * ff - ef * ef, 1e-18)
+    offset = new - a[:, None]
+    oe, of = (offset * e[:, None]).sum(2), (offset * f[:, None]).sum(2)
+    s = np.clip((ff[:, None] * oe - ef[:, None] * of) / det[:, None], -REACH, REACH)
+    t = np.clip((ee[:, None] * of - ef[:, None] * oe) / det[:, None], -REACH, REACH)
+    base, along, across = uv[nearest, 0], uv[nearest, 1] - uv[nearest, 0], uv[nearest, 2] - uv[nearest, 0]
+    found = base[:, None] + s[..., None] * along[:, None] + t[..., None] * across[:, None]
+    return np.asarray(found.reshape(-1, 2))
+
+
+def _shared(corners: Array, uv: Array) -> Mesh:
+    """Triangles of corners (3 k, 3) with coordinates (3 k, 2), with one vertex for all corners that are the same."""
+    rows = np.concatenate([np.round(corners, 5), np.round(uv, 4)], 1)
+    kept, index = np.unique(rows, axis=0, return_inverse=True)
+    return Mesh(kept[:, :3], index.reshape(-1, 3), kept[:, 3:])
 
 
 def _texture_of(model: Any, material: int) -> int:
