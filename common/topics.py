@@ -144,7 +144,7 @@ HOUSEHOLD_NAMES = _event("household/names", m.TaughtNames, by="perception", to="
 
 BASE_TARGET = _goal("base/target_pose", m.BaseTarget, by="navigation", to="sim", latched=False)
 GOAL_REACHED = _event("base/goal_reached", m.GoalReached, by="sim", to="navigation")
-CMD_VEL = _stream("base/cmd_vel", m.CmdVel, by="navigation ros2 foxglove", to="sim", rate=20.0, binary=False)
+CMD_VEL = _stream("base/cmd_vel", m.CmdVel, by="navigation ros2 foxglove dashboard", to="sim", rate=20.0, binary=False)
 ARM_COMMAND = _stream("arm/command", m.ArmCommand, by="manipulation", to="sim dashboard", rate=50.0)
 GRIPPER_COMMAND = _goal("gripper_command", m.GripperCommand, by="brain manipulation", to="sim", latched=False)
 JOINT_STATES = _stream(

@@ -26,6 +26,7 @@ from services.dashboard.scene.layers import Layers
 from services.dashboard.scene.picking import pick
 from services.dashboard.scene.view import View
 from services.dashboard.supervisor_client import Supervisor
+from services.dashboard.teleoperation import Teleoperation
 from services.dashboard.web.events import Asked, Click, Sound, Words
 from services.dashboard.web.listener import PageError
 from services.dashboard.web.server import Web
@@ -60,6 +61,7 @@ class DashboardService:
             io, Supervisor(config.supervisor), lambda words: self._transcript.add(self._t, "robot", words)
         )
         self._commands = Commands(io, self._transcript)
+        self._teleoperation = Teleoperation(io)
         self._plots = Plots(self.panels)
         self._mjcf = ""
         self._drawn: Job[Drawing] | None = None
@@ -81,6 +83,7 @@ class DashboardService:
         """Take what came from the bus and from visitors, then show what changed."""
         self._receive(now)
         self._handle_events(now)
+        self._teleoperation.step(now)
         self._redraw_model(now)
         watched = self.web.watched
         self._requests.step(now, watched)
@@ -140,7 +143,7 @@ class DashboardService:
             if isinstance(event, Asked):
                 self._requests.mission(event.mission, partial(self._show_mission, event))
             elif isinstance(event, Words):
-                self._handle_action(event)
+                self._handle_action(event, now)
             elif isinstance(event, Sound):
                 self._commands.sound(event.data, self._t)
             elif isinstance(event, Click) and (self.panels.clicks or self._commands.naming):
@@ -149,8 +152,10 @@ class DashboardService:
                 picked = pick(event.origin, event.direction, self.view.drawing.flat, objects)
                 self._commands.picked(picked, self._base, state, self._t)
 
-    def _handle_action(self, words: Words) -> None:
-        if words.do == "restart":
+    def _handle_action(self, words: Words, now: float) -> None:
+        if words.do == "drive":
+            self._teleoperation.hold(words.text, now)
+        elif words.do == "restart":
             self._requests.restart(words.text)
         else:
             self._commands.words(words.do, words.text, self._t)

@@ -14,8 +14,9 @@ from common.topics import Topic
 
 SERVICES = tuple(name for name in NAMES if name != "router")
 ROOT = Path(__file__).parents[2]
-SHARED = {"gripper_command"}
-"""Two services publish them by the wire contract. What people's tools publish, services may publish for them."""
+SHARED = {"gripper_command", "base/cmd_vel"}
+"""Two services publish them: the first by the wire contract, the second because the page drives by hand. What people's
+tools publish, services may publish for them."""
 
 
 def service(name: str) -> Any:

@@ -19,7 +19,7 @@ from cli.link import Link
 from common import topics
 from common.bus.session import open_session
 from services.dashboard.config import DashboardConfig
-from services.dashboard.web.events import Sound
+from services.dashboard.web.events import Sound, Words
 from services.dashboard.web.server import Web
 from tests.support import ROOT, eventually, free_port
 
@@ -124,6 +124,50 @@ def visitor(browser: Any, link: Link) -> Iterator[Visitor]:
         yield opened
     finally:
         opened.page.close()
+
+
+def test_the_base_is_driven_as_long_as_a_key_or_a_button_is_held(browser: Any) -> None:
+    """Without a robot: what comes out of the page's server while a key is down, and after; nothing before "Drive"."""
+    web = Web(DashboardConfig(port=0))
+
+    def wishes(until: str) -> list[str]:
+        found: list[str] = []
+        while not found or found[-1] != until:
+            event = web.inbox.get(timeout=60)
+            if event != Sound(b""):
+                assert isinstance(event, Words) and event.do == "drive", event
+                found.append(event.text)
+        return found
+
+    rest = "0.00 0.00 0.00"
+    try:
+        window = Visitor(browser, web.url)
+        page = window.page
+        window.wait("document.getElementById('link').textContent !== 'connecting'")
+        page.keyboard.press("w")
+        page.locator("#drive").click()
+        page.keyboard.down("ArrowUp")
+        assert wishes("1.00 0.00 0.00") == ["1.00 0.00 0.00"], "the key before Drive was pressed did nothing"
+        page.keyboard.down("q")
+        wishes("1.00 0.00 1.00")
+        page.keyboard.up("q")
+        page.keyboard.up("ArrowUp")
+        wishes(rest)
+        button = page.locator("#pad [data-drive='0 -1 0']")
+        button.dispatch_event("pointerdown")
+        wishes("0.00 -1.00 0.00")
+        page.evaluate("window.dispatchEvent(new Event('blur'))")
+        wishes(rest)
+        page.locator("#text").click()
+        page.keyboard.type("was")
+        page.locator("#drive").click()
+        page.keyboard.down("ArrowUp")
+        page.wait_for_timeout(300)
+        assert web.inbox.empty(), "neither typing nor a closed pad drives"
+        assert window.errors == []
+        page.close()
+    finally:
+        web.close()
 
 
 def test_the_microphone_arrives_as_16_khz_samples(browser: Any) -> None:

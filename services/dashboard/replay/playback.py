@@ -169,7 +169,7 @@ class Playback(DashboardService):
             self._shown = shown
             self.web.say("tape", {**shown, "first": tape.first, "last": tape.last, "bands": self._bands})
 
-    def _handle_action(self, words: Words) -> None:
+    def _handle_action(self, words: Words, now: float) -> None:
         if words.do == "seek":
             try:
                 self.jump(float(words.text))

@@ -9,8 +9,10 @@ from numpy.typing import NDArray
 
 
 class Words(msgspec.Struct, frozen=True):
-    """What a visitor did: `do` is stop, resume, go on, say, name, yes, no or restart; `text` goes with say, name and
-    restart."""
+    """What a visitor did: `do` is stop, resume, go on, say, name, yes, no, restart or drive.
+
+    `text` goes with say, name, restart and drive: "forward left turn", each from -1 to 1.
+    """
 
     do: str
     text: str = ""

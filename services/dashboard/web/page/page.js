@@ -152,4 +152,5 @@ function play(buffer) {
 window.addEventListener("pointerdown", () => { speaker = speaker || new AudioContext(); speaker.resume(); }, { once: true });
 
 setUpTape(act);
+setUpDrive(act);
 connect();

@@ -1,0 +1,83 @@
+"""The base driven from the page: only while somebody holds on, slowly, never towards what the lidar sees close by."""
+
+from math import hypot, isfinite, sqrt
+
+import numpy as np
+
+from common import messages as m
+from common import topics
+from common.bus.port import Io
+from common.gateway import refusal
+
+HOLD = 0.4
+"""Time [s] after a visitor's last word at which the base stops (dead-man switch); chosen: eight words of 50 ms."""
+SPEED, TURN = 0.3, 0.6
+"""Greatest speed [m/s] and rate of turn [rad/s]; chosen: half of what navigation drives."""
+BRAKING = 0.3
+"""Deceleration [m/s^2] with which the base must be able to stop before an obstacle; chosen: a gentle one."""
+ROOM = 0.45
+"""Distance [m] from the base's centre that stays free: half of its diagonal and a hand's width; chosen."""
+STALE = 0.5
+"""Age [s] from which a scan, which comes at 10 Hz, says nothing any more."""
+WIDTH = 0.35
+"""Half the width [m] of the lane that is looked at; chosen: half of the base's diagonal."""
+
+
+class Teleoperation:
+    """Turns what visitors hold into velocities. Not while a mission, navigation or the brake has the base."""
+
+    def __init__(self, io: Io) -> None:
+        self._io = io
+        self._wish = (0.0, 0.0, 0.0)
+        self._until = float("-inf")
+        self._moving = False
+
+    def hold(self, text: str, now: float) -> None:
+        """A visitor holds on: "forward left turn", each from -1 to 1; what is no such thing is counted."""
+        try:
+            x, y, turn = (float(word) for word in text.split())
+            if not all(isfinite(v) and abs(v) <= 1 for v in (x, y, turn)):
+                raise ValueError(text)
+        except ValueError:
+            self._io.count_drop("page", f"drive {text[:40]!r}: expected three numbers from -1 to 1")
+            return
+        # A diagonal is no faster than straight on.
+        scale = SPEED / max(1.0, hypot(x, y))
+        self._wish, self._until = (x * scale, y * scale, turn * TURN), now + HOLD
+
+    def step(self, now: float) -> None:
+        """Send the velocity of this moment, and one of zero when it has ended; then nothing, which means hold."""
+        io = self._io
+        sim = io.latest(topics.SIM_STATUS)
+        scan = io.latest(topics.SCAN) if io.age(topics.SCAN, now) <= STALE else None
+        driving = io.latest(topics.NAVIGATION_FEEDBACK)
+        taken = bool(refusal(io.latest(topics.BRAIN_STATE))) or (sim is not None and sim.state == "stopped")
+        free = not taken and (driving is None or driving.status != "navigating")
+        if now < self._until and free and any(self._wish):
+            x, y, omega = self._wish
+            share = min(1.0, limit(scan, x, y) / max(hypot(x, y), 1e-9))
+            io.publish(topics.CMD_VEL, m.CmdVel(vx=x * share, vy=y * share, omega=omega))
+            self._moving = True
+        elif self._moving:
+            self._moving = False
+            io.publish(topics.CMD_VEL, m.CmdVel(vx=0.0, vy=0.0, omega=0.0))
+
+
+def limit(scan: m.LaserScan | None, x: float, y: float) -> float:
+    """Speed [m/s] towards (x, y) in the robot's frame from which it can stop before what the lidar sees; 0 without one.
+
+    v = sqrt(2 a d): d is how far the nearest point in the lane is beyond the base's own room.
+    """
+    if scan is None:
+        return 0.0
+    ranges = np.frombuffer(scan.ranges[: len(scan.ranges) // 4 * 4], "<f4").astype(np.float64)
+    angles = scan.angle_min + np.arange(len(ranges)) * scan.angle_increment
+    seen = np.isfinite(ranges) & (ranges > scan.range_min) & (ranges < scan.range_max)
+    points = np.stack([scan.x + ranges * np.cos(angles), scan.y + ranges * np.sin(angles)], axis=1)[seen]
+    speed = hypot(x, y)
+    if not speed or not len(points):
+        return SPEED
+    ahead = points @ np.array([x, y]) / speed
+    aside = np.abs(points @ np.array([-y, x]) / speed)
+    lane = ahead[(ahead > 0) & (aside < WIDTH)]
+    return SPEED if not len(lane) else sqrt(2 * BRAKING * max(0.0, float(lane.min()) - ROOM))
