@@ -240,7 +240,7 @@ class PerceptionService:
         if found is not None and found.id not in seen and self._pictures < self._config.query_pictures:
             return
         read = self._reading is not None and self._reading.fine
-        if found is None and not result.candidates and not read and self._naming.unread(query.query):
+        if not read and self._naming.unread(query.query, found is not None or bool(result.candidates)):
             self._reading = Reading(seen, view)
             return
         if found is None and not result.candidates and self._naming.consult(query, self._published):

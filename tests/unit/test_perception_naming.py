@@ -9,7 +9,7 @@ import pytest
 from services.perception.naming.appearance import Look, difference, look_of
 from services.perception.naming.crop import Crop, crop_of
 from services.perception.naming.memory import FILE, MAX_LOOKS, NameMemory, Taught
-from services.perception.naming.recognise import PERHAPS, SAME, Match, matches
+from services.perception.naming.recognise import PERHAPS, SAME, Match, matches, unlikeness
 from services.perception.naming.sights import Sight
 from services.perception.naming.text import Line
 from tests.unit.painted import Box, label, view_of_boxes
@@ -92,6 +92,14 @@ def test_the_one_that_was_followed_since_it_was_taught_has_the_name_alone() -> N
 
 def test_what_was_followed_loses_the_name_when_it_comes_to_look_otherwise() -> None:
     assert matches({"vitamin box": named(VITAMINS)}, {"b": sight(TEA)}, {"vitamin box": "b"})["b"].names == ()
+
+
+def test_other_print_tells_two_of_the_same_colours_apart_and_the_same_print_joins_them() -> None:
+    pytest.importorskip("rapidfuzz", reason="the extra `ocr`")
+    taught = named(VITAMINS, "TOMATO", "SOUP")
+    alone, same = unlikeness(taught, sight(VITAMINS)), unlikeness(taught, sight(VITAMINS, "TOMATO"))
+    other, unsure = unlikeness(taught, sight(VITAMINS, "POTATO", "SOUP")), unlikeness(taught, sight(VITAMINS, "400 g"))
+    assert same < alone == unsure < other
 
 
 # --- what is kept

@@ -158,6 +158,15 @@ def test_print_is_read_in_a_fine_picture_when_words_are_asked_for_that_name_noth
 
 
 @pytest.mark.skipif(not installed(), reason="the extra `ocr`")
+def test_a_word_that_is_a_colour_as_well_tells_two_prints_apart() -> None:
+    black = label("BLACK", "TEA", ground=(240, 240, 235), ink=(20, 20, 20), band=(90, 90, 90))
+    node = Shown(Box(0.8, 0.12, TEA), Box(0.8, -0.12, black))
+    assert node.ask("the black tea").label == "white box 1"
+    assert node.ask("the green tea").label == "white box 0"
+    assert node.ask("tea").candidates == ["white box 0", "white box 1"]
+
+
+@pytest.mark.skipif(not installed(), reason="the extra `ocr`")
 def test_print_that_is_too_far_away_leads_nearer() -> None:
     node = Shown(Box(2.4, 0.0, TEA))
     answer = node.ask("ginger biscuits")

@@ -24,7 +24,7 @@ from services.perception.naming.observer import Observer
 from services.perception.naming.recognise import Match, matches
 from services.perception.naming.teaching import Teacher
 from services.perception.naming.text import LIKELY, SURE, likeness, printed_words, shown
-from services.perception.naming.vocabulary import common_words, printable, taken
+from services.perception.naming.vocabulary import common_words, plain_words, printable, taken
 from services.perception.view import View
 
 
@@ -109,7 +109,11 @@ class Naming:
         scores = {o.id: likeness(words, o.text) for o in known}
         best = max(scores.values(), default=0.0)
         # One that reads exactly so is meant rather than one that nearly does.
-        return [o for o in known if scores[o.id] >= max(SURE, min(best, 0.99))]
+        read = [o for o in known if scores[o.id] >= max(SURE, min(best, 0.99))]
+        # "Green tea" is what has both words on it, where several have "tea".
+        others = [w for w in normalise(phrase).split() if w not in words]
+        hits = {o.id: sum(likeness([w], o.text) >= SURE for w in others) for o in read}
+        return [o for o in read if hits[o.id] == max(hits.values())]
 
     def consult(self, query: m.ObjectQuery, objects: Sequence[m.WorldObject]) -> bool:
         """Ask the configured grounder about the newest picture; True when an answer is to be waited for."""
@@ -119,14 +123,20 @@ class Naming:
         """What the grounder has chosen for the query."""
         return self._consultant.chosen(query, objects)
 
-    def unread(self, query: str) -> bool:
-        """A look at what is printed could answer the query, and there is a reader."""
-        return self._observer.can_read and bool(self._printed(query))
+    def unread(self, query: str, answered: bool) -> bool:
+        """A look at what is printed could answer the query, or tell a taught thing from one that looks like it."""
+        if not self._observer.can_read:
+            return False
+        name = normalise(query)
+        if name in self._memory.names:
+            named = [self._observer.sight(key) for key, match in self._matches.items() if name in match.names]
+            return bool(self._memory.names[name].lines) and any(s is not None and not s.read for s in named)
+        return not answered and bool(self._printed(query))
 
     def unsure(self, query: str, objects: Sequence[m.WorldObject], base: Pose2) -> list[str]:
         """Labels of objects that could be meant and have to be seen from nearer to tell, the likeliest first, of equal
         ones that which is nearest to `base`."""
-        words, name = self._printed(query), normalise(query)
+        words, name = self._printed(query, common_words(self._io.household)), normalise(query)
         said = frozenset(name.split())
         found: list[tuple[float, float, str]] = []
         for o in objects:
@@ -139,11 +149,11 @@ class Naming:
                     found.append((-score, away, o.label))
         return [label for _, _, label in sorted(found)]
 
-    def _printed(self, query: str) -> list[str]:
-        """The words of a query that may be print; those of a taught name are not."""
+    def _printed(self, query: str, common: frozenset[str] | None = None) -> list[str]:
+        """The words of a query that may be print, which are not `common`; those of a taught name are not."""
         if normalise(query) in self._memory.names:
             return []
-        return printed_words(query, common_words(self._io.household))
+        return printed_words(query, plain_words(self._io.household) if common is None else common)
 
     # --- names
     def _learn(self, key: str, look: Look) -> None:

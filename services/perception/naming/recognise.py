@@ -11,15 +11,15 @@ from common.naming import normalise
 from services.perception.naming.appearance import nearest
 from services.perception.naming.memory import Taught
 from services.perception.naming.sights import Sight
-from services.perception.naming.text import LIKELY, Line, likeness
+from services.perception.naming.text import LIKELY, SURE, Line, likeness
 
 SAME, PERHAPS = 0.25, 0.34
 """Differences of appearance up to which an object is the one that was taught, and up to which it may be (bench.naming).
 """
 CLEAR = 0.06
 """How much more alike the best must be than the second for that to be another object (bench.naming)."""
-READ_SAME, READ_OTHER = -0.10, 0.20
-"""What print adds to the difference: the same words as were read when it was taught, and other words."""
+READ_SAME, READ_OTHER = -0.06, 0.12
+"""What print adds to the difference: words that were read when it was taught, and others in place of them."""
 READABLE = 4
 """Letters of a word from which its absence tells something."""
 
@@ -38,13 +38,23 @@ def unlikeness(taught: Taught, sight: Sight) -> float:
 
 
 def _print_difference(known: Sequence[Line], seen: Sequence[Line]) -> float:
-    """READ_SAME for the same words, READ_OTHER for others, 0 when either shows none."""
-    words = [w for line in known for w in normalise(line.text).split() if len(w) >= READABLE]
-    read = " ".join(line.text for line in seen)
-    if not words or not any(len(w) >= READABLE for w in normalise(read).split()):
+    """READ_OTHER where each shows a word that the other has not, READ_SAME where they share words, else 0.
+
+    That a word was not read says nothing: it may be on another side.
+    """
+    taught, read = _words(known), _words(seen)
+    if not taught or not read:
         return 0.0
-    found = sum(likeness([w], read) >= LIKELY for w in words) / len(words)
-    return READ_OTHER + (READ_SAME - READ_OTHER) * min(1.0, 2.0 * found)
+    missing = [w for w in taught if likeness([w], " ".join(read)) < LIKELY]
+    others = [w for w in read if likeness([w], " ".join(taught)) < LIKELY]
+    if missing and others:
+        return READ_OTHER
+    return READ_SAME if len(missing) < len(taught) else 0.0
+
+
+def _words(lines: Sequence[Line]) -> list[str]:
+    """The words of lines that were read for sure."""
+    return [w for line in lines if line.confidence >= SURE for w in normalise(line.text).split() if len(w) >= READABLE]
 
 
 def matches(names: Mapping[str, Taught], sights: Mapping[str, Sight], bound: Mapping[str, str]) -> dict[str, Match]:

@@ -1,6 +1,8 @@
 """Words that name no single object: kinds, colours, places, relations. What else is in a query may be a name or a
 print."""
 
+from collections.abc import Iterable
+
 from common.household import Household
 from common.kinds import KINDS
 from common.messages import WorldObject
@@ -24,11 +26,20 @@ BARE = frozenset({"apple", "orange", "banana", "lemon", "fruit", "ball", "bowl",
 
 
 def common_words(household: Household) -> frozenset[str]:
-    """Every such word, normalised; the words of listed things too, which are known without reading."""
+    """Every word that needs no reading, normalised: those of listed things and other words for kinds are among them."""
     listed = [n for o in household.things for n in (o.name, *o.aliases)]
     words = household.words
-    told = [w for table in (words.kinds, words.colours) for word, others in table.items() for w in (word, *others)]
-    phrases = (*KINDS, *COLOURS, RELATIONS, *told, *words.groups, *_spots(household), *listed)
+    others = [word for names in words.kinds.values() for word in names]
+    return plain_words(household) | _split((*others, *words.groups, *listed))
+
+
+def plain_words(household: Household) -> frozenset[str]:
+    """Those that are hardly ever a name on a package: "tea" is another word for a mug, and may be one."""
+    colours = [w for word, others in household.words.colours.items() for w in (word, *others)]
+    return _split((*KINDS, *household.words.kinds, *COLOURS, RELATIONS, *colours, *_spots(household)))
+
+
+def _split(phrases: Iterable[str]) -> frozenset[str]:
     return frozenset(word for phrase in phrases for word in normalise(phrase).split())
 
 
