@@ -181,7 +181,7 @@ class FoxgloveService:
         elif isinstance(message, m.WorldObjects):
             labels = {one.label for one in message.objects}
             self._gone = {o.label for o in before.objects} - labels if isinstance(before, m.WorldObjects) else set()
-            self._draw_objects(message)
+            self.server.draw_objects(message, self._gone)
         for number, channel in self.server.channels.items():
             if topic in channel.topics and self._watched[number] > 0:
                 self._show(number, topic, message)
@@ -190,17 +190,11 @@ class FoxgloveService:
         channel = self.server.channels[number]
         if channel in (self.server.tf, self.server.scene):
             return
+        t = getattr(message, "t", None)
         try:
-            shown = channel.convert(message) if channel.convert else msgspec.json.encode(message)
+            channel.show(message, self._t if t is None else t)
         except ValueError as error:
             self._io.count_drop(topic.key, str(error))
-            return
-        t = getattr(message, "t", None)
-        channel.out.log(shown, log_time=self._nanoseconds(self._t if t is None else t))
-
-    @staticmethod
-    def _nanoseconds(t: float) -> int:
-        return max(0, round(t * 1e9))
 
     def _describe(self, now: float) -> None:
         if self._reading is None or not self._reading.poll(now):
@@ -217,22 +211,11 @@ class FoxgloveService:
 
     def _draw(self) -> None:
         """The robot, its home, and the objects that are known."""
-        from services.foxglove import drawing
-
-        self._scene(drawing.home(self._io.household))
-        if self._shapes:
-            self._scene(drawing.robot(self._shapes))
+        self.server.draw_home(self._io.household, self._t)
+        self.server.draw_robot(self._shapes, self._t)
         known = self._newest.get(topics.WORLD_OBJECTS.key)
         if isinstance(known, m.WorldObjects):
-            self._draw_objects(known)
-
-    def _draw_objects(self, known: m.WorldObjects) -> None:
-        from services.foxglove import drawing
-
-        self._scene(drawing.objects(known, self._gone))
-
-    def _scene(self, update: Any) -> None:
-        self.server.scene.out.log(update, log_time=self._nanoseconds(self._t))
+            self.server.draw_objects(known, self._gone)
 
     def _move(self, now: float) -> None:
         rate = self._rate("tf_rate")
@@ -244,11 +227,8 @@ class FoxgloveService:
         if self._links is not None and isinstance(joints, m.JointStates):
             poses += self._links.poses(joints)
         if poses:
-            from services.foxglove import drawing
-
             t = poses[0].t
-            poses += [pose._replace(t=t) for pose in self._fixed.values()]
-            self.server.tf.out.log(drawing.frames(poses), log_time=self._nanoseconds(t))
+            self.server.move([*poses, *(pose._replace(t=t) for pose in self._fixed.values())], t)
 
     def close(self) -> None:
         """End the server."""

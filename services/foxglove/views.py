@@ -4,10 +4,15 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import foxglove
+import msgspec
 from foxglove import channels
 from foxglove.websocket import Capability
 
+from common import messages as m
 from common import topics
+from common.household import Household
+from common.robot_frames import FramePose
+from common.robot_shapes import Shape
 from common.schemas import schema_of
 from common.topics import Topic
 from services.foxglove import drawing
@@ -53,6 +58,20 @@ class Channel(NamedTuple):
     topics: tuple[Topic[Any], ...]
     convert: Callable[[Any], Any] | None = None
 
+    def show(self, message: Any, t: float) -> None:
+        """Send a message of robot time `t` [s] to who looks.
+
+        Raises:
+            ValueError: it holds something else than it says.
+        """
+        shown = self.convert(message) if self.convert else msgspec.json.encode(message)
+        self.out.log(shown, log_time=nanoseconds(t))
+
+
+def nanoseconds(t: float) -> int:
+    """Robot time [s] as channels are stamped; before its beginning there is none."""
+    return max(0, round(t * 1e9))
+
 
 class Server:
     """The WebSocket server, open from the start; `close` ends it.
@@ -90,9 +109,28 @@ class Server:
         out = foxglove.Channel(topic.key, schema=schema, message_encoding="json", context=self._context)
         return Channel(out, (topic,))
 
+    def draw_home(self, household: Household, t: float) -> None:
+        """The home as the robot was told of it."""
+        self._draw(drawing.home(household), t)
+
+    def draw_robot(self, solids: list[Shape], t: float) -> None:
+        """The robot's links."""
+        self._draw(drawing.robot(solids), t)
+
+    def draw_objects(self, known: m.WorldObjects, gone: set[str]) -> None:
+        """The objects that are known, without those labelled as in `gone`."""
+        self._draw(drawing.objects(known, gone), known.t)
+
+    def _draw(self, update: Any, t: float) -> None:
+        self.scene.out.log(update, log_time=nanoseconds(t))
+
+    def move(self, poses: list[FramePose], t: float) -> None:
+        """Frames as they stand at robot time `t` [s]."""
+        self.tf.out.log(drawing.frames(poses), log_time=nanoseconds(t))
+
     def tell_time(self, t: float) -> None:
         """Robot time [s]."""
-        self._server.broadcast_time(round(t * 1e9))
+        self._server.broadcast_time(nanoseconds(t))
 
     def tell_parameters(self, values: dict[str, Any]) -> None:
         """Values as they are now, to whoever follows them."""
