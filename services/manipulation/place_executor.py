@@ -3,9 +3,11 @@
 from itertools import product
 
 import numpy as np
+from msgspec.structs import replace
 
+from common.floor_plan import Receptacle
 from common.geometry import compose
-from common.messages import ObjectRef
+from common.messages import ObjectRef, WorldObject
 from services.manipulation.arm_model import Obstacle
 from services.manipulation.grasp import approach_rotation
 from services.manipulation.grasped_object import USUAL_SIZE, GraspedObject
@@ -20,17 +22,20 @@ DROP = 0.004
 """Height [m] above a surface at which the way down ends. Chosen: the error of the surface's measured height."""
 BIN_DROP = 0.06
 """Height [m] above a bin's rim at which the hand lets go. Chosen: the fingers stay clear of the rim."""
+ACCESS = 0.08
+"""Least free space [m] around an object that is to be left accessible: the breadth of the hand, open."""
 STANDS = 0.03
 """Height [m] above the end of the way down at which what is met is what the object is put on: it may have slid so far
 down in the hand, or have been taken so far above its foot."""
 
 
-def place(robot: Robot, where: str, beside: ObjectRef | None = None) -> Steps[str]:
+def place(robot: Robot, where: str, beside: ObjectRef | None = None, away_from: str = "") -> Steps[str]:
     """Set the held object down on a receptacle, or with "" on the delivery surface or whatever is in reach.
 
-    `beside`: the object, in frame map, next to which; where it was seen last counts more.
+    `beside`: the object, in frame map, next to which; where it was seen last counts more. `away_from`: the label of one
+    that is to be left accessible.
     """
-    planner, household = planner_of(robot), robot.io.household
+    household = robot.io.household
     held = robot.grasped or _unknown(robot)
     robot.phase = "place"
     footprint = max(held.size[0], held.size[1])
@@ -42,28 +47,42 @@ def place(robot: Robot, where: str, beside: ObjectRef | None = None) -> Steps[st
         r = household.receptacle(name)
         if r is None:
             continue
-        taken = [] if r.depth else known
         surface, drop = (r.depth, BIN_DROP) if r.depth else (r.center[2], DROP)
-        free = spots(r, robot.base, footprint if not r.depth else max(r.size), taken, planner.arm.forward, anchor)
+        free = free_spots(robot, r, footprint, held.label, anchor, away_from)
         if free:
             choices.append((r.name, free, surface, drop))
     if not where:
-        choices.append(("floor", [(planner.arm.forward + x, y) for x, y in FLOOR_SPOTS], 0.0, DROP))
+        choices.append(("floor", [(planner_of(robot).arm.forward + x, y) for x, y in FLOOR_SPOTS], 0.0, DROP))
     if not choices:
         near = f" next to the {anchor.label}" if anchor else ""
         raise Failure("UNREACHABLE", f"no free spot of the {where}{near} is within reach from here")
-    last = Failure("UNREACHABLE", "nothing within reach")
+    last, planner = Failure("UNREACHABLE", "nothing within reach"), planner_of(robot)
     stances = [held, held.as_found] if held.as_found is not None else [held]
     for held, (name, free, surface, drop) in product(stances, choices):
         try:
-            plan = yield from robot.work(
-                plan_place, planner, held, free, surface, drop, _around(robot, held, name), robot.joints.copy()
-            )
+            around, now = _around(robot, held, name), robot.joints.copy()
+            plan = yield from robot.work(plan_place, planner, held, free, surface, drop, around, now)
         except Failure as failure:
             last = failure
             continue
         return (yield from _execute_place(robot, plan, held, name, surface))
     raise last
+
+
+def free_spots(
+    robot: Robot,
+    r: Receptacle,
+    footprint: float,
+    label: str,
+    anchor: WorldObject | ObjectRef | None = None,
+    away_from: str = "",
+) -> list[tuple[float, float]]:
+    """Free points of a receptacle in the base frame for the object of that label, `footprint` [m] across."""
+    known = [o for o in robot.source.objects() if o.label != label and not r.depth]
+    wider = [(o.size[0] + 2 * ACCESS, o.size[1] + 2 * ACCESS, o.size[2]) for o in known]
+    taken = [replace(o, size=size) if o.label == away_from else o for o, size in zip(known, wider, strict=True)]
+    wide = footprint if not r.depth else max(r.size)
+    return spots(r, robot.base, wide, taken, planner_of(robot).arm.forward, anchor)
 
 
 def _around(robot: Robot, held: GraspedObject, where: str) -> list[Obstacle]:

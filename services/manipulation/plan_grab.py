@@ -170,8 +170,10 @@ def _with_fingers(planner: Planner, target: Target, wanted: Grasp, way: Way, now
     grasp = planner.clearance.clear(target, wanted, opening)
     if grasp is None:
         return Miss("too deep for the hand")
-    if met := planner.clearance.met(grasp.pose, opening or planner.arm.hand.open, way.around):
-        return Miss("grasp collides", frozenset(met))
+    # Closed on the object the fingertips are farther out than open.
+    for width in (opening or planner.arm.hand.open, grasp.width):
+        if met := planner.clearance.met(grasp.pose, width, way.around):
+            return Miss("grasp collides", frozenset(met))
     planner.arm.hold(None)
     planner.arm.open_fingers(opening)
     try:

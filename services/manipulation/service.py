@@ -11,10 +11,11 @@ from common.bus.port import Io, Job
 from common.geometry import Pose2
 from common.goal_inbox import GoalInbox
 from common.grip import Grip
-from services.manipulation import grasp_executor, place_executor, recovery
+from services.manipulation import place_executor, recovery
 from services.manipulation.config import ManipulationConfig
 from services.manipulation.grasp_store import GraspStore
 from services.manipulation.motion_planner import Planner
+from services.manipulation.neighbours import grab_with_room
 from services.manipulation.object_source import ObjectSource
 from services.manipulation.robot import Failure, Robot, Steps, T, go_home
 
@@ -166,7 +167,7 @@ class ManipulationService:
             if not label or not wanted or label == wanted or goal.attempt > 1:
                 return (yield from self._with_planner(recovery.retract_grasped(robot, goal.object)))
             raise Failure("HAND_FULL", f"the {label} is in the gripper")
-        return (yield from self._with_planner(grasp_executor.grab(robot, goal, self._looked_for)))
+        return (yield from self._with_planner(grab_with_room(robot, goal, self._looked_for)))
 
     def _release(self) -> Steps[str]:
         robot = self._robot

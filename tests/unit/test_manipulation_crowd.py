@@ -121,3 +121,12 @@ def test_a_neighbour_at_two_centimetres_leaves_room_for_a_finger() -> None:
         ARM.open_fingers(plan.opening)
         assert not any(ARM.collides(q) for q in plan.insert)
         ARM.open_fingers()
+
+
+def test_fingertips_that_close_do_not_press_on_the_table() -> None:
+    """Bench, rod, seed 30: open they were clear of it, closed they pressed with 33 N, and the rod was too heavy."""
+    for low in (0.012, 0.02, 0.03, 0.05):
+        rod = Target("rod", "", (0.55, 0.0, 0.6 + low / 2), 0.4, (0.16, 0.03, low), shape="box", measured=True)
+        plan = plan_grab(PLANNER, rod, [[TABLE]], ARM.home.copy(), 0.1, 0.1, 1.0, frozenset(), [])
+        for width in (ARM.hand.open, plan.grasp.width):
+            assert PLANNER.clearance.met(plan.grasp.pose, width, [TABLE]) == set()
