@@ -34,6 +34,16 @@ def test_a_service_may_do_what_its_rows_say_and_no_more(name: str) -> None:
     assert set(granted.puts) == {t.key for t in service(name).WRITES} | own | ticks
 
 
+def test_what_is_really_there_reaches_the_camera_alone() -> None:
+    """Whoever decides has to look; the page draws the model of what stands still, viewers show people everything."""
+    for name in sorted(set(SERVICES) - set(topics.VIEWERS)):
+        granted = access.grants(Subject(name=name))
+        assert (topics.SIM_STATE.key in granted.reads) == (name == "camera"), name
+        assert topics.SIM_CONTACTS.key not in granted.reads, name
+        assert topics.SIM_TRUTH not in granted.asks, name
+        assert (topics.SIM_MODEL.key in granted.reads) == (name in ("camera", "dashboard")), name
+
+
 def test_speech_moves_nothing_but_may_stop() -> None:
     puts = set(access.grants(Subject(name="speech")).puts)
     assert not puts & MOVES
