@@ -39,6 +39,11 @@ def sound(io: Io, message: M) -> M:
     return message
 
 
+def due(rate: float, since: float) -> bool:
+    """True when what is done at `rate` [Hz] and was done last `since` seconds ago is to be done; at 0 it never is."""
+    return rate > 0 and since >= 1 / rate
+
+
 def standing_pose(frame: str, x: float, y: float, q: Quat) -> m.NavGoal:
     """A goal from a stamped pose, orientation (w, x, y, z).
 

@@ -5,6 +5,7 @@ from typing import Any
 from common import messages as m
 from common import topics
 from common.bus.port import Io
+from common.gateway import due
 from common.topics import Topic
 
 PICTURES = {"head": topics.HEAD_RGBD, "wrist": topics.WRIST_RGBD}
@@ -20,7 +21,7 @@ class PictureRequests:
     def step(self, now: float, watched: set[Topic[Any]]) -> None:
         """Ask each camera whose topic is watched, when it is due."""
         for name, topic in PICTURES.items():
-            if topic not in watched or (now - self._asked.get(name, float("-inf"))) * self.rate < 1:
+            if topic not in watched or not due(self.rate, now - self._asked.get(name, float("-inf"))):
                 continue
             self._asked[name] = now
             camera: Any = name

@@ -11,7 +11,7 @@ from common import messages as m
 from common import topics
 from common.bus.port import Io, Job
 from common.config import settings
-from common.gateway import refusal
+from common.gateway import due, refusal
 from common.picture_requests import PICTURES, PictureRequests
 from common.robot_frames import BaseFrames, FramePose, LinkFrames, camera_pose, lidar_pose
 from common.robot_shapes import Shape, shapes
@@ -219,7 +219,7 @@ class FoxgloveService:
 
     def _move(self, now: float) -> None:
         rate = self._rate("tf_rate")
-        if not self._watched[int(self.server.tf.out.id())] or (now - self._tf_at) * rate < 1:
+        if not self._watched[int(self.server.tf.out.id())] or not due(rate, now - self._tf_at):
             return
         self._tf_at = now
         poses = self._base.poses()

@@ -9,7 +9,7 @@ from common import messages as m
 from common import topics
 from common.bus import codec
 from common.bus.port import Io, Job
-from common.gateway import refusal
+from common.gateway import due, refusal
 from common.picture_requests import PICTURES, PictureRequests
 from common.robot_frames import BaseFrames, FramePose, LinkFrames, camera_pose, lidar_pose
 from common.runtime import StartError
@@ -193,7 +193,7 @@ class Ros2Service:
     # --- frames
     def _send_frames(self, now: float) -> None:
         self._take_description(now)
-        if not self._tf.wanted or now - self._tf_at < 1 / self._config.tf_rate:
+        if not self._tf.wanted or not due(self._config.tf_rate, now - self._tf_at):
             return
         self._tf_at = now
         poses = self._base.poses()

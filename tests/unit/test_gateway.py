@@ -5,7 +5,7 @@ import math
 import pytest
 
 from common import messages as m
-from common.gateway import refusal, standing_pose
+from common.gateway import due, refusal, standing_pose
 from services.ros2.wire import Qos, RosTopic, attachment, ros_name
 
 
@@ -29,6 +29,11 @@ def test_others_move_the_robot_between_missions_only(state: m.BrainStateName, mi
 
 def test_without_a_brain_the_robot_may_be_moved() -> None:
     assert refusal(None) == ""
+
+
+def test_what_has_a_rate_is_due_once_in_its_period_and_never_at_zero() -> None:
+    assert due(2.0, math.inf) and due(2.0, 0.5) and not due(2.0, 0.49)
+    assert not due(0.0, math.inf) and not due(-1.0, math.inf)
 
 
 def test_a_pose_on_the_floor_of_the_map_is_a_goal() -> None:
