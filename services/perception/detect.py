@@ -17,7 +17,7 @@ from common.household import Household
 from common.kinds import kind_of
 from services.perception import colour, segmentation, separate, shapes, toppled, unlisted
 from services.perception.detection import Detection
-from services.perception.segmentation import Segment
+from services.perception.segment import Segment
 from services.perception.view import Mask, View
 
 SHAPE_SCALE, HEIGHT_SCALE, COLOUR_SCALE = 0.0035, 0.010, 0.07

@@ -21,6 +21,8 @@ IRREGULAR, IRREGULAR_NOISE = 0.003, 0.8
 SOLID, GAPS = 0.86, 0.02
 """Share of its convex hull that the outline of a convex shape covers at least, and the distance [m] that what is
 missing counts as. Chosen: boxes and balls have .90 and more, crossed arms half."""
+HANDLED = 0.35
+"""Share of that for a shape with a handle, which leaves a gap."""
 DOUBT, DOUBT_NOISE = 0.0003, 0.12
 """Difference [m] of two shapes' costs, plus that of noise, at which the worse one is 1/e as likely."""
 LEAST_RIVAL = 0.1
@@ -52,7 +54,7 @@ def measure(
     if wide > 1.15 * h:
         shapes += turned.lying(used, h, outline, eye, noise)
     gaps = GAPS * max(0.0, SOLID - primitives.solidity(local, eye))
-    shapes = [replace(s, residual=s.residual + gaps) if s.family in ("box", "ball") else s for s in shapes]
+    shapes = [replace(s, residual=s.residual + (gaps if math.isnan(s.handle) else HANDLED * gaps)) for s in shapes]
     costs = [(1 - s.credit) * s.residual + COMPLEX * s.free * (0.001 + 0.3 * noise) for s in shapes]
     best = shapes[int(np.argmin(costs))]
     shares = [math.exp((min(costs) - cost) / (DOUBT + DOUBT_NOISE * noise)) for cost in costs]

@@ -25,6 +25,8 @@ TRIES = 12
 """Steps of the solver."""
 INNER = 0.012
 """Distance [m] behind the surface beyond which a point is of the inside of a hollow object, and pulls nothing."""
+STRAYS = 0.015
+"""Share of the points at either end that a rectangle leaves out."""
 CELLS = 14.0
 """Cells along the longer side of an outline in which it is counted what is covered."""
 END_WEIGHT = 4.0
@@ -200,21 +202,27 @@ def fit(
 
 def rectangle(plan: Array, turns: int) -> list[tuple[float, float, Array, Array]]:
     """Rectangles around points (n, 2): area [m2], yaw [rad], extents (2,) and middle (2,), the smallest first."""
-    found = []
-    for yaw in np.arange(turns) * (math.pi / 2 / turns):
-        c, s = math.cos(yaw), math.sin(yaw)
-        local = plan @ np.array([[c, -s], [s, c]])
-        low, high = np.percentile(local, (1.5, 98.5), axis=0)
-        middle = np.array([[c, -s], [s, c]]) @ ((low + high) / 2)
-        extents = high - low
-        found.append((float(extents[0] * extents[1]), float(yaw), extents, middle))
-    return sorted(found, key=lambda r: r[0])
+    yaws = np.arange(turns) * (math.pi / 2 / turns)
+    c, s = np.cos(yaws), np.sin(yaws)
+    turn = np.stack([np.stack([c, -s], 1), np.stack([s, c], 1)], 1)
+    local = np.sort(plan @ turn, axis=1)
+    strays = round(STRAYS * (len(plan) - 1))
+    low, high = local[:, strays], local[:, len(plan) - 1 - strays]
+    middles = np.einsum("tij,tj->ti", turn, (low + high) / 2)
+    areas = (high - low).prod(axis=1)
+    return [(float(areas[n]), float(yaws[n]), high[n] - low[n], middles[n]) for n in np.argsort(areas, kind="stable")]
+
+
+def quantile(values: Array, share: float) -> float:
+    """The value (n,) below which that share of the others lies."""
+    place = round(share * (len(values) - 1))
+    return float(np.partition(values, place)[place])
 
 
 def top_of(points: Array, noise: float) -> float:
     """Height [m] of the top of points (n, 3): of its flat part when there is one. `noise` [m]: of the heights."""
     z = points[:, 2]
-    high = float(np.percentile(z, 98))
+    high = quantile(z, 0.98)
     flat: NDArray[np.float64] = z[z > high - 3.5 * noise - 0.002]
     return float(np.median(flat)) if len(flat) > 0.25 * len(z) else high
 

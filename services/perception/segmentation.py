@@ -5,14 +5,13 @@ surface, inside its edges and not too tall is kept, cut where the depth jumps, a
 spot are joined again.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
 from common.floor_plan import FloorPlan
-from common.geometry import Rectangle
+from common.geometry import Array, Rectangle
+from services.perception.segment import Segment, Surface, covered, goes_on
 from services.perception.view import Mask, View, Window
 from services.perception.visible_plan import Cloud, Nearby, corners, inside
 
@@ -29,6 +28,14 @@ WALL_EDGE = 0.035
 """The same for a bin, whose walls are seen, and for furniture, whose edge is soft."""
 LOOKED_DOWN_ON = 0.2
 """How far [m] below the camera furniture ends whose top is seen."""
+PEAK = 0.006
+"""Distance [m] from a surface's plane within which its points are. Chosen: three times the noise of height at 2 m."""
+TILTED_PLANE, PLANE_SAMPLE = 1500, 1500
+"""Pixels of a surface from which its slopes are measured, and how many of them are used."""
+MOST_TILT = 0.02
+"""Largest slope that a camera a little off its drawing gives a surface: more is something else."""
+GOES_ON = 0.15
+"""Share of the band around a segment from which it goes on beyond its surface. Chosen: objects have .03 and less."""
 MIN_PLANE = 60
 """Pixels from which the height of a surface is measured rather than taken from the floor plan."""
 MIN_PIXELS = 24
@@ -43,12 +50,6 @@ JOINED_EXTENT = 0.17
 """Largest extent [m] on the floor plan of what is joined. Chosen: a bowl and its noise."""
 MAX_EXTENT = 0.30
 """Extent [m] on the floor plan from which a segment is furniture and no object."""
-RIM = 3
-"""Width [pixels] of the band around a segment in which something nearer is looked for."""
-NEARER = 0.03
-"""How much nearer [m] than the segment a neighbour must be to hide a part of it."""
-HIDDEN, HIDDEN_END = 0.06, 0.25
-"""Shares of that band, and of the band at its left or right end, from which the segment counts as cut."""
 FAR = 2.3
 """Depth [m] from which its noise makes walls thick."""
 FLOOR_RANGE = 2.2
@@ -60,29 +61,6 @@ DEVIATIONS = 4.0
 bumps, of which one in a thousand is beyond three."""
 FLOOR_SAMPLE = 11
 """Every which pixel of the floor its plane is fitted to."""
-
-
-@dataclass(frozen=True)
-class Surface:
-    """A horizontal surface as it was seen: `height` [m] measured, `name` "" for the floor."""
-
-    name: str
-    height: float
-
-
-@dataclass(frozen=True)
-class Segment:
-    """One object on a surface: its pixels (rows, columns) and their points (n, 3) in frame map.
-
-    `cut`: the picture's edge or something nearer hides a part of it; `ends`: its right and its left end are in view.
-    """
-
-    surface: Surface
-    rows: NDArray[np.intp]
-    columns: NDArray[np.intp]
-    points: NDArray[np.float64]
-    cut: bool
-    ends: tuple[bool, bool]
 
 
 def segments(view: View, floor_plan: FloorPlan, max_range: float, robot: Mask | None = None) -> list[Segment]:
@@ -139,17 +117,11 @@ def _between(view: View, usable: Mask, low: float, high: float, window: Window) 
 
 
 def _on(view: View, expected: Surface, cloud: Cloud, near: Nearby, own: Mask) -> list[Segment]:
-    """Pieces above one surface, its height measured where enough of it is visible."""
-    z = cloud.z
-    level = z[np.abs(z - expected.height) < PLANE_SEARCH] if expected.name else z[:0]
-    surface = expected
-    if len(level) >= MIN_PLANE:
-        heights, edges = np.histogram(level.astype(np.float64), bins=25)
-        peak = int(heights.argmax())
-        level = level[np.abs(level - (edges[peak] + edges[peak + 1]) / 2) < 0.006]
-        surface = Surface(expected.name, float(np.median(level)))
-    noise = DEVIATIONS * DEPTH_NOISE * (float(view.position[2]) - surface.height) * view.depth.ravel()[cloud.pixels]
-    over = (z > surface.height + np.maximum(noise, CLEARANCE)) & (z < surface.height + MAX_HEIGHT)
+    """Pieces above one surface, whose plane is measured where enough of it is visible."""
+    plane = _plane(cloud, expected)
+    height = plane[0] * cloud.x + plane[1] * cloud.y + plane[2]
+    noise = DEVIATIONS * DEPTH_NOISE * (float(view.position[2]) - expected.height) * view.depth.ravel()[cloud.pixels]
+    over = (cloud.z > height + np.maximum(noise, CLEARANCE)) & (cloud.z < height + MAX_HEIGHT)
     kept = cloud.kept(over).outside(near.walls)
     far = view.depth.ravel()[kept.pixels] > FAR
     beyond = kept.kept(far).outside(near.far_walls).pixels
@@ -168,7 +140,38 @@ def _on(view: View, expected: Surface, cloud: Cloud, near: Nearby, own: Mask) ->
         box = boxes[n]
         part_rows, part_columns = np.nonzero(labels[box] == n + 1)
         parts.append((part_rows + box[0].start + top, part_columns + box[1].start + left))
-    return [p for p in _join(view, surface, parts, own) if len(p.rows) >= MIN_PIXELS and _is_thing(p)]
+    over_it = np.zeros(view.shape, bool)
+    over_it[rows, columns] = True
+    found = (p for p in _join(view, expected.name, plane, parts, own) if len(p.rows) >= MIN_PIXELS and _is_thing(p))
+    return [p for p in found if goes_on(view, p, over_it, CLEARANCE, JUMP) < GOES_ON]
+
+
+def _plane(cloud: Cloud, expected: Surface) -> Array:
+    """Slopes and height (3,) of a surface: z = a x + b y + c, as it is seen, or as it is expected where it is not.
+
+    A camera that is tilted by 0.3 degrees more than it is believed to be sees a counter of 2 m rise by 10 mm.
+    """
+    level = np.array([0.0, 0.0, expected.height])
+    near = np.abs(cloud.z - expected.height) < PLANE_SEARCH
+    if not expected.name or np.count_nonzero(near) < MIN_PLANE:
+        return level
+    x, y, z = (axis[near].astype(np.float64) for axis in (cloud.x, cloud.y, cloud.z))
+    counts, edges = np.histogram(z, bins=25)
+    peak = int(counts.argmax())
+    close = np.abs(z - (edges[peak] + edges[peak + 1]) / 2) < PEAK
+    level[2] = float(np.median(z[close]))
+    if np.count_nonzero(close) < TILTED_PLANE:
+        return level
+    step = max(1, len(x) // PLANE_SAMPLE)
+    rows = np.stack([x, y, np.ones_like(x)], axis=1)[::step]
+    heights, close = z[::step], (np.abs(z - level[2]) < 2 * PEAK)[::step]
+    plane = level
+    for _ in range(3):
+        if np.count_nonzero(close) < MIN_PLANE:
+            return level
+        plane = np.asarray(np.linalg.lstsq(rows[close], heights[close], rcond=None)[0], np.float64)
+        close = np.abs(heights - rows @ plane) < PEAK
+    return plane if np.hypot(plane[0], plane[1]) < MOST_TILT else level
 
 
 def _is_thing(segment: Segment) -> bool:
@@ -196,7 +199,7 @@ def _cut(mask: Mask, depth: NDArray[np.float32]) -> Mask:
 
 
 def _join(
-    view: View, surface: Surface, parts: list[tuple[NDArray[np.intp], NDArray[np.intp]]], own: Mask
+    view: View, name: str, plane: Array, parts: list[tuple[NDArray[np.intp], NDArray[np.intp]]], own: Mask
 ) -> list[Segment]:
     """Parts of one object, such as the two sides of a mug's rim or a bottle's cap, stand in the same spot."""
     clouds = [view.points[rows, columns].astype(np.float64) for rows, columns in parts]
@@ -219,33 +222,14 @@ def _join(
         members = np.flatnonzero(groups == group)
         rows = np.concatenate([parts[k][0] for k in members])
         columns = np.concatenate([parts[k][1] for k in members])
-        covered = _covered(view, rows, columns, own)
-        ends = not covered[2] and int(columns.max()) < w - 2, not covered[1] and int(columns.min()) > 1
-        cut = bool(covered[0] or rows.min() <= 1 or rows.max() >= h - 2 or not all(ends))
-        found.append(Segment(surface, rows, columns, np.concatenate([clouds[k] for k in members]), cut, ends))
+        hidden = covered(view, rows, columns, own)
+        ends = not hidden[2] and int(columns.max()) < w - 2, not hidden[1] and int(columns.min()) > 1
+        cut = bool(hidden[0] or rows.min() <= 1 or rows.max() >= h - 2 or not all(ends))
+        points = np.concatenate([clouds[k] for k in members])
+        x, y, _ = points.mean(axis=0)
+        surface = Surface(name, float(plane[0] * x + plane[1] * y + plane[2]))
+        found.append(Segment(surface, rows, columns, points, cut, ends))
     return found
-
-
-def _covered(view: View, rows: NDArray[np.intp], columns: NDArray[np.intp], own: Mask) -> tuple[bool, bool, bool]:
-    """Whether something nearer, or the robot itself (`own`), covers a part of the segment, its left, its right end."""
-    top, left = max(0, int(rows.min()) - RIM), max(0, int(columns.min()) - RIM)
-    window = (slice(top, int(rows.max()) + RIM + 1), slice(left, int(columns.max()) + RIM + 1))
-    depth = view.depth[window]
-    mask = np.zeros(depth.shape, bool)
-    mask[rows - top, columns - left] = True
-    rim = ndimage.binary_dilation(mask, iterations=RIM) & ~mask
-    nearest = float(view.depth[rows, columns].min())
-    nearer = rim & (own[window] | (depth > 0) & (depth < nearest - NEARER))
-    first, last = int(columns.min()) - left, int(columns.max()) - left
-
-    def much(part: slice, share: float) -> bool:
-        return bool(np.count_nonzero(nearer[:, part]) > share * np.count_nonzero(rim[:, part]))
-
-    return (
-        much(slice(None), HIDDEN),
-        much(slice(0, first + RIM), HIDDEN_END),
-        much(slice(last + 1 - RIM, None), HIDDEN_END),
-    )
 
 
 def _gap(a: NDArray[np.float64], b: NDArray[np.float64]) -> float:

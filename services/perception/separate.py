@@ -14,7 +14,9 @@ from scipy import ndimage
 
 from common.geometry import Array
 from services.perception.measurement import Measurement
-from services.perception.segmentation import MIN_PIXELS, Segment
+from services.perception.primitives import quantile
+from services.perception.segment import Segment
+from services.perception.segmentation import MIN_PIXELS
 from services.perception.unlisted import measured, noise_of
 from services.perception.view import View
 
@@ -28,6 +30,8 @@ LEAST_SHARE = 0.08
 MOST_PIECES = 4
 GAIN, NOISE_GAIN = 0.0008, 0.3
 """How much less [m], plus that of the noise, the mean distance from the shapes must be for pieces to be objects."""
+FINE, FINE_NOISE = 0.0006, 0.45
+"""Mean distance [m] from the shape, plus that of the noise, below which pieces would explain nothing better."""
 BESIDE, APART = 0.2, 0.75
 """Share of that gain which is enough for pieces that stand beside each other, and how far apart they do, by their half
 widths."""
@@ -54,9 +58,9 @@ def pieces(view: View, segment: Segment) -> list[Piece]:
 
 def _pieces(view: View, whole: Piece, again: int) -> list[Piece]:
     segment = whole.segment
-    if again == 0 or len(segment.rows) < 2 * MIN_PIXELS:
-        return [whole]
     noise = noise_of(view, segment)
+    if again == 0 or len(segment.rows) < 2 * MIN_PIXELS or whole.shape.residual < FINE + FINE_NOISE * noise:
+        return [whole]
     for cut in (by_colour(view, segment), by_valley(segment)):
         if cut is None:
             continue
@@ -154,15 +158,15 @@ def by_valley(segment: Segment) -> NDArray[np.intp] | None:
     axis = np.linalg.eigh(np.cov((plan - middle).T))[1][:, 1]
     along = (plan - middle) @ axis
     height = segment.points[:, 2] - segment.surface.height
-    low, high = np.percentile(along, (15, 85))
+    low, high = quantile(along, 0.15), quantile(along, 0.85)
     if high - low < 4 * BAND:
         return None
     best, depth = 0.0, 1.0
     for at in np.linspace(low, high, 13):
         before, after = along < at, along >= at
-        tops = [float(np.percentile(height[side], 95)) for side in (before, after)]
+        tops = [quantile(height[side], 0.95) for side in (before, after)]
         band = height[np.abs(along - at) < BAND]
-        ratio = (float(np.percentile(band, 95)) if len(band) > 3 else 0.0) / max(min(tops), 1e-3)
+        ratio = (quantile(band, 0.95) if len(band) > 3 else 0.0) / max(min(tops), 1e-3)
         if ratio < depth:
             best, depth = float(at), ratio
     side = (along >= best).astype(np.intp)

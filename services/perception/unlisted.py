@@ -13,7 +13,8 @@ from services.perception import colour
 from services.perception.detection import Detection
 from services.perception.measure import measure
 from services.perception.measurement import LEVEL, Measurement
-from services.perception.segmentation import DEPTH_NOISE, Segment
+from services.perception.segment import Segment
+from services.perception.segmentation import DEPTH_NOISE
 from services.perception.view import View
 
 SURE, FEW, LIKE_NOTHING = 0.9, 180, 0.75

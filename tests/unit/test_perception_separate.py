@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from common.geometry import Array
-from services.perception.segmentation import Segment, Surface
+from services.perception.segment import Segment, Surface
 from services.perception.separate import pieces
 from services.perception.view import View
 
