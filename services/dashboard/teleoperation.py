@@ -6,6 +6,7 @@ import numpy as np
 
 from common import messages as m
 from common import topics
+from common.approach import FOOTPRINT, HALF_WIDTH
 from common.bus.port import Io
 from common.gateway import refusal
 
@@ -15,12 +16,12 @@ SPEED, TURN = 0.3, 0.6
 """Greatest speed [m/s] and rate of turn [rad/s]; chosen: half of what navigation drives."""
 BRAKING = 0.3
 """Deceleration [m/s^2] with which the base must be able to stop before an obstacle; chosen: a gentle one."""
-ROOM = 0.45
-"""Distance [m] from the base's centre that stays free: half of its diagonal and a hand's width; chosen."""
+ROOM = FOOTPRINT + 0.1
+"""Distance [m] from the base's centre that stays free: a hand's width before the bumper; chosen."""
 STALE = 0.5
 """Age [s] from which a scan, which comes at 10 Hz, says nothing any more."""
-WIDTH = 0.35
-"""Half the width [m] of the lane that is looked at; chosen: half of the base's diagonal."""
+WIDTH = FOOTPRINT + 0.02
+"""Half the width [m] of the lane that is looked at; chosen: the base, with the error of a range."""
 
 
 class Teleoperation:
@@ -73,7 +74,8 @@ def limit(scan: m.LaserScan | None, x: float, y: float) -> float:
     ranges = np.frombuffer(scan.ranges[: len(scan.ranges) // 4 * 4], "<f4").astype(np.float64)
     angles = scan.angle_min + np.arange(len(ranges)) * scan.angle_increment
     seen = np.isfinite(ranges) & (ranges > scan.range_min) & (ranges < scan.range_max)
-    points = np.stack([scan.x + ranges * np.cos(angles), scan.y + ranges * np.sin(angles)], axis=1)[seen]
+    ends = np.stack([scan.x + ranges * np.cos(angles), scan.y + ranges * np.sin(angles)], axis=1)
+    points = ends[seen & (np.abs(ends).max(axis=1) >= HALF_WIDTH)]  # nearer is the robot's own body
     speed = hypot(x, y)
     if not speed or not len(points):
         return SPEED

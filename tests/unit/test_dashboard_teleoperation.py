@@ -115,10 +115,10 @@ def test_a_mission_that_begins_takes_over_and_the_brake_counts() -> None:
 
 
 def test_it_slows_before_an_obstacle_and_never_drives_into_it() -> None:
-    distances = (3.0, ROOM + 0.1, ROOM + 0.02, ROOM - 0.1)
+    distances = (3.0, ROOM + 0.1, ROOM + 0.02, ROOM - 0.05)
     speeds = [limit(scan({0: d}), 1.0, 0.0) for d in distances]
     assert speeds[0] >= SPEED and speeds == sorted(speeds, reverse=True) and speeds[-1] == 0.0
-    seat = Seat(seen=scan({0: ROOM - 0.1}))
+    seat = Seat(seen=scan({0: ROOM - 0.05}))
     seat.driven.hold("1 0 1", 1.0)
     seat.step(1.0)
     (speed,) = seat.speeds()
@@ -126,10 +126,15 @@ def test_it_slows_before_an_obstacle_and_never_drives_into_it() -> None:
 
 
 def test_only_what_is_in_the_way_counts() -> None:
-    behind, beside = scan({180: 0.5}), scan({90: 0.5, -90: 0.5})
+    behind, beside = scan({180: 0.42}), scan({90: 0.42, -90: 0.42})
     assert limit(behind, 1.0, 0.0) >= SPEED and limit(behind, -1.0, 0.0) < SPEED
     assert limit(beside, 1.0, 0.0) >= SPEED and limit(beside, 0.0, 1.0) < SPEED
     assert limit(scan({0: 0.5}, x=0.2), 1.0, 0.0) > limit(scan({0: 0.5}), 1.0, 0.0), "the lidar sits before the centre"
+
+
+def test_the_robot_s_own_mast_and_corners_are_no_obstacles() -> None:
+    assert limit(scan(dict.fromkeys(range(-180, 180, 3), 0.22)), 1.0, 0.0) >= SPEED
+    assert limit(scan({45: 0.3}), 1.0, 0.0) >= SPEED
 
 
 def test_a_lidar_that_has_fallen_silent_stops_it() -> None:
