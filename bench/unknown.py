@@ -2,7 +2,8 @@
 
 What manipulation is told of them is measured from points that the head camera would see: rays from its place, the noise
 of its depth, hidden parts missing, and perception's own fit of a shape. Only which ray met which object is known from
-the simulation; that is perception's task and measured in `bench.perception`.
+the simulation, and the kind of what lies and is to be put down upright; both are perception's task and measured in
+`bench.perception`.
 """
 
 import math
@@ -78,6 +79,7 @@ class UnknownBench(Bench):
         ]
         super().__init__(scene, spec, float(rng.uniform(0.45, 0.76)), seed, config, others=tuple(others), known=False)
         self._specs = [spec, *others]
+        self._kinds = {spec.name: spec.kind} if lies else {}
         x, y, z = self.sim.physics.placements[0].position
         self.floor = z - spec.size[2] / 2 - 0.0005
         if lies:
@@ -119,7 +121,7 @@ class UnknownBench(Bench):
             raise LookupError("hidden from the camera")
         return m.ObjectRef(
             label=found.label, position=found.position, orientation=found.orientation, size=found.size,
-            tilt=found.tilt, shape=found.shape, points=found.points,
+            tilt=found.tilt, shape=found.shape, points=found.points, kind=found.kind,
         )  # fmt: skip
 
     def _measured(self, name: str, points: Array, camera: Array) -> m.WorldObject:
@@ -130,8 +132,9 @@ class UnknownBench(Bench):
         at = (shape.x, shape.y, self.floor + shape.size[1 if shape.tilt else 2] / 2)
         few = points[self._rng.choice(len(points), min(POINTS, len(points)), replace=False)] - at
         placed: Any = self.sim.physics.placements[0]
+        kind = self._kinds.get(name, "")
         return m.WorldObject(
-            label=name, kind="", colour="grey", position=at, orientation=yaw_quat(shape.yaw), size=shape.size,
+            label=name, kind=kind, colour="grey", position=at, orientation=yaw_quat(shape.yaw), size=shape.size,
             on=placed.on, tilt=shape.tilt, shape=shape.family, measured=True, spread=shape.spread,
             points=np.round(few * 1000).astype("<i2").tobytes(), seen_at=0.0,
         )  # fmt: skip

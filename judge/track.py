@@ -72,8 +72,10 @@ class Track(msgspec.Struct):
 
     @property
     def toppled(self) -> bool:
-        """It does not stand although it has an upright and lies in no bin where it may."""
-        return kind_of(self.kind).upright and self.last.tilt > TOPPLED and self.last.on not in self.bins
+        """It does not stand although it has an upright and lies in no bin where it may; ends that are alike are one."""
+        kind, tilt = kind_of(self.kind), self.last.tilt
+        off = min(tilt, math.pi - tilt) if kind.ends_alike else tilt
+        return kind.upright and off > TOPPLED and self.last.on not in self.bins
 
     @property
     def disturbed(self) -> bool:

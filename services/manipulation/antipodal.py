@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from common.kinds import kind_of
 from services.manipulation.arm_model import Array, Pose
 from services.manipulation.clearance import FLAT, PAD, PAD_HALF
 from services.manipulation.grasp import Grasp, Target, approach_rotation, on_handle
@@ -76,10 +77,21 @@ def antipodal(target: Target, forward: float, opening: float, widest: float) -> 
             label = f"{name}, {1000 * place[0]:+.0f}/{1000 * place[2]:+.0f} mm"
             grasp = Grasp(
                 Pose(at, rotation), contact.width, float(at[2]) - target.bottom, math.radians(tilt), label,
-                on_surface=True,
+                _axis(target, rotation), on_surface=True,
             )  # fmt: skip
             found.append((_worth(target, contact, at - centre, tilt, off, widest), grasp))
     return _different(sorted(found, key=lambda entry: -entry[0]))
+
+
+def _axis(target: Target, rotation: Array) -> float | None:
+    """Where the upper end of a lying object points [rad] that is to be put down upright; None of others."""
+    kind = kind_of(target.kind)
+    if not target.lies or not kind.upright:
+        return None
+    # Of two ends that are alike the hand leans towards the lower one: so it is above when the object stands.
+    along = float(rotation[:2, 2] @ (math.cos(target.yaw), math.sin(target.yaw)))
+    turn = math.pi if kind.ends_alike and along > 0 else 0.0
+    return math.remainder(target.yaw + turn, math.tau)
 
 
 def _directions(target: Target, facing: float) -> Iterator[tuple[Array, int, float, str]]:

@@ -11,7 +11,7 @@ from judge.contacts import ContactBook, describe, is_hit
 from judge.effects import Effect, Shown
 from judge.evidence import Evidence, Recorder, Sample, ThingEvidence, Want, spl
 from judge.goal import Goal, shortfall
-from judge.track import LIFTED, Thing
+from judge.track import LIFTED, Thing, Track
 
 WANT, MUG = Want("mug", ("tray", "desk")), frozenset({"mug"})
 KINDS = {"mug": "mug", "can": "can", "ball": "ball"}
@@ -130,6 +130,12 @@ def test_what_has_an_upright_must_stand(degrees: float, toppled: bool) -> None:
     found = mug([*GOOD[:5], sample(5.0, changed(ON_TRAY, tilt=math.radians(degrees)))])
     assert (found.toppled, found.delivered) == (toppled, not toppled)
     assert found.tilt == degrees
+
+
+@pytest.mark.parametrize(("degrees", "toppled"), [(180, False), (166, False), (90, True), (160, True)])
+def test_what_has_two_ends_alike_may_stand_on_either(degrees: float, toppled: bool) -> None:
+    track = Track("can", frozenset(), CAN, changed(CAN, tilt=math.radians(degrees)))
+    assert track.toppled is toppled
 
 
 def test_in_a_bin_it_may_lie_as_it_fell() -> None:

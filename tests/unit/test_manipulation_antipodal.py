@@ -1,6 +1,7 @@
 """Grasps on measured surfaces: where the pads come to lie on things of no known kind."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -161,3 +162,13 @@ def test_no_finger_goes_through_a_handle_that_was_seen_on_what_nobody_named() ->
     across = [abs(float(g.pose.rotation[1, 1])) for g in grasps(plain)]
     assert max(across) > 0.9, "without the handle the fingers may close across it"
     assert grasps(mug) and all(abs(float(g.pose.rotation[1, 1])) < 0.75 for g in grasps(mug))
+
+
+def test_what_lies_and_has_an_upper_side_is_taken_so_that_it_can_be_stood_up() -> None:
+    can, rod = (replace(SHAPES["lying can"], kind=kind) for kind in ("can", ""))
+    for grasp in grasps(can):
+        assert grasp.axis is not None
+        assert float(grasp.pose.rotation[:2, 2] @ (math.cos(grasp.axis), math.sin(grasp.axis))) < 1e-9
+        assert abs(math.remainder(grasp.axis - can.yaw, math.pi)) < 1e-9
+    assert all(grasp.axis == can.yaw for grasp in grasps(replace(can, kind="bottle"))), "its ends are not alike"
+    assert all(grasp.axis is None for grasp in grasps(rod))
