@@ -1,12 +1,19 @@
 """What is printed on objects: read by the reader, compared with the words that somebody asked for."""
 
+import sys
+
 import pytest
 
-pytest.importorskip("rapidfuzz", reason="the extra `ocr`")
-
+from common.bus.memory import MemoryBus, MemoryIo
 from common.household import load_household
+from services.perception.naming.observer import Observer
+from services.perception.naming.reader import Reader
 from services.perception.naming.text import LIKELY, SURE, Line, likeness, merged, printed_words
 from services.perception.naming.vocabulary import common_words, taken
+from tests.support import eventually
+from tests.unit.painted import Box, label, view_of_boxes
+
+pytest.importorskip("rapidfuzz", reason="the extra `ocr`")
 
 COMMON = common_words(load_household("apartment"))
 
@@ -57,3 +64,23 @@ def test_of_two_readings_of_a_line_the_surer_one_stays() -> None:
 def test_a_name_that_means_something_already_is_taken(name: str, means: str) -> None:
     assert taken(name, load_household("apartment")) == means
     assert taken("vitamin box", load_household("apartment")) == ""
+
+
+def test_a_reader_whose_libraries_are_missing_is_told_of_once_and_nothing_is_read_any_more(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    # OpenCV without libGL is found and cannot be imported.
+    monkeypatch.setitem(sys.modules, "rapidocr_onnxruntime", None)
+    household = load_household("minimal")
+    io = MemoryIo(MemoryBus(), "perception", (), (), household=household, lockstep=False)
+    box = Box(0.8, 0.0, label("TEA"))
+    reader = Reader()
+    observer = Observer(io, reader, lambda key, look: None)
+    observer.see(view_of_boxes([box]), [box.believed("a", "box")])
+    observer.look(["a"], 0.0, read=True)
+    observer.step(0.0)
+    eventually(lambda: observer.step(0.1), "the worker has looked")
+    sight = observer.sight("a")
+    assert sight is not None and sight.looks and not sight.lines
+    assert not observer.can_read and "libgl1" in reader.broken
+    io.shutdown()
