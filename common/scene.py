@@ -84,11 +84,29 @@ def body_name(spec: Thing) -> str:
     return spec.name.replace(" ", "_")
 
 
+class Lamp(Strict, frozen=True, kw_only=True):
+    """A lamp at `position` [map] that shines downwards, in shares of red, green and blue times `brightness` [0..1]."""
+
+    position: Vec3
+    colour: Vec3 = (1.0, 1.0, 1.0)
+    brightness: float = 0.35
+
+
+class Finish(Strict, frozen=True, kw_only=True):
+    """What floor, walls and the tops of tables are covered with; "": in one colour, the floor in squares."""
+
+    floor: Literal["", "wood", "tile", "carpet", "stone"] = ""
+    walls: Literal["", "plaster", "stripes", "brick"] = ""
+    tables: Literal["", "wood", "cloth", "stone"] = ""
+
+
 class Scene(FloorPlan, frozen=True, kw_only=True):
-    """A whole apartment with everything in it."""
+    """A whole apartment with everything in it. Without `lamps` each room has one in the middle of its ceiling."""
 
     objects: tuple[ObjectSpec, ...] = ()
     obstacles: tuple[Obstacle, ...] = ()
+    lamps: tuple[Lamp, ...] = ()
+    finish: Finish = Finish()
 
     def object(self, name: str) -> ObjectSpec | None:
         """The object called `name` or by that alias, None if unknown."""

@@ -2,11 +2,13 @@
 
 import colorsys
 from dataclasses import dataclass
+from typing import get_args
 
+import msgspec
 import numpy as np
 
 from common.floor_plan import Rgba
-from common.scene import ObjectSpec
+from common.scene import Finish, Lamp, ObjectSpec, Scene
 
 Range = tuple[float, float]
 
@@ -56,6 +58,22 @@ def colour(word: str, rng: np.random.Generator) -> Rgba:
     hue, saturation, value = (float(rng.uniform(*HUES[word][i])) for i in range(3))
     red, green, blue = colorsys.hsv_to_rgb(hue % 1.0, saturation, value)
     return round(red, 3), round(green, 3), round(blue, 3), 1.0
+
+
+def surroundings(plan: Scene, rng: np.random.Generator) -> Scene:
+    """The plan under other lamps, warm or cold, with floors, walls and tables of other kinds."""
+    lamps = []
+    for room in plan.rooms:
+        (left, below), (right, above) = room.low, room.high
+        warm = float(rng.uniform(0.0, 0.25))
+        for _ in range(int(rng.integers(1, 3))):
+            x, y = float(rng.uniform(left + 0.5, right - 0.5)), float(rng.uniform(below + 0.5, above - 0.5))
+            lit = round(float(rng.uniform(0.20, 0.40)), 3)
+            shade = (1.0, round(1.0 - 0.4 * warm, 3), round(1.0 - warm, 3))
+            lamps.append(Lamp(position=(round(x, 2), round(y, 2), 3.2), colour=shade, brightness=lit))
+    chosen = {f.name: f.type for f in msgspec.structs.fields(Finish)}
+    finish = {name: get_args(kinds)[int(rng.integers(len(get_args(kinds))))] for name, kinds in chosen.items()}
+    return msgspec.structs.replace(plan, lamps=tuple(lamps), finish=msgspec.convert(finish, Finish))
 
 
 def thing(kind: str, word: str, rng: np.random.Generator) -> ObjectSpec:

@@ -19,7 +19,7 @@ from common.scene import ObjectSpec, Receptacle, Scene, SceneError
 from evaluation import catalogue, groceries
 from evaluation.blocks import VLA, WORDINGS, flat, random
 from evaluation.case import Case, Line
-from evaluation.drawn import LAID, things
+from evaluation.drawn import LAID, surroundings, things
 from judge.effects import Effect
 from judge.evidence import Want
 from services.sim.layout import Placement, place_objects
@@ -66,7 +66,8 @@ def clutter(seed: int) -> Case:
 def labels(seed: int) -> Case:
     """Groceries, crockery, toys and tools with faces; one is asked for by what is printed on it."""
     rng = random(seed, 24)
-    return fetch(seed, "labels", lambda: catalogue.things(int(rng.integers(*IN_A_WORLD)), rng, printed=True), rng)
+    plan = surroundings(flat(), rng)
+    return fetch(seed, "labels", lambda: catalogue.things(int(rng.integers(*IN_A_WORLD)), rng, printed=True), rng, plan)
 
 
 def scanned(seed: int) -> Case:
@@ -76,7 +77,8 @@ def scanned(seed: int) -> Case:
         AssetsMissing: the extra `things` is not installed.
     """
     rng = random(seed, 25)
-    return fetch(seed, "things", lambda: groceries.things(int(rng.integers(*IN_A_WORLD)), rng), rng)
+    plan = surroundings(flat(), rng)
+    return fetch(seed, "things", lambda: groceries.things(int(rng.integers(*IN_A_WORLD)), rng), rng, plan)
 
 
 def fetch(

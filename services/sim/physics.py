@@ -35,7 +35,7 @@ class Physics:
         self.scene, self.seed, self.robot = scene, seed, robot or own()
         self.placements: list[Placement] = place_objects(scene, seed)
         self.mjcf = world_mjcf(scene, self.placements, "".join(map(body_xml, obstacles)), self.robot)
-        self.files = world_files(self.placements)
+        self.files = world_files(scene, self.placements)
         self.model: Any = mujoco.MjModel.from_xml_string(self.mjcf, self.files)
         self.model.opt.enableflags |= mujoco.mjtEnableBit.mjENBL_SLEEP
         self.data: Any = mujoco.MjData(self.model)

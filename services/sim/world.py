@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 from common.floor_plan import BIN_WALL, BODY_INSET, LEG, LEG_INSET
 from common.scene import Receptacle, Scene
-from services.sim import objects
+from services.sim import covers, objects
 from services.sim.layout import Placement
 from services.sim.model import Robot, own
 from services.sim.robot import GLASS_GROUP
@@ -97,19 +97,14 @@ def _receptacle(r: Receptacle) -> str:
     return _cabinet(r, _WHITE if r.kind == "counter" else _WOOD, _STEEL if r.kind == "counter" else _WOOD)
 
 
-def world_files(placements: Sequence[Placement]) -> dict[str, bytes]:
-    """The pictures that the model of these objects refers to, by file name."""
-    return {name: data for p in placements for name, data in objects.made(p.spec).files.items()}
+def world_files(scene: Scene, placements: Sequence[Placement]) -> dict[str, bytes]:
+    """The pictures that the model refers to, by file name."""
+    return covers.files(scene) | {n: data for p in placements for n, data in objects.made(p.spec).files.items()}
 
 
 def world_mjcf(scene: Scene, placements: Sequence[Placement], mocap: str = "", robot: Robot | None = None) -> str:
     """The complete model. `mocap` adds bodies of moving obstacles; `robot` None is our own."""
     robot = robot or own()
-    lights = "".join(
-        f'<light pos="{(r.low[0] + r.high[0]) / 2} {(r.low[1] + r.high[1]) / 2} 3.5" dir="0 0 -1" '
-        'diffuse="0.35 0.35 0.34" specular="0.05 0.05 0.05" castshadow="false"/>'
-        for r in scene.rooms
-    )
     center = ((scene.low[0] + scene.high[0]) / 2, (scene.low[1] + scene.high[1]) / 2)
     extent = (scene.high[0] - scene.low[0] + 2, scene.high[1] - scene.low[1] + 2)
     bodies = "".join(objects.body_xml(p) for p in placements)
@@ -128,11 +123,12 @@ def world_mjcf(scene: Scene, placements: Sequence[Placement], mocap: str = "", r
   <texture name="sky" type="skybox" builtin="gradient" rgb1=".75 .82 .90" rgb2=".95 .96 .98" width="64" height="64"/>
   <texture name="floor" type="2d" builtin="checker" rgb1=".72 .66 .58" rgb2=".68 .62 .54" width="128" height="128"/>
   <material name="floor" texture="floor" texrepeat="{extent[0]:.0f} {extent[1]:.0f}"/>
-{primitives.materials(p.spec for p in placements)}{robot.assets}{assets}</asset>
+{primitives.materials(p.spec for p in placements)}{robot.assets}{assets}{covers.assets(scene)}</asset>
 <worldbody>
-  {lights}
+  {covers.lights(scene)}
   <geom name="floor" type="plane" pos="{center[0]} {center[1]} 0" size="{extent[0] / 2} {extent[1] / 2} 0.1"
-        material="floor" {STATIC}/>
+        material="{covers.floor(scene)}" {STATIC}/>
+  {covers.walls(scene)}{covers.tables(scene)}
   {_walls(scene)}{_furniture(scene)}{"".join(_receptacle(r) for r in scene.receptacles)}
   {robot.body}
   {bodies}

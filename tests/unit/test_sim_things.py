@@ -12,11 +12,13 @@ from PIL import Image
 
 from common.body_file import BodyError, extents, load
 from common.rendering.looks import geom_colours
-from common.scene import ObjectSpec, SceneError, load_scene
+from common.scene import Finish, Lamp, ObjectSpec, SceneError, load_scene
+from evaluation.drawn import surroundings
 from services.sim.layout import Placement
 from services.sim.objects import body_xml, made
 from services.sim.physics import Physics
 from services.sim.robot import HULL_GROUP
+from services.sim.things.finish import GROUND, picture
 from services.sim.things.forms import FORMS
 from services.sim.things.primitives import GROUP, materials
 
@@ -261,3 +263,46 @@ def test_large_meshes_are_thinned_and_keep_their_picture(tmp_path: Path) -> None
     upper, lower = heights > 0.01, heights < -0.01
     v = model.mesh_texcoord[model.mesh_facetexcoord.ravel(), 1]
     assert v[upper].max() < 0.5 < v[lower].min() or v[lower].max() < 0.5 < v[upper].min()
+
+
+# --- lamps and covers
+def test_covers_are_seen_and_change_nothing_else() -> None:
+    """A covered flat has the same contacts, the same lidar and, to a millimetre, the same depth; the colours differ."""
+    bare = load_scene("apartment")
+    covered = msgspec.structs.replace(bare, finish=Finish(floor="tile", walls="brick", tables="cloth"))
+    plain, dressed = Physics(bare, 3), Physics(covered, 3)
+    assert sorted(dressed.files) == [f"finish_{n}.png" for n in ("brick", "cloth", "tile")] and not plain.files
+    assert np.allclose(plain.data.qpos, dressed.data.qpos, atol=1e-6), "nothing rests on a cover"
+    down, hit = np.array([0.0, 0.0, -1.0]), np.empty(1, np.int32)
+    table = next(r for r in bare.receptacles if r.kind == "table")
+    seen = []
+    for physics in (plain, dressed):
+        groups = np.array([1, 1, 1, 1, 0, 0], np.uint8)
+        above = np.array([table.center[0], table.center[1], 2.0])
+        wall = bare.walls[0]
+        before = np.array([(wall.start[0] + wall.end[0]) / 2, wall.start[1] + 1.0, 2.3])
+        depth = [
+            mujoco.mj_ray(physics.model, physics.data, above, down, groups, 1, -1, hit),
+            mujoco.mj_ray(physics.model, physics.data, before, np.array([0.0, -1.0, 0.0]), groups, 1, -1, hit),
+        ]
+        seen.append((depth, geom_colours(physics.model)[int(hit[0])]))
+    (first, grey), (second, brick) = seen
+    assert np.allclose(first, second, atol=0.0015) and not np.allclose(first, second, atol=1e-6)
+    assert brick[0] > 1.3 * brick[2] and abs(grey[0] - grey[2]) < 0.1
+
+
+def test_lamps_of_its_own_replace_those_of_the_rooms() -> None:
+    bare = load_scene("apartment")
+    lamps = (Lamp(position=(0.0, 0.0, 2.5), colour=(1.0, 0.8, 0.6), brightness=0.5),)
+    one = Physics(msgspec.structs.replace(bare, lamps=lamps, objects=()), 0).model
+    assert one.nlight == 1 and np.allclose(one.light_diffuse[0], (0.5, 0.4, 0.3))
+    assert Physics(msgspec.structs.replace(bare, objects=()), 0).model.nlight == len(bare.rooms)
+
+
+def test_surroundings_are_drawn_from_the_seed() -> None:
+    drawn = [surroundings(load_scene("apartment"), np.random.default_rng(s)) for s in range(12)]
+    assert len({d.finish for d in drawn}) > 6 and len({d.lamps for d in drawn}) == 12
+    assert surroundings(load_scene("apartment"), np.random.default_rng(5)) == drawn[5]
+    for finish in GROUND:
+        image = Image.open(io.BytesIO(picture(finish)))
+        assert image.size == (256, 256) and np.asarray(image).std() > 2
