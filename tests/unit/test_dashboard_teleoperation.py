@@ -12,6 +12,7 @@ from common.bus import codec
 from common.bus.memory import MemoryBus, MemoryIo
 from common.household import load_household
 from services.dashboard.teleoperation import HOLD, ROOM, SPEED, STALE, TURN, Teleoperation, limit
+from tests.simulation import Simulation
 
 READS = (topics.BRAIN_STATE, topics.SIM_STATUS, topics.SCAN, topics.NAVIGATION_FEEDBACK)
 
@@ -149,3 +150,20 @@ def test_a_lidar_that_has_fallen_silent_stops_it() -> None:
 def test_without_a_lidar_it_turns_only() -> None:
     assert limit(None, 1.0, 0.0) == 0.0
     assert limit(m.LaserScan(t=0.0, ranges=b"", angle_min=-pi), 1.0, 0.0) == SPEED
+
+
+def test_beside_the_simulation_it_drives_up_to_the_table_and_stands() -> None:
+    """The lidar there has noise, gaps, and the robot's own mast in view."""
+    robot = Simulation("minimal")
+    io = MemoryIo(robot.bus, "dashboard", READS, (topics.CMD_VEL,), household=load_household("minimal"), lockstep=False)
+    driven, moved = Teleoperation(io), []
+    for tick in range(250):
+        now = tick * 0.04
+        io.begin(None, now)
+        driven.hold("1 0 0", now)
+        driven.step(now)
+        robot.step(0.04)
+        moved.append(robot.truth()["base"][0])
+    near = limit(io.latest(topics.SCAN), 1.0, 0.0)
+    assert moved[50] > 0.03 and abs(moved[-1] - moved[-50]) < 0.02, moved[::25]
+    assert near < 0.1 and limit(io.latest(topics.SCAN), -1.0, 0.0) >= SPEED
