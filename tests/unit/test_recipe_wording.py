@@ -49,6 +49,7 @@ def test_the_recipe_for_a_wording(tmp_path: object) -> None:
     folder = f"{tmp_path}/copy"
     for part in ("common", "services", "config"):
         shutil.copytree(ROOT / part, f"{folder}/{part}", ignore=shutil.ignore_patterns("__pycache__"))
+    shutil.copy(ROOT / "pyproject.toml", folder)  # a checkout, and nothing installed
     assert answers(folder) == '{"planned": [], "heard": false, "obeyed": ["none", ""]}'
 
     path = f"{folder}/{FILE}"
