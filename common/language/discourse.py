@@ -52,6 +52,10 @@ _CONTRAST = re.compile(
     r"^(?:i (?:said|meant|mean|want|wanted) )?not (?P<wrong>.+?)(?:,\s*(?:but\s+)?|\s+but\s+)(?:rather )?(?P<right>.+)$"
 )
 _DO_NOT = re.compile(r"^(?:do not|don't) (?P<wrong>\w+ .+?)(?:,\s*(?:but\s+)?|\s+but\s+)(?:rather )?(?P<right>.+)$")
+_LATE_EXCEPT = re.compile(
+    r"^(?P<all>.+) (?P<particle>away|out|back|up|down) (?P<but>(?:except|but not|but|apart from|other than) .+)$"
+)
+"""An exception that is said behind a verb's particle."""
 _FIRST = re.compile(
     r"^(?P<word>after|once|when|as soon as|before) you(?: are| have|'re|'ve)?(?: all)?(?: done| finished)?"
     r" (?P<rest>.+)$"
@@ -126,6 +130,7 @@ def _settled(text: str, is_place: IsPlace) -> str:
     """The text without what was taken back."""
     text = _refined(_without_lead(text))
     text = _EXCEPT.sub(" but ", text).replace(" but but ", " but ")
+    text = _LATE_EXCEPT.sub(r"\g<all> \g<but> \g<particle>", text)
     bare = without_politeness(text)
     if found := (_CONTRAST.match(bare) or _DO_NOT.match(bare)):
         text = _contrasted(found["wrong"], found["right"])

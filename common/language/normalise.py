@@ -21,6 +21,7 @@ _OPENINGS = (
     r"first(?=\s+\w+\s+\w)|wait(?=\s+(?:stop|cancel|no)\b)",
     r"(?:go|come|run)(?: ahead| over| on)?(?: and)?"
     r"(?=\s+(?:find|get|fetch|bring|grab|pick|take|put|tidy|clean|clear|throw)\b)",
+    r"(?:after that|afterwards|forget (?:about )?that|and then)(?=\s+\w)",
     # What makes a question or a wish of an order.
     r"(?:would|do) you mind|mind(?=\s+\w+ing\b)|would you be (?:so|kind|good|enough|as|to|\s)+",
     r"(?:why do not|why don't|how about|what if) (?:you|we)(?=\s+\w)|(?:can|could|would|will) (?:you|someone|somebody)",
@@ -40,6 +41,7 @@ _OPENINGS = (
 """Politeness before a command: words that may be left out without changing what is asked for."""
 _ENDINGS = (
     "please|right now|now|quickly|at once|for me|for us|thanks|thank you|robot|jarvis|then|anyway|and|will you please",
+    "(?:and )?hurry(?: up)?|as (?:fast|quickly) as you can|asap",
     "a (?:little )?bit|a little|somewhat|for a (?:bit|while)",
     "(?<!try )(?<!it )(?<!that )(?<!same )(?<!thing )(?<!once )again|as soon as (?:you can|possible)",
     "(?:will|would|could|can) you|if you can|if possible|if you (?:don't|do not|wouldn't) mind",

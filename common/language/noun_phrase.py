@@ -62,6 +62,13 @@ _BUT = (
     "not",
 )
 """Words before what is left out."""
+UNSEEN = frozenset(
+    {
+        "dirty", "clean", "empty", "full", "used", "old", "new", "nice", "fresh", "cold", "hot", "warm", "favourite",
+        "favorite", "own", "lovely", "pretty", "good", "whole", "remaining", "same", "usual", "certain",
+    }
+)  # fmt: skip
+"""Qualities that nobody can see or that tell nothing apart."""
 _MEASURES = frozenset(
     {"piece", "pieces", "bit", "pair", "couple", "lot", "one", "some", "any", "all", "both", "each", "kind"}
 )

@@ -11,7 +11,7 @@ ABOUT_THE_WORLD: tuple[Wording, ...] = (
     ),
     Wording(
         "contents",
-        f"{ASK} (what | which (things | objects)) ({BE} | lies | lie | do you see | do we have | have we got)"
+        f"{ASK} (what [else] | which (things | objects)) ({BE} | lies | lie | do you see | do we have | have we got)"
         f" [{LYING}] (on | in | at) <spot>"
         f" | {ASK} what <spot> (has | holds | contains) [on it | in it]",
         heard="what is (on | in) [the] <place>",
@@ -55,7 +55,7 @@ ABOUT_THE_WORLD: tuple[Wording, ...] = (
     ),
     Wording(
         "exists",
-        "(do we | have we | do i | do you) (have | got) <thing> [left | anywhere | somewhere]",
+        "(do we | have we | do i | do you) [still] (have | got) <thing> [left | anywhere | somewhere]",
         heard="",
     ),
     Wording("is_at", f"{ASK} (is | are) <thing> [still] [{LYING}] (in | on | at) <spot> [still]", heard=""),
@@ -117,7 +117,8 @@ ABOUT_ITSELF: tuple[Wording, ...] = (
         " | why (did | could | have | do) (not you | you not) <words> | why did (it | that) (fail | not work "
         "| go wrong)"
         " | what (went wrong | was the (problem | matter | trouble | reason) | is the (matter | problem) | happened"
-        " [there]) | why not | why (were you not able | are you not able) to <words> | how come [<words>]",
+        " [there]) | why not | why (is | was) (that | it) | why (were you not able | "
+        "are you not able) to <words> | how come [<words>]",
         heard="why did you fail | what went wrong",
     ),
     Wording(

@@ -173,8 +173,13 @@ WORDINGS: tuple[Wording, ...] = (
     Wording("tidy", f"({TIDY}) up [<spot>]", heard="(tidy | clean) up [the | my] <place>"),
     Wording("tidy", f"({TIDY}) [<spot>] [up]", heard="(tidy | clean | clear) [the | my] <place>"),
     Wording("tidy", "(clean | clear) <spot> off | empty <spot>", heard=""),
+    Wording("tidy", "make (space | room) (on | in) <spot>", heard=""),
     Wording("tidy", "give <spot> a [quick | good] (tidy | clean | tidying | cleaning) [up]", heard=""),
-    Wording("tidy", "(clean | clear | take) (everything | all of it | it all) (off | from) <spot>", heard=""),
+    Wording(
+        "tidy",
+        "(clean | clear | take | get | remove) (everything | all of it | it all) (off | from) <spot>",
+        heard="",
+    ),
     Wording(
         "go", "go [over | back | along] (to | into | in | near | towards) <spot>", heard="go [back] to [the] <place>",
     ),
@@ -184,6 +189,7 @@ WORDINGS: tuple[Wording, ...] = (
         heard="drive [back] to [the] <place>",
     ),
     Wording("go", "(swing | drop | stop | pop | pass | come | go) by <spot> | visit <spot>", heard=""),
+    Wording("come_back", "(get | go | come) out of <spot>", heard=""),
     Wording("go", "(approach | look at) <spot>", heard=""),
     Wording("go", "(i | we) (need | want) you (in | at | by) <spot>", heard=""),
     Wording("go", "(make your way | get yourself | take yourself) [over | back] (to | into) <spot>", heard=""),
@@ -267,7 +273,12 @@ WORDINGS: tuple[Wording, ...] = (
         f"| brought] [here]",
         heard="",
     ),
-    Wording("put", f"make sure [that] <thing> (is | are | ends up | end up) {ON} <spot>", heard=""),
+    Wording(
+        "put",
+        f"let <thing> (stand | be | go | sit | lie) {ON} <spot> | make sure [that] <thing> (is | are | "
+        f"ends up | end up) {ON} <spot>",
+        heard="",
+    ),
     Wording(
         "pick_up", "(pick | take | grab | lift) up <thing> | pick <thing> up | lift <thing> [up]",
         heard="pick (up <thing> | <thing> up)",
@@ -278,6 +289,13 @@ WORDINGS: tuple[Wording, ...] = (
         heard="",
     ),
     Wording("pick_up", "(grab | grasp | take | hold | pick | reach [for]) <thing>", heard="(grab | take) <thing>"),
+    Wording(
+        "find",
+        "check on <thing> | keep an eye (out for | open for | on) <thing> | watch out for <thing>",
+        heard="",
+    ),
+    Wording("put_back", "undo <thing> | revert <thing>", heard=""),
+    Wording("fetch", "(i | we) feel like [having | eating | drinking] <thing>", heard=""),
     Wording("find", f"({SEEK}) <thing>", heard="find <thing>"),
     Wording("find", "(i | we) (can not | cannot | could not | did not) find <thing> [anywhere]", heard=""),
     Wording("find", "(i | we) [have] (lost | misplaced | mislaid) <thing>", heard=""),

@@ -9,6 +9,7 @@ from common.language.noun_phrase import (
     NUMBERS,
     RELATIONS,
     SIDES,
+    UNSEEN,
     WHICH,
     Relation,
     Which,
@@ -143,7 +144,7 @@ def _known_head(words: Words, vocabulary: Vocabulary) -> Phrase | None:
             count, number = NUMBERS[word], True
         elif word in ("a", "an", "any", "some"):
             any_one = True
-        elif word in DETERMINERS or word == "of":
+        elif word in DETERMINERS or word in UNSEEN or word == "of":
             continue
         elif word in WHICH:
             which = WHICH[word]

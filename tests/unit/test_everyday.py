@@ -12,7 +12,7 @@ from services.planner.vocabulary import Vocabulary
 from services.planner.world import World
 from tests.everyday import CONFIG, HOME, planned, sentences, understand, verdict
 
-LISTS = ("everyday_sentences.tsv",)
+LISTS = ("everyday_sentences.tsv", "more_everyday_sentences.tsv", "last_everyday_sentences.tsv")
 ENOUGH = 0.9
 
 

@@ -20,7 +20,7 @@ from services.planner.world import believed
 from services.speech.config import SpeechConfig
 from services.speech.recognise.recogniser import grammars
 
-scene, said = load_household("apartment"), "i could use the red mug"
+scene, said = load_household("apartment"), "hook me up with the red mug"
 plan = grammar.plan(said, believed(scene, KnownWorld(), []), PlannerConfig())
 speech = config.load("speech", SpeechConfig, config.DEFAULT_DIR, {})
 intent = parse(said, scene)

@@ -22,7 +22,7 @@ _LATER_END = re.compile(
 )
 """The same behind it."""
 _INSTEAD = re.compile(
-    r"^(?:no|stop|wait|sorry|hold on|hang on|"
+    r"^(?:no|stop(?: (?:that|it|this))?|wait|sorry|hold on|hang on|"
     r"(?:forget|scrap|leave|drop|cancel|never mind|skip) (?:about )?(?:that|it|this)|never ?mind|"
     r"scratch that|change of plans?|new plan|i(?: have|'ve)? changed my mind|actually|on second thoughts?|"
     r"instead|rather|"

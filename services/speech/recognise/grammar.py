@@ -149,11 +149,14 @@ def vocabulary(
     household: Household, objects: Iterable[str], places: Iterable[str], colours: Iterable[str]
 ) -> dict[str, list[str]]:
     """The parts that patterns need not define: <verb> and <utterance> from the wordings' table, and as names and
-    aliases of the household with the configured ones <object>, <place>, <surface>, <container> and <colour>.
+    aliases of the household and its words for kinds and groups, with the configured ones, <object>, <place>, <surface>,
+    <container> and <colour>.
 
     Anything can be put on a receptacle; bins and rooms can hold things.
     """
+    words = household.words
     things = [n for o in household.things for n in (o.name, o.kind, *o.aliases)]
+    things += [n for kind, others in words.kinds.items() for n in (kind, *others)] + list(words.groups)
     surfaces = [n for r in household.receptacles for n in (r.name, *r.aliases)]
     rooms = [n for r in household.rooms for n in (r.name, *r.aliases)]
     bins = [n for r in household.receptacles if r.kind in ("bin", "tray") for n in (r.name, *r.aliases)]
@@ -164,5 +167,5 @@ def vocabulary(
         "place": [normalise(n) for n in (*surfaces, *rooms, *spots, *places)],
         "surface": [normalise(n) for n in surfaces],
         "container": [normalise(n) for n in (*bins, *rooms)],
-        "colour": [normalise(n) for n in (*(o.colour for o in household.things), *colours) if n],
+        "colour": [normalise(n) for n in (*(o.colour for o in household.things), *words.colours, *colours) if n],
     }
