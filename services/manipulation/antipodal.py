@@ -13,8 +13,9 @@ import numpy as np
 from common.kinds import kind_of
 from services.manipulation.arm_model import Array, Pose
 from services.manipulation.clearance import FLAT, PAD, PAD_HALF
-from services.manipulation.grasp import Grasp, Target, approach_rotation, on_handle
+from services.manipulation.grasp import Grasp, approach_rotation, on_handle
 from services.manipulation.surface import surface
+from services.manipulation.target import Target
 
 TILTS = (90, 75, 60, 45, 30, 15)
 """How far below horizontal [deg] the hand comes."""

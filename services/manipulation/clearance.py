@@ -9,8 +9,9 @@ import numpy as np
 from common.geometry import quat_matrix
 from common.robot import Hand, pads, subtree
 from services.manipulation.arm_model import STAND_IN, ArmModel, Array, Obstacle, Pose
-from services.manipulation.grasp import Grasp, Target
+from services.manipulation.grasp import Grasp
 from services.manipulation.surface import surface
+from services.manipulation.target import Target
 
 GAP = 0.002
 """Free space [m] kept between the object and every part of the hand but the pads: the pose error of a good sighting."""

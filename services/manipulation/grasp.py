@@ -3,7 +3,7 @@ from above for low ones, at the rim for bowls. Angles were measured in simulatio
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
@@ -12,7 +12,8 @@ from common import messages as m
 from common.geometry import Pose2, matrix_quat, quat_matrix, yaw_quat
 from common.kinds import KINDS, UNKNOWN, GraspRule, Kind, Shape, kind_of
 from common.messages.perception import ShapeFamily
-from services.manipulation.arm_model import Array, Obstacle, Pose, Solid
+from services.manipulation.arm_model import Array, Pose
+from services.manipulation.target import Target
 
 HANDLE_CONE = math.radians(50)
 """Angle [rad] between a finger and a handle below which the finger would land on it. Chosen: a handle's width and a
@@ -20,14 +21,8 @@ finger's, seen from the axis of a mug."""
 HANDLE_ROOM, HANDLE_POINTS = 0.008, 4
 """How far [m] beyond the wall of a round object, and how many points there are, that a handle is taken to be: a finger
 goes through one, noise and the fit's error do not reach as far."""
-LYING_FROM = 0.7
-"""Tilt [rad] from which, and up to which before upside down, an object lies on its side."""
 RIM_DEPTH = 0.012
 """How far [m] below a rim the pads take hold: more than half of a pad's length is on the wall."""
-FAMILIES: dict[Shape, ShapeFamily] = {"turned": "round", "sphere": "ball", "box": "box"}
-"""The family of a kind whose shape was not measured."""
-SOLIDS: dict[str, Solid] = {"round": "cylinder", "bowl": "cylinder", "ball": "ellipsoid"}
-"""The solid that stands for a family; for the others it is a box."""
 FITTING: dict[Shape, tuple[ShapeFamily, ...]] = {
     "turned": ("round", "bowl"),
     "sphere": ("ball", "round"),
@@ -46,55 +41,6 @@ OPEN_VESSEL = (GraspRule("rim", (90, 80, 70)),)
 """How a vessel with an upright wall is grasped that does not fit between the fingers."""
 USUAL_VESSEL = KINDS["bowl"]
 """Whose wall is taken for that of a vessel of a kind that has none."""
-
-
-@dataclass(frozen=True)
-class Target:
-    """An object in the base frame: `position` its centre, `yaw` about z, `size` full extents as it rests.
-
-    With a `tilt` [rad] it lies: its own axis points along `yaw`, and its first extent is along that.
-
-    `shape`: the family that was measured, "" if none was; `points` (n, 3) [m]: what was seen of its surface, from
-    `position` along the axes of the base frame; `spread`: standard deviation [m] of extents and position; `measured`:
-    the extents are, they were not told.
-    """
-
-    label: str
-    kind: str
-    position: tuple[float, float, float]
-    yaw: float
-    size: tuple[float, float, float]
-    tilt: float = 0.0
-    shape: ShapeFamily = ""
-    points: Array | None = field(default=None, compare=False, repr=False)
-    spread: float = 0.0
-    measured: bool = False
-
-    @property
-    def family(self) -> ShapeFamily:
-        """The shape that was measured, or that of its kind."""
-        return self.shape or FAMILIES[kind_of(self.kind).shape]
-
-    @property
-    def solid(self) -> Solid:
-        """The solid that contains it."""
-        if self.lies and self.family == "long":
-            return "cylinder"
-        return SOLIDS.get(self.family, "box")
-
-    def grown(self, margin: float) -> Obstacle:
-        """Its solid, `margin` [m] larger on every side but the lower one."""
-        x, y, z = self.size
-        size = (x + 2 * margin, y + 2 * margin, z + margin)
-        return Obstacle(self.position, size, self.yaw, self.solid, self.lies, self.label)
-
-    @property
-    def lies(self) -> bool:
-        return LYING_FROM < self.tilt < math.pi - LYING_FROM
-
-    @property
-    def bottom(self) -> float:
-        return self.position[2] - self.size[2] / 2
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from services.manipulation.arm_model import Array
-from services.manipulation.grasp import Grasp, Target
+from services.manipulation.grasp import Grasp
+from services.manipulation.target import Target
 
 SHRINK = 0.008
 """How much smaller [m] than the object its collision box is on every side. Chosen: the errors of size and grasp, so

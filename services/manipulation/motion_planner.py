@@ -9,9 +9,10 @@ import numpy as np
 from services.manipulation.antipodal import antipodal
 from services.manipulation.arm_model import ArmModel, Array, Obstacle, Pose
 from services.manipulation.clearance import HandClearance
-from services.manipulation.grasp import Grasp, Target, candidates
+from services.manipulation.grasp import Grasp, candidates
 from services.manipulation.grasped_object import GraspedObject
 from services.manipulation.ik import InverseKinematics
+from services.manipulation.target import Target
 from services.manipulation.touch import Reaction
 from services.manipulation.trajectory import connect
 

@@ -9,13 +9,13 @@ from msgspec import structs
 from common import messages as m
 from common.messages import WorldObject
 from services.manipulation.arm_model import Array
-from services.manipulation.grasp import Target
 from services.manipulation.grasp_executor import grab
 from services.manipulation.motion_planner import Planner
 from services.manipulation.place_executor import free_spots, place
 from services.manipulation.plan_grab import Way, feasible
 from services.manipulation.planning_scene import obstacles, target_of
 from services.manipulation.robot import Failure, Robot, Steps, planner_of
+from services.manipulation.target import Target
 
 MOST, CONSIDERED = 2, 4
 """Neighbours that are put elsewhere for one object, and of how many these are chosen. Chosen: what takes less than the

@@ -9,12 +9,13 @@ import numpy as np
 
 from services.manipulation.arm_model import Array, Obstacle
 from services.manipulation.contacts import new_sides_first
-from services.manipulation.grasp import Grasp, Target
+from services.manipulation.grasp import Grasp
 from services.manipulation.grasp_verification import MEASURED
 from services.manipulation.grasped_object import GraspedObject, attach
 from services.manipulation.ik import seeds
 from services.manipulation.motion_planner import PlanError, Planner, counted
 from services.manipulation.planning_scene import with_object
+from services.manipulation.target import Target
 from services.manipulation.trajectory import connect
 
 T = TypeVar("T")

@@ -10,7 +10,7 @@ from common.floor_plan import FloorPlan, Receptacle
 from common.geometry import Pose2, Rectangle, compose, inverse, quat_matrix, quat_yaw, yaw_quat
 from common.messages import ObjectRef, WorldObject
 from services.manipulation.arm_model import Array, Obstacle
-from services.manipulation.grasp import Target
+from services.manipulation.target import Target
 
 RANGE = 1.4
 """Distance [m] from the base's centre up to which boxes count. Chosen: the arm's reach, its place on the base and an

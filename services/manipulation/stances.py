@@ -8,10 +8,10 @@ from common.geometry import Pose2, compose, inverse
 from common.household import Household
 from common.messages import WorldObject
 from services.manipulation.arm_model import Array, Obstacle
-from services.manipulation.grasp import Target
 from services.manipulation.motion_planner import Planner
 from services.manipulation.plan_grab import Way, feasible
 from services.manipulation.planning_scene import MARGINS, obstacles, target_of
+from services.manipulation.target import Target
 
 STAND_OFFS = (STAND_OFF, STAND_OFF + 0.08, STAND_OFF - 0.07)
 """Distances [m] from the base's middle to the object that are tried."""

@@ -8,7 +8,7 @@ from scipy import ndimage
 from scipy.spatial import cKDTree
 
 from services.manipulation.arm_model import Array
-from services.manipulation.grasp import Target
+from services.manipulation.target import Target
 
 SPACING = 0.004
 """Distance [m] between neighbouring points of a completed surface: a fifth of a pad's width."""

@@ -11,7 +11,8 @@ from common.geometry import matrix_quat
 from common.household import load_household
 from services.dashboard.panels.tracking_error import arm_error, off_path
 from services.dashboard.scene.layers import FOOTPRINT, STATES, forks, picture
-from services.manipulation.grasp import Target, candidates, shown
+from services.manipulation.grasp import candidates, shown
+from services.manipulation.target import Target
 from services.navigation.planning.costmap import Costmap
 
 

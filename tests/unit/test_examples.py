@@ -16,7 +16,8 @@ from common.kinds import KINDS
 from common.plan_rules import known_world
 from common.scene import ObjectSpec, load_scene
 from examples.odometer import DISTANCE, OdometerConfig, OdometerService
-from services.manipulation.grasp import Target, candidates
+from services.manipulation.grasp import candidates
+from services.manipulation.target import Target
 from services.perception.shapes import distances
 from services.planner import grammar
 from services.planner.config import PlannerConfig

@@ -10,8 +10,9 @@ from common.geometry import quat_matrix, yaw_quat
 from services.manipulation.antipodal import LONGEST, PLAY, STEEPEST, antipodal
 from services.manipulation.arm_model import Array
 from services.manipulation.clearance import PAD
-from services.manipulation.grasp import Grasp, Target
+from services.manipulation.grasp import Grasp
 from services.manipulation.surface import SPACING, surface
+from services.manipulation.target import Target
 
 OPENING, WIDEST = 0.085, 0.0761
 AT = (0.6, 0.1, 0.7)

@@ -5,8 +5,9 @@ import pytest
 
 from services.manipulation.arm_model import Pose
 from services.manipulation.clearance import GAP, MOST, OUTWARD
-from services.manipulation.grasp import Grasp, Target, approach_rotation
+from services.manipulation.grasp import Grasp, approach_rotation
 from services.manipulation.motion_planner import Planner
+from services.manipulation.target import Target
 from services.sim.model import own
 
 PLANNER = Planner(own().mjcf, seed=0)

@@ -16,11 +16,12 @@ from common.kinds import KINDS
 from evaluation.stack import Stack
 from services.manipulation.arm_model import ArmModel, Obstacle, Pose
 from services.manipulation.config import ManipulationConfig
-from services.manipulation.grasp import Target, approach_rotation, candidates
+from services.manipulation.grasp import approach_rotation, candidates
 from services.manipulation.grasp_store import GraspStore
 from services.manipulation.grasp_verification import held_badly, judge
 from services.manipulation.ik import InverseKinematics, seeds
 from services.manipulation.service import ManipulationService
+from services.manipulation.target import Target
 from services.manipulation.trajectory import connect, free_line, timed
 from services.perception.config import PerceptionConfig
 from services.sim.model import own
