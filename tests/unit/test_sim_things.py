@@ -1,6 +1,8 @@
 """Things with faces, and bodies from files: what collides, what is seen, and that they stay where they stand."""
 
 import io
+import sys
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -9,6 +11,7 @@ import mujoco
 import numpy as np
 import pytest
 from PIL import Image
+from scipy.spatial import Delaunay
 
 from common.body_file import BodyError, extents, load
 from common.rendering.looks import geom_colours
@@ -18,8 +21,10 @@ from services.sim.layout import Placement
 from services.sim.objects import body_xml, made
 from services.sim.physics import Physics
 from services.sim.robot import HULL_GROUP
+from services.sim.things import convex
 from services.sim.things.finish import GROUND, picture
 from services.sim.things.forms import FORMS
+from services.sim.things.mesh import turned
 from services.sim.things.primitives import GROUP, materials
 
 SIZES = {
@@ -306,3 +311,63 @@ def test_surroundings_are_drawn_from_the_seed() -> None:
     for finish in GROUND:
         image = Image.open(io.BytesIO(picture(finish)))
         assert image.size == (256, 256) and np.asarray(image).std() > 2
+
+
+# --- convex parts
+def cup() -> tuple[np.ndarray, np.ndarray]:
+    outline = [(0.0, 0.0), (0.04, 0.0), (0.04, 0.09), (0.034, 0.09), (0.034, 0.008), (0.0, 0.008)]
+    shape = turned(list(pairwise(outline)), 0.0, 0.09, 0.0)
+    sewn, index = np.unique(np.round(shape.vertices, 6), axis=0, return_inverse=True)
+    return sewn, index.ravel()[shape.faces]
+
+
+class Decomposer:
+    """Stands in for CoACD: two halves."""
+
+    asked = 0
+
+    def set_log_level(self, level: str) -> None: ...
+
+    def Mesh(self, vertices: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:  # noqa: N802
+        return vertices, faces
+
+    def run_coacd(self, mesh: tuple[np.ndarray, np.ndarray], **_: object) -> list[tuple[np.ndarray, np.ndarray]]:
+        self.asked += 1
+        return [mesh, (mesh[0] * 2, mesh[1])]
+
+
+def test_parts_are_made_once_and_a_torn_file_is_made_anew(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    made = Decomposer()
+    monkeypatch.setitem(sys.modules, "coacd", made)
+    monkeypatch.setenv("TIDYBOT_CACHE_DIR", str(tmp_path))
+    vertices, faces = cup()
+    for _ in range(2):
+        found = convex.parts(vertices, faces)
+        assert len(found) == 2 and np.allclose(found[1][0], 2 * vertices) and np.array_equal(found[0][1], faces)
+    assert made.asked == 1
+    convex.parts(vertices * 1.1, faces)
+    assert made.asked == 2, "another mesh has other parts"
+    for file in (tmp_path / "convex").iterdir():
+        file.write_bytes(file.read_bytes()[:100])
+    convex.parts(vertices, faces)
+    assert made.asked == 3
+
+
+def test_without_coacd_or_a_disk_it_does_with_less(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "file").write_text("")
+    monkeypatch.setenv("TIDYBOT_CACHE_DIR", str(tmp_path / "file"))
+    monkeypatch.setitem(sys.modules, "coacd", None)
+    ((corners, triangles),) = convex.parts(*cup())
+    assert np.allclose(np.ptp(corners, axis=0), (0.08, 0.08, 0.09), atol=1e-3) and triangles.max() == len(corners) - 1
+    monkeypatch.setitem(sys.modules, "coacd", Decomposer())
+    assert len(convex.parts(*cup())) == 2
+
+
+@pytest.mark.slow
+def test_a_cup_keeps_its_inside(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("coacd")
+    monkeypatch.setenv("TIDYBOT_CACHE_DIR", str(tmp_path))
+    found = convex.parts(*cup())
+    assert len(found) > 5
+    inside = np.array([0.0, 0.0, 0.06])
+    assert not any(Delaunay(vertices).find_simplex(inside) >= 0 for vertices, _ in found)

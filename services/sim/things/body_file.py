@@ -1,7 +1,7 @@
 """A body from any MJCF file: what it looks like and what collides, as one rigid object of our world.
 
 Joints stay where the file has them. Geoms that touch nothing are only looked at; where there are none, those that
-collide are. A file without colliding geoms gets convex parts of what it looks like: by CoACD (the extra `things`), or
+collide are. A file without colliding geoms gets convex parts of what it looks like: by CoACD (the extra `convex`), or
 else the convex hull.
 """
 

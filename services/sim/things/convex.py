@@ -1,14 +1,19 @@
 """Convex parts of a mesh that nobody gave collision geoms, made once and kept on disk."""
 
+import contextlib
 import hashlib
 import importlib
+import io
 import os
+import zipfile
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
+
+from common import atomic_file
 
 Array = NDArray[np.float64]
 Part = tuple[Array, NDArray[np.int64]]
@@ -28,17 +33,17 @@ def directory() -> Path:
 
 def parts(vertices: Array, faces: NDArray[np.int64]) -> list[Part]:
     """The parts, from disk if they were made before; the convex hull where CoACD is not installed."""
+    digest = hashlib.sha256(f"{VERSION} {THRESHOLD} {MOST}".encode() + vertices.tobytes() + faces.tobytes()).hexdigest()
+    file = directory() / "convex" / f"{digest[:24]}.npz"
+    try:
+        with np.load(io.BytesIO(file.read_bytes())) as kept:
+            return [(kept[f"v{n}"], kept[f"f{n}"]) for n in range(len(kept.files) // 2)]
+    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
+        pass
     try:
         coacd = importlib.import_module("coacd")
     except ImportError:
         return [_hull(vertices)]
-    digest = hashlib.sha256(f"{VERSION} {THRESHOLD} {MOST}".encode() + vertices.tobytes() + faces.tobytes()).hexdigest()
-    file = directory() / "convex" / f"{digest[:24]}.npz"
-    try:
-        with np.load(file) as kept:
-            return [(kept[f"v{n}"], kept[f"f{n}"]) for n in range(len(kept.files) // 2)]
-    except (OSError, ValueError, KeyError):
-        pass
     coacd.set_log_level("error")
     made = coacd.run_coacd(coacd.Mesh(vertices, faces), threshold=THRESHOLD, max_convex_hull=MOST, seed=0)
     found = [(np.asarray(v, np.float64), np.asarray(f, np.int64)) for v, f in made]
@@ -47,18 +52,15 @@ def parts(vertices: Array, faces: NDArray[np.int64]) -> list[Part]:
 
 
 def _keep(file: Path, found: list[Part]) -> None:
-    """Whole or not at all: another process may make the same."""
-    own = file.with_suffix(f".{os.getpid()}.tmp")
-    try:
+    """What cannot be kept is made anew the next time."""
+    arrays: dict[str, Any] = {}
+    for n, (vertices, faces) in enumerate(found):
+        arrays |= {f"v{n}": vertices, f"f{n}": faces}
+    packed = io.BytesIO()
+    np.savez_compressed(packed, **arrays)
+    with contextlib.suppress(OSError):
         file.parent.mkdir(parents=True, exist_ok=True)
-        with own.open("wb") as stream:
-            arrays: dict[str, Any] = {}
-            for n, (vertices, faces) in enumerate(found):
-                arrays |= {f"v{n}": vertices, f"f{n}": faces}
-            np.savez_compressed(stream, **arrays)
-        own.replace(file)
-    except OSError:
-        own.unlink(missing_ok=True)
+        atomic_file.replace(file, packed.getvalue())
 
 
 def _hull(vertices: Array) -> Part:
