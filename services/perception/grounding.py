@@ -134,5 +134,5 @@ def may_be_meant(
     words = set(normalise(query).split())
     shades = {household.words.colour(w) or w for w in words} & set(ALIKE)
     held = [o for o in objects if o.id in doubtful and not o.held]
-    fit = [o for o in held if all(s in o.colours or any(s in ALIKE.get(c, ()) for c in o.colours) for s in shades)]
+    fit = [o for o in held if all(s in {*o.colours, *ALIKE.get(o.colour, ())} for s in shades)]
     return [o.label for o in sorted(fit, key=lambda o: math.dist(o.position[:2], base[:2]))]

@@ -62,6 +62,7 @@ class Track:
     """One object in one place, with the evidence for its name.
 
     `seen_at` is the time of the newest evidence, be it the hand's; `looked_at` that of the newest picture of it [s].
+    `clearest`: weight of the best view that has shown it whole.
     """
 
     id: str
@@ -72,6 +73,7 @@ class Track:
     seen_at: float
     weight: float
     best: float = 0.0
+    clearest: float = 0.0
     whole: bool = False
     scores: dict[tuple[str, str, str], float] = field(default_factory=dict)
     misses: int = 0
@@ -190,7 +192,7 @@ class ObjectTracker:
 
     def doubtful(self) -> set[str]:
         """Ids of objects that nobody listed and that no view has shown whole and near: they may be something else."""
-        return {t.id for t in self._tracks if not t.held and not t.known and (not t.whole or t.best < DOUBT)}
+        return {t.id for t in self._tracks if not t.held and not t.known and t.clearest < DOUBT}
 
     def report(self, now: float) -> WorldObjects:
         return WorldObjects(t=now, objects=self.objects(), source="perception")
@@ -263,6 +265,8 @@ def _see(track: Track, d: Detection, now: float) -> None:
     else:
         track.weight = min(track.weight + weight, TRUST * track.best)
         share = weight / track.weight
+    if d.whole:
+        track.clearest = max(track.clearest, weight)
     old, new = np.array(track.position), np.array(d.position)
     x, y, z = (float(v) for v in old + share * (new - old))
     track.position, track.on = (x, y, z), d.on

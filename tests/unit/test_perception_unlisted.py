@@ -151,6 +151,8 @@ def test_what_was_seen_from_afar_may_be_what_is_asked_for_and_what_was_seen_near
     assert may_be_meant("red bottle", found, tracker.doubtful(), NOTHING_LISTED, (0.0, 0.0, 0.0)) == ["red can"]
     assert may_be_meant("bottle", found, tracker.doubtful(), NOTHING_LISTED, (0.0, 0.0, 0.0)) == ["red can"]
     assert may_be_meant("green bottle", found, tracker.doubtful(), NOTHING_LISTED, (0.0, 0.0, 0.0)) == []
-    # From nearer it is a can for certain.
-    tracker.update(looking(0.0, 0.0), [sighting(4.0, -3.0, CAN, RED)], 5.0)
+    # From nearer it is a can for certain, however often it was seen from afar.
+    for n in range(2, 9):
+        tracker.update(looking(0.0, 0.0), [far], float(n))
+    tracker.update(looking(0.0, 0.0), [sighting(4.0, -3.0, CAN, RED)], 9.0)
     assert not tracker.doubtful()
