@@ -1,0 +1,72 @@
+"""Compiled meshes with fewer triangles, and their pictures still in place. Pure."""
+
+from typing import Any
+
+import fast_simplification
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from services.sim.things.mesh import Mesh
+
+Array = NDArray[np.float64]
+FACES = 2000
+"""Triangles that all meshes to look at of one body may have; twelve such cost a picture about as much as the flat."""
+REACH = 12.0
+"""How far, in sides of an old triangle, its coordinates are taken to go on: a new one is some ten times as large."""
+LEAST_FACES = 60
+"""Triangles below which a mesh is left as it is."""
+CARE = 3
+"""How hard fast_simplification may collapse edges, as for the robot's meshes (`services/sim/skin.py`)."""
+
+
+def corners(model: Any, number: int) -> tuple[Array, NDArray[np.int64]]:
+    """Corners (n, 3) [m] and triangles (k, 3) of a compiled mesh."""
+    at, count = int(model.mesh_vertadr[number]), int(model.mesh_vertnum[number])
+    begin, faces = int(model.mesh_faceadr[number]), int(model.mesh_facenum[number])
+    return np.array(model.mesh_vert[at : at + count], np.float64), np.array(model.mesh_face[begin : begin + faces])
+
+
+def simplified(model: Any, number: int, share: float) -> Mesh:
+    """A compiled mesh with its texture coordinates, and about a `share` of its triangles."""
+    vertices, faces = corners(model, number)
+    begin, start = int(model.mesh_faceadr[number]), int(model.mesh_texcoordadr[number])
+    if start < 0:
+        uv = np.zeros((3 * len(faces), 2))
+    else:
+        uv = np.array(model.mesh_texcoord[start:][model.mesh_facetexcoord[begin : begin + len(faces)].ravel()])
+    target = int(share * len(faces))
+    if share == 1.0 or target < LEAST_FACES:
+        return _shared(vertices[faces.ravel()], uv)
+    # Along the seams of its picture a mesh is cut: sewn up first, or it would tear there.
+    sewn, index = np.unique(np.round(vertices, 6), axis=0, return_inverse=True)
+    fewer, left = fast_simplification.simplify(sewn, index.ravel()[faces], target_count=target, agg=CARE)
+    fewer = np.clip(fewer, vertices.min(axis=0), vertices.max(axis=0))
+    return _shared(fewer[left].reshape(-1, 3), _mapped(vertices[faces], uv.reshape(-1, 3, 2), fewer[left]))
+
+
+def _mapped(old: Array, uv: Array, new: Array) -> Array:
+    """Texture coordinates (3 k, 2) for triangles `new` (k, 3, 3) from triangles `old` (n, 3, 3) with `uv` (n, 3, 2).
+
+    A new triangle lies on that old one whose middle is nearest to its own: its corners get what the plane through the
+    old one's coordinates has there, so that the picture runs on without a break within it.
+    """
+    _, nearest = cKDTree(old.mean(axis=1)).query(new.mean(axis=1))
+    a, b, c = (old[nearest, i] for i in range(3))
+    e, f = b - a, c - a
+    ee, ef, ff = (e * e).sum(1), (e * f).sum(1), (f * f).sum(1)
+    det = np.maximum(ee * ff - ef * ef, 1e-18)
+    offset = new - a[:, None]
+    oe, of = (offset * e[:, None]).sum(2), (offset * f[:, None]).sum(2)
+    s = np.clip((ff[:, None] * oe - ef[:, None] * of) / det[:, None], -REACH, REACH)
+    t = np.clip((ee[:, None] * of - ef[:, None] * oe) / det[:, None], -REACH, REACH)
+    base, along, across = uv[nearest, 0], uv[nearest, 1] - uv[nearest, 0], uv[nearest, 2] - uv[nearest, 0]
+    found = base[:, None] + s[..., None] * along[:, None] + t[..., None] * across[:, None]
+    return np.asarray(found.reshape(-1, 2))
+
+
+def _shared(corners: Array, uv: Array) -> Mesh:
+    """Triangles of corners (3 k, 3) with coordinates (3 k, 2), with one vertex for all corners that are the same."""
+    rows = np.concatenate([np.round(corners, 5), np.round(uv, 4)], 1)
+    kept, index = np.unique(rows, axis=0, return_inverse=True)
+    return Mesh(kept[:, :3], index.reshape(-1, 3), kept[:, 3:])
