@@ -1,5 +1,6 @@
 """Leaves that look for an object and drive up to it."""
 
+import math
 from typing import Any
 
 import msgspec
@@ -93,6 +94,26 @@ class MoveToViewpoint(SendGoal):
 
     def spoken(self) -> str:
         return "I could not get to where I wanted to look."
+
+
+class TurnOnTheSpot(SendGoal):
+    """Turns the base by `angle` [rad] where it stands."""
+
+    def __init__(self, node_id: str, ctx: Context, angle: float) -> None:
+        timeout = ctx.config.navigation_timeout
+        super().__init__(node_id, ctx, ctx.peers.navigation, state="NAVIGATING", timeout=timeout)
+        self._angle = angle
+
+    def goal(self, goal_id: str) -> tuple[Topic[Any], m.Message]:
+        x, y, theta = self.ctx.robot_pose
+        turned = math.remainder(theta + self._angle, 2 * math.pi)
+        return topics.NAV_GOAL, m.NavGoal(id=goal_id, x=x, y=y, theta=turned)
+
+    def step(self) -> str:
+        return "look around"
+
+    def spoken(self) -> str:
+        return "I could not turn around."
 
 
 class ReportNotFound(Leaf):
