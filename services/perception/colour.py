@@ -88,7 +88,7 @@ def pixel_words(rgb: Array, turn: float = 0.0) -> NDArray[np.intp]:
         | ((saturation < 0.22) & (value > 0.75))
         | ((saturation < 0.28) & (hue > 0.07) & (hue < 0.2) & (value > 0.7))
     )
-    found[pale] = np.where(value[pale] > 0.62, WORDS.index("white"), WORDS.index("grey"))
+    found[pale] = np.where(value[pale] > 0.55, WORDS.index("white"), WORDS.index("grey"))
     found[(value < 0.16) | ((value < 0.22) & (saturation < 0.3))] = WORDS.index("black")
     return np.asarray(found, np.intp)
 
