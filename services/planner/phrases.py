@@ -45,9 +45,15 @@ class Phrase(msgspec.Struct, frozen=True):
 
 def read(words: Words, vocabulary: Vocabulary) -> Phrase | str:
     """The phrase, or the noun that nobody knows."""
-    words, but = without_exceptions(without_tail(words))
-    phrase = _read(words, vocabulary)
-    return msgspec.structs.replace(phrase, but=but) if but and isinstance(phrase, Phrase) else phrase
+    # A long enumeration is cut in many ways, whose parts come again and again.
+    key = vocabulary.new_nouns, words
+    if key not in vocabulary.phrases:
+        rest, but = without_exceptions(without_tail(words))
+        phrase = _read(rest, vocabulary)
+        whole = msgspec.structs.replace(phrase, but=but) if but and isinstance(phrase, Phrase) else phrase
+        vocabulary.phrases[key] = whole
+    known: Phrase | str = vocabulary.phrases[key]
+    return known
 
 
 def _read(words: Words, vocabulary: Vocabulary) -> Phrase | str:

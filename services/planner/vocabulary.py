@@ -1,6 +1,7 @@
 """The words for objects and places: from the household, from what was seen, and from the configuration. Pure."""
 
 from collections.abc import Iterable
+from typing import Any
 
 import msgspec
 
@@ -58,6 +59,7 @@ class Vocabulary:
 
     def __init__(self, world: World, config: PlannerConfig) -> None:
         self.new_nouns = False
+        self.phrases: dict[tuple[bool, Words], Any] = {}
         self._household = household = world.household
         known = [*world.specs, *world.objects]
         words = household.words
