@@ -51,6 +51,7 @@ def is_tracker(process: psutil.Process) -> bool:
         return False
 
 
+@pytest.mark.slow
 def test_ctrl_c_keeps_what_is_done_and_leaves_nothing_behind(tmp_path: Path) -> None:
     out = tmp_path / "report.json"
     words = command("-n", "50", "--jobs", "2", "--pipeline", "fetch", "--json", str(out))

@@ -98,6 +98,7 @@ def test_a_demo_that_runs_out_of_time_says_so_and_leaves_nothing(run: Run) -> No
     assert run.processes() == []
 
 
+@pytest.mark.slow
 def test_an_interrupted_demo_leaves_nothing(run: Run) -> None:
     line = [sys.executable, "-m", "cli.main", "demo", "--without", "camera", "--typed"]
     demo = subprocess.Popen(

@@ -198,6 +198,7 @@ def test_a_bad_configuration_ends_up_at_once_with_the_reason(run: Run) -> None:
     assert run.processes() == []
 
 
+@pytest.mark.slow
 def test_a_crash_loop_ends_as_failed(run: Run) -> None:
     assert run.detached("--only", "router,brain").returncode == 0
 

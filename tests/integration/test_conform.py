@@ -24,6 +24,7 @@ def unmet(rows: list[dict[str, object]]) -> dict[str, object]:
 
 
 @pytest.mark.timeout(600)
+@pytest.mark.slow
 def test_the_simulation_conforms(here: Site) -> None:
     here.start("services.sim", TIDYBOT__RUNTIME__SCENE="minimal")
     with here.session() as session:

@@ -23,6 +23,7 @@ def check(result: Result) -> None:
     assert result.outcome == "delivered" or evidence["reason"], evidence
 
 
+@pytest.mark.slow
 def test_a_brain_killed_in_every_state_of_one_mission_delivers() -> None:
     result = harmed(CELLS.index(Cell("brain", EVERY, "kill")))
     check(result)

@@ -46,6 +46,7 @@ def trajectory(seed: int) -> str:
     return digest.hexdigest()
 
 
+@pytest.mark.slow
 def test_a_seed_repeats_to_the_last_bit_and_another_differs() -> None:
     assert trajectory(5) == trajectory(5)
     assert trajectory(5) != trajectory(6)
