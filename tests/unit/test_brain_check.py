@@ -4,6 +4,7 @@ import math
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import pytest
 
 from common import messages as m
@@ -13,7 +14,7 @@ from common.household import load_household
 from services.brain.config import BrainConfig
 from services.brain.journal.pictures import KEPT, LARGEST, START, Pictures
 from services.brain.steps.verify import ASIDE
-from services.brain.world.placement import judge_absence, judge_placement
+from services.brain.world.placement import judge_absence, judge_placement, kind_meant
 from tests.unit.brain_bench import Bench
 from tests.unit.test_brain_vla import FETCH, MANIP, POSE, QUERY, SPEECH, approach, planned, see
 
@@ -49,6 +50,25 @@ def test_what_is_seen_is_judged_by_place_and_stance(label: str, target: str, see
     finding = judge_placement(pose(label=label, **seen), label, target, SCENE)
     assert finding.fault == fault
     assert label in finding.words and "tilt" in finding.measured
+
+
+@pytest.mark.parametrize(
+    ("asked", "label", "tilt", "closed", "fault"),
+    [
+        ("the yellow bottle", "yellow banana", LYING, False, "TOPPLED"),
+        ("the yellow banana", "yellow banana", LYING, False, ""),
+        ("orange mug", "orange can", 0.0, True, "TOPPLED"),
+        ("orange can", "orange can", 0.0, True, ""),
+        ("my beaker of whatever", "green bottle", LYING, False, "TOPPLED"),
+    ],
+)
+def test_what_no_household_lists_is_judged_as_what_it_was_asked_for(
+    asked: str, label: str, tilt: float, closed: bool, fault: str
+) -> None:
+    unlisted = msgspec.structs.replace(SCENE, things=())
+    seen = pose(label=label, tilt=tilt)
+    kind = kind_meant(asked, unlisted)
+    assert judge_placement(seen, label, "delivery tray", unlisted, None, kind, closed).fault == fault
 
 
 @pytest.mark.parametrize(("x", "fault"), [(0.4, ""), (1.2, "MISPLACED")])

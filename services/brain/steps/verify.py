@@ -8,6 +8,7 @@ from py_trees.common import Status
 
 from common import messages as m
 from common import topics
+from common.kinds import kind_of
 from common.topics import Topic
 from services.brain.mission.channel import Result
 from services.brain.mission.context import Context
@@ -16,7 +17,7 @@ from services.brain.steps.find import object_in_map
 from services.brain.steps.leaf import Leaf, SendGoal, Settle
 from services.brain.steps.motion import Release
 from services.brain.tree.composites import Condition, Retry, Sequence
-from services.brain.world.placement import Finding, judge_absence, judge_placement
+from services.brain.world.placement import TIPPED, Finding, judge_absence, judge_placement, kind_meant
 
 MISPLACED_CODES = ("NOT_SEEN", "MISPLACED", "TOPPLED")
 """Codes of a look that shows an object not where, or not as, it belongs."""
@@ -59,7 +60,7 @@ class VerifyPlacement(SendGoal):
         if pose.found and pose.seen_at <= ctx.gripper.put_down.get(label, math.inf):
             return self._unchecked("what was seen is older than the release")
         if pose.found:
-            finding = judge_placement(pose, label, self._target, ctx.io.household, object_in_map(ctx, self._near))
+            finding = _judged(ctx, pose, self._target, self._near)
         else:
             finding = judge_absence(label, self._target, ctx.io.household)
         return record_finding(ctx, finding, pose.picture)
@@ -117,10 +118,22 @@ class AlreadyInPlace(Leaf):
         label = ctx.mission.delivery.put_down
         if pose is None or pose.label != label or pose.seen_at <= ctx.gripper.put_down.get(label, math.inf):
             return Status.FAILURE
-        finding = judge_placement(pose, label, self._target, ctx.io.household, object_in_map(ctx, self._near))
+        finding = _judged(ctx, pose, self._target, self._near)
         if finding.fault:
             return Status.FAILURE
         return record_finding(ctx, finding, b"")
+
+
+def _judged(ctx: Context, pose: m.ObjectPose, target: str, near: str) -> Finding:
+    """Judge by the words that it was asked for with: what is called a banana may have been meant as the bottle."""
+    label, household = ctx.mission.delivery.put_down, ctx.io.household
+    found = [(item, one) for item, one in ctx.mission.search.found.items() if one.label == label]
+    kind = next((k for item, _ in found if (k := kind_meant(item, household))), "")
+    seen = ctx.known_object(label)
+    looks = kind_of(seen.kinds[0] if seen and seen.kinds else "")
+    # A vessel that lay may have been stood on its mouth, and then looks like a can.
+    closed = bool(kind) and any(one.tilt > TIPPED for _, one in found) and looks.ends_alike
+    return judge_placement(pose, label, target, household, object_in_map(ctx, near), kind, closed)
 
 
 def record_finding(ctx: Context, finding: Finding, picture: bytes) -> Status:

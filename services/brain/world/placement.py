@@ -36,13 +36,21 @@ class Finding:
 
 
 def judge_placement(
-    pose: ObjectPose, label: str, target: str, household: Household, beside: ObjectRef | None = None
+    pose: ObjectPose,
+    label: str,
+    target: str,
+    household: Household,
+    beside: ObjectRef | None = None,
+    kind: str = "",
+    closed: bool = False,
 ) -> Finding:
     """Judge an object that was seen after it was put down on `target`; "": anywhere will do.
 
-    `beside`: the object, with its place in frame map, next to which it belongs.
+    `beside`: the object, with its place in frame map, next to which it belongs. `kind`: what it was asked for as, ""
+    what the household or its label says; `closed`: it lay when it was found, and looks closed from above now.
     """
     spec, wanted = household.thing(label), household.receptacle(target)
+    stands = kind_of(kind or (spec.kind if spec else household.words.kind(label.split()[-1]) if label else ""))
     on = household.receptacle(pose.on) or household.resting_place(pose.position)
     where = f"on the {on.name}" if on else "on the floor"
     if on and on.depth:
@@ -52,8 +60,9 @@ def judge_placement(
     measured = f"at ({x:.2f}, {y:.2f}, {z:.2f}), tilt {math.degrees(tilt):.0f} deg"
     if wanted is not None and on is not wanted:
         return Finding("MISPLACED", f"the {label} is {where}, not on the {wanted.name}", measured)
-    if spec is not None and kind_of(spec.kind).upright and tilt > TIPPED and not (on and on.depth):
-        lies = "stands upside down" if tilt > UPSIDE_DOWN else "lies on its side"
+    over = tilt > TIPPED or (closed and "upside down" in stands.rests)
+    if stands.upright and over and not (on and on.depth):
+        lies = "lies on its side" if TIPPED < tilt <= UPSIDE_DOWN else "stands upside down"
         return Finding("TOPPLED", f"the {label} {lies} {where}", measured)
     if beside is not None:
         apart = math.dist((x, y), beside.position[:2])
@@ -61,6 +70,12 @@ def judge_placement(
             return Finding("MISPLACED", f"the {label} is {apart:.1f} m from the {beside.label}", measured)
         where += f" next to the {beside.label}"
     return Finding("", f"the {label} is {where}", measured)
+
+
+def kind_meant(phrase: str, household: Household) -> str:
+    """The kind that a phrase like `the yellow bottle` names, "" when none of its words does."""
+    named = (household.words.kind(word) for word in reversed(phrase.split()))
+    return next((kind for kind in named if kind), "")
 
 
 def judge_absence(label: str, target: str, household: Household) -> Finding:
