@@ -24,6 +24,8 @@ HANDLE_SHARE = (0.025, 0.3)
 """Least and most share of the points that are of a handle."""
 ONE_SIDE = 0.8
 """Mean of the unit vectors towards a handle's points, from which they are on one side."""
+BODY = 12
+"""Fewest points of what is beside a handle: with fewer the fit is off, and what is beyond its wall is no handle."""
 VESSEL = (0.05, 0.17)
 """Least and most height [m] of what is tried with a handle."""
 SQUARE = 0.12
@@ -58,8 +60,13 @@ def standing(points: Array, h: float, outline: Silhouette, eye: Array, noise: fl
         x, y, r = (float(v) for v in alone.p[:3])
         rho = np.hypot(points[:, 0] - x, points[:, 1] - y)
         beyond = (rho > r + HANDLE) & (rho < r + HANDLE_REACH) & (points[:, 2] < 0.95 * h)
-        if r < solution.p[2] - 0.003 and _on_one_side(points[:, :2] - (x, y), beyond):
-            body = rho < r + HANDLE / 2
+        wall = rho < r + HANDLE / 2
+        if (
+            r < solution.p[2] - 0.003
+            and np.count_nonzero(wall) >= BODY
+            and _on_one_side(points[:, :2] - (x, y), beyond)
+        ):
+            body = wall
             rest = points[body]
             own = primitives.silhouette(rest, np.append(outline.camera, 0.0), _seen(outline), 0.0)
             solution = _upright(rest, h, own, noise)
@@ -166,8 +173,10 @@ def _lying_along(
     beside = -math.sin(yaw) * (points[:, 0] - x) + math.cos(yaw) * (points[:, 1] - y)
     far = np.abs(beside)
     beyond = (far > h / 2 + HANDLE) & (far < h / 2 + HANDLE_REACH + HANDLE)
-    if VESSEL[0] < length < VESSEL[1] and HANDLE_SHARE[0] < beyond.mean() < HANDLE_SHARE[1]:
-        body = far < h / 2 + HANDLE / 2
+    wall = far < h / 2 + HANDLE / 2
+    has_handle = np.count_nonzero(wall) >= BODY and HANDLE_SHARE[0] < beyond.mean() < HANDLE_SHARE[1]
+    if VESSEL[0] < length < VESSEL[1] and has_handle:
+        body = wall
         own = primitives.silhouette(points[body], np.append(outline.camera, 0.0), _seen(outline), 0.0)
         solution = primitives.fit(primitives.lying(), ends, begin, points[body], own, noise, prior)
         x, y, yaw, r, length = (float(v) for v in solution.p)
