@@ -5,7 +5,7 @@ import re
 from collections.abc import Iterable
 
 from common.household import Household
-from common.kinds import KINDS
+from common.kinds import KINDS, kind_of
 from common.messages import WorldObject
 
 _FILLER = {"the", "a", "an", "my", "that", "this", "some", "please", "to", "of"}
@@ -65,10 +65,15 @@ def _fit(words: set[str], o: WorldObject) -> tuple[int, int]:
     if len(kinds) > 1:
         kinds -= set(ALIKE)
     shades, likely = words - kinds, o.kinds or [o.kind]
-    if not kinds <= {*likely, o.kind}:
+    if not kinds <= {*likely, o.kind} or any(_is_ball(kind) != _is_ball(o.kind) for kind in kinds):
         return UNFIT
     place = min((n for n, kind in enumerate(likely) if kind in kinds), default=0)
     return (1, place) if shades <= {*o.colours, *label} else UNFIT
+
+
+def _is_ball(kind: str) -> bool:
+    """Balls and fruit are mistaken for each other, and for nothing that stands on a foot."""
+    return kind_of(kind).shape == "sphere"
 
 
 def near_names(query: str, names: Iterable[str]) -> list[str]:

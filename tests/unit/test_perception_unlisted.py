@@ -156,3 +156,13 @@ def test_what_was_seen_from_afar_may_be_what_is_asked_for_and_what_was_seen_near
         tracker.update(looking(0.0, 0.0), [far], float(n))
     tracker.update(looking(0.0, 0.0), [sighting(4.0, -3.0, CAN, RED)], 9.0)
     assert not tracker.doubtful()
+
+
+def test_a_ball_is_meant_by_no_word_for_what_stands_on_a_foot() -> None:
+    position = (0.0, 0.0, 0.5)
+    ball = WorldObject(label="blue ball", kind="ball", colour="blue", position=position, kinds=["ball", "apple", "can"])
+    can = WorldObject(label="blue can", kind="can", colour="blue", position=position, kinds=["can", "ball"])
+    household = NOTHING_LISTED
+    assert match_object("blue can", [ball], household) == []
+    assert match_object("blue ball", [can], household) == []
+    assert match_object("blue apple", [ball], household) == [ball]
