@@ -110,13 +110,15 @@ class Search(msgspec.Struct):
 class Delivery(msgspec.Struct):
     """What the hand has done. `put_down`: the object released last.
 
-    `checked`: what a look after a release showed, in words; `unchecked`: objects put down where nobody could look.
+    `checked`: what a look after a release showed, in words; `unchecked`: objects put down where nobody could look;
+    `lay`: objects that lay when they were found, which may have been stood on their heads since.
     """
 
     grabbed: bool = False
     released: bool = False
     put_down: str = ""
     checked: list[str] = []
+    lay: list[str] = []
     unchecked: list[str] = []
 
 

@@ -130,9 +130,12 @@ def _judged(ctx: Context, pose: m.ObjectPose, target: str, near: str) -> Finding
     found = [(item, one) for item, one in ctx.mission.search.found.items() if one.label == label]
     kind = next((k for item, _ in found if (k := kind_meant(item, household))), "")
     seen = ctx.known_object(label)
-    looks = kind_of(seen.kinds[0] if seen and seen.kinds else "")
+    looks = [kind_of(k) for k in (seen.kind, *seen.kinds[:1])] if seen else []
     # A vessel that lay may have been stood on its mouth, and then looks like a can.
-    closed = bool(kind) and any(one.tilt > TIPPED for _, one in found) and looks.ends_alike
+    delivery = ctx.mission.delivery
+    if label not in delivery.lay and any(one.tilt > TIPPED for _, one in found):
+        delivery.lay = [*delivery.lay, label]
+    closed = label in delivery.lay and any(k.ends_alike for k in looks)
     return judge_placement(pose, label, target, household, object_in_map(ctx, near), kind, closed)
 
 
