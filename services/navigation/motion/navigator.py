@@ -11,7 +11,7 @@ from services.navigation.motion.blind_base import BlindBase
 from services.navigation.motion.breadcrumbs import Breadcrumbs
 from services.navigation.motion.collision_avoidance import avoid
 from services.navigation.motion.obstacle_tracker import Obstacle
-from services.navigation.motion.path_follower import KEEP, Lookahead, room, towards
+from services.navigation.motion.path_follower import Lookahead, braked
 from services.navigation.motion.progress import BlockedTimer, Progress
 from services.navigation.motion.route import DETOUR_PAUSE, Route
 from services.navigation.planning.costmap import Array, Costmap
@@ -237,8 +237,5 @@ class Navigator:
             self._route.follower = None
             self._plan(pose, now)
             self._blocked.clear()
-        here, target = (pose[0], pose[1]), (back[0], back[1])
-        free = room(here, target, points, self._config.corridor)
-        if free < math.dist(here, target):
-            target = towards(here, target, max(0.0, free - KEEP))
+        target, _ = braked((pose[0], pose[1]), (back[0], back[1]), points, self._config.corridor)
         return self._hold_at((*target, back[2]))

@@ -78,19 +78,25 @@ class PathFollower:
         turn = abs(wrap(heading - pose[2]))
         final = reach == len(self.path) - 1
         if turn > SLOW_TURN and not near_end:
-            target = towards(here, target, max(MIN_STEP, TURNING_STEP * math.cos(min(turn, math.pi / 2))))
+            target = _towards(here, target, max(MIN_STEP, TURNING_STEP * math.cos(min(turn, math.pi / 2))))
             final = False
-        free = room(here, target, points, self._corridor)
-        distance = math.hypot(target[0] - here[0], target[1] - here[1])
-        if free < distance:
-            stop = max(0.0, free - KEEP)
-            target = towards(here, target, stop)
-            return Lookahead((target[0], target[1], heading), False, stop < STOPPED, remaining)
+        stop, short = braked(here, target, points, self._corridor)
+        if short:
+            blocked = math.dist(here, stop) < STOPPED
+            return Lookahead((*stop, heading), False, blocked, remaining)
         pose_to = self.goal if final else (target[0], target[1], heading)
         return Lookahead(pose_to, final, False, remaining)
 
 
-def room(here: Point, target: Point, points: Array | None, corridor: float) -> float:
+def braked(here: Point, target: Point, points: Array | None, corridor: float) -> tuple[Point, bool]:
+    """How far towards `target` the base may go for what the lidar sees, and whether that is short of it."""
+    free = _room(here, target, points, corridor)
+    if free >= math.dist(here, target):
+        return target, False
+    return _towards(here, target, max(0.0, free - KEEP)), True
+
+
+def _room(here: Point, target: Point, points: Array | None, corridor: float) -> float:
     """How far [m] the base can go towards `target` before lidar `points` (n, 2) come into a corridor of that half
     width [m]; inf when there are none."""
     length = math.hypot(target[0] - here[0], target[1] - here[1])
@@ -106,7 +112,7 @@ def room(here: Point, target: Point, points: Array | None, corridor: float) -> f
     return float(max(0.0, touch.min()))
 
 
-def towards(here: Point, target: Point, distance: float) -> Point:
+def _towards(here: Point, target: Point, distance: float) -> Point:
     """The point `distance` [m] from `here` on the way to `target`, which is the farthest."""
     length = math.hypot(target[0] - here[0], target[1] - here[1])
     if length <= distance or length < 1e-9:
