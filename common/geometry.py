@@ -75,6 +75,13 @@ class Rectangle(NamedTuple):
         u, v = self.to_local(x, y)
         return math.hypot(max(abs(u) - self.length / 2, 0.0), max(abs(v) - self.width / 2, 0.0))
 
+    def signed_distances(self, x: Array, y: Array) -> Array:
+        """Distance [m] of each point from the rectangle's edge, negative within it."""
+        u, v = self.to_local(x, y)
+        u, v = np.abs(u) - self.length / 2, np.abs(v) - self.width / 2
+        found: Array = np.hypot(np.maximum(u, 0.0), np.maximum(v, 0.0)) + np.minimum(np.maximum(u, v), 0.0)
+        return found
+
     def grown(self, margin: float) -> "Rectangle":
         """The same rectangle with every side `margin` [m] farther out."""
         return self._replace(length=self.length + 2 * margin, width=self.width + 2 * margin)

@@ -59,10 +59,8 @@ class DistanceField:
             high = (s * r.length + c * r.width) / 2 + REACH
             i, j = np.searchsorted(xs, (r.x - wide, r.x + wide))
             k, n = np.searchsorted(ys, (r.y - high, r.y + high))
-            along, across = r.to_local(xs[i:j], ys[k:n][:, None])
-            u, v = np.abs(along) - r.length / 2, np.abs(across) - r.width / 2
-            box = np.hypot(np.maximum(u, 0.0), np.maximum(v, 0.0)) + np.minimum(np.maximum(u, v), 0.0)
-            np.minimum(field[k:n, i:j], box, out=field[k:n, i:j])
+            near = field[k:n, i:j]
+            np.minimum(near, r.signed_distances(xs[i:j], ys[k:n][:, None]), out=near)
         self._columns, self._last = columns, np.array((columns, rows)) - 1.001
         self._flat = field.ravel()
 

@@ -53,19 +53,14 @@ class Costmap:
         ys = self.origin[1] + (np.arange(self.shape[0]) + 0.5) * self.resolution
         gx, gy = np.meshgrid(xs, ys)
         sides = (gx - floor_plan.low[0], floor_plan.high[0] - gx, gy - floor_plan.low[1], floor_plan.high[1] - gy)
-        found: Array = np.maximum(np.minimum.reduce(sides), 0.0)
+        found: Array = np.minimum.reduce(sides)
         boxes = [f.outline for f in floor_plan.furniture]
         # A table counts with its whole top: the lidar sees only its legs.
         boxes += [r.outline.grown(BIN_RIM if r.depth else 0.0) for r in floor_plan.receptacles]
         boxes += [wall.footprint for wall in floor_plan.walls]
         for box in boxes:
-            u, v = box.to_local(gx, gy)
-            np.minimum(
-                found,
-                np.hypot(np.maximum(np.abs(u) - box.length / 2, 0.0), np.maximum(np.abs(v) - box.width / 2, 0.0)),
-                out=found,
-            )
-        return found
+            np.minimum(found, box.signed_distances(gx, gy), out=found)
+        return np.maximum(found, 0.0)
 
     @property
     def distance(self) -> Array:
