@@ -50,7 +50,7 @@ def judge_placement(
     what the household or its label says; `closed`: it lay when it was found, and looks closed from above now.
     """
     spec, wanted = household.thing(label), household.receptacle(target)
-    stands = kind_of(kind or (spec.kind if spec else household.words.kind(label.split()[-1]) if label else ""))
+    stands = kind_of(kind or (spec.kind if spec else kind_meant(label, household)))
     on = household.receptacle(pose.on) or household.resting_place(pose.position)
     where = f"on the {on.name}" if on else "on the floor"
     if on and on.depth:
