@@ -17,6 +17,7 @@ from common.scene import load_scene
 from common.schemas import schema_of
 from services.foxglove import incoming
 from services.sim.physics import Physics
+from tests.robot_side import RobotSide
 from tests.support import ROOT, Site, eventually, free_port, site
 
 pytest.importorskip("foxglove", reason="the extra foxglove is not installed")
@@ -26,23 +27,12 @@ from tests.foxglove_client import FoxgloveClient
 PATIENCE = 20.0
 
 
-class Robot:
+class Robot(RobotSide):
     """A server in a namespace of its own, a visitor, and the robot's bus as its services see it."""
 
     def __init__(self, session: zenoh.Session, visitor: FoxgloveClient) -> None:
-        self.session, self.visitor = session, visitor
-        self._kept: list[Any] = []
-
-    def heard(self, topic: topics.Topic[Any]) -> list[Any]:
-        found: list[Any] = []
-        kept = self.session.declare_subscriber(
-            topic.key, lambda sample: found.append(codec.decode(topic, sample.payload.to_bytes()))
-        )
-        self._kept.append(kept)
-        return found
-
-    def send(self, topic: topics.Topic[Any], message: m.Message, key: str = "") -> None:
-        self.session.put(key or topic.key, codec.encode(topic, message), encoding=codec.encoding_of(topic))
+        super().__init__(session)
+        self.visitor = visitor
 
     def shown(self, name: str, topic: topics.Topic[Any], message: m.Message, key: str = "") -> Any:
         """The last message that a watched channel shows once this was sent."""

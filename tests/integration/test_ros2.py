@@ -14,6 +14,7 @@ from common.bus import codec
 from common.robot import ARM
 from common.scene import load_scene
 from services.sim.physics import Physics
+from tests.robot_side import RobotSide
 from tests.support import Site, eventually, site
 
 pytest.importorskip("rosbags", reason="the extra ros2 is not installed")
@@ -32,24 +33,12 @@ PUBLISHED = {
 PATIENCE = 20.0
 
 
-class Robot:
+class Robot(RobotSide):
     """A gateway in a namespace of its own, the ROS peer, and the robot's bus as its services see it."""
 
     def __init__(self, here: Site, session: zenoh.Session, peer: RosPeer) -> None:
-        self.here, self.session, self.peer = here, session, peer
-        self._kept: list[Any] = []
-
-    def heard(self, topic: topics.Topic[Any]) -> list[Any]:
-        """A list that receives what the gateway sends on a topic of the robot."""
-        found: list[Any] = []
-        kept = self.session.declare_subscriber(
-            topic.key, lambda sample: found.append(codec.decode(topic, sample.payload.to_bytes()))
-        )
-        self._kept.append(kept)
-        return found
-
-    def send(self, topic: topics.Topic[Any], message: m.Message) -> None:
-        self.session.put(topic.key, codec.encode(topic, message), encoding=codec.encoding_of(topic))
+        super().__init__(session)
+        self.here, self.peer = here, peer
 
     def drops(self) -> dict[str, int]:
         found: dict[str, int] = {}
