@@ -5,6 +5,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+SKY = (200, 215, 232)
+"""RGB of what a camera sees where nothing is: a blue between those of the scenes' sky."""
+
 
 def geom_colours(model: Any) -> NDArray[np.float64]:
     """RGB (n, 3) in shares of the geoms of a model: their own, or the material's with the mean of its picture."""

@@ -6,8 +6,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from common.rendering.looks import geom_colours
-from common.rendering.renderer import SKY
+from common.rendering.looks import SKY, geom_colours
 
 NEAR = 0.02
 """Distance [m] within which a hit is the camera's own housing."""

@@ -13,14 +13,14 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
+from common.rendering.looks import SKY
+
 Array = NDArray[np.float64]
 BACKENDS = ("egl", "osmesa", "raycast")
 PROBE_SECONDS = 20.0
 """Time [s] for a GL library to show that it works."""
 FAR = 25.0
 """Depth [m] from which there is nothing: beyond the largest flat."""
-SKY = (200, 215, 232)
-"""RGB of what a camera sees where nothing is: a blue between those of the scenes' sky."""
 HIDDEN = 5
 """A MuJoCo geom group that is never drawn."""
 _PROBE = (

@@ -11,7 +11,8 @@ from onnx import TensorProto, helper, numpy_helper
 from common.runtime import StartError
 from services.perception.config import PerceptionConfig
 from services.perception.naming.grounders.clip import Clip
-from services.perception.naming.grounders.grounder import Candidate, GrounderError, Question, load_grounder
+from services.perception.naming.grounders.grounder import Candidate, GrounderError, Question
+from services.perception.naming.grounders.load import load_grounder
 
 tokenizers = pytest.importorskip("tokenizers", reason="the extra `clip`")
 

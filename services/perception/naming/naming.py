@@ -18,7 +18,7 @@ from services.perception.config import PerceptionConfig
 from services.perception.naming import reader
 from services.perception.naming.appearance import Look
 from services.perception.naming.consult import Consultant
-from services.perception.naming.grounders.grounder import load_grounder
+from services.perception.naming.grounders.load import load_grounder
 from services.perception.naming.memory import NameMemory
 from services.perception.naming.observer import Observer
 from services.perception.naming.recognise import Match, matches
