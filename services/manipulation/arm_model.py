@@ -120,6 +120,11 @@ class ArmModel:
         self.widest = self.hand.open - FINGER_ROOM
         self._fingers = [self.model.joint(name).qposadr[0] for name in self.hand.joints]
         self.pinch = self.model.site("pinch").id
+        # The first joint's anchor, and the farthest that the pinch point gets from it in any configuration [m].
+        joints = np.array([self.data.xanchor[self.model.joint(j).id] for j in ARM])
+        self.shoulder = joints[0]
+        chain = np.vstack([joints, self.data.site_xpos[self.pinch]])
+        self.span = float(np.linalg.norm(np.diff(chain, axis=0), axis=1).sum())
         self._held = self.model.geom("held").id
         self._held_at = self.model.geom_pos[self._held].copy()
         turn = np.empty(9)

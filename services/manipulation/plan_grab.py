@@ -171,6 +171,8 @@ def _with_fingers(planner: Planner, target: Target, wanted: Grasp, way: Way, now
     grasp = planner.clearance.clear(target, wanted, opening)
     if grasp is None:
         return Miss("too deep for the hand")
+    if float(np.linalg.norm(grasp.pose.position - planner.arm.shoulder)) > planner.arm.span:
+        return Miss("beyond the stretched arm")
     # Closed on the object the fingertips are farther out than open.
     for width in (opening or planner.arm.hand.open, grasp.width):
         if met := planner.clearance.met(grasp.pose, width, way.around):
