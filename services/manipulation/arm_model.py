@@ -72,9 +72,15 @@ STAND_IN = "stand_in"
 """The geom that takes an object's shape when the hand's distance to it is asked for; it collides with nothing."""
 
 
+WIDEST_GAP = 0.02
+"""Distance [m] from which the base and its mast are looked at where the arm has to keep away from them."""
+
+
 def planning_model(robot_mjcf: str) -> Any:
     """The robot's compiled model plus movable boxes and, at the pinch point, a box that stands for a held object."""
     spec: Any = mujoco.MjSpec.from_string(robot_mjcf)
+    for geom in spec.body("base").geoms:
+        geom.margin = WIDEST_GAP
     kind = mujoco.mjtGeom.mjGEOM_BOX
     for i in range(BOXES):
         box = spec.worldbody.add_body(name=f"box_{i}", mocap=True, pos=[FAR, FAR, i])
@@ -131,13 +137,19 @@ class ArmModel:
         mujoco.mju_quat2Mat(turn, self.model.geom_quat[self._held])
         self._held_turn = turn.reshape(3, 3)
         self._boxes = [self.model.geom(f"box_{i}").id for i in range(BOXES)]
+        self._own = np.ones(self.model.ngeom, bool)
+        self._own[self._boxes] = False
         self._mocap = [self.model.body(f"box_{i}").mocapid[0] for i in range(BOXES)]
         self._around: Sequence[Obstacle] = ()
         self.set_obstacles(())
         self.hold(None)
 
-    def set_obstacles(self, obstacles: Sequence[Obstacle]) -> None:
-        """Put solids around the robot, the most important first; those over the limit are left out."""
+    def set_obstacles(self, obstacles: Sequence[Obstacle], gap: float = 0.0) -> None:
+        """Put solids around the robot, the most important first; those over the limit are left out.
+
+        `gap`: how far the arm keeps from the base and its mast [m], WIDEST_GAP at most.
+        """
+        self._gap = gap
         nearest = self._around = obstacles[:BOXES]
         for i, (geom, mocap) in enumerate(zip(self._boxes, self._mocap, strict=True)):
             if i < len(nearest):
@@ -193,21 +205,28 @@ class ArmModel:
         return Pose(self.data.site_xpos[self.pinch].copy(), rotation.copy())
 
     def collides(self, q: Array) -> bool:
-        """True when the robot touches itself or a box."""
+        """True when the robot touches a box or itself, or the arm comes nearer to the base than it is to keep."""
         self.place(q)
         mujoco.mj_collision(self.model, self.data)
-        return bool(self.data.ncon)
+        return bool(len(self._pairs()))
+
+    def _pairs(self) -> NDArray[np.int32]:
+        """The geoms (n, 2) that touch in the configuration that was looked at last."""
+        count = self.data.ncon
+        pairs, distance = self.data.contact.geom[:count], self.data.contact.dist[:count]
+        touching: NDArray[np.int32] = pairs[distance <= np.where(self._own[pairs].all(axis=1), self._gap, 0.0)]
+        return touching
 
     def met(self) -> set[str]:
         """Labels of the obstacles that the configuration asked about last touches; "" for furniture."""
-        touched = {int(g) for pair in self.data.contact.geom[: self.data.ncon] for g in pair}
+        touched = {int(g) for pair in self._pairs() for g in pair}
         return {o.label for o, geom in zip(self._around, self._boxes, strict=False) if geom in touched}
 
     def contact_names(self, q: Array) -> list[tuple[str, str]]:
         """Which geoms touch, for messages and tests."""
         self.collides(q)
         geom = self.model.geom
-        return [(geom(int(a)).name, geom(int(b)).name) for a, b in self.data.contact.geom[: self.data.ncon]]
+        return [(geom(int(a)).name, geom(int(b)).name) for a, b in self._pairs()]
 
     def nearest_turn(self, q: Array, near: Array) -> Array:
         """The same configuration with every unlimited joint at the turn closest to `near`."""

@@ -1,6 +1,6 @@
 """Plans of the arm alone."""
 
-from itertools import pairwise
+from itertools import pairwise, takewhile
 
 import numpy as np
 
@@ -33,3 +33,18 @@ def test_on_its_way_home_the_arm_keeps_clear_of_what_it_put_down() -> None:
     way = [plan.retreat[-1], *plan.home]
     between = (a + (b - a) * s for a, b in pairwise(way) for s in np.linspace(0, 1, 40))
     assert not any(planner.arm.collides(q) for q in between)
+
+
+def test_in_free_motion_the_arm_keeps_away_from_the_mast_and_not_from_where_it_has_to_start() -> None:
+    planner = Planner(own().mjcf, 0)
+    arm = planner.arm
+    stretching = (arm.home + np.array([0, 0, 0, bend, 0, 0, 0]) for bend in np.arange(0.0, 3.0, 0.01))
+    free = [q for q, _ in pairwise(takewhile(lambda q: not arm.collides(q), stretching))][-1]
+    pairs = {name for pair in arm.contact_names(free + np.array([0, 0, 0, 0.02, 0, 0, 0])) for name in pair}
+    assert pairs & {"mast", "mast_arm", "head"}, pairs
+    arm.set_obstacles((), 0.02)
+    assert arm.collides(free)
+    planner.surround((), arm.home)
+    assert arm.collides(free), "a way that begins and ends in the open keeps the widest distance"
+    planner.surround((), free)
+    assert not arm.collides(free)
