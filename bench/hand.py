@@ -75,8 +75,7 @@ class Bench:
             turned = np.empty(4)
             mujoco.mju_mulQuat(turned, np.array(yaw_quat(yaw)), data.qpos[at + 3 : at + 7].copy())
             data.qpos[at : at + 2], data.qpos[at + 3 : at + 7] = (x, y), turned
-        self.sim._base.pose, self.sim._base.target = base, None
-        self.sim._setpoint[:3] = base
+        self.sim.drivers.put(base)
         for _ in range(30):
             self.world.advance()
 

@@ -13,9 +13,8 @@ from common.bus.port import Io
 from common.runtime import StartError
 from common.time.lockstep import DT
 from services.sim import checkpoint, truth
-from services.sim.arm import ArmDriver
-from services.sim.base import BaseDriver
 from services.sim.config import SimConfig
+from services.sim.drivers import Drivers
 from services.sim.menagerie import RobotError
 from services.sim.model import Robot, load_robot
 from services.sim.mounts import head_camera
@@ -26,7 +25,6 @@ from services.sim.sensors import Sensors
 from services.sim.viewer import Viewer
 
 SCAN_TICKS, STATE_TICKS, CHECKPOINT_TICKS = 10, 5, 50
-MAX_DISTANCE = 50.0
 
 
 class Pause(msgspec.Struct):
@@ -77,11 +75,8 @@ class SimService:
         self._world = io.new_id(io.epoch)
         home = io.world.home
         pose = (home.x, home.y, home.theta)
-        self._base = BaseDriver(config, pose)
-        self._arm = ArmDriver(np.array(self.physics.home_arm), config.stream_timeout, self.physics.arm_limits)
+        self.drivers = Drivers(config, io, self.physics, pose, self._publish_status)
         self.sensors = Sensors(self.physics, config, io, pose)
-        self._setpoint = np.array([*pose, *self.physics.home_arm])
-        self._grip(0.0, self.physics.fingers.force)
         self._reached: tuple[bool, str] = (False, "")
         physics = self.physics
         description = m.RobotDescription(mjcf=physics.robot.mjcf, head_camera=head_camera(physics.model))
@@ -93,25 +88,15 @@ class SimService:
         io.publish(topics.GOAL_REACHED, m.GoalReached(reached=False))
         self._publish_status("running")
 
-    def _grip(self, closed: float, effort: float) -> None:
-        self._effort = effort
-        self.physics.grip(closed, effort)
-
     def _resume(self, state: checkpoint.Checkpoint) -> None:
         """Go on with a world that another process of this simulation has left: at rest, nothing commanded."""
         physics = self.physics
         physics.restore(np.frombuffer(state.physics))
         self._tick, self._world, physics.seed = state.tick, state.world, state.seed
         self.start_time = state.tick * DT
-        actual = physics.joints.copy()
-        x, y, yaw = (float(v) for v in actual[:3])
-        self._setpoint = np.array([*actual[:3], *state.setpoint[3:]])
-        self._base = BaseDriver(self._config, (x, y, yaw), stopped=state.stopped)
-        self._arm = ArmDriver(self._setpoint[3:], self._config.stream_timeout, physics.arm_limits)
-        self.sensors.odometry.resume((x, y, yaw), state.odometry)
+        self.drivers.resume(state)
+        self.sensors.odometry.resume(self.drivers.base.pose, state.odometry)
         physics.contacts.restore(state.touches)
-        self._effort = state.effort
-        physics.limit_effort(state.effort)
         self._io.log.warning("the world goes on where it was", t=round(self.start_time, 2))
         self._publish_status("stopped" if state.stopped else "running", "resumed")
 
@@ -126,10 +111,10 @@ class SimService:
             tick=self._tick,
             world=self._world,
             physics=self.physics.snapshot().tobytes(),
-            setpoint=self._setpoint.tolist(),
+            setpoint=self.drivers.setpoint.tolist(),
             odometry=self.sensors.odometry.believed,
-            effort=self._effort,
-            stopped=self._base.stopped,
+            effort=self.drivers.effort,
+            stopped=self.drivers.base.stopped,
             touches=self.physics.contacts.touches,
         )
         why = checkpoint.save(self._saved, state)
@@ -152,65 +137,23 @@ class SimService:
     # --- one tick
     def step(self, now: float) -> None:
         if self._io.fresh:
-            self._take_commands(now)
+            self.drivers.take_commands(now)
         physics = self.physics
-        x, y, yaw, *_ = physics.joints.tolist()
-        after = np.empty(10)
-        fx, fy, *_ = physics.forces.tolist()
-        after[:3] = self._base.advance((x, y, yaw), self.sensors.odometry.believed, now, DT, (fx, fy))
-        if self._base.yielding:
-            self._setpoint[:3] = after[:3]
-        after[3:] = self._arm.advance(now, DT)
+        before, after = self.drivers.advance(self.sensors.odometry.believed, now)
+        x, y, *_ = physics.joints.tolist()
         physics.obstacles.advance(physics.data, (x, y), DT)
-        physics.advance(self._setpoint, after, now)
-        self._setpoint = after
+        physics.advance(before, after, now)
         self._tick += 1
         self._publish(now + DT)
         self._save()
         if self._viewer:
             self._viewer.sync()
 
-    def _take_commands(self, now: float) -> None:
-        io = self._io
-        stops, resumes = io.take_all(topics.ROBOT_STOP), io.take_all(topics.ROBOT_RESUME)
-        if resumes and self._base.stopped:
-            self._base.stopped = False
-            io.log.info("resumed", by=resumes[-1].source)
-            self._publish_status("running")
-        if stops:
-            if not self._base.stopped:
-                io.log.warning("stopped", reason=stops[-1].reason, by=stops[-1].source)
-                self._publish_status("stopped", stops[-1].reason)
-            actual = self.physics.joints.copy()
-            if not self._base.stopped:
-                self._setpoint = actual.copy()
-            self._base.halt((float(actual[0]), float(actual[1]), float(actual[2])))
-            self._arm.halt(actual[3:])
-        for target in io.take_all(topics.BASE_TARGET):
-            if not all(map(_sane, (target.x, target.y, target.theta))):
-                io.count_drop(topics.BASE_TARGET.key, "not a finite pose near the apartment")
-            elif not self._base.stopped:
-                self._base.go_to(target.x, target.y, target.theta, target.id, now)
-        for twist in io.take_all(topics.CMD_VEL):
-            if not all(map(_sane, (twist.vx, twist.vy, twist.omega))):
-                io.count_drop(topics.CMD_VEL.key, "not a finite velocity")
-            elif not self._base.stopped:
-                self._base.drive(twist.vx, twist.vy, twist.omega, now)
-        for command in io.take_all(topics.ARM_COMMAND):
-            if self._base.stopped:
-                continue
-            if why := self._arm.follow(command.position, command.period, now):
-                io.count_drop(topics.ARM_COMMAND.key, why)
-        for grip in io.take_all(topics.GRIPPER_COMMAND):
-            if not (0.0 <= grip.position <= 1.0 and grip.max_effort > 0.0):
-                io.count_drop(topics.GRIPPER_COMMAND.key, "position is 0..1, max_effort above 0")
-            elif not self._base.stopped:
-                self._grip(grip.position, min(grip.max_effort, self.physics.fingers.force))
-
     def _publish(self, t: float) -> None:
         io, data = self._io, self.physics.data
         self.sensors.feel(t)
-        reached = (self._base.reached(self.sensors.odometry.believed), self._base.target_id)
+        base = self.drivers.base
+        reached = (base.reached(self.sensors.odometry.believed), base.target_id)
         if reached != self._reached:
             self._reached = reached
             io.publish(topics.GOAL_REACHED, m.GoalReached(reached=reached[0], target_id=reached[1]))
@@ -251,10 +194,6 @@ class SimService:
     def close(self) -> None:
         if self._viewer:
             self._viewer.close()
-
-
-def _sane(value: float) -> bool:
-    return math.isfinite(value) and abs(value) <= MAX_DISTANCE
 
 
 def _robot(name: str) -> Robot:
