@@ -56,14 +56,26 @@ class NavigationFeedback(Message):
     detail: str = ""
 
 
+LOST = 1.0
+"""Variance of a coordinate [m2] from which on the pose says nothing; chosen: no room can be told from the next."""
+
+
 class PoseEstimate(Message):
-    """The robot's pose in frame `map` as navigation believes it; `covariance` row-major 3 x 3."""
+    """The robot's pose in frame `map` as navigation believes it; `covariance` row-major 3 x 3.
+
+    A robot that does not know where it is says so by a variance of x or y above 1 m2.
+    """
 
     t: float
     x: float
     y: float
     theta: float
     covariance: list[float] = []
+
+    @property
+    def lost(self) -> bool:
+        """The robot does not know where it is."""
+        return len(self.covariance) == 9 and max(self.covariance[0], self.covariance[4]) > LOST
 
 
 class NavPath(Message):

@@ -12,12 +12,14 @@ from evaluation.fault_reports import FaultReport, Reporter
 from evaluation.physical.fault import Kind, PhysicalFault
 from evaluation.physical.injector import Injector
 from evaluation.physical.jam import Jam
+from evaluation.physical.kidnap import Kidnap
 from evaluation.physical.shove import Shove
 from evaluation.physical.slip import Slip
 from evaluation.physical.unfit import Heavy, InTheWay, Wide
 
 INJECTORS: dict[Kind, type[Injector]] = {
     "shove": Shove, "slip": Slip, "jam": Jam, "heavy": Heavy, "wide": Wide, "obstacle": InTheWay,
+    "kidnap": Kidnap,
 }  # fmt: skip
 
 
@@ -36,6 +38,9 @@ def with_physical_faults(kind: Any, faults: tuple[PhysicalFault, ...], report: R
                 io.world = fault.world(io.world)
             super().__init__(config, io)
             self._injectors = [INJECTORS[f.kind](f, self.physics) for f in faults]
+            for injector in self._injectors:
+                if isinstance(injector, Kidnap):
+                    injector.simulation = self
             self._told_io = io
 
         def step(self, now: float) -> None:

@@ -1,5 +1,7 @@
 """Parameters of navigation."""
 
+from typing import Literal
+
 from common.approach import EDGE_DISTANCE, FOOTPRINT, STAND_OFF
 from common.config import Config
 
@@ -13,6 +15,11 @@ class NavigationConfig(Config, frozen=True):
     """Of the lidar's plane over the floor: as the robot carries it."""
     footprint_radius: float = FOOTPRINT
     """Of the circle around the base."""
+    initial_pose: Literal["home", "unknown"] = "home"
+    """Where the robot is when navigation starts: at the household's home until the lidar says otherwise, or anywhere.
+    """
+    lost_patience: float = 90.0
+    """How long a goal waits for a robot that is lost; chosen: time to look into the next room and the one after."""
     clearance: float = 0.02
     """Added to the footprint when paths are planned; chosen: the error of the pose."""
     inflation: float = 0.65

@@ -17,6 +17,7 @@ from services.navigation.planning.costmap import Costmap
 from services.navigation.planning.planner import PathPlanner
 from services.navigation.search.coverage import SearchCoverage
 from services.navigation.search.search import Search
+from services.navigation.whereabouts import Whereabouts
 
 PERCEPTION = "perception"
 
@@ -43,6 +44,7 @@ class NavigationService:
         self._inbox: GoalInbox[Goal, m.NavigationStatus] = GoalInbox(
             io, (topics.NAVIGATION_GOAL, topics.NAV_GOAL), self._take, self._repeat, self._preempted
         )
+        self._whereabouts = Whereabouts(config, io, self._state, self._map)
         self._legs = 0
         self._recoveries = 0
         self._reported = (0, "")
@@ -66,10 +68,13 @@ class NavigationService:
         try:
             if self._found is not None:
                 self._still_there(self._found)
-            if self._search is not None:
-                self._look_for(self._search, now)
             if self._navigator is not None:
-                self._advance(self._navigator, reached, now)
+                self._whereabouts.check(now)
+            if self._busy and self._located(reached, now):
+                if self._search is not None:
+                    self._look_for(self._search, now)
+                if self._navigator is not None:
+                    self._advance(self._navigator, reached, now)
         except Ended as ended:
             self._finish(ended)
 
@@ -181,17 +186,20 @@ class NavigationService:
         self._recoveries += navigator.recoveries if navigator else 0
 
     # --- driving
+    def _located(self, reached: list[m.GoalReached], now: float) -> bool:
+        """True while the robot knows where it is; else it finds out. Raises `Ended` when it cannot."""
+        doing = self._whereabouts.doing
+        if self._state.lost:
+            self._whereabouts.find(reached, now)
+        elif self._whereabouts.known() and self._navigator is not None:
+            self._navigator.relocated(now)
+        if self._whereabouts.doing != doing:
+            self._feedback()
+        return not self._state.lost
+
     def _advance(self, navigator: Navigator, reached: list[m.GoalReached], now: float) -> None:
         """Raises `Ended` when the goal has."""
         state = self._state
-        age = state.silence(now)
-        if state.pose is not None and age > self._config.odometry_timeout:
-            raise Ended("failed", "NO_ODOMETRY", f"odometry silent for {age:.1f} s")
-        if state.points is not None and self._io.age(topics.SCAN, now) > self._config.scan_timeout:
-            raise Ended("failed", "NO_SCAN", "the lidar fell silent")
-        if state.lost:
-            self._io.publish(topics.CMD_VEL, m.CmdVel(vx=0.0, vy=0.0, omega=0.0))
-            return
         try:
             target = navigator.step(state.pose, reached, state.points, state.tracker.moving(), now)
         except Ended as ended:
@@ -219,6 +227,7 @@ class NavigationService:
         navigator, self._search, self._found = self._navigator, None, None
         self._leave(navigator)
         self._navigator = None
+        self._whereabouts.known()
         if ended.status == "arrived":
             self._approaches.arrived(self._status.goal_id, self._state.pose)
         if ended.status == "failed" and navigator is not None and self._state.pose is not None:
@@ -232,6 +241,7 @@ class NavigationService:
     def _hold(self) -> None:
         """Brake: a velocity stream that falls silent at once."""
         self._navigator = self._search = self._found = None
+        self._whereabouts.known()
         self._io.publish(topics.CMD_VEL, m.CmdVel(vx=0.0, vy=0.0, omega=0.0))
 
     def _report(self, status: m.NavStatus, code: str, detail: str) -> None:
@@ -254,7 +264,7 @@ class NavigationService:
             distance_remaining=navigator.remaining if navigator else 0.0,
             eta=navigator.eta if navigator else 0.0,
             recoveries=self._recoveries + (navigator.recoveries if navigator else 0),
-            code=status.code or (navigator.doing if navigator else ""),
+            code=status.code or self._whereabouts.doing or (navigator.doing if navigator else ""),
             attempt=status.attempt,
             detail=status.detail,
         )

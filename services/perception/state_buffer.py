@@ -31,7 +31,11 @@ class StateBuffer:
         """Take in what was measured; True when the joints are known now."""
         io = self._io
         for pose in io.take_all(topics.POSE):
-            self._poses.append((pose.t, (pose.x, pose.y, pose.theta)))
+            if pose.lost:
+                # What is seen meanwhile has no place in the map.
+                self._poses.clear()
+            else:
+                self._poses.append((pose.t, (pose.x, pose.y, pose.theta)))
         description = io.latest(topics.ROBOT_DESCRIPTION)
         if self._model is None and description is not None and description is not self._description:
             self._description = description

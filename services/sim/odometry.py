@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from common.geometry import Pose2, compose, inverse, wrap
+from common.geometry import IDENTITY_POSE, Pose2, compose, inverse
 from services.sim.config import SimConfig
 
 _TURN_RADIUS = 0.2
@@ -21,16 +21,18 @@ class WheelOdometry:
         self._noise = config.odometry_noise
         self._scale = 1.0 + config.odometry_slip * rng.uniform(-1, 1, 3)
         self._veer = config.odometry_veer * float(rng.uniform(-1, 1))
+        self._frame = IDENTITY_POSE
         self._exact = not (config.odometry_slip or config.odometry_noise or config.odometry_veer)
 
     def resume(self, true: Pose2, believed: Pose2) -> None:
         """Go on from a known pose with what was believed there."""
         self._true, self.believed = true, believed
+        self._frame = compose(believed, inverse(true))
 
     def update(self, true: Pose2, sliding: bool = False) -> Pose2:
         """The believed pose after the robot has moved to `true`, on wheels at the end of their grip if `sliding`."""
         if self._exact:
-            self.believed = true[0], true[1], wrap(true[2])
+            self.believed = compose(self._frame, true)
             return self.believed
         dx, dy, turn = compose(inverse(self._true), true)
         self._true = true

@@ -5,11 +5,13 @@ from pathlib import Path
 from typing import Any
 
 import msgspec
+import mujoco
 import numpy as np
 
 from common import messages as m
 from common import topics
 from common.bus.port import Io
+from common.geometry import Pose2
 from common.runtime import StartError
 from common.time.lockstep import DT
 from services.sim import checkpoint, truth
@@ -166,6 +168,15 @@ class SimService:
             io.publish(topics.SIM_STATE, state)
             if touches := self.physics.contacts.take():
                 io.publish(topics.SIM_CONTACTS, m.SimContacts(t=t, epoch=io.epoch, touches=touches))
+
+    def carry(self, pose: Pose2) -> None:
+        """Put the robot elsewhere [map] at rest, as if it were carried: its wheels do not turn."""
+        physics, believed = self.physics, self.sensors.odometry.believed
+        physics.data.qpos[physics.qpos_at[:3]] = pose
+        physics.data.qvel[physics.qvel_at[:3]] = 0.0
+        mujoco.mj_forward(physics.model, physics.data)
+        self.drivers.put(pose, stopped=self.drivers.base.stopped)
+        self.sensors.odometry.resume(pose, believed)
 
     # --- queries
     def _answer_truth(self, payload: bytes) -> bytes:

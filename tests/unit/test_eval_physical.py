@@ -145,3 +145,18 @@ def test_an_obstacle_on_the_shortest_path_was_in_the_way_of_who_went_round_it(
         physics.data.qpos[:2], physics.data.qvel[:2] = (x, y), (speed, 0.0)
         told.append(injector.step(0.0, "NAVIGATING"))
     assert any("shortest path" in t for t in told) is struck
+
+
+def test_a_robot_that_is_carried_stands_elsewhere_and_its_wheels_did_not_turn() -> None:
+    told: list[FaultReport] = []
+    fault = PhysicalFault(kind="kidnap", pose=(3.6, -1.2, 0.8))
+    spec = SCENE.object("blue block")
+    assert spec is not None
+    bench = Bench(SCENE, spec, 0.6, 1, ManipulationConfig(), with_physical_faults(SimService, (fault,), told.append))
+    for _ in range(20):
+        bench.world.advance()
+    assert bench.truth()["base"] == pytest.approx(fault.pose, abs=0.005)
+    believed = bench.sim.sensors.odometry.believed
+    home = SCENE.home
+    assert believed == pytest.approx((home.x, home.y, home.theta), abs=0.01)
+    assert [s.fault for s in told] == ["kidnap"] and "carried 3.8 m" in told[0].what

@@ -10,8 +10,8 @@ from common.geometry import Pose2, Rectangle, compose, inverse, wrap
 from common.household import load_household
 from services.navigation.config import NavigationConfig
 from services.navigation.localisation.distance_field import REACH, DistanceField, distance_field, rectangles
+from services.navigation.localisation.hypotheses import hypotheses
 from services.navigation.localisation.localise import Localiser
-from services.navigation.localisation.relocalise import relocalise
 from services.navigation.localisation.state_estimation import StateEstimator
 from services.navigation.planning.costmap import Costmap
 from services.navigation.service import NavigationService
@@ -184,9 +184,10 @@ def test_odometry_that_starts_again_is_a_new_guess() -> None:
 @pytest.mark.parametrize("true", [(3.6, -1.2, -0.8), (4.2, 2.2, 2.0), (-1.4, 2.9, 3.0), (-1.0, -1.2, 0.5)])
 def test_a_scan_alone_tells_the_place(true: Pose2) -> None:
     points = ends(cast(true, rectangles(SCENE, HEIGHT)))
-    found, fit = relocalise(FIELD, points, SCENE.low, SCENE.high)
-    distance, angle = off(found, true)
-    assert distance < 0.03 and angle < 0.02 and fit > 0.9
+    best, *others = hypotheses(FIELD, points, SCENE.low, SCENE.high)
+    distance, angle = off(best.pose, true)
+    assert distance < 0.03 and angle < 0.02 and best.score > 0.9
+    assert all(other.score < best.score - 0.2 for other in others)
 
 
 def test_after_a_start_in_the_middle_of_a_run_the_robot_finds_itself() -> None:

@@ -50,6 +50,10 @@ class Localiser:
         """Start anew from a guess."""
         self.pose, self.covariance = pose, np.diag(np.square(spread))
 
+    def anchor(self, odometry: Pose2) -> None:
+        """What the wheels count where the pose is now: the next prediction starts from there."""
+        self._odometry = odometry
+
     def predict(self, odometry: Pose2, elapsed: float = 1.0) -> Pose2:
         """Move with the wheels; odometry that jumps has restarted and is taken as a new guess in the map.
 

@@ -132,6 +132,13 @@ class Navigator:
         x, y, theta = min(self._route.choices)[1]
         return m.BaseTarget(x=x, y=y, theta=theta, id=self.final_id)
 
+    def relocated(self, now: float) -> None:
+        """The robot is not where it seemed to be: everything but the goal begins anew with the next step."""
+        self._retreat, self._route.follower, self._breadcrumbs = None, None, Breadcrumbs()
+        self._base.start, self._progress.deadline = None, math.inf
+        self._progress.restart(now)
+        self._blocked.clear()
+
     # --- planning
     def _begin(self, pose: Pose2, now: float) -> None:
         """The first plan.

@@ -31,7 +31,7 @@ class Costmap:
     """Cells of `resolution`; `static_distance` [m] is from each cell to the nearest obstacle of the static map."""
 
     def __init__(self, floor_plan: FloorPlan, resolution: float, memory: float) -> None:
-        self.resolution, self._memory = resolution, memory
+        self.resolution, self.memory = resolution, memory
         self.origin = (floor_plan.low[0] - _PAD, floor_plan.low[1] - _PAD)
         width = math.ceil((floor_plan.high[0] - floor_plan.low[0] + 2 * _PAD) / resolution)
         height = math.ceil((floor_plan.high[1] - floor_plan.low[1] + 2 * _PAD) / resolution)
@@ -49,9 +49,7 @@ class Costmap:
 
     def _distance_to_map(self, floor_plan: FloorPlan) -> Array:
         """Of each cell's centre, exactly: counted in cells, the corner of a wall is up to 5 cm nearer than it seems."""
-        xs = self.origin[0] + (np.arange(self.shape[1]) + 0.5) * self.resolution
-        ys = self.origin[1] + (np.arange(self.shape[0]) + 0.5) * self.resolution
-        gx, gy = np.meshgrid(xs, ys)
+        gx, gy = np.moveaxis(self.centres(), 2, 0)
         sides = (gx - floor_plan.low[0], floor_plan.high[0] - gx, gy - floor_plan.low[1], floor_plan.high[1] - gy)
         found: Array = np.minimum.reduce(sides)
         boxes = [f.outline for f in floor_plan.furniture]
@@ -75,6 +73,24 @@ class Costmap:
                 np.minimum(part, disc[shift : shift + part.shape[0], aside : aside + part.shape[1]], out=part)
             self._distance = grid
         return self._distance
+
+    def confine(self, distance: Array) -> None:
+        """Take `distance` [m] to the nearest obstacle of every cell in place of the floor plan's."""
+        self.static_distance = distance
+        self.static = distance <= 0
+        self.forget()
+
+    def forget(self) -> None:
+        """Forget all that was seen: it was not where it seemed to be."""
+        self._seen_at[:], self._first_at[:] = -np.inf, np.inf
+        self._distance = self.static_distance
+        self.version += 1
+
+    def centres(self) -> Array:
+        """The middle of every cell (rows, columns, 2) [map]."""
+        xs = self.origin[0] + (np.arange(self.shape[1]) + 0.5) * self.resolution
+        ys = self.origin[1] + (np.arange(self.shape[0]) + 0.5) * self.resolution
+        return np.stack(np.meshgrid(xs, ys), axis=2)
 
     def picture(self, now: float) -> m.Costmap:
         """The clearance of every cell, for viewers."""
@@ -156,7 +172,7 @@ class Costmap:
         seen_at = self._seen_at[rows, columns]
         # What was there for a moment only was walking by.
         lasting = seen_at - self._first_at[rows, columns] > _LASTING
-        old = now - seen_at > np.where(lasting, self._memory, min(_BRIEF, self._memory))
+        old = now - seen_at > np.where(lasting, self.memory, min(_BRIEF, self.memory))
         self._drop(rows, columns, passed | old)
 
     def _drop(self, rows: NDArray[np.intp], columns: NDArray[np.intp], gone: Grid) -> None:
