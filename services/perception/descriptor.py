@@ -26,7 +26,11 @@ LIKELY = 0.2
 
 @dataclass
 class Descriptor:
-    """`kinds`, `colours`, `shapes`: votes by name. `size` [m] with `spread` [m]; `points` (n, 3) [map]."""
+    """`kinds`, `colours`, `shapes`: votes by name. `size` [m] with `spread` [m]; `points` (n, 3) [map].
+
+    `opening`: votes for an open end, from whatever side; they do not fade, as it is no more to be seen when the object
+    stands on it.
+    """
 
     size: Vec3
     spread: float = 0.0
@@ -36,10 +40,12 @@ class Descriptor:
     shapes: dict[ShapeFamily, float] = field(default_factory=dict)
     points: Array = field(default_factory=lambda: np.empty((0, 3)))
     named: tuple[str, str] = ("", "")
+    opening: float = 0.0
 
     def add(self, d: Detection, weight: float, moved: bool) -> None:
         """Take in a view's detection; `weight`: how much it says. `moved`: earlier points and extents do not hold."""
         old = self.shape
+        self.opening += weight * (d.end == "open")
         vote(self.kinds, d.kinds, weight)
         vote(self.colours, d.colours, weight)
         vote(self.shapes, {d.shape: 1.0}, weight)

@@ -7,6 +7,7 @@ import numpy as np
 from common.floor_plan import Vec3
 from common.geometry import Array
 from common.messages import ShapeFamily
+from services.perception.measurement import End
 
 
 @dataclass(frozen=True)
@@ -15,7 +16,8 @@ class Detection:
 
     `tilt`: angle [rad] of its own axis to the vertical. Of what lies on its side the first extent is along that axis,
     which points along `yaw`. `whole`: all of it was in view, so that the position can be trusted; `share`: about how
-    much of it was. `yaw_seen`: the yaw is no guess, as that of a mug whose handle is hidden.
+    much of it was. `yaw_seen`: the yaw is no guess, as that of a mug whose handle is hidden, or of what may lie the
+    other way round. `end`: what the upper end of what stands is, or the end of what lies that was seen.
 
     `known`: it is an object of the household, called `label`; otherwise the label is empty, `size` was measured, and
     `kinds` are what it may be, with shares that add up to 1. `colours`: shares of its pixels by the word for their
@@ -36,6 +38,7 @@ class Detection:
     share: float = 1.0
     tilt: float = 0.0
     yaw_seen: bool = True
+    end: End = ""
     shape: ShapeFamily = ""
     kinds: dict[str, float] = field(default_factory=dict)
     colours: dict[str, float] = field(default_factory=dict)

@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 
 from common.geometry import Array
-from services.perception import primitives, turned
+from services.perception import lying, primitives, turned
 from services.perception.measurement import Measurement
 from services.perception.primitives import Silhouette
 
@@ -23,6 +23,8 @@ SOLID, GAPS = 0.86, 0.02
 missing counts as. Chosen: boxes and balls have .90 and more, crossed arms half."""
 HANDLED = 0.35
 """Share of that for a shape with a handle, which leaves a gap."""
+LAID = 0.95
+"""Length on the floor plan by height from which a shape may lie on its side: the shortest mug is as long as wide."""
 DOUBT, DOUBT_NOISE = 0.0003, 0.12
 """Difference [m] of two shapes' costs, plus that of noise, at which the worse one is 1/e as likely."""
 LEAST_RIVAL = 0.1
@@ -51,8 +53,8 @@ def measure(
         shapes.append(turned.standing(used, h, outline, eye, noise))
     if 0.6 < h / wide < 1.5:
         shapes.append(_ball(used, h, outline, noise))
-    if wide > 1.15 * h:
-        shapes += turned.lying(used, h, outline, eye, noise)
+    if wide > LAID * h:
+        shapes += lying.lying(used, h, outline, eye, noise)
     gaps = GAPS * max(0.0, SOLID - primitives.solidity(local, eye))
     shapes = [replace(s, residual=s.residual + (gaps if math.isnan(s.handle) else HANDLED * gaps)) for s in shapes]
     costs = [(1 - s.credit) * s.residual + COMPLEX * s.free * (0.001 + 0.3 * noise) for s in shapes]

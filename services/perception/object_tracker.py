@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -36,6 +36,8 @@ FELL = 0.7
 LIKELY = 0.4
 """Confidence from which a view may say that an object fell; rendered lying objects get 0.55 and more half hidden by the
 arm, and in 37 rendered views of standing objects none was taken for a lying one."""
+OPENING = 0.9
+"""Votes from which an object has an opening: one whole view from 1.5 m."""
 HELD_RANGE = 0.12
 """Distance [m] from the hand within which the object that it closed on was believed to be."""
 DOUBT = 0.45
@@ -137,7 +139,7 @@ class ObjectTracker:
                 track = Track(f"object-{self._count}", d.position, d.yaw, d.size, d.on, now, 0.0, tilt=d.tilt)
                 self._tracks.append(track)
                 seen.add(track.id)
-            _see(track, d, now)
+            _see(track, _turned_over(track, d), now)
         for track in free:
             if track.id not in seen and _should_show(track, view):
                 track.misses += 1
@@ -246,6 +248,12 @@ def _labelled(tracks: Sequence[Track]) -> list[tuple[Track, str]]:
     return found
 
 
+def _turned_over(track: Track, d: Detection) -> Detection:
+    """What has an opening and shows a closed upper end stands on its mouth."""
+    on_its_mouth = not d.tilt and d.end == "closed" and track.looks.opening >= OPENING
+    return replace(d, tilt=math.pi) if on_its_mouth else d
+
+
 def _see(track: Track, d: Detection, now: float) -> None:
     weight = 1.0 / max(0.2, d.distance) ** 2 * (0.3 if d.confidence < SURE else 1.0)
     weight *= 1.0 if d.whole else PARTIAL * d.share**2
@@ -276,6 +284,9 @@ def _see(track: Track, d: Detection, now: float) -> None:
     guess = track.yaw_seen and not d.yaw_seen and shift <= MOVED
     if fell or (share and weight >= POORER * track.best and not guess):
         track.yaw, track.yaw_seen = d.yaw if d.known else track.looks.turned(d), d.yaw_seen
+    elif guess and share and weight >= POORER * track.best and track.tilt and d.tilt:
+        # Its axis is seen, which end is the upper one is not: that stays.
+        track.yaw += math.remainder(d.yaw - track.yaw, math.pi)
     track.seen_at, track.misses, track.sightings = now, 0, track.sightings + 1
     track.looked_at = now
     track.scores = {k: v * 0.9 for k, v in track.scores.items()}

@@ -1,4 +1,4 @@
-"""Turned shapes with a free profile, fitted to the points of one view: upright, or lying on their side. Pure."""
+"""Turned shapes with a free profile that stand upright, fitted to the points of one view. Pure."""
 
 import math
 
@@ -8,11 +8,9 @@ from numpy.typing import NDArray
 from common.geometry import Array
 from common.messages import ShapeFamily
 from services.perception import primitives
-from services.perception.measurement import LEVEL, SLICES, Measurement
+from services.perception.measurement import SLICES, Measurement
 from services.perception.primitives import Silhouette, Solution
 
-LONG = 1.6
-"""Length by width from which what lies is long. Chosen: cans on their side have 1.4 and more."""
 CAVITY = 0.06
 """Share of the points that are seen through the plane of the rim, from which an object is hollow. Chosen: a mug at 2 m
 shows three times as much."""
@@ -28,8 +26,12 @@ BODY = 12
 """Fewest points of what is beside a handle: with fewer the fit is off, and what is beyond its wall is no handle."""
 VESSEL = (0.05, 0.17)
 """Least and most height [m] of what is tried with a handle."""
-SQUARE = 0.12
-"""Credit for a round thing on its side: a box would need two sides that are alike to look the same, and few have."""
+
+
+INNER_PART = 0.6
+"""Share of the radius within which the upper end of a vessel is its bottom or its opening, and no rim."""
+FLAT, LEVEL_SHARE = 0.006, 0.8
+"""How far [m] from its height points of a level end are, beside the noise, and the least share of them that are."""
 
 
 def spread(solution: Solution, entries: slice) -> float:
@@ -68,7 +70,7 @@ def standing(points: Array, h: float, outline: Silhouette, eye: Array, noise: fl
         ):
             body = wall
             rest = points[body]
-            own = primitives.silhouette(rest, np.append(outline.camera, 0.0), _seen(outline), 0.0)
+            own = primitives.silhouette(rest, np.append(outline.camera, 0.0), seen_ends(outline), 0.0)
             solution = _upright(rest, h, own, noise)
             handle = math.atan2(*(points[beyond, :2].mean(axis=0) - solution.p[:2])[::-1])
     x, y, r, grows = (float(v) for v in solution.p)
@@ -97,6 +99,7 @@ def standing(points: Array, h: float, outline: Silhouette, eye: Array, noise: fl
         shape, x, y, 0.0 if math.isnan(handle) else handle, (2 * widest, 2 * widest, h),
         float(np.minimum(off, 0.02).mean()), spread(solution, slice(0, 3)),
         profile=tuple(round(float(v) / widest, 2) for v in radii), hollow=hollow, handle=handle, free=5,
+        end="open" if hollow else "closed" if _closed(points, rho, float(radii[-2]), h, eye, noise) else "",
     )  # fmt: skip
 
 
@@ -107,7 +110,7 @@ def _upright(points: Array, h: float, outline: Silhouette, noise: float) -> Solu
     return primitives.fit(primitives.turned(h), primitives.round_ends(h / 2), begin, points, outline, noise, prior)
 
 
-def _seen(outline: Silhouette) -> tuple[bool, bool]:
+def seen_ends(outline: Silhouette) -> tuple[bool, bool]:
     return not math.isnan(outline.ends[0]), not math.isnan(outline.ends[1])
 
 
@@ -131,94 +134,31 @@ def _hollow(points: Array, x: float, y: float, rim: float, h: float, eye: Array,
     return bool(np.count_nonzero(inside) > CAVITY * len(points))
 
 
+def _closed(points: Array, rho: Array, r: float, h: float, eye: Array, noise: float) -> bool:
+    """The inner part of the upper end is seen from above, and it is level."""
+    inner = points[rho < INNER_PART * r]
+    if eye[2] < h + 0.02 or len(inner) < CAVITY * len(points):
+        return False
+    return bool(np.mean(np.abs(inner[:, 2] - h) < FLAT + noise) > LEVEL_SHARE)
+
+
 def _profile(points: Array, rho: Array, h: float, outline: Silhouette, x: float, y: float, r: float) -> Array:
     """Radius (SLICES,) at the heights of a turned shape: the median of the wall that faces the camera."""
     facing = (points[:, 0] - x) * (outline.camera[0] - x) + (points[:, 1] - y) * (outline.camera[1] - y)
     front = facing > 0.2 * rho * np.hypot(outline.camera[0] - x, outline.camera[1] - y)
-    return _medians(rho[front], points[front, 2] / h, r)
+    return filled(profile(rho[front], points[front, 2] / h, 0.5), r)
 
 
-def _medians(rho: Array, share: Array, otherwise: float) -> Array:
-    """Median radius (SLICES,) of points by their share of the axis, 0 to 1; between known ones where there are few."""
+def profile(rho: Array, share: Array, quantile: float) -> Array:
+    """Radius (SLICES,) [m] by the share of the axis, 0 to 1: a quantile of the points there; nan if they are few."""
     level = np.clip((share * SLICES).astype(int), 0, SLICES - 1)
-    radii = np.array(
-        [np.median(rho[level == k]) if np.count_nonzero(level == k) >= 4 else np.nan for k in range(SLICES)]
+    return np.array(
+        [np.quantile(rho[level == k], quantile) if np.count_nonzero(level == k) >= 4 else np.nan for k in range(SLICES)]
     )
+
+
+def filled(radii: Array, otherwise: float) -> Array:
+    """Radii (SLICES,) [m] with those that are not known between those that are; `otherwise` where none is."""
     known = ~np.isnan(radii)
     at = np.arange(SLICES)
     return np.asarray(np.interp(at, at[known], radii[known])) if known.any() else np.full(SLICES, otherwise)
-
-
-def lying(points: Array, h: float, outline: Silhouette, eye: Array, noise: float) -> list[Measurement]:
-    """The turned shape on its side, `h` [m] high, that explains points (n, 3): along their outline, or across it."""
-    _, yaw, extents, middle = primitives.rectangle(points[:, :2], 24)[0]
-    if extents[1] > extents[0]:
-        yaw, extents = yaw + math.pi / 2, extents[::-1]
-    found = [_lying_along(points, h, outline, eye, noise, np.array([*middle, yaw, h / 2, float(extents[0])]))]
-    if extents[0] < 1.4 * extents[1]:
-        # A handle beside it makes it as wide as it is long.
-        across = np.array([*middle, yaw + math.pi / 2, h / 2, float(extents[1])])
-        found.append(_lying_along(points, h, outline, eye, noise, across))
-    return [m for m in found if m is not None]
-
-
-def _lying_along(
-    points: Array, h: float, outline: Silhouette, eye: Array, noise: float, begin: Array
-) -> Measurement | None:
-    ends = primitives.corner_ends(lies=True)
-    prior = begin, np.array([1.0, 1.0, 1.0, 0.003, 0.5])
-    body, handle = np.ones(len(points), bool), math.nan
-    solution = primitives.fit(primitives.lying(), ends, begin, points, outline, noise, prior)
-    x, y, yaw, r, length = (float(v) for v in solution.p)
-    beside = -math.sin(yaw) * (points[:, 0] - x) + math.cos(yaw) * (points[:, 1] - y)
-    far = np.abs(beside)
-    beyond = (far > h / 2 + HANDLE) & (far < h / 2 + HANDLE_REACH + HANDLE)
-    wall = far < h / 2 + HANDLE / 2
-    has_handle = np.count_nonzero(wall) >= BODY and HANDLE_SHARE[0] < beyond.mean() < HANDLE_SHARE[1]
-    if VESSEL[0] < length < VESSEL[1] and has_handle:
-        body = wall
-        own = primitives.silhouette(points[body], np.append(outline.camera, 0.0), _seen(outline), 0.0)
-        solution = primitives.fit(primitives.lying(), ends, begin, points[body], own, noise, prior)
-        x, y, yaw, r, length = (float(v) for v in solution.p)
-        side = float(np.sign(np.median(beside[beyond])))
-        handle = yaw + side * math.pi / 2
-    if r < 0.006 or length < 2.1 * r:
-        return None
-    dx, dy = points[:, 0] - x, points[:, 1] - y
-    along = math.cos(yaw) * dx + math.sin(yaw) * dy
-    rho = np.hypot(math.cos(yaw) * dy - math.sin(yaw) * dx, points[:, 2] - r)
-    hollow = _open_end(points, along, rho, r, length, math.cos(yaw) * (eye[0] - x) + math.sin(yaw) * (eye[1] - y))
-    radii = np.minimum(_medians(rho[body], along[body] / length + 0.5, r), 1.1 * r)
-    steps = np.interp(along / length + 0.5, (np.arange(SLICES) + 0.5) / SLICES, radii)
-    beyond_end = np.abs(along) - length / 2
-    # The end that faces the camera is flat, or open.
-    end = np.minimum(np.abs(beyond_end), primitives.INNER)
-    off = np.where(rho < steps, np.minimum(steps - rho, end), np.hypot(rho - steps, np.maximum(beyond_end, 0.0)))
-    off = np.where(body & ~(hollow & (rho < steps - primitives.INNER)), off, np.minimum(off, noise))
-    flip = _top_is_behind(
-        radii, hollow, not math.isnan(handle), math.cos(yaw) * (eye[0] - x) + math.sin(yaw) * (eye[1] - y)
-    )
-    if flip:
-        radii, yaw = radii[::-1], yaw + math.pi
-    shape: ShapeFamily = "long" if length > LONG * 2 * r else "round"
-    return Measurement(
-        shape, x, y, yaw, (length, 2 * r, 2 * r), float(np.minimum(off, 0.02).mean()), spread(solution, slice(0, 4)),
-        tilt=LEVEL, profile=tuple(round(float(v) / r, 2) for v in radii), hollow=hollow, handle=handle, free=6,
-        credit=SQUARE,
-    )  # fmt: skip
-
-
-def _open_end(points: Array, along: Array, rho: Array, r: float, length: float, camera_along: float) -> bool:
-    """Points inside the wall, well behind the end that faces the camera: it is open."""
-    depth = length / 2 - along * math.copysign(1.0, camera_along)
-    inside = (rho < r - primitives.INNER) & (depth > 0.02) & (depth < length)
-    return bool(np.count_nonzero(inside) > CAVITY * len(points))
-
-
-def _top_is_behind(radii: Array, hollow: bool, handle: bool, camera_along: float) -> bool:
-    """Whether the axis must be turned round to point to the top: the open end, or the narrow one."""
-    if hollow:
-        return camera_along < 0
-    if handle:
-        return camera_along > 0
-    return bool(radii[:2].mean() < 0.8 * radii[-2:].mean())

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from common.geometry import Array
-from common.kinds import LOOKS, Kind
+from common.kinds import LOOKS, Kind, kind_of
 from common.looks import Measures, likely
 from common.messages import ShapeFamily
 from services.perception import colour
@@ -23,6 +23,8 @@ CUT, CUT_SPREAD = 0.6, 0.02
 """Share of the confidence of what is seen in part, and the least spread [m] of its extents."""
 NECK, NECK_UPPER = 0.66, 2
 """Radius of the upper slices by that of the widest, below which there is a neck, and how many slices are looked at."""
+TALLER, MOSTLY = 1.15, 0.5
+"""Length by height from which what stands on its end lies, and the least share of such kinds in what it may be."""
 VOXEL = 0.005
 """Side [m] of the cells in which points are averaged. Chosen: a third of a finger pad."""
 MOST_POINTS = 200
@@ -39,6 +41,7 @@ def describe(view: View, segment: Segment, found: Measurement, gains: Array) -> 
     spread = found.spread if not segment.cut else max(found.spread, CUT_SPREAD)
     kinds = kinds_of(found, spread, words)
     height = found.size[1] if found.tilt else found.size[2]
+    tilt = _tilt(found, kinds)
     confidence = SURE * (0.45 + 0.55 * min(1.0, len(segment.rows) / FEW)) * (CUT if segment.cut else 1.0)
     kind = next(iter(kinds))
     return Detection(
@@ -53,14 +56,29 @@ def describe(view: View, segment: Segment, found: Measurement, gains: Array) -> 
         distance=math.hypot(found.x - float(view.position[0]), found.y - float(view.position[1])),
         known=False,
         whole=not segment.cut,
-        tilt=found.tilt,
-        yaw_seen=found.family != "round" or found.tilt > 0 or not math.isnan(found.handle),
+        tilt=tilt,
+        end=found.end,
+        yaw_seen=found.top_seen if found.tilt else found.family != "round" or not math.isnan(found.handle),
         shape=found.family,
         kinds=kinds,
         colours=shares,
         spread=spread,
         points=thinned(segment.points),
     )
+
+
+def _tilt(found: Measurement, kinds: Mapping[str, float]) -> float:
+    """Tilt [rad] of an object by its shape and what it may be: a box that stands on its end may lie on a side, what has
+    a handle and a bottom above stands on its mouth.
+    """
+    if found.family == "box" and found.size[0] > TALLER * found.size[2]:
+        standing = sum(
+            share for kind, share in kinds.items() if kind_of(kind).upright and "face" in kind_of(kind).rests
+        )
+        return LEVEL if standing >= MOSTLY else 0.0
+    vessel = "upside down" in kind_of(next(iter(kinds))).rests
+    on_its_mouth = vessel and found.end == "closed" and not found.tilt and not math.isnan(found.handle)
+    return math.pi if on_its_mouth else found.tilt
 
 
 def kinds_of(found: Measurement, spread: float, words: list[str]) -> dict[str, float]:
@@ -96,7 +114,8 @@ def measures_of(m: Measurement, error: float) -> Measures:
     """The measures in the object's own frame, by which its kind is told."""
     if m.family in ("round", "bowl", "ball") or (m.family == "long" and m.profile):
         across, along = (m.size[1], m.size[0]) if m.tilt == LEVEL else (m.size[0], m.size[2])
-        upper = m.profile[-NECK_UPPER:]
+        # What lies shows its neck from the side, to its end.
+        upper = m.profile[-1:] if m.tilt == LEVEL else m.profile[-NECK_UPPER:]
         neck = bool(upper) and max(upper) < NECK and not m.hollow
         return Measures(m.family, across, along, 1.0, m.hollow, neck, not math.isnan(m.handle), error)
     shortest, middle, longest = sorted(m.size)

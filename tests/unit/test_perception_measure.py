@@ -46,6 +46,23 @@ def lying(x: float, y: float, yaw: float, r: float, length: float) -> Array:
     return facing(points, normals)
 
 
+def ends(x: float, y: float, yaw: float, r: float, length: float, open_at: int) -> Array:
+    """Lids of what `lying` has: a closed one, and at the end `open_at` (1, -1) an opening with the wall behind it."""
+    rng, ahead = np.random.default_rng(5), np.array([math.cos(yaw), math.sin(yaw), 0.0])
+    side, up, middle = np.array([-math.sin(yaw), math.cos(yaw), 0.0]), np.array([0, 0, 1.0]), [x, y, FLOOR + r]
+    turn, out = rng.uniform(0, 2 * math.pi, 900), r * np.sqrt(rng.uniform(0, 1, 900))
+    round_about = np.outer(np.cos(turn), side) + np.outer(np.sin(turn), up)
+    lid = out[:, None] * round_about - open_at * length / 2 * ahead + middle
+    found = [facing(lid, np.tile(-open_at * ahead, (900, 1)))]
+    inside = np.outer(rng.uniform(-length / 2, length / 2, 900), ahead) + 0.95 * r * round_about
+    eye = CAMERA - middle
+    share = (open_at * length / 2 - eye @ ahead) / (inside @ ahead - eye @ ahead)
+    crossing = eye + share[:, None] * (inside - eye)
+    crossing -= np.outer(crossing @ ahead, ahead)
+    through = (np.linalg.norm(crossing, axis=1) < 0.95 * r) & (share > 0) & (share < 1)
+    return np.concatenate([*found, facing(inside[through] + middle, -round_about[through])])
+
+
 def box(x: float, y: float, yaw: float, size: tuple[float, float, float]) -> Array:
     rng = np.random.default_rng(3)
     c, s = math.cos(yaw), math.sin(yaw)
@@ -108,6 +125,27 @@ def test_what_is_long_and_round_lies(yaw: float) -> None:
     assert m.size == pytest.approx((0.22, 0.064, 0.064), abs=0.012)
     assert abs(math.remainder(m.yaw - yaw, math.pi)) < 0.1
     assert "bottle" in likely(LOOKS, measures_of(m, m.spread), ["green"])
+
+
+@pytest.mark.parametrize("yaw", [0.35, 0.9, -0.5])
+@pytest.mark.parametrize("top", [1, -1])
+def test_the_open_end_of_a_mug_that_lies_is_its_top(yaw: float, top: int) -> None:
+    points = np.concatenate([lying(0.2, 0.0, yaw, 0.038, 0.095), ends(0.2, 0.0, yaw, 0.038, 0.095, top)])
+    m = look(points)
+    assert m.tilt == pytest.approx(math.pi / 2)
+    assert m.top_seen
+    # Of the two ends the far one shows nothing: it is told by the near one.
+    assert m.hollow == (top < 0)
+    assert abs(math.remainder(m.yaw - yaw - (math.pi if top < 0 else 0.0), 2 * math.pi)) < 0.15
+
+
+def test_a_neck_is_the_top_and_no_opening() -> None:
+    body, neck = lying(0.2, 0.0, 1.2, 0.035, 0.15), lying(0.0, 0.0, 1.2, 0.014, 0.06)
+    shift = 0.105 * np.array([math.cos(1.2), math.sin(1.2), 0.0]) + [0.2, 0.0, 0.021]
+    m = look(np.concatenate([body, neck[::3] + shift]))
+    assert not m.hollow
+    assert m.top_seen
+    assert abs(math.remainder(m.yaw - 1.2, 2 * math.pi)) < 0.1
 
 
 def test_what_no_primitive_explains_is_irregular_and_still_has_extents() -> None:

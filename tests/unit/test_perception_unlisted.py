@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from common.geometry import quat_yaw
 from common.household import load_household, mapped
 from common.messages import WorldObject
 from common.naming import match_object
@@ -166,3 +167,20 @@ def test_a_ball_is_meant_by_no_word_for_what_stands_on_a_foot() -> None:
     assert match_object("blue can", [ball], household) == []
     assert match_object("blue ball", [can], household) == []
     assert match_object("blue apple", [ball], household) == [ball]
+
+
+def test_what_lay_with_an_opening_and_is_closed_above_stands_on_its_mouth() -> None:
+    lies = replace(sighting(4.0, -3.0, MUG, RED), tilt=math.pi / 2, size=(0.1, 0.07, 0.07), end="open")
+    stands = replace(sighting(4.0, -3.0, CAN, RED), end="closed")
+    assert seen([lies], [lies], [stands])[1][0].tilt == pytest.approx(math.pi)
+    assert seen([lies], [lies], [replace(stands, end="open")])[1][0].tilt == 0.0
+    # A can that lay showed no opening: its lid is above.
+    assert seen([replace(lies, end="closed")], [stands])[1][0].tilt == 0.0
+
+
+def test_an_axis_whose_upper_end_is_not_seen_keeps_its_direction() -> None:
+    lies = replace(sighting(4.0, -3.0, CAN, RED), tilt=math.pi / 2, yaw=0.3, size=(0.1, 0.07, 0.07))
+    guess = replace(lies, yaw=0.3 - math.pi + 0.04, yaw_seen=False)
+    tracker, _ = seen([lies], [guess])
+    (found,) = tracker.objects()
+    assert quat_yaw(found.orientation) == pytest.approx(0.34, abs=0.05)
