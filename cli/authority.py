@@ -89,7 +89,7 @@ class Authority:
         write(folder / KEY, _pem(key))
         write(folder / CERT, made.public_bytes(serialization.Encoding.PEM))
         write(folder / CA, authority.public_bytes(serialization.Encoding.PEM))
-        if subject.role in ("operator", "observer", "agent", "ros"):
+        if subject.role in ("operator", "observer", "agent", "fleet", "ros"):
             where = next((h for h in hosts if h not in hosts_of(())), "127.0.0.1")
             write(folder / CLIENT, client(folder, f"tls/{where}:7447", subject.namespace).encode())
 

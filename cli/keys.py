@@ -69,7 +69,7 @@ def _check(args: argparse.Namespace) -> None:
         raise CliError(f"{args.client} is a service; a client needs another name")
     if args.days <= 0:
         raise CliError(f"--days {args.days:g}: expected a positive number")
-    kinds = [option for option in ("observer", "agent", "ros") if getattr(args, option)]
+    kinds = [option for option in ("observer", "agent", "fleet", "ros") if getattr(args, option)]
     if kinds and not args.client:
         raise CliError(f"--{kinds[0]} goes with --client NAME")
     if len(kinds) > 1:
@@ -79,6 +79,8 @@ def _check(args: argparse.Namespace) -> None:
 def _client(args: argparse.Namespace) -> Subject:
     if args.ros:
         return Subject(name=args.client, role="ros", domain=args.ros_domain)
+    if args.fleet:
+        return Subject(name=args.client, role="fleet")
     role: Role = "observer" if args.observer else "agent" if args.agent else "operator"
     return Subject(name=args.client, role=role, namespace=args.namespace)
 
@@ -149,6 +151,11 @@ def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") ->
     parser.add_argument("--observer", action="store_true", help="that client may only look")
     parser.add_argument(
         "--agent", action="store_true", help="that client is a program: it commands in words, and stops"
+    )
+    parser.add_argument(
+        "--fleet",
+        action="store_true",
+        help="that client sees, commands and stops every robot (`tidybot fleet`)",
     )
     parser.add_argument("--ros", action="store_true", help="that client is a ROS 2 peer, and reaches its domain only")
     parser.add_argument("--ros-domain", type=int, default=0, metavar="N", help="ROS_DOMAIN_ID (default %(default)s)")

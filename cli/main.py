@@ -29,6 +29,7 @@ from cli import (
 )
 from cli.agents import command as agents
 from cli.errors import CliError, near
+from cli.fleet import command as fleet
 from common.bus.session import BusError
 
 FAILED, MISUSED, INTERRUPTED = 1, 2, 130
@@ -66,6 +67,7 @@ def parser() -> argparse.ArgumentParser:
         topic,
         tree,
         watch,
+        fleet,
         record,
         replay,
         doctor,

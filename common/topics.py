@@ -169,6 +169,7 @@ NAV_PATH = _event("navigation/path", m.NavPath, by="navigation", to="dashboard")
 COSTMAP = _stream("navigation/costmap", m.Costmap, by="navigation", to="dashboard", rate=1.0)
 GRASPS = _event("manipulation/grasps", m.GraspCandidates, by="manipulation", to="dashboard")
 SCAN = _stream("scan", m.LaserScan, by="sim", to="navigation dashboard", rate=10.0, latched=True)
+BATTERY = _stream("robot/battery", m.BatteryState, by="sim", to="", rate=1.0, binary=False, latched=True)
 ROBOT_STOP = _goal(
     "robot/stop",
     m.RobotStop,

@@ -12,7 +12,10 @@ SystemStateName = Literal["IDLE", "LISTENING", "PLANNING", "GROUNDING", "NAVIGAT
 
 
 class BrainState(Message):
-    """Where the mission stands; `plan_step`: number from 1 of the plan's step under way, 0 when none is."""
+    """Where the mission stands; `plan_step`: number from 1 of the plan's step under way, 0 when none is.
+
+    `command_id`: the id of the `voice_command` that the mission under way began with.
+    """
 
     state: BrainStateName
     t: float = 0.0
@@ -24,13 +27,15 @@ class BrainState(Message):
     pipeline: str = ""
     last: "MissionOutcome | None" = None
     plan_step: int = 0
+    command_id: str = ""
 
 
 class MissionOutcome(Message):
     """How the last mission ended; `reason` says it to people, the other fields to programs.
 
     `stage` (a state's name, or another stage in capitals), `code` and `spoken` are those of the failure that ended it,
-    "" without one. `resumable`: a `robot/resume` with `go_on` takes it up.
+    "" without one. `resumable`: a `robot/resume` with `go_on` takes it up. `command_id` as in
+    `BrainState`.
     """
 
     id: str
@@ -42,6 +47,7 @@ class MissionOutcome(Message):
     code: str = ""
     spoken: str = ""
     resumable: bool = False
+    command_id: str = ""
 
 
 class TreeNode(Message):

@@ -72,6 +72,15 @@ class Odometry(Message):
     omega: float = 0.0
 
 
+class BatteryState(Message):
+    """`charge` from 0 empty to 1 full, `power` drawn now [W]."""
+
+    t: float
+    charge: float
+    power: float = 0.0
+    charging: bool = False
+
+
 class LaserScan(Message):
     """Ranges [m] counter-clockwise from `angle_min` in the lidar's frame; > range_max means nothing seen.
 

@@ -61,7 +61,9 @@ class VoiceCommand(Message):
     """A command in words; `confirmed`: the sender vouches for them (typed text), so nobody asks "Did you say ...?".
 
     `question`: `text` is no command but a question that the robot puts to the person; the answer is the outcome's
-    `reason`.
+    `reason`. An `id` that was heard before is not heard again. `unless_busy`: taken up at once or not at all, neither
+    queued nor in the place of another. `withdraws`: the id of a command that is not to be carried out, whether it is
+    under way, waits, or is still to come; `text` then says nothing.
     """
 
     text: str
@@ -69,3 +71,5 @@ class VoiceCommand(Message):
     id: str = ""
     confirmed: bool = False
     question: bool = False
+    unless_busy: bool = False
+    withdraws: str = ""

@@ -5,7 +5,8 @@ granted here is denied: a service writes and reads the topics whose row names it
 are people's tools: an operator reads everything and writes what `*` may write, an observer only reads. An agent is a
 program that commands the robot in words: it may say what a person may say and stop the robot, and drives nothing. A
 ROS peer has the keys of its ROS domain and nothing of the robot's own: the gateway stands between. Routers, which link
-with each other, pass everything.
+with each other, pass everything. A fleet's desk sees where every robot is and what it does, gives commands in words
+and stops; it is the one client that reaches several robots, so it has no namespace and may do least.
 """
 
 from collections.abc import Iterable
@@ -15,12 +16,13 @@ import msgspec
 
 from common import topics as t
 
-Role = Literal["service", "operator", "observer", "agent", "router", "ros"]
-ROUTER, OPERATOR, AGENT, EAR, GATEWAY = "router", "operator", "agent", "ear", "ros2"
+Role = Literal["service", "operator", "observer", "agent", "fleet", "router", "ros"]
+ROUTER, OPERATOR, AGENT, FLEET, EAR, GATEWAY = "router", "operator", "agent", "fleet", "ear", "ros2"
 
 CHANGING = tuple(q.key for q in t.QUERIES if q.changing)
 ALL_HEALTH, ALL_ALIVE = t.HEALTH.key, t.ALIVE_KEY.format(name="*")
 ADVANCED = "@adv/**"  # caches, heartbeats and tokens of advanced publishers live below the key
+EVERY_ROBOT = "**"  # any namespace, and none
 EVERYTHING = ("**", f"**/{ADVANCED}")
 AGENT_PUTS = (t.VOICE_COMMAND, t.ROBOT_STOP, t.CAMERA_REQUEST)
 """Words, which brain and planner check as a person's, the brake, and the wish for a picture. Not `robot/resume`: what
@@ -29,6 +31,10 @@ AGENT_READS = (
     t.BRAIN_STATE, t.SYSTEM_STATUS, t.SPEECH_STATUS, t.SIM_STATUS, t.WORLD_OBJECTS, t.POSE, t.COSTMAP, t.HEAD_RGBD,
     t.WRIST_RGBD,
 )  # fmt: skip
+
+
+FLEET_PUTS = (t.VOICE_COMMAND, t.ROBOT_STOP)
+FLEET_READS = (t.BRAIN_STATE, t.SIM_STATUS, t.POSE, t.NAV_PATH, t.BATTERY, t.WORLD_OBJECTS, t.COSTMAP)
 
 
 class Subject(msgspec.Struct, frozen=True):
@@ -65,6 +71,10 @@ def grants(subject: Subject) -> Grants:
             reads=(*reads, ALL_HEALTH, ALL_ALIVE),
             asks=(*reads, ALL_HEALTH, t.BRAIN_MISSIONS),
         )
+    if subject.role == "fleet":
+        reads = tuple(topic.key for topic in FLEET_READS)
+        puts = tuple(topic.key for topic in FLEET_PUTS)
+        return Grants(puts=puts, reads=(*reads, ALL_HEALTH, ALL_ALIVE), asks=(*reads, ALL_HEALTH))
     if subject.role == "ros":
         return Grants()
     questions = tuple(q.key for q in t.QUERIES if not q.changing)
@@ -136,6 +146,8 @@ def _rules(subject: Subject, robots: list[str]) -> list[dict[str, Any]]:
         keys = tuple(keys)
         if advanced:
             keys += tuple(f"{k}/{ADVANCED}" for k in keys if not k.endswith("**"))
+        if subject.role == "fleet":
+            return tuple(k if k.startswith(EVERY_ROBOT) else f"{EVERY_ROBOT}/{k}" for k in keys)
         return tuple(f"{subject.namespace}/{k}" if subject.namespace else k for k in keys)
 
     puts, reads = below(granted.puts, True), below(granted.reads, True)

@@ -17,6 +17,7 @@ from services.brain.mission.asides import Asides
 from services.brain.mission.channel import Channel, GoalStatus, Result
 from services.brain.mission.context import Context
 from services.brain.mission.mission import Failure, gripper_holds
+from services.brain.mission.offers import Offers
 from services.brain.pipelines.fetch import fetch_tree
 from services.brain.pipelines.vla import vla_tree
 from services.brain.resume.resumption import Resumption, suspend
@@ -45,6 +46,7 @@ class BrainService:
         self._sim_stopped = False
         self._asides = Asides(self.context)
         self._resumption = self._unfinished()
+        self._offers = Offers(self.context.mission.command_id)
         io.serve(topics.BRAIN_MISSIONS, MissionQueries(self._journal, self.context.pictures).answer)
 
     def step(self, now: float) -> None:
@@ -209,7 +211,11 @@ class BrainService:
         for command in self._io.take_all(topics.VOICE_COMMAND):
             words = normalise(command.text)
             asked = asks_for(words, "stop", "cancel", "come_back")
-            if not words:
+            if command.withdraws:
+                self._withdraw(command.withdraws)
+            elif command.unless_busy and not self._offers.accept(command, self._free):
+                self._io.log.info("offer not taken", text=command.text, state=ctx.state)
+            elif not words:
                 self._io.count_drop(topics.VOICE_COMMAND.key, "no words")
             elif command.question:
                 self._receive_question(command)
@@ -226,6 +232,24 @@ class BrainService:
                 self._interject(command)
             else:
                 self._io.log.warning("command ignored", text=command.text, state=ctx.state)
+
+    @property
+    def _free(self) -> bool:
+        ctx = self.context
+        return ctx.state in ("WAITING", "LISTENING", "COMPLETED", "ERROR") and ctx.voice.command is None
+
+    def _withdraw(self, command_id: str) -> None:
+        """Somebody else carries the command out, or nobody: end its mission, forget it where it waits."""
+        ctx = self.context
+        self._offers.withdraw(command_id)
+        mission, waiting = ctx.mission, ctx.voice.command
+        mission.queued = [c for c in mission.queued if c.id != command_id]
+        if waiting is not None and waiting.id == command_id:
+            ctx.voice.command = None
+        if ctx.suspended is not None and ctx.suspended.mission.command_id == command_id:
+            ctx.suspended = None
+        if mission.active and mission.command_id == command_id:
+            self._interrupt("withdrawn: it was given to another robot")
 
     def _interject(self, command: m.VoiceCommand) -> None:
         """What is said to a robot at work: a question or a command for later goes beside, another command instead."""

@@ -14,8 +14,8 @@ NAME = "sim.checkpoint"
 
 class Checkpoint(msgspec.Struct):
     """Everything that a world is made of: `physics` float64 bytes of MuJoCo's integration state, `setpoint` of base
-    and arm, `odometry` the believed pose, `touches` the log of contacts. `run` and `model` say to which run
-    and model it belongs.
+    and arm, `odometry` the believed pose, `touches` the log of contacts, `charge` of the battery. `run` and `model` say
+    to which run and model it belongs.
     """
 
     run: str
@@ -29,6 +29,7 @@ class Checkpoint(msgspec.Struct):
     effort: float
     stopped: bool
     touches: list[Touch] = []
+    charge: float = 1.0
     version: int = VERSION
 
 

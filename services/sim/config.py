@@ -18,6 +18,8 @@ class SimConfig(Config, frozen=True):
     `noise` a random walk [m and rad per sqrt(m)]. `obstacles`: tables, or names of the scene's; `none`: not even those
     that the scene places.
 
+    `battery`: its charge at the beginning, 0 empty to 1 full.
+
     `run` names the run of the whole robot that this simulation belongs to: within one, a simulation that was killed
     or restarted goes on with the same world; "" always begins anew.
     """
@@ -43,3 +45,4 @@ class SimConfig(Config, frozen=True):
     obstacles: tuple[Obstacle | str, ...] | str = ()
     snapshot_dir: str = ""
     run: str = ""
+    battery: float = 1.0

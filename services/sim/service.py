@@ -15,6 +15,7 @@ from common.geometry import Pose2
 from common.runtime import StartError
 from common.time.lockstep import DT
 from services.sim import checkpoint, truth
+from services.sim.battery import Battery
 from services.sim.config import SimConfig
 from services.sim.drivers import Drivers
 from services.sim.menagerie import RobotError
@@ -26,7 +27,7 @@ from services.sim.physics import Physics
 from services.sim.sensors import Sensors
 from services.sim.viewer import Viewer
 
-SCAN_TICKS, STATE_TICKS, CHECKPOINT_TICKS = 10, 5, 50
+SCAN_TICKS, STATE_TICKS, CHECKPOINT_TICKS, BATTERY_TICKS = 10, 5, 50, 100
 
 
 class Pause(msgspec.Struct):
@@ -79,6 +80,7 @@ class SimService:
         pose = (home.x, home.y, home.theta)
         self.drivers = Drivers(config, io, self.physics, pose, self._publish_status)
         self.sensors = Sensors(self.physics, config, io, pose)
+        self._battery = Battery(config.battery)
         self._reached: tuple[bool, str] = (False, "")
         physics = self.physics
         description = m.RobotDescription(mjcf=physics.robot.mjcf, head_camera=head_camera(physics.model))
@@ -99,6 +101,7 @@ class SimService:
         self.drivers.resume(state)
         self.sensors.odometry.resume(self.drivers.base.pose, state.odometry)
         physics.contacts.restore(state.touches)
+        self._battery = Battery(state.charge)
         self._io.log.warning("the world goes on where it was", t=round(self.start_time, 2))
         self._publish_status("stopped" if state.stopped else "running", "resumed")
 
@@ -118,6 +121,7 @@ class SimService:
             effort=self.drivers.effort,
             stopped=self.drivers.base.stopped,
             touches=self.physics.contacts.touches,
+            charge=self._battery.charge,
         )
         why = checkpoint.save(self._saved, state)
         if why and why != self._unsaved:
@@ -161,6 +165,10 @@ class SimService:
             io.publish(topics.GOAL_REACHED, m.GoalReached(reached=reached[0], target_id=reached[1]))
         if self._tick % SCAN_TICKS == 0:
             self.sensors.scan(t)
+        if self._tick % BATTERY_TICKS == 0:
+            vx, vy, omega, *_ = self.physics.rates.tolist()
+            self._battery.draw(vx, vy, omega, BATTERY_TICKS * DT)
+            io.publish(topics.BATTERY, m.BatteryState(t=t, charge=self._battery.charge, power=self._battery.power))
         if self._tick % STATE_TICKS == 0:
             state = m.SimState(
                 t=t, tick=self._tick, epoch=io.epoch, qpos=data.qpos.tobytes(), mocap=data.mocap_pos.tobytes()

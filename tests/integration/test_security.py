@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 import zenoh
 
+from cli.fleet.robots import Desk
 from cli.main import main as tidybot
 from cli.services import NAMES
 from common import topics
@@ -27,11 +28,16 @@ QUESTIONS = {
 }  # fmt: skip
 KEYS = [t.key for t in topics.TABLE] + [k.format(n) for n in SERVICES for k in PER_SERVICE] + list(QUESTIONS)
 CLOCKS = {t.key for t in topics.CLOCKS}
-SUBJECTS = (*SERVICES, "operator", "looker", "agent")
+SUBJECTS = (*SERVICES, "operator", "looker", "agent", "desk")
 AGENT_WRITES = {"voice_command", "robot/stop", "camera/request"}
 AGENT_READS = {
     "brain/state", "system_status", "speech/status", "sim/status", "world/objects", "navigation/pose",
     "navigation/costmap", "camera/head/rgbd", "camera/wrist/rgbd",
+}  # fmt: skip
+
+DESK_READS = {
+    "brain/state", "sim/status", "world/objects", "navigation/pose", "navigation/path", "navigation/costmap",
+    "robot/battery",
 }  # fmt: skip
 
 
@@ -46,6 +52,8 @@ def may_write(subject: str) -> set[str]:
         return set()
     if subject == "agent":
         return AGENT_WRITES
+    if subject == "desk":
+        return {"voice_command", "robot/stop"}
     if subject == "operator":
         return {t.key for t in topics.TABLE if "*" in t.writers}
     clocks = CLOCKS if subject == "sim" else {topics.LOCKSTEP_ACK.key}
@@ -58,6 +66,8 @@ def may_read(subject: str) -> set[str]:
         return set(KEYS)
     if subject == "agent":
         return AGENT_READS | {f"service/{n}/health" for n in SERVICES}
+    if subject == "desk":
+        return DESK_READS | {f"service/{n}/health" for n in SERVICES}
     clocks = {topics.LOCKSTEP_ACK.key} if subject == "sim" else CLOCKS
     read = {t.key for t in kind(subject).READS if t.key in topics.BY_KEY}
     if subject in topics.VIEWERS:
@@ -76,7 +86,7 @@ def may_ask(subject: str) -> set[str]:
 
 
 def may_answer(subject: str) -> set[str]:
-    if subject in ("operator", "looker", "agent"):
+    if subject in ("operator", "looker", "agent", "desk"):
         return set()
     own = kind(subject).WRITES
     latched = {t.key for t in topics.TABLE if t.latched and (subject in t.writers or t in own)}
@@ -86,7 +96,13 @@ def may_answer(subject: str) -> set[str]:
 @pytest.fixture(scope="module")
 def directory(tmp_path_factory: pytest.TempPathFactory) -> Path:
     made = tmp_path_factory.mktemp("security") / "keys"
-    for words in ([], ["--client", "looker", "--observer"], ["--client", "rviz", "--ros"], ["--namespace", "kitchen"]):
+    for words in (
+        [],
+        ["--client", "looker", "--observer"],
+        ["--client", "rviz", "--ros"],
+        ["--client", "desk", "--fleet"],
+        ["--namespace", "kitchen"],
+    ):
         assert tidybot(["keys", "--dir", str(made), *words]) == 0
     return made
 
@@ -346,6 +362,28 @@ def test_a_robot_does_not_reach_into_another(guarded: Guarded) -> None:
         both()
         assert delivery.fetch(ours, LAST)
     assert got == {("ours", "speech/status"), ("theirs", "speech/status")}
+
+
+def test_the_fleet_s_desk_reaches_every_robot_with_words_and_the_brake_alone(guarded: Guarded) -> None:
+    got: set[str] = set()
+    with ExitStack() as stack:
+        desk = stack.enter_context(open_session(guarded.connect, name="desk", prefixed=False, patience=20))
+        witness, brain = guarded.open(stack, "router"), guarded.open(stack, "brain", "kitchen")
+        witness.declare_subscriber("**", lambda s: got.add(str(s.key_expr)))
+        brain.declare_subscriber("voice_command", lambda s: got.add(f"heard {s.key_expr}"))
+        alive = brain.liveliness().declare_token("service/brain/alive")
+        brain.declare_queryable("brain/state", lambda query: query.reply("brain/state", b"here"))
+
+        def words_arrive() -> bool:
+            for key in ("kitchen/nav_goal", "kitchen/robot/resume", "kitchen/voice_command", "nav_goal", "robot/stop"):
+                desk.put(key, b"desk")
+            return {"kitchen/voice_command", "heard voice_command", "robot/stop"} <= got
+
+        eventually(words_arrive, "words to the one, the brake of the other")
+        eventually(lambda: delivery.fetch(desk, "kitchen/brain/state"), "the desk sees a robot's state")
+        eventually(lambda: Desk(desk).names() == {"kitchen"}, "the desk sees who is there")
+        alive.undeclare()
+    assert not {key for key in got if key.endswith(("nav_goal", "resume"))}
 
 
 def test_the_clients_file_is_all_that_a_plain_zenoh_tool_needs(guarded: Guarded) -> None:

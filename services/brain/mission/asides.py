@@ -1,5 +1,7 @@
 """What people say to a robot at work: a question is answered beside the mission, a command waits or takes its place."""
 
+import msgspec
+
 from common import messages as m
 from common import topics
 from common.language.meaning import asks_for
@@ -74,5 +76,5 @@ class Asides:
         if len(queued) >= MAX_QUEUED:
             self.speak(f"I have {len(queued)} more things to do already. Please tell me again later.")
             return
-        queued.append(m.VoiceCommand(text=text, confidence=command.confidence, confirmed=command.confirmed))
+        queued.append(msgspec.structs.replace(command, text=text))
         self.speak(f"I will do that next: {text}." if len(queued) == 1 else f"I will do that later: {text}.")

@@ -137,6 +137,7 @@ class Context:
         self.voice.reply = None
         mission.heard = Heard(confidence=command.confidence, confirmed=command.confirmed, question=command.question)
         mission.command, mission.started = command.text.strip(), self.now
+        mission.command_id = command.id
         self.suspended = None
         self.journal.begin(mission)
         self.note(f"{source}: {mission.command}", f"confidence {command.confidence:.2f}", "heard")

@@ -43,6 +43,7 @@ class Display:
             pipeline=self._pipeline,
             last=self.last,
             plan_step=plan_step if mission.active else 0,
+            command_id=mission.command_id if running else "",
         )
         if now == msgspec.structs.replace(before, t=t):
             return None
@@ -65,6 +66,7 @@ class Display:
             stage=failure.stage,
             code=failure.code,
             spoken=failure.spoken,
+            command_id=mission.command_id,
         )
 
     def _publish(self) -> None:

@@ -125,7 +125,7 @@ class Delivery(msgspec.Struct):
 class Mission(msgspec.Struct):
     """One command from hearing to outcome. Goal ids are `<id>.<n>`; `at`: the place or object the robot stands at.
 
-    `queued`: commands that were given meanwhile and come after it.
+    `queued`: commands that were given meanwhile and come after it. `command_id`: of the `voice_command` it began with.
     """
 
     id: str
@@ -141,6 +141,7 @@ class Mission(msgspec.Struct):
     search: Search = msgspec.field(default_factory=Search)
     delivery: Delivery = msgspec.field(default_factory=Delivery)
     queued: list[m.VoiceCommand] = []
+    command_id: str = ""
 
     @property
     def handled(self) -> list[str]:
