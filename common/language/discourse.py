@@ -7,18 +7,12 @@ you ...", "after you have ...") are worked out here; what a clause asks for is n
 import re
 from collections.abc import Callable
 
+from common.language.breaks import conditional, with_breaks
+from common.language.clauses import cut_clauses, without_fillers
+from common.language.contractions import expand
 from common.language.lexicon import COMMANDING
-from common.language.normalise import (
-    DETERMINERS,
-    LONG_SPEECH,
-    Words,
-    cut_clauses,
-    expand,
-    infinitive,
-    normalise,
-    without_fillers,
-    without_politeness,
-)
+from common.language.normalise import DETERMINERS, Words, infinitive, normalise
+from common.language.politeness import LONG_SPEECH, without_politeness
 
 PREPOSITIONS = frozenset(
     {
@@ -41,17 +35,35 @@ PREPOSITIONS = frozenset(
 )
 """Words that end a noun phrase."""
 _REPAIR = re.compile(
-    r"(?:,\s*(?:no|sorry|actually|rather)(?:,\s*|\s+)|,\s*(?:oh|well|hold on|hang on),\s*"
+    r"(?:,\s*wait,\s*(?=not\b)|,\s*(?:no|sorry|actually|rather)(?:,\s*|\s+)|,\s*(?:oh|well|hold on|hang on),\s*"
     r"|,?\s+(?:no,? wait|wait,? no|oh,? wait|no,? sorry|sorry,? no|sorry,? i mean(?:t)?|or rather|"
     r"i mean(?:t)?|make that|scratch that|correction|no,? i mean(?:t)?|no,? make (?:that|it)|no,? not that|"
     r"on second thoughts?)(?:,\s*|\s+))"
-    r"(?:i mean(?:t)?|i said|make (?:that|it)|rather|actually|sorry|wait|no)?,?\s*"
+    r"(?:i mean(?:t)?|i said|make (?:that|it)|rather|actually|sorry|wait|no)?\b,?\s*"
 )
 """Between what was said and what was meant."""
 _CONTRAST = re.compile(
     r"^(?:i (?:said|meant|mean|want|wanted) )?not (?P<wrong>.+?)(?:,\s*(?:but\s+)?|\s+but\s+)(?:rather )?(?P<right>.+)$"
 )
-_DO_NOT = re.compile(r"^(?:do not|don't) (?P<wrong>\w+ .+?)(?:,\s*(?:but\s+)?|\s+but\s+)(?:rather )?(?P<right>.+)$")
+_DO_NOT = re.compile(r"^do not (?P<wrong>\w+ .+?)(?:,\s*(?:but\s+)?|\s+but\s+)(?:rather )?(?P<right>.+)$")
+_DO_NOT_DO = re.compile(
+    rf"^do not (?P<wrong>\w+ .+?)\s+(?P<right>(?:{'|'.join(sorted(COMMANDING))}) (?:me|us|the|a|an|my|it|to)\b.+)$"
+)
+_AFTERTHOUGHT = re.compile(
+    r"^(?P<said>.+?),?\s+(?P<meant>(?:the|a|my|to|on|in|into) [^,]+?),? (?:i mean(?:t)?|that is|i should say|to "
+    r"be precise|actually)$"
+)
+"""A correction that is marked behind itself: `the can, the green one i mean`."""
+_DISLOCATED = re.compile(
+    r"^(?P<verb>\w+(?: me)?) (?P<pronoun>it|them|that|this)\b(?P<rest>[^,]*?),\s*(?P<thing>(?:the|my|a|an|all|"
+    r"both) [^,]+)$"
+)
+_PRESENTED = re.compile(
+    r"^(?P<thing>(?:the|my|that|this|those|these|all|both|our) [^,]+?),\s*(?P<rest>(?:(?:please|just|can you|"
+    r"could you|would you)\s+)*\w+"
+    r"(?: me)? (?:it|them|that|those|one)\b.*)$"
+)
+"""A thing that is named before or after the command in which a pronoun stands for it."""
 _LATE_EXCEPT = re.compile(
     r"^(?P<all>.+) (?P<particle>away|out|back|up|down) (?P<but>(?:except|but not|but|apart from|other than) .+)$"
 )
@@ -84,7 +96,8 @@ def commands(text: str, is_place: IsPlace = lambda _: False) -> list[str]:
     whole = without_fillers(expand(normalise(text, ",;.!?")))
     if LONG_SPEECH.match(without_politeness(whole)):
         return cut_clauses(whole)
-    return [clause for part in _in_order(whole) for clause in cut_clauses(_settled(part, is_place))]
+    parts = (piece for part in _in_order(whole) for piece in with_breaks(conditional(part)).split(" . "))
+    return [clause for part in parts for clause in cut_clauses(_settled(part, is_place))]
 
 
 def _in_order(text: str) -> list[str]:
@@ -129,16 +142,45 @@ def _with_infinitive(text: str) -> str:
 def _settled(text: str, is_place: IsPlace) -> str:
     """The text without what was taken back."""
     text = _refined(_without_lead(text))
+    text = _AFTERTHOUGHT.sub(r"\g<said>, i mean \g<meant>", text) if text.count(",") else text
+    text = _with_noun(text)
+    text = _repaired(text, is_place)
     text = _EXCEPT.sub(" but ", text).replace(" but but ", " but ")
     text = _LATE_EXCEPT.sub(r"\g<all> \g<but> \g<particle>", text)
     bare = without_politeness(text)
-    if found := (_CONTRAST.match(bare) or _DO_NOT.match(bare)):
+    if found := (_CONTRAST.match(bare) or _DO_NOT_DO.match(bare) or _DO_NOT.match(bare)):
         text = _contrasted(found["wrong"], found["right"])
+    return text
+
+
+def _with_qualities(said: str, wrong: str, right: str) -> str:
+    """`the box` for `the bottle` where `the white bottle` was said is `the white box`."""
+    bare, other = ([w for w in text.split() if w not in DETERMINERS] for text in (wrong, right))
+    phrases = [said.split()[a:b] for a, b in noun_phrases(said.split())]
+    phrase = next((p for p in phrases if p[-1:] == bare and len(p) > 2), None)
+    return " ".join((*phrase[:-1], *other)) if phrase and len(other) == 1 else right
+
+
+def _with_noun(text: str) -> str:
+    """`the mug on the desk, bring it to me` and `bring it to me, the mug` as `bring the mug to me`."""
+    if found := _DISLOCATED.match(without_politeness(text)):
+        if found["verb"].split()[0] in COMMANDING:
+            return f"{found['verb']} {found['thing']}{found['rest']}"
+    elif (found := _PRESENTED.match(text)) and _verb_first(without_politeness(found["rest"])):
+        return re.sub(r"\b(?:it|them|that|those|one)\b", lambda _: found["thing"], found["rest"], count=1)
+    return text
+
+
+def _repaired(text: str, is_place: IsPlace) -> str:
+    """The text with what was said last in place of what it corrects."""
     for _ in range(3):
         found = (None, *_REPAIR.finditer(text))[-1]
         if found is None or not text[: found.start()].strip() or not text[found.end() :].strip(" ,.!?"):
             return text
-        if (repaired := replaced(text[: found.start()], text[found.end() :].strip(" ,.!?"), is_place)) is None:
+        meant = text[found.end() :].strip(" ,.!?")
+        if contrast := _CONTRAST.match(meant):
+            meant = _with_qualities(text[: found.start()], contrast["wrong"], contrast["right"])
+        if (repaired := replaced(text[: found.start()], meant, is_place)) is None:
             return text
         text = repaired
     return text
@@ -154,6 +196,7 @@ def _without_lead(text: str) -> str:
         and strange
         and not _verb_first(head)
         and not PREPOSITIONS & set(words[:1])
+        and " " in rest.strip()
         and _verb_first(without_politeness(rest))
     ):
         return rest

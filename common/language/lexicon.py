@@ -61,3 +61,7 @@ COMMANDING: frozenset[str] = frozenset(
     for option in verbs.split(" | ")
 ) - {"bin", "roll", "pop"}
 """First words that make a clause a command; without those that are rather nouns."""
+HANDLING = COMMANDING - {
+    option for verbs in (GO, SEEK, "go | wait | say | tell | check") for option in verbs.split(" | ")
+}
+"""The verbs among them of what is done to a thing."""

@@ -3,9 +3,12 @@
 import re
 from collections.abc import Iterator
 
-from common.language.normalise import DETERMINERS, Words, expand, normalise, without_fillers, without_politeness
+from common.language.clauses import without_fillers
+from common.language.contractions import expand
+from common.language.normalise import DETERMINERS, Words, normalise
 from common.language.noun_phrase import SIDES, SMALL, WHICH
 from common.language.pattern import ANY, Pattern, Slots, first_words, words_of
+from common.language.politeness import without_politeness
 from common.language.wording import QUESTIONS, Action, Kind, Wording
 from common.language.wordings import WORDINGS
 

@@ -65,7 +65,8 @@ _BUT = (
 UNSEEN = frozenset(
     {
         "dirty", "clean", "empty", "full", "used", "old", "new", "nice", "fresh", "cold", "hot", "warm", "favourite",
-        "favorite", "own", "lovely", "pretty", "good", "whole", "remaining", "same", "usual", "certain",
+        "favorite", "normal", "regular", "ordinary", "own", "lovely", "pretty", "good", "whole", "remaining", "same",
+        "usual", "certain",
     }
 )  # fmt: skip
 """Qualities that nobody can see or that tell nothing apart."""
@@ -86,6 +87,12 @@ _TAILS = (
     "you have got",
     "you have",
     "you know",
+    "of something",
+    "of any kind",
+    "of some kind",
+    "of some sort",
+    "somewhere",
+    "around here",
 )
 _CLAUSES = (
     "that is lying",
@@ -151,6 +158,8 @@ def without_tail(words: Words) -> Words:
 def without_clause(words: Words) -> Words:
     """Words without `that is` at their beginning."""
     text = " ".join(words)
+    if words[:1] == ("left",) and words[1:2] in (("on",), ("in",), ("at",)):
+        return words[1:]
     for clause in _CLAUSES:
         if text.startswith(f"{clause} "):
             return tuple(text.removeprefix(f"{clause} ").split())

@@ -24,7 +24,30 @@ ABOUT_THE_WORLD: tuple[Wording, ...] = (
         f" | {ASK} what (have | did) you [last] (see | seen | find | found | notice | noticed) (on | in | at) <spot>",
         heard="what is that (on | in) [the] <place>",
     ),
-    Wording("where", f"{ASK} (where | whereabouts) (is | are) <thing>", heard="where (is | are) <thing>"),
+    Wording("where", f"{ASK} (where | whereabouts) [exactly] (is | are) <thing>", heard="where (is | are) <thing>"),
+    Wording(
+        "where",
+        f"{ASK} (where | whereabouts) [exactly] (is | are) [it] <thing> (at | now | located | kept | lying | standing)"
+        f" | {ASK} where (it is | is it | they are) <thing> | {ASK} where did <thing> (go | end up | get to) [to]",
+        heard="",
+    ),
+    Wording(
+        "where",
+        "(what do you know | tell me [something | more | all you know] | what can you tell me) (about | of) <thing>"
+        " | describe <thing>",
+        heard="",
+    ),
+    Wording(
+        "recall",
+        "is <spot> [still] (empty | free | clear | tidy | full | clean | occupied | untidy | a mess)"
+        " | is there nothing (on | in | at) <spot>",
+        heard="",
+    ),
+    Wording(
+        "extreme",
+        f"{ASK} (what | which) (is | are) <words> | {ASK} (which | what) [one] [of] <thing> is [the] <words>",
+        heard="",
+    ),
     Wording("where", f"{ASK} where <thing> (is | are | went | has gone | have gone | might be | could be)", heard=""),
     Wording("where", f"{ASK} where (has | have) <thing> (gone | been | got to | ended up)", heard=""),
     Wording(
@@ -59,10 +82,13 @@ ABOUT_THE_WORLD: tuple[Wording, ...] = (
         heard="",
     ),
     Wording("is_at", f"{ASK} (is | are) <thing> [still] [{LYING}] (in | on | at) <spot> [still]", heard=""),
-    Wording("number", f"how many <thing> [{BE}] [there | {LYING}] (on | in | at) <spot>", heard=""),
+    Wording("number", f"how many [of] <thing> [{BE} | do you (see | know) | can you see | do we have | have we "
+                      f"got | there are]"
+        f" [there | {LYING} | left] (on | in | at) <spot>", heard=""),
     Wording(
         "number",
-        f"how many <thing> [(are there | do you (see | know | remember) | can you see | have you seen | do we have |"
+        f"how many [of] <thing> [(are there | there are | do you (see | know | remember) | can you see | have "
+        f"you seen | do we have |"
         f" {BE} (left | here | around))] [left]",
         heard="",
     ),
@@ -98,7 +124,7 @@ ABOUT_ITSELF: tuple[Wording, ...] = (
         " at the moment | currently] | what is going on | how is it going | how are you (doing | getting on)"
         " | how far (are you | have you (got | come)) | are you (done | busy | finished | ready) [yet]"
         " | what is (happening | your (task | job | mission | status)) | what is taking [you] so long | "
-        "status [report]",
+        "[status] report | status | (give me | any) [a | an] (update | news) | how are things",
         heard="what are you doing",
     ),
     Wording(
@@ -135,7 +161,11 @@ ABOUT_ITSELF: tuple[Wording, ...] = (
         " | help [me] | what are your (skills | abilities | capabilities)",
         heard="what can you do",
     ),
-    Wording("identity", "who are you | what are you | what is your name | introduce yourself", heard="who are you"),
+    Wording("identity", "who are you | what are you | [tell me] what is your name | introduce yourself | what "
+                        "(should | shall | do | can) i call you"
+        " | are you [really | actually | just] (a | an) [real] (robot | human | person | machine | man | woman | "
+        "computer | ai)"
+        " | are you (real | alive | human)", heard="who are you"),
     Wording(
         "rooms",
         "(which | what) (rooms | places) (are there | do you know | can you go to | are in <words>)"

@@ -16,6 +16,8 @@ def simplified(words: Words) -> Words:
 
     It is for a second try: `on` and `up` mean something where the sentence is understood as it stands.
     """
+    if words[-2:] == ("as", "well"):
+        words = words[:-2]
     kept: list[str] = []
     for word in reversed([w for w in words if not _is_adverb(w)]):
         if not (word in _PARTICLES and kept and kept[-1] in _AFTER_PARTICLE):

@@ -8,15 +8,16 @@ Action = Literal[
     "wait_there", "come_back", "go", "remark", "untidy", "throw_away", "put_away", "tidy", "put", "put_near",
     "put_down", "deliver", "deliver_there", "fetch", "fetch_named", "pick_up", "find", "teach", "forget",
     "look_around", "check", "go_and_see", "mention", "put_back", "put_where", "again", "thanks",
-    "recall", "wish_at",
-    "exists", "is_at", "colour", "beside", "kinds", "rooms", "doing", "done", "why", "origin", "abilities", "identity",
+    "recall", "wish_at", "named_at",
+    "exists", "is_at", "colour", "beside", "kinds", "extreme", "condition", "rooms",
+    "doing", "done", "why", "origin", "abilities", "identity",
 ]  # fmt: skip
 """What a wording asks for; `services/planner/rules.py` has a function for each that can be planned."""
-Kind = Literal["command", "reply", "name"]
+Kind = Literal["command", "reply", "name", "told"]
 QUESTIONS: frozenset[Action] = frozenset(
     {
         "seen", "contents", "holding", "whereabouts", "where", "number", "recall", "exists", "is_at", "colour",
-        "beside", "kinds",
+        "beside", "kinds", "extreme",
         "rooms", "doing", "done", "why", "origin", "abilities", "identity",
     }
 )  # fmt: skip
@@ -29,7 +30,8 @@ class Wording(NamedTuple):
     `heard` is the part of it that the speech recogniser listens for, which hears each sentence the better the fewer
     there are: None the whole pattern, "" nothing (typed only). Its slots are the parts of `speech.commands`.
     `kind`: a "command" may be joined to others by "and"; a "reply" is heard by itself only; a "name" is understood
-    where nothing else was said. `reason`: why the planner has no plan for it, as a clause.
+    where nothing else was said; what is "told" beside a command is understood where no command is. `reason`: why the
+    planner has no plan for it, as a clause.
     """
 
     action: Action

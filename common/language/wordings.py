@@ -34,15 +34,15 @@ WORDINGS: tuple[Wording, ...] = (
     Wording(
         "stop",
         "[no] (stop | halt | freeze) [it | that | now | there | right there | at once | immediately | everything]"
-        " | [no] stop ([please] stop [stop] | moving | driving | going | doing that | what (you are | you're) doing)"
-        " | hold (it | still) | (don't | do not) move | stay (there | where you are) | emergency stop",
+        " | [no] stop ([please] stop [stop] | moving | driving | going | doing that | what you are doing)"
+        " | hold (it | still) | do not move | stay (there | where you are) | emergency stop",
         heard="stop [it]", kind="reply", reason="stopping needs no plan",
     ),
     Wording(
         "cancel",
         "[no] (cancel | abort | scrap) [that | this | it | the (mission | task | job | command | plan)]"
         " | never mind | nevermind | forget [about] (it | that)"
-        " | i [have] changed my mind | (don't | do not) bother",
+        " | i [have] changed my mind | do not bother",
         heard="cancel [that] | never mind", kind="reply", reason="there is nothing to cancel",
     ),
     Wording(
@@ -61,7 +61,15 @@ WORDINGS: tuple[Wording, ...] = (
         heard="no [thanks] | nope", kind="reply", reason="I did not ask anything",
     ),
     Wording("refuse", "yes <words>", heard="", reason="I did not ask anything"),
-    Wording("refuse", "(don't | do not | never) <words>", heard="", reason="you told me not to, so I leave it"),
+    Wording("refuse", "(do not | never | not | did not) <words>", heard="", reason="you told me not to, so I leave it"),
+    Wording(
+        "condition",
+        "if there (is | are) [still | any] <thing> [left]"
+        " | if [you] (find | see | spot | notice | discover | come across | have | got) [any] <thing> [left | "
+        "there | anywhere]"
+        " | if <thing> (is | are) [still | lying | standing] (on | in | at) <spot>",
+        heard="",
+    ),
     Wording("refuse", "(if | when | unless) <words>", heard="", reason="I cannot wait for conditions"),
     Wording("refuse", "follow <words>", heard="follow me", reason="I cannot follow people"),
     Wording(
@@ -86,24 +94,17 @@ WORDINGS: tuple[Wording, ...] = (
     ),
     Wording("forget", "(forget | unlearn) [about] [the name [of] | what is] (my | our) <words>", heard=""),
     Wording("forget", "(forget | unlearn) the name [of] [the] <words>", heard=""),
-    # What is said beside a command.
-    Wording(
-        "mention",
-        "there (is | are | should be | must be) <thing> | (i | we) (left | put | saw | forgot | dropped) <thing>"
-        " | <thing> (is | are) (in | on | at) <spot> | <thing> (is | are | was | were | looks | look | has | "
-        "have) <words>",
-        heard="",
-    ),
     Wording("untidy", "<spot> (is | looks) (a mess | messy | untidy | dirty | a tip)", heard=""),
     Wording(
         "again",
-        "[do] (that | it | the same [thing]) [once] (again | more) [with <thing>] | do (that | "
-        "the same [thing])"
-        " with <thing> | [try | repeat] (that | it) (again | once more) | (try | do it) (again | once more) | retry"
-        " | repeat (that | it) [with <thing>] | once more | again | (have | give it) another (go | try)",
+        "[do] (that | it | the same [thing] | same [thing]) [once] [again | more] [but] (with | for | to) <thing>"
+        " | [do] (that | it | the same [thing] | same [thing]) [once] (again | more)"
+        " | [try | repeat] (that | it) (again | once more | one more time) | repeat (that | it) [with <thing>] | retry"
+        " | (try | do it | go) (again | once more | one more time) | (once [more] | again | one more time) [with "
+        "<thing>]"
+        " | (have | take | give it) (another | one more) (go | try | shot | attempt)",
         heard="try again | do that again",
     ),
-    Wording("remark", "(i'm | i am | we're | we are | it's | it is) <words>", heard=""),
     # The robot itself.
     Wording(
         "say",
@@ -171,7 +172,7 @@ WORDINGS: tuple[Wording, ...] = (
     Wording("fetch", f"(go | come | run) ({BRING}) [me | us] <thing>", heard=""),
     # Tidying, going.
     Wording("tidy", f"({TIDY}) up [<spot>]", heard="(tidy | clean) up [the | my] <place>"),
-    Wording("tidy", f"({TIDY}) [<spot>] [up]", heard="(tidy | clean | clear) [the | my] <place>"),
+    Wording("tidy", f"({TIDY}) <spot> [up]", heard="(tidy | clean | clear) [the | my] <place>"),
     Wording("tidy", "(clean | clear) <spot> off | empty <spot>", heard=""),
     Wording("tidy", "make (space | room) (on | in) <spot>", heard=""),
     Wording("tidy", "give <spot> a [quick | good] (tidy | clean | tidying | cleaning) [up]", heard=""),
@@ -220,14 +221,13 @@ WORDINGS: tuple[Wording, ...] = (
         " (it | they | that) (was | were | came from | had been | stood | has been | belongs | used to be) [before]"
         " | (put | take | bring | return | set | place | move | carry) <thing> [back] (where | to where) (you | i)"
         " (found | got | took | had | picked | took) (it | them | that) [up] [from]"
-        " | (put | place | set | take) <thing> back | return <thing>"
+        " | (put | place | set | take) <thing> back | return <thing> | take <thing> away"
         " | (put | take | bring | return) <thing> [back] (to its place | in its place)",
         heard="put (it | that) back [where it was]",
     ),
     Wording(
         "put_away",
-        "put <thing> (where it belongs | where they belong | in its place | to its place | "
-        "in order)", heard="",
+        "put <thing> (where it belongs | where they belong | in its place | to its place | in order)", heard="",
     ),
     Wording("put_away", "sort [out] <thing> | <thing> (needs | need) (putting | to be put) away", heard=""),
     Wording(
@@ -305,13 +305,12 @@ WORDINGS: tuple[Wording, ...] = (
     Wording("fetch", f"({FETCH} | get) <thing>", heard=""),
     Wording(
         "wish_at",
-        f"{PERSON} {WISH} <thing> [to be] {ON} <spot> | (i'd | we'd) (like | love | prefer | "
-        f"rather have) <thing> {ON} <spot>",
+        f"{PERSON} {WISH} <thing> [to be] {ON} <spot>",
         heard="",
     ),
     Wording(
         "fetch",
-        f"{PERSON} {WISH} <thing> [[over] here] | (i'd | we'd) (like | love | prefer | rather have) <thing>",
+        f"{PERSON} {WISH} <thing> [[over] here]",
         heard="",
     ),
     Wording("fetch", f"{MODAL} (i | we) (have | get) <thing> | let (me | us) have <thing>", heard=""),
@@ -324,7 +323,17 @@ WORDINGS: tuple[Wording, ...] = (
         reason="I cannot open or close doors, drawers or lids",
     ),
     Wording("refuse", "(turn | switch) (on | off) <words>", heard="", reason="I cannot switch things on or off"),
+    # What is said beside a command.
+    Wording(
+        "mention",
+        "there (is | are | should be | must be) <thing> | (i | we) (left | put | saw | forgot | dropped) <thing>"
+        " | <thing> (is | are) (in | on | at) <spot> | <thing> (is | are | was | were | looks | look | has | "
+        "have) <words>",
+        heard="", kind="told",
+    ),
+    Wording("remark", "(i am | we are | it is) <words>", heard="", kind="told"),
     # Names alone.
+    Wording("named_at", "<thing> (in | on | into | onto) <spot>", heard="", kind="name"),
     Wording("fetch", "[no] i (said | meant) <thing> | no <thing>", heard="no [i said] <thing>", kind="name"),
     Wording("fetch_named", "<thing>", heard="<thing> | the (<colour> | <ordinal> | left | right) one", kind="name"),
 )  # fmt: skip

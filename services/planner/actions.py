@@ -94,6 +94,14 @@ def wish_at(builder: PlanBuilder, slots: Slots) -> None:
     put(builder, slots)
 
 
+def named_at(builder: PlanBuilder, slots: Slots) -> None:
+    """`ball in toy box`: without an article it says what is to be where; `the ball in the toy box` is which ball."""
+    if slots["thing"][0] in DETERMINERS:
+        fetch_named(builder, {"thing": (*slots["thing"], "on", *slots["spot"])})
+        return
+    wish_at(builder, slots)
+
+
 def pick_up(builder: PlanBuilder, slots: Slots) -> None:
     everything = referents(builder, slots["thing"], prefer_held=True)
     meant = everything[0]

@@ -2,11 +2,11 @@
 
 from common.floor_plan import Receptacle
 from common.language.normalise import Words, enumeration, without_determiners
-from common.language.noun_phrase import related
+from common.language.noun_phrase import PLURAL_PRONOUNS, PRONOUNS, WHICH, related
 from common.language.pattern import Slots
 from common.messages import AROUND, PlanStep
 from services.planner.phrases import Phrase, read
-from services.planner.plan_builder import PlanBuilder, Refusal
+from services.planner.plan_builder import NOT_UNDERSTOOD, PlanBuilder, Refusal
 from services.planner.relations import between, holds, spoken
 from services.planner.resolve import Referent, fitting, referent, referents, spot, unknown
 from services.planner.vocabulary import Spot
@@ -35,7 +35,7 @@ def seen(builder: PlanBuilder, slots: Slots) -> None:
 def recall(builder: PlanBuilder, slots: Slots) -> None:
     """What was seen on a surface or in a room; a look is taken only when nothing was."""
     _not_after_moving(builder)
-    place, there, look = _things_at(builder, slots["spot"])
+    place, there, look = things_at(builder, slots["spot"])
     if not there:
         builder.look_at(look)
         builder.look_first(look, f"I have seen nothing there so far, so I would have to go to the {place.name} first")
@@ -45,14 +45,14 @@ def recall(builder: PlanBuilder, slots: Slots) -> None:
 def contents(builder: PlanBuilder, slots: Slots) -> None:
     """All that is on a surface or in a room, which is looked at first."""
     _not_after_moving(builder)
-    place, there, look = _things_at(builder, slots["spot"])
+    place, there, look = things_at(builder, slots["spot"])
     builder.look_at(look)
     if not there:
         builder.look_first(look, f"I have seen nothing there so far, so I would have to go to the {place.name} first")
     builder.say(_told(there, place))
 
 
-def _things_at(builder: PlanBuilder, words: Words) -> tuple[Spot, list[BelievedObject], list[Receptacle]]:
+def things_at(builder: PlanBuilder, words: Words) -> tuple[Spot, list[BelievedObject], list[Receptacle]]:
     """The place that is meant, what was seen there, and the surfaces to look at for more."""
     place = spot(builder, words)
     if place.receptacle is not None:
@@ -85,7 +85,8 @@ def whereabouts(builder: PlanBuilder, slots: Slots) -> None:
 def where(builder: PlanBuilder, slots: Slots) -> None:
     """Where something is; what nobody has seen is looked for."""
     phrase = read(slots["thing"], builder.vocabulary)
-    for meant in _all_meant(builder, slots) if isinstance(phrase, Phrase) else ():
+    named = isinstance(phrase, Phrase) or " ".join(slots["thing"]) in PRONOUNS | PLURAL_PRONOUNS
+    for meant in _all_meant(builder, slots) if named else ():
         item = meant.object
         if item.held:
             builder.say(f"The {item.label} is in my hand.")
@@ -96,7 +97,7 @@ def where(builder: PlanBuilder, slots: Slots) -> None:
             builder.find(item, meant.words)
             builder.say(f"I have found the {item.label}.")
         builder.last = [item]
-    if not isinstance(phrase, Phrase):
+    if not named and isinstance(phrase, str):
         if builder.vocabulary.spot(slots["thing"]):
             _place(builder, slots)
             return
@@ -151,6 +152,18 @@ def colour(builder: PlanBuilder, slots: Slots) -> None:
         builder.last = [item]
 
 
+def extreme(builder: PlanBuilder, slots: Slots) -> None:
+    """Which of several is the biggest, the nearest or the leftmost."""
+    _not_after_moving(builder)
+    words = without_determiners(slots["words"])
+    if not words or words[0] not in WHICH or ("thing" in slots and len(words) > 1):
+        raise Refusal(f"{NOT_UNDERSTOOD} {' '.join(slots['words'])!r}")
+    noun = without_determiners(slots["thing"]) if "thing" in slots else ()
+    meant = referent(builder, ("the", *words, *noun)).object
+    builder.say(f"The {meant.label} is. It is {place_of(builder, meant)}.")
+    builder.last = [meant]
+
+
 def beside(builder: PlanBuilder, slots: Slots) -> None:
     """What stands next to, left of or behind something."""
     _not_after_moving(builder)
@@ -181,7 +194,7 @@ def check(builder: PlanBuilder, slots: Slots) -> None:
     if not spots:
         where(builder, slots)
         return
-    place, known, surfaces = _things_at(builder, phrase.anchor)
+    place, known, surfaces = things_at(builder, phrase.anchor)
     builder.look_at(surfaces)
     fits = fitting(builder, phrase)
     there = [t for t in known if fits(t)]
@@ -212,7 +225,7 @@ def go_and_see(builder: PlanBuilder, slots: Slots) -> None:
         if not place.room:
             seen(builder, slots)
             return
-        _, there, _ = _things_at(builder, slots["spot"])
+        _, there, _ = things_at(builder, slots["spot"])
         builder.say(_told(there, place) if there else f"I see nothing that I know in the {place.name}.")
         return
     contents(builder, slots)

@@ -3,18 +3,18 @@
 from collections.abc import Sequence
 from contextlib import suppress
 
+from common.language.breaks import is_statement
 from common.language.discourse import commands
-from common.language.meaning import VERBS, WORDS
-from common.language.normalise import DETERMINERS, Words, infinitive, normalise, without_politeness
-from common.language.noun_phrase import PLURAL_PRONOUNS, PRONOUNS
-from common.language.simplify import simplified
+from common.language.meaning import WORDS
+from common.language.normalise import Words, normalise
 from common.messages import ActionPlan, PlanStep, RejectedPlan
 from services.planner import answers
 from services.planner.choice_points import ChoicePoints, every
+from services.planner.clause import read_clause
 from services.planner.config import PlannerConfig
+from services.planner.named import note
 from services.planner.plan_builder import NOT_UNDERSTOOD, LookFirst, PlanBuilder, Refusal, same
 from services.planner.repetition import repeated
-from services.planner.rules import apply_first
 from services.planner.spelling import corrected
 from services.planner.vocabulary import Vocabulary
 from services.planner.world import World
@@ -24,9 +24,6 @@ MAX_CHARACTERS = 2000
 """Longest text that is read (chosen: a minute of speech has a thousand characters)."""
 MAX_WORDS = 60
 """Longest clause (chosen: the readings of a pattern grow with the square of its words)."""
-MAX_EFFORT = 120
-"""Most clauses tried for one text (chosen: bounds the time for long lists)."""
-_THING_STARTS = DETERMINERS | PRONOUNS | PLURAL_PRONOUNS | {"all", "every", "two", "three"}
 
 
 class Suggestion(Refusal):
@@ -35,14 +32,6 @@ class Suggestion(Refusal):
     def __init__(self, reason: str, meant: str) -> None:
         super().__init__(reason)
         self.meant = meant
-
-
-class _Failure(Exception):
-    """`at`: how many words were understood before it."""
-
-    def __init__(self, at: int, reason: str) -> None:
-        super().__init__(reason)
-        self.at, self.reason = at, reason
 
 
 def plan(
@@ -173,79 +162,26 @@ def _steps(command: str, builder: PlanBuilder) -> list[PlanStep]:
         raise Refusal("that is too long a sentence for me")
     for number, sentence in enumerate(sentences):
         words = tuple(sentence.split())
-        _whole(words, builder, alone=len(sentences) == 1, started=number > 0)
+        if words[0] == "otherwise":
+            if not builder.unmet:
+                break
+            builder.unmet, words = "", words[1:]
+        if builder.unmet or not words:
+            continue
+        try:
+            read_clause(words, builder, alone=len(sentences) == 1, started=number > 0)
+        except Refusal:
+            if number + 1 == len(sentences) or not is_statement(sentence):
+                raise
+            note(words, builder)
+    if builder.unmet:
+        builder.say(builder.unmet)
     if builder.collecting:
         raise Refusal("I can hold only one thing at a time")
     if not builder.steps and builder.need:
-        _whole(("bring", "me", *builder.need.split()), builder, alone=True, started=False)
+        read_clause(("bring", "me", *builder.need.split()), builder, alone=True, started=False)
     if not builder.steps:
         raise Refusal(f"{NOT_UNDERSTOOD} what I should do")
     if all(step.action == "find" for step in builder.steps):
         answers.found(builder)
     return builder.steps
-
-
-def _whole(words: Words, builder: PlanBuilder, alone: bool, started: bool) -> None:
-    """One part of the sentence: one command, or several joined by "and"."""
-    try:
-        _joined(words, builder, "" if not started else "bring", 0, alone)
-    except _Failure as failure:
-        raise Refusal(failure.reason) from None
-
-
-def _joined(words: Words, builder: PlanBuilder, verb: str, at: int, alone: bool) -> None:
-    """Carry out `words` as the longest command that works, followed by the rest; changes `builder` only on success."""
-    cuts = [len(words), *(i for i in range(len(words) - 1, 0, -1) if words[i] == "and")]
-    worst: _Failure | None = None
-    for cut in cuts:
-        head, rest = words[:cut], words[cut + 1 :]
-        trial = builder.fork()
-        try:
-            _command(head, trial, verb, at, alone and not rest)
-            if rest:
-                _joined(rest, trial, head[0], at + cut, False)
-        except _Failure as failure:
-            worst = failure if worst is None or failure.at >= worst.at else worst
-            continue
-        builder.adopt(trial)
-        return
-    assert worst is not None
-    raise worst
-
-
-def _command(words: Words, builder: PlanBuilder, verb: str, at: int, alone: bool) -> None:
-    """The first form that fits the words and can be done; else the reason of the first that fits."""
-    if not words:
-        raise _Failure(at, "I did not hear a command")
-    words = tuple(without_politeness(" ".join(words)).split()) or words
-    builder.effort[0] += 1
-    if builder.effort[0] > MAX_EFFORT:
-        raise Refusal("that is too long a sentence for me")
-    words = (infinitive(words[0], VERBS), *words[1:])
-    reason = _apply(words, builder, verb, alone)
-    if (
-        reason is not None
-        and (simple := simplified(words)) not in ((), words)
-        and _apply(simple, builder, verb, alone) is None
-    ):
-        return
-    if reason is None:
-        return
-    said = " ".join(words)
-    raise _Failure(at if reason else at - 1, reason or f"{NOT_UNDERSTOOD} {said!r}")
-
-
-def _apply(words: Words, builder: PlanBuilder, verb: str, alone: bool) -> str | None:
-    """As `apply_first`, for a clause that may be a name alone or lack the `verb` of the one before it."""
-    reason = apply_first(words, builder, "command", "reply")
-    if reason == "" and alone:
-        return apply_first(words, builder, "name")
-    if reason == "" and verb and _is_thing(words, builder):
-        # "put the mug on the table and the can on the counter": the verb is said once.
-        return apply_first((verb, *words), builder, "command", "reply")
-    return reason
-
-
-def _is_thing(words: Words, builder: PlanBuilder) -> bool:
-    """Do the words begin like a thing's name?"""
-    return words[0] in _THING_STARTS or any(builder.vocabulary.noun(w) for w in words[:3])

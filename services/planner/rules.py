@@ -6,7 +6,7 @@ from common.language.meaning import readings
 from common.language.normalise import Words
 from common.language.pattern import Slots
 from common.language.wording import Action, Kind
-from services.planner import about_itself, actions, answers, teaching, tidying
+from services.planner import about_itself, actions, answers, conditions, teaching, tidying
 from services.planner.plan_builder import PlanBuilder, Refusal
 
 ACTIONS: dict[Action, Callable[[PlanBuilder, Slots], None]] = {
@@ -43,6 +43,7 @@ ACTIONS: dict[Action, Callable[[PlanBuilder, Slots], None]] = {
     "put_back": actions.put_back,
     "put_where": actions.put_near,
     "wish_at": actions.wish_at,
+    "named_at": actions.named_at,
     "again": actions.again,
     "look_around": answers.look_around,
     "go_and_see": answers.go_and_see,
@@ -53,6 +54,8 @@ ACTIONS: dict[Action, Callable[[PlanBuilder, Slots], None]] = {
     "colour": answers.colour,
     "beside": answers.beside,
     "kinds": answers.number,
+    "extreme": answers.extreme,
+    "condition": conditions.condition,
     "doing": about_itself.doing,
     "done": about_itself.done,
     "why": about_itself.why,

@@ -9,7 +9,7 @@ from common.floor_plan import Receptacle
 from common.household import Household
 from common.language.lexicon import COMMANDING
 from common.language.normalise import DETERMINERS, Words, enumeration, normalise, without_determiners
-from common.language.noun_phrase import WHICH
+from common.language.noun_phrase import UNSEEN, WHICH
 from services.planner.config import PlannerConfig
 from services.planner.world import World
 
@@ -171,6 +171,13 @@ class Vocabulary:
             where = self._places.get(" ".join(without_determiners(tuple(tail.split())))) if found else None
             if where is not None and where.room:
                 return self.spot(tuple(head.split()), where.name)
+        for preposition in ("on", "at", "by"):
+            head, found, tail = phrase.partition(f" {preposition} ")
+            inside = self._places.get(" ".join(without_determiners(tuple(head.split())))) if found else None
+            if inside is not None and inside.room:  # in the bedroom on the dresser
+                return self.spot(tuple(tail.split()), inside.name)
+        if words and without_determiners(words)[0] in UNSEEN and len(phrase.split()) > 1:
+            return self.spot(without_determiners(words)[1:], room)
         if not room and (place := self._places.get(phrase)):
             return [place]
         named = [r for r in self._household.receptacles if phrase in map(normalise, (r.name, *r.aliases))]

@@ -4,8 +4,8 @@ from typing import get_args
 
 import pytest
 
+from common.language.clauses import clauses
 from common.language.meaning import asks_for, heard_parts, readings
-from common.language.normalise import clauses
 from common.language.pattern import ANY, Node, Sequence, Slot, Word, first_words, parse
 from common.language.simplify import simplified
 from common.language.wording import Action, Wording

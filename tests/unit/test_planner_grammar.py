@@ -283,7 +283,7 @@ REFUSED = {
     "empty the bin": "I cannot empty the bin",
     "don't bring me the red mug": "you told me not to",
     "please do not touch the apple": "you told me not to",
-    "if you see a mug bring it to me": "I cannot wait for conditions",
+    "when the bell rings bring me the mug": "I cannot wait for conditions",
     "swap the red mug and the blue mug": "I do not understand",
     "bring the apple to the red can": "the red can is no place",
     "what is on the bookshelf": "I have seen nothing there so far",

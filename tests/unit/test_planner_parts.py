@@ -3,7 +3,8 @@
 import pytest
 
 from common.household import load_household
-from common.language.normalise import clauses, infinitive
+from common.language.clauses import clauses
+from common.language.normalise import infinitive
 from common.language.pattern import Pattern, PatternError
 from common.messages import KnownWorld, PlanStep
 from services.planner.choice_points import MAX_RUNS, ChoicePoints, every

@@ -5,11 +5,12 @@ from collections.abc import Sequence
 from typing import Literal
 
 from common.household import Household
-from common.language.discourse import PREPOSITIONS, commands, replaced
+from common.language.discourse import PREPOSITIONS, commands, noun_phrases, replaced
 from common.language.lexicon import COMMANDING
 from common.language.meaning import asks_for
-from common.language.normalise import DETERMINERS, Words, infinitive, normalise, without_determiners, without_politeness
+from common.language.normalise import DETERMINERS, Words, infinitive, normalise, without_determiners
 from common.language.noun_phrase import related
+from common.language.politeness import without_politeness
 from common.messages import WorldObject
 from common.plan_rules import is_destination
 
@@ -33,7 +34,7 @@ def reply(text: str) -> tuple[Reply, str]:
             return "cancel", ""
     while (shorter := _CORRECTION.sub("", rest)) != rest:
         rest = shorter
-    return "correction", _SAID.sub("", rest)
+    return "correction", without_politeness(_SAID.sub("", rest)) or rest
 
 
 def corrected(command: str, correction: str, household: Household) -> str:
@@ -46,9 +47,19 @@ def corrected(command: str, correction: str, household: Household) -> str:
         return commands(correction)[0] if commands(correction) else correction
     thing = correction if correction.split()[:1] and correction.split()[0] in DETERMINERS else f"the {correction}"
     if _is_command(correction):
-        return correction
+        return _with_object(correction, command)
     exchanged = replaced(normalise(command), correction if correction.split()[0] in PREPOSITIONS else thing, is_place)
     return exchanged or correction
+
+
+def _with_object(correction: str, command: str) -> str:
+    """`put it on the counter` after a question about `put the apple on the desk` speaks of the apple."""
+    words = normalise(command).split()
+    spans = noun_phrases(words)
+    if not spans:
+        return correction
+    thing = " ".join(words[spans[0][0] : spans[0][1]])
+    return re.sub(r"(?<=\w )(?:it|them)\b", thing, correction, count=1)
 
 
 def _is_command(text: str) -> bool:

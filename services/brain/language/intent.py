@@ -7,18 +7,18 @@ import msgspec
 
 from common.floor_plan import Thing
 from common.household import Household
+from common.language.clauses import without_fillers
+from common.language.contractions import expand
 from common.language.meaning import VERBS, asks_for, readings
 from common.language.normalise import (
     Words,
     enumeration,
-    expand,
     infinitive,
     normalise,
     without_determiners,
-    without_fillers,
-    without_politeness,
 )
 from common.language.noun_phrase import WHICH, related
+from common.language.politeness import without_politeness
 from common.language.wording import Action
 
 Kind = Literal["fetch", "return", "stop", "cancel", "none"]

@@ -5,8 +5,10 @@ from typing import Literal
 
 import msgspec
 
+from common.language.clauses import without_fillers
+from common.language.contractions import expand
 from common.language.meaning import asks_for, is_question
-from common.language.normalise import expand, normalise, without_fillers
+from common.language.normalise import normalise
 
 Kind = Literal["stop", "cancel", "come_back", "queue", "replace", "aside"]
 _LATER = re.compile(

@@ -1,0 +1,119 @@
+"""Where a request begins in a sentence that says something else first: `my feet hurt so could you get the mug`. Pure.
+
+Recognised speech has no punctuation and people tell why before they ask. What is told is no command; it can name what
+"it" means in the request. A sentence that reports, forbids, supposes or asks is left in one piece, so that nothing of
+it is taken for a request.
+"""
+
+import re
+
+from common.language.lexicon import COMMANDING
+from common.language.normalise import DETERMINERS
+from common.language.politeness import without_politeness
+
+_STRONG = re.compile(
+    r"(?:,\s*|\s+)(?:(?:and|so|but|then|right|ok|okay|just|well|now|hence|therefore),?\s+)*"
+    r"(?=(?:can|could|would|will) you\s+(?!see\b|know\b|believe\b|imagine\b)|please\s+\w|"
+    r"(?:i|we) (?:want|need|would like) you to\s|do me a favou?r)"
+)
+"""Before words that can only begin a request."""
+_WEAK = re.compile(
+    r",\s*(?:(?:and|so|but|then|right|ok|okay|just|well|now|hence|therefore),?\s+)*|\s+so (?:just |now |then )?"
+)
+"""Before what is a request if it begins with a verb."""
+_SUBJECTS = frozenset(
+    {
+        "i", "we", "he", "she", "they", "it", "there", "someone", "somebody", "everyone", "everybody", "this", "that",
+        "these", "those", "you", "guests", "dinner", "lunch",
+    }
+)  # fmt: skip
+"""Words with which somebody begins to tell something, beside articles."""
+_NO_STATEMENT = re.compile(
+    r"^(?:if|unless|when|whenever|in case|should|suppose|supposing|imagine|pretend|assume|what|who|why|where|how|"
+    r"which|whose|"
+    r"do|does|did|is|are|was|were|has|have you|can|could|would|will|not|never|no|nobody|under no)\b"
+)
+"""How sentences begin whose second half is not to be carried out by itself."""
+_UNFINISHED = re.compile(
+    r"\b(?:said|says|say|told|tells|tell|asked|asks|ask|to|that|if|whether|not|never|like|was|were|is|are|and|or|"
+    r"me|us|them|"
+    r"him|her|you|why|when|how|would|could|should|must|the|a|an|my|your|of|in|on|for|with|please)$"
+)
+"""How words end that go on in what follows: `he said`, `she asked me to`."""
+_FORBIDS = re.compile(
+    r"\b(?:you|nobody|no one|never|always) (?:must|should|may|can|do|will|would|could|did)? ?(?:not|never)\b"
+)
+_VERBS = COMMANDING | {"make", "let", "show", "help", "look", "arrange", "keep", "open", "clean"}
+"""First words of a request."""
+LONGEST = 3
+"""Breaks of one sentence (chosen)."""
+
+
+def with_breaks(text: str) -> str:
+    """The text with a full stop between what is told and what is asked for."""
+    for _ in range(LONGEST):
+        at = _break(text)
+        if at is None:
+            return text
+        text = f"{text[: at[0]].rstrip(' ,')} . {text[at[1] :]}"
+    return text
+
+
+_CONDITION = re.compile(
+    r"^(?:and |but |then )?(?:if|in case|provided(?: that)?|as long as|assuming|when)\s+(?P<rest>(?:there (?:is|"
+    r"are)|you (?:find|see|spot|notice|"
+    r"discover|come across)|(?:the|my|our|any|a|an) .+? (?:is|are))\s.+)$"
+)
+_INVERTED = re.compile(r"^(?:and |but )?should (?:there be|(?P<you>you)(?= (?:find|see|spot|notice|come)))")
+_AT_END = re.compile(
+    r"^(?P<command>.+?),? (?:but )?(?:only )?(?:if|in case) (?P<condition>(?:there (?:is|are)|(?:the|my) .+ "
+    r"(?:is|are)) .+)$"
+)
+_ELSE = re.compile(
+    r"(?:,| and| or| but|;|\.)+\s*(?:otherwise|if (?:not|there (?:is|are) (?:none|not any|no))|or else|else),?\s+"
+)
+_BEGINS = frozenset({"the", "a", "an", "my", "our", "me", "us", "it", "them", "to", "one", "all", "that", "those"})
+
+
+def conditional(text: str) -> str:
+    """`if there is a mug on the desk bring it` and the same in the other order as `if ... . bring it`."""
+    text = _INVERTED.sub(lambda found: "if you" if found["you"] else "if there is", text)
+    bare = without_politeness(text)
+    if found := _CONDITION.match(bare):
+        rest = _ELSE.sub(" . otherwise ", found["rest"])
+        for comma in re.finditer(r",\s*(?:then\s+)?|\s+then\s+", rest):
+            if without_politeness(rest[comma.end() :]).split(" ")[0] in _VERBS:
+                return f"if {rest[: comma.start()]} . {rest[comma.end() :]}"
+        words = rest.split()
+        for at in range(3, len(words) - 1):
+            if words[at] in _VERBS and words[at + 1] in _BEGINS:
+                return f"if {' '.join(words[:at])} . {' '.join(words[at:])}"
+    elif (found := _AT_END.match(bare)) and bare.split()[0] in _VERBS:
+        return f"if {found['condition']} . {found['command']}"
+    return text
+
+
+def _break(text: str) -> tuple[int, int] | None:
+    begin = max((text.rfind(mark) for mark in ".;!?"), default=-1) + 1
+    for pattern in (_STRONG, _WEAK):
+        for found in pattern.finditer(text, begin):
+            head, tail = text[begin : found.start()].strip(" ,"), text[found.end() :]
+            if is_statement(head) and _asks(tail, pattern is _STRONG):
+                return found.start(), found.end()
+    return None
+
+
+def is_statement(text: str) -> bool:
+    """Does a text tell something, complete in itself, and neither ask for nor forbid anything?"""
+    bare = without_politeness(text)
+    words = bare.replace(",", " ").split()
+    if len(words) < 2 or _NO_STATEMENT.match(bare) or _UNFINISHED.search(bare) or _FORBIDS.search(bare):
+        return False
+    return words[0] in _SUBJECTS or (words[0] in DETERMINERS and len(words) > 2)
+
+
+def _asks(text: str, strong: bool) -> bool:
+    bare = without_politeness(text.split(".")[0]).replace(",", " ").split()
+    if not bare:
+        return False
+    return len(bare) > 1 and (strong or bare[0] in _VERBS)

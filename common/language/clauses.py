@@ -1,0 +1,47 @@
+"""A text cut into clauses, without the sounds of hesitation and the politeness around each. Pure."""
+
+import re
+
+from common.language.contractions import expand
+from common.language.lexicon import COMMANDING
+from common.language.normalise import normalise
+from common.language.politeness import LONG_SPEECH, without_lead, without_politeness
+
+_FILLER = re.compile(
+    r"\s*\b(?:u+m+|u+h+|e+r+m*|h+m+|a+h+|o+h+)\b,?|,\s*(?:like|you know)\s*,"
+    rf"|\b(?:you know|like),?(?= (?:{'|'.join(sorted(COMMANDING))})\b)"
+)
+"""Sounds of somebody who thinks while speaking."""
+_STUTTER = re.compile(r"\b(the|a|an|to|my|me|i|in|on|and|of|is|you|it|that|can|could|bring|put|get|go)(?:,? \1\b)+")
+"""Words that somebody who hesitates says twice."""
+_PART = re.compile(r"\s*[;.!?]+\s*(?:and\s+)?(?:then\s+)?|,?\s+(?:and\s+)?(?:then|after that|afterwards),?\s+")
+_COMMA = re.compile(r"\s*,[\s,]*(?:and\s+)?")
+
+
+def without_fillers(text: str) -> str:
+    """Normalised text without `um`, `er` and words said twice; what is to be said stays as it is."""
+    if LONG_SPEECH.match(without_lead(text)):
+        return text
+    return _STUTTER.sub(r"\1", _FILLER.sub("", text)).strip(" ,")
+
+
+def clauses(text: str) -> list[str]:
+    """The clauses of a text one after the other, each without its politeness; what follows "say" is kept whole."""
+    return cut_clauses(without_fillers(expand(normalise(text, ",;.!?"))))
+
+
+def cut_clauses(rest: str) -> list[str]:
+    """The same of normalised text with its marks."""
+    found: list[str] = []
+    while rest:
+        saying = LONG_SPEECH.match(without_lead(rest))
+        cut = None if saying else _PART.search(rest)
+        head, rest = (rest, "") if cut is None else (rest[: cut.start()], rest[cut.end() :])
+        if bare := without_politeness(head if saying else _commas_as_and(head)):
+            found.append(bare)
+    return found
+
+
+def _commas_as_and(text: str) -> str:
+    """A comma is an "and": `the mug, the can and the ball`; but `no, the red mug` is one answer."""
+    return re.sub(r"^no and ", "no ", _COMMA.sub(" and ", text.strip(" ,")))

@@ -1,0 +1,102 @@
+"""Constructions that say the same as a wording in another way, as pairs of a pattern and what it comes to.
+
+A pair is of a construction and not of single words: clefts, wishes of whomever, a quality that a place is to have, a
+verb that is left out. `common/language/word_order.py` applies them.
+"""
+
+import re
+
+TO_PLACE = "(?:on top of|on|onto|in|into|inside|to|at)"
+_BESIDE = "(?:next to|close to|beside|near|right by|by)"
+MODAL = "(?:should|must|has to|have to|needs to|need to|ought to|can|could|is to|are to|shall|may|might|will)"
+NP = r"((?:\w|')+(?: (?:\w|')+){0,11}?)"
+_WHO = r"(?:i|we|(?:(?:my|our|the|your) )?[a-z]+(?: [a-z]+)?)"
+_WANT = (
+    "(?:want|wants|need|needs|require|requires|wish for|wishes for|crave|craves|desire|will need|will have|will take|"
+    "am going to need|are going to need|would need|would like|would love|would prefer|would rather have|am "
+    "needing|am wanting|"
+    "are needing|is asking for|is waiting for|is missing|am craving|am in need of|am after|am dying for|am longing for|"
+    "am in the mood for|are after|is after|fancy|fancies|could use|could do with|would not mind|would appreciate|"
+    "would kill for)"
+)
+_CONSUME = "(?:have|get|eat|drink|play with|use|read|hold|see|look at|borrow|taste|try|take)"
+_OBJECTIVE = "(?:it|them|that|this|those|these|that one|this one|him|her)"
+CONSTRUCTIONS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
+    (re.compile(f"^{pattern}$"), result)
+    for pattern, result in (
+        # Clefts.
+        (rf"(?:all|what|the only thing|the thing|the one|everything)(?: that)? {_WHO}(?: really| just| "
+         rf"actually)? {_WANT}"
+         rf"(?: right)? is {NP}", r"bring me \1"),
+        (rf"it is {NP}(?: that| which)? (?:i|we)(?: really)? (?:{_WANT}|meant|mean)", r"bring me \1"),
+        (rf"{NP} is (?:what|the one|all)(?: that)? (?:i|we)(?: really)? (?:{_WANT}|meant|mean)", r"bring me \1"),
+        (rf"the (\w+)(?: that| which)? (?:i|we)(?: really)? (?:{_WANT}|meant|mean) is the "
+         rf"(.+) one", r"bring me the \2 \1"),
+        (rf"the (\w+)(?: that| which)? (?:i|we)(?: really)? (?:{_WANT}|meant|mean) is (?!the .+ "
+         rf"one$){NP}", r"bring me \2"),
+        # Wishes, of whomever.
+        (rf"{_WHO}(?: really| also| just| now| only| kind of| do)? {_WANT} to {_CONSUME} {NP}", r"i want \1"),
+        (rf"{_WHO}(?: really| also| just| now| only| kind of| do)? {_WANT} {NP} (?:back )?(?:here|over "
+         rf"here|over)", r"bring me \1"),
+        (rf"{_WHO}(?: really| also| just| now| only| kind of| do)? {_WANT} {NP}", r"i want \1"),
+        (rf"(?:could|can|may|might) (?:i|we|somebody|someone)(?: please)? (?:have|get|borrow|"
+         rf"use) {NP}", r"bring me \1"),
+        (rf"(?:i|we) (?:feel like|am in the mood for|could go for) (?:having |eating |drinking |a bit "
+         rf"of )?{NP}", r"bring me \1"),
+        (rf"(?:i|we) (?:am|are|was|were) looking for {NP}", r"find \1"),
+        # Coming with something is bringing it.
+        (rf"(?:come|return|be)(?: back| here| over| to me| over here| back here)* with {NP}", r"bring me \1"),
+        (rf"(?:go|drive|walk|run|head|come) (?:over |back )?(?:to|into) {NP} with {NP}", r"take \2 to \1"),
+        (rf"(?:bring|take) along {NP}", r"bring me \1"),
+        # Two places, one of them beside something.
+        (rf"(put|place|set|move|lay|drop|leave|stick|pop) (?:down )?{NP}(?: down)? (?:on|in|at|onto) {NP} "
+         rf"(?:right )?{_BESIDE} {NP}",
+         r"\1 \2 next to \4 on \3"),
+        (rf"(put|place|set|move|lay|drop|leave|stick|pop) {NP} (?:back )?there (on|in|at|onto|"
+         rf"into) {NP}", r"\1 \2 \3 \4"),
+        (rf"(get|take|remove|move) {NP} (?:off|from|out of) {NP} and {TO_PLACE} {NP}", r"put \2 on \3 in \4"),
+        # What there is of a kind.
+        (r"(\w+)(?: me)? (?:whatever|what|anything that|all that|all the stuff that|the stuff that) (?:is|lies|"
+         r"stands) (.+)", r"\1 everything \2"),
+        (rf"(.+? )(?:whatever|whichever|any|what) {NP} (?:that )?you (?:can |could )?(?:find|see|spot|"
+         rf"get)(?: (.+))?", r"\1a \2 \3"),
+        # A quality that a place or a thing is to have.
+        (rf"(?:make|get|have|keep) {NP} (?:look |be |all )?(?:very |really |a bit )?(?:nice and |neat and )?"
+         r"(?:clean|tidy|clear|neat|nice|presentable|spotless|ready)(?: again)?(?: for .+)?", r"tidy \1"),
+        (rf"(?:do|sort|sort out|deal with|take care of) the mess (?:on|in|at) {NP}", r"tidy \1"),
+        (rf"(?:make sure|see to it|ensure|make certain)(?: that)? there (?:is|are) (?:no|not any) {NP} (?:left "
+         rf")?on {NP}",
+         r"put away all \1 on \2"),
+        (rf"(?:make sure|see to it|ensure|make certain)(?: that)? there (?:is|are) (?:nothing|not anything)(?: "
+         rf"left)? on {NP}", r"tidy \1"),
+        (rf"(?:nothing|no things) (?:should|must|may|can|is to)(?: be left| be| stay| remain| stand| "
+         rf"lie) on {NP}", r"tidy \1"),
+    )
+)  # fmt: skip
+VERBLESS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
+    (re.compile(f"^{pattern}$"), result)
+    for pattern, result in (
+        (rf"(?:back |off |straight )*(?:to|into) {NP}(?: with you)?", r"go to \1"),
+        (rf"{NP} (?:now|go|and go)", r"go to \1"),
+        (rf"{NP}(?: to me| to us| over here| here| here now| over)", r"bring me \1"),
+        (rf"{NP} (?:back )?(to|into|onto) {NP}", r"put \1 \2 \3"),
+        (rf"{NP} and {NP}", r"take \1 to \2"),
+        (rf"into {NP} with {NP}|in {NP} with {NP}", r"put \2\4 in \1\3"),
+    )
+)  # fmt: skip
+"""Where the verb is missing."""
+PASSIVE = tuple(
+    re.compile(f"^{pattern}$")
+    for pattern in (
+        rf"(?:have|get) {NP} (?:to be |be )?(\w+(?:ed|en|t|d|n))( .+)?",
+        rf"(?:i|we) (?:want|need|would like|would love|expect|wish)(?: to see| to have| to get)? {NP} (?:to be |"
+        rf"be )?(\w+)( .+)?",
+        rf"(?:make sure|see to it|ensure|make certain|arrange|see)(?: that| for)? {NP} (?:is|are|gets|get|to be|"
+        rf"be|will be|ends up|end up)(?: being)?"
+        r" (\w+)( .+)?",
+        rf"{NP} {MODAL}(?: now| also| really| please)? be (\w+)( .+)?",
+        rf"(?:can|could|should|would|will|may|must){NP.replace('(', '( ', 1)}(?: please| perhaps)? be (\w+)( .+)?",
+        rf"{NP} (?:needs?|wants?|requires?|could do with|is due for)(?: some| a| to be| a good| a bit of)* "
+        rf"(\w+)( .+)?",
+    )
+)

@@ -1,0 +1,54 @@
+"""Short forms written out: `what's` as `what is`, `wanna` as `want to`, `dont` as `do not`. Pure.
+
+Recognised speech and hurried typing leave the apostrophes out, so both spellings mean the same here.
+"""
+
+import re
+
+_OF_PEOPLE = "i|you|we|they|he|she|it|who"
+_CONTRACTIONS = tuple(
+    (re.compile(short), long)
+    for short, long in (
+        # Spoken spellings.
+        (r"\b(?:pls|plz|plox)\b", "please"),
+        (r"\b(?:thx|tnx|thanx|cheers)\b", "thanks"),
+        (r"\b(?:gimme|gimmie)\b", "give me"),
+        (r"\blemme\b", "let me"),
+        (r"\b(?:imma|i'mma|ima)\b", "i will"),
+        (r"\b(want|got)ta\b|\bwanna\b", "want to"),
+        (r"\b(?:gonna|gon)\b", "going to"),
+        (r"\b(could|would|can|did|do|will)(?:ja|cha|ya)\b", r"\1 you"),
+        (r"\bya(?= know\b| see\b)|(?<=can )ya\b|(?<=could )ya\b|(?<=would )ya\b|(?<=will )ya\b", "you"),
+        (r"\bd'you\b", "do you"),
+        (r"(?<!\w)'em\b|\bem\b", "them"),
+        (r"\b(?:kinda|sorta)\b", ""),
+        (r"\b(?:cuz|coz|cos)\b|(?<!\w)'cause\b", "because"),
+        (r"\bo'clock\b", "oclock"),
+        (r"\boutta\b", "out of"),
+        # With the apostrophe, or without it where no other word is spelled so.
+        (r"\b(what|where|who|there|that|how|here|which|when|why)'?s\b(?! up\b)", r"\1 is"),
+        (r"\b(it|she|he)'s\b", r"\1 is"),
+        (r"^its (?=the|a|an|my|not|too|time|in|on)\b", "it is "),
+        (r"\b(?:can't|cant|cannot)\b", "can not"),
+        (r"\b(?:won't|wont)\b", "will not"),
+        (r"\b(did|is|are|was|were|does|have|has|had|could|should|would|must|need)n'?t\b", r"\1 not"),
+        (r"\b(?:don't|dont)\b", "do not"),
+        (r"\b(?:i'm|im)\b", "i am"),
+        (r"\b(?:you're|youre)\b", "you are"),
+        (r"\b(they|we)'re\b", r"\1 are"),
+        (r"\b(i|you|they|we)'?ve\b", r"\1 have"),
+        (rf"\b({_OF_PEOPLE})'ll\b", r"\1 will"),
+        (r"^ill(?= \w)", "i will"),
+        (r"\b(i|you|they|we|he|she)'d (better)\b", r"\1 should"),
+        (r"\b(i|you|they|we|he|she|it|that)'d\b", r"\1 would"),
+        (r"\bid (?=like|love|appreciate|prefer|be|want|need|rather)", "i would "),
+        (r"\blet'?s\b", "let us"),
+    )
+)
+
+
+def expand(text: str) -> str:
+    """Normalised text with `what's` written as `what is`."""
+    for short, long in _CONTRACTIONS:
+        text = short.sub(long, text)
+    return " ".join(text.split()) if "  " in text else text

@@ -1,0 +1,150 @@
+"""The frame around a request: `could you please ...`, `I would be glad if you ...`, `... when you get a chance`. Pure.
+
+A frame is built from a few parts (who is addressed, how it is put, adverbs) and says nothing about what is asked for.
+Frames that speak of the past, of somebody else's words or of what must not be are no requests: see mood.py.
+"""
+
+import re
+
+_ADVERBS = (
+    r"(?: (?:please|just|kindly|maybe|perhaps|possibly|quickly|now|also|really|actually|then|so|simply|like|too|again|"
+    r"by any chance|if possible|at all|at least|at some point|to please))*"
+)
+_YOU = r"(?:you|someone|somebody|anyone|anybody)(?: guys| all)?"
+_CAN = "(?:can|could|would|will|may|might)"
+_KIND = (
+    "(?:great|nice|good|lovely|wonderful|helpful|kind|cool|fantastic|awesome|perfect|super|brilliant|sweet|handy|fine|"
+    "best|better|okay|ok|alright|so kind|much appreciated|(?:a )?(?:big|great|real|huge)? ?(?:help|favou?r|relief))"
+)
+_SO = "(?:(?:so|very|really|just|quite|absolutely|truly) )*"
+_PERSON = "(?:i|we)"
+_TIME = (
+    "(?:a |the |some |one |any |your )?(?:free |spare )?(?:chance|moment|minute|second|sec|time|hand|opportunity|go)"
+)
+_OCCASION = (
+    rf"(?:when|whenever|once|if|as soon as) you (?:(?:have|get|find|have got|got) {_TIME}(?: to spare| free| for it)?"
+    r"|can|could|would|like|please|want|may|are (?:free|ready|able|not busy|up for it|around|there)"
+    r"|do not mind|would not mind|(?:would|could) be so kind|feel like it)"
+    r"|if (?:it|that|this)?\s?(?:is|would|will|be)?\s?(?:not|is not|be not)? ?"
+    r"(?:too much(?: (?:trouble|to ask|of a bother))?|asking too much|a (?:problem|bother)|any trouble|too "
+    r"(?:hard|difficult)|"
+    rf"possible|ok|okay|alright|all right|convenient|no trouble|no bother|fine)(?: (?:for|with|by) (?:you|me))?"
+    r"|if i (?:may|might|can|could)(?: ask| be so bold)?|if need be|if necessary|whenever|at your convenience|at "
+    r"your leisure"
+)
+"""Occasions and conditions that are none."""
+
+_ADDRESS = (
+    "hey|hello|hi|hiya|yo|oi|howdy|ok|okay|alright|all right|right(?=,)|jarvis|robot|tidybot|buddy|mate|dude|pal|"
+    "man|sir|dear|"
+    "bot|machine|my friend|darling|good (?:morning|evening|afternoon|day)|hello there|please|now|so|well|and|"
+    "then|also|finally|"
+    "just|kindly|quickly|maybe|perhaps|actually|anyway|oh|whoa|woah|hmm|ah|yeah|thanks|thank you|great|good|"
+    "perfect|fine|"
+    "cool|lovely|excellent|listen(?: up)?|look(?:(?=,)| here)|excuse me|pardon me|sorry to (?:bother|disturb|"
+    "trouble|interrupt) you|"
+    "sorry|by the way|next|guess what|you know what|you know(?! the| what| where| how| my)|see(?=,)|but(?! not)|"
+    "i say|as i said|for me|one more thing|could it be that|"
+    "(?:be )?quick|hurry(?: up)?|attention|fast|come on|pretty please|honestly|also|plus|oh and|first of all|"
+    r"(?:hold|hang) on(?! (?:to|for)\b)|first(?=\s+\w+\s+\w)|wait(?=\s+(?:stop|cancel|no)\b)|"
+    r"(?:after that|afterwards|and then|forget (?:about )?that)(?=\s+\w)"
+)
+"""Words to somebody, that carry no meaning."""
+_WAY = (
+    r"(?:go|come|run|hurry|nip|pop)(?: ahead| over| on| along| off| back)?(?: and)?"
+    r"(?=\s+(?:find|get|fetch|bring|grab|pick|take|put|tidy|clean|clear|throw|collect|retrieve)\b)"
+)
+_FRAMES = (
+    # What makes a question or a wish of an order.
+    rf"{_CAN} {_YOU}{_ADVERBS}(?: (?:be able to|be willing to|be up for|manage to|care to|try to|try and|like to|"
+    rf"want to|"
+    rf"mind|go ahead and|help me (?:and|by)|do me (?:a|the) favou?r(?: and| of)?|"
+    rf"be (?:(?:so|very|a|an|kind|good|nice|enough|dear|angel|sweetheart|star|darling|love|sport|robot|sweet|"
+    rf"really|and|as|"
+    rf"gracious|willing|helpful)(?:\s+|$))+(?:to|and|as to))\b)?",
+    rf"(?:{_PERSON} )?(?:do|would) you mind|mind(?=\s+\w+ing\b)|do you want to|care to|want to(?=\s+\w)",
+    rf"do you (?:think|suppose|reckon|believe) {_YOU} {_CAN}(?: possibly)?",
+    rf"(?<=please )you(?= \w)|you{_ADVERBS} (?:should|must|have to|need to|could|can|may|might want to|are to|"
+    rf"ought to|are going to|shall|will)",
+    rf"{_PERSON}{_ADVERBS} (?:would |will |am going to )?(?:like|love|want|need|prefer|wish|require|expect|ask|"
+    rf"beg|urge)"
+    rf"(?: that| for| it if)? you(?: to)?(?! (?:in|at|by)\b)",
+    rf"{_PERSON} (?:want|wanted|would like|was going|wish|meant|would love|need)(?:ed)? to ask (?:you )?"
+    rf"(?:if you {_CAN}|whether you {_CAN}|to|that you)",
+    r"(?:may|can|could|might) i (?:please )?(?:ask|trouble|bother|get|have|request|beg)(?: of)? you (?:to|and)",
+    rf"(?:i (?:was|am|have been) )?(?:just )?(?:wondering|asking|hoping|thinking)(?: if| whether| that)? {_YOU}"
+    rf" (?:{_CAN}|should)(?: possibly)?",
+    rf"i (?:wonder|hope|wondered|hoped|thought|think|guess|suppose|believe|reckon|say)(?: if| whether| that)? {_YOU}"
+    rf" (?:{_CAN}|should|must|ought to|need to)(?: possibly)?",
+    rf"(?:would|will|could|might) it be {_SO}(?:ok|okay|alright|all right|possible|a problem|too much(?: trouble|"
+    rf" to ask)?)"
+    rf"(?: for you)?(?: (?:if you(?: {_CAN})?|that you|to))?",
+    r"is it (?:ok|okay|possible|alright)(?: for you)?(?: (?:if you(?: can| could)?|to))?",
+    rf"{_PERSON} would {_SO}(?:appreciate|like|love|be {_SO}(?:grateful|happy|glad|thankful|pleased|obliged|delighted))"
+    rf"(?: it)?(?: (?:very much|a lot|greatly))? if {_YOU}(?: {_CAN})?{_ADVERBS}(?! (?:not|did not|never)\b)",
+    rf"(?:it|that) (?:would|will) be {_SO}{_KIND} (?:if|when) {_YOU}(?: {_CAN})?{_ADVERBS}(?! (?:not|did not|never)\b)",
+    rf"(?:it|that) (?:would|will) (?:really |greatly )?help(?: me| us)?(?: a lot| out)? if {_YOU}(?: {_CAN})?(?! "
+    rf"(?:not|did not)\b)",
+    r"why (?:do not|not) (?:you|we)(?=\s+\w)|how about (?:you|we)(?=\s+\w)",
+    r"let us|we (?:should|could|must|need to|have to|ought to|want to|had better|better)",
+    r"be (?:a|an|so|very) (?:\w+ ){0,2}?\w+ (?:and|as to|to)|be \w+ enough to|do me (?:a|the|one) favou?r(?: and)?",
+    rf"(?:is there )?(?:any|a) (?:chance|way|possibility) (?:of you|(?:that )?you(?: {_CAN})?)|any chance(?=\s+you)",
+    r"(?:do not|never) (?:forget|fail) to|remember to(?=\s+\w)|(?:make|be) sure (?:to|and|(?:that )?you)|see that you|"
+    r"feel free to|go ahead and|get (?:busy|going|to work|moving|up)(?: and)|start (?:by )?(?=\w+ing\b)|try "
+    r"(?:to|and)(?= (?:get|bring|"
+    r"fetch|put|take|grab|throw))",
+    r"(?:your|the) (?:next |first )?(?:task|job|mission|thing|order|command)(?: now| to do)? is(?: to)?|"
+    r"(?:it is |about )?(?:high )?time (?:you (?:\w+ed)?|to|for you to)|it is your (?:turn|job|task) to",
+    r"all (?:you have|i want you) to do is|what (?:i|we) (?:want|need) you to do is|i am (?:going to need|gonna "
+    r"need) you to",
+    r"i (?:have )?changed my mind|on second thoughts?|i have (?:got )?(?:a|another) (?:task|job|request|"
+    r"favou?r)(?: for you| to ask)?",
+    r"i (?:think|guess|suppose|believe|reckon|say|suggest)(?: that)?(?= (?:the|my|this|that|we|you|it)\b)",
+    r"while you are (?:at it|there|up|about it)|(?:on|along) (?:the|your) way(?: back)?|"
+    r"when you (?:come|get|are|go) back(?= (?:bring|take|get|fetch|put|grab)\b)",
+    _OCCASION,
+)
+"""Frames of a request; what is asked for follows."""
+_ENDINGS = (
+    "(?:pretty )?please(?: with .+)?|right now|right away|now|quickly|at once|immediately|straight away|for me|"
+    "for us|thanks|thank you"
+    "(?: very much| so much| a lot)?|(?<!real )(?<! a )robot|tidybot|jarvis|then|anyway|and|will you please|okay|"
+    "ok|alright|(?<=, )right|man|mate|"
+    "buddy|dude|my friend|dear|love|darling|sir|real quick|really quick|quick|fast|if you please|or something|or so|"
+    "and stuff|while you are (?:at it|there|up|about it)|on (?:the|your) way(?: back)?|by the way|you know|i "
+    "guess|i think",
+    "(?:and )?hurry(?: up)?|as (?:fast|quickly) as you can|asap|and be quick(?: about it)?|and that is all|that is all|"
+    "come on|go on|chop chop|before i forget|some ?time(?: today)?|today|tonight|this (?:morning|evening|afternoon)|"
+    "(?:and )?(?:be|take) care(?:ful)?(?: with (?:it|them|that))?|carefully|gently|when you come back|"
+    "(?:and )?thanks in advance|if you get (?:there|the chance)",
+    "a (?:little )?bit|a little|somewhat|for a (?:bit|while)",
+    "(?<!try )(?<!it )(?<!that )(?<!same )(?<!thing )(?<!once )(?<!go )(?<!look )again",
+    "as soon as (?:you can|possible)|(?:will|would|could|can|won't) you|would be (?:great|nice|lovely|good)(?= please)",
+    rf"{_OCCASION}|(?:for )?(?:a|one) (?:second|sec|moment)",
+    r"(?:because|since|so that|so i can|so we can|in case|otherwise i|as i|as we|for i|in order to)\s.+",
+)
+"""Politeness and reasons after a command."""
+_LEAD = re.compile(rf"^(?:(?:{'|'.join((_ADDRESS, _WAY, *_FRAMES))})(?:\s+|\s*,\s*))+")
+_TAIL = re.compile(rf"(?:,?\s+(?:{'|'.join(_ENDINGS)}))+$")
+_FOR_ME = re.compile(r"^(?:grab|take|pick up|reach|snatch|grasp|get) (?!me\b)(.+?) for (?:me|us)(?= please$|$)")
+"""Taking something for somebody is bringing it."""
+LONG_SPEECH = re.compile(r"^(?:(?:say|announce)(?: that)?|tell (?:them|everybody|everyone|people|us|me) that)\s+(.+)$")
+"""A clause whose words are to be spoken and not understood."""
+FRAME = re.compile(rf"(?:{'|'.join(_FRAMES)})\s")
+"""A frame, which makes a request of what follows."""
+
+
+def without_politeness(text: str) -> str:
+    """A clause without "could you please ..." and "... right now"; "" when nothing else is in it."""
+    bare = _LEAD.sub("", text.strip(" ,;.!?") + " ").strip()
+    if LONG_SPEECH.match(bare):
+        return bare.removesuffix(" please")
+    bare = _FOR_ME.sub(r"bring me \1", bare)
+    while (shorter := _TAIL.sub("", bare)) != bare:
+        bare = shorter
+    return bare
+
+
+def without_lead(text: str) -> str:
+    """A clause without what is polite before it."""
+    return _LEAD.sub("", text.strip(" ,") + " ").strip()

@@ -1,0 +1,50 @@
+"""The known things and places that any words name, whether or not the words are understood. Pure."""
+
+from contextlib import suppress
+
+from common.language.normalise import DETERMINERS, Words
+from services.planner.phrases import Phrase, read
+from services.planner.plan_builder import PlanBuilder, Refusal
+from services.planner.resolve import referents
+from services.planner.vocabulary import NO_NOUN, Vocabulary
+
+MOST_WORDS = 6
+"""Words of the longest phrase for a thing or a place (chosen)."""
+
+
+def note(words: Words, builder: PlanBuilder) -> None:
+    """What is told before a request: the thing and the place that it names last are what "it" and "there" mean."""
+    things, spots = named(words, builder.vocabulary)
+    if things:
+        with suppress(Refusal):
+            builder.last = [m.object for m in referents(builder, tuple(things[-1].split()))]
+    if spots:
+        builder.spot = builder.vocabulary.spot(tuple(spots[-1].split()))[0]
+
+
+def named(words: Words, vocabulary: Vocabulary) -> tuple[list[str], list[str]]:
+    """Phrases for known things and for places among the words, the longest at each spot."""
+    things: list[str] = []
+    spots: list[str] = []
+    at = 0
+    while at < len(words):
+        for end in range(min(len(words), at + MOST_WORDS), at, -1):
+            span = words[at:end]
+            if span[0] in NO_NOUN - DETERMINERS:
+                break
+            bare = tuple(w for w in span if w not in DETERMINERS)
+            if bare and (places := vocabulary.spot(bare)) and not places[0].home:
+                spots.append(f"the {' '.join(bare)}")
+            elif bare and isinstance(phrase := read(span, vocabulary), Phrase) and _plain(phrase):
+                things.append(" ".join(span) if span[0] in DETERMINERS else f"the {' '.join(span)}")
+            else:
+                continue
+            at = end - 1
+            break
+        at += 1
+    return things, spots
+
+
+def _plain(phrase: Phrase) -> bool:
+    """Does it name a kind or a thing, without what that stands next to?"""
+    return not phrase.sense.every and not phrase.relation
