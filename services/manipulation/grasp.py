@@ -3,7 +3,7 @@ from above for low ones, at the rim for bowls. Angles were measured in simulatio
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -39,6 +39,8 @@ BY_SHAPE: dict[str, tuple[GraspRule, ...]] = {
 """How a shape is grasped whose kind is not known. What is long or irregular only has its measured surface."""
 OPEN_VESSEL = (GraspRule("rim", (90, 80, 70)),)
 """How a vessel with an upright wall is grasped that does not fit between the fingers."""
+TURNING = GraspRule("around", (8, 3, 14))
+"""How what stands on its head is grasped: nearly level, so that the hand is above the surface either way up."""
 USUAL_VESSEL = KINDS["bowl"]
 """Whose wall is taken for that of a vessel of a kind that has none."""
 
@@ -47,7 +49,8 @@ USUAL_VESSEL = KINDS["bowl"]
 class Grasp:
     """Where the pinch point goes, how wide the object is there, and its height above the object's underside.
 
-    `axis`: where the upper end of a lying object points [rad]; None when it stands. `rim`: one finger is inside the
+    `axis`: where the upper end of a lying object points [rad]; None when it stands. `turns_over`: it stands on its
+    upper end, and is turned about the hand's approach before it is put down. `rim`: one finger is inside the
     object, `width` is that of its wall; `on_surface`: found on the measured surface and not by the rule of a kind.
     """
 
@@ -59,6 +62,7 @@ class Grasp:
     axis: float | None = None
     rim: bool = False
     on_surface: bool = False
+    turns_over: bool = False
 
 
 def approach_rotation(azimuth: float, tilt: float, roll: float = 0.0) -> Array:
@@ -87,6 +91,13 @@ def _candidates(target: Target, forward: float, widest: float) -> list[Grasp]:
     facing = math.atan2(target.position[1], target.position[0] - forward)
     if target.lies:
         return _lying(target, facing)
+    if target.upside_down and kind_of(target.kind).upright:
+        turned = [replace(g, name=f"upside down, {g.name}", turns_over=True) for g in _round(target, facing, TURNING)]
+        return turned + _standing(target, facing, widest)
+    return _standing(target, facing, widest)
+
+
+def _standing(target: Target, facing: float, widest: float) -> list[Grasp]:
     tall = target.size[2]
     makers = {"around": _round, "faces": _flat, "rim": _rim}
     rules = _rules(target)

@@ -24,7 +24,7 @@ class GraspedObject:
     `rotation` (3, 3) of the hand and `offset` (3,) [m] of the pinch point are relative to the centre of the object's
     underside, in a frame with upright z in which the object is turned by `yaw` [rad].
 
-    What lay is described as if it had stood, so that it is put down upright; `as_found` is for where that cannot be.
+    What lay or stood on its head is described as if it had stood, so that it is put down upright; `as_found` is for where that cannot be.
     """
 
     label: str
@@ -51,12 +51,25 @@ def lying_rotation(axis: float) -> Array:
     return np.array([[0.0, -s, c], [0.0, c, s], [-1.0, 0.0, 0.0]])
 
 
+def turned_over(approach: Array) -> Array:
+    """Rotation (3, 3) by half a turn about the level part of an approach (3,)."""
+    level = np.array([approach[0], approach[1], 0.0])
+    level /= np.linalg.norm(level)
+    found: Array = 2.0 * np.outer(level, level) - np.eye(3)
+    return found
+
+
 def attach(target: Target, grasp: Grasp) -> GraspedObject:
     """The object as it is attached to the hand once a grasp has closed."""
     hand, (x, y, z) = grasp.pose, target.position
     label, kind, width = target.label, target.kind, grasp.width
     offset = hand.position - np.array([x, y, target.bottom])
     as_found = GraspedObject(label, kind, hand.rotation, offset, target.size, width, target.yaw)
+    if grasp.turns_over:
+        turn = turned_over(hand.rotation[:, 2])
+        offset = turn @ (hand.position - np.array([x, y, target.bottom + target.size[2]]))
+        yaw = 2 * float(np.arctan2(hand.rotation[1, 2], hand.rotation[0, 2])) - target.yaw
+        return GraspedObject(label, kind, turn @ hand.rotation, offset, target.size, width, yaw, as_found)
     if grasp.axis is None:
         return as_found
     turn = lying_rotation(grasp.axis)

@@ -60,5 +60,9 @@ class Target:
         return LYING_FROM < self.tilt < math.pi - LYING_FROM
 
     @property
+    def upside_down(self) -> bool:
+        return self.tilt >= math.pi - LYING_FROM
+
+    @property
     def bottom(self) -> float:
         return self.position[2] - self.size[2] / 2
