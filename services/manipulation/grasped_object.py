@@ -24,7 +24,8 @@ class GraspedObject:
     `rotation` (3, 3) of the hand and `offset` (3,) [m] of the pinch point are relative to the centre of the object's
     underside, in a frame with upright z in which the object is turned by `yaw` [rad].
 
-    What lay or stood on its head is described as if it had stood, so that it is put down upright; `as_found` is for where that cannot be.
+    What lay or stood on its head is described as if it had stood, so that it is put down upright; `as_found` is for
+    where that cannot be.
     """
 
     label: str
