@@ -18,6 +18,7 @@ from services.brain.mission.channel import Channel, GoalStatus, Result
 from services.brain.mission.context import Context
 from services.brain.mission.mission import Failure, gripper_holds
 from services.brain.mission.offers import Offers
+from services.brain.mission.remarks import Remarks
 from services.brain.pipelines.fetch import fetch_tree
 from services.brain.pipelines.vla import vla_tree
 from services.brain.resume.resumption import Resumption, suspend
@@ -45,6 +46,7 @@ class BrainService:
         self._ticks = 0
         self._sim_stopped = False
         self._asides = Asides(self.context)
+        self._remarks = Remarks(self._asides.speak)
         self._resumption = self._unfinished()
         self._offers = Offers(self.context.mission.command_id)
         io.serve(topics.BRAIN_MISSIONS, MissionQueries(self._journal, self.context.pictures).answer)
@@ -73,6 +75,7 @@ class BrainService:
         self._receive_stops()
         self._receive_commands()
         self._asides.step()
+        self._remarks.step(now)
         self._watch_heartbeat()
         if self._resumption is not None and self._resumption.step():
             if self._resumption.suspended:
@@ -138,6 +141,7 @@ class BrainService:
         for status in io.take_all(topics.NAVIGATION_STATUS):
             self._handle_status(peers.navigation, status, _NAVIGATION.get(status.status), status.code, status.detail)
         for feedback in io.take_all(topics.NAVIGATION_FEEDBACK):
+            self._remarks.hear(feedback, self.context.now)
             if peers.navigation.goal_id and feedback.goal_id == peers.navigation.goal_id:
                 self._handle_status(peers.navigation, feedback, _NAVIGATION.get(feedback.status), feedback.code, "")
         for done in io.take_all(topics.MANIPULATION_STATUS):

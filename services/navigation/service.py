@@ -201,7 +201,7 @@ class NavigationService:
         """Raises `Ended` when the goal has."""
         state = self._state
         try:
-            target = navigator.step(state.pose, reached, state.points, state.tracker.moving(), now)
+            target = navigator.step(state.pose, reached, state.points, state.tracker.people(), now)
         except Ended as ended:
             if self._search is None or ended.code == "TIMEOUT":
                 raise

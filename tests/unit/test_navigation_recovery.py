@@ -13,7 +13,7 @@ from common.viewpoints import viewpoints_of
 from services.navigation.config import NavigationConfig
 from services.navigation.motion.collision_avoidance import avoid
 from services.navigation.motion.obstacle_tracker import Obstacle, ObstacleTracker, clusters
-from services.navigation.motion.progress import BlockedTimer
+from services.navigation.motion.progress import BlockedTimer, waiting_for
 from services.navigation.planning.costmap import Costmap
 from tests.unit.navigation_flat import SCENE, Flat
 
@@ -150,11 +150,23 @@ def test_the_speed_of_a_walker_is_found_and_a_box_stays_a_box() -> None:
         walker = np.stack([2.0 - 0.2 * np.cos(arc), -1.0 + 0.06 * k + 0.2 * np.sin(arc)], 1)
         box = np.stack([np.full(9, -1.5), np.linspace(-0.2, 0.2, 9)], 1)
         movers.update(np.concatenate([walker, box]), (0.0, 0.0), 0.1 * k)
-    moving = movers.moving()
+    moving = movers.people()
     assert len(moving) == 1
     assert (moving[0].vx, moving[0].vy) == pytest.approx((0.0, 0.6), abs=0.1)
     movers.update(np.empty((0, 2)), (0.0, 0.0), 5.0)
-    assert movers.moving() == []
+    assert movers.people() == []
+
+
+def test_who_walked_and_stands_is_still_a_person() -> None:
+    movers = ObstacleTracker()
+    arc = np.linspace(-0.6, 0.6, 9)
+    for k in range(40):
+        y = 0.06 * min(k, 20)
+        movers.update(np.stack([2.0 - 0.2 * np.cos(arc), y + 0.2 * np.sin(arc)], 1), (0.0, 0.0), 0.1 * k)
+    (one,) = movers.people()
+    assert not one.moves and one.walked
+    assert waiting_for((1.0, 1.0), [one]) == "PERSON_IN_WAY"
+    assert waiting_for((-1.0, 1.0), [one]) == waiting_for((1.0, 1.0), []) == "WAITING"
 
 
 def test_clusters_split_at_gaps_and_leave_out_walls() -> None:

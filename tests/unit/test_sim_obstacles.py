@@ -238,6 +238,18 @@ def test_people_keep_apart_from_each_other_and_from_the_wall() -> None:
     assert people[0].place[0] > 2.5 and people[1].place[0] < 1.5, "they have passed"
 
 
+def test_people_walk_through_doors() -> None:
+    left, right = Rectangle(-2.4, 1.0, 4.0, 0.12), Rectangle(2.4, 1.0, 4.0, 0.12)
+    row = {"name": "p", "social": True, "position": (0.1, -1.0), "path": [(0.0, 0.9), (0.2, 3.0)], "speed": 0.6}
+    one, ys, walls = Pedestrian(msgspec.convert(row, Obstacle), 0, [left, right]), [], []
+    for _ in range(900):
+        one.advance(AWAY, 0.01)
+        ys.append(one.place[1])
+        walls.append(min(left.distance(*one.place), right.distance(*one.place)))
+    assert max(ys) > 2.5, "a door of 0.8 m"
+    assert min(walls) > 0.2, "without touching its frame"
+
+
 def test_who_cannot_get_on_turns_round() -> None:
     (one,) = crowd({"position": (0.0, -1.0), "path": [(2.0, 2.0)], "speed": 0.6})
     for _ in range(2000):

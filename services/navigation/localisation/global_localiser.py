@@ -43,20 +43,24 @@ AGAIN, MAX_AGAIN = 2.0, 16.0
 
 
 class GlobalLocaliser:
-    """`lost`: where the robot is, is not known. `hypotheses`: where it may be then, the most plausible first."""
+    """`lost`: where the robot is, is not known; `broken`: the last scan speaks against where it was.
+
+    `hypotheses`: where a lost robot may be, the most plausible first.
+    """
 
     def __init__(self, io: Io, field: DistanceField, known: bool) -> None:
         self._io, self._field = io, field
         self._low, self._high = io.household.low, io.household.high
         self._job: Job[list[Hypothesis]] | None = None
         self._asked_at: Pose2 = (0.0, 0.0, 0.0)
-        self._good_at, self._doubt_after = 0.0, DOUBT
+        self._good_at, self._doubt_after = -math.inf, DOUBT
         self._usual = 1.0
         self._search_at, self._again = 0.0, AGAIN
         self._kept: Localiser | None = None
         self._searched = False
         self.hypotheses: list[Hypothesis] = []
         self.lost = not known
+        self.broken = False
 
     @property
     def map_fits(self) -> bool:
@@ -71,11 +75,13 @@ class GlobalLocaliser:
     def watch(self, localiser: Localiser, points: Array, now: float) -> bool:
         """Once per scan (n, 2) [base] while the pose is known: is it lost now?"""
         fit, limit = localiser.fit, BAD_FIT
-        broken = fit < SUDDEN * self._usual
+        broken = self.broken = fit < SUDDEN * self._usual
         if fit > limit and not broken:
             self._usual += USUAL_GAIN * (fit - self._usual)
             self._good_at, self._doubt_after = now, DOUBT
             return False
+        if self._good_at == -math.inf and len(points) <= MIN_RAYS:
+            self._good_at = now
         patience = min(BREAK, self._doubt_after) if broken and self._doubt_after == DOUBT else self._doubt_after
         if now - self._good_at > patience and len(points) > MIN_RAYS:
             self._io.log.warning("lost", fit=round(fit, 2), usual=round(self._usual, 2))
@@ -134,7 +140,7 @@ class GlobalLocaliser:
         return None
 
     def _found(self, one: Hypothesis, now: float, doubt_after: float) -> Pose2:
-        self.lost, self.hypotheses, self._kept = False, [], None
+        self.lost, self.broken, self.hypotheses, self._kept = False, False, [], None
         self._good_at, self._doubt_after = now, doubt_after
         self._usual = one.localiser.fit
         return one.pose

@@ -74,7 +74,8 @@ class StateEstimator:
             late = max(0.0, min(odometry.t - scans[-1].t, 0.1)) if odometry else 0.0
             self._take(scans[-1], odometry, late, now)
         x, y, theta = self.pose
-        covariance = self.localiser.covariance.ravel().tolist() if not self.lost else _diagonal(ANYWHERE)
+        unsure = self.lost or self.everywhere.broken
+        covariance = _diagonal(ANYWHERE) if unsure else self.localiser.covariance.ravel().tolist()
         io.publish(topics.POSE, m.PoseEstimate(t=measured, x=x, y=y, theta=theta, covariance=covariance))
 
     def silence(self, now: float) -> float:

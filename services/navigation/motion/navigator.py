@@ -12,7 +12,7 @@ from services.navigation.motion.breadcrumbs import Breadcrumbs
 from services.navigation.motion.collision_avoidance import avoid
 from services.navigation.motion.obstacle_tracker import Obstacle
 from services.navigation.motion.path_follower import Lookahead, braked
-from services.navigation.motion.progress import BlockedTimer, Progress
+from services.navigation.motion.progress import BlockedTimer, Progress, waiting_for
 from services.navigation.motion.route import DETOUR_PAUSE, Route
 from services.navigation.planning.costmap import Array, Costmap
 from services.navigation.planning.planner import PathPlanner, Point
@@ -28,8 +28,8 @@ OUT_OF_SIGHT = 3.0
 class Navigator:
     """Steps at the service's rate; returns the next target pose [map] for the base, raises `Ended` when over.
 
-    `recoveries` counts detours and retreats, `doing` is which of them is under way: "", WAITING, DETOUR, BACKING_OFF or
-    GIVING_WAY. `remaining` is the path that is left [m].
+    `recoveries` counts detours and retreats, `doing` is what is under way: "", WAITING, PERSON_IN_WAY, DETOUR,
+    BACKING_OFF or GIVING_WAY. `remaining` is the path that is left [m].
     """
 
     def __init__(
@@ -86,7 +86,7 @@ class Navigator:
         obstacles: Sequence[Obstacle],
         now: float,
     ) -> m.BaseTarget | None:
-        """`points` (n, 2) [map] is what the lidar sees around, `obstacles` what moves there.
+        """`points` (n, 2) [map] is what the lidar sees around, `obstacles` the people there.
 
         Raises:
             Ended: arrived, or failed TIMEOUT, NO_PATH or BLOCKED.
@@ -106,7 +106,8 @@ class Navigator:
         self._breadcrumbs.add(pose)
         target = self._go_on(pose, points, obstacles, now)
         here = (pose[0], pose[1])
-        aside = avoid(here, (target.x, target.y), obstacles, self._map, self._config.footprint_radius)
+        moving = [o for o in obstacles if o.moves]
+        aside = avoid(here, (target.x, target.y), moving, self._map, self._config.footprint_radius)
         if aside is None:
             return target
         self._base.sent, self.doing = None, "GIVING_WAY"
@@ -186,7 +187,7 @@ class Navigator:
             self.doing = ""
         if ahead.blocked:
             self._progress.excuse(now)
-            self.doing = "WAITING"
+            self.doing = waiting_for((pose[0], pose[1]), obstacles)
             if self._blocked.blocked((pose[0], pose[1]), obstacles, now) > self._config.blocked_wait:
                 self._recover(pose, now, "the way is blocked")
         else:
@@ -205,7 +206,7 @@ class Navigator:
     # --- recovery
     def _wait(self, pose: Pose2, obstacles: Sequence[Obstacle], now: float) -> m.BaseTarget:
         """No path at this moment: stand, look for one every second, lose patience in time."""
-        self.doing = "WAITING"
+        self.doing = waiting_for((pose[0], pose[1]), obstacles)
         blocked = self._blocked.blocked((pose[0], pose[1]), obstacles, now)
         if now - self._route.planned_at > REPLAN_PERIOD and self._plan(pose, now):
             self._blocked.clear()

@@ -22,13 +22,16 @@ MIN_SPEED, MAX_SPEED = 0.2, 2.0
 """Speeds of what moves [m/s]; chosen: above the drift of a standing cluster, up to a hurried walk."""
 MIN_SIGHTINGS, MAX_SILENCE = 4, 0.6
 """Scans before a track counts [count] and time without one after which it ends [s]; chosen: 0.4 s, six scans."""
+WALKED = 0.5
+"""Way [m] from where it was first seen after which a track is a person, who may walk on: more than the apparent motion
+of what stands."""
 SHRINK = 0.9
 """Share of its radius that a track keeps when less of it is seen [-]."""
 
 
 @dataclass
 class Obstacle:
-    """A tracked cluster: middle [m], velocity [m/s] and radius [m], in frame map."""
+    """A tracked cluster: middle [m], velocity [m/s] and radius [m], in frame map; `walked`: it is no furniture."""
 
     x: float
     y: float
@@ -37,6 +40,8 @@ class Obstacle:
     vx: float = 0.0
     vy: float = 0.0
     sightings: int = 1
+    start: Point = (math.nan, math.nan)
+    walked: bool = False
 
     @property
     def moves(self) -> bool:
@@ -58,15 +63,15 @@ class ObstacleTracker:
         for x, y, radius in clusters(points, eye):
             best = min(free, key=lambda t: math.hypot(*_ahead(t, now, x, y)), default=None)
             if best is None or math.hypot(*_ahead(best, now, x, y)) > MATCH:
-                self._tracks.append(Obstacle(x, y, radius, now))
+                self._tracks.append(Obstacle(x, y, radius, now, start=(x, y)))
                 continue
             free.remove(best)
             _correct(best, x, y, radius, now)
         self._tracks = [t for t in self._tracks if now - t.seen_at < MAX_SILENCE]
 
-    def moving(self) -> list[Obstacle]:
-        """The obstacles that move."""
-        return [t for t in self._tracks if t.moves]
+    def people(self) -> list[Obstacle]:
+        """What moves, and what stands after it has walked."""
+        return [t for t in self._tracks if t.moves or t.walked]
 
 
 def clusters(points: Array, eye: Point) -> list[tuple[float, float, float]]:
@@ -101,5 +106,6 @@ def _correct(t: Obstacle, x: float, y: float, radius: float, now: float) -> None
     speed = math.hypot(t.vx, t.vy)
     if speed > MAX_SPEED:
         t.vx, t.vy = t.vx * MAX_SPEED / speed, t.vy * MAX_SPEED / speed
+    t.walked = t.walked or (t.moves and math.dist((t.x, t.y), t.start) > WALKED)
     t.radius = max(radius, SHRINK * t.radius)
     t.seen_at, t.sightings = now, t.sightings + 1

@@ -10,7 +10,9 @@ from services.navigation.planning.planner import Point
 STEP = 0.05
 """What counts as progress [m]; chosen: more than the play of the pose estimate."""
 NEAR = 3.0
-"""What moves within this of the robot may be what blocks the path [m]: as far as collision avoidance looks."""
+"""Who is within this of the robot may be what blocks the path [m]: as far as collision avoidance looks."""
+CLOSE = 1.5
+"""Who is within this of the robot that waits is asked to let it pass [m]; chosen: a doorway and a step."""
 PASSING = 20.0
 """Time that a goal waits for those who pass before its waiting counts again [s]: several times what a person needs
 to clear a door, and less than the margin of a goal's time limit, so that somebody who stays is reported as BLOCKED."""
@@ -63,7 +65,7 @@ class BlockedTimer:
         self._left = PASSING
 
     def blocked(self, here: Point, obstacles: Sequence[Obstacle], now: float) -> float:
-        """Once a step while the path is blocked: for how long it has been [s]. `obstacles` are those that move."""
+        """Once a step while the path is blocked: for how long it has been [s]. `obstacles` are the people around."""
         if self._since is None:
             self._since = self._at = now
         elif self._left > 0.0 and any(math.dist((o.x, o.y), here) < NEAR + o.radius for o in obstacles):
@@ -75,3 +77,9 @@ class BlockedTimer:
     def clear(self) -> None:
         """The path is free, or another one is tried."""
         self._since = None
+
+
+def waiting_for(here: Point, people: Sequence[Obstacle]) -> str:
+    """What a robot at `here` that cannot go on does: WAITING, or PERSON_IN_WAY where somebody stands before it."""
+    near = any(math.dist((o.x, o.y), here) < CLOSE + o.radius for o in people)
+    return "PERSON_IN_WAY" if near else "WAITING"
