@@ -75,6 +75,7 @@ class Receptacle(Strict, frozen=True):
     `center` is the middle of the usable surface (z = its height, or the inner floor of a bin), `size` its
     usable extent along its own x and y. `approach` lists the directions (unit steps in its own frame) from
     which the robot has free floor. `furniture` names the boxes that make it up. `depth` is the wall height of a bin.
+    With `named = false` its name is an identifier, and it is called by its kind and room until a person names it.
     """
 
     name: str
@@ -87,6 +88,7 @@ class Receptacle(Strict, frozen=True):
     aliases: tuple[str, ...] = ()
     spawn: bool = True
     colour: str = ""
+    named: bool = True
 
     @property
     def outline(self) -> Rectangle:
@@ -99,12 +101,13 @@ class Receptacle(Strict, frozen=True):
 
 
 class Room(Strict, frozen=True):
-    """A named axis-aligned room between corners `low` and `high`."""
+    """An axis-aligned room between corners `low` and `high`; with `named = false` it is called by a number."""
 
     name: str
     low: Vec2
     high: Vec2
     aliases: tuple[str, ...] = ()
+    named: bool = True
 
 
 class Place(Strict, frozen=True):

@@ -92,8 +92,12 @@ def _objection(step: PlanStep, held: str, found: set[str], world: KnownWorld, ho
             return "" if known else f"I know no {where}"
         case "say":
             return "" if step.text.strip() else "there is nothing to say"
-        case "teach" | "forget":
+        case "teach" | "forget" | "name":
             return "" if step.text.strip() else "no name was said"
+        case "rule":
+            if not step.object.strip():
+                return "no thing was said that the rule is about"
+            return "" if household.receptacle(step.target) else f"there is no {step.target or 'place'} to put things on"
         case _:
             return ""
 

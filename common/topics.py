@@ -141,6 +141,13 @@ WORLD_OBJECTS = _event(
 TEACH = _goal("perception/teach", m.TeachRequest, by="brain dashboard *", to="perception", text="name", latched=False)
 TAUGHT = _event("perception/taught", m.TeachResult, by="perception", to="brain dashboard")
 HOUSEHOLD_NAMES = _event("household/names", m.TaughtNames, by="perception", to="brain speech")
+HOUSEHOLD_EDIT = _goal("household/edit", m.HouseholdEdit, by="dashboard *", to="brain", text="name", latched=False)
+HOUSEHOLD_EDITED = _event("household/edited", m.EditResult, by="brain", to="dashboard")
+HOUSEHOLD_EDITS = _event(
+    "household/edits", m.HouseholdEdits, by="brain", to="planner speech perception navigation manipulation"
+)
+HOUSEHOLD_PARTS = _event("household/parts", m.HomeParts, by="brain", to="dashboard")
+SIGHTINGS = _event("household/sightings", m.Sightings, by="brain", to="planner navigation")
 
 BASE_TARGET = _goal("base/target_pose", m.BaseTarget, by="navigation", to="sim", latched=False)
 GOAL_REACHED = _event("base/goal_reached", m.GoalReached, by="sim", to="navigation")

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.approach import BIN_RIM
-from common.floor_plan import FloorPlan, Receptacle
+from common.floor_plan import FloorPlan, Place, Receptacle
 from common.geometry import Array, Pose2, Rectangle
 from common.messages import CameraMount, RobotDescription
 
@@ -51,7 +51,19 @@ HEADINGS = 12
 def viewpoints_of(floor_plan: FloorPlan, robot: RobotDescription | None) -> "Viewpoints":
     """The viewpoints of a floor plan for a robot's head camera; they take a while to work out and are made once."""
     camera = robot.head_camera if robot is not None else None
-    return _made(floor_plan, msgspec.structs.astuple(camera if camera is not None else NOMINAL))
+    return _made(_outlines(floor_plan), msgspec.structs.astuple(camera if camera is not None else NOMINAL))
+
+
+def _outlines(plan: FloorPlan) -> FloorPlan:
+    """What a camera can tell of a plan: names make no other viewpoints."""
+    surfaces = tuple(
+        msgspec.structs.replace(r, name="", aliases=(), named=True, colour="", spawn=True) for r in plan.receptacles
+    )
+    home = Place(name="", x=0.0, y=0.0)
+    return FloorPlan(
+        name="", low=plan.low, high=plan.high, home=home, walls=plan.walls, furniture=plan.furniture,
+        receptacles=surfaces,
+    )  # fmt: skip
 
 
 @lru_cache(maxsize=4)
@@ -60,12 +72,17 @@ def _made(floor_plan: FloorPlan, camera: tuple[float, ...]) -> "Viewpoints":
 
 
 class Viewpoints:
-    """`points` (p, 3) [m] on the surfaces, `poses` (v) to look from, `shows` (v, p): which points each pose shows."""
+    """`points` (p, 3) [m] on the surfaces, `poses` (v) to look from, `shows` (v, p): which points each pose shows.
+
+    `surface` (p,): the number of each point's surface, among those that are no bins.
+    """
 
     def __init__(self, floor_plan: FloorPlan, camera: CameraMount) -> None:
         self._camera = camera
         self._surfaces = [r for r in floor_plan.receptacles if r.kind != "bin"]
-        self.points: Array = np.concatenate([_points_on(r) for r in self._surfaces] or [np.empty((0, 3))])
+        found = [_points_on(r) for r in self._surfaces]
+        self.points: Array = np.concatenate(found or [np.empty((0, 3))])
+        self.surface = np.repeat(np.arange(len(found)), [len(points) for points in found])
         self._screens = _screens(floor_plan, camera.z)
         self._across = math.tan(USED * math.atan(math.tan(camera.fovy / 2) * ASPECT))
         self._upright = math.tan(USED * camera.fovy / 2)
@@ -115,16 +132,23 @@ class Viewpoints:
         return turned[best] if gains[best] >= LEAST_GAIN else None
 
     def best(
-        self, worth: Array, tried: Collection[Pose2], cost: Callable[[Pose2], float], free: Callable[[Pose2], bool]
+        self,
+        worth: Array,
+        tried: Collection[Pose2],
+        cost: Callable[[Pose2], float],
+        free: Callable[[Pose2], bool],
+        likelihood: Array | None = None,
     ) -> Pose2 | None:
         """The pose, not yet `tried`, that shows the most for its way; None when none is worth it.
 
         `worth` (p,) is what each point counts, `cost` the way to a pose [m], inf where none leads, `free` whether the
-        base can stand there.
+        base can stand there. `likelihood` (p,) that what is looked for is at a point, the mean being 1, decides what
+        is looked at first, and nothing about what is looked at in the end.
         """
-        gains = self.shows @ worth
+        news = self.shows @ worth
+        gains = news if likelihood is None else self.shows @ (worth * likelihood)
         best, best_score = None, 0.0
-        for n in np.flatnonzero(gains >= LEAST_GAIN).tolist():
+        for n in np.flatnonzero(news >= LEAST_GAIN).tolist():
             pose = self.poses[n]
             # The way is asked last: it is the dearest to know.
             if gains[n] / LOOK_COST <= best_score or pose in tried or not free(pose):

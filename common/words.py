@@ -18,12 +18,13 @@ NAME = "words.toml"
 class Destination(Strict, frozen=True):
     """Where objects of some kinds or colours go: the first of `to` (a name, alias or kind) that the household has.
 
-    Empty `kinds` or `colours` mean all.
+    Empty `kinds` or `colours` mean all; `names` are things by name, and a rule with names is about those alone.
     """
 
     to: tuple[str, ...]
     kinds: tuple[str, ...] = ()
     colours: tuple[str, ...] = ()
+    names: tuple[str, ...] = ()
 
 
 class Words(Strict, frozen=True):

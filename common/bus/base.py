@@ -15,10 +15,12 @@ from typing import Any, Generic, TypeVar
 import numpy as np
 
 from common import messages as m
+from common import topics
 from common.bus import codec
 from common.bus.mailbox import Mailbox
 from common.bus.port import Handler, Outside
 from common.household import Household
+from common.household_edits import edited
 from common.logs import Logger
 from common.scene import Scene
 from common.time.clock import Clock, monotonic
@@ -55,6 +57,7 @@ class IoBase:
 
     state_dir: Path | None = None
     outside: Outside | None = None
+    _edits: m.HouseholdEdits | None = None
 
     def __init__(
         self,
@@ -70,7 +73,7 @@ class IoBase:
         log_level: str = "info",
         stderr: bool = True,
     ) -> None:
-        self.name, self.household, self.seed, self.lockstep, self.clock = name, household, seed, lockstep, clock
+        self.name, self.seed, self.lockstep, self.clock = name, seed, lockstep, clock
         self._world = world
         self.epoch = uuid.uuid4().hex[:12]
         digest = hashlib.sha256(f"{seed}/{name}".encode()).digest()
@@ -80,12 +83,31 @@ class IoBase:
         self.tick = 0
         self._boxes: dict[str, Mailbox[Any]] = {t.key: Mailbox(t, lockstep) for t in reads}
         self._open_order = tuple(self._boxes.values())
+        self.household = household
         self.fresh = False
         self.unstamped: list[str] = []
         self._writes = {t.key for t in writes}
         self._worker: ThreadPoolExecutor | None = None
         self._ids = 0
         self._warned: dict[str, float] = {}
+
+    @property
+    def household(self) -> Household:
+        """What the robot is told of its home, with what people have told since where that is read."""
+        box = self._boxes.get(topics.HOUSEHOLD_EDITS.key)
+        edits = self.latest(topics.HOUSEHOLD_EDITS) if box is not None else None
+        if edits is not None and edits is not self._edits:
+            self._edits, self._household = edits, edited(self.loaded, edits)
+        return self._household
+
+    @household.setter
+    def household(self, loaded: Household) -> None:
+        self.loaded, self._edits = loaded, None
+        self._household = edited(loaded, m.HouseholdEdits())
+
+    def amend(self, edits: m.HouseholdEdits) -> None:
+        """Take what people have told into account, where this service publishes it."""
+        self._edits, self._household = edits, edited(self.loaded, edits)
 
     @property
     def world(self) -> Scene:

@@ -45,15 +45,17 @@ class Job(Protocol[R_co]):
 class Io(Protocol):
     """A service's bus, worker, randomness and logger. `fresh`: something arrived for this step.
 
-    `household`: what the robot is told of its home. `world`: what is really there; with a `LookupError` for all but the
-    simulation and its judges (`KNOWS_WORLD`). `state_dir`: where a process keeps files that outlive it; None within an
-    evaluation. `outside`: what gateways to other wires need of the router; None where there is none.
+    `household`: what the robot is told of its home, by its file and, in services that read `household/edits`, by people
+    since; `loaded`: by its file alone. `world`: what is really there; with a `LookupError` for all but the simulation
+    and its judges (`KNOWS_WORLD`). `state_dir`: where a process keeps files that outlive it; None within an evaluation.
+    `outside`: what gateways to other wires need of the router; None where there is none.
     """
 
     name: str
     epoch: str
     seed: int
     household: Household
+    loaded: Household
     world: Scene
     rng: np.random.Generator
     log: Log
@@ -61,6 +63,9 @@ class Io(Protocol):
     fresh: bool
     state_dir: Path | None
     outside: Outside | None
+
+    def amend(self, edits: m.HouseholdEdits) -> None:
+        """Apply what people have told to `household`: for the service that keeps it."""
 
     def take_all(self, topic: Topic[M]) -> list[M]:
         """Every message received since the last step, oldest first."""

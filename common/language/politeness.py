@@ -47,7 +47,7 @@ _ADDRESS = (
     "i say|as i said|for me|one more thing|could it be that|"
     "(?:be )?quick|hurry(?: up)?|attention|fast|come on|pretty please|honestly|also|plus|oh and|first of all|"
     r"(?:hold|hang) on(?! (?:to|for)\b)|first(?=\s+\w+\s+\w)|wait(?=\s+(?:stop|cancel|no)\b)|"
-    r"(?:after that|afterwards|and then|forget (?:about )?that)(?=\s+\w)"
+    r"(?:after that|afterwards|and then|forget (?:about )?that)(?=\s+(?!rule\b)\w)"
 )
 """Words to somebody, that carry no meaning."""
 _WAY = (

@@ -7,6 +7,7 @@ Action = Literal[
     "open_hand", "close_hand", "seen", "contents", "holding", "whereabouts", "where", "number", "say", "wait",
     "wait_there", "come_back", "go", "remark", "untidy", "throw_away", "put_away", "tidy", "put", "put_near",
     "put_down", "deliver", "deliver_there", "fetch", "fetch_named", "pick_up", "find", "teach", "forget",
+    "name_place", "rule", "rule_always", "forget_rule", "rules", "belongs", "usual", "last_seen",
     "look_around", "check", "go_and_see", "mention", "put_back", "put_where", "again", "thanks",
     "recall", "wish_at", "named_at",
     "exists", "is_at", "colour", "beside", "kinds", "extreme", "condition", "rooms",
@@ -18,7 +19,7 @@ QUESTIONS: frozenset[Action] = frozenset(
     {
         "seen", "contents", "holding", "whereabouts", "where", "number", "recall", "exists", "is_at", "colour",
         "beside", "kinds", "extreme",
-        "rooms", "doing", "done", "why", "origin", "abilities", "identity",
+        "rooms", "doing", "done", "why", "origin", "abilities", "identity", "rules", "belongs", "usual", "last_seen",
     }
 )  # fmt: skip
 """What is answered in words."""

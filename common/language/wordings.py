@@ -6,6 +6,7 @@ commands from them. A new wording is one more row.
 
 from typing import Literal
 
+from common.language.home_wordings import ASKED, TOLD
 from common.language.lexicon import (
     BACK,
     BRING,
@@ -81,7 +82,9 @@ WORDINGS: tuple[Wording, ...] = (
         heard="close (the | your) (hand | gripper)",
     ),
     *ABOUT_ITSELF,
+    *ASKED,
     *ABOUT_THE_WORLD,
+    *TOLD,
     # Names of things.
     Wording(
         "teach",

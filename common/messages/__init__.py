@@ -6,6 +6,7 @@ Unknown fields are ignored on receipt. Field names and strings are the wire cont
 
 from common.messages.base import *
 from common.messages.brain import *
+from common.messages.household import *
 from common.messages.manipulation import *
 from common.messages.naming import *
 from common.messages.navigation import *

@@ -8,7 +8,9 @@ from common.messages.base import Message
 from common.messages.brain import MissionOutcome
 
 PlannerBackend = Literal["grammar", "llm"]
-StepAction = Literal["navigate", "find", "grasp", "place", "release", "say", "wait", "return", "teach", "forget"]
+StepAction = Literal[
+    "navigate", "find", "grasp", "place", "release", "say", "wait", "return", "teach", "forget", "name", "rule"
+]
 GRIPPER = "gripper"
 """The target of a step that only opens or closes the hand."""
 AROUND = "around"
@@ -34,7 +36,9 @@ class PlanStep(Message):
     """One step of a plan. `grasp` and `release` with the target `gripper` close and open the hand around nothing.
 
     `near`: of `place`, the object on the target next to which; "" anywhere on it. `text`: of `say` what is said, of
-    `teach` and `forget` the name; `teach` gives it to `object`, or with "" to what stands before the robot or is held.
+    `teach`, `name` and `forget` the name; `teach` gives it to `object`, or with "" to what stands before the robot or
+    is held; `name` to the room, surface or place `object`, or to what the robot stands in or before. `rule`: `object`
+    in words goes to `target` from now on. `forget` with the target "place" or "rule" takes these back.
     `seconds`: how long to `wait`, 0 for a moment.
     """
 

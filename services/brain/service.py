@@ -73,6 +73,8 @@ class BrainService:
         ctx.gripper.update(gripper_holds(self._io.latest(topics.JOINT_STATES)), now)
         self._receive_statuses()
         self._receive_stops()
+        ctx.home.step(ctx.robot_pose)
+        ctx.sightings.step(now)
         self._receive_commands()
         self._asides.step()
         self._remarks.step(now)
@@ -98,6 +100,7 @@ class BrainService:
         """An orderly end; the journal says so."""
         if self._resumption is None:
             self.context.save(closed=True)
+        self.context.sightings.save(self.context.now)
         self._journal.close()
 
     def _unfinished(self) -> Resumption | None:
@@ -162,7 +165,6 @@ class BrainService:
         for taught in io.take_all(topics.TAUGHT):
             if taught.goal_id == peers.perception.goal_id:  # the page and the command line teach as well
                 peers.perception.handle_status(taught.goal_id, taught.attempt, Result("ok", message=taught))
-        io.take_all(topics.WORLD_OBJECTS)
 
     @staticmethod
     def _handle_status(channel: Channel, message: m.Message, status: GoalStatus | None, code: str, detail: str) -> None:

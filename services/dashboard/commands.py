@@ -6,6 +6,7 @@ from common import messages as m
 from common import topics
 from common.bus.port import Io
 from common.geometry import Pose2
+from common.part_names import kind_named
 from services.dashboard.panels.history_buffers import Transcript
 from services.dashboard.scene.picking import Picked
 
@@ -58,9 +59,12 @@ class Commands:
         self._transcript.add(t, "typed", text)
 
     def picked(self, picked: Picked, base: Pose2, state: m.BrainState | None, t: float) -> None:
-        """A click: the object gets the name that was typed; without one it is fetched, or the robot drives to the
-        place, when no mission is under way."""
+        """A click: the object, or with a name like "desk" the part of the home, gets the name that was typed; without
+        one the object is fetched, or the robot drives to the place, when no mission is under way."""
         ready = state is not None and state.state in OPEN
+        if self.naming and picked.hit is not None and kind_named(self.naming) is not None:
+            self._name_part(picked.hit, t)
+            return
         if not (picked.label or picked.point):
             return
         if self.naming:
@@ -84,6 +88,22 @@ class Commands:
         request = m.TeachRequest(id=self._io.new_id("page"), name=name, label=picked.label)
         self._io.publish(topics.TEACH, request)
         self._transcript.add(t, "typed", f"the {picked.label} is called {name}")
+
+    def _name_part(self, hit: m.Vec3, t: float) -> None:
+        """The room, surface or place that was clicked on gets the name that was typed."""
+        name, self.naming = self.naming, ""
+        edit = m.HouseholdEdit(do="name", id=self._io.new_id("page"), name=name, position=hit)
+        self._io.publish(topics.HOUSEHOLD_EDIT, edit)
+        self._transcript.add(t, "typed", f"this is the {name}")
+
+    def edited(self, result: m.EditResult, t: float) -> None:
+        """What came of a name for a part of the home, or of a rule, whoever told it."""
+        if not result.ok:
+            self._transcript.add(t, "robot", f"{result.name} was not kept: {result.detail}")
+        elif result.kind:
+            self._transcript.add(t, "robot", f"the name {result.name} is kept")
+        else:
+            self._transcript.add(t, "robot", f"the rule about {result.name} is kept")
 
     def taught(self, result: m.TeachResult, t: float) -> None:
         """What came of a name, whoever taught it."""

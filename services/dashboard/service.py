@@ -122,6 +122,8 @@ class DashboardService:
             self._transcript.add_result(t, result)
         for taught in io.take_all(topics.TAUGHT):
             self._commands.taught(taught, t)
+        for edited in io.take_all(topics.HOUSEHOLD_EDITED):
+            self._commands.edited(edited, t)
         for health in io.take_all(topics.HEALTH):
             self._health.take(health)
         for chunk in io.take_all(topics.AUDIO_OUT):
@@ -193,6 +195,7 @@ class DashboardService:
             self._path = path.points
             view.path(path.points)
         self._overlay()
+        view.parts(io.latest(topics.HOUSEHOLD_PARTS), panels.labels)
         world = io.latest(topics.WORLD_OBJECTS)
         if world is not None and (world is not self._world or now >= self._ghosts_at):
             self._world, self._ghosts_at = world, now + SLOW

@@ -4,8 +4,10 @@ from common import messages as m
 from common import topics
 from common.bus.port import Io
 from common.config import config_dir
+from common.geometry import Array
 from common.goal_inbox import GoalInbox
 from common.viewpoints import viewpoints_of
+from common.whereabouts import likelihood
 from services.navigation.approach_history import ApproachHistory
 from services.navigation.config import NavigationConfig
 from services.navigation.ended import Ended
@@ -32,7 +34,9 @@ class NavigationService:
 
     def __init__(self, config: NavigationConfig, io: Io) -> None:
         self._config, self._io = config, io
-        self._goals = Goals(io.household, Places(io.household, load_places(config_dir())), config)
+        self._places = load_places(config_dir())
+        self._named = io.household
+        self._goals = Goals(self._named, Places(self._named, self._places), config)
         self._map = Costmap(io.household, config.resolution, config.obstacle_memory)
         self._planner = PathPlanner(self._map, config.footprint_radius + config.clearance, config.inflation)
         self._state = StateEstimator(config, io, self._map)
@@ -109,6 +113,7 @@ class NavigationService:
 
     def _begin(self, text: str, pose: m.NavGoal | None) -> None:
         """Raises `Ended` for an unknown goal or place."""
+        self._learn_names()
         verb, _, rest = text.partition(" ")
         rest = rest.strip()
         named = pose.object.label if pose is not None and pose.object is not None else ""
@@ -124,19 +129,31 @@ class NavigationService:
         else:
             raise Ended("failed", "UNKNOWN_GOAL", f"{text!r}: expected find, goto, return_to_start or stop")
 
+    def _learn_names(self) -> None:
+        """Places are called as people call them now."""
+        if self._io.household is not self._named:
+            self._named = self._io.household
+            self._goals = Goals(self._named, Places(self._named, self._places), self._config)
+
     def _find(self, item: str) -> None:
         choices = self._approaches_to(item)
         if self._io.peer(PERCEPTION) is None:
             self._go(choices or self._goals.spot(item))
             return
         self._coverage.viewpoints = viewpoints_of(self._io.household, self._io.latest(topics.ROBOT_DESCRIPTION))
-        search = Search(item, self._coverage, self._config, self._now)
+        search = Search(item, self._coverage, self._config, self._now, self._likelihood(item))
         if choices:
             self._found = search
             self._go(choices)
         else:
             self._io.log.info("search", item=item)
             self._search = search
+
+    def _likelihood(self, item: str) -> Array:
+        """Where the item may be, by where it and its like were seen and by where they belong."""
+        seen = self._io.latest(topics.SIGHTINGS)
+        rows, now = (seen.sightings, seen.t) if seen is not None else ([], 0.0)
+        return likelihood(item, self._io.household, rows, now, self._coverage.viewpoints)
 
     def _approaches_to(self, item: str) -> Choices:
         return self._approaches.penalised(self._status.goal_id, self._goals.seen(item, self._objects()))

@@ -64,7 +64,8 @@ class PerceptionService:
 
     def __init__(self, config: PerceptionConfig, io: Io) -> None:
         self._config, self._io = config, io
-        self._detector = load_detector(config.detector)(io.household, config.max_range)
+        # Inside, surfaces are called as the file has them, whatever people call them meanwhile.
+        self._detector = load_detector(config.detector)(io.loaded, config.max_range)
         self._world = ""
         self._naming = Naming(io, config)
         self._reset()
@@ -84,7 +85,7 @@ class PerceptionService:
         )
 
     def _reset(self) -> None:
-        self._tracker = ObjectTracker(self._io.household, self._config.gone_after, self._config.min_confidence)
+        self._tracker = ObjectTracker(self._io.loaded, self._config.gone_after, self._config.min_confidence)
         self._published: list[m.WorldObject] = []
         self._naming.reset()
         self._reading: Reading | None = None
@@ -211,10 +212,18 @@ class PerceptionService:
 
     def _publish_objects(self, now: float, seen: bool = False) -> None:
         """Publish what is believed when it has changed or was `seen` again."""
-        objects = self._naming.annotated(self._tracker.objects())
+        objects = self._naming.annotated(self._objects())
         if seen or [_outline(o) for o in objects] != [_outline(o) for o in self._published]:
             self._published = objects
             self._io.publish(topics.WORLD_OBJECTS, m.WorldObjects(t=now, objects=objects, source="perception"))
+
+    def _objects(self, since: float = -math.inf) -> list[m.WorldObject]:
+        """What is believed, on surfaces as people call them."""
+        objects, home = self._tracker.objects(since), self._io.household
+        for o in objects:
+            surface = home.receptacle(o.on)
+            o.on = surface.name if surface else o.on
+        return objects
 
     # --- queries
     def _repeat(self, query: m.ObjectQuery, answer: m.ObjectPose | None) -> None:
@@ -272,7 +281,7 @@ class PerceptionService:
 
     def _ground(self, query: m.ObjectQuery) -> Grounding:
         base = self._state.base or (0.0, 0.0, 0.0)
-        objects = self._naming.annotated(self._tracker.objects(query.since or -math.inf))
+        objects = self._naming.annotated(self._objects(query.since or -math.inf))
         doubtful = self._tracker.doubtful()
         objects = [as_called(o) if o.id in doubtful else o for o in objects]
         result = ground(query.query, objects, self._io.household, base, self._config.synonyms, self._naming.match)

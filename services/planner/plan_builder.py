@@ -148,7 +148,9 @@ class PlanBuilder:
         for rule in rules:
             if (rule.kinds and item.kind not in rule.kinds) or (rule.colours and item.colour not in rule.colours):
                 continue
-            if options := self._named(rule.to):
+            if rule.names and not {item.label, *item.names} & set(rule.names):
+                continue
+            if options := self.named(rule.to):
                 return self.choices.pick(options)
         raise Refusal(f"I do not know where the {item.label} goes")
 
@@ -169,7 +171,8 @@ class PlanBuilder:
             raise Refusal(f"I am holding the {held.label} and see no place to put it down")
         return self.choices.pick(found)
 
-    def _named(self, wanted: tuple[str, ...]) -> list[Receptacle]:
+    def named(self, wanted: tuple[str, ...]) -> list[Receptacle]:
+        """The receptacles of these names, or of these kinds where no receptacle has the name."""
         household = self.world.household
         found: list[Receptacle] = []
         for name in wanted:

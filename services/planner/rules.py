@@ -6,7 +6,7 @@ from common.language.meaning import readings
 from common.language.normalise import Words
 from common.language.pattern import Slots
 from common.language.wording import Action, Kind
-from services.planner import about_itself, actions, answers, conditions, teaching, tidying
+from services.planner import about_itself, actions, answers, conditions, home, teaching, tidying
 from services.planner.plan_builder import PlanBuilder, Refusal
 
 ACTIONS: dict[Action, Callable[[PlanBuilder, Slots], None]] = {
@@ -39,6 +39,14 @@ ACTIONS: dict[Action, Callable[[PlanBuilder, Slots], None]] = {
     "find": actions.find,
     "teach": teaching.teach,
     "forget": teaching.forget,
+    "name_place": home.name_place,
+    "rule": home.rule,
+    "rule_always": home.rule_always,
+    "forget_rule": home.forget_rule,
+    "rules": home.rules,
+    "belongs": home.belongs,
+    "usual": home.usual,
+    "last_seen": home.last_seen,
     "mention": actions.mention,
     "put_back": actions.put_back,
     "put_where": actions.put_near,

@@ -167,7 +167,12 @@ class PlannerService:
         seen, pose = self._io.latest(topics.WORLD_OBJECTS), self._io.latest(topics.POSE)
         home = self._io.household.home
         where = (pose.x, pose.y, pose.theta) if pose else (home.x, home.y, home.theta)
-        return believed(self._io.household, request.world, seen.objects if seen else [], where, now, request.history)
+        io, history = self._io, request.history
+        world = believed(io.household, request.world, seen.objects if seen else [], where, now, history)
+        world.edits = io.latest(topics.HOUSEHOLD_EDITS) or world.edits
+        if (seen_before := io.latest(topics.SIGHTINGS)) is not None:
+            world.sightings, world.seen_until = seen_before.sightings, seen_before.t
+        return world
 
     def _rejections(self, request: m.PlanRequest) -> list[m.RejectedPlan]:
         """Every plan rejected so far for this command of this mission, the newest last."""

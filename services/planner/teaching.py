@@ -3,6 +3,7 @@
 from common.language.normalise import without_determiners
 from common.language.pattern import Slots
 from common.messages import PlanStep
+from common.naming import normalise
 from services.planner.phrases import Phrase, read
 from services.planner.plan_builder import PlanBuilder, Refusal
 
@@ -17,7 +18,11 @@ def teach(builder: PlanBuilder, slots: Slots) -> None:
 
 
 def forget(builder: PlanBuilder, slots: Slots) -> None:
-    """A name that was taught is forgotten."""
+    """A name that was taught is forgotten, of a thing or of a place."""
+    words = " ".join(without_determiners(slots["words"]))
+    if any(n.name == normalise(words) for n in builder.world.edits.names):
+        builder.steps.append(PlanStep(action="forget", target="place", text=words))
+        return
     builder.steps.append(PlanStep(action="forget", text=_name(builder, slots)))
 
 

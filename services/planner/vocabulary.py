@@ -166,6 +166,8 @@ class Vocabulary:
         phrase = " ".join(without_determiners(words))
         if not phrase:
             return []
+        if whole := [r for r in self._household.receptacles if not room and phrase == normalise(r.name)]:
+            return [Spot(whole[0].name, receptacle=whole[0])]
         for preposition in ("in", "of", "from", "at"):
             head, found, tail = phrase.partition(f" {preposition} ")
             where = self._places.get(" ".join(without_determiners(tuple(tail.split())))) if found else None

@@ -6,7 +6,7 @@ import msgspec
 
 from common.floor_plan import Receptacle
 from common.household import Household
-from common.messages import History, KnownWorld, Vec3, WorldObject
+from common.messages import History, HouseholdEdits, KnownWorld, Sighting, Vec3, WorldObject
 
 Pose2 = tuple[float, float, float]
 
@@ -33,7 +33,10 @@ class BelievedObject(msgspec.Struct, frozen=True):
 
 
 class World(msgspec.Struct):
-    """`objects`: seen or held; `specs`: the known things of the household; `pose`: the robot's in the map."""
+    """`objects`: seen or held; `specs`: the known things of the household; `pose`: the robot's in the map.
+
+    `edits`: what people told of the home; `sightings`: what was seen where over the days, by the clock of `seen_until`.
+    """
 
     household: Household
     objects: list[BelievedObject] = []
@@ -42,6 +45,9 @@ class World(msgspec.Struct):
     pose: Pose2 = (0.0, 0.0, 0.0)
     now: float = 0.0
     history: History = msgspec.field(default_factory=History)
+    edits: HouseholdEdits = msgspec.field(default_factory=HouseholdEdits)
+    sightings: list[Sighting] = []
+    seen_until: float = 0.0
 
     @property
     def held(self) -> BelievedObject | None:
@@ -119,7 +125,7 @@ def believed(
                 kind=o.kind or (spec.kind if spec else ""),
                 colour=o.colour or (spec.colour if spec else ""),
                 position=None if in_hand else o.position,
-                on="" if in_hand else o.on or _resting_on(o.position, household),
+                on="" if in_hand else _canonical_part(o.on, household) or _resting_on(o.position, household),
                 size=o.size if any(o.size) else (spec.size if spec else o.size),
                 seen_at=o.seen_at,
                 held=in_hand,
@@ -142,6 +148,11 @@ def believed(
 def _canonical(label: str, household: Household) -> str:
     spec = household.thing(label)
     return spec.name if spec else label
+
+
+def _canonical_part(name: str, household: Household) -> str:
+    part = household.receptacle(name) if name else None
+    return part.name if part else name
 
 
 def _resting_on(position: Vec3, household: Household) -> str:

@@ -38,8 +38,9 @@ class SpeechService:
 
     def __init__(self, config: SpeechConfig, io: Io) -> None:
         self._config, self._io = config, io
+        self._household = household = io.household
         try:
-            found = grammars(config, io.household)
+            found = grammars(config, household)
             self._recording: Samples | None = read_wav(Path(config.wav)) if config.wav else None
         except (PatternError, AudioError) as error:
             raise StartError(f"speech: {error}") from None
@@ -48,7 +49,7 @@ class SpeechService:
         if config.recogniser == "moonshine" and speech_weights.find() is None:
             raise StartError(f"speech: {speech_weights.MISSING}")
         self._microphone = Microphone() if config.microphone else None
-        self._queue = UtteranceQueue(config, io, lambda: FrontEnd(config, io.household, found))
+        self._queue = UtteranceQueue(config, io, lambda: FrontEnd(config, household, found))
         self._player = TtsPlayer(io, config.speakers, config.synthesis_seconds, config.preload)
         self._goal = m.SpeechGoal(goal="")
         self._inbox: GoalInbox[m.SpeechGoal, m.SpeechResult] = GoalInbox(
@@ -66,8 +67,7 @@ class SpeechService:
         io = self._io
         self._now = now
         self._inbox.receive()
-        for taught in io.take_all(topics.HOUSEHOLD_NAMES):
-            self._learn(tuple(one.name for one in taught.names))
+        self._learn()
         for typed in io.take_all(topics.SPEECH_TEXT):
             self._type(typed.text.strip(), now)
         key = self._goal.id, self._goal.attempt
@@ -81,11 +81,13 @@ class SpeechService:
             self._queue.open_window(now)
         self._show(now, "said" if said else "")
 
-    def _learn(self, names: tuple[str, ...]) -> None:
-        """Listen for the names of things that people have taught, and no more for those that are forgotten."""
-        if names != self._names:
-            self._names = names
-            self._queue.learn([name for one in names if (name := normalise(one))])
+    def _learn(self) -> None:
+        """Listen for the names that people have given to things and places, and no more for those they forgot."""
+        taught, household = self._io.latest(topics.HOUSEHOLD_NAMES), self._io.household
+        names = tuple(name for one in taught.names if (name := normalise(one.name))) if taught is not None else ()
+        if names != self._names or household is not self._household:
+            self._names, self._household = names, household
+            self._queue.learn(household, names)
 
     # --- goals
     def _repeat(self, goal: m.SpeechGoal, answer: m.SpeechResult | None) -> None:

@@ -29,11 +29,13 @@ def service(name: str) -> Any:
 def test_a_service_uses_every_topic_whose_row_names_it(name: str) -> None:
     """By the constants in its code, so that rights which nobody uses are noticed; others are refused at run time.
 
-    Of what a viewer reads, its users choose; pictures are asked for by `common/picture_requests.py`.
+    Of what a viewer reads, its users choose; pictures are asked for by `common/picture_requests.py`, and
+    `Io.household` is what people have told of the home.
     """
     folder = ROOT / "services" / name
     code = "".join(p.read_text() for p in (folder.rglob("*.py") if folder.is_dir() else [folder.with_suffix(".py")]))
     used = [getattr(topics, name, None) for name in re.findall(r"\b(?:topics|t)\.([A-Z][A-Z0-9_]+)\b", code)]
+    used += [topics.HOUSEHOLD_EDITS] if ".household" in code else []
     rows = {*service(name).READS, *service(name).WRITES}
     if name in topics.VIEWERS:
         rows = {*service(name).WRITES} - {topics.CAMERA_REQUEST}

@@ -5,12 +5,15 @@ from typing import Any
 from common import messages as m
 from common import topics
 from common.bus.port import Io
-from common.geometry import Pose2
+from common.geometry import Array, Pose2
 from common.language.meaning import is_question
 from common.plan_rules import known_world
 from common.topics import Topic
 from common.viewpoints import Viewpoints, viewpoints_of
+from common.whereabouts import likelihood
 from services.brain.config import BrainConfig
+from services.brain.home.keeper import HouseholdKeeper
+from services.brain.home.sighting_log import SightingLog
 from services.brain.journal.checkpoints import Checkpoints
 from services.brain.journal.open import open_pictures
 from services.brain.journal.records import Checkpoint, Entry, Journal, Kind, last_outcome, outcome_of
@@ -43,6 +46,7 @@ class Context:
         self.previous: Mission | None = None
         self.suspended: Checkpoint | None = None
         self.stopped: str | None = None
+        self.home, self.sightings = HouseholdKeeper(io), SightingLog(io)
         self.display = Display(io, config.pipeline, last_outcome(journal))
 
     # --- what the world is told
@@ -75,6 +79,10 @@ class Context:
         """Pose (x, y, theta) [m, rad] in map as navigation estimates it; the origin before the first estimate."""
         pose = self.io.latest(topics.POSE)
         return (pose.x, pose.y, pose.theta) if pose else (0.0, 0.0, 0.0)
+
+    def likelihood(self, item: str) -> Array:
+        """How likely an item is at each of the viewpoints' points (p,), by what was seen over the days."""
+        return likelihood(item, self.io.household, self.sightings.rows, self.sightings.date, self.viewpoints)
 
     def known_object(self, label: str) -> m.WorldObject | None:
         """The object of that name as last surveyed."""

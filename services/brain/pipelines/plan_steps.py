@@ -15,6 +15,7 @@ from services.brain.recoveries.recovery import Subtree, Task, with_recoveries
 from services.brain.recoveries.table import AFTER_GRASPING, AFTER_LOOKING, AFTER_PUTTING_DOWN
 from services.brain.steps.find import Approach, LocateObject, TurnOnTheSpot, label_of, object_ref
 from services.brain.steps.gripper import MoveGripper, open_hand, set_down_or_open
+from services.brain.steps.home import tell_home
 from services.brain.steps.leaf import Leaf, Say, Settle
 from services.brain.steps.motion import Grab, Navigate
 from services.brain.steps.plan import describe_step
@@ -88,6 +89,10 @@ def step_tree(ctx: Context, step: PlanStep, carried: str, at_home: bool = False)
             return Say(PLAN_STEP, ctx, lambda: step.text, name=name)
         case "wait":
             return Settle(PLAN_STEP, ctx, name=name, seconds=step.seconds)
+        case "name" | "rule":
+            return tell_home(ctx, step, PLAN_STEP, name)
+        case "forget" if step.target:
+            return tell_home(ctx, step, PLAN_STEP, name)
         case "teach":
             return teach(ctx, step, PLAN_STEP, name)
         case "forget":

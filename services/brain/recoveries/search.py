@@ -29,7 +29,7 @@ def _attempt(ctx: Context, task: Task, number: int) -> Behaviour:
     looked = LocateObject("look", ctx, task.item)
     look = Sequence(
         "view",
-        MoveToViewpoint("viewpoint", ctx, number > 1, name=label),
+        MoveToViewpoint("viewpoint", ctx, number > 1, name=label, item=task.item),
         Settle("settle", ctx),
         with_recoveries("look_or_ask", ctx, looked, AFTER_A_GLANCE, task),
         name=f"view of {label}",

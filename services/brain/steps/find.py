@@ -57,12 +57,12 @@ class LocateObject(SendGoal):
 class MoveToViewpoint(SendGoal):
     """Brings the camera to the view that shows most that is new: by turning on the spot, or `elsewhere`."""
 
-    def __init__(self, node_id: str, ctx: Context, elsewhere: bool, name: str = "") -> None:
+    def __init__(self, node_id: str, ctx: Context, elsewhere: bool, name: str = "", item: str = "") -> None:
         config = ctx.config
         super().__init__(
             node_id, ctx, ctx.peers.navigation, state="GROUNDING", timeout=config.navigation_timeout, name=name
         )
-        self._elsewhere = elsewhere
+        self._elsewhere, self._item = elsewhere, item
         self._target: Pose2 | None = None
 
     def initialise(self) -> None:
@@ -70,7 +70,8 @@ class MoveToViewpoint(SendGoal):
         ctx, mission, pose = self.ctx, self.ctx.mission, self.ctx.robot_pose
         looked_from = [*mission.search.visited, pose]
         if self._elsewhere:
-            self._target = viewpoint_search.elsewhere(ctx.io.household, ctx.viewpoints, pose, looked_from)
+            likely = ctx.likelihood(self._item)
+            self._target = viewpoint_search.elsewhere(ctx.io.household, ctx.viewpoints, pose, looked_from, likely)
         else:
             self._target = viewpoint_search.turn(ctx.viewpoints, pose, looked_from)
         # A view that cannot be reached is not tried a second time either.

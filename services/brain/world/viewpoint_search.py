@@ -20,9 +20,16 @@ def turn(viewpoints: Viewpoints, here: Pose2, looked_from: Collection[Pose2]) ->
 
 
 def elsewhere(
-    floor_plan: FloorPlan, viewpoints: Viewpoints, here: Pose2, looked_from: Collection[Pose2]
+    floor_plan: FloorPlan,
+    viewpoints: Viewpoints,
+    here: Pose2,
+    looked_from: Collection[Pose2],
+    likelihood: Array | None = None,
 ) -> Pose2 | None:
-    """The viewpoint that shows most that is new for the way there; None when everything has been looked at."""
+    """The viewpoint that shows most that is new for the way there; None when everything has been looked at.
+
+    `likelihood` (p,) of each point, as `Viewpoints.best` takes it.
+    """
     room = floor_plan.room_at(here[0], here[1])
 
     def cost(to: Pose2) -> float:
@@ -34,6 +41,7 @@ def elsewhere(
         looked_from,
         cost,
         free=lambda to: clearance(floor_plan, to[0], to[1]) >= CLEARANCE,
+        likelihood=likelihood,
     )
 
 

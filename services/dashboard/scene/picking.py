@@ -19,10 +19,14 @@ FAR = 60.0
 
 @dataclass(frozen=True)
 class Picked:
-    """An object by its label, or a point of the floor; neither: nothing that can be asked for."""
+    """An object by its label, or a point of the floor; neither: nothing that can be asked for.
+
+    `hit`: where the ray meets the object, the floor or furniture [m, frame map].
+    """
 
     label: str = ""
     point: tuple[float, float] | None = None
+    hit: tuple[float, float, float] | None = None
 
 
 def pick(origin: Array, direction: Array, flat: Mesh | None, objects: list[m.WorldObject]) -> Picked:
@@ -37,13 +41,18 @@ def pick(origin: Array, direction: Array, flat: Mesh | None, objects: list[m.Wor
         if distance < nearest + (REACH if not label else 0.0):
             nearest, label = distance, one.label
     if label:
-        return Picked(label)
+        return Picked(label, hit=_at(origin, direction, nearest))
     if not np.isfinite(nearest) and direction[2] < -1e-6 and origin[2] > 0:
         nearest = -origin[2] / direction[2]
     if nearest > FAR:
         return Picked()
-    point = origin + nearest * direction
-    return Picked(point=(float(point[0]), float(point[1]))) if abs(point[2]) < FLOOR else Picked()
+    hit = _at(origin, direction, nearest)
+    return Picked(point=hit[:2] if abs(hit[2]) < FLOOR else None, hit=hit)
+
+
+def _at(origin: Array, direction: Array, distance: float) -> tuple[float, float, float]:
+    x, y, z = (origin + distance * direction).tolist()
+    return x, y, z
 
 
 def first_hit(origin: Array, direction: Array, mesh: Mesh) -> float:

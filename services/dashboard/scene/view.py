@@ -17,6 +17,8 @@ GHOST = 0.3
 STILL = 1e-4
 """Change of a joint [m or rad] below which a link is not sent again: a tenth of a millimetre."""
 SCAN_COLOUR, PATH_COLOUR = (255, 60, 60), (40, 160, 255)
+PART = 1.0
+"""Height [m] of the names of rooms and surfaces: above tables, below the robot's head."""
 FRUSTUM = 0.25
 """Length [m] of the head camera's drawn frustum; the wrist's is half of it."""
 
@@ -34,6 +36,8 @@ class View:
         self._scan: Any = None
         self._path: Any = None
         self._paths: dict[str, str] = {}
+        self._parts: list[Any] = []
+        self._shown_parts: tuple[m.HomeParts | None, bool] = (None, False)
         self.drawing = Drawing(None, None)
         self._scene.set_up_direction("+z")
         # Shadows cost more than all else on machines that draw without a graphics card.
@@ -170,6 +174,20 @@ class View:
             for each in label:
                 each.position = _above(one)
             self._looks[name] = (*look, (one.position, one.orientation))
+
+    def parts(self, known: m.HomeParts | None, labels: bool) -> None:
+        """Write the names of rooms, surfaces and places where they are."""
+        shown = (known, labels)
+        if shown == self._shown_parts:
+            return
+        self._shown_parts = shown
+        for node in self._parts:
+            node.remove()
+        parts = known.parts if known is not None and labels else []
+        self._parts = [
+            self._scene.add_label(f"/parts/{n}", one.name, position=(one.x, one.y, PART), font_screen_scale=0.7)
+            for n, one in enumerate(parts)
+        ]
 
     def _object(self, name: str, one: m.WorldObject, ghost: bool, labels: bool) -> tuple[Any, ...]:
         mesh = self.drawing.objects.get(one.label) or fallback(one.kind, one.size, one.colour)

@@ -1,6 +1,6 @@
 """`find` for an object that nobody has seen: viewpoint after viewpoint, until all is looked at or time is up."""
 
-from common.geometry import Pose2
+from common.geometry import Array, Pose2
 from services.navigation.config import NavigationConfig
 from services.navigation.ended import Ended
 from services.navigation.planning.costmap import Costmap
@@ -9,10 +9,20 @@ from services.navigation.search.coverage import SearchCoverage
 
 
 class Search:
-    """One search. `fresh`: the next viewpoint is due without a look from here."""
+    """One search. `fresh`: the next viewpoint is due without a look from here.
 
-    def __init__(self, item: str, coverage: SearchCoverage, config: NavigationConfig, now: float) -> None:
-        self.item, self.fresh = item, False
+    `likelihood` (p,): how likely the item is at each point of the coverage, the mean being 1; None: nobody knows.
+    """
+
+    def __init__(
+        self,
+        item: str,
+        coverage: SearchCoverage,
+        config: NavigationConfig,
+        now: float,
+        likelihood: Array | None = None,
+    ) -> None:
+        self.item, self.fresh, self._likelihood = item, False, likelihood
         self._coverage, self._config, self._started = coverage, config, now
         self._tried: set[Pose2] = set()
 
@@ -38,6 +48,7 @@ class Search:
             self._tried,
             cost=lambda to: planner.cost_to(field, (to[0], to[1])),
             free=lambda to: costmap.clearance(to[0], to[1]) >= radius,
+            likelihood=self._likelihood,
         )
         if view is None:
             share = self._coverage.share(self._started)

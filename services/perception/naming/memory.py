@@ -98,7 +98,7 @@ class NameMemory:
     def _save(self) -> bool:
         if self._path is None:
             return True
-        why = atomic_file.replace(self._path, msgspec.json.encode(list(self.names.values())))
+        why = atomic_file.replace(self._path, msgspec.json.encode(list(self.names.values())), durable=True)
         if why:
             self._warn(f"names are not kept: {why}")
         return not why

@@ -5,6 +5,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from common.bus.port import Io, Job
+from common.household import Household
 from services.speech.audio import RATE, Samples
 from services.speech.config import SpeechConfig
 from services.speech.listen.addressee import UtteranceContext, scope
@@ -35,7 +36,7 @@ class UtteranceQueue:
     def __init__(self, config: SpeechConfig, io: Io, load: Callable[[], FrontEnd]) -> None:
         self._config, self._io, self._load = config, io, load
         self._front_end: Job[FrontEnd] | None = None
-        self._names: tuple[str, ...] = ()
+        self._vocabulary: tuple[Household, tuple[str, ...]] | None = None
         self._segmenter = Segmenter(
             config.end_silence, config.max_utterance, config.interrupt_pause, config.interrupt_longest, config.wake_word
         )
@@ -71,15 +72,16 @@ class UtteranceQueue:
         """Close the window: a command was given."""
         self._window_end, self._window_closed = float("-inf"), now
 
-    def learn(self, names: Sequence[str]) -> None:
-        """Listen for these names of things as well, from the next utterance on."""
-        self._names = tuple(names)
+    def learn(self, household: Household, names: Sequence[str]) -> None:
+        """Listen for the names of this household and of these things, from the next utterance on."""
+        self._vocabulary = household, tuple(names)
         if self._front_end is not None:
             self._teach(self._front_end)
 
     def _teach(self, front_end: Job[FrontEnd]) -> None:
-        names = self._names
-        self._io.submit(lambda: front_end.result().learn(names), seconds=0.0)
+        if self._vocabulary is not None:
+            household, names = self._vocabulary
+            self._io.submit(lambda: front_end.result().learn(household, names), seconds=0.0)
 
     def settle(self, utterance: PendingUtterance) -> None:
         """Drop what else was said in the same breath: what this utterance asked for is done."""
@@ -147,8 +149,7 @@ class UtteranceQueue:
                 return
         if self._front_end is None:
             self._front_end = self._io.submit(self._load, seconds=LOADING)
-            if self._names:
-                self._teach(self._front_end)
+            self._teach(self._front_end)
         front_end, samples = self._front_end, segment.samples
         seconds = config.interrupt_seconds if asked == "interrupt" else config.recognition_seconds
         job = self._io.submit(lambda: front_end.result().recognise(samples, asked), seconds=seconds)

@@ -80,7 +80,7 @@ class FrontEnd:
         if config.recogniser == "pocketsphinx":
             self._recogniser = SphinxRecogniser(config, household)
         else:
-            self._recogniser = MoonshineRecogniser(config, household, found)
+            self._recogniser = MoonshineRecogniser(config, found)
 
     def recognise(self, samples: NDArray[np.int16], scope: Scope = "command") -> Recognition:
         """What 16 kHz int16 samples (n,) say, without the wake word."""
@@ -93,11 +93,11 @@ class FrontEnd:
             return replace(found, text=naming, verdict="accept", confidence=FREE)
         return replace(found, text=without_wake(found.text, self._wake))
 
-    def learn(self, names: Sequence[str]) -> None:
-        """Listen for these names of things as well."""
-        self._recogniser.learn(names)
+    def learn(self, household: Household, names: Sequence[str]) -> None:
+        """Listen for the names of this household, and for these of things as well."""
+        self._recogniser.learn(household, names)
 
     def _naming(self, free: str) -> str:
-        """The free transcription if it names a thing or forgets a name: a grammar has no name before it is taught."""
+        """The free transcription if it gives or takes back a name: a grammar has no name before it is taught."""
         text = without_wake(normalise(free), self._wake)
-        return text if asks_for(text, "teach", "forget") else ""
+        return text if asks_for(text, "teach", "name_place", "forget") else ""

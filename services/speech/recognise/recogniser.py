@@ -60,24 +60,24 @@ class Recogniser(Protocol):
 
     def recognise(self, utterance: PreparedUtterance, scope: Scope) -> Recognition: ...
 
-    def learn(self, names: Sequence[str]) -> None:
+    def learn(self, household: Household, names: Sequence[str]) -> None:
         """Listen for these names of things from now on, beside what the configuration and the household have."""
 
 
 class MoonshineRecogniser:
     """Moonshine base-en under the grammar of a scope."""
 
-    def __init__(self, config: SpeechConfig, household: Household, grammars: dict[Scope, Grammar]) -> None:
+    def __init__(self, config: SpeechConfig, grammars: dict[Scope, Grammar]) -> None:
         from services.speech.recognise.moonshine import Moonshine
         from services.speech.recognise.token_trie import TokenTrie
 
-        self._config, self._household = config, household
+        self._config = config
         self._model = Moonshine(config.beam)
         self._trie: Callable[[Grammar], TokenTrie] = lambda grammar: TokenTrie(self._model.tokens, grammar)
         self._tries = {scope: self._trie(grammar) for scope, grammar in grammars.items()}
 
-    def learn(self, names: Sequence[str]) -> None:
-        found = grammars(self._config, self._household, names)
+    def learn(self, household: Household, names: Sequence[str]) -> None:
+        found = grammars(self._config, household, names)
         self._tries = {scope: self._trie(grammar) for scope, grammar in found.items()}
 
     def recognise(self, utterance: PreparedUtterance, scope: Scope) -> Recognition:

@@ -33,14 +33,14 @@ class SphinxRecogniser:
             from pocketsphinx import Decoder
         except ImportError:
             raise StartError('speech.recogniser = "pocketsphinx" needs: pip install pocketsphinx') from None
-        self._config, self._household = config, household
+        self._config = config
         self._decoder = Decoder(lm=None, loglevel="FATAL")
-        self.learn(())
+        self.learn(household, ())
 
-    def learn(self, names: Sequence[str]) -> None:
+    def learn(self, household: Household, names: Sequence[str]) -> None:
         scopes: tuple[Scope, ...] = ("command", "woken", "interrupt")
         for scope in scopes:
-            self._decoder.add_jsgf_string(scope, jsgf(self._config, self._household, scope, names))
+            self._decoder.add_jsgf_string(scope, jsgf(self._config, household, scope, names))
 
     def recognise(self, utterance: PreparedUtterance, scope: Scope) -> Recognition:
         self._decoder.activate_search(scope)

@@ -1,0 +1,145 @@
+"""`tidybot places` and `tidybot rules`: what people call the parts of their home, and where things belong."""
+
+import argparse
+import uuid
+
+import msgspec
+
+from cli.errors import CliError, near
+from cli.link import Link, Watch, add_options, linked
+from common import messages as m
+from common import topics
+from common.time.clock import monotonic
+
+ANSWER = 10.0
+"""Time [s] for the brain to answer: a step of it, on a machine that is busy."""
+
+
+def places(args: argparse.Namespace) -> int:
+    with linked(args) as link:
+        return _list(_known(link), args.json)
+
+
+def name(args: argparse.Namespace) -> int:
+    with linked(args) as link:
+        part = _part(_known(link), args.part) if args.part else ""
+        edit = m.HouseholdEdit(do="name", name=" ".join(args.name), part=part, kind=args.kind, id=_fresh_id())
+        return _ask(link, edit, args.json)
+
+
+def rename(args: argparse.Namespace) -> int:
+    with linked(args) as link:
+        edit = m.HouseholdEdit(do="name", name=args.new, part=_part(_known(link), args.old), id=_fresh_id())
+        return _ask(link, edit, args.json)
+
+
+def forget(args: argparse.Namespace) -> int:
+    with linked(args) as link:
+        return _ask(link, m.HouseholdEdit(do="forget", name=" ".join(args.name), id=_fresh_id()), args.json)
+
+
+def rules(args: argparse.Namespace) -> int:
+    with linked(args) as link:
+        known = link.latest(topics.HOUSEHOLD_EDITS)
+        if known is None:
+            raise CliError("the brain does not answer; see `tidybot ps`")
+        if args.json:
+            print(msgspec.json.encode(known.rules).decode())
+            return 0
+        for rule in known.rules:
+            print(f"{rule.things:24} -> {' or '.join(rule.to)}")
+        if not known.rules:
+            print('nobody has told a rule; say "mugs go on the shelf", or `tidybot say "mugs go on the shelf"`')
+        return 0
+
+
+def forget_rule(args: argparse.Namespace) -> int:
+    with linked(args) as link:
+        return _ask(link, m.HouseholdEdit(do="forget rule", name=" ".join(args.things), id=_fresh_id()), args.json)
+
+
+def _fresh_id() -> str:
+    return f"cli-{uuid.uuid4().hex[:8]}"
+
+
+def _known(link: Link) -> list[m.HomePart]:
+    known = link.latest(topics.HOUSEHOLD_PARTS)
+    if known is None:
+        raise CliError("the brain does not answer; see `tidybot ps`")
+    return known.parts
+
+
+def _part(known: list[m.HomePart], wanted: str) -> str:
+    """A part's name as the home has it.
+
+    Raises:
+        CliError: there is none of that name; with the nearest.
+    """
+    names = [p.name for p in known]
+    if wanted not in names:
+        raise CliError(f"nothing is called {wanted!r}{near(wanted, names)}; `tidybot places` lists all")
+    return wanted
+
+
+def _ask(link: Link, edit: m.HouseholdEdit, as_json: bool) -> int:
+    watch = Watch(link, topics.HOUSEHOLD_EDITED)
+    link.send(topics.HOUSEHOLD_EDIT, edit)
+    end = monotonic() + ANSWER
+    while monotonic() < end:
+        result = watch.next(0.5)
+        if result is None or result.goal_id != edit.id:
+            continue
+        print(msgspec.json.encode(result).decode() if as_json else told(edit, result))
+        return 0 if result.ok else 1
+    raise CliError(f"the brain did not answer within {ANSWER:.0f} s; see `tidybot ps`")
+
+
+def told(edit: m.HouseholdEdit, result: m.EditResult) -> str:
+    """What came of an edit, for people."""
+    if not result.ok:
+        return f"not done: {result.detail}"
+    match edit.do:
+        case "name":
+            before = f", which was the {result.part}" if result.part and result.part != result.name else ""
+            return f"the {result.kind} is called {result.name}{before}"
+        case "forget":
+            return f"forgotten: {result.name}"
+        case _:
+            return f"no longer: {result.name} go to the {result.part}"
+
+
+def _list(known: list[m.HomePart], as_json: bool) -> int:
+    if as_json:
+        print(msgspec.json.encode(known).decode())
+        return 0
+    for kind in ("room", "surface", "place"):
+        for one in sorted((p for p in known if p.kind == kind), key=lambda p: (p.room, p.name)):
+            print(f"{one.name:28} {kind:8} {one.room:16} {'named by you' if one.given else ''}".rstrip())
+    return 0
+
+
+def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+    parser = commands.add_parser("places", help="rooms, surfaces and places: list, name, rename, forget")
+    parser.set_defaults(run=places)
+    actions = parser.add_subparsers(metavar="ACTION")
+    one = actions.add_parser("name", help="name the room that the robot is in, or the surface that it stands before")
+    one.add_argument("name", nargs="+", help='what it is called, such as "kitchen" or "desk"')
+    one.add_argument("--part", help="the part meant, by its present name")
+    one.add_argument("--kind", choices=("room", "surface", "place"), default="", help="where the name does not tell")
+    one.set_defaults(run=name)
+    two = actions.add_parser("rename", help="give a part another name")
+    two.add_argument("old")
+    two.add_argument("new")
+    two.set_defaults(run=rename)
+    three = actions.add_parser("forget", help="forget a name that was given")
+    three.add_argument("name", nargs="+")
+    three.set_defaults(run=forget)
+    tidying = commands.add_parser("rules", help="where things belong, as people told it: list, forget")
+    tidying.set_defaults(run=rules)
+    choices = tidying.add_subparsers(metavar="ACTION")
+    four = choices.add_parser("forget", help="take a rule back, by its things; without them the newest")
+    four.add_argument("things", nargs="*", help='such as "mugs"')
+    four.set_defaults(run=forget_rule)
+    for each in (parser, one, two, three, tidying, four):
+        each.add_argument("--json", action="store_true")
+        add_options(each)

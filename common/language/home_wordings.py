@@ -1,0 +1,81 @@
+"""The wordings by which people tell of their home: what its parts are called, where things belong and usually are."""
+
+from common.language.lexicon import ASK
+from common.language.wording import Wording
+
+_ON = "(on | in | into | onto | at | inside)"
+_ALWAYS = "(always | from now on | in future | in the future | generally)"
+_BELONG = "(go | goes | belong | belongs | live | lives | should go | should be | are kept | are put | are stored)"
+_USUALLY = "(usually | normally | mostly | generally | typically | most of the time | most often)"
+_THE = "[the | my | our | a]"
+
+TOLD: tuple[Wording, ...] = (
+    Wording(
+        "name_place",
+        f"[(remember | learn) [that | and]] (this | that) <thing> is [called | named] {_THE} <words>"
+        f" | (call | name) (this | that) <thing> {_THE} <words>",
+        heard="",
+    ),
+    Wording(
+        "name_place",
+        f"[(remember | learn) [that | and]] (this | that | here) is [called | named] {_THE} <words>"
+        f" | (call | name) (this | that | here) {_THE} <words>"
+        f" | (you are | you're) [now] (in | at) {_THE} <words> [now]"
+        f" | (call | rename) <spot> (to | as) {_THE} <words> | <spot> is [now] (called | named) {_THE} <words>"
+        f" | (call | rename) (the | my | our) <spot> {_THE} <words>",
+        heard="",
+    ),
+    Wording(
+        "forget_rule",
+        "(forget | drop | delete | undo | remove | take back | cancel) (that | the | this | my | your) [last | new]"
+        " rule [(about | for | on) <words>]",
+        heard="forget that rule",
+    ),
+    Wording(
+        "rule_always",
+        f"[no] {_ALWAYS} [please] (put | keep | place | store | leave | sort) <thing> {_ON} <spot>"
+        f" | [no] (put | keep | place | store | leave | sort) <thing> {_ON} <spot> {_ALWAYS}"
+        f" | [no] {_ALWAYS} <thing> {_BELONG} {_ON} <spot> | [no] <thing> {_ALWAYS} {_BELONG} {_ON} <spot>"
+        f" | [no] <thing> {_BELONG} {_ON} <spot> {_ALWAYS}",
+        heard="",
+    ),
+    Wording(
+        "rule",
+        f"[no] [(remember | know | learn | note) [that]] <thing> {_BELONG} {_ON} <spot>",
+        heard="",
+    ),
+)  # fmt: skip
+"""What is to be kept."""
+
+ASKED: tuple[Wording, ...] = (
+    Wording(
+        "rules",
+        "[tell me | list | show me | repeat] (what are | what were) (your | the | my | our) rules"
+        " | (tell me | list | show me | repeat) (your | the | my | our) rules"
+        " | (what | which) rules (do you (have | know | follow) | are there | did i (give | tell) you)",
+        heard="what are your rules",
+    ),
+    Wording(
+        "belongs",
+        f"{ASK} where (do | does | should | would) <thing> (go | belong | live | be | stand)"
+        f" | {ASK} where (should | do) (i | you | we) put <thing> [away]",
+        heard="",
+    ),
+    Wording(
+        "usual",
+        f"{ASK} where (is | are) <thing> {_USUALLY} [kept | found | put | left | stored | lying | to be found]"
+        f" | {ASK} where (is | are) {_USUALLY} <thing>"
+        f" | {ASK} where (do | does | did) <thing> {_USUALLY} (lie | stand | sit | be | stay | hang out | live | go)"
+        f" | {ASK} where (do | did) (i | we | you) {_USUALLY} (leave | put | keep | find | see | have) <thing>"
+        f" | {ASK} where (do | did) (i | we | you) (leave | put | keep | find | see | have) <thing> {_USUALLY}",
+        heard="where (is | are) <thing> usually",
+    ),
+    Wording(
+        "last_seen",
+        f"{ASK} (where | when) (did | have) you last (see | seen | notice | noticed | spot | spotted) <thing>"
+        f" | {ASK} (where | when) (did | have) you (see | seen | notice | noticed) <thing> last"
+        f" | {ASK} (where | when) (was | were) <thing> last seen",
+        heard="",
+    ),
+)  # fmt: skip
+"""Questions about what was kept."""

@@ -1,0 +1,90 @@
+"""Names of rooms and surfaces: which words name them, and what those are called that nobody has named. Pure."""
+
+from collections import Counter
+from collections.abc import Sequence
+from typing import TypeVar
+
+import msgspec
+
+from common.floor_plan import FloorPlan, Receptacle, Room
+from common.messages import PartKind
+
+ROOMS = frozenset({
+    "kitchen", "bedroom", "bathroom", "room", "lounge", "hall", "hallway", "corridor", "office", "study", "nursery",
+    "pantry", "garage", "loo", "toilet", "cellar", "attic", "conservatory", "kitchenette", "entrance", "landing",
+    "laundry", "workshop", "playroom", "den", "foyer", "porch",
+})  # fmt: skip
+"""Words that a room's name ends with."""
+SURFACES = frozenset({
+    "table", "desk", "shelf", "shelves", "counter", "worktop", "bench", "sideboard", "dresser", "cupboard", "cabinet",
+    "nightstand", "stand", "bookshelf", "bookcase", "sink", "basin", "bin", "basket", "hamper", "tray", "rack", "top",
+    "island", "bar", "commode", "drawers", "windowsill", "sill", "bed", "sofa", "couch", "stool", "chair", "ottoman",
+    "workbench", "surface", "trolley", "washstand",
+})  # fmt: skip
+"""Words that a surface's name ends with."""
+PLACES = frozenset({
+    "place", "spot", "corner", "door", "doorway", "window", "station", "dock",
+})  # fmt: skip
+"""Words that the name of somewhere to stand ends with."""
+P = TypeVar("P", bound=FloorPlan)
+
+
+def kind_named(name: str) -> PartKind | None:
+    """What a name like `standing desk` or `kids room` names by its last word, None when that is no word for a part."""
+    last = name.split()[-1] if name.split() else ""
+    for word in (last, last.removesuffix("s")):
+        if word in ROOMS:
+            return "room"
+        if word in SURFACES:
+            return "surface"
+        if word in PLACES:
+            return "place"
+    return None
+
+
+def with_part_names(plan: P) -> P:
+    """The plan with names for what has none: `room 2`, `table in the kitchen`. Identifiers stay as aliases."""
+    if all(r.named for r in plan.rooms) and all(r.named for r in plan.receptacles):
+        return plan
+    rooms = tuple(_named_room(room, number) for number, room in enumerate(plan.rooms, 1))
+    named = msgspec.structs.replace(plan, rooms=rooms)
+    return msgspec.structs.replace(named, receptacles=_named_surfaces(named))
+
+
+def _named_room(room: Room, number: int) -> Room:
+    if room.named:
+        return room
+    return msgspec.structs.replace(room, name=f"room {number}", aliases=(*room.aliases, room.name))
+
+
+def _named_surfaces(plan: FloorPlan) -> tuple[Receptacle, ...]:
+    taken = {n for r in plan.receptacles if r.named for n in (r.name, *r.aliases)}
+    wishes = [_wishes(plan, r) if not r.named else [r.name] for r in plan.receptacles]
+    found: list[Receptacle] = []
+    for r, wished in zip(plan.receptacles, wishes, strict=True):
+        if r.named:
+            found.append(r)
+            continue
+        name = next((w for n, w in enumerate(wished) if _tells_apart(n, w, wishes) and w not in taken), "")
+        name = name or _numbered(wished[0], r.kind, taken)
+        taken.add(name)
+        aliases = tuple(a for a in (*r.aliases, r.name) if a != name)
+        found.append(msgspec.structs.replace(r, name=name, aliases=aliases))
+    return tuple(found)
+
+
+def _wishes(plan: FloorPlan, r: Receptacle) -> list[str]:
+    """What it could be called, the shortest first."""
+    room = plan.room_at(r.center[0], r.center[1])
+    where = f" in {room.name}" if room and not room.named else f" in the {room.name}" if room else ""
+    return [f"{r.kind}{where}", *([f"{r.colour} {r.kind}{where}"] if r.colour else [])]
+
+
+def _tells_apart(n: int, wish: str, wishes: Sequence[Sequence[str]]) -> bool:
+    return Counter(w[n] for w in wishes if len(w) > n)[wish] == 1
+
+
+def _numbered(wish: str, kind: str, taken: set[str]) -> str:
+    """`table 2 in the kitchen` where `table in the kitchen` would be one of several."""
+    where = wish.removeprefix(kind)
+    return next(name for n in range(1, len(taken) + 2) if (name := f"{kind} {n}{where}") not in taken)

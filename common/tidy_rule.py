@@ -1,0 +1,37 @@
+"""What "red mugs go on the shelf" is a rule about: kinds, colours and names in a person's words. Pure."""
+
+from common.kinds import KINDS
+from common.messages import TidyRule
+from common.naming import normalise
+from common.words import Words
+
+_ALL = {"all", "every", "each", "any", "our", "your", "these", "those"}
+
+
+def rule_about(things: str, to: str, words: Words) -> TidyRule:
+    """The rule that `things` go to the receptacle `to`; what no word of the household names goes by its name."""
+    rest = [w for w in normalise(things).split() if w not in _ALL]
+    colours: list[str] = []
+    while len(rest) > 1 and (colour := words.colour(rest[0])):
+        colours.append(colour)
+        rest = rest[1:]
+    noun = " ".join(rest)
+    for form in _singulars(noun):
+        kind = form if form in KINDS else words.kind(form)
+        kinds = list(dict.fromkeys([*([kind] if kind else ()), *words.groups.get(form, ())]))
+        if kinds:
+            return TidyRule(things=normalise(things), to=[to], kinds=kinds, colours=colours)
+    names = list(dict.fromkeys(" ".join([*colours, form]) for form in _singulars(noun)))
+    return TidyRule(things=normalise(things), to=[to], names=names if noun else [])
+
+
+def _singulars(noun: str) -> list[str]:
+    """The noun as it is, and what it may be the plural of."""
+    forms = [noun]
+    if noun.endswith("ves"):
+        forms.append(f"{noun[:-3]}f")
+    if noun.endswith("es"):
+        forms.append(noun[:-2])
+    if noun.endswith("s") and not noun.endswith("ss"):
+        forms.append(noun[:-1])
+    return forms

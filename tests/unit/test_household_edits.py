@@ -1,0 +1,121 @@
+"""Names that people give to parts of the home, and names for parts that nobody has named."""
+
+import msgspec
+
+from common import messages as m
+from common.floor_plan import Place, Receptacle, Room
+from common.household import Household, load_household
+from common.household_edits import edited
+from common.part_names import kind_named, with_part_names
+from common.tidy_rule import rule_about
+from common.words import Words
+
+APARTMENT = load_household("apartment")
+
+
+def table(name: str, x: float, named: bool = False, kind: str = "table", colour: str = "") -> Receptacle:
+    return Receptacle(name=name, kind=kind, center=(x, 0.5, 0.7), size=(0.6, 0.6), named=named, colour=colour)  # type: ignore[arg-type]
+
+
+HOME = Household(
+    name="mapped",
+    low=(0, 0),
+    high=(9, 3),
+    home=Place(name="home", x=0.5, y=0.5),
+    rooms=(
+        Room(name="r-1", low=(0, 0), high=(3, 3), named=False),
+        Room(name="r-2", low=(3, 0), high=(6, 3), named=False),
+    ),
+    receptacles=(
+        table("s-1", 1.0),
+        table("s-2", 2.0),
+        table("s-3", 4.0),
+        table("s-4", 5.0, kind="shelf"),
+        table("s-5", 8),
+    ),
+    delivery="s-1",
+)
+
+
+def test_what_nobody_named_is_called_by_kind_and_room() -> None:
+    named = edited(HOME, m.HouseholdEdits())
+    assert [r.name for r in named.rooms] == ["room 1", "room 2"]
+    assert [r.name for r in named.receptacles] == [
+        "table 1 in room 1", "table 2 in room 1", "table in room 2", "shelf in room 2", "table",
+    ]  # fmt: skip
+    assert named.delivery == "table 1 in room 1"
+    assert named.fault() == ""
+
+
+def test_colours_tell_tables_apart_before_numbers_do() -> None:
+    two = (table("s-1", 1.0, colour="white"), table("s-2", 2.0, colour="brown"))
+    named = with_part_names(msgspec.structs.replace(HOME, receptacles=two, delivery=""))
+    assert [r.name for r in named.receptacles] == ["white table in room 1", "brown table in room 1"]
+
+
+def test_a_room_that_is_named_names_its_surfaces() -> None:
+    edits = m.HouseholdEdits(names=[m.PlaceName(name="kitchen", kind="room", part="r-2")])
+    named = edited(HOME, edits)
+    assert [r.name for r in named.receptacles][2:4] == ["table in the kitchen", "shelf in the kitchen"]
+    assert named.receptacle("s-3") is named.receptacles[2]
+    room = named.room_at(4.0, 1.0)
+    assert room is not None and room.name == "kitchen"
+
+
+def test_a_named_part_keeps_what_it_was_called() -> None:
+    edits = m.HouseholdEdits(names=[m.PlaceName(name="breakfast bar", kind="surface", part="counter")])
+    named = edited(APARTMENT, edits)
+    bar = named.receptacle("breakfast bar")
+    assert bar is not None and named.receptacle("counter") is bar
+    assert [r.center for r in named.receptacles] == [r.center for r in APARTMENT.receptacles]
+
+
+def test_rooms_and_places_that_no_map_has() -> None:
+    edits = m.HouseholdEdits(
+        names=[
+            m.PlaceName(name="den", kind="room", low=(6, 0), high=(9, 3)),
+            m.PlaceName(name="charging spot", kind="place", pose=(7.0, 1.0, 0.5)),
+        ]
+    )
+    named = edited(HOME, edits)
+    room = named.room_at(8.0, 1.0)
+    assert room is not None and room.name == "den"
+    assert named.receptacles[4].name == "table in the den"
+    assert [(p.name, p.x) for p in named.places] == [("charging spot", 7.0)]
+
+
+def test_names_of_another_home_change_nothing() -> None:
+    edits = m.HouseholdEdits(names=[m.PlaceName(name="desk", kind="surface", part="s-77")])
+    assert edited(HOME, edits).receptacles == edited(HOME, m.HouseholdEdits()).receptacles
+
+
+def test_the_newest_rule_comes_first() -> None:
+    rules = [
+        m.TidyRule(things="mugs", to=["shelf"], kinds=["mug"]),
+        m.TidyRule(things="cups", to=["s-1"], kinds=["cup"]),
+    ]
+    tidy = edited(HOME, m.HouseholdEdits(rules=rules)).words.tidy
+    assert [rule.kinds for rule in tidy] == [("cup",), ("mug",)]
+
+
+def test_a_delivery_place_goes_by_its_new_name() -> None:
+    edits = m.HouseholdEdits(names=[m.PlaceName(name="desk", kind="surface", part="s-1")])
+    assert edited(HOME, edits).delivery == "desk"
+
+
+def test_last_words_tell_rooms_from_surfaces() -> None:
+    assert kind_named("kids room") == "room"
+    assert kind_named("standing desk") == "surface"
+    assert kind_named("my corner") == "place"
+    assert kind_named("vitamin box") is None
+    assert kind_named("") is None
+
+
+def test_what_a_rule_is_about() -> None:
+    words = APARTMENT.words
+    assert rule_about("red mugs", "shelf", words) == m.TidyRule(
+        things="red mugs", to=["shelf"], kinds=["mug"], colours=["red"]
+    )
+    assert set(rule_about("toys", "box", words).kinds) == set(words.groups["toy"])
+    assert rule_about("my keys", "tray", words).names == ["keys", "key"]
+    assert rule_about("", "tray", Words()).names == []
