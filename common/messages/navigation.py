@@ -43,7 +43,8 @@ class NavigationFeedback(Message):
     """How a goal stands: `distance_remaining` [m], `eta` [s].
 
     `recoveries` counts other paths taken or tried since the goal was sent; the sender of a goal that failed BLOCKED
-    adds to them only what is missing to two. An `attempt` of 0 is one that the navigator does not state.
+    adds to them only what is missing to two. An `attempt` of 0 is one that the navigator does not state. `map_fit` is
+    the share of what the lidar saw lately that the map explains.
     """
 
     goal_id: str
@@ -54,6 +55,7 @@ class NavigationFeedback(Message):
     code: str = ""
     attempt: int = 0
     detail: str = ""
+    map_fit: float = 1.0
 
 
 LOST = 1.0

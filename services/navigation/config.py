@@ -34,6 +34,9 @@ class NavigationConfig(Config, frozen=True):
     """From the base's centre to the edge of a surface that it stands before, at least."""
     obstacle_memory: float = 30.0
     """How long something out of sight is remembered; chosen: a drive through the flat takes about as long."""
+    lasting_after: float = 300.0
+    """How far apart two sightings of what the map does not have make it a part of the map; chosen: nobody stands for
+    five minutes without moving a foot."""
     blocked_wait: float = 4.0
     """Wait before another path is tried; chosen: a person clears a door in that time."""
     keep_off: float = 0.9

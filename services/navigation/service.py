@@ -15,6 +15,7 @@ from services.navigation.goals import Choices, Goal, Goals, in_words
 from services.navigation.localisation.state_estimation import StateEstimator
 from services.navigation.motion.navigator import Navigator
 from services.navigation.places import Places, load_places
+from services.navigation.planning.changes import ChangesFile
 from services.navigation.planning.costmap import Costmap
 from services.navigation.planning.planner import PathPlanner
 from services.navigation.search.coverage import SearchCoverage
@@ -37,7 +38,10 @@ class NavigationService:
         self._places = load_places(config_dir())
         self._named = io.household
         self._goals = Goals(self._named, Places(self._named, self._places), config)
-        self._map = Costmap(io.household, config.resolution, config.obstacle_memory)
+        self._map = Costmap(io.household, config.resolution, config.obstacle_memory, config.lasting_after)
+        self._changes = ChangesFile(io.state_dir, io.household, lambda why: io.log.warning("map", reason=why))
+        if self._changes.load(self._map.changes):
+            self._map.remember(0.0)
         self._planner = PathPlanner(self._map, config.footprint_radius + config.clearance, config.inflation)
         self._state = StateEstimator(config, io, self._map)
         self._coverage = SearchCoverage(viewpoints_of(io.household, None))
@@ -63,6 +67,7 @@ class NavigationService:
         self._state.step(now)
         if int(now) != self._shown:
             self._shown = int(now)
+            self._changes.save(self._map.changes, now)
             if io.has_subscribers(topics.COSTMAP):
                 io.publish(topics.COSTMAP, self._map.picture(now))
         if io.take_all(topics.ROBOT_STOP) and self._busy:
@@ -284,5 +289,6 @@ class NavigationService:
             code=status.code or self._whereabouts.doing or (navigator.doing if navigator else ""),
             attempt=status.attempt,
             detail=status.detail,
+            map_fit=round(self._state.map_fit.share, 3),
         )
         self._io.publish(topics.NAVIGATION_FEEDBACK, feedback)

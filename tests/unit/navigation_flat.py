@@ -1,6 +1,7 @@
 """A flat without physics for tests of navigation: a base that goes where it is told, a lidar by the slab method."""
 
 import math
+from pathlib import Path
 
 import msgspec
 import numpy as np
@@ -43,10 +44,15 @@ class Flat(Node):
     """The navigation service in the apartment; `boxes` is what its map does not have, `wheels` its odometry."""
 
     def __init__(
-        self, boxes: list[Rectangle] | None = None, household: Household = SCENE, **parameters: object
+        self,
+        boxes: list[Rectangle] | None = None,
+        household: Household = SCENE,
+        state_dir: Path | None = None,
+        **parameters: object,
     ) -> None:
         self.boxes = boxes or []
-        super().__init__(NavigationService, msgspec.convert(parameters, NavigationConfig), household)
+        config = msgspec.convert(parameters, NavigationConfig)
+        super().__init__(NavigationService, config, household, state_dir=state_dir)
         self.feedbacks = self.bus.tap(topics.NAVIGATION_FEEDBACK)
         self._targets = self.bus.tap(topics.BASE_TARGET)
         self._stops = self.bus.tap(topics.CMD_VEL)

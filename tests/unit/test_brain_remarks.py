@@ -2,7 +2,7 @@
 
 from common import messages as m
 from common import topics
-from services.brain.mission.remarks import FOUND, PAUSE, PERSON, SAID, Remarks
+from services.brain.mission.remarks import FOUND, MAP_AGED, PAUSE, PERSON, SAID, Remarks
 from tests.unit.brain_bench import Bench
 from tests.unit.test_brain_vla import SPEECH, planned
 
@@ -51,6 +51,18 @@ def test_a_goal_that_fails_is_reported_by_others() -> None:
     listener = Listener()
     listener.told("LOST", 4.0)
     assert listener.told("LOST", 20.0, "failed") == [SAID["LOST"]]
+
+
+def test_a_map_that_has_aged_is_told_once_when_it_has_arrived() -> None:
+    listener = Listener()
+    for status in ("navigating", "arrived", "navigating", "arrived"):
+        feedback = m.NavigationFeedback(goal_id="a", status=status, map_fit=0.5)
+        listener.remarks.hear(feedback, 1.0)
+        listener.remarks.step(1.0)
+    assert listener.said == [MAP_AGED]
+    listener.remarks.hear(m.NavigationFeedback(goal_id="b", status="arrived", map_fit=0.7), 9999.0)
+    listener.remarks.step(9999.0)
+    assert listener.said == [MAP_AGED]
 
 
 def test_it_is_said_aloud_beside_the_mission() -> None:

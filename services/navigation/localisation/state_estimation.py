@@ -2,6 +2,8 @@
 
 import math
 
+import numpy as np
+
 from common import messages as m
 from common import topics
 from common.bus.port import Io
@@ -10,6 +12,7 @@ from services.navigation.config import NavigationConfig
 from services.navigation.localisation.distance_field import distance_field
 from services.navigation.localisation.global_localiser import GlobalLocaliser
 from services.navigation.localisation.localise import Localiser
+from services.navigation.localisation.map_fit import MapFit
 from services.navigation.localisation.scan import Scan, ScanReader, sane, transformed
 from services.navigation.motion.obstacle_tracker import ObstacleTracker
 from services.navigation.planning.costmap import Array, Costmap
@@ -36,6 +39,7 @@ class StateEstimator:
         self.localiser = Localiser(self.field, (home.x, home.y, home.theta))
         self.everywhere = GlobalLocaliser(io, self.field, known=config.initial_pose == "home")
         self.tracker = ObstacleTracker()
+        self.map_fit = MapFit()
         self.pose: Pose2 | None = None
         self.odometry: Pose2 = (0.0, 0.0, 0.0)
         self.scan: Scan | None = None
@@ -118,8 +122,10 @@ class StateEstimator:
         placed, near = transformed(frame, scan.points), scan.ranges < NEAR
         self.points = placed[near]
         if not self.lost:
-            unknown = near & ~self.field.near(placed, EXPLAINED)
-            self.tracker.update(placed[unknown], (frame[0], frame[1]), now)
+            explained = self.field.near(placed, EXPLAINED)
+            self.tracker.update(placed[near & ~explained], (frame[0], frame[1]), now)
+            if len(placed) and not self.everywhere.broken:
+                self.map_fit.see(frame, float(np.mean(explained | self._map.lasting_at(placed))))
             self.mark(self._map, frame, now)
 
     def mark(self, costmap: Costmap, frame: Pose2, now: float) -> None:

@@ -5,11 +5,13 @@ import zlib
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import ndimage
 
 from common import messages as m
 from common.approach import BIN_RIM
 from common.floor_plan import FloorPlan
 from common.geometry import Pose2
+from services.navigation.planning.changes import Changes
 
 Grid = NDArray[np.bool_]
 Array = NDArray[np.float64]
@@ -28,9 +30,14 @@ _FAR = 1.0
 
 
 class Costmap:
-    """Cells of `resolution`; `static_distance` [m] is from each cell to the nearest obstacle of the static map."""
+    """Cells of `resolution`; `static_distance` [m] is from each cell to the nearest obstacle of the static map.
 
-    def __init__(self, floor_plan: FloorPlan, resolution: float, memory: float) -> None:
+    `memory` [s]: how long what is out of sight is remembered; `lasting_after` [s]: see `Changes`.
+    """
+
+    def __init__(
+        self, floor_plan: FloorPlan, resolution: float, memory: float, lasting_after: float = math.inf
+    ) -> None:
         self.resolution, self.memory = resolution, memory
         self.origin = (floor_plan.low[0] - _PAD, floor_plan.low[1] - _PAD)
         width = math.ceil((floor_plan.high[0] - floor_plan.low[0] + 2 * _PAD) / resolution)
@@ -40,6 +47,7 @@ class Costmap:
         self.static: Grid = self.static_distance <= 0
         self._seen_at = np.full(self.shape, -np.inf)
         self._first_at = np.full(self.shape, np.inf)
+        self.changes = Changes(self.shape, lasting_after)
         self._distance: Array | None = self.static_distance
         self.version = 0
         reach = math.ceil(_REACH / resolution)
@@ -81,10 +89,20 @@ class Costmap:
         self.forget()
 
     def forget(self) -> None:
-        """Forget all that was seen: it was not where it seemed to be."""
+        """Forget all that was seen of late: it was not where it seemed to be."""
         self._seen_at[:], self._first_at[:] = -np.inf, np.inf
+        self.changes.forget_brief()
         self._distance = self.static_distance
         self.version += 1
+        self.remember(0.0)
+
+    def remember(self, now: float) -> None:
+        """Take the lasting changes for seen at robot time `now` [s]."""
+        kept = self.changes.lasting
+        if kept.any():
+            self._seen_at[kept], self._first_at[kept] = np.maximum(self._seen_at[kept], now), -np.inf
+            self._distance = None
+            self.version += 1
 
     def centres(self) -> Array:
         """The middle of every cell (rows, columns, 2) [map]."""
@@ -148,19 +166,20 @@ class Costmap:
         rows, columns = rows[inside], columns[inside]
         new = self.static_distance[rows, columns] > _EXPLAINED
         before = self._seen_at > -np.inf
-        if not new.any() and not before.any():
+        if not new.any() and not before.any() and not len(self.changes.known[0]):
             return
         self._clear(pose, angles, np.minimum(ranges, range_max), now)
         marked = rows[new], columns[new]
         self._seen_at[marked] = now
         self._first_at[marked] = np.minimum(self._first_at[marked], now)
+        self.changes.occupied(marked, now)
         after = self._seen_at > -np.inf
         if (after != before).any():
             self._distance = None if after.any() else self.static_distance
             self.version += 1
 
     def _clear(self, pose: Pose2, angles: Array, reach: Array, now: float) -> None:
-        rows, columns = np.nonzero(self._seen_at > -np.inf)
+        rows, columns = self.changes.known
         if not len(rows):
             return
         x = self.origin[0] + (columns + 0.5) * self.resolution - pose[0]
@@ -173,6 +192,8 @@ class Costmap:
         # What was there for a moment only was walking by.
         lasting = seen_at - self._first_at[rows, columns] > _LASTING
         old = now - seen_at > np.where(lasting, self.memory, min(_BRIEF, self.memory))
+        old &= ~self.changes.lasting[rows, columns]
+        self.changes.passed((rows[passed], columns[passed]))
         self._drop(rows, columns, passed | old)
 
     def _drop(self, rows: NDArray[np.intp], columns: NDArray[np.intp], gone: Grid) -> None:
@@ -193,6 +214,14 @@ class Costmap:
         cells = self._cells(points[:, 0], points[:, 1])
         near = self.distance[cells]
         found: Grid = (near < radius) & (near < self.static_distance[cells])
+        return found
+
+    def lasting_at(self, points: Array) -> Grid:
+        """Which points (n, 2) are where something stands that became a part of the map; to a cell."""
+        if not self.changes.lasting.any():
+            return np.zeros(len(points), bool)
+        rows, columns = self._cells(points[:, 0], points[:, 1])
+        found: Grid = ndimage.binary_dilation(self.changes.lasting, np.ones((3, 3)))[rows, columns]
         return found
 
     @property

@@ -1,0 +1,107 @@
+"""What has changed since the map was made and lasts: boxes that stay, chairs that were moved, doors that are shut.
+
+A cell where something was seen at times far apart, and was never seen through in between, is part of the map from then
+on, until a ray passes through it. It is kept on disk, for this map only.
+"""
+
+import zlib
+from collections.abc import Callable
+from pathlib import Path
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from common import atomic_file
+from common.floor_plan import FloorPlan
+
+Cells = tuple[NDArray[np.intp], NDArray[np.intp]]
+"""Rows and columns."""
+SAVE_PERIOD = 30.0
+"""Least time between two writes [s]; chosen: what changes in that time is seen again."""
+
+
+class Saved(msgspec.Struct):
+    """The file. `plan` is the fingerprint of the map that the cells were added to."""
+
+    plan: str
+    cells: list[tuple[int, int]]
+
+
+class Changes:
+    """Cells of a grid of `shape`; `lasting` (rows, columns) is where something stands that the map does not have.
+
+    `after` [s]: how far apart two sightings are at least.
+    """
+
+    def __init__(self, shape: tuple[int, int], after: float) -> None:
+        self._after = after
+        self._first = np.full(shape, np.inf)
+        self.lasting: NDArray[np.bool_] = np.zeros(shape, bool)
+
+    @property
+    def known(self) -> Cells:
+        """Cells in which something was seen and that were not seen through since."""
+        rows, columns = np.nonzero((self._first < np.inf) | self.lasting)
+        return rows, columns
+
+    def occupied(self, cells: Cells, now: float) -> None:
+        """Something is seen in these cells."""
+        self._first[cells] = np.minimum(self._first[cells], now)
+        self.lasting[cells] |= now - self._first[cells] >= self._after
+
+    def passed(self, cells: Cells) -> None:
+        """These cells were seen through."""
+        self._first[cells], self.lasting[cells] = np.inf, False
+
+    def forget_brief(self) -> None:
+        """Forget what does not last: it was not where it seemed to be."""
+        self._first[:] = np.inf
+
+
+class ChangesFile:
+    """Keeps the lasting changes of a map in a directory; None: nowhere. `complain` hears why that was not possible."""
+
+    def __init__(self, directory: Path | None, plan: FloorPlan, complain: Callable[[str], None]) -> None:
+        self._plan = f"{zlib.crc32(msgspec.json.encode(_shape(plan))):08x}"
+        self._path = directory / f"map-changes-{self._plan}.json" if directory is not None else None
+        self._complain, self._why = complain, ""
+        self._saved: NDArray[np.bool_] | None = None
+        self._next = 0.0
+
+    def load(self, changes: Changes) -> int:
+        """Enter what was kept; how many cells that is [count]."""
+        if self._path is None or not self._path.exists():
+            return 0
+        try:
+            saved = msgspec.json.decode(self._path.read_bytes(), type=Saved)
+        except (OSError, msgspec.MsgspecError) as error:
+            self._complain(f"{self._path.name}: {error}")
+            return 0
+        rows, columns = changes.lasting.shape
+        cells = [(r, c) for r, c in saved.cells if 0 <= r < rows and 0 <= c < columns]
+        if saved.plan == self._plan and cells:
+            changes.lasting[tuple(np.array(cells).T)] = True
+        self._saved = changes.lasting.copy()
+        return len(cells)
+
+    def save(self, changes: Changes, now: float) -> None:
+        """Write what has changed, now and then."""
+        if self._saved is None:
+            self._saved = np.zeros_like(changes.lasting)
+        if self._path is None or now < self._next or (self._saved == changes.lasting).all():
+            return
+        self._next = now + SAVE_PERIOD
+        cells = [(int(r), int(c)) for r, c in zip(*np.nonzero(changes.lasting), strict=True)]
+        why = atomic_file.replace(self._path, msgspec.json.encode(Saved(plan=self._plan, cells=cells)))
+        if not why:
+            self._saved = changes.lasting.copy()
+        elif why != self._why:
+            self._complain(why)
+        self._why = why
+
+
+def _shape(plan: FloorPlan) -> list[object]:
+    """What makes a map another map: not how things in it are called."""
+    boxes = [box.outline for box in plan.furniture] + [(r.outline, r.center[2], r.depth) for r in plan.receptacles]
+    return [plan.low, plan.high, [wall.footprint for wall in plan.walls], boxes]
