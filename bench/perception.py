@@ -84,11 +84,18 @@ def views(args: argparse.Namespace, scene: Scene) -> Iterator[tuple[View, list[P
             pose = stand(rng, scene, placements[int(rng.integers(len(placements)))])
             if pose is not None and made < args.views:
                 made += 1
-                yield _view(renderer, pose, args, rng), placements
+                yield take(renderer, pose, args, rng), placements
         renderer.close()
 
 
-def _view(renderer: Renderer, pose: Pose2, args: argparse.Namespace, rng: np.random.Generator) -> View:
+def take(
+    renderer: Renderer,
+    pose: Pose2,
+    args: argparse.Namespace,
+    rng: np.random.Generator,
+    camera: StereoCamera | None = None,
+) -> View:
+    """The view of the head camera with the base at `pose`, by `camera` or else by any camera of the kind."""
     model, data = renderer.model, renderer.data
     names = ("base_x", "base_y", "base_yaw", *(f"joint_{i}" for i in range(1, 8)))
     for name, value in zip(names, (*pose, *own().home), strict=True):
@@ -98,7 +105,8 @@ def _view(renderer: Renderer, pose: Pose2, args: argparse.Namespace, rng: np.ran
     focal = renderer.focal("head", args.height)
     if args.sensors == "bought":
         surfaces = renderer.surfaces("head", args.width, args.height)
-        taken = StereoCamera(int(rng.integers(2**32))).expose(rgb, depth, focal, 0, surfaces)
+        camera = camera or StereoCamera(int(rng.integers(2**32)))
+        taken = camera.expose(rgb, depth, focal, int(rng.integers(2**31)), surfaces)
         rgb, depth = taken.rgb, taken.depth / 1000.0
     position, rotation = renderer.optical_pose("head")
     # Where the robot believes to be is a little off.
@@ -127,7 +135,7 @@ def look_at(
         row = renderer.model.joint(body_name(p.spec)).qposadr[0]
         renderer.data.qpos[row : row + 7] = (*p.position, *p.quat)
     pose = stand(rng, load_scene("apartment"), chosen)
-    return _view(renderer, pose, args, rng) if pose is not None else None
+    return take(renderer, pose, args, rng) if pose is not None else None
 
 
 def visible(view: View, placement: Placement) -> bool:

@@ -10,7 +10,8 @@ from common.messages import WorldObject
 
 _FILLER = {"the", "a", "an", "my", "that", "this", "some", "please", "to", "of"}
 
-_ANYTHING = {"thing", "things", "object", "objects", "item", "something", "anything", "stuff"}
+ANYTHING = {"thing", "things", "object", "objects", "item", "something", "anything", "stuff"}
+"""Words for any object."""
 UNFIT = (9, 9)
 """Worse than any fit of words to an object."""
 ALIKE = {
@@ -28,6 +29,11 @@ def normalise(text: str) -> str:
     return " ".join(w for w in words if w not in _FILLER)
 
 
+def unnumbered(label: str) -> str:
+    """The words of a label, without the number that tells it from others of the same: "red mug 2" is a red mug."""
+    return re.sub(r" \d+$", "", label)
+
+
 def match_object(query: str, objects: Iterable[WorldObject], household: Household) -> list[WorldObject]:
     """The known objects that a phrase can mean: by taught name, by name or alias, else by colour and kind, else by
     kind; where none is called so, those that may be so called by their looks, the nearest to it."""
@@ -43,7 +49,7 @@ def match_object(query: str, objects: Iterable[WorldObject], household: Househol
     if exact:
         return exact
     told = household.words
-    words = {w if w in KINDS else told.kind(w) or told.colour(w) or w for w in wanted.split()} - _ANYTHING
+    words = {w if w in KINDS else told.kind(w) or told.colour(w) or w for w in wanted.split()} - ANYTHING
     if not words:
         return []
     fits = [(_fit(words, o), o) for o in known if o.kind]
@@ -65,7 +71,7 @@ def _fit(words: set[str], o: WorldObject) -> tuple[int, int]:
     if len(kinds) > 1:
         kinds -= set(ALIKE)
     shades, likely = words - kinds, o.kinds or [o.kind]
-    if not kinds <= {*likely, o.kind} or any(_is_ball(kind) != _is_ball(o.kind) for kind in kinds):
+    if not kinds <= {*likely, o.kind} or any(_is_ball(kind) != _is_ball(likely[0]) for kind in kinds):
         return UNFIT
     place = min((n for n, kind in enumerate(likely) if kind in kinds), default=0)
     return (1, place) if shades <= {*o.colours, *label} else UNFIT

@@ -14,7 +14,7 @@ from evaluation.case import Case, Line, Observed
 from evaluation.ego_noise import EgoNoise
 from evaluation.fault_reports import FaultReport
 from evaluation.shortest import FloorPlan
-from evaluation.simulated_user import Manner, SimulatedUser
+from evaluation.simulated_user import Manner, SimulatedUser, seen_at
 from evaluation.voice import RATE, Samples, loudness, utter
 from judge.evidence import Sample
 from judge.observer import WATCH, Observer
@@ -59,6 +59,8 @@ class Examiner:
         self._sound: deque[Samples] = deque()
         self._ego: EgoNoise | None = None
         self._speed, self._was = 0.0, (0.0, (0.0, 0.0))
+        self._about: tuple[float, float, float] | None = None
+        self._seen = ""
         self._saying = ""
         self.active = False
         self._ended_at: float | None = None
@@ -92,6 +94,7 @@ class Examiner:
             first = not observer.ready
             sample = observer.world(state)
             if sample is not None:
+                self._seen = seen_at(self._about, {name: o.position for name, o in sample.things.items()})
                 before, there = self._was
                 self._was = state.t, sample.base[:2]
                 self._speed = math.dist(there, sample.base[:2]) / max(state.t - before, 0.01) if before else 0.0
@@ -117,7 +120,7 @@ class Examiner:
                 self.observed.said.append(status.detail)
                 self._observer.sentence(now, status.detail)
             elif status.state != "speaking" and self._saying:
-                answer, self._saying = self._user.answer(self._saying), ""
+                answer, self._saying = self._user.answer(self._saying, self._seen), ""
                 self._quiet_since = now
                 if answer:
                     self._due.append((now + REACTION, answer))
@@ -129,6 +132,7 @@ class Examiner:
             self._observer.status(now, status)
         for state in self._io.take_all(topics.BRAIN_STATE):
             self._observer.brain(now, state)
+            self._about = state.about
             if not seen.states or seen.states[-1] != state.state:
                 seen.states.append(state.state)
             self._when.setdefault(state.state, now)

@@ -3,9 +3,12 @@
 Pure: sentences of the robot in, sentences of the person out. They know nothing of the bus.
 """
 
+import math
 import re
+from collections.abc import Mapping
 from typing import Literal
 
+from common.floor_plan import Vec3
 from common.scene import Scene
 from judge.words import plain
 
@@ -16,7 +19,18 @@ CORRECTIONS = ("no, the {}", "no, I said the {}", "the {}")
 """Who was not understood says it in other words."""
 _HEARD = re.compile(r"^did you say,?\s*(.+?)\??$", re.IGNORECASE)
 _AGAIN = re.compile(r"say (?:it|that) again|please repeat|did not (?:hear|understand|catch)|pardon|what did you", re.I)
+_IDENTITY = re.compile(r"is (?:that|this) the .+\?$", re.IGNORECASE)
 _WHICH = re.compile(r"^(?:which\b|do you mean|the .+ or the .+\?)", re.IGNORECASE)
+
+
+SHOWN = 0.08
+"""Distance [m] of an object from the place that the robot shows, up to which it is seen there. Chosen: about a hand."""
+
+
+def seen_at(place: Vec3 | None, objects: Mapping[str, Vec3]) -> str:
+    """The object that a person sees at the place that the robot shows them; "" for none."""
+    apart, name = min(((math.dist(at, place), name) for name, at in objects.items() if place), default=(math.inf, ""))
+    return name if apart < SHOWN else ""
 
 
 class SimulatedUser:
@@ -34,15 +48,15 @@ class SimulatedUser:
         """From now on this is what was said, and meant."""
         self._command, self.answers = command, 0
 
-    def answer(self, sentence: str) -> str:
-        """What to say to a sentence of the robot's; "" for nothing."""
+    def answer(self, sentence: str, about: str = "") -> str:
+        """What to say to a sentence of the robot's; "" for nothing. `about`: the object that it shows while it asks."""
         if self._manner == "silent" or self.answers >= PATIENCE:
             return ""
-        reply = self._reply(sentence.strip())
+        reply = self._reply(sentence.strip(), about)
         self.answers += bool(reply)
         return reply
 
-    def _reply(self, sentence: str) -> str:
+    def _reply(self, sentence: str, about: str) -> str:
         if heard := _HEARD.match(sentence):
             if self._manner == "agree" or self._same(heard[1]):
                 return "yes"
@@ -51,6 +65,8 @@ class SimulatedUser:
             return "no"
         if _AGAIN.search(sentence):
             return self._command
+        if _IDENTITY.search(sentence) and self._thing:
+            return "yes" if self._manner == "agree" or about == self._thing else "no"
         if _WHICH.match(sentence) and self._thing:
             return f"the {self._thing}"
         return ""

@@ -2,7 +2,7 @@
 
 from typing import Literal
 
-from common.messages.base import Message
+from common.messages.base import Message, Vec3
 
 BrainStateName = Literal[
     "IDLE", "WAITING", "LISTENING", "CONFIRMING", "PLANNING", "GROUNDING", "NAVIGATING",
@@ -15,6 +15,7 @@ class BrainState(Message):
     """Where the mission stands; `plan_step`: number from 1 of the plan's step under way, 0 when none is.
 
     `command_id`: the id of the `voice_command` that the mission under way began with.
+    `about` [map]: where the object stands that the person is asked about.
     """
 
     state: BrainStateName
@@ -28,6 +29,7 @@ class BrainState(Message):
     last: "MissionOutcome | None" = None
     plan_step: int = 0
     command_id: str = ""
+    about: Vec3 | None = None
 
 
 class MissionOutcome(Message):

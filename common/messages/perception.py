@@ -33,9 +33,10 @@ class WorldObject(Message):
 
     `label` is unique in one list: what looks alike is "red mug" and "red mug 2". `names`: what it is called beside its
     label, as taught by a person; `text`: what was read on it; `colours`: the words of its colours, the largest first;
-    `kinds`: what it may be by its looks, the likeliest first. `measured`: `size` was measured and not looked up in the
-    household; `spread`: standard deviation [m] of its extents and position. `points`: what was seen of its surface,
-    int16 (n, 3) [mm], little endian, in map axes from `position`.
+    `kinds`: what it may be by its looks, the likeliest first. `kind_shares`, `colour_shares`: how likely each kind is
+    and how much of it has each colour, each adding up to 1; empty where nothing was measured. `measured`: `size` was
+    measured and not looked up in the household; `spread`: standard deviation [m] of its extents and position.
+    `points`: what was seen of its surface, int16 (n, 3) [mm], little endian, in map axes from `position`.
     """
 
     label: str
@@ -55,6 +56,8 @@ class WorldObject(Message):
     text: str = ""
     colours: list[str] = []
     kinds: list[str] = []
+    kind_shares: dict[str, float] = {}
+    colour_shares: dict[str, float] = {}
     measured: bool = False
     spread: float = 0.0
     points: bytes = b""
@@ -67,16 +70,34 @@ class WorldObjects(Message):
 
 
 class ObjectQuery(Message):
-    """`since` [s]: only what a picture taken at that robot time or later shows counts, and the picture is wanted."""
+    """`since` [s]: only what a picture taken at that robot time or later shows counts, and the picture is wanted.
+
+    `meant`: id of the object that the person said is meant, as long as it is there; `excluded`: ids of objects that the
+    person said are not.
+    """
 
     id: str
     query: str
     since: float = 0.0
+    meant: str = ""
+    excluded: list[str] = []
+
+
+class PossibleObject(Message):
+    """An object, by its id, that words may mean and do not plainly; `likeness` 0 to 1: how well they fit it."""
+
+    id: str
+    label: str
+    likeness: float
+    position: Vec3
+    on: str = ""
 
 
 class ObjectPose(Message):
     """The answer to a query. `candidates` names the objects that match when several do and none is chosen.
 
+    `id` is the object's in `WorldObject`. `perhaps`: objects that may be meant, the likeliest first, for the person to
+    say; nothing that is `found` is among them.
     `seen_at`: when a picture last showed the object; `on` names its receptacle, "" the floor or not known; `tilt` as
     in `WorldObject`. `picture`: a JPEG of the view behind the answer, for queries with `since`.
     """
@@ -93,6 +114,8 @@ class ObjectPose(Message):
     detail: str = ""
     candidates: list[str] = []
     unsure: list[str] = []
+    perhaps: list[PossibleObject] = []
+    id: str = ""
     on: str = ""
     tilt: float = 0.0
     picture: bytes = b""

@@ -22,6 +22,8 @@ POINTS_KEPT = 0.02
 """Change of position [m] up to which the points of earlier views are kept."""
 LIKELY = 0.2
 """Share of the likeliest kind's votes from which a kind may be meant by its word."""
+LEAST_SHARE = 0.02
+"""Share of the votes below which a word is not told of."""
 
 
 @dataclass
@@ -91,6 +93,13 @@ class Descriptor:
     def packed(self, position: Vec3) -> bytes:
         """The points as `WorldObject.points`."""
         return np.clip(np.round((self.points - position) * 1000), -32768, 32767).astype("<i2").tobytes()
+
+
+def shares(votes: dict[str, float]) -> dict[str, float]:
+    """The share of each of the votes that has any to speak of, the largest first."""
+    total = sum(votes.values()) or 1.0
+    ordered = sorted(votes, key=lambda name: (-votes[name], name))
+    return {name: round(votes[name] / total, 3) for name in ordered if votes[name] >= LEAST_SHARE * total}
 
 
 def vote(votes: dict[str, float] | dict[ShapeFamily, float], new: dict[str, float], weight: float) -> None:

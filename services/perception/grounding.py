@@ -9,24 +9,44 @@ import msgspec
 
 from common.geometry import Pose2, to_frame
 from common.household import Household
-from common.messages import WorldObject
-from common.naming import ALIKE, match_object, normalise
+from common.likeness import LEAST, PLAIN, likeness
+from common.messages import PossibleObject, WorldObject
+from common.naming import ALIKE, match_object, normalise, unnumbered
 
 _SIDE = re.compile(r"^(?:(?P<a>left|right|middle|nearest|closest|near|far|farthest|other) )?(?P<rest>.*?)"
                    r"(?: (?:on|at|in|from)? ?(?P<b>left|right|middle))?$")  # fmt: skip
 _PLACE = re.compile(r"^(?P<thing>.+?) (?:on top|on|in|inside|from|at|by|near|next)(?: of)? (?P<place>.+)$")
 _SIZE = {"big": -1, "large": -1, "bigger": -1, "biggest": -1, "small": 1, "little": 1, "smaller": 1, "smallest": 1}
-
+MOST = 6
+"""Objects of which it is told that they may be meant. Chosen: more than anybody is asked about."""
 Match = Callable[[str, Sequence[WorldObject]], list[WorldObject]]
 
 
 @dataclass(frozen=True)
 class Grounding:
-    """What a phrase means: one object, or None with the reason and, when several match, their names."""
+    """What a phrase means: one object, or None with the reason and, when several match, their names.
+
+    `perhaps`: objects that may be meant and do not plainly fit the words, the likeliest first.
+    """
 
     found: WorldObject | None
     reason: str = ""
     candidates: list[str] = field(default_factory=list)
+    perhaps: list[PossibleObject] = field(default_factory=list)
+
+
+@dataclass(frozen=True)
+class Phrase:
+    """A noun with its colours (`thing`), and what singles one of several out: `place`, `size`, `side`, "" for none."""
+
+    thing: str
+    place: str = ""
+    size: str = ""
+    side: str = ""
+
+    @property
+    def where(self) -> str:
+        return f" on the {self.place}" if self.place else ""
 
 
 def ground(
@@ -36,39 +56,66 @@ def ground(
     base: Pose2,
     synonyms: Mapping[str, str],
     matching: Match | None = None,
+    least: float = PLAIN,
 ) -> Grounding:
     """The object that `query` names among those known; `base` decides what is left, right and near.
 
-    `matching` finds the objects that a noun with its colours can mean, by default `match_object`.
+    One whose likeness to the words is below `least` may be meant only. `matching` finds the objects that a noun with
+    its colours can mean, by default `match_object`.
     """
     match_noun = matching or (lambda noun, known: match_object(noun, known, household))
-    words = _plain(query, synonyms)
-    if not words:
+    phrase = parsed(query, household, synonyms)
+    thing = phrase.thing
+    if not thing:
         return Grounding(None, "no object was named")
-    place, words = _take_place(words, household)
+    found = [o for o in match_noun(thing, objects) if not o.held]
+    if least and len(found) == 1 and found[0].measured and normalise(found[0].label) == normalise(thing):
+        # "Red mug" is the name of one and fits "red mug 2" as well.
+        found += [o for o in objects if not o.held and o is not found[0] and unnumbered(o.label) == found[0].label]
+    if phrase.place:
+        found = [o for o in found if _is_at(o, phrase.place, household)]
+    if not found:
+        held = any(o.held for o in match_noun(thing, objects))
+        return Grounding(None, f"the {thing} is in the gripper" if held else f"no {thing} is seen{phrase.where}")
+    if len(found) > 1 and phrase.size:
+        found = sorted(found, key=lambda o: _SIZE[phrase.size] * o.size[0] * o.size[1] * o.size[2])[:1]
+    if len(found) > 1 and phrase.side:
+        found = _by_side(found, phrase.side, base)
+    if len(found) > 1:
+        names = sorted({o.label for o in found})
+        if len(names) > 1:
+            alike = possible(phrase, found, household)
+            return Grounding(None, f"several match: {', '.join(names)}", names, alike)
+        found = sorted(found, key=lambda o: -o.confidence)
+    if 0.0 < likeness(thing, found[0], household) < least:
+        return Grounding(None, f"the {found[0].label} may be the {thing}")
+    return Grounding(found[0])
+
+
+def parsed(query: str, household: Household, synonyms: Mapping[str, str]) -> Phrase:
+    """The parts of a phrase; `synonyms`: what is said for what is meant."""
+    place, words = _take_place(_plain(query, synonyms), household)
     size = next((w for w in words.split() if w in _SIZE), "")
     words = " ".join(w for w in words.split() if w not in _SIZE)
     match = _SIDE.match(words)
     assert match is not None
     side = match["a"] or match["b"] or ""
-    thing = match["rest"] if side and match["rest"] else words
-    found = [o for o in match_noun(thing, objects) if not o.held]
-    if place:
-        found = [o for o in found if _is_at(o, place, household)]
-    where = f" on the {place}" if place else ""
-    if not found:
-        held = any(o.held for o in match_noun(thing, objects))
-        return Grounding(None, f"the {thing} is in the gripper" if held else f"no {thing} is seen{where}")
-    if len(found) > 1 and size:
-        found = sorted(found, key=lambda o: _SIZE[size] * o.size[0] * o.size[1] * o.size[2])[:1]
-    if len(found) > 1 and side:
-        found = _by_side(found, side, base)
-    if len(found) > 1:
-        names = sorted({o.label for o in found})
-        if len(names) > 1:
-            return Grounding(None, f"several match: {', '.join(names)}", names)
-        found = sorted(found, key=lambda o: -o.confidence)
-    return Grounding(found[0])
+    return Phrase(match["rest"] if side and match["rest"] else words, place, size, side)
+
+
+def possible(phrase: Phrase, objects: Sequence[WorldObject], household: Household) -> list[PossibleObject]:
+    """The objects that a phrase may mean by their looks, the likeliest first."""
+    rated = [
+        (likeness(phrase.thing, o, household), o)
+        for o in objects
+        if not o.held and (not phrase.place or _is_at(o, phrase.place, household))
+    ]
+    rated.sort(key=lambda row: (-row[0], row[1].label))
+    return [
+        PossibleObject(id=o.id, label=o.label, likeness=round(fit, 3), position=o.position, on=o.on)
+        for fit, o in rated[:MOST]
+        if fit >= LEAST
+    ]
 
 
 def _plain(query: str, synonyms: Mapping[str, str]) -> str:
@@ -121,7 +168,7 @@ def _by_side(found: Sequence[WorldObject], side: str, base: Pose2) -> list[World
 
 def as_called(o: WorldObject) -> WorldObject:
     """An object that can be meant by its label alone: what else it may be is in doubt until it is seen better."""
-    return msgspec.structs.replace(o, kinds=[], colours=[])
+    return msgspec.structs.replace(o, kinds=[], colours=[], kind_shares={}, colour_shares={})
 
 
 def may_be_meant(

@@ -10,7 +10,7 @@ from common.floor_plan import Vec3
 from common.geometry import yaw_quat
 from common.household import Household
 from common.messages import WorldObject, WorldObjects
-from services.perception.descriptor import Descriptor
+from services.perception.descriptor import Descriptor, shares
 from services.perception.detection import Detection
 from services.perception.view import View
 
@@ -312,5 +312,6 @@ def _as_object(t: Track, label: str) -> WorldObject:
         label=label, kind=kind, colour=colour, position=t.position, orientation=yaw_quat(t.yaw), size=t.size, on=t.on,
         confidence=round(t.confidence, 3), seen_at=t.seen_at, held=t.held, id=t.id, tilt=t.tilt, shape=t.looks.shape,
         colours=[colour] if t.known else t.looks.main_colours, kinds=[] if t.known else t.looks.likely_kinds,
+        kind_shares={} if t.known else shares(t.looks.kinds), colour_shares={} if t.known else shares(t.looks.colours),
         measured=not t.known, spread=0.0 if t.known else round(t.looks.spread, 4), points=t.looks.packed(t.position),
     )  # fmt: skip

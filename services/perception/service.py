@@ -13,12 +13,13 @@ from common.bus.port import Io, Job
 from common.geometry import Pose2, wrap
 from common.goal_inbox import GoalInbox
 from common.kinds import kind_of
+from common.likeness import PLAIN
 from common.runtime import StartError
 from services.perception.calibration_monitor import CalibrationMonitor
 from services.perception.config import PerceptionConfig
 from services.perception.detect import ClassicalDetector, Detector
 from services.perception.detection import Detection
-from services.perception.grounding import Grounding, as_called, ground, may_be_meant
+from services.perception.grounding import Grounding, as_called, ground, may_be_meant, parsed, possible
 from services.perception.naming.naming import Naming
 from services.perception.object_tracker import SURE, ObjectTracker
 from services.perception.picture import jpeg
@@ -280,16 +281,23 @@ class PerceptionService:
             self._answer_query(reading.seen, reading.view)
 
     def _ground(self, query: m.ObjectQuery) -> Grounding:
-        base = self._state.base or (0.0, 0.0, 0.0)
+        base, household, config = self._state.base or (0.0, 0.0, 0.0), self._io.household, self._config
         objects = self._naming.annotated(self._objects(query.since or -math.inf))
+        objects = [o for o in objects if o.id not in query.excluded]
+        if meant := next((o for o in objects if o.id == query.meant and not o.held), None):
+            return Grounding(meant)
+        looks = objects
         doubtful = self._tracker.doubtful()
         objects = [as_called(o) if o.id in doubtful else o for o in objects]
-        result = ground(query.query, objects, self._io.household, base, self._config.synonyms, self._naming.match)
-        return (
-            result
-            if result.found or result.candidates
-            else Grounding(self._naming.chosen(query, objects), result.reason)
-        )
+        # What was put down is asked for by its label, whatever it looks like from there.
+        least = 0.0 if query.since else PLAIN
+        result = ground(query.query, objects, household, base, config.synonyms, self._naming.match, least)
+        if result.found or result.candidates:
+            return result
+        phrase = parsed(query.query, household, config.synonyms)
+        chosen = self._naming.chosen(query, objects)
+        perhaps = [] if chosen else possible(phrase, looks, household)
+        return Grounding(chosen, result.reason, perhaps=perhaps)
 
 
 def detect(detector: Detector, view: View, base: Pose2, robot: RobotModel | None) -> tuple[View, list[Detection]]:
@@ -319,11 +327,14 @@ def _pose_answer(query: m.ObjectQuery, result: Grounding, picture: bytes) -> m.O
     found = result.found
     if found is None:
         detail, candidates = result.reason, result.candidates
-        return m.ObjectPose(query_id=query.id, found=False, detail=detail, candidates=candidates, picture=picture)
+        return m.ObjectPose(
+            query_id=query.id, found=False, detail=detail, candidates=candidates, perhaps=result.perhaps,
+            picture=picture,
+        )  # fmt: skip
     return m.ObjectPose(
         query_id=query.id, found=True, label=found.label, confidence=found.confidence, position=found.position,
         orientation=found.orientation, size=found.size, seen_at=found.seen_at,
-        detail=f"on the {found.on}" if found.on else "", on=found.on, tilt=found.tilt, picture=picture,
+        detail=f"on the {found.on}" if found.on else "", on=found.on, id=found.id, tilt=found.tilt, picture=picture,
     )  # fmt: skip
 
 

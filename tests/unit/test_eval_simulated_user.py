@@ -3,7 +3,7 @@
 import pytest
 
 from common.scene import load_scene
-from evaluation.simulated_user import PATIENCE, Manner, SimulatedUser
+from evaluation.simulated_user import PATIENCE, Manner, SimulatedUser, seen_at
 from judge.words import plain
 
 SCENE = load_scene("apartment")
@@ -53,6 +53,19 @@ def test_patience_ends() -> None:
 
 def test_a_command_without_an_object_is_never_corrected_with_one() -> None:
     assert person(command="tidy up the living table", thing="").answer("Did you say tidy up the desk?") == "no"
+
+
+@pytest.mark.parametrize(("about", "answer"), [("red mug", "yes"), ("blue mug", "no"), ("", "no")])
+def test_whether_it_is_the_one_is_answered_by_what_is_seen_there(about: str, answer: str) -> None:
+    for question in ("I see a pink can on the desk. Is that the red mug you mean?", "Is that the one you mean?"):
+        assert person().answer(question, about) == answer
+        assert person("agree").answer(question, about) == "yes"
+
+
+def test_what_is_seen_where_the_robot_shows() -> None:
+    objects = {"red mug": (1.0, 0.0, 0.8), "blue mug": (1.1, 0.0, 0.8)}
+    assert seen_at((1.02, 0.01, 0.8), objects) == "red mug" and seen_at((1.07, 0.0, 0.8), objects) == "blue mug"
+    assert seen_at((1.5, 0.0, 0.8), objects) == "" and seen_at(None, objects) == ""
 
 
 def test_plain_words() -> None:

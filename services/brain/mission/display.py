@@ -31,7 +31,7 @@ class Display:
         running = mission.active or state in ("COMPLETED", "ERROR")
         if self.last is not None and self.last.resumable != resumable:
             self.last = msgspec.structs.replace(self.last, resumable=resumable)
-        before = self.shown
+        before, about = self.shown, mission.search.about
         now = m.BrainState(
             state=state,
             t=t,
@@ -44,6 +44,7 @@ class Display:
             last=self.last,
             plan_step=plan_step if mission.active else 0,
             command_id=mission.command_id if running else "",
+            about=about.position if about is not None and state == "CONFIRMING" else None,
         )
         if now == msgspec.structs.replace(before, t=t):
             return None

@@ -96,6 +96,10 @@ class Search(msgspec.Struct):
 
     `visited`: poses (x, y, theta) [m, rad] in map that the robot has looked from. `stances`: by label, the pose from
     which manipulation says that it reaches an object that it did not reach.
+
+    `perhaps`: objects that may be meant, as perception had them last, `about` that which the person is being asked
+    about; `confirmed` the ids of those that are meant, by the plan's name, `rejected` of those that are not.
+    `unanswered`: nobody has answered such a question.
     """
 
     found: dict[str, m.ObjectPose] = {}
@@ -105,6 +109,11 @@ class Search(msgspec.Struct):
     unsure: list[str] = []
     inspected: list[str] = []
     stances: dict[str, tuple[float, float, float]] = {}
+    perhaps: list[m.PossibleObject] = []
+    about: m.PossibleObject | None = None
+    confirmed: dict[str, str] = {}
+    rejected: list[str] = []
+    unanswered: bool = False
 
 
 class Delivery(msgspec.Struct):

@@ -2,6 +2,7 @@
 
 from py_trees.behaviour import Behaviour
 
+from common.naming import unnumbered
 from services.brain.mission.context import Context
 from services.brain.recoveries.recovery import Task
 from services.brain.steps.ask import AskQuestion, HearChoice, which
@@ -21,5 +22,7 @@ def ask_which(ctx: Context, task: Task) -> Behaviour:
 
 
 def several_match(ctx: Context) -> bool:
-    """Perception named more than one object that the words can mean."""
-    return len(ctx.mission.search.options) > 1
+    """Perception named more than one object that the words can mean, and their names tell them from each other."""
+    search = ctx.mission.search
+    names = {unnumbered(name) for name in search.options}
+    return len(names) > 1 or (len(search.options) > 1 and not search.perhaps)

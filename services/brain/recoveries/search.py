@@ -4,6 +4,7 @@ from py_trees.behaviour import Behaviour
 
 from services.brain.mission.context import Context
 from services.brain.recoveries.clarify import ask_which, several_match
+from services.brain.recoveries.identify import ask_whether, may_be
 from services.brain.recoveries.look_closer import look_closer, unsure
 from services.brain.recoveries.recovery import Recovery, Task, with_recoveries
 from services.brain.steps.find import LocateObject, MoveToViewpoint, ReportNotFound
@@ -15,6 +16,7 @@ VIEWPOINTS = (2, 5, 9)
 AFTER_A_GLANCE = (
     Recovery("several_match", several_match, ask_which),
     Recovery("look_closer", unsure, look_closer),
+    Recovery("identify", may_be, ask_whether),
 )
 
 

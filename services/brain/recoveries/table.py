@@ -4,6 +4,7 @@ To add one: write its two functions in a module beside this one, and a row here 
 """
 
 from services.brain.recoveries.clarify import ask_which, several_match
+from services.brain.recoveries.identify import ask_about_the_rest, ask_whether, may_be, remains_possible
 from services.brain.recoveries.look_closer import look_closer, unsure
 from services.brain.recoveries.put_right import needs_replacing, put_right
 from services.brain.recoveries.recovery import Recovery
@@ -13,7 +14,9 @@ from services.brain.recoveries.search import can_go_on, report_not_found, search
 AFTER_LOOKING = (
     Recovery("several_match", several_match, ask_which),
     Recovery("look_closer", unsure, look_closer),
+    Recovery("identify", may_be, ask_whether),
     Recovery("search", can_go_on, search),
+    Recovery("identify_at_last", remains_possible, ask_about_the_rest),
     Recovery("not_found", can_go_on, report_not_found),
 )
 """The object was not seen from where the robot stands, or several match."""

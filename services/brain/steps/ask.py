@@ -130,6 +130,9 @@ class HearChoice(HearAnswer):
         if label is None:
             return self.refuse("NOT_CONFIRMED", heard.text, self.spoken())
         mission.search.chosen[self._item] = label
+        named = next((o for o in known if o.label == label), None)
+        if named is not None and named.id:
+            mission.search.confirmed[self._item] = named.id
         self.ctx.note(f"meant: {label}", heard.text)
         return Status.SUCCESS
 

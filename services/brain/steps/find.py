@@ -27,8 +27,12 @@ class LocateObject(SendGoal):
         self._item = item
 
     def goal(self, goal_id: str) -> tuple[Topic[Any], m.Message]:
+        search, item = self.ctx.mission.search, self._item
         return topics.OBJECT_QUERY, m.ObjectQuery(
-            id=goal_id, query=self.ctx.mission.search.chosen.get(self._item, self._item)
+            id=goal_id,
+            query=search.chosen.get(item, item),
+            meant=search.confirmed.get(item, ""),
+            excluded=search.rejected,
         )
 
     def step(self) -> str:
@@ -42,6 +46,7 @@ class LocateObject(SendGoal):
         assert isinstance(pose, m.ObjectPose)
         search = ctx.mission.search
         search.options = pose.candidates
+        search.perhaps = [p for p in pose.perhaps if p.id not in search.rejected]
         search.unsure = [label for label in pose.unsure if label not in search.inspected]
         if not pose.found:
             self.feedback_message = pose.detail or "not seen"

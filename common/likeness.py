@@ -1,0 +1,79 @@
+"""How well words for colours and kinds fit an object by its looks: from plainly to not at all. Pure."""
+
+from common.household import Household
+from common.kinds import KINDS, kind_of
+from common.messages import WorldObject
+from common.naming import ALIKE, ANYTHING, normalise
+
+PLAIN = 0.55
+"""Likeness from which words plainly fit: below it a person is asked. Chosen: the word is likelier than all others."""
+LIKELY = 0.3
+"""Likeness from which a person is asked before anything else is looked for. Chosen: one of two or three words that fit
+about as well."""
+LEAST = 0.06
+"""Likeness below which words do not fit: both the colour and the kind would have to be mistaken."""
+OWN = 0.3
+"""Share of an object's surface from which a colour is its own whatever else it has. Chosen: a label on a can."""
+NEAR_COLOUR, NEAR_KIND = 0.15, 0.12
+"""Likeness of a colour next to one that was seen, and of a kind that is easily taken for one. Chosen: rarely right."""
+TAKEN_FOR = (
+    frozenset({"mug", "cup", "can", "jar"}), frozenset({"can", "jar", "bottle"}), frozenset({"cup", "mug", "bowl"}),
+    frozenset({"bowl", "plate"}), frozenset({"box", "block", "carton", "book"}), frozenset({"carton", "bottle"}),
+    frozenset({"ball", "apple", "orange", "lemon"}),
+)  # fmt: skip
+"""Kinds that are taken for each other when a handle, a neck or the inside is hidden or dark."""
+
+
+def likeness(phrase: str, o: WorldObject, household: Household) -> float:
+    """How well a noun with its colours fits an object, 0 to 1; 1 for a name or label that it has.
+
+    0 also for what has other words in it than kinds, colours and those of the object's label.
+    """
+    wanted = normalise(phrase)
+    if wanted in o.names or (wanted == normalise(o.label) and not o.kind_shares):
+        return 1.0
+    told = household.words
+    words = {w if w in KINDS else told.kind(w) or told.colour(w) or w for w in wanted.split()} - ANYTHING
+    kinds, shades = words & set(KINDS), words & set(ALIKE)
+    # "The orange can": what may be a colour is one beside another kind; alone it may be either.
+    both = kinds & shades
+    if len(kinds) > 1:
+        kinds -= both
+    elif both:
+        shades -= both
+    rest = words - kinds - shades - set(normalise(o.label).split())
+    if rest or not words:
+        return 0.0
+    found = min((_has_kind(kind, o) for kind in kinds), default=1.0)
+    for shade in shades:
+        found *= _has_colour(shade, o)
+    return found
+
+
+def plainly(phrase: str, o: WorldObject, household: Household) -> bool:
+    """The words fit an object so well that nobody need be asked."""
+    return likeness(phrase, o, household) >= PLAIN
+
+
+def _has_kind(kind: str, o: WorldObject) -> float:
+    shares = o.kind_shares or ({o.kind: 1.0} | dict.fromkeys(o.kinds, 1.0))
+    best = max(shares.values())
+    if _is_ball(kind) != _is_ball(max(shares, key=lambda k: shares[k])):
+        return 0.0
+    near = any(kind in group and o.kind in group for group in TAKEN_FOR)
+    return max(shares.get(kind, 0.0) / best, NEAR_KIND * near)
+
+
+def _has_colour(shade: str, o: WorldObject) -> float:
+    """A colour counts in full when it is a good part of the object, and less as more of it has a colour next to it."""
+    shares = o.colour_shares or ({o.colour: 1.0} | dict.fromkeys(o.colours, 1.0))
+    own = shares.get(shade, 0.0)
+    if o.colour_shares:
+        # Light and shade turn a colour into one next to it, not into several.
+        beside = max((shares.get(other, 0.0) for other in ALIKE[shade]), default=0.0)
+        own = min(1.0, own / OWN) * own / max(own + beside, 1e-9)
+    return max(own, NEAR_COLOUR * (o.colour in ALIKE[shade]))
+
+
+def _is_ball(kind: str) -> bool:
+    return kind_of(kind).shape == "sphere"

@@ -1,0 +1,41 @@
+"""Recovery: an object that may be the one asked for is asked about, before anything is brought or given up."""
+
+from functools import partial
+
+from py_trees.behaviour import Behaviour
+
+from common.likeness import LEAST, LIKELY
+from services.brain.mission.context import Context
+from services.brain.recoveries.recovery import Task
+from services.brain.steps.ask import AskQuestion
+from services.brain.steps.find import LocateObject
+from services.brain.steps.identify import ANOTHER, MOST_ASKED, ChooseCandidate, HearIdentity, candidate, whether
+from services.brain.tree.composites import Retry, Sequence
+
+
+def ask_whether(ctx: Context, task: Task, least: float = LIKELY) -> Behaviour:
+    """Ask about one object after the other, the likeliest first, until the person says that it is the one."""
+    ask = Sequence(
+        "ask_whether",
+        ChooseCandidate("choose_candidate", ctx, least),
+        AskQuestion("whether", ctx, lambda: whether(ctx, task.item)),
+        HearIdentity("hear_identity", ctx, task.item),
+        LocateObject("look_for_the_one_meant", ctx, task.item),
+    )
+    return Retry("identify", ctx, ask, MOST_ASKED - 1, again=lambda: was_another(ctx) and may_be(ctx, least))
+
+
+def may_be(ctx: Context, least: float = LIKELY) -> bool:
+    """An object is seen that may be the one asked for, and nobody was asked about it."""
+    return not ctx.mission.failed_for_good and candidate(ctx, least) is not None
+
+
+def was_another(ctx: Context) -> bool:
+    """The person has said that it was not the one."""
+    failure = ctx.mission.failure
+    return failure is not None and failure.code == ANOTHER
+
+
+ask_about_the_rest = partial(ask_whether, least=LEAST)
+"""After the search: also what fits the words badly, because nothing fits them better."""
+remains_possible = partial(may_be, least=LEAST)

@@ -1,0 +1,90 @@
+"""Leaves that ask the person whether an object that may be the one asked for is."""
+
+from py_trees.common import Status
+
+from common import messages as m
+from common.naming import unnumbered
+from services.brain.language.dialogue import reply
+from services.brain.mission.channel import Result
+from services.brain.mission.context import Context
+from services.brain.mission.mission import Failure
+from services.brain.steps.ask import HearAnswer
+from services.brain.steps.leaf import Leaf
+
+ANOTHER = "ANOTHER_ONE"
+"""Code of a person's word that the object is not the one that they asked for."""
+
+MOST_ASKED = 4
+"""Objects that a person is asked about in one mission (chosen: more is a nuisance)."""
+
+
+class ChooseCandidate(Leaf):
+    """Takes up the likeliest object that the person was not asked about, from a likeness of `least` on."""
+
+    def __init__(self, node_id: str, ctx: Context, least: float) -> None:
+        super().__init__(node_id, ctx)
+        self._least = least
+
+    def update(self) -> Status:
+        search = self.ctx.mission.search
+        search.about = candidate(self.ctx, self._least)
+        return Status.SUCCESS if search.about is not None else Status.FAILURE
+
+
+class HearIdentity(HearAnswer):
+    """Whether the object asked about is the one that is meant; SUCCESS once the person has said so."""
+
+    def __init__(self, node_id: str, ctx: Context, item: str) -> None:
+        super().__init__(node_id, ctx)
+        self._item = item
+
+    def step(self) -> str:
+        return whether(self.ctx, self._item)
+
+    def spoken(self) -> str:
+        return f"I could not find the {self._item}."
+
+    def succeed(self, result: Result) -> Status:
+        search, heard = self.ctx.mission.search, result.message
+        assert isinstance(heard, m.SpeechResult)
+        kind, _ = reply(heard.text)
+        about, search.about = search.about, None
+        self.ctx.note(f"reply: {kind}", heard.text, "heard")
+        self.feedback_message = kind
+        if kind == "cancel":
+            return self.refuse("CANCELLED", "", "All right, I will do nothing.")
+        if about is None:
+            return self.refuse("NOT_FOUND", "", self.spoken())
+        if kind == "yes":
+            search.confirmed[self._item] = about.id
+            return Status.SUCCESS
+        # Whatever else is said, it is no yes.
+        search.rejected = [*search.rejected, about.id]
+        search.perhaps = [p for p in search.perhaps if p.id != about.id]
+        return self.refuse(ANOTHER, f"the {about.label} is not the {self._item}", self.spoken())
+
+    def fail_with(self, failure: Failure) -> Status:
+        """Nobody answers: nobody is asked again about what is looked for, and nothing is brought that may be wrong."""
+        search = self.ctx.mission.search
+        search.about, search.unanswered = None, True
+        return super().fail_with(failure)
+
+
+def candidate(ctx: Context, least: float) -> m.PossibleObject | None:
+    """The likeliest object that may be meant and that the person can still be asked about; None if there is none."""
+    search = ctx.mission.search
+    if search.unanswered or len(search.rejected) >= MOST_ASKED:
+        return None
+    return next((p for p in search.perhaps if p.likeness >= least and p.id not in search.rejected), None)
+
+
+def whether(ctx: Context, item: str) -> str:
+    """The question about an object that may be the one asked for."""
+    about = ctx.mission.search.about
+    if about is None:
+        return ""
+    label = unnumbered(about.label)
+    where = f" on the {about.on}" if about.on else " on the floor"
+    article = "an" if label[:1] in "aeiou" else "a"
+    asked = "one" if label == item else item
+    return f"I see {article} {label}{where}. Is that the {asked} you mean?"

@@ -1,0 +1,90 @@
+"""What may be the object that was asked for is asked about before it is brought, and what is not is left alone."""
+
+from typing import Any
+
+from common import messages as m
+from common import topics
+from tests.unit.brain_bench import Bench
+from tests.unit.test_brain_vla import FETCH, QUERY, SPEECH, answer_plan, asked, planned, reply
+
+GREEN, RED = (1.0, 2.0, 0.8), (3.0, 2.0, 0.8)
+ASKED = "say I see an orange mug on the desk. Is that the red mug you mean?"
+
+
+def maybe(name: str, likeness: float = 0.4, label: str = "orange mug", on: str = "desk") -> m.PossibleObject:
+    return m.PossibleObject(id=name, label=label, likeness=likeness, position=GREEN, on=on)
+
+
+def answer(bench: Bench, count: int, *perhaps: m.PossibleObject, **fields: Any) -> m.ObjectQuery:
+    query = bench.next_goal(QUERY, count)
+    result = m.ObjectPose(query_id=query.id, found=bool(fields), perhaps=list(perhaps), seen_at=bench.now, **fields)
+    bench.send(topics.OBJECT_POSE, result)
+    bench.step()
+    return query
+
+
+def test_after_a_yes_it_is_fetched() -> None:
+    bench = planned()
+    answer(bench, 1, maybe("object-3"))
+    bench.until(lambda: bench.texts(SPEECH)[-1] == ASKED)
+    assert bench.state.state == "CONFIRMING" and bench.state.about == GREEN
+    reply(bench, "yes")
+    query = answer(bench, 2, label="orange mug", id="object-3", position=GREEN)
+    assert (query.query, query.meant) == ("red mug", "object-3")
+    goal = bench.next_goal(topics.NAV_GOAL, 1)
+    assert goal.object is not None and goal.object.label == "orange mug" and bench.state.about is None
+
+
+def test_after_a_no_it_looks_on_for_another() -> None:
+    bench = planned()
+    answer(bench, 1, maybe("object-3"))
+    reply(bench, "no")
+    assert bench.next_goal(topics.NAV_GOAL, 1).object is None
+    bench.send(
+        topics.NAVIGATION_FEEDBACK, m.NavigationFeedback(goal_id=bench.last(topics.NAV_GOAL).id, status="arrived")
+    )
+    query = answer(bench, 2, maybe("object-3"), maybe("object-4", label="red mug"))
+    assert query.excluded == ["object-3"] and not query.meant
+    # The likeliest that was not asked about is next; of the same name it is asked where it stands.
+    bench.until(lambda: bench.texts(SPEECH)[-1] == "say I see a red mug on the desk. Is that the one you mean?")
+
+
+def test_of_several_it_asks_one_after_the_other() -> None:
+    bench = planned()
+    answer(bench, 1, maybe("object-3", 0.9, "red mug 2"), maybe("object-4", 0.8, on="shelf"))
+    bench.until(lambda: bench.texts(SPEECH)[-1] == "say I see a red mug on the desk. Is that the one you mean?")
+    reply(bench, "no")
+    bench.until(lambda: "on the shelf" in bench.texts(SPEECH)[-1])
+
+
+def test_without_an_answer_nothing_is_brought() -> None:
+    bench = planned()
+    answer(bench, 1, maybe("object-3"))
+    bench.until(lambda: bench.texts(SPEECH)[-1] == "listen")
+    bench.until(lambda: bench.count(topics.NAV_GOAL) == 1)
+    assert bench.last(topics.NAV_GOAL).object is None
+    bench.send(
+        topics.NAVIGATION_FEEDBACK, m.NavigationFeedback(goal_id=bench.last(topics.NAV_GOAL).id, status="arrived")
+    )
+    answer(bench, 2, maybe("object-3"))
+    bench.until(lambda: bench.count(topics.NAV_GOAL) == 2)
+    assert bench.texts(SPEECH).count(ASKED) == 1
+
+
+def test_what_fits_badly_is_asked_about_after_the_search_only() -> None:
+    bench = asked(enable_confirmation=False, max_retry_attempts=1)
+    answer_plan(bench, 1, FETCH)
+    poor, looks = maybe("object-3", 0.1), 0
+    while ASKED not in bench.texts(SPEECH):
+        goals, queries = bench.count(topics.NAV_GOAL), bench.count(QUERY)
+        if looks < queries:
+            looks += 1
+            answer(bench, looks, poor)
+        elif goals >= looks:
+            goal = bench.last(topics.NAV_GOAL)
+            bench.send(topics.NAVIGATION_FEEDBACK, m.NavigationFeedback(goal_id=goal.id, status="arrived"))
+        bench.step()
+    assert looks > 1 and bench.last(topics.NAV_GOAL).object is None
+    reply(bench, "no")
+    bench.until(lambda: bench.state.last is not None)
+    assert bench.state.last is not None and bench.state.last.code == "NOT_FOUND"

@@ -1,0 +1,69 @@
+"""How well words fit an object by its looks, and what follows: brought, asked about, or passed over."""
+
+import pytest
+
+from common.config import config_dir
+from common.household import Household, load_words, mapped
+from common.likeness import LEAST, LIKELY, PLAIN, likeness
+from common.messages import WorldObject
+from common.scene import load_scene
+from services.perception.grounding import ground, parsed, possible
+
+HOUSEHOLD: Household = mapped(load_scene("apartment"), load_words(config_dir()))
+
+
+def measured(label: str, kinds: dict[str, float], colours: dict[str, float], name: str = "object-1") -> WorldObject:
+    colour, kind = label.split()[:2]
+    return WorldObject(
+        label=label, kind=kind, colour=colour, position=(1.0, 0.0, 0.8), id=name, on="desk", measured=True,
+        kinds=list(kinds), colours=list(colours), kind_shares=kinds, colour_shares=colours,
+    )  # fmt: skip
+
+
+APPLE = measured("yellow apple", {"apple": 0.5, "ball": 0.45}, {"yellow": 0.6, "green": 0.4})
+CAN = measured("grey can", {"can": 0.7, "jar": 0.3}, {"grey": 0.65, "white": 0.35})
+TIN = measured("white can", {"can": 1.0}, {"white": 0.6, "red": 0.4})
+
+
+@pytest.mark.parametrize(
+    ("words", "seen", "low", "high"),
+    [
+        ("yellow apple", APPLE, PLAIN, 1.0),
+        ("yellow ball", APPLE, 0.5, PLAIN),
+        ("green apple", APPLE, LIKELY, PLAIN),
+        ("red apple", APPLE, 0.0, LEAST),
+        ("yellow mug", APPLE, 0.0, LEAST),
+        ("grey can", CAN, PLAIN, 1.0),
+        ("white can", CAN, LIKELY, PLAIN),
+        ("grey mug", CAN, LEAST, LIKELY),
+        ("black can", CAN, LEAST, LIKELY),
+        ("black mug", CAN, 0.0, LEAST),
+        ("white can", TIN, PLAIN, 1.0),
+        ("red can", TIN, PLAIN, 1.0),
+        ("something white", TIN, PLAIN, 1.0),
+        ("vitamin can", TIN, 0.0, LEAST),
+    ],
+)
+def test_likeness(words: str, seen: WorldObject, low: float, high: float) -> None:
+    assert low <= likeness(words, seen, HOUSEHOLD) <= high
+
+
+def test_what_does_not_plainly_fit_is_not_found_and_may_be_meant() -> None:
+    for words, label in (("green apple", "yellow apple"), ("white can", "white can")):
+        objects = [APPLE, CAN, TIN]
+        found = ground(words, objects, HOUSEHOLD, (0.0, 0.0, 0.0), {}).found
+        assert (found.label if found else "") == ("" if label == "yellow apple" else label)
+        assert possible(parsed(words, HOUSEHOLD, {}), objects, HOUSEHOLD)[0].label == label
+
+
+def test_two_that_look_alike_are_both_asked_about() -> None:
+    other = measured("white can 2", {"can": 1.0}, {"white": 1.0}, "object-2")
+    result = ground("white can", [TIN, other], HOUSEHOLD, (0.0, 0.0, 0.0), {})
+    assert result.found is None and result.candidates == ["white can", "white can 2"]
+    assert {p.id for p in result.perhaps} == {"object-1", "object-2"}
+
+
+def test_a_label_is_enough_for_what_was_put_down() -> None:
+    mug = measured("red mug", {"can": 0.8, "mug": 0.2}, {"red": 1.0})
+    assert ground("red mug", [mug], HOUSEHOLD, (0.0, 0.0, 0.0), {}).found is None
+    assert ground("red mug", [mug], HOUSEHOLD, (0.0, 0.0, 0.0), {}, least=0.0).found is mug
