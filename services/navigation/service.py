@@ -14,13 +14,14 @@ from services.navigation.ended import Ended
 from services.navigation.goals import Choices, Goal, Goals, in_words
 from services.navigation.localisation.state_estimation import StateEstimator
 from services.navigation.motion.navigator import Navigator
+from services.navigation.orientation import Orientation
 from services.navigation.places import Places, load_places
 from services.navigation.planning.changes import ChangesFile
 from services.navigation.planning.costmap import Costmap
 from services.navigation.planning.planner import PathPlanner
+from services.navigation.reports import Reports
 from services.navigation.search.coverage import SearchCoverage
 from services.navigation.search.search import Search
-from services.navigation.whereabouts import Whereabouts
 
 PERCEPTION = "perception"
 
@@ -52,15 +53,11 @@ class NavigationService:
         self._inbox: GoalInbox[Goal, m.NavigationStatus] = GoalInbox(
             io, (topics.NAVIGATION_GOAL, topics.NAV_GOAL), self._take, self._repeat, self._preempted
         )
-        self._whereabouts = Whereabouts(config, io, self._state, self._map)
+        self._orientation = Orientation(config, io, self._state, self._map)
+        self._reports = Reports(io, self._state)
         self._legs = 0
-        self._recoveries = 0
-        self._reported = (0, "")
         self._now = 0.0
         self._shown = -1
-        self._from_brain = True
-        self._status = m.NavigationStatus(status="idle")
-        io.publish(topics.NAVIGATION_STATUS, self._status)
 
     def step(self, now: float) -> None:
         io, self._now = self._io, now
@@ -78,7 +75,7 @@ class NavigationService:
             if self._found is not None:
                 self._still_there(self._found)
             if self._navigator is not None:
-                self._whereabouts.check(now)
+                self._orientation.check(now)
             if self._busy and self._located(reached, now):
                 if self._search is not None:
                     self._look_for(self._search, now)
@@ -91,22 +88,24 @@ class NavigationService:
     def _busy(self) -> bool:
         return self._navigator is not None or self._search is not None
 
+    @property
+    def _status(self) -> m.NavigationStatus:
+        return self._reports.status
+
     # --- goals
     def _repeat(self, goal: Goal, answer: m.NavigationStatus | None) -> None:
-        self._publish(answer or self._status)
+        self._reports.publish(answer or self._status, self._navigator)
 
     def _preempted(self, old: Goal, new: Goal) -> None:
         self._finish(Ended("failed", "PREEMPTED", f"replaced by {in_words(new)}"))
 
     def _take(self, goal: Goal) -> None:
         text, pose = ("", goal) if isinstance(goal, m.NavGoal) else (goal.goal.strip(), None)
-        self._from_brain = pose is None
-        self._recoveries = 0
-        self._status = m.NavigationStatus(status="navigating", goal_id=goal.id, attempt=goal.attempt)
+        self._reports.begin(goal)
         self._io.log.info("goal", goal=in_words(goal), id=goal.id, attempt=goal.attempt)
         if text == "stop":
             self._hold()
-            self._report("idle", "STOPPED", "the base holds")
+            self._reports.tell("idle", "STOPPED", "the base holds", None)
             self._inbox.end(goal, self._status)
             return
         try:
@@ -114,7 +113,7 @@ class NavigationService:
         except Ended as ended:
             self._finish(ended)
             return
-        self._report("navigating", "", text)
+        self._reports.tell("navigating", "", text, self._navigator)
 
     def _begin(self, text: str, pose: m.NavGoal | None) -> None:
         """Raises `Ended` for an unknown goal or place."""
@@ -171,7 +170,7 @@ class NavigationService:
         self._legs += 1
         name = f"{self._status.goal_id}/{self._status.attempt}/{self._legs}"
         self._navigator = Navigator(self._config, self._map, self._planner, choices, name, self._now)
-        self._reported = (0, "")
+        self._reports.begin_leg()
 
     # --- searching
     def _look_for(self, search: Search, now: float) -> None:
@@ -179,7 +178,7 @@ class NavigationService:
         if choices := self._approaches_to(search.item):
             self._io.log.info("found", item=search.item, views=search.looked)
             self._search, self._found = None, search
-            self._leave(self._navigator)
+            self._reports.end_leg(self._navigator)
             self._go(choices)
             return
         if self._io.peer(PERCEPTION) is None:
@@ -201,22 +200,19 @@ class NavigationService:
         if self._io.peer(PERCEPTION) is None or self._goals.known(found.item, self._objects()):
             return
         self._io.log.info("not there after all", item=found.item)
-        self._leave(self._navigator)
+        self._reports.end_leg(self._navigator)
         self._search, self._found, self._navigator = found, None, None
-
-    def _leave(self, navigator: Navigator | None) -> None:
-        self._recoveries += navigator.recoveries if navigator else 0
 
     # --- driving
     def _located(self, reached: list[m.GoalReached], now: float) -> bool:
         """True while the robot knows where it is; else it finds out. Raises `Ended` when it cannot."""
-        doing = self._whereabouts.doing
+        doing = self._orientation.doing
         if self._state.lost:
-            self._whereabouts.find(reached, now)
-        elif self._whereabouts.known() and self._navigator is not None:
+            self._orientation.find(reached, now)
+        elif self._orientation.known() and self._navigator is not None:
             self._navigator.relocated(now)
-        if self._whereabouts.doing != doing:
-            self._feedback()
+        if self._orientation.doing != doing:
+            self._reports.feedback(self._navigator, self._orientation.doing)
         return not self._state.lost
 
     def _advance(self, navigator: Navigator, reached: list[m.GoalReached], now: float) -> None:
@@ -228,7 +224,7 @@ class NavigationService:
             if self._search is None or ended.code == "TIMEOUT":
                 raise
             # A view that cannot be reached is one view less.
-            self._leave(navigator)
+            self._reports.end_leg(navigator)
             self._navigator = None
             self._search.fresh = ended.status == "failed"
             return
@@ -237,24 +233,18 @@ class NavigationService:
             self._io.publish(topics.BASE_TARGET, target)
         if path := navigator.take_new_path():
             self._io.publish(topics.NAV_PATH, m.NavPath(t=now, points=path[::4], goal_id=self._status.goal_id))
-        reported = (navigator.recoveries, navigator.doing)
-        if reported != self._reported:
-            self._reported = reported
-            self._io.log.info("under way", doing=navigator.doing or "driving", recoveries=navigator.recoveries)
-            self._feedback()
-        elif path or navigator.due_feedback(now):
-            self._feedback()
+        self._reports.under_way(navigator, bool(path), now)
 
     def _finish(self, ended: Ended) -> None:
         navigator, self._search, self._found = self._navigator, None, None
-        self._leave(navigator)
+        self._reports.end_leg(navigator)
         self._navigator = None
-        self._whereabouts.known()
+        self._orientation.known()
         if ended.status == "arrived":
             self._approaches.arrived(self._status.goal_id, self._state.pose)
         if ended.status == "failed" and navigator is not None and self._state.pose is not None:
             self._hold()
-        self._report(ended.status, ended.code, ended.detail)
+        self._reports.tell(ended.status, ended.code, ended.detail, None)
         if self._inbox.active is not None:
             self._inbox.end(self._inbox.active, self._status)
         log = self._io.log.info if ended.status == "arrived" else self._io.log.warning
@@ -263,32 +253,5 @@ class NavigationService:
     def _hold(self) -> None:
         """Brake: a velocity stream that falls silent at once."""
         self._navigator = self._search = self._found = None
-        self._whereabouts.known()
+        self._orientation.known()
         self._io.publish(topics.CMD_VEL, m.CmdVel(vx=0.0, vy=0.0, omega=0.0))
-
-    def _report(self, status: m.NavStatus, code: str, detail: str) -> None:
-        old = self._status
-        self._status = m.NavigationStatus(
-            status=status, goal_id=old.goal_id, attempt=old.attempt, code=code, detail=detail
-        )
-        self._publish(self._status)
-
-    def _publish(self, status: m.NavigationStatus) -> None:
-        if self._from_brain:
-            self._io.publish(topics.NAVIGATION_STATUS, status)
-        self._feedback()
-
-    def _feedback(self) -> None:
-        status, navigator = self._status, self._navigator
-        feedback = m.NavigationFeedback(
-            goal_id=status.goal_id,
-            status=status.status,
-            distance_remaining=navigator.remaining if navigator else 0.0,
-            eta=navigator.eta if navigator else 0.0,
-            recoveries=self._recoveries + (navigator.recoveries if navigator else 0),
-            code=status.code or self._whereabouts.doing or (navigator.doing if navigator else ""),
-            attempt=status.attempt,
-            detail=status.detail,
-            map_fit=round(self._state.map_fit.share, 3),
-        )
-        self._io.publish(topics.NAVIGATION_FEEDBACK, feedback)

@@ -10,7 +10,7 @@ from services.navigation.motion.reorientation import Reorientation
 from services.navigation.planning.costmap import Costmap
 
 
-class Whereabouts:
+class Orientation:
     """Steps while there is a goal; a lost robot looks about and drives to where it can tell places apart."""
 
     def __init__(self, config: NavigationConfig, io: Io, state: StateEstimator, costmap: Costmap) -> None:

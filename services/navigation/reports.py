@@ -1,0 +1,71 @@
+"""What navigation tells of the goal under way: its status, and feedback while it lasts."""
+
+from common import messages as m
+from common import topics
+from common.bus.port import Io
+from services.navigation.localisation.state_estimation import StateEstimator
+from services.navigation.motion.navigator import Navigator
+
+
+class Reports:
+    """`status` is of the newest goal. Answers to a goal of `nav_goal` are feedback alone."""
+
+    def __init__(self, io: Io, state: StateEstimator) -> None:
+        self._io, self._state = io, state
+        self._in_words = True
+        self._recoveries = 0
+        self._shown = (0, "")
+        self.status = m.NavigationStatus(status="idle")
+        io.publish(topics.NAVIGATION_STATUS, self.status)
+
+    def begin(self, goal: m.NavigationGoal | m.NavGoal) -> None:
+        """A goal has arrived."""
+        self._in_words, self._recoveries = isinstance(goal, m.NavigationGoal), 0
+        self.status = m.NavigationStatus(status="navigating", goal_id=goal.id, attempt=goal.attempt)
+
+    def begin_leg(self) -> None:
+        """Another navigator works for the goal."""
+        self._shown = (0, "")
+
+    def end_leg(self, navigator: Navigator | None) -> None:
+        """A navigator has done its part: its recoveries stay those of the goal."""
+        self._recoveries += navigator.recoveries if navigator else 0
+
+    def tell(self, status: m.NavStatus, code: str, detail: str, navigator: Navigator | None) -> None:
+        """Publish another status of the goal."""
+        self.status = m.NavigationStatus(
+            status=status, goal_id=self.status.goal_id, attempt=self.status.attempt, code=code, detail=detail
+        )
+        self.publish(self.status, navigator)
+
+    def publish(self, status: m.NavigationStatus, navigator: Navigator | None) -> None:
+        """Publish a status as it is."""
+        if self._in_words:
+            self._io.publish(topics.NAVIGATION_STATUS, status)
+        self.feedback(navigator)
+
+    def under_way(self, navigator: Navigator, path: bool, now: float) -> None:
+        """Feedback when something has changed, and now and then."""
+        shown = (navigator.recoveries, navigator.doing)
+        if shown != self._shown:
+            self._shown = shown
+            self._io.log.info("under way", doing=navigator.doing or "driving", recoveries=navigator.recoveries)
+            self.feedback(navigator)
+        elif path or navigator.due_feedback(now):
+            self.feedback(navigator)
+
+    def feedback(self, navigator: Navigator | None, doing: str = "") -> None:
+        """Publish how the goal stands; `doing`: what holds it up, the navigator's word where it is ""."""
+        status = self.status
+        feedback = m.NavigationFeedback(
+            goal_id=status.goal_id,
+            status=status.status,
+            distance_remaining=navigator.remaining if navigator else 0.0,
+            eta=navigator.eta if navigator else 0.0,
+            recoveries=self._recoveries + (navigator.recoveries if navigator else 0),
+            code=status.code or doing or (navigator.doing if navigator else ""),
+            attempt=status.attempt,
+            detail=status.detail,
+            map_fit=round(self._state.map_fit.share, 3),
+        )
+        self._io.publish(topics.NAVIGATION_FEEDBACK, feedback)
