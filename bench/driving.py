@@ -9,7 +9,7 @@ from common import config, topics
 from common import messages as m
 from common.bus.memory import MemoryBus, MemoryIo
 from common.household import told
-from common.scene import Obstacle, load_scene
+from common.scene import Obstacle, Scene, load_scene
 from common.time.clock import ManualClock
 from common.time.lockstep import DT, InProcess
 from services.navigation.service import NavigationService
@@ -35,13 +35,13 @@ class Driver:
 
     def __init__(
         self,
-        scene: str = "apartment",
+        scene: str | Scene = "apartment",
         seed: int = 0,
         settings: tuple[str, ...] = (),
         obstacles: tuple[Obstacle | str, ...] = (),
         log_level: str = "error",
     ) -> None:
-        self.scene = load_scene(scene)
+        self.scene = load_scene(scene) if isinstance(scene, str) else scene
         self.bus, clock = MemoryBus(), ManualClock()
         changes = config.overrides({}, settings)
         ios = []
