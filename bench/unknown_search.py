@@ -16,18 +16,20 @@ import numpy as np
 from bench.perception import take
 from bench.unknown_objects import SUITES
 from common.geometry import Pose2
+from common.likeness import LEAST, LIKELY
 from common.messages import WorldObject
 from common.rendering.renderer import Renderer
 from common.viewpoints import viewpoints_of
 from evaluation.case import Case
 from services.brain.recoveries.look_closer import MOST
 from services.brain.recoveries.search import VIEWPOINTS
+from services.brain.steps.identify import MOST_ASKED
 from services.brain.world import viewpoint_search
 from services.brain.world.standing_poses import standing_pose
 from services.camera.sensor import StereoCamera
 from services.perception.config import PerceptionConfig
 from services.perception.detect import ClassicalDetector
-from services.perception.grounding import Grounding, as_called, ground, may_be_meant
+from services.perception.grounding import Grounding, as_called, ground, may_be_meant, parsed, possible
 from services.perception.object_tracker import ObjectTracker
 from services.perception.self_filter import RobotModel
 from services.sim.layout import Placement, place_objects
@@ -58,6 +60,8 @@ class Search:
         self.pose: Pose2 = (home.x, home.y, home.theta)
         self.looked_from: list[Pose2] = []
         self.inspected: set[str] = set()
+        self.rejected: set[str] = set()
+        self.questions = 0
 
     @property
     def wanted(self) -> Placement:
@@ -72,6 +76,7 @@ class Search:
             seen = self._tracker.update(view, self._detector.detect(view, self._robot.mask(view, self.pose)), self._t)
             doubtful = self._tracker.doubtful()
             objects = [as_called(o) if o.id in doubtful else o for o in self._tracker.objects()]
+            objects = [o for o in objects if o.id not in self.rejected]
             result = ground(self.case.thing, objects, self.household, self.pose, {})
             if (result.found is not None and result.found.id in seen) or result.candidates:
                 break
@@ -84,13 +89,30 @@ class Search:
     def objects(self) -> list[WorldObject]:
         return self._tracker.objects()
 
+    def ask(self, least: float) -> Grounding | None:
+        """Ask about what may be meant; the answer is the truth. None when nothing was the wanted one."""
+        objects = {o.id: o for o in self.objects() if o.id not in self.rejected}
+        phrase = parsed(self.case.thing, self.household, {})
+        for maybe in possible(phrase, list(objects.values()), self.household):
+            if maybe.likeness < least or len(self.rejected) >= MOST_ASKED:
+                break
+            self.questions += 1
+            if self._is(objects[maybe.id], self.wanted):
+                return Grounding(objects[maybe.id])
+            self.rejected.add(maybe.id)
+        return None
+
     def around(self) -> Grounding:
         """Look here, nearer to what is in doubt, and from the next viewpoint, until there is an answer."""
+        result = self._search()
+        return result if result.found is not None else self.ask(LEAST) or result
+
+    def _search(self) -> Grounding:
         viewpoints = viewpoints_of(self.household, None)
         result = self._closer()
         for attempt, count in enumerate(VIEWPOINTS):
             for _ in range(count):
-                if result.found is not None or result.candidates:
+                if result.found is not None:
                     return result
                 self.looked_from.append(self.pose)
                 if attempt:
@@ -115,11 +137,9 @@ class Search:
                 break
             self.pose = standing_pose(self.household, (target.position[0], target.position[1]), self.pose)
             result, unsure = self.look()
-        return result
+        return result if result.found is not None else self.ask(LIKELY) or result
 
     def outcome(self, result: Grounding) -> str:
-        if result.candidates:
-            return "question"
         if result.found is None:
             return "none"
         return "right" if self._is(result.found, self.wanted) else "wrong"
@@ -156,15 +176,18 @@ def main() -> int:
     parser.add_argument("--backend", default="auto", choices=("auto", "egl", "osmesa", "raycast"))
     args = parser.parse_args()
     counts: Counter[str] = Counter()
+    questions = 0
     for seed in range(args.seed, args.seed + args.worlds):
         search = Search(SUITES[args.suite](seed), args)
         result = search.around()
         outcome = search.outcome(result)
         counts[outcome] += 1
+        questions += search.questions
         if outcome != "right":
             print(f"{seed} {outcome}: {search.story(result)}", flush=True)
         search.close()
     print(f"{args.worlds} worlds of {args.suite}:", ", ".join(f"{n} {name}" for name, n in counts.most_common()))
+    print(f"questions whether something is the one: {questions / max(1, args.worlds):.2f} a world")
     return 0
 
 

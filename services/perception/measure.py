@@ -34,28 +34,39 @@ COMPLEX = 0.06
 
 
 def measure(
-    points: Array, floor: float, camera: Array, seen: tuple[bool, bool], half_pixel: float, noise: float
+    points: Array,
+    floor: float,
+    camera: Array,
+    seen: tuple[bool, bool],
+    half_pixel: float,
+    noise: float,
+    dark: Array | None = None,
 ) -> Measurement:
     """The shape of points (n, 3) [map] that stand on height `floor` and were seen from `camera` (3,).
 
     `seen`: its right and left end are in view; `half_pixel` [rad]; `noise`: standard deviation [m] of the points.
+    `dark` (m, 3): where the rest of its outline is about, of which no distance is known.
     """
     local = points - (0.0, 0.0, floor)
     used = local[:: max(1, len(local) // SAMPLE)]
-    outline = primitives.silhouette(local, camera, seen, half_pixel)
+    whole = local if dark is None or not len(dark) else np.concatenate([local, dark - (0.0, 0.0, floor)])
+    outline = primitives.silhouette(whole, camera, seen, half_pixel)
     eye = camera - (0.0, 0.0, floor)
     steep = abs(eye[2] - local[:, 2].mean()) / max(1e-3, float(np.linalg.norm(eye - local.mean(axis=0))))
-    h = max(0.008, primitives.top_of(local, noise * steep))
+    h = max(0.008, primitives.top_of(whole, noise * steep))
     shapes = [_box(used, h, outline, noise)]
     _, _, extents, _ = primitives.rectangle(used[:, :2], 12)[0]
     wide, narrow = float(extents.max()), float(extents.min())
+    if len(whole) > len(local):
+        # What faces away from the lamps is missing: it may be as deep as it is wide.
+        wide = narrow = max(wide, float(outline.distance * np.ptp(outline.ends)) if all(seen) else wide)
     if narrow > 0.45 * wide or not all(seen):
         shapes.append(turned.standing(used, h, outline, eye, noise))
     if 0.6 < h / wide < 1.5:
         shapes.append(_ball(used, h, outline, noise))
     if wide > LAID * h:
         shapes += lying.lying(used, h, outline, eye, noise)
-    gaps = GAPS * max(0.0, SOLID - primitives.solidity(local, eye))
+    gaps = GAPS * max(0.0, SOLID - primitives.solidity(whole, eye))
     shapes = [replace(s, residual=s.residual + (gaps if math.isnan(s.handle) else HANDLED * gaps)) for s in shapes]
     costs = [(1 - s.credit) * s.residual + COMPLEX * s.free * (0.001 + 0.3 * noise) for s in shapes]
     best = shapes[int(np.argmin(costs))]

@@ -1,6 +1,6 @@
 """A segment of a view, and what the pixels around it say: something hides a part of it, or it goes on. Pure."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,6 +29,7 @@ class Segment:
     """One object on a surface: its pixels (rows, columns) and their points (n, 3) in frame map.
 
     `cut`: the picture's edge or something nearer hides a part of it; `ends`: its right and its left end are in view.
+    `dark` (n, 3): about where its pixels without depth are, that belong to its outline and tell nothing of its shape.
     """
 
     surface: Surface
@@ -37,6 +38,7 @@ class Segment:
     points: NDArray[np.float64]
     cut: bool
     ends: tuple[bool, bool]
+    dark: NDArray[np.float64] = field(default_factory=lambda: np.empty((0, 3)))
 
 
 def covered(view: View, rows: NDArray[np.intp], columns: NDArray[np.intp], own: Mask) -> tuple[bool, bool, bool]:
@@ -44,7 +46,8 @@ def covered(view: View, rows: NDArray[np.intp], columns: NDArray[np.intp], own: 
     window, mask = _around(view, rows, columns)
     depth, left = view.depth[window], window[1].start
     rim = ndimage.binary_dilation(mask, iterations=RIM) & ~mask
-    nearest = float(view.depth[rows, columns].min())
+    own_depth = view.depth[rows, columns]
+    nearest = float(own_depth[own_depth > 0].min())
     nearer = rim & (own[window] | (depth > 0) & (depth < nearest - NEARER))
     first, last = int(columns.min()) - left, int(columns.max()) - left
 

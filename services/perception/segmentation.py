@@ -11,6 +11,7 @@ from scipy import ndimage
 
 from common.floor_plan import FloorPlan
 from common.geometry import Array, Rectangle
+from services.perception.dark import Blobs, Pixels, blobs, guessed
 from services.perception.segment import Segment, Surface, covered, goes_on
 from services.perception.view import Mask, View, Window
 from services.perception.visible_plan import Cloud, Nearby, corners, inside
@@ -68,17 +69,17 @@ def segments(view: View, floor_plan: FloorPlan, max_range: float, robot: Mask | 
     near = Nearby(floor_plan, float(view.position[0]), float(view.position[1]), max_range)
     own = robot if robot is not None else np.zeros(view.shape, bool)
     usable = (view.depth > 0.05) & (view.depth < max_range) & ~own
+    dark = blobs(view)
     found: list[Segment] = []
     for r in near.receptacles:
         surface = Surface(r.name, r.center[2])
         outline = r.outline.grown(-WALL_EDGE if r.depth else -EDGE)
-        found += _on(view, surface, _over(view, usable, outline, surface.height), near, own)
+        found += _on(view, surface, _over(view, usable, outline, surface.height), near, own, dark)
     for f, on_it in near.tops(float(view.position[2]) - LOOKED_DOWN_ON):
         surface = Surface(f.name, f.center[2] + f.size[2] / 2)
-        found += _on(
-            view, surface, _over(view, usable, f.outline.grown(-WALL_EDGE), surface.height).outside(on_it), near, own
-        )
-    return found + _on(view, Surface("", 0.0), _above_floor(view, usable).outside(near.boxes), near, own)
+        over = _over(view, usable, f.outline.grown(-WALL_EDGE), surface.height)
+        found += _on(view, surface, over.outside(on_it), near, own, dark)
+    return found + _on(view, Surface("", 0.0), _above_floor(view, usable).outside(near.boxes), near, own, dark)
 
 
 def _over(view: View, usable: Mask, outline: Rectangle, height: float) -> Cloud:
@@ -116,7 +117,7 @@ def _between(view: View, usable: Mask, low: float, high: float, window: Window) 
     return Cloud(pixels, x[rows, columns], y[rows, columns], z[rows, columns])
 
 
-def _on(view: View, expected: Surface, cloud: Cloud, near: Nearby, own: Mask) -> list[Segment]:
+def _on(view: View, expected: Surface, cloud: Cloud, near: Nearby, own: Mask, dark: Blobs | None) -> list[Segment]:
     """Pieces above one surface, whose plane is measured where enough of it is visible."""
     plane = _plane(cloud, expected)
     height = plane[0] * cloud.x + plane[1] * cloud.y + plane[2]
@@ -142,7 +143,9 @@ def _on(view: View, expected: Surface, cloud: Cloud, near: Nearby, own: Mask) ->
         parts.append((part_rows + box[0].start + top, part_columns + box[1].start + left))
     over_it = np.zeros(view.shape, bool)
     over_it[rows, columns] = True
-    found = (p for p in _join(view, expected.name, plane, parts, own) if len(p.rows) >= MIN_PIXELS and _is_thing(p))
+    found = (
+        p for p in _join(view, expected.name, plane, parts, own, dark) if len(p.rows) >= MIN_PIXELS and _is_thing(p)
+    )
     return [p for p in found if goes_on(view, p, over_it, CLEARANCE, JUMP) < GOES_ON]
 
 
@@ -198,23 +201,25 @@ def _cut(mask: Mask, depth: NDArray[np.float32]) -> Mask:
     return kept
 
 
-def _join(
-    view: View, name: str, plane: Array, parts: list[tuple[NDArray[np.intp], NDArray[np.intp]]], own: Mask
-) -> list[Segment]:
-    """Parts of one object, such as the two sides of a mug's rim or a bottle's cap, stand in the same spot."""
+def _join(view: View, name: str, plane: Array, parts: list[Pixels], own: Mask, dark: Blobs | None) -> list[Segment]:
+    """Parts of one object, such as the two sides of a mug's rim or a bottle's cap, stand in the same spot; those of a
+    dark one are joined by what has no depth between them."""
     clouds = [view.points[rows, columns].astype(np.float64) for rows, columns in parts]
     low = np.array([c[:, :2].min(axis=0) for c in clouds])
     high = np.array([c[:, :2].max(axis=0) for c in clouds])
     groups = np.arange(len(parts))
+    numbers = dark.of(view, parts) if dark else [0] * len(parts)
     order = sorted(range(len(parts)), key=lambda i: -len(clouds[i]))
     for n, i in enumerate(order):
         # The samples are at least as far apart as their bounds.
         for j in order[n + 1 :]:
-            if groups[i] == groups[j] or max(*(low[i] - high[j]), *(low[j] - high[i])) >= JOIN:
+            one_blob = numbers[i] > 0 and numbers[i] == numbers[j]
+            apart = max(*(low[i] - high[j]), *(low[j] - high[i])) >= JOIN
+            if groups[i] == groups[j] or (apart and not one_blob):
                 continue
             members = (groups == groups[i]) | (groups == groups[j])
             extent = (high[members].max(axis=0) - low[members].min(axis=0)).max()
-            if extent < JOINED_EXTENT and _gap(clouds[i], clouds[j]) < JOIN:
+            if extent < JOINED_EXTENT and (one_blob or _gap(clouds[i], clouds[j]) < JOIN):
                 groups[groups == groups[j]] = groups[i]
     found = []
     h, w = view.shape
@@ -222,13 +227,16 @@ def _join(
         members = np.flatnonzero(groups == group)
         rows = np.concatenate([parts[k][0] for k in members])
         columns = np.concatenate([parts[k][1] for k in members])
-        hidden = covered(view, rows, columns, own)
-        ends = not hidden[2] and int(columns.max()) < w - 2, not hidden[1] and int(columns.min()) > 1
-        cut = bool(hidden[0] or rows.min() <= 1 or rows.max() >= h - 2 or not all(ends))
+        hole = dark.hole(blob) if dark and (blob := numbers[members[0]]) else (rows[:0], rows[:0])
+        all_rows, all_columns = np.append(rows, hole[0]), np.append(columns, hole[1])
+        hidden = covered(view, all_rows, all_columns, own)
+        ends = not hidden[2] and int(all_columns.max()) < w - 2, not hidden[1] and int(all_columns.min()) > 1
+        cut = bool(hidden[0] or all_rows.min() <= 1 or all_rows.max() >= h - 2 or not all(ends))
         points = np.concatenate([clouds[k] for k in members])
         x, y, _ = points.mean(axis=0)
         surface = Surface(name, float(plane[0] * x + plane[1] * y + plane[2]))
-        found.append(Segment(surface, rows, columns, points, cut, ends))
+        guess = guessed(view, (rows, columns), hole) if len(hole[0]) else np.empty((0, 3))
+        found.append(Segment(surface, rows, columns, points, cut, ends, guess))
     return found
 
 

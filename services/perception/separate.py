@@ -93,7 +93,15 @@ def _cut(segment: Segment, cut: NDArray[np.intp]) -> list[Segment]:
     found = []
     for n in range(int(cut.max()) + 1):
         own = cut == n
-        found.append(replace(segment, rows=segment.rows[own], columns=segment.columns[own], points=segment.points[own]))
+        found.append(
+            replace(
+                segment,
+                rows=segment.rows[own],
+                columns=segment.columns[own],
+                points=segment.points[own],
+                dark=segment.dark[:0],
+            )
+        )
     return found
 
 

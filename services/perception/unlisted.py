@@ -101,6 +101,7 @@ def measured(view: View, segment: Segment) -> Measurement:
         segment.ends,
         0.5 / view.focal[0],
         noise_of(view, segment),
+        segment.dark,
     )
 
 
