@@ -40,6 +40,7 @@ _UNFINISHED = re.compile(
     r"him|her|you|why|when|how|would|could|should|must|the|a|an|my|your|of|in|on|for|with|please)$"
 )
 """How words end that go on in what follows: `he said`, `she asked me to`."""
+_REPORTS = re.compile(r"\b(?:said|says|say|told|tells|tell|asked|asks|ask)(?: (?:me|us|him|her|that|to|you))*$")
 _FORBIDS = re.compile(
     r"\b(?:you|nobody|no one|never|always) (?:must|should|may|can|do|will|would|could|did)? ?(?:not|never)\b"
 )
@@ -98,16 +99,24 @@ def _break(text: str) -> tuple[int, int] | None:
     for pattern in (_STRONG, _WEAK):
         for found in pattern.finditer(text, begin):
             head, tail = text[begin : found.start()].strip(" ,"), text[found.end() :]
-            if is_statement(head) and _asks(tail, pattern is _STRONG):
+            if is_statement(head, "," in found[0]) and _asks(tail, pattern is _STRONG):
                 return found.start(), found.end()
     return None
 
 
-def is_statement(text: str) -> bool:
-    """Does a text tell something, complete in itself, and neither ask for nor forbid anything?"""
+def is_statement(text: str, ended: bool = True) -> bool:
+    """Does a text tell something, complete in itself, and neither ask for nor forbid anything?
+
+    `ended`: a mark says where it ends, so that it does not go on in what follows.
+    """
     bare = without_politeness(text)
     words = bare.replace(",", " ").split()
-    if len(words) < 2 or _NO_STATEMENT.match(bare) or _UNFINISHED.search(bare) or _FORBIDS.search(bare):
+    if (
+        len(words) < 2
+        or _NO_STATEMENT.match(bare)
+        or (_UNFINISHED if not ended else _REPORTS).search(bare)
+        or _FORBIDS.search(bare)
+    ):
         return False
     return words[0] in _SUBJECTS or (words[0] in DETERMINERS and len(words) > 2)
 

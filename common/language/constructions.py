@@ -13,7 +13,7 @@ NP = r"((?:\w|')+(?: (?:\w|')+){0,11}?)"
 _WHO = r"(?:i|we|(?:(?:my|our|the|your) )?[a-z]+(?: [a-z]+)?)"
 _WANT = (
     "(?:want|wants|need|needs|require|requires|wish for|wishes for|crave|craves|desire|will need|will have|will take|"
-    "am going to need|are going to need|would need|would like|would love|would prefer|would rather have|am "
+    "am going to need|are going to need|would need|would (?:really |very much |quite |most |just )?(?:like|love|prefer)|would rather have|am "
     "needing|am wanting|"
     "are needing|is asking for|is waiting for|is missing|am craving|am in need of|am after|am dying for|am longing for|"
     "am in the mood for|are after|is after|fancy|fancies|could use|could do with|would not mind|would appreciate|"
@@ -24,6 +24,14 @@ _OBJECTIVE = "(?:it|them|that|this|those|these|that one|this one|him|her)"
 CONSTRUCTIONS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
     (re.compile(f"^{pattern}$"), result)
     for pattern, result in (
+        # An exception that is said at the end.
+        (rf"(\w+(?: up| away| me)?) {NP} ((?:here|over here|to me|away|back)|{TO_PLACE} (?:\w+ ){{1,3}}?\w+)"
+         rf" (but not|but no|except for|except|apart from|other than|besides|but) {NP}", r"\1 \2 \4 \5 \3"),
+        (rf"(\w+(?: up| away| me)?) {NP} ((?:here|over here|to me|away|back)|{TO_PLACE} (?:\w+ ){{1,3}}?\w+)"
+         rf" (?:but|and) (?:please )?(?:leave|keep|spare|do not (?:touch|move|take|bring)) {NP}"
+         r"(?: there| alone| here| where (?:it|they) (?:is|are)| as (?:it|they) (?:is|are))?", r"\1 \2 except \4 \3"),
+        (r"(.+) in here( .+)?", r"\1 here\2"),
+        (rf"(\w+ {NP} {TO_PLACE} {NP}) where (?:it|they) belongs?", r"\1"),
         # Clefts.
         (rf"(?:all|what|the only thing|the thing|the one|everything)(?: that)? {_WHO}(?: really| just| "
          rf"actually)? {_WANT}"

@@ -25,6 +25,7 @@ _CONTRACTIONS = tuple(
         (r"\b(?:cuz|coz|cos)\b|(?<!\w)'cause\b", "because"),
         (r"\bo'clock\b", "oclock"),
         (r"\boutta\b", "out of"),
+        (r"\bin here\b", "here"),
         # With the apostrophe, or without it where no other word is spelled so.
         (r"\b(what|where|who|there|that|how|here|which|when|why)'?s\b(?! up\b)", r"\1 is"),
         (r"\b(it|she|he)'s\b", r"\1 is"),

@@ -49,6 +49,12 @@ _DO_NOT = re.compile(r"^do not (?P<wrong>\w+ .+?)(?:,\s*(?:but\s+)?|\s+but\s+)(?
 _DO_NOT_DO = re.compile(
     rf"^do not (?P<wrong>\w+ .+?)\s+(?P<right>(?:{'|'.join(sorted(COMMANDING))}) (?:me|us|the|a|an|my|it|to)\b.+)$"
 )
+_INSTEAD_OF = re.compile(
+    r"^(?:never mind|forget(?: about)?|skip|leave|ignore|not) (?:the|that|my|those|this)(?: "
+    r"\w+){1,3}?(?:,\s*(?:and |but )?| and | but )"
+    rf"(?=(?:please |just |rather )*(?:{'|'.join(sorted(COMMANDING))})\b)"
+)
+"""What is not wanted, before what is."""
 _AFTERTHOUGHT = re.compile(
     r"^(?P<said>.+?),?\s+(?P<meant>(?:the|a|my|to|on|in|into) [^,]+?),? (?:i mean(?:t)?|that is|i should say|to "
     r"be precise|actually)$"
@@ -148,6 +154,8 @@ def _settled(text: str, is_place: IsPlace) -> str:
     text = _EXCEPT.sub(" but ", text).replace(" but but ", " but ")
     text = _LATE_EXCEPT.sub(r"\g<all> \g<but> \g<particle>", text)
     bare = without_politeness(text)
+    if _INSTEAD_OF.match(bare):
+        text = bare = without_politeness(_INSTEAD_OF.sub("", bare))
     if found := (_CONTRAST.match(bare) or _DO_NOT_DO.match(bare) or _DO_NOT.match(bare)):
         text = _contrasted(found["wrong"], found["right"])
     return text

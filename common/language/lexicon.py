@@ -1,6 +1,9 @@
 """Words that ask for the same, as options of a pattern: a synonym is one more word here and stands in every wording."""
 
-BRING = "bring | fetch | get | give | hand | pass | grab | take | carry | retrieve | chuck | toss | throw | slide"
+BRING = (
+    "bring | fetch | get | give | hand | pass | grab | take | carry | retrieve | chuck | toss | throw | slide | lend"
+    " | deliver"
+)
 """Verbs of bringing that need a receiver: `grab me the mug`."""
 FETCH = "bring | fetch | get | give | hand | pass | carry | retrieve | collect | gather"
 """Verbs of bringing that need none."""
@@ -8,25 +11,36 @@ PICK = "(get | fetch | take | grab | pick | pick up | collect | gather)"
 """The first half of moving something: `get the mug and put it away`."""
 PUT = (
     "put | sort | place | set | throw | toss | drop | lay | stick | move | stack | pop | slide | leave | shift"
-    " | chuck | dump | relocate"
+    " | chuck | dump | relocate | shove | jam | tuck | deposit | stow | plop | plonk | stash | sling | fling | transfer"
 )
-MOVE = "bring | take | carry | deliver | transport | move | get | fetch | return | shift | relocate | transfer"
+MOVE = (
+    "bring | take | carry | deliver | transport | move | get | fetch | return | shift | relocate | transfer | "
+    "swap | haul"
+    " | convey | switch | send"
+)
 """Verbs of moving to a place that is named with "to"."""
 THROW = "throw | toss | chuck"
-DISCARD = "trash | discard | recycle | bin | get rid of | dispose of"
-TIDY = "tidy | clean | clear | declutter | straighten | neaten | sort out"
-GO = "drive | navigate | move | walk | return | head | come | roll | run | nip | pop | travel | proceed"
-SEEK = "find | search for | look for | locate | show me | track down | hunt for"
-LOOK = "(look | check | see | have a look | take a look | find out | verify)"
+DISCARD = "trash | discard | recycle | bin | get rid of | dispose of | ditch | junk"
+TIDY = "tidy | clean | clear | declutter | straighten | neaten | sort out | organise | organize"
+GO = (
+    "drive | navigate | move | walk | return | head | come | roll | run | nip | pop | travel | proceed | hop | "
+    "dash | hurry"
+    " | rush | wander | stroll | step"
+)
+SEEK = (
+    "find | search for | look for | locate | show me | track down | hunt for | hunt down | seek | look out for | spot"
+)
+LOOK = "(look | check | see | (have | take) a [quick | good | little | short] look | find out | verify | make sure)"
 MODAL = "(can | could | may | might)"
 WISH = (
     "(want | wants | need | needs | require | would like | would love | would prefer | prefer | fancy | could [really]"
     " (use | do with) | am after | would rather have)"
 )
-PERSON = (
-    "(i | we | he | she | they | (my | our | the) (wife | husband | partner | mother | father | mum | mom | dad | son |"
-    " daughter | child | kids | children | baby | boss | guest | guests | friend | grandma | grandpa | boy | girl))"
+FAMILY = (
+    "(wife | husband | partner | mother | father | mum | mom | dad | son | daughter | child | kids | children | baby"
+    " | boss | guest | guests | friend | grandma | grandpa | boy | girl | family | brother | sister)"
 )
+PERSON = f"(i | we | he | she | they | (my | our | the) {FAMILY})"
 """Who wants something."""
 MOVED = "(put | placed | moved | brought | taken | carried | set | returned | transferred | dropped | left)"
 # Words around them.
@@ -36,7 +50,8 @@ BACK = "[back | over | straight | down | away]"
 """Particles between an object and its place that change nothing."""
 IT = "(<thing> | it | them)"
 ASK = (
-    "[(can | could) you tell me | tell me | do you (know | remember | happen to know) | [have you got] any idea"
+    "[(can | could) you tell me | tell me | remind me | explain [to] me | let me know | do you (know | remember |"
+    " happen to know) | [have you got] any idea"
     " | find out | i wonder | see | so | and"
     " | (did | do) you (see | notice | remember)]"
 )
@@ -61,7 +76,9 @@ COMMANDING: frozenset[str] = frozenset(
     for option in verbs.split(" | ")
 ) - {"bin", "roll", "pop"}
 """First words that make a clause a command; without those that are rather nouns."""
-HANDLING = COMMANDING - {
-    option for verbs in (GO, SEEK, "go | wait | say | tell | check") for option in verbs.split(" | ")
-}
+HANDLING: frozenset[str] = frozenset(
+    option.split()[0]
+    for verbs in (BRING, FETCH, PUT, MOVE, THROW, DISCARD, TIDY, "pick")
+    for option in verbs.split(" | ")
+) - {"bin", "roll", "pop"}
 """The verbs among them of what is done to a thing."""

@@ -6,7 +6,26 @@ from collections.abc import Container
 
 Words = tuple[str, ...]
 
-DETERMINERS = frozenset({"the", "a", "an", "my", "your", "our", "that", "this", "some", "any", "those", "these"})
+DETERMINERS = frozenset(
+    {
+        "the",
+        "a",
+        "an",
+        "my",
+        "your",
+        "our",
+        "that",
+        "this",
+        "some",
+        "any",
+        "those",
+        "these",
+        "her",
+        "his",
+        "their",
+        "its",
+    }
+)
 """Words before a noun that say nothing about which object is meant beyond "one of these"."""
 
 _PAST = {

@@ -21,7 +21,7 @@ Which = Literal[
     "last",
     "other",
 ]
-PRONOUNS = frozenset({"it", "that", "this", "him", "her"})
+PRONOUNS = frozenset({"it", "that", "this", "him", "her", "this one", "that one", "this thing", "that thing"})
 PLURAL_PRONOUNS = frozenset({"them", "those", "these", "both", "all of them", "both of them", "them all", "all of it"})
 WHICH: dict[str, Which] = {
     "left": "left", "leftmost": "left", "right": "right", "rightmost": "right", "nearest": "nearest",
@@ -66,7 +66,7 @@ UNSEEN = frozenset(
     {
         "dirty", "clean", "empty", "full", "used", "old", "new", "nice", "fresh", "cold", "hot", "warm", "favourite",
         "favorite", "normal", "regular", "ordinary", "own", "lovely", "pretty", "good", "whole", "remaining", "same",
-        "usual", "certain",
+        "usual", "certain", "single",
     }
 )  # fmt: skip
 """Qualities that nobody can see or that tell nothing apart."""

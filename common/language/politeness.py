@@ -102,6 +102,8 @@ _FRAMES = (
     r"i (?:think|guess|suppose|believe|reckon|say|suggest)(?: that)?(?= (?:the|my|this|that|we|you|it)\b)",
     r"while you are (?:at it|there|up|about it)|(?:on|along) (?:the|your) way(?: back)?|"
     r"when you (?:come|get|are|go) back(?= (?:bring|take|get|fetch|put|grab)\b)",
+    r"drop everything(?: else)?(?: and)?(?=\s+\w)|without \w+ing (?:[^,]+?),|without \w+ing .+?(?= throw\b| "
+    r"put\b| bring\b| take\b)",
     _OCCASION,
 )
 """Frames of a request; what is asked for follows."""
@@ -128,7 +130,11 @@ _LEAD = re.compile(rf"^(?:(?:{'|'.join((_ADDRESS, _WAY, *_FRAMES))})(?:\s+|\s*,\
 _TAIL = re.compile(rf"(?:,?\s+(?:{'|'.join(_ENDINGS)}))+$")
 _FOR_ME = re.compile(r"^(?:grab|take|pick up|reach|snatch|grasp|get) (?!me\b)(.+?) for (?:me|us)(?= please$|$)")
 """Taking something for somebody is bringing it."""
-LONG_SPEECH = re.compile(r"^(?:(?:say|announce)(?: that)?|tell (?:them|everybody|everyone|people|us|me) that)\s+(.+)$")
+LONG_SPEECH = re.compile(
+    r"^(?:(?:say|announce)(?: that)?|tell (?:them|everybody|everyone|people|us|me) that|"
+    r"(?:tell|inform) (?:my|our|the) \w+(?: that)?(?! (?:to|where|what|how|if|whether|about|when|why|who|which)\b)|"
+    r"let (?:my|our|the) \w+ know(?: that)?)\s+(.+)$"
+)
 """A clause whose words are to be spoken and not understood."""
 FRAME = re.compile(rf"(?:{'|'.join(_FRAMES)})\s")
 """A frame, which makes a request of what follows."""

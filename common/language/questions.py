@@ -11,8 +11,9 @@ ABOUT_THE_WORLD: tuple[Wording, ...] = (
     ),
     Wording(
         "contents",
-        f"{ASK} (what [else] | which (things | objects)) ({BE} | lies | lie | do you see | do we have | have we got)"
-        f" [{LYING}] (on | in | at) <spot>"
+        f"{ASK} (what [else] | (which | what) (things | objects | items | stuff)) ({BE} [there] | lies | lie | "
+        f"do you see | do we have | have we got)"
+        f" [{LYING}] (on | in | at | inside) <spot>"
         f" | {ASK} what <spot> (has | holds | contains) [on it | in it]",
         heard="what is (on | in) [the] <place>",
     ),
@@ -66,7 +67,9 @@ ABOUT_THE_WORLD: tuple[Wording, ...] = (
     ),
     Wording(
         "where",
-        "have you (seen | found | got | noticed | come across) <thing> [anywhere | somewhere]",
+        "have you (seen | found | got | noticed | come across) <thing> [anywhere | somewhere]"
+        " | have you <thing> seen | did (i | we | somebody | someone | anybody | anyone) (leave | put | forget | "
+        "lose) <thing>",
         heard="",
     ),
     Wording("where", "(do | can) you (see | know) <thing> [anywhere | somewhere]", heard=""),
@@ -150,7 +153,10 @@ ABOUT_ITSELF: tuple[Wording, ...] = (
     Wording(
         "origin",
         "(where | which place | what place) (did | do | have) you (get | got | take | taken | find | found | pick |"
-        " fetch | have | had) <thing> [up] [from]",
+        " fetch | have | had) <thing> [up] [from]"
+        " | where (did | was | were) <thing> (stand | sit | lie | be | come from | standing | lying) [before | "
+        "originally]"
+        " | where (was | were) <thing> (before | originally) | where does <thing> come from",
         heard="",
     ),
     Wording(

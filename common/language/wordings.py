@@ -11,6 +11,7 @@ from common.language.lexicon import (
     BACK,
     BRING,
     DISCARD,
+    FAMILY,
     FETCH,
     GO,
     IT,
@@ -54,11 +55,17 @@ WORDINGS: tuple[Wording, ...] = (
         "yes",
         "(yes | yeah | yep | yup) [please | i did | it is | that is right | please do | do | do that | "
         "exactly | go ahead] | correct | [that is] right | exactly | sure | okay | ok"
-        " | go ahead | do it | do | affirmative",
+        " | go ahead | do it | do | affirmative | sure thing | of course | absolutely | definitely | indeed | "
+        "certainly | fine"
+        " | you bet | by all means | please do | right | that is (it | the one) | uh huh | why not | perfect",
         heard="yes [please | it is] | yeah | correct", kind="reply", reason="I did not ask anything",
     ),
     Wording(
-        "no", "(no | nope) [thanks | i did not | i didn't] | [that is] wrong | negative | not that",
+        "no", "(no | nope | nah) [thanks | i did not | that is wrong] | [that is] (wrong | incorrect) | negative "
+              "| not (that | really | at all)"
+        " | [no] that is not (what i (said | meant | want | asked for) | right | correct | it | true) | not what "
+        "i (said | meant)"
+        " | [no] i (did not | never) (say | mean) that | you (misheard | misunderstood) [me] | absolutely not",
         heard="no [thanks] | nope", kind="reply", reason="I did not ask anything",
     ),
     Wording("refuse", "yes <words>", heard="", reason="I did not ask anything"),
@@ -105,13 +112,16 @@ WORDINGS: tuple[Wording, ...] = (
         " | [try | repeat] (that | it) (again | once more | one more time) | repeat (that | it) [with <thing>] | retry"
         " | (try | do it | go) (again | once more | one more time) | (once [more] | again | one more time) [with "
         "<thing>]"
-        " | (have | take | give it) (another | one more) (go | try | shot | attempt)",
+        " | (look | check | search) (again | once more) | (have | take | give it) (another | one more) (go | try "
+        "| shot | attempt)",
         heard="try again | do that again",
     ),
     # The robot itself.
     Wording(
         "say",
-        "(say | announce) [that] <words> | tell (them | everybody | everyone | people | us | me) that <words>",
+        "(say | announce) [that] <words> | tell (them | everybody | everyone | people | us | me) that <words>"
+        f" | (tell | inform) (my | our | the) {FAMILY} [that] <words> | let (my | our | the) {FAMILY} know "
+        "[that] <words>",
         heard="",
     ),
     Wording("wait", "(wait | pause) [here | there | a moment | a bit | a while | for me]", heard="wait"),
@@ -143,12 +153,21 @@ WORDINGS: tuple[Wording, ...] = (
     ),
     Wording(
         "check",
-        f"[go [over] [and | to]] {LOOK} (if | whether) <thing> (is | are) [still] (in | on | at) <spot>",
+        f"[go [over] [and | to]] {LOOK} (if | whether) (somebody | someone | anybody | anyone | i | we | they | "
+        f"you) [has | have]"
+        f" (left | put | forgotten | forgot | dropped) <thing>"
+        f" | [go [over] [and | to]] {LOOK} (if | whether) <thing> (is | are) [still] (in | on | at) <spot>",
         heard="",
     ),
     Wording(
         "find",
         f"[go [and] | help me [to] | try [to | and]] {LOOK} (if | whether) you can (find | see | spot) <thing>",
+        heard="",
+    ),
+    Wording(
+        "wait",
+        "(give | allow) (me | us) <words> | (stay | remain | wait) (put | where you are | right there) [for] <words>"
+        " | do nothing for <words> | take a break (for | of) <words>",
         heard="",
     ),
     Wording("wait_there", "[go and] wait (in | at | by | near) <spot>", heard=""),
@@ -195,6 +214,15 @@ WORDINGS: tuple[Wording, ...] = (
     Wording("go", "(swing | drop | stop | pop | pass | come | go) by <spot> | visit <spot>", heard=""),
     Wording("come_back", "(get | go | come) out of <spot>", heard=""),
     Wording("go", "(approach | look at) <spot>", heard=""),
+    Wording(
+        "go",
+        f"(go | {GO}) [over | back | up] to (where | the (room | place | table | spot) where) <spot> (is | are | "
+        f"stands | lies)"
+        f" | (go | stand | {GO}) (next to | beside | in front of | up to | over to | by | close to) <spot>"
+        " | (park | place | put | position | station | move | bring | drive) yourself [over | back]"
+        " (to | into | in | at | on | by | near | next to | beside | in front of) <spot>",
+        heard="",
+    ),
     Wording("go", "(i | we) (need | want) you (in | at | by) <spot>", heard=""),
     Wording("go", "(make your way | get yourself | take yourself) [over | back] (to | into) <spot>", heard=""),
     # Putting.
@@ -256,6 +284,7 @@ WORDINGS: tuple[Wording, ...] = (
         f"({MOVE}) [me] <thing> {BACK} (to | into) <spot>",
         heard="(bring | take | carry) <thing> to <spot>",
     ),
+    Wording("wish_at", "(bring | get | fetch | carry) <thing> (on | in) <spot>", heard=""),
     Wording("put", f"({MOVE}) <thing> {BACK} (on | onto | in) <spot>", heard=""),
     Wording(
         "put",
@@ -320,6 +349,7 @@ WORDINGS: tuple[Wording, ...] = (
     Wording("fetch", f"{MODAL} i trouble you for <thing> | gimme <thing> | how about <thing>", heard=""),
     Wording("fetch", "<thing> would be (nice | great | good | lovely | perfect)", heard=""),
     Wording("fetch", "[is there] any chance of [getting | having] <thing>", heard=""),
+    Wording("fetch", "(pick | grab | fetch | get) (me | us) up <thing>", heard=""),
     Wording("refuse", "(put | place | set) <thing>", heard="", reason="you did not say where to put it"),
     Wording(
         "refuse", "(open | close | shut | lock | unlock) <words>", heard="(open | close) the <openable>",
@@ -334,7 +364,12 @@ WORDINGS: tuple[Wording, ...] = (
         "have) <words>",
         heard="", kind="told",
     ),
-    Wording("remark", "(i am | we are | it is) <words>", heard="", kind="told"),
+    Wording(
+        "remark",
+        "(i am | we are | it is) <words>"
+        " | is there (anything | something) [that] you (can | could) (bring | get | give | fetch) (me | us)",
+        heard="", kind="told",
+    ),
     # Names alone.
     Wording("named_at", "<thing> (in | on | into | onto) <spot>", heard="", kind="name"),
     Wording("fetch", "[no] i (said | meant) <thing> | no <thing>", heard="no [i said] <thing>", kind="name"),

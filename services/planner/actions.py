@@ -9,7 +9,7 @@ from common.messages import PlanStep
 from services.planner.phrases import Phrase, read
 from services.planner.plan_builder import NOT_UNDERSTOOD, PlanBuilder, Refusal
 from services.planner.relations import BESIDE, between
-from services.planner.resolve import Referent, fitting, referent, referents, spot
+from services.planner.resolve import Referent, fitting, handled_before, referent, referents, spot
 from services.planner.vocabulary import Spot
 from services.planner.world import BelievedObject
 
@@ -41,9 +41,13 @@ def deliver(builder: PlanBuilder, slots: Slots) -> None:
 
 def deliver_there(builder: PlanBuilder, slots: Slots) -> None:
     """`take the mug there` and `go to the kitchen with the mug`."""
-    if builder.spot is None:
+    there = builder.spot
+    if there is None and (before := handled_before(builder)):
+        surface = builder.world.receptacle_of(before[-1])
+        there = Spot(surface.name, receptacle=surface) if surface else None
+    if there is None:
         raise Refusal("I do not know which place you mean by there")
-    _deliver(builder, referents(builder, slots["thing"], prefer_held=True), builder.spot)
+    _deliver(builder, referents(builder, slots["thing"], prefer_held=True), there)
 
 
 def put(builder: PlanBuilder, slots: Slots) -> None:
@@ -193,10 +197,11 @@ def say(builder: PlanBuilder, slots: Slots) -> None:
 # --- what is said beside a command
 def remark(builder: PlanBuilder, slots: Slots) -> None:
     """A reason for what is asked next, such as "I'm thirsty"; a need that is known is met if nothing else is asked."""
-    if "and" in slots["words"]:
+    words = slots.get("words", ())
+    if "and" in words:
         raise Refusal("I do not understand that")
     needs = builder.world.household.words.needs
-    builder.need = next((n for w, n in needs.items() if w in slots["words"]), builder.need)
+    builder.need = next((n for w, n in needs.items() if w in words), builder.need)
 
 
 def mention(builder: PlanBuilder, slots: Slots) -> None:

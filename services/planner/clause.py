@@ -23,10 +23,10 @@ class _Failure(Exception):
         self.at, self.reason = at, reason
 
 
-def read_clause(words: Words, builder: PlanBuilder, alone: bool, started: bool) -> None:
-    """One part of the sentence: one command, or several joined by "and"."""
+def read_clause(words: Words, builder: PlanBuilder, alone: bool, verb: str = "") -> None:
+    """One part of the sentence: one command, or several joined by "and"; `verb` is that of the part before."""
     try:
-        _joined(words, builder, "" if not started else "bring", 0, alone)
+        _joined(words, builder, verb, 0, alone)
     except _Failure as failure:
         raise Refusal(failure.reason) from None
 
@@ -89,6 +89,8 @@ def _apply(words: Words, builder: PlanBuilder, verb: str, alone: bool) -> str | 
     reason = apply_first(words, builder, "command", "reply")
     if reason == "" and alone:
         return apply_first(words, builder, "name")
+    if reason == "" and verb in ("go", "drive", "come", "head") and builder.vocabulary.spot(words):
+        return apply_first(("go", "to", *words), builder, "command")
     if reason == "" and verb and _is_thing(words, builder):
         # "put the mug on the table and the can on the counter": the verb is said once.
         return apply_first((verb, *words), builder, "command", "reply")

@@ -5,6 +5,7 @@ from contextlib import suppress
 
 from common.language.breaks import is_statement
 from common.language.discourse import commands
+from common.language.lexicon import COMMANDING
 from common.language.meaning import WORDS
 from common.language.normalise import Words, normalise
 from common.messages import ActionPlan, PlanStep, RejectedPlan
@@ -160,8 +161,13 @@ def _steps(command: str, builder: PlanBuilder) -> list[PlanStep]:
         raise Refusal("I did not hear a command")
     if len(command) > MAX_CHARACTERS or any(len(s.split()) > MAX_WORDS for s in sentences):
         raise Refusal("that is too long a sentence for me")
+    verb = ""
     for number, sentence in enumerate(sentences):
         words = tuple(sentence.split())
+        following = sentences[number + 1].split() if number + 1 < len(sentences) else []
+        if is_statement(sentence) and words[0] in ("i", "we") and {"it", "them"} & set(following):
+            note(words, builder)  # "I want the apple. Put it on the desk": what is wanted is said in the second
+            continue
         if words[0] == "otherwise":
             if not builder.unmet:
                 break
@@ -169,17 +175,18 @@ def _steps(command: str, builder: PlanBuilder) -> list[PlanStep]:
         if builder.unmet or not words:
             continue
         try:
-            read_clause(words, builder, alone=len(sentences) == 1, started=number > 0)
+            read_clause(words, builder, alone=len(sentences) == 1, verb=verb)
         except Refusal:
             if number + 1 == len(sentences) or not is_statement(sentence):
                 raise
             note(words, builder)
+        verb = words[0] if words[0] in COMMANDING else "bring"
     if builder.unmet:
         builder.say(builder.unmet)
     if builder.collecting:
         raise Refusal("I can hold only one thing at a time")
     if not builder.steps and builder.need:
-        read_clause(("bring", "me", *builder.need.split()), builder, alone=True, started=False)
+        read_clause(("bring", "me", *builder.need.split()), builder, alone=True)
     if not builder.steps:
         raise Refusal(f"{NOT_UNDERSTOOD} what I should do")
     if all(step.action == "find" for step in builder.steps):

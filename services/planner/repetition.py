@@ -10,7 +10,13 @@ from common.language.normalise import DETERMINERS, normalise
 from common.language.politeness import without_politeness
 from common.messages import History
 
-_NO = re.compile(r"^(?:no )?i (?:said|meant|mean) (?P<rest>.+)$")
+_NO = re.compile(
+    r"^(?:(?:no|nope|wrong(?: one| \w+)?|that is (?:the )?wrong(?: one| \w+)?|not (?:this|that)(?: one| \w+)?|"
+    r"thanks|thank you|but|sorry|well) )*"
+    r"(?:i|we) (?:said|meant|mean|wanted|asked for)(?: it| that| them)? (?P<rest>.+)$"
+    r"|^(?:no |nope |wrong |but )*not (?:this|that|here|there)(?: one| \w+)? (?:but )?(?P<other>(?:the|on|in|to|"
+    r"into) .+)$"
+)
 _TOO = re.compile(
     r"^(?:and |now |then )?(?P<thing>.+?) (?:too|as well|also)(?: please)?$|^(?:and|what about) (?P<other>.+)$"
 )
@@ -24,8 +30,10 @@ def repeated(command: str, clauses: Sequence[str], told: History, is_place: IsPl
     for wording, slots in readings(tuple(clauses[0].split()), "command"):
         if wording.action == "again":
             return (replaced(last, " ".join(slots["thing"]), is_place) or last) if "thing" in slots else last
-    if (found := _NO.match(expand(normalise(command)))) and found["rest"].split()[0] in DETERMINERS | PREPOSITIONS:
-        return replaced(normalise(last), found["rest"], is_place) or command
+    if (found := _NO.match(expand(normalise(command)))) and (
+        (rest := found["rest"] or found["other"]).split()[0] in DETERMINERS | PREPOSITIONS
+    ):
+        return replaced(normalise(last), rest, is_place) or command
     if found := _TOO.match(without_politeness_at_end(command)):
         thing = found["thing"] or found["other"]
         if thing.split()[0] in DETERMINERS:

@@ -107,12 +107,12 @@ def _pronoun(builder: PlanBuilder, plural: bool) -> list[Referent]:
         return [Referent(builder.world.current(t)) for t in (builder.last if plural else builder.last[-1:])]
     if held := builder.world.held:
         return [Referent(held)]
-    if before := _handled_before(builder):
+    if before := handled_before(builder):
         return [Referent(t) for t in (before if plural else before[-1:])]
     raise Refusal("I do not know what you mean by that" if plural else "I do not know what you mean by it")
 
 
-def _handled_before(builder: PlanBuilder) -> list[BelievedObject]:
+def handled_before(builder: PlanBuilder) -> list[BelievedObject]:
     """What the last mission handled."""
     named = [BelievedObject(label, "", seen=False) for label in builder.world.history.objects]
     return [builder.world.current(t) for t in named]
@@ -120,7 +120,7 @@ def _handled_before(builder: PlanBuilder) -> list[BelievedObject]:
 
 def _mentioned(builder: PlanBuilder) -> list[BelievedObject]:
     """What `one` and `other` refer to: the things of this command, else those of the last."""
-    return builder.last or _handled_before(builder)
+    return builder.last or handled_before(builder)
 
 
 def _resolve(builder: PlanBuilder, phrase: Phrase, prefer_held: bool) -> list[Referent]:
@@ -207,16 +207,28 @@ def _labels(builder: PlanBuilder, phrase: Phrase) -> set[str]:
     return {t.label for t in known}
 
 
+def anchor_spots(builder: PlanBuilder, phrase: Phrase) -> list[Spot]:
+    """The places that a phrase names behind its relation: `on the desk and the table` names two."""
+    if spots := builder.vocabulary.spot(phrase.anchor):
+        return spots
+    for at, word in enumerate(phrase.anchor):
+        if word in ("and", "or"):
+            parts = [builder.vocabulary.spot(part) for part in (phrase.anchor[:at], phrase.anchor[at + 1 :])]
+            return [s for part in parts for s in part] if all(parts) else []
+    return []
+
+
 def _related(
     builder: PlanBuilder, phrase: Phrase, seen: list[BelievedObject], specs: list[BelievedObject]
 ) -> list[Referent]:
     """Objects on, in, near or left of something."""
-    spots = builder.vocabulary.spot(phrase.anchor)
+    spots = anchor_spots(builder, phrase)
     if phrase.relation == "on" and spots:
         names = {s.name for s in spots}
         there = [t for t in seen if t.on in names or (any(s.room for s in spots) and builder.world.room_of(t) in names)]
         place = spots[0]
-        surfaces = [place.receptacle] if place.receptacle else builder.vocabulary.surfaces(place.name)
+        named = [s.receptacle for s in spots if s.receptacle]
+        surfaces = named if place.receptacle else builder.vocabulary.surfaces(place.name)
         if phrase.count == 0:
             builder.look_at(surfaces)
         if there:

@@ -10,6 +10,7 @@ from common.household import Household
 from common.language.lexicon import COMMANDING
 from common.language.normalise import DETERMINERS, Words, enumeration, normalise, without_determiners
 from common.language.noun_phrase import UNSEEN, WHICH
+from common.language.quantities import UNITS
 from services.planner.config import PlannerConfig
 from services.planner.world import World
 
@@ -138,6 +139,9 @@ class Vocabulary:
                 return sense, form, plural or form in self._mass
         if phrase.startswith("anything ") and (sense := self._nouns.get(phrase.replace("any", "some", 1))):
             return sense, phrase, False
+        whole, found, part = phrase.partition(" of ")
+        if found and whole in self.kinds and (named := self.noun(part)) is not None and named[0].names:
+            return named  # a can of soup
         for form, plural in _singulars(phrase):
             if labels := self._printed.get(form):
                 return Sense(names=frozenset(labels)), form, plural
@@ -149,7 +153,16 @@ class Vocabulary:
             return None
         if not all(w.strip("'").isalnum() for w in words) or max(map(len, words)) < SHORTEST_NAME:
             return None
-        if NO_NOUN & set(words) or words[-1] in self.colours or words[-1] in WHICH or words[-1] in ANY | WHOLE:
+        if words[1:2] == ("of",) and words[0] in self.kinds:
+            words = (words[0], *words[2:])
+        if (
+            not words
+            or words[-1] in UNITS
+            or NO_NOUN & set(words)
+            or words[-1] in self.colours
+            or words[-1] in WHICH
+            or words[-1] in ANY | WHOLE
+        ):
             return None
         known = self.spot(words) or self.furniture(words)
         return None if known else Sense(names=frozenset({" ".join(words)}), new=True)

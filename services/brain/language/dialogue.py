@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from typing import Literal
 
 from common.household import Household
+from common.language.contractions import expand
 from common.language.discourse import PREPOSITIONS, commands, noun_phrases, replaced
 from common.language.lexicon import COMMANDING
 from common.language.meaning import asks_for
@@ -24,7 +25,7 @@ _SAID = re.compile(r"\s+i (?:said|meant)$")
 
 def reply(text: str) -> tuple[Reply, str]:
     """The kind of answer, and for a correction the words without its "no, I said"."""
-    rest = normalise(text)
+    rest = expand(normalise(text))
     match asks_for(rest, "yes", "no", "cancel"):
         case "yes":
             return "yes", ""
@@ -78,6 +79,9 @@ def chosen(
             return options[n]
     if "last" in words and words <= {"last"}:
         return options[-1]
+    if " not " in bare:
+        bare = f"not {bare.rpartition(' not ')[2]}"
+        words = set(bare.split()) - _NO_NAME
     if bare.startswith("not "):
         left = [o for o in options if not words - {"not"} <= set(o.split())]
         return left[0] if len(left) == 1 and words - {"not"} else None

@@ -14,8 +14,8 @@ Kind = Literal["stop", "cancel", "come_back", "queue", "replace", "aside"]
 _LATER = re.compile(
     r"^(?:and )?(?:then|after(?:wards?| that| this| it)?|next|later(?: on)?|"
     r"(?:when|once|as soon as|after) (?:that|this|it)(?: is| has)?(?: been)? (?:done|finished|over|ready)|"
-    r"(?:when|once|as soon as|after) you(?: are|'re| have|'ve)?(?: all)? (?:done|finished|ready|through|free|back)"
-    r"(?: with (?:that|this|it))?|when that is done|in addition|on top of that)\b[, ]*"
+    r"(?:when|once|as soon as|after) you(?: are|'re| have|'ve)?(?: all)? (?:done|finished|ready|through|free|back|did)"
+    r"(?:(?: with)? (?:that|this|it))?|when that is done|in addition|on top of that)\b[, ]*"
 )
 """Words before a command that put it behind the one under way."""
 _LATER_END = re.compile(
