@@ -10,10 +10,15 @@ TO_PLACE = "(?:on top of|on|onto|in|into|inside|to|at)"
 _BESIDE = "(?:next to|close to|beside|near|right by|by)"
 MODAL = "(?:should|must|has to|have to|needs to|need to|ought to|can|could|is to|are to|shall|may|might|will)"
 NP = r"((?:\w|')+(?: (?:\w|')+){0,11}?)"
-_WHO = r"(?:i|we|(?:(?:my|our|the|your) )?[a-z]+(?: [a-z]+)?)"
+_WHO = (
+    r"(?:i|we|(?!(?:\w+ )?(?:might|may|not|never|could|should|would|will|do|did|does|used|no|nobody|if|when|"
+    r"what|why)\b)"
+    r"(?:(?:my|our|the|your) )?[a-z]+(?: [a-z]+)?)"
+)
 _WANT = (
     "(?:want|wants|need|needs|require|requires|wish for|wishes for|crave|craves|desire|will need|will have|will take|"
-    "am going to need|are going to need|would need|would (?:really |very much |quite |most |just )?(?:like|love|prefer)|would rather have|am "
+    "am going to need|are going to need|would need|would (?:really |very much |quite |just )?(?:like|love|"
+    "prefer)|would rather have|am "
     "needing|am wanting|"
     "are needing|is asking for|is waiting for|is missing|am craving|am in need of|am after|am dying for|am longing for|"
     "am in the mood for|are after|is after|fancy|fancies|could use|could do with|would not mind|would appreciate|"
@@ -24,6 +29,18 @@ _OBJECTIVE = "(?:it|them|that|this|those|these|that one|this one|him|her)"
 CONSTRUCTIONS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
     (re.compile(f"^{pattern}$"), result)
     for pattern, result in (
+        # Whom or what it is for.
+        (r"((?!look|search|wait|check|hunt|ask)\w+ .+) for (?:dinner|lunch|breakfast|supper|tea|good|a change|"
+         r"him|her|them|"
+         r"(?:the|my|our|your) (?:\w+ )?\w+|\w+ing .+)", r"\1"),
+        # What is there and has to go elsewhere.
+        (rf"there (?:is|are) {NP} (?:that|which) ({MODAL}|goes|go|belongs?) (.+)", r"\1 \2 \3"),
+        (r"go (?:over )?(?:to|into|in) (.+?) and (?:tell me|see|look|report|check|find out)(?: back)? (?:what "
+         r"(?:you (?:can )?(?:see|find)|"
+         r"is (?:there|in there|on it|in it|on there)|there is))(?: there)?", r"go and look in \1"),
+        # Taking up what is then put somewhere.
+        (rf"(?:get|fetch|take|grab|collect|gather|pick)(?: up| me)? {NP}(?: up)? and (?:then )?(\w+) (?:it|"
+         rf"them) (.+)", r"\2 \1 \3"),
         # An exception that is said at the end.
         (rf"(\w+(?: up| away| me)?) {NP} ((?:here|over here|to me|away|back)|{TO_PLACE} (?:\w+ ){{1,3}}?\w+)"
          rf" (but not|but no|except for|except|apart from|other than|besides|but) {NP}", r"\1 \2 \4 \5 \3"),
@@ -56,6 +73,11 @@ CONSTRUCTIONS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
         (rf"(?:come|return|be)(?: back| here| over| to me| over here| back here)* with {NP}", r"bring me \1"),
         (rf"(?:go|drive|walk|run|head|come) (?:over |back )?(?:to|into) {NP} with {NP}", r"take \2 to \1"),
         (rf"(?:bring|take) along {NP}", r"bring me \1"),
+        # What is to be the case.
+        (rf"(?:go and )?(?:make sure|see|see to it|ensure|make certain|take care)(?: that)? {NP} (?:is|are|gets?|"
+         rf"goes|go|ends? up)"
+         rf" (?:back |put |placed )?({TO_PLACE}) {NP}", r"put \1 \2 \3"),
+        (rf"(?:in|on|at) {NP} (?:is|are|there is|stands|lies) ((?:a|an|the|my|some) .+)", r"there is \2 on \1"),
         # Two places, one of them beside something.
         (rf"(put|place|set|move|lay|drop|leave|stick|pop) (?:down )?{NP}(?: down)? (?:on|in|at|onto) {NP} "
          rf"(?:right )?{_BESIDE} {NP}",
@@ -99,7 +121,8 @@ PASSIVE = tuple(
         rf"(?:have|get) {NP} (?:to be |be )?(\w+(?:ed|en|t|d|n))( .+)?",
         rf"(?:i|we) (?:want|need|would like|would love|expect|wish)(?: to see| to have| to get)? {NP} (?:to be |"
         rf"be )?(\w+)( .+)?",
-        rf"(?:make sure|see to it|ensure|make certain|arrange|see)(?: that| for)? {NP} (?:is|are|gets|get|to be|"
+        rf"(?:go and )?(?:make sure|see to it|ensure|make certain|arrange|see)(?: that| for)? {NP} (?:is|are|"
+        rf"gets|get|to be|"
         rf"be|will be|ends up|end up)(?: being)?"
         r" (\w+)( .+)?",
         rf"{NP} {MODAL}(?: now| also| really| please)? be (\w+)( .+)?",

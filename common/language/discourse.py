@@ -36,7 +36,8 @@ PREPOSITIONS = frozenset(
 """Words that end a noun phrase."""
 _REPAIR = re.compile(
     r"(?:,\s*wait,\s*(?=not\b)|,\s*(?:no|sorry|actually|rather)(?:,\s*|\s+)|,\s*(?:oh|well|hold on|hang on),\s*"
-    r"|,?\s+(?:no,? wait|wait,? no|oh,? wait|no,? sorry|sorry,? no|sorry,? i mean(?:t)?|or rather|"
+    r"|(?<=\w)\s+no,?\s+(?=(?:the|my|on|in|to|at)\s)|,?\s+(?:no,? wait|wait,? no|oh,? wait|no,? sorry|sorry,? no|"
+    r"sorry,? i mean(?:t)?|or rather|"
     r"i mean(?:t)?|make that|scratch that|correction|no,? i mean(?:t)?|no,? make (?:that|it)|no,? not that|"
     r"on second thoughts?)(?:,\s*|\s+))"
     r"(?:i mean(?:t)?|i said|make (?:that|it)|rather|actually|sorry|wait|no)?\b,?\s*"
@@ -45,12 +46,16 @@ _REPAIR = re.compile(
 _CONTRAST = re.compile(
     r"^(?:i (?:said|meant|mean|want|wanted) )?not (?P<wrong>.+?)(?:,\s*(?:but\s+)?|\s+but\s+)(?:rather )?(?P<right>.+)$"
 )
+_CONTRAST_OF_ONES = re.compile(
+    r"^not (?P<wrong>(?:(?:on|in|to|into) )?(?:the|a|my) (?:\w+ )?\w+?)(?P<right> (?:the|on|in|into|to) .+)$"
+)
 _DO_NOT = re.compile(r"^do not (?P<wrong>\w+ .+?)(?:,\s*(?:but\s+)?|\s+but\s+)(?:rather )?(?P<right>.+)$")
 _DO_NOT_DO = re.compile(
     rf"^do not (?P<wrong>\w+ .+?)\s+(?P<right>(?:{'|'.join(sorted(COMMANDING))}) (?:me|us|the|a|an|my|it|to)\b.+)$"
 )
 _INSTEAD_OF = re.compile(
-    r"^(?:never mind|forget(?: about)?|skip|leave|ignore|not) (?:the|that|my|those|this)(?: "
+    r"^(?:never mind|forget(?: about)?|skip|leave|ignore|not|no need for|no more|(?:i|we) do not (?:need|want|"
+    r"like)) (?:the|that|my|those|this)(?: "
     r"\w+){1,3}?(?:,\s*(?:and |but )?| and | but )"
     rf"(?=(?:please |just |rather )*(?:{'|'.join(sorted(COMMANDING))})\b)"
 )
@@ -75,9 +80,10 @@ _LATE_EXCEPT = re.compile(
 )
 """An exception that is said behind a verb's particle."""
 _FIRST = re.compile(
-    r"^(?P<word>after|once|when|as soon as|before) you(?: are| have|'re|'ve)?(?: all)?(?: done| finished)?"
-    r" (?P<rest>.+)$"
+    r"^(?P<word>after|once|when|as soon as|before) (?:you(?: are| have)?(?: all)?(?: done| finished)? |(?=\w+ing\b))"
+    r"(?P<rest>.+)$"
 )
+_BUT_FIRST = re.compile(r"^(?P<second>.+?),? but (?:first|before that|beforehand),? (?P<first>.+)$")
 _LATER = re.compile(r"^(?P<first>.+?),? (?P<word>before|after) you(?: have)? (?P<second>.+)$")
 _EXCEPT = re.compile(r",\s*(?:and |but )?(?=(?:not|except|but not|apart from|other than)\b)")
 _NEXT = frozenset(
@@ -86,7 +92,7 @@ _NEXT = frozenset(
 
 _REFINEMENT = re.compile(
     r"^(?P<said>[^,]+?)(?:,\s*|\s+)(?:(?:you know|well|that is),?\s*)?(?P<one>(?:the|a|an) (?:\w+ ){1,2}one)"
-    r"(?P<rest>,?(?: and .*)?)$"
+    r"(?P<rest>,?(?: (?:and|on|in|to|into|onto|next|from|off) .*)?)$"
 )
 """A thing, and which one of its kind."""
 _ANSWERS = frozenset({"no", "yes", "not", "if", "when", "unless", "after", "before", "once", "first"})
@@ -99,7 +105,7 @@ IsPlace = Callable[[Words], bool]
 
 def commands(text: str, is_place: IsPlace = lambda _: False) -> list[str]:
     """The clauses of a text in the order in which they are to be done, each without its politeness."""
-    whole = without_fillers(expand(normalise(text, ",;.!?")))
+    whole = without_fillers(expand(normalise(re.sub(r":(?=\s)", ",", text), ",;.!?")))
     if LONG_SPEECH.match(without_politeness(whole)):
         return cut_clauses(whole)
     parts = (piece for part in _in_order(whole) for piece in with_breaks(conditional(part)).split(" . "))
@@ -114,6 +120,8 @@ def _in_order(text: str) -> list[str]:
         if cut is not None:
             one, other = cut
             return [other, one] if found["word"] == "before" else [one, other]
+    if (found := _BUT_FIRST.match(bare)) and _verb_first(found["first"]):
+        return [found["first"], found["second"]]
     if (found := _LATER.match(bare)) and _verb_first(found["second"]):
         first, second = found["first"], _with_infinitive(found["second"])
         return [first, second] if found["word"] == "before" else [second, first]
@@ -150,13 +158,15 @@ def _settled(text: str, is_place: IsPlace) -> str:
     text = _refined(_without_lead(text))
     text = _AFTERTHOUGHT.sub(r"\g<said>, i mean \g<meant>", text) if text.count(",") else text
     text = _with_noun(text)
-    text = _repaired(text, is_place)
+    text = _refined(_repaired(text, is_place))
     text = _EXCEPT.sub(" but ", text).replace(" but but ", " but ")
     text = _LATE_EXCEPT.sub(r"\g<all> \g<but> \g<particle>", text)
     bare = without_politeness(text)
     if _INSTEAD_OF.match(bare):
         text = bare = without_politeness(_INSTEAD_OF.sub("", bare))
-    if found := (_CONTRAST.match(bare) or _DO_NOT_DO.match(bare) or _DO_NOT.match(bare)):
+    if found := (
+        _CONTRAST.match(bare) or _CONTRAST_OF_ONES.match(bare) or _DO_NOT_DO.match(bare) or _DO_NOT.match(bare)
+    ):
         text = _contrasted(found["wrong"], found["right"])
     return text
 
@@ -185,7 +195,7 @@ def _repaired(text: str, is_place: IsPlace) -> str:
         found = (None, *_REPAIR.finditer(text))[-1]
         if found is None or not text[: found.start()].strip() or not text[found.end() :].strip(" ,.!?"):
             return text
-        meant = text[found.end() :].strip(" ,.!?")
+        meant = _refined(text[found.end() :].strip(" ,.!?"))
         if contrast := _CONTRAST.match(meant):
             meant = _with_qualities(text[: found.start()], contrast["wrong"], contrast["right"])
         if (repaired := replaced(text[: found.start()], meant, is_place)) is None:
@@ -219,7 +229,8 @@ def _refined(text: str) -> str:
     spans = noun_phrases(found["said"].split())
     if not spans or spans[-1][1] - spans[-1][0] != 2:
         return text
-    return f"{replaced(found['said'], found['one']) or found['said']}{found['rest']}"
+    rest = found["rest"] if found["rest"].startswith((", and", " and")) else found["rest"].lstrip(",")
+    return f"{replaced(found['said'], found['one']) or found['said']}{rest}"
 
 
 def _contrasted(wrong: str, right: str) -> str:
@@ -229,8 +240,8 @@ def _contrasted(wrong: str, right: str) -> str:
     if verb in COMMANDING and not _verb_first(right):
         words = wrong.split()
         receiver = f"{words[1]} " if len(words) > 2 and words[1] in ("me", "us") else ""
-        return f"{verb} {receiver}{_filled(right, thing)}"
-    return _filled(right, wrong)
+        return f"{verb} {receiver}{filled(right, thing)}"
+    return filled(right, wrong)
 
 
 def replaced(said: str, meant: str, is_place: IsPlace = lambda _: False) -> str | None:
@@ -249,7 +260,7 @@ def replaced(said: str, meant: str, is_place: IsPlace = lambda _: False) -> str 
         return None
     bare = tuple(w for w in new if w not in DETERMINERS)
     start, end = spans[-1] if len(spans) > 1 and is_place(bare) else spans[0]
-    return " ".join((*words[:start], *_filled(meant, " ".join(words[start:end])).split(), *words[end:]))
+    return " ".join((*words[:start], *filled(meant, " ".join(words[start:end])).split(), *words[end:]))
 
 
 def noun_phrases(words: list[str]) -> list[tuple[int, int]]:
@@ -267,7 +278,7 @@ def noun_phrases(words: list[str]) -> list[tuple[int, int]]:
     return found
 
 
-def _filled(phrase: str, other: str) -> str:
+def filled(phrase: str, other: str) -> str:
     """`the blue one` with the noun of the other phrase, `the red mug`."""
     head = other.split()
     if spans := noun_phrases(head):

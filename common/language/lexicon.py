@@ -7,7 +7,7 @@ BRING = (
 """Verbs of bringing that need a receiver: `grab me the mug`."""
 FETCH = "bring | fetch | get | give | hand | pass | carry | retrieve | collect | gather"
 """Verbs of bringing that need none."""
-PICK = "(get | fetch | take | grab | pick | pick up | collect | gather)"
+PICK = "(get | fetch | take | grab | pick | pick up | collect | gather | collect up | gather up | round up)"
 """The first half of moving something: `get the mug and put it away`."""
 PUT = (
     "put | sort | place | set | throw | toss | drop | lay | stick | move | stack | pop | slide | leave | shift"
@@ -45,7 +45,7 @@ PERSON = f"(i | we | he | she | they | (my | our | the) {FAMILY})"
 MOVED = "(put | placed | moved | brought | taken | carried | set | returned | transferred | dropped | left)"
 # Words around them.
 ON = "(in | into | inside | on top of | on | onto | upon)"
-NEAR = "(next to | near | beside | close to | by)"
+NEAR = "(next to | near | beside | close to | by | with | alongside | together with)"
 BACK = "[back | over | straight | down | away]"
 """Particles between an object and its place that change nothing."""
 IT = "(<thing> | it | them)"

@@ -35,7 +35,9 @@ _OCCASION = (
 """Occasions and conditions that are none."""
 
 _ADDRESS = (
-    "hey|hello|hi|hiya|yo|oi|howdy|ok|okay|alright|all right|right(?=,)|jarvis|robot|tidybot|buddy|mate|dude|pal|"
+    r"no(?=,? (?:bring|put|take|get|fetch|give|go|throw|come|tidy|find|move|leave|set)\b)|"
+    "(?:hey|hi|hello) there|hey|hello|hi|hiya|yo|oi|howdy|ok|okay|alright|all right|right(?=,)|jarvis|robot|"
+    "tidybot|buddy|mate|dude|pal|"
     "man|sir|dear|"
     "bot|machine|my friend|darling|good (?:morning|evening|afternoon|day)|hello there|please|now|so|well|and|"
     "then|also|finally|"
@@ -64,7 +66,7 @@ _FRAMES = (
     rf"gracious|willing|helpful)(?:\s+|$))+(?:to|and|as to))\b)?",
     rf"(?:{_PERSON} )?(?:do|would) you mind|mind(?=\s+\w+ing\b)|do you want to|care to|want to(?=\s+\w)",
     rf"do you (?:think|suppose|reckon|believe) {_YOU} {_CAN}(?: possibly)?",
-    rf"(?<=please )you(?= \w)|you{_ADVERBS} (?:should|must|have to|need to|could|can|may|might want to|are to|"
+    rf"(?<=please )(?:you|to)(?= \w)|you{_ADVERBS} (?:should|must|have to|need to|could|can|may|might want to|are to|"
     rf"ought to|are going to|shall|will)",
     rf"{_PERSON}{_ADVERBS} (?:would |will |am going to )?(?:like|love|want|need|prefer|wish|require|expect|ask|"
     rf"beg|urge)"
@@ -113,7 +115,7 @@ _ENDINGS = (
     "(?: very much| so much| a lot)?|(?<!real )(?<! a )robot|tidybot|jarvis|then|anyway|and|will you please|okay|"
     "ok|alright|(?<=, )right|man|mate|"
     "buddy|dude|my friend|dear|love|darling|sir|real quick|really quick|quick|fast|if you please|or something|or so|"
-    "and stuff|while you are (?:at it|there|up|about it)|on (?:the|your) way(?: back)?|by the way|you know|i "
+    "and stuff|while you are (?:at it|there|up|about it)|on (?:the|your) way(?: back)?|by the way|you know(?: that)?|i "
     "guess|i think",
     "(?:and )?hurry(?: up)?|as (?:fast|quickly) as you can|asap|and be quick(?: about it)?|and that is all|that is all|"
     "come on|go on|chop chop|before i forget|some ?time(?: today)?|today|tonight|this (?:morning|evening|afternoon)|"
@@ -132,8 +134,10 @@ _FOR_ME = re.compile(r"^(?:grab|take|pick up|reach|snatch|grasp|get) (?!me\b)(.+
 """Taking something for somebody is bringing it."""
 LONG_SPEECH = re.compile(
     r"^(?:(?:say|announce)(?: that)?|tell (?:them|everybody|everyone|people|us|me) that|"
+    r"tell (?:them|everybody|everyone|people|the others)(?! (?:to|where|what|how|if|whether|about|when|why|who|"
+    r"which)\b)|"
     r"(?:tell|inform) (?:my|our|the) \w+(?: that)?(?! (?:to|where|what|how|if|whether|about|when|why|who|which)\b)|"
-    r"let (?:my|our|the) \w+ know(?: that)?)\s+(.+)$"
+    r"let (?:(?:my|our|the) \w+|everyone|everybody|them|people) know(?: that)?)\s+(.+)$"
 )
 """A clause whose words are to be spoken and not understood."""
 FRAME = re.compile(rf"(?:{'|'.join(_FRAMES)})\s")

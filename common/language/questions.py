@@ -12,7 +12,7 @@ ABOUT_THE_WORLD: tuple[Wording, ...] = (
     Wording(
         "contents",
         f"{ASK} (what [else] | (which | what) (things | objects | items | stuff)) ({BE} [there] | lies | lie | "
-        f"do you see | do we have | have we got)"
+        f"do you see | do (we | i | you) have | have (we | i | you) got)"
         f" [{LYING}] (on | in | at | inside) <spot>"
         f" | {ASK} what <spot> (has | holds | contains) [on it | in it]",
         heard="what is (on | in) [the] <place>",
@@ -46,7 +46,7 @@ ABOUT_THE_WORLD: tuple[Wording, ...] = (
     ),
     Wording(
         "extreme",
-        f"{ASK} (what | which) (is | are) <words> | {ASK} (which | what) [one] [of] <thing> is [the] <words>",
+        f"{ASK} (what | which) (is | are) <words> | {ASK} (which | what) [one] [of] <thing> (is | are) [the] <words>",
         heard="",
     ),
     Wording("where", f"{ASK} where <thing> (is | are | went | has gone | have gone | might be | could be)", heard=""),
@@ -76,7 +76,7 @@ ABOUT_THE_WORLD: tuple[Wording, ...] = (
     Wording("where", "(did you see | any sign of | what about | what happened to) <thing> [anywhere]", heard=""),
     Wording(
         "exists",
-        f"{ASK} (is | are) there [still] <thing> [left | anywhere | around | here | somewhere]",
+        f"{ASK} (is | are) there [still] <thing> [lying | standing] [left | anywhere | around | here | somewhere]",
         heard="",
     ),
     Wording(
@@ -116,10 +116,13 @@ ABOUT_ITSELF: tuple[Wording, ...] = (
     Wording(
         "holding",
         "(are you (holding | carrying) | do you (have | hold | carry) | have you got | is there)"
-        " (anything | something | it) [in your (hand | hands | gripper)]",
+        " (anything | something | it) [in your (hand | hands | gripper)]"
+        " | what have you got [there | in there | for me]",
         heard="",
     ),
-    Wording("holding", "what (is | have you got | do you have) in your (hand | hands | gripper)", heard=""),
+    Wording("holding", "what (is | have you | have you got | do you have | are you holding | do you hold) [that |"
+                       " this | it]"
+        " in (your | the) (hand | hands | gripper | claw | fingers)", heard=""),
     Wording("whereabouts", f"{ASK} where (are you | you are) | which room are you in", heard="where are you"),
     Wording(
         "doing",
@@ -134,7 +137,8 @@ ABOUT_ITSELF: tuple[Wording, ...] = (
         "done",
         f"what {WHAT_DID} | what (was | is) (the last thing you did | your last (task | job | mission | command))"
         " | (did | have) you (manage | managed | succeed | succeeded | finish | finished | do | done) [it | that |"
-        " (to | in) <words>] | did (it | that) work [out] | (did | have) you (bring | brought | put | fetch "
+        " (to | in) <words>] | what did you (put | bring | move | take | throw | fetch | tidy) <words> | did (it "
+        "| that) work [out] | (did | have) you (bring | brought | put | fetch "
         "| fetched |"
         " find | found | tidy | tidied | throw | thrown) <words> [already | yet]"
         " | what have you (done | been doing) [today | so far | lately] | did everything go well",

@@ -6,7 +6,7 @@ _ADVERBS = frozenset({"just", "very", "quite", "rather", "perhaps", "maybe", "pl
 _NO_ADVERBS = frozenset({"only", "family", "early"})
 _PARTICLES = frozenset({"back", "over", "out", "up", "down", "on", "along", "off", "away", "round", "across", "right"})
 _AFTER_PARTICLE = frozenset(
-    {"to", "on", "onto", "in", "into", "at", "from", "here", "there", "beside", "next", "near", "behind"}
+    {"to", "off", "from", "on", "onto", "in", "into", "at", "here", "there", "beside", "next", "near", "behind"}
 )
 _RECEIVERS = frozenset({"me", "us"})
 

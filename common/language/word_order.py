@@ -31,18 +31,51 @@ _MOVED = re.compile(
 )
 
 
-def reworded(words: Words, verbs_only: bool = False) -> Iterator[Words]:
-    """Other sentences that say the same, the nearer first; with `verbs_only` none for clauses without a verb."""
+_QUESTION = re.compile(
+    r"^(?:what(?! (?:i|we|you)\b)|where|who|whose|which|why|when|how|is|are|was|were|does|did|has|do (?:you|i|we|they)|"
+    r"have (?:you|i|we|they))\b"
+)
+
+
+def reworded(words: Words, verbs_only: bool = False, deeper: bool = True) -> Iterator[Words]:
+    """Other sentences that say the same, the nearer first; with `verbs_only` none for clauses without a verb.
+
+    `deeper`: what was rewritten is rewritten once more.
+    """
     text = " ".join(words)
+    if _QUESTION.match(text):
+        return  # a question is never taken for a command
     seen = {text}
     for candidate in _candidates(text, words, verbs_only):
         again = " ".join(candidate.split())
         if again and again not in seen:
             seen.add(again)
             yield tuple(again.split())
+            if deeper:
+                for other in reworded(tuple(again.split()), verbs_only, deeper=False):
+                    if (joined := " ".join(other)) not in seen:
+                        seen.add(joined)
+                        yield other
+
+
+_WITHIN = (
+    (re.compile(r"\b(?:whatever|anything that|everything that|all that) (?:is|lies|stands) "), "everything "),
+    (
+        re.compile(
+            r"\bthe (\w+) (?:that|which) (?:is|are|stands|lies) (?:the )?(closest|nearest|biggest|smallest|"
+            r"tallest|shortest|"
+            r"farthest|furthest|largest|leftmost|rightmost)(?: to (?:you|me|us|here))?"
+        ),
+        r"the \2 \1",
+    ),
+)
+"""Relative clauses inside a noun phrase, as what they come to."""
 
 
 def _candidates(text: str, words: Words, verbs_only: bool) -> Iterator[str]:
+    for pattern, result in _WITHIN:
+        if text != (shorter := pattern.sub(result, text)):
+            yield shorter
     yield from _fronted(words)
     for pattern in PASSIVE:
         if (found := pattern.match(text)) and (verb := _verb(found[2])):

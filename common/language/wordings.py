@@ -37,7 +37,8 @@ WORDINGS: tuple[Wording, ...] = (
         "stop",
         "[no] (stop | halt | freeze) [it | that | now | there | right there | at once | immediately | everything]"
         " | [no] stop ([please] stop [stop] | moving | driving | going | doing that | what you are doing)"
-        " | hold (it | still) | do not move | stay (there | where you are) | emergency stop",
+        " | hold (it | still) | do not (move | do (that | it | this)) | (that is | it is) enough | enough | quit "
+        "(it | that) | cut it out | stay (there | where you are) | emergency stop",
         heard="stop [it]", kind="reply", reason="stopping needs no plan",
     ),
     Wording(
@@ -120,7 +121,10 @@ WORDINGS: tuple[Wording, ...] = (
     Wording(
         "say",
         "(say | announce) [that] <words> | tell (them | everybody | everyone | people | us | me) that <words>"
-        f" | (tell | inform) (my | our | the) {FAMILY} [that] <words> | let (my | our | the) {FAMILY} know "
+        f" | (tell | inform) (my | our | the) {FAMILY} [that] <words> | tell (them | everybody | everyone | "
+        f"people | the others) <words>"
+        " | let (them | everybody | everyone | people) know [that] <words>"
+        f" | let (my | our | the) {FAMILY} know "
         "[that] <words>",
         heard="",
     ),
@@ -142,6 +146,11 @@ WORDINGS: tuple[Wording, ...] = (
         f"[go [and] | come and] {LOOK} [around | round] [in | at | on | inside | into] <spot>"
         f" | [go [and]] {LOOK} what (is | lies | there is) [lying | standing] (on | in | at) <spot>"
         f" | (search | inspect | survey | scan | explore) <spot>",
+        heard="",
+    ),
+    Wording(
+        "check",
+        "(check | inspect | scan) <spot> for <thing>",
         heard="",
     ),
     Wording(
@@ -170,7 +179,7 @@ WORDINGS: tuple[Wording, ...] = (
         " | do nothing for <words> | take a break (for | of) <words>",
         heard="",
     ),
-    Wording("wait_there", "[go and] wait (in | at | by | near) <spot>", heard=""),
+    Wording("wait_there", "[go [and]] (wait | stay | stand) (in | at | by | near) <spot>", heard=""),
     Wording("come_back", "(come | go | drive) [back] home", heard="go home"),
     Wording(
         "come_back", "(come | go | drive | get) [on] [over] (here | back | to me | back here | back to me)",
@@ -218,7 +227,7 @@ WORDINGS: tuple[Wording, ...] = (
         "go",
         f"(go | {GO}) [over | back | up] to (where | the (room | place | table | spot) where) <spot> (is | are | "
         f"stands | lies)"
-        f" | (go | stand | {GO}) (next to | beside | in front of | up to | over to | by | close to) <spot>"
+        f" | ([go [and]] stand | go | {GO}) (next to | beside | in front of | up to | over to | by | close to) <spot>"
         " | (park | place | put | position | station | move | bring | drive) yourself [over | back]"
         " (to | into | in | at | on | by | near | next to | beside | in front of) <spot>",
         heard="",
@@ -231,6 +240,7 @@ WORDINGS: tuple[Wording, ...] = (
         f"({PUT}) (down <thing> | <thing> down) ({ON} | at) <spot>",
         heard="",
     ),
+    Wording("put", f"(line | stack | pile | set | put | lay) <thing> (up | out) ({ON} | at) <spot>", heard=""),
     Wording(
         "put_down",
         "put (down <thing> | back down <thing> | <thing> [back] down) | set (down <thing> | <thing> down)",
@@ -291,7 +301,8 @@ WORDINGS: tuple[Wording, ...] = (
         f"<thing> (belongs | belong | goes | go | can go | should be | should go | must go) ({ON} | to) <spot>",
         heard="",
     ),
-    Wording("put", f"(can | could | should) <thing> (go | be) {ON} <spot>", heard=""),
+    Wording("put", f"(can | could | should | would | may | must) <thing> (go | be | get | come) [back | over] "
+                   f"({ON} | to) <spot>", heard=""),
     Wording(
         "put",
         f"(can | could | should | must | may | shall | would) <thing> be {MOVED} {BACK} ({ON} | to) <spot>"
@@ -312,7 +323,7 @@ WORDINGS: tuple[Wording, ...] = (
         heard="",
     ),
     Wording(
-        "pick_up", "(pick | take | grab | lift) up <thing> | pick <thing> up | lift <thing> [up]",
+        "pick_up", "(pick | take | grab | lift | gather | collect) up <thing> | pick <thing> up | lift <thing> [up]",
         heard="pick (up <thing> | <thing> up)",
     ),
     Wording(
@@ -359,7 +370,9 @@ WORDINGS: tuple[Wording, ...] = (
     # What is said beside a command.
     Wording(
         "mention",
-        "there (is | are | should be | must be) <thing> | (i | we) (left | put | saw | forgot | dropped) <thing>"
+        "[do | can | did | have] [you] (see | know | remember | seen) <thing> [right] |"
+        " (in | on | at) <spot> (is | are | there is | there are | stands | lies) <thing> |"
+        " there (is | are | should be | must be) <thing> | (i | we) (left | put | saw | forgot | dropped) <thing>"
         " | <thing> (is | are) (in | on | at) <spot> | <thing> (is | are | was | were | looks | look | has | "
         "have) <words>",
         heard="", kind="told",
@@ -372,7 +385,8 @@ WORDINGS: tuple[Wording, ...] = (
     ),
     # Names alone.
     Wording("named_at", "<thing> (in | on | into | onto) <spot>", heard="", kind="name"),
-    Wording("fetch", "[no] i (said | meant) <thing> | no <thing>", heard="no [i said] <thing>", kind="name"),
+    Wording("fetch", "[no] i (said | meant) <thing> | no (the | my | that | this | "
+                     "all) <thing>", heard="no [i said] <thing>", kind="name"),
     Wording("fetch_named", "<thing>", heard="<thing> | the (<colour> | <ordinal> | left | right) one", kind="name"),
 )  # fmt: skip
 

@@ -63,7 +63,9 @@ def put_near(builder: PlanBuilder, slots: Slots) -> None:
     """Next to a thing: on what that stands on."""
     if builder.vocabulary.spot(slots["spot"]) or builder.vocabulary.furniture(slots["spot"]):
         raise Refusal(f"I cannot put things on the floor next to the {' '.join(slots['spot'][1:] or slots['spot'])}")
-    moved, anchor = referents(builder, slots["thing"], prefer_held=True), referent(builder, slots["spot"]).object
+    moved = referents(builder, slots["thing"], prefer_held=True)
+    builder.last = [m.object for m in moved]
+    anchor = referent(builder, slots["spot"]).object
     where = builder.world.receptacle_of(anchor)
     if where is None:
         builder.search_first([PlanStep(action="find", object=anchor.label)])

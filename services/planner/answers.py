@@ -1,6 +1,7 @@
 """What the robot says about what it has seen. Pure."""
 
 from common.floor_plan import Receptacle
+from common.language.discourse import PREPOSITIONS
 from common.language.normalise import Words, enumeration, without_determiners
 from common.language.noun_phrase import PLURAL_PRONOUNS, PRONOUNS, WHICH, related
 from common.language.pattern import Slots
@@ -9,7 +10,7 @@ from services.planner.phrases import Phrase, read
 from services.planner.plan_builder import NOT_UNDERSTOOD, PlanBuilder, Refusal
 from services.planner.relations import between, holds, spoken
 from services.planner.resolve import Referent, fitting, referent, referents, spot, unknown
-from services.planner.vocabulary import Spot
+from services.planner.vocabulary import ANY, Spot
 from services.planner.world import BelievedObject
 
 MANY = 8
@@ -155,12 +156,19 @@ def colour(builder: PlanBuilder, slots: Slots) -> None:
 def extreme(builder: PlanBuilder, slots: Slots) -> None:
     """Which of several is the biggest, the nearest or the leftmost."""
     _not_after_moving(builder)
-    words = without_determiners(slots["words"])
-    if not words or words[0] not in WHICH or ("thing" in slots and len(words) > 1):
+    words, noun = without_determiners(slots["words"]), without_determiners(slots.get("thing", ()))
+    if noun and words[:1] and words[0] in PREPOSITIONS:  # which mug is on the desk
+        asked: Words = ("the", *noun, *words)
+    elif words and words[0] in WHICH and (not noun or len(words) == 1):  # which mug is the biggest
+        asked = ("the", *words, *noun)
+    elif not noun and len(words) > 1 and ANY & set(words):  # what is the red thing on the desk
+        asked = ("the", *words)
+    else:
         raise Refusal(f"{NOT_UNDERSTOOD} {' '.join(slots['words'])!r}")
-    noun = without_determiners(slots["thing"]) if "thing" in slots else ()
-    meant = referent(builder, ("the", *words, *noun)).object
-    builder.say(f"The {meant.label} is. It is {place_of(builder, meant)}.")
+    meant = referent(builder, asked).object
+    if not meant.seen:
+        raise Refusal(f"I have not seen that {' '.join(noun) or 'thing'}")
+    builder.say(f"The {meant.label}. It is {place_of(builder, meant)}.")
     builder.last = [meant]
 
 

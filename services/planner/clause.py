@@ -67,7 +67,9 @@ def _command(words: Words, builder: PlanBuilder, verb: str, at: int, alone: bool
         and _apply(simple, builder, verb, alone) is None
     ):
         return
-    if reason is None or _apply_reworded(words, builder, verb, alone) or apply_first(words, builder, "told") is None:
+    if reason is None or _apply_reworded(words, builder, verb, alone):
+        return
+    if any(apply_first(other, builder, "told") is None for other in (words, *reworded(words, verbs_only=True))):
         return
     said = " ".join(words)
     raise _Failure(at if reason else at - 1, reason or f"{NOT_UNDERSTOOD} {said!r}")

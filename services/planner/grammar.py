@@ -4,10 +4,11 @@ from collections.abc import Sequence
 from contextlib import suppress
 
 from common.language.breaks import is_statement
+from common.language.contractions import expand
 from common.language.discourse import commands
 from common.language.lexicon import COMMANDING
 from common.language.meaning import WORDS
-from common.language.normalise import Words, normalise
+from common.language.normalise import DETERMINERS, Words, normalise
 from common.messages import ActionPlan, PlanStep, RejectedPlan
 from services.planner import answers
 from services.planner.choice_points import ChoicePoints, every
@@ -133,7 +134,7 @@ class _Attempts:
 
     def _without_slips(self, refusal: Refusal, literally: bool) -> list[PlanStep] | None:
         """Slips in verbs and small words are undone; a name is never exchanged for another unasked."""
-        words = normalise(self._command[:MAX_CHARACTERS], ",;.!?").split()
+        words = expand(normalise(self._command[:MAX_CHARACTERS], ",;.!?")).split()
         bare = [w.strip(",;.!?") for w in words]
         colours, names = self._vocabulary.words()
         right, named = corrected(bare, colours | WORDS, names)
@@ -161,7 +162,8 @@ def _steps(command: str, builder: PlanBuilder) -> list[PlanStep]:
         raise Refusal("I did not hear a command")
     if len(command) > MAX_CHARACTERS or any(len(s.split()) > MAX_WORDS for s in sentences):
         raise Refusal("that is too long a sentence for me")
-    verb = ""
+    names = len(sentences) > 1 and all(s.split()[0] in DETERMINERS for s in sentences)
+    verb = "bring" if names else ""
     for number, sentence in enumerate(sentences):
         words = tuple(sentence.split())
         following = sentences[number + 1].split() if number + 1 < len(sentences) else []

@@ -12,8 +12,19 @@ MOST_WORDS = 6
 """Words of the longest phrase for a thing or a place (chosen)."""
 
 
+_BEFORE_NAMES = frozenset({"see", "know", "have", "need", "want", "is", "remember"})
+
+
 def note(words: Words, builder: PlanBuilder) -> None:
     """What is told before a request: the thing and the place that it names last are what "it" and "there" mean."""
+    for at in (
+        0,
+        *(i + 1 for i, w in enumerate(words) if w in ("see", "know", "have", "need", "want", "is", "remember")),
+    ):
+        if words[at:] and words[at] in DETERMINERS:
+            with suppress(Refusal):
+                builder.last = [m.object for m in referents(builder, words[at:])]
+                return
     things, spots = named(words, builder.vocabulary)
     if things:
         with suppress(Refusal):

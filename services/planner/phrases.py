@@ -110,8 +110,8 @@ def _new_head(words: Words, vocabulary: Vocabulary) -> Phrase | None:
     any_one = rest[:1] in (("a",), ("an",), ("some",), ("any",), ("one",))
     while len(rest) > 1 and (rest[0] in DETERMINERS or rest[0] in NUMBERS):
         rest = rest[1:]
-    colours = tuple(vocabulary.colours[w] for w in rest[:-1] if w in vocabulary.colours)
-    noun = tuple(w for w in rest if w not in vocabulary.colours) if colours else rest
+    first = next((i for i, w in enumerate(rest[:-1]) if w not in vocabulary.colours), len(rest) - 1)
+    colours, noun = tuple(vocabulary.colours[w] for w in rest[:first]), rest[first:]
     sense = vocabulary.new_noun(noun)
     if sense is None:
         return None

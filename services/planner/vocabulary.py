@@ -26,7 +26,8 @@ _SMALL = (
     " near next no nobody none not nothing of off on once onto or other our out over right she should so some somebody"
     " something somewhere still than then there they to too under until up us was we were what when where whether"
     " which while who why will with without would yes you yourself again ago bit bring fetch get give go going help"
-    " like make put take tell thanks please want need try yet now just only also else"
+    " like make put take tell thanks please want need try yet now just only also else later soon tomorrow yesterday"
+    " today tonight today goes belongs gets lying standing closest might should must ought said says told asked teh"
 )
 NO_NOUN = DETERMINERS | frozenset(_SMALL.split())
 """Words that are part of no thing's name."""
@@ -155,14 +156,9 @@ class Vocabulary:
             return None
         if words[1:2] == ("of",) and words[0] in self.kinds:
             words = (words[0], *words[2:])
-        if (
-            not words
-            or words[-1] in UNITS
-            or NO_NOUN & set(words)
-            or words[-1] in self.colours
-            or words[-1] in WHICH
-            or words[-1] in ANY | WHOLE
-        ):
+        if not words or NO_NOUN & set(words):
+            return None
+        if words[-1] in self.colours or words[-1] in WHICH or words[-1] in ANY | WHOLE or words[-1] in UNITS:
             return None
         known = self.spot(words) or self.furniture(words)
         return None if known else Sense(names=frozenset({" ".join(words)}), new=True)

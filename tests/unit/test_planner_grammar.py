@@ -278,7 +278,7 @@ REFUSED = {
     "yes": "I did not ask anything",
     "dance with me": "I do not understand 'dance with me'",
     "pick up the red mug and the green can": "only one thing at a time",
-    "go to the kitchen and tell me what you see": "ask me again then",
+    "put the apple on the desk and tell me what you see": "ask me again then",
     "bring me the red mug and dance": "I do not understand 'dance'",
     "empty the bin": "I cannot empty the bin",
     "don't bring me the red mug": "you told me not to",

@@ -1,10 +1,12 @@
 """Yes, no, or a correction: what an answer to "Did you say ...?" means. Pure."""
 
+import math
 import re
 from collections.abc import Sequence
 from typing import Literal
 
 from common.household import Household
+from common.language.clauses import without_fillers
 from common.language.contractions import expand
 from common.language.discourse import PREPOSITIONS, commands, noun_phrases, replaced
 from common.language.lexicon import COMMANDING
@@ -19,13 +21,37 @@ Reply = Literal["yes", "no", "cancel", "correction"]
 _CORRECTION = re.compile(r"^(?:no|nope|wrong|not that|i said|i meant|i mean|actually|rather)\s+")
 
 
-_NO_NAME = frozenset({"one", "the", "please", "that", "this", "mean", "i", "want"})
+_NO_NAME = frozenset(
+    {
+        "one",
+        "the",
+        "please",
+        "that",
+        "this",
+        "mean",
+        "i",
+        "want",
+        "is",
+        "take",
+        "bring",
+        "me",
+        "it",
+        "choose",
+        "would",
+        "like",
+    }
+)
+_CARDINALS = ("one", "two", "three", "four")
 _SAID = re.compile(r"\s+i (?:said|meant)$")
+
+
+BESIDE = 0.6
+"""Farthest an object is "next to" another [m] (chosen: both within one reach)."""
 
 
 def reply(text: str) -> tuple[Reply, str]:
     """The kind of answer, and for a correction the words without its "no, I said"."""
-    rest = expand(normalise(text))
+    rest = without_fillers(expand(normalise(text)))
     match asks_for(rest, "yes", "no", "cancel"):
         case "yes":
             return "yes", ""
@@ -45,7 +71,7 @@ def corrected(command: str, correction: str, household: Household) -> str:
         return is_destination(" ".join(words), household)
 
     if correction.split()[:1] in (["not"], ["but"]):
-        return commands(correction)[0] if commands(correction) else correction
+        correction = next(iter(commands(correction)), correction)
     thing = correction if correction.split()[:1] and correction.split()[0] in DETERMINERS else f"the {correction}"
     if _is_command(correction):
         return _with_object(correction, command)
@@ -75,7 +101,12 @@ def chosen(
     bare = reply(answer)[1]
     words = set(without_determiners(tuple(bare.split()))) - _NO_NAME
     for n, ordinal in enumerate(("first", "second", "third", "fourth")):
-        if words == {ordinal} and n < len(options):
+        if words in (
+            {ordinal},
+            {"number", _CARDINALS[n]},
+            {"option", _CARDINALS[n]},
+            {"number", str(n + 1)},
+        ) and n < len(options):
             return options[n]
     if "last" in words and words <= {"last"}:
         return options[-1]
@@ -92,10 +123,12 @@ def chosen(
 
 
 def _stands_where(option: str, answer: str, known: Sequence[WorldObject], household: Household) -> bool:
-    """Does the option stand where the answer says, `the one on the counter`?"""
+    """Does the option stand where the answer says, `the one on the counter` or `the one next to the can`?"""
     for head, relation, anchor in related(tuple(answer.split())):
         names = set(without_determiners(head)) - _NO_NAME
         where = " ".join(without_determiners(anchor))
+        if relation == "near" and names <= set(option.split()) and _is_beside(option, where, known):
+            return True
         if relation != "on" or not names <= set(option.split()):
             continue
         receptacle = household.receptacle(where)
@@ -105,3 +138,15 @@ def _stands_where(option: str, answer: str, known: Sequence[WorldObject], househ
             if (receptacle and item.on == receptacle.name) or (room is not None and room.name in rooms):
                 return True
     return False
+
+
+def _is_beside(option: str, other: str, known: Sequence[WorldObject]) -> bool:
+    """Does the option stand within a reach of a thing of the other name, on the same surface?"""
+    places = [o for o in known if o.label == option]
+    others = [o for o in known if o.label == other or o.kind == other]
+    return any(
+        a.on == b.on and math.dist(a.position[:2], b.position[:2]) < BESIDE
+        for a in places
+        for b in others
+        if a is not b
+    )

@@ -7,6 +7,8 @@ import msgspec
 
 from common.language.clauses import without_fillers
 from common.language.contractions import expand
+from common.language.discourse import filled
+from common.language.lexicon import COMMANDING
 from common.language.meaning import asks_for, is_question
 from common.language.normalise import normalise
 
@@ -34,6 +36,12 @@ _INSTEAD = re.compile(
 _INSTEAD_END = re.compile(r"[, ]+(?:instead(?: of (?:that|it|this))?|rather)$")
 
 
+_INSTEAD_OF = re.compile(
+    rf"^(?:no |and )?instead of (?P<wrong>.+?),? (?P<right>(?:{'|'.join(sorted(COMMANDING))}) .+)$"
+)
+"""`instead of the red mug bring the blue one`."""
+
+
 class Interjection(msgspec.Struct, frozen=True):
     """`text`: the command or question without the words that say when."""
 
@@ -46,6 +54,8 @@ def interjection(said: str) -> Interjection:
     if control := asks_for(said, "stop", "cancel", "come_back"):
         return Interjection(control, said)  # type: ignore[arg-type]
     words = without_fillers(expand(normalise(said, ",")))
+    if contrast := _INSTEAD_OF.match(words):
+        return Interjection("replace", filled(contrast["right"], contrast["wrong"]))
     for kind, begin, end in (("replace", _INSTEAD, _INSTEAD_END), ("queue", _LATER, _LATER_END)):
         rest = words
         while (shorter := begin.sub("", rest)) != rest:
