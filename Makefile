@@ -78,7 +78,7 @@ LOCK := $(BIN)/uv --quiet pip compile pyproject.toml --universal --python-versio
 EXTRAS = $(shell $(BIN)/python -c "import tomllib; print(*('--extra ' + e for e in tomllib.load(open('pyproject.toml', 'rb'))['project']['optional-dependencies'] if e != 'things'))")
 lock: setup ## both lock files anew from pyproject.toml; ARGS='-P mujoco' for one package alone
 	echo hatchling | $(LOCK) - $(EXTRAS) $(or $(ARGS),--upgrade) --output-file requirements.lock
-	echo hatchling | $(LOCK) - --extra llm --extra ros2 --extra foxglove --constraint requirements.lock --upgrade --output-file requirements.image.lock
+	echo hatchling | $(LOCK) - --extra llm --extra ros2 --extra foxglove --extra mapping --constraint requirements.lock --upgrade --output-file requirements.image.lock
 
 image: ## one image for x86-64 and one for aarch64, see docker-bake.hcl; ARGS='--push' with a registry in TIDYBOT_IMAGE
 	docker buildx bake $(ARGS)

@@ -21,6 +21,7 @@ SERVICES = (
     Service("sim", "services.sim", paced=False),
     Service("camera", "services.camera", renders=True),
     Service("navigation", "services.navigation"),
+    Service("mapping", "services.mapping", needs="gtsam"),
     Service("manipulation", "services.manipulation"),
     Service("speech", "services.speech"),
     Service("planner", "services.planner"),

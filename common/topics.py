@@ -132,8 +132,8 @@ ACTION_PLAN = _event("action_plan", m.ActionPlan, by="planner ros2", to="brain d
 PLANNER_STATUS = _event("planner/status", m.PlannerStatus, by="planner")
 OBJECT_QUERY = _goal("object_query", m.ObjectQuery, by="brain", to="perception")
 OBJECT_POSE = _event("object_pose", m.ObjectPose, by="perception", to="brain")
-NAV_GOAL = _goal("nav_goal", m.NavGoal, by="brain dashboard ros2 foxglove *", to="navigation")
-NAVIGATION_FEEDBACK = _event("navigation_feedback", m.NavigationFeedback, by="navigation", to="brain dashboard")
+NAV_GOAL = _goal("nav_goal", m.NavGoal, by="brain mapping dashboard ros2 foxglove *", to="navigation")
+NAVIGATION_FEEDBACK = _event("navigation_feedback", m.NavigationFeedback, by="navigation", to="brain mapping dashboard")
 SYSTEM_STATUS = _event("system_status", m.SystemStatus, by="brain")
 WORLD_OBJECTS = _event(
     "world/objects", m.WorldObjects, by="perception", to="brain planner navigation manipulation dashboard"
@@ -162,7 +162,7 @@ JOINT_STATES = _stream(
     rate=100.0,
     latched=True,
 )
-ODOMETRY = _stream("base/odom", m.Odometry, by="sim", to="navigation manipulation", rate=100.0, latched=True)
+ODOMETRY = _stream("base/odom", m.Odometry, by="sim", to="navigation mapping manipulation", rate=100.0, latched=True)
 POSE = _stream(
     "navigation/pose",
     m.PoseEstimate,
@@ -174,8 +174,11 @@ POSE = _stream(
 )
 NAV_PATH = _event("navigation/path", m.NavPath, by="navigation", to="dashboard")
 COSTMAP = _stream("navigation/costmap", m.Costmap, by="navigation", to="dashboard", rate=1.0)
+MAPPING_GOAL = _goal("mapping/goal", m.MappingGoal, by="*", to="mapping", text="goal", latched=False)
+MAPPING_STATUS = _event("mapping/status", m.MappingStatus, by="mapping")
+MAP_GRID = _event("mapping/map", m.MapGrid, by="mapping", to="navigation")
 GRASPS = _event("manipulation/grasps", m.GraspCandidates, by="manipulation", to="dashboard")
-SCAN = _stream("scan", m.LaserScan, by="sim", to="navigation dashboard", rate=10.0, latched=True)
+SCAN = _stream("scan", m.LaserScan, by="sim", to="navigation mapping dashboard", rate=10.0, latched=True)
 BATTERY = _stream("robot/battery", m.BatteryState, by="sim", to="", rate=1.0, binary=False, latched=True)
 ROBOT_STOP = _goal(
     "robot/stop",
@@ -208,9 +211,9 @@ CLOCKS = (SIM_CLOCK, *SLOWER_CLOCKS.values())
 LOCKSTEP_ACK = _row("sim/ack", m.LockstepAck, f"{EACH} {ANYONE}", "sim", binary=True, recover=False)
 
 CAMERA_REQUEST = _goal(
-    "camera/request", m.CameraRequest, by="perception dashboard ros2 foxglove *", to="camera", latched=False
+    "camera/request", m.CameraRequest, by="perception mapping dashboard ros2 foxglove *", to="camera", latched=False
 )
-HEAD_RGBD = _stream("camera/head/rgbd", m.Rgbd, by="camera", to="perception dashboard", rate=10.0, bulk=True)
+HEAD_RGBD = _stream("camera/head/rgbd", m.Rgbd, by="camera", to="perception mapping dashboard", rate=10.0, bulk=True)
 WRIST_RGBD = _stream("camera/wrist/rgbd", m.Rgbd, by="camera", to="perception dashboard", rate=10.0, bulk=True)
 
 PAGE_STATUS = _event("page/status", m.PageStatus, by="dashboard")

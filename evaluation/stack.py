@@ -45,8 +45,8 @@ def replacement(entry: str) -> tuple[str, Any]:
 
 
 def paced_services() -> tuple[str, ...]:
-    """Every service that follows the simulation in lockstep, from the command line's table."""
-    return tuple(s.name for s in SERVICES if s.paced)
+    """Every service of the command line's table that follows the simulation in lockstep and starts by default."""
+    return tuple(s.name for s in SERVICES if s.paced and not s.needs)
 
 
 class Stack:

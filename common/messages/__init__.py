@@ -8,6 +8,7 @@ from common.messages.base import *
 from common.messages.brain import *
 from common.messages.household import *
 from common.messages.manipulation import *
+from common.messages.mapping import *
 from common.messages.naming import *
 from common.messages.navigation import *
 from common.messages.perception import *

@@ -9,6 +9,8 @@ from common.config import Config
 class NavigationConfig(Config, frozen=True):
     """Lengths in metres, speeds in m/s, times in seconds."""
 
+    map: Literal["household", "mapping"] = "household"
+    """Whose map it drives by: the floor plan of the household, or the growing one of the mapping service."""
     resolution: float = 0.05
     """Of the costmap; chosen: a door of 0.9 m is 18 cells, a plan for the flat takes a fraction of a second."""
     lidar_height: float = 0.2

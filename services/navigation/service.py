@@ -1,5 +1,7 @@
 """Navigation: goals in words or poses -> paths on the costmap -> a stream of target poses for the base."""
 
+import math
+
 from common import messages as m
 from common import topics
 from common.bus.port import Io
@@ -39,7 +41,9 @@ class NavigationService:
         self._places = load_places(config_dir())
         self._named = io.household
         self._goals = Goals(self._named, Places(self._named, self._places), config)
-        self._map = Costmap(io.household, config.resolution, config.obstacle_memory, config.lasting_after)
+        # Who makes the map takes lasting changes into it.
+        lasting_after = math.inf if config.map == "mapping" else config.lasting_after
+        self._map = Costmap(io.household, config.resolution, config.obstacle_memory, lasting_after)
         self._changes = ChangesFile(io.state_dir, io.household, lambda why: io.log.warning("map", reason=why))
         if self._changes.load(self._map.changes):
             self._map.remember(0.0)

@@ -79,6 +79,11 @@ class Localiser:
         self.pose = compose(self.pose, (dx, dy, turn))
         return self.pose
 
+    def follow(self, odometry: Pose2, frame: Pose2) -> Pose2:
+        """Be where somebody else's map has the wheels' frame: `odometry` in it."""
+        self._odometry, self.pose = odometry, compose(frame, odometry)
+        return self.pose
+
     def correct(self, points: Array) -> float:
         """Match scan end points (n, 2) in the base frame; the share of them that the map explains."""
         if len(points) < MIN_POINTS:

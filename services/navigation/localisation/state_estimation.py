@@ -11,6 +11,7 @@ from common.geometry import Pose2, compose
 from services.navigation.config import NavigationConfig
 from services.navigation.localisation.distance_field import distance_field
 from services.navigation.localisation.global_localiser import GlobalLocaliser
+from services.navigation.localisation.live_map import LiveMap
 from services.navigation.localisation.localise import Localiser
 from services.navigation.localisation.map_fit import MapFit
 from services.navigation.localisation.scan import Scan, ScanReader, sane, transformed
@@ -37,9 +38,12 @@ class StateEstimator:
         self.field = distance_field(io.household, config.lidar_height)
         home = io.household.home
         self.localiser = Localiser(self.field, (home.x, home.y, home.theta))
-        self.everywhere = GlobalLocaliser(io, self.field, known=config.initial_pose == "home")
+        self.everywhere = GlobalLocaliser(
+            io, self.field, known=config.initial_pose == "home" or config.map == "mapping"
+        )
         self.tracker = ObstacleTracker()
         self.map_fit = MapFit()
+        self._live = LiveMap(io, costmap) if config.map == "mapping" else None
         self.pose: Pose2 | None = None
         self.odometry: Pose2 = (0.0, 0.0, 0.0)
         self.scan: Scan | None = None
@@ -71,7 +75,13 @@ class StateEstimator:
             return
         self.odometry = believed
         measured = odometry.t if odometry is not None else now
-        self.pose = self.localiser.predict(believed, measured - self._measured)
+        if self._live is None:
+            self.pose = self.localiser.predict(believed, measured - self._measured)
+        else:
+            self._live.update()
+            if self._live.odom is None:
+                return
+            self.pose = self.localiser.follow(believed, self._live.odom)
         self._measured = measured
         self.fresh = bool(scans)
         if scans:
@@ -97,6 +107,9 @@ class StateEstimator:
             scan = scan.after((odometry.vx * late, odometry.vy * late, odometry.omega * late))
         self.scan = scan
         elapsed, self._scanned = self._measured - self._scanned, self._measured
+        if self._live is not None:
+            self._see(scan, now)
+            return
         if not self.lost:
             self.localiser.correct(scan.points)
             self.pose = self.localiser.pose
@@ -122,9 +135,11 @@ class StateEstimator:
         placed, near = transformed(frame, scan.points), scan.ranges < NEAR
         self.points = placed[near]
         if not self.lost:
-            explained = self.field.near(placed, EXPLAINED)
+            mapped = self.field.near if self._live is None else self._map.explains
+            explained = mapped(placed, EXPLAINED)
             self.tracker.update(placed[near & ~explained], (frame[0], frame[1]), now)
-            if len(placed) and not self.everywhere.broken:
+            # A map in the making fits by itself.
+            if len(placed) and not self.everywhere.broken and self._live is None:
                 self.map_fit.see(frame, float(np.mean(explained | self._map.lasting_at(placed))))
             self.mark(self._map, frame, now)
 

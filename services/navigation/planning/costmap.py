@@ -55,6 +55,39 @@ class Costmap:
         self._disc: Array = np.hypot(offsets, offsets[:, None])
         self._disc_reach = reach
 
+    def replace(self, grid: m.MapGrid) -> None:
+        """Another static map: what is occupied or unknown in `grid`, whose cells have this map's resolution.
+
+        Raises:
+            ValueError: another resolution, or cells that do not have the grid's size.
+        """
+        if abs(grid.resolution - self.resolution) > 1e-9:
+            raise ValueError(f"cells of {grid.resolution} m, not {self.resolution} m")
+        cells = np.frombuffer(zlib.decompress(grid.cells), np.uint8)
+        if cells.size != grid.width * grid.height:
+            raise ValueError(f"{cells.size} cells for {grid.width} x {grid.height}")
+        row, column = (
+            round((v - o) / self.resolution) for v, o in ((grid.y, self.origin[1]), (grid.x, self.origin[0]))
+        )
+        top, left = max(0, row), max(0, column)
+        part = cells.reshape(grid.height, grid.width)[top - row :, left - column :] != 0
+        part = part[: self.shape[0] - top, : self.shape[1] - left]
+        inside = slice(top, top + part.shape[0]), slice(left, left + part.shape[1])
+        # All around it is unknown. Half a cell less: to the edge of the cell that is taken, not to its middle.
+        around = ndimage.distance_transform_edt(~np.pad(part, 1, constant_values=True))[1:-1, 1:-1] - 0.5
+        self.static_distance = np.zeros(self.shape)
+        self.static_distance[inside] = np.maximum(around * self.resolution, 0.0)
+        self.static = self.static_distance <= 0
+        explained = self.static_distance <= _EXPLAINED
+        self._seen_at[explained], self._first_at[explained] = -np.inf, np.inf
+        self._distance = None
+        self.version += 1
+
+    def explains(self, points: Array, limit: float) -> Grid:
+        """Which points (n, 2) lie within `limit` [m] of the static map."""
+        found: Grid = self.static_distance[self._cells(points[:, 0], points[:, 1])] <= limit
+        return found
+
     def _distance_to_map(self, floor_plan: FloorPlan) -> Array:
         """Of each cell's centre, exactly: counted in cells, the corner of a wall is up to 5 cm nearer than it seems."""
         gx, gy = np.moveaxis(self.centres(), 2, 0)

@@ -1,0 +1,145 @@
+"""The files of a mapped home. The map is in the format of ROS's map_server: a grey picture `map.pgm` and `map.yaml`,
+which says where it lies.
+
+Source: nav2_map_server, modes `trinary` and `scale`; origin is the pose of the lower left corner of the picture.
+"""
+
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+
+from common.atomic_file import replace
+from common.floor_plan import FloorPlan
+
+MAP, SURFACES, HOUSEHOLD, PICTURE = "map", "surfaces.json", "household.toml", "map.png"
+"""Files of a directory that holds a map; the first without its suffix."""
+FREE, OCCUPIED, UNKNOWN = 0, 1, 2
+GREY = {FREE: 254, OCCUPIED: 0, UNKNOWN: 205}
+"""Of a state, as map_saver writes it."""
+OCCUPIED_ABOVE, FREE_BELOW = 0.65, 0.196
+"""Darkness [0..1] from which a cell is occupied, and up to which it is free: those of map_saver, with which the grey of
+an unknown cell, 0.19608, is just not free."""
+
+
+COLOURS = {FREE: (255, 255, 255), OCCUPIED: (40, 40, 40), UNKNOWN: (190, 190, 190)}
+PIXELS = 4
+"""Of a cell in the picture for people."""
+
+
+class MapError(ValueError):
+    """A map that cannot be used; names the file and what is wrong with it."""
+
+
+class GridMap(NamedTuple):
+    """`cells` (rows, columns) of FREE, OCCUPIED or UNKNOWN, row 0 in the south, each `resolution` [m] wide, from the
+    corner (x, y) `origin` [map] on."""
+
+    cells: NDArray[np.uint8]
+    resolution: float
+    origin: tuple[float, float]
+
+
+def write_map(directory: Path, grid: GridMap, name: str = "map") -> Path:
+    """`NAME.pgm` and `NAME.yaml` in the directory; the second file's path.
+
+    Raises:
+        MapError: they cannot be written.
+    """
+    grey = np.zeros(256, np.uint8)
+    for state, level in GREY.items():
+        grey[state] = level
+    rows, columns = grid.cells.shape
+    picture = grey[grid.cells[::-1]]
+    _replace(directory / f"{name}.pgm", b"P5\n%d %d\n255\n" % (columns, rows) + picture.tobytes())
+    x, y = grid.origin
+    text = (
+        f"image: {name}.pgm\nmode: trinary\nresolution: {grid.resolution:g}\norigin: [{x:.6g}, {y:.6g}, 0.0]\n"
+        f"negate: 0\noccupied_thresh: {OCCUPIED_ABOVE}\nfree_thresh: {FREE_BELOW}\n"
+    )
+    path = directory / f"{name}.yaml"
+    _replace(path, text.encode())
+    return path
+
+
+def _replace(path: Path, data: bytes) -> None:
+    if why := replace(path, data):
+        raise MapError(f"{path}: {why}")
+
+
+def read_map(path: Path) -> GridMap:
+    """The map of a `.yaml` file and the picture beside it.
+
+    Raises:
+        MapError: a file that is not there or not of this format, or a map that is turned.
+    """
+    try:
+        keys = _keys(path.read_text(encoding="utf-8"))
+        resolution = float(keys["resolution"])
+        x, y, yaw = (float(v) for v in keys["origin"].strip("[] ").split(","))
+        occupied, free = float(keys["occupied_thresh"]), float(keys["free_thresh"])
+        negate = keys.get("negate", "0") in ("1", "true")
+        picture = _pgm((path.parent / keys["image"]).read_bytes())
+    except OSError as error:
+        raise MapError(f"{error.filename}: {error.strerror}") from None
+    except (KeyError, ValueError, UnicodeDecodeError) as error:
+        raise MapError(f"{path}: not a map of map_server: {error}") from None
+    if yaw or not resolution > 0:
+        raise MapError(f"{path}: expected a positive resolution and an origin without a turn")
+    dark = picture / 255.0 if negate else (255.0 - picture) / 255.0
+    cells = np.where(dark > occupied, OCCUPIED, np.where(dark < free, FREE, UNKNOWN)).astype(np.uint8)
+    return GridMap(cells[::-1], resolution, (x, y))
+
+
+def picture(cells: NDArray[np.uint8]) -> Image.Image:
+    """The map for people, north up."""
+    palette = np.array([COLOURS[n] for n in range(3)], np.uint8)
+    drawn = palette[cells[::-1]]
+    return Image.fromarray(np.repeat(np.repeat(drawn, PIXELS, axis=0), PIXELS, axis=1))
+
+
+def surface_rows(plan: FloorPlan) -> list[dict[str, Any]]:
+    """Surfaces and bins for other programs: height (of a bin its rim) [m], corners [map], and the sides that they are
+    reached from as unit steps [map]."""
+    rows = []
+    for r in plan.receptacles:
+        half = ((1, 1), (-1, 1), (-1, -1), (1, -1))
+        corners = [r.outline.to_map(i * r.size[0] / 2, j * r.size[1] / 2) for i, j in half]
+        rows.append(
+            {
+                "name": r.name, "kind": r.kind, "height": r.depth or r.center[2], "yaw": r.yaw,
+                "outline": [[round(x, 4), round(y, 4)] for x, y in corners],
+                "reached_from": [[round(v, 4) for v in r.outline.direction(*a)] for a in r.approach],
+            }
+        )  # fmt: skip
+    return rows
+
+
+def _keys(text: str) -> dict[str, str]:
+    """The flat `key: value` lines that such a file consists of."""
+    rows = (line.split("#")[0].partition(":") for line in text.splitlines())
+    return {key.strip(): value.strip().strip("\"'") for key, colon, value in rows if colon}
+
+
+def _pgm(data: bytes) -> NDArray[np.uint8]:
+    """Levels (rows, columns) of a binary PGM with up to 255 levels.
+
+    Raises:
+        ValueError: another format.
+    """
+    fields: list[bytes] = []
+    at = 0
+    while len(fields) < 4:
+        end = data.find(b"\n", at)
+        if end < 0:
+            raise ValueError("a PGM without a header")
+        fields += data[at:end].split(b"#")[0].split()
+        at = end + 1
+    if fields[0] != b"P5" or not 0 < int(fields[3]) < 256:
+        raise ValueError("the picture is no binary PGM with 8 bits")
+    columns, rows = int(fields[1]), int(fields[2])
+    if len(data) - at < rows * columns:
+        raise ValueError(f"{len(data) - at} levels for {columns} x {rows}")
+    return np.frombuffer(data, np.uint8, rows * columns, at).reshape(rows, columns)

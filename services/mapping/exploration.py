@@ -1,0 +1,134 @@
+"""The course of an exploration: look around, drive to the next view, look, until nothing is left; then home. Pure."""
+
+import math
+from collections.abc import Callable
+from typing import Literal
+
+from common import messages as m
+from common.geometry import Pose2, wrap
+from services.mapping.config import MappingConfig
+from services.mapping.views import Survey
+
+FIRST_LOOKS = 8
+"""Headings of the first look around [count]: the camera sees 77 degrees."""
+PATIENCE = 3.0
+"""Time [s] that pictures of a view may take; after it the view counts as seen."""
+EMPTY = 2
+"""Surveys in a row that must find nothing before the exploration ends [count]."""
+
+Wanted = Literal["", "picture", "survey", "save"] | m.NavGoal
+State = Literal["choose", "driving", "settling", "looking", "surveying", "saving", "over"]
+
+
+class Exploration:
+    """`step` says what is wanted next; what comes of it arrives by `heard`, `surveyed` and `pictures`."""
+
+    def __init__(self, config: MappingConfig, new_id: Callable[[str], str]) -> None:
+        self._config, self._new_id = config, new_id
+        self.phase: m.MappingPhase = "exploring"
+        self.barred: list[tuple[float, float]] = []
+        self.pictures = 0
+        self.frontiers, self.area = 0, 0.0
+        self.detail = ""
+        self._state: State = "choose"
+        self._goal: m.NavGoal | None = None
+        self._since = 0.0
+        self._turns: list[float] | None = None
+        self._survey: Survey | None = None
+        self._ended = ""
+        self._empty = 0
+
+    @property
+    def driving(self) -> bool:
+        """A goal is under way."""
+        return self._state == "driving"
+
+    def finish(self) -> None:
+        """Look at nothing more: drive home and save."""
+        if self.phase == "exploring":
+            self.phase = "returning"
+
+    def heard(self, feedback: m.NavigationFeedback, now: float) -> None:
+        """What navigation says of the goal under way."""
+        if self._goal is not None and feedback.goal_id == self._goal.id and feedback.status in ("arrived", "failed"):
+            self._ended = feedback.status
+            self.detail = f"{feedback.code} {feedback.detail}".strip() if feedback.status == "failed" else ""
+
+    def surveyed(self, survey: Survey) -> None:
+        """What a survey has found."""
+        self._survey = survey
+        self.frontiers, self.area = survey.frontiers, survey.area
+
+    def step(self, pose: Pose2, now: float, busy: bool) -> Wanted:
+        """What is wanted now, with the robot at `pose` [map]; `busy`: the worker still has to take something in."""
+        if self._state == "driving":
+            return self._drive(pose, now)
+        if self._state == "settling":
+            if now - self._since >= self._config.settle:
+                self._state, self._since, self.pictures = "looking", now, 0
+            return ""
+        if self._state == "looking":
+            if self.pictures >= self._config.view_pictures or now - self._since > PATIENCE:
+                self._state = "choose"
+                return ""
+            return "picture"
+        if busy or self._state == "over":
+            return ""
+        if self._state == "surveying":
+            return self._choose(pose, now)
+        if self._state == "saving":
+            self._state = "over"
+            return ""
+        return self._next(pose, now)
+
+    def _next(self, pose: Pose2, now: float) -> Wanted:
+        if self._turns is None:
+            self._turns = [wrap(pose[2] + 2 * math.pi * k / FIRST_LOOKS) for k in range(FIRST_LOOKS)]
+        if self.phase == "returning":
+            if math.hypot(pose[0], pose[1]) < 0.15 or self._empty > 50:
+                return self._end()
+            self._empty = 51
+            return self._go((0.0, 0.0, 0.0), now)
+        if self._turns:
+            heading = self._turns.pop(0)
+            if len(self._turns) == FIRST_LOOKS - 1:
+                self._state, self._since = "settling", now
+                return ""
+            return self._go((pose[0], pose[1], heading), now)
+        self._state, self._survey = "surveying", None
+        return "survey"
+
+    def _choose(self, pose: Pose2, now: float) -> Wanted:
+        survey = self._survey
+        if survey is None:
+            return ""
+        if survey.view is None:
+            self._empty += 1
+            self._state = "choose"
+            if self._empty >= EMPTY:
+                # Where a way was blocked for a while there may be one now.
+                if self.barred and self._empty == EMPTY:
+                    self.barred = []
+                else:
+                    self.phase = "returning"
+            return ""
+        self._empty = 0
+        return self._go(survey.view.pose, now)
+
+    def _go(self, pose: Pose2, now: float) -> m.NavGoal:
+        self._goal = m.NavGoal(x=pose[0], y=pose[1], theta=pose[2], id=self._new_id("mapping"))
+        self._state, self._since, self._ended = "driving", now, ""
+        return self._goal
+
+    def _drive(self, pose: Pose2, now: float) -> Wanted:
+        assert self._goal is not None
+        if not self._ended and now - self._since < self._config.goal_timeout:
+            return ""
+        if self._ended != "arrived":
+            self.barred.append((self._goal.x, self._goal.y))
+        self._state, self._since = "settling", now
+        return ""
+
+    def _end(self) -> Wanted:
+        self.phase, self._state = "saving", "saving"
+        return "save"

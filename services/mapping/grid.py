@@ -1,0 +1,141 @@
+"""The occupancy grid: what lidar rays passed and hit, where the camera saw floor, and what stands above it.
+
+The lidar alone does not make a cell free: it looks under tables. A cell is free when rays passed it and the camera saw
+its floor, and nothing up to the robot's height above it.
+"""
+
+import zlib
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from common import messages as m
+from common.geometry import Pose2
+from services.mapping.scan import Array, Scan
+from services.mapping.scan_matching import placed
+
+Cells = NDArray[np.bool_]
+Index = tuple[NDArray[np.intp], NDArray[np.intp]]
+RESOLUTION = 0.05
+"""Of a cell [m]: that of navigation's costmap."""
+FREE, OCCUPIED, UNKNOWN = 0, 1, 2
+HIT_SHARE = 0.25
+"""Share of rays that must end in a cell, of those that came there, for it to count as occupied; chosen: a leg is
+narrower than a cell."""
+TOP_PICTURES, TOP_SHARE = 2, 0.15
+"""Pictures that must show something above a cell, and their share of those that show its floor; chosen: one is noise,
+and who walked through stood there in few."""
+BODY = 0.45
+"""Radius around a keyframe that counts as floor that was seen [m]: the footprint, and the strip before it that the
+camera does not see."""
+STEP = 0.04
+"""Distance between the points of a ray [m]: less than a cell."""
+BEFORE = 0.06
+"""How far before its end a ray no longer counts as passing [m]: a cell, and the noise."""
+
+
+class Grid:
+    """Layers (rows, columns) over the rectangle from `low` to `high` [map]."""
+
+    def __init__(self, low: tuple[float, float], high: tuple[float, float]) -> None:
+        self.origin = (round(low[0] / RESOLUTION) * RESOLUTION, round(low[1] / RESOLUTION) * RESOLUTION)
+        self.shape = tuple(round((high[k] - low[k]) / RESOLUTION) for k in (1, 0))
+        self.clear()
+        self.near: Cells = np.zeros(self.shape, bool)
+        self.looked = np.zeros(self.shape, np.uint8)
+
+    def clear(self) -> None:
+        """Forget what keyframes and pictures have shown."""
+        self.passed = np.zeros(self.shape, np.int32)
+        self.hits = np.zeros(self.shape, np.int32)
+        self.floor = np.zeros(self.shape, np.int32)
+        self.tops = np.zeros(self.shape, np.int32)
+        self.body: Cells = np.zeros(self.shape, bool)
+        self.lowest = np.full(self.shape, np.inf, np.float32)
+        self.highest = np.zeros(self.shape, np.float32)
+
+    def cells(self, points: Array) -> Index:
+        """Rows and columns of the points (n, 2 or 3) [map] that lie on the grid."""
+        return self._inside(points)[1]
+
+    def _inside(self, points: Array) -> tuple[Cells, Index]:
+        """Which points lie on the grid, and the rows and columns of those."""
+        column = np.floor((points[:, 0] - self.origin[0]) / RESOLUTION).astype(np.intp)
+        row = np.floor((points[:, 1] - self.origin[1]) / RESOLUTION).astype(np.intp)
+        inside = (row >= 0) & (row < self.shape[0]) & (column >= 0) & (column < self.shape[1])
+        return inside, (row[inside], column[inside])
+
+    def points(self, cells: Index) -> Array:
+        """Middles (n, 2) [map] of cells."""
+        return np.stack([cells[1] + 0.5, cells[0] + 0.5], axis=1) * RESOLUTION + self.origin
+
+    # --- evidence
+    def add_scan(self, scan: Scan, pose: Pose2) -> None:
+        """What the rays of a scan passed and hit, taken with the base at `pose`."""
+        origin = placed(np.array([scan.lidar]), pose)[0]
+        ends = placed(scan.points, pose)
+        rays = np.concatenate([ends, placed(scan.passed, pose)]) - origin
+        length = np.hypot(rays[:, 0], rays[:, 1])
+        reach = np.maximum(length - BEFORE, 0.0)
+        along = np.arange(0.0, reach.max(initial=0.0), STEP)
+        on = along[None, :] < reach[:, None]
+        ray, step = np.nonzero(on)
+        through = origin + rays[ray] * (along[step] / np.maximum(length[ray], 1e-9))[:, None]
+        mark = np.zeros(self.shape, bool)
+        mark[self.cells(through)] = True
+        self.passed += mark
+        mark[:] = False
+        mark[self.cells(ends)] = True
+        self.hits += mark
+        self._stand(pose)
+
+    def _stand(self, pose: Pose2) -> None:
+        reach = int(BODY / RESOLUTION) + 1
+        row, column = (int((v - o) / RESOLUTION) for v, o in ((pose[1], self.origin[1]), (pose[0], self.origin[0])))
+        rows, columns = np.mgrid[row - reach : row + reach + 1, column - reach : column + reach + 1]
+        cells = self.points((rows.ravel(), columns.ravel()))
+        self.body[self.cells(cells[np.hypot(*(cells - pose[:2]).T) <= BODY])] = True
+
+    def add_picture(self, floor: Array, above: Array) -> None:
+        """Where a picture showed floor (n, 2), and where something above it (k, 3) [map]."""
+        for points, layer in ((floor, self.floor), (above, self.tops)):
+            mark = np.zeros(self.shape, bool)
+            mark[self.cells(points)] = True
+            layer += mark
+        kept, cells = self._inside(above)
+        np.minimum.at(self.lowest, cells, above[kept, 2].astype(np.float32))
+        np.maximum.at(self.highest, cells, above[kept, 2].astype(np.float32))
+
+    # --- reading
+    @property
+    def walls(self) -> Cells:
+        """Occupied for the lidar."""
+        found: Cells = (self.hits > 0) & (self.hits >= HIT_SHARE * (self.hits + self.passed))
+        return found
+
+    @property
+    def covered(self) -> Cells:
+        """With something above the floor, at a height at which the robot would touch it."""
+        found: Cells = (self.tops >= TOP_PICTURES) & (self.tops > TOP_SHARE * self.floor)
+        return found
+
+    def states(self) -> NDArray[np.uint8]:
+        """FREE, OCCUPIED or UNKNOWN for each cell."""
+        taken = self.walls | self.covered
+        seen = ndimage.binary_closing((self.floor > 0) | self.body, np.ones((3, 3))) | self.body
+        free = seen & ndimage.binary_closing(self.passed > 0, np.ones((3, 3))) & ~taken
+        return np.where(taken, OCCUPIED, np.where(free, FREE, UNKNOWN)).astype(np.uint8)
+
+    def message(self, t: float, odom: Pose2, states: NDArray[np.uint8]) -> m.MapGrid:
+        """The map for others; cut to what is known."""
+        rows, columns = np.nonzero(states != UNKNOWN)
+        if not len(rows):
+            rows = columns = np.zeros(1, int)
+        top, left = int(rows.min()), int(columns.min())
+        part = states[top : int(rows.max()) + 1, left : int(columns.max()) + 1]
+        return m.MapGrid(
+            t=t, x=self.origin[0] + left * RESOLUTION, y=self.origin[1] + top * RESOLUTION, resolution=RESOLUTION,
+            width=part.shape[1], height=part.shape[0], cells=zlib.compress(np.ascontiguousarray(part).tobytes(), 1),
+            odom=odom,
+        )  # fmt: skip

@@ -1,0 +1,85 @@
+"""The map in the making: trajectory, grid and what pictures showed, each picture held by its keyframe."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from common import messages as m
+from common.geometry import Pose2, compose, inverse
+from services.mapping.depth import CameraModel, Picture
+from services.mapping.grid import Grid
+from services.mapping.scan import Scan
+from services.mapping.scan_matching import placed
+from services.mapping.trajectory import Trajectory
+from services.mapping.views import FRONTIER_RANGE, SURFACE_RANGE, Survey, shown, survey
+
+
+class Shot(NamedTuple):
+    """A picture taken at `pose` in the frame of keyframe `keyframe`; `still`: the robot stood."""
+
+    keyframe: int
+    pose: Pose2
+    picture: Picture
+    still: bool
+
+
+class Mapper:
+    """Lives in the service's worker: everything here may take some tens of milliseconds."""
+
+    def __init__(self, low: tuple[float, float], high: tuple[float, float]) -> None:
+        self.trajectory = Trajectory()
+        self.grid = Grid(low, high)
+        self.shots: list[Shot] = []
+        self._camera = CameraModel()
+        self._unread: list[tuple[m.Rgbd, int, Pose2, bool]] = []
+
+    def add_scan(self, scan: Scan, odometry: Pose2) -> NDArray[np.uint8]:
+        """Take a keyframe; the states of all cells."""
+        bent = self.trajectory.add(scan, odometry)
+        if bent:
+            self.draw()
+        else:
+            self.grid.add_scan(self.trajectory.scans[-1], self.trajectory.poses[-1])
+        return self.grid.states()
+
+    def add_picture(self, image: m.Rgbd, odometry: Pose2, still: bool) -> NDArray[np.uint8]:
+        """Take a picture of a moment at which the wheels said `odometry`; the states of all cells.
+
+        Raises:
+            ValueError: the picture's data do not have its size.
+        """
+        keyframe = len(self.trajectory) - 1
+        pose = compose(inverse(self.trajectory.poses[keyframe]), compose(self.trajectory.odom, odometry))
+        if still and not self._camera.learned:
+            self._camera.learn(image)
+        if not self._camera.learned:
+            if still:
+                self._unread.append((image, keyframe, pose, still))
+            return self.grid.states()
+        unread, self._unread = [*self._unread, (image, keyframe, pose, still)], []
+        for other, at, seen_from, stood in unread:
+            shot = Shot(at, seen_from, self._camera.read(other), stood)
+            self.shots.append(shot)
+            self._draw(shot)
+        return self.grid.states()
+
+    def _draw(self, shot: Shot) -> None:
+        base = compose(self.trajectory.poses[shot.keyframe], shot.pose)
+        self.grid.add_picture(placed(shot.picture.floor, base), placed(shot.picture.above, base))
+        if shot.still:
+            self.grid.near |= shown(self.grid, base, SURFACE_RANGE)
+            self.grid.looked += shown(self.grid, base, FRONTIER_RANGE) & (self.grid.looked < 250)
+
+    def draw(self) -> None:
+        """The grid anew, from where all keyframes are now."""
+        self.grid.clear()
+        self.grid.near[:], self.grid.looked[:] = False, 0
+        for scan, pose in zip(self.trajectory.scans, self.trajectory.poses, strict=True):
+            self.grid.add_scan(scan, pose)
+        for shot in self.shots:
+            self._draw(shot)
+
+    def survey(self, here: Pose2, barred: list[tuple[float, float]]) -> Survey:
+        """What is left to be seen, and from where next."""
+        return survey(self.grid, self.grid.states(), here, barred)

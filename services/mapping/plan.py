@@ -1,0 +1,232 @@
+"""A floor plan out of what was mapped: walls, furniture, surfaces and bins with where they are reached from. Pure."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from common.approach import EDGE_DISTANCE, ROOM
+from common.floor_plan import BIN_WALL, Box, Place, Receptacle, ReceptacleKind, Vec2, Wall
+from common.geometry import Rectangle
+from common.household import Household
+from services.mapping.grid import FREE, RESOLUTION, Cells, Grid
+from services.mapping.rooms import find_rooms
+from services.mapping.scan import Array
+from services.mapping.surfaces import Surface, find_surfaces, fit_rectangle
+from services.mapping.walls import find_walls
+
+SIDES = ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0))
+LATERAL = (0.0, 0.15, -0.15, 0.3, -0.3)
+"""Steps aside [m] from the middle of a side at which it may be reached."""
+SOLID = 0.35
+"""Share of a surface's outline at which the lidar meets a body below it, from which on it stands on no legs."""
+BED_SIDE, BED_HIGHEST, SOFA_HIGHEST, LOW_TABLE = 1.1, 0.70, 0.50, 0.52
+"""Measures [m] that tell beds, sofas and low tables from tables. Source: DIN EN 1725, DIN 68890 and catalogues."""
+BIN_SIDE, BIN_HEIGHT, BIN_DEEP, BIN_OPEN = (0.20, 0.70), (0.18, 0.62), 0.10, 0.12
+"""Width and height of an open bin, how far below its rim its inside lies [m], and the share of it that shows that."""
+ASIDE = 3.0
+"""How much farther a surface beside or behind the robot's home counts, when one is chosen to bring things to [-]."""
+ROBOT = 1.45
+"""Height [m] of furniture of which no camera saw the top."""
+MARGIN = 0.15
+"""Floor plan beyond what is known [m]."""
+
+
+class Lidar(NamedTuple):
+    """End points (n, 2) [map] of all keyframes and where each was seen from."""
+
+    points: Array
+    eyes: Array
+
+
+def floor_plan(name: str, lidar: Lidar, grid: Grid, states: NDArray[np.uint8], level: Array, low: Array) -> Household:
+    """The household of a mapped home; `level` and `low` (n, 3) [map] are points of level surfaces and of low things."""
+    surfaces = _separate(find_surfaces(level))
+    bins = _bins(grid, surfaces, low)
+    reached = _reached(states)
+    receptacles = _named(surfaces, bins, grid, reached)
+    taken = [r.outline.grown(0.06) for r in receptacles]
+    walls = find_walls(lidar.points, lidar.eyes, taken)
+    furniture = _furniture(grid, walls, taken)
+    rows, columns = np.nonzero(states == FREE)
+    cells = grid.points((rows, columns)) if len(rows) else np.zeros((1, 2))
+    ends = np.array([p for w in walls for p in (w.start, w.end)] or cells)
+    first, last = np.minimum(cells.min(axis=0), ends.min(axis=0)), np.maximum(cells.max(axis=0), ends.max(axis=0))
+    home = Place(name="home", x=0.0, y=0.0, theta=0.0, aliases=("start", "the dock", "dock", "base"))
+    delivery, receptacles = _delivery(receptacles)
+    return Household(
+        name=name, low=_rounded(first - MARGIN), high=_rounded(last + MARGIN), home=home, walls=tuple(walls),
+        furniture=tuple(furniture), rooms=tuple(find_rooms(grid, states, reached)), receptacles=tuple(receptacles),
+        delivery=delivery,
+    )  # fmt: skip
+
+
+def _rounded(point: Array) -> Vec2:
+    return round(float(point[0]), 3), round(float(point[1]), 3)
+
+
+def _separate(surfaces: list[Surface]) -> list[Surface]:
+    """Without what stands on a larger surface: boxes and books have level tops, too."""
+    kept: list[Surface] = []
+    for s in surfaces:
+        on = any(o.outline.contains(s.outline.x, s.outline.y, 0.03) and -0.04 < s.height - o.height < 0.5 for o in kept)
+        if not on:
+            kept.append(s)
+    return kept
+
+
+def _reached(states: NDArray[np.uint8]) -> Cells:
+    """Cells on which the robot's middle may be, connected with its home at the origin or else the largest such part."""
+    distance = ndimage.distance_transform_edt(states == FREE) * RESOLUTION - RESOLUTION / 2
+    labels, count = ndimage.label(distance >= ROOM, np.ones((3, 3)))
+    if not count:
+        return np.zeros(states.shape, bool)
+    sizes = np.bincount(labels.ravel())
+    sizes[0] = 0
+    found: Cells = labels == int(np.argmax(sizes))
+    return found
+
+
+def approaches(outline: Rectangle, grid: Grid, reached: Cells, rim: float = 0.0) -> tuple[Vec2, ...]:
+    """Sides (unit steps in the outline's frame) before which the robot can stand."""
+    found = []
+    for ax, ay in SIDES:
+        half = outline.length / 2 if ax else outline.width / 2
+        off = half + rim + EDGE_DISTANCE + 0.02
+        spots = np.array([outline.to_map(ax * off - ay * s, ay * off + ax * s) for s in LATERAL])
+        width = outline.width if ax else outline.length
+        inside = np.abs(np.array(LATERAL)) <= max(width / 2 - 0.1, 0.01)
+        rows, columns = grid.cells(spots[inside])
+        if reached[rows, columns].any():
+            found.append((ax, ay))
+    return tuple(found)
+
+
+def _bins(grid: Grid, surfaces: list[Surface], low: Array) -> list[tuple[Rectangle, float]]:
+    """Outline of the inside and height of the rim of open bins."""
+    free = np.ones(len(low), bool)
+    for s in surfaces:
+        free &= s.outline.signed_distances(low[:, 0], low[:, 1]) > 0.05
+    low = low[free]
+    rims = low[low[:, 2] > BIN_HEIGHT[0]]
+    if len(rims) < 12:
+        return []
+    mark = np.zeros(grid.shape, bool)
+    mark[grid.cells(rims)] = True
+    # The lidar sees the sides that the camera does not.
+    near = ndimage.binary_dilation(mark, iterations=2)
+    labels, count = ndimage.label(ndimage.binary_closing(mark | (grid.walls & near)), np.ones((3, 3)))
+    found = []
+    for n in range(1, count + 1):
+        rows, columns = np.nonzero(labels == n)
+        if len(rows) < 8:
+            continue
+        outer = fit_rectangle(grid.points((rows, columns)))
+        outer = outer.grown(RESOLUTION / 2 - 0.01)
+        if not (BIN_SIDE[0] <= outer.width and outer.length <= BIN_SIDE[1]):
+            continue
+        inside = outer.grown(-0.05).signed_distances(low[:, 0], low[:, 1]) < 0.0
+        around = outer.grown(0.04).signed_distances(low[:, 0], low[:, 1]) < 0.0
+        if inside.sum() < 8:
+            continue
+        rim = float(np.quantile(low[around, 2], 0.97))
+        deep = float(np.mean(low[inside, 2] < rim - BIN_DEEP))
+        if BIN_HEIGHT[0] <= rim <= BIN_HEIGHT[1] and deep > BIN_OPEN:
+            found.append((outer.grown(-BIN_WALL), rim))
+    return found
+
+
+def _kind(s: Surface, grid: Grid) -> tuple[str, ReceptacleKind]:
+    """What a surface is called by its measures, and the kind it is built as: on legs or with a body."""
+    ring = s.outline.grown(-0.02)
+    count = max(8, int((ring.length + ring.width) / RESOLUTION))
+    around = np.linspace(-0.5, 0.5, count)
+    half = np.full(count, 0.5)
+    u = np.concatenate([around, around, half, -half]) * ring.length
+    v = np.concatenate([half, -half, around, around]) * ring.width
+    x, y = ring.to_map(u, v)
+    body = ndimage.binary_dilation(grid.walls, np.ones((3, 3)))[grid.cells(np.stack([x, y], axis=1))]
+    if float(np.mean(body)) < SOLID:
+        return ("low table" if s.height < LOW_TABLE else "table"), "table"
+    if s.outline.width >= BED_SIDE and s.height <= BED_HIGHEST:
+        return "bed", "counter"
+    if s.outline.length >= 1.2 and s.outline.width >= 0.5 and s.height <= SOFA_HIGHEST:
+        return "sofa", "counter"
+    return ("shelf" if s.outline.width <= 0.45 else "counter"), ("shelf" if s.outline.width <= 0.45 else "counter")
+
+
+def _named(
+    surfaces: list[Surface], bins: list[tuple[Rectangle, float]], grid: Grid, reached: Cells
+) -> list[Receptacle]:
+    """Receptacles that the robot gets to, numbered where several are of a sort."""
+    found: list[Receptacle] = []
+    counts: dict[str, int] = {}
+
+    def add(
+        name: str, kind: ReceptacleKind, outline: Rectangle, z: float, depth: float, sides: tuple[Vec2, ...]
+    ) -> None:
+        counts[name] = counts.get(name, 0) + 1
+        own = name if counts[name] == 1 else f"{name} {counts[name]}"
+        found.append(
+            Receptacle(
+                name=own, kind=kind, center=(round(outline.x, 3), round(outline.y, 3), round(z, 3)),
+                size=(round(outline.length, 3), round(outline.width, 3)), yaw=round(outline.yaw, 4),
+                depth=round(depth, 3), approach=sides, spawn=not depth,
+            )
+        )  # fmt: skip
+
+    for s in surfaces:
+        if sides := approaches(s.outline, grid, reached):
+            add(*_kind(s, grid), s.outline, s.height, 0.0, sides)
+    for outline, rim in bins:
+        if sides := approaches(outline, grid, reached, BIN_WALL):
+            add("bin", "bin", outline, 0.02, rim, sides)
+    return found
+
+
+def _furniture(grid: Grid, walls: list[Wall], taken: list[Rectangle]) -> list[Box]:
+    """Boxes around what neither walls nor receptacles explain."""
+    cells = grid.walls | (grid.covered & (grid.highest > 0.12))
+    rows, columns = np.nonzero(cells)
+    if not len(rows):
+        return []
+    points = grid.points((rows, columns))
+    free = np.ones(len(points), bool)
+    for r in [*taken, *(w.footprint.grown(0.08) for w in walls)]:
+        free &= r.signed_distances(points[:, 0], points[:, 1]) > 0.02
+    left = np.zeros(grid.shape, bool)
+    left[rows[free], columns[free]] = True
+    labels, count = ndimage.label(ndimage.binary_closing(left, np.ones((3, 3))) | left, np.ones((3, 3)))
+    found: list[Box] = []
+    for n in range(1, count + 1):
+        rows, columns = np.nonzero((labels == n) & left)
+        if len(rows) < 2:
+            continue
+        outline = fit_rectangle(grid.points((rows, columns))).grown(RESOLUTION / 2)
+        lidar = bool(grid.walls[rows, columns].any())
+        high = float(grid.highest[rows, columns].max())
+        low = 0.0 if lidar else float(min(grid.lowest[rows, columns].min(), high - 0.02))
+        high = high if high > max(low, 0.25 * lidar) else ROBOT
+        number = len(found) + 1
+        found.append(
+            Box(
+                name=f"furniture {number}", yaw=round(outline.yaw, 4),
+                center=(round(outline.x, 3), round(outline.y, 3), round((low + high) / 2, 3)),
+                size=(round(outline.length, 3), round(outline.width, 3), round(high - low, 3)),
+            )
+        )  # fmt: skip
+    return found
+
+
+def _delivery(receptacles: list[Receptacle]) -> tuple[str, list[Receptacle]]:
+    """What the robot brings things to: the surface before its home, else the nearest one."""
+    flat = [r for r in receptacles if not r.depth]
+    if not flat:
+        return "", receptacles
+
+    def off(r: Receptacle) -> float:
+        return math.hypot(r.center[0], r.center[1]) * (1.0 if r.center[0] > abs(r.center[1]) else ASIDE)
+
+    return min(flat, key=off).name, receptacles

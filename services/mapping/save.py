@@ -1,0 +1,163 @@
+"""What mapping leaves on disk, and takes up again: the map, the pose graph, surfaces, a household, and its evidence."""
+
+import json
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from common.atomic_file import replace
+from common.geometry import compose
+from common.household import Household
+from common.map_file import HOUSEHOLD, MAP, PICTURE, SURFACES, GridMap, picture, surface_rows, write_map
+from common.plan_file import to_toml
+from services.mapping.depth import Picture
+from services.mapping.grid import RESOLUTION, UNKNOWN
+from services.mapping.mapper import Mapper, Shot
+from services.mapping.plan import Lidar, floor_plan
+from services.mapping.pose_graph import Edge, PoseGraph
+from services.mapping.scan import Array, Scan
+from services.mapping.scan_matching import placed
+
+GRAPH, EVIDENCE = "pose_graph.json", "keyframes.npz"
+
+
+class SaveError(OSError):
+    """The map cannot be written, or an older one not be read; names the file."""
+
+
+class Saved(NamedTuple):
+    """Where the files are, and how many surfaces and bins they have."""
+
+    directory: str
+    surfaces: int
+
+
+def save(directory: Path, name: str, mapper: Mapper) -> Saved:
+    """Optimise once more and write every file.
+
+    Raises:
+        SaveError: the directory cannot be written to.
+    """
+    if mapper.trajectory.graph.optimise() > 0.0:
+        mapper.draw()
+    states = mapper.grid.states()
+    household = made_household(name, mapper, states)
+    try:
+        directory.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise SaveError(f"{directory}: {error.strerror}") from None
+    rows, columns = np.nonzero(states != UNKNOWN)
+    top, left = (int(axis.min(initial=0)) for axis in (rows, columns))
+    part = states[top : int(rows.max(initial=0)) + 1, left : int(columns.max(initial=0)) + 1]
+    x, y = mapper.grid.origin
+    write_map(directory, GridMap(part, RESOLUTION, (x + left * RESOLUTION, y + top * RESOLUTION)), MAP)
+    _write(directory / GRAPH, _json(graph_rows(mapper.trajectory.graph, mapper.trajectory.scans)))
+    _write(directory / SURFACES, _json(surface_rows(household)))
+    _write(directory / HOUSEHOLD, to_toml(household).encode())
+    with (directory / EVIDENCE).open("wb") as file:
+        np.savez_compressed(file, **_evidence(mapper))
+    picture(part).save(directory / PICTURE)
+    return Saved(str(directory), len(household.receptacles))
+
+
+def made_household(name: str, mapper: Mapper, states: NDArray[np.uint8]) -> Household:
+    """The household as far as it is mapped."""
+    trajectory = mapper.trajectory
+    points = [placed(s.points, p) for s, p in zip(trajectory.scans, trajectory.poses, strict=True)]
+    eyes = [np.tile(p[:2], (len(s.points), 1)) for s, p in zip(trajectory.scans, trajectory.poses, strict=True)]
+    lidar = Lidar(np.concatenate(points), np.concatenate(eyes))
+    return floor_plan(name, lidar, mapper.grid, states, _seen(mapper, "level"), _seen(mapper, "low"))
+
+
+def _seen(mapper: Mapper, layer: str) -> Array:
+    """Points (n, 3) [map] of one layer of all pictures that were taken standing."""
+    parts = [np.empty((0, 3))]
+    for shot in mapper.shots:
+        if shot.still:
+            base = compose(mapper.trajectory.poses[shot.keyframe], shot.pose)
+            parts.append(placed(getattr(shot.picture, layer), base))
+    return np.concatenate(parts)
+
+
+def graph_rows(graph: PoseGraph, scans: list[Scan]) -> dict[str, Any]:
+    """The pose graph for others: nodes and edges, poses as x, y, theta [m, m, rad] in frame map."""
+    nodes = [
+        {"id": n, "t": round(s.t, 3), "pose": [round(v, 5) for v in p]}
+        for n, (p, s) in enumerate(zip(graph.poses, scans, strict=True))
+    ]
+    edges = [{"from": e.start, "to": e.end, "pose": [round(v, 5) for v in e.pose], "kind": e.kind} for e in graph.edges]
+    return {"frame": "map", "nodes": nodes, "edges": edges}
+
+
+def resume(directory: Path, mapper: Mapper) -> None:
+    """Go on with the map of a directory.
+
+    Raises:
+        SaveError: a file that is missing or that cannot be read.
+    """
+    try:
+        rows = json.loads((directory / GRAPH).read_text(encoding="utf-8"))
+        graph = PoseGraph()
+        graph.poses = [tuple(n["pose"]) for n in rows["nodes"]]
+        graph.edges = [msgspec.convert((e["from"], e["to"], e["pose"], e["kind"]), Edge) for e in rows["edges"]]
+        with np.load(directory / EVIDENCE) as file:
+            scans, shots = _unpacked({k: file[k] for k in file.files})
+    except (OSError, ValueError, KeyError, TypeError, msgspec.ValidationError) as error:
+        raise SaveError(f"{directory}: no map to go on with: {error}") from None
+    if len(scans) != len(graph.poses):
+        raise SaveError(f"{directory}: {len(scans)} scans for {len(graph.poses)} keyframes")
+    mapper.trajectory.resume(graph, scans)
+    mapper.shots = shots
+    mapper.draw()
+
+
+def _evidence(mapper: Mapper) -> dict[str, Any]:
+    """Scans and pictures as arrays, joined, with how many rows each has."""
+    scans, shots = mapper.trajectory.scans, mapper.shots
+    found: dict[str, Any] = {
+        "times": np.array([s.t for s in scans]), "lidar": np.array([s.lidar for s in scans]).reshape(-1, 2),
+        "at": np.array([s.keyframe for s in shots]), "from": np.array([s.pose for s in shots]).reshape(-1, 3),
+        "still": np.array([s.still for s in shots], bool),
+    }  # fmt: skip
+    for layer, width in (("points", 2), ("passed", 2)):
+        found |= _joined(layer, [getattr(s, layer) for s in scans], width)
+    for layer, width in (("floor", 2), ("above", 3), ("level", 3), ("low", 3)):
+        found |= _joined(layer, [getattr(s.picture, layer) for s in shots], width)
+    return found
+
+
+def _joined(name: str, parts: list[Array], width: int) -> dict[str, Any]:
+    rows = np.concatenate([np.empty((0, width)), *parts]).astype(np.float32)
+    return {name: rows, f"{name}_rows": np.array([len(p) for p in parts], np.int64)}
+
+
+def _split(file: dict[str, Array], name: str) -> list[Array]:
+    ends = np.cumsum(file[f"{name}_rows"]).astype(int)
+    return [p.astype(np.float64) for p in np.split(file[name], ends[:-1])] if len(ends) else []
+
+
+def _unpacked(file: dict[str, Array]) -> tuple[list[Scan], list[Shot]]:
+    layers = {name: _split(file, name) for name in ("points", "passed", "floor", "above", "level", "low")}
+    scans = [
+        Scan(float(t), points, passed, (float(x), float(y)))
+        for t, (x, y), points, passed in zip(
+            file["times"], file["lidar"], layers["points"], layers["passed"], strict=True
+        )
+    ]
+    shots = []
+    for n, (at, pose, still) in enumerate(zip(file["at"], file["from"], file["still"], strict=True)):
+        picture = Picture(*(layers[name][n] for name in ("floor", "above", "level", "low")))
+        shots.append(Shot(int(at), (float(pose[0]), float(pose[1]), float(pose[2])), picture, bool(still)))
+    return scans, shots
+
+
+def _json(rows: Any) -> bytes:
+    return msgspec.json.format(msgspec.json.encode(rows), indent=1)
+
+
+def _write(path: Path, data: bytes) -> None:
+    if why := replace(path, data):
+        raise SaveError(f"{path}: {why}")

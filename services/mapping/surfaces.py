@@ -1,0 +1,118 @@
+"""Level surfaces out of the points that pictures showed of them: height, and the rectangle that they fill. Pure."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from common.geometry import Rectangle
+from services.mapping.scan import Array
+
+CELL, LAYER = 0.05, 0.02
+"""Extents of the voxels that neighbours are found in, across and up [m]: level points lie 2.5 cm apart."""
+THICK = 0.025
+"""Greatest distance [m] from a surface's height of the points that count to it: noise, and what lies flat on it."""
+LEAST_AREA, LEAST_SIDE = 0.05, 0.20
+"""Area [m2] and width [m] below which something is no surface to put things on, but a thing itself."""
+FILLED = 0.45
+"""Least share of its rectangle that a surface fills: with things on it that hide parts, and no two tables in one."""
+CORNER = math.radians(1.0)
+"""Step of the headings that are tried for the rectangle [rad]."""
+RIM = 0.006
+"""Share of points that may lie beyond a side: depth pixels smear over edges."""
+INSET = 0.0
+"""How much [m] each side lies outside of what was seen of it."""
+
+
+class Surface(NamedTuple):
+    """`outline` [map] of a level surface at `height` [m]; `points` (n, 2) were seen of it."""
+
+    outline: Rectangle
+    height: float
+    points: Array
+
+
+def find_surfaces(points: Array) -> list[Surface]:
+    """The surfaces among points (n, 3) [map], the largest first."""
+    if len(points) < 10:
+        return []
+    low = points.min(axis=0) - (2 * CELL, 2 * CELL, 2 * LAYER)
+    size = (CELL, CELL, LAYER)
+    index = ((points - low) / size).astype(np.intp)
+    count = np.zeros(index.max(axis=0) + 3, np.int32)
+    np.add.at(count, tuple(index.T), 1)
+    # A voxel that one picture alone showed once is noise at an edge.
+    labels, number = ndimage.label(count >= 2, np.ones((3, 3, 3)))
+    label = labels[tuple(index.T)]
+    found = [s for n in range(1, number + 1) for s in _surfaces_of(points[label == n])]
+    return sorted(found, key=lambda s: -s.outline.length * s.outline.width)
+
+
+def _surfaces_of(points: Array) -> list[Surface]:
+    """The surfaces in one connected set: the height that most points have, then what is left."""
+    found: list[Surface] = []
+    rest = points
+    while _area(rest) > LEAST_AREA:
+        height = _mode(rest[:, 2])
+        on = np.abs(rest[:, 2] - height) < THICK
+        flat, rest = rest[on], rest[~on]
+        for part in _parts(flat[:, :2]):
+            outline = fit_rectangle(flat[part, :2])
+            filled = _area(flat[part]) / max(outline.length * outline.width, 1e-6)
+            if _area(flat[part]) > LEAST_AREA and outline.width > LEAST_SIDE and filled > FILLED:
+                found.append(Surface(outline, _mean_height(flat[part, 2]), flat[part, :2]))
+    return found
+
+
+def _parts(points: Array) -> list[NDArray[np.bool_]]:
+    """Masks of the connected parts of points (n, 2)."""
+    index = ((points - points.min(axis=0)) / CELL).astype(np.intp) + 1
+    filled = np.zeros(index.max(axis=0) + 2, bool)
+    filled[tuple(index.T)] = True
+    labels, number = ndimage.label(filled, np.ones((3, 3)))
+    label = labels[tuple(index.T)]
+    return [label == n for n in range(1, number + 1)]
+
+
+def _area(points: Array) -> float:
+    """Floor [m2] under points (n, 2 or 3)."""
+    if not len(points):
+        return 0.0
+    return float(len(np.unique(np.floor(points[:, :2] / CELL).astype(np.int64), axis=0))) * CELL**2
+
+
+def _mode(heights: Array) -> float:
+    """The height [m] that most have, to some millimetres."""
+    edges = np.arange(heights.min() - 0.02, heights.max() + 0.03, 0.005)
+    count = np.convolve(np.histogram(heights, edges)[0], np.ones(5), "same")
+    return float(edges[int(np.argmax(count))] + 0.0025)
+
+
+def _mean_height(heights: Array) -> float:
+    middle = float(np.median(heights))
+    return float(np.mean(heights[np.abs(heights - middle) < 0.015]))
+
+
+def fit_rectangle(points: Array) -> Rectangle:
+    """The smallest rectangle around points (n, 2), but for RIM of them at each side."""
+    best: tuple[float, Rectangle] | None = None
+    for yaw in np.arange(0.0, math.pi / 2, CORNER):
+        c, s = math.cos(yaw), math.sin(yaw)
+        own = points @ np.array([[c, -s], [s, c]])
+        low, high = np.quantile(own, RIM, axis=0) - INSET, np.quantile(own, 1.0 - RIM, axis=0) + INSET
+        area = float(np.prod(high - low))
+        if best is None or area < best[0]:
+            u, v = (low + high) / 2
+            length, width = (float(v) for v in high - low)
+            best = area, Rectangle(float(c * u - s * v), float(s * u + c * v), length, width, float(yaw))
+    assert best is not None
+    return _long_way(best[1])
+
+
+def _long_way(r: Rectangle) -> Rectangle:
+    """The same rectangle with its length along the longer side, and the smaller of the two turns."""
+    if r.length < r.width:
+        r = r._replace(length=r.width, width=r.length, yaw=r.yaw - math.pi / 2)
+    return r._replace(yaw=math.remainder(r.yaw, math.pi))

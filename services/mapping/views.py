@@ -1,0 +1,205 @@
+"""Where to look next: the standing pose from which the camera sees most of what is unknown, for the way there. Pure.
+
+Frontiers are unknown cells beside floor that the robot can reach; what stands above the floor counts as well until it
+was seen from near. A pose is chosen by what it shows against the way to it.
+Source: Yamauchi, "A frontier-based approach for autonomous exploration", 1997; Gonzalez-Banos and Latombe, "Navigation
+strategies for exploring indoor environments", 2002.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+from scipy.sparse import csgraph, csr_matrix
+
+from common.geometry import Pose2
+from services.mapping.grid import FREE, OCCUPIED, RESOLUTION, UNKNOWN, Cells, Grid
+from services.mapping.scan import Array
+
+CLEARANCE = 0.36
+"""Distance [m] from what is not free that a pose has: the footprint, what navigation adds, and a cell."""
+HEADINGS = 12
+"""Directions that are tried at each position [count]: a third of the camera's width apart."""
+SPACING = 6
+"""Cells between positions that are tried [count]: 0.3 m."""
+HALF_VIEW = math.radians(33)
+"""Half of the camera's width [rad], less its rim."""
+FRONTIER_RANGE, SURFACE_RANGE = (0.5, 2.7), (0.55, 1.7)
+"""Nearest and farthest that floor and a surface are seen from well [m]: the camera's lower rim, and its noise."""
+LEAST_FRONTIER = 5
+"""Cells of a frontier below which it is a gap between pixels [count]: a quarter of a metre."""
+GAP, POCKET = 4, 60
+"""Width of an opening [cells] below which it is a gap between rays, and size of what is unknown [cells] below which
+nobody can go there: 0.2 m, and a quarter of what the robot covers."""
+TRIES = 3
+"""Views without result after which a cell is given up [count]: its floor cannot be seen."""
+MOST = 500
+"""Cells that gains are counted by, at most [count]; chosen: the choice stays below 0.3 s."""
+HOME_COST = 1.0
+"""Way that every view costs beside the drive [m]: stopping, turning and looking."""
+
+
+class View(NamedTuple):
+    """A standing pose, what it shows [cells] and what is left to be seen anywhere [places]."""
+
+    pose: Pose2
+    gain: float
+
+
+class Survey(NamedTuple):
+    """`frontiers` places are left that can be reached, `view` is the best pose; None when nothing is left."""
+
+    frontiers: int
+    area: float
+    view: View | None
+
+
+def survey(grid: Grid, states: NDArray[np.uint8], here: Pose2, barred: list[tuple[float, float]]) -> Survey:
+    """What is left to be seen, and from where next; `barred` are positions that could not be reached."""
+    free = states == FREE
+    distance = ndimage.distance_transform_edt(free) * RESOLUTION - RESOLUTION / 2
+    cost = _costs(grid, distance >= CLEARANCE - 0.05, here)
+    reached = np.isfinite(cost)
+    area = float(free.sum()) * RESOLUTION**2
+    wanted, places = interesting(grid, states, ndimage.binary_dilation(reached, iterations=12))
+    if not wanted.any():
+        return Survey(0, area, None)
+    stand = reached & (distance >= CLEARANCE)
+    rows, columns = np.nonzero(stand)
+    on = (rows % SPACING == 0) & (columns % SPACING == 0)
+    spots = grid.points((rows[on], columns[on]))
+    costs = cost[rows[on], columns[on]]
+    for x, y in barred:
+        far = np.hypot(spots[:, 0] - x, spots[:, 1] - y) > 0.25
+        spots, costs = spots[far], costs[far]
+    if not len(spots):
+        return Survey(places, area, None)
+    return Survey(places, area, _best(grid, states, wanted, spots, costs, here))
+
+
+def interesting(grid: Grid, states: NDArray[np.uint8], near: Cells) -> tuple[Cells, int]:
+    """Cells that a view should show: frontiers, and what stands above the floor unseen from near; and their places."""
+    free = states == FREE
+    # Gaps between the rays on a wall lead nowhere, and into a pocket the robot does not fit.
+    open_ = ndimage.binary_opening(states == UNKNOWN, np.ones((GAP, GAP)))
+    labels, count = ndimage.label(open_)
+    sizes = np.bincount(labels.ravel(), minlength=count + 1)
+    sizes[0] = 0
+    frontier = (sizes >= POCKET)[labels] & ndimage.binary_dilation(free & near)
+    # A strip along a wall is the wall.
+    broad = ndimage.binary_opening(grid.covered & ~grid.walls, np.ones((3, 3)))
+    surface = broad & ~grid.near & ndimage.binary_dilation(near, iterations=14)
+    found = np.zeros(grid.shape, bool)
+    places = 0
+    for cells in (frontier, surface):
+        cells &= grid.looked < TRIES
+        labels, count = ndimage.label(cells, np.ones((3, 3)))
+        sizes = np.bincount(labels.ravel(), minlength=count + 1)
+        large = sizes >= LEAST_FRONTIER
+        large[0] = False
+        found |= large[labels]
+        places += int(large.sum())
+    return found, places
+
+
+def shown(grid: Grid, pose: Pose2, reach: tuple[float, float]) -> Cells:
+    """Cells that the camera has in view from `pose` between two distances [m], with nothing high in between."""
+    rows, columns = np.nonzero(_disc(grid, pose, reach[1]))
+    cells = grid.points((rows, columns))
+    seen = _sees(grid, np.array([pose[:2]]), cells, reach)[0]
+    bearing = np.arctan2(cells[:, 1] - pose[1], cells[:, 0] - pose[0]) - pose[2]
+    seen &= np.abs(np.mod(bearing + math.pi, 2 * math.pi) - math.pi) < HALF_VIEW
+    found = np.zeros(grid.shape, bool)
+    found[rows[seen], columns[seen]] = True
+    return found
+
+
+def _disc(grid: Grid, pose: Pose2, radius: float) -> Cells:
+    ys = grid.origin[1] + (np.arange(grid.shape[0]) + 0.5) * RESOLUTION - pose[1]
+    xs = grid.origin[0] + (np.arange(grid.shape[1]) + 0.5) * RESOLUTION - pose[0]
+    found: Cells = xs[None, :] ** 2 + ys[:, None] ** 2 <= radius**2
+    return found
+
+
+def _best(grid: Grid, states: NDArray[np.uint8], wanted: Cells, spots: Array, costs: Array, here: Pose2) -> View | None:
+    """The position and heading with the most cells in view for the way there."""
+    rows, columns = np.nonzero(wanted)
+    chosen = np.linspace(0, len(rows) - 1, min(MOST, len(rows))).astype(int)
+    share = len(rows) / len(chosen)
+    rows, columns = rows[chosen], columns[chosen]
+    cells = grid.points((rows, columns))
+    surface = states[rows, columns] == OCCUPIED
+    # Positions from which something may be in view: the others show nothing.
+    near = np.hypot(spots[:, None, 0] - cells[None, :, 0], spots[:, None, 1] - cells[None, :, 1]).min(axis=1)
+    spots, costs = spots[near < FRONTIER_RANGE[1]], costs[near < FRONTIER_RANGE[1]]
+    if len(spots) > MOST:
+        order = np.argsort(costs)[:MOST]
+        spots, costs = spots[order], costs[order]
+    if not len(spots):
+        return None
+    seen = _sees(grid, spots, cells, FRONTIER_RANGE)
+    distance = np.hypot(spots[:, None, 0] - cells[None, :, 0], spots[:, None, 1] - cells[None, :, 1])
+    seen &= ~surface[None, :] | (distance <= SURFACE_RANGE[1])
+    bearing = np.arctan2(cells[None, :, 1] - spots[:, None, 1], cells[None, :, 0] - spots[:, None, 0])
+    best: View | None = None
+    best_score = 0.0
+    for k in range(HEADINGS):
+        heading = 2 * math.pi * k / HEADINGS
+        off = np.abs(np.mod(bearing - heading + math.pi, 2 * math.pi) - math.pi)
+        gains = (seen & (off < HALF_VIEW)).sum(axis=1) * share
+        turn = abs(math.remainder(heading - here[2], 2 * math.pi))
+        # What a place shows beyond some 60 cells is seen on the way as well.
+        scores = np.minimum(gains, 60.0) / (HOME_COST + costs + 0.15 * turn)
+        n = int(np.argmax(scores))
+        if gains[n] >= 2.0 and scores[n] > best_score:
+            best_score = float(scores[n])
+            best = View((float(spots[n, 0]), float(spots[n, 1]), heading), float(gains[n]))
+    return best
+
+
+def _sees(grid: Grid, spots: Array, cells: Array, reach: tuple[float, float]) -> Cells:
+    """Which cells (n, 2) are seen from which spots (k, 2) between two distances, past walls: (k, n)."""
+    blocked = grid.walls
+    dx, dy = cells[None, :, 0] - spots[:, None, 0], cells[None, :, 1] - spots[:, None, 1]
+    distance = np.hypot(dx, dy)
+    found: Cells = (distance >= reach[0]) & (distance <= reach[1])
+    k, n = np.nonzero(found)
+    clear = np.ones(len(k), bool)
+    # Up to two cells before the end: what is looked at may be the wall itself.
+    for share in np.linspace(0.08, 0.94, 18):
+        x, y = spots[k, 0] + dx[k, n] * share, spots[k, 1] + dy[k, n] * share
+        column = np.clip(((x - grid.origin[0]) / RESOLUTION).astype(np.intp), 0, grid.shape[1] - 1)
+        row = np.clip(((y - grid.origin[1]) / RESOLUTION).astype(np.intp), 0, grid.shape[0] - 1)
+        clear &= ~blocked[row, column] | (distance[k, n] * (1.0 - share) < 2 * RESOLUTION)
+    found[k, n] = clear
+    return found
+
+
+def _costs(grid: Grid, free: Cells, here: Pose2) -> Array:
+    """Way [m] from here to every cell over free ones; inf where there is none."""
+    cost = np.full(grid.shape, np.inf)
+    labels, _ = ndimage.label(free, np.ones((3, 3)))
+    rows, columns = np.nonzero(free)
+    if not len(rows):
+        return cost
+    cells = grid.points((rows, columns))
+    start = int(np.argmin(np.hypot(cells[:, 0] - here[0], cells[:, 1] - here[1])))
+    own = labels == labels[rows[start], columns[start]]
+    rows, columns = np.nonzero(own)
+    number = np.full(grid.shape, -1)
+    number[rows, columns] = np.arange(len(rows))
+    heads, tails, lengths = [], [], []
+    for dr, dc, length in ((0, 1, 1.0), (1, 0, 1.0), (1, 1, math.sqrt(2)), (1, -1, math.sqrt(2))):
+        other = number[np.minimum(rows + dr, grid.shape[0] - 1), np.clip(columns + dc, 0, grid.shape[1] - 1)]
+        both = other >= 0
+        heads.append(np.nonzero(both)[0])
+        tails.append(other[both])
+        lengths.append(np.full(int(both.sum()), length * RESOLUTION))
+    size = len(rows)
+    graph = csr_matrix((np.concatenate(lengths), (np.concatenate(heads), np.concatenate(tails))), shape=(size, size))
+    cells = grid.points((rows, columns))
+    start = int(np.argmin(np.hypot(cells[:, 0] - here[0], cells[:, 1] - here[1])))
+    cost[rows, columns] = csgraph.dijkstra(graph, directed=False, indices=start)
+    return cost

@@ -1,0 +1,172 @@
+"""Walls out of lidar end points: straight faces, and where two of them are the sides of one wall. Pure.
+
+Homes have walls along two directions at right angles; the faces of these are found in histograms of the points'
+offsets, each to a fraction of the lidar's noise by the mean of the many points on it.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import KDTree
+
+from common.floor_plan import Wall
+from common.geometry import Rectangle
+from services.mapping.scan import Array
+
+NEIGHBOURS, FLAT = 14, 0.85
+"""Points that a direction is fitted to [count], and how much longer than wide they must lie [-]."""
+TURN = math.radians(12)
+"""Turn of a point's own direction against its wall's [rad]; chosen: the noise over some 15 cm of wall."""
+BIN, BAND = 0.01, 0.035
+"""Width of the histogram's bins, and distance from a face of the points that count to it [m]: three times the noise."""
+GAP, SHORTEST = 0.40, 0.30
+"""Gap [m] that ends a face, which is less than a door, and length from which it is one: half a cupboard."""
+END_GAP = 0.12
+"""Gap [m] between two points at the end of a face: what two neighbouring rays leave on a wall some metres away."""
+DENSE = 12
+"""Points for each metre of a face, at least [count]."""
+THICKNESS = (0.04, 0.32)
+"""Distances [m] of two opposite faces that are one wall."""
+UNSEEN = 0.10
+"""Thickness [m] of a wall that is seen from one side only."""
+HEIGHT = 2.4
+"""Of a wall [m]: no sensor looks so high."""
+
+
+class Face(NamedTuple):
+    """A straight piece along direction `axis` (0 or 1) of the home, `offset` along the other one, from `low` to `high`
+    [m]; `side` is +1 where it is seen from beyond its offset, -1 from before it."""
+
+    axis: int
+    offset: float
+    low: float
+    high: float
+    side: int
+
+
+def find_walls(points: Array, eyes: Array, taken: list[Rectangle]) -> list[Wall]:
+    """Walls among lidar end points (n, 2) [map] that were seen from `eyes` (n, 2); none of them on `taken` ground."""
+    free = np.ones(len(points), bool)
+    for r in taken:
+        free &= r.signed_distances(points[:, 0], points[:, 1]) > 0.0
+    points, eyes = points[free], eyes[free]
+    if len(points) < NEIGHBOURS:
+        return []
+    normals = _normals(points)
+    known = ~np.isnan(normals)
+    points, eyes, normals = points[known], eyes[known], normals[known]
+    if not len(points):
+        return []
+    yaw = main_direction(normals)
+    c, s = math.cos(yaw), math.sin(yaw)
+    turn = np.array([[c, -s], [s, c]])
+    faces = _faces(points @ turn, eyes @ turn, normals - yaw)
+    walls = _paired(faces)
+    return [_wall(w, turn) for w in walls]
+
+
+def main_direction(normals: Array) -> float:
+    """The angle in (-45, 45] degrees by which the home is turned, of normals (n,) [rad]."""
+    mean = complex(np.mean(np.exp(4j * normals)))
+    first = math.atan2(mean.imag, mean.real) / 4
+    off = np.mod(normals - first + math.pi / 4, math.pi / 2) - math.pi / 4
+    near = np.abs(off) < math.radians(10)
+    return first + float(np.median(off[near])) if near.any() else first
+
+
+def _normals(points: Array) -> Array:
+    """Direction (n,) [rad] across what each point lies on; nan where that is no line."""
+    _, neighbours = KDTree(points).query(points, NEIGHBOURS)
+    near = points[neighbours]
+    near = near - near.mean(axis=1, keepdims=True)
+    values, vectors = np.linalg.eigh(np.einsum("nki,nkj->nij", near, near))
+    found = np.arctan2(vectors[:, 1, 0], vectors[:, 0, 0])
+    found[values[:, 0] > (1.0 - FLAT) * values[:, 1]] = np.nan
+    return np.asarray(found)
+
+
+def _faces(points: Array, eyes: Array, normals: Array) -> list[Face]:
+    """Faces in the home's own frame; a face along axis 0 has its normal along axis 1."""
+    found: list[Face] = []
+    for axis in (0, 1):
+        across = 1 - axis
+        angle = normals - across * math.pi / 2
+        mine = np.abs(np.mod(angle + math.pi / 2, math.pi) - math.pi / 2) < TURN
+        side = np.where(eyes[:, across] > points[:, across], 1, -1)
+        for sign in (1, -1):
+            on = mine & (side == sign)
+            faces = _faces_along(points[on, axis], points[on, across], axis, sign)
+            found += [_extended(f, points[:, axis], points[:, across]) for f in faces]
+    return found
+
+
+def _faces_along(along: Array, across: Array, axis: int, sign: int) -> list[Face]:
+    found: list[Face] = []
+    left: NDArray[np.bool_] = np.ones(len(along), bool)
+    while left.sum() > DENSE * SHORTEST:
+        edges = np.arange(across[left].min() - BIN, across[left].max() + 3 * BIN, BIN)
+        count = np.convolve(np.histogram(across[left], edges)[0], np.ones(4), "same")
+        if count.max() < DENSE * SHORTEST:
+            break
+        middle = float(edges[int(np.argmax(count))])
+        on = left & (np.abs(across - middle) < BAND)
+        middle = float(np.median(across[on]))
+        on = left & (np.abs(across - middle) < BAND)
+        if not on.any():
+            break
+        left &= ~on
+        order = np.argsort(along[on])
+        a, b = along[on][order], across[on][order]
+        for run in np.split(np.arange(len(a)), np.nonzero(np.diff(a) > GAP)[0] + 1):
+            low, high = float(a[run[0]]), float(a[run[-1]])
+            if high - low >= SHORTEST and len(run) >= DENSE * (high - low):
+                # Each piece at its own offset: two cupboards in a row need not stand in one line.
+                found.append(Face(axis, float(np.mean(b[run])), low, high, sign))
+    return found
+
+
+def _extended(face: Face, along: Array, across: Array) -> Face:
+    """The face up to its ends, where corners leave points without a direction."""
+    a = np.sort(along[np.abs(across - face.offset) < BAND])
+    low, high = np.searchsorted(a, face.low), np.searchsorted(a, face.high, "right") - 1
+    while low > 0 and a[low] - a[low - 1] < END_GAP:
+        low -= 1
+    while high < len(a) - 1 and a[high + 1] - a[high] < END_GAP:
+        high += 1
+    return face._replace(low=float(a[low]), high=float(a[high]))
+
+
+def _paired(faces: list[Face]) -> list[tuple[Face, float]]:
+    """Each wall as the face in its middle, and its thickness; a face without another side is its wall's front."""
+    found: list[tuple[Face, float]] = []
+    done: set[int] = set()
+    for i, f in enumerate(faces):
+        if f.side != 1:
+            continue
+        for j, g in enumerate(faces):
+            if j in done or g.axis != f.axis or g.side != -1:
+                continue
+            thick, overlap = f.offset - g.offset, min(f.high, g.high) - max(f.low, g.low)
+            if THICKNESS[0] < thick < THICKNESS[1] and overlap > 0.5 * min(f.high - f.low, g.high - g.low):
+                low, high = min(f.low, g.low), max(f.high, g.high)
+                found.append((Face(f.axis, (f.offset + g.offset) / 2, low, high, 0), thick))
+                done |= {j}
+                done.add(-1 - i)
+    for i, f in enumerate(faces):
+        if i not in done and -1 - i not in done:
+            found.append((f._replace(offset=f.offset - f.side * UNSEEN / 2), UNSEEN))
+    return found
+
+
+def _wall(found: tuple[Face, float], turn: Array) -> Wall:
+    """A wall of the floor plan, whose ends are half a thickness before what its footprint reaches."""
+    face, thickness = found
+    inset = min(thickness / 2, (face.high - face.low) / 2 - 0.01)
+    ends = []
+    for along in (face.low + inset, face.high - inset):
+        own = np.array((along, face.offset) if face.axis == 0 else (face.offset, along))
+        x, y = (turn @ own).tolist()
+        ends.append((round(x, 4), round(y, 4)))
+    return Wall(start=ends[0], end=ends[1], thickness=round(thickness, 4), height=HEIGHT)
