@@ -68,7 +68,8 @@ class ObjectSource:
         if goal.object is not None:
             seen = next((o for o in self.objects() if o.label == goal.object.label), None)
             if seen is not None and seen.seen_at >= since and _close(seen.position, goal.object.position, SHIFTED):
-                return seen
+                # What it was asked for as says better what it is than its looks.
+                return structs.replace(seen, kind=goal.object.kind or seen.kind)
             return self._described(goal.object)
         found = match_object(wanted, self.objects(), self._household) if wanted else self.objects()
         near = []

@@ -16,6 +16,7 @@ from services.brain.mission.mission import Failure
 from services.brain.steps.leaf import Leaf, SendGoal
 from services.brain.steps.motion import Navigate
 from services.brain.world import viewpoint_search
+from services.brain.world.placement import kind_meant
 from services.brain.world.standing_poses import standing_pose
 
 
@@ -169,12 +170,14 @@ def label_of(ctx: Context, item: str) -> str:
 
 
 def object_ref(ctx: Context, item: str) -> m.ObjectRef | None:
-    """What perception said about the item, for manipulation."""
+    """What perception said about the item, for manipulation; what nobody listed is of the kind that was asked for."""
     pose = ctx.mission.search.found.get(item)
     if pose is None:
         return None
     fields = {k: getattr(pose, k) for k in ("label", "position", "orientation", "size", "frame", "tilt")}
-    return msgspec.convert(fields, m.ObjectRef)
+    listed = ctx.io.household.thing(pose.label)
+    kind = listed.kind if listed else kind_meant(item, ctx.io.household)
+    return msgspec.convert({**fields, "kind": kind}, m.ObjectRef)
 
 
 def object_in_map(ctx: Context, label: str) -> m.ObjectRef | None:

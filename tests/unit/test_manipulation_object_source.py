@@ -1,0 +1,54 @@
+"""Which object a goal means, and of what kind it is taken to be."""
+
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from common.config import config_dir
+from common.household import load_household, load_words, mapped
+from common.messages import ManipulationGoal, ObjectPose, ObjectRef, WorldObject, WorldObjects
+from services.brain.steps.find import object_ref
+from services.manipulation.object_source import ObjectSource
+
+LISTED = load_household("apartment")
+UNLISTED = mapped(LISTED, load_words(config_dir()))
+AT = (4.0, -3.0, 0.8)
+SEEN = WorldObject(label="red toy", kind="toy", colour="red", position=AT, size=(0.07, 0.07, 0.1), seen_at=5.0)
+
+
+def source() -> ObjectSource:
+    found = ObjectSource(UNLISTED)
+    found.update(WorldObjects(t=5.0, objects=[SEEN]))
+    return found
+
+
+@pytest.mark.parametrize("since", [4.0, 9.0])
+def test_what_an_object_was_asked_for_as_is_its_kind(since: float) -> None:
+    goal = ManipulationGoal(goal="grab", object=ObjectRef(label="red toy", position=AT, kind="mug"))
+    found = source().resolve(goal, "", (0.0, 0.0, 0.0), since)
+    assert found is not None
+    assert found.kind == "mug"
+
+
+@pytest.mark.parametrize("since", [4.0, 9.0])
+def test_without_that_it_is_what_it_looks_like(since: float) -> None:
+    goal = ManipulationGoal(goal="grab", object=ObjectRef(label="red toy", position=AT))
+    found = source().resolve(goal, "", (0.0, 0.0, 0.0), since)
+    assert found is not None
+    assert found.kind == "toy"
+
+
+def asked(item: str, label: str, household: Any) -> str:
+    pose = ObjectPose(query_id="q", found=True, label=label, position=AT)
+    search = SimpleNamespace(found={item: pose})
+    ctx: Any = SimpleNamespace(mission=SimpleNamespace(search=search), io=SimpleNamespace(household=household))
+    ref = object_ref(ctx, item)
+    assert ref is not None
+    return ref.kind
+
+
+def test_the_brain_tells_what_it_was_asked_for() -> None:
+    assert asked("red mug", "red toy", UNLISTED) == "mug"
+    assert asked("red cup", "red mug", LISTED) == "mug"
+    assert asked("something red", "red toy", UNLISTED) == ""
