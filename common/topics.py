@@ -111,7 +111,7 @@ MANIPULATION_GOAL = _goal(
 MANIPULATION_STATUS = _event(
     "brain/manipulation_status", m.ManipulationStatus, by="manipulation", to="brain perception dashboard", text="status"
 )
-BRAIN_STATE = _event("brain/state", m.BrainState, by="brain", to="dashboard")
+BRAIN_STATE = _event("brain/state", m.BrainState, by="brain", to="manipulation dashboard")
 BRAIN_TREE = _event("brain/tree", m.TreeSnapshot, by="brain", to="dashboard")
 
 SPEECH_STATUS = _event("speech/status", m.SpeechStatus, by="speech", to="brain dashboard")
@@ -153,6 +153,7 @@ BASE_TARGET = _goal("base/target_pose", m.BaseTarget, by="navigation", to="sim",
 GOAL_REACHED = _event("base/goal_reached", m.GoalReached, by="sim", to="navigation")
 CMD_VEL = _stream("base/cmd_vel", m.CmdVel, by="navigation ros2 foxglove dashboard", to="sim", rate=20.0, binary=False)
 ARM_COMMAND = _stream("arm/command", m.ArmCommand, by="manipulation", to="sim dashboard", rate=50.0)
+HAND_VELOCITY = _stream("hand/velocity", m.HandVelocity, by="dashboard", to="manipulation", rate=20.0, binary=False)
 GRIPPER_COMMAND = _goal("gripper_command", m.GripperCommand, by="brain manipulation", to="sim", latched=False)
 JOINT_STATES = _stream(
     "joint_states",
@@ -211,10 +212,18 @@ CLOCKS = (SIM_CLOCK, *SLOWER_CLOCKS.values())
 LOCKSTEP_ACK = _row("sim/ack", m.LockstepAck, f"{EACH} {ANYONE}", "sim", binary=True, recover=False)
 
 CAMERA_REQUEST = _goal(
-    "camera/request", m.CameraRequest, by="perception mapping dashboard ros2 foxglove *", to="camera", latched=False
+    "camera/request",
+    m.CameraRequest,
+    by="perception mapping manipulation dashboard ros2 foxglove *",
+    to="camera",
+    latched=False,
 )
-HEAD_RGBD = _stream("camera/head/rgbd", m.Rgbd, by="camera", to="perception mapping dashboard", rate=10.0, bulk=True)
-WRIST_RGBD = _stream("camera/wrist/rgbd", m.Rgbd, by="camera", to="perception dashboard", rate=10.0, bulk=True)
+HEAD_RGBD = _stream(
+    "camera/head/rgbd", m.Rgbd, by="camera", to="perception mapping manipulation dashboard", rate=10.0, bulk=True
+)
+WRIST_RGBD = _stream(
+    "camera/wrist/rgbd", m.Rgbd, by="camera", to="perception manipulation dashboard", rate=10.0, bulk=True
+)
 
 PAGE_STATUS = _event("page/status", m.PageStatus, by="dashboard")
 

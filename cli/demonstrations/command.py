@@ -14,12 +14,11 @@ from cli.link import Link
 from common import messages as m
 from common import topics
 from common.bus import codec, delivery
+from common.demonstration import PICTURE_SIZE
 from common.process import StopSignal
 from common.time.clock import monotonic
 from common.topics import Topic
 
-PICTURE_SIZE = (320, 240)
-"""Width and height [pixels]."""
 RENEW = 2.0
 """Time [s] after which a picture that did not come is asked for again."""
 FOLLOWED: tuple[Topic[Any], ...] = (

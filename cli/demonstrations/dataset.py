@@ -18,10 +18,11 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 from PIL import Image
 
-from cli.demonstrations.sampler import ACTION, STATE, Episode, Picture
+from cli.demonstrations.sampler import Episode, Picture
 from cli.demonstrations.statistics import Statistics, merged, of_pictures, of_values
 from cli.errors import CliError
 from common.atomic_file import replace
+from common.demonstration import ACTION, STATE
 
 VERSION = "v3.0"
 CHUNK = 1000

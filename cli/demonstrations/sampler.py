@@ -5,14 +5,9 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from common import messages as m
-from common.grip import GRIPPER
+from common.demonstration import STATE
 from common.robot import ARM
 
-BASE = ("base_x", "base_y", "base_yaw")
-STATE = (*BASE, *ARM, GRIPPER)
-"""Names of `observation.state`: the base's pose by its wheels [m, m, rad], joints [rad], the gripper's width [m]."""
-ACTION = ("base_vx", "base_vy", "base_omega", *ARM, "gripper_closed")
-"""Names of `action`: velocity in the robot's frame [m/s, m/s, rad/s], joint targets [rad], 0 open to 1 closed."""
 FRESH = 0.25
 """Age [s] from which a command counts no more: the silence after which the robot holds."""
 ROUNDING = 1e-6

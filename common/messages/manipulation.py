@@ -35,6 +35,18 @@ class ManipulationStatus(Message):
     stance: Vec3 | None = None
 
 
+class HandVelocity(Message):
+    """The hand led by a person: `linear` [m/s] and `angular` [rad/s], base frame; 0.25 s of silence means stop.
+
+    `fingers`: "open" or "close" from now on, "" as they are. `home`: to the carry pose instead, as long as it is sent.
+    """
+
+    linear: Vec3 = (0.0, 0.0, 0.0)
+    angular: Vec3 = (0.0, 0.0, 0.0)
+    fingers: Literal["", "open", "close"] = ""
+    home: bool = False
+
+
 class GraspCandidate(Message):
     """Pose of the pinch point (z: approach, y: across the fingers) and width there [m], in frame map."""
 

@@ -13,6 +13,7 @@ from common.runtime import StartError
 from services.dashboard.background_requests import BackgroundRequests
 from services.dashboard.commands import Commands
 from services.dashboard.config import DashboardConfig
+from services.dashboard.hand import HandTeleoperation
 from services.dashboard.panels import markup
 from services.dashboard.panels.cameras import Cameras
 from services.dashboard.panels.history_buffers import HealthRecords, Transcript, TreeReasons
@@ -62,6 +63,7 @@ class DashboardService:
         )
         self._commands = Commands(io, self._transcript)
         self._teleoperation = Teleoperation(io)
+        self._hand = HandTeleoperation(io)
         self._plots = Plots(self.panels)
         self._mjcf = ""
         self._drawn: Job[Drawing] | None = None
@@ -84,6 +86,7 @@ class DashboardService:
         self._receive(now)
         self._handle_events(now)
         self._teleoperation.step(now)
+        self._hand.step(now)
         self._redraw_model(now)
         watched = self.web.watched
         self._requests.step(now, watched)
@@ -157,6 +160,8 @@ class DashboardService:
     def _handle_action(self, words: Words, now: float) -> None:
         if words.do == "drive":
             self._teleoperation.hold(words.text, now)
+        elif words.do == "hand":
+            self._hand.hold(words.text, now)
         elif words.do == "restart":
             self._requests.restart(words.text)
         else:

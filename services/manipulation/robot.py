@@ -17,6 +17,7 @@ from services.manipulation.grasped_object import GraspedObject
 from services.manipulation.motion_planner import PlanError, Planner
 from services.manipulation.object_source import ObjectSource
 from services.manipulation.planning_scene import obstacles
+from services.manipulation.servo import Servo
 from services.manipulation.touch import MET, Guard
 from services.manipulation.trajectory import timed
 
@@ -51,6 +52,7 @@ class Robot:
         self.grasped: GraspedObject | None = None
         self.contacts = ContactLog()
         self.planner: Planner | None = None
+        self.servo: Servo | None = None
         self._command: Array | None = None
         self._late = 0
 
@@ -64,19 +66,20 @@ class Robot:
         start = self._command if self._command is not None else self.joints
         points = [start, *path] if np.abs(start - path[0]).max() > 1e-3 else list(path)
         for q in timed(points, speed, self.config.joint_acceleration, DT):
-            self._stream(q)
+            self.stream(q)
             yield
             self._check_blocked(q)
             self._check_touched(guard)
         for _ in range(round(self.config.settle / DT)):
-            self._stream(points[-1])
+            self.stream(points[-1])
             yield
             self._check_touched(guard)
             if np.abs(self.joints - points[-1]).max() < 0.01:
                 break
         self._command = None
 
-    def _stream(self, q: Array) -> None:
+    def stream(self, q: Array) -> None:
+        """One set-point (7,) [rad] for the next 20 ms."""
         self._command = q
         self.io.publish(topics.ARM_COMMAND, m.ArmCommand(position=q.tolist(), period=DT, t=self.now))
 
@@ -96,7 +99,7 @@ class Robot:
     def _check_touched(self, guard: Guard | None) -> None:
         code, force = guard.feel(self.joints, self.torques) if guard is not None else ("", 0.0)
         if code:
-            self._stream(self.joints)
+            self.stream(self.joints)
             self.forget_command()
             raise Failure(code, f"{force:.0f} N on the hand")
 

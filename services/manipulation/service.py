@@ -8,15 +8,20 @@ import numpy as np
 from common import messages as m
 from common import topics
 from common.bus.port import Io, Job
+from common.gateway import refusal
 from common.geometry import Pose2
 from common.goal_inbox import GoalInbox
 from common.grip import Grip
+from common.runtime import StartError
 from services.manipulation import place_executor, recovery
 from services.manipulation.config import ManipulationConfig
 from services.manipulation.grasp_store import GraspStore
+from services.manipulation.led_hand import LedHand
 from services.manipulation.motion_planner import Planner
 from services.manipulation.neighbours import grab_with_room
 from services.manipulation.object_source import ObjectSource
+from services.manipulation.policy import PolicyError, load_policy
+from services.manipulation.policy_executor import grab_by_policy
 from services.manipulation.robot import Failure, Robot, Steps, T, go_home
 
 ARM = tuple(f"joint_{i}" for i in range(1, 8))
@@ -32,9 +37,14 @@ class ManipulationService:
     HZ = 50
     CONFIG = ManipulationConfig
     READS, WRITES = topics.subscribed(NAME), topics.published(NAME)
+    ON_DEMAND = (topics.HEAD_RGBD, topics.WRIST_RGBD)  # for a policy, while it plays
 
     def __init__(self, config: ManipulationConfig, io: Io) -> None:
         self._config, self._io = config, io
+        try:
+            self._policy = load_policy(config.policy) if config.policy else None
+        except PolicyError as error:
+            raise StartError(f"manipulation.policy: {error}") from None
         self._source = ObjectSource(io.household)
         self._robot = Robot(config, io, self._source)
         self._store = GraspStore(io.state_dir, lambda why: io.log.warning("not kept what is in the hand", reason=why))
@@ -45,6 +55,7 @@ class ManipulationService:
         self._inbox: GoalInbox[m.ManipulationGoal, m.ManipulationStatus] = GoalInbox(
             io, (topics.MANIPULATION_GOAL,), self._take, self._repeat, self._preempted
         )
+        self._led = LedHand(self._robot)
         self._looked_for = ""
         self._indices: tuple[list[str], list[int], int] | None = None
         self._waiting_since: float | None = None
@@ -60,10 +71,14 @@ class ManipulationService:
             if verb == "find":
                 self._looked_for = item.strip()
         if io.take_all(topics.ROBOT_STOP):
+            self._led.stop()
             self._end(Failure("STOPPED", "robot/stop"))
         self._inbox.receive()
+        if self._steps is None and self._led.left_out and refusal(io.latest(topics.BRAIN_STATE)):
+            self._fold()
         if self._steps is not None:
             self._advance(now)
+        self._led.step(self._mjcf, self._steps is not None)
         if self._indices is not None:
             self._store.keep(robot.grasped, robot.grip.width)
 
@@ -115,6 +130,11 @@ class ManipulationService:
         odometry = self._io.latest(topics.ODOMETRY)
         return (odometry.x, odometry.y, odometry.theta) if odometry else self._robot.base
 
+    @property
+    def _mjcf(self) -> str:
+        """The robot's description, "" before it has come."""
+        return self._description.mjcf if self._description is not None else ""
+
     # --- goals
     def _repeat(self, goal: m.ManipulationGoal, answer: m.ManipulationStatus | None) -> None:
         self._io.publish(topics.MANIPULATION_STATUS, answer or self._status)
@@ -140,6 +160,13 @@ class ManipulationService:
         robot.phase, robot.grasped = "start", robot.grasped if robot.grip.holds() else None
         robot.forget_command()
         self._publish("executing", "start")
+
+    def _fold(self) -> None:
+        """A mission begins while the arm is where a person has led it: back to the carry pose with it."""
+        self._led.left_out = False
+        self._goal = m.ManipulationGoal(goal="home", id=self._io.new_id(self.NAME))
+        self._waiting_since = self._robot.now
+        self._steps = self._with_planner(go_home(self._robot))
 
     def _sequence(self, verb: str, rest: str) -> Steps[str] | None:
         robot = self._robot
@@ -167,6 +194,9 @@ class ManipulationService:
             if not label or not wanted or label == wanted or goal.attempt > 1:
                 return (yield from self._with_planner(recovery.retract_grasped(robot, goal.object)))
             raise Failure("HAND_FULL", f"the {label} is in the gripper")
+        if self._policy is not None:
+            played = grab_by_policy(robot, self._policy, goal, self._looked_for, lambda: self._mjcf)
+            return (yield from self._with_planner(played))
         return (yield from self._with_planner(grab_with_room(robot, goal, self._looked_for)))
 
     def _release(self) -> Steps[str]:

@@ -126,6 +126,67 @@ def visitor(browser: Any, link: Link) -> Iterator[Visitor]:
         opened.page.close()
 
 
+def test_the_hand_is_led_as_long_as_a_key_a_button_or_a_stick_is_held(browser: Any) -> None:
+    """Without a robot, as for the base: dead-man switch of keys, touch and gamepad, and the stop before all of them."""
+    web = Web(DashboardConfig(port=0))
+    told: list[Words] = []
+
+    def until(do: str, text: str) -> None:
+        while not told or (told[-1].do, told[-1].text) != (do, text):
+            event = web.inbox.get(timeout=60)
+            if isinstance(event, Words):
+                told.append(event)
+
+    rest = "0.00 0.00 0.00 0.00 0.00 0.00"
+    try:
+        window = Visitor(browser, web.url)
+        page = window.page
+        window.wait("document.getElementById('link').textContent !== 'connecting'")
+        page.keyboard.press("w")
+        page.locator("#drive").click()
+        page.locator("#hand").click()
+        assert page.locator("#pad").is_hidden() and web.inbox.empty(), "one of the two has the keys"
+        page.keyboard.down("w")
+        until("hand", "1.00 0.00 0.00 0.00 0.00 0.00")
+        page.keyboard.down("r")
+        until("hand", "1.00 0.00 1.00 0.00 0.00 0.00")
+        page.keyboard.press("Space")
+        until("stop", "")
+        page.keyboard.up("w")
+        page.keyboard.up("r")
+        until("hand", rest)
+        page.keyboard.press("c")
+        until("hand", f"{rest} close")
+        until("hand", rest)
+        home = page.locator("[data-hand='home']")
+        home.dispatch_event("pointerdown")
+        until("hand", "home")
+        home.dispatch_event("pointerup")
+        until("hand", rest)
+        page.locator("[data-hand='0 0 -1 0 0 0']").dispatch_event("pointerdown")
+        until("hand", "0.00 0.00 -1.00 0.00 0.00 0.00")
+        page.evaluate("window.dispatchEvent(new Event('blur'))")
+        until("hand", rest)
+        # A gamepad's sticks count only while a shoulder button is held.
+        page.evaluate(
+            "window.pads = [{ axes: [0, -0.5, 0, 1], buttons: Array.from({ length: 8 }, () => ({ pressed: false })) }];"
+            "navigator.getGamepads = () => window.pads"
+        )
+        page.wait_for_timeout(200)
+        assert web.inbox.empty()
+        page.evaluate("window.pads[0].buttons[5].pressed = true")
+        until("hand", "0.50 0.00 -1.00 0.00 0.00 0.00")
+        page.evaluate("window.pads[0].buttons[5].pressed = false")
+        until("hand", rest)
+        page.locator("#hand").click()
+        page.keyboard.down("w")
+        page.wait_for_timeout(200)
+        assert web.inbox.empty() and all(w.do in ("hand", "stop") for w in told) and window.errors == []
+        page.close()
+    finally:
+        web.close()
+
+
 def test_the_base_is_driven_as_long_as_a_key_or_a_button_is_held(browser: Any) -> None:
     """Without a robot: what comes out of the page's server while a key is down, and after; nothing before "Drive"."""
     web = Web(DashboardConfig(port=0))

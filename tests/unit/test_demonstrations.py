@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from cli.demonstrations.sampler import ACTION, STATE, Episode, Frame, Picture, Sampler
+from cli.demonstrations.sampler import Episode, Frame, Picture, Sampler
 from cli.errors import CliError
 from common import messages as m
+from common.demonstration import ACTION, STATE
 
 pq = pytest.importorskip("pyarrow.parquet")
 from cli.demonstrations.dataset import Dataset  # noqa: E402

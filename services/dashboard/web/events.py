@@ -9,9 +9,10 @@ from numpy.typing import NDArray
 
 
 class Words(msgspec.Struct, frozen=True):
-    """What a visitor did: `do` is stop, resume, go on, say, name, yes, no, restart or drive.
+    """What a visitor did: `do` is stop, resume, go on, say, name, yes, no, restart, drive or hand.
 
-    `text` goes with say, name, restart and drive: "forward left turn", each from -1 to 1.
+    `text` goes with say, name, restart, drive ("forward left turn", each from -1 to 1) and hand
+    (`HandTeleoperation.hold`).
     """
 
     do: str

@@ -153,4 +153,5 @@ window.addEventListener("pointerdown", () => { speaker = speaker || new AudioCon
 
 setUpTape(act);
 setUpDrive(act);
+setUpHand(act);
 connect();
