@@ -17,18 +17,18 @@ from common.messages import Sighting
 from common.naming import normalise
 from common.viewpoints import Viewpoints
 
-HALF_LIFE = 14 * 86400.0
+HALF_LIFE = 30 * 86400.0
 """Time [s] after which a visit counts half; chosen: habits of a household change over weeks."""
 STAYS = 86400.0
 """Time [s] after which it is half as likely that a thing is still where it was seen last; chosen: a day."""
-LAST = 0.5
+LAST = 0.25
 """Share of the place where a thing was seen just now, beside where it usually is; chosen: a search begins because it
 was not found there, or because somebody came by."""
 OF_ITS_KIND = 2.0
 """Visits that others of its kind count as, for a thing [count]; chosen: two own sightings weigh as much."""
 UNSEEN = 3.0
 """Visits that room and rules count as, for a kind [count]; chosen."""
-BELONGS = 4.0
+BELONGS = 2.0
 """How much likelier a thing is on a surface where its kind belongs, per area [-]; chosen."""
 LEAST = 0.15
 """Least likelihood of a point, of the mean one [-]: what nobody expects is looked at late, not never."""
