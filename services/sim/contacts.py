@@ -19,6 +19,9 @@ from services.sim.obstacles import PREFIX
 
 GAP = 0.1
 """Time [s] without contact after which the same pair begins another touch: bouncing ends within some 50 ms."""
+KEPT = 1000
+"""Touches that stay in the log [count]; chosen: far more than a mission has. Whoever judges has each as it is
+published, and the log is part of every checkpoint."""
 PATTERNS = 4096
 """Sets of touching geoms that are remembered as read; a mission has some hundred."""
 
@@ -124,6 +127,8 @@ class Contacts:
                 touch = m.Touch(id=next(self._ids), part=part, thing=thing, kind=kind, first=now, last=now)
                 self._current[pair] = touch
                 self._touches.append(touch)
+                if len(self._touches) > 2 * KEPT:
+                    del self._touches[:-KEPT]
             touch.last, touch.seconds = now, touch.seconds + span
             touch.force, touch.impulse = max(touch.force, force), touch.impulse + force * span
             touch.depth = max(touch.depth, depth)
@@ -149,7 +154,7 @@ class Contacts:
 
     @property
     def touches(self) -> list[m.Touch]:
-        """All since the world was laid out, oldest first."""
+        """The newest since the world was laid out, KEPT of them at least if there were so many, oldest first."""
         return self._touches
 
 

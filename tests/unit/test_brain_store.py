@@ -15,6 +15,7 @@ import pytest
 from common.bus.memory import MemoryBus, MemoryIo
 from common.household import load_household
 from services.brain.config import BrainConfig
+from services.brain.journal import sqlite
 from services.brain.journal.open import open_journal
 from services.brain.journal.records import ENTRIES_KEPT, Checkpoint, Entry, Journal, MemoryJournal, PathNode
 from services.brain.journal.sqlite import MIGRATIONS, SqliteJournal
@@ -90,6 +91,22 @@ def test_every_process_has_its_number(path: Path) -> None:
         boots.append(journal.boot)
         journal.close()
     assert boots == [1, 2, 3]
+
+
+def test_a_long_life_does_not_grow_the_file(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    kept = (sqlite.TRIM[0].replace("5000", "5"), sqlite.TRIM[1])
+    monkeypatch.setattr(sqlite, "TRIM", kept)
+    monkeypatch.setattr(sqlite, "TRIMMED_EVERY", 10)
+    journal = opened(path)
+    for n in range(20):
+        mission = Mission(id=f"m-{n}", command="bring me the red mug")
+        journal.begin(mission)
+        journal.note(mission.id, Entry(float(n), "NAVIGATING", "on the way"))
+        journal.end(mission, "delivered", "", float(n))
+        assert journal.save(Checkpoint(mission, GripperState()))
+    with sqlite3.connect(path) as db:
+        assert [row[0] for row in db.execute("select id from missions")] == [f"m-{n}" for n in range(15, 20)]
+        assert db.execute("select count(*) from entries").fetchone() == (5,)
 
 
 def test_a_timeline_is_bounded(path: Path) -> None:

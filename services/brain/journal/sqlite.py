@@ -16,6 +16,8 @@ from services.brain.journal.schema import BEGIN, CHECKPOINT, END, ENTRY, FIELDS,
 from services.brain.mission.mission import Mission, Outcome
 
 KEY = "journal"
+TRIMMED_EVERY = 100
+"""Missions after which old ones are dropped from the file [count]; chosen: two percent of those that are kept."""
 WAITING_KEPT = 5000
 """Statements kept while the disk refuses (chosen: ten long missions)."""
 _Op = tuple[str, tuple[Any, ...]]
@@ -42,6 +44,7 @@ class SqliteJournal:
         self.path, self.errors, self.boot = path, 0, 0
         self._io, self._clock, self._migrations = io, clock, migrations
         self._memory = MemoryJournal(clock)
+        self._ended = 0
         self._waiting: deque[_Op] = deque(maxlen=WAITING_KEPT)
         self._db: sqlite3.Connection | None = None
         try:
@@ -76,6 +79,9 @@ class SqliteJournal:
         failure = mission.ended_by
         why = failure.stage, failure.code, failure.spoken
         self._waiting.append((END, (mission.command, outcome, reason, t, mission.goals, *why, mission.id)))
+        self._ended += 1
+        if self._ended % TRIMMED_EVERY == 0:
+            self._waiting.extend((statement, ()) for statement in TRIM)
 
     def save(self, checkpoint: Checkpoint) -> bool:
         checkpoint.date = self._clock()

@@ -11,6 +11,8 @@ from services.speech.recognise.grammar import Grammar, State
 
 BOS, EOS = 1, 2
 """Numbers of the tokens that begin and end a sentence."""
+STATES = 20_000
+"""States of the grammar whose next tokens are kept [count]; chosen: some tens of MB, and hundreds of sentences."""
 _PUNCTUATION = set('.,?!;:"-')
 
 
@@ -53,6 +55,8 @@ class TokenTrie:
     def allowed(self, state: State) -> tuple[NDArray[np.int64], list[State]]:
         """Token numbers that continue a sentence from `state`, and the state after each."""
         if state not in self._allowed:
+            if len(self._allowed) >= STATES:
+                self._allowed.clear()
             numbers: list[int] = []
             states: list[State] = []
             self._collect(self._trie, state, numbers, states)

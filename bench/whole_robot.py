@@ -1,0 +1,75 @@
+"""A robot of processes that can be killed one by one or, as by a power cut, all at once."""
+
+import argparse
+import os
+import signal
+import uuid
+from pathlib import Path
+
+import psutil  # type: ignore[import-untyped]
+
+from cli.plan import Plan
+from cli.ports import free_port
+from cli.supervision import Supervision
+from cli.up import bring_up
+from common.plan_file import to_toml
+from common.scene import Scene
+from evaluation.unknown import nothing_listed
+
+
+class Robot:
+    """The processes of the day; they come and go, directory and simulated world stay."""
+
+    def __init__(self, directory: Path, world: Scene, home: Scene, seed: int, speed: str) -> None:
+        self.directory, self.speed, self.seed = directory, speed, seed
+        self.files = {"world": directory / "world.toml", "household": directory / "household.toml"}
+        self.files["world"].write_text(to_toml(world), encoding="utf-8")
+        self.files["household"].write_text(to_toml(nothing_listed(home)), encoding="utf-8")
+        self.supervision = Supervision(directory / "run")
+        self._port, self._namespace, self._sim_run = (
+            free_port(),
+            f"day-{uuid.uuid4().hex[:8]}",
+            f"day-{uuid.uuid4().hex}",
+        )
+        self.connect = ""
+        os.environ["TIDYBOT_STATE_DIR"] = str(directory / "state")
+
+    def up(self) -> None:
+        """Switch everything on; the simulated world goes on where it was."""
+        options = argparse.Namespace(
+            port=self._port, namespace=self._namespace, speed=self.speed, only="", without="dashboard", scene="",
+            seed=self.seed, viewer=False, set=[f"sim.run={self._sim_run}"], keys="off",
+            **{name: str(path) for name, path in self.files.items()},
+        )  # fmt: skip
+        plan = Plan(options)
+        self.connect, self.namespace = plan.connect, plan.namespace
+        bring_up(self.supervision, plan, lambda text: None)
+
+    def pids(self) -> dict[str, int]:
+        return {p.name: p.pid for p in self.supervision.processes() if p.state == "running"}
+
+    def kill(self, name: str) -> None:
+        os.kill(self.pids()[name], signal.SIGKILL)
+
+    def power_cut(self) -> None:
+        """Every process ends at once, unasked."""
+        pids = [*self.pids().values(), self.supervision.pid()]
+        for pid in pids:
+            if pid is not None:
+                os.kill(pid, signal.SIGKILL)
+        if self.supervision.process is not None:
+            self.supervision.process.wait()
+        self.supervision = Supervision(self.supervision.directory)
+        self.supervision.stop()
+
+    def memory(self) -> dict[str, float]:
+        found = {}
+        for name, pid in self.pids().items():
+            try:
+                found[name] = psutil.Process(pid).memory_info().rss / 1e6
+            except psutil.NoSuchProcess:
+                continue
+        return found
+
+    def disk(self) -> float:
+        return sum(p.stat().st_size for p in self.directory.rglob("*") if p.is_file()) / 1e6
