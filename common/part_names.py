@@ -1,5 +1,6 @@
 """Names of rooms and surfaces: which words name them, and what those are called that nobody has named. Pure."""
 
+import re
 from collections import Counter
 from collections.abc import Sequence
 from typing import TypeVar
@@ -66,7 +67,7 @@ def _named_surfaces(plan: FloorPlan) -> tuple[Receptacle, ...]:
             found.append(r)
             continue
         name = next((w for n, w in enumerate(wished) if _tells_apart(n, w, wishes) and w not in taken), "")
-        name = name or _numbered(wished[0], r.kind, taken)
+        name = name or _numbered(wished[0], _noun(r), taken)
         taken.add(name)
         aliases = tuple(a for a in (*r.aliases, r.name) if a != name)
         found.append(msgspec.structs.replace(r, name=name, aliases=aliases))
@@ -74,17 +75,24 @@ def _named_surfaces(plan: FloorPlan) -> tuple[Receptacle, ...]:
 
 
 def _wishes(plan: FloorPlan, r: Receptacle) -> list[str]:
-    """What it could be called, the shortest first."""
+    """What it could be called, the shortest first: `sofa` and `low table` are better words than its kind."""
+    noun = _noun(r)
     room = plan.room_at(r.center[0], r.center[1])
     where = f" in {room.name}" if room and not room.named else f" in the {room.name}" if room else ""
-    return [f"{r.kind}{where}", *([f"{r.colour} {r.kind}{where}"] if r.colour else [])]
+    return [f"{noun}{where}", *([f"{r.colour} {noun}{where}"] if r.colour else [])]
+
+
+def _noun(r: Receptacle) -> str:
+    """Its identifier without a number where that names a surface, else its kind."""
+    word = re.sub(r"[\s_-]*\d+$", "", r.name).replace("_", " ")
+    return word if kind_named(word) == "surface" else r.kind
 
 
 def _tells_apart(n: int, wish: str, wishes: Sequence[Sequence[str]]) -> bool:
     return Counter(w[n] for w in wishes if len(w) > n)[wish] == 1
 
 
-def _numbered(wish: str, kind: str, taken: set[str]) -> str:
+def _numbered(wish: str, noun: str, taken: set[str]) -> str:
     """`table 2 in the kitchen` where `table in the kitchen` would be one of several."""
-    where = wish.removeprefix(kind)
-    return next(name for n in range(1, len(taken) + 2) if (name := f"{kind} {n}{where}") not in taken)
+    where = wish.removeprefix(noun)
+    return next(name for n in range(1, len(taken) + 2) if (name := f"{noun} {n}{where}") not in taken)

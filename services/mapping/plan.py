@@ -173,7 +173,7 @@ def _named(
             Receptacle(
                 name=own, kind=kind, center=(round(outline.x, 3), round(outline.y, 3), round(z, 3)),
                 size=(round(outline.length, 3), round(outline.width, 3)), yaw=round(outline.yaw, 4),
-                depth=round(depth, 3), approach=sides, spawn=not depth,
+                depth=round(depth, 3), approach=sides, spawn=not depth, named=False,
             )
         )  # fmt: skip
 

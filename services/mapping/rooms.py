@@ -39,4 +39,5 @@ def find_rooms(grid: Grid, states: NDArray[np.uint8], reached: Cells) -> list[Ro
         low, high = np.quantile(points, 0.01, axis=0) - RESOLUTION, np.quantile(points, 0.99, axis=0) + RESOLUTION
         away = float(np.hypot(points[:, 0], points[:, 1]).min())
         boxes.append((away, tuple(map(float, low.round(2))), tuple(map(float, high.round(2)))))
-    return [Room(name=f"room {i}", low=low, high=high) for i, (_, low, high) in enumerate(sorted(boxes), 1)]  # type: ignore[arg-type]
+    ordered = enumerate(sorted(boxes), 1)
+    return [Room(name=f"room {i}", low=low, high=high, named=False) for i, (_, low, high) in ordered]  # type: ignore[arg-type]

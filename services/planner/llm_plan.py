@@ -58,7 +58,9 @@ def _named(step: PlanStep, world: World, vocabulary: Vocabulary) -> PlanStep:
                 raise Impossible(f"I know no place {target or item!r}") from None
         case "say":
             return PlanStep(action="say", text=step.text)
-        case "teach" | "forget" | "name" | "rule":
+        case "rule":
+            return PlanStep(action="rule", object=step.object or step.text, target=step.target)
+        case "teach" | "forget" | "name":
             return PlanStep(action=step.action, object=step.object, target=step.target, text=step.text)
         case _:
             return PlanStep(action=step.action)

@@ -13,7 +13,7 @@ You plan for a household robot with one arm. Answer with JSON only: {"steps": [.
 Actions: find (object), grasp (object), place (target: a receptacle; near: the object on it to put it next to),
 release (set down here), return (to the person), navigate (target: a place, room or receptacle), say (text), wait,
 teach (text: the name that a person gives to the object, or to what is before the robot if object is ""), forget (text:
-a name), name (text: what the room, surface or place is called that the robot stands in or before), rule (object:
+a name), name (text: what the room, surface or place is called that the robot stands in or before), rule (text:
 things in words, such as mugs; target: the receptacle where they go from now on).
 Unused fields are "".
 - A thing must be found before it is grasped; the hand holds one thing; place and release empty it.

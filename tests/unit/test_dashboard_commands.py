@@ -16,7 +16,15 @@ from services.dashboard.commands import CHUNK, LONGEST, TRAILING, Commands
 from services.dashboard.panels.history_buffers import Transcript
 from services.dashboard.scene.picking import Picked
 
-WRITES = (topics.VOICE_COMMAND, topics.ROBOT_STOP, topics.ROBOT_RESUME, topics.NAV_GOAL, topics.AUDIO_PCM, topics.TEACH)
+WRITES = (
+    topics.VOICE_COMMAND,
+    topics.ROBOT_STOP,
+    topics.ROBOT_RESUME,
+    topics.NAV_GOAL,
+    topics.AUDIO_PCM,
+    topics.TEACH,
+    topics.HOUSEHOLD_EDIT,
+)
 READY = m.BrainState(state="LISTENING")
 
 
@@ -86,6 +94,19 @@ def test_a_name_and_a_click_on_the_floor_do_nothing(desk: Desk) -> None:
     desk.commands.words("name", "vitamin box", 1.0)
     desk.commands.picked(Picked(point=(1.0, 3.0)), (0.0, 0.0, 0.0), READY, 2.0)
     assert desk.everything() == 0 and "vitamin box" in desk.transcript.lines[-1].text
+
+
+def test_a_name_for_a_part_of_the_home_goes_to_what_was_clicked_on(desk: Desk) -> None:
+    desk.commands.words("name", "writing desk", 1.0)
+    desk.commands.picked(Picked("red mug", hit=(1.0, 2.0, 0.7)), (0.0, 0.0, 0.0), m.BrainState(state="NAVIGATING"), 2.0)
+    (edit,) = desk.sent(topics.HOUSEHOLD_EDIT)
+    assert (edit.do, edit.name, edit.position) == ("name", "writing desk", (1.0, 2.0, 0.7)) and edit.id
+    assert desk.sent(topics.TEACH) == [] and desk.commands.naming == ""
+    desk.commands.edited(m.EditResult(goal_id=edit.id, ok=True, name="writing desk", kind="surface"), 3.0)
+    desk.commands.edited(m.EditResult(goal_id="b", ok=False, name="mug", detail="mug means a kind"), 3.0)
+    assert [line.text for line in desk.transcript.lines][-2:] == [
+        "the name writing desk is kept", "mug was not kept: mug means a kind",
+    ]  # fmt: skip
 
 
 def test_what_came_of_a_name_is_told(desk: Desk) -> None:

@@ -53,6 +53,12 @@ def test_colours_tell_tables_apart_before_numbers_do() -> None:
     assert [r.name for r in named.receptacles] == ["white table in room 1", "brown table in room 1"]
 
 
+def test_an_identifier_that_is_a_word_for_a_surface_is_a_better_word_than_the_kind() -> None:
+    found = (table("low table 2", 1.0), table("sofa", 2.0, kind="counter"), table("s-9", 4.0))
+    named = with_part_names(msgspec.structs.replace(HOME, receptacles=found, delivery=""))
+    assert [r.name for r in named.receptacles] == ["low table in room 1", "sofa in room 1", "table in room 2"]
+
+
 def test_a_room_that_is_named_names_its_surfaces() -> None:
     edits = m.HouseholdEdits(names=[m.PlaceName(name="kitchen", kind="room", part="r-2")])
     named = edited(HOME, edits)
