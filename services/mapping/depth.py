@@ -107,7 +107,7 @@ class CameraModel:
         above = seen & (height > ABOVE + noise) & (height < HIGHEST)
         low = seen & (height < 0.6) & (depth < 2.0)
         level = _level(points, seen & (depth < LEVEL_FAR) & (height > LOW) & (height < HIGH))
-        return Picture(points[floor][::2, :2], points[above][::2], _merged(points[level]), _merged(points[low]))
+        return Picture(*(_merged(p) for p in (points[floor][:, :2], points[above], points[level], points[low])))
 
 
 def _level(points: Array, seen: NDArray[np.bool_]) -> NDArray[np.bool_]:
@@ -167,10 +167,11 @@ def _rising(points: Array, seen: NDArray[np.bool_]) -> Array:
 
 
 def _merged(points: Array) -> Array:
-    """One point (k, 3), the mean, for each cell of PATCH that holds some of the points (n, 3)."""
+    """One point (k, d), the mean, for each cell of PATCH that holds some of the points (n, d)."""
+    width = points.shape[1]
     if not len(points):
-        return np.empty((0, 3))
+        return np.empty((0, width))
     cells = np.floor(points / PATCH).astype(np.int64)
     _, where, count = np.unique(cells, axis=0, return_inverse=True, return_counts=True)
     where = where.ravel()
-    return np.stack([np.bincount(where, points[:, k]) / count for k in range(3)], axis=1)
+    return np.stack([np.bincount(where, points[:, k]) / count for k in range(width)], axis=1)

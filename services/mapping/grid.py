@@ -26,6 +26,9 @@ narrower than a cell."""
 TOP_PICTURES, TOP_SHARE = 2, 0.15
 """Pictures that must show something above a cell, and their share of those that show its floor; chosen: one is noise,
 and who walked through stood there in few."""
+OLD = 4
+"""Scans or pictures that what an earlier run has seen of a cell counts for, at most [count]: a door that was shut then
+is open after a look or two."""
 BODY = 0.45
 """Radius around a keyframe that counts as floor that was seen [m]: the footprint, and the strip before it that the
 camera does not see."""
@@ -66,6 +69,13 @@ class Grid:
         inside = (row >= 0) & (row < self.shape[0]) & (column >= 0) & (column < self.shape[1])
         return inside, (row[inside], column[inside])
 
+    def at(self, points: Array, layer: Cells) -> Cells:
+        """The layer's value at each point (n, 2 or 3) [map]; False off the grid."""
+        found: Cells = np.zeros(len(points), bool)
+        inside, cells = self._inside(points)
+        found[inside] = layer[cells]
+        return found
+
     def points(self, cells: Index) -> Array:
         """Middles (n, 2) [map] of cells."""
         return np.stack([cells[1] + 0.5, cells[0] + 0.5], axis=1) * RESOLUTION + self.origin
@@ -89,6 +99,13 @@ class Grid:
         mark[self.cells(ends)] = True
         self.hits += mark
         self._stand(pose)
+
+    def fade(self) -> None:
+        """What was seen until now is of an earlier day: it counts, but what is seen from now on counts more."""
+        for one, other in ((self.hits, self.passed), (self.tops, self.floor)):
+            share = np.minimum(1.0, OLD / np.maximum(one + other, 1))
+            one[:], other[:] = np.ceil(one * share), np.ceil(other * share)
+        self.looked[:] = 0
 
     def _stand(self, pose: Pose2) -> None:
         reach = int(BODY / RESOLUTION) + 1

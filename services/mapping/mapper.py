@@ -1,5 +1,6 @@
 """The map in the making: trajectory, grid and what pictures showed, each picture held by its keyframe."""
 
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -36,6 +37,8 @@ class Mapper:
 
     def add_scan(self, scan: Scan, odometry: Pose2) -> NDArray[np.uint8]:
         """Take a keyframe; the states of all cells."""
+        if self.trajectory.runs[-1] == len(self.trajectory) > 0:
+            self.grid.fade()
         bent = self.trajectory.add(scan, odometry)
         if bent:
             self.draw()
@@ -75,10 +78,15 @@ class Mapper:
         """The grid anew, from where all keyframes are now."""
         self.grid.clear()
         self.grid.near[:], self.grid.looked[:] = False, 0
-        for scan, pose in zip(self.trajectory.scans, self.trajectory.poses, strict=True):
-            self.grid.add_scan(scan, pose)
-        for shot in self.shots:
-            self._draw(shot)
+        runs = [*self.trajectory.runs, len(self.trajectory)]
+        for first, end in pairwise(runs):
+            if first:
+                self.grid.fade()
+            for scan, pose in zip(self.trajectory.scans[first:end], self.trajectory.poses[first:end], strict=True):
+                self.grid.add_scan(scan, pose)
+            for shot in self.shots:
+                if first <= shot.keyframe < end:
+                    self._draw(shot)
 
     def survey(self, here: Pose2, barred: list[tuple[float, float]]) -> Survey:
         """What is left to be seen, and from where next."""

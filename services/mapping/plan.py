@@ -20,6 +20,8 @@ from services.mapping.walls import find_walls
 SIDES = ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0))
 LATERAL = (0.0, 0.15, -0.15, 0.3, -0.3)
 """Steps aside [m] from the middle of a side at which it may be reached."""
+BACK = (0.02, 0.08)
+"""Steps back [m] from the least distance to an edge at which it may be reached: the cell at the edge is not free."""
 SOLID = 0.35
 """Share of a surface's outline at which the lidar meets a body below it, from which on it stands on no legs."""
 BED_SIDE, BED_HIGHEST, SOFA_HIGHEST, LOW_TABLE = 1.1, 0.70, 0.50, 0.52
@@ -94,12 +96,11 @@ def approaches(outline: Rectangle, grid: Grid, reached: Cells, rim: float = 0.0)
     found = []
     for ax, ay in SIDES:
         half = outline.length / 2 if ax else outline.width / 2
-        off = half + rim + EDGE_DISTANCE + 0.02
-        spots = np.array([outline.to_map(ax * off - ay * s, ay * off + ax * s) for s in LATERAL])
         width = outline.width if ax else outline.length
-        inside = np.abs(np.array(LATERAL)) <= max(width / 2 - 0.1, 0.01)
-        rows, columns = grid.cells(spots[inside])
-        if reached[rows, columns].any():
+        aside = [s for s in LATERAL if abs(s) <= max(width / 2 - 0.1, 0.01)]
+        offs = [half + rim + EDGE_DISTANCE + back for back in BACK]
+        spots = np.array([outline.to_map(ax * off - ay * s, ay * off + ax * s) for off in offs for s in aside])
+        if grid.at(spots, reached).any():
             found.append((ax, ay))
     return tuple(found)
 

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 import msgspec
 import numpy as np
 from numpy.typing import NDArray
+from scipy import ndimage
 
 from common.atomic_file import replace
 from common.geometry import compose
@@ -54,7 +55,9 @@ def save(directory: Path, name: str, mapper: Mapper) -> Saved:
     part = states[top : int(rows.max(initial=0)) + 1, left : int(columns.max(initial=0)) + 1]
     x, y = mapper.grid.origin
     write_map(directory, GridMap(part, RESOLUTION, (x + left * RESOLUTION, y + top * RESOLUTION)), MAP)
-    _write(directory / GRAPH, _json(graph_rows(mapper.trajectory.graph, mapper.trajectory.scans)))
+    _write(
+        directory / GRAPH, _json(graph_rows(mapper.trajectory.graph, mapper.trajectory.scans, mapper.trajectory.runs))
+    )
     _write(directory / SURFACES, _json(surface_rows(household)))
     _write(directory / HOUSEHOLD, to_toml(household).encode())
     with (directory / EVIDENCE).open("wb") as file:
@@ -68,8 +71,13 @@ def made_household(name: str, mapper: Mapper, states: NDArray[np.uint8]) -> Hous
     trajectory = mapper.trajectory
     points = [placed(s.points, p) for s, p in zip(trajectory.scans, trajectory.poses, strict=True)]
     eyes = [np.tile(p[:2], (len(s.points), 1)) for s, p in zip(trajectory.scans, trajectory.poses, strict=True)]
-    lidar = Lidar(np.concatenate(points), np.concatenate(eyes))
-    return floor_plan(name, lidar, mapper.grid, states, _seen(mapper, "level"), _seen(mapper, "low"))
+    ends, seen_from = np.concatenate(points), np.concatenate(eyes)
+    # What has gone since, and who walked through, is on no occupied cell any more.
+    grid = mapper.grid
+    there = grid.at(ends, ndimage.binary_dilation(grid.walls))
+    taken = ndimage.binary_dilation(grid.walls | grid.covered)
+    level, low = (rows[grid.at(rows, taken)] for rows in (_seen(mapper, "level"), _seen(mapper, "low")))
+    return floor_plan(name, Lidar(ends[there], seen_from[there]), grid, states, level, low)
 
 
 def _seen(mapper: Mapper, layer: str) -> Array:
@@ -82,14 +90,14 @@ def _seen(mapper: Mapper, layer: str) -> Array:
     return np.concatenate(parts)
 
 
-def graph_rows(graph: PoseGraph, scans: list[Scan]) -> dict[str, Any]:
-    """The pose graph for others: nodes and edges, poses as x, y, theta [m, m, rad] in frame map."""
+def graph_rows(graph: PoseGraph, scans: list[Scan], runs: list[int]) -> dict[str, Any]:
+    """The pose graph for others: nodes with which runs began, nodes, edges; poses as x, y, theta [m, m, rad]."""
     nodes = [
         {"id": n, "t": round(s.t, 3), "pose": [round(v, 5) for v in p]}
         for n, (p, s) in enumerate(zip(graph.poses, scans, strict=True))
     ]
     edges = [{"from": e.start, "to": e.end, "pose": [round(v, 5) for v in e.pose], "kind": e.kind} for e in graph.edges]
-    return {"frame": "map", "nodes": nodes, "edges": edges}
+    return {"frame": "map", "runs": runs, "nodes": nodes, "edges": edges}
 
 
 def resume(directory: Path, mapper: Mapper) -> None:
@@ -109,7 +117,7 @@ def resume(directory: Path, mapper: Mapper) -> None:
         raise SaveError(f"{directory}: no map to go on with: {error}") from None
     if len(scans) != len(graph.poses):
         raise SaveError(f"{directory}: {len(scans)} scans for {len(graph.poses)} keyframes")
-    mapper.trajectory.resume(graph, scans)
+    mapper.trajectory.resume(graph, scans, [int(n) for n in rows["runs"]])
     mapper.shots = shots
     mapper.draw()
 

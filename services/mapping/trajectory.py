@@ -33,6 +33,8 @@ class Trajectory:
         self.scans: list[Scan] = []
         self._odometry: list[Pose2] = []
         self.loops = 0
+        self.runs = [0]
+        """Keyframes with which runs of the robot began."""
         self.odom: Pose2 = (0.0, 0.0, 0.0)
         self._tried = 0
 
@@ -43,10 +45,11 @@ class Trajectory:
     def poses(self) -> list[Pose2]:
         return self.graph.poses
 
-    def resume(self, graph: PoseGraph, scans: list[Scan]) -> None:
-        """Go on with an older map; the robot stands where it began."""
+    def resume(self, graph: PoseGraph, scans: list[Scan], runs: list[int]) -> None:
+        """Go on with an older map, made in `runs`; the robot stands where it began."""
         self.graph, self.scans = graph, list(scans)
         self._odometry = [(math.nan,) * 3] * len(scans)
+        self.runs = [*runs, len(scans)]
 
     def due(self, odometry: Pose2, distance: float, turn: float) -> bool:
         """The wheels have gone so far since the last keyframe that the next is due."""
