@@ -11,7 +11,7 @@ from common.messages import WorldObject
 from services.manipulation.arm_model import Array
 from services.manipulation.grasp_executor import grab
 from services.manipulation.motion_planner import Planner
-from services.manipulation.place_executor import free_spots, place
+from services.manipulation.place_executor import free_spots, place, place_back
 from services.manipulation.plan_grab import Way, feasible
 from services.manipulation.planning_scene import obstacles, target_of
 from services.manipulation.robot import Failure, Robot, Steps, planner_of
@@ -74,7 +74,7 @@ def _put_elsewhere(robot: Robot, goal: m.ManipulationGoal, label: str, failure: 
     """Grab a neighbour and put it on a free spot.
 
     Raises:
-        Failure: the one that it was to mend, when the neighbour cannot be grasped either.
+        Failure: the one that it was to mend, when the neighbour cannot be grasped either, or had to be put back.
     """
     found = next(o for o in robot.source.objects() if o.label == label)
     robot.io.log.info("making room", object=label)
@@ -84,7 +84,15 @@ def _put_elsewhere(robot: Robot, goal: m.ManipulationGoal, label: str, failure: 
     except Failure as other:
         robot.io.log.info("stays in the way", object=label, code=other.code, detail=other.detail)
         raise failure from None
-    yield from place(robot, found.on, away_from=_label(goal))
+    try:
+        yield from place(robot, found.on, away_from=_label(goal))
+    except Failure as other:
+        if robot.grasped is None:
+            raise
+        # The next grab needs an empty hand: from where it was taken it can be reached.
+        robot.io.log.info("put back", object=label, code=other.code, detail=other.detail)
+        yield from place_back(robot, found)
+        raise failure from None
 
 
 def _spare(robot: Robot, goal: m.ManipulationGoal, found: WorldObject) -> bool:

@@ -6,7 +6,7 @@ import numpy as np
 from msgspec.structs import replace
 
 from common.floor_plan import Receptacle
-from common.geometry import compose
+from common.geometry import compose, to_frame
 from common.messages import ObjectRef, WorldObject
 from services.manipulation.arm_model import Obstacle
 from services.manipulation.grasp import approach_rotation
@@ -71,6 +71,23 @@ def place(robot: Robot, where: str, beside: ObjectRef | None = None, away_from: 
             continue
         return (yield from _execute_place(robot, plan, held, name, surface))
     raise last
+
+
+def place_back(robot: Robot, found: WorldObject) -> Steps[str]:
+    """Set the held object down where, and as, it was found.
+
+    Raises:
+        Failure: as `place`; UNREACHABLE also where nothing is known that it rested on.
+    """
+    held, surface = robot.grasped or _unknown(robot), robot.io.household.receptacle(found.on)
+    if surface is None or surface.depth:
+        raise Failure("UNREACHABLE", f"it is not known what the {held.label} was taken from")
+    robot.phase = "place"
+    held = held.as_found or held
+    spot = to_frame(robot.base, (found.position[0], found.position[1]))
+    around, now, height = _around(robot, held, surface.name), robot.joints.copy(), surface.center[2]
+    plan = yield from robot.work(plan_place, planner_of(robot), held, [spot], height, DROP, around, now)
+    return (yield from _execute_place(robot, plan, held, surface.name, height))
 
 
 def free_spots(

@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+import pytest
 from msgspec.structs import replace
 
 from bench.hand import Bench
@@ -10,7 +11,9 @@ from common import messages as m
 from common import topics
 from common.geometry import yaw_quat
 from common.scene import ObjectSpec, body_name, load_scene
+from services.manipulation import neighbours
 from services.manipulation.config import ManipulationConfig
+from services.manipulation.robot import Failure, Robot, Steps
 
 GREY = (0.5, 0.5, 0.5, 1.0)
 BOX = ObjectSpec(name="thin box", kind="box", colour="grey", size=(0.05, 0.05, 0.12), mass=0.1, rgba=GREY)
@@ -73,3 +76,23 @@ def test_with_room_nothing_is_moved() -> None:
     bench, known = crowd(0.1, POSTS[1:2])
     status = bench.run("grab", "g", reference(known.objects[0]), patience=60.0)
     assert status.status == "done" and "elsewhere" not in status.detail
+
+
+@pytest.mark.slow
+def test_a_neighbour_that_finds_no_place_is_put_back_where_it_stood(monkeypatch: pytest.MonkeyPatch) -> None:
+    def no_room(robot: Robot, where: str, away_from: str = "") -> Steps[str]:
+        raise Failure("UNREACHABLE", "cannot put it there")
+        yield
+
+    monkeypatch.setattr(neighbours, "place", no_room)
+    bench, known = crowd(GAP)
+    before = {name: thing["position"] for name, thing in bench.truth()["objects"].items()}
+    status = bench.run("grab", "g", reference(known.objects[0]), patience=120.0)
+    assert (status.status, status.code) == ("failed", "UNREACHABLE")
+    assert status.blockers
+    bench.rest(0.5)
+    truth = bench.truth()
+    assert truth["holding"] is None, "the next grab finds an empty hand"
+    for name, thing in truth["objects"].items():
+        assert math.dist(thing["position"], before[name]) < 0.02
+        assert abs(thing["quaternion"][1]) + abs(thing["quaternion"][2]) < 0.05, "it stands"
