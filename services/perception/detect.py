@@ -70,14 +70,15 @@ class ClassicalDetector:
         segments = segmentation.segments(view, self._household, self._max_range, robot)
         found: list[Detection] = []
         for segment in segments:
-            known = self._explain(view, segment)
+            single = segmentation.extent(segment) < segmentation.MAX_EXTENT
+            known = self._explain(view, segment) if single else None
             found += [known] if known is not None else self._measured(view, segment, gains)
         return found
 
     def _measured(self, view: View, segment: Segment, gains: Array) -> list[Detection]:
         """The objects of a segment that no object of the household explains as a whole."""
         found = separate.pieces(view, segment)
-        if len(found) == 1:
+        if len(found) == 1 and found[0].segment is segment:
             return [unlisted.describe(view, segment, found[0].shape, gains)]
         return [self._explain(view, p.segment) or unlisted.describe(view, p.segment, p.shape, gains) for p in found]
 

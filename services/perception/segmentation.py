@@ -49,8 +49,8 @@ JOIN = 0.02
 """Gap [m] on the floor plan up to which two segments belong to one object: a rim's two sides, a bottle and its cap."""
 JOINED_EXTENT = 0.17
 """Largest extent [m] on the floor plan of what is joined. Chosen: a bowl and its noise."""
-MAX_EXTENT = 0.30
-"""Extent [m] on the floor plan from which a segment is furniture and no object."""
+MAX_EXTENT, CROWD_EXTENT = 0.30, 0.60
+"""Extents [m] on the floor plan from which a segment is no single object, and from which it is furniture."""
 FAR = 2.3
 """Depth [m] from which its noise makes walls thick."""
 FLOOR_RANGE = 2.2
@@ -178,10 +178,14 @@ def _plane(cloud: Cloud, expected: Surface) -> Array:
 
 
 def _is_thing(segment: Segment) -> bool:
-    """Neither as wide as furniture nor reaching up like a wall."""
-    wide, deep, _ = np.ptp(segment.points, axis=0)
+    """Neither as wide as furniture nor reaching up like a wall; it may be several objects that touch."""
     top = float(segment.points[:, 2].max()) - segment.surface.height
-    return bool(max(wide, deep) < MAX_EXTENT and top < MAX_HEIGHT - 0.01)
+    return extent(segment) < CROWD_EXTENT and top < MAX_HEIGHT - 0.01
+
+
+def extent(segment: Segment) -> float:
+    """The larger extent [m] of a segment on the floor plan."""
+    return float(np.ptp(segment.points[:, :2], axis=0).max())
 
 
 def _cut(mask: Mask, depth: NDArray[np.float32]) -> Mask:

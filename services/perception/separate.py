@@ -16,7 +16,7 @@ from common.geometry import Array
 from services.perception.measurement import Measurement
 from services.perception.primitives import quantile
 from services.perception.segment import Segment
-from services.perception.segmentation import MIN_PIXELS
+from services.perception.segmentation import MAX_EXTENT, MIN_PIXELS, extent
 from services.perception.unlisted import measured, noise_of
 from services.perception.view import View
 
@@ -27,7 +27,8 @@ BRIGHT = 0.30
 """Difference of brightness, by that of both, from which a colour ends: black beside white has no other."""
 LEAST_SHARE = 0.08
 """Share of the segment's pixels that a piece has at least."""
-MOST_PIECES = 4
+MOST_PIECES, IN_A_CROWD = 4, 9
+"""Patches of colour beyond which they are print on one object, and beyond which they are no crowd of objects."""
 GAIN, NOISE_GAIN = 0.0008, 0.3
 """How much less [m], plus that of the noise, the mean distance from the shapes must be for pieces to be objects."""
 FINE, FINE_NOISE = 0.0006, 0.45
@@ -52,8 +53,18 @@ class Piece:
 
 
 def pieces(view: View, segment: Segment) -> list[Piece]:
-    """The objects that a segment consists of, at least one."""
+    """The objects that a segment consists of; none where it is too wide for one and nothing parts it."""
+    if extent(segment) >= MAX_EXTENT:
+        return [p for part in _crowd(view, segment) for p in pieces(view, part)]
     return _pieces(view, Piece(segment, measured(view, segment)), SPLITS)
+
+
+def _crowd(view: View, segment: Segment) -> list[Segment]:
+    """The parts of a segment that is too wide for one object, by their colours, else by the valley between them."""
+    cut = by_colour(view, segment, IN_A_CROWD)
+    if cut is None:
+        cut = by_valley(segment)
+    return _cut(segment, cut) if cut is not None else []
 
 
 def _pieces(view: View, whole: Piece, again: int) -> list[Piece]:
@@ -105,8 +116,8 @@ def _cut(segment: Segment, cut: NDArray[np.intp]) -> list[Segment]:
     return found
 
 
-def by_colour(view: View, segment: Segment) -> NDArray[np.intp] | None:
-    """Number (n,) of the patch of one colour that each pixel belongs to; None if there is only one."""
+def by_colour(view: View, segment: Segment, most: int = MOST_PIECES) -> NDArray[np.intp] | None:
+    """Number (n,) of the patch of one colour that each pixel belongs to; None if there is only one, or over `most`."""
     top, left = int(segment.rows.min()), int(segment.columns.min())
     shape = int(segment.rows.max()) - top + 1, int(segment.columns.max()) - left + 1
     window = slice(top, top + shape[0]), slice(left, left + shape[1])
@@ -126,7 +137,7 @@ def by_colour(view: View, segment: Segment) -> NDArray[np.intp] | None:
     counts = np.bincount(labels[mask], minlength=1)
     counts[0] = 0
     large = np.flatnonzero(counts >= max(MIN_PIXELS, LEAST_SHARE * len(segment.rows)))
-    if not 2 <= len(large) <= MOST_PIECES:
+    if not 2 <= len(large) <= most:
         return None
     # What belongs to no large patch joins the nearest in the picture.
     numbered = np.full(shape, -1)

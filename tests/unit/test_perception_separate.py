@@ -76,3 +76,16 @@ def test_one_that_hides_a_part_of_another_is_told_apart() -> None:
 
 def test_what_is_printed_on_a_can_does_not_cut_it() -> None:
     assert middles([(1.0, 0.0, 0.04, 0.13, RED)], band=True) == [pytest.approx((1.0, 0.0), abs=0.006)]
+
+
+def test_a_crowd_wider_than_any_object_is_its_objects() -> None:
+    blue = (30, 60, 180)
+    cans = [(1.0, -0.13, 0.045, 0.10, RED), (1.02, 0.0, 0.082, 0.07, GREEN), (1.0, 0.14, 0.045, 0.12, blue)]
+    found = middles(cans)
+    assert len(found) == 3
+    for x, y, *_ in cans:
+        assert min(math.dist(at, (x, y)) for at in found) < 0.02
+
+
+def test_what_is_wider_than_any_object_and_of_one_piece_is_none() -> None:
+    assert not middles([(1.1, 0.0, 0.17, 0.10, RED)])
