@@ -88,3 +88,45 @@ def test_what_fits_badly_is_asked_about_after_the_search_only() -> None:
     reply(bench, "no")
     bench.until(lambda: bench.state.last is not None)
     assert bench.state.last is not None and bench.state.last.code == "NOT_FOUND"
+
+
+def before(*objects: m.WorldObject) -> Bench:
+    """In the fetch pipeline navigation stands before what it took for the red mug."""
+    bench = Bench()
+    bench.send(topics.WORLD_OBJECTS, m.WorldObjects(t=0.0, objects=list(objects)))
+    bench.hear("bring me the red mug")
+    bench.drove(bench.nav(1))
+    return bench
+
+
+def looking(kinds: dict[str, float], name: str = "object-3") -> m.WorldObject:
+    kind = next(iter(kinds))
+    return m.WorldObject(
+        label=f"red {kind}", kind=kind, colour="red", position=GREEN, on="desk", id=name, measured=True, seen_at=1e6,
+        kinds=list(kinds), colours=["red"], kind_shares=kinds, colour_shares={"red": 1.0},
+    )  # fmt: skip
+
+
+def test_the_fetch_pipeline_asks_before_it_grabs() -> None:
+    bench = before(looking({"can": 0.8, "mug": 0.2}))
+    bench.until(lambda: bench.texts(SPEECH)[-1] == "say I see a red can on the desk. Is that the red mug you mean?")
+    assert bench.state.about == GREEN and not bench.count(topics.MANIPULATION_GOAL)
+    reply(bench, "yes")
+    grab = bench.manip(1)
+    assert grab.object is not None and grab.object.label == "red can"
+
+
+def test_the_fetch_pipeline_leaves_alone_what_is_another() -> None:
+    bench = before(looking({"can": 0.8, "mug": 0.2}))
+    bench.until(lambda: "Is that the red mug" in bench.texts(SPEECH)[-1])
+    reply(bench, "no")
+    bench.until(lambda: bench.state.last is not None)
+    assert bench.state.last is not None and bench.state.last.outcome == "failed"
+    assert not bench.count(topics.MANIPULATION_GOAL)
+
+
+def test_the_fetch_pipeline_asks_nothing_about_what_plainly_fits_or_is_listed() -> None:
+    listed = m.WorldObject(label="red mug", kind="mug", colour="red", position=RED, id="object-1", seen_at=1e6)
+    for objects in ([looking({"mug": 0.8, "can": 0.2})], [looking({"can": 0.8, "mug": 0.2}), listed], []):
+        bench = before(*objects)
+        assert bench.manip(1).goal == "grab" and bench.texts(SPEECH) == ["listen"]

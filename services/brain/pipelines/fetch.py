@@ -5,12 +5,15 @@ from py_trees.common import Status
 
 from common import messages as m
 from common import topics
+from common.likeness import LEAST
 from services.brain.language.intent import parse
 from services.brain.mission.context import Context
 from services.brain.mission.mission import Failure, gripper_holds
 from services.brain.pipelines.shared import drive_home, report_failure
 from services.brain.recoveries.regrasp import grab_failed
+from services.brain.steps.ask import AskQuestion
 from services.brain.steps.find import reference_to
+from services.brain.steps.identify import ChooseCandidate, HearIdentity, survey, whether
 from services.brain.steps.leaf import Call, Leaf, Settle
 from services.brain.steps.motion import Grab, Listen, Navigate, Ready, Release, Wait
 from services.brain.steps.verify import is_misplaced, verify_placement
@@ -73,8 +76,19 @@ def acquire(ctx: Context) -> Behaviour:
         state="NAVIGATING",
     )
     grab = Grab("grab", ctx, lambda: ctx.mission.task.label, lambda: object_ref(ctx))
-    once = Sequence("approach_and_grab", find, Settle("settle", ctx), grab, Settle("settle", ctx))
+    asked = Condition("identify", identify(ctx), lambda: survey(ctx, ctx.mission.task.item))
+    once = Sequence("approach_and_grab", find, Settle("settle", ctx), asked, grab, Settle("settle", ctx))
     return Retry("acquire", ctx, once, ctx.config.grab_retries, again=lambda: grab_failed(ctx))
+
+
+def identify(ctx: Context) -> Behaviour:
+    """Ask whether what was found is what is meant; FAILURE unless the person says yes."""
+    return Sequence(
+        "ask_whether",
+        ChooseCandidate("choose_candidate", ctx, LEAST),
+        AskQuestion("whether", ctx, lambda: whether(ctx, ctx.mission.task.item)),
+        HearIdentity("hear_identity", ctx, lambda: ctx.mission.task.item),
+    )
 
 
 def bring_home(ctx: Context) -> Behaviour:
@@ -139,7 +153,11 @@ def forget_release(ctx: Context) -> None:
 
 def object_ref(ctx: Context) -> m.ObjectRef | None:
     """Which object to grab, as last reported; none if the robot itself has moved it since."""
-    known = ctx.known_object(ctx.mission.task.label)
+    task, world = ctx.mission.task, ctx.io.latest(topics.WORLD_OBJECTS)
+    meant = ctx.mission.search.confirmed.get(task.item)
+    known = ctx.known_object(task.label)
+    if meant is not None and world is not None:
+        known = next((o for o in world.objects if o.id == meant), None)
     if known is None or known.seen_at <= ctx.gripper.put_down.get(known.label, -1.0):
         return None
     return reference_to(known)

@@ -19,7 +19,7 @@ def ask_whether(ctx: Context, task: Task, least: float = LIKELY) -> Behaviour:
         "ask_whether",
         ChooseCandidate("choose_candidate", ctx, least),
         AskQuestion("whether", ctx, lambda: whether(ctx, task.item)),
-        HearIdentity("hear_identity", ctx, task.item),
+        HearIdentity("hear_identity", ctx, lambda: task.item),
         LocateObject("look_for_the_one_meant", ctx, task.item),
     )
     return Retry("identify", ctx, ask, MOST_ASKED - 1, again=lambda: was_another(ctx) and may_be(ctx, least))

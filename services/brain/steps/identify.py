@@ -1,8 +1,12 @@
 """Leaves that ask the person whether an object that may be the one asked for is."""
 
+from collections.abc import Callable
+
 from py_trees.common import Status
 
 from common import messages as m
+from common import topics
+from common.likeness import LEAST, PLAIN, likeness
 from common.naming import unnumbered
 from services.brain.language.dialogue import reply
 from services.brain.mission.channel import Result
@@ -34,9 +38,13 @@ class ChooseCandidate(Leaf):
 class HearIdentity(HearAnswer):
     """Whether the object asked about is the one that is meant; SUCCESS once the person has said so."""
 
-    def __init__(self, node_id: str, ctx: Context, item: str) -> None:
+    def __init__(self, node_id: str, ctx: Context, item: Callable[[], str]) -> None:
         super().__init__(node_id, ctx)
-        self._item = item
+        self._named = item
+
+    @property
+    def _item(self) -> str:
+        return self._named()
 
     def step(self) -> str:
         return whether(self.ctx, self._item)
@@ -76,6 +84,21 @@ def candidate(ctx: Context, least: float) -> m.PossibleObject | None:
     if search.unanswered or len(search.rejected) >= MOST_ASKED:
         return None
     return next((p for p in search.perhaps if p.likeness >= least and p.id not in search.rejected), None)
+
+
+def survey(ctx: Context, item: str) -> bool:
+    """Whether what navigation has found by its words is none that is listed, and does not plainly fit them either."""
+    world, search = ctx.io.latest(topics.WORLD_OBJECTS), ctx.mission.search
+    known = ctx.known_object(item)
+    if world is None or (known is not None and not known.measured) or item in search.confirmed:
+        return False
+    rated = [(likeness(item, o, ctx.io.household), o) for o in world.objects if o.measured and not o.held]
+    search.perhaps = [
+        m.PossibleObject(id=o.id, label=o.label, likeness=fit, position=o.position, on=o.on)
+        for fit, o in sorted(rated, key=lambda row: (-row[0], row[1].label))
+        if fit >= LEAST
+    ]
+    return bool(search.perhaps) and search.perhaps[0].likeness < PLAIN
 
 
 def whether(ctx: Context, item: str) -> str:
