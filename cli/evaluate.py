@@ -10,7 +10,7 @@ from cli.programs import become
 
 SUITES = (
     "seed", "fetch", "tidy", "faults", "dialogue", "chaos", "commands", "spoken", "sizes", "clutter", "lying",
-    "labels", "things", "homes", "aged", "lost",
+    "labels", "things", "taught", "homes", "aged", "lost",
 )  # fmt: skip
 EXAMPLES = """examples:
   tidybot eval --suite seed                                  the five scenarios of the VLA contract, with their logs

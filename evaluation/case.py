@@ -65,6 +65,20 @@ class TimedFault(msgspec.Struct, frozen=True):
     after: float = 0.0
 
 
+class Showing(msgspec.Struct, frozen=True, kw_only=True):
+    """A thing is shown to the robot and given a `name` before the case, in a `scene` of its own laid out by `seed`.
+
+    With a `sentence`, or without one by a click on the map `at` (x, y, z) [m].
+    """
+
+    scene: Scene
+    household: Household
+    name: str
+    seed: int
+    sentence: str = ""
+    at: tuple[float, float, float] | None = None
+
+
 class Case(msgspec.Struct, kw_only=True):
     """`lines` are what the person says, `thing` what they really want, `expect` what physics should show.
 
@@ -72,6 +86,7 @@ class Case(msgspec.Struct, kw_only=True):
     at the end. Without a `scene` (the world) it is the shipped flat; without a `household` the robot is
     told all of it. `honest`: a spoken, published failure counts as well as a
     delivery.
+    `showing`: what the robot was shown before.
     `replaced`: classes that stand in for services, see `Stack`. `wake`: a command that opens a dialogue starts with
     the wake word. `silent`: the person answers no question.
     """
@@ -99,6 +114,7 @@ class Case(msgspec.Struct, kw_only=True):
     replaced: tuple[str, ...] = ()
     scene: Scene | None = None
     household: Household | None = None
+    showing: Showing | None = None
     limit: float = 600.0
 
     @property

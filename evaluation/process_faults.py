@@ -24,6 +24,8 @@ def unavailable(case: Case) -> str:
     """Why the case cannot be run as processes; "" when it can."""
     if any(s.jump for s in case.timed_faults):
         return "a clock jump: robot time is the simulation's count of steps, which no signal can make leap"
+    if case.showing is not None:
+        return "a showing before the case, which is in one process"
     return ""
 
 

@@ -16,6 +16,7 @@ from evaluation.examiner import Examiner, examiner_of
 from evaluation.fault_injection import targets, with_faults
 from evaluation.fault_reports import FaultReport, Reporter, ignore
 from evaluation.picture import last_picture
+from evaluation.showing import show
 from evaluation.stack import Stack
 from evaluation.verdict import judge
 
@@ -77,11 +78,15 @@ def run(case: Case, progress: Progress = lambda t, state: None) -> Result:
     """Run and judge one case. What a service raises ends the case as `crashed`."""
     began = monotonic()
     with tempfile.TemporaryDirectory(prefix="case-") as state_dir:
-        return _run(case, progress, began, Path(state_dir) if case.timed_faults else None)
+        keeps = bool(case.timed_faults or case.showing)
+        return _run(case, progress, began, Path(state_dir) if keeps else None)
 
 
 def _run(case: Case, progress: Progress, began: float, state_dir: Path | None) -> Result:
     reports: list[FaultReport] = []
+    if case.showing is not None and state_dir is not None and (why := show(case.showing, state_dir)):
+        seen = Observed(claimed="failed", reason=why, failed_at="GROUNDING", code="NOT_TAUGHT", ended=True)
+        return judge(case, seen, monotonic() - began)
     try:
         stack = Stack(
             case.scene or "apartment", case.seed, case.settings, household=case.household,

@@ -29,6 +29,7 @@ from evaluation.homes.suite import aged, homes, lost
 from evaluation.physical.fault import Kind as PhysicalKind
 from evaluation.physical.fault import PhysicalFault
 from evaluation.spoken import HERE, MANIFEST, read_corpus, spoken
+from evaluation.taught import taught
 from evaluation.unknown import clutter, labels, lying, scanned, sizes
 from judge.evidence import Want
 from services.brain.config import BrainConfig
@@ -214,7 +215,7 @@ def tidy(seed: int) -> Case:
 SUITES: dict[str, Make] = {
     "fetch": fetch, "seed": named, "tidy": tidy, "faults": faults, "dialogue": dialogue, "chaos": chaos,
     "commands": commands, "spoken": spoken, "sizes": sizes, "clutter": clutter, "lying": lying,
-    "labels": labels, "things": scanned,
+    "labels": labels, "things": scanned, "taught": taught,
     "homes": homes, "aged": aged, "lost": lost,
 }  # fmt: skip
 DEFAULT_SCENARIOS = {
@@ -227,7 +228,7 @@ DEFAULT_SCENARIOS = {
 BARS = {
     "fetch": 0.95, "seed": 1.0, "tidy": 0.9, "faults": 0.9, "dialogue": 1.0, "chaos": 0.95, "commands": 0.9,
     "spoken": 0.8, "world": 0.9, "sizes": 0.95, "clutter": 0.9, "lying": 0.9, "labels": 0.9, "things": 0.85,
-    "homes": 0.95, "aged": 0.9, "lost": 0.9,
+    "taught": 0.9, "homes": 0.95, "aged": 0.9, "lost": 0.9,
 }  # fmt: skip
 """The share of cases that must end as expected: all where every case is a scenario of the contract or a dialogue,
 less where a random scene, voice or fault at a random moment may leave nothing to be done."""

@@ -58,6 +58,21 @@ def test_every_kind_comes_in_turn(suite: str, names: tuple[str, ...]) -> None:
     assert {c.name for c in cases(suite, len(names), 40)} == set(names)
 
 
+def test_what_is_shown_is_asked_for_by_its_name_among_others_that_look_alike() -> None:
+    run = cases("taught", 30, 0)
+    assert {c.expect for c in run} == {"delivered", "reported"} and {not c.showing.sentence for c in run} == {
+        True,
+        False,
+    }
+    for case in run:
+        assert case.showing is not None and case.scene is not None and case.showing.name in case.command
+        (shown,) = [o for o in case.showing.scene.objects if o.position is not None]
+        assert (shown.name in {o.name for o in case.scene.objects}) == (case.expect == "delivered")
+        assert case.scene.lamps != case.showing.scene.lamps
+        alike = [o for o in case.scene.objects if o.name.startswith("look-alike")]
+        assert all(o.rgba == shown.rgba and (o.label, o.pattern) != (shown.label, shown.pattern) for o in alike)
+
+
 def test_fetch_varies() -> None:
     run = cases("fetch", 60, 0)
     assert len({c.thing for c in run}) == len(SCENE.objects)

@@ -8,7 +8,7 @@ from common.bus.memory import MemoryBus, MemoryIo
 from common.household import load_household
 from services.perception.naming.observer import Observer
 from services.perception.naming.reader import Reader
-from services.perception.naming.text import LIKELY, SURE, Line, likeness, merged, printed_words
+from services.perception.naming.text import LIKELY, SURE, Line, likeness, merged, printed_words, traces
 from services.perception.naming.vocabulary import common_words, taken
 from tests.support import eventually
 from tests.unit.painted import Box, label, view_of_boxes
@@ -44,7 +44,17 @@ def test_what_reads_otherwise_is_not_it(asked: str, read: str) -> None:
 
 
 def test_a_word_that_is_half_legible_is_worth_a_nearer_look() -> None:
-    assert likeness(["mustard"], "MUSFARD") >= LIKELY and LIKELY <= likeness(["beans"], "BEAMS") < SURE
+    assert likeness(["mustard"], "MUSFARD") >= LIKELY and LIKELY <= likeness(["corn"], "CORM") < SURE
+
+
+def test_letters_that_small_print_makes_look_alike_are_forgiven_and_no_others() -> None:
+    assert likeness(["water"], "NATER") >= SURE and likeness(["water"], "WATEH") >= SURE
+    assert likeness(["water"], "LATER") < SURE and likeness(["lemon"], "MELON") < LIKELY
+
+
+def test_the_end_of_a_word_beyond_the_edge_of_a_can_is_a_trace_of_it() -> None:
+    assert traces(["tomato", "soup"], "ATO / UP") == 1.0
+    assert traces(["tomato", "soup"], "HONEY") < LIKELY and traces(["tomato"], "") == 0.0
 
 
 def test_only_words_that_name_no_kind_colour_or_place_can_be_print() -> None:

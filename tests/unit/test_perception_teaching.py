@@ -48,7 +48,7 @@ class Shown(Node):
         self, *boxes: Box, state_dir: Path | None = None, settings: Mapping[str, Any] = MappingProxyType({})
     ) -> None:
         ShownBoxes.boxes = list(boxes)
-        config = PerceptionConfig(detector=f"{__name__}:ShownBoxes", **settings)
+        config = PerceptionConfig(detector=f"{__name__}:ShownBoxes", fine_width=1280, fine_height=960, **settings)
         super().__init__(PerceptionService, config, load_household("minimal"), state_dir=state_dir)
         self._taken = 0
         self.sizes: list[tuple[int, int]] = []

@@ -89,10 +89,15 @@ class Planning(msgspec.Struct):
     suggestion: str = ""
 
 
+SIDES = 3
+"""Sides from which an object is looked at from nearer. Chosen: a can shows all of what goes around it in three."""
+
+
 class Search(msgspec.Struct):
     """What looking has shown: `found` objects and the `chosen` one of several `options`, by the plan's name for them.
 
-    `unsure`: labels of objects that may be meant and can be told from nearer only; `inspected`: those that were.
+    `unsure`: labels of objects that may be meant and can be told from nearer, or from another side only; `inspected`:
+    by label, the directions [rad, map] from it to where the robot has looked at it from nearer, at most SIDES.
 
     `visited`: poses (x, y, theta) [m, rad] in map that the robot has looked from. `stances`: by label, the pose from
     which manipulation says that it reaches an object that it did not reach.
@@ -107,7 +112,7 @@ class Search(msgspec.Struct):
     options: list[str] = []
     chosen: dict[str, str] = {}
     unsure: list[str] = []
-    inspected: list[str] = []
+    inspected: dict[str, list[float]] = {}
     stances: dict[str, tuple[float, float, float]] = {}
     perhaps: list[m.PossibleObject] = []
     about: m.PossibleObject | None = None

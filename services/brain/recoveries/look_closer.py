@@ -1,5 +1,7 @@
-"""Recovery: objects that may be the one that is looked for, but cannot be told from here, are looked at from nearer."""
+"""Recovery: objects that may be the one that is looked for, but cannot be told from here, are looked at from nearer,
+and then from other sides."""
 
+import math
 from typing import Any
 
 from py_trees.behaviour import Behaviour
@@ -7,52 +9,67 @@ from py_trees.common import Status
 
 from common import messages as m
 from common import topics
+from common.geometry import Pose2
 from common.topics import Topic
 from services.brain.mission.context import Context
-from services.brain.mission.mission import Failure
+from services.brain.mission.mission import SIDES, Failure
 from services.brain.recoveries.clarify import ask_which, several_match
 from services.brain.recoveries.recovery import Recovery, Task, with_recoveries
 from services.brain.steps.find import LocateObject
 from services.brain.steps.leaf import SendGoal, Settle
 from services.brain.tree.composites import Retry, Sequence
+from services.brain.world.reading_poses import reading_pose
 from services.brain.world.standing_poses import standing_pose
 
-MOST = 6
-"""Objects looked at from nearer, one after the other, for one view (chosen: as many as stand on a table)."""
+MOST = 8
+"""Looks from nearer, one after the other, for one view (chosen: at as many objects as stand on a table, and at some of
+them from another side)."""
 SEVERAL = (Recovery("several_match", several_match, ask_which),)
 
 
 class MoveCloser(SendGoal):
-    """Drives before the first of the objects that may be meant and were not looked at from nearer yet."""
+    """Drives before the first of the objects that may be meant: of those that were looked at from nearer least often.
+
+    One that was looked at is seen from another side.
+    """
 
     def __init__(self, node_id: str, ctx: Context) -> None:
         limit = ctx.config.navigation_timeout
         super().__init__(node_id, ctx, ctx.peers.navigation, state="GROUNDING", timeout=limit)
         self._target: m.WorldObject | None = None
 
+        self._pose: Pose2 | None = None
+
     def initialise(self) -> None:
         super().initialise()
         ctx, search = self.ctx, self.ctx.mission.search
-        known = [o for label in search.unsure if (o := ctx.known_object(label)) is not None]
-        self._target = known[0] if known else None
-        if self._target is not None:
-            # One that cannot be reached is not tried a second time either.
-            search.inspected = [*search.inspected, self._target.label]
-            search.unsure = [label for label in search.unsure if label != self._target.label]
+        self._target = self._pose = None
+        while self._pose is None and search.unsure:
+            label = min(search.unsure, key=lambda name: len(search.inspected.get(name, ())))
+            search.unsure = [other for other in search.unsure if other != label]
+            found, seen_from = ctx.known_object(label), search.inspected.get(label, [])
+            if found is None:
+                continue
+            x, y, _ = found.position
+            plan, here = ctx.io.household, ctx.robot_pose
+            self._pose = reading_pose(plan, (x, y), here, seen_from) if seen_from else standing_pose(plan, (x, y), here)
+            # One that cannot be reached, or has no other side, is not tried again either.
+            angles = [math.atan2(self._pose[1] - y, self._pose[0] - x)] if self._pose else [0.0] * SIDES
+            search.inspected = {**search.inspected, label: [*seen_from, *angles]}
+            self._target = found
         ctx.mission.at = ""
 
     def update(self) -> Status:
-        if self._target is None:
+        if self._pose is None:
             self.feedback_message = "nothing left to look at from nearer"
             self.ctx.record_failure(Failure("GROUNDING", "NOT_FOUND", self.feedback_message, self.spoken()))
             return Status.FAILURE
         return super().update()
 
     def goal(self, goal_id: str) -> tuple[Topic[Any], m.Message]:
-        assert self._target is not None
-        ctx, (x, y, _) = self.ctx, self._target.position
-        pose = standing_pose(ctx.io.household, (x, y), ctx.robot_pose)
-        return topics.NAV_GOAL, m.NavGoal(id=goal_id, x=pose[0], y=pose[1], theta=pose[2])
+        assert self._pose is not None
+        x, y, theta = self._pose
+        return topics.NAV_GOAL, m.NavGoal(id=goal_id, x=x, y=y, theta=theta)
 
     def step(self) -> str:
         return f"look closer at {self._target.label}" if self._target is not None else "look closer"

@@ -12,7 +12,7 @@ from common.geometry import Pose2
 from common.topics import Topic
 from services.brain.mission.channel import Result
 from services.brain.mission.context import Context
-from services.brain.mission.mission import Failure
+from services.brain.mission.mission import SIDES, Failure
 from services.brain.steps.leaf import Leaf, SendGoal
 from services.brain.steps.motion import Navigate
 from services.brain.world import viewpoint_search
@@ -48,7 +48,7 @@ class LocateObject(SendGoal):
         search = ctx.mission.search
         search.options = pose.candidates
         search.perhaps = [p for p in pose.perhaps if p.id not in search.rejected]
-        search.unsure = [label for label in pose.unsure if label not in search.inspected]
+        search.unsure = [label for label in pose.unsure if len(search.inspected.get(label, ())) < SIDES]
         if not pose.found:
             self.feedback_message = pose.detail or "not seen"
             code = "AMBIGUOUS" if pose.candidates else "NOT_FOUND"

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from common.geometry import Array, quat_matrix
 from common.messages import Vec3, WorldObject
+from services.perception.naming.sides import Lens
 from services.perception.view import Mask, View
 
 MARGIN = 0.012
@@ -26,7 +27,8 @@ class Crop:
 
     `size`: full extents [m], the first two in no order, the last along the axis; `distance` [m] from the camera;
     `bearing`: unit vector (3,) from the object to the camera in frame map; `seen`: share of the box's outline that
-    shows the object, 0 to 1; `box`: its left, top, right and bottom [pixels] in the picture.
+    shows the object, 0 to 1; `box`: its left, top, right and bottom [pixels] in the picture. `lens` and `believed`:
+    where the crop was taken from, and of what.
     """
 
     rgb: NDArray[np.uint8]
@@ -37,6 +39,8 @@ class Crop:
     bearing: Array
     seen: float
     box: tuple[int, int, int, int] = (0, 0, 0, 0)
+    lens: Lens | None = None
+    believed: WorldObject | None = None
 
     @property
     def colours(self) -> NDArray[np.uint8]:
@@ -45,9 +49,8 @@ class Crop:
 
     @property
     def pixels_per_metre(self) -> float:
-        """How finely the object is shown: pixels [1/m] along its longest visible side."""
-        rows, columns = np.nonzero(self.mask)
-        return float(max(np.ptp(rows), np.ptp(columns)) + 1) / max(self.size)
+        """How finely what faces the camera is shown [1/m]."""
+        return self.lens.focal[0] / self.distance if self.lens is not None else 0.0
 
 
 def crop_of(view: View, o: WorldObject, robot: Mask | None = None) -> Crop | None:
@@ -84,7 +87,8 @@ def crop_of(view: View, o: WorldObject, robot: Mask | None = None) -> Crop | Non
     return Crop(
         rgb=view.rgb[window].copy(), mask=mask, along=along, size=(a, b, c), distance=distance,
         bearing=away / distance, seen=min(1.0, float(np.count_nonzero(mask)) / max(1.0, 0.6 * float(whole))),
-        box=_box(mask, left, top),
+        box=_box(mask, left, top), believed=o,
+        lens=Lens(view.position, view.rotation, view.focal, (view.middle[0] - left, view.middle[1] - top)),
     )  # fmt: skip
 
 

@@ -23,7 +23,7 @@ from services.perception.naming.memory import NameMemory
 from services.perception.naming.observer import Observer
 from services.perception.naming.recognise import Match, matches
 from services.perception.naming.teaching import Teacher
-from services.perception.naming.text import LIKELY, SURE, likeness, printed_words, shown
+from services.perception.naming.text import LIKELY, SURE, likeness, printed_words, shown, traces
 from services.perception.naming.vocabulary import common_words, plain_words, printable, taken
 from services.perception.view import View
 
@@ -147,6 +147,9 @@ class Naming:
                 sight, score = self._observer.sight(o.id), likeness(words, o.text)
                 if score >= LIKELY or sight is None or not sight.read:
                     found.append((-score, away, o.label))
+                elif not sight.exhausted and (not sight.named or traces(words, o.text) >= LIKELY):
+                    # Its print is on another side, or goes on there.
+                    found.append((1.0 - traces(words, o.text), away, o.label))
         return [label for _, _, label in sorted(found)]
 
     def _printed(self, query: str, common: frozenset[str] | None = None) -> list[str]:

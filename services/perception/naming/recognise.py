@@ -7,11 +7,10 @@ one, the best has it if it is clearly the best, and all have it if none is, so t
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
-from common.naming import normalise
 from services.perception.naming.appearance import nearest
 from services.perception.naming.memory import Taught
 from services.perception.naming.sights import Sight
-from services.perception.naming.text import LIKELY, SURE, Line, likeness
+from services.perception.naming.text import LIKELY, Line, likeness, sure_words
 
 SAME, PERHAPS = 0.25, 0.34
 """Differences of appearance up to which an object is the one that was taught, and up to which it may be (bench.naming).
@@ -20,8 +19,6 @@ CLEAR = 0.06
 """How much more alike the best must be than the second for that to be another object (bench.naming)."""
 READ_SAME, READ_OTHER = -0.06, 0.12
 """What print adds to the difference: words that were read when it was taught, and others in place of them."""
-READABLE = 4
-"""Letters of a word from which its absence tells something."""
 
 
 class Match(NamedTuple):
@@ -42,7 +39,7 @@ def _print_difference(known: Sequence[Line], seen: Sequence[Line]) -> float:
 
     That a word was not read says nothing: it may be on another side.
     """
-    taught, read = _words(known), _words(seen)
+    taught, read = sure_words(known), sure_words(seen)
     if not taught or not read:
         return 0.0
     missing = [w for w in taught if likeness([w], " ".join(read)) < LIKELY]
@@ -50,11 +47,6 @@ def _print_difference(known: Sequence[Line], seen: Sequence[Line]) -> float:
     if missing and others:
         return READ_OTHER
     return READ_SAME if len(missing) < len(taught) else 0.0
-
-
-def _words(lines: Sequence[Line]) -> list[str]:
-    """The words of lines that were read for sure."""
-    return [w for line in lines if line.confidence >= SURE for w in normalise(line.text).split() if len(w) >= READABLE]
 
 
 def matches(names: Mapping[str, Taught], sights: Mapping[str, Sight], bound: Mapping[str, str]) -> dict[str, Match]:

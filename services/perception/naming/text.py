@@ -18,8 +18,15 @@ SHORT = 3
 SURE, LIKELY = 0.85, 0.72
 """Likeness of the words asked for to what was read, from which it is that and from which a nearer look is worth it.
 Chosen: one wrong letter in seven, and one in four (bench.naming)."""
+READABLE = 4
+"""Letters of a word from which its absence tells something."""
 WORST_WORD = 0.7
 """Likeness that each of the words must have: "tomato" to "potato" has .67."""
+ALIKE = ("nwmh", "hrkax", "ocqdg0", "iltj1", "tfyr", "efb", "uvy", "s58b", "prfd", "ceo", "gs6")
+"""Letters that small print makes look alike: "NATER" and "WATEH" were read for "WATER" (bench.naming)."""
+MISTAKEN = 0.65
+"""What one of them in place of another counts, where any other letter counts 1. Chosen: one in five letters is no
+doubt, one in four is."""
 
 
 class Line(NamedTuple):
@@ -43,6 +50,11 @@ def merged(known: Sequence[Line], read: Iterable[Line]) -> list[Line]:
     return sorted(lines, key=lambda line: -line.confidence * len(line.text))[:MAX_LINES]
 
 
+def sure_words(lines: Iterable[Line]) -> list[str]:
+    """The words of lines that were read for sure."""
+    return [w for line in lines if line.confidence >= SURE for w in normalise(line.text).split() if len(w) >= READABLE]
+
+
 def shown(lines: Iterable[Line]) -> str:
     """What was read, for `WorldObject.text`."""
     return " / ".join(line.text for line in lines)
@@ -63,17 +75,41 @@ def likeness(words: Sequence[str], text: str) -> float:
     return sum(f * len(w) for f, w in zip(found, words, strict=True)) / sum(map(len, words))
 
 
+def traces(words: Sequence[str], text: str) -> float:
+    """How much of the words stands in the text, 0 to 1, though others of them, or their ends, do not."""
+    from rapidfuzz import fuzz
+
+    tokens = [t for t in normalise(text).split() if len(t) >= SHORT]
+    parts = [max((fuzz.partial_ratio(t, w) / 100 for t in tokens if len(t) <= len(w)), default=0.0) for w in words]
+    return max(parts, default=0.0)
+
+
 def _word_in(word: str, tokens: Sequence[str], glued: str) -> float:
     """Likeness of a word to the part of the text that is most like it."""
     if len(word) <= SHORT:
         return float(word in tokens)
     from rapidfuzz import fuzz
-    from rapidfuzz.distance import Levenshtein
 
-    best = max(Levenshtein.normalized_similarity(form, token) for token in tokens for form in _forms(word))
+    best = max(_similarity(form, token) for token in tokens for form in _forms(word))
     within = fuzz.partial_ratio(word, glued) / 100 if len(glued) >= len(word) else 0.0
     # Found within other words it may be a chance: "rice" is in "price".
     return float(max(best, within * 0.95))
+
+
+def _similarity(word: str, read: str) -> float:
+    """1 less the edit distance to a word as read, as a share of the longer one; letters that look alike count less."""
+    row = [float(n) for n in range(len(read) + 1)]
+    for n, letter in enumerate(word, 1):
+        before, row[0] = row[0], float(n)
+        for k, other in enumerate(read, 1):
+            before, row[k] = row[k], min(row[k] + 1.0, row[k - 1] + 1.0, before + _mistaken(letter, other))
+    return 1.0 - row[-1] / max(len(word), len(read))
+
+
+def _mistaken(a: str, b: str) -> float:
+    if a == b:
+        return 0.0
+    return MISTAKEN if any(a in letters and b in letters for letters in ALIKE) else 1.0
 
 
 def _forms(word: str) -> tuple[str, ...]:
