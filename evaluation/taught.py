@@ -57,7 +57,7 @@ def taught(seed: int) -> Case:
     stay = tuple(Effect("remains", o.name, o.on) for o in world.objects if o.position is not None)
     return Case(
         suite="taught", seed=seed, name="absent" if absent else item.kind, command=command, lines=(Line(command),),
-        thing=name, wants=() if absent else (Want(thing.name, (plan.delivery,)),), effects=stay, scene=world,
+        thing=thing.name, wants=() if absent else (Want(thing.name, (plan.delivery,)),), effects=stay, scene=world,
         expect="reported" if absent else "delivered", household=nothing_listed(plan), settings=(VLA,), showing=showing,
     )  # fmt: skip
 

@@ -296,7 +296,8 @@ class PerceptionService:
             return result
         phrase = parsed(query.query, household, config.synonyms)
         chosen = self._naming.chosen(query, objects)
-        perhaps = [] if chosen else possible(phrase, looks, household)
+        read = [] if chosen else self._naming.perhaps(query.query, looks)
+        perhaps = [] if chosen else [*read, *possible(phrase, looks, household)]
         return Grounding(chosen, result.reason, perhaps=perhaps)
 
 

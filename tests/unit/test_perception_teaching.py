@@ -13,6 +13,7 @@ from common import topics
 from common.household import Household, load_household
 from services.perception.config import PerceptionConfig
 from services.perception.detect import Detection
+from services.perception.naming.naming import HALF_READ
 from services.perception.naming.reader import installed
 from services.perception.service import PerceptionService
 from services.perception.view import Mask, View
@@ -171,3 +172,11 @@ def test_print_that_is_too_far_away_leads_nearer() -> None:
     node = Shown(Box(2.4, 0.0, TEA))
     answer = node.ask("ginger biscuits")
     assert not answer.found and answer.unsure == ["white box 0"]
+
+
+@pytest.mark.skipif(not installed(), reason="the extra `ocr`")
+def test_what_reads_nearly_like_the_words_is_asked_about_and_nothing_else_is() -> None:
+    node = Shown(Box(0.62, 0.1, label("CORM", ground=(240, 240, 235), ink=(20, 20, 20))), Box(0.62, -0.1, VITAMINS))
+    answer = node.ask("the corn")
+    assert not answer.found
+    assert [(p.label, p.likeness) for p in answer.perhaps] == [("white box 0", HALF_READ)]

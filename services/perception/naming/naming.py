@@ -27,6 +27,11 @@ from services.perception.naming.text import LIKELY, SURE, likeness, printed_word
 from services.perception.naming.vocabulary import common_words, plain_words, printable, taken
 from services.perception.view import View
 
+HALF_READ, SOMEWHAT, TRACE = 0.5, 0.4, 0.1
+"""Likeness, as `common.likeness` has it, of what reads nearly like the words, of what looks somewhat like the taught
+thing, and of what shows a part of one word. Chosen: a person is asked about the first two when they are seen, about the
+last when nothing else was found."""
+
 
 class Naming:
     """Taught names and printed words of the objects in sight.
@@ -151,6 +156,22 @@ class Naming:
                     # Its print is on another side, or goes on there.
                     found.append((1.0 - traces(words, o.text), away, o.label))
         return [label for _, _, label in sorted(found)]
+
+    def perhaps(self, query: str, objects: Sequence[m.WorldObject]) -> list[m.PossibleObject]:
+        """The objects of which a person has to say whether they are meant: their print was half read, or they look
+        somewhat like what was taught."""
+        words, name = self._printed(query, common_words(self._io.household)), normalise(query)
+        said, found = frozenset(name.split()), []
+        for o in objects:
+            sight, like = self._observer.sight(o.id), 0.0
+            if name in self._matches.get(o.id, Match()).perhaps:
+                like = SOMEWHAT
+            elif words and sight is not None and sight.read and printable(o, said):
+                half = likeness(words, o.text) >= LIKELY
+                like = HALF_READ if half else TRACE if traces(words, o.text) >= SURE else 0.0
+            if like and not o.held:
+                found.append(m.PossibleObject(id=o.id, label=o.label, likeness=like, position=o.position, on=o.on))
+        return sorted(found, key=lambda p: -p.likeness)
 
     def _printed(self, query: str, common: frozenset[str] | None = None) -> list[str]:
         """The words of a query that may be print, which are not `common`; those of a taught name are not."""

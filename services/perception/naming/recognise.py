@@ -12,9 +12,10 @@ from services.perception.naming.memory import Taught
 from services.perception.naming.sights import Sight
 from services.perception.naming.text import LIKELY, Line, likeness, sure_words
 
-SAME, PERHAPS = 0.25, 0.34
-"""Differences of appearance up to which an object is the one that was taught, and up to which it may be (bench.naming).
-"""
+SAME, PERHAPS = 0.20, 0.34
+"""Differences of appearance up to which an object is the one that was taught, and up to which a person is asked whether
+it is (bench.naming: one in twenty of the taught things is above the first, one in a hundred of their look-alikes
+below)."""
 CLEAR = 0.06
 """How much more alike the best must be than the second for that to be another object (bench.naming)."""
 READ_SAME, READ_OTHER = -0.06, 0.12
