@@ -10,7 +10,7 @@ from services.planner.phrases import Phrase, read
 from services.planner.plan_builder import NOT_UNDERSTOOD, PlanBuilder, Refusal
 from services.planner.relations import BESIDE, between
 from services.planner.resolve import Referent, fitting, handled_before, referent, referents, spot
-from services.planner.vocabulary import Spot
+from services.planner.vocabulary import LIVING, Spot
 from services.planner.world import BelievedObject
 
 
@@ -229,6 +229,9 @@ def again(builder: PlanBuilder, slots: Slots) -> None:
 
 # --- parts of the above
 def take(builder: PlanBuilder, meant: Referent) -> None:
+    """Look for it where it is said to be, and grasp it."""
+    if meant.object.label.split()[-1] in LIVING:
+        raise Refusal("I pick up neither people nor animals")
     if meant.at is not None and not meant.object.seen:
         builder.go(meant.at)
     builder.take(meant.object, meant.words)

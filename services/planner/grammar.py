@@ -15,6 +15,7 @@ from services.planner.choice_points import ChoicePoints, every
 from services.planner.clause import read_clause
 from services.planner.config import PlannerConfig
 from services.planner.named import note
+from services.planner.nearest import nearest
 from services.planner.plan_builder import NOT_UNDERSTOOD, LookFirst, PlanBuilder, Refusal, same
 from services.planner.repetition import repeated
 from services.planner.spelling import corrected
@@ -121,7 +122,20 @@ class _Attempts:
                 with suppress(Refusal):
                     return self._read(self._command, new_nouns=True)
             self._choices.taken = taken
+            if not literally and (meant := self._nearest()):
+                raise Suggestion(str(refusal), meant) from None
             raise
+
+    def _nearest(self) -> str:
+        """A plain command that can be done and is near to the words; "" when there is none."""
+        text = expand(normalise(self._command[:MAX_CHARACTERS]))
+        meant = nearest(tuple(text.split()), self._vocabulary)
+        try:
+            return meant if meant and self._read(meant) else ""
+        except LookFirst:  # it is asked about before anything is looked at
+            return meant
+        except Refusal:
+            return ""
 
     def _read(self, text: str, new_nouns: bool = False) -> list[PlanStep]:
         builder = PlanBuilder(self._world.copy(), self._vocabulary, self._config, self._choices.fork(), self._done)

@@ -185,6 +185,9 @@ def _left_out(builder: PlanBuilder, phrase: Phrase) -> Callable[[BelievedObject]
     names, colours = set[str](), set[str]()
     for words in phrase.but:
         bare = [w for w in words if w not in DETERMINERS]
+        if " ".join(words) in PRONOUNS | PLURAL_PRONOUNS:
+            names |= {m.object.label for m in _pronoun(builder, " ".join(words) in PLURAL_PRONOUNS)}
+            continue
         if all(w in builder.vocabulary.colours for w in bare):
             colours |= {builder.vocabulary.colours[w] for w in bare}
             continue

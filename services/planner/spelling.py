@@ -30,6 +30,7 @@ def _nearest(word: str, known: set[str]) -> str | None:
     allowed = 2 if len(word) >= VERY_LONG else 1
     near = [k for k in known if len(k) > 2 and abs(len(k) - len(word)) <= allowed and distance(word, k) <= allowed]
     near = [k for k in near if not (k.endswith("s") and k[:-1] in near)]
+    near = [k for k in near if k[0] == word[0] or sorted(k) == sorted(word) or len(word) >= LONG_WORD]
     if len(near) > 1:
         near = [k for k in near if k[0] == word[0] and sorted(k) == sorted(word)] or [
             k for k in near if k[0] == word[0]

@@ -29,7 +29,20 @@ _SMALL = (
     " like make put take tell thanks please want need try yet now just only also else later soon tomorrow yesterday"
     " today tonight today goes belongs gets lying standing closest might should must ought said says told asked teh"
 )
-NO_NOUN = DETERMINERS | frozenset(_SMALL.split())
+_ABSTRACT = (
+    "break care lost rest hand kiss hug call lift ride chance look smile clue sign idea reason answer example name joke"
+    " story attention horses time effort shot turn word note favour favor permission advice truth silence peace easy"
+)
+"""Words that are no things: `give me a break` is nothing to be fetched."""
+LIVING = frozenset(
+    {
+        "cat", "dog", "baby", "kid", "kids", "child", "children", "person", "people", "man", "woman", "boy", "girl",
+        "wife", "husband", "mother", "father", "mum", "mom", "dad", "grandma", "grandpa", "hamster", "rabbit", "bird",
+        "fish", "pet", "guest", "guests", "neighbour", "neighbor", "friend", "toddler", "puppy", "kitten",
+    }
+)  # fmt: skip
+"""Who is never picked up."""
+NO_NOUN = DETERMINERS | frozenset(_SMALL.split()) | frozenset(_ABSTRACT.split())
 """Words that are part of no thing's name."""
 _HERE = frozenset({"me", "us", "here", "home", "start", "over here", "back"})
 

@@ -1,0 +1,43 @@
+"""The plain command nearest to words that fit no construction, by its verb and the known things it names. Pure.
+
+It is asked about first ("Do you mean: put the mug on the desk?") and never carried out unasked. Words that forbid,
+report, suppose, tell of the past or ask get no guess.
+"""
+
+import re
+
+from common.language.lexicon import BRING, DISCARD, FETCH, GO, MOVE, PUT, SEEK, THROW, TIDY
+from common.language.normalise import Words, infinitive
+from services.planner.named import named
+from services.planner.vocabulary import Vocabulary
+
+_NO_REQUEST = re.compile(
+    r"\b(?:not|never|no|nobody|none|without|instead|if|unless|would|said|says|told|asked|yesterday|tomorrow|already|ever|did|"
+    r"had|was|were|went|last|always|used|why|how|who|when|myself|himself|herself|story|suppose|imagine|like)\b"
+    r"|^(?:he|she|they|it|what|where|which|is|are|do|does|has|have|i (?:am|have|will|should|could|might|must)|we are)\b"
+)
+_FORMS: tuple[tuple[str, str], ...] = (
+    (f"{THROW} | {DISCARD}", "throw away {thing}"),
+    (f"{PUT} | {MOVE}", "put {thing} in {spot}"),
+    (TIDY, "tidy up {spot}"),
+    (f"{BRING} | {FETCH} | want | need | have | love | wish", "bring me {thing}"),
+    (SEEK, "find {thing}"),
+    (f"go | {GO}", "go to {spot}"),
+)
+"""Verbs, and the command that they come to if what it needs is named."""
+
+
+def nearest(words: Words, vocabulary: Vocabulary) -> str:
+    """A command to ask about, "" when nothing suggests one."""
+    if _NO_REQUEST.search(" ".join(words)):
+        return ""
+    things, spots = named(words, vocabulary)
+    if len(things) > 1 or len(spots) > 1 or not (things or spots):
+        return ""
+    for verbs, form in _FORMS:
+        known = {option.split()[0] for option in verbs.split(" | ")}
+        if not any(infinitive(w, known) in known for w in words):
+            continue
+        if ("{thing}" in form) == bool(things) and ("{spot}" in form) <= bool(spots):
+            return form.format(thing=(things or [""])[0], spot=(spots or [""])[0])
+    return ""
