@@ -76,9 +76,28 @@ _ELSE = re.compile(
 _BEGINS = frozenset({"the", "a", "an", "my", "our", "me", "us", "it", "them", "to", "one", "all", "that", "those"})
 
 
+_REASON = re.compile(
+    r"^(?:since|as|because|now that|seeing (?:that|as)|given that|while) (?P<reason>(?:you|i|we|"
+    r"it|the|my) .+)$"
+)
+
+
+def _without_reason(text: str) -> str:
+    """`since you are going to the kitchen bring me the mug` without why."""
+    found = _REASON.match(without_politeness(text))
+    if found is None:
+        return text
+    words = found["reason"].split()
+    for at in range(2, len(words) - 1):
+        if words[at].strip(",") in _VERBS and words[at + 1] in _BEGINS:
+            return " ".join(words[at:])
+    return text
+
+
 def conditional(text: str) -> str:
     """`if there is a mug on the desk bring it` and the same in the other order as `if ... . bring it`."""
     text = _INVERTED.sub(lambda found: "if you" if found["you"] else "if there is", text)
+    text = _without_reason(text)
     bare = without_politeness(text)
     if found := _CONDITION.match(bare):
         rest = _ELSE.sub(" . otherwise ", found["rest"])

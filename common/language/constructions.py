@@ -38,6 +38,8 @@ CONSTRUCTIONS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
         (r"go (?:over )?(?:to|into|in) (.+?) and (?:tell me|see|look|report|check|find out)(?: back)? (?:what "
          r"(?:you (?:can )?(?:see|find)|"
          r"is (?:there|in there|on it|in it|on there)|there is))(?: there)?", r"go and look in \1"),
+        (rf"(?:i|we) {_WANT} {NP} (?:to be |all |nice and )?(?:clean|tidy|clear|neat|spotless|tidied|cleaned|"
+         rf"cleared|empty)", r"tidy \1"),
         # Taking up what is then put somewhere.
         (rf"(?:get|fetch|take|grab|collect|gather|pick)(?: up| me)? {NP}(?: up)? and (?:then )?(\w+) (?:it|"
          rf"them) (.+)", r"\2 \1 \3"),

@@ -53,7 +53,7 @@ _DO_NOT = re.compile(r"^do not (?P<wrong>\w+ .+?)(?:,\s*(?:but\s+)?|\s+but\s+)(?
 _DO_NOT_DO = re.compile(
     rf"^do not (?P<wrong>\w+ .+?)\s+(?P<right>(?:{'|'.join(sorted(COMMANDING))}) (?:me|us|the|a|an|my|it|to)\b.+)$"
 )
-_INSTEAD_OF = re.compile(
+NOT_WANTED = re.compile(
     r"^(?:never mind|forget(?: about)?|skip|leave|ignore|not|no need for|no more|(?:i|we) do not (?:need|want|"
     r"like)) (?:the|that|my|those|this)(?: "
     r"\w+){1,3}?(?:,\s*(?:and |but )?| and | but )"
@@ -162,8 +162,8 @@ def _settled(text: str, is_place: IsPlace) -> str:
     text = _EXCEPT.sub(" but ", text).replace(" but but ", " but ")
     text = _LATE_EXCEPT.sub(r"\g<all> \g<but> \g<particle>", text)
     bare = without_politeness(text)
-    if _INSTEAD_OF.match(bare):
-        text = bare = without_politeness(_INSTEAD_OF.sub("", bare))
+    if NOT_WANTED.match(bare):
+        text = bare = without_politeness(NOT_WANTED.sub("", bare))
     if found := (
         _CONTRAST.match(bare) or _CONTRAST_OF_ONES.match(bare) or _DO_NOT_DO.match(bare) or _DO_NOT.match(bare)
     ):
@@ -221,8 +221,12 @@ def _without_lead(text: str) -> str:
     return text
 
 
+_ANY = re.compile(r"\b(an? (\w+)), any (?:\2|one|of them|will do)\b")
+
+
 def _refined(text: str) -> str:
     """`the can, the red one` as `the red can`."""
+    text = _ANY.sub(r"\1", text)
     found = _REFINEMENT.match(text)
     if found is None:
         return text

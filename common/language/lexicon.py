@@ -51,7 +51,7 @@ BACK = "[back | over | straight | down | away]"
 IT = "(<thing> | it | them)"
 ASK = (
     "[(can | could) you tell me | tell me | remind me | explain [to] me | let me know | do you (know | remember |"
-    " happen to know) | [have you got] any idea"
+    " happen to know) | [have you [got]] any (idea | clue)"
     " | find out | i wonder | see | so | and"
     " | (did | do) you (see | notice | remember)]"
 )

@@ -36,6 +36,9 @@ _OCCASION = (
 
 _ADDRESS = (
     r"no(?=,? (?:bring|put|take|get|fetch|give|go|throw|come|tidy|find|move|leave|set)\b)|"
+    r"(?:second|third|fourth|secondly|thirdly|lastly|firstly)(?=,? (?:bring|put|take|get|fetch|give|go|throw|"
+    r"come|tidy|find|grab|pick)\b)|"
+    "basically|essentially|literally|obviously|hopefully|ideally|meanwhile|if so|if yes|in that case|"
     "(?:hey|hi|hello) there|hey|hello|hi|hiya|yo|oi|howdy|ok|okay|alright|all right|right(?=,)|jarvis|robot|"
     "tidybot|buddy|mate|dude|pal|"
     "man|sir|dear|"
@@ -54,7 +57,7 @@ _ADDRESS = (
 """Words to somebody, that carry no meaning."""
 _WAY = (
     r"(?:go|come|run|hurry|nip|pop)(?: ahead| over| on| along| off| back)?(?: and)?"
-    r"(?=\s+(?:find|get|fetch|bring|grab|pick|take|put|tidy|clean|clear|throw|collect|retrieve)\b)"
+    r"(?=\s+(?:find|get|fetch|bring|grab|pick|take|put|tidy|clean|clear|throw|collect|retrieve|look for|search for)\b)"
 )
 _FRAMES = (
     # What makes a question or a wish of an order.
@@ -66,6 +69,8 @@ _FRAMES = (
     rf"gracious|willing|helpful)(?:\s+|$))+(?:to|and|as to))\b)?",
     rf"(?:{_PERSON} )?(?:do|would) you mind|mind(?=\s+\w+ing\b)|do you want to|care to|want to(?=\s+\w)",
     rf"do you (?:think|suppose|reckon|believe) {_YOU} {_CAN}(?: possibly)?",
+    r"you(?= (?:bring|give|take|go|get|fetch|throw|find|come|carry|move|clean|tidy|grab|pick)\b"
+    r"(?!.*\b(?:always|never|often|yesterday|every|usually|it when)\b))",
     rf"(?<=please )(?:you|to)(?= \w)|you{_ADVERBS} (?:should|must|have to|need to|could|can|may|might want to|are to|"
     rf"ought to|are going to|shall|will)",
     rf"{_PERSON}{_ADVERBS} (?:would |will |am going to )?(?:like|love|want|need|prefer|wish|require|expect|ask|"
@@ -101,7 +106,7 @@ _FRAMES = (
     r"need) you to",
     r"i (?:have )?changed my mind|on second thoughts?|i have (?:got )?(?:a|another) (?:task|job|request|"
     r"favou?r)(?: for you| to ask)?",
-    r"i (?:think|guess|suppose|believe|reckon|say|suggest)(?: that)?(?= (?:the|my|this|that|we|you|it)\b)",
+    r"i (?:think|guess|suppose|believe|reckon|say|suggest)(?: that)?(?= (?:the|my|this|that|we|you|it|i)\b)",
     r"while you are (?:at it|there|up|about it)|(?:on|along) (?:the|your) way(?: back)?|"
     r"when you (?:come|get|are|go) back(?= (?:bring|take|get|fetch|put|grab)\b)",
     r"drop everything(?: else)?(?: and)?(?=\s+\w)|without \w+ing (?:[^,]+?),|without \w+ing .+?(?= throw\b| "
@@ -115,7 +120,9 @@ _ENDINGS = (
     "(?: very much| so much| a lot)?|(?<!real )(?<! a )robot|tidybot|jarvis|then|anyway|and|will you please|okay|"
     "ok|alright|(?<=, )right|man|mate|"
     "buddy|dude|my friend|dear|love|darling|sir|real quick|really quick|quick|fast|if you please|or something|or so|"
-    "and stuff|while you are (?:at it|there|up|about it)|on (?:the|your) way(?: back)?|by the way|you know(?: that)?|i "
+    "and stuff|(?:any (?:one|\\w+) will do|(?:it|i) (?:does|do) not (?:matter|mind|care) which(?: one)?|"
+    "whichever)|while you are (?:at it|there|up|about it)|on (?:the|your) way(?: back)?|by the way|you know(?: "
+    "that)?|i "
     "guess|i think",
     "(?:and )?hurry(?: up)?|as (?:fast|quickly) as you can|asap|and be quick(?: about it)?|and that is all|that is all|"
     "come on|go on|chop chop|before i forget|some ?time(?: today)?|today|tonight|this (?:morning|evening|afternoon)|"
@@ -137,7 +144,8 @@ LONG_SPEECH = re.compile(
     r"tell (?:them|everybody|everyone|people|the others)(?! (?:to|where|what|how|if|whether|about|when|why|who|"
     r"which)\b)|"
     r"(?:tell|inform) (?:my|our|the) \w+(?: that)?(?! (?:to|where|what|how|if|whether|about|when|why|who|which)\b)|"
-    r"let (?:(?:my|our|the) \w+|everyone|everybody|them|people) know(?: that)?)\s+(.+)$"
+    r"let (?:(?:my|our|the) \w+|everyone|everybody|them|people) know(?: that)?|inform (?:everyone|everybody|them|"
+    r"people)(?: that)?)\s+(.+)$"
 )
 """A clause whose words are to be spoken and not understood."""
 FRAME = re.compile(rf"(?:{'|'.join(_FRAMES)})\s")

@@ -49,7 +49,9 @@ ABOUT_THE_WORLD: tuple[Wording, ...] = (
         f"{ASK} (what | which) (is | are) <words> | {ASK} (which | what) [one] [of] <thing> (is | are) [the] <words>",
         heard="",
     ),
-    Wording("where", f"{ASK} where <thing> (is | are | went | has gone | have gone | might be | could be)", heard=""),
+    Wording("where", f"{ASK} where <thing> (is | are | was | went | has gone | have gone | might be | "
+                     f"could be)", heard=""),
+    Wording("where", f"{ASK} where (can | could | might | would) <thing> be", heard=""),
     Wording("where", f"{ASK} where (has | have) <thing> (gone | been | got to | ended up)", heard=""),
     Wording(
         "where",
@@ -81,7 +83,8 @@ ABOUT_THE_WORLD: tuple[Wording, ...] = (
     ),
     Wording(
         "exists",
-        "(do we | have we | do i | do you) [still] (have | got) <thing> [left | anywhere | somewhere]",
+        "(do we | have we | do i | do you [happen to] | happen to | would you happen to) [still] (have | got) "
+        "<thing> [left | anywhere | somewhere]",
         heard="",
     ),
     Wording("is_at", f"{ASK} (is | are) <thing> [still] [{LYING}] (in | on | at) <spot> [still]", heard=""),

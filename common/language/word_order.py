@@ -59,6 +59,9 @@ def reworded(words: Words, verbs_only: bool = False, deeper: bool = True) -> Ite
 
 
 _WITHIN = (
+    (re.compile(r"\bwhichever (\w+) is (?:the )?(closest|nearest|biggest|smallest|tallest|shortest)"), r"the \2 \1"),
+    (re.compile(r"\banother$"), "another one"),
+    (re.compile(r"\b(?:the )?(?:others|rest)$"), "the other ones"),
     (re.compile(r"\b(?:whatever|anything that|everything that|all that) (?:is|lies|stands) "), "everything "),
     (
         re.compile(

@@ -123,7 +123,8 @@ WORDINGS: tuple[Wording, ...] = (
         "(say | announce) [that] <words> | tell (them | everybody | everyone | people | us | me) that <words>"
         f" | (tell | inform) (my | our | the) {FAMILY} [that] <words> | tell (them | everybody | everyone | "
         f"people | the others) <words>"
-        " | let (them | everybody | everyone | people) know [that] <words>"
+        " | inform (everyone | everybody | them | people) [that] <words> | let (them | everybody | everyone | "
+        "people) know [that] <words>"
         f" | let (my | our | the) {FAMILY} know "
         "[that] <words>",
         heard="",
@@ -131,7 +132,8 @@ WORDINGS: tuple[Wording, ...] = (
     Wording("wait", "(wait | pause) [here | there | a moment | a bit | a while | for me]", heard="wait"),
     Wording(
         "wait",
-        "(wait | pause | sleep | hold on | hang on | stay [here | there] | hang around) [here | there] [for] <words>",
+        "(wait | pause | sleep | hold on | hang (on | about | around) | stay [here | there] | stand by | rest) "
+        "[here | there] [for] <words>",
         heard="",
     ),
     Wording(
@@ -179,7 +181,7 @@ WORDINGS: tuple[Wording, ...] = (
         " | do nothing for <words> | take a break (for | of) <words>",
         heard="",
     ),
-    Wording("wait_there", "[go [and]] (wait | stay | stand) (in | at | by | near) <spot>", heard=""),
+    Wording("wait_there", "[go [and]] (wait [for me] | stay | stand) (in | at | by | near) <spot>", heard=""),
     Wording("come_back", "(come | go | drive) [back] home", heard="go home"),
     Wording(
         "come_back", "(come | go | drive | get) [on] [over] (here | back | to me | back here | back to me)",
@@ -295,7 +297,9 @@ WORDINGS: tuple[Wording, ...] = (
         heard="(bring | take | carry) <thing> to <spot>",
     ),
     Wording("wish_at", "(bring | get | fetch | carry) <thing> (on | in) <spot>", heard=""),
-    Wording("put", f"({MOVE}) <thing> {BACK} (on | onto | in) <spot>", heard=""),
+    Wording("put", f"(take | deliver | move | shift | relocate | transfer | swap) <thing> {BACK} (on | "
+                   f"in) <spot>", heard=""),
+    Wording("put", f"({MOVE}) <thing> {BACK} onto <spot>", heard=""),
     Wording(
         "put",
         f"<thing> (belongs | belong | goes | go | can go | should be | should go | must go) ({ON} | to) <spot>",
@@ -372,7 +376,8 @@ WORDINGS: tuple[Wording, ...] = (
         "mention",
         "[do | can | did | have] [you] (see | know | remember | seen) <thing> [right] |"
         " (in | on | at) <spot> (is | are | there is | there are | stands | lies) <thing> |"
-        " there (is | are | should be | must be) <thing> | (i | we) (left | put | saw | forgot | dropped) <thing>"
+        " there (is | are | was | were | should be | must be) <thing> | (i | we) (left | put | saw | forgot | "
+        "dropped) <thing>"
         " | <thing> (is | are) (in | on | at) <spot> | <thing> (is | are | was | were | looks | look | has | "
         "have) <words>",
         heard="", kind="told",

@@ -13,6 +13,8 @@ from services.planner.resolve import Referent, fitting, handled_before, referent
 from services.planner.vocabulary import LIVING, Spot
 from services.planner.world import BelievedObject
 
+RELEASED = PlanStep(action="release")
+
 
 # --- moving things
 def fetch_named(builder: PlanBuilder, slots: Slots) -> None:
@@ -29,6 +31,8 @@ def fetch_named(builder: PlanBuilder, slots: Slots) -> None:
 def fetch(builder: PlanBuilder, slots: Slots) -> None:
     everything = referents(builder, slots["thing"], prefer_held=True)
     for meant in everything:
+        if [meant.object.label] == [t.label for t in builder.last] and builder.steps[-1:] == [RELEASED]:
+            continue  # "as soon as you have got the apple bring it here": that is done already
         take(builder, meant)
         builder.hand_over()
     builder.last = [m.object for m in everything]
@@ -64,7 +68,8 @@ def put_near(builder: PlanBuilder, slots: Slots) -> None:
     if builder.vocabulary.spot(slots["spot"]) or builder.vocabulary.furniture(slots["spot"]):
         raise Refusal(f"I cannot put things on the floor next to the {' '.join(slots['spot'][1:] or slots['spot'])}")
     moved = referents(builder, slots["thing"], prefer_held=True)
-    builder.last = [m.object for m in moved]
+    if " ".join(slots["spot"]) not in PRONOUNS:
+        builder.last = [m.object for m in moved]
     anchor = referent(builder, slots["spot"]).object
     where = builder.world.receptacle_of(anchor)
     if where is None:

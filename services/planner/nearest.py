@@ -12,19 +12,22 @@ from services.planner.named import named
 from services.planner.vocabulary import Vocabulary
 
 _NO_REQUEST = re.compile(
-    r"\b(?:not|never|no|nobody|none|without|instead|if|unless|would|said|says|told|asked|yesterday|tomorrow|already|ever|did|"
+    r"\b(?:not|never|no|nobody|none|without|instead|if|unless|would|said|says|told|asked|yesterday|tomorrow|"
+    r"already|ever|did|"
     r"had|was|were|went|last|always|used|why|how|who|when|myself|himself|herself|story|suppose|imagine|like)\b"
     r"|^(?:he|she|they|it|what|where|which|is|are|do|does|has|have|i (?:am|have|will|should|could|might|must)|we are)\b"
 )
-_FORMS: tuple[tuple[str, str], ...] = (
-    (f"{THROW} | {DISCARD}", "throw away {thing}"),
-    (f"{PUT} | {MOVE}", "put {thing} in {spot}"),
-    (TIDY, "tidy up {spot}"),
-    (f"{BRING} | {FETCH} | want | need | have | love | wish", "bring me {thing}"),
-    (SEEK, "find {thing}"),
-    (f"go | {GO}", "go to {spot}"),
+_TO = frozenset({"to", "into", "onto", "towards"})
+_FORMS: tuple[tuple[str, str, bool], ...] = (
+    (f"{THROW} | {DISCARD}", "throw away {thing}", False),
+    (PUT, "put {thing} in {spot}", False),
+    (MOVE, "put {thing} in {spot}", True),
+    (TIDY, "tidy up {spot}", False),
+    (f"{BRING} | {FETCH} | want | need | have | love | wish", "bring me {thing}", False),
+    (SEEK, "find {thing}", False),
+    (f"go | {GO}", "go to {spot}", True),
 )
-"""Verbs, and the command that they come to if what it needs is named."""
+"""Verbs, the command that they come to if what it needs is named, and whether the place has to follow a "to"."""
 
 
 def nearest(words: Words, vocabulary: Vocabulary) -> str:
@@ -34,9 +37,19 @@ def nearest(words: Words, vocabulary: Vocabulary) -> str:
     things, spots = named(words, vocabulary)
     if len(things) > 1 or len(spots) > 1 or not (things or spots):
         return ""
-    for verbs, form in _FORMS:
+    before = (
+        re.search(
+            rf"(\w+) (?:(?:the|my|our|your) "
+            rf")?{re.escape(spots[0].removeprefix('the '))}\b",
+            " ".join(words),
+        )
+        if spots
+        else None
+    )
+    towards = before is not None and before[1] in _TO
+    for verbs, form, to in _FORMS:
         known = {option.split()[0] for option in verbs.split(" | ")}
-        if not any(infinitive(w, known) in known for w in words):
+        if (to and not towards) or not any(infinitive(w, known) in known for w in words):
             continue
         if ("{thing}" in form) == bool(things) and ("{spot}" in form) <= bool(spots):
             return form.format(thing=(things or [""])[0], spot=(spots or [""])[0])

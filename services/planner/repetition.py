@@ -5,6 +5,7 @@ from collections.abc import Sequence
 
 from common.language.contractions import expand
 from common.language.discourse import PREPOSITIONS, IsPlace, replaced
+from common.language.lexicon import HANDLING
 from common.language.meaning import readings
 from common.language.normalise import DETERMINERS, normalise
 from common.language.politeness import without_politeness
@@ -17,6 +18,7 @@ _NO = re.compile(
     r"|^(?:no |nope |wrong |but )*not (?:this|that|here|there)(?: one| \w+)? (?:but )?(?P<other>(?:the|on|in|to|"
     r"into) .+)$"
 )
+_PLACED = re.compile(r"\w (?:next to|beside|near|on|in|into|onto|to|at) \w")
 _TOO = re.compile(
     r"^(?:and |now |then )?(?P<thing>.+?) (?:too|as well|also)(?: please)?$|^(?:and|what about) (?P<other>.+)$"
 )
@@ -36,6 +38,8 @@ def repeated(command: str, clauses: Sequence[str], told: History, is_place: IsPl
         return replaced(normalise(last), rest, is_place) or command
     if found := _TOO.match(without_politeness_at_end(command)):
         thing = found["thing"] or found["other"]
+        if found["other"] and last.split()[0] in HANDLING and _PLACED.search(thing):
+            return f"{last.split()[0]} {thing}"
         if thing.split()[0] in DETERMINERS:
             return replaced(normalise(last), thing, is_place) or command
     return command

@@ -273,6 +273,9 @@ def _choose(
         if phrase.count > len(near):
             raise Refusal(f"I know of only {len(near)} of the {phrase.count} {phrase.noun}")
         return [Referent(t) for t in (near[: phrase.count] if phrase.count else near)]
+    if builder.steps and builder.steps[-1].action == "navigate" and builder.spot is not None:
+        where = builder.spot.name  # "go to the kitchen and get a can"
+        near = [t for t in near if where in (t.on, builder.world.room_of(t))] or near
     if len(near) == 1 or phrase.any_one:
         return [Referent(builder.choices.pick(near))]
     preferred = [t for t in near if t.label == phrase.sense.prefer]

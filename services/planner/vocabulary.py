@@ -27,7 +27,7 @@ _SMALL = (
     " something somewhere still than then there they to too under until up us was we were what when where whether"
     " which while who why will with without would yes you yourself again ago bit bring fetch get give go going help"
     " like make put take tell thanks please want need try yet now just only also else later soon tomorrow yesterday"
-    " today tonight today goes belongs gets lying standing closest might should must ought said says told asked teh"
+    " today tonight others goes belongs gets lying standing closest might should must ought said says told asked teh"
 )
 _ABSTRACT = (
     "break care lost rest hand kiss hug call lift ride chance look smile clue sign idea reason answer example name joke"

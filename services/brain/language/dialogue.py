@@ -12,13 +12,13 @@ from common.language.discourse import PREPOSITIONS, commands, noun_phrases, repl
 from common.language.lexicon import COMMANDING
 from common.language.meaning import asks_for
 from common.language.normalise import DETERMINERS, Words, infinitive, normalise, without_determiners
-from common.language.noun_phrase import related
+from common.language.noun_phrase import WHICH, Which, related
 from common.language.politeness import without_politeness
 from common.messages import WorldObject
 from common.plan_rules import is_destination
 
 Reply = Literal["yes", "no", "cancel", "correction"]
-_CORRECTION = re.compile(r"^(?:no|nope|wrong|not that|i said|i meant|i mean|actually|rather)\s+")
+_CORRECTION = re.compile(r"^(?:no|nope|yes|yeah|yep|wrong|not that|i said|i meant|i mean|actually|rather)\s+")
 
 
 _NO_NAME = frozenset(
@@ -110,6 +110,11 @@ def chosen(
             return options[n]
     if "last" in words and words <= {"last"}:
         return options[-1]
+    if found := re.match(r"neither (?:the )?(\w+) nor (?:the )?(\w+)", bare):
+        left = [o for o in options if not {found[1], found[2]} & set(o.split())]
+        return left[0] if len(left) == 1 else None
+    if words and (words <= WHICH.keys()) and (extreme := _extreme(WHICH[next(iter(words))], options, known)):
+        return extreme
     if " not " in bare:
         bare = f"not {bare.rpartition(' not ')[2]}"
         words = set(bare.split()) - _NO_NAME
@@ -120,6 +125,16 @@ def chosen(
     if not matching and household is not None:
         matching = [o for o in options if _stands_where(o, bare, known, household)]
     return matching[0] if len(matching) == 1 else None
+
+
+def _extreme(which: Which, options: Sequence[str], known: Sequence[WorldObject]) -> str | None:
+    """The tallest, shortest, biggest or smallest of the options; None where that is another question or not known."""
+    sizes = {o.label: o.size for o in known if o.label in options}
+    if which not in ("tallest", "shortest", "biggest", "smallest") or len(sizes) < len(options):
+        return None
+    tall = which in ("tallest", "shortest")
+    order = sorted(sizes, key=lambda label: sizes[label][2] if tall else math.prod(sizes[label]))
+    return order[-1 if which in ("tallest", "biggest") else 0]
 
 
 def _stands_where(option: str, answer: str, known: Sequence[WorldObject], household: Household) -> bool:

@@ -7,7 +7,7 @@ import msgspec
 
 from common.language.clauses import without_fillers
 from common.language.contractions import expand
-from common.language.discourse import filled
+from common.language.discourse import NOT_WANTED, filled
 from common.language.lexicon import COMMANDING
 from common.language.meaning import asks_for, is_question
 from common.language.normalise import normalise
@@ -16,7 +16,8 @@ Kind = Literal["stop", "cancel", "come_back", "queue", "replace", "aside"]
 _LATER = re.compile(
     r"^(?:and )?(?:then|after(?:wards?| that| this| it)?|next|later(?: on)?|"
     r"(?:when|once|as soon as|after) (?:that|this|it)(?: is| has)?(?: been)? (?:done|finished|over|ready)|"
-    r"(?:when|once|as soon as|after) you(?: are|'re| have|'ve)?(?: all)? (?:done|finished|ready|through|free|back|did)"
+    r"(?:when|once|as soon as|after) you(?: are|'re| have|'ve)?(?: all)? (?:done|finished|ready|through|free|"
+    r"back|did|get back|come back)"
     r"(?:(?: with)? (?:that|this|it))?|when that is done|in addition|on top of that)\b[, ]*"
 )
 """Words before a command that put it behind the one under way."""
@@ -56,6 +57,8 @@ def interjection(said: str) -> Interjection:
     words = without_fillers(expand(normalise(said, ",")))
     if contrast := _INSTEAD_OF.match(words):
         return Interjection("replace", filled(contrast["right"], contrast["wrong"]))
+    if unwanted := NOT_WANTED.match(words):
+        return Interjection("replace", words[unwanted.end() :])
     for kind, begin, end in (("replace", _INSTEAD, _INSTEAD_END), ("queue", _LATER, _LATER_END)):
         rest = words
         while (shorter := begin.sub("", rest)) != rest:
