@@ -12,7 +12,8 @@ EditCode = Literal[
 
 
 class PlaceName(Message):
-    """A name that a person gave. `part`: the surface or room that has it, as the household file calls it.
+    """A name that a person gave. `part`: the surface or room that has it, as the household file calls it, `at` its
+    middle: a home that is mapped again may number its parts anew.
 
     Without a `part` it is a standing place at `pose` (x, y, theta), or a room that no map has, between `low` and
     `high`.
@@ -24,17 +25,19 @@ class PlaceName(Message):
     pose: Vec3 = (0.0, 0.0, 0.0)
     low: tuple[float, float] = (0.0, 0.0)
     high: tuple[float, float] = (0.0, 0.0)
+    at: Vec3 | None = None
 
 
 class TidyRule(Message):
     """Where things belong: those of all `kinds` and `colours` that are not empty, or of these `names`, go to the first
-    surface of `to` that the home has. `things`: the words that a person used."""
+    surface of `to` that the home has. `things`: the words that a person used; `at`: the middle of the first surface."""
 
     things: str
     to: list[str]
     kinds: list[str] = []
     colours: list[str] = []
     names: list[str] = []
+    at: Vec3 | None = None
 
 
 class HouseholdEdits(Message):

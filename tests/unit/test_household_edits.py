@@ -95,6 +95,26 @@ def test_names_of_another_home_change_nothing() -> None:
     assert edited(HOME, edits).receptacles == edited(HOME, m.HouseholdEdits()).receptacles
 
 
+def test_a_home_that_is_mapped_again_keeps_the_names_of_its_places() -> None:
+    edits = m.HouseholdEdits(
+        names=[
+            m.PlaceName(name="desk", kind="surface", part="s-3", at=(4.0, 0.5, 0.7)),
+            m.PlaceName(name="kitchen", kind="room", part="r-2", at=(4.5, 1.5, 0.0)),
+        ],
+        rules=[m.TidyRule(things="mugs", to=["s-3"], kinds=["mug"], at=(4.0, 0.5, 0.7))],
+    )
+    anew = (table("s-1", 4.1), table("s-2", 1.1), table("s-3", 8.0))
+    right, left = (
+        Room(name="r-1", low=(3, 0), high=(6, 3), named=False),
+        Room(name="r-2", low=(0, 0), high=(3, 3), named=False),
+    )
+    named = edited(msgspec.structs.replace(HOME, receptacles=anew, rooms=(right, left), delivery=""), edits)
+    assert [r.name for r in named.receptacles] == ["desk", "table in room 2", "table"]
+    assert [r.name for r in named.rooms] == ["kitchen", "room 2"]
+    to = named.receptacle(named.words.tidy[0].to[0])
+    assert to is not None and to.name == "desk"
+
+
 def test_the_newest_rule_comes_first() -> None:
     rules = [
         m.TidyRule(things="mugs", to=["shelf"], kinds=["mug"]),

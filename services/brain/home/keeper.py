@@ -96,13 +96,15 @@ class HouseholdKeeper:
         home, loaded = self._io.household, self._io.loaded
         x, y, theta = self.pose if edit.position is None else (edit.position[0], edit.position[1], 0.0)
         if found.surface is not None:
-            part = loaded.receptacles[home.receptacles.index(found.surface)].name
-            return m.PlaceName(name=name, kind="surface", part=part)
+            part = loaded.receptacles[home.receptacles.index(found.surface)]
+            return m.PlaceName(name=name, kind="surface", part=part.name, at=part.center)
         if found.room is not None:
             added = len(home.rooms) - len(loaded.rooms)
             number = home.rooms.index(found.room) - added
             if number >= 0:
-                return m.PlaceName(name=name, kind="room", part=loaded.rooms[number].name)
+                room = loaded.rooms[number]
+                middle = ((room.low[0] + room.high[0]) / 2, (room.low[1] + room.high[1]) / 2, 0.0)
+                return m.PlaceName(name=name, kind="room", part=room.name, at=middle)
             return m.PlaceName(name=name, kind="room", low=found.room.low, high=found.room.high)
         if found.kind == "room":
             low, high = room_around(home, x, y)
@@ -138,7 +140,8 @@ class HouseholdKeeper:
         if rule is None or not surfaces or not (rule.kinds or rule.colours or rule.names):
             raise Refused("NO_RULE", "I know no such thing or place")
         # Names change; the rule is about the surface.
-        kept = msgspec.structs.replace(rule, to=[loaded.receptacles[home.receptacles.index(r)].name for r in surfaces])
+        own = [loaded.receptacles[home.receptacles.index(r)] for r in surfaces]
+        kept = msgspec.structs.replace(rule, to=[r.name for r in own], at=own[0].center)
         others = [r for r in self.edits.rules if _about(r) != _about(rule)]
         if len(others) >= MAX_RULES:
             raise Refused("TOO_MANY", f"there are {MAX_RULES} rules already")

@@ -30,7 +30,9 @@ class SightingLog:
         path = home_file(io.state_dir, "sightings", io.loaded.name)
         self._file = StoredFile(path, m.Sightings, lambda why: io.log.warning("sightings", reason=why), durable=False)
         kept = self._file.load()
-        self._rows = {(s.thing, s.part): s for s in (kept.sightings if kept is not None else ())}
+        self._rows: dict[tuple[str, str], m.Sighting] = {}
+        for s in kept.sightings if kept is not None else ():
+            self._take_up(s)
         self._seen: dict[str, float] = {}
         self._counted: dict[tuple[str, str], float] = {}
         self.date = 0.0
@@ -55,6 +57,15 @@ class SightingLog:
         if self._changed and self._file.save(m.Sightings(t=self.date, sightings=list(self._rows.values()))):
             self._changed = False
         self._saved = now
+
+    def _take_up(self, s: m.Sighting) -> None:
+        """A row of an earlier process, on the surface that is there now: a home may have been mapped again since."""
+        surface = self._io.loaded.resting_place(s.position)
+        s.part = surface.name if surface is not None else s.part
+        other = self._rows.get((s.thing, s.part))
+        if other is not None:
+            s.weight += other.weight
+        self._rows[s.thing, s.part] = s
 
     def _note(self, o: m.WorldObject, now: float, date: float) -> None:
         """Count a thing once a visit, under its label and the names that people gave it."""

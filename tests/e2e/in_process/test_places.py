@@ -5,7 +5,6 @@ from pathlib import Path
 
 import pytest
 
-from common import messages as m
 from common import topics
 from tests.e2e.in_process.test_names import Home
 
@@ -28,7 +27,7 @@ def test_a_surface_goes_by_its_new_name_and_a_rule_is_followed(home: Home) -> No
     home.stack.advance(1.0)
     home.stack.start("brain")
     home.stack.advance(1.0)
-    assert home.latest(topics.HOUSEHOLD_EDITS).names == [m.PlaceName(name="worktop", kind="surface", part="counter")]
+    assert [(n.name, n.part) for n in home.latest(topics.HOUSEHOLD_EDITS).names] == [("worktop", "counter")]
     assert home.tell("put the apple away", 300.0).outcome == "delivered"
     assert home.place_of("apple") == "counter"
     assert home.tell("forget that rule", 60.0).outcome == "delivered"
