@@ -242,7 +242,7 @@ def main() -> int:
         except CliError as error:
             wrong = [str(error)]
         finally:
-            robot.supervision.stop()
+            robot.down()
     print("everything is accounted for" if not wrong else "wrong:", *wrong, sep="\n  ")
     return int(bool(wrong))
 

@@ -3,6 +3,8 @@
 import argparse
 import os
 import signal
+import subprocess
+import sys
 import uuid
 from pathlib import Path
 
@@ -12,9 +14,13 @@ from cli.plan import Plan
 from cli.ports import free_port
 from cli.supervision import Supervision
 from cli.up import bring_up
+from common.installation import ROOT
 from common.plan_file import to_toml
 from common.scene import Scene
 from evaluation.unknown import nothing_listed
+
+RECORDED = 60
+"""Newest part [MB] of everything on the bus that is kept."""
 
 
 class Robot:
@@ -26,11 +32,9 @@ class Robot:
         self.files["world"].write_text(to_toml(world), encoding="utf-8")
         self.files["household"].write_text(to_toml(nothing_listed(home)), encoding="utf-8")
         self.supervision = Supervision(directory / "run")
-        self._port, self._namespace, self._sim_run = (
-            free_port(),
-            f"day-{uuid.uuid4().hex[:8]}",
-            f"day-{uuid.uuid4().hex}",
-        )
+        self._port, self._namespace = free_port(), f"day-{uuid.uuid4().hex[:8]}"
+        self._sim_run = f"world-{uuid.uuid4().hex}"
+        self._recording: subprocess.Popen[bytes] | None = None
         self.connect = ""
         os.environ["TIDYBOT_STATE_DIR"] = str(directory / "state")
 
@@ -44,6 +48,17 @@ class Robot:
         plan = Plan(options)
         self.connect, self.namespace = plan.connect, plan.namespace
         bring_up(self.supervision, plan, lambda text: None)
+        tape = self.directory / "recordings" / f"day-{uuid.uuid4().hex[:4]}.mcap"
+        record = [sys.executable, "-m", "cli.main", "record", "-o", str(tape), "--keep", str(RECORDED), "--wait", "0"]
+        quiet = subprocess.DEVNULL
+        self._recording = subprocess.Popen(record, cwd=ROOT, env=plan.environ, stdout=quiet, stderr=quiet)
+
+    def down(self) -> None:
+        """Switch everything off."""
+        if self._recording is not None:
+            self._recording.terminate()
+            self._recording.wait()
+        self.supervision.stop()
 
     def pids(self) -> dict[str, int]:
         return {p.name: p.pid for p in self.supervision.processes() if p.state == "running"}
@@ -53,6 +68,9 @@ class Robot:
 
     def power_cut(self) -> None:
         """Every process ends at once, unasked."""
+        if self._recording is not None:
+            self._recording.kill()
+            self._recording.wait()
         pids = [*self.pids().values(), self.supervision.pid()]
         for pid in pids:
             if pid is not None:

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from cli.errors import CliError
 from cli.link import Link, add_options, address
+from cli.recording_files import RecordingFiles
 from cli.supervision import Supervision, run_dir
 from cli.tape import BATCH, FLUSH, Listener, Progress, Tape
 from common import config
@@ -54,16 +55,16 @@ def record(args: argparse.Namespace) -> int:
     connect, namespace = address(args)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        recorder = Recorder(path)
+        files = RecordingFiles(path, round(args.keep * 1e6))
     except (OSError, RecordingError) as error:
         raise CliError(str(error)) from None
     try:
         with open_session(connect, namespace, wait=_patience(args.wait, stop, connect)) as session:
-            return _run(args, recorder, Link(session, connect), stop)
+            return _run(args, files, Link(session, connect), stop)
     except NoRouter:
         raise CliError("stopped before a router was there") from None
     finally:
-        _close(recorder)
+        _close(files.recorder)
 
 
 def _demonstrations(args: argparse.Namespace) -> int:
@@ -95,7 +96,8 @@ def _patience(seconds: float, stop: StopSignal, connect: str) -> Callable[[float
     return wait
 
 
-def _run(args: argparse.Namespace, recorder: Recorder, link: Link, stop: StopSignal) -> int:
+def _run(args: argparse.Namespace, files: RecordingFiles, link: Link, stop: StopSignal) -> int:
+    recorder = files.recorder
     listener = Listener(link.session)
     tape = Tape(recorder, listener, os.environ.get("TIDYBOT_CLOCK") == "wall")
     progress = Progress(recorder, tape)
@@ -109,17 +111,26 @@ def _run(args: argparse.Namespace, recorder: Recorder, link: Link, stop: StopSig
             if monotonic() - flushed > FLUSH:
                 flushed = monotonic()
                 recorder.flush()
+            if files.full:
+                recorder = files.turn_over(lambda done: _facts(done, link, tape))
+                tape.go_on(recorder)
+                progress = Progress(recorder, tape)
             progress.show(listener.inbox.qsize())
         listener.close()
         while tape.write():
             pass
-        recorder.note("run", facts_of(link, tape))
-        recorder.note("settings", settings_of(os.environ))
-        _attach(recorder, tape)
+        _facts(recorder, link, tape)
     except OSError as error:
         raise CliError(f"{recorder.path}: {error.strerror}; what was written until then is kept") from None
     progress.show(0, last=True)
     return 0
+
+
+def _facts(recorder: Recorder, link: Link, tape: Tape) -> None:
+    """What a replay of the file needs beside its messages."""
+    recorder.note("run", facts_of(link, tape))
+    recorder.note("settings", settings_of(os.environ))
+    _attach(recorder, tape)
 
 
 def _attach(recorder: Recorder, tape: Tape) -> None:
@@ -159,6 +170,16 @@ def _rate(text: str) -> int:
     return int(text)
 
 
+def _megabytes(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = -1.0
+    if not 1.0 <= value < 1e7:
+        raise argparse.ArgumentTypeError(f"{text!r}: expected MB, 1 or more")
+    return value
+
+
 def _cameras(text: str) -> tuple[str, ...]:
     found = tuple(dict.fromkeys(text.split(",")))
     if not set(found) <= set(CAMERAS):
@@ -170,6 +191,9 @@ def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") ->
     parser = commands.add_parser("record", help="every topic into an MCAP file, until Ctrl-C")
     parser.add_argument("-o", "--output", type=Path, metavar="FILE", help="default: out/run-<time>.mcap")
     parser.add_argument("--duration", type=float, default=0.0, metavar="S", help="wall seconds (default: until Ctrl-C)")
+    parser.add_argument(
+        "--keep", type=_megabytes, default=0.0, metavar="MB", help="the newest so many MB only, in several files"
+    )
     parser.add_argument(
         "--wait", type=float, default=3.0, metavar="S", help="for the robot's router; 0: as long as it takes"
     )

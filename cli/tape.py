@@ -66,6 +66,12 @@ class Tape:
         self.lockstep = False
         self.status: m.SimStatus | None = None
 
+    def go_on(self, recorder: Recorder) -> None:
+        """Write to another file from now on, which begins with who is there."""
+        self._recorder = recorder
+        for name in sorted(self.alive):
+            recorder.presence(name, True, self.now, unix_time())
+
     def write(self) -> int:
         """Take what is waiting, at most a batch; the number taken."""
         self._tokens()
