@@ -13,7 +13,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import ExitStack
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -25,11 +25,13 @@ import zenoh
 from zenoh import handlers
 
 from bench.mission import Robot
+from cli.fleet.radio import thinning
 from cli.services import NAMES, OPTIONAL
 from common import messages as m
 from common import topics
 from common.bus import codec
 from common.bus.session import open_session
+from common.security.access import FLEET_READS
 from common.time.clock import unix_time
 from common.time.lockstep import DT
 from tests.support import Site, eventually, site
@@ -158,6 +160,19 @@ def flow(script: list[Sent], seconds: float) -> tuple[float, float, float, float
     )
 
 
+def over_radio(script: list[Sent], seconds: float, keys: Iterable[str]) -> tuple[float, float]:
+    """Messages a second and Mbit/s of these keys that one robot lets out by `tidybot fleet radio`."""
+    (rules,) = thinning()
+    limits = {rule["key_expr"].removeprefix("**/"): rule["freq"] for rule in rules["rules"]}
+    count, bits = 0.0, 0.0
+    for key in keys:
+        sizes = [len(s.payload) for s in script if s.key == key]
+        passed = min(float(len(sizes)), limits.get(key, np.inf) * seconds)
+        count += passed
+        bits += passed * 8 * float(np.mean(sizes)) if sizes else 0.0
+    return count / seconds, bits * 1e-6 / seconds
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--counts", default="1,5,20", help="robots on the router, one row each (default %(default)s)")
@@ -175,6 +190,10 @@ def main() -> None:
     print(
         f"one robot: {rate:.0f} messages/s, {to:.2f} Mbit/s to the router; {rate_away:.0f}/s, {away:.2f} Mbit/s from it"
     )
+    desk = (*(t.key for t in FLEET_READS if t is not topics.COSTMAP), *(f"service/{n}/health" for n in READERS))
+    for who, keys in (("one who reads everything", {s.key for s in script}), ("the fleet's desk", desk)):
+        count, bits = over_radio(script, args.seconds, keys)
+        print(f"over a radio link, to {who}: {count:.0f} messages/s, {bits:.2f} Mbit/s")
     print(f"{'robots':>6} {'router, core':>12} {'arrived':>10} {'p50 ms':>9} {'p95 ms':>9}", flush=True)
     for count in (int(v) for v in args.counts.split(",")):
         with tempfile.TemporaryDirectory() as folder, site(Path(folder)) as here:

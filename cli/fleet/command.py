@@ -13,6 +13,7 @@ from rich.table import Table
 from cli.errors import CliError
 from cli.fleet.choice import Candidate
 from cli.fleet.dispatch import POLL, Dispatch
+from cli.fleet.radio import OTHERS, router_config
 from cli.fleet.robots import Desk, RobotNow
 from cli.link import address
 from common import messages as m
@@ -162,6 +163,12 @@ def recall(args: argparse.Namespace) -> int:
     return 0 if names else 1
 
 
+def radio(args: argparse.Namespace) -> int:
+    """The configuration of a robot's own router, on standard output."""
+    print(router_config(args.to, args.hz), end="")
+    return 0
+
+
 def _options(parser: argparse.ArgumentParser, verb: bool = False) -> None:
     """Of the command and of its verbs, where what is not said leaves what was said before them."""
     kept: Any = argparse.SUPPRESS
@@ -198,3 +205,7 @@ def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") ->
     one.add_argument("id", help="the command_id of `fleet say --json`")
     _options(one, verb=True)
     one.set_defaults(run=recall)
+    one = verbs.add_parser("radio", help="the configuration of a robot's own router, which thins what crosses WiFi")
+    one.add_argument("to", nargs="+", metavar="ENDPOINT", help="the routers to link with: tls/10.0.0.5:7447")
+    one.add_argument("--hz", type=float, default=OTHERS, metavar="N", help="of every other stream (%(default)s)")
+    one.set_defaults(run=radio)

@@ -1,16 +1,19 @@
-"""docs/DEPLOY.md, "How many": the robot's router thins what crosses the link, and nothing that stays on the robot."""
+"""`tidybot fleet radio`: the robot's router thins what crosses the link, and nothing that stays on the robot."""
 
 import json
-import re
 import time
 from contextlib import ExitStack
 from pathlib import Path
 
+import pytest
 import zenoh
 from zenoh import handlers
 
+from cli.errors import CliError
+from cli.fleet.radio import router_config, thinning
+from common import topics
 from common.bus.session import CONFIGS
-from tests.support import ROOT, eventually, free_port
+from tests.support import eventually, free_port
 
 SECONDS = 2.0
 """Time of the stream [s], at some 100 Hz."""
@@ -20,10 +23,9 @@ def opened(stack: ExitStack, config: zenoh.Config) -> zenoh.Session:
     return stack.enter_context(zenoh.open(config))
 
 
-def router(stack: ExitStack, listen: list[str], connect: list[str], more: str = "") -> None:
-    text = (CONFIGS / "router.json5").read_text().rstrip().removesuffix("}")
-    own = f"listen: {{ endpoints: {json.dumps(listen)} }}, connect: {{ endpoints: {json.dumps(connect)} }},"
-    opened(stack, zenoh.Config.from_json5(f"{text} {own} {more} }}"))
+def listening(config: zenoh.Config, endpoint: str) -> zenoh.Config:
+    config.insert_json5("listen/endpoints", json.dumps([endpoint]))
+    return config
 
 
 def client(stack: ExitStack, endpoint: str) -> zenoh.Session:
@@ -33,13 +35,12 @@ def client(stack: ExitStack, endpoint: str) -> zenoh.Session:
 
 
 def test_the_link_is_thinned_and_the_robot_itself_is_not(tmp_path: Path) -> None:
-    page = (ROOT / "docs" / "DEPLOY.md").read_text()
-    (thinning,) = re.findall(r"```json5\n(downsampling: .*?)```", page, re.DOTALL)
     region, socket = f"tcp/127.0.0.1:{free_port()}", f"unixsock-stream/{tmp_path}/r.sock"
     counts = {"region joint_states": 0, "region brain/state": 0, "robot joint_states": 0, "robot brain/state": 0}
     with ExitStack() as stack:
-        router(stack, [region], [])
-        router(stack, [socket], [region], thinning)
+        opened(stack, listening(zenoh.Config.from_file(str(CONFIGS / "router.json5")), region))
+        (tmp_path / "radio.json5").write_text(router_config([region]))
+        opened(stack, listening(zenoh.Config.from_file(str(tmp_path / "radio.json5")), socket))
         speaker, inside, outside = client(stack, socket), client(stack, socket), client(stack, region)
 
         def count(who: str, session: zenoh.Session, key: str) -> None:
@@ -69,3 +70,15 @@ def test_the_link_is_thinned_and_the_robot_itself_is_not(tmp_path: Path) -> None
         eventually(lambda: counts["robot joint_states"] >= sent, "all of it has arrived")
     assert 0 < counts["region joint_states"] < sent / 2
     assert counts["robot joint_states"] >= sent
+
+
+def test_streams_are_thinned_and_what_must_not_be_lost_is_not() -> None:
+    (item,) = thinning(2.0)
+    rates = {rule["key_expr"].removeprefix("**/"): rule["freq"] for rule in item["rules"]}
+    assert set(rates) == {t.key for t in topics.TABLE if t.keep == "latest" or t in topics.CLOCKS}
+    assert rates[topics.SCAN.key] == 2.0 and rates[topics.COSTMAP.key] == 1.0, "never more than there is"
+    assert not {topics.VOICE_COMMAND.key, topics.ROBOT_STOP.key, topics.BRAIN_STATE.key} & set(rates)
+    assert item["flows"] == ["egress"] and "unixsock-stream" not in item["link_protocols"]
+    for hz in (0.0, -1.0, float("nan")):
+        with pytest.raises(CliError):
+            router_config([], hz)
