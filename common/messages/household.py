@@ -55,7 +55,7 @@ class HouseholdEdit(Message):
     `forget rule` takes back the rule about `name`, with "" the newest.
     """
 
-    do: EditAction
+    do: EditAction = "name"
     name: str = ""
     id: str = ""
     attempt: int = 0
