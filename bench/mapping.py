@@ -1,7 +1,8 @@
 """Mapping against the truth: errors of walls and surfaces, what was missed, and how long exploring took.
 
 `python -m bench.mapping --homes 3 --seed 20000`; `--apartment` for the shipped flat. Exit 1 when the median of a kind
-of error is above its aim, or something was hit.
+of error is above its aim, or something was hit. With `--out DIR` the maps are kept, each with its world, so that
+`tidybot eval --world DIR` gives missions in homes that the robot has mapped itself.
 """
 
 import argparse
@@ -21,9 +22,11 @@ from common.floor_plan import FloorPlan, Receptacle
 from common.geometry import Rectangle
 from common.household import Household, load_household
 from common.map_file import HOUSEHOLD
+from common.plan_file import to_toml
 from common.scene import Scene, load_scene
 from evaluation.homes.suite import homes
 from evaluation.stack import Stack
+from evaluation.worlds import WORLD
 from judge.contacts import ContactBook
 from services.mapping.service import MappingService
 
@@ -196,6 +199,8 @@ def main() -> int:
         for name, scene in scenes:
             out = (args.out or Path(kept)) / name.replace(" ", "_")
             began = time.monotonic()
+            out.mkdir(parents=True, exist_ok=True)
+            (out / WORLD).write_text(to_toml(scene), encoding="utf-8")
             explored = explore(scene, args.seed, out, say=True)
             errors = compare(load_household(str(out / HOUSEHOLD)), scene)
             print(line(name, explored, errors, time.monotonic() - began), flush=True)

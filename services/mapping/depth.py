@@ -33,6 +33,8 @@ LOW, HIGH = 0.15, 1.35
 """Heights [m] of surfaces that things are put on."""
 PATCH = 0.025
 """Side [m] of the cells that the points of a level surface are merged to."""
+MAX_VALUE = 1e6
+"""What no camera's numbers reach [pixels, m]."""
 FLOOR_POINTS = 400
 """Pixels of floor without which nothing is corrected [count]."""
 
@@ -90,9 +92,12 @@ class CameraModel:
         """What the picture shows.
 
         Raises:
-            ValueError: its data do not have its size.
+            ValueError: its data do not have its size, or what a camera does not have.
         """
         depth = _depth(image)
+        numbers = (image.cx, image.cy, *image.position, *image.orientation)
+        if not (0.0 < image.fx < MAX_VALUE and 0.0 < image.fy < MAX_VALUE and all(abs(v) < MAX_VALUE for v in numbers)):
+            raise ValueError("a picture without a focal length or a pose")
         h, w = depth.shape
         depth = np.where(self.own((h, w)), 0.0, depth)
         u = (np.arange(w) + 0.5 - image.cx) / image.fx

@@ -20,15 +20,17 @@ Index = tuple[NDArray[np.intp], NDArray[np.intp]]
 RESOLUTION = 0.05
 """Of a cell [m]: that of navigation's costmap."""
 FREE, OCCUPIED, UNKNOWN = 0, 1, 2
-HIT_SHARE = 0.25
-"""Share of rays that must end in a cell, of those that came there, for it to count as occupied; chosen: a leg is
-narrower than a cell."""
+HIT_SHARE = 0.10
+"""Share of scans that must have hit a cell, of those that hit or passed it, for it to count as occupied: rays that
+graze a wall at 10 degrees pass six of its cells before they end."""
 TOP_PICTURES, TOP_SHARE = 2, 0.15
 """Pictures that must show something above a cell, and their share of those that show its floor; chosen: one is noise,
 and who walked through stood there in few."""
-OLD = 4
+LOOKED_OVER = 1.2
+"""Height [m] that the camera, at 1.3 m, looks over."""
+OLD = 2
 """Scans or pictures that what an earlier run has seen of a cell counts for, at most [count]: a door that was shut then
-is open after a look or two."""
+is open when some twenty scans have looked through it."""
 BODY = 0.45
 """Radius around a keyframe that counts as floor that was seen [m]: the footprint, and the strip before it that the
 camera does not see."""
@@ -102,9 +104,9 @@ class Grid:
 
     def fade(self) -> None:
         """What was seen until now is of an earlier day: it counts, but what is seen from now on counts more."""
-        for one, other in ((self.hits, self.passed), (self.tops, self.floor)):
-            share = np.minimum(1.0, OLD / np.maximum(one + other, 1))
-            one[:], other[:] = np.ceil(one * share), np.ceil(other * share)
+        for taken, one, other in ((self.walls, self.hits, self.passed), (self.covered, self.tops, self.floor)):
+            one[:] = np.where(taken, OLD, 0)
+            other[:] = np.where(taken, 0, np.minimum(other, OLD))
         self.looked[:] = 0
 
     def _stand(self, pose: Pose2) -> None:
@@ -129,6 +131,12 @@ class Grid:
     def walls(self) -> Cells:
         """Occupied for the lidar."""
         found: Cells = (self.hits > 0) & (self.hits >= HIT_SHARE * (self.hits + self.passed))
+        return found
+
+    @property
+    def tall(self) -> Cells:
+        """Occupied for the lidar, and higher than the camera looks over."""
+        found: Cells = self.walls & ((self.highest > LOOKED_OVER) | (self.highest == 0.0))
         return found
 
     @property

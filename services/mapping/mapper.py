@@ -71,8 +71,10 @@ class Mapper:
         base = compose(self.trajectory.poses[shot.keyframe], shot.pose)
         self.grid.add_picture(placed(shot.picture.floor, base), placed(shot.picture.above, base))
         if shot.still:
-            self.grid.near |= shown(self.grid, base, SURFACE_RANGE)
-            self.grid.looked += shown(self.grid, base, FRONTIER_RANGE) & (self.grid.looked < 250)
+            walls, tall = self.grid.walls, self.grid.tall
+            self.grid.near |= shown(self.grid, base, SURFACE_RANGE, tall)
+            in_view = shown(self.grid, base, FRONTIER_RANGE, walls) | shown(self.grid, base, SURFACE_RANGE, tall)
+            self.grid.looked += in_view & (self.grid.looked < 250)
 
     def draw(self) -> None:
         """The grid anew, from where all keyframes are now."""

@@ -7,6 +7,8 @@ from collections.abc import Iterable
 from common import messages as m
 from common.geometry import Pose2, wrap
 
+MAX_VALUE = 1e6
+"""What no odometry reports [s, m, rad, rad/s]: a fault of its sender."""
 HISTORY = 300
 """Samples that are kept [count]: 3 s at 100 Hz."""
 STALE = 0.5
@@ -23,6 +25,8 @@ class OdometryBuffer:
     def take(self, messages: Iterable[m.Odometry]) -> None:
         """Keep new samples; those of a clock that went back begin anew."""
         for o in messages:
+            if not all(abs(v) <= MAX_VALUE for v in (o.t, o.x, o.y, o.theta, o.omega)):
+                continue
             if self._rows and o.t < self._rows[-1][0]:
                 self._rows.clear()
             self._rows.append((o.t, (o.x, o.y, o.theta)))

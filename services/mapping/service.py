@@ -1,5 +1,6 @@
 """Mapping: explores an unknown home by frontiers, makes its map, and writes the household that the robot lives with."""
 
+import math
 from collections import deque
 from collections.abc import Callable
 from importlib.util import find_spec
@@ -74,7 +75,12 @@ class MappingService:
             self._picture(image)
         while self._work and self._work[0][0].poll(now):
             job, done = self._work.popleft()
-            done(job.result())
+            try:
+                result = job.result()
+            except ValueError as error:
+                io.count_drop(topics.HEAD_RGBD.key, str(error))
+                continue
+            done(result)
         for goal in io.take_all(topics.MAPPING_GOAL):
             self._command(goal)
         if self._states is not None:
@@ -88,7 +94,7 @@ class MappingService:
 
     # --- measurements
     def _scan(self, message: m.LaserScan) -> None:
-        odometry = self._odometry.at(message.t)
+        odometry = self._odometry.at(message.t) if math.isfinite(message.t) else None
         config = self._config
         if odometry is None or self._due or len(self._work) > WAITING:
             return
@@ -115,7 +121,7 @@ class MappingService:
         still = self._asked.pop(image.id, None)
         if still is None or self._states is None:
             return
-        odometry = self._odometry.at(image.t - AGE)
+        odometry = self._odometry.at(image.t - AGE) if math.isfinite(image.t) else None
         if odometry is not None and (still or abs(self._odometry.turning) < MAX_TURN) and len(self._work) < WAITING:
             seconds = self._config.match_seconds
             self._submit(self._drawn, self._mapper.add_picture, image, odometry, still, seconds=seconds)

@@ -30,9 +30,9 @@ FRONTIER_RANGE, SURFACE_RANGE = (0.5, 2.7), (0.55, 1.7)
 """Nearest and farthest that floor and a surface are seen from well [m]: the camera's lower rim, and its noise."""
 LEAST_FRONTIER = 5
 """Cells of a frontier below which it is a gap between pixels [count]: a quarter of a metre."""
-GAP, POCKET = 4, 60
-"""Width of an opening [cells] below which it is a gap between rays, and size of what is unknown [cells] below which
-nobody can go there: 0.2 m, and a quarter of what the robot covers."""
+GAP, POCKET = 3, 40
+"""Width of an opening [cells] below which it is a gap between pixels, and size of what is unknown [cells] below which
+nobody can go there: 0.15 m, and a third of what the robot covers."""
 TRIES = 3
 """Views without result after which a cell is given up [count]: its floor cannot be seen."""
 MOST = 500
@@ -82,8 +82,8 @@ def survey(grid: Grid, states: NDArray[np.uint8], here: Pose2, barred: list[tupl
 def interesting(grid: Grid, states: NDArray[np.uint8], near: Cells) -> tuple[Cells, int]:
     """Cells that a view should show: frontiers, and what stands above the floor unseen from near; and their places."""
     free = states == FREE
-    # Gaps between the rays on a wall lead nowhere, and into a pocket the robot does not fit.
-    open_ = ndimage.binary_opening(states == UNKNOWN, np.ones((GAP, GAP)))
+    # Where no ray of the lidar has passed a wall is in between; into gaps and pockets the robot does not fit.
+    open_ = ndimage.binary_opening((states == UNKNOWN) & (grid.passed > 0), np.ones((GAP, GAP)))
     labels, count = ndimage.label(open_)
     sizes = np.bincount(labels.ravel(), minlength=count + 1)
     sizes[0] = 0
@@ -104,11 +104,11 @@ def interesting(grid: Grid, states: NDArray[np.uint8], near: Cells) -> tuple[Cel
     return found, places
 
 
-def shown(grid: Grid, pose: Pose2, reach: tuple[float, float]) -> Cells:
-    """Cells that the camera has in view from `pose` between two distances [m], with nothing high in between."""
+def shown(grid: Grid, pose: Pose2, reach: tuple[float, float], blocked: Cells) -> Cells:
+    """Cells that the camera has in view from `pose` between two distances [m], with nothing `blocked` in between."""
     rows, columns = np.nonzero(_disc(grid, pose, reach[1]))
     cells = grid.points((rows, columns))
-    seen = _sees(grid, np.array([pose[:2]]), cells, reach)[0]
+    seen = _sees(grid, np.array([pose[:2]]), cells, reach, blocked)[0]
     bearing = np.arctan2(cells[:, 1] - pose[1], cells[:, 0] - pose[0]) - pose[2]
     seen &= np.abs(np.mod(bearing + math.pi, 2 * math.pi) - math.pi) < HALF_VIEW
     found = np.zeros(grid.shape, bool)
@@ -139,9 +139,9 @@ def _best(grid: Grid, states: NDArray[np.uint8], wanted: Cells, spots: Array, co
         spots, costs = spots[order], costs[order]
     if not len(spots):
         return None
-    seen = _sees(grid, spots, cells, FRONTIER_RANGE)
-    distance = np.hypot(spots[:, None, 0] - cells[None, :, 0], spots[:, None, 1] - cells[None, :, 1])
-    seen &= ~surface[None, :] | (distance <= SURFACE_RANGE[1])
+    seen = np.zeros((len(spots), len(cells)), bool)
+    seen[:, ~surface] = _sees(grid, spots, cells[~surface], FRONTIER_RANGE, grid.walls)
+    seen[:, surface] = _sees(grid, spots, cells[surface], SURFACE_RANGE, grid.tall)
     bearing = np.arctan2(cells[None, :, 1] - spots[:, None, 1], cells[None, :, 0] - spots[:, None, 0])
     best: View | None = None
     best_score = 0.0
@@ -159,9 +159,8 @@ def _best(grid: Grid, states: NDArray[np.uint8], wanted: Cells, spots: Array, co
     return best
 
 
-def _sees(grid: Grid, spots: Array, cells: Array, reach: tuple[float, float]) -> Cells:
-    """Which cells (n, 2) are seen from which spots (k, 2) between two distances, past walls: (k, n)."""
-    blocked = grid.walls
+def _sees(grid: Grid, spots: Array, cells: Array, reach: tuple[float, float], blocked: Cells) -> Cells:
+    """Which cells (n, 2) are seen from which spots (k, 2) between two distances, past what is `blocked`: (k, n)."""
     dx, dy = cells[None, :, 0] - spots[:, None, 0], cells[None, :, 1] - spots[:, None, 1]
     distance = np.hypot(dx, dy)
     found: Cells = (distance >= reach[0]) & (distance <= reach[1])

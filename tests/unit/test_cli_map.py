@@ -1,0 +1,37 @@
+"""`tidybot map`: what it prints, and what it says to those who mistype."""
+
+import zlib
+
+import numpy as np
+import pytest
+
+from cli.main import main
+from cli.map import line, states, terminal
+from common import messages as m
+from common.map_file import FREE, OCCUPIED, UNKNOWN
+
+
+def test_the_progress_is_one_line() -> None:
+    status = m.MappingStatus(t=133.0, phase="exploring", area=34.21, frontiers=5, keyframes=80, loops=3)
+    assert line(status) == "exploring    34.2 m2 of floor, 5 places left to look at, 80 keyframes, 3 loops, 02:13"
+
+
+def test_the_map_is_drawn_with_the_north_above() -> None:
+    cells = np.full((8, 6), FREE, np.uint8)
+    cells[7, :], cells[0, 0], cells[:2, 5] = OCCUPIED, OCCUPIED, UNKNOWN
+    assert terminal(cells) == ["######", "......", "......", "#.... "]
+    wide = terminal(np.full((300, 400), FREE, np.uint8))
+    assert all(len(row) <= 72 for row in wide)
+    assert terminal(np.zeros((1, 1), np.uint8)) == []
+
+
+def test_the_grid_of_a_message_is_unpacked() -> None:
+    cells = np.arange(6, dtype=np.uint8).reshape(2, 3) % 3
+    packed = zlib.compress(cells.tobytes())
+    sent = m.MapGrid(t=0, x=0, y=0, resolution=0.05, width=3, height=2, cells=packed, odom=(0, 0, 0))
+    assert (states(sent) == cells).all()
+
+
+def test_nothing_to_go_on_with_is_said(tmp_path: "pytest.TempPathFactory", capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["map", "--resume", str(tmp_path), "--out", str(tmp_path)]) == 1
+    assert "no pose_graph.json there" in capsys.readouterr().err
