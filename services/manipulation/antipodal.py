@@ -44,6 +44,9 @@ LONGEST = 0.06
 """Farthest [m] from an object's middle that it is taken: beyond, its weight turns it between the pads."""
 KEPT, APART, TURNED = 40, 0.012, math.radians(20)
 """How many grasps are proposed, and from where on [m, rad] two of them are different ones."""
+MOST_UPWARD, LAID_DOWN = 0.25, 0.6
+"""Sine of the steepest upward approach with which an object can be put down upright, and what it costs when it has to
+be put down as it lies: as much as good contacts are worth."""
 LOW = 0.09
 """Height [m] up to which an object is better taken from above."""
 
@@ -80,7 +83,8 @@ def antipodal(target: Target, forward: float, opening: float, widest: float) -> 
                 Pose(at, rotation), contact.width, float(at[2]) - target.bottom, math.radians(tilt), label,
                 _axis(target, rotation), on_surface=True,
             )  # fmt: skip
-            found.append((_worth(target, contact, at - centre, tilt, off, widest), grasp))
+            worth = _worth(target, contact, at - centre, tilt, off, widest) - _from_below(grasp)
+            found.append((worth, grasp))
     return _different(sorted(found, key=lambda entry: -entry[0]))
 
 
@@ -93,6 +97,14 @@ def _axis(target: Target, rotation: Array) -> float | None:
     along = float(rotation[:2, 2] @ (math.cos(target.yaw), math.sin(target.yaw)))
     turn = math.pi if kind.ends_alike and along > 0 else 0.0
     return math.remainder(target.yaw + turn, math.tau)
+
+
+def _from_below(grasp: Grasp) -> float:
+    """What a grasp of something that lies costs when the hand would come from below it once that stands."""
+    if grasp.axis is None:
+        return 0.0
+    lean = float(grasp.pose.rotation[:2, 2] @ (math.cos(grasp.axis), math.sin(grasp.axis)))
+    return LAID_DOWN if lean > MOST_UPWARD else 0.0
 
 
 def _directions(target: Target, facing: float) -> Iterator[tuple[Array, int, float, str]]:

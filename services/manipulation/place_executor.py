@@ -1,7 +1,5 @@
 """Place executor: the grasped object is set on a receptacle or where there is room; the hand opens when it stands."""
 
-from itertools import product
-
 import numpy as np
 from msgspec.structs import replace
 
@@ -42,27 +40,29 @@ def place(robot: Robot, where: str, beside: ObjectRef | None = None, away_from: 
     household = robot.io.household
     held = robot.grasped or _unknown(robot)
     robot.phase = "place"
-    footprint = max(held.size[0], held.size[1])
+    stances = [held, held.as_found] if held.as_found is not None else [held]
     known = [o for o in robot.source.objects() if o.label != held.label]
     names = [where] if where else [household.delivery, *(r.name for r in household.receptacles if not r.depth)]
     anchor = next((o for o in known if beside and o.label == beside.label), beside)
-    choices: list[tuple[str, list[tuple[float, float]], float, float]] = []
-    for name in dict.fromkeys(names):
-        r = household.receptacle(name)
-        if r is None:
-            continue
-        surface, drop = (r.depth, BIN_DROP) if r.depth else (r.center[2], DROP)
-        free = free_spots(robot, r, footprint, held.label, anchor, away_from)
-        if free:
-            choices.append((r.name, free, surface, drop))
-    if not where:
-        choices.append(("floor", [(planner_of(robot).arm.forward + x, y) for x, y in FLOOR_SPOTS], 0.0, DROP))
+    choices: list[tuple[GraspedObject, str, list[tuple[float, float]], float, float]] = []
+    for stance in stances:
+        for name in dict.fromkeys(names):
+            r = household.receptacle(name)
+            if r is None:
+                continue
+            surface, drop = (r.depth, BIN_DROP) if r.depth else (r.center[2], DROP)
+            # What lies takes up more room than when it stands.
+            free = free_spots(robot, r, max(stance.size[:2]), held.label, anchor, away_from)
+            if free:
+                choices.append((stance, r.name, free, surface, drop))
+        if not where:
+            on_floor = [(planner_of(robot).arm.forward + x, y) for x, y in FLOOR_SPOTS]
+            choices.append((stance, "floor", on_floor, 0.0, DROP))
     if not choices:
         near = f" next to the {anchor.label}" if anchor else ""
         raise Failure("UNREACHABLE", f"no free spot of the {where}{near} is within reach from here")
     last, planner = Failure("UNREACHABLE", "nothing within reach"), planner_of(robot)
-    stances = [held, held.as_found] if held.as_found is not None else [held]
-    for held, (name, free, surface, drop) in product(stances, choices):
+    for held, name, free, surface, drop in choices:
         try:
             around, now = _around(robot, held, name), robot.joints.copy()
             plan = yield from robot.work(plan_place, planner, held, free, surface, drop, around, now)
