@@ -42,6 +42,9 @@ HAND_DEPTH = 0.036
 it, and the hand may keep back a little)."""
 LONGEST = 0.06
 """Farthest [m] from an object's middle that it is taken: beyond, its weight turns it between the pads."""
+LEVER = 0.08
+"""Farthest [m] to the side of an object's middle, in any direction: held by its neck a bottle of 0.3 kg that lay swings
+by 35 degrees."""
 KEPT, APART, TURNED = 40, 0.012, math.radians(20)
 """How many grasps are proposed, and from where on [m, rad] two of them are different ones."""
 MOST_UPWARD, LAID_DOWN = 0.25, 0.6
@@ -78,6 +81,8 @@ def antipodal(target: Target, forward: float, opening: float, widest: float) -> 
             if contact.width > widest:
                 continue
             at = centre + rotation @ place
+            if float(np.hypot(*(at - centre)[:2])) > LEVER:
+                continue
             label = f"{name}, {1000 * place[0]:+.0f}/{1000 * place[2]:+.0f} mm"
             grasp = Grasp(
                 Pose(at, rotation), contact.width, float(at[2]) - target.bottom, math.radians(tilt), label,

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from common.geometry import quat_matrix, yaw_quat
-from services.manipulation.antipodal import LONGEST, PLAY, STEEPEST, antipodal
+from services.manipulation.antipodal import LEVER, LONGEST, MOST_UPWARD, PLAY, STEEPEST, antipodal
 from services.manipulation.arm_model import Array
 from services.manipulation.clearance import PAD
 from services.manipulation.grasp import Grasp
@@ -173,3 +173,23 @@ def test_what_lies_and_has_an_upper_side_is_taken_so_that_it_can_be_stood_up() -
         assert abs(math.remainder(grasp.axis - can.yaw, math.pi)) < 1e-9
     assert all(grasp.axis == can.yaw for grasp in grasps(replace(can, kind="bottle"))), "its ends are not alike"
     assert all(grasp.axis is None for grasp in grasps(rod))
+
+
+def test_nothing_is_held_far_to_the_side_of_its_middle() -> None:
+    bottle = replace(target("long", (0.24, 0.058, 0.058), tilt=math.pi / 2), kind="bottle")
+    found = grasps(bottle)
+    assert found
+    assert all(math.dist(g.pose.position[:2], AT[:2]) <= LEVER + 1e-9 for g in found)
+
+
+def test_what_lies_is_rather_taken_so_that_the_hand_is_above_it_once_it_stands() -> None:
+    # Its upper end points away from the robot: from the near side the hand would come from below.
+    bottle = replace(target("long", (0.2, 0.06, 0.06), tilt=math.pi / 2), kind="bottle")
+
+    def upward(grasp: Grasp) -> bool:
+        assert grasp.axis is not None
+        return float(grasp.pose.rotation[:2, 2] @ (math.cos(grasp.axis), math.sin(grasp.axis))) > MOST_UPWARD
+
+    found = [upward(g) for g in grasps(bottle)]
+    assert not found[0]
+    assert found == sorted(found), "those that cannot stand it up come last"
