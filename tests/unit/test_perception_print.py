@@ -6,10 +6,11 @@ import pytest
 
 from common.bus.memory import MemoryBus, MemoryIo
 from common.household import load_household
+from common.messages import WorldObject
 from services.perception.naming.observer import Observer
 from services.perception.naming.reader import Reader
 from services.perception.naming.text import LIKELY, SURE, Line, likeness, merged, printed_words, traces
-from services.perception.naming.vocabulary import common_words, taken
+from services.perception.naming.vocabulary import common_words, taken, unlike_said
 from tests.support import eventually
 from tests.unit.painted import Box, label, view_of_boxes
 
@@ -94,3 +95,24 @@ def test_a_reader_whose_libraries_are_missing_is_told_of_once_and_nothing_is_rea
     assert sight is not None and sight.looks and not sight.lines
     assert not observer.can_read and "libgl1" in reader.broken
     io.shutdown()
+
+
+def seen(kind: str, colour: str, text: str = "") -> WorldObject:
+    return WorldObject(label="it", kind=kind, colour=colour, position=(0.0, 0.0, 0.0), id="it", text=text)
+
+
+@pytest.mark.parametrize(
+    ("asked", "kind", "colour", "text", "unlike"),
+    [
+        ("apple juice", "carton", "orange", "ORANGE / JUICE", True),
+        ("apple juice", "bottle", "yellow", "APPLE / JUICE", False),
+        ("orange juice", "carton", "orange", "JUICE", False),
+        ("green tea", "box", "white", "green tea", False), ("green tea", "box", "white", "black tea", True),
+        ("the tomato soup", "can", "blue", "", False),
+    ],
+)  # fmt: skip
+def test_a_colour_or_fruit_that_was_said_is_printed_on_the_thing_or_is_its_own(
+    asked: str, kind: str, colour: str, text: str, unlike: bool
+) -> None:
+    o = seen(kind, colour, text)
+    assert unlike_said(o, asked.split(), lambda word: likeness([word], text) >= SURE) is unlike

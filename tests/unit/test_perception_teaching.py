@@ -180,3 +180,11 @@ def test_what_reads_nearly_like_the_words_is_asked_about_and_nothing_else_is() -
     answer = node.ask("the corn")
     assert not answer.found
     assert [(p.label, p.likeness) for p in answer.perhaps] == [("white box 0", HALF_READ)]
+
+
+@pytest.mark.skipif(not installed(), reason="the extra `ocr`")
+def test_a_fruit_that_was_asked_for_is_not_another_one_of_which_there_is_juice_too() -> None:
+    carton = label("ORANGE", "JUICE", ground=(240, 240, 235), ink=(20, 20, 20))
+    node = Shown(Box(0.62, 0.1, carton), Box(0.62, -0.1, VITAMINS))
+    assert not node.ask("the apple juice").found
+    assert node.ask("the orange juice").label == "white box 0"

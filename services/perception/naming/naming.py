@@ -24,13 +24,15 @@ from services.perception.naming.observer import Observer
 from services.perception.naming.recognise import Match, matches
 from services.perception.naming.teaching import Teacher
 from services.perception.naming.text import LIKELY, SURE, likeness, printed_words, shown, traces
-from services.perception.naming.vocabulary import common_words, plain_words, printable, taken
+from services.perception.naming.vocabulary import common_words, plain_words, printable, taken, unlike_said
 from services.perception.view import View
 
 HALF_READ, SOMEWHAT, TRACE = 0.5, 0.4, 0.1
 """Likeness, as `common.likeness` has it, of what reads nearly like the words, of what looks somewhat like the taught
 thing, and of what shows a part of one word. Chosen: a person is asked about the first two when they are seen, about the
 last when nothing else was found."""
+OTHER_LOOKS = 0.5
+"""By how much what has not the colour that was said comes later among those to be looked at."""
 
 
 class Naming:
@@ -117,6 +119,7 @@ class Naming:
         read = [o for o in known if scores[o.id] >= max(SURE, min(best, 0.99))]
         # "Green tea" is what has both words on it, where several have "tea".
         others = [w for w in normalise(phrase).split() if w not in words]
+        read = [o for o in read if not _unlike(o, others)]
         hits = {o.id: sum(likeness([w], o.text) >= SURE for w in others) for o in read}
         return [o for o in read if hits[o.id] == max(hits.values())]
 
@@ -141,15 +144,16 @@ class Naming:
     def unsure(self, query: str, objects: Sequence[m.WorldObject], base: Pose2) -> list[str]:
         """Labels of objects that could be meant and have to be seen from nearer to tell, the likeliest first, of equal
         ones that which is nearest to `base`."""
-        words, name = self._printed(query, common_words(self._io.household)), normalise(query)
-        said = frozenset(name.split())
+        words, name = self._asked_print(query), normalise(query)
         found: list[tuple[float, float, str]] = []
         for o in objects:
             away = math.hypot(o.position[0] - base[0], o.position[1] - base[1])
             if not o.held and name in self._matches.get(o.id, Match()).perhaps:
                 found.append((-1.0, away, o.label))
-            elif not o.held and words and self._observer.can_read and printable(o, said):
+            elif not o.held and words and self._observer.can_read and printable(o):
                 sight, score = self._observer.sight(o.id), likeness(words, o.text)
+                if _unlike(o, name.split()):
+                    score -= OTHER_LOOKS
                 if score >= LIKELY or sight is None or not sight.read:
                     found.append((-score, away, o.label))
                 elif not sight.exhausted and (not sight.named or traces(words, o.text) >= LIKELY):
@@ -160,18 +164,22 @@ class Naming:
     def perhaps(self, query: str, objects: Sequence[m.WorldObject]) -> list[m.PossibleObject]:
         """The objects of which a person has to say whether they are meant: their print was half read, or they look
         somewhat like what was taught."""
-        words, name = self._printed(query, common_words(self._io.household)), normalise(query)
-        said, found = frozenset(name.split()), []
+        words, name = self._asked_print(query), normalise(query)
+        found = []
         for o in objects:
             sight, like = self._observer.sight(o.id), 0.0
             if name in self._matches.get(o.id, Match()).perhaps:
                 like = SOMEWHAT
-            elif words and sight is not None and sight.read and printable(o, said):
-                half = likeness(words, o.text) >= LIKELY
+            elif words and sight is not None and sight.read and printable(o):
+                half = likeness(words, o.text) >= LIKELY and not _unlike(o, name.split())
                 like = HALF_READ if half else TRACE if traces(words, o.text) >= SURE else 0.0
             if like and not o.held:
                 found.append(m.PossibleObject(id=o.id, label=o.label, likeness=like, position=o.position, on=o.on))
         return sorted(found, key=lambda p: -p.likeness)
+
+    def _asked_print(self, query: str) -> list[str]:
+        """The words that are worth a nearer look: those that name no listed thing or kind, else any of a print."""
+        return self._printed(query, common_words(self._io.household)) or self._printed(query)
 
     def _printed(self, query: str, common: frozenset[str] | None = None) -> list[str]:
         """The words of a query that may be print, which are not `common`; those of a taught name are not."""
@@ -190,3 +198,7 @@ class Naming:
     def _publish(self) -> None:
         names = [taught.message for taught in self._memory.names.values()]
         self._io.publish(topics.HOUSEHOLD_NAMES, m.TaughtNames(names=names))
+
+
+def _unlike(o: m.WorldObject, said: Sequence[str]) -> bool:
+    return unlike_said(o, said, lambda word: likeness([word], o.text) >= SURE)

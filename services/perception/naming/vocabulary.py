@@ -1,7 +1,7 @@
 """Words that name no single object: kinds, colours, places, relations. What else is in a query may be a name or a
 print."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 from common.household import Household
 from common.kinds import KINDS
@@ -43,11 +43,16 @@ def _split(phrases: Iterable[str]) -> frozenset[str]:
     return frozenset(word for phrase in phrases for word in normalise(phrase).split())
 
 
-def printable(o: WorldObject, said: frozenset[str]) -> bool:
-    """The object could have the print that is asked for: it is of a kind that has any, and of the colour that was
-    `said`."""
-    colours = said & {*COLOURS}
-    return o.kind not in BARE and (not colours or bool(colours & {o.colour, *o.colours}))
+def printable(o: WorldObject) -> bool:
+    """It is of a kind that may have print on it."""
+    return o.kind not in BARE
+
+
+def unlike_said(o: WorldObject, said: Iterable[str], has_print: Callable[[str], bool]) -> bool:
+    """A colour or a fruit was `said` that is neither the object's nor printed on it: "apple juice" is no orange juice,
+    and "green tea" is green or says so."""
+    own = {o.colour, *o.colours, o.kind, *o.kinds}
+    return any(w not in own and not has_print(w) for w in said if w in COLOURS or w in BARE)
 
 
 def taken(name: str, household: Household) -> str:
