@@ -1,11 +1,23 @@
 """What "red mugs go on the shelf" is a rule about: kinds, colours and names in a person's words. Pure."""
 
+from collections.abc import Sequence
+
 from common.kinds import KINDS
 from common.messages import TidyRule
 from common.naming import normalise
 from common.words import Words
 
 _ALL = {"all", "every", "each", "any", "our", "your", "these", "those"}
+
+
+ONES = frozenset({"the", "this", "that", "it", "them", "these", "those", "a", "an", "all", "every", "both", "some"})
+"""First words by which a person means the things that are there, not their kind."""
+
+
+def is_generic(things: Sequence[str]) -> bool:
+    """Do the words mean all of their kind (`mugs`, `my keys`), and not those that are there (`the mugs`)?"""
+    last = things[-1] if things else ""
+    return bool(last) and things[0] not in ONES and last.endswith("s") and not last.endswith("ss")
 
 
 def rule_about(things: str, to: str, words: Words) -> TidyRule:

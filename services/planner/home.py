@@ -6,7 +6,7 @@ from common.language.pattern import Slots
 from common.messages import PlanStep, Sighting
 from common.naming import normalise
 from common.part_names import kind_named
-from common.tidy_rule import rule_about
+from common.tidy_rule import ONES, rule_about
 from common.whereabouts import ago, decayed, kind_of_phrase, of_thing
 from common.words import Destination
 from services.planner.answers import where
@@ -14,8 +14,6 @@ from services.planner.phrases import Phrase, read
 from services.planner.plan_builder import PlanBuilder, Refusal
 from services.planner.resolve import fitting, spot
 
-NOT_ALL = frozenset({"the", "this", "that", "it", "them", "these", "those", "a", "an", "all", "every", "both", "some"})
-"""First words by which a person means the ones that are there, not their kind (chosen)."""
 CLEARLY = 0.6
 """Share of the visits from which a thing is usually at one place (chosen)."""
 TOLD = 3
@@ -43,7 +41,7 @@ def rule(builder: PlanBuilder, slots: Slots) -> None:
     phrase = read(things, builder.vocabulary)
     plural = isinstance(phrase, Phrase) and (phrase.plural or (phrase.sense.new and _is_plural(things[-1])))
     whole = isinstance(phrase, Phrase) and not (phrase.sense.every or phrase.relation or phrase.but)
-    if things[0] in NOT_ALL or not (plural and whole):
+    if things[0] in ONES or not (plural and whole):
         raise Refusal(f"I do not know which {' '.join(things)} you mean; say from now on for all")
     rule_always(builder, slots)
 

@@ -14,6 +14,7 @@ from services.brain.config import BrainConfig
 from services.brain.home.keeper import HouseholdKeeper
 from services.brain.home.part_meant import room_around
 from services.brain.home.sighting_log import MAX_ROWS, VISIT, SightingLog
+from services.brain.home.told import edit_told
 from services.brain.service import BrainService
 from tests.unit.brain_bench import Bench
 from tests.unit.test_brain_vla import answer_plan, asked
@@ -172,6 +173,40 @@ def test_said_names_are_kept_and_said_again() -> None:
     answer_plan(bench, 1, [m.PlanStep(action="name", object="counter", text="worktop")])
     bench.until(lambda: any("worktop" in text for text in bench.texts(topics.SPEECH_GOAL)))
     assert bench.last(topics.HOUSEHOLD_EDITS).names[0].name == "worktop"
+
+
+@pytest.mark.parametrize(
+    ("text", "edit"),
+    [
+        ("this is the kitchen", m.HouseholdEdit(do="name", name="kitchen", kind="room")),
+        ("Please call this table the workbench.", m.HouseholdEdit(do="name", name="workbench", kind="surface")),
+        ("rename the counter to worktop", m.HouseholdEdit(do="name", name="worktop", part="counter")),
+        ("forget that rule", m.HouseholdEdit(do="forget rule")),
+        ("bring me the red mug", None),
+        ("the mug goes on the counter", None),
+        ("this is my vitamin box", None),
+        ("come back", None),
+    ],
+)
+def test_what_a_sentence_tells_of_the_home(text: str, edit: m.HouseholdEdit | None) -> None:
+    assert edit_told(text, HOME) == edit
+
+
+def test_without_a_planner_names_and_rules_are_kept_as_well() -> None:
+    bench = Bench(BrainConfig(pipeline="fetch"))
+    bench.hear("mugs go on the counter")
+    bench.until(lambda: bench.state.last is not None)
+    assert bench.state.last is not None and bench.state.last.outcome == "delivered"
+    assert [r.things for r in bench.last(topics.HOUSEHOLD_EDITS).rules] == ["mugs"]
+    assert any("mugs go on the counter from now on" in text for text in bench.texts(topics.SPEECH_GOAL))
+    assert not bench.count(topics.NAVIGATION_GOAL)
+
+
+def test_without_a_planner_a_refusal_is_an_error_that_is_spoken() -> None:
+    bench = Bench(BrainConfig(pipeline="fetch"))
+    bench.hear("call the counter the mug")
+    bench.until(lambda: bench.state.last is not None)
+    assert bench.state.last is not None and bench.state.last.code == "NAME_TAKEN"
 
 
 def test_a_room_without_a_map_ends_at_its_walls() -> None:

@@ -6,6 +6,7 @@ from py_trees.common import Status
 from common import messages as m
 from common import topics
 from common.likeness import LEAST
+from services.brain.home.told import edit_told
 from services.brain.language.intent import parse
 from services.brain.mission.context import Context
 from services.brain.mission.mission import Failure, gripper_holds
@@ -13,6 +14,7 @@ from services.brain.pipelines.shared import drive_home, report_failure
 from services.brain.recoveries.regrasp import grab_failed
 from services.brain.steps.ask import AskQuestion
 from services.brain.steps.find import reference_to
+from services.brain.steps.home import tell_home
 from services.brain.steps.identify import ChooseCandidate, HearIdentity, survey, whether
 from services.brain.steps.leaf import Call, Leaf, Settle
 from services.brain.steps.motion import Grab, Listen, Navigate, Ready, Release, Wait
@@ -44,12 +46,19 @@ def carry_out(ctx: Context) -> Behaviour:
     coming = Sequence(
         "come_back", drive_home(ctx), Settle("settle", ctx), Complete("complete", ctx), Settle("rest", ctx)
     )
+    telling = Sequence(
+        "tell",
+        tell_home(ctx, lambda: told(ctx), "keep_and_say", "keep what was told"),
+        Complete("complete", ctx),
+        Settle("rest", ctx),
+    )
     no = Status.FAILURE
     return Selector(
         "as_asked",
         Condition(
             "nothing_to_stop", Call("end", ctx, lambda: end_unneeded(ctx)), lambda: ctx.mission.task.kind == "stop", no
         ),
+        Condition("keep_what_was_told", telling, lambda: ctx.mission.task.kind == "tell", no),
         Condition("return_only", coming, lambda: ctx.mission.task.kind == "return", no),
         Condition("fetch_it", fetching, lambda: ctx.mission.task.kind == "fetch", no),
     )
@@ -108,6 +117,10 @@ class ParseCommand(Leaf):
     def update(self) -> Status:
         ctx = self.ctx
         ctx.gripper.resolve_uncertainty(gripper_holds(ctx.io.latest(topics.JOINT_STATES)))
+        if edit_told(ctx.mission.command, ctx.io.household) is not None:
+            ctx.mission.task.kind = self.feedback_message = "tell"
+            ctx.note("understood: tell", ctx.mission.command, "planned")
+            return Status.SUCCESS
         intent = parse(ctx.mission.command, ctx.io.household)
         ctx.note(f"understood: {intent.kind}", intent.item or intent.reason, "planned")
         if intent.kind == "none":
@@ -131,9 +144,15 @@ class Complete(Leaf):
             unsure = f"I am not sure that I brought the {task.item}."
             ctx.record_failure(Failure("COMPLETED", "NO_EVIDENCE", spoken=unsure))
             return Status.FAILURE
-        ctx.end_mission("delivered", "" if task.kind == "fetch" else "back at the start")
-        ctx.show_state("COMPLETED", detail=f"{task.item} delivered" if task.item else "back at the start")
+        did = {"fetch": "", "tell": "kept what was told"}.get(task.kind, "back at the start")
+        ctx.end_mission("delivered", did)
+        ctx.show_state("COMPLETED", detail=f"{task.item} delivered" if task.item else did)
         return Status.SUCCESS
+
+
+def told(ctx: Context) -> m.HouseholdEdit:
+    """What the command tells of the home."""
+    return edit_told(ctx.mission.command, ctx.io.household) or m.HouseholdEdit()
 
 
 def end_unneeded(ctx: Context) -> None:

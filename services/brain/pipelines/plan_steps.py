@@ -15,7 +15,7 @@ from services.brain.recoveries.recovery import Subtree, Task, with_recoveries
 from services.brain.recoveries.table import AFTER_GRASPING, AFTER_LOOKING, AFTER_PUTTING_DOWN
 from services.brain.steps.find import Approach, LocateObject, TurnOnTheSpot, label_of, object_ref
 from services.brain.steps.gripper import MoveGripper, open_hand, set_down_or_open
-from services.brain.steps.home import tell_home
+from services.brain.steps.home import edit_of, tell_home
 from services.brain.steps.leaf import Leaf, Say, Settle
 from services.brain.steps.motion import Grab, Navigate
 from services.brain.steps.plan import describe_step
@@ -90,9 +90,9 @@ def step_tree(ctx: Context, step: PlanStep, carried: str, at_home: bool = False)
         case "wait":
             return Settle(PLAN_STEP, ctx, name=name, seconds=step.seconds)
         case "name" | "rule":
-            return tell_home(ctx, step, PLAN_STEP, name)
+            return tell_home(ctx, lambda: edit_of(step, ctx), PLAN_STEP, name)
         case "forget" if step.target:
-            return tell_home(ctx, step, PLAN_STEP, name)
+            return tell_home(ctx, lambda: edit_of(step, ctx), PLAN_STEP, name)
         case "teach":
             return teach(ctx, step, PLAN_STEP, name)
         case "forget":

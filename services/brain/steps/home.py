@@ -1,5 +1,6 @@
 """Leaves that keep what people tell of their home: names of its parts, and where things belong."""
 
+from collections.abc import Callable
 from typing import get_args
 
 from py_trees.common import Status
@@ -12,10 +13,10 @@ from services.brain.steps.leaf import Leaf, Say
 from services.brain.tree.composites import Sequence
 
 
-def tell_home(ctx: Context, step: m.PlanStep, node_id: str, name: str) -> Sequence:
+def tell_home(ctx: Context, edit: Callable[[], m.HouseholdEdit], node_id: str, name: str) -> Sequence:
     """Keep what was told, and say what came of it."""
-    keep = EditHousehold("keep", ctx, step)
-    return Sequence(node_id, keep, Say("say_done", ctx, lambda: done(ctx, step, keep.result)), name=name)
+    keep = EditHousehold("keep", ctx, edit)
+    return Sequence(node_id, keep, Say("say_done", ctx, lambda: done(ctx, edit(), keep.result)), name=name)
 
 
 def edit_of(step: m.PlanStep, ctx: Context) -> m.HouseholdEdit:
@@ -30,17 +31,19 @@ def edit_of(step: m.PlanStep, ctx: Context) -> m.HouseholdEdit:
     return m.HouseholdEdit(do="forget rule" if step.target == "rule" else "forget", name=step.text)
 
 
-def done(ctx: Context, step: m.PlanStep, result: m.EditResult | None) -> str:
+def done(ctx: Context, edit: m.HouseholdEdit, result: m.EditResult | None) -> str:
     """What is said of an edit that was kept."""
-    name, was = (result.name, result.part) if result is not None else (step.text, "")
-    if step.action == "rule":
-        return f"All right, {name} go {_at(ctx, was)} from now on."
-    if step.action == "forget":
-        if step.target == "rule":
+    name, was = (result.name, result.part) if result is not None else (edit.name, "")
+    match edit.do:
+        case "rule":
+            return f"All right, {name} go {_at(ctx, was)} from now on."
+        case "forget rule":
             return f"I have forgotten that {name} go {_at(ctx, was)}."
-        return f"I have forgotten the name {name}."
-    before = f", the {was}" if was and was != name and not was.startswith("room ") else ""
-    return f"I will call this{before} the {name} from now on."
+        case "forget":
+            return f"I have forgotten the name {name}."
+        case "name":
+            before = f", the {was}" if was and was != name and not was.startswith("room ") else ""
+            return f"I will call this{before} the {name} from now on."
 
 
 def _at(ctx: Context, name: str) -> str:
@@ -51,16 +54,16 @@ def _at(ctx: Context, name: str) -> str:
 class EditHousehold(Leaf):
     """Keeps an edit; `result` is what came of it."""
 
-    def __init__(self, node_id: str, ctx: Context, step: m.PlanStep) -> None:
+    def __init__(self, node_id: str, ctx: Context, edit: Callable[[], m.HouseholdEdit]) -> None:
         super().__init__(node_id, ctx)
-        self._step = step
+        self._edit = edit
         self.result: m.EditResult | None = None
 
     def update(self) -> Status:
-        ctx, step = self.ctx, self._step
-        self.result = result = ctx.home.apply(edit_of(step, ctx))
+        ctx, edit = self.ctx, self._edit()
+        self.result = result = ctx.home.apply(edit)
         if result.ok:
-            ctx.note(f"{step.action}: {result.name}", result.part, "did")
+            ctx.note(f"{edit.do}: {result.name}", result.part, "did")
             return Status.SUCCESS
         self.feedback_message = result.detail
         spoken = f"I did not keep that: {result.detail}."
