@@ -3,14 +3,19 @@
 import msgspec
 
 from common import messages as m
+from common import topics
+from common.bus.memory import MemoryBus, MemoryIo
 from common.floor_plan import Place, Receptacle, Room
 from common.household import Household, load_household
 from common.household_edits import edited
 from common.part_names import kind_named, with_part_names
 from common.tidy_rule import rule_about
 from common.words import Words
+from services.speech.recognise.grammar import vocabulary
+from tests.unit.navigation_flat import Flat
 
 APARTMENT = load_household("apartment")
+ISLAND = m.PlaceName(name="island", kind="surface", part="counter")
 
 
 def table(name: str, x: float, named: bool = False, kind: str = "table", colour: str = "") -> Receptacle:
@@ -145,3 +150,34 @@ def test_what_a_rule_is_about() -> None:
     assert set(rule_about("toys", "box", words).kinds) == set(words.groups["toy"])
     assert rule_about("my keys", "tray", words).names == ["keys", "key"]
     assert rule_about("", "tray", Words()).names == []
+
+
+# --- who follows
+def test_a_service_that_reads_the_edits_follows_them_and_another_does_not() -> None:
+    bus = MemoryBus()
+    follows = MemoryIo(bus, "a", (topics.HOUSEHOLD_EDITS,), (), household=APARTMENT)
+    other = MemoryIo(bus, "b", (), (), household=APARTMENT)
+    first = follows.household
+    assert follows.household is first
+    bus.send(topics.HOUSEHOLD_EDITS, m.HouseholdEdits(names=[ISLAND]))
+    assert follows.household is first  # not before the next step
+    for io in (follows, other):
+        io.begin(5, 1.0)
+    island = follows.household.receptacle("island")
+    assert island is not None and follows.household.receptacle("counter") is island
+    assert other.household.receptacle("island") is None and follows.loaded == APARTMENT
+
+
+def test_navigation_knows_a_place_by_its_new_name() -> None:
+    flat = Flat()
+    flat.ask("goto island", "a.1")
+    assert flat.status().code == "UNKNOWN_PLACE"
+    flat.bus.send(topics.HOUSEHOLD_EDITS, m.HouseholdEdits(names=[ISLAND]))
+    flat.ask("goto island", "a.2")
+    assert flat.status().status == "navigating"
+
+
+def test_speech_listens_for_the_new_name() -> None:
+    named = edited(APARTMENT, m.HouseholdEdits(names=[ISLAND]))
+    assert "island" in vocabulary(named, (), (), ())["surface"]
+    assert "island" not in vocabulary(APARTMENT, (), (), ())["surface"]
