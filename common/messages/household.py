@@ -98,7 +98,7 @@ class HomeParts(Message):
 
 class Sighting(Message):
     """How often a thing was seen on a surface. `thing`: its label or a taught name; `part` as the household file calls
-    the surface, "" for the floor.
+    the surface or furniture, "" for the floor.
 
     `weight`: visits on which it was there, older ones counting less, as of `last` [s since 1970, or robot time within
     an evaluation], when it was last seen there, at `position`.

@@ -190,7 +190,6 @@ def _place(builder: PlanBuilder, s: Sighting) -> str:
     """`on the counter in the kitchen`."""
     household = builder.world.household
     r, room = household.receptacle(s.part) if s.part else None, household.room_at(s.position[0], s.position[1])
-    if r is None:
-        return f"on the floor in the {room.name}" if room else "on the floor"
-    on = f"{'in' if r.depth else 'on'} the {r.name}"
-    return on if room is None or room.name.split()[0] in r.name else f"{on} in the {room.name}"
+    name = r.name if r is not None else s.part or "floor"
+    on = f"{'in' if r is not None and r.depth else 'on'} the {name}"
+    return on if room is None or room.name.split()[0] in name else f"{on} in the {room.name}"

@@ -96,10 +96,10 @@ class SightingLog:
             self._counted.pop((least.thing, least.part), None)
 
     def _part(self, on: str) -> str:
-        """The surface as the household file calls it, whatever it is called now."""
+        """The surface, or the furniture, as the household file calls it, whatever it is called now."""
         home = self._io.household
         surface = home.receptacle(on) if on else None
-        return self._io.loaded.receptacles[home.receptacles.index(surface)].name if surface is not None else ""
+        return self._io.loaded.receptacles[home.receptacles.index(surface)].name if surface is not None else on
 
     @property
     def rows(self) -> Sequence[m.Sighting]:
