@@ -163,6 +163,16 @@ def recall(args: argparse.Namespace) -> int:
     return 0 if names else 1
 
 
+def page(args: argparse.Namespace) -> int:
+    """One page for all robots, until interrupted."""
+    from cli.fleet.page import serve
+    from cli.fleet.watch_room import WatchRoom
+
+    with desk(args) as d:
+        serve(WatchRoom(d), args.host, args.port)
+    return 0
+
+
 def radio(args: argparse.Namespace) -> int:
     """The configuration of a robot's own router, on standard output."""
     print(router_config(args.to, args.hz), end="")
@@ -209,3 +219,8 @@ def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") ->
     one.add_argument("to", nargs="+", metavar="ENDPOINT", help="the routers to link with: tls/10.0.0.5:7447")
     one.add_argument("--hz", type=float, default=OTHERS, metavar="N", help="of every other stream (%(default)s)")
     one.set_defaults(run=radio)
+    one = verbs.add_parser("page", help="one page for all: map, states, questions, a stop for each and for all")
+    one.add_argument("--host", default="127.0.0.1", metavar="ADDRESS", help="others need a token (default %(default)s)")
+    one.add_argument("--port", type=int, default=8090, metavar="N", help="(default %(default)s)")
+    _options(one, verb=True)
+    one.set_defaults(run=page)

@@ -15,6 +15,7 @@ import zenoh
 
 from cli.fleet.dispatch import Dispatch
 from cli.fleet.robots import Desk, RobotNow
+from cli.fleet.watch_room import WatchRoom
 from cli.main import main
 from common import messages as m
 from common import topics
@@ -155,3 +156,23 @@ def test_a_robot_that_is_lost_hands_over_and_leaves_it_when_it_is_back(router: S
         assert order.by == "far" and not any(c.withdraws for c in far.heard)
     told = "; ".join(lines)
     assert "near is lost" in told and "far has taken it over" in told and "near is back" in told
+
+
+@pytest.mark.slow
+def test_the_page_shows_all_robots_and_what_became_of_its_commands(router: Site, desk: Desk) -> None:
+    with ExitStack() as stack:
+        near, far = Body(stack, router, "near", 2.0), Body(stack, router, "far", -4.0)
+        ready(desk, 2)
+        room = WatchRoom(desk)
+        stack.callback(room.close)
+        eventually(lambda: room.shown()["map"], "a map is drawn", 20)
+        shown = room.shown()
+        assert [r["name"] for r in shown["robots"]] == ["far", "near"] and shown["robots"][1]["pose"][0] == 2.0
+        room.say(TEXT, hand_over=False)
+        eventually(lambda: near.plans, "the nearer one plans it", 20)
+        eventually(lambda: room.shown()["orders"][0]["by"] == "near", "the page says who has it", 20)
+        assert not far.plans
+        room.stop("near")
+        eventually(lambda: room.shown()["orders"][0]["state"].startswith("cancelled"), "the stop has ended it", 20)
+        far.brain.kill()
+        eventually(lambda: room.shown()["robots"][0]["lost"], "the other one is shown as lost", 20)
