@@ -136,7 +136,9 @@ class Grid:
     @property
     def tall(self) -> Cells:
         """Occupied for the lidar, and higher than the camera looks over."""
-        found: Cells = self.walls & ((self.highest > LOOKED_OVER) | (self.highest == 0.0))
+        # The camera sees a wall's face, which may lie in the cell before it.
+        highest = ndimage.maximum_filter(self.highest, 3)
+        found: Cells = self.walls & ((highest > LOOKED_OVER) | (highest == 0.0))
         return found
 
     @property
@@ -152,15 +154,19 @@ class Grid:
         free = seen & ndimage.binary_closing(self.passed > 0, np.ones((3, 3))) & ~taken
         return np.where(taken, OCCUPIED, np.where(free, FREE, UNKNOWN)).astype(np.uint8)
 
-    def message(self, t: float, odom: Pose2, states: NDArray[np.uint8]) -> m.MapGrid:
-        """The map for others; cut to what is known."""
+    def known(self, states: NDArray[np.uint8]) -> tuple[NDArray[np.uint8], tuple[float, float]]:
+        """The part of the states around what is known, and its south-west corner [map]."""
         rows, columns = np.nonzero(states != UNKNOWN)
         if not len(rows):
             rows = columns = np.zeros(1, int)
         top, left = int(rows.min()), int(columns.min())
-        part = states[top : int(rows.max()) + 1, left : int(columns.max()) + 1]
+        part = np.ascontiguousarray(states[top : int(rows.max()) + 1, left : int(columns.max()) + 1])
+        return part, (self.origin[0] + left * RESOLUTION, self.origin[1] + top * RESOLUTION)
+
+    def message(self, t: float, odom: Pose2, states: NDArray[np.uint8]) -> m.MapGrid:
+        """The map for others; cut to what is known."""
+        part, (x, y) = self.known(states)
         return m.MapGrid(
-            t=t, x=self.origin[0] + left * RESOLUTION, y=self.origin[1] + top * RESOLUTION, resolution=RESOLUTION,
-            width=part.shape[1], height=part.shape[0], cells=zlib.compress(np.ascontiguousarray(part).tobytes(), 1),
-            odom=odom,
+            t=t, x=x, y=y, resolution=RESOLUTION, width=part.shape[1], height=part.shape[0],
+            cells=zlib.compress(part.tobytes(), 1), odom=odom,
         )  # fmt: skip

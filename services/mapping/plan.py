@@ -23,13 +23,18 @@ LATERAL = (0.0, 0.15, -0.15, 0.3, -0.3)
 BACK = (0.02, 0.08)
 """Steps back [m] from the least distance to an edge at which it may be reached: the cell at the edge is not free."""
 SOLID = 0.35
-"""Share of a surface's outline at which the lidar meets a body below it, from which on it stands on no legs."""
+"""Share of a surface's free sides at which the lidar meets a body below it, from which on it stands on no legs."""
 BED_SIDE, BED_HIGHEST, SOFA_HIGHEST, LOW_TABLE = 1.1, 0.70, 0.50, 0.52
 """Measures [m] that tell beds, sofas and low tables from tables. Source: DIN EN 1725, DIN 68890 and catalogues."""
-BIN_SIDE, BIN_HEIGHT, BIN_DEEP, BIN_OPEN = (0.20, 0.70), (0.18, 0.62), 0.10, 0.12
-"""Width and height of an open bin, how far below its rim its inside lies [m], and the share of it that shows that."""
+BIN_SIDE, BIN_HEIGHT = (0.15, 0.65), (0.18, 0.62)
+"""Width of the inside of an open bin, and height of its rim [m]."""
+RING, RIM_BAND, RIM_POINTS = 0.06, 0.04, 12
+"""How far around the hole its rim is looked for, the height that counts to it [m], and points without which there is
+none [count]: a cell, and the noise."""
 ASIDE = 3.0
 """How much farther a surface beside or behind the robot's home counts, when one is chosen to bring things to [-]."""
+WHOLE = 0.5
+"""Share of its rectangle that a piece of furniture fills at least, else it is cut."""
 ROBOT = 1.45
 """Height [m] of furniture of which no camera saw the top."""
 MARGIN = 0.15
@@ -46,7 +51,7 @@ class Lidar(NamedTuple):
 def floor_plan(name: str, lidar: Lidar, grid: Grid, states: NDArray[np.uint8], level: Array, low: Array) -> Household:
     """The household of a mapped home; `level` and `low` (n, 3) [map] are points of level surfaces and of low things."""
     surfaces = _separate(find_surfaces(level))
-    bins = _bins(grid, surfaces, low)
+    bins = _bins(grid, low)
     reached = _reached(states)
     receptacles = _named(surfaces, bins, grid, reached)
     taken = [r.outline.grown(0.06) for r in receptacles]
@@ -60,7 +65,7 @@ def floor_plan(name: str, lidar: Lidar, grid: Grid, states: NDArray[np.uint8], l
     delivery, receptacles = _delivery(receptacles)
     return Household(
         name=name, low=_rounded(first - MARGIN), high=_rounded(last + MARGIN), home=home, walls=tuple(walls),
-        furniture=tuple(furniture), rooms=tuple(find_rooms(grid, states, reached)), receptacles=tuple(receptacles),
+        furniture=tuple(furniture), rooms=tuple(find_rooms(grid, states, walls)), receptacles=tuple(receptacles),
         delivery=delivery,
     )  # fmt: skip
 
@@ -105,51 +110,42 @@ def approaches(outline: Rectangle, grid: Grid, reached: Cells, rim: float = 0.0)
     return tuple(found)
 
 
-def _bins(grid: Grid, surfaces: list[Surface], low: Array) -> list[tuple[Rectangle, float]]:
-    """Outline of the inside and height of the rim of open bins."""
-    free = np.ones(len(low), bool)
-    for s in surfaces:
-        free &= s.outline.signed_distances(low[:, 0], low[:, 1]) > 0.05
-    low = low[free]
-    rims = low[low[:, 2] > BIN_HEIGHT[0]]
-    if len(rims) < 12:
-        return []
-    mark = np.zeros(grid.shape, bool)
-    mark[grid.cells(rims)] = True
-    # The lidar sees the sides that the camera does not.
-    near = ndimage.binary_dilation(mark, iterations=2)
-    labels, count = ndimage.label(ndimage.binary_closing(mark | (grid.walls & near)), np.ones((3, 3)))
+def _bins(grid: Grid, low: Array) -> list[tuple[Rectangle, float]]:
+    """Outline of the inside and height of the rim of open bins: holes in a ring of something low."""
+    taken = grid.walls | grid.covered
+    labels, _ = ndimage.label(~taken)
     found = []
-    for n in range(1, count + 1):
-        rows, columns = np.nonzero(labels == n)
-        if len(rows) < 8:
+    for n, where in enumerate(ndimage.find_objects(labels), 1):
+        size = [(part.stop - part.start) * RESOLUTION for part in where]
+        if not (BIN_SIDE[0] <= min(size) and max(size) <= BIN_SIDE[1]):
             continue
-        outer = fit_rectangle(grid.points((rows, columns)))
-        outer = outer.grown(RESOLUTION / 2 - 0.01)
-        if not (BIN_SIDE[0] <= outer.width and outer.length <= BIN_SIDE[1]):
+        hole = labels == n
+        ring = ndimage.binary_dilation(hole) & taken
+        rim = float(np.median(grid.highest[ring]))
+        if not BIN_HEIGHT[0] <= rim <= BIN_HEIGHT[1]:
             continue
-        inside = outer.grown(-0.05).signed_distances(low[:, 0], low[:, 1]) < 0.0
-        around = outer.grown(0.04).signed_distances(low[:, 0], low[:, 1]) < 0.0
-        if inside.sum() < 8:
+        rows, columns = np.nonzero(hole)
+        inside = fit_rectangle(grid.points((rows, columns))).grown(RESOLUTION / 2)
+        near = inside.grown(RING).signed_distances(low[:, 0], low[:, 1]) < 0.0
+        upper = low[near & (np.abs(low[:, 2] - rim) < RIM_BAND)]
+        if len(upper) < RIM_POINTS:
             continue
-        rim = float(np.quantile(low[around, 2], 0.97))
-        deep = float(np.mean(low[inside, 2] < rim - BIN_DEEP))
-        if BIN_HEIGHT[0] <= rim <= BIN_HEIGHT[1] and deep > BIN_OPEN:
-            found.append((outer.grown(-BIN_WALL), rim))
+        height = float(np.quantile(upper[:, 2], 0.8))
+        outer = fit_rectangle(upper[upper[:, 2] > height - RIM_BAND / 2, :2])
+        found.append((outer.grown(-BIN_WALL), height))
     return found
 
 
-def _kind(s: Surface, grid: Grid) -> tuple[str, ReceptacleKind]:
+def _kind(s: Surface, grid: Grid, sides: tuple[Vec2, ...]) -> tuple[str, ReceptacleKind]:
     """What a surface is called by its measures, and the kind it is built as: on legs or with a body."""
-    ring = s.outline.grown(-0.02)
-    count = max(8, int((ring.length + ring.width) / RESOLUTION))
-    around = np.linspace(-0.5, 0.5, count)
-    half = np.full(count, 0.5)
-    u = np.concatenate([around, around, half, -half]) * ring.length
-    v = np.concatenate([half, -half, around, around]) * ring.width
-    x, y = ring.to_map(u, v)
-    body = ndimage.binary_dilation(grid.walls, np.ones((3, 3)))[grid.cells(np.stack([x, y], axis=1))]
-    if float(np.mean(body)) < SOLID:
+    met = []
+    for ax, ay in sides:
+        # A cell's width inside the edge, where no wall behind it is met.
+        along = np.linspace(-0.45, 0.45, 12) * (s.outline.width if ax else s.outline.length)
+        off = (s.outline.length if ax else s.outline.width) / 2 - 0.02
+        spots = np.array([s.outline.to_map(ax * off - ay * a, ay * off + ax * a) for a in along])
+        met.append(grid.at(spots, ndimage.binary_dilation(grid.walls)))
+    if float(np.mean(met)) < SOLID:
         return ("low table" if s.height < LOW_TABLE else "table"), "table"
     if s.outline.width >= BED_SIDE and s.height <= BED_HIGHEST:
         return "bed", "counter"
@@ -180,7 +176,7 @@ def _named(
 
     for s in surfaces:
         if sides := approaches(s.outline, grid, reached):
-            add(*_kind(s, grid), s.outline, s.height, 0.0, sides)
+            add(*_kind(s, grid, sides), s.outline, s.height, 0.0, sides)
     for outline, rim in bins:
         if sides := approaches(outline, grid, reached, BIN_WALL):
             add("bin", "bin", outline, 0.02, rim, sides)
@@ -205,20 +201,36 @@ def _furniture(grid: Grid, walls: list[Wall], taken: list[Rectangle]) -> list[Bo
         rows, columns = np.nonzero((labels == n) & left)
         if len(rows) < 2:
             continue
-        outline = fit_rectangle(grid.points((rows, columns))).grown(RESOLUTION / 2)
-        lidar = bool(grid.walls[rows, columns].any())
-        high = float(grid.highest[rows, columns].max())
-        low = 0.0 if lidar else float(min(grid.lowest[rows, columns].min(), high - 0.02))
-        high = high if high > max(low, 0.25 * lidar) else ROBOT
-        number = len(found) + 1
-        found.append(
-            Box(
-                name=f"furniture {number}", yaw=round(outline.yaw, 4),
-                center=(round(outline.x, 3), round(outline.y, 3), round((low + high) / 2, 3)),
-                size=(round(outline.length, 3), round(outline.width, 3), round(high - low, 3)),
-            )
-        )  # fmt: skip
+        for part in _filled(grid.points((rows, columns))):
+            found.append(_box(f"furniture {len(found) + 1}", part, grid))
     return found
+
+
+def _filled(points: Array) -> list[Array]:
+    """The middles of cells (n, 2) in parts that fill the rectangle around them: what goes round a corner is cut."""
+    outline = fit_rectangle(points).grown(RESOLUTION / 2)
+    if len(points) * RESOLUTION**2 >= WHOLE * outline.length * outline.width or outline.length < 3 * RESOLUTION:
+        return [points]
+    along, _ = outline.to_local(points[:, 0], points[:, 1])
+    near = along < 0.0
+    if near.all() or not near.any():
+        return [points]
+    return [*_filled(points[near]), *_filled(points[~near])]
+
+
+def _box(name: str, cells: Array, grid: Grid) -> Box:
+    """The box around the middles of cells (n, 2), as high as what the camera saw of them."""
+    outline = fit_rectangle(cells).grown(RESOLUTION / 2)
+    rows, columns = grid.cells(cells)
+    lidar = bool(grid.walls[rows, columns].any())
+    high = float(grid.highest[rows, columns].max())
+    low = 0.0 if lidar else float(min(grid.lowest[rows, columns].min(), high - 0.02))
+    high = high if high > max(low, 0.25 * lidar) else ROBOT
+    return Box(
+        name=name, yaw=round(outline.yaw, 4),
+        center=(round(outline.x, 3), round(outline.y, 3), round((low + high) / 2, 3)),
+        size=(round(outline.length, 3), round(outline.width, 3), round(high - low, 3)),
+    )  # fmt: skip
 
 
 def _delivery(receptacles: list[Receptacle]) -> tuple[str, list[Receptacle]]:

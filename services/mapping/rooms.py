@@ -3,12 +3,14 @@
 Source: Bormann et al., "Room segmentation: survey, implementation, and analysis", ICRA 2016 (distance transform).
 """
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from common.floor_plan import Room
-from services.mapping.grid import FREE, OCCUPIED, RESOLUTION, Cells, Grid
+from common.floor_plan import Room, Wall
+from services.mapping.grid import FREE, OCCUPIED, RESOLUTION, Grid
 
 DOOR = 0.65
 """Half of the width [m] up to which a passage between two walls is a door."""
@@ -16,10 +18,13 @@ LEAST_AREA = 2.5
 """Floor [m2] of a room, at least."""
 
 
-def find_rooms(grid: Grid, states: NDArray[np.uint8], reached: Cells) -> list[Room]:
+def find_rooms(grid: Grid, states: NDArray[np.uint8], walls: Sequence[Wall]) -> list[Room]:
     """Rectangles around the rooms, the one with the robot's home first; they may overlap a little."""
-    # Furniture is no wall: only what is higher than the camera looks over parts rooms.
-    tall = grid.walls & ((grid.highest > 1.25) | (grid.highest == 0.0))
+    middles = grid.points((np.arange(max(grid.shape)), np.arange(max(grid.shape))))
+    xs, ys = middles[: grid.shape[1], 0], middles[: grid.shape[0], 1]
+    tall = np.zeros(grid.shape, bool)
+    for wall in walls:
+        tall |= wall.footprint.grown(RESOLUTION / 2).signed_distances(xs[None, :], ys[:, None]) < 0.0
     distance = ndimage.distance_transform_edt(~tall) * RESOLUTION
     floor = (states == FREE) | ((states == OCCUPIED) & ~tall)
     labels, count = ndimage.label(floor & (distance > DOOR))

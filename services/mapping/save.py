@@ -15,7 +15,7 @@ from common.household import Household
 from common.map_file import HOUSEHOLD, MAP, PICTURE, SURFACES, GridMap, picture, surface_rows, write_map
 from common.plan_file import to_toml
 from services.mapping.depth import Picture
-from services.mapping.grid import RESOLUTION, UNKNOWN
+from services.mapping.grid import RESOLUTION
 from services.mapping.mapper import Mapper, Shot
 from services.mapping.plan import Lidar, floor_plan
 from services.mapping.pose_graph import Edge, PoseGraph
@@ -50,11 +50,8 @@ def save(directory: Path, name: str, mapper: Mapper) -> Saved:
         directory.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise SaveError(f"{directory}: {error.strerror}") from None
-    rows, columns = np.nonzero(states != UNKNOWN)
-    top, left = (int(axis.min(initial=0)) for axis in (rows, columns))
-    part = states[top : int(rows.max(initial=0)) + 1, left : int(columns.max(initial=0)) + 1]
-    x, y = mapper.grid.origin
-    write_map(directory, GridMap(part, RESOLUTION, (x + left * RESOLUTION, y + top * RESOLUTION)), MAP)
+    part, corner = mapper.grid.known(states)
+    write_map(directory, GridMap(part, RESOLUTION, corner), MAP)
     _write(
         directory / GRAPH, _json(graph_rows(mapper.trajectory.graph, mapper.trajectory.scans, mapper.trajectory.runs))
     )

@@ -1,0 +1,66 @@
+"""The floor plan out of a grid: bins, furniture round a corner, rooms."""
+
+import numpy as np
+
+from common.floor_plan import Wall
+from services.mapping.grid import FREE, Grid
+from services.mapping.plan import _bins, _filled
+from services.mapping.rooms import find_rooms
+
+
+def ring(x: float, y: float, inner: float, height: float) -> np.ndarray:
+    """Points of the four sides of an open box, 1.5 cm thick and `height` high, around a hole of `inner`."""
+    along, up = np.arange(-inner / 2 - 0.015, inner / 2 + 0.016, 0.01), np.arange(0.06, height + 0.001, 0.01)
+    found = []
+    for side in (-1, 1):
+        for thick in (0.0, 0.015):
+            off = side * (inner / 2 + thick)
+            a, z = (v.ravel() for v in np.meshgrid(along, up))
+            found += [np.column_stack([x + a, y + 0 * a + off, z]), np.column_stack([x + off + 0 * a, y + a, z])]
+    return np.concatenate(found)
+
+
+def grid_of(above: np.ndarray) -> Grid:
+    grid = Grid((-3.0, -3.0), (3.0, 3.0))
+    for _ in range(2):
+        grid.add_picture(np.empty((0, 2)), above)
+    return grid
+
+
+def test_an_open_box_is_a_bin_with_its_measures() -> None:
+    points = ring(0.51, -0.27, 0.34, 0.40)
+    ((outline, rim),) = _bins(grid_of(points), points)
+    assert abs(rim - 0.40) < 0.01
+    assert np.hypot(outline.x - 0.51, outline.y + 0.27) < 0.01
+    assert abs(outline.length - 0.34) < 0.02 and abs(outline.width - 0.34) < 0.02
+
+
+def test_a_high_or_a_large_ring_is_no_bin() -> None:
+    for points in (ring(0.0, 0.0, 0.34, 1.0), ring(0.0, 0.0, 1.2, 0.40)):
+        assert _bins(grid_of(points), points) == []
+
+
+def test_what_goes_round_a_corner_is_cut() -> None:
+    line = np.arange(0.025, 2.0, 0.05)
+    corner = np.concatenate([np.column_stack([line, 0 * line]), np.column_stack([0 * line, line])])
+    parts = _filled(corner)
+    assert len(parts) > 1 and sum(map(len, parts)) == len(corner)
+    for part in parts:
+        inside = (part > 0.3).all(axis=1)
+        assert not inside.any()
+        spread = np.sort(np.ptp(part, axis=0))
+        assert spread[0] < 0.35, "no part reaches into the room"
+    assert len(_filled(np.column_stack([line, 0 * line]))) == 1
+
+
+def test_rooms_hang_together_by_doors() -> None:
+    grid = Grid((-4.0, -2.0), (4.0, 2.0))
+    states = np.full(grid.shape, FREE, np.uint8)
+    walls = [Wall(start=(0.0, -2.0), end=(0.0, -0.5)), Wall(start=(0.0, 0.5), end=(0.0, 2.0))]
+    first, second = find_rooms(grid, states, walls)
+    assert (first.name, second.name) == ("room 1", "room 2")
+    assert {round(first.high[0]), round(second.high[0])} == {0, 4} or {round(first.low[0]), round(second.low[0])} == {
+        0,
+        -4,
+    }
+    assert len(find_rooms(grid, states, [])) == 1
