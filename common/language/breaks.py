@@ -21,10 +21,17 @@ _WEAK = re.compile(
     r",\s*(?:(?:and|so|but|then|right|ok|okay|just|well|now|hence|therefore),?\s+)*|\s+so (?:just |now |then )?"
 )
 """Before what is a request if it begins with a verb."""
+_TELLS = re.compile(r"\b(?:is|are|was|were|left|saw|need|want|have|has|dropped|forgot)\b.* (?!not\b|never\b)\w+$")
+"""What is told of a thing before it is spoken of as "it"."""
+_WITH_PRONOUN = re.compile(
+    r"\s+(?=(?:please )?(?:bring|put|take|throw|get|fetch|give|tidy|move|carry) (?:it|them|me (?:it|that|them))\b)"
+)
+"""Before a request that speaks of what was told."""
 _SUBJECTS = frozenset(
     {
         "i", "we", "he", "she", "they", "it", "there", "someone", "somebody", "everyone", "everybody", "this", "that",
-        "these", "those", "you", "guests", "dinner", "lunch",
+        "these", "those", "you", "yesterday", "earlier", "mum", "mom", "mommy", "mummy", "dad", "daddy", "grandma",
+        "grandpa", "guests", "dinner", "lunch",
     }
 )  # fmt: skip
 """Words with which somebody begins to tell something, beside articles."""
@@ -37,7 +44,8 @@ _NO_STATEMENT = re.compile(
 _UNFINISHED = re.compile(
     r"\b(?:said|says|say|told|tells|tell|asked|asks|ask|to|that|if|whether|not|never|like|was|were|is|are|and|or|"
     r"me|us|them|"
-    r"him|her|you|why|when|how|would|could|should|must|the|a|an|my|your|of|in|on|for|with|please)$"
+    r"him|her|you|why|when|how|would|could|should|must|will|shall|can|may|might|do|does|did|always|"
+    r"usually|often|sometimes|still|already|just|also|the|a|an|my|your|of|in|on|for|with|please)$"
 )
 """How words end that go on in what follows: `he said`, `she asked me to`."""
 _REPORTS = re.compile(r"\b(?:said|says|say|told|tells|tell|asked|asks|ask)(?: (?:me|us|him|her|that|to|you))*$")
@@ -68,10 +76,13 @@ _CONDITION = re.compile(
 _INVERTED = re.compile(r"^(?:and |but )?should (?:there be|(?P<you>you)(?= (?:find|see|spot|notice|come)))")
 _AT_END = re.compile(
     r"^(?P<command>.+?),? (?:but )?(?:only )?(?:if|in case) (?P<condition>(?:there (?:is|are)|(?:the|my) .+ "
-    r"(?:is|are)) .+)$"
+    r"(?:is|are)|(?:it|they) (?:is|are)(?: still)? (?:in|on|at)) .+)$"
 )
+_FIRST_THING = re.compile(r"\b(?:the|a|an|my|all) \w+(?: (?!(?:in|on|to|into|onto|at|from|away|over|next|near)\b)\w+)?")
+_OF_IT = re.compile(r"^(?:it|they)(?= (?:is|are)\b)")
 _ELSE = re.compile(
-    r"(?:,| and| or| but|;|\.)+\s*(?:otherwise|if (?:not|there (?:is|are) (?:none|not any|no))|or else|else),?\s+"
+    r"(?:,| and| or| but|;|\.|(?<=\w)(?= otherwise))+\s*(?:otherwise|if (?:not|there (?:is|are) (?:none|not any|"
+    r"no))|or else|else),?\s+"
 )
 _BEGINS = frozenset({"the", "a", "an", "my", "our", "me", "us", "it", "them", "to", "one", "all", "that", "those"})
 
@@ -79,6 +90,13 @@ _BEGINS = frozenset({"the", "a", "an", "my", "our", "me", "us", "it", "them", "t
 _REASON = re.compile(
     r"^(?:since|as|because|now that|seeing (?:that|as)|given that|while) (?P<reason>(?:you|i|we|"
     r"it|the|my) .+)$"
+)
+
+
+_IF_SO = re.compile(
+    r"^(?:please |go (?:and )?|could you |can you )*(?:check|see|look|find out) (?:if|whether) "
+    r"(?P<condition>[^,]+?),?(?: and)? if "
+    r"(?:so|yes|it is|there is(?: one)?|they are),? "
 )
 
 
@@ -97,7 +115,7 @@ def _without_reason(text: str) -> str:
 def conditional(text: str) -> str:
     """`if there is a mug on the desk bring it` and the same in the other order as `if ... . bring it`."""
     text = _INVERTED.sub(lambda found: "if you" if found["you"] else "if there is", text)
-    text = _without_reason(text)
+    text = _IF_SO.sub(r"if \g<condition> , ", _without_reason(text))
     bare = without_politeness(text)
     if found := _CONDITION.match(bare):
         rest = _ELSE.sub(" . otherwise ", found["rest"])
@@ -109,15 +127,19 @@ def conditional(text: str) -> str:
             if words[at] in _VERBS and words[at + 1] in _BEGINS:
                 return f"if {' '.join(words[:at])} . {' '.join(words[at:])}"
     elif (found := _AT_END.match(bare)) and bare.split()[0] in _VERBS:
-        return f"if {found['condition']} . {found['command']}"
+        thing = _FIRST_THING.search(found["command"])
+        condition = _OF_IT.sub(thing[0] if thing else "it", found["condition"])
+        return f"if {condition} . {found['command']}"
     return text
 
 
 def _break(text: str) -> tuple[int, int] | None:
     begin = max((text.rfind(mark) for mark in ".;!?"), default=-1) + 1
-    for pattern in (_STRONG, _WEAK):
+    for pattern in (_STRONG, _WEAK, _WITH_PRONOUN):
         for found in pattern.finditer(text, begin):
             head, tail = text[begin : found.start()].strip(" ,"), text[found.end() :]
+            if pattern is _WITH_PRONOUN and not _TELLS.search(head):
+                continue
             if is_statement(head, "," in found[0]) and _asks(tail, pattern is _STRONG):
                 return found.start(), found.end()
     return None

@@ -8,7 +8,7 @@ import re
 
 TO_PLACE = "(?:on top of|on|onto|in|into|inside|to|at)"
 _BESIDE = "(?:next to|close to|beside|near|right by|by)"
-MODAL = "(?:should|must|has to|have to|needs to|need to|ought to|can|could|is to|are to|shall|may|might|will)"
+MODAL = "(?:should|must|has to|have to|needs to|need to|ought to|can|could|is to|are to|shall|will)"
 NP = r"((?:\w|')+(?: (?:\w|')+){0,11}?)"
 _WHO = (
     r"(?:i|we|(?!(?:\w+ )?(?:might|may|not|never|could|should|would|will|do|did|does|used|no|nobody|if|when|"
@@ -40,6 +40,9 @@ CONSTRUCTIONS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
          r"is (?:there|in there|on it|in it|on there)|there is))(?: there)?", r"go and look in \1"),
         (rf"(?:i|we) {_WANT} {NP} (?:to be |all |nice and )?(?:clean|tidy|clear|neat|spotless|tidied|cleaned|"
          rf"cleared|empty)", r"tidy \1"),
+        (rf"(?:i|we) (?:search|seek|look|am searching|are searching) (?:for )?{NP}", r"find \1"),
+        (rf"{NP} (?:i|we) (?:really )?(?:need|want|would like) (?:it|them|that|this)", r"bring me \1"),
+        (rf"(?:go|drive|walk) (?!to\b|and\b|in\b|on\b){NP}", r"go to \1"),
         # Taking up what is then put somewhere.
         (rf"(?:get|fetch|take|grab|collect|gather|pick)(?: up| me)? {NP}(?: up)? and (?:then )?(\w+) (?:it|"
          rf"them) (.+)", r"\2 \1 \3"),

@@ -35,7 +35,7 @@ PREPOSITIONS = frozenset(
 )
 """Words that end a noun phrase."""
 _REPAIR = re.compile(
-    r"(?:,\s*wait,\s*(?=not\b)|,\s*(?:no|sorry|actually|rather)(?:,\s*|\s+)|,\s*(?:oh|well|hold on|hang on),\s*"
+    r"(?:,\s*wait,\s*(?=not\b)|[,.;]\s*(?:no|sorry|actually|rather)(?:,\s*|\s+)|,\s*(?:oh|well|hold on|hang on),\s*"
     r"|(?<=\w)\s+no,?\s+(?=(?:the|my|on|in|to|at)\s)|,?\s+(?:no,? wait|wait,? no|oh,? wait|no,? sorry|sorry,? no|"
     r"sorry,? i mean(?:t)?|or rather|"
     r"i mean(?:t)?|make that|scratch that|correction|no,? i mean(?:t)?|no,? make (?:that|it)|no,? not that|"
@@ -54,10 +54,9 @@ _DO_NOT_DO = re.compile(
     rf"^do not (?P<wrong>\w+ .+?)\s+(?P<right>(?:{'|'.join(sorted(COMMANDING))}) (?:me|us|the|a|an|my|it|to)\b.+)$"
 )
 NOT_WANTED = re.compile(
-    r"^(?:never mind|forget(?: about)?|skip|leave|ignore|not|no need for|no more|(?:i|we) do not (?:need|want|"
-    r"like)) (?:the|that|my|those|this)(?: "
-    r"\w+){1,3}?(?:,\s*(?:and |but )?| and | but )"
-    rf"(?=(?:please |just |rather )*(?:{'|'.join(sorted(COMMANDING))})\b)"
+    r"^(?:(?:never mind|forget(?: about)?|skip|leave|ignore|not|no need for|no more|(?:i|we) do not (?:need|want|like))"
+    r" (?:the|that|my|those|this)(?: \w+){1,3}?|no (?!the\b|no\b|need\b)\w+(?=,))(?:,\s*(?:and |but )?| and | but )"
+    rf"(?=(?:please |just |rather )*(?:{'|'.join(sorted(COMMANDING))}|i want|i need|i would like)\b)"
 )
 """What is not wanted, before what is."""
 _AFTERTHOUGHT = re.compile(
@@ -255,7 +254,7 @@ def replaced(said: str, meant: str, is_place: IsPlace = lambda _: False) -> str 
     if not new:
         return None
     if _verb_first(meant) and not (len(new) == 1 or new[1] in ("one", "ones")):
-        return meant
+        return _with_thing(meant, words)
     if new[0] in PREPOSITIONS:
         at = next((i for i in range(len(words) - 1, 0, -1) if words[i] in PREPOSITIONS), len(words))
         return " ".join((*words[:at], *new))
@@ -267,6 +266,16 @@ def replaced(said: str, meant: str, is_place: IsPlace = lambda _: False) -> str 
     return " ".join((*words[:start], *filled(meant, " ".join(words[start:end])).split(), *words[end:]))
 
 
+def _with_thing(meant: str, said: list[str]) -> str:
+    """A command with the first thing that was said before in place of its "it"."""
+    spans = noun_phrases([w.strip(",") for w in said])
+    thing = " ".join(said[spans[0][0] : spans[0][1]]).strip(",") if spans else ""
+    return re.sub(r"(?<=\w )(?:it|them)\b", thing, meant, count=1) if thing else meant
+
+
+_AFTER_NOUN = PREPOSITIONS | {"and", "that", "which", "here", "there"}
+
+
 def noun_phrases(words: list[str]) -> list[tuple[int, int]]:
     """(begin, end) of each phrase that begins with a determiner and ends before the next preposition or "and"."""
     found = []
@@ -274,7 +283,7 @@ def noun_phrases(words: list[str]) -> list[tuple[int, int]]:
     while at < len(words):
         if words[at].strip(",") in DETERMINERS:
             end = at + 1
-            while end < len(words) and words[end] not in PREPOSITIONS and words[end] not in ("and", "that", "which"):
+            while end < len(words) and words[end].strip(",") not in _AFTER_NOUN:
                 end += 1
             found.append((at, end))
             at = end

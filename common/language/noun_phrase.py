@@ -22,7 +22,12 @@ Which = Literal[
     "other",
 ]
 PRONOUNS = frozenset({"it", "that", "this", "him", "her", "this one", "that one", "this thing", "that thing"})
-PLURAL_PRONOUNS = frozenset({"them", "those", "these", "both", "all of them", "both of them", "them all", "all of it"})
+PLURAL_PRONOUNS = frozenset(
+    {
+        "them", "those", "these", "both", "all of them", "both of them",
+        "them both", "those two", "these two", "both of those", "them all", "all of it",
+    }
+)  # fmt: skip
 WHICH: dict[str, Which] = {
     "left": "left", "leftmost": "left", "right": "right", "rightmost": "right", "nearest": "nearest",
     "closest": "nearest", "next": "nearest", "farthest": "farthest", "furthest": "farthest", "biggest": "biggest",
@@ -49,6 +54,9 @@ SIDES: dict[str, Which] = {
     "on your left": "left", "on your right": "right", "to your left": "left", "to your right": "right",
 }  # fmt: skip
 _BUT = (
+    "and not",
+    "but not in",
+    "not in",
     "but not",
     "but no",
     "except for",
@@ -123,6 +131,13 @@ _CLAUSES = (
     "that are",
     "that's",
     "which is",
+    "what is",
+    "that you can find",
+    "which you can find",
+    "you can find",
+    "that you will find",
+    "kept",
+    "located",
     "which are",
     "lying",
     "standing",

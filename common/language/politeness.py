@@ -12,18 +12,23 @@ _ADVERBS = (
 )
 _YOU = r"(?:you|someone|somebody|anyone|anybody)(?: guys| all)?"
 _CAN = "(?:can|could|would|will|may|might)"
+_AUX = (
+    rf"(?:{_CAN}|should|must|ought to|need to)"
+    "(?: (?:possibly|be able to|be willing to|be so kind (?:as to|and)|please|perhaps|maybe|just))*"
+)
 _KIND = (
     "(?:great|nice|good|lovely|wonderful|helpful|kind|cool|fantastic|awesome|perfect|super|brilliant|sweet|handy|fine|"
     "best|better|okay|ok|alright|so kind|much appreciated|(?:a )?(?:big|great|real|huge)? ?(?:help|favou?r|relief))"
 )
-_SO = "(?:(?:so|very|really|just|quite|absolutely|truly) )*"
+_SO = "(?:(?:so|very|ever|most|extremely|eternally|super|really|just|quite|absolutely|truly) )*"
 _PERSON = "(?:i|we)"
 _TIME = (
     "(?:a |the |some |one |any |your )?(?:free |spare )?(?:chance|moment|minute|second|sec|time|hand|opportunity|go)"
 )
 _OCCASION = (
     rf"(?:when|whenever|once|if|as soon as) you (?:(?:have|get|find|have got|got) {_TIME}(?: to spare| free| for it)?"
-    r"|can|could|would|like|please|want|may|are (?:free|ready|able|not busy|up for it|around|there)"
+    r"|can|could|would|like|please|want|may|are not (?:doing anything|too busy|busy)(?: else)?|are (?:free|ready|"
+    r"able|not busy|up for it|around|there)"
     r"|do not mind|would not mind|(?:would|could) be so kind|feel like it)"
     r"|if (?:it|that|this)?\s?(?:is|would|will|be)?\s?(?:not|is not|be not)? ?"
     r"(?:too much(?: (?:trouble|to ask|of a bother))?|asking too much|a (?:problem|bother)|any trouble|too "
@@ -39,6 +44,8 @@ _ADDRESS = (
     r"(?:second|third|fourth|secondly|thirdly|lastly|firstly)(?=,? (?:bring|put|take|get|fetch|give|go|throw|"
     r"come|tidy|find|grab|pick)\b)|"
     "basically|essentially|literally|obviously|hopefully|ideally|meanwhile|if so|if yes|in that case|"
+    r"i hate to (?:ask|bother you|trouble you)|i know you are busy|no offence|like(?=,? (?:can|could|would|i|you)\b)|"
+    r"(?:scratch|disregard|ignore) that(?=,? \w)|never mind (?:what i said|that)(?=,? \w)|"
     "(?:hey|hi|hello) there|hey|hello|hi|hiya|yo|oi|howdy|ok|okay|alright|all right|right(?=,)|jarvis|robot|"
     "tidybot|buddy|mate|dude|pal|"
     "man|sir|dear|"
@@ -61,7 +68,8 @@ _WAY = (
 )
 _FRAMES = (
     # What makes a question or a wish of an order.
-    rf"{_CAN} {_YOU}{_ADVERBS}(?: (?:be able to|be willing to|be up for|manage to|care to|try to|try and|like to|"
+    rf"{_CAN} {_YOU}{_ADVERBS}(?: to(?= \w))?(?: (?:be able to|be willing to|be up for|manage to|care to|try to|"
+    rf"try and|like to|"
     rf"want to|"
     rf"mind|go ahead and|help me (?:and|by)|do me (?:a|the) favou?r(?: and| of)?|"
     rf"be (?:(?:so|very|a|an|kind|good|nice|enough|dear|angel|sweetheart|star|darling|love|sport|robot|sweet|"
@@ -80,12 +88,13 @@ _FRAMES = (
     rf"(?:if you {_CAN}|whether you {_CAN}|to|that you)",
     r"(?:may|can|could|might) i (?:please )?(?:ask|trouble|bother|get|have|request|beg)(?: of)? you (?:to|and)",
     rf"(?:i (?:was|am|have been) )?(?:just )?(?:wondering|asking|hoping|thinking)(?: if| whether| that)? {_YOU}"
-    rf" (?:{_CAN}|should)(?: possibly)?",
+    rf" {_AUX}",
     rf"i (?:wonder|hope|wondered|hoped|thought|think|guess|suppose|believe|reckon|say)(?: if| whether| that)? {_YOU}"
-    rf" (?:{_CAN}|should|must|ought to|need to)(?: possibly)?",
+    rf" {_AUX}",
     rf"(?:would|will|could|might) it be {_SO}(?:ok|okay|alright|all right|possible|a problem|too much(?: trouble|"
     rf" to ask)?)"
-    rf"(?: for you)?(?: (?:if you(?: {_CAN})?|that you|to))?",
+    rf"(?: for you)?(?: (?:if you(?: {_CAN})?|if i ask(?:ed)? you to|that you|to))?",
+    r"(?:it|that) would make (?:me|us|my day|him|her)(?: \w+){0,2} if you(?! (?:not|did not|never)\b)",
     r"is it (?:ok|okay|possible|alright)(?: for you)?(?: (?:if you(?: can| could)?|to))?",
     rf"{_PERSON} would {_SO}(?:appreciate|like|love|be {_SO}(?:grateful|happy|glad|thankful|pleased|obliged|delighted))"
     rf"(?: it)?(?: (?:very much|a lot|greatly))? if {_YOU}(?: {_CAN})?{_ADVERBS}(?! (?:not|did not|never)\b)",
@@ -131,6 +140,8 @@ _ENDINGS = (
     "a (?:little )?bit|a little|somewhat|for a (?:bit|while)",
     "(?<!try )(?<!it )(?<!that )(?<!same )(?<!thing )(?<!once )(?<!go )(?<!look )again",
     "as soon as (?:you can|possible)|(?:will|would|could|can|won't) you|would be (?:great|nice|lovely|good)(?= please)",
+    r"if (?:you (?:can |could |do |happen to )?(?:find|see|spot|have) (?:it|one|any|them|some)|"
+    r"there (?:is|are) (?:one|any|some)(?: left)?|(?:it|they) (?:is|are) (?:still )?(?:there|around|available))",
     rf"{_OCCASION}|(?:for )?(?:a|one) (?:second|sec|moment)",
     r"(?:because|since|so that|so i can|so we can|in case|otherwise i|as i|as we|for i|in order to)\s.+",
 )

@@ -6,7 +6,8 @@ from common.language.wording import Wording
 ABOUT_THE_WORLD: tuple[Wording, ...] = (
     Wording(
         "seen",
-        "[tell me] what (do | can) you see [now | right now | here | from (here | there | where you are)]"
+        "[tell me] what (do you | can you | are you able to) see [now | right now | here | from (here | there | "
+        "where you are)]"
         " | tell me what you [can] see", heard="what (do | can) you see"
     ),
     Wording(
@@ -29,7 +30,8 @@ ABOUT_THE_WORLD: tuple[Wording, ...] = (
     Wording(
         "where",
         f"{ASK} (where | whereabouts) [exactly] (is | are) [it] <thing> (at | now | located | kept | lying | standing)"
-        f" | {ASK} where (it is | is it | they are) <thing> | {ASK} where did <thing> (go | end up | get to) [to]",
+        f" | {ASK} where (it is | is it | they are | stands | lies | sits) <thing> | {ASK} where did <thing> (go "
+        f"| end up | get to) [to]",
         heard="",
     ),
     Wording(
@@ -38,6 +40,7 @@ ABOUT_THE_WORLD: tuple[Wording, ...] = (
         " | describe <thing>",
         heard="",
     ),
+    Wording("recall", f"(is | are) (anything | something) [still | left] [{LYING}] (in | on | at) <spot>", heard=""),
     Wording(
         "recall",
         "is <spot> [still] (empty | free | clear | tidy | full | clean | occupied | untidy | a mess)"
@@ -100,7 +103,8 @@ ABOUT_THE_WORLD: tuple[Wording, ...] = (
     ),
     Wording(
         "colour",
-        f"{ASK} (what | which) (colour | color) {BE} <thing> | {ASK} what {BE} the (colour | color) of <thing>",
+        f"{ASK} (what | which) (colour | color) {BE} <thing> | {ASK} what {BE} the (colour | color) of <thing>"
+        " | tell me the (colour | color) of <thing>",
         heard="",
     ),
     Wording(
@@ -132,7 +136,8 @@ ABOUT_ITSELF: tuple[Wording, ...] = (
         "what (are you | you are) (doing | up to | working on | busy with) [there | here | right now | now |"
         " at the moment | currently] | what is going on | how is it going | how are you (doing | getting on)"
         " | how far (are you | have you (got | come)) | are you (done | busy | finished | ready) [yet]"
-        " | what is (happening | your (task | job | mission | status)) | what is taking [you] so long | "
+        " | what is (happening | your [current | present] (task | job | mission | status)) | what is taking "
+        "[you] so long | "
         "[status] report | status | (give me | any) [a | an] (update | news) | how are things",
         heard="what are you doing",
     ),
@@ -140,7 +145,8 @@ ABOUT_ITSELF: tuple[Wording, ...] = (
         "done",
         f"what {WHAT_DID} | what (was | is) (the last thing you did | your last (task | job | mission | command))"
         " | (did | have) you (manage | managed | succeed | succeeded | finish | finished | do | done) [it | that |"
-        " (to | in) <words>] | what did you (put | bring | move | take | throw | fetch | tidy) <words> | did (it "
+        " (to | in) <words>] | what did you do (with | to) <words> | what did you (put | bring | move | take | "
+        "throw | fetch | tidy) <words> | did (it "
         "| that) work [out] | (did | have) you (bring | brought | put | fetch "
         "| fetched |"
         " find | found | tidy | tidied | throw | thrown) <words> [already | yet]"
@@ -150,7 +156,8 @@ ABOUT_ITSELF: tuple[Wording, ...] = (
     Wording(
         "why",
         "why (did | have) you [just] (fail | failed | stop | stopped | give up | given up)"
-        " | why (did | could | have | do) (not you | you not) <words> | why did (it | that) (fail | not work "
+        " | why (did | could | can | have | do | are | would) (not you | you not) <words> | why did (it | that) "
+        "(fail | not work "
         "| go wrong)"
         " | what (went wrong | was the (problem | matter | trouble | reason) | is the (matter | problem) | happened"
         " [there]) | why not | why (is | was) (that | it) | why (were you not able | "

@@ -55,7 +55,7 @@ WORDINGS: tuple[Wording, ...] = (
     Wording(
         "yes",
         "(yes | yeah | yep | yup) [please | i did | it is | that is right | please do | do | do that | "
-        "exactly | go ahead] | correct | [that is] right | exactly | sure | okay | ok"
+        "exactly | go ahead] | [that is] (correct | right | true) | exactly | sure | okay | ok"
         " | go ahead | do it | do | affirmative | sure thing | of course | absolutely | definitely | indeed | "
         "certainly | fine"
         " | you bet | by all means | please do | right | that is (it | the one) | uh huh | why not | perfect",
@@ -190,7 +190,8 @@ WORDINGS: tuple[Wording, ...] = (
     Wording(
         "come_back", "(come | go) [back] [to] where (i am | we are | you started | you came from)", heard="",
     ),
-    Wording("come_back", "return [home | here | to (start | me | base)] | come", heard=""),
+    Wording("come_back", "return [home | here | to (start | me | base)] | come | home | back [here | to "
+                         "me | home]", heard=""),
     # Two things at once, said of one object.
     Wording("throw_away", f"{PICK} <thing> [up] and throw (it | them) away", heard=""),
     Wording("put_away", f"{PICK} <thing> [up] and put (it | them) away", heard=""),
@@ -280,7 +281,7 @@ WORDINGS: tuple[Wording, ...] = (
     # Bringing.
     Wording("deliver_there", f"({MOVE} | {PUT}) <thing> [over] there", heard=""),
     Wording(
-        "fetch", f"({BRING} | find) (me | us) <thing>", heard="(bring | fetch | get | give | hand) me <thing>",
+        "fetch", f"({BRING} | find) (me | us) <thing> [back]", heard="(bring | fetch | get | give | hand) me <thing>",
     ),
     Wording(
         "fetch", f"({BRING} | move) <thing> [over | back] to (me | us)", heard="(bring | take | carry) <thing> to me",

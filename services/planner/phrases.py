@@ -49,11 +49,22 @@ def read(words: Words, vocabulary: Vocabulary) -> Phrase | str:
     key = vocabulary.new_nouns, words
     if key not in vocabulary.phrases:
         rest, but = without_exceptions(without_tail(words))
+        if but and rest[0] in ("everything", "anything", "all"):
+            rest = (*rest, *_where(but[-1], rest))
         phrase = _read(rest, vocabulary)
         whole = msgspec.structs.replace(phrase, but=but) if but and isinstance(phrase, Phrase) else phrase
         vocabulary.phrases[key] = whole
     known: Phrase | str = vocabulary.phrases[key]
     return known
+
+
+def _where(left_out: Words, rest: Words) -> Words:
+    """`on the desk` of `everything but the mug on the desk`, which says where all of it is."""
+    if any(True for _ in related(rest)):
+        return ()
+    for head, _, _ in related(left_out):
+        return left_out[len(head) :]
+    return ()
 
 
 def _read(words: Words, vocabulary: Vocabulary) -> Phrase | str:

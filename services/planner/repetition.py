@@ -14,7 +14,8 @@ from common.messages import History
 _NO = re.compile(
     r"^(?:(?:no|nope|wrong(?: one| \w+)?|that is (?:the )?wrong(?: one| \w+)?|not (?:this|that)(?: one| \w+)?|"
     r"thanks|thank you|but|sorry|well) )*"
-    r"(?:i|we) (?:said|meant|mean|wanted|asked for)(?: it| that| them)? (?P<rest>.+)$"
+    r"(?:not (?:on|in|to|into) (?:the|my) \w+ )?(?:i|we) (?:said|meant|mean|wanted|asked for)(?: it| that| "
+    r"them)? (?P<rest>.+)$"
     r"|^(?:no |nope |wrong |but )*not (?:this|that|here|there)(?: one| \w+)? (?:but )?(?P<other>(?:the|on|in|to|"
     r"into) .+)$"
 )
@@ -29,7 +30,7 @@ def repeated(command: str, clauses: Sequence[str], told: History, is_place: IsPl
     last = told.last.command if told.last is not None else ""
     if not last or len(clauses) != 1:
         return command
-    for wording, slots in readings(tuple(clauses[0].split()), "command"):
+    for wording, slots in readings(tuple(re.sub(r" (?:as well|too|also)$", "", clauses[0]).split()), "command"):
         if wording.action == "again":
             return (replaced(last, " ".join(slots["thing"]), is_place) or last) if "thing" in slots else last
     if (found := _NO.match(expand(normalise(command)))) and (

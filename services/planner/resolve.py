@@ -247,6 +247,8 @@ def _related(
     if anchor.position is None or not placed:
         raise Refusal(f"I have not seen which {phrase.noun} is {spoken(phrase.relation)} the {anchor.label}")
     beside = [t for t in placed if holds(builder, phrase.relation, t, anchor)]
+    if phrase.relation == "near" and not beside:
+        beside = [t for t in placed if t.on and t.on == anchor.on]
     if not beside:
         raise Refusal(f"I see no {phrase.noun} {spoken(phrase.relation)} the {anchor.label}")
     return (

@@ -14,11 +14,11 @@ from common.language.normalise import normalise
 
 Kind = Literal["stop", "cancel", "come_back", "queue", "replace", "aside"]
 _LATER = re.compile(
-    r"^(?:and )?(?:then|after(?:wards?| that| this| it)?|next|later(?: on)?|"
+    r"^(?:and )?(?:"
+    r"(?:when|once|as soon as|after) you(?: are| have)?(?: all)? "
+    r"(?:done|finished|ready|through|free|back|did|get back|come back)(?:(?: with)? (?:that|this|it))?|"
     r"(?:when|once|as soon as|after) (?:that|this|it)(?: is| has)?(?: been)? (?:done|finished|over|ready)|"
-    r"(?:when|once|as soon as|after) you(?: are|'re| have|'ve)?(?: all)? (?:done|finished|ready|through|free|"
-    r"back|did|get back|come back)"
-    r"(?:(?: with)? (?:that|this|it))?|when that is done|in addition|on top of that)\b[, ]*"
+    r"then|after(?:wards?| that| this| it)?|next|later(?: on)?|in addition|on top of that)\b[, ]*"
 )
 """Words before a command that put it behind the one under way."""
 _LATER_END = re.compile(
