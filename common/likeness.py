@@ -14,8 +14,12 @@ LEAST = 0.06
 """Likeness below which words do not fit: both the colour and the kind would have to be mistaken."""
 OWN = 0.3
 """Share of an object's surface from which a colour is its own whatever else it has. Chosen: a label on a can."""
+SECOND = 0.5
+"""Most likeness of a colour that is not the largest part: it may be a neighbour's that stands before or behind it."""
 NEAR_COLOUR, NEAR_KIND = 0.15, 0.12
 """Likeness of a colour next to one that was seen, and of a kind that is easily taken for one. Chosen: rarely right."""
+HIDDEN = 0.5
+"""Likeness of a ball that looks more like what stands on a foot, or the other way, by that of what it looks like."""
 TAKEN_FOR = (
     frozenset({"mug", "cup", "can", "jar"}), frozenset({"can", "jar", "bottle"}), frozenset({"cup", "mug", "bowl"}),
     frozenset({"bowl", "plate"}), frozenset({"box", "block", "carton", "book"}), frozenset({"carton", "bottle"}),
@@ -59,19 +63,22 @@ def _has_kind(kind: str, o: WorldObject) -> float:
     shares = o.kind_shares or ({o.kind: 1.0} | dict.fromkeys(o.kinds, 1.0))
     best = max(shares.values())
     if _is_ball(kind) != _is_ball(max(shares, key=lambda k: shares[k])):
-        return 0.0
+        # Balls and what stands on a foot are taken for each other only where most is hidden.
+        return HIDDEN * shares.get(kind, 0.0) / best if o.kind_shares else 0.0
     near = any(kind in group and o.kind in group for group in TAKEN_FOR)
     return max(shares.get(kind, 0.0) / best, NEAR_KIND * near)
 
 
 def _has_colour(shade: str, o: WorldObject) -> float:
-    """A colour counts in full when it is a good part of the object, and less as more of it has a colour next to it."""
+    """The largest colour counts in full, and less as more of the object has a colour next to it."""
     shares = o.colour_shares or ({o.colour: 1.0} | dict.fromkeys(o.colours, 1.0))
     own = shares.get(shade, 0.0)
     if o.colour_shares:
         # Light and shade turn a colour into one next to it, not into several.
         beside = max((shares.get(other, 0.0) for other in ALIKE[shade]), default=0.0)
         own = min(1.0, own / OWN) * own / max(own + beside, 1e-9)
+        if shade != max(shares, key=lambda c: shares[c]):
+            own = min(own, SECOND)
     return max(own, NEAR_COLOUR * (o.colour in ALIKE[shade]))
 
 

@@ -23,8 +23,9 @@ _IDENTITY = re.compile(r"is (?:that|this) the .+\?$", re.IGNORECASE)
 _WHICH = re.compile(r"^(?:which\b|do you mean|the .+ or the .+\?)", re.IGNORECASE)
 
 
-SHOWN = 0.08
-"""Distance [m] of an object from the place that the robot shows, up to which it is seen there. Chosen: about a hand."""
+SHOWN = 0.035
+"""Distance [m] of an object from the place that the robot shows, up to which it is what is seen there. Chosen: half of
+a small object; between two neighbours the person sees neither."""
 
 
 def seen_at(place: Vec3 | None, objects: Mapping[str, Vec3]) -> str:

@@ -36,6 +36,8 @@ FINE, FINE_NOISE = 0.0006, 0.45
 BESIDE, APART = 0.2, 0.75
 """Share of that gain which is enough for pieces that stand beside each other, and how far apart they do, by their half
 widths."""
+EXPLAINED = 0.6
+"""Mean distance from a part's shape, by that of the whole's, up to which the part is an object of its own."""
 VALLEY = 0.75
 """Height on the line between two pieces, by that of the lower one, below which there is a valley."""
 BAND = 0.006
@@ -81,9 +83,16 @@ def _pieces(view: View, whole: Piece, again: int) -> list[Piece]:
         shaped = all(p.shape.family != "irregular" for p in parts)
         ease = BESIDE if shaped and _beside(parts) else 1.0
         better = whole.shape.residual - residual > ease * (GAIN + NOISE_GAIN * noise)
-        if better or (whole.shape.family == "irregular" and shaped):
+        if better or (whole.shape.family == "irregular" and shaped) or _mostly(whole, parts):
             return [found for p in parts for found in _pieces(view, p, again - 1)]
     return [whole]
+
+
+def _mostly(whole: Piece, parts: list[Piece]) -> bool:
+    """Most of what no shape explains as a whole is of parts with shapes of their own, whatever the rest is."""
+    better = [p for p in parts if p.shape.family != "irregular" and p.shape.residual < EXPLAINED * whole.shape.residual]
+    most = sum(len(p.segment.rows) for p in better) >= len(whole.segment.rows) / 2
+    return len(better) > 1 and most and _beside(parts)
 
 
 def _beside(parts: list[Piece]) -> bool:

@@ -2,6 +2,8 @@
 
 from typing import Any
 
+import pytest
+
 from common import messages as m
 from common import topics
 from tests.unit.brain_bench import Bench
@@ -88,6 +90,17 @@ def test_what_fits_badly_is_asked_about_after_the_search_only() -> None:
     reply(bench, "no")
     bench.until(lambda: bench.state.last is not None)
     assert bench.state.last is not None and bench.state.last.code == "NOT_FOUND"
+
+
+@pytest.mark.parametrize(("kinds", "grabbed"), [({"mug": 0.8, "can": 0.2}, True), ({"can": 0.8, "mug": 0.2}, False)])
+def test_what_looked_right_from_afar_has_to_do_so_from_near(kinds: dict[str, float], grabbed: bool) -> None:
+    bench = planned()
+    answer(bench, 1, label="red mug", id="object-3", position=GREEN)
+    goal = bench.next_goal(topics.NAV_GOAL, 1)
+    bench.send(topics.WORLD_OBJECTS, m.WorldObjects(t=0.0, objects=[looking(kinds)]))
+    bench.send(topics.NAVIGATION_FEEDBACK, m.NavigationFeedback(goal_id=goal.id, status="arrived"))
+    bench.until(lambda: bench.count(topics.MANIPULATION_GOAL) or bench.count(QUERY) > 1)
+    assert bool(bench.count(topics.MANIPULATION_GOAL)) == grabbed
 
 
 def before(*objects: m.WorldObject) -> Bench:

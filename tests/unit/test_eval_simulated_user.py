@@ -64,8 +64,12 @@ def test_whether_it_is_the_one_is_answered_by_what_is_seen_there(about: str, ans
 
 def test_what_is_seen_where_the_robot_shows() -> None:
     objects = {"red mug": (1.0, 0.0, 0.8), "blue mug": (1.1, 0.0, 0.8)}
-    assert seen_at((1.02, 0.01, 0.8), objects) == "red mug" and seen_at((1.07, 0.0, 0.8), objects) == "blue mug"
-    assert seen_at((1.5, 0.0, 0.8), objects) == "" and seen_at(None, objects) == ""
+    assert seen_at((1.02, 0.01, 0.8), objects) == "red mug" and seen_at((1.08, 0.0, 0.8), objects) == "blue mug"
+    assert (
+        seen_at((1.05, 0.0, 0.8), objects) == ""
+        and seen_at((1.5, 0.0, 0.8), objects) == ""
+        and seen_at(None, objects) == ""
+    )
 
 
 def test_plain_words() -> None:

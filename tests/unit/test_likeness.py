@@ -39,7 +39,7 @@ TIN = measured("white can", {"can": 1.0}, {"white": 0.6, "red": 0.4})
         ("black can", CAN, LEAST, LIKELY),
         ("black mug", CAN, 0.0, LEAST),
         ("white can", TIN, PLAIN, 1.0),
-        ("red can", TIN, PLAIN, 1.0),
+        ("red can", TIN, LIKELY, PLAIN),
         ("something white", TIN, PLAIN, 1.0),
         ("vitamin can", TIN, 0.0, LEAST),
     ],

@@ -16,6 +16,7 @@ from services.brain.recoveries.table import AFTER_GRASPING, AFTER_LOOKING, AFTER
 from services.brain.steps.find import Approach, LocateObject, TurnOnTheSpot, label_of, object_ref
 from services.brain.steps.gripper import MoveGripper, open_hand, set_down_or_open
 from services.brain.steps.home import edit_of, tell_home
+from services.brain.steps.identify import StillMeant
 from services.brain.steps.leaf import Leaf, Say, Settle
 from services.brain.steps.motion import Grab, Navigate
 from services.brain.steps.plan import describe_step
@@ -140,10 +141,16 @@ def grab(ctx: Context, item: str) -> Grab:
 def grasp(ctx: Context, item: str) -> Node:
     """Approach if needed and grab; after a failed grab its recoveries."""
     near = Condition("near_it", approach(ctx, item), lambda: ctx.mission.at != item)
-    first = Sequence("grasp_once", near, grab(ctx, item), Settle("settle", ctx), name=f"grasp {item}")
+    still = StillMeant("still_meant", ctx, item)
+    first = Sequence("grasp_once", near, still, grab(ctx, item), Settle("settle", ctx), name=f"grasp {item}")
     if not ctx.config.grab_retries:
         return first
-    task = Task(item, find=lambda: find(ctx, item), approach=lambda: approach(ctx, item), grab=lambda: grab(ctx, item))
+    task = Task(
+        item,
+        find=lambda: find(ctx, item),
+        approach=lambda: approach(ctx, item),
+        grab=lambda: Sequence("grab_if_meant", StillMeant("still_meant", ctx, item), grab(ctx, item)),
+    )
     return with_recoveries("grasp", ctx, first, AFTER_GRASPING, task, name=f"grasp: {item}")
 
 

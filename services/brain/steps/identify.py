@@ -86,6 +86,27 @@ def candidate(ctx: Context, least: float) -> m.PossibleObject | None:
     return next((p for p in search.perhaps if p.likeness >= least and p.id not in search.rejected), None)
 
 
+class StillMeant(Leaf):
+    """FAILURE when what was found from afar does not, now that it is near, plainly fit what was asked for."""
+
+    def __init__(self, node_id: str, ctx: Context, item: str) -> None:
+        super().__init__(node_id, ctx)
+        self._item = item
+
+    def update(self) -> Status:
+        ctx, item = self.ctx, self._item
+        found, world = ctx.mission.search.found.get(item), ctx.io.latest(topics.WORLD_OBJECTS)
+        if found is None or not found.id or world is None or item in ctx.mission.search.confirmed:
+            return Status.SUCCESS
+        now = next((o for o in world.objects if o.id == found.id and o.measured), None)
+        # Words that are no looks, a taught name or a print, are not to be judged by looks.
+        if now is None or item in ctx.mission.search.chosen or not 0.0 < likeness(item, now, ctx.io.household) < PLAIN:
+            return Status.SUCCESS
+        detail = f"from near it is a {now.label}"
+        ctx.record_failure(Failure("GRABBING", "NOT_PLAIN", detail, f"I am not sure that it is the {item}."))
+        return Status.FAILURE
+
+
 def survey(ctx: Context, item: str) -> bool:
     """Whether what navigation has found by its words is none that is listed, and does not plainly fit them either."""
     world, search = ctx.io.latest(topics.WORLD_OBJECTS), ctx.mission.search
