@@ -28,9 +28,9 @@ def _flat(schema: dict[str, Any], components: dict[str, Any], depth: int) -> dic
         if depth == 0:
             return {"type": "object", "properties": {}}
         return _flat(components[schema["$ref"]], components, depth - 1)
-    if "anyOf" in schema:  # a value or null
-        values = [s for s in schema["anyOf"] if s.get("type") != "null"]
-        return _flat(values[0], components, depth) if len(values) == 1 else None
+    if "anyOf" in schema:  # a value or null, or words of two lists
+        values = [_flat(s, components, depth) for s in schema["anyOf"] if s.get("type") != "null"]
+        return values[0] if all(v == values[0] for v in values) else None
     kind = "string" if "enum" in schema else schema.get("type")
     if kind == "array":
         items = schema.get("items") or next(iter(schema.get("prefixItems", ())), None)

@@ -73,7 +73,7 @@ def test_another_speed_than_realtime_means_lockstep_with_every_paced_service() -
     fast = plan("--speed", "max", "--without", "camera").environ
     assert fast["TIDYBOT__RUNTIME__LOCKSTEP"] == "true"
     assert fast["TIDYBOT__SIM__SPEED"] == "max"
-    expected = [s.name for s in SERVICES if s.paced and s.name != "camera"]
+    expected = [s.name for s in SERVICES if s.paced and s.name not in ("camera", *OPTIONAL)]
     assert json.loads(fast["TIDYBOT__SIM__WAIT_FOR"]) == expected
     assert "brain" in expected and "sim" not in expected and "dashboard" not in expected
     assert "TIDYBOT__RUNTIME__LOCKSTEP" not in plan().environ
@@ -102,13 +102,15 @@ def test_optional_services_are_started_when_asked_for_and_their_package_is_there
 ) -> None:
     monkeypatch.setattr("cli.plan.importlib.util.find_spec", lambda name: object())
     assert not {*plan().names} & {*OPTIONAL}
-    for name in OPTIONAL:
+    gateways = [n for n in OPTIONAL if n != "mapping"]
+    for name in gateways:
         assert plan(f"--{name}").names == [n for n in NAMES if n == name or n not in OPTIONAL]
         assert plan("--only", "router", f"--{name}").names == ["router", name]
+    assert plan("--only", "router,mapping").names == ["router", "mapping"], "started by `tidybot map`"
     monkeypatch.setattr("cli.plan.importlib.util.find_spec", lambda name: None)
     for name in OPTIONAL:
         with pytest.raises(CliError, match=rf"pip install 'tidybot-zenoh\[{name}\]'"):
-            plan(f"--{name}")
+            plan("--only", name)
 
 
 def test_the_generated_configuration_has_one_program_a_service(tmp_path: Path) -> None:

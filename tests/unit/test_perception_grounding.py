@@ -76,7 +76,9 @@ def test_the_middle_one_of_four_is_right_of_the_middle() -> None:
 @pytest.mark.parametrize("words", ["mug", "other mug", "mug on the desk"])
 def test_several_are_named_in_order(words: str) -> None:
     names = ["blue mug", "white mug"] if "desk" in words else ["blue mug", "red mug", "white mug"]
-    assert ground(words, MUGS, SCENE, HERE, {}) == Grounding(None, f"several match: {', '.join(names)}", names)
+    found = ground(words, MUGS, SCENE, HERE, {})
+    assert (found.found, found.reason, found.candidates) == (None, f"several match: {', '.join(names)}", names)
+    assert sorted(p.label for p in found.perhaps) == names, "which of them is meant can be asked"
 
 
 def test_of_two_with_one_name_the_surer_is_meant() -> None:
