@@ -51,6 +51,14 @@ def test_who_stands_there_now_and_then_is_no_furniture() -> None:
     assert not found.changes.lasting.any()
 
 
+def test_a_person_who_stands_for_long_does_not_become_furniture() -> None:
+    found = costmap()
+    for now in (0.0, 100.0, 301.0):
+        person = [(CHAIR.x, CHAIR.y, 0.5)]
+        found.see(HERE, ANGLES, cast(HERE, [*PLAN, CHAIR]), 10.0, now, person)
+    assert found.sees_unmapped and not found.changes.lasting.any()
+
+
 def test_a_place_found_anew_forgets_the_brief_and_keeps_the_lasting() -> None:
     found = costmap()
     look(found, 0.0, [CHAIR])

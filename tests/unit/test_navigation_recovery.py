@@ -13,8 +13,19 @@ from common.viewpoints import viewpoints_of
 from services.navigation.config import NavigationConfig
 from services.navigation.motion.collision_avoidance import avoid
 from services.navigation.motion.obstacle_tracker import Obstacle, ObstacleTracker, clusters
-from services.navigation.motion.progress import BlockedTimer, waiting_for
+from services.navigation.motion.progress import (
+    HELD_UP,
+    MEETINGS,
+    PASSING,
+    STANDOFF,
+    BlockedTimer,
+    Progress,
+    Standoff,
+    waiting_for,
+)
+from services.navigation.motion.retreat import passing_place
 from services.navigation.planning.costmap import Costmap
+from services.navigation.planning.planner import PathPlanner
 from tests.unit.navigation_flat import SCENE, Flat
 
 KITCHEN_DOOR = (2.5, -0.75, 0.4, 0.9, 0.0)
@@ -79,7 +90,7 @@ def test_waiting_for_somebody_who_passes_costs_no_retry() -> None:
     assert blocked([], 5.0) == pytest.approx(5.0)
     assert blocked([person(9.0, 0.0, 0.0, 0.5)], 5.0) == pytest.approx(5.0), "far away"
     assert blocked([passer], 18.0) < wait
-    assert blocked([passer], 30.0) > wait, "somebody who stays is in the way"
+    assert blocked([passer], PASSING + 10.0) > wait, "somebody who stays is in the way"
 
 
 def test_a_way_that_opens_while_it_waits_is_taken() -> None:
@@ -276,3 +287,38 @@ def test_without_eyes_it_goes_to_the_item_s_spot_or_the_default_one() -> None:
         flat.ask(f"find {item}")
         assert flat.finish(60.0).status == "arrived"
         assert math.dist(flat.true[:2], spot) < 0.05
+
+
+def test_who_waits_for_the_robot_is_given_room_after_a_while_and_not_for_ever() -> None:
+    standoff, one = Standoff(), person(1.0, 0.0, 0.0, 0.0)
+    given = [t for t in np.arange(0.0, 30.0, 0.05) if standoff.with_whom((0.0, 0.0), [one], float(t))]
+    assert len(given) == MEETINGS and given[0] == pytest.approx(STANDOFF, abs=0.1)
+
+
+def test_a_passing_place_is_off_the_way_of_the_person() -> None:
+    room = costmap()
+    planner = PathPlanner(room, 0.39, 0.65)
+    here, somebody = (0.0, -1.0, 0.0), (1.2, -1.0)
+    path = passing_place(here, somebody, room, planner)
+    assert path is not None
+    end = path[-1]
+    assert math.dist(end, somebody) > math.dist(here[:2], somebody) + 0.3
+    assert room.clearance(*end) > 0.39 and abs(end[1] - somebody[1]) > 0.4
+
+
+def test_people_put_off_a_time_limit_but_not_for_ever() -> None:
+    progress = Progress(NavigationConfig(), 0.0)
+    progress.allow(10.0, 0.0)
+    for t in np.arange(0.0, 200.0, 0.05):
+        progress.hold_up(float(t))
+    assert progress.deadline == pytest.approx(10.0 + HELD_UP, abs=0.2)
+
+
+def test_steps_aside_never_end_in_furniture() -> None:
+    room = costmap()
+    here = (0.0, -3.5 + 0.06 + 0.40)
+    for _ in range(40):
+        walker = person(here[0] + 0.2, here[1] + 1.0, 0.0, -0.8)
+        spot = avoid(here, (here[0] + 0.5, here[1]), [walker], room, 0.37)
+        here = spot or here
+    assert room.clearance(*here) > 0.36

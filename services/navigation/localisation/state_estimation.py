@@ -22,6 +22,8 @@ NEAR = 4.0
 """Range up to which lidar points are braked for and tracked [m]; chosen: beyond what the robot reaches in 5 s."""
 EXPLAINED = 0.15
 """Distance from the map's walls and furniture within which they explain a point [m]; chosen: five times its noise."""
+AROUND = 0.15
+"""How far beyond a person's radius points are still theirs [m]: a stride, and the error of the track."""
 FOUND = (0.1, 0.1, 0.05)
 """Standard deviation of a pose found anew [m, m, rad]; chosen: finer than the grid of its search."""
 ANYWHERE = (10.0, 10.0, math.pi)
@@ -146,7 +148,8 @@ class StateEstimator:
     def mark(self, costmap: Costmap, frame: Pose2, now: float) -> None:
         """Enter the newest scan in a costmap in whose frame the base is at `frame`."""
         if (scan := self.scan) is not None:
-            costmap.see(compose(frame, (*scan.lidar, 0.0)), scan.angles, scan.reach, scan.range_max, now)
+            people = [(p.x, p.y, p.radius + AROUND) for p in self.tracker.people()]
+            costmap.see(compose(frame, (*scan.lidar, 0.0)), scan.angles, scan.reach, scan.range_max, now, people)
 
 
 def _diagonal(spread: tuple[float, float, float]) -> list[float]:

@@ -19,8 +19,9 @@ WANTED, ENOUGH = 0.20, 0.45
 """Gap between footprint and obstacle [m] that is wanted, and beyond which more is no better; chosen: an arm's room."""
 ASIDE, DIRECTIONS = (0.35, 0.7), 16
 """Distances [m] and number of directions in which it may step aside; chosen: half a footprint and a whole one."""
-SLACK = 0.02
-"""How much less room than now a step aside may have [m]: the costmap's rounding."""
+MARGIN, GAINED = 0.04, 0.03
+"""Clearance beyond its footprint that a step aside leaves [m]: what the base overshoots; and how much more than here it
+must have where there is less [m]."""
 GAIN = 0.03
 """What a step aside must be better by [score, m]; chosen: so that it does not waver."""
 TO_TARGET, TO_SPOT = 0.05, 0.03
@@ -39,13 +40,17 @@ def avoid(here: Point, target: Point, obstacles: Sequence[Obstacle], costmap: Co
     if _gap(here, _beyond(here, target), near, radius) >= WANTED:
         return None
     best, best_score = here, _score(here, here, target, near, radius)
-    room = min(radius, costmap.clearance(*here)) - SLACK
+    # Where there is little room already, only towards more: step by step it would be driven into what stands.
+    clear = costmap.clearance(*here)
+    room, enough = min(radius + MARGIN, clear), min(radius + MARGIN, clear + GAINED)
     for distance in ASIDE:
         for k in range(DIRECTIONS):
             a = 2 * math.pi * k / DIRECTIONS
             spot = (here[0] + distance * math.cos(a), here[1] + distance * math.sin(a))
             score = _score(here, spot, target, near, radius)
-            if score > best_score + GAIN and costmap.line_clearance(here, spot) >= room:
+            if score <= best_score + GAIN or costmap.clearance(*spot) < enough:
+                continue
+            if costmap.line_clearance(here, spot) >= room:
                 best, best_score = spot, score
     return best
 

@@ -11,8 +11,9 @@ from services.navigation.motion.blind_base import BlindBase
 from services.navigation.motion.breadcrumbs import Breadcrumbs
 from services.navigation.motion.collision_avoidance import avoid
 from services.navigation.motion.obstacle_tracker import Obstacle
-from services.navigation.motion.path_follower import Lookahead, braked
-from services.navigation.motion.progress import BlockedTimer, Progress, waiting_for
+from services.navigation.motion.path_follower import Lookahead, PathFollower
+from services.navigation.motion.progress import BlockedTimer, Progress, Standoff, waiting_for
+from services.navigation.motion.retreat import PassingPlace, Retreat, passing_place
 from services.navigation.motion.route import DETOUR_PAUSE, Route
 from services.navigation.planning.costmap import Array, Costmap
 from services.navigation.planning.planner import PathPlanner, Point
@@ -49,7 +50,9 @@ class Navigator:
         self._breadcrumbs = Breadcrumbs()
         self._base = BlindBase()
         self._targets = 0
-        self._retreat: tuple[float, Pose2] | None = None
+        self._planner = planner
+        self._retreat: Retreat | PassingPlace | None = None
+        self._standoff = Standoff()
         self._feedback_at = -math.inf
         self._retries = 0
         self.recoveries = 0
@@ -116,7 +119,7 @@ class Navigator:
 
     def _go_on(self, pose: Pose2, points: Array | None, obstacles: Sequence[Obstacle], now: float) -> m.BaseTarget:
         if self._retreat is not None:
-            return self._go_back(*self._retreat, pose, points, now)
+            return self._go_back(self._retreat, pose, points, obstacles, now)
         if self._route.follower is None:
             return self._wait(pose, obstacles, now)
         return self._follow(pose, points, obstacles, now)
@@ -187,7 +190,7 @@ class Navigator:
             self.doing = ""
         if ahead.blocked:
             self._progress.excuse(now)
-            self.doing = waiting_for((pose[0], pose[1]), obstacles)
+            self._wait_for(pose, obstacles, now)
             if self._blocked.blocked((pose[0], pose[1]), obstacles, now) > self._config.blocked_wait:
                 self._recover(pose, now, "the way is blocked")
         else:
@@ -206,13 +209,20 @@ class Navigator:
     # --- recovery
     def _wait(self, pose: Pose2, obstacles: Sequence[Obstacle], now: float) -> m.BaseTarget:
         """No path at this moment: stand, look for one every second, lose patience in time."""
-        self.doing = waiting_for((pose[0], pose[1]), obstacles)
+        self._wait_for(pose, obstacles, now)
         blocked = self._blocked.blocked((pose[0], pose[1]), obstacles, now)
         if now - self._route.planned_at > REPLAN_PERIOD and self._plan(pose, now):
             self._blocked.clear()
         elif blocked > self._config.blocked_wait:
             self._recover(pose, now, "something stands in every way there")
         return self._hold_at(pose)
+
+    def _wait_for(self, pose: Pose2, people: Sequence[Obstacle], now: float) -> None:
+        """Blocked at this moment: by a person, who may want to get past the robot, or by something."""
+        self.doing = waiting_for((pose[0], pose[1]), people)
+        if self.doing == "PERSON_IN_WAY":
+            self._progress.hold_up(now)
+            self._let_pass(pose, people, now)
 
     def _hold_at(self, pose: Pose2) -> m.BaseTarget:
         self._targets += 1
@@ -235,15 +245,36 @@ class Navigator:
         self._map.doubt(now, OUT_OF_SIGHT)
         config = self._config
         back = self._breadcrumbs.retreat(pose, self._map, config.footprint_radius, config.back_off)
-        self._retreat = now + config.back_off_time, back
+        self._retreat = Retreat(back, now + config.back_off_time, config.corridor)
 
-    def _go_back(self, until: float, back: Pose2, pose: Pose2, points: Array | None, now: float) -> m.BaseTarget:
-        """Towards `back`, as far as the lidar sees nothing there, until that robot time [s], then another plan."""
-        if now >= until:
+    def _let_pass(self, pose: Pose2, people: Sequence[Obstacle], now: float) -> None:
+        """Whoever waits for the robot to go first gets room."""
+        person = self._standoff.with_whom((pose[0], pose[1]), people, now)
+        if person is None:
+            return
+        path = passing_place(pose, person, self._map, self._planner)
+        if path is not None:
+            config = self._config
+            follower = PathFollower(path, (*path[-1], pose[2]), config.lookahead, config.corridor)
+            radius = config.footprint_radius
+            self._retreat = PassingPlace(follower, person, self._map, radius, config.corridor, now)
+
+    def _go_back(
+        self,
+        retreat: Retreat | PassingPlace,
+        pose: Pose2,
+        points: Array | None,
+        people: Sequence[Obstacle],
+        now: float,
+    ) -> m.BaseTarget:
+        """Out of the way, and then another plan."""
+        if isinstance(retreat, PassingPlace):
+            self.doing = "GIVING_WAY"
+            self._progress.hold_up(now)
+        if retreat.over(pose, people, now):
             self._retreat = None
             self._progress.restart(now)
             self._route.follower = None
             self._plan(pose, now)
             self._blocked.clear()
-        target, _ = braked((pose[0], pose[1]), (back[0], back[1]), points, self._config.corridor)
-        return self._hold_at((*target, back[2]))
+        return self._hold_at(retreat.step(pose, points))

@@ -7,15 +7,21 @@ from services.navigation.config import NavigationConfig
 from services.navigation.motion.obstacle_tracker import Obstacle
 from services.navigation.planning.planner import Point
 
+TICK = 0.1
+"""Longest time between two steps that are one wait [s]: two periods."""
 STEP = 0.05
 """What counts as progress [m]; chosen: more than the play of the pose estimate."""
 NEAR = 3.0
 """Who is within this of the robot may be what blocks the path [m]: as far as collision avoidance looks."""
 CLOSE = 1.5
 """Who is within this of the robot that waits is asked to let it pass [m]; chosen: a doorway and a step."""
-PASSING = 20.0
-"""Time that a goal waits for those who pass before its waiting counts again [s]: several times what a person needs
-to clear a door, and less than the margin of a goal's time limit, so that somebody who stays is reported as BLOCKED."""
+PASSING = 30.0
+"""Time that a goal waits for people before its waiting counts again [s]: several times what a person needs to clear a
+door; somebody who stays is reported as BLOCKED."""
+HELD_UP = 90.0
+"""By how much people put off the time limit of a goal at most [s]: both kinds of waiting and the ways aside."""
+STANDOFF, MEETINGS = 2.5, 3
+"""Time after which a person who stands before the waiting robot is given room [s], how often in one goal [count]."""
 
 
 class Progress:
@@ -25,6 +31,16 @@ class Progress:
         self._config = config
         self.deadline = math.inf
         self._best, self._best_at = math.inf, now
+        self._held_up, self._held_at = 0.0, now
+
+    def hold_up(self, now: float) -> None:
+        """Once a step while people keep it from getting on: that is not its fault."""
+        self._best_at = now
+        lost = min(now - self._held_at, TICK)
+        self._held_at = now
+        if self._held_up < HELD_UP:
+            self._held_up += lost
+            self.deadline += lost
 
     def allow(self, seconds: float, now: float) -> None:
         """Set the time limit of a goal for which there is no path."""
@@ -83,3 +99,22 @@ def waiting_for(here: Point, people: Sequence[Obstacle]) -> str:
     """What a robot at `here` that cannot go on does: WAITING, or PERSON_IN_WAY where somebody stands before it."""
     near = any(math.dist((o.x, o.y), here) < CLOSE + o.radius for o in people)
     return "PERSON_IN_WAY" if near else "WAITING"
+
+
+class Standoff:
+    """A person and the robot that each wait for the other."""
+
+    def __init__(self) -> None:
+        self._since = self._at = -math.inf
+        self._left = MEETINGS
+
+    def with_whom(self, here: Point, people: Sequence[Obstacle], now: float) -> Point | None:
+        """Once a step while a person stands before the robot: where, once that has lasted; None until then."""
+        if now - self._at > TICK:
+            self._since = now
+        self._at = now
+        near = min(people, key=lambda o: math.dist((o.x, o.y), here), default=None)
+        if near is None or now - self._since < STANDOFF or self._left <= 0:
+            return None
+        self._since, self._left = now, self._left - 1
+        return near.x, near.y

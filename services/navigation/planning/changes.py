@@ -40,10 +40,9 @@ class Changes:
         self.lasting: NDArray[np.bool_] = np.zeros(shape, bool)
 
     @property
-    def known(self) -> Cells:
-        """Cells in which something was seen and that were not seen through since."""
-        rows, columns = np.nonzero((self._first < np.inf) | self.lasting)
-        return rows, columns
+    def known(self) -> NDArray[np.bool_]:
+        """Cells (rows, columns) in which something was seen and that were not seen through since."""
+        return (self._first < np.inf) | self.lasting
 
     def occupied(self, cells: Cells, now: float) -> None:
         """Something is seen in these cells."""

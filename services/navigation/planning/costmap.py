@@ -2,6 +2,7 @@
 
 import math
 import zlib
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -185,10 +186,19 @@ class Costmap:
         return np.minimum(np.maximum(rows, 0), top), np.minimum(np.maximum(columns, 0), right)
 
     # --- lidar
-    def see(self, pose: Pose2, angles: Array, ranges: Array, range_max: float, now: float) -> None:
+    def see(
+        self,
+        pose: Pose2,
+        angles: Array,
+        ranges: Array,
+        range_max: float,
+        now: float,
+        people: Sequence[tuple[float, float, float]] = (),
+    ) -> None:
         """Mark what the static map does not explain, clear what the rays passed through, forget what is old.
 
-        A range of 0 is a ray that the robot's own body holds up: it tells nothing of what is behind.
+        A range of 0 is a ray that the robot's own body holds up: it tells nothing of what is behind. `people`, circles
+        (x, y, radius) [map, m], never last, however long they stand.
         """
         hit = (ranges <= range_max) & (ranges > 0.0)
         directions = angles[hit] + pose[2]
@@ -199,20 +209,25 @@ class Costmap:
         rows, columns = rows[inside], columns[inside]
         new = self.static_distance[rows, columns] > _EXPLAINED
         before = self._seen_at > -np.inf
-        if not new.any() and not before.any() and not len(self.changes.known[0]):
+        if not new.any() and not before.any() and not self.changes.known.any():
             return
         self._clear(pose, angles, np.minimum(ranges, range_max), now)
-        marked = rows[new], columns[new]
-        self._seen_at[marked] = now
-        self._first_at[marked] = np.minimum(self._first_at[marked], now)
-        self.changes.occupied(marked, now)
+        rows, columns = rows[new], columns[new]
+        self._seen_at[rows, columns] = now
+        person = np.zeros(len(rows), bool)
+        for x, y, radius in people:
+            person |= np.hypot(xs[inside][new] - x, ys[inside][new] - y) < radius
+        self._first_at[rows[person], columns[person]] = now
+        stands = rows[~person], columns[~person]
+        self._first_at[stands] = np.minimum(self._first_at[stands], now)
+        self.changes.occupied(stands, now)
         after = self._seen_at > -np.inf
         if (after != before).any():
             self._distance = None if after.any() else self.static_distance
             self.version += 1
 
     def _clear(self, pose: Pose2, angles: Array, reach: Array, now: float) -> None:
-        rows, columns = self.changes.known
+        rows, columns = np.nonzero((self._seen_at > -np.inf) | self.changes.known)
         if not len(rows):
             return
         x = self.origin[0] + (columns + 0.5) * self.resolution - pose[0]
