@@ -15,8 +15,8 @@ from common.robot import ARM
 Array = NDArray[np.float64]
 ABOVE, LIFT = 0.12, 0.10
 """How far [m] above the object the hand begins, and how far it lifts."""
-DEPTH = 0.01
-"""How far [m] below the object's middle the pads close."""
+DEPTH, PALM = 0.01, 0.035
+"""How far [m] below the object's middle the pads close, and at most below its top, where the palm would meet it."""
 STEP = 0.04
 """Most that a joint moves from one action to the next [rad]: 0.8 rad/s at 20 Hz."""
 NEAR = 0.004
@@ -54,7 +54,8 @@ class FromAbove:
         self._q = joints
         self._at = [self._model.joint(j).qposadr[0] for j in ARM]
         self._dof = [self._model.joint(j).dofadr[0] for j in ARM]
-        middle = np.array(seen["object.position"]) - [0.0, 0.0, DEPTH]
+        depth = min(DEPTH, PALM - seen["object.size"][2] / 2)
+        middle = np.array(seen["object.position"]) - [0.0, 0.0, depth]
         up = np.array([0.0, 0.0, 1.0])
         self._ways = [middle + ABOVE * up, middle, middle + LIFT * up]
         # The fingers close along the side of the object that is nearest to straight across.

@@ -229,10 +229,11 @@ def test_it_sees_what_a_demonstration_shows() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("item", ["yellow block", "green can"])
-def test_a_policy_really_grasps_and_the_robot_carries_on(item: str) -> None:
+@pytest.mark.parametrize("seed", [4, 5])
+def test_a_policy_really_grasps_and_the_robot_carries_on(seed: int) -> None:
+    item = "yellow block"
     chosen = ("camera.sensors=ideal", "manipulation.policy=examples.reach_policy:FromAbove")
-    robot = Robot("minimal", seed=4, settings=chosen)
+    robot = Robot("minimal", seed=seed, settings=chosen)
     robot.advance(0.5)
     for goal_id, topic, answer, goal in (
         ("t.1", topics.NAVIGATION_GOAL, topics.NAVIGATION_STATUS, m.NavigationGoal(goal=f"find {item}", id="t.1")),
