@@ -156,6 +156,10 @@ def verdict(sentence: Sentence, found: Understood) -> Verdict:
     if any(_fits(reading.strip(), sentence, found) for reading in sentence.right.split("||")):
         return "right"
     acts = [s for s in found.steps if s.action != "say"]
+    if "none()" in sentence.right and not acts and not found.looks and found.kind in ("", "no", "queue"):
+        return "right"
+    if sentence.right == "none()" and found.kind in ("cancel", "stop"):
+        return "right"
     if found.asks or (not acts and not found.kind and re.search(r"which|do you mean", found.reason)):
         return "asked back"
     if not acts and not found.kind:

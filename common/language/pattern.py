@@ -100,10 +100,11 @@ class Pattern:
     def __init__(self, pattern: str) -> None:
         self.tree = parse(pattern)
         self._first = first_words(self.tree)
+        self._needed = needed(self.tree)
 
     def matches(self, words: Words) -> Iterator[Slots]:
         """Every reading of the whole sentence, shorter first slots first."""
-        if self._first & {"", ANY, *words[:1]}:
+        if self._first & {"", ANY, *words[:1]} and (not self._needed or not self._needed.isdisjoint(words)):
             for end, slots in _match(self.tree, words, 0, {}):
                 if end == len(words):
                     yield slots
@@ -144,6 +145,20 @@ def words_of(node: Node) -> set[str]:
         case _:
             parts = node.options if isinstance(node, Either) else node.parts
             return set[str]().union(*map(words_of, parts))
+
+
+def needed(node: Node) -> frozenset[str]:
+    """Words of which every sentence of the pattern has at least one; empty when there are none such."""
+    match node:
+        case Word(text):
+            return frozenset({text})
+        case Slot(_):
+            return frozenset()
+        case Either(options):
+            sets = [needed(option) for option in options]
+            return frozenset().union(*sets) if all(sets) else frozenset()
+        case Sequence(parts):
+            return min((n for part in parts if (n := needed(part))), key=len, default=frozenset())
 
 
 def first_words(node: Node) -> set[str]:

@@ -25,6 +25,41 @@ def test_everyday_sentences(name: str) -> None:
     assert len(missed) <= (1 - ENOUGH) * len(rows), "\n".join(map(str, missed))
 
 
+def test_sentences_that_nobody_worked_on() -> None:
+    rows = sentences("unseen_everyday_sentences.tsv")
+    verdicts = [verdict(row, understand(row)) for row in rows]
+    assert verdicts.count("right") >= 50 and verdicts.count("wrong") <= 1, "50 of 60 when they were first tried"
+
+
+def test_what_asks_for_nothing_sets_nothing_in_motion() -> None:
+    rows = sentences("nothing_to_do.tsv")
+    assert not [row for row in rows if row.right == "none()" and verdict(row, understand(row)) == "wrong"]
+
+
+@pytest.mark.slow
+def test_lists_of_many_speakers() -> None:
+    rows = sentences("seven_lists.tsv")
+    verdicts = {row: verdict(row, understand(row)) for row in rows}
+    wrong = [row for row, v in verdicts.items() if v == "wrong"]
+    assert len(wrong) <= 0.01 * len(rows), wrong
+    assert len([v for v in verdicts.values() if v == "right"]) >= 0.95 * len(rows)
+
+
+@pytest.mark.parametrize(
+    ("said", "acts"),
+    [
+        ("if there is a mug on the counter bring it to me", ["find blue mug", "grasp blue mug", "return", "release"]),
+        ("if there is a banana on the counter bring it to me", ["navigate counter", "wait", "say"]),
+        ("if there is a banana on the counter bring it, otherwise go to the desk", ["navigate desk"]),
+    ],
+)
+def test_a_condition_is_looked_into(said: str, acts: list[str]) -> None:
+    found = planned(said)
+    done = [*found.looks, *found.steps]
+    shown = [" ".join(filter(None, (s.action, s.object or s.target))) for s in done]
+    assert shown[-len(acts) :] == acts
+
+
 def test_the_judge_of_sentences_can_say_no() -> None:
     first = sentences("everyday_sentences.tsv")[0]
     assert verdict(first, understand(first)) == "right"

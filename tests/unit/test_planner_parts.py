@@ -5,7 +5,7 @@ import pytest
 from common.household import load_household
 from common.language.clauses import clauses
 from common.language.normalise import infinitive
-from common.language.pattern import Pattern, PatternError
+from common.language.pattern import Pattern, PatternError, needed, parse
 from common.messages import KnownWorld, PlanStep
 from services.planner.choice_points import MAX_RUNS, ChoicePoints, every
 from services.planner.config import PlannerConfig
@@ -29,6 +29,12 @@ def test_a_form_gives_every_reading_the_shortest_slot_first() -> None:
     assert readings("go [back] to <spot>", "go back to it") == [{"spot": "it"}]
     assert readings("come (here | back)", "come here") == [{}]
     assert readings("come (here | back)", "come") == []
+
+
+def test_a_pattern_knows_which_words_it_cannot_do_without() -> None:
+    assert needed(parse("(put | set) <thing> [down] on <spot>")) == {"on"}
+    assert needed(parse("(go | drive) <spot>")) == {"go", "drive"}
+    assert needed(parse("<thing> | stop")) == frozenset()
 
 
 @pytest.mark.parametrize("pattern", ["go (home", "go [home", "go home)", "go ] home"])
