@@ -1,0 +1,169 @@
+"""The wordings of putting, bringing, picking up and finding things."""
+
+from common.language.lexicon import (
+    BACK,
+    BRING,
+    DISCARD,
+    FETCH,
+    IT,
+    MODAL,
+    MOVE,
+    MOVED,
+    NEAR,
+    ON,
+    PERSON,
+    PUT,
+    SEEK,
+    THROW,
+    TIDY,
+    WISH,
+)
+from common.language.wording import Wording
+
+MOVING: tuple[Wording, ...] = (
+    # Putting.
+    Wording(
+        "put",
+        f"({PUT}) (down <thing> | <thing> down) ({ON} | at) <spot>",
+        heard="",
+    ),
+    Wording("put", f"(line | stack | pile | set | put | lay) <thing> (up | out) ({ON} | at) <spot>", heard=""),
+    Wording(
+        "put_down",
+        "put (down <thing> | back down <thing> | <thing> [back] down) | set (down <thing> | <thing> down)",
+        heard="put (it | them) down",
+    ),
+    Wording("put_down", "(drop | release | let go of | let go) <thing> | let go", heard="release it | let go"),
+    Wording(
+        "put_near",
+        f"({PUT}) <thing> {BACK} {NEAR} <spot>",
+        heard=f"(put | place | set) {IT} <near> | move <thing> <near>",
+    ),
+    Wording("throw_away", f"({THROW}) <thing> (away | out)", heard=f"throw {IT} away"),
+    Wording("throw_away", f"({THROW}) (away | out) <thing> | ({DISCARD}) <thing>", heard=""),
+    Wording(
+        "put_away",
+        f"(put | {TIDY}) away <thing> | (put | {TIDY}) <thing> away",
+        heard=f"put {IT} away",
+    ),
+    Wording(
+        "put_back",
+        "(put | take | bring | return | set | place | move | carry) <thing> [back] (where | to where)"
+        " (it | they | that) (was | were | came from | had been | stood | has been | belongs | used to be) [before]"
+        " | (put | take | bring | return | set | place | move | carry) <thing> [back] (where | to where) (you | i)"
+        " (found | got | took | had | picked | took) (it | them | that) [up] [from]"
+        " | (put | place | set | take) <thing> back | return <thing> | take <thing> away"
+        " | (put | take | bring | return) <thing> [back] (to its place | in its place)",
+        heard="put (it | that) back [where it was]",
+    ),
+    Wording(
+        "put_away",
+        "put <thing> (where it belongs | where they belong | in its place | to its place | in order)",
+        heard="",
+    ),
+    Wording("put_away", "sort [out] <thing> | <thing> (needs | need) (putting | to be put) away", heard=""),
+    Wording(
+        "put_where",
+        f"({PUT} | bring | take | carry) <thing> [over] [to] where <spot> (is | are | stands | lies)",
+        heard="",
+    ),
+    # Bringing.
+    Wording("deliver_there", f"({MOVE} | {PUT}) <thing> [over] there", heard=""),
+    Wording(
+        "fetch",
+        f"({BRING} | find) (me | us) <thing> [back]",
+        heard="(bring | fetch | get | give | hand) me <thing>",
+    ),
+    Wording(
+        "fetch",
+        f"({BRING} | move) <thing> [over | back] to (me | us)",
+        heard="(bring | take | carry) <thing> to me",
+    ),
+    Wording("fetch", f"({FETCH}) (<thing> [back | over] here | <thing> (back | over) | over <thing>)", heard=""),
+    Wording(
+        "put",
+        f"({PUT}) <thing> {BACK} ({ON} | at | under | to) <spot>",
+        heard=f"(put | place | set) {IT} <onto> | throw {IT} (in | into) <inside> | move <thing> (to <spot> | <onto>)",
+    ),
+    Wording(
+        "deliver",
+        f"({MOVE}) [me] <thing> {BACK} (to | into) <spot>",
+        heard="(bring | take | carry) <thing> to <spot>",
+    ),
+    Wording("wish_at", "(bring | get | fetch | carry) <thing> (on | in) <spot>", heard=""),
+    Wording(
+        "put", f"(take | deliver | move | shift | relocate | transfer | swap) <thing> {BACK} (on | in) <spot>", heard=""
+    ),
+    Wording("put", f"({MOVE}) <thing> {BACK} onto <spot>", heard=""),
+    Wording(
+        "put",
+        f"<thing> (belongs | belong | goes | go | can go | should be | should go | must go) ({ON} | to) <spot>",
+        heard="",
+    ),
+    Wording(
+        "put",
+        f"(can | could | should | would | may | must) <thing> (go | be | get | come) [back | over] ({ON} | to) <spot>",
+        heard="",
+    ),
+    Wording(
+        "put",
+        f"(can | could | should | must | may | shall | would) <thing> be {MOVED} {BACK} ({ON} | to) <spot>"
+        f" | <thing> (should | must | has to | have to | needs to | need to | "
+        f"ought to) be {MOVED} {BACK} ({ON} | to) <spot>",
+        heard="",
+    ),
+    Wording(
+        "fetch",
+        f"(can | could | should | would) <thing> be {MOVED} (here | over | to (me | us)) | have <thing> [over "
+        f"| brought] [here]",
+        heard="",
+    ),
+    Wording(
+        "put",
+        f"let <thing> (stand | be | go | sit | lie) {ON} <spot> | make sure [that] <thing> (is | are | "
+        f"ends up | end up) {ON} <spot>",
+        heard="",
+    ),
+    Wording(
+        "pick_up",
+        "(pick | take | grab | lift | gather | collect) up <thing> | pick <thing> up | lift <thing> [up]",
+        heard="pick (up <thing> | <thing> up)",
+    ),
+    Wording(
+        "pick_up",
+        "(get | take | grab) hold of <thing> | (hold | hang) on to <thing> | hold onto <thing>",
+        heard="",
+    ),
+    Wording("pick_up", "(grab | grasp | take | hold | pick | reach [for]) <thing>", heard="(grab | take) <thing>"),
+    Wording(
+        "find",
+        "check on <thing> | keep an eye (out for | open for | on) <thing> | watch out for <thing>",
+        heard="",
+    ),
+    Wording("put_back", "undo <thing> | revert <thing>", heard=""),
+    Wording("fetch", "(i | we) feel like [having | eating | drinking] <thing>", heard=""),
+    Wording("find", f"({SEEK}) <thing>", heard="find <thing>"),
+    Wording("find", "(i | we) (can not | cannot | could not | did not) find <thing> [anywhere]", heard=""),
+    Wording("find", "(i | we) [have] (lost | misplaced | mislaid) <thing>", heard=""),
+    Wording("find", "show me where <thing> (is | are)", heard=""),
+    Wording("find", "(help me | try to) (look for | find | search for | locate) <thing>", heard=""),
+    Wording("find", "(search | look | look around) [through | in] <spot> for <thing>", heard=""),
+    Wording("fetch", f"({FETCH} | get) <thing>", heard=""),
+    Wording(
+        "wish_at",
+        f"{PERSON} {WISH} <thing> [to be] {ON} <spot>",
+        heard="",
+    ),
+    Wording(
+        "fetch",
+        f"{PERSON} {WISH} <thing> [[over] here]",
+        heard="",
+    ),
+    Wording("fetch", f"{MODAL} (i | we) (have | get) <thing> | let (me | us) have <thing>", heard=""),
+    Wording("fetch", f"{MODAL} i trouble you for <thing> | gimme <thing> | how about <thing>", heard=""),
+    Wording("fetch", "<thing> would be (nice | great | good | lovely | perfect)", heard=""),
+    Wording("fetch", "[is there] any chance of [getting | having] <thing>", heard=""),
+    Wording("fetch", "(pick | grab | fetch | get) (me | us) up <thing>", heard=""),
+    Wording("refuse", "(put | place | set) <thing>", heard="", reason="you did not say where to put it"),
+)
+"""In order of trial, as in the table that takes them in."""
