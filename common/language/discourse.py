@@ -5,35 +5,15 @@ you ...", "after you have ...") are worked out here; what a clause asks for is n
 """
 
 import re
-from collections.abc import Callable
 
 from common.language.breaks import conditional, with_breaks
 from common.language.clauses import cut_clauses, without_fillers
 from common.language.contractions import expand
+from common.language.exchange import PREPOSITIONS, IsPlace, filled, noun_phrases, replaced, verb_first
 from common.language.lexicon import COMMANDING
-from common.language.normalise import DETERMINERS, Words, infinitive, normalise
+from common.language.normalise import DETERMINERS, infinitive, normalise
 from common.language.politeness import LONG_SPEECH, without_politeness
 
-PREPOSITIONS = frozenset(
-    {
-        "on",
-        "in",
-        "to",
-        "into",
-        "onto",
-        "at",
-        "from",
-        "next",
-        "near",
-        "beside",
-        "under",
-        "behind",
-        "with",
-        "inside",
-        "off",
-    }
-)
-"""Words that end a noun phrase."""
 _REPAIR = re.compile(
     r"(?:,\s*wait,\s*(?=not\b)|[,.;]\s*(?:no|sorry|actually|rather)(?:,\s*|\s+)|,\s*(?:oh|well|hold on|hang on),\s*"
     r"|(?<=\w)\s+no,?\s+(?=(?:the|my|on|in|to|at)\s)|,?\s+(?:no,? wait|wait,? no|oh,? wait|no,? sorry|sorry,? no|"
@@ -98,9 +78,6 @@ _ANSWERS = frozenset({"no", "yes", "not", "if", "when", "unless", "after", "befo
 LONGEST_LEAD = 4
 """Words before a comma that may be left out (chosen)."""
 
-IsPlace = Callable[[Words], bool]
-"""Do the words name a place?"""
-
 
 def commands(text: str, is_place: IsPlace = lambda _: False) -> list[str]:
     """The clauses of a text in the order in which they are to be done, each without its politeness."""
@@ -119,9 +96,9 @@ def _in_order(text: str) -> list[str]:
         if cut is not None:
             one, other = cut
             return [other, one] if found["word"] == "before" else [one, other]
-    if (found := _BUT_FIRST.match(bare)) and _verb_first(found["first"]):
+    if (found := _BUT_FIRST.match(bare)) and verb_first(found["first"]):
         return [found["first"], found["second"]]
-    if (found := _LATER.match(bare)) and _verb_first(found["second"]):
+    if (found := _LATER.match(bare)) and verb_first(found["second"]):
         first, second = found["first"], _with_infinitive(found["second"])
         return [first, second] if found["word"] == "before" else [second, first]
     return [text]
@@ -131,19 +108,14 @@ def _second_clause(text: str) -> tuple[str, str] | None:
     """`put it there, bring me that` as its two commands; None if there are not two."""
     for comma in re.finditer(r",\s*(?:then\s+)?(?:please\s+)?", text):
         head, tail = text[: comma.start()], without_politeness(text[comma.end() :])
-        if _verb_first(head) and _verb_first(tail):
+        if verb_first(head) and verb_first(tail):
             return _with_infinitive(head), tail
     words = text.replace(",", " ").split()
     for at in range(2, len(words) - 1):
         if words[at] in COMMANDING and (words[at + 1] in DETERMINERS or words[at + 1] in _NEXT):
             head = " ".join(words[:at])
-            return (_with_infinitive(head), " ".join(words[at:])) if _verb_first(head) else None
+            return (_with_infinitive(head), " ".join(words[at:])) if verb_first(head) else None
     return None
-
-
-def _verb_first(text: str) -> bool:
-    words = text.split()
-    return bool(words) and infinitive(words[0], COMMANDING) in COMMANDING
 
 
 def _with_infinitive(text: str) -> str:
@@ -183,7 +155,7 @@ def _with_noun(text: str) -> str:
     if found := _DISLOCATED.match(without_politeness(text)):
         if found["verb"].split()[0] in COMMANDING:
             return f"{found['verb']} {found['thing']}{found['rest']}"
-    elif (found := _PRESENTED.match(text)) and _verb_first(without_politeness(found["rest"])):
+    elif (found := _PRESENTED.match(text)) and verb_first(without_politeness(found["rest"])):
         return re.sub(r"\b(?:it|them|that|those|one)\b", lambda _: found["thing"], found["rest"], count=1)
     return text
 
@@ -211,10 +183,10 @@ def _without_lead(text: str) -> str:
     if (
         comma
         and strange
-        and not _verb_first(head)
+        and not verb_first(head)
         and not PREPOSITIONS & set(words[:1])
         and " " in rest.strip()
-        and _verb_first(without_politeness(rest))
+        and verb_first(without_politeness(rest))
     ):
         return rest
     return text
@@ -240,65 +212,8 @@ def _contrasted(wrong: str, right: str) -> str:
     """`not the red mug, the blue one` is the blue mug; a verb that was said only with the wrong one is kept."""
     verb, _, thing = wrong.partition(" ")
     right = without_politeness(right)
-    if verb in COMMANDING and not _verb_first(right):
+    if verb in COMMANDING and not verb_first(right):
         words = wrong.split()
         receiver = f"{words[1]} " if len(words) > 2 and words[1] in ("me", "us") else ""
         return f"{verb} {receiver}{filled(right, thing)}"
     return filled(right, wrong)
-
-
-def replaced(said: str, meant: str, is_place: IsPlace = lambda _: False) -> str | None:
-    """What was said with the part exchanged that `meant` stands for: a command, a place or a thing; None if none."""
-    meant = without_politeness(meant)
-    words, new = said.strip(" ,").split(), meant.split()
-    if not new:
-        return None
-    if _verb_first(meant) and not (len(new) == 1 or new[1] in ("one", "ones")):
-        return _with_thing(meant, words)
-    if new[0] in PREPOSITIONS:
-        at = next((i for i in range(len(words) - 1, 0, -1) if words[i] in PREPOSITIONS), len(words))
-        return " ".join((*words[:at], *new))
-    spans = noun_phrases(words)
-    if not spans:
-        return None
-    bare = tuple(w for w in new if w not in DETERMINERS)
-    start, end = spans[-1] if len(spans) > 1 and is_place(bare) else spans[0]
-    return " ".join((*words[:start], *filled(meant, " ".join(words[start:end])).split(), *words[end:]))
-
-
-def _with_thing(meant: str, said: list[str]) -> str:
-    """A command with the first thing that was said before in place of its "it"."""
-    spans = noun_phrases([w.strip(",") for w in said])
-    thing = " ".join(said[spans[0][0] : spans[0][1]]).strip(",") if spans else ""
-    return re.sub(r"(?<=\w )(?:it|them)\b", thing, meant, count=1) if thing else meant
-
-
-_AFTER_NOUN = PREPOSITIONS | {"and", "that", "which", "here", "there"}
-
-
-def noun_phrases(words: list[str]) -> list[tuple[int, int]]:
-    """(begin, end) of each phrase that begins with a determiner and ends before the next preposition or "and"."""
-    found = []
-    at = 0
-    while at < len(words):
-        if words[at].strip(",") in DETERMINERS:
-            end = at + 1
-            while end < len(words) and words[end].strip(",") not in _AFTER_NOUN:
-                end += 1
-            found.append((at, end))
-            at = end
-        at += 1
-    return found
-
-
-def filled(phrase: str, other: str) -> str:
-    """`the blue one` with the noun of the other phrase, `the red mug`."""
-    head = other.split()
-    if spans := noun_phrases(head):
-        head = head[spans[0][0] : spans[0][1]]
-    elif head:
-        head = head[: next((i for i, w in enumerate(head) if w in PREPOSITIONS), len(head))]
-    noun = head[-1] if head else ""
-    if not noun or noun in ("one", "ones") or noun in DETERMINERS:
-        return phrase
-    return re.sub(r"\bone\b", noun, phrase, count=1)

@@ -1,7 +1,7 @@
 """What the robot says about what it has seen. Pure."""
 
 from common.floor_plan import Receptacle
-from common.language.discourse import PREPOSITIONS
+from common.language.exchange import PREPOSITIONS
 from common.language.normalise import Words, enumeration, without_determiners
 from common.language.noun_phrase import PLURAL_PRONOUNS, PRONOUNS, WHICH, related
 from common.language.pattern import Slots

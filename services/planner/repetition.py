@@ -4,7 +4,7 @@ import re
 from collections.abc import Sequence
 
 from common.language.contractions import expand
-from common.language.discourse import PREPOSITIONS, IsPlace, replaced
+from common.language.exchange import PREPOSITIONS, IsPlace, replaced
 from common.language.lexicon import HANDLING
 from common.language.meaning import readings
 from common.language.normalise import DETERMINERS, normalise

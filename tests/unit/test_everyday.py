@@ -2,7 +2,8 @@
 
 import pytest
 
-from common.language.discourse import commands, replaced
+from common.language.discourse import commands
+from common.language.exchange import replaced
 from common.language.meaning import is_question
 from common.language.quantities import duration
 from services.brain.language.interjection import interjection

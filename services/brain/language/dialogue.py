@@ -8,7 +8,8 @@ from typing import Literal
 from common.household import Household
 from common.language.clauses import without_fillers
 from common.language.contractions import expand
-from common.language.discourse import PREPOSITIONS, commands, noun_phrases, replaced
+from common.language.discourse import commands
+from common.language.exchange import PREPOSITIONS, noun_phrases, replaced
 from common.language.lexicon import COMMANDING
 from common.language.meaning import asks_for
 from common.language.normalise import DETERMINERS, Words, infinitive, normalise, without_determiners

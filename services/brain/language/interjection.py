@@ -7,7 +7,8 @@ import msgspec
 
 from common.language.clauses import without_fillers
 from common.language.contractions import expand
-from common.language.discourse import NOT_WANTED, filled
+from common.language.discourse import NOT_WANTED
+from common.language.exchange import filled
 from common.language.lexicon import COMMANDING
 from common.language.meaning import asks_for, is_question
 from common.language.normalise import normalise
