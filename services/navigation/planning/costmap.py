@@ -198,7 +198,7 @@ class Costmap:
         """Mark what the static map does not explain, clear what the rays passed through, forget what is old.
 
         A range of 0 is a ray that the robot's own body holds up: it tells nothing of what is behind. `people`, circles
-        (x, y, radius) [map, m], never last, however long they stand.
+        (x, y, radius) [map, m], never become a part of the map, however long they stand.
         """
         hit = (ranges <= range_max) & (ranges > 0.0)
         directions = angles[hit] + pose[2]
@@ -217,10 +217,8 @@ class Costmap:
         person = np.zeros(len(rows), bool)
         for x, y, radius in people:
             person |= np.hypot(xs[inside][new] - x, ys[inside][new] - y) < radius
-        self._first_at[rows[person], columns[person]] = now
-        stands = rows[~person], columns[~person]
-        self._first_at[stands] = np.minimum(self._first_at[stands], now)
-        self.changes.occupied(stands, now)
+        self._first_at[rows, columns] = np.minimum(self._first_at[rows, columns], now)
+        self.changes.occupied((rows[~person], columns[~person]), now)
         after = self._seen_at > -np.inf
         if (after != before).any():
             self._distance = None if after.any() else self.static_distance
