@@ -320,7 +320,7 @@ def test_fingers_that_did_not_open_hold_the_same_thing_for_the_next_try(monkeypa
     robot = brought("green can")
     told = robot.bus.tap(topics.GRIPPER_COMMAND)
     with monkeypatch.context() as stuck:
-        stuck.setattr(robot.sim, "_grip", lambda closed, effort: None)
+        stuck.setattr(robot.sim.physics, "grip", lambda closed, effort: None)
         assert release(robot, "t.4")["code"] == "STUCK"
     assert len(told) > 2, "one lost command would not have mattered"
     assert release(robot, "t.5")["status"] == "done"
