@@ -187,7 +187,8 @@ def test_the_schema_asks_for_our_actions_and_names_only(endpoint: Endpoint) -> N
     assert schema["type"] == "object" and schema["additionalProperties"] is False
     assert set(step["required"]) == {"action", "object", "target", "text"}
     assert set(step["properties"]["action"]["enum"]) == {
-        "navigate", "find", "grasp", "place", "release", "say", "wait", "return", "teach", "forget" "name", "rule",
+        "navigate", "find", "grasp", "place", "release", "say", "wait", "return", "teach", "forget",
+        "name", "rule",
     }  # fmt: skip
     assert {"red mug", "strange thing", ""} <= set(step["properties"]["object"]["enum"])
     assert "sofa" in step["properties"]["target"]["enum"] and "moon" not in step["properties"]["target"]["enum"]
