@@ -16,6 +16,9 @@ OWN = 0.3
 """Share of an object's surface from which a colour is its own whatever else it has. Chosen: a label on a can."""
 SECOND = 0.5
 """Most likeness of a colour that is not the largest part: it may be a neighbour's that stands before or behind it."""
+NOT_CALLED = 0.54
+"""Most likeness of a kind that an object may be and is not called. Chosen: below PLAIN, since a red ball is brought for
+a red apple only when the person says so."""
 NEAR_COLOUR, NEAR_KIND = 0.15, 0.12
 """Likeness of a colour next to one that was seen, and of a kind that is easily taken for one. Chosen: rarely right."""
 HIDDEN = 0.5
@@ -66,7 +69,10 @@ def _has_kind(kind: str, o: WorldObject) -> float:
         # Balls and what stands on a foot are taken for each other only where most is hidden.
         return HIDDEN * shares.get(kind, 0.0) / best if o.kind_shares else 0.0
     near = any(kind in group and o.kind in group for group in TAKEN_FOR)
-    return max(shares.get(kind, 0.0) / best, NEAR_KIND * near)
+    has = shares.get(kind, 0.0) / best
+    if o.kind_shares and kind != o.kind:
+        has = min(has, NOT_CALLED)
+    return max(has, NEAR_KIND * near)
 
 
 def _has_colour(shade: str, o: WorldObject) -> float:

@@ -21,6 +21,7 @@ def measured(label: str, kinds: dict[str, float], colours: dict[str, float], nam
 
 
 APPLE = measured("yellow apple", {"apple": 0.5, "ball": 0.45}, {"yellow": 0.6, "green": 0.4})
+BALL = measured("red ball", {"ball": 0.5, "apple": 0.5}, {"red": 1.0})
 CAN = measured("grey can", {"can": 0.7, "jar": 0.3}, {"grey": 0.65, "white": 0.35})
 TIN = measured("white can", {"can": 1.0}, {"white": 0.6, "red": 0.4})
 
@@ -29,7 +30,9 @@ TIN = measured("white can", {"can": 1.0}, {"white": 0.6, "red": 0.4})
     ("words", "seen", "low", "high"),
     [
         ("yellow apple", APPLE, PLAIN, 1.0),
-        ("yellow ball", APPLE, 0.5, PLAIN),
+        ("yellow ball", APPLE, LIKELY, PLAIN),
+        ("red ball", BALL, PLAIN, 1.0),
+        ("red apple", BALL, LIKELY, 0.99 * PLAIN),
         ("green apple", APPLE, LIKELY, PLAIN),
         ("red apple", APPLE, 0.0, LEAST),
         ("yellow mug", APPLE, 0.0, LEAST),
