@@ -23,15 +23,18 @@ _IDENTITY = re.compile(r"is (?:that|this) the .+\?$", re.IGNORECASE)
 _WHICH = re.compile(r"^(?:which\b|do you mean|the .+ or the .+\?)", re.IGNORECASE)
 
 
-SHOWN = 0.035
-"""Distance [m] of an object from the place that the robot shows, up to which it is what is seen there. Chosen: half of
-a small object; between two neighbours the person sees neither."""
+SHOWN, NEAREST = 0.10, 0.05
+"""Distance [m] of an object from the place that the robot shows, up to which it is what is seen there, and by how much
+any other has to be farther. Chosen: the size of an object, and half of one; between two neighbours one sees neither."""
 
 
 def seen_at(place: Vec3 | None, objects: Mapping[str, Vec3]) -> str:
     """The object that a person sees at the place that the robot shows them; "" for none."""
-    apart, name = min(((math.dist(at, place), name) for name, at in objects.items() if place), default=(math.inf, ""))
-    return name if apart < SHOWN else ""
+    if place is None:
+        return ""
+    apart = sorted((math.dist(at, place), name) for name, at in objects.items())
+    alone = len(apart) == 1 or (len(apart) > 1 and apart[1][0] > apart[0][0] + NEAREST)
+    return apart[0][1] if alone and apart[0][0] < SHOWN else ""
 
 
 class SimulatedUser:

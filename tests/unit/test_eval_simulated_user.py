@@ -69,6 +69,8 @@ def test_what_is_seen_where_the_robot_shows() -> None:
         seen_at((1.05, 0.0, 0.8), objects) == ""
         and seen_at((1.5, 0.0, 0.8), objects) == ""
         and seen_at(None, objects) == ""
+        and seen_at((1.06, 0.0, 0.8), {"red mug": (1.0, 0.0, 0.8)}) == "red mug"
+        and seen_at((1.0, 0.0, 0.8), {}) == ""
     )
 
 
