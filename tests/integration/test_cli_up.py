@@ -122,6 +122,7 @@ def test_kill_9_of_either_leaves_no_orphan(run: Run, victim: str) -> None:
     assert up.wait(30) != 0
 
 
+@pytest.mark.slow
 def test_a_detached_run_is_commanded_by_the_other_commands(run: Run) -> None:
     assert run.detached("--only", "router,sim,brain").returncode == 0
     before = run.rows()
@@ -148,6 +149,7 @@ def test_a_detached_run_is_commanded_by_the_other_commands(run: Run) -> None:
     assert run.processes() == []
 
 
+@pytest.mark.slow
 def test_a_frozen_service_is_ended_and_started_anew(run: Run) -> None:
     assert run.detached("--only", "router,sim,brain").returncode == 0
     for name in ("brain", "router"):

@@ -70,6 +70,7 @@ def start(place: Site, opened: zenoh.Session) -> "subprocess.Popen[bytes]":
     return process
 
 
+@pytest.mark.slow
 @pytest.mark.timeout(600)
 def test_kill_9_while_each_goal_is_under_way(robot: tuple[Site, Peers]) -> None:
     place, peers = robot

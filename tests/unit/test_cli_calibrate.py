@@ -95,6 +95,7 @@ def test_the_arm_keeps_clear_of_the_base_itself_and_what_is_seen(studio: Studio,
     assert min(apart) > 0.1
 
 
+@pytest.mark.slow
 def test_pictures_that_do_not_show_the_arm_say_so(studio: Studio, views: list[Array]) -> None:
     blind = [studio.shot("wrist", joints) for joints in views]
     with pytest.raises(Unseen, match="0 of 6 pictures"):

@@ -52,6 +52,7 @@ def reference(found: m.WorldObject) -> m.ObjectRef:
     )
 
 
+@pytest.mark.slow
 def test_a_neighbour_in_the_way_is_put_elsewhere_first() -> None:
     bench, known = crowd(GAP)
     status = bench.run("grab", "g", reference(known.objects[0]), patience=120.0)

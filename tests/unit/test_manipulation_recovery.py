@@ -17,7 +17,8 @@ def phase(robot: Robot) -> str:
 
 
 @pytest.mark.timeout(300)
-@pytest.mark.parametrize(("killed_in", "into"), [("grasp", 0.9), pytest.param("retract", 0.6, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize(("killed_in", "into"), [("grasp", 0.9), ("retract", 0.6)])
 def test_a_full_hand_is_folded_in(killed_in: str, into: float) -> None:
     robot = Robot("minimal", seed=4)
     robot.advance(0.5)

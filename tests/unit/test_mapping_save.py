@@ -69,6 +69,7 @@ def test_the_files_tell_the_room(tmp_path: Path) -> None:
     assert row["reached_from"]
 
 
+@pytest.mark.slow
 def test_it_goes_on_and_a_door_that_was_shut_is_open(tmp_path: Path) -> None:
     save(tmp_path, "home", mapper(door=False))
     second = Mapper((-6.0, -6.0), (6.0, 6.0))
