@@ -36,7 +36,7 @@ demo: setup ## "bring me the red mug", from a recording to the delivery; ARGS='-
 # file (a router port and a namespace each, robots shared within a file); those wait most of the time for clocks and for
 # each other, so there are more of them than cores. 5: ARGS chose none of them.
 PYTEST := $(BIN)/python -m pytest -q
-TOGETHER := -n logical --maxprocesses 4 --dist worksteal tests/unit tests/e2e/in_process
+TOGETHER := -n logical --maxprocesses 4 --dist worksteal tests/e2e/in_process tests/unit
 APART := -n 3 --dist loadfile --no-loadscope-reorder tests/e2e tests/integration tests/contract --ignore tests/e2e/in_process
 
 define run_tests
