@@ -12,8 +12,8 @@ from common.geometry import Pose2
 from common.goal_inbox import GoalInbox
 from common.household import Household
 from common.naming import normalise
+from common.stored_file import StoredFile, home_file
 from services.brain.home.part_meant import Meant, meant, room_around
-from services.brain.home.stored_file import StoredFile, home_file
 
 MAX_NAMES, MAX_RULES = 200, 100
 """Names and rules that are kept. Chosen: more than a home needs; each is spoken, drawn and compared."""
@@ -35,7 +35,9 @@ class HouseholdKeeper:
     def __init__(self, io: Io) -> None:
         self._io, self.pose = io, (0.0, 0.0, 0.0)
         path = home_file(io.state_dir, "household", io.loaded.name)
-        self._file = StoredFile(path, m.HouseholdEdits, lambda why: io.log.warning("household", reason=why))
+        self._file = StoredFile(
+            path, m.HouseholdEdits, lambda why: io.log.warning("household", reason=why), folder=True
+        )
         self.edits = self._file.load() or m.HouseholdEdits()
         self._inbox: GoalInbox[m.HouseholdEdit, m.EditResult] = GoalInbox(
             io, (topics.HOUSEHOLD_EDIT,), self._take, self._repeat

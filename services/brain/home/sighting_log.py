@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from common import messages as m
 from common import topics
 from common.bus.port import Io
+from common.stored_file import StoredFile, home_file
 from common.time.clock import unix_time
 from common.whereabouts import decayed
-from services.brain.home.stored_file import StoredFile, home_file
 
 MAX_ROWS = 400
 """Things and surfaces on which they were seen [count]: 60 KB; chosen: 100 things on four surfaces each."""
@@ -28,7 +28,9 @@ class SightingLog:
     def __init__(self, io: Io) -> None:
         self._io = io
         path = home_file(io.state_dir, "sightings", io.loaded.name)
-        self._file = StoredFile(path, m.Sightings, lambda why: io.log.warning("sightings", reason=why), durable=False)
+        self._file = StoredFile(
+            path, m.Sightings, lambda why: io.log.warning("sightings", reason=why), durable=False, folder=True
+        )
         kept = self._file.load()
         self._rows: dict[tuple[str, str], m.Sighting] = {}
         for s in kept.sightings if kept is not None else ():

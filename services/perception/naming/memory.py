@@ -6,8 +6,8 @@ from pathlib import Path
 import msgspec
 import numpy as np
 
-from common import atomic_file
 from common.messages import TaughtName, Vec3
+from common.stored_file import StoredFile
 from services.perception.naming.appearance import Look
 from services.perception.naming.text import Line
 
@@ -43,9 +43,9 @@ class NameMemory:
     """`folder`: where the names are kept; None for this process only. `warn(why)` is told what went wrong."""
 
     def __init__(self, folder: Path | None, warn: Callable[[str], None]) -> None:
-        self._path = folder / FILE if folder is not None else None
+        self._file = StoredFile(folder / FILE if folder is not None else None, list[Taught], warn)
         self._warn = warn
-        self.names: dict[str, Taught] = {t.name: t for t in self._load()}
+        self.names: dict[str, Taught] = {t.name: t for t in self._file.load() or []}
 
     def teach(self, taught: Taught) -> bool:
         """Keep a name in place of one that is the same; False when the disk did not take it or there are too many."""
@@ -81,27 +81,8 @@ class NameMemory:
             taught.looks, taught.lines = looks, kept or taught.lines
             self._save()
 
-    def _load(self) -> list[Taught]:
-        if self._path is None or not self._path.exists():
-            return []
-        try:
-            return msgspec.json.decode(self._path.read_bytes(), type=list[Taught])
-        except (OSError, msgspec.DecodeError) as error:
-            aside = self._path.with_suffix(".unreadable")
-            self._warn(f"{self._path} cannot be read ({error}); it is kept as {aside.name}, and no name is known")
-            try:
-                self._path.replace(aside)
-            except OSError as refused:
-                self._warn(str(refused))
-            return []
-
     def _save(self) -> bool:
-        if self._path is None:
-            return True
-        why = atomic_file.replace(self._path, msgspec.json.encode(list(self.names.values())), durable=True)
-        if why:
-            self._warn(f"names are not kept: {why}")
-        return not why
+        return self._file.save(list(self.names.values()))
 
 
 def with_look(looks: list[Look], look: Look) -> list[Look]:

@@ -1,5 +1,6 @@
-"""What people have told of their home, on disk: whole at any moment, there again after a kill or a power cut."""
+"""A value that a service keeps on disk: whole at any moment, there again after a kill or a power cut."""
 
+import contextlib
 import re
 from collections.abc import Callable
 from pathlib import Path
@@ -15,11 +16,13 @@ T = TypeVar("T")
 class StoredFile(Generic[T]):
     """One value of a type in one JSON file; with `path` None nothing is kept. `warn(why)` is told what went wrong.
 
-    A file that cannot be read is kept beside the new one.
+    A file that cannot be read is kept beside the new one. With `folder` its folder is made where it is missing.
     """
 
-    def __init__(self, path: Path | None, kind: type[T], warn: Callable[[str], None], durable: bool = True) -> None:
-        self._path, self._kind, self._warn, self._durable = path, kind, warn, durable
+    def __init__(
+        self, path: Path | None, kind: type[T], warn: Callable[[str], None], durable: bool = True, folder: bool = False
+    ) -> None:
+        self._path, self._kind, self._warn, self._durable, self._folder = path, kind, warn, durable, folder
 
     def load(self) -> T | None:
         """The value that was saved last, None where there is none."""
@@ -40,11 +43,10 @@ class StoredFile(Generic[T]):
         """True when the value is kept; a `durable` file is on the disk then."""
         if self._path is None:
             return True
-        try:
-            self._path.parent.mkdir(parents=True, exist_ok=True)
-            why = atomic_file.replace(self._path, msgspec.json.encode(value), self._durable)
-        except OSError as error:
-            why = str(error)
+        if self._folder:
+            with contextlib.suppress(OSError):  # the file will not be written either, which tells why
+                self._path.parent.mkdir(parents=True, exist_ok=True)
+        why = atomic_file.replace(self._path, msgspec.json.encode(value), self._durable)
         if why:
             self._warn(f"{self._path.name} is not kept: {why}")
         return not why
