@@ -3,6 +3,7 @@
 import argparse
 import os
 import queue
+import uuid
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any, Generic, TypeVar
@@ -21,6 +22,7 @@ from common.time.clock import monotonic
 from common.topics import Topic
 
 M = TypeVar("M", bound=m.Message)
+A = TypeVar("A", bound=m.Message)
 
 
 class Link:
@@ -56,6 +58,21 @@ class Link:
 
     def send(self, topic: Topic[M], message: M) -> None:
         delivery.send(self.session, topic, message)
+
+    def ask(self, topic: Topic[M], request: M, answers: Topic[A], seconds: float, who: str) -> A:
+        """The answer whose `goal_id` is the request's id.
+
+        Raises:
+            CliError: `who` has not answered within `seconds`.
+        """
+        watch = Watch(self, answers)
+        self.send(topic, request)
+        end = monotonic() + seconds
+        while monotonic() < end:
+            answer = watch.next(0.5)
+            if answer is not None and answer.goal_id == request.id:  # type: ignore[attr-defined]
+                return answer
+        raise CliError(f"{who} did not answer within {seconds:.0f} s; see `tidybot ps`")
 
     def query(self, key: str, request: dict[str, object] | None = None) -> Any:
         """The JSON answer of a queryable.
@@ -142,6 +159,11 @@ def linked(args: argparse.Namespace, patience: float = 3.0, name: str = OPERATOR
     connect, namespace = address(args)
     with open_session(connect, namespace, patience=patience, name=name) as session:
         yield Link(session, connect)
+
+
+def fresh_id() -> str:
+    """An id of a request from here."""
+    return f"cli-{uuid.uuid4().hex[:8]}"
 
 
 def known_keys() -> list[str]:

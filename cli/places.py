@@ -1,15 +1,13 @@
 """`tidybot places` and `tidybot rules`: what people call the parts of their home, and where things belong."""
 
 import argparse
-import uuid
 
 import msgspec
 
 from cli.errors import CliError, near
-from cli.link import Link, Watch, add_options, linked
+from cli.link import Link, add_options, fresh_id, linked
 from common import messages as m
 from common import topics
-from common.time.clock import monotonic
 
 ANSWER = 10.0
 """Time [s] for the brain to answer: a step of it, on a machine that is busy."""
@@ -23,19 +21,19 @@ def places(args: argparse.Namespace) -> int:
 def name(args: argparse.Namespace) -> int:
     with linked(args) as link:
         part = _part(_known(link), args.part) if args.part else ""
-        edit = m.HouseholdEdit(do="name", name=" ".join(args.name), part=part, kind=args.kind, id=_fresh_id())
+        edit = m.HouseholdEdit(do="name", name=" ".join(args.name), part=part, kind=args.kind, id=fresh_id())
         return _ask(link, edit, args.json)
 
 
 def rename(args: argparse.Namespace) -> int:
     with linked(args) as link:
-        edit = m.HouseholdEdit(do="name", name=args.new, part=_part(_known(link), args.old), id=_fresh_id())
+        edit = m.HouseholdEdit(do="name", name=args.new, part=_part(_known(link), args.old), id=fresh_id())
         return _ask(link, edit, args.json)
 
 
 def forget(args: argparse.Namespace) -> int:
     with linked(args) as link:
-        return _ask(link, m.HouseholdEdit(do="forget", name=" ".join(args.name), id=_fresh_id()), args.json)
+        return _ask(link, m.HouseholdEdit(do="forget", name=" ".join(args.name), id=fresh_id()), args.json)
 
 
 def rules(args: argparse.Namespace) -> int:
@@ -55,11 +53,7 @@ def rules(args: argparse.Namespace) -> int:
 
 def forget_rule(args: argparse.Namespace) -> int:
     with linked(args) as link:
-        return _ask(link, m.HouseholdEdit(do="forget rule", name=" ".join(args.things), id=_fresh_id()), args.json)
-
-
-def _fresh_id() -> str:
-    return f"cli-{uuid.uuid4().hex[:8]}"
+        return _ask(link, m.HouseholdEdit(do="forget rule", name=" ".join(args.things), id=fresh_id()), args.json)
 
 
 def _known(link: Link) -> list[m.HomePart]:
@@ -82,16 +76,9 @@ def _part(known: list[m.HomePart], wanted: str) -> str:
 
 
 def _ask(link: Link, edit: m.HouseholdEdit, as_json: bool) -> int:
-    watch = Watch(link, topics.HOUSEHOLD_EDITED)
-    link.send(topics.HOUSEHOLD_EDIT, edit)
-    end = monotonic() + ANSWER
-    while monotonic() < end:
-        result = watch.next(0.5)
-        if result is None or result.goal_id != edit.id:
-            continue
-        print(msgspec.json.encode(result).decode() if as_json else told(edit, result))
-        return 0 if result.ok else 1
-    raise CliError(f"the brain did not answer within {ANSWER:.0f} s; see `tidybot ps`")
+    result = link.ask(topics.HOUSEHOLD_EDIT, edit, topics.HOUSEHOLD_EDITED, ANSWER, "the brain")
+    print(msgspec.json.encode(result).decode() if as_json else told(edit, result))
+    return 0 if result.ok else 1
 
 
 def told(edit: m.HouseholdEdit, result: m.EditResult) -> str:

@@ -1,15 +1,13 @@
 """`tidybot teach` and `forget`: names for things, beside what perception calls them."""
 
 import argparse
-import uuid
 
 import msgspec
 
 from cli.errors import CliError
-from cli.link import Link, Watch, add_options, linked
+from cli.link import Link, add_options, fresh_id, linked
 from common import messages as m
 from common import topics
-from common.time.clock import monotonic
 
 ANSWER = 20.0
 """Time [s] for perception to look at the thing and to answer: three pictures at a tenth of real time."""
@@ -21,16 +19,12 @@ def teach(args: argparse.Namespace) -> int:
         if not name:
             return _list(link, args.json)
         label = _label(link, args.label) if args.label else ""
-        return _ask(link, m.TeachRequest(name=name, id=_fresh_id(), label=label), args.json)
+        return _ask(link, m.TeachRequest(name=name, id=fresh_id(), label=label), args.json)
 
 
 def forget(args: argparse.Namespace) -> int:
     with linked(args) as link:
-        return _ask(link, m.TeachRequest(name=" ".join(args.name), id=_fresh_id(), forget=True), args.json)
-
-
-def _fresh_id() -> str:
-    return f"cli-{uuid.uuid4().hex[:8]}"
+        return _ask(link, m.TeachRequest(name=" ".join(args.name), id=fresh_id(), forget=True), args.json)
 
 
 def _label(link: Link, wanted: str) -> str:
@@ -47,21 +41,14 @@ def _label(link: Link, wanted: str) -> str:
 
 
 def _ask(link: Link, request: m.TeachRequest, as_json: bool) -> int:
-    watch = Watch(link, topics.TAUGHT)
-    link.send(topics.TEACH, request)
-    end = monotonic() + ANSWER
-    while monotonic() < end:
-        result = watch.next(0.5)
-        if result is None or result.goal_id != request.id:
-            continue
-        if as_json:
-            print(msgspec.json.encode(result).decode())
-        elif result.ok:
-            print(f"forgotten: {result.name}" if request.forget else f"the {result.label} is the {result.name}")
-        else:
-            print(f"not done: {result.detail}{_remedy(result)}")
-        return 0 if result.ok else 1
-    raise CliError(f"perception did not answer within {ANSWER:.0f} s; see `tidybot ps`")
+    result = link.ask(topics.TEACH, request, topics.TAUGHT, ANSWER, "perception")
+    if as_json:
+        print(msgspec.json.encode(result).decode())
+    elif result.ok:
+        print(f"forgotten: {result.name}" if request.forget else f"the {result.label} is the {result.name}")
+    else:
+        print(f"not done: {result.detail}{_remedy(result)}")
+    return 0 if result.ok else 1
 
 
 def _remedy(result: m.TeachResult) -> str:

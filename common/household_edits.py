@@ -1,6 +1,7 @@
 """A household with what people have told of it since: names of its parts, and where things belong. Pure."""
 
 import math
+from typing import TypeVar
 
 import msgspec
 
@@ -10,6 +11,7 @@ from common.messages import HouseholdEdits, PartKind, PlaceName, TidyRule, Vec3
 from common.part_names import with_part_names
 from common.words import Destination
 
+Part = TypeVar("Part", Receptacle, Room)
 MOVED = 0.6
 """Distance [m] of its middle from where it was up to which a surface is the same; chosen: half a small table."""
 
@@ -26,7 +28,7 @@ def edited(household: Household, edits: HouseholdEdits) -> Household:
     room_names = {room.name: n.name for n in edits.names if (room := _room_of(n, household))}
     said = {n.name for n in edits.names}
     surfaces = tuple(_renamed(r, surface_names.get(r.name, ""), said) for r in household.receptacles)
-    rooms = tuple(_renamed_room(r, room_names.get(r.name, ""), said) for r in household.rooms)
+    rooms = tuple(_renamed(r, room_names.get(r.name, ""), said) for r in household.rooms)
     new_rooms = tuple(Room(name=n.name, low=n.low, high=n.high) for n in edits.names if n.kind == "room" and not n.part)
     places = tuple(p for p in household.places if p.name not in said)
     stands = tuple(_place(n) for n in edits.names if n.kind == "place")
@@ -66,20 +68,13 @@ def _room_of(n: PlaceName, household: Household) -> Room | None:
     return next((r for r in household.rooms if r.name == n.part), None)
 
 
-def _renamed(r: Receptacle, name: str, said: set[str]) -> Receptacle:
-    others = tuple(a for a in r.aliases if a not in said)
+def _renamed(part: Part, name: str, said: set[str]) -> Part:
+    aliases: tuple[str, ...] = tuple(a for a in part.aliases if a not in said)
     if not name:
-        return msgspec.structs.replace(r, aliases=others)
-    old = () if r.name == name else (r.name,)
-    return msgspec.structs.replace(r, name=name, named=True, aliases=(*old, *others))
-
-
-def _renamed_room(r: Room, name: str, said: set[str]) -> Room:
-    others = tuple(a for a in r.aliases if a not in said)
-    if not name:
-        return msgspec.structs.replace(r, aliases=others)
-    old = () if r.name == name else (r.name,)
-    return msgspec.structs.replace(r, name=name, named=True, aliases=(*old, *others))
+        return msgspec.structs.replace(part, aliases=aliases)
+    if part.name != name:
+        aliases = (part.name, *aliases)
+    return msgspec.structs.replace(part, name=name, named=True, aliases=aliases)
 
 
 def _place(n: PlaceName) -> Place:

@@ -25,7 +25,6 @@ _WANT = (
     "would kill for)"
 )
 _CONSUME = "(?:have|get|eat|drink|play with|use|read|hold|see|look at|borrow|taste|try|take)"
-_OBJECTIVE = "(?:it|them|that|this|those|these|that one|this one|him|her)"
 CONSTRUCTIONS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
     (re.compile(f"^{pattern}$"), result)
     for pattern, result in (

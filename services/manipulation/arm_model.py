@@ -208,7 +208,7 @@ class ArmModel:
         """True when the robot touches a box or itself, or the arm comes nearer to the base than it is to keep."""
         self.place(q)
         mujoco.mj_collision(self.model, self.data)
-        return bool(len(self._pairs()))
+        return bool(self.data.ncon and len(self._pairs()))
 
     def _pairs(self) -> NDArray[np.int32]:
         """The geoms (n, 2) that touch in the configuration that was looked at last."""

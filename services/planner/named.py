@@ -12,9 +12,6 @@ MOST_WORDS = 6
 """Words of the longest phrase for a thing or a place (chosen)."""
 
 
-_BEFORE_NAMES = frozenset({"see", "know", "have", "need", "want", "is", "remember"})
-
-
 def note(words: Words, builder: PlanBuilder) -> None:
     """What is told before a request: the thing and the place that it names last are what "it" and "there" mean."""
     for at in (

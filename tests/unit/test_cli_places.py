@@ -9,6 +9,7 @@ import pytest
 
 from cli import places
 from cli.errors import CliError
+from cli.link import Link
 from cli.main import parser
 from common import messages as m
 from common import topics
@@ -25,6 +26,8 @@ EDITS = m.HouseholdEdits(rules=[m.TidyRule(things="mugs", to=["shelf"], kinds=["
 
 class FakeLink:
     """Keeps what was sent; everything is done but for names that mean something else."""
+
+    ask = Link.ask
 
     def __init__(self) -> None:
         self.sent: list[m.HouseholdEdit] = []
@@ -57,7 +60,7 @@ def link(monkeypatch: pytest.MonkeyPatch) -> FakeLink:
             return m.EditResult(goal_id=edit.id, ok=True, name=edit.name, part=edit.part or "shelf", kind="surface")
 
     monkeypatch.setattr(places, "linked", linked)
-    monkeypatch.setattr(places, "Watch", Answers)
+    monkeypatch.setattr("cli.link.Watch", Answers)
     return fake
 
 
