@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common import messages as m
-from common.approach import HALF_WIDTH
+from common.lidar import rays_of
 
 Array = NDArray[np.float64]
 
@@ -27,17 +27,7 @@ def scan_of(message: m.LaserScan) -> Scan:
     Raises:
         ValueError: ranges that no lidar reports.
     """
-    if len(message.ranges) < 8 or len(message.ranges) % 4:
-        raise ValueError("ranges are at least two 32 bit floats")
-    ranges = np.frombuffer(message.ranges, "<f4").astype(np.float64)
-    if not np.isfinite(ranges).all() or not 0.0 < message.angle_increment < 1.0:
-        raise ValueError("not the ranges of a lidar")
-    angles = message.angle_min + np.arange(len(ranges)) * message.angle_increment
-    directions = np.stack([np.cos(angles), np.sin(angles)], axis=1)
-    lidar = np.array((message.x, message.y))
-    ends = directions * ranges[:, None] + lidar
-    own = np.abs(ends).max(axis=1) < HALF_WIDTH
-    hit = (ranges <= message.range_max) & (ranges > message.range_min) & ~own
+    rays, lidar = rays_of(message), (message.x, message.y)
     # A ray without an echo says little: glass, black leather or nothing at all. It counts for half of the range.
-    none = ranges > message.range_max
-    return Scan(message.t, ends[hit], directions[none] * (message.range_max / 2) + lidar, (message.x, message.y))
+    none = rays.ranges > message.range_max
+    return Scan(message.t, rays.ends[rays.hit], rays.directions[none] * (message.range_max / 2) + lidar, lidar)

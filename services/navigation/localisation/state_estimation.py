@@ -8,13 +8,14 @@ from common import messages as m
 from common import topics
 from common.bus.port import Io
 from common.geometry import Pose2, compose
+from common.lidar import sane
 from services.navigation.config import NavigationConfig
 from services.navigation.localisation.distance_field import distance_field
 from services.navigation.localisation.global_localiser import GlobalLocaliser
 from services.navigation.localisation.live_map import LiveMap
 from services.navigation.localisation.localise import Localiser
 from services.navigation.localisation.map_fit import MapFit
-from services.navigation.localisation.scan import Scan, ScanReader, sane, transformed
+from services.navigation.localisation.scan import Scan, scan_of, transformed
 from services.navigation.motion.obstacle_tracker import ObstacleTracker
 from services.navigation.planning.costmap import Array, Costmap
 
@@ -53,7 +54,6 @@ class StateEstimator:
         self.fresh = False
         self._odometry: m.Odometry | None = None
         self._measured = self._scanned = 0.0
-        self._reader = ScanReader()
 
     @property
     def lost(self) -> bool:
@@ -100,7 +100,7 @@ class StateEstimator:
 
     def _take(self, message: m.LaserScan, odometry: m.Odometry | None, late: float, now: float) -> None:
         try:
-            scan = self._reader.read(message)
+            scan = scan_of(message)
         except ValueError as error:
             self._io.count_drop(topics.SCAN.key, str(error))
             return
