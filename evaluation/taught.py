@@ -3,16 +3,15 @@
 import msgspec
 import numpy as np
 
-from common.scene import ObjectSpec, SceneError
+from common.scene import ObjectSpec
 from evaluation import catalogue
 from evaluation.blocks import VLA, WORDINGS, flat, random
 from evaluation.case import Case, Line, Showing
 from evaluation.catalogue import CATALOGUE, Item
 from evaluation.drawn import surroundings
-from evaluation.unknown import IN_A_WORLD, TRIES, nothing_listed
+from evaluation.unknown import IN_A_WORLD, nothing_listed, with_room
 from judge.effects import Effect
 from judge.evidence import Want
-from services.sim.layout import place_objects
 
 STANDS = ("can", "bottle", "jar", "carton", "box", "mug", "cup")
 """Kinds that stand before the robot when they are shown, and that the hand takes."""
@@ -40,19 +39,14 @@ def taught(seed: int) -> Case:
     showing = _showing(thing, name, seed, rng)
     absent = bool(rng.random() < ABSENT)
     plan = surroundings(flat(), rng)
-    for _ in range(TRIES):
+
+    def draw() -> list[ObjectSpec]:
         alike = _look_alikes(thing, item, rng)
         taken = {thing.name, *(o.name for o in alike)}
         others = [o for o in catalogue.things(int(rng.integers(*IN_A_WORLD)), rng) if o.name not in taken]
-        present = [] if absent else [thing]
-        world = msgspec.structs.replace(plan, objects=(*present, *alike, *others[: IN_A_WORLD[1] - len(alike)]))
-        try:
-            place_objects(world, seed)
-        except SceneError:
-            continue
-        break
-    else:
-        raise SceneError(f"taught, seed {seed}: no room for the objects in {TRIES} draws")
+        return [*([] if absent else [thing]), *alike, *others[: IN_A_WORLD[1] - len(alike)]]
+
+    world = with_room(plan, draw, seed, "taught")
     command = WORDINGS[int(rng.integers(len(WORDINGS)))].replace("the {}", "my {}").format(name)
     stay = tuple(Effect("remains", o.name, o.on) for o in world.objects if o.position is not None)
     return Case(

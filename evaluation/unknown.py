@@ -5,7 +5,7 @@ nothing else in the world has.
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 
 import msgspec
 import numpy as np
@@ -94,15 +94,7 @@ def fetch(
     `plan` is the flat without its objects, None: the shipped one.
     """
     plan = plan or flat()
-    for _ in range(TRIES):
-        world = msgspec.structs.replace(plan, objects=tuple(draw()))
-        try:
-            place_objects(world, seed)
-        except SceneError:
-            continue
-        break
-    else:
-        raise SceneError(f"{suite}, seed {seed}: no room for the objects in {TRIES} draws")
+    world = with_room(plan, draw, seed, suite)
     wanted = world.objects[0]
     stay = tuple(Effect("remains", o.name, o.on) for o in world.objects[1:] if o.position is not None)
     command = WORDINGS[int(rng.integers(len(WORDINGS)))].format(wanted.name)
@@ -111,6 +103,22 @@ def fetch(
         wants=(Want(wanted.name, (plan.delivery,)),), effects=stay, scene=world, household=nothing_listed(plan),
         settings=settings,
     )  # fmt: skip
+
+
+def with_room(plan: Scene, draw: Callable[[], Iterable[ObjectSpec]], seed: int, suite: str) -> Scene:
+    """The flat with the first draw of objects for all of which there is room.
+
+    Raises:
+        SceneError: there is none in `TRIES` draws.
+    """
+    for _ in range(TRIES):
+        world = msgspec.structs.replace(plan, objects=tuple(draw()))
+        try:
+            place_objects(world, seed)
+        except SceneError:
+            continue
+        return world
+    raise SceneError(f"{suite}, seed {seed}: no room for the objects in {TRIES} draws")
 
 
 def nothing_listed(plan: Scene) -> Household:

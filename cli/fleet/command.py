@@ -56,7 +56,7 @@ def table(robots: list[RobotNow], gone: dict[str, float]) -> Table:
 
 
 def fleet(args: argparse.Namespace) -> int:
-    """The command without a verb."""
+    """List the robots that are there, once or until interrupted."""
     with desk(args) as d:
         if not args.watch:
             robots = d.look()
@@ -135,7 +135,7 @@ def _explain(candidates: list[Candidate], by: str | None) -> None:
 
 
 def stop(args: argparse.Namespace) -> int:
-    """The brake of every robot, or of those that are named."""
+    """Brake every robot, or those that are named."""
     with desk(args) as d:
         names = set(args.robot) or d.names()
         for name in names:
@@ -174,13 +174,13 @@ def page(args: argparse.Namespace) -> int:
 
 
 def radio(args: argparse.Namespace) -> int:
-    """The configuration of a robot's own router, on standard output."""
+    """Print the configuration of a robot's own router, which thins what crosses its radio link."""
     print(router_config(args.to, args.hz), end="")
     return 0
 
 
 def _options(parser: argparse.ArgumentParser, verb: bool = False) -> None:
-    """Of the command and of its verbs, where what is not said leaves what was said before them."""
+    """Add the options of the connection; those after a verb override those before it."""
     kept: Any = argparse.SUPPRESS
     parser.add_argument(
         "--connect", metavar="ENDPOINTS", default=kept if verb else None,

@@ -16,6 +16,7 @@ REACH = 0.9
 START = 0.4
 """How far from the robot its way may begin [m]; chosen: beside a table it stands in cells that count as too narrow."""
 STRAIGHT, DIAGONAL = ((0, 1), (1, 0)), ((1, 1), (1, -1))
+"""Steps (rows, columns) from a cell to half of its neighbours [cells]; the others lead there by the same ones."""
 
 
 def free_cells(costmap: m.Costmap) -> NDArray[np.bool_]:

@@ -5,10 +5,8 @@ from math import isfinite
 from common import messages as m
 from common import topics
 from common.bus.port import Io
-from common.gateway import refusal
+from services.dashboard.teleoperation import HOLD, free
 
-HOLD = 0.4
-"""Time [s] after a visitor's last word at which the hand stops (dead-man switch), as for the base."""
 SPEED, TURN = 0.1, 0.5
 """Greatest speed [m/s] and rate of turn [rad/s] of the hand; chosen: what a person follows with the eyes."""
 FINGERS = ("open", "close")
@@ -34,9 +32,7 @@ class HandTeleoperation:
     def step(self, now: float) -> None:
         """Send the velocity of this moment, and one of zero when it has ended; then nothing, which means stop."""
         io, wish = self._io, self._wish
-        sim, driving = io.latest(topics.SIM_STATUS), io.latest(topics.NAVIGATION_FEEDBACK)
-        taken = bool(refusal(io.latest(topics.BRAIN_STATE))) or (sim is not None and sim.state == "stopped")
-        if wish is not None and now < self._until and not taken and (driving is None or driving.status != "navigating"):
+        if wish is not None and now < self._until and free(io):
             io.publish(topics.HAND_VELOCITY, wish)
             if wish.fingers:  # said once: what is sent again would close again what was opened since
                 self._wish = m.HandVelocity(linear=wish.linear, angular=wish.angular, home=wish.home)

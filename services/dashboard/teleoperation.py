@@ -49,12 +49,8 @@ class Teleoperation:
     def step(self, now: float) -> None:
         """Send the velocity of this moment, and one of zero when it has ended; then nothing, which means hold."""
         io = self._io
-        sim = io.latest(topics.SIM_STATUS)
         scan = io.latest(topics.SCAN) if io.age(topics.SCAN, now) <= STALE else None
-        driving = io.latest(topics.NAVIGATION_FEEDBACK)
-        taken = bool(refusal(io.latest(topics.BRAIN_STATE))) or (sim is not None and sim.state == "stopped")
-        free = not taken and (driving is None or driving.status != "navigating")
-        if now < self._until and free and any(self._wish):
+        if now < self._until and any(self._wish) and free(io):
             x, y, omega = self._wish
             share = min(1.0, limit(scan, x, y) / max(hypot(x, y), 1e-9))
             io.publish(topics.CMD_VEL, m.CmdVel(vx=x * share, vy=y * share, omega=omega))
@@ -62,6 +58,14 @@ class Teleoperation:
         elif self._moving:
             self._moving = False
             io.publish(topics.CMD_VEL, m.CmdVel(vx=0.0, vy=0.0, omega=0.0))
+
+
+def free(io: Io) -> bool:
+    """Neither a mission nor navigation has the robot, nor the brake."""
+    sim, driving = io.latest(topics.SIM_STATUS), io.latest(topics.NAVIGATION_FEEDBACK)
+    braked = sim is not None and sim.state == "stopped"
+    driven = driving is not None and driving.status == "navigating"
+    return not (braked or driven or refusal(io.latest(topics.BRAIN_STATE)))
 
 
 def limit(scan: m.LaserScan | None, x: float, y: float) -> float:
