@@ -1,23 +1,11 @@
 """A surface is named, the brain is killed, and the name is a place to put things: the whole robot in one process."""
 
-from collections.abc import Iterator
-from pathlib import Path
-
 import pytest
 
 from common import topics
-from tests.e2e.in_process.test_names import Home
+from tests.e2e.in_process.at_home import Home
 
 pytestmark = [pytest.mark.slow, pytest.mark.timeout(900)]
-
-
-@pytest.fixture
-def home(tmp_path: Path) -> Iterator[Home]:
-    opened = Home(tmp_path)
-    try:
-        yield opened
-    finally:
-        opened.stack.close()
 
 
 def test_a_surface_goes_by_its_new_name_and_a_rule_is_followed(home: Home) -> None:
