@@ -8,6 +8,15 @@ const DRIVE_KEYS = {
 const SHOULDERS = [4, 5, 6, 7]; // buttons of the standard gamepad, one of which must be held
 const DEAD_ZONE = 0.15;
 
+// The gamepads whose shoulder button is held; without one the sticks mean nothing.
+function grippedPads() {
+  const pads = navigator.getGamepads ? [...navigator.getGamepads()] : [];
+  return pads.filter((one) => one && SHOULDERS.some((i) => one.buttons[i] && one.buttons[i].pressed));
+}
+const deflection = (v) => (Math.abs(v) < DEAD_ZONE ? 0 : v || 0);
+const together = (wishes) => wishes.reduce((a, b) => a.map((v, i) => v + b[i]));
+const shares = (wish) => wish.map((v) => Math.max(-1, Math.min(1, v)).toFixed(2)).join(" ");
+
 function setUpDrive(act) {
   const pad = document.getElementById("pad");
   const button = document.getElementById("drive");
@@ -39,17 +48,14 @@ function setUpDrive(act) {
   document.addEventListener("visibilitychange", letGo);
 
   function stick() {
-    for (const one of navigator.getGamepads ? navigator.getGamepads() : []) {
-      if (!one || !SHOULDERS.some((i) => one.buttons[i] && one.buttons[i].pressed)) continue;
-      return [-one.axes[1], -one.axes[0], -one.axes[2]].map((v) => (Math.abs(v) < DEAD_ZONE ? 0 : v || 0));
-    }
-    return [0, 0, 0];
+    const [one] = grippedPads();
+    return one ? [-one.axes[1], -one.axes[0], -one.axes[2]].map(deflection) : [0, 0, 0];
   }
 
   setInterval(() => {
-    const wish = pad.hidden || document.hidden ? [0, 0, 0] : [...held.values(), stick()].reduce((a, b) => a.map((v, i) => v + b[i]));
+    const wish = pad.hidden || document.hidden ? [0, 0, 0] : together([...held.values(), stick()]);
     const moves = wish.some((v) => v !== 0);
-    if (moves || driving) act("drive", wish.map((v) => Math.max(-1, Math.min(1, v)).toFixed(2)).join(" "));
+    if (moves || driving) act("drive", shares(wish));
     driving = moves;
   }, DRIVE_PERIOD);
 }

@@ -51,23 +51,20 @@ function setUpHand(act) {
 
   // Left stick: forward and aside. Right stick: up and turn. Nothing without a shoulder button.
   function stick() {
-    for (const one of navigator.getGamepads ? navigator.getGamepads() : []) {
-      if (!one || !SHOULDERS.some((i) => one.buttons[i] && one.buttons[i].pressed)) continue;
-      const down = Object.keys(FINGER_BUTTONS).find((i) => one.buttons[i] && one.buttons[i].pressed) || "";
-      if (down && down !== pressed) fingers = FINGER_BUTTONS[down];
-      pressed = down;
-      const [x, y, yaw, z] = [-one.axes[1], -one.axes[0], -one.axes[2], -one.axes[3]].map((v) => (Math.abs(v) < DEAD_ZONE ? 0 : v || 0));
-      return [x, y, z, 0, 0, yaw];
-    }
-    return STILL;
+    const [one] = grippedPads();
+    if (!one) return STILL;
+    const down = Object.keys(FINGER_BUTTONS).find((i) => one.buttons[i] && one.buttons[i].pressed) || "";
+    if (down && down !== pressed) fingers = FINGER_BUTTONS[down];
+    pressed = down;
+    const [x, y, yaw, z] = [-one.axes[1], -one.axes[0], -one.axes[2], -one.axes[3]].map(deflection);
+    return [x, y, z, 0, 0, yaw];
   }
 
   setInterval(() => {
     const away = pad.hidden || document.hidden;
-    const wish = away ? STILL : [...held.values(), stick()].reduce((a, b) => a.map((v, i) => v + b[i]), STILL);
+    const wish = away ? STILL : together([...held.values(), stick()]);
     const moves = !away && (home || fingers !== "" || wish.some((v) => v !== 0));
-    const numbers = wish.map((v) => Math.max(-1, Math.min(1, v)).toFixed(2)).join(" ");
-    if (moves || leading) act("hand", home && !away ? "home" : `${numbers} ${away ? "" : fingers}`.trim());
+    if (moves || leading) act("hand", home && !away ? "home" : `${shares(wish)} ${away ? "" : fingers}`.trim());
     leading = moves;
     fingers = "";
   }, DRIVE_PERIOD);
