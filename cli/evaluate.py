@@ -10,7 +10,7 @@ from cli.programs import become
 
 SUITES = (
     "seed", "fetch", "tidy", "faults", "dialogue", "chaos", "commands", "spoken", "sizes", "clutter", "lying",
-    "labels", "things", "taught", "homes", "aged", "lost",
+    "labels", "things", "taught", "homes", "aged", "lost", "new",
 )  # fmt: skip
 EXAMPLES = """examples:
   tidybot eval --suite seed                                  the five scenarios of the VLA contract, with their logs
@@ -76,6 +76,7 @@ def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") ->
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )  # fmt: skip
     parser.add_argument("--suite", default="fetch", metavar="NAME", help=f"one of {', '.join(SUITES)} (%(default)s)")
+    parser.add_argument("--list", action="store_true", help="the suites, what a case of each is, and its bar")
     parser.add_argument("--world", type=Path, metavar="DIR", help="worlds of your own instead (docs/WORLDS.md)")
     parser.add_argument("--scenarios", "-n", type=_positive, metavar="N", help="how many (default: the suite's own)")
     parser.add_argument("--seed", type=int, default=0, metavar="S", help="of the first case (default %(default)s)")

@@ -23,7 +23,7 @@ from evaluation.lane import Run
 from evaluation.pool import Progressed, Repeated, Said
 from evaluation.process_faults import unavailable
 from evaluation.stack import replacement
-from evaluation.suites import BARS, DEFAULT_SCENARIOS, cases, dressed
+from evaluation.suites import BARS, DEFAULT_SCENARIOS, SUITES, cases, dressed
 
 PERIOD = 30.0
 """Seconds between lines of progress where there is no terminal to draw a bar on."""
@@ -70,6 +70,10 @@ class Board:
 def main(argv: list[str]) -> int:
     """Exit status 0 when the bar is met, 1 when fewer did as expected or a claim was false, 130 after Ctrl-C."""
     args = parser().parse_args(["eval", *argv])
+    if args.list:
+        for name, make in SUITES.items():
+            print(f"{name:9} {100 * BARS[name]:3.0f} %  {(make.__doc__ or '').splitlines()[0]}")
+        return 0
     args.suite = "world" if args.world else args.suite
     console = Console(stderr=bool(args.json == "-"), soft_wrap=True)
     for target in (args.json, args.html):

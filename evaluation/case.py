@@ -27,12 +27,14 @@ class Line(msgspec.Struct, frozen=True):
 
     `when` is `ready`, `ended` (after a mission) or a state of the brain; `after` seconds of robot time pass first.
     `goal` is what this line's own mission should bring about, against which its claims are held; None: the case's.
+    `thing` is what they really want of it; "": as the case has it.
     """
 
     text: str
     when: str = "ready"
     after: float = 0.0
     goal: Goal | None = None
+    thing: str = ""
 
 
 class Speaker(msgspec.Struct, frozen=True):
@@ -86,7 +88,8 @@ class Case(msgspec.Struct, kw_only=True):
     at the end. Without a `scene` (the world) it is the shipped flat; without a `household` the robot is
     told all of it. `honest`: a spoken, published failure counts as well as a
     delivery.
-    `showing`: what the robot was shown before.
+    `showing`: what the robot was shown before. `explores`: it maps the home first, and knows what it made of it; lines
+    call rooms of the world in braces by what the map calls them.
     `replaced`: classes that stand in for services, see `Stack`. `wake`: a command that opens a dialogue starts with
     the wake word. `silent`: the person answers no question.
     """
@@ -115,6 +118,7 @@ class Case(msgspec.Struct, kw_only=True):
     scene: Scene | None = None
     household: Household | None = None
     showing: Showing | None = None
+    explores: bool = False
     limit: float = 600.0
 
     @property
@@ -139,7 +143,8 @@ class Observed(msgspec.Struct, kw_only=True):
 
     `claimed`: the last outcome, `failed_at`, `code` and `explained` the stage, code and spoken words of its failure;
     `claims`: every success announced at any time, held against physics as it was then;
-    `shortfall`: what is not as the case wants it at the end. `wrong`: things in the hand that nobody asked for.
+    `shortfall`: what is not as the case wants it at the end. `missions`: where the robot maps first, each line and
+    what is not as it wants it. `mapping`: how exploring went. `wrong`: things in the hand that nobody asked for.
     `fault_reports`: what the faults really did; `fault_at`: when the first did [s of robot time]; `recovery`: seconds
     from then until the mission's next step.
     """
@@ -149,6 +154,8 @@ class Observed(msgspec.Struct, kw_only=True):
     wrong: list[str] = []
     claims: list[Claim] = []
     shortfall: str = "nothing was seen"
+    missions: list[tuple[str, str]] = []
+    mapping: dict[str, object] = {}
     claimed: str = "none"
     reason: str = ""
     failed_at: str = ""

@@ -173,7 +173,9 @@ class Examiner:
         while self._lines and self._reached(self._lines[0], now):
             line = self._lines.popleft()
             if line.when == "ended":
-                self._user.set_goal(line.text)
+                self._user.set_goal(line.text, line.thing)
+                # The next one waits for the end of this one's mission.
+                del self._when["ended"]
             if not self._begun:
                 self._begun = True
                 self._observer.begin()
@@ -223,12 +225,16 @@ class Examiner:
     def _over(self, now: float) -> bool:
         if now > self._case.limit:
             return True
+        quiet = "ready" in self._when and not self.active and now >= self._quiet_since + QUIET
         if self._lines or self._due or self._sound or self._voice is not None or self._saying:
+            if quiet and self._begun:
+                # What was said has led to no mission.
+                self._when.setdefault("ended", now)
             return False
         self.observed.ended = self._ended_at is not None
         if self._ended_at is not None:
             return now >= self._ended_at + WATCH
-        return "ready" in self._when and not self.active and now >= self._quiet_since + QUIET
+        return quiet
 
     def abort(self, now: float, why: str) -> None:
         """The run broke: conclude with what was seen."""
@@ -239,6 +245,8 @@ class Examiner:
         seen = self.observed
         observer, goal = self._observer, self._case.goal
         seen.evidence, seen.shown = observer.conclude(goal), observer.shown(goal)
+        if self._case.explores:
+            seen.missions = [(line.text, observer.shortfall(line.goal)) for line in self._case.lines if line.goal]
         seen.claims, seen.shortfall, seen.wrong = observer.claims, observer.shortfall(goal), observer.wrong()
         seen.robot_seconds = round(now, 2)
         seen.ended = seen.ended or now <= self._case.limit

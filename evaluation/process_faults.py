@@ -26,6 +26,8 @@ def unavailable(case: Case) -> str:
         return "a clock jump: robot time is the simulation's count of steps, which no signal can make leap"
     if case.showing is not None:
         return "a showing before the case, which is in one process"
+    if case.explores:
+        return "exploring before the case, which is in one process; `tidybot map` explores with processes"
     return ""
 
 

@@ -15,6 +15,7 @@ from evaluation.case import Case, Observed, Result, TimedFault
 from evaluation.examiner import Examiner, examiner_of
 from evaluation.fault_injection import targets, with_faults
 from evaluation.fault_reports import FaultReport, Reporter, ignore
+from evaluation.homes.new import NotMapped, mapped_first
 from evaluation.picture import last_picture
 from evaluation.showing import show
 from evaluation.stack import Stack
@@ -87,6 +88,15 @@ def _run(case: Case, progress: Progress, began: float, state_dir: Path | None) -
     if case.showing is not None and state_dir is not None and (why := show(case.showing, state_dir)):
         seen = Observed(claimed="failed", reason=why, failed_at="GROUNDING", code="NOT_TAUGHT", ended=True)
         return judge(case, seen, monotonic() - began)
+    mapping: dict[str, Any] = {}
+    if case.explores:
+        try:
+            case, mapping = mapped_first(case, progress)
+        except NotMapped as error:
+            seen = Observed(claimed="failed", reason=str(error), failed_at="NAVIGATING", code="NOT_MAPPED", ended=True)
+            return judge(case, seen, monotonic() - began)
+        except Exception as error:
+            return judge(case, Observed(crash=_words(error)), monotonic() - began)
     try:
         stack = Stack(
             case.scene or "apartment", case.seed, case.settings, household=case.household,
@@ -101,6 +111,8 @@ def _run(case: Case, progress: Progress, began: float, state_dir: Path | None) -
             _until_over(stack, examiner, case, reports, progress)
         except Exception as error:
             examiner.abort(stack.now, _words(error))
+        examiner.observed.mapping = mapping
+        examiner.observed.evidence.hits += mapping.get("hits", [])
         result = judge(case, examiner.observed, monotonic() - began)
         result.evidence["timeline"] = timeline(partial(stack.bus.get, topics.BRAIN_MISSIONS))
         if not result.met:

@@ -48,9 +48,9 @@ class SimulatedUser:
         self._command, self._thing, self._scene, self._manner = command, thing, scene, manner
         self.answers = 0
 
-    def set_goal(self, command: str) -> None:
-        """From now on this is what was said, and meant."""
-        self._command, self.answers = command, 0
+    def set_goal(self, command: str, thing: str = "") -> None:
+        """From now on this is what was said, and meant; without a `thing` the one that was wanted before."""
+        self._command, self._thing, self.answers = command, thing or self._thing, 0
 
     def answer(self, sentence: str, about: str = "") -> str:
         """What to say to a sentence of the robot's; "" for nothing. `about`: the object that it shows while it asks."""

@@ -25,6 +25,7 @@ from evaluation.case import Case, Line
 from evaluation.chaos import CHAOS_SERVICES, CHAOS_STATES, chaos
 from evaluation.commands import ALL, commands
 from evaluation.faults import Rule
+from evaluation.homes.new import new
 from evaluation.homes.suite import aged, homes, lost
 from evaluation.physical.fault import Kind as PhysicalKind
 from evaluation.physical.fault import PhysicalFault
@@ -216,7 +217,7 @@ SUITES: dict[str, Make] = {
     "fetch": fetch, "seed": named, "tidy": tidy, "faults": faults, "dialogue": dialogue, "chaos": chaos,
     "commands": commands, "spoken": spoken, "sizes": sizes, "clutter": clutter, "lying": lying,
     "labels": labels, "things": scanned, "taught": taught,
-    "homes": homes, "aged": aged, "lost": lost,
+    "homes": homes, "aged": aged, "lost": lost, "new": new,
 }  # fmt: skip
 DEFAULT_SCENARIOS = {
     "seed": len(NAMED),
@@ -228,7 +229,7 @@ DEFAULT_SCENARIOS = {
 BARS = {
     "fetch": 0.95, "seed": 1.0, "tidy": 0.9, "faults": 0.9, "dialogue": 1.0, "chaos": 0.95, "commands": 0.9,
     "spoken": 0.8, "world": 0.9, "sizes": 0.95, "clutter": 0.9, "lying": 0.9, "labels": 0.9, "things": 0.85,
-    "taught": 0.9, "homes": 0.95, "aged": 0.9, "lost": 0.9,
+    "taught": 0.9, "homes": 0.95, "aged": 0.9, "lost": 0.9, "new": 0.85,
 }  # fmt: skip
 """The share of cases that must end as expected: all where every case is a scenario of the contract or a dialogue,
 less where a random scene, voice or fault at a random moment may leave nothing to be done."""

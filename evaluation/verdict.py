@@ -38,6 +38,7 @@ def judge(case: Case, seen: Observed, wall_seconds: float) -> Result:
         "said": seen.said, "effects": msgspec.to_builtins(seen.shown), "wrong": seen.wrong,
         "struck": seen.fault_at, "strikes": msgspec.to_builtins(seen.fault_reports), "recovery": seen.recovery,
         "shortfall": seen.shortfall, "claims": msgspec.to_builtins(seen.claims), "crash": seen.crash,
+        "missions": seen.missions, "mapping": seen.mapping,
     }  # fmt: skip
     return Result(
         seed=case.seed, command=case.command, outcome=outcome, evidence=details,

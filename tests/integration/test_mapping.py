@@ -8,9 +8,10 @@ import pytest
 pytest.importorskip("gtsam", reason="the extra mapping is not installed")
 pytest.importorskip("small_gicp", reason="the extra mapping is not installed")
 
-from bench.mapping import HEIGHT, OUTLINE, WALL, compare, explore
 from common.household import load_household
 from common.scene import load_scene
+from evaluation.homes.explore import explore
+from evaluation.homes.map_errors import HEIGHT, OUTLINE, WALL, compare
 
 
 @pytest.mark.slow

@@ -176,6 +176,30 @@ def test_recovered_is_the_next_step_of_the_mission() -> None:
     assert (examiner.observed.fault_at, examiner.observed.recovery) == (1.5, 3.5)
 
 
+def test_each_line_of_a_conversation_waits_for_the_end_of_the_mission_before_it() -> None:
+    lines = (Line("first"), Line("second", "ended"), Line("third", "ended"))
+    case = Case(suite="new", seed=0, name="talk", command="first", lines=lines)
+
+    def step(self: Examiner, now: float) -> None:
+        self.follow(now)
+        self._talk(now)
+
+    talking = type("Talking", (examiner_of(case),), {"step": step})
+    node = Node(
+        talking, ExaminerConfig(), SCENE, world=Scene(name="empty", low=SCENE.low, high=SCENE.high, home=SCENE.home)
+    )
+
+    def said(state: str, mission: str = "") -> list[str]:
+        node.send(topics.BRAIN_STATE, m.BrainState(state=state, mission_id=mission))  # type: ignore[arg-type]
+        node.run()
+        return [typed.text for typed in node.sent(topics.SPEECH_TEXT)]
+
+    assert said("WAITING") == said("PLANNING", "m-1") == ["first"]
+    assert said("WAITING") == said("WAITING") == ["first", "second"], "the third one waits"
+    assert said("PLANNING", "m-2") == ["first", "second"]
+    assert said("WAITING") == ["first", "second", "third"]
+
+
 # --- the table
 def result(seed: int, delivered: bool, struck: float | None = 3.0, lies: bool = False, drops: int = 0) -> Result:
     thing = ThingEvidence("mug", "table", delivered=delivered, drops=drops)

@@ -15,6 +15,7 @@ from evaluation.blocks import destination
 from evaluation.case import Case
 from evaluation.chaos import CHAOS_SERVICES
 from evaluation.faults import Rule
+from evaluation.homes.new import in_words_of
 from evaluation.stack import replacement, service_class
 from evaluation.suites import DIALOGUES, FAULTS, NAMED, SUITES, cases
 from services.sim.layout import place_objects
@@ -32,7 +33,8 @@ def things_missing() -> str:
 
 
 MISSING = things_missing()
-DRAWN = {s: 3 if s in ("homes", "aged", "lost", "taught") else 20 for s in SUITES if s != "things" or not MISSING}
+LONG = ("homes", "aged", "lost", "new", "taught")
+DRAWN = {s: 3 if s in LONG else 20 for s in SUITES if s != "things" or not MISSING}
 """Cases to look at, by suite: all that come in turn; homes differ by their furniture alone, and take long to draw."""
 
 
@@ -71,6 +73,26 @@ def test_what_is_shown_is_asked_for_by_its_name_among_others_that_look_alike() -
         assert case.scene.lamps != case.showing.scene.lamps
         alike = [o for o in case.scene.objects if o.name.startswith("look-alike")]
         assert all(o.rgba == shown.rgba and (o.label, o.pattern) != (shown.label, shown.pattern) for o in alike)
+
+
+def test_in_a_new_home_each_mission_has_a_goal_and_the_map_is_the_robots_own() -> None:
+    for case in cases("new", 3, 0):
+        assert case.explores and case.household is None and case.scene is not None
+        assert [line.when for line in case.lines] == ["ready", *["ended"] * 4]
+        assert all(line.goal is not None and (line.goal.wants or line.goal.effects) for line in case.lines)
+        on = {p.spec.name: p.on for p in place_objects(case.scene, case.seed)}
+        assert all(on[want.thing] not in want.goals for want in case.wants)
+        assert len({want.thing for want in case.wants}) == 3
+
+
+def test_a_room_is_called_what_the_map_of_the_robot_calls_it() -> None:
+    case = cases("new", 1, 31001)[0]
+    assert case.scene is not None
+    numbered = tuple(msgspec.structs.replace(r, name=f"room {n}", named=False) for n, r in enumerate(case.scene.rooms))
+    lines = in_words_of(case, numbered)
+    meant = next(n for n, r in enumerate(case.scene.rooms) if r.name in case.lines[2].text)
+    assert lines[1].text == f"go to the room {meant}" and lines[0] == case.lines[0]
+    assert "{" not in in_words_of(case, ())[1].text
 
 
 def test_fetch_varies() -> None:
