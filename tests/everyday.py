@@ -176,6 +176,8 @@ def _fits(reading: str, sentence: Sentence, found: Understood) -> bool:
     if choice := re.fullmatch(r"pick\((.+)\)", reading):
         return found.kind == f"pick {choice[1]}"
     if found.kind or not found.steps:
+        if untold := re.fullmatch(r"norule\(([^)]+)\)", reading):
+            return f"no rule about {untold[1]}" in found.reason
         return reading == "refuse()" and not found.kind
     if tidied := re.fullmatch(r"tidy\(([^)]+)\)", reading):
         reading = _tidied(tidied[1])
@@ -183,7 +185,7 @@ def _fits(reading: str, sentence: Sentence, found: Understood) -> bool:
         reading = f"{_tidied(tidied[1])}; {tidied[2]}".replace(" & ", "; ")
     wanted = re.findall(r"(\w+)\(([^)]*)\)", reading)
     answers = all(name in ("answer", "say") for name, _ in wanted)
-    plans = [[*found.looks, *found.steps], *([] if answers else [found.steps])]
+    plans = [[*found.looks, *found.steps], found.steps]
     orders = permutations(wanted) if "&" in reading else [tuple(wanted)]
     tag, _, about = sentence.context.partition(":")
     held = about if tag == "held" else ""
@@ -260,6 +262,14 @@ def _acts(steps: list[PlanStep], held: str = "", looks: bool = True) -> list[tup
                     found.append(("wait", f"{step.seconds:g}"))
             case "say":
                 found.append(("say", step.text))
+            case "teach":
+                found.append(("teach", step.text))
+            case "name":
+                found.append(("place", step.text))
+            case "rule":
+                found.append(("rule", step.object.removesuffix("s"), step.target))
+            case "forget":
+                found.append(("norule" if step.target == "rule" else "forget", step.text))
     return found
 
 
@@ -299,8 +309,10 @@ def _one(name: str, args: str, act: tuple[str, ...]) -> bool:
             return act[0] == name and _named(first, act[1], act[2])
         case "drop" | "return" | "look":
             return act[0] == name
-        case "wait" | "goto" | "grip":
+        case "wait" | "goto" | "grip" | "teach" | "forget" | "place" | "norule":
             return act[:2] == (name, first)
+        case "rule":
+            return act == (name, first, second)
         case _:
             return False
 

@@ -7,7 +7,7 @@ it is taken for a request.
 
 import re
 
-from common.language.lexicon import COMMANDING
+from common.language.lexicon import COMMANDING, HANDLING
 from common.language.normalise import DETERMINERS
 from common.language.politeness import without_politeness
 
@@ -21,10 +21,15 @@ _WEAK = re.compile(
     r",\s*(?:(?:and|so|but|then|right|ok|okay|just|well|now|hence|therefore),?\s+)*|\s+so (?:just |now |then )?"
 )
 """Before what is a request if it begins with a verb."""
-_TELLS = re.compile(r"\b(?:is|are|was|were|left|saw|need|want|have|has|dropped|forgot)\b.* (?!not\b|never\b)\w+$")
+_TELLS = re.compile(
+    r"\b(?:is|are|was|were|(?:i|we|you|he|she|they|somebody|someone|has|have) "
+    r"left|saw|see|know|remember|needs?|wants?|have|"
+    r"has|dropped|forgot|belongs?|looks?|smells?|fell|stands|lies|sits|likes?|loves?)\b.* (?!not\b|never\b)\w+$"
+)
 """What is told of a thing before it is spoken of as "it"."""
 _WITH_PRONOUN = re.compile(
-    r"\s+(?=(?:please )?(?:bring|put|take|throw|get|fetch|give|tidy|move|carry) (?:it|them|me (?:it|that|them))\b)"
+    rf"\s+(?=(?:please )?(?:{'|'.join(sorted(HANDLING | {'bin'}))}) (?:(?:rid )?of )?(?:it|them|me "
+    rf"(?:it|that|them))\b)"
 )
 """Before a request that speaks of what was told."""
 _SUBJECTS = frozenset(
@@ -43,8 +48,9 @@ _NO_STATEMENT = re.compile(
 """How sentences begin whose second half is not to be carried out by itself."""
 _UNFINISHED = re.compile(
     r"\b(?:said|says|say|told|tells|tell|asked|asks|ask|to|that|if|whether|not|never|like|was|were|is|are|and|or|"
-    r"me|us|them|"
-    r"him|her|you|why|when|how|would|could|should|must|will|shall|can|may|might|do|does|did|always|"
+    r"(?<!belongs to )(?:me|us)|them|"
+    r"him|her|you|why|when|how|would|could|should|must|will|shall|(?<!the )(?<!red )(?<!green "
+    r")(?<!white )(?<!blue )(?<!my )can|may|might|do|does|did|always|"
     r"usually|often|sometimes|still|already|just|also|the|a|an|my|your|of|in|on|for|with|please)$"
 )
 """How words end that go on in what follows: `he said`, `she asked me to`."""
@@ -54,6 +60,9 @@ _FORBIDS = re.compile(
 )
 _VERBS = COMMANDING | {"make", "let", "show", "help", "look", "arrange", "keep", "open", "clean"}
 """First words of a request."""
+_NOBODY = re.compile(
+    r"^(?:nobody|no one) (?:needs|wants|uses|likes|eats|drinks|plays with) (?:the|my|this|that) [^,]+$"
+)
 LONGEST = 3
 """Breaks of one sentence (chosen)."""
 
@@ -69,14 +78,17 @@ def with_breaks(text: str) -> str:
 
 
 _CONDITION = re.compile(
-    r"^(?:and |but |then )?(?:if|in case|provided(?: that)?|as long as|assuming|when)\s+(?P<rest>(?:there (?:is|"
-    r"are)|you (?:find|see|spot|notice|"
-    r"discover|come across)|(?:the|my|our|any|a|an) .+? (?:is|are))\s.+)$"
+    r"^(?:and |but |then )?(?P<word>(?:only )?if|in case|provided(?: that)?|as long as|assuming|when|unless)\s+"
+    r"(?P<rest>(?:there (?:is|are)|you (?:do not |can not |did not "
+    r")?(?:find|see|spot|notice|discover|come across|have)"
+    r"|(?:the|my|our|any|a|an) .+? (?:is|are|looks?))\s.+)$"
 )
 _INVERTED = re.compile(r"^(?:and |but )?should (?:there be|(?P<you>you)(?= (?:find|see|spot|notice|come)))")
 _AT_END = re.compile(
-    r"^(?P<command>.+?),? (?:but )?(?:only )?(?:if|in case) (?P<condition>(?:there (?:is|are)|(?:the|my) .+ "
-    r"(?:is|are)|(?:it|they) (?:is|are)(?: still)? (?:in|on|at)) .+)$"
+    r"^(?P<command>.+?),? (?:but )?(?:only )?(?P<word>if|in case|unless|provided|as long as) "
+    r"(?P<condition>(?:there (?:is|are)|(?:the|my) .+ (?:is|are)|(?:it|they) (?:is|are)(?: not)?(?: "
+    r"still)? (?:in|on|at|"
+    r"empty|full|messy|untidy|dirty|a mess|cluttered|clean|clear|tidy)|you (?:find|see|spot))(?: .+)?)$"
 )
 _FIRST_THING = re.compile(r"\b(?:the|a|an|my|all) \w+(?: (?!(?:in|on|to|into|onto|at|from|away|over|next|near)\b)\w+)?")
 _OF_IT = re.compile(r"^(?:it|they)(?= (?:is|are)\b)")
@@ -115,21 +127,23 @@ def _without_reason(text: str) -> str:
 def conditional(text: str) -> str:
     """`if there is a mug on the desk bring it` and the same in the other order as `if ... . bring it`."""
     text = _INVERTED.sub(lambda found: "if you" if found["you"] else "if there is", text)
+    text = re.sub(r"^only (?=\w+ .+ (?:if|when|unless) )", "", text)
     text = _IF_SO.sub(r"if \g<condition> , ", _without_reason(text))
     bare = without_politeness(text)
     if found := _CONDITION.match(bare):
+        word = "unless" if found["word"] == "unless" else "if"
         rest = _ELSE.sub(" . otherwise ", found["rest"])
         for comma in re.finditer(r",\s*(?:then\s+)?|\s+then\s+", rest):
             if without_politeness(rest[comma.end() :]).split(" ")[0] in _VERBS:
-                return f"if {rest[: comma.start()]} . {rest[comma.end() :]}"
+                return f"{word} {rest[: comma.start()]} . {rest[comma.end() :]}"
         words = rest.split()
         for at in range(3, len(words) - 1):
             if words[at] in _VERBS and words[at + 1] in _BEGINS:
-                return f"if {' '.join(words[:at])} . {' '.join(words[at:])}"
+                return f"{word} {' '.join(words[:at])} . {' '.join(words[at:])}"
     elif (found := _AT_END.match(bare)) and bare.split()[0] in _VERBS:
         thing = _FIRST_THING.search(found["command"])
         condition = _OF_IT.sub(thing[0] if thing else "it", found["condition"])
-        return f"if {condition} . {found['command']}"
+        return f"{'unless' if found['word'] == 'unless' else 'if'} {condition} . {found['command']}"
     return text
 
 
@@ -152,6 +166,8 @@ def is_statement(text: str, ended: bool = True) -> bool:
     """
     bare = without_politeness(text)
     words = bare.replace(",", " ").split()
+    if _NOBODY.match(bare):
+        return True
     if (
         len(words) < 2
         or _NO_STATEMENT.match(bare)

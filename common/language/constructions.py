@@ -20,9 +20,14 @@ _WANT = (
     "am going to need|are going to need|would need|would (?:really |very much |quite |just )?(?:like|love|"
     "prefer)|would rather have|am "
     "needing|am wanting|"
-    "are needing|is asking for|is waiting for|is missing|am craving|am in need of|am after|am dying for|am longing for|"
-    "am in the mood for|are after|is after|fancy|fancies|could use|could do with|would not mind|would appreciate|"
-    "would kill for)"
+    "are needing|is asking for|is waiting for|is missing|am craving|am in need of|am after|am dying "
+    "for|am longing for|"
+    "am in the mood for|are after|is after|(?:would |quite |rather )?(?:fancy|fancies)|could (?:really )?(?:use|do "
+    "with|murder)|would not (?:mind|say no to)|would (?:very much )?(?:appreciate|welcome|enjoy|be "
+    "(?:(?:ever|so|very|really|most) )*(?:glad|grateful|thankful|happy|pleased|obliged) "
+    "(?:of|for|with|about))|would kill for|would have(?= "
+    "(?:the|a|an|some|my|one|two|another)\\b)|have a craving for|am gasping "
+    "for|am desperate for|could go for)"
 )
 _CONSUME = "(?:have|get|eat|drink|play with|use|read|hold|see|look at|borrow|taste|try|take)"
 CONSTRUCTIONS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
@@ -68,6 +73,8 @@ CONSTRUCTIONS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
         (rf"{_WHO}(?: really| also| just| now| only| kind of| do)? {_WANT} {NP} (?:back )?(?:here|over "
          rf"here|over)", r"bring me \1"),
         (rf"{_WHO}(?: really| also| just| now| only| kind of| do)? {_WANT} {NP}", r"i want \1"),
+        (rf"(?:need|want|would like|would love|could use|could do with|looking for|fancy|after) (?!to\b|you\b){NP}",
+         r"i want \1"),
         (rf"(?:could|can|may|might) (?:i|we|somebody|someone)(?: please)? (?:have|get|borrow|"
          rf"use) {NP}", r"bring me \1"),
         (rf"(?:i|we) (?:feel like|am in the mood for|could go for) (?:having |eating |drinking |a bit "
@@ -122,6 +129,8 @@ VERBLESS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
 PASSIVE = tuple(
     re.compile(f"^{pattern}$")
     for pattern in (
+        rf"(?:(?:i|we) would (?:\w+ ){{1,4}}?|it would be (?:\w+ ){{1,2}}?)(?:it )?if {NP} "
+        rf"(?:were|was|could be|can be|is|are|got|gets) (\w+)( .+)?",
         rf"(?:have|get) {NP} (?:to be |be )?(\w+(?:ed|en|t|d|n))( .+)?",
         rf"(?:i|we) (?:want|need|would like|would love|expect|wish)(?: to see| to have| to get)? {NP} (?:to be |"
         rf"be )?(\w+)( .+)?",

@@ -1,4 +1,4 @@
-"""Short forms written out: `what's` as `what is`, `wanna` as `want to`, `dont` as `do not`. Pure.
+"""Short forms written out: `what's` as `what is`, `wanna` as `want to`; several words for one: `plus` as `and`. Pure.
 
 Recognised speech and hurried typing leave the apostrophes out, so both spellings mean the same here.
 """
@@ -28,6 +28,7 @@ _CONTRACTIONS = tuple(
         (r"\bin here\b", "here"),
         # With the apostrophe, or without it where no other word is spelled so.
         (r"\b(what|where|who|there|that|how|here|which|when|why)'?s\b(?! up\b)", r"\1 is"),
+        (r"\b(whatever|everything|anything|something|nobody)'?s\b", r"\1 is"),
         (r"\b(it|she|he)'s\b", r"\1 is"),
         (r"^its (?=the|a|an|my|not|too|time|in|on)\b", "it is "),
         (r"\b(?:can't|cant|cannot)\b", "can not"),
@@ -46,10 +47,32 @@ _CONTRACTIONS = tuple(
         (r"\blet'?s\b", "let us"),
     )
 )
+_NOUN = r"(?=(?:the|a|an|my|our|your|some|any|one|two|three|all|both|every|that|those)\b)"
+_PREPOSITION = (
+    r"(?=(?:on|in|at|by|beside|near|next to|under|behind|between|inside|close to|in front of|to the "
+    r"(?:left|right))\b)"
+)
+_SAME = tuple(
+    (re.compile(words), plain)
+    for words, plain in (
+        (rf"\b(?:plus|as well as|along with|and also|and additionally|not to mention)\b {_NOUN}", "and "),
+        (r"\b(what|which) (?:kinds?|sorts?|types?) of\b", r"\1"),
+        (r"\b(?:just|right|directly|immediately|straight) (?=next to|beside|behind|between|in front of|under)", ""),
+        (rf"\b(?:(?:over|up|down|out|back|right) (?:there|here)|there|(?<!\bright )over) {_PREPOSITION}",
+         ""),
+        (r"\b(this|that|these|those) (?:right |over )?(?:here|there)(?= (?:is|are|should|must|will|goes?)\b)", r"\1"),
+        (r"\b(this|that) (\w+) (?:right |over )?(?:here|there)(?= is\b)", r"\1 \2"),
+        (r"\bnothing (?:but|except|other than) ", ""),
+        (r"\b(?:far|extreme|very|outer) (left|right)\b", r"\1"),
+        (r"\b(left|right)[- ]hand\b", r"\1"),
+        (r"\ball the way (?=to|on|at|in|over|back|up|down)", ""),
+    )
+)  # fmt: skip
+"""Several words for which there are fewer, wherever they stand."""
 
 
 def expand(text: str) -> str:
-    """Normalised text with `what's` written as `what is`."""
-    for short, long in _CONTRACTIONS:
+    """Normalised text with `what's` written as `what is` and `plus` as `and`."""
+    for short, long in (*_CONTRACTIONS, *_SAME):
         text = short.sub(long, text)
     return " ".join(text.split()) if "  " in text else text

@@ -10,13 +10,15 @@ from common.language.breaks import conditional, with_breaks
 from common.language.clauses import cut_clauses, without_fillers
 from common.language.contractions import expand
 from common.language.exchange import PREPOSITIONS, IsPlace, filled, noun_phrases, replaced, verb_first
-from common.language.lexicon import COMMANDING
+from common.language.lexicon import COMMANDING, HANDLING
 from common.language.normalise import DETERMINERS, infinitive, normalise
 from common.language.politeness import LONG_SPEECH, without_politeness
+from common.language.timing import in_time
 
 _REPAIR = re.compile(
     r"(?:,\s*wait,\s*(?=not\b)|[,.;]\s*(?:no|sorry|actually|rather)(?:,\s*|\s+)|,\s*(?:oh|well|hold on|hang on),\s*"
-    r"|(?<=\w)\s+no,?\s+(?=(?:the|my|on|in|to|at)\s)|,?\s+(?:no,? wait|wait,? no|oh,? wait|no,? sorry|sorry,? no|"
+    r"|(?<=\w)(?<!\bsay)\s+no,?\s+(?=(?:the|my|on|in|to|at)\s)|,?\s+(?:no,? wait|wait,? no|oh,? "
+    r"wait|no,? sorry|sorry,? no|"
     r"sorry,? i mean(?:t)?|or rather|"
     r"i mean(?:t)?|make that|scratch that|correction|no,? i mean(?:t)?|no,? make (?:that|it)|no,? not that|"
     r"on second thoughts?)(?:,\s*|\s+))"
@@ -24,7 +26,8 @@ _REPAIR = re.compile(
 )
 """Between what was said and what was meant."""
 _CONTRAST = re.compile(
-    r"^(?:i (?:said|meant|mean|want|wanted) )?not (?P<wrong>.+?)(?:,\s*(?:but\s+)?|\s+but\s+)(?:rather )?(?P<right>.+)$"
+    r"^(?:i (?:said|meant|mean|want|wanted) )?not "
+    r"(?P<wrong>.+?)(?:,\s*(?:but\s+)?|\s+but\s+)(?:rather )?(?P<right>.+)$"
 )
 _CONTRAST_OF_ONES = re.compile(
     r"^not (?P<wrong>(?:(?:on|in|to|into) )?(?:the|a|my) (?:\w+ )?\w+?)(?P<right> (?:the|on|in|into|to) .+)$"
@@ -34,7 +37,8 @@ _DO_NOT_DO = re.compile(
     rf"^do not (?P<wrong>\w+ .+?)\s+(?P<right>(?:{'|'.join(sorted(COMMANDING))}) (?:me|us|the|a|an|my|it|to)\b.+)$"
 )
 NOT_WANTED = re.compile(
-    r"^(?:(?:never mind|forget(?: about)?|skip|leave|ignore|not|no need for|no more|(?:i|we) do not (?:need|want|like))"
+    r"^(?:(?:never mind|forget(?: about)?|skip|leave|ignore|not|no need for|no more|(?:i|we) do not "
+    r"(?:need|want|like))"
     r" (?:the|that|my|those|this)(?: \w+){1,3}?|no (?!the\b|no\b|need\b)\w+(?=,))(?:,\s*(?:and |but )?| and | but )"
     rf"(?=(?:please |just |rather )*(?:{'|'.join(sorted(COMMANDING))}|i want|i need|i would like)\b)"
 )
@@ -45,13 +49,19 @@ _AFTERTHOUGHT = re.compile(
 )
 """A correction that is marked behind itself: `the can, the green one i mean`."""
 _DISLOCATED = re.compile(
-    r"^(?P<verb>\w+(?: me)?) (?P<pronoun>it|them|that|this)\b(?P<rest>[^,]*?),\s*(?P<thing>(?:the|my|a|an|all|"
-    r"both) [^,]+)$"
+    r"^(?:go (?:and )?)?(?P<verb>\w+(?: me)?) (?P<pronoun>it|them|that|this)\b"
+    r"(?:(?P<rest>[^,]*?),\s*|(?P<near>(?: to me| here| over| back| away)*) )"
+    r"(?P<thing>(?:the|my|a|an|all|both) [^,]+?)(?: i mean(?:t)?)?$"
 )
 _PRESENTED = re.compile(
     r"^(?P<thing>(?:the|my|that|this|those|these|all|both|our) [^,]+?),\s*(?P<rest>(?:(?:please|just|can you|"
     r"could you|would you)\s+)*\w+"
     r"(?: me)? (?:it|them|that|those|one)\b.*)$"
+)
+_PRESENTED_AT_ONCE = re.compile(
+    r"^(?P<thing>(?:the|my|that|this|those|these|our) (?!.*\b(?:is|are|was|were|has|have|said|says|told|and|if|not)\b)"
+    rf"(?:\w+ ){{1,10}}?)(?P<rest>(?:(?:please|just|can you|could you|would you) )*(?:{'|'.join(sorted(HANDLING))})"
+    r"(?: me| rid of)? (?:it|them|that|those)\b.*)$"
 )
 """A thing that is named before or after the command in which a pronoun stands for it."""
 _LATE_EXCEPT = re.compile(
@@ -70,10 +80,12 @@ _NEXT = frozenset(
 )
 
 _REFINEMENT = re.compile(
-    r"^(?P<said>[^,]+?)(?:,\s*|\s+)(?:(?:you know|well|that is),?\s*)?(?P<one>(?:the|a|an) (?:\w+ ){1,2}one)"
+    r"^(?P<said>[^,]+?)(?:,\s*|\s+)(?:(?:you know|well|that is|please),?\s*)?(?P<one>(?:the|a|an) (?:\w+ ){1,2}one)"
     r"(?P<rest>,?(?: (?:and|on|in|to|into|onto|next|from|off) .*)?)$"
 )
 """A thing, and which one of its kind."""
+_GOES_ON = frozenset({"and", "or", "then", "but", "not", "with", "to", "as"})
+"""Before another thing, which is not the same as the one before."""
 _ANSWERS = frozenset({"no", "yes", "not", "if", "when", "unless", "after", "before", "once", "first"})
 LONGEST_LEAD = 4
 """Words before a comma that may be left out (chosen)."""
@@ -84,7 +96,7 @@ def commands(text: str, is_place: IsPlace = lambda _: False) -> list[str]:
     whole = without_fillers(expand(normalise(re.sub(r":(?=\s)", ",", text), ",;.!?")))
     if LONG_SPEECH.match(without_politeness(whole)):
         return cut_clauses(whole)
-    parts = (piece for part in _in_order(whole) for piece in with_breaks(conditional(part)).split(" . "))
+    parts = (piece for part in _in_order(whole) for piece in with_breaks(in_time(conditional(part))).split(" . "))
     return [clause for part in parts for clause in cut_clauses(_settled(part, is_place))]
 
 
@@ -128,7 +140,9 @@ def _settled(text: str, is_place: IsPlace) -> str:
     """The text without what was taken back."""
     text = _refined(_without_lead(text))
     text = _AFTERTHOUGHT.sub(r"\g<said>, i mean \g<meant>", text) if text.count(",") else text
-    text = _with_noun(text)
+    text = _with_noun(_NEITHER.sub(lambda found: filled(found["one"], found["other"]), text))
+    if found := _NOT_THERE.match(text):
+        text = found["said"]
     text = _refined(_repaired(text, is_place))
     text = _EXCEPT.sub(" but ", text).replace(" but but ", " but ")
     text = _LATE_EXCEPT.sub(r"\g<all> \g<but> \g<particle>", text)
@@ -152,9 +166,12 @@ def _with_qualities(said: str, wrong: str, right: str) -> str:
 
 def _with_noun(text: str) -> str:
     """`the mug on the desk, bring it to me` and `bring it to me, the mug` as `bring the mug to me`."""
+    if (found := _PRESENTED_AT_ONCE.match(text)) and "," not in text:
+        thing, rest = found["thing"], found["rest"]
+        return re.sub(r"\b(?:it|them|that|those)\b", lambda _: thing, rest, count=1)
     if found := _DISLOCATED.match(without_politeness(text)):
         if found["verb"].split()[0] in COMMANDING:
-            return f"{found['verb']} {found['thing']}{found['rest']}"
+            return f"{found['verb']} {found['thing']}{found['rest'] or found['near'] or ''}"
     elif (found := _PRESENTED.match(text)) and verb_first(without_politeness(found["rest"])):
         return re.sub(r"\b(?:it|them|that|those|one)\b", lambda _: found["thing"], found["rest"], count=1)
     return text
@@ -192,6 +209,12 @@ def _without_lead(text: str) -> str:
     return text
 
 
+_NOT_THERE = re.compile(
+    r"^(?P<said>.+? (?:on|in|to|into|onto|at) .+?),? (?:and |but )?not (?:on|in|to|into|onto|at|back) "
+    r"(?:the|my|a) \w+(?: \w+)?$"
+)
+"""Where something is to be, and where not."""
+_NEITHER = re.compile(r"\bneither .+? nor (?P<other>(?:the |my )?(?:\w+ ){1,2}?)(?:but )?(?P<one>(?:the|a|my) [^,]+)")
 _ANY = re.compile(r"\b(an? (\w+)), any (?:\2|one|of them|will do)\b")
 
 
@@ -199,9 +222,11 @@ def _refined(text: str) -> str:
     """`the can, the red one` as `the red can`."""
     text = _ANY.sub(r"\1", text)
     found = _REFINEMENT.match(text)
-    if found is None:
+    if found is None or found["said"].split()[-1] in _GOES_ON:
         return text
     spans = noun_phrases(found["said"].split())
+    if not spans and not verb_first(found["said"]) and len(found["said"].split()) <= LONGEST_LEAD:
+        return f"{filled(found['one'], found['said'])}{found['rest'].lstrip(',')}"
     if not spans or spans[-1][1] - spans[-1][0] != 2:
         return text
     rest = found["rest"] if found["rest"].startswith((", and", " and")) else found["rest"].lstrip(",")
@@ -211,9 +236,19 @@ def _refined(text: str) -> str:
 def _contrasted(wrong: str, right: str) -> str:
     """`not the red mug, the blue one` is the blue mug; a verb that was said only with the wrong one is kept."""
     verb, _, thing = wrong.partition(" ")
-    right = without_politeness(right)
+    right = re.sub(r",? (?:instead|rather)$", "", without_politeness(right))
+    if verb in COMMANDING and verb_first(right):
+        right = _of_thing(right, thing)
     if verb in COMMANDING and not verb_first(right):
         words = wrong.split()
         receiver = f"{words[1]} " if len(words) > 2 and words[1] in ("me", "us") else ""
         return f"{verb} {receiver}{filled(right, thing)}"
     return filled(right, wrong)
+
+
+def _of_thing(command: str, said: str) -> str:
+    """`put it there` with the thing that was spoken of in place of its "it"."""
+    words = said.split()
+    spans = noun_phrases(words)
+    thing = " ".join(words[spans[0][0] : spans[0][1]]) if spans else ""
+    return re.sub(r"(?<=\w )(?:it|them)\b", thing, command, count=1) if thing else command

@@ -11,7 +11,8 @@ PICK = "(get | fetch | take | grab | pick | pick up | collect | gather | collect
 """The first half of moving something: `get the mug and put it away`."""
 PUT = (
     "put | sort | place | set | throw | toss | drop | lay | stick | move | stack | pop | slide | leave | shift"
-    " | chuck | dump | relocate | shove | jam | tuck | deposit | stow | plop | plonk | stash | sling | fling | transfer"
+    " | chuck | dump | relocate | shove | jam | tuck | deposit | stow | plop | plonk | stash | sling "
+    "| fling | transfer"
 )
 MOVE = (
     "bring | take | carry | deliver | transport | move | get | fetch | return | shift | relocate | transfer | "
@@ -20,7 +21,7 @@ MOVE = (
 )
 """Verbs of moving to a place that is named with "to"."""
 THROW = "throw | toss | chuck"
-DISCARD = "trash | discard | recycle | bin | get rid of | dispose of | ditch | junk"
+DISCARD = "trash | chuck | discard | recycle | bin | get rid of | dispose of | ditch | junk"
 TIDY = "tidy | clean | clear | declutter | straighten | neaten | sort out | organise | organize"
 GO = (
     "drive | navigate | move | walk | return | head | come | roll | run | nip | pop | travel | proceed | hop | "
@@ -30,10 +31,14 @@ GO = (
 SEEK = (
     "find | search for | look for | locate | show me | track down | hunt for | hunt down | seek | look out for | spot"
 )
-LOOK = "(look | check | see | (have | take) a [quick | good | little | short] look | find out | verify | make sure)"
+LOOK = (
+    "(look | peek | check | see | (have | take) a [quick | good | little | short] (look | peek | glance) | find out"
+    " | verify | make sure)"
+)
 MODAL = "(can | could | may | might)"
 WISH = (
-    "(want | wants | need | needs | require | would like | would love | would prefer | prefer | fancy | could [really]"
+    "(want | wants | need | needs | require | would like | would love | would prefer | prefer | "
+    "fancy | could [really]"
     " (use | do with) | am after | would rather have)"
 )
 FAMILY = (
@@ -50,8 +55,9 @@ BACK = "[back | over | straight | down | away]"
 """Particles between an object and its place that change nothing."""
 IT = "(<thing> | it | them)"
 ASK = (
-    "[(can | could) you tell me | tell me | remind me | explain [to] me | let me know | do you (know | remember |"
-    " happen to know) | [have you [got]] any (idea | clue)"
+    "[[can you | could you] tell me | remind me | explain [to] me | let me know"
+    " | [do you | would you | might you | (does | do) (anybody | anyone | somebody | someone)] "
+    "[happen to] (know | remember | recall) | [have you [got]] any (idea | clue)"
     " | find out | i wonder | see | so | and"
     " | (did | do) you (see | notice | remember)]"
 )

@@ -58,7 +58,7 @@ MOVING: tuple[Wording, ...] = (
     ),
     Wording(
         "put_away",
-        "put <thing> (where it belongs | where they belong | in its place | to its place | in order)",
+        "put <thing> [back] (where it belongs | where they belong | in its place | to its place | in order)",
         heard="",
     ),
     Wording("put_away", "sort [out] <thing> | <thing> (needs | need) (putting | to be put) away", heard=""),
@@ -112,6 +112,7 @@ MOVING: tuple[Wording, ...] = (
         f"ought to) be {MOVED} {BACK} ({ON} | to) <spot>",
         heard="",
     ),
+    Wording("wish_at", "(have | get) <thing> back (on | in | into) <spot>", heard=""),
     Wording(
         "fetch",
         f"(can | could | should | would) <thing> be {MOVED} (here | over | to (me | us)) | have <thing> [over "
@@ -160,7 +161,9 @@ MOVING: tuple[Wording, ...] = (
         heard="",
     ),
     Wording("fetch", f"{MODAL} (i | we) (have | get) <thing> | let (me | us) have <thing>", heard=""),
-    Wording("fetch", f"{MODAL} i trouble you for <thing> | gimme <thing> | how about <thing>", heard=""),
+    Wording(
+        "fetch", f"{MODAL} i (trouble | bother | ask) you for <thing> | gimme <thing> | how about <thing>", heard=""
+    ),
     Wording("fetch", "<thing> would be (nice | great | good | lovely | perfect)", heard=""),
     Wording("fetch", "[is there] any chance of [getting | having] <thing>", heard=""),
     Wording("fetch", "(pick | grab | fetch | get) (me | us) up <thing>", heard=""),

@@ -19,6 +19,7 @@ Which = Literal[
     "second",
     "third",
     "last",
+    "middle",
     "other",
 ]
 PRONOUNS = frozenset({"it", "that", "this", "him", "her", "this one", "that one", "this thing", "that thing"})
@@ -35,15 +36,18 @@ WHICH: dict[str, Which] = {
     "larger": "biggest", "tall": "tallest", "tallest": "tallest", "taller": "tallest", "high": "tallest",
     "short": "shortest", "shortest": "shortest", "shorter": "shortest", "tiny": "smallest",
     "smallest": "smallest", "small": "smallest", "little": "smallest", "smaller": "smallest", "first": "first",
-    "second": "second", "third": "third", "last": "last", "other": "other", "another": "other",
+    "second": "second", "third": "third", "last": "last", "middle": "middle", "other": "other", "another": "other",
 }  # fmt: skip
 """Words that single one out of several."""
 NUMBERS = {"one": 1, "two": 2, "three": 3, "four": 4, "five": 5, "six": 6, "couple": 2}
-Relation = Literal["left of", "right of", "front of", "behind", "near", "on"]
+Relation = Literal["left of", "right of", "front of", "behind", "near", "between", "on"]
 RELATIONS: tuple[tuple[str, Relation], ...] = (
     ("to the left of", "left of"), ("to the right of", "right of"), ("on the left of", "left of"),
     ("on the right of", "right of"), ("left of", "left of"), ("right of", "right of"), ("in front of", "front of"),
-    ("on top of", "on"), ("next to", "near"), ("close to", "near"), ("from inside", "on"), ("out of", "on"),
+    ("on top of", "on"), ("next to", "near"), ("closest to", "near"), ("nearest to", "near"), ("nearest", "near"),
+    ("on the left side of", "left of"), ("on the right side of", "right of"), ("from the left side of", "left of"),
+    ("from the right side of", "right of"), ("at the left end of", "left of"), ("at the right end of", "right of"),
+    ("between", "between"), ("in between", "between"), ("close to", "near"), ("from inside", "on"), ("out of", "on"),
     ("from", "on"), ("inside", "on"), ("behind", "behind"), ("near", "near"), ("beside", "near"), ("by", "near"),
     ("off", "on"), ("on", "on"), ("in", "on"), ("at", "on"),
 )  # fmt: skip
@@ -51,6 +55,8 @@ RELATIONS: tuple[tuple[str, Relation], ...] = (
 SIDES: dict[str, Which] = {
     "on the left": "left", "from the left": "left", "to the left": "left", "on the left side": "left",
     "on the right": "right", "from the right": "right", "to the right": "right", "on the right side": "right",
+    "at the left end": "left", "on the left end": "left", "at the right end": "right", "on the right end": "right",
+    "in the middle": "middle",
     "on your left": "left", "on your right": "right", "to your left": "left", "to your right": "right",
 }  # fmt: skip
 _BUT = (

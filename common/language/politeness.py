@@ -7,7 +7,8 @@ Frames that speak of the past, of somebody else's words or of what must not be a
 import re
 
 _ADVERBS = (
-    r"(?: (?:please|just|kindly|maybe|perhaps|possibly|quickly|now|also|really|actually|then|so|simply|like|too|again|"
+    r"(?: "
+    r"(?:please|just|kindly|maybe|perhaps|possibly|quickly|now|also|really|actually|then|so|simply|like|too|again|"
     r"by any chance|if possible|at all|at least|at some point|to please))*"
 )
 _YOU = r"(?:you|someone|somebody|anyone|anybody)(?: guys| all)?"
@@ -48,7 +49,10 @@ _ADDRESS = (
     r"(?:scratch|disregard|ignore) that(?=,? \w)|never mind (?:what i said|that)(?=,? \w)|"
     "(?:hey|hi|hello) there|hey|hello|hi|hiya|yo|oi|howdy|ok|okay|alright|all right|right(?=,)|jarvis|robot|"
     "tidybot|buddy|mate|dude|pal|"
-    "man|sir|dear|"
+    "man|sir|dear|(?:my|little|good|old|young) (?:man|lad|lady|fellow|chap|friend|helper|love|one)|sweetie|honey|"
+    "sweetheart|no time to (?:lose|waste)|do not just stand there|make yourself useful(?: "
+    "and)?|(?:lend|give) me a hand"
+    "(?: and)?|"
     "bot|machine|my friend|darling|good (?:morning|evening|afternoon|day)|hello there|please|now|so|well|and|"
     "then|also|finally|"
     "just|kindly|quickly|maybe|perhaps|actually|anyway|oh|whoa|woah|hmm|ah|yeah|thanks|thank you|great|good|"
@@ -64,12 +68,13 @@ _ADDRESS = (
 """Words to somebody, that carry no meaning."""
 _WAY = (
     r"(?:go|come|run|hurry|nip|pop)(?: ahead| over| on| along| off| back)?(?: and)?"
-    r"(?=\s+(?:find|get|fetch|bring|grab|pick|take|put|tidy|clean|clear|throw|collect|retrieve|look for|search for)\b)"
+    r"(?=\s+(?:find|get|fetch|bring|grab|pick|take|put|tidy|clean|clear|throw|collect|retrieve|look "
+    r"for|search for)\b)"
 )
 _FRAMES = (
     # What makes a question or a wish of an order.
-    rf"{_CAN} {_YOU}{_ADVERBS}(?: to(?= \w))?(?: (?:be able to|be willing to|be up for|manage to|care to|try to|"
-    rf"try and|like to|"
+    rf"{_CAN} {_YOU}(?! see (?:the|my|a|any|that)\b){_ADVERBS}(?: to(?= \w))?"
+    rf"(?: (?:be able to|be willing to|be up for|manage to|care to|try to|try and|like to|"
     rf"want to|"
     rf"mind|go ahead and|help me (?:and|by)|do me (?:a|the) favou?r(?: and| of)?|"
     rf"be (?:(?:so|very|a|an|kind|good|nice|enough|dear|angel|sweetheart|star|darling|love|sport|robot|sweet|"
@@ -96,16 +101,23 @@ _FRAMES = (
     rf"(?: for you)?(?: (?:if you(?: {_CAN})?|if i ask(?:ed)? you to|that you|to))?",
     r"(?:it|that) would make (?:me|us|my day|him|her)(?: \w+){0,2} if you(?! (?:not|did not|never)\b)",
     r"is it (?:ok|okay|possible|alright)(?: for you)?(?: (?:if you(?: can| could)?|to))?",
-    rf"{_PERSON} would {_SO}(?:appreciate|like|love|be {_SO}(?:grateful|happy|glad|thankful|pleased|obliged|delighted))"
+    rf"{_PERSON} would {_SO}(?:appreciate|like|love|be "
+    rf"{_SO}(?:grateful|happy|glad|thankful|pleased|obliged|delighted))"
     rf"(?: it)?(?: (?:very much|a lot|greatly))? if {_YOU}(?: {_CAN})?{_ADVERBS}(?! (?:not|did not|never)\b)",
-    rf"(?:it|that) (?:would|will) be {_SO}{_KIND} (?:if|when) {_YOU}(?: {_CAN})?{_ADVERBS}(?! (?:not|did not|never)\b)",
+    rf"(?:it|that) (?:would|will) be {_SO}{_KIND} (?:if|when) {_YOU}(?: {_CAN})?{_ADVERBS}(?! "
+    rf"(?:not|did not|never)\b)",
     rf"(?:it|that) (?:would|will) (?:really |greatly )?help(?: me| us)?(?: a lot| out)? if {_YOU}(?: {_CAN})?(?! "
     rf"(?:not|did not)\b)",
     r"why (?:do not|not) (?:you|we)(?=\s+\w)|how about (?:you|we)(?=\s+\w)",
-    r"let us|we (?:should|could|must|need to|have to|ought to|want to|had better|better)",
-    r"be (?:a|an|so|very) (?:\w+ ){0,2}?\w+ (?:and|as to|to)|be \w+ enough to|do me (?:a|the|one) favou?r(?: and)?",
+    r"(?:i|we|people|everyone|everybody|they)(?: always| all| usually)?(?=\s+call\b)|let us|we "
+    r"(?:should|could|must|need to|have to|ought to|want to|had better|better)",
+    r"(?:what|how) about(?=\s+\w+ing\b)|i do not suppose you (?:can|could|would|might)(?: possibly)?|"
+    r"you (?:can|could|would) not (?:possibly|happen to|mind)(?= \w)|"
+    r"(?:do )?be (?:a|an|so|very) (?:\w+ ){0,2}?\w+ (?:and|as to|to)|be \w+ enough to|do me "
+    r"(?:a|the|one) favou?r(?: and)?",
     rf"(?:is there )?(?:any|a) (?:chance|way|possibility) (?:of you|(?:that )?you(?: {_CAN})?)|any chance(?=\s+you)",
-    r"(?:do not|never) (?:forget|fail) to|remember to(?=\s+\w)|(?:make|be) sure (?:to|and|(?:that )?you)|see that you|"
+    r"(?:do not|never) (?:forget|fail) to|remember to(?=\s+\w)|(?:make|be) sure (?:to|and|(?:that "
+    r")?you)|see that you|"
     r"feel free to|go ahead and|get (?:busy|going|to work|moving|up)(?: and)|start (?:by )?(?=\w+ing\b)|try "
     r"(?:to|and)(?= (?:get|bring|"
     r"fetch|put|take|grab|throw))",
@@ -130,14 +142,16 @@ _ENDINGS = (
     "ok|alright|(?<=, )right|man|mate|"
     "buddy|dude|my friend|dear|love|darling|sir|real quick|really quick|quick|fast|if you please|or something|or so|"
     "and stuff|(?:any (?:one|\\w+) will do|(?:it|i) (?:does|do) not (?:matter|mind|care) which(?: one)?|"
-    "whichever)|while you are (?:at it|there|up|about it)|on (?:the|your) way(?: back)?|by the way|you know(?: "
+    "whichever)|while you are (?:at it|there|up|about it)|on (?:the|your) way(?: back)?|by the way|(?<=, )you know(?: "
     "that)?|i "
     "guess|i think",
-    "(?:and )?hurry(?: up)?|as (?:fast|quickly) as you can|asap|and be quick(?: about it)?|and that is all|that is all|"
+    "(?:and )?hurry(?: up)?|as (?:fast|quickly) as you can|asap|and be quick(?: about it)?|and that "
+    "is all|that is all|"
     "come on|go on|chop chop|before i forget|some ?time(?: today)?|today|tonight|this (?:morning|evening|afternoon)|"
     "(?:and )?(?:be|take) care(?:ful)?(?: with (?:it|them|that))?|carefully|gently|when you come back|"
     "(?:and )?thanks in advance|if you get (?:there|the chance)",
-    "a (?:little )?bit|a little|somewhat|for a (?:bit|while)",
+    "after all|with you|from (?:there|here|where you (?:are|stand))|a (?:little )?bit|a "
+    "little|somewhat|for a (?:bit|while)",
     "(?<!try )(?<!it )(?<!that )(?<!same )(?<!thing )(?<!once )(?<!go )(?<!look )again",
     "as soon as (?:you can|possible)|(?:will|would|could|can|won't) you|would be (?:great|nice|lovely|good)(?= please)",
     r"if (?:you (?:can |could |do |happen to )?(?:find|see|spot|have) (?:it|one|any|them|some)|"
@@ -148,7 +162,10 @@ _ENDINGS = (
 """Politeness and reasons after a command."""
 _LEAD = re.compile(rf"^(?:(?:{'|'.join((_ADDRESS, _WAY, *_FRAMES))})(?:\s+|\s*,\s*))+")
 _TAIL = re.compile(rf"(?:,?\s+(?:{'|'.join(_ENDINGS)}))+$")
-_FOR_ME = re.compile(r"^(?:grab|take|pick up|reach|snatch|grasp|get) (?!me\b)(.+?) for (?:me|us)(?= please$|$)")
+_FOR_ME = re.compile(
+    r"(?:^|(?<= and ))(?:grab|take|pick up|reach|snatch|grasp|get) (?!me\b)(.+?) for (?:me|us)(?= "
+    r"please$|$| and | then )"
+)
 """Taking something for somebody is bringing it."""
 LONG_SPEECH = re.compile(
     r"^(?:(?:say|announce)(?: that)?|tell (?:them|everybody|everyone|people|us|me) that|"

@@ -15,6 +15,7 @@ ABOUT_THE_WORLD: tuple[Wording, ...] = (
         f"{ASK} (what [else] | (which | what) (things | objects | items | stuff)) ({BE} [there] | lies | lie | "
         f"do you see | do (we | i | you) have | have (we | i | you) got)"
         f" [{LYING}] (on | in | at | inside) <spot>"
+        f" | (tell me | list) (what | everything | all) [that] {BE} [{LYING}] (on | in | at | inside) <spot>"
         f" | {ASK} what <spot> (has | holds | contains) [on it | in it]",
         heard="what is (on | in) [the] <place>",
     ),
@@ -23,13 +24,17 @@ ABOUT_THE_WORLD: tuple[Wording, ...] = (
         f"{ASK} (is | are) there (anything | something) [{LYING}] (on | in | at) <spot>"
         f" | {ASK} what {BE} (that | this | those | these | there) [thing | things | stuff] [{LYING}] (on | "
         f"in | at) <spot>"
-        f" | {ASK} what (have | did) you [last] (see | seen | find | found | notice | noticed) (on | in | at) <spot>",
+        f" | {ASK} what (have | did) you [last] (see | seen | find | found | notice | noticed) (on | in | at) <spot>"
+        f" | {ASK} what (did | have | has) (i | we | you | they | somebody | someone) (leave | left | "
+        f"put | forget | forgotten) "
+        "(on | in | at) <spot>",
         heard="what is that (on | in) [the] <place>",
     ),
     Wording("where", f"{ASK} (where | whereabouts) [exactly] (is | are) <thing>", heard="where (is | are) <thing>"),
     Wording(
         "where",
-        f"{ASK} (where | whereabouts) [exactly] (is | are) [it] <thing> (at | now | located | kept | lying | standing)"
+        f"{ASK} (where | whereabouts) [exactly] (is | are) [it] <thing> (at | now | located | kept | "
+        f"lying | standing)"
         f" | {ASK} where (it is | is it | they are | stands | lies | sits) <thing> | {ASK} where did <thing> (go "
         f"| end up | get to) [to]",
         heard="",
@@ -90,8 +95,10 @@ ABOUT_THE_WORLD: tuple[Wording, ...] = (
         "<thing> [left | anywhere | somewhere]",
         heard="",
     ),
-    Wording("is_at", f"{ASK} (is | are) <thing> [still] [{LYING}] (in | on | at) <spot> [still]", heard=""),
-    Wording("number", f"how many [of] <thing> [{BE} | do you (see | know) | can you see | do we have | have we "
+    Wording("is_at", f"{ASK} [if | whether] (is | are) <thing> [still] [{LYING}] (in | on | at) "
+                     f"<spot> [still]", heard=""),
+    Wording("number", f"how many [of] <thing> [{BE} | do you (see | know) | can you see | have you "
+                      f"seen | did you see | do we have | have we "
                       f"got | there are]"
         f" [there | {LYING} | left] (on | in | at) <spot>", heard=""),
     Wording(
@@ -135,6 +142,12 @@ ABOUT_ITSELF: tuple[Wording, ...] = (
         "doing",
         "what (are you | you are) (doing | up to | working on | busy with) [there | here | right now | now |"
         " at the moment | currently] | what is going on | how is it going | how are you (doing | getting on)"
+        " | how (much longer | long) (will (you | it | that) (be | take | need) | (does | is) it "
+        "(take | going to take)"
+        " | do you need | until you are done) [still]"
+        " | (what | which <words>) are you (getting | bringing | fetching | looking for | searching "
+        "for | taking | after)"
+        " | where are you (going | headed | off to) | what are you (going to do | about to do) [next | now]"
         " | how far (are you | have you (got | come)) | are you (done | busy | finished | ready) [yet]"
         " | what is (happening | your [current | present] (task | job | mission | status)) | what is taking "
         "[you] so long | "
@@ -175,7 +188,8 @@ ABOUT_ITSELF: tuple[Wording, ...] = (
     ),
     Wording(
         "abilities",
-        "what (can | could) you do [for (me | us)] | what are you (able to do | capable of | good (at | for))"
+        "what [else | jobs | things | tasks | work | stuff] (can | could) you (do | manage | handle) "
+        "[for (me | us) | here] | what are you (able to do | capable of | good (at | for))"
         " | how can you help [me | us] | what (do you know how to do | can i (ask [you] [for | to do] | "
         "say [to you]))"
         " | help [me] | what are your (skills | abilities | capabilities)",
@@ -188,7 +202,8 @@ ABOUT_ITSELF: tuple[Wording, ...] = (
         " | are you (real | alive | human)", heard="who are you"),
     Wording(
         "rooms",
-        "(which | what) (rooms | places) (are there | do you know | can you go to | are in <words>)"
+        "[tell me] (which | what) (rooms | places) ([do] you know | are there | do you know | can "
+        "you go to | are in <words>)"
         " | where can you go [to] | how many rooms (are there | do you know)",
         heard="",
     ),

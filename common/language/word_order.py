@@ -25,14 +25,16 @@ _REQUEST_END = re.compile(
     r" to| i need you to)+$"
 )
 _MOVED = re.compile(
-    rf"^{NP} (?:{MODAL} (?:go|get|stand|be|come|lie|sit)|goes|go|belongs?|gets?|stands?|moves?)(?: back| over| "
+    rf"^{NP} (?:{MODAL} (?:go|get|stand|be|come|lie|sit)(?: standing| lying| sitting| kept| "
+    rf"moved)?|goes|go|belongs?|gets?|stands?|moves?)(?: back| over| "
     rf"straight| right)*"
     rf" ({TO_PLACE}) {NP}$"
 )
 
 
 _QUESTION = re.compile(
-    r"^(?:what(?! (?:i|we|you)\b)|where|who|whose|which|why|when|how|is|are|was|were|does|did|has|do (?:you|i|we|they)|"
+    r"^(?:what(?! (?:i|we|you)\b)|where|who|whose|which|why|when|how|is|are|was|were|does|did|has|do "
+    r"(?:you|i|we|they)|"
     r"have (?:you|i|we|they))\b"
 )
 
@@ -62,6 +64,10 @@ _WITHIN = (
     (re.compile(r"\bwhichever (\w+) is (?:the )?(closest|nearest|biggest|smallest|tallest|shortest)"), r"the \2 \1"),
     (re.compile(r"\banother$"), "another one"),
     (re.compile(r"\b(?:the )?(?:others|rest)$"), "the other ones"),
+    (
+        re.compile(r"(?<=\w )(?:whatever|what)(?: is| lies| stands)?(?: lying| standing| sitting)? (?=between\b)"),
+        "the thing ",
+    ),
     (re.compile(r"\b(?:whatever|anything that|everything that|all that) (?:is|lies|stands) "), "everything "),
     (
         re.compile(

@@ -9,9 +9,9 @@ Action = Literal[
     "put_down", "deliver", "deliver_there", "fetch", "fetch_named", "pick_up", "find", "teach", "forget",
     "name_place", "rule", "rule_always", "forget_rule", "rules", "belongs", "usual", "last_seen",
     "look_around", "check", "go_and_see", "mention", "put_back", "put_where", "again", "thanks",
-    "recall", "wish_at", "named_at",
-    "exists", "is_at", "colour", "beside", "kinds", "extreme", "condition", "rooms",
-    "doing", "done", "why", "origin", "abilities", "identity",
+    "recall", "wish_at", "named_at", "put_held",
+    "exists", "is_at", "colour", "beside", "kinds", "extreme", "condition", "condition_not", "state", "state_not",
+    "rooms", "doing", "done", "why", "origin", "abilities", "identity",
 ]  # fmt: skip
 """What a wording asks for; `services/planner/rules.py` has a function for each that can be planned."""
 Kind = Literal["command", "reply", "name", "told"]

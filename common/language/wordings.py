@@ -6,6 +6,7 @@ commands from them. A new wording is one more row.
 
 from typing import Literal
 
+from common.language.condition_wordings import CONDITIONS
 from common.language.home_wordings import ASKED, TOLD
 from common.language.lexicon import BACK, BRING, FAMILY, GO, LOOK, ON, PICK, PUT, TIDY
 from common.language.moving import MOVING
@@ -24,8 +25,11 @@ WORDINGS: tuple[Wording, ...] = (
     Wording(
         "cancel",
         "[no] (cancel | abort | scrap) [that | this | it | the (mission | task | job | command | plan)]"
-        " | never mind | nevermind | forget [about] (it | that)"
-        " | i [have] changed my mind | do not bother",
+        " | never mind | nevermind | forget [about] (it | that) | leave it [be | then] | skip it | "
+        "drop that | call it off"
+        " | (i | we) [have] changed (my | our) mind | [actually] do not bother [any more | with (it | that)]"
+        " | [(it | that) is] (not needed | no longer needed | not necessary) [any more]"
+        " | (i | we) (no longer | do not) (need | want) (it | that) [any more]",
         heard="cancel [that] | never mind", kind="reply", reason="there is nothing to cancel",
     ),
     Wording(
@@ -34,7 +38,8 @@ WORDINGS: tuple[Wording, ...] = (
     ),
     Wording(
         "yes",
-        "(yes | yeah | yep | yup) [please | i did | it is | that is right | please do | do | do that | "
+        "(yes | yeah | yep | yup) [please | thanks | thank you | i did | it is | that is right | "
+        "please do | do | do that | "
         "exactly | go ahead] | [that is] (correct | right | true) | exactly | sure | okay | ok"
         " | go ahead | do it | do | affirmative | sure thing | of course | absolutely | definitely | indeed | "
         "certainly | fine"
@@ -51,14 +56,7 @@ WORDINGS: tuple[Wording, ...] = (
     ),
     Wording("refuse", "yes <words>", heard="", reason="I did not ask anything"),
     Wording("refuse", "(do not | never | not | did not) <words>", heard="", reason="you told me not to, so I leave it"),
-    Wording(
-        "condition",
-        "if there (is | are) [still | any] <thing> [left]"
-        " | if [you] (find | see | spot | notice | discover | come across | have | got) [any] <thing> [left | "
-        "there | anywhere]"
-        " | if <thing> (is | are) [still | lying | standing] (on | in | at) <spot>",
-        heard="",
-    ),
+    *CONDITIONS,
     Wording("refuse", "(if | when | unless) <words>", heard="", reason="I cannot wait for conditions"),
     Wording("refuse", "follow <words>", heard="follow me", reason="I cannot follow people"),
     Wording(
@@ -79,7 +77,8 @@ WORDINGS: tuple[Wording, ...] = (
         "[(remember | learn | look) [that | and]] (this | that) [<thing>] is [called] (my | our) <words>"
         " | [(remember | learn) [that | and]] (this | that) [<thing>] is (called | named) <words>"
         " | <thing> is (called | named) [my | our | the] <words> | (the | this | that) <thing> is (my | our) <words>"
-        " | (call | name) (this | that | it) [<thing>] [my | our | the] <words>"
+        " | (call | name) (this | that | it) [<thing>] [my | our | the] <words> | (call | name) (the "
+        "| my | our) <thing> <words>"
         " | (remember | learn) (this | that) [<thing>] as [my | our | the] <words>",
         heard="",
     ),
@@ -90,7 +89,8 @@ WORDINGS: tuple[Wording, ...] = (
         "again",
         "[do] (that | it | the same [thing] | same [thing]) [once] [again | more] [but] (with | for | to) <thing>"
         " | [do] (that | it | the same [thing] | same [thing]) [once] (again | more)"
-        " | [try | repeat] (that | it) (again | once more | one more time) | repeat (that | it) [with <thing>] | retry"
+        " | [try | repeat] (that | it) (again | once more | one more time) | repeat (that | it) "
+        "[with <thing>] | retry"
         " | (try | do it | go) (again | once more | one more time) | (once [more] | again | one more time) [with "
         "<thing>]"
         " | (look | check | search) (again | once more) | (have | take | give it) (another | one more) (go | try "
@@ -241,6 +241,7 @@ WORDINGS: tuple[Wording, ...] = (
         heard="", kind="told",
     ),
     # Names alone.
+    Wording("put_held", f"[back] ({ON} | at | to) <spot>", heard="", kind="name"),
     Wording("named_at", "<thing> (in | on | into | onto) <spot>", heard="", kind="name"),
     Wording("fetch", "[no] i (said | meant) <thing> | no (the | my | that | this | "
                      "all) <thing>", heard="no [i said] <thing>", kind="name"),

@@ -6,7 +6,8 @@ from services.planner.plan_builder import PlanBuilder, Refusal
 from services.planner.resolve import referents
 
 ABILITIES = (
-    "I can bring you things, find them, put them somewhere or where they belong, throw them away, tidy up a table or a"
+    "I can bring you things, find them, put them somewhere or where they belong, throw them away, "
+    "tidy up a table or a"
     " room, go somewhere, look around, wait, and say something. You can ask me what I have seen and where, what I am"
     " doing, what I did and why something failed. Say stop at any time."
 )
@@ -26,6 +27,9 @@ def doing(builder: PlanBuilder, slots: Slots) -> None:
 def done(builder: PlanBuilder, slots: Slots) -> None:
     """The last command and what came of it."""
     last = builder.world.history.last
+    if builder.world.history.doing and (last is None or "words" in slots):
+        doing(builder, slots)
+        return
     if last is None:
         builder.say("I have done nothing yet.")
         return

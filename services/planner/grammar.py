@@ -6,6 +6,7 @@ from contextlib import suppress
 from common.language.breaks import is_statement
 from common.language.contractions import expand
 from common.language.discourse import commands
+from common.language.exchange import noun_phrases, replaced
 from common.language.lexicon import COMMANDING
 from common.language.meaning import WORDS
 from common.language.normalise import DETERMINERS, Words, normalise
@@ -16,6 +17,7 @@ from services.planner.clause import read_clause
 from services.planner.config import PlannerConfig
 from services.planner.named import note
 from services.planner.nearest import nearest
+from services.planner.phrases import Phrase, read
 from services.planner.plan_builder import NOT_UNDERSTOOD, LookFirst, PlanBuilder, Refusal, same
 from services.planner.repetition import repeated
 from services.planner.spelling import corrected
@@ -164,6 +166,17 @@ class _Attempts:
         return steps
 
 
+def _completed(words: Words, said: Words, builder: PlanBuilder) -> Words:
+    """`the green one` after `put the white can in the bin` is to be put there, too."""
+    phrase = read(words, builder.vocabulary)
+    spans = noun_phrases(list(said))
+    if not isinstance(phrase, Phrase) or phrase.sense.new or not spans or spans[0][1] >= len(said):
+        return words
+    if not any(builder.vocabulary.spot(said[at:]) for at in range(spans[0][1], len(said))):
+        return words
+    return tuple((replaced(" ".join(said), " ".join(words)) or " ".join(words)).split())
+
+
 def _steps(command: str, builder: PlanBuilder) -> list[PlanStep]:
     def is_place(words: Words) -> bool:
         return bool(builder.vocabulary.spot(words))
@@ -178,6 +191,7 @@ def _steps(command: str, builder: PlanBuilder) -> list[PlanStep]:
         raise Refusal("that is too long a sentence for me")
     names = len(sentences) > 1 and all(s.split()[0] in DETERMINERS for s in sentences)
     verb = "bring" if names else ""
+    said: Words = ()
     for number, sentence in enumerate(sentences):
         words = tuple(sentence.split())
         following = sentences[number + 1].split() if number + 1 < len(sentences) else []
@@ -190,13 +204,14 @@ def _steps(command: str, builder: PlanBuilder) -> list[PlanStep]:
             builder.unmet, words = "", words[1:]
         if builder.unmet or not words:
             continue
+        words = _completed(words, said, builder)
         try:
             read_clause(words, builder, alone=len(sentences) == 1, verb=verb)
         except Refusal:
             if number + 1 == len(sentences) or not is_statement(sentence):
                 raise
             note(words, builder)
-        verb = words[0] if words[0] in COMMANDING else "bring"
+        verb, said = words[0] if words[0] in COMMANDING else "bring", words
     if builder.unmet:
         builder.say(builder.unmet)
     if builder.collecting:

@@ -10,9 +10,10 @@ from common.tidy_rule import ONES, rule_about
 from common.whereabouts import ago, decayed, kind_of_phrase, of_thing
 from common.words import Destination
 from services.planner.answers import where
+from services.planner.fits import fitting
 from services.planner.phrases import Phrase, read
+from services.planner.places import spot
 from services.planner.plan_builder import PlanBuilder, Refusal
-from services.planner.resolve import fitting, spot
 
 CLEARLY = 0.6
 """Share of the visits from which a thing is usually at one place (chosen)."""

@@ -1,5 +1,6 @@
 """The known things and places that any words name, whether or not the words are understood. Pure."""
 
+import re
 from contextlib import suppress
 
 from common.language.normalise import DETERMINERS, Words
@@ -12,6 +13,13 @@ MOST_WORDS = 6
 """Words of the longest phrase for a thing or a place (chosen)."""
 
 
+_PLACED = re.compile(
+    r"\b((?:the|my|a|our) (?:\w+ ){1,3}?)(?:is|are|was|were|lies|stands)(?: still| lying| standing)* "
+    r"(?:on|in|at) (.+)$"
+)
+"""A thing, and where it is said to be."""
+
+
 def note(words: Words, builder: PlanBuilder) -> None:
     """What is told before a request: the thing and the place that it names last are what "it" and "there" mean."""
     for at in (
@@ -22,6 +30,10 @@ def note(words: Words, builder: PlanBuilder) -> None:
             with suppress(Refusal):
                 builder.last = [m.object for m in referents(builder, words[at:])]
                 return
+    if placed := _PLACED.search(" ".join(words)):  # "my mug is on the desk"
+        with suppress(Refusal):
+            builder.last = [m.object for m in referents(builder, (*placed[1].split(), "on", *placed[2].split()))]
+            return
     things, spots = named(words, builder.vocabulary)
     if things:
         with suppress(Refusal):

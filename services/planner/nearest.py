@@ -15,7 +15,8 @@ _NO_REQUEST = re.compile(
     r"\b(?:not|never|no|nobody|none|without|instead|if|unless|would|said|says|told|asked|yesterday|tomorrow|"
     r"already|ever|did|"
     r"had|was|were|went|last|always|used|why|how|who|when|myself|himself|herself|story|suppose|imagine|like)\b"
-    r"|^(?:he|she|they|it|what|where|which|is|are|do|does|has|have|i (?:am|have|will|should|could|might|must)|we are)\b"
+    r"|^(?:he|she|they|it|what|where|which|is|are|do|does|has|have|i "
+    r"(?:am|have|will|should|could|might|must)|we are)\b"
 )
 _TO = frozenset({"to", "into", "onto", "towards"})
 _FORMS: tuple[tuple[str, str, bool], ...] = (
@@ -30,10 +31,19 @@ _FORMS: tuple[tuple[str, str, bool], ...] = (
 """Verbs, the command that they come to if what it needs is named, and whether the place has to follow a "to"."""
 
 
+_ON_A_SIDE = re.compile(
+    rf"^((?:{'|'.join(option.split()[0] for option in PUT.split(' | '))}) .+) "
+    r"(?:in front of|behind|(?:on |to )?(?:the )?(?:left|right)(?: side)? of) (.+)$"
+)
+"""Where to put something, more exactly than the robot can."""
+
+
 def nearest(words: Words, vocabulary: Vocabulary) -> str:
     """A command to ask about, "" when nothing suggests one."""
     if _NO_REQUEST.search(" ".join(words)):
         return ""
+    if beside := _ON_A_SIDE.match(" ".join(words)):
+        return f"{beside[1]} next to {beside[2]}"
     things, spots = named(words, vocabulary)
     if len(things) > 1 or len(spots) > 1 or not (things or spots):
         return ""

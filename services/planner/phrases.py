@@ -68,6 +68,18 @@ def _where(left_out: Words, rest: Words) -> Words:
 
 
 def _read(words: Words, vocabulary: Vocabulary) -> Phrase | str:
+    if (whole := _unrelated(words, vocabulary)) is not None:
+        return whole
+    for head, relation, anchor in related(words):
+        if relation == "on" and anchor[:1] == ("the",) and anchor[1:2] in (("left",), ("right",)):
+            continue  # "the second mug from the left on the desk"
+        if phrase := _unrelated(head, vocabulary):
+            return msgspec.structs.replace(phrase, relation=relation, anchor=anchor, text=" ".join(words))
+    return _noun_of(words)
+
+
+def _unrelated(words: Words, vocabulary: Vocabulary) -> Phrase | None:
+    """A phrase without a relation to something else: `the second mug from the left`, `the mug that is red`."""
     if (whole := _head(words, vocabulary)) is not None:
         return whole
     for at in range(1, len(words)):
@@ -75,12 +87,7 @@ def _read(words: Words, vocabulary: Vocabulary) -> Phrase | str:
         if side and (phrase := _head(words[:at], vocabulary)):
             which = phrase.which if phrase.which in ("first", "second", "third", "last") else side
             return msgspec.structs.replace(phrase, which=which, side=side, text=" ".join(words))
-    if phrase := _with_colours(words, vocabulary):
-        return phrase
-    for head, relation, anchor in related(words):
-        if phrase := _head(head, vocabulary) or _with_colours(head, vocabulary):
-            return msgspec.structs.replace(phrase, relation=relation, anchor=anchor, text=" ".join(words))
-    return _noun_of(words)
+    return _with_colours(words, vocabulary)
 
 
 def _with_colours(words: Words, vocabulary: Vocabulary) -> Phrase | None:

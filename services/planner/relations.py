@@ -35,6 +35,10 @@ def superlative(builder: PlanBuilder, phrase: Phrase, seen: Sequence[BelievedObj
     placed = sorted(with_place, key=lambda t: sign * _bearing(builder, t, with_place))
     if not placed:
         raise Refusal(f"I have not seen which {phrase.noun} that is")
+    if phrase.which == "middle":
+        if len(placed) % 2 == 0:
+            raise Refusal(f"there is none in the middle of {enumeration([f'the {t.label}' for t in placed])}")
+        return placed[len(placed) // 2]
     index = {"left": 0, "first": 0, "second": 1, "third": 2, "right": 0, "last": -1}[phrase.which]
     if index >= len(placed):
         raise Refusal(f"I see only {len(placed)} of them")
@@ -72,6 +76,17 @@ def is_near(builder: PlanBuilder, item: BelievedObject, place: Spot) -> bool:
 def between(a: BelievedObject, b: BelievedObject) -> float:
     assert a.position is not None and b.position is not None
     return math.dist(a.position, b.position)
+
+
+def is_between(item: BelievedObject, one: BelievedObject, other: BelievedObject) -> bool:
+    """On the way from one thing to the other, on the surface of one of them, and not far beside it."""
+    if item.position is None or item.on not in (one.on, other.on):
+        return False
+    assert one.position is not None and other.position is not None
+    way = complex(other.position[0] - one.position[0], other.position[1] - one.position[1])
+    to = complex(item.position[0] - one.position[0], item.position[1] - one.position[1])
+    along = to * way.conjugate() / max(abs(way), 1e-9) ** 2
+    return 0.0 < along.real < 1.0 and abs(along.imag) * abs(way) < BESIDE / 2
 
 
 def away(builder: PlanBuilder, place: Spot) -> float:

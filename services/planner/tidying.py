@@ -7,9 +7,11 @@ from common.language.normalise import without_determiners
 from common.language.noun_phrase import related
 from common.language.pattern import Slots
 from common.words import Destination
-from services.planner.actions import take
+from services.planner.hand import take
+from services.planner.places import spot
 from services.planner.plan_builder import PlanBuilder, Refusal
-from services.planner.resolve import Referent, referents, spot
+from services.planner.pronouns import Referent
+from services.planner.resolve import referents
 from services.planner.vocabulary import Spot
 
 

@@ -16,21 +16,25 @@ from services.planner.world import World
 
 ANY = frozenset({"thing", "object", "item", "stuff", "mess", "one"})
 WHOLE = frozenset({"everything", "anything", "something", "all", "mess"})
+_MASSES = frozenset({"stuff", "mess"})
 SHORTEST_NAME = 3
 """Letters of the longest word of a name (chosen: shorter is a word misheard)."""
 LONGEST_NAME = 4
 """Words of the longest name of a thing (chosen: more are a sentence that was not understood)."""
 _SMALL = (
-    "all and anything are as at away back be been before behind below both but by can could did do does down each every"
+    "all and anything are as at away back be been before behind below both but by can could did do "
+    "does down each every"
     " everything everywhere for from front had has have he her here him how i if in instead into is it left me more"
-    " near next no nobody none not nothing of off on once onto or other our out over right she should so some somebody"
+    " near next no nobody none not nothing of off on once onto or other our out over right she "
+    "should so some somebody"
     " something somewhere still than then there they to too under until up us was we were what when where whether"
     " which while who why will with without would yes you yourself again ago bit bring fetch get give go going help"
     " like make put take tell thanks please want need try yet now just only also else later soon tomorrow yesterday"
     " today tonight others goes belongs gets lying standing closest might should must ought said says told asked teh"
 )
 _ABSTRACT = (
-    "break care lost rest hand kiss hug call lift ride chance look smile clue sign idea reason answer example name joke"
+    "break care lost rest hand kiss hug call lift ride chance look smile clue sign idea reason "
+    "answer example name joke"
     " story attention horses time effort shot turn word note favour favor permission advice truth silence peace easy"
 )
 """Words that are no things: `give me a break` is nothing to be fetched."""
@@ -148,7 +152,7 @@ class Vocabulary:
             return Sense(every=True), "thing", phrase in ("everything", "all", "mess", "all of it", "it all")
         for form, plural in _singulars(phrase):
             if form in ANY:
-                return Sense(every=True), form, plural
+                return Sense(every=True), form, plural or form in _MASSES
             if sense := self._nouns.get(form):
                 return sense, form, plural or form in self._mass
         if phrase.startswith("anything ") and (sense := self._nouns.get(phrase.replace("any", "some", 1))):

@@ -38,8 +38,9 @@ def test_what_asks_for_nothing_sets_nothing_in_motion() -> None:
 
 
 @pytest.mark.slow
-def test_lists_of_many_speakers() -> None:
-    rows = sentences("seven_lists.tsv")
+@pytest.mark.parametrize("name", ["seven_lists.tsv", "development_sentences.tsv"])
+def test_lists_of_many_speakers(name: str) -> None:
+    rows = sentences(name)
     verdicts = {row: verdict(row, understand(row)) for row in rows}
     wrong = [row for row, v in verdicts.items() if v == "wrong"]
     assert len(wrong) <= 0.01 * len(rows), wrong

@@ -15,6 +15,7 @@ from common.language.meaning import asks_for
 from common.language.normalise import DETERMINERS, Words, infinitive, normalise, without_determiners
 from common.language.noun_phrase import WHICH, Which, related
 from common.language.politeness import without_politeness
+from common.language.simplify import simplified
 from common.messages import WorldObject
 from common.plan_rules import is_destination
 
@@ -43,6 +44,7 @@ _NO_NAME = frozenset(
     }
 )
 _CARDINALS = ("one", "two", "three", "four")
+_MISHEARD = re.compile(r"^no,? (?:not )?(?:the )?\w+(?: \w+)? (?=i (?:said|meant)\s)")
 _SAID = re.compile(r"\s+i (?:said|meant)$")
 
 
@@ -60,6 +62,7 @@ def reply(text: str) -> tuple[Reply, str]:
             return "no", ""
         case "cancel":
             return "cancel", ""
+    rest = _MISHEARD.sub("", rest)
     while (shorter := _CORRECTION.sub("", rest)) != rest:
         rest = shorter
     return "correction", without_politeness(_SAID.sub("", rest)) or rest
@@ -99,7 +102,7 @@ def chosen(
     answer: str, options: Sequence[str], known: Sequence[WorldObject] = (), household: Household | None = None
 ) -> str | None:
     """The one option that the answer's words single out, by name, number, side of "not", or where it stands."""
-    bare = reply(answer)[1]
+    bare = " ".join(simplified(tuple(reply(answer)[1].split())))
     words = set(without_determiners(tuple(bare.split()))) - _NO_NAME
     for n, ordinal in enumerate(("first", "second", "third", "fourth")):
         if words in (

@@ -44,6 +44,14 @@ _INSTEAD_OF = re.compile(
 """`instead of the red mug bring the blue one`."""
 
 
+_ONE_MOMENT = re.compile(
+    r"^(?:(?:hold on|hang on|wait|stop)(?: (?:a|one|just a|for a))?|one|just a) "
+    r"(?:second|sec|moment|minute|bit|tick)$"
+)
+_NO_LONGER = re.compile(r"^(?:i|we) (?:do not|no longer) (?:need|want) [^,]+?(?: (?:any ?more|after all|now))?$")
+"""What was asked for is not wanted; there is nothing in its place."""
+
+
 class Interjection(msgspec.Struct, frozen=True):
     """`text`: the command or question without the words that say when."""
 
@@ -56,10 +64,16 @@ def interjection(said: str) -> Interjection:
     if control := asks_for(said, "stop", "cancel", "come_back"):
         return Interjection(control, said)  # type: ignore[arg-type]
     words = without_fillers(expand(normalise(said, ",")))
+    if _ONE_MOMENT.match(words):
+        return Interjection("stop", said)
     if contrast := _INSTEAD_OF.match(words):
         return Interjection("replace", filled(contrast["right"], contrast["wrong"]))
     if unwanted := NOT_WANTED.match(words):
         return Interjection("replace", words[unwanted.end() :])
+    if _NO_LONGER.match(words):
+        return Interjection("cancel", said)
+    if words.startswith("not "):
+        return Interjection("replace", said)
     for kind, begin, end in (("replace", _INSTEAD, _INSTEAD_END), ("queue", _LATER, _LATER_END)):
         rest = words
         while (shorter := begin.sub("", rest)) != rest:

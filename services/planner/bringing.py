@@ -1,22 +1,24 @@
-"""What each action of the wordings does to the plan under construction. Pure."""
+"""Bringing and putting things. Pure."""
 
 from common.floor_plan import Receptacle
 from common.language.normalise import DETERMINERS, enumeration
-from common.language.noun_phrase import PLURAL_PRONOUNS, PRONOUNS
+from common.language.noun_phrase import PRONOUNS
 from common.language.pattern import Slots
-from common.language.quantities import LONGEST, duration
 from common.messages import PlanStep
+from services.planner.fits import fitting
+from services.planner.hand import take
 from services.planner.phrases import Phrase, read
-from services.planner.plan_builder import NOT_UNDERSTOOD, PlanBuilder, Refusal
+from services.planner.places import spot
+from services.planner.plan_builder import PlanBuilder, Refusal
+from services.planner.pronouns import Referent, handled_before
 from services.planner.relations import BESIDE, between
-from services.planner.resolve import Referent, fitting, handled_before, referent, referents, spot
-from services.planner.vocabulary import LIVING, Spot
+from services.planner.resolve import referent, referents
+from services.planner.vocabulary import Spot
 from services.planner.world import BelievedObject
 
 RELEASED = PlanStep(action="release")
 
 
-# --- moving things
 def fetch_named(builder: PlanBuilder, slots: Slots) -> None:
     """A thing's name alone; other words are no command."""
     if isinstance(phrase := read(slots["thing"], builder.vocabulary), Phrase) and phrase.sense.new:
@@ -61,6 +63,13 @@ def put(builder: PlanBuilder, slots: Slots) -> None:
     for meant in everything:
         _put(builder, meant, where)
     builder.last = [m.object for m in everything]
+
+
+def put_held(builder: PlanBuilder, slots: Slots) -> None:
+    """`on the counter` to a robot that holds something."""
+    if builder.world.held is None:
+        raise Refusal("there is nothing in my hand")
+    deliver(builder, {"thing": ("it",), **slots})
 
 
 def put_near(builder: PlanBuilder, slots: Slots) -> None:
@@ -111,135 +120,6 @@ def named_at(builder: PlanBuilder, slots: Slots) -> None:
         fetch_named(builder, {"thing": (*slots["thing"], "on", *slots["spot"])})
         return
     wish_at(builder, slots)
-
-
-def pick_up(builder: PlanBuilder, slots: Slots) -> None:
-    everything = referents(builder, slots["thing"], prefer_held=True)
-    meant = everything[0]
-    if len(everything) > 1:
-        builder.collect([m.object for m in everything])
-        return
-    if meant.object.held:
-        builder.say(f"I am holding the {meant.object.label} already.")
-        builder.last = [meant.object]
-        return
-    if builder.world.held and any(s.action == "grasp" for s in builder.steps):
-        raise Refusal("I can hold only one thing at a time")
-    take(builder, meant)
-
-
-def put_down(builder: PlanBuilder, slots: Slots) -> None:
-    if "thing" not in slots or " ".join(slots["thing"]) in PRONOUNS | PLURAL_PRONOUNS:
-        builder.release()
-        return
-    meant = referent(builder, slots["thing"], prefer_held=True)
-    if not meant.object.held:
-        raise Refusal(f"I am not holding the {meant.object.label}")
-    builder.release()
-
-
-def open_hand(builder: PlanBuilder, slots: Slots) -> None:
-    if builder.world.held is None:
-        builder.hand_alone("release")
-    else:
-        builder.release()
-
-
-def close_hand(builder: PlanBuilder, slots: Slots) -> None:
-    if (held := builder.world.held) is None:
-        builder.hand_alone("grasp")
-    else:
-        builder.say(f"I am holding the {held.label}.")
-
-
-# --- moving itself
-def go(builder: PlanBuilder, slots: Slots) -> None:
-    """To a place, or up to a thing."""
-    try:
-        place = spot(builder, slots["spot"])
-    except Refusal:
-        phrase = read(slots["spot"], builder.vocabulary)
-        if not isinstance(phrase, Phrase) or phrase.sense.new:
-            raise
-        meant = referent(builder, slots["spot"])
-        builder.approach(meant.object)
-        return
-    builder.go(place)
-
-
-def come_back(builder: PlanBuilder, slots: Slots) -> None:
-    builder.go(Spot(builder.world.household.home.name, home=True))
-
-
-def wait(builder: PlanBuilder, slots: Slots) -> None:
-    """For as long as was said, else for a moment."""
-    seconds = duration(slots["words"]) if "words" in slots else 0.0
-    if seconds is None:
-        raise Refusal(f"I do not understand how long {' '.join(slots['words'])!r} is")
-    if seconds > LONGEST:
-        raise Refusal(f"I wait {LONGEST / 60:.0f} minutes at most")
-    builder.wait(seconds)
-
-
-def wait_there(builder: PlanBuilder, slots: Slots) -> None:
-    """Wait at a place."""
-    go(builder, slots)
-    builder.wait()
-
-
-def find(builder: PlanBuilder, slots: Slots) -> None:
-    everything = referents(builder, slots["thing"])
-    for meant in everything:
-        if meant.at is not None:
-            builder.go(meant.at)
-        builder.find(meant.object, meant.words)
-    builder.last = [m.object for m in everything]
-
-
-def say(builder: PlanBuilder, slots: Slots) -> None:
-    text = " ".join(slots["words"])
-    builder.say(f"{text[0].upper()}{text[1:]}.")
-
-
-# --- what is said beside a command
-def remark(builder: PlanBuilder, slots: Slots) -> None:
-    """A reason for what is asked next, such as "I'm thirsty"; a need that is known is met if nothing else is asked."""
-    words = slots.get("words", ())
-    if "and" in words:
-        raise Refusal("I do not understand that")
-    needs = builder.world.household.words.needs
-    builder.need = next((n for w, n in needs.items() if w in words), builder.need)
-
-
-def mention(builder: PlanBuilder, slots: Slots) -> None:
-    """A thing that is spoken of next as "it"; where it is said to be is where it is looked for."""
-    if "and" in slots.get("words", ()):
-        raise Refusal(f"{NOT_UNDERSTOOD} that")
-    words = (*slots["thing"], "on", *slots["spot"]) if "spot" in slots else slots["thing"]
-    try:
-        builder.last = [m.object for m in referents(builder, words)]
-    except Refusal:
-        builder.last = [m.object for m in referents(builder, slots["thing"])]
-
-
-def untidy(builder: PlanBuilder, slots: Slots) -> None:
-    """The place that is spoken of next as "it"."""
-    builder.spot = spot(builder, slots["spot"])
-
-
-def again(builder: PlanBuilder, slots: Slots) -> None:
-    """What was done before is worked out from its words, before any clause is read."""
-    raise Refusal("I have done nothing yet that I could do again")
-
-
-# --- parts of the above
-def take(builder: PlanBuilder, meant: Referent) -> None:
-    """Look for it where it is said to be, and grasp it."""
-    if meant.object.label.split()[-1] in LIVING:
-        raise Refusal("I pick up neither people nor animals")
-    if meant.at is not None and not meant.object.seen:
-        builder.go(meant.at)
-    builder.take(meant.object, meant.words)
 
 
 def _put(builder: PlanBuilder, meant: Referent, where: Receptacle, near: BelievedObject | None = None) -> None:

@@ -1,0 +1,45 @@
+"""When something is to be done: `in a minute go there` as waiting and going, in the order of time. Pure."""
+
+import re
+
+from common.language.exchange import verb_first
+from common.language.politeness import without_politeness
+from common.language.quantities import NUMBERS, UNITS
+
+_NUMBER = rf"(?:a|an|and|of|about|around|another|just|maybe|\d+|{'|'.join(NUMBERS)})"
+DURATION = rf"(?:{_NUMBER} )+(?:{'|'.join(UNITS)})s?(?: and a half)?"
+"""Words of a length of time, as `quantities.duration` reads them."""
+_APPROXIMATELY = re.compile(r"\b(?:about|around|another|just|maybe) ")
+_FIRST = re.compile(
+    rf"^(?:in|after|wait(?: for)?|give (?:it|me)) (?P<time>{DURATION})(?: from now| time)?,? (?:and "
+    rf"|then )*(?P<rest>.+)$"
+)
+_LAST = re.compile(rf"^(?P<rest>.+?),? (?:in|after) (?P<time>{DURATION})(?: from now| time)?$")
+_STAY = re.compile(
+    rf"^(?:(?:go|drive|walk|move|run|head|come) (?P<to>.+?) and )?(?:stay|remain|wait|stand|stop|hang "
+    rf"around|rest|park|be)"
+    rf"(?: (?:there|here))?(?P<place>(?: over)? (?:in|at|by|near|next to|beside) .+?)? for "
+    rf"(?P<time>{DURATION})(?P<rest>(?: and| then|,).+)?$"
+)  # fmt: skip
+"""Going somewhere to stay there for a while."""
+
+
+def in_time(text: str) -> str:
+    """A text with a time in it as its commands in order, with a full stop between them."""
+    bare = without_politeness(text)
+    if (found := _STAY.match(bare)) and (found["place"] or found["to"]):
+        going = f"go {found['to']}" if found["to"] else f"go to{_place(found['place'])}"
+        rest = re.sub(r"^(?:,| and| then)+ ?", "", found["rest"] or "")
+        return " . ".join(filter(None, (going, f"wait {_plain(found['time'])}", rest)))
+    for pattern in (_FIRST, _LAST):
+        if (found := pattern.match(bare)) and verb_first(without_politeness(found["rest"])):
+            return f"wait {_plain(found['time'])} . {found['rest']}"
+    return text
+
+
+def _plain(time: str) -> str:
+    return _APPROXIMATELY.sub("", time)
+
+
+def _place(words: str) -> str:
+    return re.sub(r"^(?: over)? (?:in|at|by|near|next to|beside)\b", "", words)
