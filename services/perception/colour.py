@@ -50,7 +50,8 @@ def difference(a: Sequence[float] | Array, b: Sequence[float] | Array) -> float:
 def light(rgb: NDArray[np.uint8]) -> Array:
     """Gains (3,) that make the neutral surfaces of a picture (h, w, 3) grey: what the light and the camera tint."""
     values = rgb[::SAMPLE, ::SAMPLE].reshape(-1, 3).astype(np.float64) / 255
-    high, low = values.max(axis=1), values.min(axis=1)
+    red, green, blue = values.T
+    high, low = np.maximum(np.maximum(red, green), blue), np.minimum(np.minimum(red, green), blue)
     neutral = values[(high > 0.25) & (high < 0.98) & (high - low < NEUTRAL * high)]
     if len(neutral) < FEW_NEUTRAL * len(values):
         return np.ones(3)

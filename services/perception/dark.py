@@ -68,7 +68,9 @@ class Blobs:
 
 def blobs(view: View) -> Blobs | None:
     """The dark blobs of a view; None where depth is lost nowhere for want of light."""
-    dark = view.rgb.max(axis=2) < DARK
+    red, green, blue = (view.rgb[..., channel] for channel in range(3))
+    # The largest along an axis of three takes ten times as long.
+    dark = (red < DARK) & (green < DARK) & (blue < DARK)
     blind = dark & (view.depth <= 0)
     if np.count_nonzero(blind) < LEAST_BLIND:
         return None

@@ -66,17 +66,17 @@ class ClassicalDetector:
         self._household, self._max_range = household, max_range
 
     def detect(self, view: View, robot: Mask | None = None) -> list[Detection]:
-        gains = colour.light(view.rgb)
         segments = segmentation.segments(view, self._household, self._max_range, robot)
         found: list[Detection] = []
         for segment in segments:
             single = segmentation.extent(segment) < segmentation.MAX_EXTENT
             known = self._explain(view, segment) if single else None
-            found += [known] if known is not None else self._measured(view, segment, gains)
+            found += [known] if known is not None else self._measured(view, segment)
         return found
 
-    def _measured(self, view: View, segment: Segment, gains: Array) -> list[Detection]:
+    def _measured(self, view: View, segment: Segment) -> list[Detection]:
         """The objects of a segment that no object of the household explains as a whole."""
+        gains = view.gains
         found = separate.pieces(view, segment)
         if len(found) == 1 and found[0].segment is segment:
             return [unlisted.describe(view, segment, found[0].shape, gains)]

@@ -85,9 +85,8 @@ def segments(view: View, floor_plan: FloorPlan, max_range: float, robot: Mask | 
 def _over(view: View, usable: Mask, outline: Rectangle, height: float) -> Cloud:
     """The usable pixels over a surface of that outline and height."""
     low, high = height - PLANE_SEARCH, height + MAX_HEIGHT
-    window = view.window(corners(outline, low, high))
-    x, y, _ = np.moveaxis(view.points[window], -1, 0)
-    return _between(view, usable[window] & inside(x, y, outline), low, high, window)
+    cloud = _between(view, usable, low, high, view.window(corners(outline, low, high)))
+    return cloud.kept(inside(cloud.x, cloud.y, outline))
 
 
 def _above_floor(view: View, usable: Mask) -> Cloud:
@@ -110,11 +109,16 @@ def _above_floor(view: View, usable: Mask) -> Cloud:
 
 
 def _between(view: View, usable: Mask, low: float, high: float, window: Window) -> Cloud:
-    """The usable pixels of a window whose points are between two heights."""
-    x, y, z = np.moveaxis(view.points[window], -1, 0)
-    rows, columns = np.nonzero(usable & (z > low) & (z < high))
-    pixels = (rows + window[0].start) * view.shape[1] + columns + window[1].start
-    return Cloud(pixels, x[rows, columns], y[rows, columns], z[rows, columns])
+    """The usable (h, w) pixels of a window whose points are between two heights."""
+    z = view.points[window][..., 2]
+    chosen = usable[window] & (z > low)
+    chosen &= z < high
+    found = np.flatnonzero(chosen)
+    if window != view.everywhere:
+        rows, columns = np.divmod(found, chosen.shape[1] or 1)
+        found = (rows + window[0].start) * view.shape[1] + columns + window[1].start
+    x, y, z = (plane.ravel()[found] for plane in np.moveaxis(view.points, -1, 0))
+    return Cloud(found, x, y, z)
 
 
 def _on(view: View, expected: Surface, cloud: Cloud, near: Nearby, own: Mask, dark: Blobs | None) -> list[Segment]:

@@ -17,6 +17,8 @@ REACH = 1.1
 MARGIN = 0.025
 """Distance [m] from the robot's geoms up to which pixels are its own. Chosen: errors of depth and of joint angles in
 motion."""
+ROUNDING = 1e-4
+"""More than single precision is off [m] within REACH."""
 
 
 class RobotModel(RobotKinematics):
@@ -51,13 +53,14 @@ class RobotModel(RobotKinematics):
     def _touched(self, points: Array) -> Mask:
         """Which of the points (n, 3) in the base frame are within MARGIN of the body's geoms."""
         touched = np.zeros(len(points), bool)
-        centres, reaches = self.data.geom_xpos[self.solid], self.model.geom_rbound[self.solid] + MARGIN
-        apart = (points**2).sum(axis=1)[:, None] - 2 * points @ centres.T + (centres**2).sum(axis=1)
-        # A geom is near the points within its bounding sphere only; the last digits of `apart` are not to be trusted.
-        around = apart < (reaches + 1e-6) ** 2
-        for n, g in enumerate(self.solid):
-            few = np.flatnonzero(around[:, n])
-            touched[few] |= self.distance_to(points[few], g) < MARGIN
+        # A geom is near the points within its bounding sphere only, which single precision and its error tell.
+        x, y, z = np.ascontiguousarray(points.T, np.float32)
+        centres = self.data.geom_xpos[self.solid].astype(np.float32)
+        reaches = (self.model.geom_rbound[self.solid] + (MARGIN + ROUNDING)).astype(np.float32)
+        for g, (cx, cy, cz), reach in zip(self.solid, centres, reaches, strict=True):
+            few = np.flatnonzero((x - cx) ** 2 + (y - cy) ** 2 + (z - cz) ** 2 < reach * reach)
+            if len(few):
+                touched[few] |= self.distance_to(points[few], g) < MARGIN
         return touched
 
     def distance_to(self, points: Array, g: int) -> Array:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from common.geometry import Array, Pose2, quat_matrix
 from common.messages import Rgbd
+from services.perception import colour
 
 Mask = NDArray[np.bool_]
 # Rows and columns
@@ -55,6 +56,11 @@ class View:
             plane *= self.depth
             plane += start
         return np.moveaxis(planes, 0, -1)
+
+    @cached_property
+    def gains(self) -> Array:
+        """What makes the picture's neutral surfaces grey (3,)."""
+        return colour.light(self.rgb)
 
     def project(self, points: Array) -> Array:
         """Pixel u, v and depth (n, 3) of points (n, 3) in frame map; depth <= 0 is behind the camera."""
