@@ -71,6 +71,7 @@ class Process:
         )
         self.io.state_dir = state_dir
         self.io.outside = outside
+        self.io.robot = outside.namespace if outside is not None else ""
         self._health = opened.declare_publisher(topics.HEALTH.of(kind.NAME), encoding=codec.JSON)
         self._last_health = b""
         self._health_queryable = opened.declare_queryable(self._health.key_expr, self._answer_health)

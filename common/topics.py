@@ -25,8 +25,9 @@ class Topic(msgspec.Struct, Generic[M], frozen=True, kw_only=True):
     `latched`: the last value also answers a zenoh `get`. `bulk`: pictures and sound, which a recording keeps as they
     are instead of as JSON. `keep` "latest" means only the newest value matters (dropped under load), "all" means
     reliable, in order, recovered after an outage. `text` names the field that bare text fills. `command`: values from
-    before the reader's start are not acted on. `recover`: what a router outage swallowed is sent again. A `*` in the
-    key of a row of `PER_SERVICE` stands for a service's name.
+    before the reader's start are not acted on. `recover`: what a router outage swallowed is sent again. `abroad`:
+    services of the other robots on the router that read it (`Io.others`). A `*` in the key of a row of `PER_SERVICE`
+    stands for a service's name.
     """
 
     key: str
@@ -41,6 +42,7 @@ class Topic(msgspec.Struct, Generic[M], frozen=True, kw_only=True):
     text: str = ""
     command: bool = False
     recover: bool = True
+    abroad: tuple[str, ...] = ()
 
     def __hash__(self) -> int:
         return hash(self.key)
@@ -111,7 +113,7 @@ MANIPULATION_GOAL = _goal(
 MANIPULATION_STATUS = _event(
     "brain/manipulation_status", m.ManipulationStatus, by="manipulation", to="brain perception dashboard", text="status"
 )
-BRAIN_STATE = _event("brain/state", m.BrainState, by="brain", to="manipulation dashboard")
+BRAIN_STATE = _event("brain/state", m.BrainState, by="brain", to="navigation manipulation dashboard")
 BRAIN_TREE = _event("brain/tree", m.TreeSnapshot, by="brain", to="dashboard")
 
 SPEECH_STATUS = _event("speech/status", m.SpeechStatus, by="speech", to="brain dashboard")
@@ -174,6 +176,9 @@ POSE = _stream(
     latched=True,
 )
 NAV_PATH = _event("navigation/path", m.NavPath, by="navigation", to="dashboard")
+DRIVE_INTENT = _row(
+    "navigation/intent", m.DriveIntent, "navigation", "", rate=5.0, keep="latest", latched=True, abroad=("navigation",)
+)
 COSTMAP = _stream("navigation/costmap", m.Costmap, by="navigation", to="dashboard", rate=1.0)
 MAPPING_GOAL = _goal("mapping/goal", m.MappingGoal, by="*", to="mapping", text="goal", latched=False)
 MAPPING_STATUS = _event("mapping/status", m.MappingStatus, by="mapping")
@@ -198,7 +203,7 @@ ROBOT_DESCRIPTION = _event(
 
 SIM_STATE = _stream("sim/state", m.SimState, by="sim", to="camera", rate=20.0, latched=True)
 SIM_MODEL = _event("sim/model", m.SimModel, by="sim", to="camera dashboard")
-SIM_STATUS = _event("sim/status", m.SimStatus, by="sim", to="brain perception dashboard")
+SIM_STATUS = _event("sim/status", m.SimStatus, by="sim", to="brain perception navigation dashboard")
 SIM_CONTACTS = _row("sim/contacts", m.SimContacts, "sim", "", binary=True)
 """For evaluators alone, like `sim/truth`: no service reads it."""
 

@@ -9,8 +9,9 @@ from cli.errors import CliError
 from common import topics
 from common.security.zenoh_config import ROUTER_CONFIG, value_of
 
-RATES = {topics.POSE.key: 2.0, topics.JOINT_STATES.key: 5.0, topics.BATTERY.key: 0.2}
-"""Messages a second [Hz] of what a fleet's desk and people's tools look at; chosen: what the eye follows."""
+RATES = {topics.POSE.key: 2.0, topics.JOINT_STATES.key: 5.0, topics.BATTERY.key: 0.2, topics.DRIVE_INTENT.key: 5.0}
+"""Messages a second [Hz] of what a fleet's desk and people's tools look at; chosen: what the eye follows. By the last
+of them robots keep out of each other's way."""
 OTHERS = 1.0
 """The same of every other stream; chosen."""
 LINKS = ("tcp", "tls", "quic", "udp", "ws")

@@ -57,6 +57,7 @@ class IoBase:
 
     state_dir: Path | None = None
     outside: Outside | None = None
+    robot = ""
     _edits: m.HouseholdEdits | None = None
 
     def __init__(
@@ -89,6 +90,7 @@ class IoBase:
         self._writes = {t.key for t in writes}
         self._worker: ThreadPoolExecutor | None = None
         self._ids = 0
+        self._foreign: dict[tuple[str, str], tuple[bytes, Any]] = {}
         self._warned: dict[str, float] = {}
 
     @property
@@ -185,6 +187,26 @@ class IoBase:
 
     def _send_log(self, record: m.LogRecord) -> None:
         """Where log records go beside stderr."""
+
+    def others(self, topic: Topic[M]) -> dict[str, M]:
+        """The newest message of every other robot on the router, by its name."""
+        found: dict[str, M] = {}
+        for name, payload in self._abroad(topic).items():
+            known = self._foreign.get((topic.key, name))
+            if known is None or known[0] is not payload:
+                try:
+                    known = payload, codec.decode(topic, payload)
+                except codec.DecodeError as error:
+                    known = payload, None
+                    self.count_drop(f"{name}/{topic.key}", str(error))
+                self._foreign[topic.key, name] = known
+            if known[1] is not None:
+                found[name] = known[1]
+        return found
+
+    def _abroad(self, topic: Topic[Any]) -> dict[str, bytes]:
+        """The newest payload of every other robot, by its name."""
+        raise NotImplementedError
 
     def serve(self, key: str, handler: Handler) -> None:
         raise NotImplementedError

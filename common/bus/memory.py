@@ -22,6 +22,8 @@ class MemoryBus:
     def __init__(self) -> None:
         self.ios: dict[str, MemoryIo] = {}
         self.last: dict[str, bytes] = {}
+        self.neighbours: dict[str, MemoryBus] = {}
+        """The other robots' by name, where there are several."""
         self.handlers: dict[str, Handler] = {}
         self._readers: dict[str, list[Mailbox[Any]]] = {}
         self._taps: dict[str, list[list[bytes]]] = {}
@@ -107,6 +109,9 @@ class MemoryIo(IoBase):
         else:
             stamp = self.tick if self.out_stamp is None else self.out_stamp
         self.bus.put(topic, payload, stamp)
+
+    def _abroad(self, topic: Topic[Any]) -> dict[str, bytes]:
+        return {name: bus.last[topic.key] for name, bus in self.bus.neighbours.items() if topic.key in bus.last}
 
     def serve(self, key: str, handler: Handler) -> None:
         self.bus.handlers[key] = handler

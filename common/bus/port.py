@@ -49,6 +49,7 @@ class Io(Protocol):
     since; `loaded`: by its file alone. `world`: what is really there; with a `LookupError` for all but the simulation
     and its judges (`KNOWS_WORLD`). `state_dir`: where a process keeps files that outlive it; None within an evaluation.
     `outside`: what gateways to other wires need of the router; None where there is none.
+    `robot`: the namespace, which is the robot's name among others on its router; "" for the only one.
     """
 
     name: str
@@ -63,6 +64,7 @@ class Io(Protocol):
     fresh: bool
     state_dir: Path | None
     outside: Outside | None
+    robot: str
 
     def amend(self, edits: m.HouseholdEdits) -> None:
         """Apply what people have told to `household`: for the service that keeps it."""
@@ -75,6 +77,10 @@ class Io(Protocol):
 
     def age(self, topic: Topic[M], now: float) -> float:
         """Robot seconds since the newest message was received; inf before the first."""
+
+    def others(self, topic: Topic[M]) -> dict[str, M]:
+        """The newest message of every other robot on the router, by its name; of topics that name this service in
+        `abroad`. A robot that has left stays: the message tells how old it is."""
 
     def publish(self, topic: Topic[M], message: M) -> None: ...
 

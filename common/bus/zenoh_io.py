@@ -2,6 +2,7 @@
 
 import queue
 from collections.abc import Iterable
+from contextlib import ExitStack
 from typing import Any
 
 import msgspec
@@ -13,7 +14,7 @@ from common import topics
 from common.bus import codec, delivery
 from common.bus.base import IoBase, WorkerJob
 from common.bus.mailbox import CAPACITY, UNSTAMPED, Mailbox
-from common.bus.port import Handler
+from common.bus.port import Handler, Outside
 from common.household import Household
 from common.scene import Scene
 from common.time.clock import Clock, unix_time
@@ -59,6 +60,9 @@ class ZenohIo(IoBase):
         self._peers: dict[str, str] = {}
         self._queries: queue.SimpleQueue[tuple[Handler, zenoh.Query]] = queue.SimpleQueue()
         self._kept: list[Any] = []
+        self._opened = ExitStack()
+        self._outer: Any = None
+        self._heard: dict[str, dict[str, bytes]] = {}
         self._streams: list[tuple[Any, Mailbox[Any]]] = []
         self._publishers = {t.key: delivery.Publisher(opened, t, lossless=lockstep) for t in writes}
         self._demanded: dict[str, Any] = {}
@@ -138,6 +142,30 @@ class ZenohIo(IoBase):
 
     def peer(self, name: str) -> str | None:
         return self._peers.get(name)
+
+    # --- other robots
+    def _abroad(self, topic: Topic[Any]) -> dict[str, bytes]:
+        if topic.key not in self._heard:
+            self._heard[topic.key] = {}
+            if self.outside is not None and self.outside.namespace:
+                self._listen_abroad(topic, self._heard[topic.key], self.outside)
+        return self._heard[topic.key].copy()
+
+    def _listen_abroad(self, topic: Topic[Any], heard: dict[str, bytes], outside: Outside) -> None:
+        """Over a session outside of the namespace, which a robot that is alone on its router does not need."""
+        if self._outer is None:
+            self._outer = self._opened.enter_context(outside.open())
+
+        def receive(sample: zenoh.Sample) -> None:
+            name = str(sample.key_expr).removesuffix(f"/{topic.key}")
+            if name != outside.namespace:
+                heard[name] = sample.payload.to_bytes()
+
+        self._kept.append(delivery.listen(self._outer, f"**/{topic.key}", receive))
+
+    def shutdown(self) -> None:
+        super().shutdown()
+        self._opened.close()
 
     def has_subscribers(self, topic: Topic[Any]) -> bool:
         return self._publishers[topic.key].has_subscribers

@@ -6,6 +6,7 @@ from common.messages.base import Message
 from common.messages.perception import ObjectRef
 
 NavStatus = Literal["idle", "navigating", "arrived", "failed"]
+DriveState = Literal["driving", "free", "fixed"]
 
 
 class NavigationGoal(Message):
@@ -78,6 +79,28 @@ class PoseEstimate(Message):
     def lost(self) -> bool:
         """The robot does not know where it is."""
         return len(self.covariance) == 9 and max(self.covariance[0], self.covariance[4]) > LOST
+
+
+class DriveIntent(Message):
+    """Where a robot stands and which way it takes next, for the other robots of its flat.
+
+    `flat` names the frame `map` that they share: who tells another name stands somewhere else. `radius` is the
+    footprint's [m]. `path` are points ahead [map], from where it stands; empty: it stays. `state`: it drives, it has
+    nothing to do and gets out of anybody's way (`free`), or it stays where it is (`fixed`). `gives_way_to`: the robots
+    for whom it waits or gets out of the way now; `cannot_yield_to`: those that it finds no room to let pass, so that
+    they have to.
+    """
+
+    t: float
+    flat: str
+    x: float
+    y: float
+    theta: float
+    radius: float
+    state: DriveState = "driving"
+    path: list[tuple[float, float]] = []
+    gives_way_to: list[str] = []
+    cannot_yield_to: list[str] = []
 
 
 class NavPath(Message):

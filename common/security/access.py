@@ -51,13 +51,18 @@ class Subject(msgspec.Struct, frozen=True):
 
 
 class Grants(msgspec.Struct, frozen=True):
-    """Keys, without namespace, that a subject may use: publish, subscribe, answer queries, ask, and show as alive."""
+    """Keys, without namespace, that a subject may use: publish, subscribe, answer queries, ask, and show as alive.
+
+    `abroad`: those that it may read of every robot on the router, `heard_abroad`: those of its own that others may.
+    """
 
     puts: tuple[str, ...] = ()
     reads: tuple[str, ...] = ()
     answers: tuple[str, ...] = ()
     asks: tuple[str, ...] = ()
     tokens: tuple[str, ...] = ()
+    abroad: tuple[str, ...] = ()
+    heard_abroad: tuple[str, ...] = ()
 
 
 def grants(subject: Subject) -> Grants:
@@ -97,6 +102,8 @@ def _service(name: str) -> Grants:
         answers=(*latched, health, *(q.key for q in t.QUERIES if q.server == name)),
         asks=(*read, ALL_HEALTH, *(q.key for q in t.QUERIES if name in q.askers)),
         tokens=(t.ALIVE_KEY.format(name=name),),
+        abroad=tuple(row.key for row in t.TABLE if name in row.abroad),
+        heard_abroad=tuple(row.key for row in t.TABLE if name in row.writers and row.abroad),
     )
 
 
@@ -150,7 +157,9 @@ def _rules(subject: Subject, robots: list[str]) -> list[dict[str, Any]]:
             return tuple(k if k.startswith(EVERY_ROBOT) else f"{EVERY_ROBOT}/{k}" for k in keys)
         return tuple(f"{subject.namespace}/{k}" if subject.namespace else k for k in keys)
 
-    puts, reads = below(granted.puts, True), below(granted.reads, True)
+    abroad = tuple(f"{EVERY_ROBOT}/{key}" for key in granted.abroad)
+    puts, reads = below(granted.puts, True), (*below(granted.reads, True), *abroad)
+    matched = tuple(f"{EVERY_ROBOT}/{key}" for key in granted.heard_abroad)
     answers, asks = below(granted.answers), below(granted.asks)
     tokens = below(granted.tokens)
     caches = tuple(k for k in puts if k.endswith(ADVANCED))
@@ -159,7 +168,7 @@ def _rules(subject: Subject, robots: list[str]) -> list[dict[str, Any]]:
     parts = (
         ("publishes", ("put", "delete"), ("ingress",), puts),
         # A subscription may be wider than the key, as that to everybody's health is; only what is asked for is sent.
-        ("is matched", ("declare_subscriber",), ("egress",), below(EVERYTHING)),
+        ("is matched", ("declare_subscriber",), ("egress",), (*below(EVERYTHING), *matched)),
         ("answers", ("declare_queryable",), ("ingress",), (*answers, *caches)),
         ("replies", ("reply",), ("ingress",), (*answers, *puts)),
         # A question may be wider than the key; it only comes to who may declare that it answers.

@@ -20,6 +20,9 @@ class NavigationConfig(Config, frozen=True):
     initial_pose: Literal["home", "unknown"] = "home"
     """Where the robot is when navigation starts: at the household's home until the lidar says otherwise, or anywhere.
     """
+    flat: str = ""
+    """What several robots on one router share: those that tell the same name keep out of each other's way. "": the
+    simulation that they are in, or else the map; "none": it is told of nobody and tells nobody."""
     lost_patience: float = 90.0
     """How long a goal waits for a robot that is lost; chosen: time to look into the next room and the one after."""
     clearance: float = 0.02

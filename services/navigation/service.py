@@ -6,7 +6,7 @@ from common import messages as m
 from common import topics
 from common.bus.port import Io
 from common.config import config_dir
-from common.geometry import Array
+from common.geometry import Array, Pose2
 from common.goal_inbox import GoalInbox
 from common.viewpoints import viewpoints_of
 from common.whereabouts import likelihood
@@ -17,6 +17,7 @@ from services.navigation.goals import Choices, Goal, Goals, in_words
 from services.navigation.localisation.state_estimation import StateEstimator
 from services.navigation.motion.navigator import Navigator
 from services.navigation.orientation import Orientation
+from services.navigation.others.neighbours import Neighbours
 from services.navigation.places import Places, load_places
 from services.navigation.planning.changes import ChangesFile
 from services.navigation.planning.costmap import Costmap
@@ -58,6 +59,7 @@ class NavigationService:
             io, (topics.NAVIGATION_GOAL, topics.NAV_GOAL), self._take, self._repeat, self._preempted
         )
         self._orientation = Orientation(config, io, self._state, self._map)
+        self._neighbours = Neighbours(config, io, self._map, self._planner)
         self._reports = Reports(io, self._state)
         self._legs = 0
         self._now = 0.0
@@ -66,6 +68,8 @@ class NavigationService:
     def step(self, now: float) -> None:
         io, self._now = self._io, now
         self._state.step(now)
+        self._neighbours.hear(self._known_pose, self._busy, now)
+        self._state.robots = self._neighbours.circles
         if int(now) != self._shown:
             self._shown = int(now)
             self._changes.save(self._map.changes, now)
@@ -87,6 +91,11 @@ class NavigationService:
                     self._advance(self._navigator, reached, now)
         except Ended as ended:
             self._finish(ended)
+        self._with_others(now)
+
+    @property
+    def _known_pose(self) -> Pose2 | None:
+        return None if self._state.lost else self._state.pose
 
     @property
     def _busy(self) -> bool:
@@ -223,7 +232,12 @@ class NavigationService:
         """Raises `Ended` when the goal has."""
         state = self._state
         try:
-            target = navigator.step(state.pose, reached, state.points, state.tracker.people(), now)
+            aside = self._neighbours.steer(navigator, self._known_pose, state.points, now)
+            target = (
+                navigator.give_way(aside, now)
+                if aside is not None
+                else navigator.step(state.pose, reached, state.points, state.tracker.people(), now)
+            )
         except Ended as ended:
             if self._search is None or ended.code == "TIMEOUT":
                 raise
@@ -238,6 +252,20 @@ class NavigationService:
         if path := navigator.take_new_path():
             self._io.publish(topics.NAV_PATH, m.NavPath(t=now, points=path[::4], goal_id=self._status.goal_id))
         self._reports.under_way(navigator, bool(path), now)
+
+    def _with_others(self, now: float) -> None:
+        """Tell the other robots which way this one takes, and make room for them while it has nothing to do."""
+        state, pose, navigator = self._state, self._known_pose, self._navigator
+        if self._neighbours.alone:
+            return
+        if not self._busy and self._neighbours.state == "free":
+            aside = self._neighbours.steer(None, pose, state.points, now)
+            if aside is not None:
+                x, y, theta = state.localiser.to_odometry(aside)
+                self._legs += 1
+                self._io.publish(topics.BASE_TARGET, m.BaseTarget(x=x, y=y, theta=theta, id=f"aside/{self._legs}"))
+        path = navigator.ahead(pose, now) if navigator is not None and pose is not None else []
+        self._neighbours.tell(pose, path, now)
 
     def _finish(self, ended: Ended) -> None:
         navigator, self._search, self._found = self._navigator, None, None

@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from common import messages as m
 from common import topics
@@ -23,6 +24,8 @@ NEAR = 4.0
 """Range up to which lidar points are braked for and tracked [m]; chosen: beyond what the robot reaches in 5 s."""
 EXPLAINED = 0.15
 """Distance from the map's walls and furniture within which they explain a point [m]; chosen: five times its noise."""
+ROBOT = 0.2
+"""How far beyond another robot's footprint points are still its own [m]: what it drives until the next message."""
 AROUND = 0.15
 """How far beyond a person's radius points are still theirs [m]: a stride, and the error of the track."""
 FOUND = (0.1, 0.1, 0.05)
@@ -52,6 +55,8 @@ class StateEstimator:
         self.scan: Scan | None = None
         self.points: Array | None = None
         self.fresh = False
+        self.robots: list[tuple[float, float, float]] = []
+        """Circles (x, y, radius) [map, m] that other robots say they stand in."""
         self._odometry: m.Odometry | None = None
         self._measured = self._scanned = 0.0
 
@@ -138,7 +143,7 @@ class StateEstimator:
         self.points = placed[near]
         if not self.lost:
             mapped = self.field.near if self._live is None else self._map.explains
-            explained = mapped(placed, EXPLAINED)
+            explained = mapped(placed, EXPLAINED) | _within(placed, self.robots)
             self.tracker.update(placed[near & ~explained], (frame[0], frame[1]), now)
             # A map in the making fits by itself.
             if len(placed) and not self.everywhere.broken and self._live is None:
@@ -149,7 +154,21 @@ class StateEstimator:
         """Enter the newest scan in a costmap in whose frame the base is at `frame`."""
         if (scan := self.scan) is not None:
             people = [(p.x, p.y, p.radius + AROUND) for p in self.tracker.people()]
-            costmap.see(compose(frame, (*scan.lidar, 0.0)), scan.angles, scan.reach, scan.range_max, now, people)
+            eye, reach = compose(frame, (*scan.lidar, 0.0)), scan.reach
+            if self.robots and not self.lost:
+                angles = scan.angles + eye[2]
+                ends = eye[:2] + reach[:, None] * np.stack((np.cos(angles), np.sin(angles)), axis=1)
+                # What another robot holds up tells nothing, as what this one does.
+                reach = np.where(_within(ends, self.robots), 0.0, reach)
+            costmap.see(eye, scan.angles, reach, scan.range_max, now, people)
+
+
+def _within(points: Array, circles: list[tuple[float, float, float]]) -> NDArray[np.bool_]:
+    """Which points (n, 2) lie in or around one of the robots' circles."""
+    found = np.zeros(len(points), bool)
+    for x, y, radius in circles:
+        found |= np.hypot(points[:, 0] - x, points[:, 1] - y) < radius + ROBOT
+    return found
 
 
 def _diagonal(spread: tuple[float, float, float]) -> list[float]:

@@ -12,7 +12,7 @@ from services.navigation.motion.breadcrumbs import Breadcrumbs
 from services.navigation.motion.collision_avoidance import avoid
 from services.navigation.motion.obstacle_tracker import Obstacle
 from services.navigation.motion.path_follower import Lookahead, PathFollower
-from services.navigation.motion.progress import BlockedTimer, Progress, Standoff, waiting_for
+from services.navigation.motion.progress import CLOSE, BlockedTimer, Progress, Standoff, waiting_for
 from services.navigation.motion.retreat import PassingPlace, Retreat, passing_place
 from services.navigation.motion.route import DETOUR_PAUSE, Route
 from services.navigation.planning.costmap import Array, Costmap
@@ -29,8 +29,8 @@ OUT_OF_SIGHT = 3.0
 class Navigator:
     """Steps at the service's rate; returns the next target pose [map] for the base, raises `Ended` when over.
 
-    `recoveries` counts detours and retreats, `doing` is what is under way: "", WAITING, PERSON_IN_WAY, DETOUR,
-    BACKING_OFF or GIVING_WAY. `remaining` is the path that is left [m].
+    `recoveries` counts detours and retreats, `doing` is what is under way: "", WAITING, PERSON_IN_WAY, ROBOT_IN_WAY,
+    DETOUR, BACKING_OFF or GIVING_WAY. `remaining` is the path that is left [m].
     """
 
     def __init__(
@@ -55,6 +55,8 @@ class Navigator:
         self._standoff = Standoff()
         self._feedback_at = -math.inf
         self._retries = 0
+        self.robots: Sequence[tuple[float, float, float]] = ()
+        """Circles (x, y, radius) [map, m] of robots that are about to make way."""
         self.recoveries = 0
         self.remaining = 0.0
         self.doing = ""
@@ -135,6 +137,37 @@ class Navigator:
         self._route.planned_at = now
         x, y, theta = min(self._route.choices)[1]
         return m.BaseTarget(x=x, y=y, theta=theta, id=self.final_id)
+
+    # --- other robots
+    @property
+    def begun(self) -> bool:
+        """It has planned its way."""
+        return self._base.start is not None
+
+    def ahead(self, pose: Pose2, now: float) -> list[Point]:
+        """The way that is left [map], planned anew where it was left; empty: there is none now."""
+        if self._route.follower is None and self.begun and now - self._route.planned_at > REPLAN_PERIOD:
+            self._plan(pose, now)
+        return self._route.follower.left() if self._route.follower is not None else []
+
+    def give_way(self, spot: Pose2, now: float) -> m.BaseTarget:
+        """Go to `spot` [map] meanwhile, or stay there.
+
+        Raises:
+            Ended: TIMEOUT.
+        """
+        if now > self._progress.deadline:
+            raise Ended("failed", "TIMEOUT", f"not there after {now - self._started:.0f} s")
+        self._progress.hold_up(now)
+        self._base.sent, self._retreat, self.doing = None, None, "GIVING_WAY"
+        self._blocked.clear()
+        return self._hold_at(spot)
+
+    def go_on(self, now: float) -> None:
+        """The way is free again, from wherever the robot is by now."""
+        self._progress.restart(now)
+        self._route.follower, self._route.planned_at = None, -math.inf
+        self._blocked.clear()
 
     def relocated(self, now: float) -> None:
         """The robot is not where it seemed to be: everything but the goal begins anew with the next step."""
@@ -219,6 +252,11 @@ class Navigator:
 
     def _wait_for(self, pose: Pose2, people: Sequence[Obstacle], now: float) -> None:
         """Blocked at this moment: by a person, who may want to get past the robot, or by something."""
+        if any(math.dist(pose[:2], (x, y)) < CLOSE + radius for x, y, radius in self.robots):
+            self.doing = "ROBOT_IN_WAY"
+            self._progress.hold_up(now)
+            self._blocked.clear()
+            return
         self.doing = waiting_for((pose[0], pose[1]), people)
         if self.doing == "PERSON_IN_WAY":
             self._progress.hold_up(now)

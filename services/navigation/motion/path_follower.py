@@ -56,6 +56,10 @@ class PathFollower:
         off = math.hypot(self.path[self._index][0] - pose[0], self.path[self._index][1] - pose[1])
         return ahead * SPACING + min(off, OFF)
 
+    def left(self) -> list[Point]:
+        """The points [map] that lie ahead."""
+        return self.path[self._index :]
+
     def blocked_at(self, pose: Pose2, costmap: Costmap, radius: float) -> float | None:
         """Metres along the path to where it comes closer than `radius` to something seen; None when it does not."""
         ahead = self._points[self._index + 1 :]

@@ -62,7 +62,7 @@ class ChangesFile:
     """Keeps the lasting changes of a map in a directory; None: nowhere. `complain` hears why that was not possible."""
 
     def __init__(self, directory: Path | None, plan: FloorPlan, complain: Callable[[str], None]) -> None:
-        self._plan = f"{zlib.crc32(msgspec.json.encode(_shape(plan))):08x}"
+        self._plan = fingerprint(plan)
         self._path = directory / f"map-changes-{self._plan}.json" if directory is not None else None
         self._complain, self._why = complain, ""
         self._saved: NDArray[np.bool_] | None = None
@@ -98,6 +98,11 @@ class ChangesFile:
         elif why != self._why:
             self._complain(why)
         self._why = why
+
+
+def fingerprint(plan: FloorPlan) -> str:
+    """Names a map."""
+    return f"{zlib.crc32(msgspec.json.encode(_shape(plan))):08x}"
 
 
 def _shape(plan: FloorPlan) -> list[object]:

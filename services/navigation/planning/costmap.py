@@ -50,6 +50,7 @@ class Costmap:
         self._first_at = np.full(self.shape, np.inf)
         self.changes = Changes(self.shape, lasting_after)
         self._distance: Array | None = self.static_distance
+        self._discs: list[tuple[float, float, float]] = []
         self.version = 0
         reach = math.ceil(_REACH / resolution)
         offsets = np.arange(-reach, reach + 1) * resolution
@@ -107,6 +108,10 @@ class Costmap:
         """To the nearest obstacle, static or seen [m]; made when asked for, by a disc around each seen cell."""
         if self._distance is None:
             grid = self.static_distance.copy()
+            if self._discs:
+                gx, gy = np.moveaxis(self.centres(), 2, 0)
+                for x, y, radius in self._discs:
+                    np.minimum(grid, np.maximum(np.hypot(gx - x, gy - y) - radius, 0.0), out=grid)
             n, disc = self._disc_reach, self._disc
             for row, column in zip(*(axis.tolist() for axis in np.nonzero(self._seen_at > -np.inf)), strict=True):
                 top, left = max(0, row - n), max(0, column - n)
@@ -115,6 +120,30 @@ class Costmap:
                 np.minimum(part, disc[shift : shift + part.shape[0], aside : aside + part.shape[1]], out=part)
             self._distance = grid
         return self._distance
+
+    def disown(self, discs: Sequence[tuple[float, float, float]]) -> None:
+        """Forget what was seen in circles (x, y, radius) [map, m]: it was a robot."""
+        rows, columns = np.nonzero(self._seen_at > -np.inf)
+        if not len(rows) or not discs:
+            return
+        xs, ys = (o + (i + 0.5) * self.resolution for o, i in zip(self.origin, (columns, rows), strict=True))
+        inside = np.zeros(len(rows), bool)
+        for x, y, radius in discs:
+            inside |= np.hypot(xs - x, ys - y) < radius
+        if inside.any():
+            self._drop(rows, columns, inside)
+            self._distance = None
+            self.version += 1
+
+    def place(self, discs: Sequence[tuple[float, float, float]]) -> None:
+        """Circles (x, y, radius) [map, m] that are occupied besides, until other ones are told: standing robots."""
+        if len(discs) == len(self._discs) and all(
+            math.dist(a, b) < self.resolution for a, b in zip(discs, self._discs, strict=True)
+        ):
+            return
+        self._discs = list(discs)
+        self._distance = None
+        self.version += 1
 
     def confine(self, distance: Array) -> None:
         """Take `distance` [m] to the nearest obstacle of every cell in place of the floor plan's."""
@@ -126,7 +155,7 @@ class Costmap:
         """Forget all that was seen of late: it was not where it seemed to be."""
         self._seen_at[:], self._first_at[:] = -np.inf, np.inf
         self.changes.forget_brief()
-        self._distance = self.static_distance
+        self._distance = None if self._discs else self.static_distance
         self.version += 1
         self.remember(0.0)
 
@@ -221,7 +250,7 @@ class Costmap:
         self.changes.occupied((rows[~person], columns[~person]), now)
         after = self._seen_at > -np.inf
         if (after != before).any():
-            self._distance = None if after.any() else self.static_distance
+            self._distance = None if after.any() or self._discs else self.static_distance
             self.version += 1
 
     def _clear(self, pose: Pose2, angles: Array, reach: Array, now: float) -> None:

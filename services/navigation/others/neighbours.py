@@ -1,0 +1,196 @@
+"""The other robots of the flat: what they tell of their ways, what they are told of this one's, and who goes first."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from common import messages as m
+from common import topics
+from common.bus.port import Io
+from common.geometry import Pose2
+from common.mission_log.states import under_way
+from services.navigation.config import NavigationConfig
+from services.navigation.localisation.state_estimation import ROBOT
+from services.navigation.motion.navigator import Navigator
+from services.navigation.others.motion import NEAR, Other, Way, closes_in
+from services.navigation.others.right_of_way import AHEAD, RightOfWay, goes_first
+from services.navigation.planning.changes import fingerprint
+from services.navigation.planning.costmap import Array, Costmap
+from services.navigation.planning.planner import PathPlanner, Point
+
+PERIOD = 0.2
+"""Time between two messages [s]: the rate of the topic."""
+SILENT = 1.5
+"""Silence after which a robot is taken for what the lidar sees of it [s]; chosen: seven messages."""
+THIN, TOLD = 4, 120
+"""Of its path a robot tells each so many-th point, of so many at most [count]: 0.2 m apart, 6 m ahead."""
+MOVING = 1.0
+"""Time [s] after its last move in which a robot that gets out of the way is waited for."""
+STILL, STALLED = 0.05, 4.0
+"""Way [m] within which a robot stands still, and for how long [s] it does before it counts as what stands there."""
+UNMOVED = 30.0
+"""For how long [s] a robot that should make way and does not move counts as fixed; chosen: somebody has braked it."""
+
+
+@dataclass
+class _Known:
+    """What was heard last of a robot, when its message changed, and where and since when it stands."""
+
+    told: m.DriveIntent
+    at: float
+    stood: Point
+    since: float
+
+
+class Neighbours:
+    """`circles` (x, y, radius) [map, m] are where the others stand, `first` those that go first, `others` those that
+    make way for this one."""
+
+    def __init__(self, config: NavigationConfig, io: Io, costmap: Costmap, planner: PathPlanner) -> None:
+        self._config, self._io, self._map = config, io, costmap
+        self.right_of_way = RightOfWay(costmap, planner, config.footprint_radius, config.corridor, config.lookahead)
+        self._known: dict[str, _Known] = {}
+        self._told_at = -math.inf
+        self._unmoved_until = -math.inf
+        self._stood: tuple[Point, float] = ((math.inf, math.inf), 0.0)
+        self._plan = fingerprint(io.household)
+        self.state: m.DriveState = "fixed"
+        self.circles: list[tuple[float, float, float]] = []
+        self.first: list[Other] = []
+        self.others: list[Other] = []
+
+    @property
+    def alone(self) -> bool:
+        """Nobody else is on the router: it has no name."""
+        return not self._io.robot or self._config.flat == "none"
+
+    @property
+    def flat(self) -> str:
+        """What this robot calls the flat: as it is told, else its simulation's world, else by the map."""
+        if self._config.flat:
+            return self._config.flat
+        status = self._io.latest(topics.SIM_STATUS)
+        return f"{self._plan}/{status.epoch}" if status is not None else self._plan
+
+    # --- hearing
+    def hear(self, pose: Pose2 | None, driving: bool, now: float) -> None:
+        """Take what the others have told; `driving`: this robot has a goal."""
+        if self.alone:
+            return
+        for name, told in self._io.others(topics.DRIVE_INTENT).items():
+            if told.flat == self.flat and all(map(math.isfinite, (told.x, told.y, told.radius))):
+                self._note(name, told, now)
+        self._known = {n: k for n, k in self._known.items() if now - k.at < SILENT}
+        self.circles = [(k.told.x, k.told.y, k.told.radius) for k in self._known.values()]
+        self.state = self._standing(pose, driving, now)
+        me, stuck = self._io.robot, self.right_of_way.stuck(now)
+
+        self.first, self.others, fixed = [], [], []
+        for name, k in sorted(self._known.items()):
+            told = k.told
+            if self._stands(told):
+                fixed.append((told.x, told.y, told.radius))
+            elif goes_first(me, self.state, name in stuck, name, told.state, me in told.cannot_yield_to):
+                self.first.append(_other(name, k, now))
+            else:
+                self.others.append(_other(name, k, now))
+        self._map.disown([(x, y, radius + ROBOT) for x, y, radius in self.circles])
+        self._map.place(fixed)
+
+    def _note(self, name: str, told: m.DriveIntent, now: float) -> None:
+        old, here = self._known.get(name), (told.x, told.y)
+        if old is None:
+            self._known[name] = _Known(told, now, here, now)
+        elif told is not old.told:
+            old.told, old.at = told, now
+            if math.dist(here, old.stood) > STILL:
+                old.stood, old.since = here, now
+
+    def _stands(self, told: m.DriveIntent) -> bool:
+        """It does not get out of the way: it is planned round."""
+        if told.state == "free":
+            return self._io.robot in told.cannot_yield_to
+        return told.state == "fixed"
+
+    def _standing(self, pose: Pose2 | None, driving: bool, now: float) -> m.DriveState:
+        """Whether this robot drives, may be asked to make way, or stays."""
+        if pose is None or math.dist(pose[:2], self._stood[0]) > STILL:
+            self._stood = ((pose[0], pose[1]) if pose is not None else self._stood[0]), now
+        if self.right_of_way.way and now - self._stood[1] > STALLED:
+            self._unmoved_until = now + UNMOVED
+        if now < self._unmoved_until:
+            return "fixed"
+        brain = self._io.latest(topics.BRAIN_STATE)
+        idle = brain is not None and not under_way(brain)
+        return "driving" if driving else "free" if idle else "fixed"
+
+    # --- giving way
+    def steer(self, navigator: Navigator | None, pose: Pose2 | None, points: Array | None, now: float) -> Pose2 | None:
+        """Where this robot goes instead of on [map], for those that go first; None: on.
+
+        `navigator` drives it, None where it drives nowhere; `points` (n, 2) is what the lidar sees.
+        """
+        if self.alone or pose is None or (navigator is not None and not navigator.begun):
+            return None
+        right, ahead = self.right_of_way, None
+        if navigator is not None:
+            navigator.robots = [(*o.place, o.radius) for o in (*self.first, *self.others)]
+            ahead = np.array(navigator.ahead(pose, now)) if self.first else None
+        was = right.gives_way
+        spot = right.step(pose, ahead, self.first, points, now)
+        if spot is None and navigator is not None and self._too_near(pose, navigator, now):
+            return pose
+        if was != right.gives_way:
+            self._stood = (pose[0], pose[1]), now
+            self._io.log.info("gives way" if right.gives_way else "goes on", to=",".join(right.for_whom))
+            if navigator is not None and spot is None:
+                navigator.go_on(now)
+        return spot
+
+    def _too_near(self, pose: Pose2, navigator: Navigator, now: float) -> bool:
+        """Somebody who is getting out of the way is not out of it yet."""
+        near = [
+            o for o in self.others if now - self._known[o.name].since < MOVING and math.dist(pose[:2], o.place) < NEAR
+        ]
+        if not near or not (ahead := navigator.ahead(pose, now)):
+            return False
+        way = Way(np.array([pose[:2], *ahead])).cut(AHEAD)
+        return any(closes_in(way, self._config.footprint_radius, o) for o in near)
+
+    # --- telling
+    def tell(self, pose: Pose2 | None, path: list[Point], now: float) -> None:
+        """Tell the others where this robot is and which way it takes, five times a second."""
+        if self.alone or pose is None or now - self._told_at < PERIOD - 1e-6:
+            return
+        self._told_at = now
+        right = self.right_of_way
+        if right.gives_way:
+            path = right.way
+        kept = path[:TOLD]
+        self._io.publish(
+            topics.DRIVE_INTENT,
+            m.DriveIntent(
+                t=now,
+                flat=self.flat,
+                x=pose[0],
+                y=pose[1],
+                theta=pose[2],
+                radius=self._config.footprint_radius,
+                state=self.state,
+                path=kept[::THIN] + kept[-1:] if kept else [],
+                gives_way_to=right.for_whom,
+                cannot_yield_to=right.stuck(now),
+            ),
+        )
+
+
+def _other(name: str, k: _Known, now: float) -> Other:
+    here = (k.told.x, k.told.y)
+    points = np.array([here, *k.told.path], float)
+    steps = np.hypot(*np.diff(points, axis=0).T) if len(points) > 1 else np.zeros(0)
+    along = np.concatenate(([0.0], np.cumsum(steps)))
+    # As dense as the distance between two ways has to be known.
+    at = np.arange(0.0, along[-1] + 0.05, 0.1) if along[-1] > 0 else np.zeros(1)
+    dense = np.stack([np.interp(at, along, column) for column in points.T], axis=1)
+    return Other(name, Way(dense), k.told.radius, stalled=now - k.since > STALLED)
