@@ -1,38 +1,41 @@
 """`tidybot`: start, watch, command and examine the robot."""
 
 import argparse
+import importlib
 import os
 import sys
 from collections.abc import Sequence
 from typing import NoReturn
 
-from cli import (
-    calibrate,
-    conform,
-    control,
-    demo,
-    doctor,
-    evaluate,
-    explain,
-    keys,
-    map,
-    mission,
-    missions,
-    places,
-    record,
-    replay,
-    robot,
-    speech,
-    teach,
-    topic,
-    tree,
-    up,
-    watch,
-)
-from cli.agents import command as agents
 from cli.errors import CliError, near
-from cli.fleet import command as fleet
 from common.bus.session import BusError
+
+COMMANDS = {
+    "up": ("up",),
+    "control": ("down", "ps", "restart", "logs"),
+    "mission": ("say", "status"),
+    "missions": ("missions",),
+    "explain": ("explain",),
+    "speech": ("transcribe",),
+    "robot": ("stop", "stop-robot", "resume"),
+    "teach": ("teach", "forget"),
+    "places": ("places", "rules"),
+    "topic": ("topic",),
+    "tree": ("tree",),
+    "watch": ("watch",),
+    "fleet.command": ("fleet",),
+    "record": ("record",),
+    "replay": ("replay",),
+    "doctor": ("doctor",),
+    "keys": ("keys",),
+    "map": ("map",),
+    "agents.command": ("mcp",),
+    "calibrate": ("calibrate",),
+    "conform": ("conform",),
+    "demo": ("demo",),
+    "evaluate": ("eval",),
+}
+"""Which module of this package declares which commands, in the order of the help."""
 
 FAILED, MISUSED, INTERRUPTED = 1, 2, 130
 """Exit statuses: a command failed, was mistyped, or was ended by Ctrl-C (128 + SIGINT)."""
@@ -53,45 +56,22 @@ class Parser(argparse.ArgumentParser):
         self.exit(MISUSED, f"{self.prog}: {message}; `{self.prog} --help` lists what there is\n")
 
 
-def parser() -> argparse.ArgumentParser:
-    """The whole command line."""
+def parser(command: str = "") -> argparse.ArgumentParser:
+    """The whole command line, or the part that declares `command`: some import what the others have no use for."""
     top = Parser(prog="tidybot", description="A voice-commanded mobile manipulator: start it, command it, look inside.")
     commands = top.add_subparsers(required=True, metavar="COMMAND", parser_class=Parser)
-    for module in (
-        up,
-        control,
-        mission,
-        missions,
-        explain,
-        speech,
-        robot,
-        teach,
-        places,
-        topic,
-        tree,
-        watch,
-        fleet,
-        record,
-        replay,
-        doctor,
-        keys,
-        map,
-        agents,
-        calibrate,
-        conform,
-        demo,
-        evaluate,
-    ):
-        module.register(commands)
+    for module in [name for name, declared in COMMANDS.items() if command in declared] or COMMANDS:
+        importlib.import_module(f"cli.{module}").register(commands)
     return top
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Entry point; the exit status."""
-    top = parser()
-    args, rest = top.parse_known_args(argv)
+    words = sys.argv[1:] if argv is None else argv
+    top = parser(words[0] if words else "")
+    args, rest = top.parse_known_args(words)
     if rest:
-        _sub_parser(top, argv or sys.argv[1:]).error(f"unrecognized arguments: {' '.join(rest)}")
+        _sub_parser(top, words).error(f"unrecognized arguments: {' '.join(rest)}")
     try:
         return int(args.run(args))
     except (CliError, BusError) as error:

@@ -69,7 +69,7 @@ class Board:
 
 def main(argv: list[str]) -> int:
     """Exit status 0 when the bar is met, 1 when fewer did as expected or a claim was false, 130 after Ctrl-C."""
-    args = parser().parse_args(["eval", *argv])
+    args = parser("eval").parse_args(["eval", *argv])
     if args.list:
         for name, make in SUITES.items():
             print(f"{name:9} {100 * BARS[name]:3.0f} %  {(make.__doc__ or '').splitlines()[0]}")

@@ -3,6 +3,8 @@
 import argparse
 import configparser
 import json
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +14,7 @@ from cli import main, ports, programs, supervision
 from cli import plan as plans
 from cli.errors import CliError, checked
 from cli.services import NAMES, OPTIONAL, SERVICES
+from tests.support import ROOT
 
 
 def plan(*words: str) -> plans.Plan:
@@ -167,7 +170,24 @@ def test_a_command_without_a_run_says_so(
     assert main.main(["down"]) == 0
 
 
+def declared(parser: argparse.ArgumentParser) -> list[str]:
+    (commands,) = (a for a in parser._actions if isinstance(a, argparse._SubParsersAction))
+    return list(commands.choices)
+
+
+def test_each_command_is_declared_where_the_table_says_and_alone_when_it_is_asked_for() -> None:
+    assert declared(main.parser()) == [c for known in main.COMMANDS.values() for c in known]
+    for known in main.COMMANDS.values():
+        for command in known:
+            assert declared(main.parser(command)) == list(known)
+
+
+def test_a_command_that_asks_the_supervisor_does_not_load_the_simulator() -> None:
+    asked = "import sys, cli.main; cli.main.parser('ps'); print({'mujoco', 'scipy', 'cryptography'} & set(sys.modules))"
+    done = subprocess.run([sys.executable, "-c", asked], capture_output=True, text=True, cwd=ROOT, check=True)
+    assert done.stdout == "set()\n"
+
+
 def test_checked_words() -> None:
     with pytest.raises(CliError, match="known: a, b"):
         checked("zzz", ("a", "b"), "letter")
-    assert isinstance(main.parser(), argparse.ArgumentParser)
