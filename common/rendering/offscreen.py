@@ -1,5 +1,6 @@
 """Colour and depth of a scene in one GL pass; `mujoco.Renderer` needs two. Use it in one thread only."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import mujoco
@@ -8,6 +9,10 @@ from numpy.typing import NDArray
 
 MAX_GEOMS = 10000
 """Geoms of a scene: the default of `mujoco.Renderer`."""
+HIDDEN = 5
+"""A MuJoCo geom group that is never drawn."""
+Layers = Sequence[NDArray[np.intp]]
+"""Numbers of the geoms that are drawn, those of the first before those of the next."""
 
 
 class Offscreen:
@@ -22,30 +27,58 @@ class Offscreen:
         mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN.value, self._context)
         self._context.readDepthMap = mujoco.mjtDepthMap.mjDEPTH_ZEROFAR
         self._rect = mujoco.MjrRect(0, 0, width, height)
+        self._untouched = mujoco.MjvPerturb()
 
     def render(
-        self, data: Any, camera: Any, option: Any, sky: bool = True
+        self,
+        data: Any,
+        camera: Any,
+        option: Any,
+        layers: Layers | None = None,
+        rows: tuple[int, int] | None = None,
     ) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
         """RGB (h, w, 3) and distance along the optical axis (h, w) [m] from an `MjvCamera`.
 
-        The `sky` is drawn behind everything, seen or not, which takes a third of a picture's time without a GPU.
+        With `layers` nothing else is drawn, not even the sky behind, which takes a third of a picture's time without
+        a GPU; near geoms before far ones save the pixels that these would hide. `rows`: the first and the one after
+        the last that are drawn.
         """
         self._gl.make_current()
-        self._scene.flags[mujoco.mjtRndFlag.mjRND_SKYBOX] = sky
-        everything = mujoco.mjtCatBit.mjCAT_ALL.value
-        mujoco.mjv_updateScene(self._model, data, option, None, camera, everything, self._scene)
-        rgb = np.empty((self._rect.height, self._rect.width, 3), np.uint8)
+        self._scene.flags[mujoco.mjtRndFlag.mjRND_SKYBOX] = layers is None
+        self._lay_out(data, camera, option, layers)
+        rect = self._rect if rows is None else self._band(*rows)
+        rgb = np.empty((rect.height, rect.width, 3), np.uint8)
         z = np.empty(rgb.shape[:2], np.float32)
-        mujoco.mjr_render(self._rect, self._scene, self._context)
-        mujoco.mjr_readPixels(rgb, z, self._rect, self._context)
+        mujoco.mjr_render(rect, self._scene, self._context)
+        mujoco.mjr_readPixels(rgb, z, rect, self._context)
         return rgb[::-1], self._metres(z[::-1])
 
-    def geoms(self, data: Any, camera: Any, option: Any) -> NDArray[np.int32]:
+    def _lay_out(self, data: Any, camera: Any, option: Any, layers: Layers | None) -> None:
+        """Put the geoms into the scene: everything, or the `layers` in their order."""
+        model, everything = self._model, mujoco.mjtCatBit.mjCAT_ALL.value
+        groups = model.geom_group.copy()
+        for number, layer in enumerate(layers or (slice(None),)):
+            model.geom_group[:] = HIDDEN
+            model.geom_group[layer] = groups[layer]
+            if number == 0:
+                mujoco.mjv_updateScene(model, data, option, None, camera, everything, self._scene)
+            else:
+                mujoco.mjv_addGeoms(model, data, option, self._untouched, everything, self._scene)
+        model.geom_group[:] = groups
+
+    def _band(self, first: int, end: int) -> Any:
+        """Narrow the scene's view to some rows; where in the frame buffer they are drawn."""
+        height = self._rect.height
+        for eye in self._scene.camera:
+            top, span = eye.frustum_top, eye.frustum_bottom - eye.frustum_top
+            eye.frustum_top, eye.frustum_bottom = top + span * first / height, top + span * end / height
+        return mujoco.MjrRect(0, 0, self._rect.width, end - first)
+
+    def geoms(self, data: Any, camera: Any, option: Any, layers: Layers | None = None) -> NDArray[np.int32]:
         """The geom (h, w) that each pixel shows, -1 for none; costs as much as a picture."""
         self._gl.make_current()
         flags, scene = self._scene.flags, self._scene
-        everything = mujoco.mjtCatBit.mjCAT_ALL.value
-        mujoco.mjv_updateScene(self._model, data, option, None, camera, everything, scene)
+        self._lay_out(data, camera, option, layers)
         flags[mujoco.mjtRndFlag.mjRND_SEGMENT] = flags[mujoco.mjtRndFlag.mjRND_IDCOLOR] = True
         rgb = np.empty((self._rect.height, self._rect.width, 3), np.uint8)
         mujoco.mjr_render(self._rect, scene, self._context)

@@ -3,8 +3,6 @@
 import os
 import subprocess
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
@@ -21,8 +19,8 @@ PROBE_SECONDS = 20.0
 """Time [s] for a GL library to show that it works."""
 FAR = 25.0
 """Depth [m] from which there is nothing: beyond the largest flat."""
-HIDDEN = 5
-"""A MuJoCo geom group that is never drawn."""
+LAYERS = 12
+"""Parts into which what is drawn is sorted by distance [count]; chosen: with more nothing is gained."""
 _PROBE = (
     "import mujoco; m = mujoco.MjModel.from_xml_string('<mujoco/>'); d = mujoco.MjData(m); "
     "mujoco.mj_forward(m, d); r = mujoco.Renderer(m, 8, 8); r.update_scene(d); r.render(); r.close()"
@@ -137,9 +135,15 @@ class Renderer:
         rgb, depth = self._drawn(number, width, height, sight)
         if (sight & self._clear).any():
             depth = self._drawn(number, width, height, sight & ~self._clear)[1]
-        empty = depth >= FAR
-        rgb[empty], depth[empty] = SKY, 0.0
         return rgb, depth.astype(np.float64)
+
+    def band(self, camera: str, width: int, height: int, rows: tuple[int, int]) -> NDArray[np.uint8]:
+        """RGB (n, width, 3) of some rows, the first and the one after the last, of a camera's picture."""
+        number, (first, end) = self.model.camera(camera).id, rows
+        if self.backend == "raycast":
+            return self._cast(number, width, height)[0][first:end]
+        sight = self._in_sight(number, width / height, (1 - 2 * end / height, 1 - 2 * first / height))
+        return self._drawn(number, width, height, sight, rows)[0]
 
     def surfaces(self, camera: str, width: int, height: int) -> Surfaces | None:
         """Which pixels of a camera show what depth cameras have their trouble with; None: nothing of it in sight."""
@@ -150,8 +154,9 @@ class Renderer:
         if self.backend == "raycast":
             shown = self._cast(number, width, height)[2]
         else:
-            with self._only(sight):
-                shown = self._offscreen(width, height).geoms(self.data, self._fixed(number), self._option)
+            shown = self._offscreen(width, height).geoms(
+                self.data, self._fixed(number), self._option, self._layers(number, sight)
+            )
         # The last entry is for pixels that show nothing, number -1.
         return Surfaces(np.append(self._gloss, 0.0)[shown], np.append(self._clear, False)[shown])
 
@@ -160,20 +165,23 @@ class Renderer:
         found.type, found.fixedcamid = self._mujoco.mjtCamera.mjCAMERA_FIXED, camera
         return found
 
-    @contextmanager
-    def _only(self, geoms: NDArray[np.bool_]) -> Iterator[None]:
-        """While it lasts nothing is drawn but these geoms (n,)."""
-        groups = self.model.geom_group.copy()
-        self.model.geom_group[~geoms] = HIDDEN
-        yield
-        self.model.geom_group[:] = groups
+    def _layers(self, camera: int, geoms: NDArray[np.bool_]) -> list[NDArray[np.intp]]:
+        """The numbers of these geoms (n,) from near to far; the last are planes, which have no end."""
+        apart = np.linalg.norm(self.data.geom_xpos - self.data.cam_xpos[camera], axis=1)
+        apart[self.model.geom_rbound == 0] = np.inf
+        chosen = np.flatnonzero(geoms)
+        return np.array_split(chosen[np.argsort(apart[chosen], kind="stable")], LAYERS)
 
     def _drawn(
-        self, camera: int, width: int, height: int, geoms: NDArray[np.bool_]
+        self, camera: int, width: int, height: int, geoms: NDArray[np.bool_], rows: tuple[int, int] | None = None
     ) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
-        with self._only(geoms):
-            picture = self._offscreen(width, height).render(self.data, self._fixed(camera), self._option, sky=False)
-        return picture[0], picture[1]
+        """RGB (n, w, 3) and depth (n, w) [m] of these geoms alone, 0 where there is none."""
+        rgb, depth = self._offscreen(width, height).render(
+            self.data, self._fixed(camera), self._option, self._layers(camera, geoms), rows
+        )
+        empty = depth >= FAR
+        rgb[empty], depth[empty] = SKY, 0.0
+        return rgb, depth
 
     def _cast(
         self, camera: int, width: int, height: int
@@ -198,13 +206,18 @@ class Renderer:
         """Focal length [px] of a camera's pictures of so many rows."""
         return height / 2 / float(np.tan(np.radians(float(self.model.camera(camera).fovy[0])) / 2))
 
-    def _in_sight(self, camera: int, aspect: float) -> NDArray[np.bool_]:
-        """The geoms (n,) whose bounding sphere reaches into a camera's view; GL without a GPU is slow to find out."""
+    def _in_sight(self, camera: int, aspect: float, rows: tuple[float, float] = (-1.0, 1.0)) -> NDArray[np.bool_]:
+        """The geoms (n,) whose bounding sphere reaches into a camera's view; GL without a GPU is slow to find out.
+
+        `rows`: its lower and its upper end, from -1 to 1.
+        """
         model, data = self.model, self.data
         x, y, z = ((data.geom_xpos - data.cam_xpos[camera]) @ data.cam_xmat[camera].reshape(3, 3)).T
-        up = np.tan(np.radians(model.cam_fovy[camera]) / 2)
-        side, radius = up * aspect, model.geom_rbound
-        seen = (np.abs(x) < radius * np.hypot(1, side) - z * side) & (np.abs(y) < radius * np.hypot(1, up) - z * up)
+        half = np.tan(np.radians(model.cam_fovy[camera]) / 2)
+        side, radius = half * aspect, model.geom_rbound
+        low, high = (half * share for share in rows)
+        seen = np.abs(x) < radius * np.hypot(1, side) - z * side
+        seen &= (y < radius * np.hypot(1, high) - z * high) & (-y < radius * np.hypot(1, low) + z * low)
         return np.asarray(seen | (radius == 0), bool)
 
     def picture(self, view: View, width: int, height: int) -> NDArray[np.uint8]:

@@ -91,13 +91,19 @@ class Shutter:
         size = request.camera, request.width, request.height
         age = float(np.random.default_rng([self._seed or 0, round(states[-1].t / DT)]).uniform(*AGE))
         moments = moved(states, age, SLICES)
-        drawn = []
-        for qpos in reversed(moments):
-            renderer.load(qpos.tobytes(), states[-1].mocap)
+        rows = exposed(request.height, len(moments))
+
+        def pose(moment: NDArray[np.float64]) -> None:
+            renderer.load(moment.tobytes(), states[-1].mocap)
             renderer.move(request.camera, sensor.offset, sensor.turn)
-            drawn.append(renderer.rgbd(*size))
-        drawn.reverse()
-        return rolling([rgb for rgb, _ in drawn]), drawn[0][1]
+
+        bands = []
+        for moment, band in zip(moments[1:], rows[1:], strict=True):
+            pose(moment)
+            bands.append(renderer.band(*size, band))
+        pose(moments[0])
+        rgb, depth = renderer.rgbd(*size)
+        return rolling([rgb[slice(*rows[0])], *bands], request.height), depth
 
     def close(self) -> None:
         if self._renderer is not None:
@@ -118,16 +124,26 @@ def moved(states: Sequence[m.SimState], age: float, count: int) -> list[NDArray[
     return [last - change * (float(a) / gap) for a in ages]
 
 
-def rolling(drawn: Sequence[Rgb]) -> Rgb:
-    """A picture (h, w, 3) whose rows were exposed one after the other, between evenly spaced moments `drawn`."""
-    if len(drawn) == 1:
+def exposed(height: int, count: int) -> list[tuple[int, int]]:
+    """For each of `count` evenly spaced moments of the read-out the rows that it has a share in, as first and end."""
+    last = count - 1
+    starts = [-(-k * height // last) for k in range(count)] if last else [0, height]
+    return [(starts[max(k - 1, 0)], starts[min(k + 1, last)] if last else height) for k in range(count)]
+
+
+def rolling(drawn: Sequence[Rgb], height: int) -> Rgb:
+    """A picture (h, w, 3) whose rows were exposed one after the other, between evenly spaced moments; `drawn`: of each
+    moment the rows that `exposed` says."""
+    last = len(drawn) - 1
+    if last == 0:
         return drawn[0]
-    height = len(drawn[0])
-    at = np.arange(height) * ((len(drawn) - 1) / height)
-    first = at.astype(int)
-    share = (at - first).astype(np.float32)[:, None, None]
-    mixed = np.empty(drawn[0].shape, np.float32)
-    for k in range(len(drawn) - 1):
-        rows = first == k
-        mixed[rows] = (1 - share[rows]) * drawn[k][rows] + share[rows] * drawn[k + 1][rows]
-    return np.round(mixed).astype(np.uint8)
+    rows = exposed(height, len(drawn))
+    mixed = np.empty((height, *drawn[0].shape[1:]), np.uint8)
+    for k in range(last):
+        first, end = rows[k + 1][0], rows[k][1]
+        # In parts of 256, which fit 16 bits with the level.
+        share = (((np.arange(first, end) * last - k * height) * 256) // height).astype(np.uint16)[:, None, None]
+        before = drawn[k][first - rows[k][0] : end - rows[k][0]]
+        after = drawn[k + 1][first - rows[k + 1][0] : end - rows[k + 1][0]]
+        mixed[first:end] = (before * (256 - share) + after * share + 128) >> 8
+    return mixed

@@ -57,6 +57,10 @@ assert ours.backend != "raycast" and numpy.array_equal(rgb, theirs.render())
 theirs.enable_depth_rendering()
 assert numpy.array_equal(depth, theirs.render())
 assert abs(depth[30, 40] - 1.5) < 0.002 and abs(depth[2, 2] - 2.0) < 0.002
+for rows in ((0, 20), (17, 43), (40, 60)):
+    band = ours.band("down", 80, 60, rows)
+    other = (numpy.abs(band.astype(int) - rgb[slice(*rows)]) > 1).any(axis=2)
+    assert band.shape == (rows[1] - rows[0], 80, 3) and other.mean() < 0.02, "an edge may round to the next pixel"
 """
 
 

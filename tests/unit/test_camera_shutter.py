@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from common import messages as m
-from services.camera.shutter import AGE, READOUT, SLICES, moved, rolling
+from services.camera.shutter import AGE, READOUT, SLICES, exposed, moved, rolling
 
 
 def state(t: float, *values: float, epoch: str = "e") -> m.SimState:
@@ -33,8 +33,18 @@ def test_without_a_motion_that_is_known_there_is_one_moment(before: m.SimState) 
 
 
 def test_rows_go_from_the_first_moment_to_the_last() -> None:
-    drawn = [np.full((60, 4, 3), level, np.uint8) for level in (0, 100, 200)]
-    rows = rolling(drawn)[:, 0, 0].astype(int)
+    drawn = [np.full((end - first, 4, 3), 100 * k, np.uint8) for k, (first, end) in enumerate(exposed(60, 3))]
+    rows = rolling(drawn, 60)[:, 0, 0].astype(int)
     assert rows[0] == 0 and rows[30] == 100 and rows[-1] == pytest.approx(200 * 59 / 60, abs=2)
     assert (np.diff(rows) >= 0).all() and np.diff(rows).max() <= 4
-    assert rolling(drawn[:1]) is drawn[0]
+    assert rolling(drawn[:1], 30) is drawn[0]
+
+
+@pytest.mark.parametrize(("height", "count"), [(480, 1), (480, 4), (61, 4), (7, 3)])
+def test_a_moment_is_drawn_where_it_has_a_share(height: int, count: int) -> None:
+    rows = exposed(height, count)
+    assert (rows[0][0], rows[-1][1]) == (0, height)
+    at = np.arange(height) * (count - 1) / height
+    for k, (first, end) in enumerate(rows):
+        has_a_share = np.flatnonzero(np.abs(at - k) < 1)
+        assert first <= has_a_share[0] <= first + 1 and has_a_share[-1] + 1 == end
