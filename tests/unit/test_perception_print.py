@@ -58,15 +58,26 @@ def test_the_end_of_a_word_beyond_the_edge_of_a_can_is_a_trace_of_it() -> None:
     assert traces(["tomato", "soup"], "HONEY") < LIKELY and traces(["tomato"], "") == 0.0
 
 
+def test_what_goes_around_a_can_is_put_together_of_what_each_side_shows() -> None:
+    assert likeness(["honey"], "HON / NEY") >= SURE and likeness(["honey"], "HON / HO") < LIKELY
+    assert likeness(["rice"], "ICE") < SURE and likeness(["popcorn"], "CORN") < LIKELY
+
+
+def test_a_short_word_is_known_in_words_that_are_glued_to_it_and_in_no_others() -> None:
+    assert likeness(["tea"], "GREENTEA", ("green", "tea")) >= SURE
+    assert likeness(["tea"], "STEAM", ("green", "tea")) == 0.0 == likeness(["tea"], "GREENTEAM", ("green", "tea"))
+
+
 def test_only_words_that_name_no_kind_colour_or_place_can_be_print() -> None:
     assert printed_words("the red box of corn flakes on the kitchen counter", COMMON) == ["corn", "flakes"]
     assert printed_words("my red mug", COMMON) == []
     assert printed_words("the small blue cup next to the bowl", COMMON) == []
 
 
-def test_of_two_readings_of_a_line_the_surer_one_stays() -> None:
+def test_of_two_readings_of_a_line_the_surer_or_longer_one_stays() -> None:
     lines = merged([Line("T0MATO", 0.7), Line("400g", 0.9)], [Line("TOMATO", 0.98), Line("SOUP", 0.9)])
     assert {line.text for line in lines} == {"TOMATO", "SOUP", "400g"}
+    assert [line.text for line in merged([Line("HO", 0.99)], [Line("HON", 0.97)])] == ["HON"]
 
 
 @pytest.mark.parametrize(

@@ -24,7 +24,7 @@ from services.perception.naming.observer import Observer
 from services.perception.naming.recognise import Match, matches
 from services.perception.naming.teaching import Teacher
 from services.perception.naming.text import LIKELY, SURE, likeness, printed_words, shown, traces
-from services.perception.naming.vocabulary import common_words, plain_words, printable, taken, unlike_said
+from services.perception.naming.vocabulary import COLOURS, common_words, plain_words, printable, taken, unlike_said
 from services.perception.view import View
 
 HALF_READ, SOMEWHAT, TRACE = 0.5, 0.4, 0.1
@@ -113,14 +113,16 @@ class Naming:
         words = self._printed(phrase)
         if not words:
             return []
-        scores = {o.id: likeness(words, o.text) for o in known}
+        said = normalise(phrase).split()
+        beside = {*said, *COLOURS}
+        scores = {o.id: likeness(words, o.text, beside) for o in known}
         best = max(scores.values(), default=0.0)
         # One that reads exactly so is meant rather than one that nearly does.
         read = [o for o in known if scores[o.id] >= max(SURE, min(best, 0.99))]
         # "Green tea" is what has both words on it, where several have "tea".
-        others = [w for w in normalise(phrase).split() if w not in words]
-        read = [o for o in read if not _unlike(o, others)]
-        hits = {o.id: sum(likeness([w], o.text) >= SURE for w in others) for o in read}
+        others = [w for w in said if w not in words]
+        read = [o for o in read if not _unlike(o, said, others)]
+        hits = {o.id: sum(likeness([w], o.text, beside) >= SURE for w in others) for o in read}
         return [o for o in read if hits[o.id] == max(hits.values())]
 
     def consult(self, query: m.ObjectQuery, objects: Sequence[m.WorldObject]) -> bool:
@@ -145,14 +147,16 @@ class Naming:
         """Labels of objects that could be meant and have to be seen from nearer to tell, the likeliest first, of equal
         ones that which is nearest to `base`."""
         words, name = self._asked_print(query), normalise(query)
+        said = name.split()
+        beside = {*said, *COLOURS}
         found: list[tuple[float, float, str]] = []
         for o in objects:
             away = math.hypot(o.position[0] - base[0], o.position[1] - base[1])
             if not o.held and name in self._matches.get(o.id, Match()).perhaps:
                 found.append((-1.0, away, o.label))
             elif not o.held and words and self._observer.can_read and printable(o):
-                sight, score = self._observer.sight(o.id), likeness(words, o.text)
-                if _unlike(o, name.split()):
+                sight, score = self._observer.sight(o.id), likeness(words, o.text, beside)
+                if _unlike(o, said, said):
                     score -= OTHER_LOOKS
                 if score >= LIKELY or sight is None or not sight.read:
                     found.append((-score, away, o.label))
@@ -165,13 +169,15 @@ class Naming:
         """The objects of which a person has to say whether they are meant: their print was half read, or they look
         somewhat like what was taught."""
         words, name = self._asked_print(query), normalise(query)
+        said = name.split()
+        beside = {*said, *COLOURS}
         found = []
         for o in objects:
             sight, like = self._observer.sight(o.id), 0.0
             if name in self._matches.get(o.id, Match()).perhaps:
                 like = SOMEWHAT
             elif words and sight is not None and sight.read and printable(o):
-                half = likeness(words, o.text) >= LIKELY and not _unlike(o, name.split())
+                half = likeness(words, o.text, beside) >= LIKELY and not _unlike(o, said, said)
                 like = HALF_READ if half else TRACE if traces(words, o.text) >= SURE else 0.0
             if like and not o.held:
                 found.append(m.PossibleObject(id=o.id, label=o.label, likeness=like, position=o.position, on=o.on))
@@ -200,5 +206,5 @@ class Naming:
         self._io.publish(topics.HOUSEHOLD_NAMES, m.TaughtNames(names=names))
 
 
-def _unlike(o: m.WorldObject, said: Sequence[str]) -> bool:
-    return unlike_said(o, said, lambda word: likeness([word], o.text) >= SURE)
+def _unlike(o: m.WorldObject, said: Sequence[str], others: Sequence[str]) -> bool:
+    return unlike_said(o, others, lambda word: likeness([word], o.text, {*said, *COLOURS}) >= SURE)

@@ -4,7 +4,7 @@ Words are compared by rapidfuzz, which is there where something can be read (the
 """
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from typing import NamedTuple
 
 from common.naming import normalise
@@ -29,6 +29,10 @@ MISTAKEN = 0.65
 doubt, one in four is."""
 
 
+ROUND = 0.95
+"""What a word counts whose parts alone were read. Chosen: surer than a wrong letter in seven."""
+
+
 class Line(NamedTuple):
     """A line as read, and how sure of it the reader is, 0 to 1."""
 
@@ -37,7 +41,7 @@ class Line(NamedTuple):
 
 
 def merged(known: Sequence[Line], read: Iterable[Line]) -> list[Line]:
-    """Lines of several looks; of two readings of one line the surer counts."""
+    """Lines of several looks; of two readings of one line the longer or surer counts."""
     from rapidfuzz import fuzz
 
     lines = list(known)
@@ -45,9 +49,14 @@ def merged(known: Sequence[Line], read: Iterable[Line]) -> list[Line]:
         alike = [i for i, other in enumerate(lines) if fuzz.ratio(line.text.lower(), other.text.lower()) >= SAME_LINE]
         if not alike:
             lines.append(line)
-        elif line.confidence > lines[alike[0]].confidence:
+        elif _worth(line) > _worth(lines[alike[0]]):
             lines[alike[0]] = line
-    return sorted(lines, key=lambda line: -line.confidence * len(line.text))[:MAX_LINES]
+    return sorted(lines, key=_worth, reverse=True)[:MAX_LINES]
+
+
+def _worth(line: Line) -> float:
+    """What goes around a can is read a part at a time: of two readings the longer one says more."""
+    return line.confidence * len(line.text)
 
 
 def sure_words(lines: Iterable[Line]) -> list[str]:
@@ -60,12 +69,13 @@ def shown(lines: Iterable[Line]) -> str:
     return " / ".join(line.text for line in lines)
 
 
-def likeness(words: Sequence[str], text: str) -> float:
+def likeness(words: Sequence[str], text: str, said: Collection[str] = ()) -> float:
     """How much the text reads like all of the words, 0 to 1; 0 when one of them is not there.
 
-    A word may be broken or glued to its neighbours in the text, and a letter in seven may be wrong.
+    A word may be broken or glued to its neighbours in the text, and a letter in seven may be wrong. `said`: words that
+    may be such neighbours, so that "greentea" has "tea" in it and "steam" has not.
     """
-    tokens = normalise(text).split()
+    tokens = [part for token in normalise(text).split() for part in _parted(token, {*words, *said})]
     if not tokens or not words:
         return 0.0
     glued = "".join(tokens)
@@ -91,9 +101,29 @@ def _word_in(word: str, tokens: Sequence[str], glued: str) -> float:
     from rapidfuzz import fuzz
 
     best = max(_similarity(form, token) for token in tokens for form in _forms(word))
+    best = max(best, ROUND * _covered(word, tokens))
     within = fuzz.partial_ratio(word, glued) / 100 if len(glued) >= len(word) else 0.0
     # Found within other words it may be a chance: "rice" is in "price".
     return float(max(best, within * 0.95))
+
+
+def _parted(token: str, words: Collection[str]) -> list[str]:
+    """A token as the words that it is glued of, or as it is."""
+    first = next((w for w in sorted(words, key=len, reverse=True) if w and token.startswith(w)), "")
+    if not first or first == token:
+        return [token]
+    rest = _parted(token.removeprefix(first), words)
+    return [first, *rest] if all(part in words for part in rest) else [token]
+
+
+def _covered(word: str, tokens: Sequence[str]) -> float:
+    """Share of a word's letters that stand in tokens which are parts of it: what goes around a can is read as "hon" from
+    one side and "ney" from another."""
+    letters: set[int] = set()
+    for token in tokens:
+        if SHORT <= len(token) < len(word) and (at := word.find(token)) >= 0:
+            letters |= set(range(at, at + len(token)))
+    return len(letters) / len(word)
 
 
 def _similarity(word: str, read: str) -> float:
