@@ -98,6 +98,8 @@ def understand(sentence: Sentence) -> Understood:
             said = interjection(sentence.said)
             if said.kind in ("queue", "replace", "aside"):
                 history = History(doing=about, step=f"find {about}") if said.kind == "aside" else History()
+                if said.kind == "replace":  # what was under way is the last command by then
+                    history = History(last=MissionOutcome(id="m", command=about, outcome="cancelled", reason="", t=NOW))
                 found = planned(said.text, FLAT, "", history)
                 return found._replace(kind="" if said.kind == "aside" else said.kind)
             return Understood(said.kind, [], [])
@@ -281,6 +283,7 @@ def _same(wanted: tuple[tuple[str, str], ...], acts: list[tuple[str, ...]]) -> b
         acts = [a for a in acts if a[0] != "say"] + [("say", said)]
     if [n for n, _ in wanted if n == "look"] and any(a[0] == "say" for a in acts):
         acts = [a for a in acts if a[0] != "say"]
+    acts = [("say", a[1].replace("'", " ")) if a[0] == "say" and wanted[0][0] == "say" else a for a in acts]
     return len(wanted) == len(acts) and all(_one(n, args, a) for (n, args), a in zip(wanted, acts, strict=True))
 
 
@@ -302,7 +305,7 @@ def _one(name: str, args: str, act: tuple[str, ...]) -> bool:
             said = act[1].lower() if act[0] == "say" else ""
             return bool(said) and all(any(w.lower() in said for w in part.split("|")) for part in args.split(", "))
         case "say":
-            return act[0] == "say" and re.sub(r"\W+", " ", act[1].lower()).strip() == first
+            return act[0] == "say" and re.sub(r"\W+", " ", act[1].lower()).strip() == re.sub(r"\W+", " ", first)
         case "put":
             return act[0] == "put" and _named(first, act[1], act[3]) and act[2] in second.split("/")
         case "fetch" | "take" | "find":

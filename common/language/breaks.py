@@ -28,8 +28,9 @@ _TELLS = re.compile(
 )
 """What is told of a thing before it is spoken of as "it"."""
 _WITH_PRONOUN = re.compile(
-    rf"\s+(?=(?:please )?(?:{'|'.join(sorted(HANDLING | {'bin'}))}) (?:(?:rid )?of )?(?:it|them|me "
-    rf"(?:it|that|them))\b)"
+    rf"\s+(?=(?:please )?(?:(?:{'|'.join(sorted(HANDLING | {'bin'}))}) (?:(?:rid )?of )?"
+    r"(?:it|them|me (?:it|that|them))\b|(?:i|we) (?:want|need|would like|would love) (?:it|them) "
+    r"(?:on|in|at|back|here|over)\b))"
 )
 """Before a request that speaks of what was told."""
 _SUBJECTS = frozenset(
@@ -90,6 +91,14 @@ _AT_END = re.compile(
     r"still)? (?:in|on|at|"
     r"empty|full|messy|untidy|dirty|a mess|cluttered|clean|clear|tidy)|you (?:find|see|spot))(?: .+)?)$"
 )
+_ASKS = re.compile(r"\b(?:tell (?:me|us)|see|know|check|look|find out|ask|say|and)$")
+"""How a question goes on with "if"."""
+_IF_ANY = re.compile(
+    r"^(?P<command>.+?),? if (?:there (?:is|are) (?:one|any|some)|you (?:can )?(?:find|see) "
+    r"(?:it|one|any)|(?:it|one) is (?:there|"
+    r"available)),? (?:and )?(?:otherwise|if not|or else|else),? (?P<other>.+)$"
+)
+"""A condition in the middle, of the thing that was just named."""
 _FIRST_THING = re.compile(r"\b(?:the|a|an|my|all) \w+(?: (?!(?:in|on|to|into|onto|at|from|away|over|next|near)\b)\w+)?")
 _OF_IT = re.compile(r"^(?:it|they)(?= (?:is|are)\b)")
 _ELSE = re.compile(
@@ -140,7 +149,9 @@ def conditional(text: str) -> str:
         for at in range(3, len(words) - 1):
             if words[at] in _VERBS and words[at + 1] in _BEGINS:
                 return f"{word} {' '.join(words[:at])} . {' '.join(words[at:])}"
-    elif (found := _AT_END.match(bare)) and bare.split()[0] in _VERBS:
+    elif (found := _IF_ANY.match(bare)) and (thing := _FIRST_THING.search(found["command"])):
+        return f"if you find {thing[0]} . {found['command']} . otherwise {found['other']}"
+    elif (found := _AT_END.match(bare)) and bare.split()[0] in _VERBS and not _ASKS.search(found["command"]):
         thing = _FIRST_THING.search(found["command"])
         condition = _OF_IT.sub(thing[0] if thing else "it", found["condition"])
         return f"{'unless' if found['word'] == 'unless' else 'if'} {condition} . {found['command']}"

@@ -89,7 +89,18 @@ CONSTRUCTIONS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
          rf"goes|go|ends? up)"
          rf" (?:back |put |placed )?({TO_PLACE}) {NP}", r"put \1 \2 \3"),
         (rf"(?:in|on|at) {NP} (?:is|are|there is|stands|lies) ((?:a|an|the|my|some) .+)", r"there is \2 on \1"),
+        # Looking whether something is there.
+        (rf"(?:go (?:and |over )?)?(?:look|check|see|peek)(?: on| in| into| at| over)* {NP} and "
+         rf"(?:tell me|see|let me know|"
+         rf"report|say)(?: back)? (?:if|whether) (?:there is|there are|you (?:can )?(?:see|find)) {NP}(?: there)?",
+         r"check \1 for \2"),
+        (rf"(?:go (?:and |over )?)?(?:look|check|see|peek)(?: on| in| into| at| over)* {NP} and "
+         rf"(?:tell me|see|let me know|"
+         rf"report|say)(?: back)? (?:if|whether) {NP} (?:is|are) (?:still )?(?:there|on it|in it)", r"check \1 for \2"),
         # Two places, one of them beside something.
+        (rf"(put|place|set|move|lay|stick|pop) {NP} (?:that|which) (?:is|stands|lies) (?:on|in|at) "
+         rf"{NP} (?:on|in|at|onto) {NP} "
+         rf"(?:right )?{_BESIDE} {NP}", r"\1 \2 on \3 next to \5 on \4"),
         (rf"(put|place|set|move|lay|drop|leave|stick|pop) (?:down )?{NP}(?: down)? (?:on|in|at|onto) {NP} "
          rf"(?:right )?{_BESIDE} {NP}",
          r"\1 \2 next to \4 on \3"),
@@ -126,14 +137,21 @@ VERBLESS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
     )
 )  # fmt: skip
 """Where the verb is missing."""
+_PARTICIPLE = (
+    "(brought|taken|put|thrown|given|carried|moved|set|laid|placed|tidied|cleaned|cleared|fetched|delivered|dropped|passed|"
+    "handed|collected|transferred|removed|returned|recycled|sorted|stacked|stowed)"
+)
 PASSIVE = tuple(
     re.compile(f"^{pattern}$")
     for pattern in (
+        rf"(?:could|can|may|might) (?:i|we)(?: please)? (?:have|get) {NP} {_PARTICIPLE}( .+)?",
         rf"(?:(?:i|we) would (?:\w+ ){{1,4}}?|it would be (?:\w+ ){{1,2}}?)(?:it )?if {NP} "
         rf"(?:were|was|could be|can be|is|are|got|gets) (\w+)( .+)?",
         rf"(?:have|get) {NP} (?:to be |be )?(\w+(?:ed|en|t|d|n))( .+)?",
         rf"(?:i|we) (?:want|need|would like|would love|expect|wish)(?: to see| to have| to get)? {NP} (?:to be |"
-        rf"be )?(\w+)( .+)?",
+        rf"be )?{_PARTICIPLE}( .+)?",
+        rf"(?:i|we) (?:want|need|would like|would love|expect|wish)(?: to see| to have| to get)? {NP} (?:to be |be )"
+        rf"(\w+)( .+)?",
         rf"(?:go and )?(?:make sure|see to it|ensure|make certain|arrange|see)(?: that| for)? {NP} (?:is|are|"
         rf"gets|get|to be|"
         rf"be|will be|ends up|end up)(?: being)?"

@@ -10,7 +10,8 @@ _CONTRACTIONS = tuple(
     (re.compile(short), long)
     for short, long in (
         # Spoken spellings.
-        (r"\b(?:pls|plz|plox)\b", "please"),
+        (r"([a-z])\1{2,}", r"\1"),
+        (r"\b(?:pls|plz|plox|ple+a+se+)\b", "please"),
         (r"\b(?:thx|tnx|thanx|cheers)\b", "thanks"),
         (r"\b(?:gimme|gimmie)\b", "give me"),
         (r"\blemme\b", "let me"),
@@ -62,6 +63,10 @@ _SAME = tuple(
          ""),
         (r"\b(this|that|these|those) (?:right |over )?(?:here|there)(?= (?:is|are|should|must|will|goes?)\b)", r"\1"),
         (r"\b(this|that) (\w+) (?:right |over )?(?:here|there)(?= is\b)", r"\1 \2"),
+        (r"\b(what|where|who|why|how|which) (?:on earth|in the world|the heck|the hell|the "
+         r"devil|exactly|actually)\b", r"\1"),
+        (r"\bboth (?=(?:to|here|on|in|into|onto|over)\b)", ""),
+        (r"\bone of each(?: of)?,? (?=(?:the|a|an)\b)", ""),
         (r"\bnothing (?:but|except|other than) ", ""),
         (r"\b(?:far|extreme|very|outer) (left|right)\b", r"\1"),
         (r"\b(left|right)[- ]hand\b", r"\1"),

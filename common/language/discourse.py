@@ -19,7 +19,8 @@ _REPAIR = re.compile(
     r"(?:,\s*wait,\s*(?=not\b)|[,.;]\s*(?:no|sorry|actually|rather)(?:,\s*|\s+)|,\s*(?:oh|well|hold on|hang on),\s*"
     r"|(?<=\w)(?<!\bsay)\s+no,?\s+(?=(?:the|my|on|in|to|at)\s)|,?\s+(?:no,? wait|wait,? no|oh,? "
     r"wait|no,? sorry|sorry,? no|"
-    r"sorry,? i mean(?:t)?|or rather|"
+    r"sorry,? i mean(?:t)?|or (?:rather|maybe |even |perhaps )?(?:better|no)(?: yet| still)?|better "
+    r"(?:yet|still)|or rather|"
     r"i mean(?:t)?|make that|scratch that|correction|no,? i mean(?:t)?|no,? make (?:that|it)|no,? not that|"
     r"on second thoughts?)(?:,\s*|\s+))"
     r"(?:i mean(?:t)?|i said|make (?:that|it)|rather|actually|sorry|wait|no)?\b,?\s*"
@@ -59,7 +60,8 @@ _PRESENTED = re.compile(
     r"(?: me)? (?:it|them|that|those|one)\b.*)$"
 )
 _PRESENTED_AT_ONCE = re.compile(
-    r"^(?P<thing>(?:the|my|that|this|those|these|our) (?!.*\b(?:is|are|was|were|has|have|said|says|told|and|if|not)\b)"
+    r"^(?P<thing>(?:the|my|that|this|those|these|our) "
+    r"(?!.*\b(?:is|are|was|were|has|have|said|says|told|and|if|not)\b)"
     rf"(?:\w+ ){{1,10}}?)(?P<rest>(?:(?:please|just|can you|could you|would you) )*(?:{'|'.join(sorted(HANDLING))})"
     r"(?: me| rid of)? (?:it|them|that|those)\b.*)$"
 )
@@ -141,6 +143,11 @@ def _settled(text: str, is_place: IsPlace) -> str:
     text = _refined(_without_lead(text))
     text = _AFTERTHOUGHT.sub(r"\g<said>, i mean \g<meant>", text) if text.count(",") else text
     text = _with_noun(_NEITHER.sub(lambda found: filled(found["one"], found["other"]), text))
+    found = _WHERE_IT_IS.match(bare := without_politeness(text))
+    if found and verb_first(bare) and not PREPOSITIONS & set(found["said"].split()):
+        text = f"{found['said']} {found['where']}"
+    if (found := _THE_OTHER_ONE.match(text)) and (verb_first(without_politeness(found["said"]))):
+        text = replaced(without_politeness(found["said"]), found["one"], is_place) or text
     if found := _NOT_THERE.match(text):
         text = found["said"]
     text = _refined(_repaired(text, is_place))
@@ -214,6 +221,14 @@ _NOT_THERE = re.compile(
     r"(?:the|my|a) \w+(?: \w+)?$"
 )
 """Where something is to be, and where not."""
+_WHERE_IT_IS = re.compile(
+    r"^(?P<said>\w+ (?:me )?(?:the|my|a|an|that) [^,]+?),? (?:it|they) (?:is|are|should be|must be|lies|stands)"
+    r"(?: lying| standing| still| somewhere)* (?P<where>(?:on|in|at|next to|near|beside) .+)$"
+)
+"""Something to be brought, and where it is."""
+_THE_OTHER_ONE = re.compile(
+    r"^(?P<said>.+?),? (?:but )?not (?:the|a|my) (?:\w+ )?\w+?,? (?:but )?(?P<one>(?:the|a|my) \w+ (?:one|\w+))$"
+)
 _NEITHER = re.compile(r"\bneither .+? nor (?P<other>(?:the |my )?(?:\w+ ){1,2}?)(?:but )?(?P<one>(?:the|a|my) [^,]+)")
 _ANY = re.compile(r"\b(an? (\w+)), any (?:\2|one|of them|will do)\b")
 

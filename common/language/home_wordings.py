@@ -4,7 +4,10 @@ from common.language.lexicon import ASK
 from common.language.wording import Wording
 
 _ON = "(on | in | into | onto | at | inside)"
-_ALWAYS = "(always | from now on | in future | in the future | generally)"
+_ALWAYS = (
+    "(always | from (now | today | this day) on | from today | as of now | starting today | henceforth | in future"
+    " | in the future | generally)"
+)
 _BELONG = "(go | goes | belong | belongs | live | lives | should go | should be | are kept | are put | are stored)"
 _USUALLY = "(usually | normally | mostly | generally | typically | most of the time | most often)"
 _THE = "[the | my | our | a]"
@@ -41,7 +44,8 @@ TOLD: tuple[Wording, ...] = (
     ),
     Wording(
         "rule",
-        f"[no] [(remember | know | learn | note) [that]] <thing> {_BELONG} {_ON} <spot>",
+        f"[no] [(remember | know | learn | note) [that]] <thing> {_BELONG} {_ON} <spot>"
+        f" | (i | we) (want | would like | prefer) <thing> [to be] (kept | stored | put away) {_ON} <spot>",
         heard="",
     ),
 )  # fmt: skip

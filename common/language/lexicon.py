@@ -77,7 +77,7 @@ COMMANDING: frozenset[str] = frozenset(
         TIDY,
         GO,
         SEEK,
-        "go | pick | wait | say | tell | sort | check | put",
+        "go | visit | pick | wait | say | tell | sort | check | put",
     )
     for option in verbs.split(" | ")
 ) - {"bin", "roll", "pop"}

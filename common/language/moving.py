@@ -28,6 +28,7 @@ MOVING: tuple[Wording, ...] = (
         heard="",
     ),
     Wording("put", f"(line | stack | pile | set | put | lay) <thing> (up | out) ({ON} | at) <spot>", heard=""),
+    Wording("put", f"drop (off <thing> | <thing> off) ({ON} | at) <spot>", heard=""),
     Wording(
         "put_down",
         "put (down <thing> | back down <thing> | <thing> [back] down) | set (down <thing> | <thing> down)",
@@ -69,6 +70,7 @@ MOVING: tuple[Wording, ...] = (
     ),
     # Bringing.
     Wording("deliver_there", f"({MOVE} | {PUT}) <thing> [over] there", heard=""),
+    Wording("deliver_there", "<thing> (goes | belongs | go | can go | should go | is to go) there", heard=""),
     Wording(
         "fetch",
         f"({BRING} | find) (me | us) <thing> [back]",
@@ -145,7 +147,12 @@ MOVING: tuple[Wording, ...] = (
     Wording("fetch", "(i | we) feel like [having | eating | drinking] <thing>", heard=""),
     Wording("find", f"({SEEK}) <thing>", heard="find <thing>"),
     Wording("find", "(i | we) (can not | cannot | could not | did not) find <thing> [anywhere]", heard=""),
-    Wording("find", "(i | we) [have] (lost | misplaced | mislaid) <thing>", heard=""),
+    Wording(
+        "find",
+        "(i | we) [have] (lost | misplaced | mislaid) <thing>"
+        " | (i | we) [have] (left | put) <thing> (somewhere | around here)",
+        heard="",
+    ),
     Wording("find", "show me where <thing> (is | are)", heard=""),
     Wording("find", "(help me | try to) (look for | find | search for | locate) <thing>", heard=""),
     Wording("find", "(search | look | look around) [through | in] <spot> for <thing>", heard=""),

@@ -35,7 +35,9 @@ _OCCASION = (
     r"(?:too much(?: (?:trouble|to ask|of a bother))?|asking too much|a (?:problem|bother)|any trouble|too "
     r"(?:hard|difficult)|"
     rf"possible|ok|okay|alright|all right|convenient|no trouble|no bother|fine)(?: (?:for|with|by) (?:you|me))?"
-    r"|if i (?:may|might|can|could)(?: ask| be so bold)?|if need be|if necessary|whenever|at your convenience|at "
+    r"|"
+    r"(?:when|whenever|if)(?:ever)? (?:it|that) (?:suits|pleases|is convenient for) (?:you|me)|if i "
+    r"(?:may|might|can|could)(?: ask| be so bold)?|if need be|if necessary|whenever|at your convenience|at "
     r"your leisure"
 )
 """Occasions and conditions that are none."""
@@ -49,11 +51,13 @@ _ADDRESS = (
     r"(?:scratch|disregard|ignore) that(?=,? \w)|never mind (?:what i said|that)(?=,? \w)|"
     "(?:hey|hi|hello) there|hey|hello|hi|hiya|yo|oi|howdy|ok|okay|alright|all right|right(?=,)|jarvis|robot|"
     "tidybot|buddy|mate|dude|pal|"
-    "man|sir|dear|(?:my|little|good|old|young) (?:man|lad|lady|fellow|chap|friend|helper|love|one)|sweetie|honey|"
-    "sweetheart|no time to (?:lose|waste)|do not just stand there|make yourself useful(?: "
+    "man|sir|dear|(?:my|little|good|old|young) (?:man|lad|lady|fellow|chap|friend|helper|love|one)"
+    "(?! (?:here |there )?(?:is|was|wants?|would|needs?|has|likes?|said|asked|brought|and)\\b)|sweetie|honey|"
+    "sweetheart|mind you|before (?:anything|everything) else|most importantly|first thing|no time to "
+    "(?:lose|waste)|do not just stand there|make yourself useful(?: "
     "and)?|(?:lend|give) me a hand"
     "(?: and)?|"
-    "bot|machine|my friend|darling|good (?:morning|evening|afternoon|day)|hello there|please|now|so|well|and|"
+    "bot|machine|darling|good (?:morning|evening|afternoon|day)|hello there|please|now|so|well|and|"
     "then|also|finally|"
     "just|kindly|quickly|maybe|perhaps|actually|anyway|oh|whoa|woah|hmm|ah|yeah|thanks|thank you|great|good|"
     "perfect|fine|"
@@ -62,7 +66,8 @@ _ADDRESS = (
     "sorry|by the way|next|guess what|you know what|you know(?! the| what| where| how| my)|see(?=,)|but(?! not)|"
     "i say|as i said|for me|one more thing|could it be that|"
     "(?:be )?quick|hurry(?: up)?|attention|fast|come on|pretty please|honestly|also|plus|oh and|first of all|"
-    r"(?:hold|hang) on(?! (?:to|for)\b)|first(?=\s+\w+\s+\w)|wait(?=\s+(?:stop|cancel|no)\b)|"
+    r"(?:hold|hang) on(?! (?:to|for|(?:\w+ "
+    r"){1,3}(?:seconds?|minutes?|moments?|secs?))\b)|first(?=\s+\w+\s+\w)|wait(?=\s+(?:stop|cancel|no)\b)|"
     r"(?:after that|afterwards|and then|forget (?:about )?that)(?=\s+(?!rule\b)\w)"
 )
 """Words to somebody, that carry no meaning."""
@@ -73,7 +78,7 @@ _WAY = (
 )
 _FRAMES = (
     # What makes a question or a wish of an order.
-    rf"{_CAN} {_YOU}(?! see (?:the|my|a|any|that)\b){_ADVERBS}(?: to(?= \w))?"
+    rf"{_CAN} {_YOU}(?! see (?:the|my|a|any|that)\b| rather\b){_ADVERBS}(?: to(?= \w))?"
     rf"(?: (?:be able to|be willing to|be up for|manage to|care to|try to|try and|like to|"
     rf"want to|"
     rf"mind|go ahead and|help me (?:and|by)|do me (?:a|the) favou?r(?: and| of)?|"
@@ -100,6 +105,9 @@ _FRAMES = (
     rf" to ask)?)"
     rf"(?: for you)?(?: (?:if you(?: {_CAN})?|if i ask(?:ed)? you to|that you|to))?",
     r"(?:it|that) would make (?:me|us|my day|him|her)(?: \w+){0,2} if you(?! (?:not|did not|never)\b)",
+    r"(?:would|will|does|might|could) it (?:trouble|bother|inconvenience|kill|hurt) you(?: too much)?(?: to| if you)|"
+    r"help (?:me|us|(?:a|an|your|my) (?:\w+ )?\w+) out(?: and| by| here and)?|"
+    r"while you are (?:over )?(?:in|at|on) (?:the|my|our) \w+(?: (?:room|table|shelf|box))?|"
     r"is it (?:ok|okay|possible|alright)(?: for you)?(?: (?:if you(?: can| could)?|to))?",
     rf"{_PERSON} would {_SO}(?:appreciate|like|love|be "
     rf"{_SO}(?:grateful|happy|glad|thankful|pleased|obliged|delighted))"
@@ -142,7 +150,8 @@ _ENDINGS = (
     "ok|alright|(?<=, )right|man|mate|"
     "buddy|dude|my friend|dear|love|darling|sir|real quick|really quick|quick|fast|if you please|or something|or so|"
     "and stuff|(?:any (?:one|\\w+) will do|(?:it|i) (?:does|do) not (?:matter|mind|care) which(?: one)?|"
-    "whichever)|while you are (?:at it|there|up|about it)|on (?:the|your) way(?: back)?|by the way|(?<=, )you know(?: "
+    "whichever)|while you are (?:at it|there|up|about it)|on (?:the|your) way(?: back)?|by the "
+    "way|(?<=, )you know(?: "
     "that)?|i "
     "guess|i think",
     "(?:and )?hurry(?: up)?|as (?:fast|quickly) as you can|asap|and be quick(?: about it)?|and that "
@@ -150,7 +159,9 @@ _ENDINGS = (
     "come on|go on|chop chop|before i forget|some ?time(?: today)?|today|tonight|this (?:morning|evening|afternoon)|"
     "(?:and )?(?:be|take) care(?:ful)?(?: with (?:it|them|that))?|carefully|gently|when you come back|"
     "(?:and )?thanks in advance|if you get (?:there|the chance)",
-    "after all|with you|from (?:there|here|where you (?:are|stand))|a (?:little )?bit|a "
+    "(?<!the )(?<!one )first|(?:before|for) (?:dinner|lunch|breakfast|supper|bedtime|bed|tea|school|work|the guests "
+    "(?:come|arrive))|already|altogether|in total|in all|overall|(?:(?:would|do) you )?mind (?:having|taking) a "
+    "look(?: for it)?|after all|with you|from (?:there|here|where you (?:are|stand))|a (?:little )?bit|a "
     "little|somewhat|for a (?:bit|while)",
     "(?<!try )(?<!it )(?<!that )(?<!same )(?<!thing )(?<!once )(?<!go )(?<!look )again",
     "as soon as (?:you can|possible)|(?:will|would|could|can|won't) you|would be (?:great|nice|lovely|good)(?= please)",

@@ -8,7 +8,8 @@ ABOUT_THE_WORLD: tuple[Wording, ...] = (
         "seen",
         "[tell me] what (do you | can you | are you able to) see [now | right now | here | from (here | there | "
         "where you are)]"
-        " | tell me what you [can] see", heard="what (do | can) you see"
+        " | tell me what you [can] see | what have you seen [so far | today | until now | up to now "
+        "| around here]", heard="what (do | can) you see"
     ),
     Wording(
         "contents",
@@ -30,6 +31,7 @@ ABOUT_THE_WORLD: tuple[Wording, ...] = (
         "(on | in | at) <spot>",
         heard="what is that (on | in) [the] <place>",
     ),
+    Wording("where", f"{ASK} where (has | have | is | are) <thing> (gone | been | got to | ended up)", heard=""),
     Wording("where", f"{ASK} (where | whereabouts) [exactly] (is | are) <thing>", heard="where (is | are) <thing>"),
     Wording(
         "where",
@@ -60,7 +62,6 @@ ABOUT_THE_WORLD: tuple[Wording, ...] = (
     Wording("where", f"{ASK} where <thing> (is | are | was | went | has gone | have gone | might be | "
                      f"could be)", heard=""),
     Wording("where", f"{ASK} where (can | could | might | would) <thing> be", heard=""),
-    Wording("where", f"{ASK} where (has | have) <thing> (gone | been | got to | ended up)", heard=""),
     Wording(
         "where",
         f"{ASK} (where | when) (did | do | would | can | could | have) (you | i | we) [last]"
@@ -120,6 +121,7 @@ ABOUT_THE_WORLD: tuple[Wording, ...] = (
         " do we have)",
         heard="",
     ),
+    Wording("compare", f"{ASK} (is | are) <thing> <words> than <spot>", heard=""),
     Wording("beside", f"{ASK} what {BE} [{LYING}] <words>", heard=""),
 )  # fmt: skip
 """Where things are, what and how many there are."""
@@ -148,7 +150,8 @@ ABOUT_ITSELF: tuple[Wording, ...] = (
         " | (what | which <words>) are you (getting | bringing | fetching | looking for | searching "
         "for | taking | after)"
         " | where are you (going | headed | off to) | what are you (going to do | about to do) [next | now]"
-        " | how far (are you | have you (got | come)) | are you (done | busy | finished | ready) [yet]"
+        " | how far (are you | have you (got | come)) | are you (done | busy | finished | ready | (nearly | almost) "
+        "(there | done | finished | ready)) [yet]"
         " | what is (happening | your [current | present] (task | job | mission | status)) | what is taking "
         "[you] so long | "
         "[status] report | status | (give me | any) [a | an] (update | news) | how are things",
@@ -188,7 +191,8 @@ ABOUT_ITSELF: tuple[Wording, ...] = (
     ),
     Wording(
         "abilities",
-        "what [else | jobs | things | tasks | work | stuff] (can | could) you (do | manage | handle) "
+        "(tell me | explain) what you (can do | are able to do) | what [else | jobs | things | tasks "
+        "| work | stuff] (can | could) you (do | manage | handle) "
         "[for (me | us) | here] | what are you (able to do | capable of | good (at | for))"
         " | how can you help [me | us] | what (do you know how to do | can i (ask [you] [for | to do] | "
         "say [to you]))"

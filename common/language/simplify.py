@@ -2,7 +2,9 @@
 
 from common.language.normalise import Words
 
-_ADVERBS = frozenset({"just", "very", "quite", "rather", "perhaps", "maybe", "please", "also", "too", "straight"})
+_ADVERBS = frozenset(
+    {"just", "very", "quite", "rather", "perhaps", "maybe", "please", "also", "too", "straight", "together"}
+)
 _NO_ADVERBS = frozenset({"only", "family", "early"})
 _PARTICLES = frozenset({"back", "over", "out", "up", "down", "on", "along", "off", "away", "round", "across", "right"})
 _AFTER_PARTICLE = frozenset(

@@ -14,6 +14,7 @@ _FIRST = re.compile(
     rf"^(?:in|after|wait(?: for)?|give (?:it|me)) (?P<time>{DURATION})(?: from now| time)?,? (?:and "
     rf"|then )*(?P<rest>.+)$"
 )
+_JUST = re.compile(rf"^(?:just )?(?P<time>{DURATION}),? (?:and )?then (?P<rest>.+)$")
 _LAST = re.compile(rf"^(?P<rest>.+?),? (?:in|after) (?P<time>{DURATION})(?: from now| time)?$")
 _STAY = re.compile(
     rf"^(?:(?:go|drive|walk|move|run|head|come) (?P<to>.+?) and )?(?:stay|remain|wait|stand|stop|hang "
@@ -31,7 +32,7 @@ def in_time(text: str) -> str:
         going = f"go {found['to']}" if found["to"] else f"go to{_place(found['place'])}"
         rest = re.sub(r"^(?:,| and| then)+ ?", "", found["rest"] or "")
         return " . ".join(filter(None, (going, f"wait {_plain(found['time'])}", rest)))
-    for pattern in (_FIRST, _LAST):
+    for pattern in (_FIRST, _JUST, _LAST):
         if (found := pattern.match(bare)) and verb_first(without_politeness(found["rest"])):
             return f"wait {_plain(found['time'])} . {found['rest']}"
     return text

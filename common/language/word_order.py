@@ -62,13 +62,21 @@ def reworded(words: Words, verbs_only: bool = False, deeper: bool = True) -> Ite
 
 _WITHIN = (
     (re.compile(r"\bwhichever (\w+) is (?:the )?(closest|nearest|biggest|smallest|tallest|shortest)"), r"the \2 \1"),
+    (re.compile(r"\bthe first (\w+) (?:that )?you (?:can )?(?:see|find|get|spot)$"), r"a \1"),
     (re.compile(r"\banother$"), "another one"),
     (re.compile(r"\b(?:the )?(?:others|rest)$"), "the other ones"),
     (
         re.compile(r"(?<=\w )(?:whatever|what)(?: is| lies| stands)?(?: lying| standing| sitting)? (?=between\b)"),
         "the thing ",
     ),
-    (re.compile(r"\b(?:whatever|anything that|everything that|all that) (?:is|lies|stands) "), "everything "),
+    (
+        re.compile(
+            r"\b(?:whatever|anything that|everything that|all that|all the (?:things|stuff) that|(?<=\w )what) "
+            r"(?:is|are|lies|stands) (?:lying |standing |sitting )?(?=(?:on|in|at|left|there)\b)"
+        ),
+        "everything ",
+    ),
+    (re.compile(r"\bthe (\w+) (closest|nearest) to (?:you|me|us|here)$"), r"the \2 \1"),
     (
         re.compile(
             r"\bthe (\w+) (?:that|which) (?:is|are|stands|lies) (?:the )?(closest|nearest|biggest|smallest|"
@@ -100,7 +108,8 @@ def _candidates(text: str, words: Words, verbs_only: bool) -> Iterator[str]:
 def _verb(word: str) -> str:
     """The verb of `tidied`, `thrown` and `clearing`; "" of words that are none."""
     verb = infinitive(word, COMMANDING)
-    return verb if verb in COMMANDING and (verb != word or word in ("put", "set")) else ""
+    same = word in ("put", "set", "tidy", "clean", "clear")  # the participle, or "needs a tidy"
+    return verb if verb in COMMANDING and (verb != word or same) else ""
 
 
 def _fronted(words: Words) -> Iterator[str]:

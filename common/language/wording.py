@@ -10,7 +10,8 @@ Action = Literal[
     "name_place", "rule", "rule_always", "forget_rule", "rules", "belongs", "usual", "last_seen",
     "look_around", "check", "go_and_see", "mention", "put_back", "put_where", "again", "thanks",
     "recall", "wish_at", "named_at", "put_held",
-    "exists", "is_at", "colour", "beside", "kinds", "extreme", "condition", "condition_not", "state", "state_not",
+    "exists", "is_at", "colour", "beside", "kinds", "extreme", "compare",
+    "condition", "condition_not", "state", "state_not",
     "rooms", "doing", "done", "why", "origin", "abilities", "identity",
 ]  # fmt: skip
 """What a wording asks for; `services/planner/rules.py` has a function for each that can be planned."""
@@ -18,7 +19,7 @@ Kind = Literal["command", "reply", "name", "told"]
 QUESTIONS: frozenset[Action] = frozenset(
     {
         "seen", "contents", "holding", "whereabouts", "where", "number", "recall", "exists", "is_at", "colour",
-        "beside", "kinds", "extreme",
+        "beside", "kinds", "extreme", "compare",
         "rooms", "doing", "done", "why", "origin", "abilities", "identity", "rules", "belongs", "usual", "last_seen",
     }
 )  # fmt: skip

@@ -25,7 +25,8 @@ WORDINGS: tuple[Wording, ...] = (
     Wording(
         "cancel",
         "[no] (cancel | abort | scrap) [that | this | it | the (mission | task | job | command | plan)]"
-        " | never mind | nevermind | forget [about] (it | that) | leave it [be | then] | skip it | "
+        " | cancel cancel | abort abort | abort mission"
+        " | never mind | nevermind | [no | nah | nope] forget [about] (it | that) | leave it [be | then] | skip it | "
         "drop that | call it off"
         " | (i | we) [have] changed (my | our) mind | [actually] do not bother [any more | with (it | that)]"
         " | [(it | that) is] (not needed | no longer needed | not necessary) [any more]"
@@ -47,7 +48,8 @@ WORDINGS: tuple[Wording, ...] = (
         heard="yes [please | it is] | yeah | correct", kind="reply", reason="I did not ask anything",
     ),
     Wording(
-        "no", "(no | nope | nah) [thanks | i did not | that is wrong] | [that is] (wrong | incorrect) | negative "
+        "no", "no no [no] | (no | nope | nah) [thanks | i did not | that is wrong] | [that is] "
+              "(wrong | incorrect) | negative "
               "| not (that | really | at all)"
         " | [no] that is not (what i (said | meant | want | asked for) | right | correct | it | true) | not what "
         "i (said | meant)"

@@ -10,12 +10,13 @@ from services.planner.phrases import Phrase, read
 from services.planner.places import spot
 from services.planner.plan_builder import NOT_UNDERSTOOD, PlanBuilder, Refusal
 from services.planner.pronouns import Referent
-from services.planner.relations import between, holds, spoken
+from services.planner.relations import between, holds, spoken, superlative
 from services.planner.resolve import referent, referents
 from services.planner.telling import MANY, a, be, capital, not_after_moving, place_of
-from services.planner.vocabulary import ANY
+from services.planner.vocabulary import ANY, Sense
 from services.planner.world import BelievedObject
 
+_FROM_HERE = {("to", w) for w in ("me", "you", "us", "here")}
 MAX_BESIDE = 3
 """Neighbours told at once (chosen)."""
 
@@ -93,13 +94,25 @@ def colour(builder: PlanBuilder, slots: Slots) -> None:
 def extreme(builder: PlanBuilder, slots: Slots) -> None:
     """Which of several is the biggest, the nearest or the leftmost."""
     not_after_moving(builder)
-    words, noun = without_determiners(slots["words"]), without_determiners(slots.get("thing", ()))
+    said = slots["words"][:-2] if slots["words"][-2:] in _FROM_HERE else slots["words"]
+    words, noun = without_determiners(said), without_determiners(slots.get("thing", ()))
+    if "or" in words and words[0] in WHICH:  # which is bigger, the mug or the can
+        at = words.index("or")
+        sides = (words[1:at], words[at + 1 :])
+        two = [m.object for part in sides for m in referents(builder, part)]
+        which = WHICH[words[0]]
+        found = superlative(builder, Phrase(Sense(every=True), "thing", which=which), [t for t in two if t.seen])
+        builder.say(f"The {found.label}. It is {place_of(builder, found)}.")
+        return
     if noun and words[:1] and words[0] in PREPOSITIONS:  # which mug is on the desk
         asked: Words = ("the", *noun, *words)
     elif words and words[0] in WHICH and (not noun or len(words) == 1):  # which mug is the biggest
         asked = ("the", *words, *noun)
     elif not noun and len(words) > 1 and ANY & set(words):  # what is the red thing on the desk
         asked = ("the", *words)
+    elif noun and all(w in builder.vocabulary.colours or w == "and" for w in words):  # which of the things are red
+        _told_one_by_one(builder, [m.object for m in referents(builder, ("all", *words, *noun))])
+        return
     else:
         raise Refusal(f"{NOT_UNDERSTOOD} {' '.join(slots['words'])!r}")
     meant = referent(builder, asked).object
@@ -107,6 +120,28 @@ def extreme(builder: PlanBuilder, slots: Slots) -> None:
         raise Refusal(f"I have not seen that {' '.join(noun) or 'thing'}")
     builder.say(f"The {meant.label}. It is {place_of(builder, meant)}.")
     builder.last = [meant]
+
+
+def compare(builder: PlanBuilder, slots: Slots) -> None:
+    """Is one thing bigger than another?"""
+    words = slots["words"]
+    which = WHICH.get(words[-1])
+    if which is None or len(words) > 1:
+        raise Refusal(f"{NOT_UNDERSTOOD} {' '.join(words)!r}")
+    one, other = (referent(builder, slots[name]).object for name in ("thing", "spot"))
+    for item in (one, other):
+        if not item.seen:
+            raise Refusal(f"I have not seen the {item.label}")
+    most = superlative(builder, Phrase(Sense(every=True), "thing", which=which), [one, other])
+    builder.say(f"{'Yes' if most is one else 'No'}, the {most.label} is {words[-1]}.")
+
+
+def _told_one_by_one(builder: PlanBuilder, things: list[BelievedObject]) -> None:
+    for item in things:
+        if not item.seen:
+            raise Refusal(f"I have not seen the {item.label}")
+        builder.say(f"The {item.label} is {place_of(builder, item)}.")
+    builder.last = things
 
 
 def beside(builder: PlanBuilder, slots: Slots) -> None:

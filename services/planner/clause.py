@@ -48,7 +48,30 @@ def _joined(words: Words, builder: PlanBuilder, verb: str, at: int, alone: bool)
         builder.adopt(trial)
         return
     assert worst is not None
-    raise worst
+    if not _run_on(words, builder, verb, at):
+        raise worst
+
+
+def _run_on(words: Words, builder: PlanBuilder, verb: str, at: int) -> bool:
+    """Carry out `go to the kitchen look around come back`: commands one after the other without a word between them."""
+    for cut in range(2, len(words)):
+        if words[cut] not in _BEGINS or words[cut - 1] in _NO_END or words[0] not in VERBS:
+            continue
+        trial = builder.fork()
+        try:
+            _command(words[:cut], trial, verb, at, False)
+            _joined(words[cut:], trial, words[0], at + cut, False)
+        except _Failure:
+            continue
+        builder.adopt(trial)
+        return True
+    return False
+
+
+_BEGINS = (COMMANDING | {"look"}) - {"place", "pass", "hand", "spot", "head", "set", "lay", "left", "clean", "clear"}
+"""Verbs with which the next command may begin without a word before it."""
+_NO_END = DETERMINERS | {"and", "to", "not", "you", "i", "we", "that", "please", "can", "or", "never"}
+"""Words with which no command ends."""
 
 
 def _command(words: Words, builder: PlanBuilder, verb: str, at: int, alone: bool) -> None:
@@ -91,7 +114,7 @@ def _apply(words: Words, builder: PlanBuilder, verb: str, alone: bool) -> str | 
     reason = apply_first(words, builder, "command", "reply")
     if reason == "" and alone:
         return apply_first(words, builder, "name")
-    if reason == "" and verb in ("go", "drive", "come", "head") and builder.vocabulary.spot(words):
+    if reason == "" and verb in ("go", "drive", "come", "head", "visit") and builder.vocabulary.spot(words):
         return apply_first(("go", "to", *words), builder, "command")
     if reason == "" and verb and _is_thing(words, builder):
         # "put the mug on the table and the can on the counter": the verb is said once.

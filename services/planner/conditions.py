@@ -1,5 +1,7 @@
 """What is done only if something is there: the condition is looked into first. Pure."""
 
+from contextlib import suppress
+
 from common.language.condition_wordings import EMPTY, LITTERED
 from common.language.normalise import enumeration, without_determiners
 from common.language.pattern import Slots
@@ -22,6 +24,8 @@ def condition(builder: PlanBuilder, slots: Slots) -> None:
 def condition_not(builder: PlanBuilder, slots: Slots) -> None:
     """Is the thing missing? If it is there, what follows is left."""
     there, _ = _look_into(builder, slots)
+    with suppress(Refusal):
+        builder.last = [m.object for m in referents(builder, slots["thing"])]
     builder.unmet = f"I see {enumeration([f'the {t.label}' for t in there])}, so I leave it." if there else ""
 
 
@@ -56,6 +60,7 @@ def _look_into(builder: PlanBuilder, slots: Slots) -> tuple[list[BelievedObject]
     name = " ".join((*phrase.colours, phrase.singular or phrase.noun))
     if phrase.relation in ("on", "near") and builder.vocabulary.spot(phrase.anchor):
         place, known, surfaces = things_at(builder, phrase.anchor)
+        builder.spot = place
         fits = fitting(builder, phrase)
         there = [t for t in known if fits(t)]
         if not there:

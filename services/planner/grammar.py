@@ -9,7 +9,7 @@ from common.language.discourse import commands
 from common.language.exchange import noun_phrases, replaced
 from common.language.lexicon import COMMANDING
 from common.language.meaning import WORDS
-from common.language.normalise import DETERMINERS, Words, normalise
+from common.language.normalise import Words, normalise
 from common.messages import ActionPlan, PlanStep, RejectedPlan
 from services.planner import answers
 from services.planner.choice_points import ChoicePoints, every
@@ -189,7 +189,8 @@ def _steps(command: str, builder: PlanBuilder) -> list[PlanStep]:
         raise Refusal("I did not hear a command")
     if len(command) > MAX_CHARACTERS or any(len(s.split()) > MAX_WORDS for s in sentences):
         raise Refusal("that is too long a sentence for me")
-    names = len(sentences) > 1 and all(s.split()[0] in DETERMINERS for s in sentences)
+    first = read(tuple(sentences[0].split()), builder.vocabulary)
+    names = len(sentences) > 1 and isinstance(first, Phrase) and not first.sense.new
     verb = "bring" if names else ""
     said: Words = ()
     for number, sentence in enumerate(sentences):

@@ -107,6 +107,18 @@ def check(builder: PlanBuilder, slots: Slots) -> None:
     builder.last = there
 
 
+def exists(builder: PlanBuilder, slots: Slots) -> None:
+    """Where there is something of the kind; a place where none is known is looked at."""
+    phrase = read(slots["thing"], builder.vocabulary)
+    placed = isinstance(phrase, Phrase) and phrase.relation == "on" and bool(builder.vocabulary.spot(phrase.anchor))
+    if placed and isinstance(phrase, Phrase):
+        fits, (_, known, _) = fitting(builder, phrase), things_at(builder, phrase.anchor)
+        if not any(map(fits, known)):
+            check(builder, slots)
+            return
+    answers.where(builder, slots)
+
+
 def is_at(builder: PlanBuilder, slots: Slots) -> None:
     """Where something is that was asked for at a place; what nobody has seen is looked for there."""
     phrase = read(slots["thing"], builder.vocabulary)

@@ -4,7 +4,7 @@ import re
 from collections.abc import Sequence
 
 from common.language.contractions import expand
-from common.language.exchange import PREPOSITIONS, IsPlace, replaced
+from common.language.exchange import PREPOSITIONS, IsPlace, noun_phrases, replaced, verb_first
 from common.language.lexicon import HANDLING
 from common.language.meaning import readings
 from common.language.normalise import DETERMINERS, normalise
@@ -16,12 +16,14 @@ _NO = re.compile(
     r"thanks|thank you|but|sorry|well) )*"
     r"(?:not (?:on|in|to|into) (?:the|my) \w+ )?(?:i|we) (?:said|meant|mean|wanted|asked for)(?: it| that| "
     r"them)? (?P<rest>.+)$"
+    r"|^(?:wait |no |sorry |actually )*make (?:it|that) (?P<made>.+)$"
     r"|^(?:no |nope |wrong |but )*not (?:this|that|here|there)(?: one| \w+)? (?:but )?(?P<other>(?:the|on|in|to|"
     r"into) .+)$"
 )
 _PLACED = re.compile(r"\w (?:next to|beside|near|on|in|into|onto|to|at) \w")
 _TOO = re.compile(
-    r"^(?:and |now |then )?(?P<thing>.+?) (?:too|as well|also)(?: please)?$|^(?:and|what about) (?P<other>.+)$"
+    r"^(?!.*\b(?:goes|go|belongs?|is|are|there)\b)(?:and |now |then )?(?P<thing>.+?) (?:too|as well|also)(?: please)?$"
+    r"|^(?:and|what about) (?P<other>.+)$"
 )
 
 
@@ -34,9 +36,11 @@ def repeated(command: str, clauses: Sequence[str], told: History, is_place: IsPl
         if wording.action == "again":
             return (replaced(last, " ".join(slots["thing"]), is_place) or last) if "thing" in slots else last
     if (found := _NO.match(expand(normalise(command)))) and (
-        (rest := found["rest"] or found["other"]).split()[0] in DETERMINERS | PREPOSITIONS
+        (rest := found["rest"] or found["other"] or found["made"]).split()[0] in DETERMINERS | PREPOSITIONS
     ):
         return replaced(normalise(last), rest, is_place) or command
+    if told.last is not None and told.last.outcome == "cancelled" and (other := _instead(clauses[0], last, is_place)):
+        return other
     if found := _TOO.match(without_politeness_at_end(command)):
         thing = found["thing"] or found["other"]
         if found["other"] and last.split()[0] in HANDLING and _PLACED.search(thing):
@@ -44,6 +48,18 @@ def repeated(command: str, clauses: Sequence[str], told: History, is_place: IsPl
         if thing.split()[0] in DETERMINERS:
             return replaced(normalise(last), thing, is_place) or command
     return command
+
+
+def _instead(said: str, last: str, is_place: IsPlace) -> str:
+    """What is to be done in the place of the `last` command: with another thing, elsewhere, or with the same thing."""
+    first, *rest = said.split()
+    if first in PREPOSITIONS or (first in DETERMINERS and {"one", "ones"} & set(rest)):
+        return replaced(normalise(last), said, is_place) or ""
+    spans = noun_phrases(normalise(last).split())
+    if not spans or not verb_first(said) or not {"it", "them"} & set(rest):
+        return ""
+    thing = " ".join(normalise(last).split()[slice(*spans[0])])
+    return re.sub(r"(?<=\w )(?:it|them)\b", thing, said, count=1)
 
 
 def without_politeness_at_end(text: str) -> str:

@@ -26,12 +26,18 @@ def referents(builder: PlanBuilder, words: Words, prefer_held: bool = False) -> 
     phrase = read(words, builder.vocabulary)
     if isinstance(phrase, Phrase):
         return _resolve(builder, phrase, prefer_held)
-    words = words[1:] if words[0] == "both" else words  # "both the mug and the can"
+    words = words[1:] if words[0] in ("both", "either") else words  # "both the mug and the can"
+    if "or" in words[1:-1]:
+        at = words.index("or", 1)
+        options = [referents(builder, part, prefer_held) for part in (words[:at], words[at + 1 :])]
+        return builder.choices.pick(options)
     for at in range(1, len(words) - 1):
         if words[at] == "and":
             if _is_named(builder, words[:at]) and not _is_named(builder, words[at + 1 :]):
                 continue
             try:
+                if shared := _shared_place(builder, words[:at], words[at + 1 :]):
+                    return [*referents(builder, shared, prefer_held), *referents(builder, words[at + 1 :], prefer_held)]
                 return [*referents(builder, words[:at], prefer_held), *referents(builder, words[at + 1 :], prefer_held)]
             except Refusal:
                 continue
@@ -39,6 +45,16 @@ def referents(builder: PlanBuilder, words: Words, prefer_held: bool = False) -> 
         if words[at] in _NEW_PHRASE and all(_is_plain(builder, part) for part in (words[:at], words[at:])):
             return [*referents(builder, words[:at], prefer_held), *referents(builder, words[at:], prefer_held)]
     raise Refusal(unknown(builder, words, phrase))
+
+
+def _shared_place(builder: PlanBuilder, one: Words, other: Words) -> Words:
+    """`the can from the dresser` of `the can and bottle from the dresser`; () where the place is of one alone."""
+    if not other or other[0] in DETERMINERS or other[0] in NUMBERS:
+        return ()
+    first, second = read(one, builder.vocabulary), read(other, builder.vocabulary)
+    if not isinstance(first, Phrase) or not isinstance(second, Phrase) or first.relation or not second.relation:
+        return ()
+    return (*one, "on", *second.anchor) if second.relation == "on" else ()
 
 
 _NEW_PHRASE = (DETERMINERS | NUMBERS.keys()) - {"couple", "this", "that"}

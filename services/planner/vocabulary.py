@@ -1,5 +1,6 @@
 """The words for objects and places: from the household, from what was seen, and from the configuration. Pure."""
 
+import re
 from collections.abc import Iterable
 from typing import Any
 
@@ -177,8 +178,12 @@ class Vocabulary:
             return None
         if words[-1] in self.colours or words[-1] in WHICH or words[-1] in ANY | WHOLE or words[-1] in UNITS:
             return None
-        known = self.spot(words) or self.furniture(words)
+        known = self.spot(words) or self.furniture(words) or self._and_place(words)
         return None if known else Sense(names=frozenset({" ".join(words)}), new=True)
+
+    def _and_place(self, words: Words) -> bool:
+        """Are they the name of a thing and that of a place, `box bookshelf`?"""
+        return any(self.noun(" ".join(words[:at])) and self.spot(words[at:]) for at in range(1, len(words)))
 
     def words(self) -> tuple[set[str], set[str]]:
         """(colours, words of names) that are known."""
@@ -201,6 +206,7 @@ class Vocabulary:
                 return self.spot(tuple(head.split()), where.name)
         for preposition in ("on", "at", "by"):
             head, found, tail = phrase.partition(f" {preposition} ")
+            head = re.sub(r" (?:that|which) (?:is|are|stands|lies)$", "", head)
             inside = self._places.get(" ".join(without_determiners(tuple(head.split())))) if found else None
             if inside is not None and inside.room:  # in the bedroom on the dresser
                 return self.spot(tuple(tail.split()), inside.name)

@@ -44,6 +44,7 @@ _INSTEAD_OF = re.compile(
 """`instead of the red mug bring the blue one`."""
 
 
+_RATHER = re.compile(r"^(?:actually |in fact )?(?:i|we) would (?:rather|prefer|sooner)\b")
 _ONE_MOMENT = re.compile(
     r"^(?:(?:hold on|hang on|wait|stop)(?: (?:a|one|just a|for a))?|one|just a) "
     r"(?:second|sec|moment|minute|bit|tick)$"
@@ -72,7 +73,7 @@ def interjection(said: str) -> Interjection:
         return Interjection("replace", words[unwanted.end() :])
     if _NO_LONGER.match(words):
         return Interjection("cancel", said)
-    if words.startswith("not "):
+    if words.startswith("not ") or _RATHER.match(words):
         return Interjection("replace", said)
     for kind, begin, end in (("replace", _INSTEAD, _INSTEAD_END), ("queue", _LATER, _LATER_END)):
         rest = words
