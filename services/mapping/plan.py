@@ -50,8 +50,8 @@ class Lidar(NamedTuple):
 
 def floor_plan(name: str, lidar: Lidar, grid: Grid, states: NDArray[np.uint8], level: Array, low: Array) -> Household:
     """The household of a mapped home; `level` and `low` (n, 3) [map] are points of level surfaces and of low things."""
-    surfaces = _separate(find_surfaces(level))
     bins = _bins(grid, low)
+    surfaces = [s for s in _separate(find_surfaces(level)) if not _rim(s, bins)]
     reached = _reached(states)
     receptacles = _named(surfaces, bins, grid, reached)
     taken = [r.outline.grown(0.06) for r in receptacles]
@@ -82,6 +82,11 @@ def _separate(surfaces: list[Surface]) -> list[Surface]:
         if not on:
             kept.append(s)
     return kept
+
+
+def _rim(s: Surface, bins: list[tuple[Rectangle, float]]) -> bool:
+    """True for the rim of an open bin, which is level as well."""
+    return any(o.contains(s.outline.x, s.outline.y) and abs(s.height - rim) < RIM_BAND for o, rim in bins)
 
 
 def _reached(states: NDArray[np.uint8]) -> Cells:

@@ -15,8 +15,11 @@ from common.floor_plan import Wall
 from common.geometry import Rectangle
 from services.mapping.scan import Array
 
-NEIGHBOURS, FLAT = 14, 0.85
-"""Points that a direction is fitted to [count], and how much longer than wide they must lie [-]."""
+AROUND, NEIGHBOURS, LEAST, FLAT = 0.12, 48, 6, 0.85
+"""How far from a point its direction is fitted [m], to how many cells of points at most and at least [count], and how
+much longer than wide they must lie [-]. Chosen: ten cells along a wall, and the four rows that noise makes of it."""
+TAIL = 0.07
+"""Distance [m] from a face within which what else lies along it is its noise, or a skirting board."""
 THIN = 0.025
 """Side of the cells whose points are merged [m]: two and a half times the lidar's noise."""
 TURN = math.radians(12)
@@ -56,15 +59,15 @@ def find_walls(points: Array, eyes: Array, taken: list[Rectangle]) -> list[Wall]
     free = np.ones(len(points), bool)
     for r in taken:
         free &= r.signed_distances(points[:, 0], points[:, 1]) > 0.0
-    points, eyes = _thinned(points[free], eyes[free])
-    if len(points) < NEIGHBOURS:
+    points, eyes, weights = _thinned(points[free], eyes[free])
+    if len(points) < LEAST:
         return []
-    normals = _normals(points)
+    normals = _normals(points, eyes, weights)
     known = ~np.isnan(normals)
-    points, eyes, normals = points[known], eyes[known], normals[known]
+    points, eyes, normals, weights = points[known], eyes[known], normals[known], weights[known]
     if not len(points):
         return []
-    yaw = _refined(points, normals, main_direction(normals))
+    yaw = _refined(points, weights, normals, main_direction(normals))
     c, s = math.cos(yaw), math.sin(yaw)
     turn = np.array([[c, -s], [s, c]])
     faces = _faces(points @ turn, eyes @ turn, normals - yaw)
@@ -81,24 +84,24 @@ def main_direction(normals: Array) -> float:
     return first + float(np.median(off[near])) if near.any() else first
 
 
-def _thinned(points: Array, eyes: Array) -> tuple[Array, Array]:
-    """The mean of the points (n, 2) of each cell of THIN, and where one of them was seen from.
+def _thinned(points: Array, eyes: Array) -> tuple[Array, Array, Array]:
+    """The mean of the points (n, 2) of each cell of THIN, where one of them was seen from, and how many they are.
 
     Of thousands of points on a spot the nearest ones tell their noise and not the wall's direction.
     """
     if not len(points):
-        return points, eyes
+        return points, eyes, np.ones(0)
     _, first, cell, count = np.unique(
         np.floor(points / THIN).astype(np.int64), axis=0, return_index=True, return_inverse=True, return_counts=True
     )
     cell = cell.ravel()
-    return np.stack([np.bincount(cell, points[:, k]) / count for k in (0, 1)], axis=1), eyes[first]
+    return np.stack([np.bincount(cell, points[:, k]) / count for k in (0, 1)], axis=1), eyes[first], count.astype(float)
 
 
-def _refined(points: Array, normals: Array, yaw: float) -> float:
+def _refined(points: Array, weights: Array, normals: Array, yaw: float) -> float:
     """The direction near `yaw` in which the points fall onto the fewest lines."""
     chosen = np.linspace(0, len(points) - 1, min(MOST, len(points))).astype(int)
-    points, off = points[chosen], normals[chosen] - yaw
+    points, weights, off = points[chosen], weights[chosen], normals[chosen] - yaw
     across = np.abs(np.mod(off + math.pi / 4, math.pi) - math.pi / 4) < math.pi / 4
     best = (-1.0, yaw)
     for turn in np.radians(np.linspace(-TRIED, TRIED, 2 * round(TRIED / TRY) + 1)):
@@ -107,20 +110,32 @@ def _refined(points: Array, normals: Array, yaw: float) -> float:
         for own, axis in ((across, (c, s)), (~across, (-s, c))):
             if own.any():
                 offsets = points[own] @ np.array(axis)
-                score += float(np.square(np.bincount(((offsets - offsets.min()) / BIN).astype(int))).sum())
+                score += float(
+                    np.square(np.bincount(((offsets - offsets.min()) / BIN).astype(int), weights[own])).sum()
+                )
         best = max(best, (score, yaw + float(turn)))
     return best[1]
 
 
-def _normals(points: Array) -> Array:
-    """Direction (n,) [rad] across what each point lies on; nan where that is no line."""
-    _, neighbours = KDTree(points).query(points, NEIGHBOURS)
-    near = points[neighbours]
-    near = near - near.mean(axis=1, keepdims=True)
-    values, vectors = np.linalg.eigh(np.einsum("nki,nkj->nij", near, near))
-    found = np.arctan2(vectors[:, 1, 0], vectors[:, 0, 0])
-    found[values[:, 0] > (1.0 - FLAT) * values[:, 1]] = np.nan
-    return np.asarray(found)
+def _normals(points: Array, eyes: Array, weights: Array) -> Array:
+    """Direction (n,) [rad] across what each point lies on; nan where that is no line.
+
+    Weighted: of a wall that was seen for long the noise has points in many cells, and most of them in the middle ones.
+    What was seen from the opposite direction is a thin wall's other side.
+    """
+    near, found = KDTree(points).query(points, min(NEIGHBOURS, len(points)), distance_upper_bound=AROUND)
+    there = np.isfinite(near)
+    found = np.where(there, found, 0)
+    views = eyes - points
+    there &= np.einsum("ni,nki->nk", views, views[found]) > 0.0
+    weight = np.where(there, weights[found], 0.0)
+    weight /= weight.sum(axis=1, keepdims=True)
+    away = points[found]
+    away = away - np.einsum("nk,nki->ni", weight, away)[:, None]
+    values, vectors = np.linalg.eigh(np.einsum("nk,nki,nkj->nij", weight, away, away))
+    across = np.arctan2(vectors[:, 1, 0], vectors[:, 0, 0])
+    across[(values[:, 0] > (1.0 - FLAT) * values[:, 1]) | (there.sum(axis=1) < LEAST)] = np.nan
+    return np.asarray(across)
 
 
 def _faces(points: Array, eyes: Array, normals: Array) -> list[Face]:
@@ -153,6 +168,7 @@ def _faces_along(along: Array, across: Array, axis: int, sign: int) -> list[Face
         if not on.any():
             break
         left &= ~on
+        beside = left & (np.abs(across - middle) < TAIL)
         order = np.argsort(along[on])
         a, b = along[on][order], across[on][order]
         for run in np.split(np.arange(len(a)), np.nonzero(np.diff(a) > GAP)[0] + 1):
@@ -160,6 +176,7 @@ def _faces_along(along: Array, across: Array, axis: int, sign: int) -> list[Face
             if high - low >= SHORTEST and len(run) >= DENSE * (high - low):
                 # Each piece at its own offset: two cupboards in a row need not stand in one line.
                 found.append(Face(axis, float(np.mean(b[run])), low, high, sign))
+                left &= ~(beside & (along > low) & (along < high))
     return found
 
 

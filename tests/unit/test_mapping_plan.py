@@ -1,11 +1,15 @@
 """The floor plan out of a grid: bins, furniture round a corner, rooms."""
 
 import numpy as np
+import pytest
 
 from common.floor_plan import Wall
+from common.geometry import Rectangle
 from services.mapping.grid import FREE, Grid
-from services.mapping.plan import _bins, _filled
+from services.mapping.plan import _bins, _filled, _rim
 from services.mapping.rooms import find_rooms
+from services.mapping.surfaces import Surface
+from services.mapping.walls import find_walls
 
 
 def ring(x: float, y: float, inner: float, height: float) -> np.ndarray:
@@ -64,3 +68,23 @@ def test_rooms_hang_together_by_doors() -> None:
         -4,
     }
     assert len(find_rooms(grid, states, [])) == 1
+
+
+def test_a_wall_that_was_seen_for_long_from_both_sides_is_one_wall() -> None:
+    rng = np.random.default_rng(3)
+    points, eyes = [], []
+    for side in (-1.0, 1.0):
+        x = rng.uniform(-2.0, 2.0, 8000)
+        points.append(np.stack([x, 0.06 * side + rng.normal(0.0, 0.012, len(x))], axis=1))
+        eyes.append(np.stack([x + rng.uniform(-0.5, 0.5, len(x)), np.full(len(x), 1.5 * side)], axis=1))
+    (wall,) = find_walls(np.concatenate(points), np.concatenate(eyes), [])
+    assert abs(wall.thickness - 0.12) < 0.01
+    assert max(abs(wall.start[1]), abs(wall.end[1])) < 0.005
+    assert sorted((wall.start[0], wall.end[0])) == pytest.approx([-1.94, 1.94], abs=0.05)
+
+
+def test_the_rim_of_a_bin_is_no_shelf() -> None:
+    rim = Surface(Rectangle(0.51, -0.27, 0.38, 0.37), 0.41, np.empty((0, 2)))
+    hole = Rectangle(0.51, -0.27, 0.34, 0.34)
+    assert _rim(rim, [(hole, 0.40)])
+    assert not _rim(rim._replace(height=0.75), [(hole, 0.40)]) and not _rim(rim, [(hole._replace(x=1.0), 0.40)])
