@@ -8,9 +8,11 @@ import pytest
 from common import messages as m
 from common import topics
 from common.bus.memory import MemoryIo
+from common.geometry import Rectangle
 from common.household import load_household
 from common.viewpoints import viewpoints_of
 from services.navigation.config import NavigationConfig
+from services.navigation.localisation.distance_field import rectangles
 from services.navigation.motion.collision_avoidance import avoid
 from services.navigation.motion.obstacle_tracker import Obstacle, ObstacleTracker, clusters
 from services.navigation.motion.progress import (
@@ -24,9 +26,10 @@ from services.navigation.motion.progress import (
     waiting_for,
 )
 from services.navigation.motion.retreat import passing_place
+from services.navigation.motion.route import Route
 from services.navigation.planning.costmap import Costmap
 from services.navigation.planning.planner import PathPlanner
-from tests.unit.navigation_flat import SCENE, Flat
+from tests.unit.navigation_flat import ANGLES, SCENE, Flat, cast
 
 KITCHEN_DOOR = (2.5, -0.75, 0.4, 0.9, 0.0)
 STUDY_DOOR = (-0.45, 2.0, 0.9, 0.4, 0.0)
@@ -322,3 +325,35 @@ def test_steps_aside_never_end_in_furniture() -> None:
         spot = avoid(here, (here[0] + 0.5, here[1]), [walker], room, 0.37)
         here = spot or here
     assert room.clearance(*here) > 0.36
+
+
+@pytest.mark.parametrize(("stays", "limit"), [(8.0, 24.0), pytest.param(1000.0, 50.0, marks=pytest.mark.slow)])
+def test_who_stands_in_a_door_is_waited_for_as_long_as_another_way_takes_longer(stays: float, limit: float) -> None:
+    flat = Flat()
+    flat.ask("goto kitchen")
+    began, east = flat.now, 0.0
+    while flat.status().status == "navigating" and flat.now - began < 2 * limit:
+        t = flat.now - began
+        x = max(2.4, 4.2 - 0.5 * t)
+        flat.boxes = [Rectangle(x, -0.75, 0.3, 0.3)] if t < 3.6 + stays else []
+        flat.step()
+        if abs(flat.true[0] - 2.5) < 0.1:
+            east = flat.true[1]
+    assert flat.status().status == "arrived" and flat.now - began < limit
+    assert (east < 0.0) == (stays < 10.0), "by the door once it is free in time, else by the others"
+    assert flat.closest > CHASSIS
+
+
+def test_a_way_round_is_not_given_up_until_the_first_one_is_seen_to_be_free() -> None:
+    config, costmap = NavigationConfig(), Costmap(SCENE, 0.05, 30.0)
+    planner = PathPlanner(costmap, config.footprint_radius + config.clearance, config.inflation)
+    kitchen = [(0.0, (3.6, -1.2, 0.0))]
+    before, around = (0.5, -0.6, 0.0), (-0.45, 2.9, 1.57)
+    route = Route(config, costmap, planner, kitchen)
+    assert route.plan(before, 0.0) == "new"
+    flat = rectangles(SCENE, 0.2)
+    costmap.see(before, ANGLES, cast(before, [*flat, Rectangle(*KITCHEN_DOOR)]), 10.0, 1.0)
+    assert route.plan(before, 1.0) == "detour"
+    costmap.forget()
+    assert route.plan(around, 40.0) == "kept", "it may stand there yet, though that is long ago"
+    assert route.plan(before, 41.0) == "new", "it does not"

@@ -171,7 +171,8 @@ class Navigator:
 
     def relocated(self, now: float) -> None:
         """The robot is not where it seemed to be: everything but the goal begins anew with the next step."""
-        self._retreat, self._route.follower, self._breadcrumbs = None, None, Breadcrumbs()
+        self._retreat, self._breadcrumbs = None, Breadcrumbs()
+        self._route.abandon()
         self._base.start, self._progress.deadline = None, math.inf
         self._progress.restart(now)
         self._blocked.clear()
@@ -190,9 +191,9 @@ class Navigator:
             raise Ended("failed", "NO_PATH", "no free way leads there")
         self._progress.allow(self._config.timeout_margin + self._config.blocked_wait * 10, now)
 
-    def _plan(self, pose: Pose2, now: float) -> bool:
+    def _plan(self, pose: Pose2, now: float, people: Sequence[Obstacle] = ()) -> bool:
         """Choose pose and path anew; False, and nothing changes, when there is no path now."""
-        found = self._route.plan(pose, now)
+        found = self._route.plan(pose, now, people)
         if found == "detour":
             self.recoveries += 1
             self.doing = "DETOUR"
@@ -202,7 +203,7 @@ class Navigator:
 
     def _follow(self, pose: Pose2, points: Array | None, obstacles: Sequence[Obstacle], now: float) -> m.BaseTarget:
         if self._route.outdated and now - self._route.planned_at > REPLAN_PERIOD:
-            self._replan(pose, now)
+            self._replan(pose, obstacles, now)
         follower = self._route.follower
         if follower is None:
             return self._wait(pose, obstacles, now)
@@ -231,9 +232,9 @@ class Navigator:
             if self._progress.stuck(now):
                 self._recover(pose, now, "no progress")
 
-    def _replan(self, pose: Pose2, now: float) -> None:
+    def _replan(self, pose: Pose2, people: Sequence[Obstacle], now: float) -> None:
         """Around what was seen; when there is no path round it, on towards it, but not up to it."""
-        if self._plan(pose, now) or self._route.follower is None:
+        if (self._plan(pose, now, people) and not self._route.waits) or self._route.follower is None:
             return
         ahead = self._route.blocked_at(pose)
         if ahead is not None and ahead < self._config.keep_off:
@@ -244,7 +245,7 @@ class Navigator:
         """No path at this moment: stand, look for one every second, lose patience in time."""
         self._wait_for(pose, obstacles, now)
         blocked = self._blocked.blocked((pose[0], pose[1]), obstacles, now)
-        if now - self._route.planned_at > REPLAN_PERIOD and self._plan(pose, now):
+        if now - self._route.planned_at > REPLAN_PERIOD and self._plan(pose, now, obstacles):
             self._blocked.clear()
         elif blocked > self._config.blocked_wait:
             self._recover(pose, now, "something stands in every way there")

@@ -67,6 +67,10 @@ class PathFollower:
         close = costmap.seen_within(ahead, radius) & ~near
         return float(np.argmax(close) + 1) * SPACING if close.any() else None
 
+    def ahead(self, distance: float) -> Point:
+        """The point `distance` [m] on along the path, at most its end."""
+        return self.path[min(len(self.path) - 1, self._index + round(distance / SPACING))]
+
     def step(self, pose: Pose2, costmap: Costmap, radius: float, points: Array | None) -> Lookahead:
         """The next target; `points` (n, 2) [map] is what the lidar sees now."""
         window = self._points[self._index : self._index + WINDOW]

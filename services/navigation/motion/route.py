@@ -1,11 +1,14 @@
 """The pose chosen among several, and the path there as long as it holds."""
 
 import math
-from typing import Literal
+from collections.abc import Sequence
+from typing import Literal, NamedTuple
 
 from common.geometry import Pose2
 from services.navigation.config import NavigationConfig
+from services.navigation.motion.obstacle_tracker import Obstacle
 from services.navigation.motion.path_follower import PathFollower
+from services.navigation.motion.progress import NEAR
 from services.navigation.planning.costmap import Costmap
 from services.navigation.planning.planner import PathPlanner, Point
 
@@ -17,11 +20,21 @@ HERE = 0.05
 """A pose this near is where the robot stands [m], free or not: the costmap's resolution."""
 WAY_COST = 0.15
 """What the path to an approach pose adds to its penalty [m/m]; chosen: a better stance is worth a way round a table."""
+ROUND = 1.0
+"""How much longer a detour is that leads another way and not just round something [m]; chosen: round a person."""
 TOUCHING = 0.02
 """How much closer than its footprint an obstacle must be to block a path [m]: the costmap's rounding."""
 
 Found = Literal["", "kept", "new", "detour"]
 """What a plan has brought: no path, the old one, another, or another because something blocks the old one."""
+
+
+class Shut(NamedTuple):
+    """A path in which somebody or something stands `at` [map], seen first at `since` [s], with `left` [m] to go."""
+
+    at: Point
+    since: float
+    left: float
 
 
 class Route:
@@ -31,18 +44,25 @@ class Route:
         self, config: NavigationConfig, costmap: Costmap, planner: PathPlanner, choices: list[tuple[float, Pose2]]
     ) -> None:
         self._map, self._planner, self.choices = costmap, planner, choices
-        self._lookahead, self._corridor = config.lookahead, config.corridor
+        self._lookahead, self._corridor, self._speed = config.lookahead, config.corridor, config.usual_speed
         self._radius = config.footprint_radius - TOUCHING
         self.follower: PathFollower | None = None
         self.detour_at = -math.inf
         self.planned_at = -math.inf
         self._planned_version = -1
         self._new_path: list[Point] | None = None
+        self._shut: Shut | None = None
+        self._given_up: Point | None = None
 
     @property
     def outdated(self) -> bool:
-        """The costmap has changed since the last plan."""
-        return self._map.version != self._planned_version
+        """The costmap has changed since the last plan, or it is waited for somebody who stands in the path."""
+        return self._map.version != self._planned_version or self.waits
+
+    @property
+    def waits(self) -> bool:
+        """Another way has been found, but it is not worth going yet."""
+        return self._shut is not None
 
     def take_new_path(self) -> list[Point] | None:
         """The path, once after it has changed."""
@@ -53,8 +73,13 @@ class Route:
         """True when an empty flat has a path to one of the choices."""
         return self._planner.possible((pose[0], pose[1]), [(goal[0], goal[1]) for _, goal in self.choices])
 
-    def plan(self, pose: Pose2, now: float) -> Found:
-        """Choose the pose to stand at and the path there; without one at this moment nothing changes."""
+    def plan(self, pose: Pose2, now: float, people: Sequence[Obstacle] = ()) -> Found:
+        """Choose the pose to stand at and the path there; without one at this moment nothing changes.
+
+        Somebody of the `people` around who stands in the path is waited for as long as another way would take longer,
+        which at worst takes twice the time of who knew what they do. The other way, once it is gone, is not given up
+        for the first one until it is blocked as well, or what stood there is seen to be gone.
+        """
         field = self._planner.field(pose[0], pose[1])
         costs = []
         for penalty, goal in self.choices:
@@ -71,12 +96,31 @@ class Route:
         old = self.follower
         found: Found = "new"
         if old is not None and self.blocked_at(pose) is None:
-            if follower.remaining(pose) > SHORTER * old.remaining(pose):
+            self._shut = None
+            if self._goes_round(pose) or follower.remaining(pose) > SHORTER * old.remaining(pose):
                 return "kept"
-        elif old is not None and now - self.detour_at > DETOUR_PAUSE:
-            self.detour_at, found = now, "detour"
-        self.follower, self._new_path = follower, path
+        else:
+            if old is not None and self._shut is None:
+                self._shut = Shut(old.ahead(self.blocked_at(pose) or 0.0), now, old.remaining(pose))
+            extra = follower.remaining(pose) - self._shut.left if self._shut is not None else 0.0
+            near = any(math.dist((o.x, o.y), pose[:2]) < NEAR + o.radius for o in people)
+            if near and self._shut is not None and extra > max(ROUND, (now - self._shut.since) * self._speed):
+                return "kept" if old is not None else ""
+            self._given_up = self._shut.at if self._shut is not None and extra > ROUND else None
+            if old is not None and now - self.detour_at > DETOUR_PAUSE:
+                self.detour_at, found = now, "detour"
+        self.follower, self._new_path, self._shut = follower, path, None
         return found
+
+    def abandon(self) -> None:
+        """Everything begins anew."""
+        self.follower = self._shut = self._given_up = None
+
+    def _goes_round(self, pose: Pose2) -> bool:
+        """True while another way is under way and what stood in the first one is out of sight: it may stand there."""
+        if self._given_up is not None and self._map.line_clearance((pose[0], pose[1]), self._given_up) > 0.0:
+            self._given_up = None
+        return self._given_up is not None
 
     def blocked_at(self, pose: Pose2) -> float | None:
         """How far ahead [m] something that was seen lies on the path; None when it is clear, or there is none."""
