@@ -2,7 +2,7 @@
 
 `python -m bench.mapping --homes 3 --seed 20000`; `--apartment` for the shipped flat. Exit 1 when the median of a kind
 of error is above its aim, or something was hit. With `--out DIR` the maps are kept, each with its world, so that
-`tidybot eval --world DIR` gives missions in homes that the robot has mapped itself.
+`tidybot eval --world DIR` gives missions in homes that the robot has mapped itself, and with a film of the growing map.
 """
 
 import argparse
@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
+from bench.film import Film
 from common import messages as m
 from common.household import load_household
 from common.map_file import HOUSEHOLD
@@ -21,13 +22,16 @@ from common.scene import load_scene
 from evaluation.homes.explore import Explored, explore
 from evaluation.homes.map_errors import HEIGHT, OUTLINE, WALL, Errors, centimetres, compare
 from evaluation.homes.suite import homes
+from evaluation.stack import Stack
 from evaluation.worlds import WORLD
 
+FILM = "film.webp"
 
-def say(now: float, status: m.MappingStatus) -> None:
+
+def say(stack: Stack, status: m.MappingStatus) -> None:
     """A line a minute."""
-    if round(now) % 60 == 0:
-        words = f"{now:5.0f} s {status.phase}, {status.area:.1f} m2, {status.frontiers} left"
+    if round(stack.now) % 60 == 0:
+        words = f"{stack.now:5.0f} s {status.phase}, {status.area:.1f} m2, {status.frontiers} left"
         print(f"    {words}, {status.keyframes} keyframes {status.detail}", flush=True)
 
 
@@ -64,10 +68,16 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as kept:
         for name, scene in scenes:
             out = (args.out or Path(kept)) / name.replace(" ", "_")
-            began = time.monotonic()
+            began, film = time.monotonic(), Film()
+
+            def told(stack: Stack, status: m.MappingStatus, film: Film = film) -> None:
+                film.add(stack)
+                say(stack, status)
+
             out.mkdir(parents=True, exist_ok=True)
             (out / WORLD).write_text(to_toml(scene), encoding="utf-8")
-            explored = explore(scene, args.seed, out, tell=say)
+            explored = explore(scene, args.seed, out, tell=told)
+            film.save(out / FILM)
             errors = compare(load_household(str(out / HOUSEHOLD)), scene)
             print(line(name, explored, errors, time.monotonic() - began), flush=True)
             for words in (

@@ -34,7 +34,7 @@ def explore(
     seed: int,
     out: Path,
     limit: float = LIMIT,
-    tell: Callable[[float, m.MappingStatus], None] = lambda t, status: None,
+    tell: Callable[[Stack, m.MappingStatus], None] = lambda stack, status: None,
     settings: tuple[str, ...] = (),
 ) -> Explored:
     """Map a home, all services in this process; the files are in `out`. `tell` hears of it every `REPORT`."""
@@ -52,7 +52,7 @@ def explore(
             for payload in touches:
                 book.note(msgspec.msgpack.decode(payload, type=m.SimContacts))
             touches.clear()
-            tell(stack.now, status)
+            tell(stack, status)
         seconds = stack.now
         if status.phase not in ("done", "failed"):
             stack.bus.send(topics.MAPPING_GOAL, m.MappingGoal(goal="save", id="limit"))

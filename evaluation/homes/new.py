@@ -21,6 +21,7 @@ from evaluation.drawn import things
 from evaluation.homes.explore import explore
 from evaluation.homes.home import draw_home
 from evaluation.homes.map_errors import compare
+from evaluation.stack import Stack
 from evaluation.unknown import with_room
 from judge.effects import Effect
 from judge.evidence import Want
@@ -51,7 +52,7 @@ def new(seed: int) -> Case:
     taken, (first, second) = order[0], order[1:3]
     lines = (
         _fetch(rng, first, world.delivery, "ready"),
-        Line(f"go to the {{{room.name}}}", "ended", goal=Goal(effects=(Effect("visits", room.name),))),
+        Line(f"go to {{{room.name}}}", "ended", goal=Goal(effects=(Effect("visits", room.name),))),
         Line(
             f"this is the {room.name}", "ended",
             goal=Goal(effects=(Effect("says", f"the {room.name} from now on"),)),
@@ -102,8 +103,8 @@ def mapped_first(case: Case, tell: Callable[[float, str], None]) -> tuple[Case, 
     assert case.scene is not None
     with tempfile.TemporaryDirectory(prefix="map-") as kept:
 
-        def told(now: float, status: m.MappingStatus) -> None:
-            tell(now, f"mapping {status.area:.0f} m2")
+        def told(stack: Stack, status: m.MappingStatus) -> None:
+            tell(stack.now, f"mapping {status.area:.0f} m2")
 
         explored = explore(case.scene, case.seed, Path(kept), tell=told, settings=case.settings)
         if not (Path(kept) / HOUSEHOLD).exists():
@@ -125,7 +126,7 @@ def in_words_of(case: Case, made: tuple[Room, ...]) -> tuple[Line, ...]:
 
 
 def _called(room: Room, world: Scene, made: tuple[Room, ...]) -> str:
-    """What the map calls a room of the world: where its standing pose is, else the nearest middle; its own without."""
+    """What people who see the map call a room of the world: the one with its standing pose, else the nearest middle."""
     place = next(p for p in world.places if p.name == room.name)
 
     def off(other: Room) -> tuple[bool, float]:
@@ -133,4 +134,5 @@ def _called(room: Room, world: Scene, made: tuple[Room, ...]) -> str:
         middle = [(other.low[k] + other.high[k]) / 2 for k in (0, 1)]
         return not inside, math.dist(middle, (place.x, place.y))
 
-    return min(made, key=off).name if made else room.name
+    name = min(made, key=off).name if made else room.name
+    return name if name.startswith("room ") else f"the {name}"

@@ -91,7 +91,7 @@ def test_a_room_is_called_what_the_map_of_the_robot_calls_it() -> None:
     numbered = tuple(msgspec.structs.replace(r, name=f"room {n}", named=False) for n, r in enumerate(case.scene.rooms))
     lines = in_words_of(case, numbered)
     meant = next(n for n, r in enumerate(case.scene.rooms) if r.name in case.lines[2].text)
-    assert lines[1].text == f"go to the room {meant}" and lines[0] == case.lines[0]
+    assert lines[1].text == f"go to room {meant}" and lines[0] == case.lines[0]
     assert "{" not in in_words_of(case, ())[1].text
 
 
