@@ -1,4 +1,4 @@
-"""A home some months after its map was made: chairs and boxes stand elsewhere, and people walk about. Pure."""
+"""A home some months after its map was made: things stand about, others are gone, and people walk about. Pure."""
 
 import math
 
@@ -16,6 +16,8 @@ LEFT = (1, 3)
 """Fewest and most boxes, baskets and chairs that stand about."""
 SIZES = {"box": ((0.30, 0.60), (0.25, 0.45), (0.25, 0.60)), "chair": ((0.40, 0.48), (0.40, 0.50), (0.80, 0.95))}
 """Width, depth and height [m] of what stands about: moving boxes, laundry baskets, chairs."""
+LIGHT, GONE = ("chair", "plant", "television"), 0.4
+"""Furniture that people carry about, by how its name begins, and the share of it that is no longer in the home."""
 PEOPLE = (1, 2)
 SPEED = (0.5, 0.9)
 """Walking speed at home [m/s]: below the 1.3 of people in the street."""
@@ -46,7 +48,10 @@ def aged(home: Scene, rng: np.random.Generator) -> Scene:
     after = floor.reached((home.home.x, home.home.y))
     planner = _planner(home, left)
     people = [_somebody(rng, floor, after, planner, n) for n in range(int(rng.integers(PEOPLE[0], PEOPLE[1] + 1)))]
-    return msgspec.structs.replace(home, obstacles=(*left, *people))
+    light = sorted({b.name.removesuffix(" back") for b in home.furniture if b.name.startswith(LIGHT)})
+    gone = {name for name in light if rng.random() < GONE}
+    stays = tuple(b for b in home.furniture if b.name.removesuffix(" back") not in gone)
+    return msgspec.structs.replace(home, furniture=stays, obstacles=(*left, *people))
 
 
 def _something(rng: np.random.Generator, floor: Floor, within: Mask, number: int) -> Obstacle:

@@ -10,6 +10,7 @@ from common.floor_plan import Box
 from common.plan_file import to_toml
 from common.scene import Scene, load_scene
 from evaluation.blocks import flat
+from evaluation.homes.aged import LIGHT
 from evaluation.homes.home import draw_home
 from evaluation.homes.rooms import NoHome
 from evaluation.homes.suite import aged, homes
@@ -70,6 +71,17 @@ def test_too_many_rooms_for_a_home_are_refused(monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.setattr("evaluation.homes.home.DRAWS", 0)
     with pytest.raises(NoHome, match="no home of 3 rooms"):
         draw_home(0, OBJECTS, 3)
+
+
+def test_what_people_carry_about_is_gone_from_an_aged_home_and_still_on_its_map() -> None:
+    gone: set[str] = set()
+    for seed in (3, 4, 5):
+        case = aged(seed)
+        assert case.scene is not None and case.household is not None
+        here, known = ({b.name for b in plan.furniture} for plan in (case.scene, case.household))
+        assert here <= known
+        gone |= known - here
+    assert gone and all(name.startswith(LIGHT) for name in gone)
 
 
 @pytest.mark.parametrize("seed", range(4))
