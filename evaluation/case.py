@@ -143,8 +143,9 @@ class Observed(msgspec.Struct, kw_only=True):
 
     `claimed`: the last outcome, `failed_at`, `code` and `explained` the stage, code and spoken words of its failure;
     `claims`: every success announced at any time, held against physics as it was then;
-    `shortfall`: what is not as the case wants it at the end. `missions`: where the robot maps first, each line and
-    what is not as it wants it. `mapping`: how exploring went. `wrong`: things in the hand that nobody asked for.
+    `shortfall`: what is not as the case wants it at the end. `wrong`: things in the hand that nobody asked for.
+    `missions`: where the robot maps first, each line and what was not as it wants it when its mission ended;
+    `mapping`: how exploring went.
     `fault_reports`: what the faults really did; `fault_at`: when the first did [s of robot time]; `recovery`: seconds
     from then until the mission's next step.
     """

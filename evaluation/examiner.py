@@ -54,6 +54,7 @@ class Examiner:
         self._observer = Observer(io.world)
         self._begun = False
         self._lines = deque(self._case.lines)
+        self._line: Line | None = None
         self._due: deque[tuple[float, str]] = deque()
         self._voice: Job[Samples] | None = None
         self._sound: deque[Samples] = deque()
@@ -171,7 +172,8 @@ class Examiner:
     # --- the person
     def _talk(self, now: float) -> None:
         while self._lines and self._reached(self._lines[0], now):
-            line = self._lines.popleft()
+            self._note_mission()
+            self._line = line = self._lines.popleft()
             if line.when == "ended":
                 self._user.set_goal(line.text, line.thing)
                 # The next one waits for the end of this one's mission.
@@ -192,6 +194,11 @@ class Examiner:
                 self._sound.extend(samples[i : i + size] for i in range(0, len(samples), size))
         elif self._due and self._due[0][0] <= now and not self._saying:
             self._say(self._due.popleft()[1], now)
+
+    def _note_mission(self) -> None:
+        """The mission of the last line is over: what is not as it wants it."""
+        if self._case.explores and self._line is not None and self._line.goal is not None:
+            self.observed.missions.append((self._line.text, self._observer.shortfall(self._line.goal)))
 
     def _reached(self, line: Line, now: float) -> bool:
         """Lines come one after the other, each at its moment."""
@@ -245,8 +252,7 @@ class Examiner:
         seen = self.observed
         observer, goal = self._observer, self._case.goal
         seen.evidence, seen.shown = observer.conclude(goal), observer.shown(goal)
-        if self._case.explores:
-            seen.missions = [(line.text, observer.shortfall(line.goal)) for line in self._case.lines if line.goal]
+        self._note_mission()
         seen.claims, seen.shortfall, seen.wrong = observer.claims, observer.shortfall(goal), observer.wrong()
         seen.robot_seconds = round(now, 2)
         seen.ended = seen.ended or now <= self._case.limit

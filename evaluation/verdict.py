@@ -64,9 +64,14 @@ def _outcome(case: Case, seen: Observed) -> Outcome:
         return "reported" if seen.claimed == "failed" and spoken(seen) and whole else "failed"
     if case.expect == "stopped":
         return "stopped" if seen.stopped and evidence.standing and untouched(evidence) else "failed"
-    if not seen.shortfall and not seen.wrong and untouched(evidence):
+    if not seen.shortfall and not _unmet(seen) and not seen.wrong and untouched(evidence):
         return "shown" if case.expect == "shown" else "delivered"
     return "reported" if seen.claimed in ("failed", "cancelled") else "failed"
+
+
+def _unmet(seen: Observed) -> list[str]:
+    """What missions in a row lacked when they ended."""
+    return [why for _, why in seen.missions if why]
 
 
 def spoken(seen: Observed) -> bool:
@@ -84,6 +89,8 @@ def cause(case: Case, seen: Observed, outcome: Outcome) -> str:
         return f"not struck: {case.fault or 'fault'}"
     if outcome == "timeout":
         return f"timeout: {STAGES.get(seen.stage, 'start')}"
+    if unmet := _unmet(seen):
+        return f"mission: {_first(unmet[0])}"
     if outcome == "reported" or (seen.code and seen.claimed == "failed"):
         stage = seen.failed_at or seen.stage
         return f"{STAGES.get(stage, stage.lower() or 'start')}{': ' + seen.code if seen.code else ''}"

@@ -52,7 +52,7 @@ def new(seed: int) -> Case:
     taken, (first, second) = order[0], order[1:3]
     lines = (
         _fetch(rng, first, world.delivery, "ready"),
-        Line(f"go to {{{room.name}}}", "ended", goal=Goal(effects=(Effect("visits", room.name),))),
+        Line(f"go to {{{room.name}}}", "ended", goal=Goal(effects=(Effect("ends", room.name),))),
         Line(
             f"this is the {room.name}", "ended",
             goal=Goal(effects=(Effect("says", f"the {room.name} from now on"),)),
@@ -68,7 +68,7 @@ def new(seed: int) -> Case:
     return Case(
         suite="new", seed=seed, name=f"{len(home.rooms)} rooms", command=lines[0].text, lines=lines,
         thing=first.name, wants=tuple(wanted), expect="shown", scene=world, limit=MISSIONS_LIMIT, settings=(VLA,),
-        effects=(*(e for line in lines if line.goal for e in line.goal.effects), *stay), explores=True,
+        effects=stay, explores=True,
         spoken=bool(rng.random() < SPOKEN),
     )  # fmt: skip
 

@@ -4,7 +4,7 @@ import math
 
 from common import messages as m
 from common.approach import poses_for
-from common.floor_plan import Receptacle
+from common.floor_plan import Receptacle, Room
 from common.geometry import Pose2
 from common.household import Household
 from services.navigation.config import NavigationConfig
@@ -17,6 +17,8 @@ Choices = list[tuple[float, Pose2]]
 
 SAME = 0.4
 """An object reported within this of where a goal says that it is, is the goal's [m]: as far as a push moves one."""
+INSIDE, SPACING = 0.5, 0.3
+"""Of the spots in a room, the distance from its sides and from each other [m]: a footprint, and half of one."""
 LAST_RESORT = 100.0
 """Penalty of the pose that a goal gives when its object has others [m]: more than any way within a flat costs."""
 
@@ -35,6 +37,8 @@ class Goals:
         place = self._places.place(name)
         if place is None:
             raise Ended("failed", "UNKNOWN_PLACE", f"no place {name!r}; known: {self._places.similar(name)}")
+        if isinstance(place, Room):
+            return _within(place)
         if not isinstance(place, Receptacle):
             return [(0.0, place)]
         if place.name == self._household.delivery:
@@ -85,6 +89,16 @@ class Goals:
 
     def _before(self, point: tuple[float, float], receptacle: Receptacle | None) -> Choices:
         return poses_for(point, receptacle, self._config.stand_off, self._config.edge_distance)
+
+
+def _within(room: Room) -> Choices:
+    """All over a room, best in its middle, where perhaps a table stands."""
+    middle = [(room.low[k] + room.high[k]) / 2 for k in (0, 1)]
+    counts = [max(0, math.floor(((room.high[k] - room.low[k]) / 2 - INSIDE) / SPACING)) for k in (0, 1)]
+    shifts = [
+        (i * SPACING, j * SPACING) for i in range(-counts[0], counts[0] + 1) for j in range(-counts[1], counts[1] + 1)
+    ]
+    return [(math.hypot(*s), (middle[0] + s[0], middle[1] + s[1], 0.0)) for s in shifts]
 
 
 def in_words(goal: Goal) -> str:

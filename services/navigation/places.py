@@ -6,7 +6,7 @@ from pathlib import Path
 import msgspec
 
 from common.config import ConfigError
-from common.floor_plan import Receptacle
+from common.floor_plan import Receptacle, Room
 from common.geometry import Pose2
 from common.household import Household
 from common.messages import WorldObject
@@ -42,7 +42,7 @@ def load_places(directory: Path) -> PlacesFile:
 
 
 class Places:
-    """Looks names up; what it returns is a pose, a receptacle or an object to stand at."""
+    """Looks names up; what it returns is a pose, a receptacle or an object to stand at, or a room without a pose."""
 
     def __init__(self, household: Household, file: PlacesFile) -> None:
         self._household = household
@@ -53,23 +53,20 @@ class Places:
                 self._poses[normalise(name)] = (place.x, place.y, place.theta)
         self._poses |= {normalise(k): (v.x, v.y, v.theta) for k, v in file.places.items()}
         self._receptacles = {normalise(n): r for r in household.receptacles for n in (r.name, *r.aliases)}
-        for room in household.rooms:
-            middle = ((room.low[0] + room.high[0]) / 2, (room.low[1] + room.high[1]) / 2, 0.0)
-            for name in (room.name, *room.aliases):
-                self._poses.setdefault(normalise(name), middle)
+        self._rooms = {normalise(n): r for r in reversed(household.rooms) for n in (r.name, *r.aliases)}
 
     @property
     def home(self) -> Pose2:
         return self._household.home.x, self._household.home.y, self._household.home.theta
 
-    def place(self, name: str) -> Pose2 | Receptacle | None:
+    def place(self, name: str) -> Pose2 | Room | Receptacle | None:
         """A named place."""
         wanted = normalise(name)
-        return self._poses.get(wanted) or self._receptacles.get(wanted)
+        return self._poses.get(wanted) or self._rooms.get(wanted) or self._receptacles.get(wanted)
 
     def similar(self, name: str) -> str:
         """For error messages: names that look like it, else all."""
-        names = [*self._poses, *self._receptacles]
+        names = [*self._poses, *self._rooms, *self._receptacles]
         return ", ".join(near_names(name, names) or sorted(set(names)))
 
     def matching(self, name: str, objects: list[WorldObject]) -> list[WorldObject]:

@@ -200,6 +200,17 @@ def test_each_line_of_a_conversation_waits_for_the_end_of_the_mission_before_it(
     assert said("WAITING") == ["first", "second", "third"]
 
 
+def test_of_missions_in_a_row_each_counts_when_it_ends() -> None:
+    case = Case(suite="new", seed=0, name="talk", command="first", lines=(), expect="shown", explores=True)
+    seen = Observed(
+        missions=[("first", ""), ("go to room 2", "ended at (0, 0)")], shortfall="", ended=True, claimed="delivered"
+    )
+    result = judge(case, seen, 1.0)
+    assert not result.met and result.outcome == "failed" and result.cause == "mission: ended at (0, 0)"
+    seen.missions = [("first", ""), ("go to room 2", "")]
+    assert judge(case, seen, 1.0).met
+
+
 # --- the table
 def result(seed: int, delivered: bool, struck: float | None = 3.0, lies: bool = False, drops: int = 0) -> Result:
     thing = ThingEvidence("mug", "table", delivered=delivered, drops=drops)

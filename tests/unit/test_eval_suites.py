@@ -82,6 +82,7 @@ def test_in_a_new_home_each_mission_has_a_goal_and_the_map_is_the_robots_own() -
         assert all(line.goal is not None and (line.goal.wants or line.goal.effects) for line in case.lines)
         on = {p.spec.name: p.on for p in place_objects(case.scene, case.seed)}
         assert all(on[want.thing] not in want.goals for want in case.wants)
+        assert not any(effect.kind == "ends" for effect in case.effects), "it drives on after that"
         assert len({want.thing for want in case.wants}) == 3
 
 

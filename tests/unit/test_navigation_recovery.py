@@ -8,6 +8,7 @@ import pytest
 from common import messages as m
 from common import topics
 from common.bus.memory import MemoryIo
+from common.floor_plan import Box, Room
 from common.geometry import Rectangle
 from common.household import load_household
 from common.viewpoints import viewpoints_of
@@ -357,3 +358,14 @@ def test_a_way_round_is_not_given_up_until_the_first_one_is_seen_to_be_free() ->
     costmap.forget()
     assert route.plan(around, 40.0) == "kept", "it may stand there yet, though that is long ago"
     assert route.plan(before, 41.0) == "new", "it does not"
+
+
+def test_a_room_with_a_table_in_its_middle_is_gone_to_beside_it() -> None:
+    x, y = (1.0, 2.9)
+    table = Box(name="table", center=(x, y, 0.4), size=(0.6, 0.5, 0.8))
+    room = Room(name="nook", low=(x - 1.2, y - 1.0), high=(x + 1.2, y + 1.0))
+    home = msgspec.structs.replace(SCENE, rooms=(*SCENE.rooms, room), furniture=(*SCENE.furniture, table))
+    flat = Flat(household=home)
+    flat.ask("goto nook")
+    assert flat.finish(120.0).status == "arrived"
+    assert room.low[0] < flat.true[0] < room.high[0] and room.low[1] < flat.true[1] < room.high[1]
