@@ -218,3 +218,13 @@ LOOKS = {kind.name: kind.look for kind in _TABLE if kind.look is not None}
 def kind_of(name: str) -> Kind:
     """The row of a kind by its name."""
     return KINDS.get(name, UNKNOWN)
+
+
+LONGER = 1.15
+"""Length by height from which a box that stands on its end lies. Chosen: what is measured is off by less."""
+
+
+def laid_on_a_side(kind: str, size: tuple[float, float, float]) -> bool:
+    """Something that stands on its end lies on a side, by its extents as it rests, the longer level one first."""
+    row = kind_of(kind)
+    return row.upright and "face" in row.rests and size[0] > LONGER * size[2]

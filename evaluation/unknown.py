@@ -19,7 +19,7 @@ from common.scene import ObjectSpec, Receptacle, Scene, SceneError
 from evaluation import catalogue, groceries
 from evaluation.blocks import VLA, WORDINGS, flat, random
 from evaluation.case import Case, Line
-from evaluation.drawn import LAID, surroundings, things
+from evaluation.drawn import LAID, surroundings, thing, things
 from judge.effects import Effect
 from judge.evidence import Want
 from services.sim.layout import Placement, place_objects
@@ -29,6 +29,9 @@ IN_A_WORLD = (7, 12)
 GAP = (0.015, 0.05)
 """Nearest and farthest [m] that a neighbour stands from the one that is wanted."""
 NEIGHBOURS = (2, 4)
+TALLEST = 1.2
+"""Height of a box that lies by its other extents, at least: without print nothing else tells how it is to stand. Chosen:
+the error of what is measured."""
 TRIES = 60
 EDGE = 0.02
 """How far [m] from the edge of its surface a neighbour stands at least."""
@@ -46,6 +49,8 @@ def lying(seed: int) -> Case:
 
     def draw() -> list[ObjectSpec]:
         laid, *others = things(int(rng.integers(*IN_A_WORLD)), rng, LAID)
+        while laid.kind == "box" and laid.size[2] < TALLEST * max(laid.size[:2]):
+            laid = thing(laid.kind, laid.colour, rng)
         return [msgspec.structs.replace(laid, pose="side"), *others]
 
     return fetch(seed, "lying", draw, rng)

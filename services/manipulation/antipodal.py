@@ -10,10 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from common.kinds import kind_of
 from services.manipulation.arm_model import Array, Pose
 from services.manipulation.clearance import FLAT, PAD, PAD_HALF
-from services.manipulation.grasp import Grasp, approach_rotation, on_handle
+from services.manipulation.grasp import Grasp, approach_rotation, on_handle, upper_end
 from services.manipulation.surface import surface
 from services.manipulation.target import Target
 
@@ -86,22 +85,11 @@ def antipodal(target: Target, forward: float, opening: float, widest: float) -> 
             label = f"{name}, {1000 * place[0]:+.0f}/{1000 * place[2]:+.0f} mm"
             grasp = Grasp(
                 Pose(at, rotation), contact.width, float(at[2]) - target.bottom, math.radians(tilt), label,
-                _axis(target, rotation), on_surface=True,
+                upper_end(target, rotation), on_surface=True,
             )  # fmt: skip
             worth = _worth(target, contact, at - centre, tilt, off, widest) - _from_below(grasp)
             found.append((worth, grasp))
     return _different(sorted(found, key=lambda entry: -entry[0]))
-
-
-def _axis(target: Target, rotation: Array) -> float | None:
-    """Where the upper end of a lying object points [rad] that is to be put down upright; None of others."""
-    kind = kind_of(target.kind)
-    if not target.lies or not kind.upright:
-        return None
-    # Of two ends that are alike the hand leans towards the lower one: so it is above when the object stands.
-    along = float(rotation[:2, 2] @ (math.cos(target.yaw), math.sin(target.yaw)))
-    turn = math.pi if kind.ends_alike and along > 0 else 0.0
-    return math.remainder(target.yaw + turn, math.tau)
 
 
 def _from_below(grasp: Grasp) -> float:

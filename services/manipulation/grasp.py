@@ -41,6 +41,8 @@ OPEN_VESSEL = (GraspRule("rim", (90, 80, 70)),)
 """How a vessel with an upright wall is grasped that does not fit between the fingers."""
 TURNING = GraspRule("around", (8, 3, 14))
 """How what stands on its head is grasped: nearly level, so that the hand is above the surface either way up."""
+CERTAIN = 0.006
+"""Largest spread [m] of measured extents from which an object is said to be too wide without a try."""
 USUAL_VESSEL = KINDS["bowl"]
 """Whose wall is taken for that of a vessel of a kind that has none."""
 
@@ -51,7 +53,8 @@ class Grasp:
 
     `axis`: where the upper end of a lying object points [rad]; None when it stands. `turns_over`: it stands on its
     upper end, and is turned about the hand's approach before it is put down. `rim`: one finger is inside the
-    object, `width` is that of its wall; `on_surface`: found on the measured surface and not by the rule of a kind.
+    object, `width` is that of its wall; `on_surface`: found on the measured surface and not by the rule of a kind;
+    `over_edge`: one finger is below the object, which has to reach over the edge of its surface.
     """
 
     pose: Pose
@@ -63,6 +66,7 @@ class Grasp:
     rim: bool = False
     on_surface: bool = False
     turns_over: bool = False
+    over_edge: bool = False
 
 
 def approach_rotation(azimuth: float, tilt: float, roll: float = 0.0) -> Array:
@@ -177,6 +181,22 @@ def _lying(target: Target, facing: float) -> list[Grasp]:
                 upwards = math.remainder(axis, math.tau) if kind.upright else None
                 found.append(Grasp(pose, target.size[1], height, math.radians(degrees), name, upwards))
     return found
+
+
+def certainly_too_wide(target: Target, widest: float) -> bool:
+    """Neither side of an object goes between the fingers, even if it is smaller than measured by twice the spread."""
+    return target.spread <= CERTAIN and min(target.size[:2]) - 2 * target.spread > widest
+
+
+def upper_end(target: Target, rotation: Array) -> float | None:
+    """Where the upper end of a lying object points [rad] that is to be put down upright; None of others."""
+    kind = kind_of(target.kind)
+    if not target.lies or not kind.upright:
+        return None
+    # Of two ends that are alike the hand leans towards the lower one: so it is above when the object stands.
+    along = float(rotation[:2, 2] @ (math.cos(target.yaw), math.sin(target.yaw)))
+    turn = math.pi if kind.ends_alike and along > 0 else 0.0
+    return math.remainder(target.yaw + turn, math.tau)
 
 
 def _off(angle: float, other: float) -> float:

@@ -12,6 +12,7 @@ from services.manipulation.clearance import HandClearance
 from services.manipulation.grasp import Grasp, candidates
 from services.manipulation.grasped_object import GraspedObject
 from services.manipulation.ik import InverseKinematics
+from services.manipulation.over_edge import flat_and_wide, over_an_edge
 from services.manipulation.target import Target
 from services.manipulation.touch import Reaction
 from services.manipulation.trajectory import connect
@@ -64,15 +65,16 @@ class Planner:
 
     def candidates(self, target: Target) -> Iterator[list[Grasp]]:
         """Every grasp that this hand could try, in stages: by the rules of kind and shape, and on the measured surface,
-        which comes first where no rule knows the shape. Where neither has one, what was seen counts, without what its
-        shape family makes of it.
+        which comes first where no rule knows the shape, and over an edge. Where nothing has one, what was seen counts,
+        without what its shape family makes of it, unless that is for the edge.
         """
         arm = self.arm
         rules = candidates(target, arm.forward, arm.widest)
         on_surface = antipodal(target, arm.forward, arm.hand.open, arm.widest)
         shapeless = target.shape in ("long", "irregular") and not target.lies
         yield from ((on_surface, rules) if shapeless else (rules, on_surface))
-        if target.points is not None and not rules and not on_surface:
+        yield over_an_edge(target, arm.forward, arm.widest)
+        if target.points is not None and not (rules or on_surface or flat_and_wide(target, arm.widest)):
             as_seen = antipodal(replace(target, shape="irregular"), arm.forward, arm.hand.open, arm.widest)
             yield [replace(g, name=f"as seen, {g.name}") for g in as_seen]
 

@@ -78,7 +78,7 @@ def _put_elsewhere(robot: Robot, goal: m.ManipulationGoal, label: str, failure: 
     """
     found = next(o for o in robot.source.objects() if o.label == label)
     robot.io.log.info("making room", object=label)
-    own = m.ManipulationGoal(goal="grab", id=goal.id, attempt=goal.attempt, object=_reference(found))
+    own = m.ManipulationGoal(goal="grab", id=goal.id, attempt=goal.attempt, object=reference(found))
     try:
         yield from grab(robot, own, "")
     except Failure as other:
@@ -106,6 +106,7 @@ def _label(goal: m.ManipulationGoal) -> str:
     return goal.object.label if goal.object is not None else ""
 
 
-def _reference(found: WorldObject) -> m.ObjectRef:
+def reference(found: WorldObject) -> m.ObjectRef:
+    """An object as a goal names it."""
     shared = set(m.ObjectRef.__struct_fields__) & set(WorldObject.__struct_fields__)
     return m.ObjectRef(**{name: value for name, value in structs.asdict(found).items() if name in shared})

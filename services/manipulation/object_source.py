@@ -60,6 +60,10 @@ class ObjectSource:
             held=position is None,
         )  # fmt: skip
 
+    def moved(self, found: WorldObject) -> None:
+        """An object is now where the robot has brought it, as described, until it is seen again."""
+        self._moved[found.label] = found
+
     def resolve(self, goal: ManipulationGoal, wanted: str, base: Pose2, since: float = math.inf) -> WorldObject | None:
         """The object of a goal: the one it describes, the one last looked for, or the nearest in front.
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from services.manipulation.arm_model import Array, Obstacle
 from services.manipulation.contacts import new_sides_first
-from services.manipulation.grasp import Grasp
+from services.manipulation.grasp import Grasp, certainly_too_wide
 from services.manipulation.grasp_verification import MEASURED
 from services.manipulation.grasped_object import GraspedObject, attach
 from services.manipulation.ik import seeds
@@ -21,8 +21,6 @@ from services.manipulation.trajectory import connect
 T = TypeVar("T")
 STANCE_GRASPS = 12
 """Grasps of a stage that are tried from where the robot does not stand. Chosen: a quarter of a second for a stance."""
-CERTAIN = 0.006
-"""Largest spread [m] of measured extents from which an object is said to be too wide without a try."""
 FINGER_PLAY = 0.012
 """How much wider [m] than the object on either side the fingers stand that go into a crowd partly closed. Chosen: the
 error of a sighting and of the arm."""
@@ -118,11 +116,10 @@ def plan_grab(
         # Where nothing was met neither a narrower hand nor a smaller margin helps.
         if plan := attempt([g for g in tried if misses[g.name].met], way):
             return plan
+    on_it = all(g.over_edge and "" in misses[g.name].met for g in tried)
+    if on_it and certainly_too_wide(target, planner.arm.widest) and not skip:
+        raise PlanError("TOO_WIDE", f"{_in_mm(target)}, at most {1000 * planner.arm.widest:.0f} mm go into the hand")
     if not tried:
-        if certainly_too_wide(target, planner.arm.widest) and not skip:
-            raise PlanError(
-                "TOO_WIDE", f"{_in_mm(target)}, at most {1000 * planner.arm.widest:.0f} mm go into the hand"
-            )
         raise PlanError("UNREACHABLE", f"no grasp left to try on {target.label}")
     reasons = counted(miss.reason for miss in misses.values())
     blockers = Counter(label for miss in misses.values() for label in sorted(miss.met) if label)
@@ -131,11 +128,6 @@ def plan_grab(
     raise PlanError(
         "UNREACHABLE", f"no reachable grasp of {target.label} at {distance:.2f} m: {reasons}{behind}", names
     )
-
-
-def certainly_too_wide(target: Target, widest: float) -> bool:
-    """Neither side of an object goes between the fingers, even if it is smaller than measured by twice the spread."""
-    return target.spread <= CERTAIN and min(target.size[:2]) - 2 * target.spread > widest
 
 
 def _in_mm(target: Target) -> str:

@@ -8,6 +8,7 @@ import numpy as np
 
 from common.floor_plan import FloorPlan, Receptacle
 from common.geometry import Pose2, Rectangle, compose, inverse, quat_matrix, quat_yaw, yaw_quat
+from common.kinds import laid_on_a_side
 from common.messages import ObjectRef, WorldObject
 from services.manipulation.arm_model import Array, Obstacle
 from services.manipulation.target import Target
@@ -43,9 +44,17 @@ def target_of(found: WorldObject, base: Pose2, floor_plan: FloorPlan) -> Target:
     if receptacle is not None and not receptacle.depth:
         z = receptacle.center[2] + found.size[2] / 2
     return Target(
-        found.label, found.kind, (x, y, z), yaw, found.size, found.tilt, found.shape, _points(found.points, base),
+        found.label, found.kind, (x, y, z), yaw, found.size, tilt_of(found), found.shape, _points(found.points, base),
         found.spread, found.measured,
     )  # fmt: skip
+
+
+def tilt_of(found: WorldObject) -> float:
+    """How far [rad] it is tilted. What was measured is told by its kind, which the person may have said: a box is taken
+    for a book until then.
+    """
+    laid = found.measured and found.shape == "box" and laid_on_a_side(found.kind, found.size)
+    return found.tilt or (math.pi / 2 if laid else 0.0)
 
 
 def _points(raw: bytes, base: Pose2) -> Array | None:

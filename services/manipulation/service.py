@@ -18,10 +18,10 @@ from services.manipulation.config import ManipulationConfig
 from services.manipulation.grasp_store import GraspStore
 from services.manipulation.led_hand import LedHand
 from services.manipulation.motion_planner import Planner
-from services.manipulation.neighbours import grab_with_room
 from services.manipulation.object_source import ObjectSource
 from services.manipulation.policy import PolicyError, load_policy
 from services.manipulation.policy_executor import grab_by_policy
+from services.manipulation.pull_executor import grab_or_pull
 from services.manipulation.robot import Failure, Robot, Steps, T, go_home
 
 ARM = tuple(f"joint_{i}" for i in range(1, 8))
@@ -197,7 +197,7 @@ class ManipulationService:
         if self._policy is not None:
             played = grab_by_policy(robot, self._policy, goal, self._looked_for, lambda: self._mjcf)
             return (yield from self._with_planner(played))
-        return (yield from self._with_planner(grab_with_room(robot, goal, self._looked_for)))
+        return (yield from self._with_planner(grab_or_pull(robot, goal, self._looked_for)))
 
     def _release(self) -> Steps[str]:
         robot = self._robot

@@ -13,8 +13,8 @@ from services.manipulation.plan_grab import Way, feasible
 from services.manipulation.planning_scene import MARGINS, obstacles, target_of
 from services.manipulation.target import Target
 
-STAND_OFFS = (STAND_OFF, STAND_OFF + 0.08, STAND_OFF - 0.07)
-"""Distances [m] from the base's middle to the object that are tried."""
+STAND_OFFS = (STAND_OFF, STAND_OFF + 0.08, STAND_OFF - 0.07, STAND_OFF + 0.15)
+"""Distances [m] from the base's middle to the object that are tried. Chosen: the hand comes level from the farthest."""
 SAME, SAME_TURN = 0.06, math.radians(10)
 """A pose no farther [m, rad] from the present one is no other stance: navigation stops within a third of it."""
 MOST = 10
@@ -37,19 +37,19 @@ def other_stance(
     `objects`: all that is known to stand around; `joints` (7,) of the arm at rest; `approach`, `lift`: straight ways
     of the hand [m].
     """
-    for pose in _poses(household, found, base)[:MOST]:
+    for pose in stances(household, found, base, STAND_OFFS)[:MOST]:
         around = obstacles(household, pose, objects, found.label, MARGINS[0])
         if feasible(planner, target_of(found, pose, household), Way(around, False, approach, lift), joints):
             return pose
     return None
 
 
-def _poses(household: Household, found: WorldObject, base: Pose2) -> list[Pose2]:
+def stances(household: Household, found: WorldObject, base: Pose2, stand_offs: Sequence[float]) -> list[Pose2]:
     """Poses with room for the base before the object, other than the present one, those of least penalty first."""
     x, y = found.position[:2]
     surface = household.receptacle(found.on) or household.surface_at(x, y)
     rated = []
-    for stand_off in STAND_OFFS:
+    for stand_off in stand_offs:
         for penalty, pose in poses_for((x, y), surface, stand_off, EDGE_DISTANCE):
             dx, dy, turn = compose(inverse(base), pose)
             here = math.hypot(dx, dy) < SAME and abs(turn) < SAME_TURN

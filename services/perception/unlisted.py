@@ -6,7 +6,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from common.geometry import Array
-from common.kinds import LOOKS, Kind, kind_of
+from common.kinds import LOOKS, Kind, kind_of, laid_on_a_side
 from common.looks import Measures, likely
 from common.messages import ShapeFamily
 from services.perception import colour
@@ -23,8 +23,8 @@ CUT, CUT_SPREAD = 0.6, 0.02
 """Share of the confidence of what is seen in part, and the least spread [m] of its extents."""
 NECK, NECK_UPPER = 0.66, 2
 """Radius of the upper slices by that of the widest, below which there is a neck, and how many slices are looked at."""
-TALLER, MOSTLY = 1.15, 0.5
-"""Length by height from which what stands on its end lies, and the least share of such kinds in what it may be."""
+MOSTLY = 0.5
+"""Least share of the kinds that lie as long as it is in what it may be."""
 VOXEL = 0.005
 """Side [m] of the cells in which points are averaged. Chosen: a third of a finger pad."""
 MOST_POINTS = 200
@@ -71,11 +71,9 @@ def _tilt(found: Measurement, kinds: Mapping[str, float]) -> float:
     """Tilt [rad] of an object by its shape and what it may be: a box that stands on its end may lie on a side, what has
     a handle and a bottom above stands on its mouth.
     """
-    if found.family == "box" and found.size[0] > TALLER * found.size[2]:
-        standing = sum(
-            share for kind, share in kinds.items() if kind_of(kind).upright and "face" in kind_of(kind).rests
-        )
-        return LEVEL if standing >= MOSTLY else 0.0
+    if found.family == "box":
+        lying = sum(share for kind, share in kinds.items() if laid_on_a_side(kind, found.size))
+        return LEVEL if lying >= MOSTLY else 0.0
     vessel = "upside down" in kind_of(next(iter(kinds))).rests
     on_its_mouth = vessel and found.end == "closed" and not found.tilt and not math.isnan(found.handle)
     return math.pi if on_its_mouth else found.tilt

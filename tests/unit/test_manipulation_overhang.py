@@ -1,0 +1,80 @@
+"""What is too wide as it lies is pulled over the edge of its surface and taken from there."""
+
+import math
+
+import numpy as np
+import pytest
+
+from common.floor_plan import Receptacle
+from services.manipulation.arm_model import Obstacle
+from services.manipulation.motion_planner import PlanError, Planner
+from services.manipulation.over_edge import flat_and_wide, over_an_edge
+from services.manipulation.overhang import LEDGE, facing_edge, plan_pull
+from services.manipulation.plan_grab import Way, feasible
+from services.manipulation.target import Target
+from services.sim.model import own
+
+PLANNER = Planner(own().mjcf, seed=0)
+ARM = PLANNER.arm
+HEIGHT = 0.6
+TABLE = Receptacle(
+    name="table", kind="table", center=(0.68, 0.0, HEIGHT), size=(0.6, 1.2), approach=((-1.0, 0.0), (0.0, 1.0))
+)
+EDGE_AT = 0.38
+
+
+def slab(edge: float = EDGE_AT) -> Obstacle:
+    return Obstacle((edge + 0.3, 0.0, HEIGHT - 0.07), (0.6, 1.2, 0.14))
+
+
+def box(x: float, yaw: float, thick: float = 0.05) -> Target:
+    return Target("box", "box", (x, 0.02, HEIGHT + thick / 2), yaw, (0.16, 0.11, thick), math.pi / 2, "box")
+
+
+def test_only_flat_things_that_are_too_wide_are_pulled() -> None:
+    assert flat_and_wide(box(0.55, 0.0), ARM.widest)
+    assert not flat_and_wide(box(0.55, 0.0, thick=0.09), ARM.widest)
+
+
+def test_the_edge_is_the_one_that_the_robot_stands_before() -> None:
+    edge = facing_edge(TABLE, (0.0, 0.0, 0.0))
+    assert edge is not None
+    assert edge.outward == pytest.approx([-1.0, 0.0]) and edge.inset(0.5, 0.3) == pytest.approx(0.5 - EDGE_AT)
+    beside = facing_edge(TABLE, (0.7, 1.1, -math.pi / 2))
+    assert beside is not None and beside.inset(0.0, 0.0) == pytest.approx(-0.5)
+    assert facing_edge(TABLE, (0.68, -1.2, math.pi / 2)) is None
+
+
+@pytest.mark.parametrize("yaw", [0.1, 0.7, -1.2])
+def test_it_ends_along_the_edge_as_far_over_it_as_it_stays(yaw: float) -> None:
+    edge = facing_edge(TABLE, (0.0, 0.0, 0.0))
+    assert edge is not None
+    plan = plan_pull(PLANNER, box(0.54, yaw), edge, [slab()], ARM.home.copy(), 0.1)
+    x, y, turned = plan.line[-1]
+    assert edge.inset(x, y) == pytest.approx(LEDGE, abs=1e-3)
+    assert abs(math.remainder(turned, math.pi / 2)) < 0.01 and abs(turned - yaw) < math.pi / 4 + 0.01
+    assert len(plan.line) == len(plan.pull)
+    # It always moves straight away from the fingers, which are behind it.
+    hands = np.array([ARM.pose(q).position for q in plan.pull])
+    assert (np.diff(hands[:, 0]) < 1e-3).all()
+    assert all(hand[0] > x for hand, (x, _, _) in zip(hands, plan.line, strict=True))
+
+
+def test_what_stands_in_the_way_is_not_pushed_down() -> None:
+    edge = facing_edge(TABLE, (0.0, 0.0, 0.0))
+    assert edge is not None
+    vase = Obstacle((0.43, 0.02, HEIGHT + 0.05), (0.06, 0.06, 0.1), label="vase")
+    with pytest.raises(PlanError) as refused:
+        plan_pull(PLANNER, box(0.56, 0.0), edge, [slab(), vase], ARM.home.copy(), 0.1)
+    assert refused.value.blockers == ("vase",)
+
+
+def test_a_finger_below_it_has_room_only_over_the_edge() -> None:
+    within, over = box(0.80, 0.0), box(0.70, 0.0)
+    grasps = over_an_edge(over, ARM.forward, ARM.widest)
+    assert grasps and all(g.width == pytest.approx(0.05) and g.over_edge for g in grasps)
+    # The hand above its upper end when it stands: that end is where the hand comes from.
+    assert all(math.cos(g.axis or 0.0) < 0 for g in grasps if abs(g.pose.rotation[1, 2]) < 0.1)
+    for target, reached in ((within, False), (over, True)):
+        way = Way([slab(0.68)], False, 0.1, 0.1)
+        assert feasible(PLANNER, target, way, ARM.home.copy()) is reached
