@@ -93,6 +93,12 @@ _AT_END = re.compile(
 )
 _ASKS = re.compile(r"\b(?:tell (?:me|us)|see|know|check|look|find out|ask|say|and)$")
 """How a question goes on with "if"."""
+_IF_THERE = re.compile(
+    r"^(?:check|look (?:at|on|in)|go to|search) (?P<spot>(?:the|my) \w+(?: \w+)?),? and,? if "
+    r"(?P<thing>(?:the|my|a|an) .+?)"
+    r" (?:is|are) (?:there|on it|in it),? (?P<command>.+)$"
+)
+"""A look, and what is to be done if something is there."""
 _IF_ANY = re.compile(
     r"^(?P<command>.+?),? if (?:there (?:is|are) (?:one|any|some)|you (?:can )?(?:find|see) "
     r"(?:it|one|any)|(?:it|one) is (?:there|"
@@ -149,6 +155,8 @@ def conditional(text: str) -> str:
         for at in range(3, len(words) - 1):
             if words[at] in _VERBS and words[at + 1] in _BEGINS:
                 return f"{word} {' '.join(words[:at])} . {' '.join(words[at:])}"
+    elif found := _IF_THERE.match(bare):
+        return f"if {found['thing']} is on {found['spot']} . {found['command']}"
     elif (found := _IF_ANY.match(bare)) and (thing := _FIRST_THING.search(found["command"])):
         return f"if you find {thing[0]} . {found['command']} . otherwise {found['other']}"
     elif (found := _AT_END.match(bare)) and bare.split()[0] in _VERBS and not _ASKS.search(found["command"]):

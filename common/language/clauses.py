@@ -12,7 +12,10 @@ _FILLER = re.compile(
     rf"|\b(?:you know|like),?(?= (?:{'|'.join(sorted(COMMANDING))})\b)"
 )
 """Sounds of somebody who thinks while speaking."""
-_STUTTER = re.compile(r"\b(the|a|an|to|my|me|i|in|on|and|of|is|you|it|that|can|could|bring|put|get|go)(?:,? \1\b)+")
+_STUTTER = re.compile(
+    r"\b(the|a|an|to|my|me|i|in|on|and|of|is|you|it|that|can|could|bring|put|get|go)(?:,? \1\b)+"
+    r"|\b((?!no\b)[a-z]{2,} (?:it|me|that|here))(?:,? \2\b)+"
+)
 """Words that somebody who hesitates says twice."""
 _PART = re.compile(r"\s*[;.!?]+\s*(?:and\s+)?(?:then\s+)?|,?\s+(?:and\s+)?(?:then|after that|afterwards),?\s+")
 _COMMA = re.compile(r"\s*,[\s,]*(?:and\s+)?")
@@ -22,7 +25,7 @@ def without_fillers(text: str) -> str:
     """Normalised text without `um`, `er` and words said twice; what is to be said stays as it is."""
     if LONG_SPEECH.match(without_lead(text)):
         return text
-    return _STUTTER.sub(r"\1", _FILLER.sub("", text)).strip(" ,")
+    return _STUTTER.sub(lambda twice: twice[1] or twice[2], _FILLER.sub("", text)).strip(" ,")
 
 
 def clauses(text: str) -> list[str]:

@@ -15,16 +15,14 @@ CONDITIONS: tuple[Wording, ...] = (
         f" | if <thing> (is | are) (not | no longer) [lying | standing] {_AT} <spot>"
         f" | unless there (is | are) [still | any] <thing> {_THERE} | unless [you] {_FIND} [any] <thing> {_THERE}"
         f" | unless <thing> (is | are) [still | already | lying | standing] {_AT} <spot>",
-        heard="",
     ),
     Wording(
         "condition",
         f"if there (is | are) [still | any] <thing> {_THERE} | if [you] {_FIND} [any] <thing> {_THERE}"
         f" | if <thing> (is | are) [still | lying | standing] {_AT} <spot>",
-        heard="",
     ),
-    Wording("state", f"if <spot> {_IS} [still | very | too | a bit | all] <words>", heard=""),
-    Wording("state_not", f"unless <spot> {_IS} [still | already | very | too | all] <words>", heard=""),
+    Wording("state", f"if <spot> {_IS} [still | very | too | a bit | all] <words>"),
+    Wording("state_not", f"unless <spot> {_IS} [still | already | very | too | all] <words>"),
 )
 """What is looked into before the rest of a sentence is carried out."""
 EMPTY = frozenset({"empty", "clear", "tidy", "clean", "free"})

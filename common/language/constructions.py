@@ -68,6 +68,18 @@ CONSTRUCTIONS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
          rf"(.+) one", r"bring me the \2 \1"),
         (rf"the (\w+)(?: that| which)? (?:i|we)(?: really)? (?:{_WANT}|meant|mean) is (?!the .+ "
          rf"one$){NP}", r"bring me \2"),
+        (rf"(?:(?:do|would|don't) you (?:think|suppose|reckon|mind if)|is (?:it|there) (?:possible|any "
+         rf"chance)|any chance|would "
+         rf"it be (?:\w+ )?(?:ok|okay|alright|possible|fine|all right))(?: that| if)? (?:i|we) "
+         rf"(?:can|could|may|might)?(?: please)? "
+         rf"?(?:have|had|get|got|borrow) {NP}", r"i want \1"),
+        (r"(?:i|we) (?:can|could|may|might) (?:have|get|borrow|use) ((?:the|my|an?|some|one|two|another|that) .+)",
+         r"i want \1"),
+        (rf"(?:it|that) would (?:really )?(?:be|make) (?:\w+ ){{1,4}}?(?:to "
+         rf"(?:have|get)|having|getting|if (?:i|we) (?:had|got|could "
+         rf"have)) {NP}", r"i want \1"),
+        (rf"it is (?:about |high )?time(?: that| for)? {NP} (?:to go|went|go|goes|were put|was put|got|returned) "
+         rf"(?:back )?({TO_PLACE}) {NP}", r"put \1 \2 \3"),
         # Wishes, of whomever.
         (rf"{_WHO}(?: really| also| just| now| only| kind of| do)? {_WANT} to {_CONSUME} {NP}", r"i want \1"),
         (rf"{_WHO}(?: really| also| just| now| only| kind of| do)? {_WANT} {NP} (?:back )?(?:here|over "
@@ -147,6 +159,7 @@ PASSIVE = tuple(
         rf"(?:could|can|may|might) (?:i|we)(?: please)? (?:have|get) {NP} {_PARTICIPLE}( .+)?",
         rf"(?:(?:i|we) would (?:\w+ ){{1,4}}?|it would be (?:\w+ ){{1,2}}?)(?:it )?if {NP} "
         rf"(?:were|was|could be|can be|is|are|got|gets) (\w+)( .+)?",
+        rf"(?:have|get) {NP} (?:to be |be )?{_PARTICIPLE}( .+)?",
         rf"(?:have|get) {NP} (?:to be |be )?(\w+(?:ed|en|t|d|n))( .+)?",
         rf"(?:i|we) (?:want|need|would like|would love|expect|wish)(?: to see| to have| to get)? {NP} (?:to be |"
         rf"be )?{_PARTICIPLE}( .+)?",

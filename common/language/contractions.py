@@ -67,6 +67,7 @@ _SAME = tuple(
          r"devil|exactly|actually)\b", r"\1"),
         (r"\bboth (?=(?:to|here|on|in|into|onto|over)\b)", ""),
         (r"\bone of each(?: of)?,? (?=(?:the|a|an)\b)", ""),
+        (r"\b(the|my) (\w+s) (?:all|both|each|every one) of (?:them|those)\b", r"all \1 \2"),
         (r"\bnothing (?:but|except|other than) ", ""),
         (r"\b(?:far|extreme|very|outer) (left|right)\b", r"\1"),
         (r"\b(left|right)[- ]hand\b", r"\1"),
@@ -74,10 +75,12 @@ _SAME = tuple(
     )
 )  # fmt: skip
 """Several words for which there are fewer, wherever they stand."""
+_TO_BE_SAID = re.compile(r"^(?:(?:please|can you|could you|would you|go|and) )*(?:say|tell|announce|inform|let)\b")
+"""How a sentence begins that has words in it which stay as they are."""
 
 
 def expand(text: str) -> str:
     """Normalised text with `what's` written as `what is` and `plus` as `and`."""
-    for short, long in (*_CONTRACTIONS, *_SAME):
+    for short, long in _CONTRACTIONS if _TO_BE_SAID.match(text) else (*_CONTRACTIONS, *_SAME):
         text = short.sub(long, text)
     return " ".join(text.split()) if "  " in text else text

@@ -63,7 +63,7 @@ _PRESENTED_AT_ONCE = re.compile(
     r"^(?P<thing>(?:the|my|that|this|those|these|our) "
     r"(?!.*\b(?:is|are|was|were|has|have|said|says|told|and|if|not)\b)"
     rf"(?:\w+ ){{1,10}}?)(?P<rest>(?:(?:please|just|can you|could you|would you) )*(?:{'|'.join(sorted(HANDLING))})"
-    r"(?: me| rid of)? (?:it|them|that|those)\b.*)$"
+    r"(?: me| rid of)? (?:it|them|that|those)\b.*|(?:i|we) (?:want|need|would like|would love) (?:it|them)\b.*)$"
 )
 """A thing that is named before or after the command in which a pronoun stands for it."""
 _LATE_EXCEPT = re.compile(
@@ -143,6 +143,10 @@ def _settled(text: str, is_place: IsPlace) -> str:
     text = _refined(_without_lead(text))
     text = _AFTERTHOUGHT.sub(r"\g<said>, i mean \g<meant>", text) if text.count(",") else text
     text = _with_noun(_NEITHER.sub(lambda found: filled(found["one"], found["other"]), text))
+    if (found := _NOT_THAT_ONE.match(text)) and not re.search(
+        r"\b(?:all|every|everything|any|do|does|did)\b", found["said"]
+    ):
+        text = found["said"]
     found = _WHERE_IT_IS.match(bare := without_politeness(text))
     if found and verb_first(bare) and not PREPOSITIONS & set(found["said"].split()):
         text = f"{found['said']} {found['where']}"
@@ -221,6 +225,7 @@ _NOT_THERE = re.compile(
     r"(?:the|my|a) \w+(?: \w+)?$"
 )
 """Where something is to be, and where not."""
+_NOT_THAT_ONE = re.compile(r"^(?P<said>(?!not\b).+?),? (?:and |but )?not (?:the|a|my|that) (?:\w+ )?one$")
 _WHERE_IT_IS = re.compile(
     r"^(?P<said>\w+ (?:me )?(?:the|my|a|an|that) [^,]+?),? (?:it|they) (?:is|are|should be|must be|lies|stands)"
     r"(?: lying| standing| still| somewhere)* (?P<where>(?:on|in|at|next to|near|beside) .+)$"

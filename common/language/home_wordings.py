@@ -8,7 +8,10 @@ _ALWAYS = (
     "(always | from (now | today | this day) on | from today | as of now | starting today | henceforth | in future"
     " | in the future | generally)"
 )
-_BELONG = "(go | goes | belong | belongs | live | lives | should go | should be | are kept | are put | are stored)"
+_BELONG = (
+    "(go | goes | belong | belongs | live | lives | should go | should be | are kept | are put | are stored"
+    " | (should | must | are to) be (kept | stored))"
+)
 _USUALLY = "(usually | normally | mostly | generally | typically | most of the time | most often)"
 _THE = "[the | my | our | a]"
 
@@ -17,7 +20,6 @@ TOLD: tuple[Wording, ...] = (
         "name_place",
         f"[(remember | learn) [that | and]] (this | that) <thing> is [called | named] {_THE} <words>"
         f" | (call | name) (this | that) <thing> {_THE} <words>",
-        heard="",
     ),
     Wording(
         "name_place",
@@ -26,7 +28,6 @@ TOLD: tuple[Wording, ...] = (
         f" | (you are | you're) [now] (in | at) {_THE} <words> [now]"
         f" | (call | rename) <spot> (to | as) {_THE} <words> | <spot> is [now] (called | named) {_THE} <words>"
         f" | (call | rename) (the | my | our) <spot> {_THE} <words>",
-        heard="",
     ),
     Wording(
         "forget_rule",
@@ -40,13 +41,11 @@ TOLD: tuple[Wording, ...] = (
         f" | [no] (put | keep | place | store | leave | sort) <thing> {_ON} <spot> {_ALWAYS}"
         f" | [no] {_ALWAYS} <thing> {_BELONG} {_ON} <spot> | [no] <thing> {_ALWAYS} {_BELONG} {_ON} <spot>"
         f" | [no] <thing> {_BELONG} {_ON} <spot> {_ALWAYS}",
-        heard="",
     ),
     Wording(
         "rule",
         f"[no] [(remember | know | learn | note) [that]] <thing> {_BELONG} {_ON} <spot>"
         f" | (i | we) (want | would like | prefer) <thing> [to be] (kept | stored | put away) {_ON} <spot>",
-        heard="",
     ),
 )  # fmt: skip
 """What is to be kept."""
@@ -63,7 +62,6 @@ ASKED: tuple[Wording, ...] = (
         "belongs",
         f"{ASK} where (do | does | should | would) <thing> (go | belong | live | be | stand)"
         f" | {ASK} where (should | do) (i | you | we) put <thing> [away]",
-        heard="",
     ),
     Wording(
         "usual",
@@ -79,7 +77,6 @@ ASKED: tuple[Wording, ...] = (
         f"{ASK} (where | when) (did | have) you last (see | seen | notice | noticed | spot | spotted) <thing>"
         f" | {ASK} (where | when) (did | have) you (see | seen | notice | noticed) <thing> last"
         f" | {ASK} (where | when) (was | were) <thing> last seen",
-        heard="",
     ),
 )  # fmt: skip
 """Questions about what was kept."""

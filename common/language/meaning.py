@@ -60,6 +60,6 @@ def heard_parts() -> dict[str, list[str]]:
     """What speech listens for: the parts `<verb>` (commands) and `<utterance>` (what is said by itself) as patterns."""
     parts: dict[str, list[str]] = {"verb": [], "utterance": []}
     for wording in WORDINGS:
-        if heard := wording.pattern if wording.heard is None else wording.heard:
-            parts["verb" if wording.kind == "command" else "utterance"].append(heard)
+        if wording.heard:
+            parts["verb" if wording.kind == "command" else "utterance"].append(wording.heard)
     return parts

@@ -25,10 +25,9 @@ MOVING: tuple[Wording, ...] = (
     Wording(
         "put",
         f"({PUT}) (down <thing> | <thing> down) ({ON} | at) <spot>",
-        heard="",
     ),
-    Wording("put", f"(line | stack | pile | set | put | lay) <thing> (up | out) ({ON} | at) <spot>", heard=""),
-    Wording("put", f"drop (off <thing> | <thing> off) ({ON} | at) <spot>", heard=""),
+    Wording("put", f"(line | stack | pile | set | put | lay) <thing> (up | out) ({ON} | at) <spot>"),
+    Wording("put", f"drop (off <thing> | <thing> off) ({ON} | at) <spot>"),
     Wording(
         "put_down",
         "put (down <thing> | back down <thing> | <thing> [back] down) | set (down <thing> | <thing> down)",
@@ -41,7 +40,7 @@ MOVING: tuple[Wording, ...] = (
         heard=f"(put | place | set) {IT} <near> | move <thing> <near>",
     ),
     Wording("throw_away", f"({THROW}) <thing> (away | out)", heard=f"throw {IT} away"),
-    Wording("throw_away", f"({THROW}) (away | out) <thing> | ({DISCARD}) <thing>", heard=""),
+    Wording("throw_away", f"({THROW}) (away | out) <thing> | ({DISCARD}) <thing>"),
     Wording(
         "put_away",
         f"(put | {TIDY}) away <thing> | (put | {TIDY}) <thing> away",
@@ -60,17 +59,15 @@ MOVING: tuple[Wording, ...] = (
     Wording(
         "put_away",
         "put <thing> [back] (where it belongs | where they belong | in its place | to its place | in order)",
-        heard="",
     ),
-    Wording("put_away", "sort [out] <thing> | <thing> (needs | need) (putting | to be put) away", heard=""),
+    Wording("put_away", "sort [out] <thing> | <thing> (needs | need) (putting | to be put) away"),
     Wording(
         "put_where",
         f"({PUT} | bring | take | carry) <thing> [over] [to] where <spot> (is | are | stands | lies)",
-        heard="",
     ),
     # Bringing.
-    Wording("deliver_there", f"({MOVE} | {PUT}) <thing> [over] there", heard=""),
-    Wording("deliver_there", "<thing> (goes | belongs | go | can go | should go | is to go) there", heard=""),
+    Wording("deliver_there", f"({MOVE} | {PUT}) <thing> [over] there"),
+    Wording("deliver_there", "<thing> (goes | belongs | go | can go | should go | is to go) there"),
     Wording(
         "fetch",
         f"({BRING} | find) (me | us) <thing> [back]",
@@ -81,7 +78,7 @@ MOVING: tuple[Wording, ...] = (
         f"({BRING} | move) <thing> [over | back] to (me | us)",
         heard="(bring | take | carry) <thing> to me",
     ),
-    Wording("fetch", f"({FETCH}) (<thing> [back | over] here | <thing> (back | over) | over <thing>)", heard=""),
+    Wording("fetch", f"({FETCH}) (<thing> [back | over] here | <thing> (back | over) | over <thing>)"),
     Wording(
         "put",
         f"({PUT}) <thing> {BACK} ({ON} | at | under | to) <spot>",
@@ -92,40 +89,33 @@ MOVING: tuple[Wording, ...] = (
         f"({MOVE}) [me] <thing> {BACK} (to | into) <spot>",
         heard="(bring | take | carry) <thing> to <spot>",
     ),
-    Wording("wish_at", "(bring | get | fetch | carry) <thing> (on | in) <spot>", heard=""),
-    Wording(
-        "put", f"(take | deliver | move | shift | relocate | transfer | swap) <thing> {BACK} (on | in) <spot>", heard=""
-    ),
-    Wording("put", f"({MOVE}) <thing> {BACK} onto <spot>", heard=""),
+    Wording("wish_at", "(bring | get | fetch | carry) <thing> (on | in) <spot>"),
+    Wording("put", f"(take | deliver | move | shift | relocate | transfer | swap) <thing> {BACK} (on | in) <spot>"),
+    Wording("put", f"({MOVE}) <thing> {BACK} onto <spot>"),
     Wording(
         "put",
         f"<thing> (belongs | belong | goes | go | can go | should be | should go | must go) ({ON} | to) <spot>",
-        heard="",
     ),
     Wording(
         "put",
         f"(can | could | should | would | may | must) <thing> (go | be | get | come) [back | over] ({ON} | to) <spot>",
-        heard="",
     ),
     Wording(
         "put",
         f"(can | could | should | must | may | shall | would) <thing> be {MOVED} {BACK} ({ON} | to) <spot>"
         f" | <thing> (should | must | has to | have to | needs to | need to | "
         f"ought to) be {MOVED} {BACK} ({ON} | to) <spot>",
-        heard="",
     ),
-    Wording("wish_at", "(have | get) <thing> back (on | in | into) <spot>", heard=""),
+    Wording("wish_at", "(have | get) <thing> back (on | in | into) <spot>"),
     Wording(
         "fetch",
         f"(can | could | should | would) <thing> be {MOVED} (here | over | to (me | us)) | have <thing> [over "
         f"| brought] [here]",
-        heard="",
     ),
     Wording(
         "put",
         f"let <thing> (stand | be | go | sit | lie) {ON} <spot> | make sure [that] <thing> (is | are | "
         f"ends up | end up) {ON} <spot>",
-        heard="",
     ),
     Wording(
         "pick_up",
@@ -135,45 +125,39 @@ MOVING: tuple[Wording, ...] = (
     Wording(
         "pick_up",
         "(get | take | grab) hold of <thing> | (hold | hang) on to <thing> | hold onto <thing>",
-        heard="",
     ),
     Wording("pick_up", "(grab | grasp | take | hold | pick | reach [for]) <thing>", heard="(grab | take) <thing>"),
     Wording(
         "find",
         "check on <thing> | keep an eye (out for | open for | on) <thing> | watch out for <thing>",
-        heard="",
     ),
-    Wording("put_back", "undo <thing> | revert <thing>", heard=""),
-    Wording("fetch", "(i | we) feel like [having | eating | drinking] <thing>", heard=""),
+    Wording("put_back", "undo <thing> | revert <thing>"),
+    Wording("fetch", "(i | we) feel like [having | eating | drinking] <thing>"),
     Wording("find", f"({SEEK}) <thing>", heard="find <thing>"),
-    Wording("find", "(i | we) (can not | cannot | could not | did not) find <thing> [anywhere]", heard=""),
+    Wording("find", "(i | we) (can not | cannot | could not | did not) find <thing> [anywhere]"),
     Wording(
         "find",
         "(i | we) [have] (lost | misplaced | mislaid) <thing>"
         " | (i | we) [have] (left | put) <thing> (somewhere | around here)",
-        heard="",
     ),
-    Wording("find", "show me where <thing> (is | are)", heard=""),
-    Wording("find", "(help me | try to) (look for | find | search for | locate) <thing>", heard=""),
-    Wording("find", "(search | look | look around) [through | in] <spot> for <thing>", heard=""),
-    Wording("fetch", f"({FETCH} | get) <thing>", heard=""),
+    Wording("find", "show me where <thing> (is | are)"),
+    Wording("find", "((have | take) a look [around | round] | look (around | round)) for <thing>"),
+    Wording("find", "(help me | try to) (look for | find | search for | locate) <thing>"),
+    Wording("find", "(search | look | look around) [through | in] <spot> for <thing>"),
+    Wording("fetch", f"({FETCH} | get) <thing>"),
     Wording(
         "wish_at",
         f"{PERSON} {WISH} <thing> [to be] {ON} <spot>",
-        heard="",
     ),
     Wording(
         "fetch",
         f"{PERSON} {WISH} <thing> [[over] here]",
-        heard="",
     ),
-    Wording("fetch", f"{MODAL} (i | we) (have | get) <thing> | let (me | us) have <thing>", heard=""),
-    Wording(
-        "fetch", f"{MODAL} i (trouble | bother | ask) you for <thing> | gimme <thing> | how about <thing>", heard=""
-    ),
-    Wording("fetch", "<thing> would be (nice | great | good | lovely | perfect)", heard=""),
-    Wording("fetch", "[is there] any chance of [getting | having] <thing>", heard=""),
-    Wording("fetch", "(pick | grab | fetch | get) (me | us) up <thing>", heard=""),
-    Wording("refuse", "(put | place | set) <thing>", heard="", reason="you did not say where to put it"),
+    Wording("fetch", f"{MODAL} (i | we) (have | get) <thing> | let (me | us) have <thing>"),
+    Wording("fetch", f"{MODAL} i (trouble | bother | ask) you for <thing> | gimme <thing> | how about <thing>"),
+    Wording("fetch", "<thing> would be (nice | great | good | lovely | perfect)"),
+    Wording("fetch", "[is there] any chance of [getting | having] <thing>"),
+    Wording("fetch", "(pick | grab | fetch | get) (me | us) up <thing>"),
+    Wording("refuse", "(put | place | set) <thing>", reason="you did not say where to put it"),
 )
 """In order of trial, as in the table that takes them in."""

@@ -85,7 +85,7 @@ UNSEEN = frozenset(
 )  # fmt: skip
 """Qualities that nobody can see or that tell nothing apart."""
 _MEASURES = frozenset(
-    {"piece", "pieces", "bit", "pair", "couple", "lot", "one", "some", "any", "all", "both", "each", "kind"}
+    {"piece", "pieces", "bit", "pair", "couple", "lot", "one", "some", "any", "all", "both", "each", "kind", "either"}
 )
 """Words before "of" that say how much of it."""
 _TAILS = (
@@ -219,7 +219,7 @@ def without_measure(words: Words) -> Words:
     for at, word in enumerate(words[:-1]):
         if word == "of" and at and words[at - 1] in _MEASURES:
             before = words[at - 1]
-            if before in ("piece", "bit", "kind", "one", "some", "any"):
+            if before in ("piece", "bit", "kind", "one", "some", "any", "either"):
                 return ("one", *(w for w in words[at + 1 :] if w not in ("the", "my", "our", "your", "those", "these")))
             return (*words[: at - 1], before, *words[at + 1 :]) if before != "lot" else words[at + 1 :]
     return words

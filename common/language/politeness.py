@@ -53,7 +53,9 @@ _ADDRESS = (
     "tidybot|buddy|mate|dude|pal|"
     "man|sir|dear|(?:my|little|good|old|young) (?:man|lad|lady|fellow|chap|friend|helper|love|one)"
     "(?! (?:here |there )?(?:is|was|wants?|would|needs?|has|likes?|said|asked|brought|and)\\b)|sweetie|honey|"
-    "sweetheart|mind you|before (?:anything|everything) else|most importantly|first thing|no time to "
+    "sweetheart|(?:go|move|drive) (?:faster|quicker)(?: and)?|speed up(?: and)?|wake up(?: and)?|step on it(?: and)?|"
+    "never mind(?=,? (?:bring|get|fetch|put|take|go|give)\\b)|mind you|before "
+    "(?:anything|everything) else|most importantly|first thing|no time to "
     "(?:lose|waste)|do not just stand there|make yourself useful(?: "
     "and)?|(?:lend|give) me a hand"
     "(?: and)?|"
@@ -105,6 +107,7 @@ _FRAMES = (
     rf" to ask)?)"
     rf"(?: for you)?(?: (?:if you(?: {_CAN})?|if i ask(?:ed)? you to|that you|to))?",
     r"(?:it|that) would make (?:me|us|my day|him|her)(?: \w+){0,2} if you(?! (?:not|did not|never)\b)",
+    r"do you (?:think|suppose|reckon)(?: that)?(?=\s+(?:i|we) (?:could|can|may|might)\b)|"
     r"(?:would|will|does|might|could) it (?:trouble|bother|inconvenience|kill|hurt) you(?: too much)?(?: to| if you)|"
     r"help (?:me|us|(?:a|an|your|my) (?:\w+ )?\w+) out(?: and| by| here and)?|"
     r"while you are (?:over )?(?:in|at|on) (?:the|my|our) \w+(?: (?:room|table|shelf|box))?|"

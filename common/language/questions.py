@@ -31,7 +31,7 @@ ABOUT_THE_WORLD: tuple[Wording, ...] = (
         "(on | in | at) <spot>",
         heard="what is that (on | in) [the] <place>",
     ),
-    Wording("where", f"{ASK} where (has | have | is | are) <thing> (gone | been | got to | ended up)", heard=""),
+    Wording("where", f"{ASK} where (has | have | is | are) <thing> (gone | been | got to | ended up)"),
     Wording("where", f"{ASK} (where | whereabouts) [exactly] (is | are) <thing>", heard="where (is | are) <thing>"),
     Wording(
         "where",
@@ -39,29 +39,25 @@ ABOUT_THE_WORLD: tuple[Wording, ...] = (
         f"lying | standing)"
         f" | {ASK} where (it is | is it | they are | stands | lies | sits) <thing> | {ASK} where did <thing> (go "
         f"| end up | get to) [to]",
-        heard="",
     ),
     Wording(
         "where",
         "(what do you know | tell me [something | more | all you know] | what can you tell me) (about | of) <thing>"
         " | describe <thing>",
-        heard="",
     ),
-    Wording("recall", f"(is | are) (anything | something) [still | left] [{LYING}] (in | on | at) <spot>", heard=""),
+    Wording("recall", f"(is | are) (anything | something) [still | left] [{LYING}] (in | on | at) <spot>"),
     Wording(
         "recall",
         "is <spot> [still] (empty | free | clear | tidy | full | clean | occupied | untidy | a mess)"
         " | is there nothing (on | in | at) <spot>",
-        heard="",
     ),
     Wording(
         "extreme",
         f"{ASK} (what | which) (is | are) <words> | {ASK} (which | what) [one] [of] <thing> (is | are) [the] <words>",
-        heard="",
     ),
     Wording("where", f"{ASK} where <thing> (is | are | was | went | has gone | have gone | might be | "
-                     f"could be)", heard=""),
-    Wording("where", f"{ASK} where (can | could | might | would) <thing> be", heard=""),
+                     f"could be)"),
+    Wording("where", f"{ASK} where (can | could | might | would) <thing> be"),
     Wording(
         "where",
         f"{ASK} (where | when) (did | do | would | can | could | have) (you | i | we) [last]"
@@ -71,74 +67,67 @@ ABOUT_THE_WORLD: tuple[Wording, ...] = (
     Wording(
         "where",
         f"{ASK} (which | what) (room | place | surface | shelf | table) {BE} <thing> [in | on]",
-        heard="",
     ),
     Wording(
-        "where", f"{ASK} where (i | we | you) [have] [last] (left | put | saw | seen | have | had) <thing>", heard=""
+        "where", f"{ASK} where (i | we | you) [have] [last] (left | put | saw | seen | have | had) <thing>"
     ),
     Wording(
         "where",
         "have you (seen | found | got | noticed | come across) <thing> [anywhere | somewhere]"
         " | have you <thing> seen | did (i | we | somebody | someone | anybody | anyone) (leave | put | forget | "
         "lose) <thing>",
-        heard="",
     ),
-    Wording("where", "(do | can) you (see | know) <thing> [anywhere | somewhere]", heard=""),
-    Wording("where", "(did you see | any sign of | what about | what happened to) <thing> [anywhere]", heard=""),
+    Wording("where", "(do | can) you (see | know) <thing> [anywhere | somewhere]"),
+    Wording("where", "(did you see | any sign of | what about | what happened to) <thing> [anywhere]"),
     Wording(
         "exists",
         f"{ASK} (is | are) there [still] <thing> [lying | standing] [left | anywhere | around | here | somewhere]",
-        heard="",
     ),
     Wording(
         "exists",
         "(do we | have we | do i | do you [happen to] | happen to | would you happen to) [still] (have | got) "
         "<thing> [left | anywhere | somewhere]",
-        heard="",
     ),
     Wording("is_at", f"{ASK} [if | whether] (is | are) <thing> [still] [{LYING}] (in | on | at) "
-                     f"<spot> [still]", heard=""),
+                     f"<spot> [still]"),
     Wording("number", f"how many [of] <thing> [{BE} | do you (see | know) | can you see | have you "
                       f"seen | did you see | do we have | have we "
                       f"got | there are]"
-        f" [there | {LYING} | left] (on | in | at) <spot>", heard=""),
+        f" [there | {LYING} | left] (on | in | at) <spot>"),
     Wording(
         "number",
-        f"how many [of] <thing> [(are there | there are | do you (see | know | remember) | can you see | have "
+        f"how many [of] <thing> [(are there | there are | do (we | i) have | have (we | i) got | do "
+        f"you (see | know | remember) | can you see | have "
         f"you seen | do we have |"
         f" {BE} (left | here | around))] [left]",
-        heard="",
     ),
     Wording(
         "colour",
         f"{ASK} (what | which) (colour | color) {BE} <thing> | {ASK} what {BE} the (colour | color) of <thing>"
         " | tell me the (colour | color) of <thing>",
-        heard="",
     ),
     Wording(
         "kinds",
         "(which | what) <thing> (do you know [of | about] | have you seen | do you see | can you see | are there |"
         " do we have)",
-        heard="",
     ),
-    Wording("compare", f"{ASK} (is | are) <thing> <words> than <spot>", heard=""),
-    Wording("beside", f"{ASK} what {BE} [{LYING}] <words>", heard=""),
+    Wording("compare", f"{ASK} (is | are) <thing> <words> than <spot>"),
+    Wording("beside", f"{ASK} what {BE} [{LYING}] <words>"),
 )  # fmt: skip
 """Where things are, what and how many there are."""
 
 ABOUT_ITSELF: tuple[Wording, ...] = (
     Wording("holding", "what are you (holding | carrying)", heard="what are you holding"),
-    Wording("holding", "what do you (have | hold) [in your (hand | hands | gripper)]", heard=""),
+    Wording("holding", "what do you (have | hold) [in your (hand | hands | gripper)]"),
     Wording(
         "holding",
         "(are you (holding | carrying) | do you (have | hold | carry) | have you got | is there)"
         " (anything | something | it) [in your (hand | hands | gripper)]"
         " | what have you got [there | in there | for me]",
-        heard="",
     ),
     Wording("holding", "what (is | have you | have you got | do you have | are you holding | do you hold) [that |"
                        " this | it]"
-        " in (your | the) (hand | hands | gripper | claw | fingers)", heard=""),
+        " in (your | the) (hand | hands | gripper | claw | fingers)"),
     Wording("whereabouts", f"{ASK} where (are you | you are) | which room are you in", heard="where are you"),
     Wording(
         "doing",
@@ -187,7 +176,6 @@ ABOUT_ITSELF: tuple[Wording, ...] = (
         " | where (did | was | were) <thing> (stand | sit | lie | be | come from | standing | lying) [before | "
         "originally]"
         " | where (was | were) <thing> (before | originally) | where does <thing> come from",
-        heard="",
     ),
     Wording(
         "abilities",
@@ -209,13 +197,11 @@ ABOUT_ITSELF: tuple[Wording, ...] = (
         "[tell me] (which | what) (rooms | places) ([do] you know | are there | do you know | can "
         "you go to | are in <words>)"
         " | where can you go [to] | how many rooms (are there | do you know)",
-        heard="",
     ),
     Wording(
         "thanks",
         "(thank you | thanks | cheers) [very much | a lot | so much | robot] | (well | good) (done | job)"
         " | good (robot | boy | morning | evening | night) | hello | hi [there]",
-        heard="",
         kind="reply",
     ),
 )  # fmt: skip

@@ -29,8 +29,9 @@ QUESTIONS: frozenset[Action] = frozenset(
 class Wording(NamedTuple):
     """Sentences of `pattern` ask for `action`; in order of trial: the first that fits and can be done counts.
 
-    `heard` is the part of it that the speech recogniser listens for, which hears each sentence the better the fewer
-    there are: None the whole pattern, "" nothing (typed only). Its slots are the parts of `speech.commands`.
+    `heard` is the part of it that the recogniser searches for, which hears each sentence the better the fewer there
+    are; what is not in it is understood as far as the recogniser writes it down right without. Its slots are the parts
+    of `speech.commands`.
     `kind`: a "command" may be joined to others by "and"; a "reply" is heard by itself only; a "name" is understood
     where nothing else was said; what is "told" beside a command is understood where no command is. `reason`: why the
     planner has no plan for it, as a clause.
@@ -38,6 +39,6 @@ class Wording(NamedTuple):
 
     action: Action
     pattern: str
-    heard: str | None = None
+    heard: str = ""
     kind: Kind = "command"
     reason: str = ""

@@ -39,7 +39,8 @@ WORDINGS: tuple[Wording, ...] = (
     ),
     Wording(
         "yes",
-        "(yes | yeah | yep | yup) [please | thanks | thank you | i did | it is | that is right | "
+        "(yes | yeah | yep | yup) [please | thanks | thank you | that is what i (said | meant | "
+        "want) | i did | it is | that is right | "
         "please do | do | do that | "
         "exactly | go ahead] | [that is] (correct | right | true) | exactly | sure | okay | ok"
         " | go ahead | do it | do | affirmative | sure thing | of course | absolutely | definitely | indeed | "
@@ -56,10 +57,10 @@ WORDINGS: tuple[Wording, ...] = (
         " | [no] i (did not | never) (say | mean) that | you (misheard | misunderstood) [me] | absolutely not",
         heard="no [thanks] | nope", kind="reply", reason="I did not ask anything",
     ),
-    Wording("refuse", "yes <words>", heard="", reason="I did not ask anything"),
-    Wording("refuse", "(do not | never | not | did not) <words>", heard="", reason="you told me not to, so I leave it"),
+    Wording("refuse", "yes <words>", reason="I did not ask anything"),
+    Wording("refuse", "(do not | never | not | did not) <words>", reason="you told me not to, so I leave it"),
     *CONDITIONS,
-    Wording("refuse", "(if | when | unless) <words>", heard="", reason="I cannot wait for conditions"),
+    Wording("refuse", "(if | when | unless) <words>", reason="I cannot wait for conditions"),
     Wording("refuse", "follow <words>", heard="follow me", reason="I cannot follow people"),
     Wording(
         "open_hand", "(open [up] | let go [of] | release) [the | your] (gripper | hand | fingers)",
@@ -82,11 +83,10 @@ WORDINGS: tuple[Wording, ...] = (
         " | (call | name) (this | that | it) [<thing>] [my | our | the] <words> | (call | name) (the "
         "| my | our) <thing> <words>"
         " | (remember | learn) (this | that) [<thing>] as [my | our | the] <words>",
-        heard="",
     ),
-    Wording("forget", "(forget | unlearn) [about] [the name [of] | what is] (my | our) <words>", heard=""),
-    Wording("forget", "(forget | unlearn) the name [of] [the] <words>", heard=""),
-    Wording("untidy", "<spot> (is | looks) (a mess | messy | untidy | dirty | a tip)", heard=""),
+    Wording("forget", "(forget | unlearn) [about] [the name [of] | what is] (my | our) <words>"),
+    Wording("forget", "(forget | unlearn) the name [of] [the] <words>"),
+    Wording("untidy", "<spot> (is | looks) (a mess | messy | untidy | dirty | a tip)"),
     Wording(
         "again",
         "[do] (that | it | the same [thing] | same [thing]) [once] [again | more] [but] (with | for | to) <thing>"
@@ -109,14 +109,12 @@ WORDINGS: tuple[Wording, ...] = (
         "people) know [that] <words>"
         f" | let (my | our | the) {FAMILY} know "
         "[that] <words>",
-        heard="",
     ),
     Wording("wait", "(wait | pause) [here | there | a moment | a bit | a while | for me]", heard="wait"),
     Wording(
         "wait",
         "(wait | pause | sleep | hold on | hang (on | about | around) | stay [here | there] | stand by | rest) "
         "[here | there] [for] <words>",
-        heard="",
     ),
     Wording(
         "look_around",
@@ -130,19 +128,16 @@ WORDINGS: tuple[Wording, ...] = (
         f"[go [and] | come and] {LOOK} [around | round] [in | at | on | inside | into] <spot>"
         f" | [go [and]] {LOOK} what (is | lies | there is) [lying | standing] (on | in | at) <spot>"
         f" | (search | inspect | survey | scan | explore) <spot>",
-        heard="",
     ),
     Wording(
         "check",
         "(check | inspect | scan) <spot> for <thing>",
-        heard="",
     ),
     Wording(
         "check",
         f"[go [over] [and | to]] {LOOK} (if | whether) (there is | there are | you (see | find) | "
         f"we have) [still] <thing>"
         f" [left]",
-        heard="",
     ),
     Wording(
         "check",
@@ -150,52 +145,49 @@ WORDINGS: tuple[Wording, ...] = (
         f"you) [has | have]"
         f" (left | put | forgotten | forgot | dropped) <thing>"
         f" | [go [over] [and | to]] {LOOK} (if | whether) <thing> (is | are) [still] (in | on | at) <spot>",
-        heard="",
     ),
     Wording(
         "find",
         f"[go [and] | help me [to] | try [to | and]] {LOOK} (if | whether) you can (find | see | spot) <thing>",
-        heard="",
     ),
     Wording(
         "wait",
         "(give | allow) (me | us) <words> | (stay | remain | wait) (put | where you are | right there) [for] <words>"
         " | do nothing for <words> | take a break (for | of) <words>",
-        heard="",
     ),
-    Wording("wait_there", "[go [and]] (wait [for me] | stay | stand) (in | at | by | near) <spot>", heard=""),
+    Wording("wait_there", "[go [and]] (wait [for me] | stay | stand) (in | at | by | near) <spot>"),
     Wording("come_back", "(come | go | drive) [back] home", heard="go home"),
     Wording(
         "come_back", "(come | go | drive | get) [on] [over] (here | back | to me | back here | back to me)",
         heard="come (here | back)",
     ),
     Wording(
-        "come_back", "(come | go) [back] [to] where (i am | we are | you started | you came from)", heard="",
+        "come_back", "(come | go | return | head) [back] [to] where (i am | we are | you started | "
+                     "you came from)",
     ),
     Wording("come_back", "return [home | here | to (start | me | base)] | come | home | back [here | to "
-                         "me | home]", heard=""),
+                         "me | home]"),
     # Two things at once, said of one object.
-    Wording("throw_away", f"{PICK} <thing> [up] and throw (it | them) away", heard=""),
-    Wording("put_away", f"{PICK} <thing> [up] and put (it | them) away", heard=""),
+    Wording("throw_away", f"{PICK} <thing> [up] and throw (it | them) away"),
+    Wording("put_away", f"{PICK} <thing> [up] and put (it | them) away"),
     Wording(
         "put", f"{PICK} <thing> [up] and ({PUT}) (it | them) {BACK} {ON} <spot>",
-        heard="",
     ),
     Wording(
-        "deliver", f"{PICK} <thing> [up] and (bring | take | carry) (it | them) {BACK} to <spot>", heard="",
+        "deliver", f"{PICK} <thing> [up] and (bring | take | carry) (it | them) {BACK} to <spot>",
     ),
-    Wording("fetch", f"(go | get | {GO}) [over | along] and ({BRING} | find) [me | us] <thing>", heard=""),
-    Wording("fetch", f"(go | come | run) ({BRING}) [me | us] <thing>", heard=""),
+    Wording("fetch", f"(go | get | {GO}) [over | along] and ({BRING} | find) [me | us] <thing>"),
+    Wording("fetch", f"(go | come | run) ({BRING}) [me | us] <thing>"),
     # Tidying, going.
     Wording("tidy", f"({TIDY}) up [<spot>]", heard="(tidy | clean) up [the | my] <place>"),
     Wording("tidy", f"({TIDY}) <spot> [up]", heard="(tidy | clean | clear) [the | my] <place>"),
-    Wording("tidy", "(clean | clear) <spot> off | empty <spot>", heard=""),
-    Wording("tidy", "make (space | room) (on | in) <spot>", heard=""),
-    Wording("tidy", "give <spot> a [quick | good] (tidy | clean | tidying | cleaning) [up]", heard=""),
+    Wording("tidy", "(sort | straighten) <spot> (out | up)"),
+    Wording("tidy", "(clean | clear) <spot> off | empty <spot>"),
+    Wording("tidy", "make (space | room) (on | in) <spot>"),
+    Wording("tidy", "give <spot> a [quick | good] (tidy | clean | tidying | cleaning) [up]"),
     Wording(
         "tidy",
         "(clean | clear | take | get | remove) (everything | all of it | it all) (off | from) <spot>",
-        heard="",
     ),
     Wording(
         "go", "go [over | back | along] (to | into | in | near | towards) <spot>", heard="go [back] to [the] <place>",
@@ -205,9 +197,9 @@ WORDINGS: tuple[Wording, ...] = (
         f"({GO} | off you go) [over | back | along] (to | into | towards) <spot>",
         heard="drive [back] to [the] <place>",
     ),
-    Wording("go", "(swing | drop | stop | pop | pass | come | go) by <spot> | visit <spot>", heard=""),
-    Wording("come_back", "(get | go | come) out of <spot>", heard=""),
-    Wording("go", "(approach | look at) <spot>", heard=""),
+    Wording("go", "(swing | drop | stop | pop | pass | come | go) by <spot> | visit <spot>"),
+    Wording("come_back", "(get | go | come) out of <spot>"),
+    Wording("go", "(approach | look at | head for | make for | set off for) <spot>"),
     Wording(
         "go",
         f"(go | {GO}) [over | back | up] to (where | the (room | place | table | spot) where) <spot> (is | are | "
@@ -215,16 +207,15 @@ WORDINGS: tuple[Wording, ...] = (
         f" | ([go [and]] stand | go | {GO}) (next to | beside | in front of | up to | over to | by | close to) <spot>"
         " | (park | place | put | position | station | move | bring | drive) yourself [over | back]"
         " (to | into | in | at | on | by | near | next to | beside | in front of) <spot>",
-        heard="",
     ),
-    Wording("go", "(i | we) (need | want) you (in | at | by) <spot>", heard=""),
-    Wording("go", "(make your way | get yourself | take yourself) [over | back] (to | into) <spot>", heard=""),
+    Wording("go", "(i | we) (need | want) you (in | at | by) <spot>"),
+    Wording("go", "(make your way | get yourself | take yourself) [over | back] (to | into) <spot>"),
     *MOVING,
     Wording(
         "refuse", "(open | close | shut | lock | unlock) <words>", heard="(open | close) the <openable>",
         reason="I cannot open or close doors, drawers or lids",
     ),
-    Wording("refuse", "(turn | switch) (on | off) <words>", heard="", reason="I cannot switch things on or off"),
+    Wording("refuse", "(turn | switch) (on | off) <words>", reason="I cannot switch things on or off"),
     # What is said beside a command.
     Wording(
         "mention",
@@ -233,18 +224,17 @@ WORDINGS: tuple[Wording, ...] = (
         " there (is | are | was | were | should be | must be) <thing> | (i | we) (left | put | saw | forgot | "
         "dropped) <thing>"
         " | <thing> (is | are) (in | on | at) <spot> | <thing> (is | are | was | were | looks | look | has | "
-        "have) <words>",
-        heard="", kind="told",
+        "have) <words>", kind="told",
     ),
     Wording(
         "remark",
         "(i am | we are | it is) <words>"
         " | is there (anything | something) [that] you (can | could) (bring | get | give | fetch) (me | us)",
-        heard="", kind="told",
+        kind="told",
     ),
     # Names alone.
-    Wording("put_held", f"[back] ({ON} | at | to) <spot>", heard="", kind="name"),
-    Wording("named_at", "<thing> (in | on | into | onto) <spot>", heard="", kind="name"),
+    Wording("put_held", f"[back] ({ON} | at | to) <spot>", kind="name"),
+    Wording("named_at", "<thing> (in | on | into | onto) <spot>", kind="name"),
     Wording("fetch", "[no] i (said | meant) <thing> | no (the | my | that | this | "
                      "all) <thing>", heard="no [i said] <thing>", kind="name"),
     Wording("fetch_named", "<thing>", heard="<thing> | the (<colour> | <ordinal> | left | right) one", kind="name"),

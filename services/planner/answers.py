@@ -148,6 +148,10 @@ def beside(builder: PlanBuilder, slots: Slots) -> None:
     """What stands next to, left of or behind something."""
     not_after_moving(builder)
     for _, relation, words in related(("thing", *slots["words"])):
+        if relation == "between":
+            between_them = [m.object for m in referents(builder, ("everything", "between", *words))]
+            builder.say(f"{capital(enumeration([a(t) for t in between_them]))}.")
+            return
         anchor = referent(builder, words).object
         others = [t for t in builder.world.objects if t.label != anchor.label and t.position and not t.held]
         if anchor.position is None:

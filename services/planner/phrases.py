@@ -166,7 +166,7 @@ def _known_head(words: Words, vocabulary: Vocabulary) -> Phrase | None:
             count, number = 2, True
         elif word in NUMBERS:
             count, number = NUMBERS[word], True
-        elif word in ("a", "an", "any", "some"):
+        elif word in ("a", "an", "any", "some", "either", "whichever"):
             any_one = True
         elif word in DETERMINERS or word in UNSEEN or word == "of":
             continue

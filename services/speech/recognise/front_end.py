@@ -7,12 +7,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.household import Household
-from common.language.meaning import asks_for
 from common.language.normalise import normalise
+from common.language.spoken import is_understood
 from services.speech.config import SpeechConfig
 from services.speech.listen.vad import RATE, VoiceDetector, speech_span
 from services.speech.recognise.denoise import noise_ratio, reduce_noise
-from services.speech.recognise.grammar import Grammar
+from services.speech.recognise.grammar import Grammar, known_names
 from services.speech.recognise.packed_network import return_memory
 from services.speech.recognise.recogniser import (
     Array,
@@ -75,7 +75,8 @@ class FrontEnd:
     """The whole path from samples to a verdict; models load at construction, so make it in the worker."""
 
     def __init__(self, config: SpeechConfig, household: Household, found: dict[Scope, Grammar]) -> None:
-        self._detector, self._wake = VoiceDetector(), config.wake
+        self._detector, self._wake, self._config = VoiceDetector(), config.wake, config
+        self._names = known_names(config, household, ())
         self._recogniser: Recogniser
         if config.recogniser == "pocketsphinx":
             self._recogniser = SphinxRecogniser(config, household)
@@ -89,15 +90,16 @@ class FrontEnd:
             return Recognition("", "silence", 0.0)
         found = self._recogniser.recognise(utterance, scope)
         return_memory()
-        if scope != "interrupt" and found.verdict != "accept" and (naming := self._naming(found.free)):
-            return replace(found, text=naming, verdict="accept", confidence=FREE)
+        if scope != "interrupt" and found.verdict != "accept" and (freely := self._freely(found.free)):
+            return replace(found, text=freely, verdict="accept", confidence=FREE)
         return replace(found, text=without_wake(found.text, self._wake))
 
     def learn(self, household: Household, names: Sequence[str]) -> None:
         """Listen for the names of this household, and for these of things as well."""
         self._recogniser.learn(household, names)
+        self._names = known_names(self._config, household, names)
 
-    def _naming(self, free: str) -> str:
-        """The free transcription if it gives or takes back a name: a grammar has no name before it is taught."""
+    def _freely(self, free: str) -> str:
+        """The free transcription if the planner would understand it: people say more than a grammar holds."""
         text = without_wake(normalise(free), self._wake)
-        return text if asks_for(text, "teach", "name_place", "forget") else ""
+        return text if is_understood(text, self._names) else ""

@@ -12,6 +12,7 @@ from common.household import Household
 from common.language.meaning import heard_parts
 from common.language.normalise import normalise
 from common.language.pattern import Either, Node, PatternError, Sequence, Slot, Word, parse
+from services.speech.config import SpeechConfig
 
 State = frozenset[int]
 _WORDS = re.compile(r"^[\w' ]+$")
@@ -169,3 +170,11 @@ def vocabulary(
         "container": [normalise(n) for n in (*bins, *rooms)],
         "colour": [normalise(n) for n in (*(o.colour for o in household.things), *words.colours, *colours) if n],
     }
+
+
+def known_names(config: SpeechConfig, household: Household, names: Iterable[str]) -> frozenset[str]:
+    """The single words of the names of things, places and colours, in singular and plural."""
+    parts = vocabulary(household, (*config.objects, *names), config.places, config.colours)
+    kinds = ("object", "place", "surface", "container", "colour")
+    words = {word for kind in kinds for name in parts[kind] for word in name.split()}
+    return frozenset(words | {f"{word}s" for word in words})
