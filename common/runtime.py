@@ -45,7 +45,8 @@ def main(kind: ServiceClass) -> None:
         with open_session(connect, namespace, wait=stop.wait, name=kind.NAME) as opened:
             state_dir = config.state_dir(environ, connect, namespace)
             again = partial(open_session, connect, namespace, wait=stop.wait, name=kind.NAME, prefixed=False)
-            outside = Outside(namespace, again)
+            beside = partial(open_session, connect, wait=stop.wait, name=kind.NAME)
+            outside = Outside(namespace, again, beside)
             _run(Process(kind, parameters, shared, household, opened, clock, stop, state_dir, world, outside), clock)
     except NoRouter:
         sys.exit(0)

@@ -3,21 +3,21 @@
 import os
 import traceback
 from collections.abc import Callable
+from contextlib import ExitStack
 from functools import partial
 from pathlib import Path
 from typing import Any
 
-import msgspec
 import zenoh
 
 from common import config, topics
 from common import messages as m
 from common.bus import codec
-from common.bus.base import health_of
 from common.bus.port import Outside
 from common.bus.zenoh_io import ZenohIo
 from common.household import Household
-from common.process import SILENCE, StopSignal, limit_silence, rss_mb
+from common.presence import Presence, answer_queries
+from common.process import SILENCE, StopSignal, limit_silence
 from common.scene import Scene
 from common.time.clock import Clock, Pacer, SimClock, monotonic
 from common.time.clock_transport import AckCollector, ClockPublisher, ClockSubscriber
@@ -56,57 +56,62 @@ class Process:
         outside: Outside | None = None,
     ) -> None:
         self._kind, self._session, self._clock, self._stop = kind, opened, clock, stop
-        self.io = ZenohIo(
+        self._shared, self._household, self._world = shared, household, world
+        self.io = self._io(opened)
+        self.io.state_dir = state_dir
+        self.io.outside = outside
+        self.io.robot = outside.namespace if outside is not None else ""
+        self.io.other_robots = self._beside
+        self._presences = [Presence(opened, self.io)]
+        self._health_at = monotonic()
+        self._steps = 0
+        self._errors = 0
+        self.service = kind(parameters, self.io)
+        for presence in self._presences:
+            presence.announce()
+        self.io.log.info("started", epoch=self.io.epoch, pid=os.getpid(), hz=kind.HZ)
+
+    def _io(self, opened: zenoh.Session) -> ZenohIo:
+        kind, shared = self._kind, self._shared
+        return ZenohIo(
             opened,
             kind.NAME,
             kind.READS,
             kind.WRITES,
-            household=household,
-            world=world,
+            household=self._household,
+            world=self._world,
             seed=shared.seed,
-            lockstep=shared.lockstep and isinstance(clock, SimClock),
-            clock=clock,
+            lockstep=shared.lockstep and isinstance(self._clock, SimClock),
+            clock=self._clock,
             log_level=shared.log_level,
             on_demand=getattr(kind, "ON_DEMAND", ()),
         )
-        self.io.state_dir = state_dir
-        self.io.outside = outside
-        self.io.robot = outside.namespace if outside is not None else ""
-        self._health = opened.declare_publisher(topics.HEALTH.of(kind.NAME), encoding=codec.JSON)
-        self._last_health = b""
-        self._health_queryable = opened.declare_queryable(self._health.key_expr, self._answer_health)
-        self._started = self._health_at = monotonic()
-        self._steps = 0
-        self._errors = 0
-        self.service = kind(parameters, self.io)
-        self._token = opened.liveliness().declare_token(topics.ALIVE_KEY.format(name=kind.NAME))
-        self._publish_health(0.0)
-        self.io.log.info("started", epoch=self.io.epoch, pid=os.getpid(), hz=kind.HZ)
 
-    def _answer_health(self, query: zenoh.Query) -> None:
-        with query:
-            if self._last_health:
-                query.reply(self._health.key_expr, self._last_health, encoding=codec.JSON)
-
-    def _publish_health(self, hz: float) -> None:
-        record = health_of(self.io, monotonic() - self._started, hz, rss_mb(), os.getpid())
-        self._last_health = msgspec.json.encode(record)
-        self._health.put(self._last_health)
+    def _beside(self, robot: str) -> ZenohIo:
+        """The same service in the namespace of another robot, over a session of its own."""
+        if self.io.outside is None:
+            raise LookupError("there is no router")
+        stack = ExitStack()
+        opened = stack.enter_context(self.io.outside.beside(robot))
+        self._presences.append(Presence(opened, self._io(opened), stack))
+        return self._presences[-1].io
 
     def housekeeping(self) -> None:
         """Health at 1 Hz of wall time, waiting queries."""
-        self.io.answer_queries()
+        answer_queries(self._presences)
         elapsed = monotonic() - self._health_at
         if elapsed >= HEALTH_PERIOD:
-            self._publish_health(self._steps / elapsed)
+            for presence in self._presences:
+                presence.tell(self._steps / elapsed)
             self._health_at += elapsed
             limit_silence(SILENCE)
             self._steps = 0
 
     def step(self, tick: int | None, now: float) -> None:
         """One step behind the guard: an unexpected error is logged and counted, many in a row end the process."""
-        self.io.begin(tick, now)
-        self.io.answer_queries()
+        for presence in self._presences:
+            presence.io.begin(tick, now)
+        answer_queries(self._presences)
         self._guarded(self.service.step, now)
         self._steps += 1
 
@@ -172,12 +177,13 @@ class Process:
     def run_simulation(self, clock: SimClock, speed: float | None, wait_for: tuple[str, ...]) -> None:
         """The simulation's own loop: it makes the time that the others follow. `speed` None: as fast as possible."""
         lockstep, io = self.io.lockstep, self.io
-        acks = AckCollector(self._session, self.io.drops)
-        speaker = ClockPublisher(self._session)
-        barrier = Barrier(acks.next, wait_for, report=lambda text: io.log.warning(text))
+        speakers = [ClockPublisher(p.session) for p in self._presences]
+        acks = [AckCollector(p.session, p.io.drops) for p in self._presences]
+        barriers = [Barrier(a.next, wait_for, report=lambda text: io.log.warning(text)) for a in acks]
         if lockstep:
             io.log.info("waiting for participants", names=",".join(wait_for))
-            barrier.assemble(self._keep_alive)
+            for barrier in barriers:
+                barrier.assemble(self._keep_alive)
         tick = round(getattr(self.service, "start_time", 0.0) / DT)
         pacer = Pacer(DT, speed) if speed else None
         published: m.SimClockTick | None = None
@@ -186,23 +192,26 @@ class Process:
                 self.housekeeping()
                 self._stop.wait(0.02)
                 continue
-            io.out_tick = tick
+            for presence in self._presences:
+                presence.io.out_tick = tick
             self.step(tick, tick * DT)
             if lockstep and published:
-                barrier.wait(tick, self._gone, partial(speaker.publish, published))
+                for barrier, speaker, presence in zip(barriers, speakers, self._presences, strict=True):
+                    barrier.wait(tick, partial(self._gone, presence), partial(speaker.publish, published))
             tick += 1
             clock.set(tick * DT)
             published = m.SimClockTick(t=tick * DT, tick=tick, epoch=io.epoch, lockstep=lockstep)
-            barrier.drain()
-            speaker.publish(published, not lockstep or barrier.awaits(tick))
+            for barrier, speaker in zip(barriers, speakers, strict=True):
+                barrier.drain()
+                speaker.publish(published, not lockstep or barrier.awaits(tick))
             if pacer:
                 pacer.wait()
             self.housekeeping()
 
-    def _gone(self, name: str) -> bool:
+    def _gone(self, presence: Presence, name: str) -> bool:
         """Asked while the world waits for `name`: a slow participant does not make the simulation look dead."""
         self.housekeeping()
-        return self.io.peer(name) is None
+        return presence.io.peer(name) is None
 
     def _keep_alive(self) -> bool:
         self.housekeeping()
@@ -213,4 +222,5 @@ class Process:
         if close:
             close()
         self.io.log.info("stopped")
-        self.io.shutdown()
+        for presence in reversed(self._presences):
+            presence.close()

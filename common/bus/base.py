@@ -204,6 +204,10 @@ class IoBase:
                 found[name] = known[1]
         return found
 
+    def beside(self, robot: str) -> "IoBase":
+        """This service for another robot."""
+        raise NotImplementedError
+
     def _abroad(self, topic: Topic[Any]) -> dict[str, bytes]:
         """The newest payload of every other robot, by its name."""
         raise NotImplementedError

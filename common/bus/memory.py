@@ -101,13 +101,30 @@ class MemoryIo(IoBase):
         self.bus = bus
         self.served: dict[str, Handler] = {}
         self.out_stamp: int | None = None
+        self._leader: MemoryIo | None = None
+        self._followers: list[MemoryIo] = []
         bus.attach(self)
 
+    def beside(self, robot: str) -> "MemoryIo":
+        other = MemoryIo(
+            self.bus.neighbours[robot], self.name, [box.topic for box in self._open_order], (), household=self.loaded,
+            world=self._world, seed=self.seed, lockstep=self.lockstep,
+        )  # fmt: skip
+        other.clock, other.log, other._writes, other._leader = self.clock, self.log, self._writes, self
+        self._followers.append(other)
+        return other
+
+    def begin(self, tick: int | None, now: float) -> None:
+        super().begin(tick, now)
+        for other in self._followers:
+            other.begin(tick, now)
+
     def _send(self, topic: Topic[Any], payload: bytes) -> None:
+        leader = self._leader or self
         if not self.lockstep:
             stamp = UNSTAMPED
         else:
-            stamp = self.tick if self.out_stamp is None else self.out_stamp
+            stamp = leader.tick if leader.out_stamp is None else leader.out_stamp
         self.bus.put(topic, payload, stamp)
 
     def _abroad(self, topic: Topic[Any]) -> dict[str, bytes]:

@@ -19,10 +19,12 @@ Handler = Callable[[bytes], bytes]
 
 
 class Outside(NamedTuple):
-    """`open` opens a session of this service on the robot's router whose keys are not below the robot's `namespace`."""
+    """`open` opens a session of this service on the robot's router whose keys are not below the robot's `namespace`,
+    `beside` one below another robot's."""
 
     namespace: str
     open: Callable[[], AbstractContextManager[Any]]
+    beside: Callable[[str], AbstractContextManager[Any]]
 
 
 class Log(Protocol):
@@ -81,6 +83,10 @@ class Io(Protocol):
     def others(self, topic: Topic[M]) -> dict[str, M]:
         """The newest message of every other robot on the router, by its name; of topics that name this service in
         `abroad`. A robot that has left stays: the message tells how old it is."""
+
+    def beside(self, robot: str) -> "Io":
+        """This service as it is for another robot, in whose namespace it speaks and hears too: for a simulation that
+        has several. Steps with this one."""
 
     def publish(self, topic: Topic[M], message: M) -> None: ...
 

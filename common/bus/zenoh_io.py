@@ -1,7 +1,7 @@
 """`ZenohIo`: the `Io` of a process of its own, over a Zenoh session."""
 
 import queue
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from contextlib import ExitStack
 from typing import Any
 
@@ -144,6 +144,14 @@ class ZenohIo(IoBase):
         return self._peers.get(name)
 
     # --- other robots
+    other_robots: Callable[[str], "ZenohIo"] | None = None
+    """How this service is there for another robot as well; the process knows."""
+
+    def beside(self, robot: str) -> "ZenohIo":
+        if self.other_robots is None:
+            raise LookupError(f"{self.name} is one robot's alone")
+        return self.other_robots(robot)
+
     def _abroad(self, topic: Topic[Any]) -> dict[str, bytes]:
         if topic.key not in self._heard:
             self._heard[topic.key] = {}

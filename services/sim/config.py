@@ -3,7 +3,21 @@
 from typing import Literal
 
 from common.config import Config
+from common.geometry import Pose2
 from common.scene import Obstacle
+
+
+class Guest(Config, frozen=True):
+    """Another robot in the same world: its namespace, and where it starts [m, m, rad]."""
+
+    name: str
+    x: float
+    y: float
+    theta: float = 0.0
+
+    @property
+    def pose(self) -> Pose2:
+        return self.x, self.y, self.theta
 
 
 class SimConfig(Config, frozen=True):
@@ -17,6 +31,9 @@ class SimConfig(Config, frozen=True):
     Wheel odometry: `slip` is the largest constant scale error, `veer` the largest constant turn [rad/m],
     `noise` a random walk [m and rad per sqrt(m)]. `obstacles`: tables, or names of the scene's; `none`: not even those
     that the scene places.
+
+    `guests`: other robots of the same make in this world. The simulation plays each one's drivers and sensors in its
+    namespace, on the same router; its other services run as for a robot of its own. Such a world always begins anew.
 
     `battery`: its charge at the beginning, 0 empty to 1 full.
 
@@ -43,6 +60,7 @@ class SimConfig(Config, frozen=True):
     odometry_veer: float = 0.005
     odometry_noise: float = 0.005
     obstacles: tuple[Obstacle | str, ...] | str = ()
+    guests: tuple[Guest, ...] = ()
     snapshot_dir: str = ""
     run: str = ""
     battery: float = 1.0

@@ -12,9 +12,9 @@ from common.geometry import Pose2
 from common.time.lockstep import DT
 from services.sim.arm import ArmDriver
 from services.sim.base import BaseDriver
+from services.sim.body import Body
 from services.sim.checkpoint import Checkpoint
 from services.sim.config import SimConfig
-from services.sim.physics import Physics
 
 MAX_DISTANCE = 50.0
 """Largest coordinate [m] or velocity [m/s, rad/s] that is no mistake: beyond the largest flat."""
@@ -24,24 +24,22 @@ Array = NDArray[np.float64]
 class Drivers:
     """Base, arm and gripper of the simulated robot. `told` hears of every stop and of the end of one: state, detail."""
 
-    def __init__(
-        self, config: SimConfig, io: Io, physics: Physics, pose: Pose2, told: Callable[[str, str], None]
-    ) -> None:
-        self._config, self._io, self._physics, self._told = config, io, physics, told
-        self.setpoint: Array = np.array([*pose, *physics.home_arm])
+    def __init__(self, config: SimConfig, io: Io, body: Body, pose: Pose2, told: Callable[[str, str], None]) -> None:
+        self._config, self._io, self._body, self._told = config, io, body, told
+        self.setpoint: Array = np.array([*pose, *body.home_arm])
         self.base = BaseDriver(config, pose)
-        self._arm = ArmDriver(np.array(physics.home_arm), config.stream_timeout, physics.arm_limits)
-        self.effort = physics.fingers.force
-        physics.grip(0.0, self.effort)
+        self._arm = ArmDriver(np.array(body.home_arm), config.stream_timeout, body.arm_limits)
+        self.effort = body.fingers.force
+        body.grip(0.0, self.effort)
 
     def resume(self, state: Checkpoint) -> None:
         """At rest where another process left the robot, nothing commanded."""
-        actual = self._physics.joints
+        actual = self._body.joints
         self.put((float(actual[0]), float(actual[1]), float(actual[2])), stopped=state.stopped)
         self.setpoint[3:] = state.setpoint[3:]
-        self._arm = ArmDriver(self.setpoint[3:], self._config.stream_timeout, self._physics.arm_limits)
+        self._arm = ArmDriver(self.setpoint[3:], self._config.stream_timeout, self._body.arm_limits)
         self.effort = state.effort
-        self._physics.limit_effort(state.effort)
+        self._body.limit_effort(state.effort)
 
     def put(self, pose: Pose2, stopped: bool = False) -> None:
         """The base rests at a pose (x, y, yaw)."""
@@ -50,8 +48,8 @@ class Drivers:
 
     def advance(self, believed: Pose2, now: float) -> tuple[Array, Array]:
         """Set-points (10,) of base, arm at the begin and at the end of a tick; `believed`: the odometry's pose."""
-        x, y, yaw, *_ = self._physics.joints.tolist()
-        fx, fy, *_ = self._physics.forces.tolist()
+        x, y, yaw, *_ = self._body.joints.tolist()
+        fx, fy, *_ = self._body.forces.tolist()
         after = np.empty(10)
         after[:3] = self.base.advance((x, y, yaw), believed, now, DT, (fx, fy))
         if self.base.yielding:
@@ -83,8 +81,8 @@ class Drivers:
             if not (0.0 <= grip.position <= 1.0 and grip.max_effort > 0.0):
                 io.count_drop(topics.GRIPPER_COMMAND.key, "position is 0..1, max_effort above 0")
             elif not self.base.stopped:
-                self.effort = min(grip.max_effort, self._physics.fingers.force)
-                self._physics.grip(grip.position, self.effort)
+                self.effort = min(grip.max_effort, self._body.fingers.force)
+                self._body.grip(grip.position, self.effort)
 
     def _take_stops(self) -> None:
         io = self._io
@@ -95,7 +93,7 @@ class Drivers:
             self._told("running", "")
         if not stops:
             return
-        actual = self._physics.joints.copy()
+        actual = self._body.joints.copy()
         if not self.base.stopped:
             io.log.warning("stopped", reason=stops[-1].reason, by=stops[-1].source)
             self._told("stopped", stops[-1].reason)

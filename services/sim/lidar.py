@@ -10,6 +10,9 @@ from numpy.typing import NDArray
 from services.sim.robot import GLASS_GROUP, HULL_GROUP, POST, ROBOT_GROUP
 from services.sim.things.primitives import GROUP
 
+SEEN = 0
+"""A group of geoms that lidars see."""
+BASE_BODY = "base"
 RAYS, RANGE_MIN, RANGE_MAX = 360, 0.05, 10.0
 _TAKES_NORMAL = "normal" in (mujoco.mj_multiRay.__doc__ or "")
 Array = NDArray[np.float64]
@@ -45,6 +48,7 @@ class Lidar:
         self._base = int(model.site_bodyid[site])
         self._posts = to_posts(model, site, self._local)
         root = model.body_rootid[self._base]
+        self._others = _other_robots(model, root)
         of_arm = (model.body_rootid[model.geom_bodyid] == root) & (model.geom_bodyid != self._base)
         self._arm = np.flatnonzero(of_arm & (model.geom_contype != 0))
 
@@ -53,7 +57,10 @@ class Lidar:
         rotation = data.site_xmat[self._site].reshape(3, 3)
         origin = data.site_xpos[self._site].copy()
         directions = self._local @ rotation.T
+        own = model.geom_group[self._others]
+        model.geom_group[self._others] = SEEN  # what of this robot is not looked at, of another one is
         distance, _ = cast(model, data, origin, directions, self._groups)
+        model.geom_group[self._others] = own
         distance[distance < 0] = np.inf
         np.minimum(distance, self._posts, out=distance)
         if (data.geom_xpos[self._arm, 2] - model.geom_rbound[self._arm] < origin[2]).any():
@@ -66,11 +73,20 @@ class Lidar:
         return np.where(hit, np.clip(noisy, RANGE_MIN, RANGE_MAX), RANGE_MAX + 1.0).astype(np.float32)
 
 
+def _other_robots(model: Any, own: int) -> NDArray[np.intp]:
+    """The geoms of robots beside the one whose outermost body is `own`."""
+    names = ((b, model.body(b).name) for b in np.unique(model.body_rootid).tolist())
+    others = [b for b, name in names if b != own and name.rpartition("/")[2] == BASE_BODY]
+    return np.flatnonzero(np.isin(model.body_rootid[model.geom_bodyid], others) & (model.geom_contype != 0))
+
+
 def to_posts(model: Any, site: int, directions: Array) -> Array:
     """Distances (n,) [m] along unit `directions` (n, 3) to the upright posts around the lidar, inf past them."""
     found = np.full(len(directions), np.inf)
     for g in range(model.ngeom):
-        if not model.geom(g).name.startswith(POST):
+        if model.geom_bodyid[g] != model.site_bodyid[site] or not model.geom(g).name.rpartition("/")[2].startswith(
+            POST
+        ):
             continue
         centre, radius = (model.geom_pos[g] - model.site_pos[site])[:2], float(model.geom_size[g, 0])
         along = directions[:, :2] @ centre

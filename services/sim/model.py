@@ -3,6 +3,7 @@
 import copy
 import functools
 import xml.etree.ElementTree as ET
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from common.robot import home_arm
@@ -28,6 +29,30 @@ class Robot:
 def own() -> Robot:
     """The robot in primitives."""
     return load_robot(OURS)
+
+
+_NAMES = frozenset((
+    "name", "joint", "joint1", "joint2", "body", "body1", "body2", "site", "geom", "geom1", "geom2", "tendon",
+    "tendon1", "tendon2", "target", "objname",
+))  # fmt: skip
+"""Attributes that hold the name of a part."""
+
+
+def beside(robot: Robot, name: str) -> tuple[str, str]:
+    """`body` and `rest` of another robot of the same make, all of whose parts bear its name before their own."""
+
+    def called(text: str) -> ET.Element:
+        root = ET.fromstring(f"<parts>{text}</parts>")
+        for element in root.iter():
+            for attribute in _NAMES & element.attrib.keys():
+                element.set(attribute, f"{name}/{element.get(attribute)}")
+        return root
+
+    def written(elements: Iterable[ET.Element]) -> str:
+        return "".join(ET.tostring(e, encoding="unicode") for e in elements)
+
+    # Defaults and tables are those of the first.
+    return written(called(robot.body)), written(e for e in called(robot.rest) if e.tag not in ("default", "custom"))
 
 
 @functools.cache

@@ -9,10 +9,10 @@ from common import topics
 from common.bus.port import Io
 from common.geometry import Pose2
 from common.robot import ARM, BASE
+from services.sim.body import Body
 from services.sim.config import SimConfig
 from services.sim.lidar import RANGE_MAX, RANGE_MIN, RAYS, Lidar
 from services.sim.odometry import WheelOdometry
-from services.sim.physics import Physics
 from services.sim.proprioception import Proprioception
 
 _NAMES = [*BASE, *ARM, "gripper"]
@@ -21,27 +21,27 @@ _NAMES = [*BASE, *ARM, "gripper"]
 class Sensors:
     """`odometry` knows where the wheels believe the base to be."""
 
-    def __init__(self, physics: Physics, config: SimConfig, io: Io, start: Pose2) -> None:
-        self._physics, self._io = physics, io
-        self.odometry = WheelOdometry(start, config, physics.seed)
+    def __init__(self, body: Body, seed: int, config: SimConfig, io: Io, start: Pose2) -> None:
+        self._body, self._io = body, io
+        self.odometry = WheelOdometry(start, config, seed)
         bought = config.sensors == "bought"
-        largest = physics.model.actuator_forcerange[physics.ctrl_at[3:], 1]
-        self._felt = Proprioception(physics.seed, largest) if bought else None
+        largest = body.model.actuator_forcerange[body.ctrl_at[3:], 1]
+        self._felt = Proprioception(seed, largest) if bought else None
         noise, missing = (config.lidar_noise, config.lidar_missing) if bought else (0.0, 0.0)
-        self._lidar = Lidar(physics.model, physics.lidar_site, noise, missing, io.rng)
+        self._lidar = Lidar(body.names, body.lidar_site, noise, missing, io.rng)
 
     def feel(self, t: float) -> None:
         """Odometry and joint states."""
-        io, physics = self._io, self._physics
-        arm = physics.joints.tolist()
+        io, body = self._io, self._body
+        arm = body.joints.tolist()
         actual = (arm[0], arm[1], arm[2])
-        x, y, yaw = self.odometry.update(actual, physics.sliding())
+        x, y, yaw = self.odometry.update(actual, body.sliding())
         cos, sin = math.cos(actual[2]), math.sin(actual[2])
-        velocity = physics.rates.tolist()
+        velocity = body.rates.tolist()
         vx, vy, omega = velocity[:3]
         odometry = m.Odometry(t=t, x=x, y=y, theta=yaw, vx=cos * vx + sin * vy, vy=cos * vy - sin * vx, omega=omega)
         io.publish(topics.ODOMETRY, odometry)
-        efforts, finger, width = physics.forces[:-1].tolist(), physics.finger_force(), physics.width()
+        efforts, finger, width = body.forces[:-1].tolist(), body.finger_force(), body.width()
         angles, felt = arm[3:], self._felt
         if felt is not None:
             # The base's own are in its odometry.
@@ -55,14 +55,14 @@ class Sensors:
                 t=t,
                 name=_NAMES,
                 position=[x, y, yaw, *angles, width],
-                velocity=[*velocity, physics.width_rate()],
+                velocity=[*velocity, body.width_rate()],
                 effort=[*efforts, finger],
             ),
         )
 
     def scan(self, t: float) -> None:
         """One turn of the lidar."""
-        ranges = self._lidar.scan(self._physics.model, self._physics.data)
+        ranges = self._lidar.scan(self._body.model, self._body.data)
         scan = m.LaserScan(
             t=t, ranges=ranges.tobytes(), angle_increment=2 * math.pi / RAYS, range_min=RANGE_MIN, range_max=RANGE_MAX
         )

@@ -1,14 +1,13 @@
 """The simulation: owns MuJoCo and robot time, plays the robot's drivers and sensors."""
 
 import math
+from functools import partial
 from pathlib import Path
-from typing import Any
 
 import msgspec
 import mujoco
 import numpy as np
 
-from common import messages as m
 from common import topics
 from common.bus.port import Io
 from common.geometry import Pose2
@@ -20,14 +19,14 @@ from services.sim.config import SimConfig
 from services.sim.drivers import Drivers
 from services.sim.menagerie import RobotError
 from services.sim.model import Robot, load_robot
-from services.sim.mounts import head_camera
 from services.sim.objects import made
 from services.sim.obstacles import chosen
 from services.sim.physics import Physics
 from services.sim.sensors import Sensors
+from services.sim.unit import Unit
 from services.sim.viewer import Viewer
 
-SCAN_TICKS, STATE_TICKS, CHECKPOINT_TICKS, BATTERY_TICKS = 10, 5, 50, 100
+CHECKPOINT_TICKS = 50
 
 
 class Pause(msgspec.Struct):
@@ -52,58 +51,60 @@ class SimService:
         self._speed = _speed(config.speed)
         self.paused = False
         self.start_time = 0.0
-        self.physics = Physics(io.world, io.seed, chosen(io.world, config.obstacles), _robot(config.robot))
+        guests = [(guest.name, guest.pose) for guest in config.guests]
+        self.physics = Physics(io.world, io.seed, chosen(io.world, config.obstacles), _robot(config.robot), guests)
         for warning in filter(None, (made(p.spec).warning for p in self.physics.placements)):
             io.log.warning("object", what=warning)
         self._viewer = Viewer(self.physics) if config.viewer else None
         self._tick = 0
         self._model = checkpoint.fingerprint(self.physics.mjcf)
-        self._saved = io.state_dir / checkpoint.NAME if io.state_dir and config.run else None
+        self._saved = io.state_dir / checkpoint.NAME if io.state_dir and config.run and not guests else None
         self._unsaved = ""
+        ios = [io, *(io.beside(name) for name, _ in guests)]
+        self._units = [Unit(config, one, self.physics, n, io.epoch) for n, one in enumerate(ios)]
         self._begin()
         if self._saved is not None and (state := checkpoint.load(self._saved, config.run, self._model)):
             self._resume(state)
-        io.serve(topics.SIM_TRUTH, self._answer_truth)
-        io.serve(topics.SIM_RESET, self._answer_reset)
-        io.serve(topics.SIM_PAUSE, self._answer_pause)
-        io.serve(topics.SIM_SNAPSHOT, self._answer_snapshot)
+        for unit in self._units:
+            unit.io.serve(topics.SIM_TRUTH, partial(self._answer_truth, unit))
+            unit.io.serve(topics.SIM_RESET, self._answer_reset)
+            unit.io.serve(topics.SIM_PAUSE, self._answer_pause)
+            unit.io.serve(topics.SIM_SNAPSHOT, self._answer_snapshot)
+
+    @property
+    def drivers(self) -> Drivers:
+        """Those of the simulation's own robot."""
+        return self._units[0].drivers
+
+    @property
+    def sensors(self) -> Sensors:
+        """Those of the simulation's own robot."""
+        return self._units[0].sensors
 
     def pace(self) -> tuple[float | None, tuple[str, ...]]:
         """Speed as a factor of real time (None: as fast as possible) and the participants to wait for."""
         return self._speed, self._config.wait_for
 
     def _begin(self) -> None:
-        """Drivers and sensors of a world that has just been laid out."""
-        config, io = self._config, self._io
-        self._world = io.new_id(io.epoch)
-        home = io.world.home
-        pose = (home.x, home.y, home.theta)
-        self.drivers = Drivers(config, io, self.physics, pose, self._publish_status)
-        self.sensors = Sensors(self.physics, config, io, pose)
-        self._battery = Battery(config.battery)
-        self._reached: tuple[bool, str] = (False, "")
-        physics = self.physics
-        description = m.RobotDescription(mjcf=physics.robot.mjcf, head_camera=head_camera(physics.model))
-        io.publish(topics.ROBOT_DESCRIPTION, description)
-        model = m.SimModel(
-            scene=io.world.name, seed=physics.seed, epoch=io.epoch, mjcf=physics.mjcf, files=physics.files
-        )
-        io.publish(topics.SIM_MODEL, model)
-        io.publish(topics.GOAL_REACHED, m.GoalReached(reached=False))
-        self._publish_status("running")
+        """A world has just been laid out."""
+        home, world = self._io.world.home, self._io.new_id(self._io.epoch)
+        poses = [(home.x, home.y, home.theta), *(guest.pose for guest in self._config.guests)]
+        for unit, pose in zip(self._units, poses, strict=True):
+            unit.begin(pose, world)
 
     def _resume(self, state: checkpoint.Checkpoint) -> None:
         """Go on with a world that another process of this simulation has left: at rest, nothing commanded."""
         physics = self.physics
         physics.restore(np.frombuffer(state.physics))
-        self._tick, self._world, physics.seed = state.tick, state.world, state.seed
+        own = self._units[0]
+        self._tick, own.world, physics.seed = state.tick, state.world, state.seed
         self.start_time = state.tick * DT
         self.drivers.resume(state)
         self.sensors.odometry.resume(self.drivers.base.pose, state.odometry)
         physics.contacts.restore(state.touches)
-        self._battery = Battery(state.charge)
+        own.battery = Battery(state.charge)
         self._io.log.warning("the world goes on where it was", t=round(self.start_time, 2))
-        self._publish_status("stopped" if state.stopped else "running", "resumed")
+        own.tell("stopped" if state.stopped else "running", "resumed")
 
     def _save(self) -> None:
         """Twice a second."""
@@ -114,68 +115,33 @@ class SimService:
             model=self._model,
             seed=self.physics.seed,
             tick=self._tick,
-            world=self._world,
+            world=self._units[0].world,
             physics=self.physics.snapshot().tobytes(),
             setpoint=self.drivers.setpoint.tolist(),
             odometry=self.sensors.odometry.believed,
             effort=self.drivers.effort,
             stopped=self.drivers.base.stopped,
             touches=self.physics.contacts.touches,
-            charge=self._battery.charge,
+            charge=self._units[0].battery.charge,
         )
         why = checkpoint.save(self._saved, state)
         if why and why != self._unsaved:
             self._io.log.error("the world could not be saved; a restart would begin anew", reason=why)
         self._unsaved = why
 
-    def _publish_status(self, state: Any, detail: str = "") -> None:
-        status = m.SimStatus(
-            state=state,
-            speed=self._config.speed,
-            epoch=self._io.epoch,
-            scene=self._io.world.name,
-            seed=self.physics.seed,
-            world=self._world,
-            detail=detail,
-        )
-        self._io.publish(topics.SIM_STATUS, status)
-
     # --- one tick
     def step(self, now: float) -> None:
-        if self._io.fresh:
-            self.drivers.take_commands(now)
+        (before, after), *guests = [unit.move(now) for unit in self._units]
         physics = self.physics
-        before, after = self.drivers.advance(self.sensors.odometry.believed, now)
         x, y, *_ = physics.joints.tolist()
         physics.obstacles.advance(physics.data, (x, y), DT)
-        physics.advance(before, after, now)
+        physics.advance(before, after, now, guests)
         self._tick += 1
-        self._publish(now + DT)
+        for unit in self._units:
+            unit.publish(self._tick, now + DT)
         self._save()
         if self._viewer:
             self._viewer.sync()
-
-    def _publish(self, t: float) -> None:
-        io, data = self._io, self.physics.data
-        self.sensors.feel(t)
-        base = self.drivers.base
-        reached = (base.reached(self.sensors.odometry.believed), base.target_id)
-        if reached != self._reached:
-            self._reached = reached
-            io.publish(topics.GOAL_REACHED, m.GoalReached(reached=reached[0], target_id=reached[1]))
-        if self._tick % SCAN_TICKS == 0:
-            self.sensors.scan(t)
-        if self._tick % BATTERY_TICKS == 0:
-            vx, vy, omega, *_ = self.physics.rates.tolist()
-            self._battery.draw(vx, vy, omega, BATTERY_TICKS * DT)
-            io.publish(topics.BATTERY, m.BatteryState(t=t, charge=self._battery.charge, power=self._battery.power))
-        if self._tick % STATE_TICKS == 0:
-            state = m.SimState(
-                t=t, tick=self._tick, epoch=io.epoch, qpos=data.qpos.tobytes(), mocap=data.mocap_pos.tobytes()
-            )
-            io.publish(topics.SIM_STATE, state)
-            if touches := self.physics.contacts.take():
-                io.publish(topics.SIM_CONTACTS, m.SimContacts(t=t, epoch=io.epoch, touches=touches))
 
     def carry(self, pose: Pose2) -> None:
         """Put the robot elsewhere [map] at rest, as if it were carried: its wheels do not turn."""
@@ -187,13 +153,14 @@ class SimService:
         self.sensors.odometry.resume(pose, believed)
 
     # --- queries
-    def _answer_truth(self, payload: bytes) -> bytes:
+    def _answer_truth(self, unit: Unit, payload: bytes) -> bytes:
         now = self._tick * DT
-        return msgspec.json.encode(truth.report(self.physics, now, self._io.epoch))
+        return msgspec.json.encode(truth.report(self.physics, now, self._io.epoch, unit.body))
 
     def _answer_pause(self, payload: bytes) -> bytes:
         self.paused = msgspec.json.decode(payload or b'{"paused": true}', type=Pause).paused
-        self._publish_status("paused" if self.paused else "running")
+        for unit in self._units:
+            unit.tell("paused" if self.paused else "running")
         return msgspec.json.encode({"paused": self.paused})
 
     def _answer_reset(self, payload: bytes) -> bytes:

@@ -5,12 +5,14 @@ from typing import Any
 import msgspec
 
 from common.support import support
+from services.sim.body import Body
 from services.sim.physics import Physics
 
 
-def touching(physics: Physics) -> tuple[dict[str, set[int]], dict[str, bool]]:
+def touching(physics: Physics, body: Body | None = None) -> tuple[dict[str, set[int]], dict[str, bool]]:
     """Per object: the geoms of the robot that touch it, and whether anything else does."""
-    by_body = {body: name for name, body in physics.bodies.items()}
+    body = body or physics
+    by_body = {number: name for name, number in physics.bodies.items()}
     robot: dict[str, set[int]] = {name: set() for name in physics.bodies}
     other = dict.fromkeys(physics.bodies, False)
     geom_body = physics.model.geom_bodyid
@@ -19,37 +21,38 @@ def touching(physics: Physics) -> tuple[dict[str, set[int]], dict[str, bool]]:
             name = by_body.get(int(geom_body[one]))
             if name is None:
                 continue
-            if int(geom_body[two]) in physics.robot_bodies:
+            if int(geom_body[two]) in body.robot_bodies:
                 robot[name].add(two)
             else:
                 other[name] = True
     return robot, other
 
 
-def holding(physics: Physics) -> str | None:
+def holding(physics: Physics, body: Body | None = None) -> str | None:
     """The object that both pads touch and nothing else supports."""
-    robot, other = touching(physics)
-    left, right = physics.pads
+    body = body or physics
+    robot, other = touching(physics, body)
+    left, right = body.pads
     return next((n for n, geoms in robot.items() if left & geoms and right & geoms and not other[n]), None)
 
 
-def report(physics: Physics, t: float, epoch: str) -> dict[str, Any]:
-    """The answer of `sim/truth`."""
-    data, scene = physics.data, physics.scene
-    robot, _ = touching(physics)
-    held = holding(physics)
+def report(physics: Physics, t: float, epoch: str, body: Body | None = None) -> dict[str, Any]:
+    """The answer of `sim/truth`; `body`: of which robot, the simulation's own if None."""
+    data, scene, body = physics.data, physics.scene, body or physics
+    robot, _ = touching(physics, body)
+    held = holding(physics, body)
     found: dict[str, Any] = {}
     for p in physics.placements:
-        body = physics.bodies[p.spec.name]
-        x, y, z = (float(v) for v in data.xpos[body])
-        up = data.xmat[body].reshape(3, 3)[2]
+        number = physics.bodies[p.spec.name]
+        x, y, z = (float(v) for v in data.xpos[number])
+        up = data.xmat[number].reshape(3, 3)[2]
         reach = sum(abs(float(u)) * s / 2 for u, s in zip(up, p.spec.size, strict=True))
-        gripper = {g for g in robot[p.spec.name] if int(physics.model.geom_bodyid[g]) in physics.gripper_bodies}
+        gripper = {g for g in robot[p.spec.name] if int(physics.model.geom_bodyid[g]) in body.gripper_bodies}
         found[p.spec.name] = {
             "kind": p.spec.kind,
             "colour": p.spec.colour,
             "position": [x, y, z],
-            "quaternion": [float(v) for v in data.xquat[body]],
+            "quaternion": [float(v) for v in data.xquat[number]],
             "on": "" if held == p.spec.name else support(scene, x, y, z - reach),
             "touching_gripper": bool(gripper),
         }
@@ -57,7 +60,7 @@ def report(physics: Physics, t: float, epoch: str) -> dict[str, Any]:
         r.name: {"kind": r.kind, "center": list(r.center), "size": list(r.size), "yaw": r.yaw, "depth": r.depth}
         for r in scene.receptacles
     }
-    base = [float(v) for v in data.qpos[physics.qpos_at[:3]]]
+    base = [float(v) for v in data.qpos[body.qpos_at[:3]]]
     return {
         "t": t,
         "epoch": epoch,
@@ -66,5 +69,5 @@ def report(physics: Physics, t: float, epoch: str) -> dict[str, Any]:
         "objects": found,
         "goal_regions": regions,
         "obstacles": physics.obstacles.report(data),
-        "contacts": [msgspec.to_builtins(t) for t in physics.contacts.touches],
+        "contacts": [msgspec.to_builtins(t) for t in body.contacts.touches],
     }

@@ -7,7 +7,7 @@ from common.floor_plan import BIN_WALL, BODY_INSET, LEG, LEG_INSET
 from common.scene import Receptacle, Scene
 from services.sim import covers, objects
 from services.sim.layout import Placement
-from services.sim.model import Robot, own
+from services.sim.model import Robot, beside, own
 from services.sim.robot import GLASS_GROUP
 from services.sim.things import primitives
 
@@ -102,9 +102,19 @@ def world_files(scene: Scene, placements: Sequence[Placement]) -> dict[str, byte
     return covers.files(scene) | {n: data for p in placements for n, data in objects.made(p.spec).files.items()}
 
 
-def world_mjcf(scene: Scene, placements: Sequence[Placement], mocap: str = "", robot: Robot | None = None) -> str:
-    """The complete model. `mocap` adds bodies of moving obstacles; `robot` None is our own."""
+def world_mjcf(
+    scene: Scene,
+    placements: Sequence[Placement],
+    mocap: str = "",
+    robot: Robot | None = None,
+    robots: Sequence[str] = ("",),
+) -> str:
+    """The complete model. `mocap` adds bodies of moving obstacles; `robot` None is our own.
+
+    `robots` names those that are in it, all of one make; "" is the one whose parts bear their own names.
+    """
     robot = robot or own()
+    parts = [beside(robot, name) if name else (robot.body, robot.rest) for name in robots]
     center = ((scene.low[0] + scene.high[0]) / 2, (scene.low[1] + scene.high[1]) / 2)
     extent = (scene.high[0] - scene.low[0] + 2, scene.high[1] - scene.low[1] + 2)
     bodies = "".join(objects.body_xml(p) for p in placements)
@@ -130,9 +140,9 @@ def world_mjcf(scene: Scene, placements: Sequence[Placement], mocap: str = "", r
         material="{covers.floor(scene)}" {STATIC}/>
   {covers.walls(scene)}{covers.tables(scene)}
   {_walls(scene)}{_furniture(scene)}{"".join(_receptacle(r) for r in scene.receptacles)}
-  {robot.body}
+  {"".join(body for body, _ in parts)}
   {bodies}
   {mocap}
 </worldbody>
-{robot.rest}
+{"".join(rest for _, rest in parts)}
 </mujoco>"""

@@ -1,0 +1,84 @@
+"""One robot of the simulation on its bus: its drivers, sensors and battery, and what they publish."""
+
+from typing import Any
+
+from common import messages as m
+from common import topics
+from common.bus.port import Io
+from common.geometry import Pose2
+from common.time.lockstep import DT
+from services.sim.battery import Battery
+from services.sim.body import Array
+from services.sim.config import SimConfig
+from services.sim.drivers import Drivers
+from services.sim.mounts import head_camera
+from services.sim.physics import Physics
+from services.sim.sensors import Sensors
+
+SCAN_TICKS, STATE_TICKS, BATTERY_TICKS = 10, 5, 100
+
+
+class Unit:
+    """The robot `number` of a world, 0 the simulation's own. `epoch` is the simulation's for all of them."""
+
+    def __init__(self, config: SimConfig, io: Io, physics: Physics, number: int, epoch: str) -> None:
+        self._config, self._physics, self._number, self._epoch = config, physics, number, epoch
+        self.io, self.body = io, physics.robots[number]
+        self.world = ""
+
+    def begin(self, pose: Pose2, world: str) -> None:
+        """Drivers and sensors in a world that has just been laid out, the robot at `pose` [map]."""
+        config, io, physics, self.world = self._config, self.io, self._physics, world
+        self.drivers = Drivers(config, io, self.body, pose, self.tell)
+        self.sensors = Sensors(self.body, physics.seed + self._number, config, io, pose)
+        self.battery = Battery(config.battery)
+        self._reached: tuple[bool, str] = (False, "")
+        description = m.RobotDescription(mjcf=self.body.robot.mjcf, head_camera=head_camera(self.body.names))
+        io.publish(topics.ROBOT_DESCRIPTION, description)
+        mjcf = physics.mjcfs[self._number]
+        model = m.SimModel(scene=io.world.name, seed=physics.seed, epoch=self._epoch, mjcf=mjcf, files=physics.files)
+        io.publish(topics.SIM_MODEL, model)
+        io.publish(topics.GOAL_REACHED, m.GoalReached(reached=False))
+        self.tell("running")
+
+    def tell(self, state: Any, detail: str = "") -> None:
+        """Publish how the simulation of this robot stands."""
+        status = m.SimStatus(
+            state=state,
+            speed=self._config.speed,
+            epoch=self._epoch,
+            scene=self.io.world.name,
+            seed=self._physics.seed,
+            world=self.world,
+            detail=detail,
+        )
+        self.io.publish(topics.SIM_STATUS, status)
+
+    def move(self, now: float) -> tuple[Array, Array]:
+        """Hear what came, and the set-points (10,) at the begin and at the end of this tick."""
+        if self.io.fresh:
+            self.drivers.take_commands(now)
+        return self.drivers.advance(self.sensors.odometry.believed, now)
+
+    def publish(self, tick: int, t: float) -> None:
+        """What the robot measures after the tick that ends at `t` [s], and the state of the world."""
+        io, body, data = self.io, self.body, self._physics.data
+        self.sensors.feel(t)
+        base = self.drivers.base
+        reached = (base.reached(self.sensors.odometry.believed), base.target_id)
+        if reached != self._reached:
+            self._reached = reached
+            io.publish(topics.GOAL_REACHED, m.GoalReached(reached=reached[0], target_id=reached[1]))
+        if tick % SCAN_TICKS == 0:
+            self.sensors.scan(t)
+        if tick % BATTERY_TICKS == 0:
+            vx, vy, omega, *_ = body.rates.tolist()
+            self.battery.draw(vx, vy, omega, BATTERY_TICKS * DT)
+            io.publish(topics.BATTERY, m.BatteryState(t=t, charge=self.battery.charge, power=self.battery.power))
+        if tick % STATE_TICKS == 0:
+            state = m.SimState(
+                t=t, tick=tick, epoch=self._epoch, qpos=data.qpos.tobytes(), mocap=data.mocap_pos.tobytes()
+            )
+            io.publish(topics.SIM_STATE, state)
+            if touches := body.contacts.take():
+                io.publish(topics.SIM_CONTACTS, m.SimContacts(t=t, epoch=self._epoch, touches=touches))
