@@ -75,10 +75,11 @@ def _rounded(point: Array) -> Vec2:
 
 
 def _separate(surfaces: list[Surface]) -> list[Surface]:
-    """Without what stands on a larger surface: boxes and books have level tops, too."""
+    """Without what is on a larger surface, where boxes and books have level tops, or in the body or between the legs
+    below it, where no arm gets to."""
     kept: list[Surface] = []
     for s in surfaces:
-        on = any(o.outline.contains(s.outline.x, s.outline.y, 0.03) and -0.04 < s.height - o.height < 0.5 for o in kept)
+        on = any(o.outline.contains(s.outline.x, s.outline.y, 0.03) and s.height - o.height < 0.5 for o in kept)
         if not on:
             kept.append(s)
     return kept

@@ -82,12 +82,12 @@ def survey(grid: Grid, states: NDArray[np.uint8], here: Pose2, barred: list[tupl
 def interesting(grid: Grid, states: NDArray[np.uint8], near: Cells) -> tuple[Cells, int]:
     """Cells that a view should show: frontiers, and what stands above the floor unseen from near; and their places."""
     free = states == FREE
-    # Where no ray of the lidar has passed a wall is in between; into gaps and pockets the robot does not fit.
-    open_ = ndimage.binary_opening((states == UNKNOWN) & (grid.passed > 0), np.ones((GAP, GAP)))
-    labels, count = ndimage.label(open_)
+    # Into gaps and pockets the robot does not fit; where no ray of the lidar has passed a wall is in between. Far from
+    # the lidar there are cells between its rays.
+    labels, count = ndimage.label(ndimage.binary_opening(states == UNKNOWN, np.ones((GAP, GAP))))
     sizes = np.bincount(labels.ravel(), minlength=count + 1)
     sizes[0] = 0
-    frontier = (sizes >= POCKET)[labels] & ndimage.binary_dilation(free & near)
+    frontier = (sizes >= POCKET)[labels] & (grid.passed > 0) & ndimage.binary_dilation(free & near)
     # A strip along a wall is the wall.
     broad = ndimage.binary_opening(grid.covered & ~grid.walls, np.ones((3, 3)))
     surface = broad & ~grid.near & ndimage.binary_dilation(near, iterations=14)

@@ -5,10 +5,11 @@ import pytest
 
 from common.floor_plan import Wall
 from common.geometry import Rectangle
-from services.mapping.grid import FREE, Grid
-from services.mapping.plan import _bins, _filled, _rim
+from services.mapping.grid import FREE, UNKNOWN, Grid
+from services.mapping.plan import _bins, _filled, _rim, _separate
 from services.mapping.rooms import find_rooms
 from services.mapping.surfaces import Surface
+from services.mapping.views import interesting
 from services.mapping.walls import find_walls
 
 
@@ -88,3 +89,25 @@ def test_the_rim_of_a_bin_is_no_shelf() -> None:
     hole = Rectangle(0.51, -0.27, 0.34, 0.34)
     assert _rim(rim, [(hole, 0.40)])
     assert not _rim(rim._replace(height=0.75), [(hole, 0.40)]) and not _rim(rim, [(hole._replace(x=1.0), 0.40)])
+
+
+def test_what_is_inside_or_below_a_surface_is_none() -> None:
+    def surface(x: float, height: float, length: float) -> Surface:
+        return Surface(Rectangle(x, 0.0, length, 0.6 * length), height, np.empty((0, 2)))
+
+    bed, other = surface(0.0, 0.47, 2.0), surface(3.0, 0.4, 1.0)
+    book, board = surface(0.2, 0.5, 0.3), surface(-0.3, 0.38, 1.5)
+    assert _separate([bed, board, other, book]) == [bed, other]
+    assert _separate([bed, surface(0.0, 1.2, 0.9)]) != [bed], "a shelf high above it"
+
+
+def test_a_corner_behind_which_few_rays_have_passed_is_looked_round() -> None:
+    grid = Grid((-3.0, -3.0), (3.0, 3.0))
+    states = np.full(grid.shape, UNKNOWN, np.uint8)
+    states[20:60, 20:60] = FREE
+    grid.passed[20:60, 20:100:2] = 1
+    near = np.ones(grid.shape, bool)
+    cells, places = interesting(grid, states, near)
+    assert places > 0 and not cells[:, :60].any() and cells[20:60, 60].any()
+    grid.passed[:] = 0
+    assert not interesting(grid, states, near)[0].any(), "behind walls nothing has passed"
