@@ -5,7 +5,7 @@ the surface around is not: what is dark and connected is one object, whose outli
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +20,8 @@ DARK = 42
 below a level of some 12."""
 LEAST_BLIND = 40
 """Pixels without depth that make a dark blob worth the trouble."""
+UNSEEN = 0.5
+"""Share of a blob's pixels without depth from which its outline says more of it than what was measured."""
 MOSTLY = 0.6
 """Share of a part's pixels that are in the blob that it belongs to."""
 WIDEST, HIGHEST = 0.24, 0.32
@@ -32,10 +34,14 @@ ROWS = 8
 
 @dataclass(frozen=True)
 class Blobs:
-    """Connected dark pixels of a picture: `numbers` (h, w), 0 for none; `blind` (h, w): those without depth."""
+    """Connected dark pixels of a picture: `numbers` (h, w), 0 for none; `blind` (h, w): those without depth.
+
+    `taken`: numbers of those that were found to be objects by their outline.
+    """
 
     numbers: NDArray[np.int32]
     blind: NDArray[np.bool_]
+    taken: set[int] = field(default_factory=set)
 
     def of(self, view: View, parts: Sequence[Pixels]) -> list[int]:
         """The number of the blob that each part belongs to, 0 for none or for one that is too large for an object."""
@@ -57,6 +63,20 @@ class Blobs:
         blind = int(np.count_nonzero(self.blind[rows, columns]))
         wide, high = float(np.ptp(columns)) * pixel, float(np.ptp(rows)) * pixel
         return blind < LEAST_BLIND or wide > WIDEST or high > HIGHEST
+
+    def unseen(self) -> list[tuple[int, Pixels]]:
+        """Numbers and pixels of the blobs most of whose outline has no depth, the picture's edge apart."""
+        h, w = self.numbers.shape
+        counts, blind = np.bincount(self.numbers.ravel()), np.bincount(self.numbers[self.blind], minlength=1)
+        blind = np.append(blind, np.zeros(len(counts) - len(blind), np.intp))
+        found = []
+        for n, box in enumerate(ndimage.find_objects(self.numbers), start=1):
+            if box is None or n in self.taken or blind[n] < max(LEAST_BLIND, UNSEEN * counts[n]):
+                continue
+            if box[0].start > 1 and box[1].start > 1 and box[0].stop < h - 1 and box[1].stop < w - 1:
+                rows, columns = np.nonzero(self.numbers[box] == n)
+                found.append((n, (rows + box[0].start, columns + box[1].start)))
+        return found
 
     def hole(self, number: int) -> Pixels:
         """The pixels (rows, columns) of a blob without depth; those of a handle, which is less high, are left out."""

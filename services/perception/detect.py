@@ -69,6 +69,9 @@ class ClassicalDetector:
         segments = segmentation.segments(view, self._household, self._max_range, robot)
         found: list[Detection] = []
         for segment in segments:
+            if segment.shape is not None:
+                found.append(unlisted.describe(view, segment, segment.shape, gains))
+                continue
             single = segmentation.extent(segment) < segmentation.MAX_EXTENT
             known = self._explain(view, segment) if single else None
             found += [known] if known is not None else self._measured(view, segment)

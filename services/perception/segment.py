@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from services.perception.measurement import Measurement
 from services.perception.view import Mask, View, Window
 
 RIM = 3
@@ -30,6 +31,7 @@ class Segment:
 
     `cut`: the picture's edge or something nearer hides a part of it; `ends`: its right and its left end are in view.
     `dark` (n, 3): about where its pixels without depth are, that belong to its outline and tell nothing of its shape.
+    `shape`: what its outline says that it is, where there is too little depth.
     """
 
     surface: Surface
@@ -39,6 +41,7 @@ class Segment:
     cut: bool
     ends: tuple[bool, bool]
     dark: NDArray[np.float64] = field(default_factory=lambda: np.empty((0, 3)))
+    shape: Measurement | None = None
 
 
 def covered(view: View, rows: NDArray[np.intp], columns: NDArray[np.intp], own: Mask) -> tuple[bool, bool, bool]:

@@ -12,6 +12,7 @@ from scipy import ndimage
 from common.floor_plan import FloorPlan
 from common.geometry import Array, Rectangle
 from services.perception.dark import Blobs, Pixels, blobs, guessed
+from services.perception.outlined import is_part, on_surface
 from services.perception.segment import Segment, Surface, covered, goes_on
 from services.perception.view import Mask, View, Window
 from services.perception.visible_plan import Cloud, Nearby, corners, inside
@@ -124,6 +125,7 @@ def _between(view: View, usable: Mask, low: float, high: float, window: Window) 
 def _on(view: View, expected: Surface, cloud: Cloud, near: Nearby, own: Mask, dark: Blobs | None) -> list[Segment]:
     """Pieces above one surface, whose plane is measured where enough of it is visible."""
     plane = _plane(cloud, expected)
+    outlined = on_surface(view, expected.name, plane, cloud, own, dark) if dark else []
     height = plane[0] * cloud.x + plane[1] * cloud.y + plane[2]
     noise = DEVIATIONS * DEPTH_NOISE * (float(view.position[2]) - expected.height) * view.depth.ravel()[cloud.pixels]
     over = (cloud.z > height + np.maximum(noise, CLEARANCE)) & (cloud.z < height + MAX_HEIGHT)
@@ -132,7 +134,7 @@ def _on(view: View, expected: Surface, cloud: Cloud, near: Nearby, own: Mask, da
     beyond = kept.kept(far).outside(near.far_walls).pixels
     above = np.concatenate([kept.pixels[~far], beyond])
     if len(above) < MIN_PIXELS:
-        return []
+        return outlined
     rows, columns = np.unravel_index(above, view.shape)
     top, left = int(rows.min()), int(columns.min())
     window = (slice(top, int(rows.max()) + 1), slice(left, int(columns.max()) + 1))
@@ -150,7 +152,10 @@ def _on(view: View, expected: Surface, cloud: Cloud, near: Nearby, own: Mask, da
     found = (
         p for p in _join(view, expected.name, plane, parts, own, dark) if len(p.rows) >= MIN_PIXELS and _is_thing(p)
     )
-    return [p for p in found if goes_on(view, p, over_it, CLEARANCE, JUMP) < GOES_ON]
+    shapes = [p.shape for p in outlined if p.shape is not None]
+    return outlined + [
+        p for p in found if goes_on(view, p, over_it, CLEARANCE, JUMP) < GOES_ON and not is_part(p.points, shapes)
+    ]
 
 
 def _plane(cloud: Cloud, expected: Surface) -> Array:

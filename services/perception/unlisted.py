@@ -123,6 +123,8 @@ def measures_of(m: Measurement, error: float) -> Measures:
 
 def thinned(points: Array) -> Array:
     """At most MOST_POINTS of points (n, 3), evenly spread, each the mean of its cell."""
+    if not len(points):
+        return points
     cells = np.floor(points / VOXEL).astype(np.int64)
     cells -= cells.min(axis=0)
     _, rows, layers = cells.max(axis=0) + 1
