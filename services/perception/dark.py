@@ -20,7 +20,7 @@ DARK = 42
 below a level of some 12."""
 LEAST_BLIND = 40
 """Pixels without depth that make a dark blob worth the trouble."""
-UNSEEN = 0.5
+UNSEEN = 0.3
 """Share of a blob's pixels without depth from which its outline says more of it than what was measured."""
 MOSTLY = 0.6
 """Share of a part's pixels that are in the blob that it belongs to."""

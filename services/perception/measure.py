@@ -8,6 +8,7 @@ import math
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from common.geometry import Array
 from services.perception import lying, primitives, turned
@@ -41,14 +42,18 @@ def measure(
     half_pixel: float,
     noise: float,
     dark: Array | None = None,
+    of_handle: NDArray[np.bool_] | None = None,
 ) -> Measurement:
     """The shape of points (n, 3) [map] that stand on height `floor` and were seen from `camera` (3,).
 
     `seen`: its right and left end are in view; `half_pixel` [rad]; `noise`: standard deviation [m] of the points.
-    `dark` (m, 3): where the rest of its outline is about, of which no distance is known.
+    `dark` (m, 3): where the rest of its outline is about, of which no distance is known. `of_handle` (n,): which points
+    are of a handle by the picture.
     """
     local = points - (0.0, 0.0, floor)
-    used = local[:: max(1, len(local) // SAMPLE)]
+    every = max(1, len(local) // SAMPLE)
+    used = local[::every]
+    thin = of_handle[::every] if of_handle is not None else np.zeros(len(used), bool)
     whole = local if dark is None or not len(dark) else np.concatenate([local, dark - (0.0, 0.0, floor)])
     outline = primitives.silhouette(whole, camera, seen, half_pixel)
     eye = camera - (0.0, 0.0, floor)
@@ -61,7 +66,7 @@ def measure(
         # What faces away from the lamps is missing: it may be as deep as it is wide.
         wide = narrow = max(wide, float(outline.distance * np.ptp(outline.ends)) if all(seen) else wide)
     if narrow > 0.45 * wide or not all(seen):
-        shapes.append(turned.standing(used, h, outline, eye, noise))
+        shapes.append(turned.standing(used, h, outline, eye, noise, thin))
     if 0.6 < h / wide < 1.5:
         shapes.append(_ball(used, h, outline, noise))
     if wide > LAID * h:

@@ -41,14 +41,16 @@ def on_surface(view: View, name: str, plane: Array, over: Cloud, own: Mask, dark
         at = silhouette.foot(view, pixels, floor)
         if at is None or not _is_object(view, pixels, at, plane, own):
             continue
-        shape = silhouette.shape(view, silhouette.outline(view, pixels, at), at, floor)
+        inside = np.isin(over.pixels, pixels[0] * view.shape[1] + pixels[1])
+        points = np.stack([over.x[inside], over.y[inside], over.z[inside]], axis=1).astype(np.float64)
+        points = points[points[:, 2] > floor + LEVEL]
+        shape = silhouette.shape(view, silhouette.outline(view, pixels, at), at, floor, points)
         if shape is None or max(shape.size[:2]) > WIDEST or shape.size[2] > HIGHEST:
             continue
         dark.taken.add(number)
-        inside = np.isin(over.pixels, pixels[0] * view.shape[1] + pixels[1])
-        points = np.stack([over.x[inside], over.y[inside], over.z[inside]], axis=1).astype(np.float64)
-        points = points[is_of(points, shape) & (points[:, 2] > floor + OWN / 2)]
-        found.append(Segment(Surface(name, floor), *pixels, points, False, (True, True), shape=shape))
+        found.append(
+            Segment(Surface(name, floor), *pixels, points[is_of(points, shape)], False, (True, True), shape=shape)
+        )
     return found
 
 

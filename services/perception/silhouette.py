@@ -10,12 +10,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import ndimage
 from scipy.spatial import ConvexHull
 
 from common.geometry import Array
 from common.messages import ShapeFamily
-from services.perception import solids
+from services.perception import primitives, solids
+from services.perception.handle import parted
 from services.perception.least_squares import solve
 from services.perception.measurement import LEVEL, SLICES, Measurement
 from services.perception.view import View
@@ -23,15 +23,11 @@ from services.perception.view import View
 Pixels = tuple[NDArray[np.intp], NDArray[np.intp]]
 DIRECTIONS = 32
 """Directions of the picture in which outlines are compared."""
-HANDLE = 0.016
-"""Width [m] at its distance of what is a handle and no body: the bars of mugs and pans have 6 to 12 mm."""
-BODY = 0.7
-"""Least share of the pixels that are left without handles: else all of it is as thin as one."""
-HANDLE_SHARE = 0.02
-"""Least share of the pixels that are of a handle. Chosen: more than corners that the removal rounds off."""
 BEYOND = 0.35
 """How far [pixels] an outline reaches beyond the middle of its outermost pixel: between none and a whole pixel's width,
 less where it is mixed with what is bright behind it."""
+SAMPLE, FEW = 80, 20
+"""Points with depth that are used, and how many of them count half."""
 ROBUST, TRIES, STEP = 0.003, 15, 1e-5
 """Distance [m] beyond which a direction counts less, steps of the solver, and difference [m, rad] for slopes."""
 PIXELS_OFF, MOST_OFF = 0.7, 0.0025
@@ -86,47 +82,29 @@ def outline(view: View, pixels: Pixels, at: Array) -> Outline:
     distance = float((at - view.position) @ view.rotation[:, 2])
     pixel = distance / view.focal[0]
     rows, columns = pixels
-    mask = np.zeros((int(np.ptp(rows)) + 3, int(np.ptp(columns)) + 3), bool)
-    mask[rows - rows.min() + 1, columns - columns.min() + 1] = True
-    mask = ndimage.binary_closing(mask, np.ones((2, 2)))
-    side = max(2, round(HANDLE / pixel))
-    body = ndimage.binary_opening(mask, np.ones((side, side)))
-    if np.count_nonzero(body) < BODY * len(rows):
-        body = mask
-    labels, _ = ndimage.label(body)
-    body = labels == 1 + int(np.bincount(labels[body])[1:].argmax())
-    handle = _handle(mask, body)
-    own = body[rows - rows.min() + 1, columns - columns.min() + 1]
-    u = (columns[own] + 0.5 - view.middle[0]) / view.focal[0]
-    v = (rows[own] + 0.5 - view.middle[1]) / view.focal[1]
-    reach = (np.stack([u, v], 1) @ TURNS).max(axis=0) + BEYOND / view.focal[0]
-    if handle is not None:
-        row, column = float(handle[0]) + int(rows.min()) - 1, float(handle[1]) + int(columns.min()) - 1
-        across, down = (column + 0.5 - view.middle[0]) / view.focal[0], (row + 0.5 - view.middle[1]) / view.focal[1]
-        handle = np.array([across, down])
-    widths = np.count_nonzero(body, axis=1)[1:-1] * pixel
-    pixels_of = np.argwhere(body)
-    corners = (pixels_of[:, None] + [(0, 0), (0, 1), (1, 0), (1, 1)]).reshape(-1, 2)
-    solid = float(np.count_nonzero(body) / ConvexHull(corners).volume)
-    return Outline(reach, distance, pixel, handle, int(rows.min()), widths, solid)
+    parts = parted(rows, columns, pixel)
+    own = parts.of_body(rows, columns)
+    reach = (_rays(view, rows[own], columns[own]) @ TURNS).max(axis=0) + BEYOND / view.focal[0]
+    of_handle = parts.of_handle(rows, columns)
+    handle = _rays(view, rows[of_handle], columns[of_handle]).mean(axis=0) if of_handle.any() else None
+    filled = np.flatnonzero(parts.body.any(axis=1))
+    widths = np.count_nonzero(parts.body, axis=1)[filled[0] : filled[-1] + 1] * pixel
+    squares = (np.argwhere(parts.body)[:, None] + [(0, 0), (0, 1), (1, 0), (1, 1)]).reshape(-1, 2)
+    solid = float(np.count_nonzero(parts.body) / ConvexHull(squares).volume)
+    return Outline(reach, distance, pixel, handle, parts.row + int(filled[0]), widths, solid)
 
 
-def _handle(mask: NDArray[np.bool_], body: NDArray[np.bool_]) -> Array | None:
-    """Row and column of the middle of the largest thin part at the side of a body."""
-    labels, count = ndimage.label(mask & ~body)
-    if not count:
-        return None
-    largest = 1 + int(np.bincount(labels.ravel())[1:].argmax())
-    rows, columns = np.nonzero(labels == largest)
-    across = np.nonzero(body.any(axis=0))[0]
-    beside = columns.mean() < across[0] or columns.mean() > across[-1]
-    if not beside or len(rows) < HANDLE_SHARE * np.count_nonzero(mask):
-        return None
-    return np.array([float(rows.mean()), float(columns.mean())])
+def _rays(view: View, rows: NDArray[np.intp], columns: NDArray[np.intp]) -> Array:
+    """Where (n, 2) [rad] pixels are in the picture."""
+    u, v = (columns + 0.5 - view.middle[0]) / view.focal[0], (rows + 0.5 - view.middle[1]) / view.focal[1]
+    return np.stack([u, v], axis=1)
 
 
-def shape(view: View, seen: Outline, at: Array, floor: float) -> Measurement | None:
-    """The shape that explains an outline best; None when none does. `at` (3,) [map]: the nearest point of its foot."""
+def shape(view: View, seen: Outline, at: Array, floor: float, points: Array) -> Measurement | None:
+    """The shape that explains an outline best, and points (n, 3) [map] if there are any; None when none does.
+
+    `at` (3,) [map]: the nearest point of its foot.
+    """
     half = seen.distance * float(seen.reach[0] + seen.reach[DIRECTIONS // 2]) / 2
     away = at[:2] - view.position[:2]
     away = away / max(1e-6, float(np.linalg.norm(away)))
@@ -153,7 +131,8 @@ def shape(view: View, seen: Outline, at: Array, floor: float) -> Measurement | N
         for turn in (math.pi / 2, math.pi / 4, -math.pi / 4):
             start = np.array([*(at[:2] + away * h / 2), ahead + turn, h / 2, 2 * half / abs(math.sin(turn))])
             tried.append(_fit(view, seen, solids.lying(floor), start, "long"))
-    best = min(tried, key=lambda m: m.residual + SIMPLER * m.free * 0.5 * seen.pixel)
+    used = points[:: max(1, len(points) // SAMPLE)] - (0.0, 0.0, floor)
+    best = min(tried, key=lambda m: m.residual + SIMPLER * m.free * 0.5 * seen.pixel + _beyond(m, used))
     if best.residual > PIXELS_OFF * seen.pixel + MOST_OFF or seen.solid < SOLID:
         return None
     if best.family == "round" and not best.tilt:
@@ -161,6 +140,23 @@ def shape(view: View, seen: Outline, at: Array, floor: float) -> Measurement | N
     if seen.handle is not None and best.family in ("round", "bowl") and not best.tilt:
         best = replace(best, handle=_beside(view, seen, best))
     return best
+
+
+def _beyond(m: Measurement, points: Array) -> float:
+    """How far [m] points (n, 3) over the surface are from a shape, in the mean; little counts where they are few."""
+    if not len(points):
+        return 0.0
+    if m.family == "box":
+        p, distances = np.array([m.x, m.y, m.yaw, *m.size[:2]]), primitives.box(m.size[2])
+    elif m.family == "ball":
+        p, distances = np.array([m.x, m.y, m.size[0] / 2]), primitives.ball()
+    elif m.tilt:
+        p, distances = np.array([m.x, m.y, m.yaw, m.size[1] / 2, m.size[0]]), primitives.lying()
+    else:
+        low, high = (share * m.size[0] / 2 for share in (m.profile[0], m.profile[-1]))
+        p, distances = np.array([m.x, m.y, (low + high) / 2, (high - low) / m.size[2]]), primitives.turned(m.size[2])
+    apart = np.minimum(np.abs(distances(p[None], points)[0]), primitives.INNER)
+    return float(apart.sum() / (len(points) + FEW))
 
 
 def _profile(view: View, seen: Outline, body: Measurement, floor: float) -> tuple[float, ...]:

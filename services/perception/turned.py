@@ -51,11 +51,22 @@ def start(points: Array, outline: Silhouette) -> tuple[Array, float]:
     return points[:, :2].mean(axis=0) + away * (float(np.percentile(depth, 4)) + r - float(depth.mean())), r
 
 
-def standing(points: Array, h: float, outline: Silhouette, eye: Array, noise: float) -> Measurement:
-    """The turned shape of height `h` [m] that explains points (n, 3) seen from `eye` (3,), perhaps with a handle."""
+def standing(
+    points: Array, h: float, outline: Silhouette, eye: Array, noise: float, of_handle: NDArray[np.bool_]
+) -> Measurement:
+    """The turned shape of height `h` [m] that explains points (n, 3) seen from `eye` (3,), perhaps with a handle.
+
+    `of_handle` (n,): the points that are of one by the picture.
+    """
     body, handle = np.ones(len(points), bool), math.nan
     solution = _upright(points, h, outline, noise)
-    if VESSEL[0] < h < VESSEL[1] and h > 0.5 * solution.p[2]:
+    if VESSEL[0] < h < VESSEL[1] and of_handle.any() and np.count_nonzero(~of_handle) >= BODY:
+        own = primitives.silhouette(points[~of_handle], np.append(outline.camera, 0.0), seen_ends(outline), 0.0)
+        alone = _upright(points[~of_handle], h, own, noise)
+        towards = points[of_handle, :2].mean(axis=0) - alone.p[:2]
+        if float(np.hypot(*towards)) > alone.p[2]:
+            body, solution, handle = ~of_handle, alone, math.atan2(towards[1], towards[0])
+    if math.isnan(handle) and VESSEL[0] < h < VESSEL[1] and h > 0.5 * solution.p[2]:
         # A handle makes the silhouette wider: without the silhouette its points are off the wall.
         hidden = primitives.Silhouette(outline.camera, outline.ahead, np.full(2, np.nan), outline.distance)
         alone = _upright(points, h, hidden, noise)

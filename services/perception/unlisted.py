@@ -11,6 +11,7 @@ from common.looks import Measures, likely
 from common.messages import ShapeFamily
 from services.perception import colour
 from services.perception.detection import Detection
+from services.perception.handle import parted
 from services.perception.measure import measure
 from services.perception.measurement import LEVEL, Measurement
 from services.perception.segment import Segment
@@ -92,6 +93,8 @@ def kinds_of(found: Measurement, spread: float, words: list[str]) -> dict[str, f
 
 def measured(view: View, segment: Segment) -> Measurement:
     """The shape of a segment, its noise by its distance."""
+    far = float(np.median((segment.points - view.position) @ view.rotation[:, 2]))
+    parts = parted(segment.rows, segment.columns, far / view.focal[0])
     return measure(
         segment.points,
         segment.surface.height,
@@ -100,6 +103,7 @@ def measured(view: View, segment: Segment) -> Measurement:
         0.5 / view.focal[0],
         noise_of(view, segment),
         segment.dark,
+        parts.of_handle(segment.rows, segment.columns),
     )
 
 

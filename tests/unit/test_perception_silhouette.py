@@ -129,4 +129,4 @@ def test_an_outline_of_no_simple_shape_is_not_explained() -> None:
     pixels = np.nonzero(view.depth == 0)
     at = silhouette.foot(view, pixels, FLOOR)
     assert at is not None
-    assert silhouette.shape(view, silhouette.outline(view, pixels, at), at, FLOOR) is None
+    assert silhouette.shape(view, silhouette.outline(view, pixels, at), at, FLOOR, np.empty((0, 3))) is None
