@@ -30,8 +30,8 @@ GAP = (0.015, 0.05)
 """Nearest and farthest [m] that a neighbour stands from the one that is wanted."""
 NEIGHBOURS = (2, 4)
 TALLEST = 1.2
-"""Height of a box that lies by its other extents, at least: without print nothing else tells how it is to stand. Chosen:
-the error of what is measured."""
+"""Height of a box that lies by its other extents, at least: without print nothing else tells how it is to stand.
+Chosen: the error of what is measured."""
 TRIES = 60
 EDGE = 0.02
 """How far [m] from the edge of its surface a neighbour stands at least."""

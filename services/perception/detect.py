@@ -70,7 +70,7 @@ class ClassicalDetector:
         found: list[Detection] = []
         for segment in segments:
             if segment.shape is not None:
-                found.append(unlisted.describe(view, segment, segment.shape, gains))
+                found.append(unlisted.describe(view, segment, segment.shape, view.gains))
                 continue
             single = segmentation.extent(segment) < segmentation.MAX_EXTENT
             known = self._explain(view, segment) if single else None

@@ -117,8 +117,8 @@ def _parted(token: str, words: Collection[str]) -> list[str]:
 
 
 def _covered(word: str, tokens: Sequence[str]) -> float:
-    """Share of a word's letters that stand in tokens which are parts of it: what goes around a can is read as "hon" from
-    one side and "ney" from another."""
+    """Share of a word's letters that stand in tokens which are parts of it: what goes around a can is read as "hon"
+    from one side and "ney" from another."""
     letters: set[int] = set()
     for token in tokens:
         if SHORT <= len(token) < len(word) and (at := word.find(token)) >= 0:
