@@ -28,8 +28,8 @@ A = TypeVar("A", bound=m.Message)
 class Link:
     """An open session with what the commands ask of it."""
 
-    def __init__(self, session: Any, connect: str) -> None:
-        self.session, self.connect = session, connect
+    def __init__(self, session: Any, connect: str, namespace: str = "") -> None:
+        self.session, self.connect, self.namespace = session, connect, namespace
 
     def latest(self, topic: Topic[M]) -> M | None:
         """The latched value, None when its writer does not answer."""

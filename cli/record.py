@@ -30,8 +30,7 @@ FASTEST = 50
 
 def facts_of(link: Link, tape: Tape) -> dict[str, str]:
     """What a replay needs to know of the run."""
-    connect, namespace = link.connect, ""
-    facts = {"connect": connect, "namespace": namespace, "lockstep": str(tape.lockstep).lower()}
+    facts = {"connect": link.connect, "namespace": link.namespace, "lockstep": str(tape.lockstep).lower()}
     if tape.status is not None:
         s = tape.status
         facts |= {"scene": s.scene, "seed": str(s.seed), "speed": s.speed, "epoch": s.epoch}
@@ -60,7 +59,7 @@ def record(args: argparse.Namespace) -> int:
         raise CliError(str(error)) from None
     try:
         with open_session(connect, namespace, wait=_patience(args.wait, stop, connect)) as session:
-            return _run(args, files, Link(session, connect), stop)
+            return _run(args, files, Link(session, connect, namespace), stop)
     except NoRouter:
         raise CliError("stopped before a router was there") from None
     finally:

@@ -84,7 +84,8 @@ class Player:
         world: Scene | None = None,
     ) -> None:
         self.kind, self.recording = kind, recording
-        self.lockstep = recording.facts.get("run", {}).get("lockstep") == "true"
+        run = recording.facts.get("run", {})
+        self.lockstep = run.get("lockstep") == "true"
         self.bus, self.clock = MemoryBus(), ManualClock()
         name = kind.NAME
         self._acks = [a for a in _messages(recording, "sim/ack", m.LockstepAck) if a.name == name and a.tick >= 0]
@@ -96,6 +97,7 @@ class Player:
             self.bus, kind.NAME, kind.READS, kind.WRITES, household=household, world=world, seed=seed, clock=self.clock,
             log_level="error", ids=list(self._ids()), seeded=self.lockstep, peers=_peers(recording),
         )  # fmt: skip
+        self.io.robot = run.get("namespace", "")
         self.io.first = {key: span.first for key, span in recording.spans.items()}
         if first > 2 * period_of(kind.HZ):  # the recording starts in the middle of a run
             self.io.tick = first - 1

@@ -70,9 +70,15 @@ def may_read(subject: str) -> set[str]:
         return DESK_READS | {f"service/{n}/health" for n in SERVICES}
     clocks = {topics.LOCKSTEP_ACK.key} if subject == "sim" else CLOCKS
     read = {t.key for t in kind(subject).READS if t.key in topics.BY_KEY}
+    read |= heard_of_all(subject)
     if subject in topics.VIEWERS:
         read |= {f"log/{n}" for n in SERVICES}
     return read | clocks | {f"service/{n}/health" for n in SERVICES}
+
+
+def heard_of_all(subject: str) -> set[str]:
+    """What it hears of every robot on the router, its own among them, and may not ask for."""
+    return {t.key for t in topics.TABLE if subject in t.abroad}
 
 
 def may_ask(subject: str) -> set[str]:
@@ -82,7 +88,8 @@ def may_ask(subject: str) -> set[str]:
         changing = {topics.SIM_RESET, topics.SIM_PAUSE, topics.SIM_SNAPSHOT}
         return set(KEYS) - changing - {f"log/{n}" for n in SERVICES}
     logs = {f"log/{n}" for n in SERVICES}
-    return may_read(subject) - logs | ({topics.BRAIN_MISSIONS} if subject in ("dashboard", "agent") else set())
+    missions = {topics.BRAIN_MISSIONS} if subject in ("dashboard", "agent") else set()
+    return may_read(subject) - logs - heard_of_all(subject) | missions
 
 
 def may_answer(subject: str) -> set[str]:

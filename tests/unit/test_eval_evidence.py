@@ -159,6 +159,7 @@ def test_the_row_of_the_report_has_everything() -> None:
     observed = seen(GOOD, "delivered", claims=[claim()], robot_seconds=31.0, said=["Done."], states=["WAITING"])
     observed.fault_at, observed.recovery = 2.0, 3.0
     observed.fault_reports = [FaultReport(2.0, "kill", "brain is gone")]
+    observed.missions, observed.mapping = [("bring the mug", "")], {"seconds": 60.0}
     result = judge(msgspec.structs.replace(CASE, fault="kill"), observed, 7.26)
     assert (result.seed, result.command, result.name, result.sim_seconds) == (3, "bring", "fetch", 31.0)
     assert (result.spl, result.wall_seconds, result.false_claims) == (0.5, 7.26, 0)
@@ -167,7 +168,7 @@ def test_the_row_of_the_report_has_everything() -> None:
         **msgspec.to_builtins(GOOD), "shortest": 2.4, "spl": 0.5, "sim_seconds": 31.0, "wall_seconds": 7.3,
         "states": ["WAITING"], "said": ["Done."], "struck": 2.0, "recovery": 3.0, "shortfall": "", "crash": "",
         "effects": [], "wrong": [], "strikes": [{"t": 2.0, "fault": "kill", "what": "brain is gone"}],
-        "claims": [msgspec.to_builtins(claim())],
+        "claims": [msgspec.to_builtins(claim())], "missions": [("bring the mug", "")], "mapping": {"seconds": 60.0},
     }  # fmt: skip
 
 
