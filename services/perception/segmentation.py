@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from common.floor_plan import FloorPlan
+from common.floor_plan import FloorPlan, Receptacle
 from common.geometry import Array, Rectangle
 from services.perception.dark import Blobs, Pixels, blobs, guessed
 from services.perception.outlined import is_part, on_surface
@@ -26,6 +26,9 @@ PLANE_SEARCH = 0.025
 furniture."""
 EDGE = 0.012
 """How far [m] inside its edge a surface begins: its own front is seen there."""
+OVERHANG, MOSTLY_ON = 0.10, 0.25
+"""How far [m] objects reach over a free edge, and the least share of one that is over the surface. Chosen: for what is
+pulled there to be taken; what stands beside a table is none of its objects."""
 WALL_EDGE = 0.035
 """The same for a bin, whose walls are seen, and for furniture, whose edge is soft."""
 LOOKED_DOWN_ON = 0.2
@@ -75,7 +78,10 @@ def segments(view: View, floor_plan: FloorPlan, max_range: float, robot: Mask | 
     for r in near.receptacles:
         surface = Surface(r.name, r.center[2])
         outline = r.outline.grown(-WALL_EDGE if r.depth else -EDGE)
-        found += _on(view, surface, _over(view, usable, outline, surface.height), near, own, dark)
+        cloud = _over(view, usable, outline, surface.height)
+        if not r.depth:
+            cloud = cloud.joined(_beyond(view, usable, r, outline))
+        found += [s for s in _on(view, surface, cloud, near, own, dark) if r.depth or _stands_on(s, r)]
     for f, on_it in near.tops(float(view.position[2]) - LOOKED_DOWN_ON):
         surface = Surface(f.name, f.center[2] + f.size[2] / 2)
         over = _over(view, usable, f.outline.grown(-WALL_EDGE), surface.height)
@@ -88,6 +94,23 @@ def _over(view: View, usable: Mask, outline: Rectangle, height: float) -> Cloud:
     low, high = height - PLANE_SEARCH, height + MAX_HEIGHT
     cloud = _between(view, usable, low, high, view.window(corners(outline, low, high)))
     return cloud.kept(inside(cloud.x, cloud.y, outline))
+
+
+def _beyond(view: View, usable: Mask, r: Receptacle, outline: Rectangle) -> Cloud:
+    """The usable pixels of what reaches over the free edges of a receptacle, whose own front ends lower."""
+    depth, width = (side / 2 - EDGE for side in r.size)
+    left, right, below, above = (OVERHANG * (way in r.approach) for way in ((-1, 0), (1, 0), (0, -1), (0, 1)))
+    left, right, below, above = -depth - left, depth + right, -width - below, width + above
+    x, y = r.outline.to_map((left + right) / 2, (below + above) / 2)
+    wider = Rectangle(x, y, right - left, above - below, r.yaw)
+    low, high = r.center[2] + CLEARANCE, r.center[2] + MAX_HEIGHT
+    cloud = _between(view, usable, low, high, view.window(corners(wider, low, high)))
+    return cloud.kept(inside(cloud.x, cloud.y, wider) & ~inside(cloud.x, cloud.y, outline))
+
+
+def _stands_on(segment: Segment, r: Receptacle) -> bool:
+    x, y = segment.points[:, :2].T.astype(np.float32)
+    return bool(np.mean(inside(x, y, r.outline)) > MOSTLY_ON)
 
 
 def _above_floor(view: View, usable: Mask) -> Cloud:

@@ -35,6 +35,17 @@ class Cloud:
     def kept(self, chosen: NDArray[np.bool_]) -> "Cloud":
         return Cloud(self.pixels[chosen], self.x[chosen], self.y[chosen], self.z[chosen])
 
+    def joined(self, other: "Cloud") -> "Cloud":
+        """Both, if neither has a pixel of the other."""
+        if not len(other.pixels):
+            return self
+        pairs = zip(self._axes, other._axes, strict=True)
+        return Cloud(np.append(self.pixels, other.pixels), *(np.append(a, b) for a, b in pairs))
+
+    @property
+    def _axes(self) -> tuple[NDArray[np.float32], ...]:
+        return self.x, self.y, self.z
+
     def outside(self, boxes: Sequence[Rectangle]) -> "Cloud":
         """Those that lie in none of the rectangles."""
         rest = self

@@ -12,6 +12,7 @@ from common.language.lexicon import COMMANDING
 from common.language.normalise import DETERMINERS, Words, enumeration, normalise, without_determiners
 from common.language.noun_phrase import UNSEEN, WHICH
 from common.language.quantities import UNITS
+from common.naming import normalise as unmarked
 from services.planner.config import PlannerConfig
 from services.planner.world import World
 
@@ -151,6 +152,8 @@ class Vocabulary:
         """(meaning, singular form, is it a plural) of a noun without colours; None if unknown."""
         if phrase in WHOLE:
             return Sense(every=True), "thing", phrase in ("everything", "all", "mess", "all of it", "it all")
+        if "'" in phrase and (taught := self._nouns.get(unmarked(phrase))) is not None:
+            return taught, phrase, False  # "grandmother's can", as it was taught
         for form, plural in _singulars(phrase):
             if form in ANY:
                 return Sense(every=True), form, plural or form in _MASSES
@@ -170,7 +173,7 @@ class Vocabulary:
         """The words as the name of a thing that nobody has listed or seen; None for a place or a part of a sentence."""
         if not self.new_nouns or not 0 < len(words) <= LONGEST_NAME or words[0] in COMMANDING:
             return None
-        if not all(w.strip("'").isalnum() for w in words) or max(map(len, words)) < SHORTEST_NAME:
+        if not all(w.replace("'", "").isalnum() for w in words) or max(map(len, words)) < SHORTEST_NAME:
             return None
         if words[1:2] == ("of",) and words[0] in self.kinds:
             words = (words[0], *words[2:])

@@ -2,6 +2,7 @@
 
 import pytest
 
+from common.messages import WorldObject
 from tests.unit.test_planner_grammar import ask, text
 
 
@@ -30,3 +31,13 @@ def test_other_sentences_teach_nothing(said: str) -> None:
 
 def test_a_name_is_taught_and_used_in_one_breath() -> None:
     assert text(ask("this is my vitamin box. go to the kitchen")) == "teach vitamin box; navigate kitchen"
+
+
+@pytest.mark.parametrize("said", ["give me my grandmother's can", "bring me grandmother's can"])
+def test_a_name_with_an_owner_in_it_is_fetched(said: str) -> None:
+    """Names are kept without their apostrophes."""
+    name = "grandmother s can"
+    taught = WorldObject(
+        label=name, kind="can", colour="blue", position=(0, 0, 0), confidence=1.0, size=(0.1, 0.1, 0.1)
+    )
+    assert text(ask(said, objects=[taught])).startswith(f"find {name}; grasp {name}")

@@ -1,0 +1,65 @@
+"""What reaches over the free edge of its surface is measured as a whole; what is beside it is none of its objects."""
+
+import math
+
+import msgspec
+import mujoco
+import numpy as np
+import pytest
+
+from common.household import told
+from common.rendering.raycast import render
+from common.scene import ObjectSpec, load_scene
+from services.perception import segmentation
+from services.perception.detect import ClassicalDetector
+from services.perception.view import View
+from services.sim.layout import place_objects
+from services.sim.world import world_mjcf
+
+WIDTH, HEIGHT, FOVY = 400, 300, 62.0
+LENGTH, THICK = 0.16, 0.05
+
+
+def seen_with_box(over: float) -> tuple[View, object, tuple[float, float, float]]:
+    """The kitchen table with a flat box that reaches `over` its free edge by so much [m], from before that."""
+    plan = load_scene("apartment")
+    table = plan.surface("kitchen table")
+    assert table is not None
+    x, y, z = table.center
+    edge = x - table.size[0] / 2
+    at = (edge + LENGTH / 2 - over, y)
+    box = ObjectSpec(
+        name="box", kind="block", colour="red", size=(LENGTH, 0.11, THICK), mass=0.2, rgba=(0.8, 0.1, 0.1, 1.0),
+        position=at, yaw=0.0, on="kitchen table",
+    )  # fmt: skip
+    scene = msgspec.structs.replace(plan, objects=(box,))
+    model = mujoco.MjModel.from_xml_string(world_mjcf(scene, place_objects(scene, 0)))
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    position = np.array([edge - 0.5, y, 1.3])
+    down = math.radians(45)
+    # Right, down, ahead of the camera in the map's axes.
+    ahead = np.array([math.cos(down), 0.0, -math.sin(down)])
+    right = np.array([0.0, -1.0, 0.0])
+    rotation = np.stack([right, np.cross(ahead, right), ahead], axis=1)
+    rgb, depth = render(model, data, position, rotation @ np.diag([1.0, -1.0, -1.0]), FOVY, WIDTH, HEIGHT)
+    focal = HEIGHT / 2 / math.tan(math.radians(FOVY) / 2)
+    view = View(
+        rgb=rgb, depth=depth.astype(np.float32), focal=(focal, focal), middle=(WIDTH / 2, HEIGHT / 2),
+        position=position, rotation=rotation,
+    )  # fmt: skip
+    return view, msgspec.structs.replace(told(scene), things=()), (*at, z + THICK / 2)
+
+
+@pytest.mark.parametrize("over", [0.0, 0.03, 0.07])
+def test_it_is_measured_as_a_whole(over: float) -> None:
+    view, household, at = seen_with_box(over)
+    found = [d for d in ClassicalDetector(household, 3.5).detect(view) if d.on == "kitchen table"]  # type: ignore[arg-type]
+    assert len(found) == 1
+    assert math.dist(found[0].position[:2], at[:2]) < 0.012
+    assert found[0].size == pytest.approx((LENGTH, 0.11, THICK), abs=0.015)
+
+
+def test_what_stands_beside_the_surface_is_not_on_it() -> None:
+    view, household, _ = seen_with_box(LENGTH + 0.02)
+    assert segmentation.segments(view, household, 3.5) == []  # type: ignore[arg-type]
