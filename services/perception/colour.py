@@ -17,7 +17,10 @@ _HUES = ((0.035, 0), (0.115, 1), (0.19, 2), (0.45, 3), (0.70, 4), (0.80, 5), (0.
 PART = 0.15
 """Share of an object's pixels from which a colour is one of its own. Chosen: highlights and edges stay below it."""
 SHADOW = 0.55
-"""Brightness of a coloured pixel, by that of the object's bright ones, below which it lies in shadow."""
+"""Brightness of a coloured pixel, by that of bright ones of its hue, below which it lies in shadow."""
+COLOURED, HUE_PARTS, BRIGHT = 0.3, 12, 85
+"""Saturation from which a pixel has a hue, the parts of the circle of hues that are told apart, and the percentile of
+brightness of what is lit. Chosen: as wide as a colour's word."""
 _SHADES = ((0.36, 0.0, 1.0), (0.16, -0.012, 1.0), (0.16, 0.012, 1.0), (0.16, 0.0, 0.88), (0.16, 0.0, 1.14))
 """Weight, turn of the hue [turns] and gain of the brightness with which a colour is named: at the limit it has
 two words. Chosen: what light and camera leave uncertain."""
@@ -97,14 +100,27 @@ def pixel_words(rgb: Array, turn: float = 0.0) -> NDArray[np.intp]:
 def shares(rgb: NDArray[np.uint8], gains: Array) -> dict[str, float]:
     """The colours of pixels (n, 3) by name, with the share of the pixels that has each; the largest first."""
     values = rgb.astype(np.float64) / 255 * gains
-    high = values.max(axis=1)
-    # What is in the shadow of its own is darker, and its hue is noise.
-    shadow = (high < SHADOW * np.percentile(high, 85)) & (high - values.min(axis=1) > 0.3 * high)
-    values = values[~shadow][:: max(1, len(values) // MOST_PIXELS)]
+    values = values[~_shaded(values)][:: max(1, len(values) // MOST_PIXELS)]
     counts = np.zeros(len(WORDS))
     for weight, turn, gain in _SHADES:
         counts += weight * np.bincount(pixel_words(values * gain, turn), minlength=len(WORDS)) / max(1, len(values))
     return {WORDS[n]: float(counts[n]) for n in np.argsort(-counts, kind="stable") if counts[n] > 0.02}
+
+
+def _shaded(values: Array) -> NDArray[np.bool_]:
+    """Which of the coloured pixels (n, 3) lie in a shadow of the object's own: they are darker than others of their
+    hue, and their hue is noise. Where hardly any have it, than the object: what is dark beside a white label is no
+    shadow of the label."""
+    hue, saturation, high = _hsv(values)
+    coloured = saturation > COLOURED
+    part = (hue * HUE_PARTS).astype(np.intp) % HUE_PARTS
+    bright = np.full(HUE_PARTS, np.percentile(high, BRIGHT))
+    for n in range(HUE_PARTS):
+        apart = np.abs(part - n)
+        near = coloured & (np.minimum(apart, HUE_PARTS - apart) <= 1)
+        if np.count_nonzero(near) >= PART * len(values):
+            bright[n] = np.percentile(high[near], BRIGHT)
+    return np.asarray(coloured & (high < SHADOW * bright[part]))
 
 
 def main_words(found: dict[str, float]) -> list[str]:

@@ -52,6 +52,11 @@ def test_the_shade_of_a_yellow_thing_is_not_green() -> None:
     assert main_words(shares(shaded, np.ones(3))) == ["yellow"]
 
 
+def test_what_is_dark_beside_a_white_label_is_no_shadow() -> None:
+    bottle = np.concatenate([pixels((0.08, 0.22, 0.11), 300), pixels((0.88, 0.84, 0.75), 150)])
+    assert main_words(shares(bottle, np.ones(3))) == ["green", "white"]
+
+
 def test_at_the_limit_of_two_words_a_colour_has_both() -> None:
     vermilion = main_words(shares(pixels((0.9, 0.27, 0.1), 400), np.ones(3)))
     assert set(vermilion) == {"red", "orange"}
