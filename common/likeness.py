@@ -1,5 +1,7 @@
 """How well words for colours and kinds fit an object by its looks: from plainly to not at all. Pure."""
 
+from typing import NamedTuple
+
 from common.household import Household
 from common.kinds import KINDS, kind_of
 from common.messages import WorldObject
@@ -19,6 +21,13 @@ SECOND = 0.5
 NOT_CALLED = 0.54
 """Most likeness of a kind that an object may be and is not called. Chosen: below PLAIN, since a red ball is brought for
 a red apple only when the person says so."""
+UNSEEN, UNTOLD = 0.4, 0.1
+"""Most likeness of what fits but for words that say how a thing is and are not seen (`words.qualities`), and but for
+words that may say anything. Chosen: a person is asked about the first at once, about the second at last."""
+ROUGHLY = 0.15
+"""Likeness of the words that are known from which the others are asked about. Chosen: more than one that is near."""
+SHAPELESS, ANY_SHAPE = frozenset({"toy", "tool"}), 0.35
+"""Kinds that have no shape of their own, and the likeness of anything to them. Chosen: asked about when it is seen."""
 NEAR_COLOUR, NEAR_KIND = 0.15, 0.12
 """Likeness of a colour next to one that was seen, and of a kind that is easily taken for one. Chosen: rarely right."""
 HIDDEN = 0.5
@@ -39,6 +48,38 @@ def likeness(phrase: str, o: WorldObject, household: Household) -> float:
     wanted = normalise(phrase)
     if wanted in o.names or (wanted == normalise(o.label) and not o.kind_shares):
         return 1.0
+    known = _known(wanted, o, household)
+    return _fit(known, o) if known.any and not known.rest else 0.0
+
+
+def partly(phrase: str, o: WorldObject, household: Household) -> float:
+    """How well a noun fits an object of which some words say nothing that is seen: "the striped mug", "the toy car".
+
+    0 where all its words are known, none is, or those that are do not fit.
+    """
+    known = _known(normalise(phrase), o, household)
+    untold = known.rest - set(household.words.qualities)
+    # What has other words printed on it is something else.
+    if not known.any or not known.rest or (untold and o.text) or _fit(known, o) < ROUGHLY:
+        return 0.0
+    return UNTOLD if untold else min(UNSEEN, _fit(known, o))
+
+
+class _Words(NamedTuple):
+    """Those of a phrase that name kinds, that name colours, others of the object's `label`, and the `rest`."""
+
+    kinds: set[str]
+    shades: set[str]
+    label: set[str]
+    rest: set[str]
+
+    @property
+    def any(self) -> bool:
+        """One of them says what the object is."""
+        return bool(self.kinds or self.shades or self.label)
+
+
+def _known(wanted: str, o: WorldObject, household: Household) -> _Words:
     told = household.words
     words = {w if w in KINDS else told.kind(w) or told.colour(w) or w for w in wanted.split()} - ANYTHING
     kinds, shades = words & set(KINDS), words & set(ALIKE)
@@ -48,11 +89,14 @@ def likeness(phrase: str, o: WorldObject, household: Household) -> float:
         kinds -= both
     elif both:
         shades -= both
-    rest = words - kinds - shades - set(normalise(o.label).split())
-    if rest or not words:
-        return 0.0
-    found = min((_has_kind(kind, o) for kind in kinds), default=1.0)
-    for shade in shades:
+    others = words - kinds - shades
+    label = others & set(normalise(o.label).split())
+    return _Words(kinds, shades, label, others - label)
+
+
+def _fit(words: _Words, o: WorldObject) -> float:
+    found = min((_has_kind(kind, o) for kind in words.kinds), default=1.0)
+    for shade in words.shades:
         found *= _has_colour(shade, o)
     return found
 
@@ -72,7 +116,7 @@ def _has_kind(kind: str, o: WorldObject) -> float:
     has = shares.get(kind, 0.0) / best
     if o.kind_shares and kind != o.kind:
         has = min(has, NOT_CALLED)
-    return max(has, NEAR_KIND * near)
+    return max(has, NEAR_KIND * near, ANY_SHAPE * (kind in SHAPELESS))
 
 
 def _has_colour(shade: str, o: WorldObject) -> float:

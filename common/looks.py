@@ -16,6 +16,9 @@ OUTSIDE = 0.14
 """Standard deviation, as a share, of a measure outside its range. Chosen: 30 % outside is a tenth as likely."""
 OTHER_FAMILY = 0.02
 """Likelihood of a shape family that a kind does not have: the fit may have been taken in."""
+OTHER, LIKE_NONE = "thing", 0.6
+"""What is called so is as likely as the likeliest kind when its extents are so much like that kind's or less: a pear
+is no bottle though it has a neck. Chosen: 14 % outside one range."""
 LEAST = 0.2
 """Likelihood, of the best kind's, from which a kind may be meant by its word."""
 
@@ -58,17 +61,21 @@ class Look:
 
     def likelihood(self, m: Measures, colours: Collection[str]) -> float:
         """How likely a kind with these ranges has such measures and colours, 0 to 1."""
-        doubt = m.error / max(m.across, 0.01)
-        found = self.share * self.families.get(m.family, OTHER_FAMILY)
-        for measured, usual in ((m.across, self.across), (m.along, self.along), (m.along / m.across, self.slim)):
-            found *= _within(measured, usual, OUTSIDE + doubt)
-        if m.family == "box":
-            found *= _within(m.middle, self.middle, OUTSIDE + doubt)
+        found = self.share * self.families.get(m.family, OTHER_FAMILY) * self.fit(m)
         for seen, pair in ((m.hollow, self.hollow), (m.neck, self.neck), (m.handle, self.handle)):
             found *= pair[0] if seen else pair[1]
         if self.colours and not self.colours & set(colours):
             found *= 0.05
         return found
+
+
+    def fit(self, m: Measures) -> float:
+        """How likely such extents are of this kind, 0 to 1; 1 within its ranges."""
+        doubt = m.error / max(m.across, 0.01)
+        found = 1.0
+        for measured, usual in ((m.across, self.across), (m.along, self.along), (m.along / m.across, self.slim)):
+            found *= _within(measured, usual, OUTSIDE + doubt)
+        return found * _within(m.middle, self.middle, OUTSIDE + doubt) if m.family == "box" else found
 
 
 def _within(value: float, usual: Range, deviation: float) -> float:
@@ -78,11 +85,17 @@ def _within(value: float, usual: Range, deviation: float) -> float:
 
 
 def likely(looks: Mapping[str, Look], m: Measures, colours: Collection[str]) -> dict[str, float]:
-    """The kinds that an object may be, the likeliest first, with shares that add up to 1; empty if it is none."""
+    """The kinds that an object may be, the likeliest first, with shares that add up to 1; empty if it is none.
+
+    `OTHER` is the first where its extents are none that the likeliest kind has.
+    """
     found = {name: look.likelihood(m, colours) for name, look in looks.items()}
     best = max(found.values(), default=0.0)
     if best < 1e-4:
         return {}
+    likeliest = max(found, key=lambda name: found[name])
+    if looks[likeliest].fit(m) < LIKE_NONE:
+        found = {OTHER: 1.01 * best, **found}
     kept = {name: value for name, value in found.items() if value >= LEAST * best}
     total = sum(kept.values())
     return {name: value / total for name, value in sorted(kept.items(), key=lambda item: -item[1])}

@@ -31,6 +31,7 @@ class Words(Strict, frozen=True):
     """`kinds` and `colours`: the word that the robot uses, and other words for the same.
 
     `groups`: words that stand for several kinds. `mass`: those of them that mean everything of the kind ("rubbish").
+    `qualities`: words that say how a thing is and that nobody can tell by its kind and colour ("striped", "favourite").
     `needs`: what helps somebody who is "thirsty". `tidy` and `throw`: where things go that are put away or thrown away;
     the first rule that fits counts.
     """
@@ -40,6 +41,7 @@ class Words(Strict, frozen=True):
     groups: dict[str, tuple[str, ...]] = {}
     mass: tuple[str, ...] = ()
     needs: dict[str, str] = {}
+    qualities: tuple[str, ...] = ()
     tidy: tuple[Destination, ...] = ()
     throw: tuple[Destination, ...] = ()
 
@@ -68,6 +70,7 @@ class Words(Strict, frozen=True):
             colours={**self.colours, **more.colours},
             groups={**self.groups, **more.groups},
             mass=(*self.mass, *more.mass),
+            qualities=(*self.qualities, *more.qualities),
             needs={**self.needs, **more.needs},
             tidy=more.tidy or self.tidy,
             throw=more.throw or self.throw,

@@ -9,7 +9,7 @@ import msgspec
 
 from common.geometry import Pose2, to_frame
 from common.household import Household
-from common.likeness import LEAST, PLAIN, likeness
+from common.likeness import LEAST, PLAIN, likeness, partly
 from common.messages import PossibleObject, WorldObject
 from common.naming import ALIKE, match_object, normalise, unnumbered
 
@@ -103,10 +103,12 @@ def parsed(query: str, household: Household, synonyms: Mapping[str, str]) -> Phr
     return Phrase(match["rest"] if side and match["rest"] else words, place, size, side)
 
 
-def possible(phrase: Phrase, objects: Sequence[WorldObject], household: Household) -> list[PossibleObject]:
-    """The objects that a phrase may mean by their looks, the likeliest first."""
+def possible(
+    phrase: Phrase, objects: Sequence[WorldObject], household: Household, taught: bool = False
+) -> list[PossibleObject]:
+    """The objects that a phrase may mean by their looks, the likeliest first; of a `taught` name all words count."""
     rated = [
-        (likeness(phrase.thing, o, household), o)
+        (likeness(phrase.thing, o, household) or (not taught and partly(phrase.thing, o, household)), o)
         for o in objects
         if not o.held and (not phrase.place or _is_at(o, phrase.place, household))
     ]

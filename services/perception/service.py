@@ -297,7 +297,7 @@ class PerceptionService:
         phrase = parsed(query.query, household, config.synonyms)
         chosen = self._naming.chosen(query, objects)
         read = [] if chosen else self._naming.perhaps(query.query, looks)
-        perhaps = [] if chosen else [*read, *possible(phrase, looks, household)]
+        perhaps = [] if chosen else [*read, *possible(phrase, looks, household, taught=self._naming.knows(query.query))]
         return Grounding(chosen, result.reason, perhaps=perhaps)
 
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from common.geometry import Array
 from common.kinds import LOOKS, Kind, kind_of, laid_on_a_side
-from common.looks import Measures, likely
+from common.looks import OTHER, Measures, likely
 from common.messages import ShapeFamily
 from services.perception import colour
 from services.perception.detection import Detection
@@ -88,7 +88,7 @@ def kinds_of(found: Measurement, spread: float, words: list[str]) -> dict[str, f
             votes[kind] = votes.get(kind, 0.0) + weight * share
     total = sum(votes.values())
     ordered = sorted(votes, key=lambda kind: (-votes[kind], kind))
-    return {kind: votes[kind] / total for kind in ordered if votes[kind] > 0.04 * total} or {"thing": 1.0}
+    return {kind: votes[kind] / total for kind in ordered if votes[kind] > 0.04 * total} or {OTHER: 1.0}
 
 
 def measured(view: View, segment: Segment) -> Measurement:

@@ -4,7 +4,7 @@ import pytest
 
 from common.config import config_dir
 from common.household import Household, load_words, mapped
-from common.likeness import LEAST, LIKELY, PLAIN, likeness
+from common.likeness import LEAST, LIKELY, PLAIN, likeness, partly
 from common.messages import WorldObject
 from common.scene import load_scene
 from services.perception.grounding import ground, parsed, possible
@@ -23,6 +23,7 @@ def measured(label: str, kinds: dict[str, float], colours: dict[str, float], nam
 APPLE = measured("yellow apple", {"apple": 0.5, "ball": 0.45}, {"yellow": 0.6, "green": 0.4})
 BALL = measured("red ball", {"ball": 0.5, "apple": 0.5}, {"red": 1.0})
 CAN = measured("grey can", {"can": 0.7, "jar": 0.3}, {"grey": 0.65, "white": 0.35})
+DUCK = measured("yellow box", {"box": 0.8, "carton": 0.2}, {"yellow": 0.8, "orange": 0.2})
 TIN = measured("white can", {"can": 1.0}, {"white": 0.6, "red": 0.4})
 
 
@@ -70,3 +71,27 @@ def test_a_label_is_enough_for_what_was_put_down() -> None:
     mug = measured("red mug", {"can": 0.8, "mug": 0.2}, {"red": 1.0})
     assert ground("red mug", [mug], HOUSEHOLD, (0.0, 0.0, 0.0), {}).found is None
     assert ground("red mug", [mug], HOUSEHOLD, (0.0, 0.0, 0.0), {}, least=0.0).found is mug
+
+
+@pytest.mark.parametrize(
+    ("words", "seen", "low", "high"),
+    [
+        ("striped grey can", CAN, LIKELY, PLAIN),
+        ("my favourite can", TIN, LIKELY, PLAIN),
+        ("striped mug", TIN, 0.0, LEAST),
+        ("vitamin can", TIN, LEAST, LIKELY),
+        ("yellow toy car", DUCK, LEAST, LIKELY),
+        ("vitamins", TIN, 0.0, LEAST),
+        ("white can", TIN, 0.0, LEAST),
+    ],
+)
+def test_words_that_say_nothing_of_looks_are_asked_about(
+    words: str, seen: WorldObject, low: float, high: float
+) -> None:
+    assert low <= partly(words, seen, HOUSEHOLD) <= high
+
+
+def test_what_has_other_words_on_it_is_not_asked_about() -> None:
+    tin = measured("white can", {"can": 1.0}, {"white": 1.0})
+    tin.text = "CORN"
+    assert partly("vitamin can", tin, HOUSEHOLD) == 0.0 < partly("old can", tin, HOUSEHOLD)

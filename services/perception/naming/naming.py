@@ -105,6 +105,10 @@ class Naming:
         return found
 
     # --- questions
+    def knows(self, phrase: str) -> bool:
+        """It is a name that was taught."""
+        return normalise(phrase) in self._memory.names
+
     def match(self, phrase: str, objects: Sequence[m.WorldObject]) -> list[m.WorldObject]:
         """The objects that a phrase can mean: by their names and words, else by what is printed on them."""
         known = list(objects)
@@ -189,7 +193,7 @@ class Naming:
 
     def _printed(self, query: str, common: frozenset[str] | None = None) -> list[str]:
         """The words of a query that may be print, which are not `common`; those of a taught name are not."""
-        if normalise(query) in self._memory.names:
+        if self.knows(query):
             return []
         return printed_words(query, plain_words(self._io.household) if common is None else common)
 
