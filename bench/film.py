@@ -2,7 +2,7 @@
 
 import zlib
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +13,7 @@ from common import topics
 from common.bus import codec
 from common.geometry import Pose2, compose
 from common.map_file import UNKNOWN, picture
+from common.topics import Topic
 from evaluation.stack import Stack
 
 HEIGHT, GAP = 300, 8
@@ -33,19 +34,24 @@ class Frame(NamedTuple):
 
 
 class Film:
-    """`add` takes a frame of the stack as it is, `save` writes what there is."""
+    """`add` takes a frame of a stack as it is, `save` writes what there is."""
 
     def __init__(self) -> None:
         self._frames: list[Frame] = []
+        self._taps: list[tuple[Topic[Any], list[bytes]]] = []
+        self._last: dict[str, Any] = {}
 
     def add(self, stack: Stack) -> None:
         """Another moment, once there are a map and a picture."""
-        last = stack.bus.last
-        if topics.MAP_GRID.key not in last or topics.HEAD_RGBD.key not in last:
+        if not self._taps:
+            self._taps = [(t, stack.bus.tap(t)) for t in (topics.MAP_GRID, topics.ODOMETRY, topics.HEAD_RGBD)]
+        for topic, payloads in self._taps:
+            if payloads:
+                self._last[topic.key] = codec.decode(topic, payloads[-1])
+                payloads.clear()
+        if len(self._last) < len(self._taps):
             return
-        grid = codec.decode(topics.MAP_GRID, last[topics.MAP_GRID.key])
-        wheels = codec.decode(topics.ODOMETRY, last[topics.ODOMETRY.key])
-        image = codec.decode(topics.HEAD_RGBD, last[topics.HEAD_RGBD.key])
+        grid, wheels, image = (self._last[topic.key] for topic, _ in self._taps)
         rgb = np.frombuffer(image.rgb, np.uint8).reshape(image.height, image.width, 3)
         self._frames.append(Frame(grid, compose(grid.odom, (wheels.x, wheels.y, wheels.theta)), rgb))
 
