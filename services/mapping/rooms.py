@@ -14,6 +14,9 @@ from services.mapping.grid import FREE, OCCUPIED, RESOLUTION, Grid
 
 DOOR = 0.65
 """Half of the width [m] up to which a passage between two walls is a door."""
+HIGH = 0.95
+"""Height [m] from which on what stands there may be a wall behind furniture, of which the lidar sees nothing: above
+tables, counters and the backs of sofas."""
 LEAST_AREA = 2.5
 """Floor [m2] of a room, at least."""
 
@@ -22,7 +25,7 @@ def find_rooms(grid: Grid, states: NDArray[np.uint8], walls: Sequence[Wall]) -> 
     """Rectangles around the rooms, the one with the robot's home first; they may overlap a little."""
     middles = grid.points((np.arange(max(grid.shape)), np.arange(max(grid.shape))))
     xs, ys = middles[: grid.shape[1], 0], middles[: grid.shape[0], 1]
-    tall = np.zeros(grid.shape, bool)
+    tall = grid.covered & (grid.highest > HIGH)
     for wall in walls:
         tall |= wall.footprint.grown(RESOLUTION / 2).signed_distances(xs[None, :], ys[:, None]) < 0.0
     distance = ndimage.distance_transform_edt(~tall) * RESOLUTION

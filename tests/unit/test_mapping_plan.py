@@ -111,3 +111,14 @@ def test_a_corner_behind_which_few_rays_have_passed_is_looked_round() -> None:
     assert places > 0 and not cells[:, :60].any() and cells[20:60, 60].any()
     grid.passed[:] = 0
     assert not interesting(grid, states, near)[0].any(), "behind walls nothing has passed"
+
+
+def test_a_wall_that_furniture_hides_from_the_lidar_parts_two_rooms() -> None:
+    grid = Grid((-4.0, -2.0), (4.0, 2.0))
+    states = np.full(grid.shape, FREE, np.uint8)
+    walls = [Wall(start=(0.0, -2.0), end=(0.0, -1.2)), Wall(start=(0.0, 1.2), end=(0.0, 2.0))]
+    assert len(find_rooms(grid, states, walls)) == 1
+    points = np.array([(x, y, 1.1) for x in (-0.02, 0.03) for y in np.arange(-1.2, 0.4, 0.02)])
+    for _ in range(3):
+        grid.add_picture(np.empty((0, 2)), points)
+    assert len(find_rooms(grid, states, walls)) == 2
