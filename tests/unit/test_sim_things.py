@@ -22,6 +22,7 @@ from services.sim.objects import body_xml, made
 from services.sim.physics import Physics
 from services.sim.robot import HULL_GROUP
 from services.sim.things import convex
+from services.sim.things.body_file import body as body_of
 from services.sim.things.finish import GROUND, picture
 from services.sim.things.forms import FORMS
 from services.sim.things.mesh import turned
@@ -371,3 +372,26 @@ def test_a_cup_keeps_its_inside(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     assert len(found) > 5
     inside = np.array([0.0, 0.0, 0.06])
     assert not any(Delaunay(vertices).find_simplex(inside) >= 0 for vertices, _ in found)
+
+
+def test_a_mesh_whose_hull_would_fill_it_is_hollow() -> None:
+    corners, triangles = cup()
+    assert convex.hollow(corners, triangles)
+    rod = turned(list(pairwise([(0.0, 0.0), (0.03, 0.0), (0.03, 0.2), (0.0, 0.2)])), 0.0, 0.2, 0.0)
+    assert not convex.hollow(rod.vertices, rod.faces)
+
+
+def test_a_hollow_mesh_that_is_seen_and_collides_is_taken_apart(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("TIDYBOT_CACHE_DIR", str(tmp_path))
+    monkeypatch.setitem(sys.modules, "coacd", Decomposer())
+    corners, triangles = cup()
+    lines = [f"v {x} {y} {z}" for x, y, z in corners] + [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in triangles]
+    (tmp_path / "cup.obj").write_text("\n".join(lines))
+    (tmp_path / "cup.xml").write_text(
+        '<mujoco><asset><mesh name="cup" file="cup.obj" inertia="shell"/></asset><worldbody><body>'
+        '<geom type="mesh" mesh="cup" mass="0.2"/></body></worldbody></mujoco>'
+    )
+    one = spec("cup", (0.08, 0.08, 0.09), model=str(tmp_path / "cup.xml"))
+    assert body_of(one).geoms.count("hull_") == 2

@@ -1,8 +1,8 @@
 """A body from any MJCF file: what it looks like and what collides, as one rigid object of our world.
 
 Joints stay where the file has them. Geoms that touch nothing are only looked at; where there are none, those that
-collide are. A file without colliding geoms gets convex parts of what it looks like: by CoACD (the extra `convex`), or
-else the convex hull.
+collide are. A file without colliding geoms, and a hollow mesh that is looked at as well, gets convex parts of what it
+looks like: by CoACD (the extra `convex`), or else the convex hull.
 """
 
 import io
@@ -18,7 +18,7 @@ from PIL import Image
 from common.body_file import load, middle, standing
 from common.scene import ObjectSpec, body_name
 from services.sim.robot import HULL_GROUP
-from services.sim.things.convex import parts
+from services.sim.things.convex import hollow, parts
 from services.sim.things.mesh import xml
 from services.sim.things.primitives import CONTACT, GROUP
 from services.sim.things.thinning import FACES, corners, simplified
@@ -51,7 +51,11 @@ class Built:
             self._look(g)
         if solid:
             for g in solid:
-                self._solid(g)
+                # What is looked at and collides at once was drawn as it is to be, whatever MuJoCo's hull makes of it.
+                if g in seen and self._is_hollow(g):
+                    self._hulls([g])
+                else:
+                    self._solid(g)
         else:
             self._hulls(seen)
         x, y, z = spec.size
@@ -103,6 +107,10 @@ class Built:
         if kind == "mesh":
             shape = f'mesh="{self._hull(*corners(model, int(model.geom_dataid[g])))}"'
         self._collider(f'type="{kind}" {shape} {self._place(g)}')
+
+    def _is_hollow(self, g: int) -> bool:
+        mesh = int(self._model.geom_dataid[g])
+        return _TYPES[int(self._model.geom_type[g])] == "mesh" and hollow(*corners(self._model, mesh))
 
     def _hulls(self, seen: list[int]) -> None:
         """Convex parts of everything that is looked at."""

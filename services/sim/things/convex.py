@@ -21,6 +21,8 @@ THRESHOLD = 0.05
 """Concavity that CoACD leaves: its own default. A cup keeps its inside."""
 MOST = 24
 """Parts of one mesh: collisions of more cost more than they are worth to a hand of two fingers."""
+FILLED = 0.6
+"""Volume of a mesh, by that of its convex hull, below which it is hollow. Chosen: a bottle with its neck fills .75."""
 VERSION = "1"
 
 
@@ -49,6 +51,13 @@ def parts(vertices: Array, faces: NDArray[np.int64]) -> list[Part]:
     found = [(np.asarray(v, np.float64), np.asarray(f, np.int64)) for v, f in made]
     _keep(file, found)
     return found
+
+
+def hollow(vertices: Array, faces: NDArray[np.int64]) -> bool:
+    """The convex hull of a closed mesh would fill what is open: a bowl, a mug."""
+    a, b, c = (vertices[faces[:, n]] - vertices.mean(axis=0) for n in range(3))
+    volume = abs(float(np.einsum("ij,ij->", a, np.cross(b, c)))) / 6
+    return volume < FILLED * float(ConvexHull(vertices).volume)
 
 
 def _keep(file: Path, found: list[Part]) -> None:
