@@ -64,17 +64,19 @@ class Planner:
         return np.random.default_rng(self._seed)
 
     def candidates(self, target: Target) -> Iterator[list[Grasp]]:
-        """Every grasp that this hand could try, in stages: by the rules of kind and shape, and on the measured surface,
-        which comes first where no rule knows the shape, and over an edge. Where nothing has one, what was seen counts,
-        without what its shape family makes of it, unless that is for the edge.
+        """Every grasp that this hand could try, in stages: over an edge; by the rules of kind and shape; on the seen
+        surface, which comes first where no rule knows the shape. Where neither of these has one, what was seen counts,
+        without what its shape family makes of it. What is plainly too wide is only taken over an edge.
         """
         arm = self.arm
+        yield over_an_edge(target, arm.forward, arm.widest)
+        if flat_and_wide(target, arm.widest + 2 * target.spread):
+            return
         rules = candidates(target, arm.forward, arm.widest)
         on_surface = antipodal(target, arm.forward, arm.hand.open, arm.widest)
         shapeless = target.shape in ("long", "irregular") and not target.lies
         yield from ((on_surface, rules) if shapeless else (rules, on_surface))
-        yield over_an_edge(target, arm.forward, arm.widest)
-        if target.points is not None and not (rules or on_surface or flat_and_wide(target, arm.widest)):
+        if target.points is not None and not rules and not on_surface:
             as_seen = antipodal(replace(target, shape="irregular"), arm.forward, arm.hand.open, arm.widest)
             yield [replace(g, name=f"as seen, {g.name}") for g in as_seen]
 

@@ -30,6 +30,9 @@ DOUBT, DOUBT_NOISE = 0.0003, 0.12
 """Difference [m] of two shapes' costs, plus that of noise, at which the worse one is 1/e as likely."""
 LEAST_RIVAL = 0.1
 """Likelihood of another shape, by that of the best, from which it is told of."""
+OUTLINE = 0.02
+"""Standard deviation [m] of the extents of what is seen from above, by its outline: that of pixels that show two things
+at its edge."""
 COMPLEX = 0.06
 """What each free parameter costs, as a share of the residual: the simpler of two equal shapes is taken."""
 
@@ -99,7 +102,8 @@ def _box(points: Array, h: float, outline: Silhouette, noise: float) -> Measurem
         # Of what shows one face only the depth is a guess: as deep as it is wide, moved back.
         length, width = (max(float(e), 0.01) for e in extents)
         start = np.array([*middle, yaw, length, width])
-        wide = np.array([1.0, 1.0, 1.0, 0.3, 0.3])
+        # What is seen from above is seen to its far side; only its outline says so, no point of that side does.
+        wide = np.array([1.0, 1.0, 1.0, *([0.3, 0.3] if _front_only(points, h) else [OUTLINE, OUTLINE])])
         if min(length, width) < 0.35 * max(length, width) and h > 0.06 and _front_only(points, h):
             thin = 4 if width < length else 3
             guess = 0.7 * max(length, width)
