@@ -13,7 +13,7 @@ from common.language.politeness import without_politeness
 
 _STRONG = re.compile(
     r"(?:,\s*|\s+)(?:(?:and|so|but|then|right|ok|okay|just|well|now|hence|therefore),?\s+)*"
-    r"(?=(?:can|could|would|will) you\s+(?!see\b|know\b|believe\b|imagine\b)|please\s+\w|"
+    r"(?=(?:can|could|would|will) you\s+(?!see\b|know\b|believe\b|imagine\b)|please\s+(?!and\b|whichever\b)\w|"
     r"(?:i|we) (?:want|need|would like) you to\s|do me a favou?r)"
 )
 """Before words that can only begin a request."""
@@ -99,6 +99,12 @@ _IF_THERE = re.compile(
     r" (?:is|are) (?:there|on it|in it),? (?P<command>.+)$"
 )
 """A look, and what is to be done if something is there."""
+_IS_IT = re.compile(
+    r"^(?:is|are) (?P<there>there )?(?P<thing>.+?) (?:on|in|at) (?P<spot>(?:the|my) \w+(?: \w+)?),? "
+    r"(?:and )?if (?:so|yes|it is|there is),?"
+    r" (?P<command>.+)$"
+)
+"""A question, and what is to be done if the answer is yes."""
 _IF_ANY = re.compile(
     r"^(?P<command>.+?),? if (?:there (?:is|are) (?:one|any|some)|you (?:can )?(?:find|see) "
     r"(?:it|one|any)|(?:it|one) is (?:there|"
@@ -155,6 +161,9 @@ def conditional(text: str) -> str:
         for at in range(3, len(words) - 1):
             if words[at] in _VERBS and words[at + 1] in _BEGINS:
                 return f"{word} {' '.join(words[:at])} . {' '.join(words[at:])}"
+    elif found := _IS_IT.match(bare):
+        so = f"there is {found['thing']}" if found["there"] else f"{found['thing']} is"
+        return f"if {so} on {found['spot']} . {found['command']}"
     elif found := _IF_THERE.match(bare):
         return f"if {found['thing']} is on {found['spot']} . {found['command']}"
     elif (found := _IF_ANY.match(bare)) and (thing := _FIRST_THING.search(found["command"])):

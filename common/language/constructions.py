@@ -27,7 +27,8 @@ _WANT = (
     "(?:(?:ever|so|very|really|most) )*(?:glad|grateful|thankful|happy|pleased|obliged) "
     "(?:of|for|with|about))|would kill for|would have(?= "
     "(?:the|a|an|some|my|one|two|another)\\b)|have a craving for|am gasping "
-    "for|am desperate for|could go for)"
+    "for|am desperate for|could go for|(?:was|am|have been) (?:hoping|wishing) for|should have(?= "
+    "(?:the|an?|some|my)\\b))"
 )
 _CONSUME = "(?:have|get|eat|drink|play with|use|read|hold|see|look at|borrow|taste|try|take)"
 CONSTRUCTIONS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
@@ -39,7 +40,8 @@ CONSTRUCTIONS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
          r"(?:the|my|our|your) (?:\w+ )?\w+|\w+ing .+)", r"\1"),
         # What is there and has to go elsewhere.
         (rf"there (?:is|are) {NP} (?:that|which) ({MODAL}|goes|go|belongs?) (.+)", r"\1 \2 \3"),
-        (r"go (?:over )?(?:to|into|in) (.+?) and (?:tell me|see|look|report|check|find out)(?: back)? (?:what "
+        (r"(?:go|drive|walk|run|head|move|come) (?:over )?(?:to|into|in) (.+?) and (?:tell "
+         r"me|see|look|report|check|find out)(?: back)? (?:what "
          r"(?:you (?:can )?(?:see|find)|"
          r"is (?:there|in there|on it|in it|on there)|there is))(?: there)?", r"go and look in \1"),
         (rf"(?:i|we) {_WANT} {NP} (?:to be |all |nice and )?(?:clean|tidy|clear|neat|spotless|tidied|cleaned|"
@@ -50,6 +52,9 @@ CONSTRUCTIONS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
         # Taking up what is then put somewhere.
         (rf"(?:get|fetch|take|grab|collect|gather|pick)(?: up| me)? {NP}(?: up)? and (?:then )?(\w+) (?:it|"
          rf"them) (.+)", r"\2 \1 \3"),
+        (rf"(?:get|fetch|take|grab|collect|pick)(?: up)? {NP} (?:and )?(?:then "
+         rf")?(put|place|set|drop|lay) (?:it |them )?"
+         rf"({TO_PLACE}) {NP}", r"\2 \1 \3 \4"),
         # An exception that is said at the end.
         (rf"(\w+(?: up| away| me)?) {NP} ((?:here|over here|to me|away|back)|{TO_PLACE} (?:\w+ ){{1,3}}?\w+)"
          rf" (but not|but no|except for|except|apart from|other than|besides|but) {NP}", r"\1 \2 \4 \5 \3"),

@@ -59,16 +59,20 @@ _SAME = tuple(
         (rf"\b(?:plus|as well as|along with|and also|and additionally|not to mention)\b {_NOUN}", "and "),
         (r"\b(what|which) (?:kinds?|sorts?|types?) of\b", r"\1"),
         (r"\b(?:just|right|directly|immediately|straight) (?=next to|beside|behind|between|in front of|under)", ""),
-        (rf"\b(?:(?:over|up|down|out|back|right) (?:there|here)|there|(?<!\bright )over) {_PREPOSITION}",
+        (rf"\b(?:(?:over|up|down|out|back|right) (?:there|here)|(?<!not )(?<!that )there|(?<!\bright "
+         rf")over) {_PREPOSITION}",
          ""),
-        (r"\b(this|that|these|those) (?:right |over )?(?:here|there)(?= (?:is|are|should|must|will|goes?)\b)", r"\1"),
+        (r"\b(this|that|these|those) (?:(?:right |over )?here|(?:right|over) there)(?= "
+         r"(?:is|are|should|must|will|goes?)\b)", r"\1"),
         (r"\b(this|that) (\w+) (?:right |over )?(?:here|there)(?= is\b)", r"\1 \2"),
         (r"\b(what|where|who|why|how|which) (?:on earth|in the world|the heck|the hell|the "
          r"devil|exactly|actually)\b", r"\1"),
         (r"\bboth (?=(?:to|here|on|in|into|onto|over)\b)", ""),
         (r"\bone of each(?: of)?,? (?=(?:the|a|an)\b)", ""),
         (r"\b(the|my) (\w+s) (?:all|both|each|every one) of (?:them|those)\b", r"all \1 \2"),
-        (r"\bnothing (?:but|except|other than) ", ""),
+        (r"\bone more(?= please$|$)", "another one"),
+        (r"\bone more (?!time|go\b|thing|try|shot|attempt|please)", "another "),
+        (r"\bnothing (?:but|except|other than) (?=(?:the|a|an|my|one)\b)", ""),
         (r"\b(?:far|extreme|very|outer) (left|right)\b", r"\1"),
         (r"\b(left|right)[- ]hand\b", r"\1"),
         (r"\ball the way (?=to|on|at|in|over|back|up|down)", ""),

@@ -1,7 +1,7 @@
 """A text as the commands that it asks for, in the order in which they are to be done.
 
-Repairs ("the red mug, no wait, the blue one"), contrasts ("not the red mug, the blue one") and orders of time ("before
-you ...", "after you have ...") are worked out here; what a clause asks for is none of it. Pure.
+Orders of time ("before you ...", "after you have ...") are worked out here, repairs and contrasts in repairs.py; what a
+clause asks for is none of it. Pure.
 """
 
 import re
@@ -9,88 +9,22 @@ import re
 from common.language.breaks import conditional, with_breaks
 from common.language.clauses import cut_clauses, without_fillers
 from common.language.contractions import expand
-from common.language.exchange import PREPOSITIONS, IsPlace, filled, noun_phrases, replaced, verb_first
-from common.language.lexicon import COMMANDING, HANDLING
+from common.language.exchange import IsPlace, verb_first
+from common.language.lexicon import COMMANDING
 from common.language.normalise import DETERMINERS, infinitive, normalise
 from common.language.politeness import LONG_SPEECH, without_politeness
+from common.language.repairs import settled
 from common.language.timing import in_time
 
-_REPAIR = re.compile(
-    r"(?:,\s*wait,\s*(?=not\b)|[,.;]\s*(?:no|sorry|actually|rather)(?:,\s*|\s+)|,\s*(?:oh|well|hold on|hang on),\s*"
-    r"|(?<=\w)(?<!\bsay)\s+no,?\s+(?=(?:the|my|on|in|to|at)\s)|,?\s+(?:no,? wait|wait,? no|oh,? "
-    r"wait|no,? sorry|sorry,? no|"
-    r"sorry,? i mean(?:t)?|or (?:rather|maybe |even |perhaps )?(?:better|no)(?: yet| still)?|better "
-    r"(?:yet|still)|or rather|"
-    r"i mean(?:t)?|make that|scratch that|correction|no,? i mean(?:t)?|no,? make (?:that|it)|no,? not that|"
-    r"on second thoughts?)(?:,\s*|\s+))"
-    r"(?:i mean(?:t)?|i said|make (?:that|it)|rather|actually|sorry|wait|no)?\b,?\s*"
-)
-"""Between what was said and what was meant."""
-_CONTRAST = re.compile(
-    r"^(?:i (?:said|meant|mean|want|wanted) )?not "
-    r"(?P<wrong>.+?)(?:,\s*(?:but\s+)?|\s+but\s+)(?:rather )?(?P<right>.+)$"
-)
-_CONTRAST_OF_ONES = re.compile(
-    r"^not (?P<wrong>(?:(?:on|in|to|into) )?(?:the|a|my) (?:\w+ )?\w+?)(?P<right> (?:the|on|in|into|to) .+)$"
-)
-_DO_NOT = re.compile(r"^do not (?P<wrong>\w+ .+?)(?:,\s*(?:but\s+)?|\s+but\s+)(?:rather )?(?P<right>.+)$")
-_DO_NOT_DO = re.compile(
-    rf"^do not (?P<wrong>\w+ .+?)\s+(?P<right>(?:{'|'.join(sorted(COMMANDING))}) (?:me|us|the|a|an|my|it|to)\b.+)$"
-)
-NOT_WANTED = re.compile(
-    r"^(?:(?:never mind|forget(?: about)?|skip|leave|ignore|not|no need for|no more|(?:i|we) do not "
-    r"(?:need|want|like))"
-    r" (?:the|that|my|those|this)(?: \w+){1,3}?|no (?!the\b|no\b|need\b)\w+(?=,))(?:,\s*(?:and |but )?| and | but )"
-    rf"(?=(?:please |just |rather )*(?:{'|'.join(sorted(COMMANDING))}|i want|i need|i would like)\b)"
-)
-"""What is not wanted, before what is."""
-_AFTERTHOUGHT = re.compile(
-    r"^(?P<said>.+?),?\s+(?P<meant>(?:the|a|my|to|on|in|into) [^,]+?),? (?:i mean(?:t)?|that is|i should say|to "
-    r"be precise|actually)$"
-)
-"""A correction that is marked behind itself: `the can, the green one i mean`."""
-_DISLOCATED = re.compile(
-    r"^(?:go (?:and )?)?(?P<verb>\w+(?: me)?) (?P<pronoun>it|them|that|this)\b"
-    r"(?:(?P<rest>[^,]*?),\s*|(?P<near>(?: to me| here| over| back| away)*) )"
-    r"(?P<thing>(?:the|my|a|an|all|both) [^,]+?)(?: i mean(?:t)?)?$"
-)
-_PRESENTED = re.compile(
-    r"^(?P<thing>(?:the|my|that|this|those|these|all|both|our) [^,]+?),\s*(?P<rest>(?:(?:please|just|can you|"
-    r"could you|would you)\s+)*\w+"
-    r"(?: me)? (?:it|them|that|those|one)\b.*)$"
-)
-_PRESENTED_AT_ONCE = re.compile(
-    r"^(?P<thing>(?:the|my|that|this|those|these|our) "
-    r"(?!.*\b(?:is|are|was|were|has|have|said|says|told|and|if|not)\b)"
-    rf"(?:\w+ ){{1,10}}?)(?P<rest>(?:(?:please|just|can you|could you|would you) )*(?:{'|'.join(sorted(HANDLING))})"
-    r"(?: me| rid of)? (?:it|them|that|those)\b.*|(?:i|we) (?:want|need|would like|would love) (?:it|them)\b.*)$"
-)
-"""A thing that is named before or after the command in which a pronoun stands for it."""
-_LATE_EXCEPT = re.compile(
-    r"^(?P<all>.+) (?P<particle>away|out|back|up|down) (?P<but>(?:except|but not|but|apart from|other than) .+)$"
-)
-"""An exception that is said behind a verb's particle."""
 _FIRST = re.compile(
     r"^(?P<word>after|once|when|as soon as|before) (?:you(?: are| have)?(?: all)?(?: done| finished)? |(?=\w+ing\b))"
     r"(?P<rest>.+)$"
 )
 _BUT_FIRST = re.compile(r"^(?P<second>.+?),? but (?:first|before that|beforehand),? (?P<first>.+)$")
 _LATER = re.compile(r"^(?P<first>.+?),? (?P<word>before|after) you(?: have)? (?P<second>.+)$")
-_EXCEPT = re.compile(r",\s*(?:and |but )?(?=(?:not|except|but not|apart from|other than)\b)")
 _NEXT = frozenset(
     {"me", "us", "it", "them", "to", "into", "back", "here", "all", "up", "out", "everything", "away", "down"}
 )
-
-_REFINEMENT = re.compile(
-    r"^(?P<said>[^,]+?)(?:,\s*|\s+)(?:(?:you know|well|that is|please),?\s*)?(?P<one>(?:the|a|an) (?:\w+ ){1,2}one)"
-    r"(?P<rest>,?(?: (?:and|on|in|to|into|onto|next|from|off) .*)?)$"
-)
-"""A thing, and which one of its kind."""
-_GOES_ON = frozenset({"and", "or", "then", "but", "not", "with", "to", "as"})
-"""Before another thing, which is not the same as the one before."""
-_ANSWERS = frozenset({"no", "yes", "not", "if", "when", "unless", "after", "before", "once", "first"})
-LONGEST_LEAD = 4
-"""Words before a comma that may be left out (chosen)."""
 
 
 def commands(text: str, is_place: IsPlace = lambda _: False) -> list[str]:
@@ -99,7 +33,7 @@ def commands(text: str, is_place: IsPlace = lambda _: False) -> list[str]:
     if LONG_SPEECH.match(without_politeness(whole)):
         return cut_clauses(whole)
     parts = (piece for part in _in_order(whole) for piece in with_breaks(in_time(conditional(part))).split(" . "))
-    return [clause for part in parts for clause in cut_clauses(_settled(part, is_place))]
+    return [clause for part in parts for clause in cut_clauses(settled(part, is_place))]
 
 
 def _in_order(text: str) -> list[str]:
@@ -135,140 +69,3 @@ def _second_clause(text: str) -> tuple[str, str] | None:
 def _with_infinitive(text: str) -> str:
     first, _, rest = text.strip(" ,").partition(" ")
     return f"{infinitive(first, COMMANDING)} {rest}"
-
-
-# --- repairs
-def _settled(text: str, is_place: IsPlace) -> str:
-    """The text without what was taken back."""
-    text = _refined(_without_lead(text))
-    text = _AFTERTHOUGHT.sub(r"\g<said>, i mean \g<meant>", text) if text.count(",") else text
-    text = _with_noun(_NEITHER.sub(lambda found: filled(found["one"], found["other"]), text))
-    if (found := _NOT_THAT_ONE.match(text)) and not re.search(
-        r"\b(?:all|every|everything|any|do|does|did)\b", found["said"]
-    ):
-        text = found["said"]
-    found = _WHERE_IT_IS.match(bare := without_politeness(text))
-    if found and verb_first(bare) and not PREPOSITIONS & set(found["said"].split()):
-        text = f"{found['said']} {found['where']}"
-    if (found := _THE_OTHER_ONE.match(text)) and (verb_first(without_politeness(found["said"]))):
-        text = replaced(without_politeness(found["said"]), found["one"], is_place) or text
-    if found := _NOT_THERE.match(text):
-        text = found["said"]
-    text = _refined(_repaired(text, is_place))
-    text = _EXCEPT.sub(" but ", text).replace(" but but ", " but ")
-    text = _LATE_EXCEPT.sub(r"\g<all> \g<but> \g<particle>", text)
-    bare = without_politeness(text)
-    if NOT_WANTED.match(bare):
-        text = bare = without_politeness(NOT_WANTED.sub("", bare))
-    if found := (
-        _CONTRAST.match(bare) or _CONTRAST_OF_ONES.match(bare) or _DO_NOT_DO.match(bare) or _DO_NOT.match(bare)
-    ):
-        text = _contrasted(found["wrong"], found["right"])
-    return text
-
-
-def _with_qualities(said: str, wrong: str, right: str) -> str:
-    """`the box` for `the bottle` where `the white bottle` was said is `the white box`."""
-    bare, other = ([w for w in text.split() if w not in DETERMINERS] for text in (wrong, right))
-    phrases = [said.split()[a:b] for a, b in noun_phrases(said.split())]
-    phrase = next((p for p in phrases if p[-1:] == bare and len(p) > 2), None)
-    return " ".join((*phrase[:-1], *other)) if phrase and len(other) == 1 else right
-
-
-def _with_noun(text: str) -> str:
-    """`the mug on the desk, bring it to me` and `bring it to me, the mug` as `bring the mug to me`."""
-    if (found := _PRESENTED_AT_ONCE.match(text)) and "," not in text:
-        thing, rest = found["thing"], found["rest"]
-        return re.sub(r"\b(?:it|them|that|those)\b", lambda _: thing, rest, count=1)
-    if found := _DISLOCATED.match(without_politeness(text)):
-        if found["verb"].split()[0] in COMMANDING:
-            return f"{found['verb']} {found['thing']}{found['rest'] or found['near'] or ''}"
-    elif (found := _PRESENTED.match(text)) and verb_first(without_politeness(found["rest"])):
-        return re.sub(r"\b(?:it|them|that|those|one)\b", lambda _: found["thing"], found["rest"], count=1)
-    return text
-
-
-def _repaired(text: str, is_place: IsPlace) -> str:
-    """The text with what was said last in place of what it corrects."""
-    for _ in range(3):
-        found = (None, *_REPAIR.finditer(text))[-1]
-        if found is None or not text[: found.start()].strip() or not text[found.end() :].strip(" ,.!?"):
-            return text
-        meant = _refined(text[found.end() :].strip(" ,.!?"))
-        if contrast := _CONTRAST.match(meant):
-            meant = _with_qualities(text[: found.start()], contrast["wrong"], contrast["right"])
-        if (repaired := replaced(text[: found.start()], meant, is_place)) is None:
-            return text
-        text = repaired
-    return text
-
-
-def _without_lead(text: str) -> str:
-    """The text without words before its first comma that name nothing, such as `yo, could you ...`."""
-    head, comma, rest = text.partition(",")
-    words = without_politeness(head).split()
-    strange = 0 < len(words) <= LONGEST_LEAD and not DETERMINERS & set(words) and words[0] not in _ANSWERS
-    if (
-        comma
-        and strange
-        and not verb_first(head)
-        and not PREPOSITIONS & set(words[:1])
-        and " " in rest.strip()
-        and verb_first(without_politeness(rest))
-    ):
-        return rest
-    return text
-
-
-_NOT_THERE = re.compile(
-    r"^(?P<said>.+? (?:on|in|to|into|onto|at) .+?),? (?:and |but )?not (?:on|in|to|into|onto|at|back) "
-    r"(?:the|my|a) \w+(?: \w+)?$"
-)
-"""Where something is to be, and where not."""
-_NOT_THAT_ONE = re.compile(r"^(?P<said>(?!not\b).+?),? (?:and |but )?not (?:the|a|my|that) (?:\w+ )?one$")
-_WHERE_IT_IS = re.compile(
-    r"^(?P<said>\w+ (?:me )?(?:the|my|a|an|that) [^,]+?),? (?:it|they) (?:is|are|should be|must be|lies|stands)"
-    r"(?: lying| standing| still| somewhere)* (?P<where>(?:on|in|at|next to|near|beside) .+)$"
-)
-"""Something to be brought, and where it is."""
-_THE_OTHER_ONE = re.compile(
-    r"^(?P<said>.+?),? (?:but )?not (?:the|a|my) (?:\w+ )?\w+?,? (?:but )?(?P<one>(?:the|a|my) \w+ (?:one|\w+))$"
-)
-_NEITHER = re.compile(r"\bneither .+? nor (?P<other>(?:the |my )?(?:\w+ ){1,2}?)(?:but )?(?P<one>(?:the|a|my) [^,]+)")
-_ANY = re.compile(r"\b(an? (\w+)), any (?:\2|one|of them|will do)\b")
-
-
-def _refined(text: str) -> str:
-    """`the can, the red one` as `the red can`."""
-    text = _ANY.sub(r"\1", text)
-    found = _REFINEMENT.match(text)
-    if found is None or found["said"].split()[-1] in _GOES_ON:
-        return text
-    spans = noun_phrases(found["said"].split())
-    if not spans and not verb_first(found["said"]) and len(found["said"].split()) <= LONGEST_LEAD:
-        return f"{filled(found['one'], found['said'])}{found['rest'].lstrip(',')}"
-    if not spans or spans[-1][1] - spans[-1][0] != 2:
-        return text
-    rest = found["rest"] if found["rest"].startswith((", and", " and")) else found["rest"].lstrip(",")
-    return f"{replaced(found['said'], found['one']) or found['said']}{rest}"
-
-
-def _contrasted(wrong: str, right: str) -> str:
-    """`not the red mug, the blue one` is the blue mug; a verb that was said only with the wrong one is kept."""
-    verb, _, thing = wrong.partition(" ")
-    right = re.sub(r",? (?:instead|rather)$", "", without_politeness(right))
-    if verb in COMMANDING and verb_first(right):
-        right = _of_thing(right, thing)
-    if verb in COMMANDING and not verb_first(right):
-        words = wrong.split()
-        receiver = f"{words[1]} " if len(words) > 2 and words[1] in ("me", "us") else ""
-        return f"{verb} {receiver}{filled(right, thing)}"
-    return filled(right, wrong)
-
-
-def _of_thing(command: str, said: str) -> str:
-    """`put it there` with the thing that was spoken of in place of its "it"."""
-    words = said.split()
-    spans = noun_phrases(words)
-    thing = " ".join(words[spans[0][0] : spans[0][1]]) if spans else ""
-    return re.sub(r"(?<=\w )(?:it|them)\b", thing, command, count=1) if thing else command

@@ -62,7 +62,7 @@ ASK = (
     " | (did | do) you (see | notice | remember)]"
 )
 BE = "(is | are | was | were)"
-LYING = "lying | standing | sitting | left"
+LYING = "lying around | lying about | standing around | lying | standing | sitting | left"
 """What things do where they are."""
 WHAT_DID = "(did you [just] (do | finish) | have you [just] (done | finished)) [last | before | just now | now | there]"
 COMMANDING: frozenset[str] = frozenset(

@@ -153,7 +153,10 @@ MOVING: tuple[Wording, ...] = (
         "fetch",
         f"{PERSON} {WISH} <thing> [[over] here]",
     ),
-    Wording("fetch", f"{MODAL} (i | we) (have | get) <thing> | let (me | us) have <thing>"),
+    Wording(
+        "fetch",
+        f"{MODAL} (i | we) (have | get) <thing> | let (me | us) (have | borrow | use | hold | get | see | try) <thing>",
+    ),
     Wording("fetch", f"{MODAL} i (trouble | bother | ask) you for <thing> | gimme <thing> | how about <thing>"),
     Wording("fetch", "<thing> would be (nice | great | good | lovely | perfect)"),
     Wording("fetch", "[is there] any chance of [getting | having] <thing>"),

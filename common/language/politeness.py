@@ -53,7 +53,10 @@ _ADDRESS = (
     "tidybot|buddy|mate|dude|pal|"
     "man|sir|dear|(?:my|little|good|old|young) (?:man|lad|lady|fellow|chap|friend|helper|love|one)"
     "(?! (?:here |there )?(?:is|was|wants?|would|needs?|has|likes?|said|asked|brought|and)\\b)|sweetie|honey|"
-    "sweetheart|(?:go|move|drive) (?:faster|quicker)(?: and)?|speed up(?: and)?|wake up(?: and)?|step on it(?: and)?|"
+    "i said(?=,? "
+    "(?:bring|put|take|get|fetch|give|go|throw|come|tidy|find|move|leave|set|clear|clean|carry)\\b)|"
+    "(?:that is )?enough(?= (?:now )?(?:come|stop|go)\\b)|sweetheart|(?:go|move|drive) (?:faster|quicker)(?: and)?|"
+    "speed up(?: and)?|wake up(?: and)?|step on it(?: and)?|"
     "never mind(?=,? (?:bring|get|fetch|put|take|go|give)\\b)|mind you|before "
     "(?:anything|everything) else|most importantly|first thing|no time to "
     "(?:lose|waste)|do not just stand there|make yourself useful(?: "
@@ -80,7 +83,7 @@ _WAY = (
 )
 _FRAMES = (
     # What makes a question or a wish of an order.
-    rf"{_CAN} {_YOU}(?! see (?:the|my|a|any|that)\b| rather\b){_ADVERBS}(?: to(?= \w))?"
+    rf"{_CAN} {_YOU}(?! see (?:the|my|a|any)\b| rather\b){_ADVERBS}(?: to(?= \w))?"
     rf"(?: (?:be able to|be willing to|be up for|manage to|care to|try to|try and|like to|"
     rf"want to|"
     rf"mind|go ahead and|help me (?:and|by)|do me (?:a|the) favou?r(?: and| of)?|"
@@ -107,6 +110,7 @@ _FRAMES = (
     rf" to ask)?)"
     rf"(?: for you)?(?: (?:if you(?: {_CAN})?|if i ask(?:ed)? you to|that you|to))?",
     r"(?:it|that) would make (?:me|us|my day|him|her)(?: \w+){0,2} if you(?! (?:not|did not|never)\b)",
+    r"(?:is there )?(?:any|a|some) (?:chance|way|possibility)(?: that)?(?=\s+(?:i|we)\b)|"
     r"do you (?:think|suppose|reckon)(?: that)?(?=\s+(?:i|we) (?:could|can|may|might)\b)|"
     r"(?:would|will|does|might|could) it (?:trouble|bother|inconvenience|kill|hurt) you(?: too much)?(?: to| if you)|"
     r"help (?:me|us|(?:a|an|your|my) (?:\w+ )?\w+) out(?: and| by| here and)?|"
@@ -153,11 +157,12 @@ _ENDINGS = (
     "ok|alright|(?<=, )right|man|mate|"
     "buddy|dude|my friend|dear|love|darling|sir|real quick|really quick|quick|fast|if you please|or something|or so|"
     "and stuff|(?:any (?:one|\\w+) will do|(?:it|i) (?:does|do) not (?:matter|mind|care) which(?: one)?|"
-    "whichever)|while you are (?:at it|there|up|about it)|on (?:the|your) way(?: back)?|by the "
-    "way|(?<=, )you know(?: "
+    "whichever(?: is (?:closest|nearest|easiest))?)|while you are (?:at it|there|up|about it)|on "
+    "(?:the|your) way(?: back)?|by the "
+    "way|(?<!rooms )(?<!places )(?<!what )(?<!do )you know(?: "
     "that)?|i "
     "guess|i think",
-    "(?:and )?hurry(?: up)?|as (?:fast|quickly) as you can|asap|and be quick(?: about it)?|and that "
+    "(?:and |but )?hurry(?: up)?|as (?:fast|quickly) as you can|asap|and be quick(?: about it)?|and that "
     "is all|that is all|"
     "come on|go on|chop chop|before i forget|some ?time(?: today)?|today|tonight|this (?:morning|evening|afternoon)|"
     "(?:and )?(?:be|take) care(?:ful)?(?: with (?:it|them|that))?|carefully|gently|when you come back|"
@@ -169,7 +174,8 @@ _ENDINGS = (
     "(?<!try )(?<!it )(?<!that )(?<!same )(?<!thing )(?<!once )(?<!go )(?<!look )again",
     "as soon as (?:you can|possible)|(?:will|would|could|can|won't) you|would be (?:great|nice|lovely|good)(?= please)",
     r"if (?:you (?:can |could |do |happen to )?(?:find|see|spot|have) (?:it|one|any|them|some)|"
-    r"there (?:is|are) (?:one|any|some)(?: left)?|(?:it|they) (?:is|are) (?:still )?(?:there|around|available))",
+    r"there (?:is|are) (?:still )?(?:one|any|some|(?:room|space)(?: for (?:it|them))?)(?: "
+    r"left)?|(?:it|they) (?:is|are) (?:still )?(?:there|around|available))",
     rf"{_OCCASION}|(?:for )?(?:a|one) (?:second|sec|moment)",
     r"(?:because|since|so that|so i can|so we can|in case|otherwise i|as i|as we|for i|in order to)\s.+",
 )

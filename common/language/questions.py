@@ -90,20 +90,21 @@ ABOUT_THE_WORLD: tuple[Wording, ...] = (
     ),
     Wording("is_at", f"{ASK} [if | whether] (is | are) <thing> [still] [{LYING}] (in | on | at) "
                      f"<spot> [still]"),
-    Wording("number", f"how many [of] <thing> [{BE} | do you (see | know) | can you see | have you "
+    Wording("number", f"{ASK} how many [of] <thing> [{BE} | do you (see | know) | can you see | have you "
                       f"seen | did you see | do we have | have we "
                       f"got | there are]"
         f" [there | {LYING} | left] (on | in | at) <spot>"),
     Wording(
         "number",
-        f"how many [of] <thing> [(are there | there are | do (we | i) have | have (we | i) got | do "
+        f"{ASK} how many [of] <thing> [(are there | there are | do (we | i) have | have (we | i) got | do "
         f"you (see | know | remember) | can you see | have "
         f"you seen | do we have |"
         f" {BE} (left | here | around))] [left]",
     ),
     Wording(
         "colour",
-        f"{ASK} (what | which) (colour | color) {BE} <thing> | {ASK} what {BE} the (colour | color) of <thing>"
+        f"{ASK} (what | which) (colour | color) {BE} <thing> | {ASK} (what | which) (colour | color) "
+        f"<thing> {BE} | {ASK} what {BE} the (colour | color) of <thing>"
         " | tell me the (colour | color) of <thing>",
     ),
     Wording(

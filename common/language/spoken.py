@@ -2,6 +2,7 @@
 
 from collections.abc import Container, Iterator
 
+from common.language.breaks import is_statement
 from common.language.discourse import commands
 from common.language.meaning import VERBS, WORDS, readings
 from common.language.normalise import Words, infinitive
@@ -22,11 +23,22 @@ def is_understood(text: str, names: Container[str]) -> bool:
 
     `names` are single words: of things, places and colours.
     """
-    clauses = commands(text)
-    return bool(clauses) and all(_is_wording(tuple(clause.split()), names) for clause in clauses)
+    if not (clauses := commands(text)):
+        return False
+    *before, last = clauses
+    return _is_wording(tuple(last.split()), names) and all(
+        is_statement(clause) or _is_wording(tuple(clause.split()), names) for clause in before
+    )
+
+
+def says_more(text: str, part: str) -> bool:
+    """Are the words of `part` among those of a longer text, in order?"""
+    rest = iter(text.split())
+    return len(text.split()) > len(part.split()) and all(word in rest for word in part.split())
 
 
 def _is_wording(words: Words, names: Container[str]) -> bool:
+    words = words[1:] if words[:1] == ("otherwise",) else words
     for variant in _variants(words):
         for wording, slots in readings(variant, "command", "reply", "name"):
             if wording.action in _NOTHING_TO_DO:

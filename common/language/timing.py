@@ -17,7 +17,8 @@ _FIRST = re.compile(
 _JUST = re.compile(rf"^(?:just )?(?P<time>{DURATION}),? (?:and )?then (?P<rest>.+)$")
 _LAST = re.compile(rf"^(?P<rest>.+?),? (?:in|after) (?P<time>{DURATION})(?: from now| time)?$")
 _STAY = re.compile(
-    rf"^(?:(?:go|drive|walk|move|run|head|come) (?P<to>.+?) and )?(?:stay|remain|wait|stand|stop|hang "
+    rf"^(?:(?:go|drive|walk|move|run|head|come) (?P<to>.+?)(?:,| and| then)* "
+    rf"(?=stay|remain|wait|stand))?(?:stay|remain|wait|stand|stop|hang "
     rf"around|rest|park|be)"
     rf"(?: (?:there|here))?(?P<place>(?: over)? (?:in|at|by|near|next to|beside) .+?)? for "
     rf"(?P<time>{DURATION})(?P<rest>(?: and| then|,).+)?$"

@@ -80,8 +80,8 @@ _WITHIN = (
     (
         re.compile(
             r"\bthe (\w+) (?:that|which) (?:is|are|stands|lies) (?:the )?(closest|nearest|biggest|smallest|"
-            r"tallest|shortest|"
-            r"farthest|furthest|largest|leftmost|rightmost)(?: to (?:you|me|us|here))?"
+            r"tallest|shortest|bigger|smaller|taller|shorter|larger|nearer|farthest|furthest|largest|leftmost|rightmost)"
+            r"(?: to (?:you|me|us|here))?"
         ),
         r"the \2 \1",
     ),

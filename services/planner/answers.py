@@ -12,8 +12,8 @@ from services.planner.plan_builder import NOT_UNDERSTOOD, PlanBuilder, Refusal
 from services.planner.pronouns import Referent
 from services.planner.relations import between, holds, spoken, superlative
 from services.planner.resolve import referent, referents
+from services.planner.senses import ANY, Sense
 from services.planner.telling import MANY, a, be, capital, not_after_moving, place_of
-from services.planner.vocabulary import ANY, Sense
 from services.planner.world import BelievedObject
 
 _FROM_HERE = {("to", w) for w in ("me", "you", "us", "here")}

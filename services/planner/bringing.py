@@ -13,7 +13,7 @@ from services.planner.plan_builder import PlanBuilder, Refusal
 from services.planner.pronouns import Referent, handled_before
 from services.planner.relations import BESIDE, between
 from services.planner.resolve import referent, referents
-from services.planner.vocabulary import Spot
+from services.planner.senses import Spot
 from services.planner.world import BelievedObject
 
 RELEASED = PlanStep(action="release")

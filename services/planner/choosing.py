@@ -6,7 +6,7 @@ from services.planner.phrases import Phrase
 from services.planner.plan_builder import PlanBuilder, Refusal
 from services.planner.pronouns import Referent, mentioned
 from services.planner.relations import superlative
-from services.planner.vocabulary import Spot
+from services.planner.senses import Spot
 from services.planner.world import BelievedObject
 
 

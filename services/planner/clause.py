@@ -40,7 +40,7 @@ def _joined(words: Words, builder: PlanBuilder, verb: str, at: int, alone: bool)
         trial = builder.fork()
         try:
             _command(head, trial, verb, at, alone and not rest)
-            if rest:
+            if rest and not trial.unmet:
                 _joined(rest, trial, head[0] if head[0] in COMMANDING else "put", at + cut, False)
         except _Failure as failure:
             worst = failure if worst is None or failure.at >= worst.at else worst
@@ -60,7 +60,8 @@ def _run_on(words: Words, builder: PlanBuilder, verb: str, at: int) -> bool:
         trial = builder.fork()
         try:
             _command(words[:cut], trial, verb, at, False)
-            _joined(words[cut:], trial, words[0], at + cut, False)
+            if not trial.unmet:
+                _joined(words[cut:], trial, words[0], at + cut, False)
         except _Failure:
             continue
         builder.adopt(trial)

@@ -9,7 +9,7 @@ from common.language.noun_phrase import PLURAL_PRONOUNS, PRONOUNS
 from services.planner.phrases import Phrase, read
 from services.planner.plan_builder import NOT_UNDERSTOOD, PlanBuilder, Refusal
 from services.planner.pronouns import pronoun
-from services.planner.vocabulary import LONGEST_NAME
+from services.planner.senses import LONGEST_NAME
 from services.planner.world import BelievedObject
 
 MAX_NAMED = 4

@@ -6,7 +6,7 @@ from services.planner.phrases import Phrase, read
 from services.planner.places import spot
 from services.planner.plan_builder import PlanBuilder, Refusal
 from services.planner.resolve import referent, referents
-from services.planner.vocabulary import Spot
+from services.planner.senses import Spot
 
 
 def go(builder: PlanBuilder, slots: Slots) -> None:

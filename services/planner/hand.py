@@ -5,7 +5,7 @@ from common.language.pattern import Slots
 from services.planner.plan_builder import PlanBuilder, Refusal
 from services.planner.pronouns import Referent
 from services.planner.resolve import referent, referents
-from services.planner.vocabulary import LIVING
+from services.planner.senses import LIVING
 
 
 def pick_up(builder: PlanBuilder, slots: Slots) -> None:

@@ -9,8 +9,8 @@ from services.planner.fits import fitting, unknown
 from services.planner.phrases import Phrase, read
 from services.planner.places import spot
 from services.planner.plan_builder import PlanBuilder, Refusal
+from services.planner.senses import Spot
 from services.planner.telling import a, be, inventory, not_after_moving, told
-from services.planner.vocabulary import Spot
 from services.planner.world import BelievedObject
 
 

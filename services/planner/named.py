@@ -7,7 +7,8 @@ from common.language.normalise import DETERMINERS, Words
 from services.planner.phrases import Phrase, read
 from services.planner.plan_builder import PlanBuilder, Refusal
 from services.planner.resolve import referents
-from services.planner.vocabulary import NO_NOUN, Vocabulary
+from services.planner.senses import NO_NOUN
+from services.planner.vocabulary import Vocabulary
 
 MOST_WORDS = 6
 """Words of the longest phrase for a thing or a place (chosen)."""

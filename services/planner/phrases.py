@@ -19,7 +19,8 @@ from common.language.noun_phrase import (
     without_measure,
     without_tail,
 )
-from services.planner.vocabulary import Sense, Vocabulary
+from services.planner.senses import Sense
+from services.planner.vocabulary import Vocabulary
 
 
 class Phrase(msgspec.Struct, frozen=True):

@@ -4,7 +4,7 @@ from common.language.normalise import Words, enumeration, without_determiners
 from services.planner.phrases import Phrase, read
 from services.planner.plan_builder import PlanBuilder, Refusal
 from services.planner.relations import away
-from services.planner.vocabulary import Spot
+from services.planner.senses import Spot
 
 
 def spot(builder: PlanBuilder, words: Words) -> Spot:

@@ -3,7 +3,7 @@
 import msgspec
 
 from services.planner.plan_builder import PlanBuilder, Refusal
-from services.planner.vocabulary import Spot
+from services.planner.senses import Spot
 from services.planner.world import BelievedObject
 
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from common.language.normalise import enumeration
 from services.planner.phrases import Phrase
 from services.planner.plan_builder import PlanBuilder, Refusal
-from services.planner.vocabulary import Spot
+from services.planner.senses import Spot
 from services.planner.world import BelievedObject
 
 NEAR = 1.5

@@ -2,7 +2,7 @@
 
 from common.language.normalise import enumeration
 from services.planner.plan_builder import PlanBuilder, Refusal
-from services.planner.vocabulary import Spot
+from services.planner.senses import Spot
 from services.planner.world import BelievedObject
 
 MANY = 8

@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 
 from common.floor_plan import Receptacle
-from common.language.normalise import without_determiners
+from common.language.normalise import Words, without_determiners
 from common.language.noun_phrase import related
 from common.language.pattern import Slots
 from common.words import Destination
@@ -12,15 +12,20 @@ from services.planner.places import spot
 from services.planner.plan_builder import PlanBuilder, Refusal
 from services.planner.pronouns import Referent
 from services.planner.resolve import referents
-from services.planner.vocabulary import Spot
+from services.planner.senses import Spot
 
 
 def put_away(builder: PlanBuilder, slots: Slots) -> None:
-    _sort(builder, referents(builder, slots["thing"], prefer_held=True), builder.world.household.words.tidy)
+    _sort(builder, referents(builder, _all(slots["thing"]), prefer_held=True), builder.world.household.words.tidy)
 
 
 def throw_away(builder: PlanBuilder, slots: Slots) -> None:
-    _sort(builder, referents(builder, slots["thing"], prefer_held=True), builder.world.household.words.throw)
+    _sort(builder, referents(builder, _all(slots["thing"]), prefer_held=True), builder.world.household.words.throw)
+
+
+def _all(words: Words) -> Words:
+    """`anything on the desk`, to be put away, is all of it."""
+    return ("everything", *words[1:]) if words[0] == "anything" else words
 
 
 def tidy(builder: PlanBuilder, slots: Slots) -> None:

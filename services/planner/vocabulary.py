@@ -4,75 +4,16 @@ import re
 from collections.abc import Iterable
 from typing import Any
 
-import msgspec
-
 from common.floor_plan import Receptacle
 from common.household import Household
 from common.language.lexicon import COMMANDING
-from common.language.normalise import DETERMINERS, Words, enumeration, normalise, without_determiners
+from common.language.normalise import Words, enumeration, normalise, without_determiners
 from common.language.noun_phrase import UNSEEN, WHICH
 from common.language.quantities import UNITS
 from common.naming import normalise as unmarked
 from services.planner.config import PlannerConfig
+from services.planner.senses import ANY, HERE, LONGEST_NAME, MASSES, NO_NOUN, SHORTEST_NAME, WHOLE, Sense, Spot
 from services.planner.world import World
-
-ANY = frozenset({"thing", "object", "item", "stuff", "mess", "one"})
-WHOLE = frozenset({"everything", "anything", "something", "all", "mess"})
-_MASSES = frozenset({"stuff", "mess"})
-SHORTEST_NAME = 3
-"""Letters of the longest word of a name (chosen: shorter is a word misheard)."""
-LONGEST_NAME = 4
-"""Words of the longest name of a thing (chosen: more are a sentence that was not understood)."""
-_SMALL = (
-    "all and anything are as at away back be been before behind below both but by can could did do "
-    "does down each every"
-    " everything everywhere for from front had has have he her here him how i if in instead into is it left me more"
-    " near next no nobody none not nothing of off on once onto or other our out over right she "
-    "should so some somebody"
-    " something somewhere still than then there they to too under until up us was we were what when where whether"
-    " which while who why will with without would yes you yourself again ago bit bring fetch get give go going help"
-    " like make put take tell thanks please want need try yet now just only also else later soon tomorrow yesterday"
-    " today tonight others goes belongs gets lying standing closest might should must ought said says told asked teh"
-)
-_ABSTRACT = (
-    "break care lost rest hand kiss hug call lift ride chance look smile clue sign idea reason "
-    "answer example name joke"
-    " story attention horses time effort shot turn word note favour favor permission advice truth silence peace easy"
-)
-"""Words that are no things: `give me a break` is nothing to be fetched."""
-LIVING = frozenset(
-    {
-        "cat", "dog", "baby", "kid", "kids", "child", "children", "person", "people", "man", "woman", "boy", "girl",
-        "wife", "husband", "mother", "father", "mum", "mom", "dad", "grandma", "grandpa", "hamster", "rabbit", "bird",
-        "fish", "pet", "guest", "guests", "neighbour", "neighbor", "friend", "toddler", "puppy", "kitten",
-    }
-)  # fmt: skip
-"""Who is never picked up."""
-NO_NOUN = DETERMINERS | frozenset(_SMALL.split()) | frozenset(_ABSTRACT.split())
-"""Words that are part of no thing's name."""
-_HERE = frozenset({"me", "us", "here", "home", "start", "over here", "back"})
-
-
-class Sense(msgspec.Struct, frozen=True):
-    """What a noun can mean: objects of these kinds, or of these names; `every`: any object at all.
-
-    `new`: nobody has listed or seen such a thing, and the words are all that is known of it.
-    """
-
-    kinds: frozenset[str] = frozenset()
-    names: frozenset[str] = frozenset()
-    every: bool = False
-    prefer: str = ""
-    new: bool = False
-
-
-class Spot(msgspec.Struct, frozen=True):
-    """A place to go to or to put things: exactly one of the receptacle, the room, a standing place, or the person."""
-
-    name: str
-    receptacle: Receptacle | None = None
-    room: bool = False
-    home: bool = False
 
 
 class Vocabulary:
@@ -145,7 +86,7 @@ class Vocabulary:
         for room in household.rooms:
             spots |= {normalise(n): Spot(room.name, room=True) for n in (room.name, *room.aliases)}
         home = Spot(household.home.name, home=True)
-        return spots | {normalise(n): home for n in (household.home.name, *household.home.aliases, *_HERE)}
+        return spots | {normalise(n): home for n in (household.home.name, *household.home.aliases, *HERE)}
 
     # --- nouns
     def noun(self, phrase: str) -> tuple[Sense, str, bool] | None:
@@ -156,7 +97,7 @@ class Vocabulary:
             return taught, phrase, False  # "grandmother's can", as it was taught
         for form, plural in _singulars(phrase):
             if form in ANY:
-                return Sense(every=True), form, plural or form in _MASSES
+                return Sense(every=True), form, plural or form in MASSES
             if sense := self._nouns.get(form):
                 return sense, form, plural or form in self._mass
         if phrase.startswith("anything ") and (sense := self._nouns.get(phrase.replace("any", "some", 1))):
@@ -178,6 +119,12 @@ class Vocabulary:
         if words[1:2] == ("of",) and words[0] in self.kinds:
             words = (words[0], *words[2:])
         if not words or NO_NOUN & set(words):
+            return None
+        if words[-1].endswith("ed") or any(
+            len(words) > b - a > 1 and self.spot(words[a:b])
+            for a in range(len(words))
+            for b in range(a + 2, len(words) + 1)
+        ):
             return None
         if words[-1] in self.colours or words[-1] in WHICH or words[-1] in ANY | WHOLE or words[-1] in UNITS:
             return None

@@ -20,7 +20,10 @@ from common.messages import WorldObject
 from common.plan_rules import is_destination
 
 Reply = Literal["yes", "no", "cancel", "correction"]
-_CORRECTION = re.compile(r"^(?:no|nope|yes|yeah|yep|wrong|not that|i said|i meant|i mean|actually|rather)\s+")
+_CORRECTION = re.compile(
+    r"^(?:no|nope|yes|yeah|yep|wrong|not that|i said|i meant|i mean|i want(?:ed)?|i need|i would like|actually|"
+    r"rather)\s+"
+)
 
 
 _NO_NAME = frozenset(
@@ -37,6 +40,10 @@ _NO_NAME = frozenset(
         "take",
         "bring",
         "me",
+        "let",
+        "have",
+        "get",
+        "give",
         "it",
         "choose",
         "would",

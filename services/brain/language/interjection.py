@@ -7,11 +7,11 @@ import msgspec
 
 from common.language.clauses import without_fillers
 from common.language.contractions import expand
-from common.language.discourse import NOT_WANTED
 from common.language.exchange import filled
 from common.language.lexicon import COMMANDING
 from common.language.meaning import asks_for, is_question
 from common.language.normalise import normalise
+from common.language.repairs import NOT_WANTED
 
 Kind = Literal["stop", "cancel", "come_back", "queue", "replace", "aside"]
 _LATER = re.compile(

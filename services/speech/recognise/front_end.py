@@ -7,8 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.household import Household
+from common.language.meaning import asks_for
 from common.language.normalise import normalise
-from common.language.spoken import is_understood
+from common.language.spoken import is_understood, says_more
 from services.speech.config import SpeechConfig
 from services.speech.listen.vad import RATE, VoiceDetector, speech_span
 from services.speech.recognise.denoise import noise_ratio, reduce_noise
@@ -90,16 +91,32 @@ class FrontEnd:
             return Recognition("", "silence", 0.0)
         found = self._recogniser.recognise(utterance, scope)
         return_memory()
-        if scope != "interrupt" and found.verdict != "accept" and (freely := self._freely(found.free)):
-            return replace(found, text=freely, verdict="accept", confidence=FREE)
-        return replace(found, text=without_wake(found.text, self._wake))
+        text = without_wake(found.text, self._wake)
+        if scope != "interrupt" and (freely := self._freely(found, text)):
+            return replace(found, text=freely, verdict="accept", confidence=min(found.confidence, FREE))
+        return replace(found, text=text)
 
     def learn(self, household: Household, names: Sequence[str]) -> None:
         """Listen for the names of this household, and for these of things as well."""
         self._recogniser.learn(household, names)
         self._names = known_names(self._config, household, names)
 
-    def _freely(self, free: str) -> str:
-        """The free transcription if the planner would understand it: people say more than a grammar holds."""
-        text = without_wake(normalise(free), self._wake)
-        return text if is_understood(text, self._names) else ""
+    def _freely(self, found: Recognition, text: str) -> str:
+        """The free transcription where it tells more than the grammar holds, "" where it does not.
+
+        That is what the planner would understand, or what has words around those that the grammar accepted: "who put
+        the mug there" is no "put the mug there".
+        """
+        heard = without_wake(normalise(found.free), self._wake)
+        if found.verdict == "accept":
+            more = text and says_more(heard, text) and not asks_for(text, "stop", "cancel", "yes", "no")
+        else:
+            more = is_understood(self._marked(found.free), self._names)
+        return self._marked(found.free) if more else ""
+
+    def _marked(self, free: str) -> str:
+        """A transcription with its commas, without the wake word."""
+        text = normalise(free, ",").strip(" ,")
+        for phrase in self._wake:
+            text = text.removeprefix(phrase).lstrip(" ,")
+        return text

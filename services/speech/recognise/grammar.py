@@ -177,4 +177,4 @@ def known_names(config: SpeechConfig, household: Household, names: Iterable[str]
     parts = vocabulary(household, (*config.objects, *names), config.places, config.colours)
     kinds = ("object", "place", "surface", "container", "colour")
     words = {word for kind in kinds for name in parts[kind] for word in name.split()}
-    return frozenset(words | {f"{word}s" for word in words})
+    return frozenset(words | {f"{word}{ending}" for word in words for ending in ("s", "es")})

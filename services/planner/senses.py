@@ -1,0 +1,64 @@
+"""What a noun and a place can mean, and the words that name nothing. Pure."""
+
+import msgspec
+
+from common.floor_plan import Receptacle
+from common.language.normalise import DETERMINERS
+
+ANY = frozenset({"thing", "object", "item", "stuff", "mess", "one"})
+WHOLE = frozenset({"everything", "anything", "something", "all", "mess"})
+MASSES = frozenset({"stuff", "mess"})
+SHORTEST_NAME = 3
+"""Letters of the longest word of a name (chosen: shorter is a word misheard)."""
+LONGEST_NAME = 4
+"""Words of the longest name of a thing (chosen: more are a sentence that was not understood)."""
+_SMALL = (
+    "all and anything are as at away back be been before behind below both but by can could did do "
+    "does down each every"
+    " everything everywhere for from front had has have he her here him how i if in instead into is it left me more"
+    " near next no nobody none not nothing of off on once onto or other our out over right she "
+    "should so some somebody"
+    " something somewhere still than then there they to too under until up us was we were what when where whether"
+    " which while who why will with without would yes you yourself again ago bit bring fetch get give go going help"
+    " like make put take tell thanks please want need try yet now just only also else later soon tomorrow yesterday"
+    " today tonight others goes belongs gets lying standing closest might should must ought said says told asked teh"
+)
+_ABSTRACT = (
+    "break care lost rest hand kiss hug call lift ride chance look smile clue sign idea reason "
+    "answer example name joke"
+    " story attention horses time effort shot turn word note favour favor permission advice truth silence peace easy"
+)
+"""Words that are no things: `give me a break` is nothing to be fetched."""
+LIVING = frozenset(
+    {
+        "cat", "dog", "baby", "kid", "kids", "child", "children", "person", "people", "man", "woman", "boy", "girl",
+        "wife", "husband", "mother", "father", "mum", "mom", "dad", "grandma", "grandpa", "hamster", "rabbit", "bird",
+        "fish", "pet", "guest", "guests", "neighbour", "neighbor", "friend", "toddler", "puppy", "kitten",
+    }
+)  # fmt: skip
+"""Who is never picked up."""
+NO_NOUN = DETERMINERS | frozenset(_SMALL.split()) | frozenset(_ABSTRACT.split())
+"""Words that are part of no thing's name."""
+HERE = frozenset({"me", "us", "here", "home", "start", "over here", "back"})
+
+
+class Sense(msgspec.Struct, frozen=True):
+    """What a noun can mean: objects of these kinds, or of these names; `every`: any object at all.
+
+    `new`: nobody has listed or seen such a thing, and the words are all that is known of it.
+    """
+
+    kinds: frozenset[str] = frozenset()
+    names: frozenset[str] = frozenset()
+    every: bool = False
+    prefer: str = ""
+    new: bool = False
+
+
+class Spot(msgspec.Struct, frozen=True):
+    """A place to go to or to put things: exactly one of the receptacle, the room, a standing place, or the person."""
+
+    name: str
+    receptacle: Receptacle | None = None
+    room: bool = False
+    home: bool = False

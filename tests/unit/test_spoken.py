@@ -1,0 +1,69 @@
+"""What is understood of free transcriptions; times and conditions as commands in order."""
+
+import pytest
+
+from common.household import load_household
+from common.language.discourse import commands
+from common.language.spoken import is_understood, says_more
+from services.speech.config import SpeechConfig
+from services.speech.recognise.grammar import known_names
+from tests.everyday import planned
+
+NAMES = known_names(SpeechConfig(objects=("mug",)), load_household("apartment"), ("vitamin box",))
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "could you possibly bring me the red mug",
+        "my knees are bad, could you fetch the ball from the bookshelf",
+        "if the apple is on the kitchen table put it on the desk, otherwise leave it",
+        "in half a minute bring me the vitamin boxes",
+        "this is my lunch bag",
+        "is there a can on the counter",
+    ],
+)
+def test_commands_and_questions_about_what_is_known_are_understood(text: str) -> None:
+    assert is_understood(text, NAMES)
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["", "bring me the screwdriver", "he said bring me the mug", "who put the mug on the desk", "the mug is red", "hm"],
+)
+def test_other_words_are_not(text: str) -> None:
+    assert not is_understood(text, NAMES)
+
+
+def test_what_says_more_has_all_of_the_words_in_order() -> None:
+    assert says_more("who put the mug there", "put the mug there")
+    assert not says_more("put the mug there", "put the mug there")
+    assert not says_more("the mug who put there", "put the mug there")
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("in one minute go to the kitchen", ["wait one minute", "go to the kitchen"]),
+        ("bring me the can in ten seconds", ["wait ten seconds", "bring me the can"]),
+        ("stay in the kitchen for ten seconds then return", ["go to the kitchen", "wait ten seconds", "return"]),
+        ("unless the desk is empty tidy it", ["unless the desk is empty", "tidy it"]),
+        ("is the ball on the shelf if so bring it", ["if the ball is on the shelf", "bring it"]),
+    ],
+)
+def test_times_and_conditions_come_in_order(text: str, expected: list[str]) -> None:
+    assert commands(text) == expected
+
+
+@pytest.mark.parametrize(
+    ("said", "acts"),
+    [
+        ("unless the desk is empty go to the sofa", ["navigate"]),
+        ("if the desk is empty go to the sofa", ["say"]),
+        ("if there is no apple on the desk go to the sofa", ["navigate"]),
+        ("if there is no ball on the bookshelf come back", ["say"]),
+        ("do not under any circumstances take the bowl", []),
+    ],
+)
+def test_what_must_be_so_decides(said: str, acts: list[str]) -> None:
+    assert [s.action for s in planned(said).steps] == acts
