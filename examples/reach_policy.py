@@ -13,8 +13,11 @@ from numpy.typing import NDArray
 from common.robot import ARM
 
 Array = NDArray[np.float64]
-ABOVE, LIFT = 0.12, 0.10
-"""How far [m] above the object the hand begins, and how far it lifts."""
+ABOVE, LIFT = 0.06, 0.06
+"""How far [m] above the object's top the pads begin, and how far they lift: much higher the wrist, with the hand
+pointing down, is at its joint's limit."""
+BEGIN = 0.135
+"""How far [m] above the surface the pads begin at least: on their way there they pass its edge."""
 DEPTH, PALM = 0.01, 0.035
 """How far [m] below the object's middle the pads close, and at most below its top, where the palm would meet it."""
 STEP = 0.04
@@ -54,10 +57,11 @@ class FromAbove:
         self._q = joints
         self._at = [self._model.joint(j).qposadr[0] for j in ARM]
         self._dof = [self._model.joint(j).dofadr[0] for j in ARM]
-        depth = min(DEPTH, PALM - seen["object.size"][2] / 2)
+        half = seen["object.size"][2] / 2
+        depth = min(DEPTH, PALM - half)
         middle = np.array(seen["object.position"]) - [0.0, 0.0, depth]
         up = np.array([0.0, 0.0, 1.0])
-        self._ways = [middle + ABOVE * up, middle, middle + LIFT * up]
+        self._ways = [middle + (depth + max(half + ABOVE, BEGIN - half)) * up, middle, middle + LIFT * up]
         # The fingers close along the side of the object that is nearest to straight across.
         turn = (seen["object.yaw"] + np.pi / 4) % (np.pi / 2) - np.pi / 4
         across = np.array([-np.sin(turn), np.cos(turn), 0.0])

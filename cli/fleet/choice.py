@@ -99,6 +99,6 @@ def refusal(r: RobotNow) -> str:
         return "is stopped"
     if r.battery is not None and r.battery < EMPTY:
         return f"battery {100 * r.battery:.0f} %"
-    if not r.free:
-        return f"is busy: {r.command or r.state}"
-    return ""
+    if r.free:
+        return ""
+    return f"is busy: {r.command}" if r.command else f"is not ready: {r.detail or r.state}"

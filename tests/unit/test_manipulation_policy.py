@@ -229,9 +229,8 @@ def test_it_sees_what_a_demonstration_shows() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", [4, 5])
-def test_a_policy_really_grasps_and_the_robot_carries_on(seed: int) -> None:
-    item = "yellow block"
+@pytest.mark.parametrize(("item", "seed"), [("yellow block", 4), ("yellow block", 5), ("green can", 4)])
+def test_a_policy_really_grasps_and_the_robot_carries_on(item: str, seed: int) -> None:
     chosen = ("camera.sensors=ideal", "manipulation.policy=examples.reach_policy:FromAbove")
     robot = Robot("minimal", seed=seed, settings=chosen)
     robot.advance(0.5)
