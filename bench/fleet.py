@@ -3,7 +3,7 @@
 The traffic is that of a mission, recorded from the services in one process and replayed in real time, robot by robot in
 a namespace of its own: one session publishes, one for each service subscribes to what that service reads. Rates and
 bytes are of payloads; delays are of `navigation/pose`, from one session to another. The players need more CPU time than
-the router: where the machine has none left, delays and losses are theirs too.
+the router: where the machine has none left, delays and losses are theirs too. Meetings are `bench.encounters`.
 """
 
 import argparse
