@@ -28,6 +28,9 @@ from services.sim import truth
 from services.sim.config import SimConfig
 from services.sim.service import SimService
 
+STANCES = 2
+"""Times that the base moves to where manipulation says, as the brain has it."""
+
 
 class Bench:
     """One object, and perhaps `others`, on one table of a chosen height, the robot in front of it; unless `known`, no
@@ -79,7 +82,7 @@ class Bench:
         for _ in range(30):
             self.world.advance()
 
-    def _seen(self) -> m.ObjectRef:
+    def look(self) -> m.ObjectRef:
         """What a perception without error would say of the object."""
         placed, spec = self.sim.physics.placements[0], self.spec
         return m.ObjectRef(
@@ -90,7 +93,7 @@ class Bench:
         self, text: str, goal_id: str, ref: m.ObjectRef | None = None, patience: float = 60.0
     ) -> m.ManipulationStatus:
         """Send a goal about the object as it is described, and step the world until the goal ends."""
-        goal = m.ManipulationGoal(goal=text, id=goal_id, object=ref or self._seen())
+        goal = m.ManipulationGoal(goal=text, id=goal_id, object=ref or self.look())
         self.bus.send(topics.MANIPULATION_GOAL, goal)
         for _ in range(round(patience * 100)):
             self.world.advance()
@@ -126,9 +129,15 @@ class Bench:
         return bx, by, facing + rng.uniform(-0.05, 0.05)
 
     def there_and_back(self, ref: m.ObjectRef | None = None) -> str:
-        """Grab it, carry it home, let go: `ok`, or the stage and reason of the failure."""
+        """Grab it, from where manipulation says that the base has to stand if need be, carry it home, let go: `ok`, or
+        the stage and reason of the failure.
+        """
         self.observer.begin()
         grabbed = self.run("grab", "b.1", ref)
+        for n in range(STANCES):
+            if grabbed.stance is not None:
+                self.stand(grabbed.stance)
+                grabbed = self.run("grab", f"b.1{n}", self.look())
         if grabbed.status != "done":
             return f"grab {grabbed.code}: {grabbed.detail}"
         if why := self.observer.shortfall(Goal(effects=(Effect("holds", self.spec.name),))):

@@ -68,7 +68,6 @@ class Look:
             found *= 0.05
         return found
 
-
     def fit(self, m: Measures) -> float:
         """How likely such extents are of this kind, 0 to 1; 1 within its ranges."""
         doubt = m.error / max(m.across, 0.01)

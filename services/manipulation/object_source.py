@@ -12,6 +12,7 @@ from common.geometry import Pose2, to_frame
 from common.household import Household
 from common.messages import ManipulationGoal, ObjectRef, WorldObject, WorldObjects
 from common.naming import match_object
+from services.manipulation.planning_scene import tilt_of
 
 FRONT = 1.2
 """How far [m] ahead of the base an unnamed object to grab may be. Chosen: the arm's reach and its place on the base."""
@@ -54,7 +55,7 @@ class ObjectSource:
         if known is None:
             return
         # What lay is held, and put down, as it stands.
-        size = known.size[::-1] if known.tilt else known.size
+        size = known.size[::-1] if tilt_of(known) else known.size
         self._moved[label] = structs.replace(
             known, position=position or known.position, size=size, tilt=0.0, points=b"", on=on, seen_at=now,
             held=position is None,

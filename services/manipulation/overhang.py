@@ -25,9 +25,11 @@ from services.manipulation.trajectory import connect
 
 TILTS = (90, 80, 72, 65, 58)
 """How far below horizontal [deg] the hand pulls, in the order of trying. Farther away it has to lean."""
-LEDGE = 0.018
+LEDGE = 0.014
 """How far [m] inside the edge an object's middle stays, so that it does not tip over it: three times the error of its
 measured middle."""
+CLOSER = 0.004
+"""Least way [m] to there that is worth a pull: the error of the arm."""
 FINGERS = 0.055
 """How far apart [m] the fingers pull: a line as wide as the narrowest side that does not fit between them allows."""
 SIDE = 0.012
@@ -42,8 +44,8 @@ STEP, TURN = 0.015, math.radians(4)
 """Way [m] and turn [rad] of an object between two configurations."""
 RISE = 0.006
 """How far [m] a hand that leans rises on its way: it is drawn up along the upper edge, and would press down there."""
-LINKS_HALF = 0.02
-"""Half the breadth [m] of the fingers above their pads (Robotiq 2F-85)."""
+LINKS_HALF, PADS_END = 0.02, 0.022
+"""Half the breadth [m] of the fingers above their pads, and where these end behind the pinch point (Robotiq 2F-85)."""
 LET_GO = 0.012
 """How far [m] the fingers go back before they leave upwards."""
 
@@ -107,14 +109,14 @@ def plan_pull(
     """Pull an object to where it lies along the edge, as far over it as it can without tipping.
 
     Raises:
-        PlanError: UNREACHABLE.
+        PlanError: UNREACHABLE; TOO_WIDE, it lies as far over the edge as it can.
     """
     normal = _far_side(target, edge)
     half = _halves(target, normal)
     x, y, _ = target.position
     way = edge.inset(x, y) - LEDGE
-    if way < STEP:
-        raise PlanError("UNREACHABLE", f"the {target.label} lies at the edge already")
+    if way < CLOSER:
+        raise PlanError("TOO_WIDE", f"the {target.label} lies at the edge already")
     line = _curve((x, y, normal), math.atan2(-edge.outward[1], -edge.outward[0]), way)
     for at in line:
         swept = Rectangle(at[0], at[1], 2 * half[0], 2 * half[1], at[2])
@@ -190,7 +192,7 @@ def _hand(at: Pose2, half: float, gap: float, tilt: float, edge: Edge, height: f
     z = ABOVE + PAD * math.sin(tilt) + PAD_HALF * math.cos(tilt)
     # What leans comes nearer with its height, and there the hand is broader than its pads.
     above = max(0.0, height - z)
-    broad = LINKS_HALF if above > PAD * math.sin(tilt) else PAD_HALF
+    broad = LINKS_HALF if above > PADS_END * math.sin(tilt) else PAD_HALF
     far = half + gap + broad / math.sin(tilt) + above / math.tan(tilt)
     return Pose(
         np.array([x + far * math.cos(yaw), y + far * math.sin(yaw), edge.height + z]), approach_rotation(yaw, tilt)

@@ -73,7 +73,7 @@ def _pull(robot: Robot, goal: m.ManipulationGoal, wanted: str, failure: Failure)
         plan = yield from robot.work(plan_pull, planner, target, edge, around, now, lift)
     except Failure as other:
         robot.io.log.info("not pulled", object=found.label, code=other.code, detail=other.detail)
-        if other.blockers:
+        if other.blockers or other.code == TOO_WIDE:
             raise failure from None
         stance = yield from robot.work(_stance, planner, household, found, surface, others, robot.base, now)
         if stance is None:

@@ -7,7 +7,7 @@ from common.kinds import kind_of
 from common.messages import WorldObject
 from services.manipulation.grasp import on_handle
 from services.manipulation.plan_grab import GrabPlan, refine
-from services.manipulation.planning_scene import target_of, turned
+from services.manipulation.planning_scene import target_of, tilt_of, turned
 from services.manipulation.robot import Failure, Robot, Steps, planner_of
 
 MISTAKEN = "MISTAKEN"
@@ -35,7 +35,7 @@ def aimed(robot: Robot, plan: GrabPlan, goal: m.ManipulationGoal, found: WorldOb
         Failure: MISTAKEN, it was planned for a place or a side that is not the object's.
     """
     config, since = robot.config, robot.now
-    if not robot.io.peer("perception") or found.tilt:
+    if not robot.io.peer("perception") or tilt_of(found) or plan.grasp.over_edge:
         # From so near the wrist camera sees no end of what lies.
         return plan
     robot.phase = "aim"

@@ -71,6 +71,21 @@ def test_what_no_household_lists_is_judged_as_what_it_was_asked_for(
     assert judge_placement(seen, label, "delivery tray", unlisted, None, kind, closed).fault == fault
 
 
+@pytest.mark.parametrize(
+    ("asked", "size", "fault"),
+    [
+        ("the green box", (0.19, 0.13, 0.05), "TOPPLED"),
+        ("the green box", (0.13, 0.05, 0.19), ""),
+        ("the green book", (0.19, 0.13, 0.05), ""),
+    ],
+)
+def test_a_box_that_is_seen_as_a_book_has_to_stand(asked: str, size: tuple[float, float, float], fault: str) -> None:
+    unlisted = msgspec.structs.replace(SCENE, things=())
+    seen = pose(label="green book", size=size)
+    kind = kind_meant(asked, unlisted)
+    assert judge_placement(seen, "green book", "delivery tray", unlisted, None, kind).fault == fault
+
+
 @pytest.mark.parametrize(("x", "fault"), [(0.4, ""), (1.2, "MISPLACED")])
 def test_what_belongs_next_to_something_is_judged_by_its_distance(x: float, fault: str) -> None:
     anchor = m.ObjectRef(label="apple", position=(x, 0.0, 0.5))

@@ -4,13 +4,19 @@ import math
 
 import numpy as np
 import pytest
+from msgspec import structs
 
+from bench.unknown import trial
 from common.floor_plan import Receptacle
+from common.messages import WorldObject
+from common.scene import load_scene
 from services.manipulation.arm_model import Obstacle
+from services.manipulation.config import ManipulationConfig
 from services.manipulation.motion_planner import PlanError, Planner
 from services.manipulation.over_edge import flat_and_wide, over_an_edge
 from services.manipulation.overhang import LEDGE, facing_edge, plan_pull
 from services.manipulation.plan_grab import Way, feasible
+from services.manipulation.planning_scene import tilt_of
 from services.manipulation.target import Target
 from services.sim.model import own
 
@@ -29,6 +35,16 @@ def slab(edge: float = EDGE_AT) -> Obstacle:
 
 def box(x: float, yaw: float, thick: float = 0.05) -> Target:
     return Target("box", "box", (x, 0.02, HEIGHT + thick / 2), yaw, (0.16, 0.11, thick), math.pi / 2, "box")
+
+
+def test_what_a_person_calls_a_box_lies_where_a_book_does_not() -> None:
+    seen = WorldObject(
+        label="green book", kind="book", colour="green", position=(0.5, 0, 0.6), size=(0.19, 0.13, 0.05), shape="box",
+        measured=True,
+    )  # fmt: skip
+    assert tilt_of(seen) == 0.0
+    assert tilt_of(structs.replace(seen, kind="box")) == pytest.approx(math.pi / 2)
+    assert tilt_of(structs.replace(seen, kind="box", size=(0.13, 0.05, 0.19))) == 0.0
 
 
 def test_only_flat_things_that_are_too_wide_are_pulled() -> None:
@@ -78,3 +94,10 @@ def test_a_finger_below_it_has_room_only_over_the_edge() -> None:
     for target, reached in ((within, False), (over, True)):
         way = Way([slab(0.68)], False, 0.1, 0.1)
         assert feasible(PLANNER, target, way, ARM.home.copy()) is reached
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [2, 6])
+def test_a_flat_box_is_brought_and_stands(seed: int) -> None:
+    """In physics: pulled, taken from a stance farther back, put down upright."""
+    assert trial(load_scene("apartment"), "carton lying", seed, ManipulationConfig()) == "ok"

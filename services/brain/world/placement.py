@@ -6,7 +6,7 @@ from typing import Literal
 
 from common.geometry import quat_matrix
 from common.household import Household
-from common.kinds import kind_of
+from common.kinds import kind_of, laid_on_a_side
 from common.messages import ObjectPose, ObjectRef
 
 Fault = Literal["", "NOT_SEEN", "MISPLACED", "TOPPLED"]
@@ -56,6 +56,9 @@ def judge_placement(
     if on and on.depth:
         where = f"in the {on.name}"
     tilt = tilt_of(pose)
+    if spec is None and not tilt and laid_on_a_side(stands.name, pose.size):
+        # A box on its side is seen as a book that lies as it should.
+        tilt = math.pi / 2
     x, y, z = pose.position
     measured = f"at ({x:.2f}, {y:.2f}, {z:.2f}), tilt {math.degrees(tilt):.0f} deg"
     if wanted is not None and on is not wanted:

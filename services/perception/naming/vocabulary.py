@@ -36,7 +36,9 @@ def common_words(household: Household) -> frozenset[str]:
 def plain_words(household: Household) -> frozenset[str]:
     """Those that are hardly ever a name on a package: "tea" is another word for a mug, and may be one."""
     colours = [w for word, others in household.words.colours.items() for w in (word, *others)]
-    return _split((*KINDS, *household.words.kinds, *COLOURS, RELATIONS, *colours, *household.words.qualities, *_spots(household)))
+    return _split(
+        (*KINDS, *household.words.kinds, *COLOURS, RELATIONS, *colours, *household.words.qualities, *_spots(household))
+    )
 
 
 def _split(phrases: Iterable[str]) -> frozenset[str]:
