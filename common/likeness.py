@@ -101,6 +101,15 @@ def _fit(words: _Words, o: WorldObject) -> float:
     return found
 
 
+def describes(phrase: str, household: Household) -> bool:
+    """One of the words says what the thing looks like, or the household lists it: not so "the pear"."""
+    wanted, told = normalise(phrase), household.words
+    if any(wanted in map(normalise, (o.name, *o.aliases)) for o in household.things):
+        return True
+    words = (*wanted.split(), wanted)
+    return any(w in KINDS or w in ALIKE or w in told.groups or told.kind(w) or told.colour(w) for w in words)
+
+
 def plainly(phrase: str, o: WorldObject, household: Household) -> bool:
     """The words fit an object so well that nobody need be asked."""
     return likeness(phrase, o, household) >= PLAIN

@@ -4,7 +4,7 @@ import pytest
 
 from common.config import config_dir
 from common.household import Household, load_words, mapped
-from common.likeness import LEAST, LIKELY, PLAIN, likeness, partly
+from common.likeness import LEAST, LIKELY, PLAIN, describes, likeness, partly
 from common.messages import WorldObject
 from common.scene import load_scene
 from services.perception.grounding import ground, parsed, possible
@@ -95,3 +95,11 @@ def test_what_has_other_words_on_it_is_not_asked_about() -> None:
     tin = measured("white can", {"can": 1.0}, {"white": 1.0})
     tin.text = "CORN"
     assert partly("vitamin can", tin, HOUSEHOLD) == 0.0 < partly("old can", tin, HOUSEHOLD)
+
+
+@pytest.mark.parametrize(
+    ("phrase", "says"),
+    [("the red mug", True), ("teacup", True), ("something to drink", True), ("blue thing", True), ("the pear", False)],
+)
+def test_which_words_say_what_a_thing_looks_like(phrase: str, says: bool) -> None:
+    assert describes(phrase, HOUSEHOLD) is says

@@ -9,6 +9,8 @@ from py_trees.common import Status
 from common import messages as m
 from common import topics
 from common.geometry import Pose2
+from common.likeness import describes
+from common.naming import normalise
 from common.topics import Topic
 from services.brain.mission.channel import Result
 from services.brain.mission.context import Context
@@ -132,8 +134,15 @@ class ReportNotFound(Leaf):
 
     def update(self) -> Status:
         detail = f"not seen in {self._tries} search attempts"
-        self.ctx.record_failure(Failure("GROUNDING", "NOT_FOUND", detail, f"I could not find the {self._item}."))
+        self.ctx.record_failure(Failure("GROUNDING", "NOT_FOUND", detail, self._spoken()))
         return Status.FAILURE
+
+    def _spoken(self) -> str:
+        told, names = f"I could not find the {self._item}.", self.ctx.io.latest(topics.HOUSEHOLD_NAMES)
+        taught = {normalise(one.name) for one in names.names} if names else set()
+        if normalise(self._item) in taught or describes(self._item, self.ctx.io.household):
+            return told
+        return f"{told} I do not know what it looks like: tell me its colour and kind, or show it to me and name it."
 
 
 class Approach(Navigate):
