@@ -26,31 +26,22 @@ $(STAMP): requirements.lock pyproject.toml
 	$(PIP) install --quiet -r requirements.lock
 	$(PIP) install --quiet --no-deps --no-build-isolation -e .
 	$(BIN)/python -m common.speech_weights >/dev/null
+	$(BIN)/python -m compileall -q -j 0 common services cli judge evaluation
 	@touch $(STAMP)
 	@echo "ready: $(BIN)/tidybot"
 
 demo: setup ## "bring me the red mug", from a recording to the delivery; ARGS='--speed max --seed 3'
 	$(BIN)/tidybot demo $(ARGS)
 
-# Two groups, one after the other: what runs in the test's own process, by test; what starts processes of its own, by
-# file (a router port and a namespace each, robots shared within a file); those wait most of the time for clocks and for
-# each other, so there are more of them than cores. 5: ARGS chose none of them.
-PYTEST := $(BIN)/python -m pytest -q
-TOGETHER := -n logical --maxprocesses 4 --dist worksteal tests/e2e/in_process tests/unit
-APART := -n 3 --dist loadfile --no-loadscope-reorder tests/e2e tests/integration tests/contract --ignore tests/e2e/in_process
-
-define run_tests
-@status=0; \
-$(PYTEST) $(TOGETHER) $(1) $(ARGS) || [ $$? = 5 ] || status=1; \
-$(PYTEST) $(APART) $(1) $(ARGS) || [ $$? = 5 ] || status=1; \
-exit $$status
-endef
+# More workers than cores, since tests that start processes (a router port and a namespace each) mostly wait.
+# tests/conftest.py says what is begun first and what stays together.
+PYTEST := $(BIN)/python -m pytest -q -n 4 --dist loadfile --no-loadscope-reorder
 
 test: setup ## every layer in some minutes: all tests but the slow ones
-	$(call run_tests,-m 'not slow')
+	$(PYTEST) -m 'not slow' $(ARGS)
 
 test-slow: setup ## the others: whole missions, matrices, machines in network namespaces
-	$(call run_tests,-m slow)
+	$(PYTEST) -m slow $(ARGS)
 
 test-all: test test-slow ## everything
 

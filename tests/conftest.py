@@ -1,15 +1,44 @@
-"""Fixtures shared by all layers."""
+"""Fixtures shared by all layers; the order in which the files are begun, and what stays together."""
 
 import os
 from collections.abc import Iterator
+from itertools import chain, groupby, zip_longest
 from pathlib import Path
+from typing import Any
 
 import pytest
+from xdist.scheduler import LoadFileScheduling
 
 from tests.support import Site, site
 
 # Keys in the developer's own `run/` have no part in the tests.
 os.environ["TIDYBOT_KEYS"] = "off"
+
+
+IN_PROCESS = ("unit", "in_process")
+"""Directories of the tests that start no processes."""
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Files marked `long` first; files that start processes, which mostly wait, in turn with those that compute."""
+    files = [list(found) for _, found in groupby(items, lambda item: item.path)]
+    files.sort(key=lambda found: found[0].get_closest_marker("long") is None)
+    apart = [found for found in files if found[0].path.parent.name not in IN_PROCESS]
+    together = [found for found in files if found[0].path.parent.name in IN_PROCESS]
+    in_turn = chain.from_iterable(zip_longest(apart, together, fillvalue=[]))
+    items[:] = chain.from_iterable(in_turn)
+
+
+class MissionsApart(LoadFileScheduling):
+    """Files stay together, for the robots they share, but not whole missions in one process: those share nothing."""
+
+    def _split_scope(self, nodeid: str) -> str:
+        return nodeid if "/in_process/" in nodeid else super()._split_scope(nodeid)
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> MissionsApart | None:
+    return MissionsApart(config, log) if config.getoption("dist") == "loadfile" else None
 
 
 @pytest.fixture

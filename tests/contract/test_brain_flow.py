@@ -13,6 +13,8 @@ import zenoh
 
 from tests.support import Pulse, Site, eventually
 
+pytestmark = pytest.mark.long
+
 SPEECH, NAVIGATION, MANIPULATION = "brain/speech_goal", "brain/navigation_goal", "brain/manipulation_goal"
 READ_BY_BRAIN = (
     "brain/speech_result", "brain/navigation_status", "brain/manipulation_status", "voice_command", "action_plan",

@@ -22,6 +22,8 @@ from services.sim.service import SimService
 from services.speech.service import SpeechService
 from tests.support import Site, eventually, free_port
 
+pytestmark = pytest.mark.long
+
 NODES = (SimService, NavigationService, ManipulationService, SpeechService, CameraService, PlannerService)
 
 

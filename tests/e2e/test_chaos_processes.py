@@ -8,7 +8,7 @@ from evaluation.case import TimedFault
 from evaluation.chaos import CELLS, CHAOS_STATES, EVERY, MOMENTS, PARAMETERS, Cell
 from evaluation.suites import cases
 
-pytestmark = [pytest.mark.slow, pytest.mark.timeout(900)]
+pytestmark = [pytest.mark.slow, pytest.mark.long, pytest.mark.timeout(900)]
 REAL = ("kill", "hang", "router loss", "disk full", "disk full, kill")
 NUMBER, TOGETHER, SEED = 20, 4, 13
 

@@ -11,6 +11,8 @@ import pytest
 from tests.integration.test_cli_up import Run, read_until, run
 from tests.support import ROOT, eventually
 
+pytestmark = pytest.mark.long
+
 VOICE = "docs/audio/bring_me_the_red_mug.wav"
 
 __all__ = ["run"]
@@ -70,7 +72,8 @@ def test_transcribe_reads_good_files_and_names_bad_ones(run: Run, tmp_path: Path
 @pytest.mark.timeout(400)
 @pytest.mark.parametrize("scene", ["minimal", pytest.param("apartment", marks=pytest.mark.slow)])
 def test_the_demo_delivers_and_leaves_nothing_behind(run: Run, tmp_path: Path, scene: str) -> None:
-    done = run.command("demo", "--scene", scene, "--speed", "max", "--out", str(tmp_path / "demo.png"), timeout=360)
+    # At the greatest speed a busy machine lets minutes of robot time pass before the answer to its question is played.
+    done = run.command("demo", "--scene", scene, "--speed", "3", "--out", str(tmp_path / "demo.png"), timeout=360)
     assert done.returncode == 0, done.stdout + done.stderr
     for word in (
         "CONFIRMING",

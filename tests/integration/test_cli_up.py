@@ -15,6 +15,8 @@ import pytest
 
 from tests.support import ROOT, eventually, free_port
 
+pytestmark = pytest.mark.long
+
 
 class Run:
     """`tidybot` commands on a run directory and a port of their own."""

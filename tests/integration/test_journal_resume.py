@@ -11,6 +11,8 @@ from common import messages as m
 from common import topics
 from evaluation.stack import Stack
 
+pytestmark = pytest.mark.long
+
 ITEM = "red mug"
 STATES = ("NAVIGATING", "GRABBING", "RETURNING", "RELEASING")
 OPEN = ("WAITING", "LISTENING")

@@ -22,6 +22,8 @@ from evaluation.verdict import judge
 from judge.claims import Claim
 from tests.unit.eval_case import case_of, pretend
 
+pytestmark = pytest.mark.long
+
 FIELDS = [
     "suite", "scenarios", "delivered", "false_success", "by_cause", "spl", "sim_seconds", "wall_seconds", "cases",
 ]  # fmt: skip

@@ -28,6 +28,8 @@ from services.sim.model import own
 from services.sim.robot import JOINT_NAMES
 from tests.node import Node
 
+pytestmark = pytest.mark.long
+
 SCENE = load_household("minimal")
 CONFIG = ManipulationConfig()
 FORWARD, WIDEST = 0.0, 0.0761

@@ -21,6 +21,8 @@ from services.speech.service import SpeechService
 from services.speech.speak.voice import Voice
 from tests.node import Node
 
+pytestmark = pytest.mark.long
+
 ROOT = Path(__file__).parents[2]
 VOICE = ROOT / "docs" / "audio" / "bring_me_the_red_mug.wav"
 SCENE = load_household("apartment")

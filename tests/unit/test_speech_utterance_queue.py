@@ -17,6 +17,8 @@ from services.speech.speak.voice import Voice
 from tests.node import Node
 from tests.support import ROOT
 
+pytestmark = pytest.mark.long
+
 SCENE = load_household("apartment")
 CONFIG = config.load("speech", SpeechConfig, ROOT / "config", config.overrides({}, ["speech.preload=false"]))
 BREATH, PAUSE = np.zeros(RATE // 2, np.int16), np.zeros(RATE, np.int16)

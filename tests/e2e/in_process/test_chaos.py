@@ -7,7 +7,7 @@ from evaluation.case import Result
 from evaluation.chaos import CELLS, CHAOS_SERVICES, EVERY, Cell
 from evaluation.suites import cases
 
-pytestmark = pytest.mark.timeout(1800)
+pytestmark = [pytest.mark.long, pytest.mark.timeout(1800)]
 
 
 def harmed(seed: int) -> Result:

@@ -9,6 +9,8 @@ from bench.mission import Outcome, Robot, fetch
 from common import topics
 from services.speech.audio import read_wav
 
+pytestmark = pytest.mark.long
+
 VOICE = Path(__file__).parents[3] / "docs" / "audio" / "bring_me_the_red_mug.wav"
 FLOW = ["LISTENING", "NAVIGATING", "GRABBING", "RETURNING", "RELEASING", "COMPLETED", "LISTENING"]
 
