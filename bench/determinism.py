@@ -10,7 +10,6 @@ import argparse
 import sys
 import tempfile
 import time
-import uuid
 from collections.abc import Sequence
 from functools import partial
 from itertools import zip_longest
@@ -21,8 +20,8 @@ import msgspec
 import numpy as np
 
 from bench.witness import Sight, Trace, WitnessService
+from cli.own_robot import own_robot
 from cli.plan import Plan
-from cli.ports import free_port
 from cli.services import Service
 from cli.supervision import Supervision
 from cli.up import bring_up
@@ -62,13 +61,14 @@ def in_processes(args: argparse.Namespace) -> Trace:
         directory = Path(name)
         trace = directory / "trace.json"
         supervision = Supervision(directory / "run")
-        plan = Plan(
-            argparse.Namespace(
-                port=free_port(), namespace=f"twice-{uuid.uuid4().hex[:8]}", speed="max", only="",
-                without=f"{args.without},dashboard".strip(","), scene=args.scene, seed=args.seed, viewer=False,
-                set=[s for s in settings(args) if not s.startswith("witness.")],
-            )
-        )  # fmt: skip
+        options = own_robot(
+            "twice",
+            seed=args.seed,
+            without=f"{args.without},dashboard".strip(","),
+            settings=[s for s in settings(args) if not s.startswith("witness.")],
+            scene=args.scene,
+        )
+        plan = Plan(options)
         harm = rules(args)
         harmed = {rule.service for rule in harm}
         services = [msgspec.structs.replace(s, module=NODE) if s.name in harmed else s for s in plan.services]

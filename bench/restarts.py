@@ -12,7 +12,6 @@ import signal
 import sys
 import tempfile
 import time
-import uuid
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
@@ -21,6 +20,7 @@ import msgspec
 import psutil  # type: ignore[import-untyped]
 
 from cli.link import Link
+from cli.own_robot import own_robot
 from cli.plan import Plan
 from cli.ports import free_port
 from cli.services import SERVICES
@@ -170,11 +170,7 @@ def main() -> int:
     with tempfile.TemporaryDirectory(prefix="tidybot-restarts-") as directory:
         supervision = Supervision(Path(directory) / "run")
         os.environ["TIDYBOT_STATE_DIR"] = str(Path(directory) / "state")
-        options = argparse.Namespace(
-            port=free_port(), namespace=f"restarts-{uuid.uuid4().hex[:8]}", speed="realtime", only="", without="",
-            scene="", seed=1, viewer=False, set=[f"dashboard.port={free_port()}"], keys="off",
-        )  # fmt: skip
-        plan = Plan(options)
+        plan = Plan(own_robot("restarts", speed="realtime", seed=1, settings=[f"dashboard.port={free_port()}"]))
         try:
             bring_up(supervision, plan, lambda text: None)
             with open_session(plan.connect, plan.namespace) as session:

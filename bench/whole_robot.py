@@ -1,6 +1,5 @@
 """A robot of processes that can be killed one by one or, as by a power cut, all at once."""
 
-import argparse
 import os
 import signal
 import subprocess
@@ -10,8 +9,8 @@ from pathlib import Path
 
 import psutil  # type: ignore[import-untyped]
 
+from cli.own_robot import own_robot
 from cli.plan import Plan
-from cli.ports import free_port
 from cli.supervision import Supervision
 from cli.up import bring_up
 from common.installation import ROOT
@@ -27,25 +26,26 @@ class Robot:
     """The processes of the day; they come and go, directory and simulated world stay."""
 
     def __init__(self, directory: Path, world: Scene, home: Scene, seed: int, speed: str) -> None:
-        self.directory, self.speed, self.seed = directory, speed, seed
+        self.directory = directory
         self.files = {"world": directory / "world.toml", "household": directory / "household.toml"}
         self.files["world"].write_text(to_toml(world), encoding="utf-8")
         self.files["household"].write_text(to_toml(nothing_listed(home)), encoding="utf-8")
         self.supervision = Supervision(directory / "run")
-        self._port, self._namespace = free_port(), f"day-{uuid.uuid4().hex[:8]}"
-        self._sim_run = f"world-{uuid.uuid4().hex}"
+        self._options = own_robot(
+            "day",
+            speed=speed,
+            seed=seed,
+            without="dashboard",
+            settings=[f"sim.run=world-{uuid.uuid4().hex}"],
+            **{name: str(path) for name, path in self.files.items()},
+        )
         self._recording: subprocess.Popen[bytes] | None = None
         self.connect = ""
         os.environ["TIDYBOT_STATE_DIR"] = str(directory / "state")
 
     def up(self) -> None:
         """Switch everything on; the simulated world goes on where it was."""
-        options = argparse.Namespace(
-            port=self._port, namespace=self._namespace, speed=self.speed, only="", without="dashboard", scene="",
-            seed=self.seed, viewer=False, set=[f"sim.run={self._sim_run}"], keys="off",
-            **{name: str(path) for name, path in self.files.items()},
-        )  # fmt: skip
-        plan = Plan(options)
+        plan = Plan(self._options)
         self.connect, self.namespace = plan.connect, plan.namespace
         bring_up(self.supervision, plan, lambda text: None)
         tape = self.directory / "recordings" / f"day-{uuid.uuid4().hex[:4]}.mcap"

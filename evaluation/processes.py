@@ -1,11 +1,9 @@
 """One case with every service a real process: `tidybot up --speed max`, and the examiner as one more participant."""
 
-import argparse
 import os
 import shutil
 import tempfile
 import threading
-import uuid
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
@@ -14,8 +12,8 @@ from typing import Any
 import msgspec
 
 from cli.errors import CliError
+from cli.own_robot import own_robot
 from cli.plan import Plan
-from cli.ports import free_port
 from cli.services import SERVICES, Service
 from cli.supervision import Supervision
 from cli.up import bring_up
@@ -139,11 +137,7 @@ def _plan(case: Case, directory: Path) -> Plan:
     for name, it in files.items():
         if it is not None:
             Path(given[name]).write_text(to_toml(it), encoding="utf-8")
-    args = argparse.Namespace(
-        port=free_port(), namespace=f"eval-{uuid.uuid4().hex[:8]}", speed="max", only="", without="", **given,
-        seed=case.seed, viewer=False, set=list(case.settings),
-    )  # fmt: skip
-    plan = Plan(args)
+    plan = Plan(own_robot("eval", seed=case.seed, settings=case.settings, **given))
     faulty = targets(case)
     needed = {"router", "sim", *paced_services()} - {*idle_services(case)}
     plan.services = [

@@ -1,6 +1,5 @@
 """`tidybot up` with every process real: the brain dies by SIGKILL in mid-mission, the robot delivers all the same."""
 
-import argparse
 import os
 import signal
 from pathlib import Path
@@ -9,13 +8,14 @@ from typing import Any
 import pytest
 
 from cli.link import Link
+from cli.own_robot import own_robot
 from cli.plan import Plan
 from cli.supervision import Supervision
 from cli.up import bring_up
 from common import messages as m
 from common import topics
 from common.bus.session import open_session
-from tests.support import eventually, free_port
+from tests.support import eventually
 
 ITEM = "red mug"
 PATIENCE = 300.0
@@ -25,12 +25,7 @@ def plan_of(directory: Path, monkeypatch: pytest.MonkeyPatch) -> Plan:
     for name in [n for n in os.environ if n.startswith("TIDYBOT")]:
         monkeypatch.delenv(name)
     monkeypatch.setenv("TIDYBOT_STATE_DIR", str(directory / "state"))
-    return Plan(
-        argparse.Namespace(
-            port=free_port(), namespace="journal-up", speed="max", only="", without="dashboard", scene="", seed=1,
-            viewer=False, set=[], keys="off",
-        )
-    )  # fmt: skip
+    return Plan(own_robot("journal-up", seed=1, without="dashboard"))
 
 
 def brain_of(supervision: Supervision) -> int:
