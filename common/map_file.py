@@ -69,30 +69,6 @@ def _replace(path: Path, data: bytes) -> None:
         raise MapError(f"{path}: {why}")
 
 
-def read_map(path: Path) -> GridMap:
-    """The map of a `.yaml` file and the picture beside it.
-
-    Raises:
-        MapError: a file that is not there or not of this format, or a map that is turned.
-    """
-    try:
-        keys = _keys(path.read_text(encoding="utf-8"))
-        resolution = float(keys["resolution"])
-        x, y, yaw = (float(v) for v in keys["origin"].strip("[] ").split(","))
-        occupied, free = float(keys["occupied_thresh"]), float(keys["free_thresh"])
-        negate = keys.get("negate", "0") in ("1", "true")
-        picture = _pgm((path.parent / keys["image"]).read_bytes())
-    except OSError as error:
-        raise MapError(f"{error.filename}: {error.strerror}") from None
-    except (KeyError, ValueError, UnicodeDecodeError) as error:
-        raise MapError(f"{path}: not a map of map_server: {error}") from None
-    if yaw or not resolution > 0:
-        raise MapError(f"{path}: expected a positive resolution and an origin without a turn")
-    dark = picture / 255.0 if negate else (255.0 - picture) / 255.0
-    cells = np.where(dark > occupied, OCCUPIED, np.where(dark < free, FREE, UNKNOWN)).astype(np.uint8)
-    return GridMap(cells[::-1], resolution, (x, y))
-
-
 def picture(cells: NDArray[np.uint8]) -> Image.Image:
     """The map for people, north up."""
     palette = np.array([COLOURS[n] for n in range(3)], np.uint8)
@@ -115,31 +91,3 @@ def surface_rows(plan: FloorPlan) -> list[dict[str, Any]]:
             }
         )  # fmt: skip
     return rows
-
-
-def _keys(text: str) -> dict[str, str]:
-    """The flat `key: value` lines that such a file consists of."""
-    rows = (line.split("#")[0].partition(":") for line in text.splitlines())
-    return {key.strip(): value.strip().strip("\"'") for key, colon, value in rows if colon}
-
-
-def _pgm(data: bytes) -> NDArray[np.uint8]:
-    """Levels (rows, columns) of a binary PGM with up to 255 levels.
-
-    Raises:
-        ValueError: another format.
-    """
-    fields: list[bytes] = []
-    at = 0
-    while len(fields) < 4:
-        end = data.find(b"\n", at)
-        if end < 0:
-            raise ValueError("a PGM without a header")
-        fields += data[at:end].split(b"#")[0].split()
-        at = end + 1
-    if fields[0] != b"P5" or not 0 < int(fields[3]) < 256:
-        raise ValueError("the picture is no binary PGM with 8 bits")
-    columns, rows = int(fields[1]), int(fields[2])
-    if len(data) - at < rows * columns:
-        raise ValueError(f"{len(data) - at} levels for {columns} x {rows}")
-    return np.frombuffer(data, np.uint8, rows * columns, at).reshape(rows, columns)

@@ -10,7 +10,8 @@ from PIL import Image
 from cli.errors import CliError
 from cli.map_plan import plan_to_map
 from common.household import load_household
-from common.map_file import FREE, OCCUPIED, UNKNOWN, GridMap, MapError, picture, read_map, write_map
+from common.map_file import FREE, OCCUPIED, UNKNOWN, GridMap, picture, write_map
+from tests.map_server import read_map
 
 
 def test_a_map_comes_back_as_it_was_written(tmp_path: Path) -> None:
@@ -27,35 +28,6 @@ def test_the_picture_is_what_map_server_reads(tmp_path: Path) -> None:
     grey = np.asarray(Image.open(tmp_path / "map.pgm"))
     assert grey.shape == (4, 6)
     assert (grey[3, 1], grey[0, 5], grey[1, 1]) == (0, 254, 205), "the south is the picture's last row"
-
-
-def test_maps_of_other_programs_are_read(tmp_path: Path) -> None:
-    (tmp_path / "a.pgm").write_bytes(b"P5\n# by hand\n2 1\n255\n" + bytes([255, 10]))
-    yaml = tmp_path / "a.yaml"
-    yaml.write_text('image: "a.pgm"\nresolution: 0.1  # m\norigin: [1.0, 2.0, 0.0]\nnegate: 1\n'
-                    "occupied_thresh: 0.65\nfree_thresh: 0.196\n")  # fmt: skip
-    assert read_map(yaml).cells.tolist() == [[OCCUPIED, FREE]]
-
-
-@pytest.mark.parametrize(
-    ("old", "new"),
-    [("resolution: 0.05", "resolution: 0"), ("0.0]", "0.5]"), ("origin", "start"), ("map.pgm", "other.pgm")],
-)
-def test_what_is_no_map_is_named(tmp_path: Path, old: str, new: str) -> None:
-    path = write_map(tmp_path, GridMap(np.zeros((2, 2), np.uint8), 0.05, (0.0, 0.0)))
-    path.write_text(path.read_text().replace(old, new))
-    with pytest.raises(MapError, match=str(tmp_path)):
-        read_map(path)
-
-
-@pytest.mark.parametrize(
-    "data", [b"", b"P5\n2 2\n255\n\0", b"P2\n2 2\n255\n0 0 0 0", b"P5\n2 2\n65535\n\0\0\0\0\0\0\0\0"]
-)
-def test_what_is_no_picture_is_named(tmp_path: Path, data: bytes) -> None:
-    path = write_map(tmp_path, GridMap(np.zeros((2, 2), np.uint8), 0.05, (0.0, 0.0)))
-    (tmp_path / "map.pgm").write_bytes(data)
-    with pytest.raises(MapError):
-        read_map(path)
 
 
 def test_a_plan_becomes_a_map_and_a_household(tmp_path: Path) -> None:

@@ -12,7 +12,7 @@ pytest.importorskip("small_gicp", reason="the extra mapping is not installed")
 
 from common import messages as m
 from common.household import load_household
-from common.map_file import FREE, OCCUPIED, read_map
+from common.map_file import FREE, OCCUPIED
 from services.mapping.config import MappingConfig
 from services.mapping.depth import Picture
 from services.mapping.exploration import FIRST_LOOKS, Exploration
@@ -20,6 +20,7 @@ from services.mapping.mapper import Mapper, Shot
 from services.mapping.save import SaveError, resume, save
 from services.mapping.scan import Scan, scan_of
 from services.mapping.views import Survey, View
+from tests.map_server import read_map
 from tests.unit.test_mapping_surfaces import patch
 
 EMPTY = np.empty((0, 3))

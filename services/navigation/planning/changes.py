@@ -12,8 +12,8 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from common import atomic_file
 from common.floor_plan import FloorPlan
+from common.stored_file import StoredFile
 
 Cells = tuple[NDArray[np.intp], NDArray[np.intp]]
 """Rows and columns."""
@@ -59,27 +59,21 @@ class Changes:
 
 
 class ChangesFile:
-    """Keeps the lasting changes of a map in a directory; None: nowhere. `complain` hears why that was not possible."""
+    """Keeps the lasting changes of a map in a directory; None: nowhere. `warn` hears why that was not possible."""
 
-    def __init__(self, directory: Path | None, plan: FloorPlan, complain: Callable[[str], None]) -> None:
+    def __init__(self, directory: Path | None, plan: FloorPlan, warn: Callable[[str], None]) -> None:
         self._plan = fingerprint(plan)
-        self._path = directory / f"map-changes-{self._plan}.json" if directory is not None else None
-        self._complain, self._why = complain, ""
+        path = directory / f"map-changes-{self._plan}.json" if directory is not None else None
+        self._file = StoredFile(path, Saved, warn)
         self._saved: NDArray[np.bool_] | None = None
         self._next = 0.0
 
     def load(self, changes: Changes) -> int:
         """Enter what was kept; how many cells that is [count]."""
-        if self._path is None or not self._path.exists():
-            return 0
-        try:
-            saved = msgspec.json.decode(self._path.read_bytes(), type=Saved)
-        except (OSError, msgspec.MsgspecError) as error:
-            self._complain(f"{self._path.name}: {error}")
-            return 0
+        saved = self._file.load()
         rows, columns = changes.lasting.shape
-        cells = [(r, c) for r, c in saved.cells if 0 <= r < rows and 0 <= c < columns]
-        if saved.plan == self._plan and cells:
+        cells = [(r, c) for r, c in saved.cells if 0 <= r < rows and 0 <= c < columns] if saved is not None else []
+        if saved is not None and saved.plan == self._plan and cells:
             changes.lasting[tuple(np.array(cells).T)] = True
         self._saved = changes.lasting.copy()
         return len(cells)
@@ -88,16 +82,12 @@ class ChangesFile:
         """Write what has changed, now and then."""
         if self._saved is None:
             self._saved = np.zeros_like(changes.lasting)
-        if self._path is None or now < self._next or (self._saved == changes.lasting).all():
+        if now < self._next or (self._saved == changes.lasting).all():
             return
         self._next = now + SAVE_PERIOD
         cells = [(int(r), int(c)) for r, c in zip(*np.nonzero(changes.lasting), strict=True)]
-        why = atomic_file.replace(self._path, msgspec.json.encode(Saved(plan=self._plan, cells=cells)))
-        if not why:
+        if self._file.save(Saved(plan=self._plan, cells=cells)):
             self._saved = changes.lasting.copy()
-        elif why != self._why:
-            self._complain(why)
-        self._why = why
 
 
 def fingerprint(plan: FloorPlan) -> str:
