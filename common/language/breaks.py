@@ -14,7 +14,8 @@ from common.language.politeness import without_politeness
 _STRONG = re.compile(
     r"(?:,\s*|\s+)(?:(?:and|so|but|then|right|ok|okay|just|well|now|hence|therefore),?\s+)*"
     r"(?=(?:can|could|would|will) you\s+(?!see\b|know\b|believe\b|imagine\b)|please\s+(?!and\b|whichever\b)\w|"
-    r"(?:i|we) (?:want|need|would like) you to\s|do me a favou?r)"
+    r"(?:can|could|may|might) (?:i|we) (?:please )?(?:have|get)\s|(?:i|we) (?:want|need|would like) "
+    r"you to\s|do me a favou?r)"
 )
 """Before words that can only begin a request."""
 _WEAK = re.compile(

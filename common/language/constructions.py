@@ -85,9 +85,13 @@ CONSTRUCTIONS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
          rf"have)) {NP}", r"i want \1"),
         (rf"it is (?:about |high )?time(?: that| for)? {NP} (?:to go|went|go|goes|were put|was put|got|returned) "
          rf"(?:back )?({TO_PLACE}) {NP}", r"put \1 \2 \3"),
+        (rf"there (?:is|are) {NP} (?:that |which )?(?:i|we) {_WANT}", r"bring me \1"),
+        (r"((?!(?:can|could|would|will|do|you|please|he|she|they|who)\b)(?:\w+ ){1,4}?\w+) "
+         r"(?:bring|give|get|hand|pass) (?:me|us)",
+         r"bring me \1"),
         # Wishes, of whomever.
         (rf"{_WHO}(?: really| also| just| now| only| kind of| do)? {_WANT} to {_CONSUME} {NP}", r"i want \1"),
-        (rf"{_WHO}(?: really| also| just| now| only| kind of| do)? {_WANT} {NP} (?:back )?(?:here|over "
+        (rf"{_WHO}(?: really| also| just| now| only| kind of| do)? {_WANT} {NP} (?:back )?(?:here|back|over "
          rf"here|over)", r"bring me \1"),
         (rf"{_WHO}(?: really| also| just| now| only| kind of| do)? {_WANT} {NP}", r"i want \1"),
         (rf"(?:need|want|would like|would love|could use|could do with|looking for|fancy|after) (?!to\b|you\b){NP}",

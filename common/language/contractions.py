@@ -70,6 +70,7 @@ _SAME = tuple(
         (r"\bboth (?=(?:to|here|on|in|into|onto|over)\b)", ""),
         (r"\bone of each(?: of)?,? (?=(?:the|a|an)\b)", ""),
         (r"\b(the|my) (\w+s) (?:all|both|each|every one) of (?:them|those)\b", r"all \1 \2"),
+        (r"\b(the \w+) ones? of the (\w+?)s\b", r"\1 \2"),
         (r"\bone more(?= please$|$)", "another one"),
         (r"\bone more (?!time|go\b|thing|try|shot|attempt|please)", "another "),
         (r"\bnothing (?:but|except|other than) (?=(?:the|a|an|my|one)\b)", ""),

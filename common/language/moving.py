@@ -155,7 +155,7 @@ MOVING: tuple[Wording, ...] = (
     ),
     Wording(
         "fetch",
-        f"{MODAL} (i | we) (have | get) <thing> | let (me | us) (have | borrow | use | hold | get | see | try) <thing>",
+        f"{MODAL} (i | we) (have | get) <thing> | let (me | us) (have | borrow | use | hold) <thing>",
     ),
     Wording("fetch", f"{MODAL} i (trouble | bother | ask) you for <thing> | gimme <thing> | how about <thing>"),
     Wording("fetch", "<thing> would be (nice | great | good | lovely | perfect)"),

@@ -68,7 +68,9 @@ _ADDRESS = (
     "perfect|fine|"
     "cool|lovely|excellent|listen(?: up)?|look(?:(?=,)| here)|excuse me|pardon me|sorry to (?:bother|disturb|"
     "trouble|interrupt) you|"
-    "sorry|by the way|next|guess what|you know what|you know(?! the| what| where| how| my)|see(?=,)|but(?! not)|"
+    "sorry (?:to|for|that|if) [^,]{3,40}?(?:,| but)(?= "
+    "(?:can|could|would|will|please|i)\\b)|sorry|by the way|next|guess what|you know what|you "
+    "know(?! the| what| where| how| my)|see(?=,)|but(?! not)|"
     "i say|as i said|for me|one more thing|could it be that|"
     "(?:be )?quick|hurry(?: up)?|attention|fast|come on|pretty please|honestly|also|plus|oh and|first of all|"
     r"(?:hold|hang) on(?! (?:to|for|(?:\w+ "
@@ -111,6 +113,7 @@ _FRAMES = (
     rf"(?: for you)?(?: (?:if you(?: {_CAN})?|if i ask(?:ed)? you to|that you|to))?",
     r"(?:it|that) would make (?:me|us|my day|him|her)(?: \w+){0,2} if you(?! (?:not|did not|never)\b)",
     r"(?:is there )?(?:any|a|some) (?:chance|way|possibility)(?: that)?(?=\s+(?:i|we)\b)|"
+    r"you (?:could|would) not(?: possibly| happen to| mind)?(?=\s.* (?:could|would) you$)|"
     r"do you (?:think|suppose|reckon)(?: that)?(?=\s+(?:i|we) (?:could|can|may|might)\b)|"
     r"(?:would|will|does|might|could) it (?:trouble|bother|inconvenience|kill|hurt) you(?: too much)?(?: to| if you)|"
     r"help (?:me|us|(?:a|an|your|my) (?:\w+ )?\w+) out(?: and| by| here and)?|"

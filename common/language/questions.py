@@ -88,6 +88,11 @@ ABOUT_THE_WORLD: tuple[Wording, ...] = (
         "(do we | have we | do i | do you [happen to] | happen to | would you happen to) [still] (have | got) "
         "<thing> [left | anywhere | somewhere]",
     ),
+    Wording(
+        "is_at",
+        "([tell me | let me know | do you know] whether | (tell me | let me know | do you know) if)"
+        " <thing> (is | are) [still] (in | on | at) <spot>",
+    ),
     Wording("is_at", f"{ASK} [if | whether] (is | are) <thing> [still] [{LYING}] (in | on | at) "
                      f"<spot> [still]"),
     Wording("number", f"{ASK} how many [of] <thing> [{BE} | do you (see | know) | can you see | have you "
@@ -139,6 +144,8 @@ ABOUT_ITSELF: tuple[Wording, ...] = (
         " | do you need | until you are done) [still]"
         " | (what | which <words>) are you (getting | bringing | fetching | looking for | searching "
         "for | taking | after)"
+        " | what (did i | was it [that] i | did we) (ask | asked | tell | told) you [for | to do | "
+        "to bring | to get | to fetch]"
         " | where are you (going | headed | off to) | what are you (going to do | about to do) [next | now]"
         " | how far (are you | have you (got | come)) | are you (done | busy | finished | ready | (nearly | almost) "
         "(there | done | finished | ready)) [yet]"

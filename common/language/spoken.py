@@ -15,6 +15,12 @@ _UNBOUND: frozenset[Action] = frozenset({"say", "teach", "name_place", "forget"}
 """What may be of words that nobody knows."""
 _NOTHING_TO_DO: frozenset[Action] = frozenset({"refuse", "mention", "remark", "thanks", "fetch_named", "named_at"})
 """What is no command, or no more than a name."""
+_WORDS_THAT_TURN = (
+    "who what when why how if unless not never don't didn't won't can't shouldn't wouldn't no said says told asked"
+    " would should he she they but except instead"
+)
+_TURNING = frozenset(_WORDS_THAT_TURN.split())
+"""Words that make a question, a report or a prohibition of an order."""
 _SMALL = frozenset(WORDS) | NUMBERS.keys() | {form for unit in UNITS for form in (unit, f"{unit}s")}
 
 
@@ -31,10 +37,11 @@ def is_understood(text: str, names: Container[str]) -> bool:
     )
 
 
-def says_more(text: str, part: str) -> bool:
-    """Are the words of `part` among those of a longer text, in order?"""
-    rest = iter(text.split())
-    return len(text.split()) > len(part.split()) and all(word in rest for word in part.split())
+def turns(text: str, part: str) -> bool:
+    """Are the words of `part` among those of the text, in order, with others that make something else of them?"""
+    said, left = text.split(), part.split()
+    rest = iter(said)
+    return all(word in rest for word in left) and bool(_TURNING.intersection(said).difference(left))
 
 
 def _is_wording(words: Words, names: Container[str]) -> bool:

@@ -183,7 +183,7 @@ WORDINGS: tuple[Wording, ...] = (
     Wording("tidy", f"({TIDY}) <spot> [up]", heard="(tidy | clean | clear) [the | my] <place>"),
     Wording("tidy", "(sort | straighten) <spot> (out | up)"),
     Wording("tidy", "(clean | clear) <spot> off | empty <spot>"),
-    Wording("tidy", "make (space | room) (on | in) <spot>"),
+    Wording("tidy", "make [some | a bit of | a little] (space | room) (on | in) <spot>"),
     Wording("tidy", "give <spot> a [quick | good] (tidy | clean | tidying | cleaning) [up]"),
     Wording(
         "tidy",

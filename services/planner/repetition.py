@@ -4,7 +4,7 @@ import re
 from collections.abc import Sequence
 
 from common.language.contractions import expand
-from common.language.exchange import PREPOSITIONS, IsPlace, noun_phrases, replaced, verb_first
+from common.language.exchange import PREPOSITIONS, IsPlace, filled, noun_phrases, replaced, verb_first
 from common.language.lexicon import HANDLING
 from common.language.meaning import readings
 from common.language.normalise import DETERMINERS, normalise
@@ -56,9 +56,13 @@ def _instead(said: str, last: str, is_place: IsPlace) -> str:
     if first in PREPOSITIONS or (first in DETERMINERS and {"one", "ones"} & set(rest)):
         return replaced(normalise(last), said, is_place) or ""
     spans = noun_phrases(normalise(last).split())
-    if not spans or not verb_first(said) or not {"it", "them"} & set(rest):
+    if not spans or not verb_first(said):
         return ""
     thing = " ".join(normalise(last).split()[slice(*spans[0])])
+    if {"one", "ones"} & set(rest):
+        return filled(said, thing)
+    if not {"it", "them"} & set(rest):
+        return ""
     return re.sub(r"(?<=\w )(?:it|them)\b", thing, said, count=1)
 
 

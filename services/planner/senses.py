@@ -13,6 +13,7 @@ SHORTEST_NAME = 3
 LONGEST_NAME = 4
 """Words of the longest name of a thing (chosen: more are a sentence that was not understood)."""
 _SMALL = (
+    "myself himself herself ourselves themselves "
     "all and anything are as at away back be been before behind below both but by can could did do "
     "does down each every"
     " everything everywhere for from front had has have he her here him how i if in instead into is it left me more"
@@ -33,7 +34,9 @@ LIVING = frozenset(
     {
         "cat", "dog", "baby", "kid", "kids", "child", "children", "person", "people", "man", "woman", "boy", "girl",
         "wife", "husband", "mother", "father", "mum", "mom", "dad", "grandma", "grandpa", "hamster", "rabbit", "bird",
-        "fish", "pet", "guest", "guests", "neighbour", "neighbor", "friend", "toddler", "puppy", "kitten",
+        "fish", "pet", "daughter", "son", "sister", "brother", "nephew", "niece", "uncle", "aunt", "grandson",
+        "granddaughter", "nurse", "doctor", "guest", "guests", "neighbour", "neighbor", "friend", "toddler", "puppy",
+        "kitten",
     }
 )  # fmt: skip
 """Who is never picked up."""

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from common.household import Household
 from common.language.meaning import asks_for
 from common.language.normalise import normalise
-from common.language.spoken import is_understood, says_more
+from common.language.spoken import is_understood, turns
 from services.speech.config import SpeechConfig
 from services.speech.listen.vad import RATE, VoiceDetector, speech_span
 from services.speech.recognise.denoise import noise_ratio, reduce_noise
@@ -104,12 +104,12 @@ class FrontEnd:
     def _freely(self, found: Recognition, text: str) -> str:
         """The free transcription where it tells more than the grammar holds, "" where it does not.
 
-        That is what the planner would understand, or what has words around those that the grammar accepted: "who put
+        That is what the planner would understand, or what makes something else of what the grammar accepted: "who put
         the mug there" is no "put the mug there".
         """
         heard = without_wake(normalise(found.free), self._wake)
         if found.verdict == "accept":
-            more = text and says_more(heard, text) and not asks_for(text, "stop", "cancel", "yes", "no")
+            more = text and turns(heard, text) and not asks_for(text, "stop", "cancel", "yes", "no")
         else:
             more = is_understood(self._marked(found.free), self._names)
         return self._marked(found.free) if more else ""
