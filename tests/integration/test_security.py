@@ -109,6 +109,7 @@ def directory(tmp_path_factory: pytest.TempPathFactory) -> Path:
         ["--client", "rviz", "--ros"],
         ["--client", "desk", "--fleet"],
         ["--namespace", "kitchen"],
+        ["--namespace", "hall"],
     ):
         assert tidybot(["keys", "--dir", str(made), *words]) == 0
     return made
@@ -325,6 +326,29 @@ def test_a_wide_subscription_is_served_by_a_publisher_that_sends_only_what_is_wa
         eventually(lambda: publisher.matching_status.matching, "the publisher hears of the subscription")
         publisher.put("well")
         eventually(lambda: got == ["well"], "health arrives")
+
+
+def test_navigation_hears_which_way_another_robot_takes_and_nothing_else_of_it(guarded: Guarded) -> None:
+    got: list[tuple[str, str]] = []
+    with ExitStack() as stack:
+        kitchen = guarded.open(stack, "navigation", "kitchen")
+        planner = guarded.open(stack, "planner", "kitchen")
+        hall = stack.enter_context(
+            open_session(guarded.connect, "hall", name="navigation", prefixed=False, patience=20)
+        )
+        for key in (topics.DRIVE_INTENT.key, topics.POSE.key):
+            hall.declare_subscriber(f"**/{key}", lambda s: got.append((str(s.key_expr), s.payload.to_string())))
+        way = kitchen.declare_publisher(topics.DRIVE_INTENT.key)
+        eventually(lambda: way.matching_status.matching, "the publisher hears of the subscription")
+        kitchen.put(topics.POSE.key, "secret")
+        planner.put(topics.DRIVE_INTENT.key, "forged")
+
+        def heard() -> bool:
+            way.put("mine")
+            return (f"kitchen/{topics.DRIVE_INTENT.key}", "mine") in got
+
+        eventually(heard, "the way arrives")
+    assert {word for _, word in got} == {"mine"}
 
 
 def test_a_certificate_shows_only_itself_as_alive(guarded: Guarded) -> None:
