@@ -2,7 +2,8 @@
 
 Two whole navigation services, each with its own lidar and wheels, drive in one kinematic world in which each is a body
 that the other's lidar sees. Every meeting is driven with what robots tell each other of their ways and without it, and
-by each of the two alone, which is what time lost is counted against. Exit 1 after a touch or a robot that did not
+by each of the two alone, which is what time lost is counted against. With --physics both are bodies in one MuJoCo
+world, with the lidars and wheels of the simulation. Exit 1 after a touch or a robot that did not
 arrive, with the exchange.
 """
 
@@ -11,23 +12,30 @@ import math
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Any
 
 import msgspec
 import numpy as np
+from numpy.typing import NDArray
 
+from bench.meetings import KINDS, Meeting
 from common import messages as m
 from common import topics
 from common.approach import HALF_WIDTH
-from common.floor_plan import FloorPlan, Place, Wall
+from common.bus import codec
+from common.bus.memory import MemoryBus, MemoryIo
+from common.floor_plan import FloorPlan, Place
 from common.geometry import Pose2, Rectangle
-from common.household import Household, load_household, mapped
+from common.household import told
+from common.scene import Scene
+from common.time.clock import ManualClock
+from common.time.lockstep import InProcess
 from services.navigation.config import NavigationConfig
-from services.navigation.planning.costmap import Costmap
-from services.navigation.planning.planner import PathPlanner
+from services.navigation.service import NavigationService
+from services.sim.config import Guest, SimConfig
+from services.sim.service import SimService
 from tests.unit.navigation_flat import Flat
 
-APARTMENT = load_household("apartment")
-CONFIG = NavigationConfig()
 NAMES = ("anna", "bert")
 LIMIT = 150.0
 """Robot time [s] of one meeting."""
@@ -37,23 +45,6 @@ CORNER = 0.284
 """How far the rounded corners of its bumper are from its middle [m]."""
 MET = 1.5
 """Two robots that came this near to each other have met [m]."""
-DOORS = (
-    ((1.3, -0.75), (3.7, -0.75)),
-    ((-0.45, 0.9), (-0.45, 3.1)),
-    ((4.25, -0.1), (4.25, 2.1)),
-    ((1.3, 3.2), (3.6, 3.2)),
-)
-"""Points on both sides of each door of the apartment."""
-
-
-@dataclass(frozen=True)
-class Meeting:
-    """Who starts where and goes where; a goal of None: it stands there with nothing to do."""
-
-    home: Household
-    starts: tuple[Pose2, Pose2]
-    goals: tuple[Pose2 | None, Pose2 | None]
-    delay: float = 0.0
 
 
 @dataclass
@@ -62,94 +53,12 @@ class Outcome:
 
     took: list[float | None] = field(default_factory=list)
     nearest: float = math.inf
+    touched: bool = False
     codes: list[str] = field(default_factory=list)
 
     @property
     def arrived(self) -> bool:
         return None not in self.took
-
-
-def corridor() -> Household:
-    """Two rooms joined by a corridor of 1.1 m in which two robots cannot pass each other."""
-    ways = [((0, 0), (13, 0)), ((13, 0), (13, 4)), ((13, 4), (0, 4)), ((0, 4), (0, 0))]
-    for x in (4.0, 9.0):
-        ways += [((x, 0), (x, 1.45)), ((x, 2.55), (x, 4))]
-    ways += [((4, 1.45), (9, 1.45)), ((4, 2.55), (9, 2.55))]
-    walls = tuple(Wall(start=a, end=b) for a, b in ways)
-    home = Place(name="home", x=1.0, y=2.0, theta=0.0)
-    return mapped(FloorPlan(name="corridor", low=(0.0, 0.0), high=(13.0, 4.0), home=home, walls=walls))
-
-
-class Guide:
-    """Free points and ways of a home."""
-
-    def __init__(self, home: Household) -> None:
-        self.costmap = Costmap(home, CONFIG.resolution, 1.0)
-        self.planner = PathPlanner(self.costmap, CONFIG.footprint_radius + CONFIG.clearance, CONFIG.inflation)
-        self._home = home
-
-    def near(self, rng: np.random.Generator, at: tuple[float, float], spread: float) -> Pose2:
-        """A free pose around a point."""
-        while True:
-            x, y = (np.array(at) + rng.uniform(-spread, spread, 2)).tolist()
-            if self.costmap.clearance(x, y) > 0.4:
-                return x, y, float(rng.uniform(-math.pi, math.pi))
-
-    def anywhere(self, rng: np.random.Generator) -> Pose2:
-        """A free pose from which the whole home can be reached."""
-        low, high = np.array(self._home.low), np.array(self._home.high)
-        home = (self._home.home.x, self._home.home.y)
-        while True:
-            x, y = rng.uniform(low, high).tolist()
-            if self.costmap.clearance(x, y) > 0.4 and self.planner.path(self.planner.field(*home), home, (x, y)):
-                return x, y, float(rng.uniform(-math.pi, math.pi))
-
-
-def at_door(rng: np.random.Generator) -> Meeting:
-    """Both want through the same door, from both sides."""
-    guide, (a, b) = Guide(APARTMENT), DOORS[int(rng.integers(len(DOORS)))]
-    one, two = guide.near(rng, a, 0.4), guide.near(rng, b, 0.4)
-    return Meeting(APARTMENT, (one, two), (guide.near(rng, b, 0.6), guide.near(rng, a, 0.6)), float(rng.uniform(0, 3)))
-
-
-def in_corridor(rng: np.random.Generator) -> Meeting:
-    """Both want through a corridor in which they cannot pass each other."""
-    home = corridor()
-    guide, x = Guide(home), rng.uniform(0.0, 1.0, 2)
-    one, two = guide.near(rng, (2.0 + 2.0 * x[0], 2.0), 0.1), guide.near(rng, (11.0 - 2.0 * x[1], 2.0), 0.1)
-    goals = guide.near(rng, (11.0, 2.0), 1.0), guide.near(rng, (2.0, 2.0), 1.0)
-    return Meeting(home, (one, two), goals, float(rng.uniform(0, 6)))
-
-
-def anywhere(rng: np.random.Generator) -> Meeting:
-    """Two drives through the flat between places that are drawn."""
-    guide = Guide(APARTMENT)
-    while True:
-        one, two, to_one, to_two = (guide.anywhere(rng) for _ in range(4))
-        if math.dist(one[:2], two[:2]) > 1.2 and math.dist(to_one[:2], to_two[:2]) > 1.2:
-            return Meeting(APARTMENT, (one, two), (to_one, to_two))
-
-
-def swapped(rng: np.random.Generator) -> Meeting:
-    """Each wants to where the other is."""
-    guide = Guide(APARTMENT)
-    while True:
-        one, two = guide.anywhere(rng), guide.anywhere(rng)
-        if math.dist(one[:2], two[:2]) > 2.5:
-            return Meeting(APARTMENT, (one, two), (two, one))
-
-
-def idle(rng: np.random.Generator) -> Meeting:
-    """One stands in a door with nothing to do, the other wants through."""
-    guide, (a, b) = Guide(APARTMENT), DOORS[int(rng.integers(len(DOORS)))]
-    middle = ((a[0] + b[0]) / 2, (a[1] + b[1]) / 2)
-    driver = guide.near(rng, a, 0.4), guide.near(rng, b, 0.6)
-    return Meeting(APARTMENT, ((*middle, float(rng.uniform(-3, 3))), driver[0]), (None, driver[1]))
-
-
-KINDS: dict[str, Callable[[np.random.Generator], Meeting]] = {
-    "door": at_door, "corridor": in_corridor, "anywhere": anywhere, "swapped": swapped, "idle in a door": idle,
-}  # fmt: skip
 
 
 def body(pose: Pose2) -> Rectangle:
@@ -182,18 +91,31 @@ class Pair:
 
     def __init__(self, meeting: Meeting, exchange: bool, alone: int | None = None) -> None:
         self.meeting = meeting
-        self.robots: dict[int, Flat] = {}
+        self.robots: dict[int, Any] = {}
         for n in (0, 1) if alone is None else (alone,):
             x, y, theta = meeting.starts[n]
             home = msgspec.structs.replace(meeting.home, home=Place(name="home", x=x, y=y, theta=theta))
             robot = Flat(household=home)
             robot.true = robot.wheels = meeting.starts[n]
             robot.io.robot = NAMES[n] if exchange else ""
-            robot.bus.send(topics.BRAIN_STATE, m.BrainState(state="WAITING"))
             self.robots[n] = robot
-        if exchange and alone is None:
-            for n, robot in self.robots.items():
+        self._introduce()
+
+    def _introduce(self) -> None:
+        for n, robot in self.robots.items():
+            robot.bus.send(topics.BRAIN_STATE, m.BrainState(state="WAITING"))
+            if len(self.robots) == 2:
                 robot.bus.neighbours = {NAMES[1 - n]: self.robots[1 - n].bus}
+
+    @property
+    def now(self) -> float:
+        """Robot time [s]."""
+        return float(next(iter(self.robots.values())).now)
+
+    @property
+    def touched(self) -> bool:
+        """They have."""
+        return len(self.robots) == 2 and gap(self.robots[0].true, self.robots[1].true) < 0.0
 
     def step(self) -> None:
         """50 ms."""
@@ -210,9 +132,9 @@ class Pair:
         for _ in range(10):
             self.step()
         robots = {n: r for n, r in self.robots.items() if self.meeting.goals[n] is not None}
-        start = next(iter(self.robots.values())).now
+        start = self.now
         while len(took) < len(robots):
-            now = next(iter(self.robots.values())).now
+            now = self.now
             for n, robot in robots.items():
                 goal = self.meeting.goals[n]
                 assert goal is not None
@@ -221,7 +143,8 @@ class Pair:
                     x, y, theta = goal
                     robot.bus.send(topics.NAV_GOAL, m.NavGoal(x=x, y=y, theta=theta, id=f"drive.{n}"))
                 elif n in begun and n not in took and topics.NAVIGATION_FEEDBACK.key in robot.bus.last:
-                    said = robot.feedback()
+                    answer = robot.bus.last[topics.NAVIGATION_FEEDBACK.key]
+                    said = codec.decode(topics.NAVIGATION_FEEDBACK, answer)
                     if said.status == "arrived":
                         took[n] = now - begun[n]
                     elif said.status == "failed" or now - start > LIMIT:
@@ -230,9 +153,70 @@ class Pair:
             self.step()
             if len(self.robots) == 2:
                 outcome.nearest = min(outcome.nearest, gap(self.robots[0].true, self.robots[1].true))
+                outcome.touched |= self.touched
             watch(self)
         outcome.took = [took[n] for n in robots]
         return outcome
+
+
+@dataclass
+class Driven:
+    """A robot in the simulation, with a navigation of its own."""
+
+    bus: MemoryBus
+    world: InProcess
+    joints: NDArray[np.float64]
+
+    @property
+    def now(self) -> float:
+        return self.world.clock.now()
+
+    @property
+    def true(self) -> Pose2:
+        x, y, theta, *_ = self.joints.tolist()
+        return x, y, theta
+
+
+class InPhysics(Pair):
+    """The same in one MuJoCo world."""
+
+    def __init__(self, meeting: Meeting, exchange: bool, alone: int | None = None) -> None:
+        self.meeting = meeting
+        numbers = (0, 1) if alone is None else (alone,)
+        buses = {n: MemoryBus() for n in numbers}
+        plan = {name: getattr(meeting.home, name) for name in FloorPlan.__struct_fields__}
+        scenes = {}
+        for n in numbers:
+            x, y, theta = meeting.starts[n]
+            scenes[n] = Scene(**plan | {"home": Place(name="home", x=x, y=y, theta=theta)})
+        first, *others = numbers
+        clock = ManualClock()
+
+        def io(kind: Any, n: int) -> MemoryIo:
+            return MemoryIo(
+                buses[n], kind.NAME, kind.READS, kind.WRITES, household=told(scenes[n]), world=scenes[n], clock=clock
+            )
+
+        buses[first].neighbours = {NAMES[n]: buses[n] for n in others}
+        sim_io = io(SimService, first)
+        sim_io.out_stamp = -1
+        self.sim = SimService(SimConfig(guests=tuple(Guest(NAMES[n], *meeting.starts[n]) for n in others)), sim_io)
+        world = InProcess(self.sim, sim_io, clock)
+        for n in numbers:
+            own = io(NavigationService, n)
+            own.robot = NAMES[n] if exchange else ""
+            world.add(NavigationService(NavigationConfig(), own), own)
+        bodies = zip(numbers, self.sim.physics.robots, strict=True)
+        self.robots = {n: Driven(buses[n], world, robot.joints) for n, robot in bodies}
+        self._introduce()
+
+    def step(self) -> None:
+        for _ in range(5):
+            next(iter(self.robots.values())).world.advance()
+
+    @property
+    def touched(self) -> bool:
+        return any("/" in touch.thing for touch in self.sim.physics.contacts.touches)
 
 
 @dataclass
@@ -251,11 +235,11 @@ class Tally:
         self.meetings += 1
         self.met += outcome.nearest < MET
         self.arrived += outcome.arrived
-        self.touched += outcome.nearest < 0.0
+        self.touched += outcome.touched
         if outcome.nearest < MET:
             self.nearest.append(outcome.nearest)
             self.lost += [t - a for t, a in zip(outcome.took, alone, strict=True) if t is not None and a is not None]
-        if not outcome.arrived or outcome.nearest < 0.0:
+        if not outcome.arrived or outcome.touched:
             self.notes.append(f"seed {seed}: nearest {outcome.nearest:.2f} m, {', '.join(outcome.codes) or 'arrived'}")
 
     def row(self) -> str:
@@ -270,16 +254,18 @@ def main() -> int:
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--only", default="", help="kinds whose name contains this")
     parser.add_argument("--with", dest="ways", choices=("both", "exchange", "nothing"), default="both")
+    parser.add_argument("--physics", action="store_true", help="in MuJoCo")
     args = parser.parse_args()
+    kind_of_world = InPhysics if args.physics else Pair
     ways = {"both": (True, False), "exchange": (True,), "nothing": (False,)}[args.ways]
     tallies = {(kind, way): Tally() for kind in KINDS if args.only in kind for way in ways}
     for kind in [k for k in KINDS if args.only in k]:
         for seed in range(args.first, args.first + args.seeds):
             meeting = KINDS[kind](np.random.default_rng([seed, 17]))
             drivers = [n for n in (0, 1) if meeting.goals[n] is not None]
-            alone = [Pair(meeting, False, alone=n).run().took[0] for n in drivers]
+            alone = [kind_of_world(meeting, False, alone=n).run().took[0] for n in drivers]
             for way in ways:
-                outcome = Pair(meeting, way).run()
+                outcome = kind_of_world(meeting, way).run()
                 tallies[kind, way].add(seed, outcome, alone)
                 print(
                     f"  {kind}, seed {seed}, {'told' if way else 'not told'}: {outcome} alone {alone}", file=sys.stderr

@@ -4,7 +4,8 @@ import msgspec
 import numpy as np
 import pytest
 
-from bench.encounters import KINDS, Meeting, Pair, corridor, gap
+from bench.encounters import Pair, gap
+from bench.meetings import KINDS, Meeting, corridor
 from common import messages as m
 from common import topics
 from common.household import load_household
