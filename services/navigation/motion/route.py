@@ -8,7 +8,6 @@ from common.geometry import Pose2
 from services.navigation.config import NavigationConfig
 from services.navigation.motion.obstacle_tracker import Obstacle
 from services.navigation.motion.path_follower import PathFollower
-from services.navigation.motion.progress import NEAR
 from services.navigation.planning.costmap import Costmap
 from services.navigation.planning.planner import PathPlanner, Point
 
@@ -22,6 +21,8 @@ WAY_COST = 0.15
 """What the path to an approach pose adds to its penalty [m/m]; chosen: a better stance is worth a way round a table."""
 ROUND = 1.0
 """How much longer a detour is that leads another way and not just round something [m]; chosen: round a person."""
+BY = 1.0
+"""Who is within this of where a path is blocked is what blocks it [m]: a footprint, and a step since it was seen."""
 TOUCHING = 0.02
 """How much closer than its footprint an obstacle must be to block a path [m]: the costmap's rounding."""
 
@@ -100,13 +101,11 @@ class Route:
             if self._goes_round(pose) or follower.remaining(pose) > SHORTER * old.remaining(pose):
                 return "kept"
         else:
-            if old is not None and self._shut is None:
-                self._shut = Shut(old.ahead(self.blocked_at(pose) or 0.0), now, old.remaining(pose))
-            extra = follower.remaining(pose) - self._shut.left if self._shut is not None else 0.0
-            near = any(math.dist((o.x, o.y), pose[:2]) < NEAR + o.radius for o in people)
-            if near and self._shut is not None and extra > max(ROUND, (now - self._shut.since) * self._speed):
+            shut = self._shut = self._now_shut(pose, now)
+            extra = follower.remaining(pose) - shut.left if shut is not None else 0.0
+            if shut is not None and self._waits_for(extra, shut, people, now):
                 return "kept" if old is not None else ""
-            self._given_up = self._shut.at if self._shut is not None and extra > ROUND else None
+            self._given_up = shut.at if shut is not None and extra > ROUND else None
             if old is not None and now - self.detour_at > DETOUR_PAUSE:
                 self.detour_at, found = now, "detour"
         self.follower, self._new_path, self._shut = follower, path, None
@@ -115,6 +114,19 @@ class Route:
     def abandon(self) -> None:
         """Everything begins anew."""
         self.follower = self._shut = self._given_up = None
+
+    def _now_shut(self, pose: Pose2, now: float) -> Shut | None:
+        """The path that is blocked, where it is now; once it is given up, as it was then."""
+        old, before = self.follower, self._shut
+        if old is None:
+            return before
+        at = old.ahead(self.blocked_at(pose) or 0.0)
+        return before._replace(at=at) if before is not None else Shut(at, now, old.remaining(pose))
+
+    def _waits_for(self, extra: float, shut: Shut, people: Sequence[Obstacle], now: float) -> bool:
+        """True while it is better to wait for who stands there than to go a way that is `extra` [m] longer."""
+        somebody = any(math.dist((o.x, o.y), shut.at) < BY + o.radius for o in people)
+        return somebody and extra > max(ROUND, (now - shut.since) * self._speed)
 
     def _goes_round(self, pose: Pose2) -> bool:
         """True while another way is under way and what stood in the first one is out of sight: it may stand there."""
