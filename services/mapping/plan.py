@@ -87,7 +87,7 @@ def _separate(surfaces: list[Surface]) -> list[Surface]:
 
 def _rim(s: Surface, bins: list[tuple[Rectangle, float]]) -> bool:
     """True for the rim of an open bin, which is level as well."""
-    return any(o.contains(s.outline.x, s.outline.y) and abs(s.height - rim) < RIM_BAND for o, rim in bins)
+    return any(o.contains(s.outline.x, s.outline.y, RING) and abs(s.height - rim) < RIM_BAND for o, rim in bins)
 
 
 def _reached(states: NDArray[np.uint8]) -> Cells:
