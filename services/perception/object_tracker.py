@@ -57,6 +57,12 @@ LOOK_RANGE = 2.5
 SEEN_THROUGH = 0.04
 """How far [m] behind an object's centre the camera must see for the object to be gone. Chosen: above its depth noise
 there."""
+FLAT, FLAT_THROUGH, LEAST_THROUGH = 0.07, 0.3, 0.01
+"""Up to which height [m] an object is flat: what it lay on is hardly farther behind, and it is gone where the camera
+sees that share of its height behind its centre, [m] at least."""
+PUSHED, SAME_SIZE = 0.35, 0.025
+"""How far [m] what is missing is looked for, and the largest difference of extents [m]. Chosen: what is pulled over an
+edge moves by 0.2; the error of extents, twice."""
 
 
 @dataclass
@@ -132,17 +138,20 @@ class ObjectTracker:
             if n not in matched and free[k].id not in seen:
                 matched[n] = free[k]
                 seen.add(free[k].id)
+        missing = [t for t in free if t.id not in seen and _should_show(t, view)]
         for n, d in enumerate(detections):
-            track = matched.get(n)
+            track = matched.get(n) or _moved_here(d, missing)
+            if track in missing:
+                missing.remove(track)
+                seen.add(track.id)
             if track is None:
                 self._count += 1
                 track = Track(f"object-{self._count}", d.position, d.yaw, d.size, d.on, now, 0.0, tilt=d.tilt)
                 self._tracks.append(track)
                 seen.add(track.id)
             _see(track, _turned_over(track, d), now)
-        for track in free:
-            if track.id not in seen and _should_show(track, view):
-                track.misses += 1
+        for track in missing:
+            track.misses += 1
         self._tracks = [t for t in self._tracks if t.misses < self._gone_after]
         return seen
 
@@ -221,6 +230,17 @@ def _apart(d: Detection, track: Track) -> float | None:
     half = (d.size[0] + d.size[1]) / 4 + track.half_width
     above = abs(d.position[2] - track.position[2]) > (d.size[2] + track.size[2]) / 2
     return distance + UNLIKE if distance < min(SAME, OVERLAP * half) and not above else None
+
+
+def _moved_here(d: Detection, missing: Sequence[Track]) -> Track | None:
+    """The nearest of the objects that are not where they were and look the same, as large as what is new."""
+    near = []
+    for t in missing:
+        distance = math.hypot(d.position[0] - t.position[0], d.position[1] - t.position[1])
+        as_large = all(abs(a - b) < SAME_SIZE for a, b in zip(sorted(d.size), sorted(t.size), strict=True))
+        if distance < PUSHED and as_large and _alike(d, t):
+            near.append((distance, t.id, t))
+    return min(near)[2] if near else None
 
 
 def _overlap(a: Track, b: Track) -> bool:
@@ -303,7 +323,9 @@ def _should_show(track: Track, view: View) -> bool:
         return False
     around = view.depth[int(v) - 2 : int(v) + 3, int(u) - 2 : int(u) + 3]
     seen = around[around > 0]
-    return bool(len(seen) > 12 and float(np.median(seen)) > z + SEEN_THROUGH)
+    flat = track.size[2] < FLAT
+    through = max(LEAST_THROUGH, FLAT_THROUGH * track.size[2]) if flat else SEEN_THROUGH
+    return bool(len(seen) > 12 and float(np.median(seen)) > z + through)
 
 
 def _as_object(t: Track, label: str) -> WorldObject:

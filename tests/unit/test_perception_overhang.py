@@ -7,11 +7,12 @@ import mujoco
 import numpy as np
 import pytest
 
-from common.household import told
+from common.household import Household, load_household, told
 from common.rendering.raycast import render
 from common.scene import ObjectSpec, load_scene
 from services.perception import segmentation
 from services.perception.detect import ClassicalDetector
+from services.perception.object_tracker import ObjectTracker
 from services.perception.view import View
 from services.sim.layout import place_objects
 from services.sim.world import world_mjcf
@@ -20,7 +21,7 @@ WIDTH, HEIGHT, FOVY = 400, 300, 62.0
 LENGTH, THICK = 0.16, 0.05
 
 
-def seen_with_box(over: float) -> tuple[View, object, tuple[float, float, float]]:
+def seen_with_box(over: float) -> tuple[View, Household, tuple[float, float, float]]:
     """The kitchen table with a flat box that reaches `over` its free edge by so much [m], from before that."""
     plan = load_scene("apartment")
     table = plan.surface("kitchen table")
@@ -54,7 +55,7 @@ def seen_with_box(over: float) -> tuple[View, object, tuple[float, float, float]
 @pytest.mark.parametrize("over", [0.0, 0.03, 0.07])
 def test_it_is_measured_as_a_whole(over: float) -> None:
     view, household, at = seen_with_box(over)
-    found = [d for d in ClassicalDetector(household, 3.5).detect(view) if d.on == "kitchen table"]  # type: ignore[arg-type]
+    found = [d for d in ClassicalDetector(household, 3.5).detect(view) if d.on == "kitchen table"]
     assert len(found) == 1
     assert math.dist(found[0].position[:2], at[:2]) < 0.012
     assert found[0].size == pytest.approx((LENGTH, 0.11, THICK), abs=0.015)
@@ -62,4 +63,16 @@ def test_it_is_measured_as_a_whole(over: float) -> None:
 
 def test_what_stands_beside_the_surface_is_not_on_it() -> None:
     view, household, _ = seen_with_box(LENGTH + 0.02)
-    assert segmentation.segments(view, household, 3.5) == []  # type: ignore[arg-type]
+    assert segmentation.segments(view, household, 3.5) == []
+
+
+def test_what_was_pulled_to_the_edge_is_still_the_same_object() -> None:
+    """17 cm from where it was, and flat: the table is hardly farther from the camera than its upper side."""
+    tracker, names = ObjectTracker(load_household("apartment"), 3, 0.5), set()
+    for n, over in enumerate((-0.12, -0.12, 0.05, 0.05)):
+        view, household, at = seen_with_box(over)
+        tracker.update(view, ClassicalDetector(household, 3.5).detect(view), float(n))
+        (one,) = tracker.objects()
+        assert math.dist(one.position[:2], at[:2]) < 0.012
+        names.add((one.id, one.label))
+    assert len(names) == 1
