@@ -130,3 +130,14 @@ def test_every_kind_of_meeting_can_be_drawn() -> None:
     for draw in KINDS.values():
         meeting = draw(np.random.default_rng(3))
         assert meeting.goals[1] is not None
+
+
+@pytest.mark.slow
+def test_one_that_is_braked_while_it_should_make_way_is_planned_round() -> None:
+    """Somebody has pressed its stop: it says that it stays, instead of having the other one wait for it."""
+    meeting = Meeting(load_household("apartment"), ((1.3, -0.75, 0.0), (0.2, -0.75, 0.0)), (None, (2.0, -1.5, 0.0)))
+    pair = Pair(meeting, exchange=True)
+    pair.robots[0]._drive = lambda dt: None
+    assert pair.run().arrived
+    said = [told.state for told in pair.robots[0].sent(topics.DRIVE_INTENT)]
+    assert said.index("free") < said.index("fixed")

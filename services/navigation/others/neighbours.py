@@ -84,6 +84,8 @@ class Neighbours:
         self._known = {n: k for n, k in self._known.items() if now - k.at < SILENT}
         self.circles = [(k.told.x, k.told.y, k.told.radius) for k in self._known.values()]
         self.state = self._standing(pose, driving, now)
+        if self.state == "fixed":
+            self.right_of_way.go_on()
         me, stuck = self._io.robot, self.right_of_way.stuck(now)
 
         self.first, self.others, fixed = [], [], []
