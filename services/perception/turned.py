@@ -14,6 +14,8 @@ from services.perception.primitives import Silhouette, Solution
 CAVITY = 0.06
 """Share of the points that are seen through the plane of the rim, from which an object is hollow. Chosen: a mug at 2 m
 shows three times as much."""
+SURELY, INSIDE = 0.8, 0.97
+"""Shares of the rim's radius within which what is seen through it tells that there is an inside, and belongs to it."""
 HANDLE = 0.012
 """Distance [m] beyond the wall from which points belong to a handle."""
 HANDLE_REACH = 0.05
@@ -87,9 +89,14 @@ def standing(
     x, y, r, grows = (float(v) for v in solution.p)
     rho = np.hypot(points[:, 0] - x, points[:, 1] - y)
     widest = max(0.006, r + abs(grows) * h / 2)
-    radii = np.minimum(_profile(points[body], rho[body], h, outline, x, y, r), widest)
+    # A vessel's floor and far wall, seen from above, are not the wall that faces the camera.
+    inner = _within(points, x, y, INSIDE * widest, h, eye, noise)
+    outer = body & ~inner
+    radii = np.minimum(_profile(points[outer], rho[outer], h, outline, x, y, r), widest)
     level = np.clip((points[:, 2] / h * SLICES).astype(int), 0, SLICES - 1)
-    hollow = _hollow(points, x, y, float(radii[-1]), h, eye, noise)
+    hollow = bool(
+        np.count_nonzero(_within(points, x, y, SURELY * float(radii[-1]), h, eye, noise)) > CAVITY * len(points)
+    )
     deep = (rho < radii[level] - primitives.INNER) & (points[:, 2] < h - primitives.INNER)
     steps = np.interp(points[:, 2], (np.arange(SLICES) + 0.5) * h / SLICES, radii)
     wall = np.abs(rho - steps)
@@ -99,7 +106,7 @@ def standing(
     off = np.where(shoulder, np.minimum(wall, noise), wall)
     off = np.where(rho < steps, np.minimum(off, np.abs(points[:, 2] - h)), off)
     off = np.where(deep, np.minimum(off, noise if hollow else 0.02), off)
-    off = np.where(body, off, np.minimum(off, noise))
+    off = np.where(body & ~(inner & hollow), off, np.minimum(off, noise))
     beyond = (rho > steps + HANDLE) & (rho < steps + HANDLE_REACH) & (points[:, 2] < 0.95 * h)
     if math.isnan(handle) and _on_one_side(points[:, :2] - (x, y), beyond):
         handle = math.atan2(*(points[beyond, :2].mean(axis=0) - (x, y))[::-1])
@@ -135,14 +142,14 @@ def _on_one_side(from_axis: Array, beyond: NDArray[np.bool_]) -> bool:
     return bool(np.linalg.norm(towards.mean(axis=0)) > ONE_SIDE)
 
 
-def _hollow(points: Array, x: float, y: float, rim: float, h: float, eye: Array, noise: float) -> bool:
-    """Points well below the rim are seen through the plane of the rim."""
-    low = points[points[:, 2] < h - max(0.012, 2.5 * noise)]
-    if eye[2] < h + 0.02 or not len(low):
-        return False
-    through = eye + (low - eye) * ((h - eye[2]) / (low[:, 2] - eye[2]))[:, None]
-    inside = np.hypot(through[:, 0] - x, through[:, 1] - y) < 0.8 * rim
-    return bool(np.count_nonzero(inside) > CAVITY * len(points))
+def _within(points: Array, x: float, y: float, rim: float, h: float, eye: Array, noise: float) -> NDArray[np.bool_]:
+    """Which points (n, 3) are well below the rim and seen through its plane: they are of the inside."""
+    low = points[:, 2] < h - max(0.012, 2.5 * noise)
+    if eye[2] < h + 0.02:
+        return np.zeros(len(points), bool)
+    drop = np.where(low, points[:, 2] - eye[2], -1.0)
+    through = eye[:2] + (points[:, :2] - eye[:2]) * ((h - eye[2]) / drop)[:, None]
+    return np.asarray(low & (np.hypot(through[:, 0] - x, through[:, 1] - y) < rim))
 
 
 def _closed(points: Array, rho: Array, r: float, h: float, eye: Array, noise: float) -> bool:
