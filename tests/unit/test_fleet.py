@@ -45,6 +45,10 @@ def test_one_that_cannot_is_never_chosen(how: dict[str, Any]) -> None:
     assert refusal(free("a", **how))
 
 
+def test_one_that_lacks_something_says_what_and_is_not_called_busy() -> None:
+    assert refusal(free("a", state="IDLE", detail="waiting for speech")) == "is not ready: waiting for speech"
+
+
 def test_no_way_is_no_choice_and_the_reasons_are_told() -> None:
     robots = [free("a"), free("b", battery=0.5), free("c", state="NAVIGATING", command="bring me the apple")]
     found = rank(robots, goals("bring me the red mug", robots), {"a": None, "b": 2.5})
