@@ -22,7 +22,8 @@ _WANT = (
     "needing|am wanting|"
     "are needing|is asking for|is waiting for|is missing|am craving|am in need of|am after|am dying "
     "for|am longing for|"
-    "am in the mood for|are after|is after|(?:would |quite |rather )?(?:fancy|fancies)|could (?:really )?(?:use|do "
+    "am in the mood for|are after|is after|(?:would |quite |rather |really )*(?:fancy|fancies)|could "
+    "(?:really )?(?:use|do "
     "with|murder)|would not (?:mind|say no to)|would (?:very much )?(?:appreciate|welcome|enjoy|be "
     "(?:(?:ever|so|very|really|most) )*(?:glad|grateful|thankful|happy|pleased|obliged) "
     "(?:of|for|with|about))|would kill for|would have(?= "
@@ -35,7 +36,10 @@ CONSTRUCTIONS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
     (re.compile(f"^{pattern}$"), result)
     for pattern, result in (
         # Whom or what it is for.
-        (r"((?!look|search|wait|check|hunt|ask)\w+ .+) for (?:dinner|lunch|breakfast|supper|tea|good|a change|"
+        (rf"(?:go|nip|pop|run|walk|drive|head|dash|hop|come)(?: over| back)? (?:to|into) {NP} for "
+         r"((?:the|my|an?|some) .+)", r"bring me \2"),
+        (r"((?!look|search|wait|check|hunt|ask|go|nip|pop|run|walk|drive|head|dash|hop|come)\w+ .+) "
+         r"for (?:dinner|lunch|breakfast|supper|tea|good|a change|"
          r"him|her|them|"
          r"(?:the|my|our|your) (?:\w+ )?\w+|\w+ing .+)", r"\1"),
         # What is there and has to go elsewhere.
@@ -89,6 +93,12 @@ CONSTRUCTIONS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
         (r"((?!(?:can|could|would|will|do|you|please|he|she|they|who)\b)(?:\w+ ){1,4}?\w+) "
          r"(?:bring|give|get|hand|pass) (?:me|us)",
          r"bring me \1"),
+        (rf"(?:i|we) (?:can not|could not|am not able to|am unable to)(?: quite| really| even)? "
+         rf"(?:reach|get (?:at|to)|lift) {NP}",
+         r"bring me \1"),
+        (rf"(?:i|we) (?:have )?(?:forgotten|forget|forgot|do not (?:know|remember)|can not "
+         rf"remember|wonder) where (?:i|we) "
+         rf"(?:have )?(?:put|left|laid|placed) {NP}", r"where is \1"),
         # Wishes, of whomever.
         (rf"{_WHO}(?: really| also| just| now| only| kind of| do)? {_WANT} to {_CONSUME} {NP}", r"i want \1"),
         (rf"{_WHO}(?: really| also| just| now| only| kind of| do)? {_WANT} {NP} (?:back )?(?:here|back|over "

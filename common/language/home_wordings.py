@@ -31,7 +31,8 @@ TOLD: tuple[Wording, ...] = (
     ),
     Wording(
         "forget_rule",
-        "(forget | drop | delete | undo | remove | take back | cancel) (that | the | this | my | your) [last | new]"
+        "(forget | drop | delete | undo | remove | take back | cancel) [about] (that | the | this | "
+        "my | your) [last | new]"
         " rule [(about | for | on) <words>]",
         heard="forget that rule",
     ),
@@ -61,13 +62,15 @@ ASKED: tuple[Wording, ...] = (
     Wording(
         "belongs",
         f"{ASK} where (do | does | should | would) <thing> (go | belong | live | be | stand)"
+        f" | {ASK} where (do | does) <thing> {_USUALLY} (go | belong) | {ASK} where <thing> "
+        f"{_USUALLY} (go | goes | belong | belongs)"
         f" | {ASK} where (should | do) (i | you | we) put <thing> [away]",
     ),
     Wording(
         "usual",
         f"{ASK} where (is | are) <thing> {_USUALLY} [kept | found | put | left | stored | lying | to be found]"
         f" | {ASK} where (is | are) {_USUALLY} <thing>"
-        f" | {ASK} where (do | does | did) <thing> {_USUALLY} (lie | stand | sit | be | stay | hang out | live | go)"
+        f" | {ASK} where (do | does | did) <thing> {_USUALLY} (lie | stand | sit | be | stay | hang out | live)"
         f" | {ASK} where (do | did) (i | we | you) {_USUALLY} (leave | put | keep | find | see | have) <thing>"
         f" | {ASK} where (do | did) (i | we | you) (leave | put | keep | find | see | have) <thing> {_USUALLY}",
         heard="where (is | are) <thing> usually",

@@ -66,7 +66,7 @@ ABOUT_THE_WORLD: tuple[Wording, ...] = (
     ),
     Wording(
         "where",
-        f"{ASK} (which | what) (room | place | surface | shelf | table) {BE} <thing> [in | on]",
+        f"{ASK} [in | on] (which | what) (room | place | surface | shelf | table) {BE} <thing> [in | on]",
     ),
     Wording(
         "where", f"{ASK} where (i | we | you) [have] [last] (left | put | saw | seen | have | had) <thing>"
@@ -101,7 +101,8 @@ ABOUT_THE_WORLD: tuple[Wording, ...] = (
         f" [there | {LYING} | left] (on | in | at) <spot>"),
     Wording(
         "number",
-        f"{ASK} how many [of] <thing> [(are there | there are | do (we | i) have | have (we | i) got | do "
+        f"{ASK} how many [of] <thing> [(are there | there are | do (we | i | you) (have | own) | have "
+        f"(we | i) got | do "
         f"you (see | know | remember) | can you see | have "
         f"you seen | do we have |"
         f" {BE} (left | here | around))] [left]",

@@ -95,12 +95,26 @@ _WHERE_IT_IS = re.compile(
 _THE_OTHER_ONE = re.compile(
     r"^(?P<said>.+?),? (?:but )?not (?:the|a|my) (?:\w+ )?\w+?,? (?:but )?(?P<one>(?:the|a|my) \w+ (?:one|\w+))$"
 )
+_APPOSED = re.compile(
+    r"^(?P<thing>(?:the|my|that) \w+(?: \w+)?), (?:the|my|that) one (?P<which>(?:on|in|at|from|next "
+    r"to|near|beside|with) [^,]+),? "
+    r"(?P<rest>.+)$"
+)
+"""A thing, which one it is, and what is to be done with it."""
+_THAT_IS = re.compile(r"(?P<one>(?:the|a|my) \w+ one),? (?:that is|i mean|to be precise|obviously)\b")
+_ONE_OF_THOSE = re.compile(
+    r"^(?:out )?of (?:all )?(?P<those>(?:the|my) (?:things|stuff|objects|\w+s) (?:on|in|at) .+?),? "
+    r"(?P<command>(?:\w+ (?:me )?))the (?P<which>\w+)(?: one)?$"
+)
+"""Which one of several is meant, the several first."""
 _NEITHER = re.compile(r"\bneither .+? nor (?P<other>(?:the |my )?(?:\w+ ){1,2}?)(?:but )?(?P<one>(?:the|a|my) [^,]+)")
 _ANY = re.compile(r"\b(an? (\w+)), any (?:\2|one|of them|will do)\b")
 
 
 def settled(text: str, is_place: IsPlace) -> str:
     """The text without what was taken back."""
+    text = _THAT_IS.sub(r"\g<one>", _APPOSED.sub(r"\g<thing> \g<which> \g<rest>", text))
+    text = _ONE_OF_THOSE.sub(_singled_out, text)
     text = _refined(_without_lead(text))
     text = _AFTERTHOUGHT.sub(r"\g<said>, i mean \g<meant>", text) if text.count(",") else text
     text = _with_noun(_NEITHER.sub(lambda found: filled(found["one"], found["other"]), text))
@@ -124,6 +138,12 @@ def settled(text: str, is_place: IsPlace) -> str:
     ):
         text = _contrasted(found["wrong"], found["right"])
     return text
+
+
+def _singled_out(found: re.Match[str]) -> str:
+    """`of the things on the desk bring the taller one` as `bring the taller thing on the desk`."""
+    _, several, *where = found["those"].split()
+    return f"{found['command']}the {found['which']} {several.removesuffix('s')} {' '.join(where)}"
 
 
 def _with_qualities(said: str, wrong: str, right: str) -> str:
@@ -153,7 +173,7 @@ def _repaired(text: str, is_place: IsPlace) -> str:
         found = (None, *_REPAIR.finditer(text))[-1]
         if found is None or not text[: found.start()].strip() or not text[found.end() :].strip(" ,.!?"):
             return text
-        meant = _refined(text[found.end() :].strip(" ,.!?"))
+        meant = _refined(re.sub(r",? i mean(?:t)?$", "", text[found.end() :].strip(" ,.!?")))
         if contrast := _CONTRAST.match(meant):
             meant = _with_qualities(text[: found.start()], contrast["wrong"], contrast["right"])
         if (repaired := replaced(text[: found.start()], meant, is_place)) is None:

@@ -3,7 +3,20 @@
 from common.language.normalise import Words
 
 _ADVERBS = frozenset(
-    {"just", "very", "quite", "rather", "perhaps", "maybe", "please", "also", "too", "straight", "together"}
+    {
+        "just",
+        "very",
+        "quite",
+        "rather",
+        "perhaps",
+        "maybe",
+        "please",
+        "also",
+        "too",
+        "straight",
+        "together",
+        "somewhere",
+    }
 )
 _NO_ADVERBS = frozenset({"only", "family", "early"})
 _PARTICLES = frozenset({"back", "over", "out", "up", "down", "on", "along", "off", "away", "round", "across", "right"})

@@ -39,7 +39,8 @@ WORDINGS: tuple[Wording, ...] = (
     ),
     Wording(
         "yes",
-        "(yes | yeah | yep | yup) [please | thanks | thank you | that is what i (said | meant | "
+        "(yes | yeah | yep | yup) (bring | get | fetch | take | do) (it | that | them) [to me]"
+        " | (yes | yeah | yep | yup) [please | thanks | thank you | that is what i (said | meant | "
         "want) | i did | it is | that is right | "
         "please do | do | do that | "
         "exactly | go ahead] | [that is] (correct | right | true) | exactly | sure | okay | ok"
@@ -165,6 +166,7 @@ WORDINGS: tuple[Wording, ...] = (
         "come_back", "(come | go | return | head) [back] [to] where (i am | we are | you started | "
                      "you came from)",
     ),
+    Wording("come_back", "over here | here to me | to me | this way") ,
     Wording("come_back", "return [home | here | to (start | me | base)] | come | home | back [here | to "
                          "me | home]"),
     # Two things at once, said of one object.
@@ -228,7 +230,7 @@ WORDINGS: tuple[Wording, ...] = (
     ),
     Wording(
         "remark",
-        "(i am | we are | it is) <words>"
+        "(i am | we are | it is | my (throat | mouth | stomach | tummy) is) <words>"
         " | is there (anything | something) [that] you (can | could) (bring | get | give | fetch) (me | us)",
         kind="told",
     ),

@@ -11,6 +11,7 @@ from services.planner.places import anchor_spots
 from services.planner.plan_builder import PlanBuilder, Refusal
 from services.planner.pronouns import Referent, mentioned, pronoun
 from services.planner.relations import between, holds, is_between, is_near, spoken
+from services.planner.senses import LIVING
 from services.planner.world import BelievedObject
 
 
@@ -108,6 +109,8 @@ def _resolve(builder: PlanBuilder, phrase: Phrase, prefer_held: bool) -> list[Re
 def _new(builder: PlanBuilder, phrase: Phrase) -> Referent:
     """A thing that nobody has listed or seen, by its own words."""
     label = " ".join((*phrase.colours, phrase.singular or phrase.noun))
+    if phrase.noun.split()[-1] in LIVING:
+        raise Refusal("I pick up neither people nor animals, and I do not look for them")
     thing = next((t for t in builder.world.objects if t.label == label), BelievedObject(label, "", seen=False))
     spots = builder.vocabulary.spot(phrase.anchor) if phrase.relation else []
     words = " ".join(without_determiners(tuple(phrase.text.split()))) if phrase.relation or phrase.which else ""
@@ -155,6 +158,8 @@ def _related(
     placed = [t for t in seen if t.position and t.label != anchor.label]
     if anchor.position is None or not placed:
         raise Refusal(f"I have not seen which {phrase.noun} is {spoken(phrase.relation)} the {anchor.label}")
+    if phrase.relation != "near" and anchor.on:  # to the left of a thing is what stands there on the same surface
+        placed = [t for t in placed if t.on in (anchor.on, anchor.label)]
     beside = [t for t in placed if holds(builder, phrase.relation, t, anchor)]
     if phrase.relation == "near" and not beside:
         beside = [t for t in placed if t.on and t.on == anchor.on]

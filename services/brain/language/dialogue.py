@@ -119,6 +119,8 @@ def chosen(
             {"number", str(n + 1)},
         ) and n < len(options):
             return options[n]
+    if words in ({"former"}, {"latter"}) and len(options) == 2:
+        return options[words == {"latter"}]
     if "last" in words and words <= {"last"}:
         return options[-1]
     if found := re.match(r"neither (?:the )?(\w+) nor (?:the )?(\w+)", bare):

@@ -50,6 +50,9 @@ _ONE_MOMENT = re.compile(
     r"(?:second|sec|moment|minute|bit|tick)$"
 )
 _NO_LONGER = re.compile(r"^(?:i|we) (?:do not|no longer) (?:need|want) [^,]+?(?: (?:any ?more|after all|now))?$")
+_CALLED_OFF = re.compile(
+    r"^(?:cancel|abort|scrap|skip|forget)(?: about)? (?:the|that|my) (?!.*\b(?:rule|name)\b)\w+(?: \w+)?$"
+)
 """What was asked for is not wanted; there is nothing in its place."""
 
 
@@ -71,7 +74,7 @@ def interjection(said: str) -> Interjection:
         return Interjection("replace", filled(contrast["right"], contrast["wrong"]))
     if unwanted := NOT_WANTED.match(words):
         return Interjection("replace", words[unwanted.end() :])
-    if _NO_LONGER.match(words):
+    if _NO_LONGER.match(words) or _CALLED_OFF.match(words):
         return Interjection("cancel", said)
     if words.startswith("not ") or _RATHER.match(words):
         return Interjection("replace", said)
