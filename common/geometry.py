@@ -98,6 +98,13 @@ def quat_yaw(q: tuple[float, float, float, float]) -> float:
     return math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
 
 
+def turn_matrix(turn: Array) -> Array:
+    """Rotation matrix (3, 3) of a rotation vector (3,) [rad]."""
+    angle = float(np.linalg.norm(turn))
+    x, y, z = (float(v) for v in 0.5 * np.sinc(angle / math.tau) * turn)
+    return quat_matrix((math.cos(angle / 2), x, y, z))
+
+
 def quat_matrix(q: tuple[float, float, float, float]) -> Array:
     """Rotation matrix (3, 3) of a unit quaternion."""
     w, x, y, z = q

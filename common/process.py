@@ -5,6 +5,7 @@ import os
 import resource
 import signal
 import socket
+import sys
 import threading
 from pathlib import Path
 from types import FrameType
@@ -66,6 +67,13 @@ def limit_silence(seconds: float) -> None:
                     connection.setsockopt(socket.IPPROTO_TCP, int(option or 0), round(seconds * 1000))
         except OSError:
             continue  # closed in the meantime
+
+
+def return_memory() -> None:
+    """Give what is not needed any more back to the system, where the C library can."""
+    trim = getattr(ctypes.CDLL(None), "malloc_trim", None) if sys.platform == "linux" else None
+    if trim is not None:
+        trim(0)
 
 
 def rss_mb() -> float:

@@ -17,7 +17,7 @@ from common.bus.port import Outside
 from common.bus.zenoh_io import ZenohIo
 from common.household import Household
 from common.presence import Presence, answer_queries
-from common.process import SILENCE, StopSignal, limit_silence
+from common.process import SILENCE, StopSignal, limit_silence, return_memory
 from common.scene import Scene
 from common.time.clock import Clock, Pacer, SimClock, monotonic
 from common.time.clock_transport import AckCollector, ClockPublisher, ClockSubscriber
@@ -25,6 +25,9 @@ from common.time.lockstep import DT, Barrier, period_of
 
 HEALTH_PERIOD = 1.0
 """Wall time between two health records [s]; fixed by the interface, 1 Hz."""
+TRIM_PERIOD = 10.0
+"""Wall time between two times that memory is given back [s]; chosen: what pictures take and leave in pieces goes back
+soon, and the millisecond that it takes is not noticed."""
 MAX_CONSECUTIVE_ERRORS = 10
 """Steps in a row that may raise [count] before the process ends; chosen: half a second at 20 Hz."""
 STALLED = 1.0
@@ -63,7 +66,7 @@ class Process:
         self.io.robot = outside.namespace if outside is not None else ""
         self.io.other_robots = self._beside
         self._presences = [Presence(opened, self.io)]
-        self._health_at = monotonic()
+        self._health_at = self._trimmed_at = monotonic()
         self._steps = 0
         self._errors = 0
         self.service = kind(parameters, self.io)
@@ -106,6 +109,9 @@ class Process:
             self._health_at += elapsed
             limit_silence(SILENCE)
             self._steps = 0
+            if self._health_at - self._trimmed_at >= TRIM_PERIOD:
+                self._trimmed_at = self._health_at
+                return_memory()
 
     def step(self, tick: int | None, now: float) -> None:
         """One step behind the guard: an unexpected error is logged and counted, many in a row end the process."""

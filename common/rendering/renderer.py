@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
+from common.geometry import turn_matrix
 from common.rendering.looks import SKY
 
 Array = NDArray[np.float64]
@@ -200,7 +200,7 @@ class Renderer:
         number, flip = self.model.camera(camera).id, np.diag([1.0, -1.0, -1.0])
         optical = self.data.cam_xmat[number].reshape(3, 3) @ flip
         self.data.cam_xpos[number] += optical @ offset
-        self.data.cam_xmat[number] = (optical @ Rotation.from_rotvec(turn).as_matrix() @ flip).ravel()
+        self.data.cam_xmat[number] = (optical @ turn_matrix(turn) @ flip).ravel()
 
     def focal(self, camera: str, height: int) -> float:
         """Focal length [px] of a camera's pictures of so many rows."""

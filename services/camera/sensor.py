@@ -6,12 +6,11 @@ growing with the square of the distance.
 """
 
 from dataclasses import dataclass
+from statistics import NormalDist
 
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
-from scipy import ndimage
-from scipy.special import ndtri
 
 from common.rendering.renderer import Surfaces
 
@@ -99,10 +98,28 @@ class StereoCamera:
         if (height, width) not in self._noise:
             size = height + MARGIN, width + MARGIN
             rng = np.random.default_rng([self._seed, *size])
-            bumps = ndimage.uniform_filter(rng.standard_normal(size, np.float32), MATCHING_WINDOW, mode="wrap")
+            bumps = smoothed(rng.standard_normal(size, np.float32))
             grain = np.round(rng.normal(0.0, PIXEL_NOISE, (*size, 3))).astype(np.int16)
             self._noise[height, width] = bumps / bumps.std(), grain
         return self._noise[height, width]
+
+
+def smoothed(noise: NDArray[np.float32]) -> NDArray[np.float32]:
+    """The mean (h, w) over the matching window, round the edges; scipy would be too large for that alone."""
+    half = MATCHING_WINDOW // 2
+    for axis in (0, 1):
+        total = np.zeros(noise.shape)
+        for by in range(-half, half + 1):
+            total += np.roll(noise, by, axis)
+        noise = (total / MATCHING_WINDOW).astype(np.float32)
+    return noise
+
+
+def quantiles(shares: Depth) -> Depth:
+    """The values (h, w) below which those shares of normal noise lie."""
+    few, place = np.unique(shares, return_inverse=True)
+    values = np.array([NormalDist().inv_cdf(p) if p > 0.0 else -np.inf for p in few.tolist()])
+    return np.asarray(values[place.reshape(shares.shape)])
 
 
 def _measure(rgb: Rgb, depth: Depth, focal: float, noise: NDArray[np.float32]) -> NDArray[np.uint16]:
@@ -144,13 +161,13 @@ def _edges(far: NDArray[np.float32]) -> NDArray[np.bool_]:
 def _unmatched(surfaces: Surfaces, depth: Depth, focal: float, noise: NDArray[np.float32]) -> NDArray[np.bool_]:
     """Pixels (h, w) of glossy and of transparent surfaces that get no depth: in patches, where `noise` is low, and
     where a glossy one mirrors the projector."""
-    found = surfaces.clear & (noise < ndtri(CLEAR_LOST))
+    found = surfaces.clear & (noise < NormalDist().inv_cdf(CLEAR_LOST))
     rows, columns = np.nonzero(surfaces.gloss)
     if len(rows):
         box = slice(rows.min(), rows.max() + 1), slice(columns.min(), columns.max() + 1)
         gloss = surfaces.gloss[box]
         mirrored = _facing(depth, focal, *box) > np.cos(np.radians(MIRRORED * gloss))
-        found[box] |= (gloss > 0.0) & (mirrored | (noise[box] < ndtri(GLOSS_LOST * gloss)))
+        found[box] |= (gloss > 0.0) & (mirrored | (noise[box] < quantiles(GLOSS_LOST * gloss)))
     return np.asarray(found)
 
 

@@ -4,11 +4,10 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from common import calibration
 from common import messages as m
-from common.geometry import matrix_quat
+from common.geometry import matrix_quat, turn_matrix
 from common.rendering.renderer import Renderer
 from common.time.lockstep import DT
 from services.camera.sensor import Depth, Rgb, StereoCamera, exact
@@ -53,7 +52,7 @@ class Shutter:
         mount = self._mounts.get(request.camera)
         if mount is not None:
             position = position + rotation @ np.array(mount[0])
-            rotation = rotation @ Rotation.from_rotvec(mount[1], degrees=True).as_matrix()
+            rotation = rotation @ turn_matrix(np.radians(mount[1]))
         x, y, z = (float(v) for v in position)
         focal = renderer.focal(request.camera, height)
         sensor = self._sensors.get(request.camera)

@@ -2,9 +2,23 @@
 
 import numpy as np
 import pytest
+from scipy import ndimage
+from scipy.spatial.transform import Rotation
+from scipy.special import ndtri
 
+from common.geometry import turn_matrix
 from common.rendering.renderer import Surfaces
-from services.camera.sensor import DARK, GLARE, LEAST_RANGE, NOISE_AT_1_M, StereoCamera, exact
+from services.camera.sensor import (
+    DARK,
+    GLARE,
+    LEAST_RANGE,
+    MATCHING_WINDOW,
+    NOISE_AT_1_M,
+    StereoCamera,
+    exact,
+    quantiles,
+    smoothed,
+)
 
 FOCAL = 433.0
 SHAPE = (240, 320)
@@ -103,3 +117,15 @@ def test_half_of_what_is_transparent_finds_no_match_in_patches() -> None:
 
 def test_what_is_neither_loses_nothing() -> None:
     assert not missing(np.full(SHAPE, 1.5), surfaces()).any()
+
+
+def test_the_noise_and_its_quantiles_are_those_of_scipy() -> None:
+    rng = np.random.default_rng(4)
+    noise = rng.standard_normal((40, 50), np.float32)
+    smooth = ndimage.uniform_filter(noise, MATCHING_WINDOW, mode="wrap")
+    assert np.allclose(smoothed(noise), smooth, atol=1e-7)
+    shares = rng.choice([0.0, 0.05, 0.15], (4, 5))
+    assert np.allclose(quantiles(shares), ndtri(shares))
+    turn = rng.standard_normal(3)
+    assert np.allclose(turn_matrix(turn), Rotation.from_rotvec(turn).as_matrix())
+    assert np.allclose(turn_matrix(np.zeros(3)), np.eye(3))

@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import ConvexHull
 
 from common import atomic_file
 
@@ -55,6 +54,8 @@ def parts(vertices: Array, faces: NDArray[np.int64]) -> list[Part]:
 
 def hollow(vertices: Array, faces: NDArray[np.int64]) -> bool:
     """The convex hull of a closed mesh would fill what is open: a bowl, a mug."""
+    from scipy.spatial import ConvexHull
+
     a, b, c = (vertices[faces[:, n]] - vertices.mean(axis=0) for n in range(3))
     volume = abs(float(np.einsum("ij,ij->", a, np.cross(b, c)))) / 6
     return volume < FILLED * float(ConvexHull(vertices).volume)
@@ -73,6 +74,8 @@ def _keep(file: Path, found: list[Part]) -> None:
 
 
 def _hull(vertices: Array) -> Part:
+    from scipy.spatial import ConvexHull
+
     hull = ConvexHull(vertices)
     corner = np.full(len(vertices), -1)
     corner[hull.vertices] = np.arange(len(hull.vertices))

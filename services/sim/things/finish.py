@@ -6,7 +6,6 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
-from scipy import ndimage
 
 SIZE = 256
 """Pixels of a metre: 4 mm each, finer than a camera sees from 1 m."""
@@ -28,6 +27,8 @@ def picture(finish: str) -> bytes:
     seed, coarse, depth = GRAIN[finish]
     rng = np.random.default_rng(seed)
     stretch = (coarse * 8, coarse) if finish == "wood" else (coarse, coarse)
+    from scipy import ndimage
+
     grain = ndimage.gaussian_filter(rng.standard_normal((SIZE, SIZE)), stretch, mode="wrap")
     shade = 1.0 + depth * grain / grain.std() + _pattern(finish, rng)
     levels = np.clip(np.array(GROUND[finish]) * np.clip(shade, 0.3, 1.3)[..., None], 0, 255).astype(np.uint8)

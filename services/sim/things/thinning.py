@@ -5,7 +5,6 @@ from typing import Any
 import fast_simplification
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from services.sim.things.mesh import Mesh
 
@@ -51,6 +50,8 @@ def _mapped(old: Array, uv: Array, new: Array) -> Array:
     A new triangle lies on that old one whose middle is nearest to its own: its corners get what the plane through the
     old one's coordinates has there, so that the picture runs on without a break within it.
     """
+    from scipy.spatial import cKDTree
+
     _, nearest = cKDTree(old.mean(axis=1)).query(new.mean(axis=1))
     a, b, c = (old[nearest, i] for i in range(3))
     e, f = b - a, c - a

@@ -11,7 +11,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from services.speech.recognise.packed_network import NetworkBuilder, PackedWeights, Weight, return_memory
+from common.process import return_memory
+from services.speech.recognise.packed_network import NetworkBuilder, PackedWeights, Weight
 
 LAYERS, HEADS, HEAD_SIZE, ROTARY_SIZE = 8, 8, 52, 32
 """Moonshine base: decoder layers, attention heads, numbers per head, and how many of them are rotated by position."""

@@ -10,11 +10,11 @@ from common.household import Household
 from common.language.meaning import asks_for
 from common.language.normalise import normalise
 from common.language.spoken import is_understood, turns
+from common.process import return_memory
 from services.speech.config import SpeechConfig
 from services.speech.listen.vad import RATE, VoiceDetector, speech_span
 from services.speech.recognise.denoise import noise_ratio, reduce_noise
 from services.speech.recognise.grammar import Grammar, known_names
-from services.speech.recognise.packed_network import return_memory
 from services.speech.recognise.recogniser import (
     Array,
     MoonshineRecogniser,

@@ -3,8 +3,6 @@
 The networks as they ship unpack each weight at each run; `python -m bench.recogniser` measures what that costs.
 """
 
-import ctypes
-import sys
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -14,6 +12,8 @@ import numpy as np
 import onnx
 from numpy.typing import NDArray
 from onnx import TensorProto, helper, numpy_helper
+
+from common.process import return_memory
 
 BLOCK = 32
 """Weights per scale of `MatMulNBits`; the operator takes 16, 32, 64 and so on."""
@@ -142,13 +142,6 @@ def _options(threads: int) -> Any:
     made.enable_mem_pattern = False
     made.enable_cpu_mem_arena = False
     return made
-
-
-def return_memory() -> None:
-    """Give what is not needed any more back to the system, where the C library can."""
-    trim = getattr(ctypes.CDLL(None), "malloc_trim", None) if sys.platform == "linux" else None
-    if trim is not None:
-        trim(0)
 
 
 def unpacked(path: Path, threads: int) -> Any:

@@ -4,8 +4,9 @@ import re
 
 import numpy as np
 
+from common.process import return_memory
 from services.speech.audio import RATE, Samples, resample
-from services.speech.recognise.packed_network import return_memory, session
+from services.speech.recognise.packed_network import session
 
 MAX_CHARACTERS = 400
 """Longest text that is spoken (chosen: half a minute)."""
