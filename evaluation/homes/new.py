@@ -41,7 +41,10 @@ class NotMapped(Exception):
 
 
 def new(seed: int) -> Case:
-    """An unknown home is explored; then two fetches, a room to go to and to be named, a thing taken to that name."""
+    """An unknown home is explored; then two fetches, a room to go to and to be named, a thing taken to that name.
+
+    In a home of one room the last mission is a fetch as well.
+    """
     rng = random(seed, 32)
     home = draw_home(seed, ())
     count = int(rng.integers(*IN_A_HOME))
@@ -58,7 +61,8 @@ def new(seed: int) -> Case:
             goal=Goal(effects=(Effect("says", f"the {room.name} from now on"),)),
         ),
         _fetch(rng, second, world.delivery, "ended"),
-        Line(
+        # Where all things are in the one room that has surfaces, nothing can be taken there.
+        _fetch(rng, taken, world.delivery, "ended") if on[taken.name] in goals else Line(
             f"take the {taken.name} to the {room.name}", "ended", goal=Goal(wants=(Want(taken.name, goals),)),
             thing=taken.name,
         ),
