@@ -13,7 +13,7 @@ from services.manipulation.grasp import shown
 from services.manipulation.grasp_verification import WIDTH_ERROR, held_badly, judge
 from services.manipulation.grasped_object import GraspedObject
 from services.manipulation.plan_grab import GrabPlan, plan_grab
-from services.manipulation.planning_scene import MARGINS, obstacles, target_of
+from services.manipulation.planning_scene import MARGINS, obstacles, others, target_of
 from services.manipulation.robot import Failure, Robot, Steps, go_home, planner_of
 from services.manipulation.sighting import MISTAKEN, aimed, sighted
 from services.manipulation.stances import other_stance
@@ -52,7 +52,7 @@ def grab(robot: Robot, goal: m.ManipulationGoal, wanted: str) -> Steps[str]:
         found = yield from sighted(robot, goal, wanted, since)
         robot.phase = "reach"
         target = target_of(found, robot.base, robot.io.household)
-        around = surroundings(robot, found.label)
+        around = surroundings(robot, found)
         try:
             plan = yield from robot.work(
                 plan_grab, planner, target, around, robot.joints.copy(), config.approach_distance, config.lift_height,
@@ -110,10 +110,10 @@ def _from_elsewhere(robot: Robot, found: m.WorldObject, failure: Failure) -> Ste
     return Failure(failure.code, f"{failure.detail}; {where}", failure.blockers, stance)
 
 
-def surroundings(robot: Robot, without: str) -> list[list[Obstacle]]:
-    """What the arm keeps clear of, with each of the margins, but for the object of that label."""
-    objects = robot.source.objects()
-    return [obstacles(robot.io.household, robot.base, objects, without, margin) for margin in MARGINS]
+def surroundings(robot: Robot, found: WorldObject) -> list[list[Obstacle]]:
+    """What the arm keeps clear of, with each of the margins, but for an object."""
+    objects = others(robot.source.objects(), found)
+    return [obstacles(robot.io.household, robot.base, objects, margin=margin) for margin in MARGINS]
 
 
 def _execute_grab(

@@ -19,6 +19,8 @@ FRONT = 1.2
 SHIFTED = 0.4
 """How far [m] from where a goal describes an object a newer sighting of it still means the same one. Chosen: farther
 than an object is shoved, nearer than the next surface."""
+LEFT = 0.03
+"""How far [m] from where an object was it is still said to be there. Chosen: the error of two sightings."""
 DEFAULT_SIZE = (0.06, 0.06, 0.08)
 """Full extents [m] of an object that nobody described. Chosen: near those of a can."""
 
@@ -29,6 +31,7 @@ class ObjectSource:
     def __init__(self, household: Household) -> None:
         self._household = household
         self._moved: dict[str, WorldObject] = {}
+        self._left: dict[str, tuple[float, float, float]] = {}
         self._reported: WorldObjects | None = None
 
     def update(self, reported: WorldObjects | None) -> None:
@@ -38,8 +41,14 @@ class ObjectSource:
             self._moved = self._still_newer(reported)
 
     def _still_newer(self, reported: WorldObjects) -> dict[str, WorldObject]:
-        seen = {o.label: o.seen_at for o in reported.objects}
-        return {k: o for k, o in self._moved.items() if seen.get(k, -math.inf) < o.seen_at}
+        seen = {o.label: o for o in reported.objects}
+        kept = {k: o for k, o in self._moved.items() if k not in seen or self._older(seen[k], o)}
+        self._left = {k: place for k, place in self._left.items() if k in kept}
+        return kept
+
+    def _older(self, seen: WorldObject, moved: WorldObject) -> bool:
+        left = self._left.get(seen.label)
+        return seen.seen_at < moved.seen_at or (left is not None and _close(seen.position, left, LEFT))
 
     def objects(self) -> list[WorldObject]:
         """The objects as they are believed to be now."""
@@ -54,6 +63,7 @@ class ObjectSource:
         known = next((o for o in self.objects() if o.label == label), None)
         if known is None:
             return
+        self._left.pop(label, None)
         # What lay is held, and put down, as it stands.
         size = known.size[::-1] if tilt_of(known) else known.size
         self._moved[label] = structs.replace(
@@ -61,9 +71,11 @@ class ObjectSource:
             held=position is None,
         )  # fmt: skip
 
-    def moved(self, found: WorldObject) -> None:
-        """An object is now where the robot has brought it, as described, until it is seen again."""
-        self._moved[found.label] = found
+    def moved(self, was: WorldObject, found: WorldObject) -> None:
+        """An object is now where the robot has brought it, as described, until it is seen elsewhere than it was: hidden
+        in part it is still said to be there.
+        """
+        self._moved[found.label], self._left[found.label] = found, was.position
 
     def resolve(self, goal: ManipulationGoal, wanted: str, base: Pose2, since: float = math.inf) -> WorldObject | None:
         """The object of a goal: the one it describes, the one last looked for, or the nearest in front.

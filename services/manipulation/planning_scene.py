@@ -27,6 +27,8 @@ MOST_FURNITURE = 14
 BIN_WALL = 0.03
 """Thickness [m] of a bin's walls in the planning scene. Chosen: twice that of the walls themselves,
 `floor_plan.BIN_WALL`."""
+TWICE = 0.03
+"""Difference [m] of places and extents up to which two objects are one that is known twice: no two stand so near."""
 LEAST_POINTS = 12
 """Fewer surface points say nothing of a shape."""
 DIRECTIONS, GAPS = 16, (0.05, 0.08, 0.12)
@@ -47,6 +49,16 @@ def target_of(found: WorldObject, base: Pose2, floor_plan: FloorPlan) -> Target:
         found.label, found.kind, (x, y, z), yaw, found.size, tilt_of(found), found.shape, _points(found.points, base),
         found.spread, found.measured,
     )  # fmt: skip
+
+
+def others(objects: Iterable[WorldObject], found: WorldObject) -> list[WorldObject]:
+    """The objects but for one, by whatever label: what was moved may be known twice for a while."""
+    return [o for o in objects if o.label != found.label and not _coincide(o, found)]
+
+
+def _coincide(a: WorldObject, b: WorldObject) -> bool:
+    as_large = all(abs(x - y) < TWICE for x, y in zip(sorted(a.size), sorted(b.size), strict=True))
+    return as_large and math.dist(a.position, b.position) < TWICE
 
 
 def tilt_of(found: WorldObject) -> float:

@@ -132,7 +132,7 @@ def _remember(robot: Robot, plan: Pull, found: WorldObject) -> WorldObject:
     x, y, yaw = compose(robot.base, plan.line[nearest])
     place = (x, y, found.position[2])
     moved = structs.replace(found, position=place, orientation=yaw_quat(yaw), points=b"", seen_at=robot.now)
-    robot.source.moved(moved)
+    robot.source.moved(found, moved)
     return moved
 
 

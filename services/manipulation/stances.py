@@ -10,7 +10,7 @@ from common.messages import WorldObject
 from services.manipulation.arm_model import Array, Obstacle
 from services.manipulation.motion_planner import Planner
 from services.manipulation.plan_grab import Way, feasible
-from services.manipulation.planning_scene import MARGINS, obstacles, target_of
+from services.manipulation.planning_scene import MARGINS, obstacles, others, target_of
 from services.manipulation.target import Target
 
 STAND_OFFS = (STAND_OFF, STAND_OFF + 0.08, STAND_OFF - 0.07, STAND_OFF + 0.15)
@@ -38,7 +38,7 @@ def other_stance(
     of the hand [m].
     """
     for pose in stances(household, found, base, STAND_OFFS)[:MOST]:
-        around = obstacles(household, pose, objects, found.label, MARGINS[0])
+        around = obstacles(household, pose, others(objects, found), margin=MARGINS[0])
         if feasible(planner, target_of(found, pose, household), Way(around, False, approach, lift), joints):
             return pose
     return None

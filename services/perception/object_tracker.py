@@ -60,6 +60,8 @@ there."""
 FLAT, FLAT_THROUGH, LEAST_THROUGH = 0.07, 0.3, 0.01
 """Up to which height [m] an object is flat: what it lay on is hardly farther behind, and it is gone where the camera
 sees that share of its height behind its centre, [m] at least."""
+FRESH = 20.0
+"""For how long [s] an object is new. Chosen: from when the hand begins to move one until all of the place is seen."""
 PUSHED, SAME_SIZE = 0.35, 0.025
 """How far [m] what is missing is looked for, and the largest difference of extents [m]. Chosen: what is pulled over an
 edge moves by 0.2; the error of extents, twice."""
@@ -69,7 +71,8 @@ edge moves by 0.2; the error of extents, twice."""
 class Track:
     """One object in one place, with the evidence for its name.
 
-    `seen_at` is the time of the newest evidence, be it the hand's; `looked_at` that of the newest picture of it [s].
+    `seen_at` is the time of the newest evidence, be it the hand's; `looked_at` that of the newest picture of it,
+    `began` that of the first [s].
     `clearest`: weight of the best view that has shown it whole.
     """
 
@@ -90,6 +93,7 @@ class Track:
     tilt: float = 0.0
     yaw_seen: bool = False
     looked_at: float = -math.inf
+    began: float = -math.inf
     label: str = ""
     looks: Descriptor = field(default_factory=lambda: Descriptor((0.0, 0.0, 0.0)))
 
@@ -147,11 +151,17 @@ class ObjectTracker:
             if track is None:
                 self._count += 1
                 track = Track(f"object-{self._count}", d.position, d.yaw, d.size, d.on, now, 0.0, tilt=d.tilt)
+                track.began = now
                 self._tracks.append(track)
                 seen.add(track.id)
             _see(track, _turned_over(track, d), now)
         for track in missing:
             track.misses += 1
+            fresh = [t for t in self._tracks if t.began > max(track.began, now - FRESH) and t.id in seen]
+            heir = _moved_here(track, fresh)
+            if heir is not None:
+                # It was seen elsewhere before it could be seen that it is gone.
+                heir.id, heir.label, heir.began, track.misses = track.id, track.label, track.began, self._gone_after
         self._tracks = [t for t in self._tracks if t.misses < self._gone_after]
         return seen
 
@@ -232,13 +242,21 @@ def _apart(d: Detection, track: Track) -> float | None:
     return distance + UNLIKE if distance < min(SAME, OVERLAP * half) and not above else None
 
 
-def _moved_here(d: Detection, missing: Sequence[Track]) -> Track | None:
-    """The nearest of the objects that are not where they were and look the same, as large as what is new."""
+def _one_look(a: Track, b: Track) -> bool:
+    """Two tracks of what nobody listed have colours in common."""
+    mine, theirs = (shares(t.looks.colours) for t in (a, b))
+    return not (a.known or b.known) and sum(min(v, theirs.get(c, 0.0)) for c, v in mine.items()) >= ALIKE
+
+
+def _moved_here(d: Detection | Track, others: Sequence[Track]) -> Track | None:
+    """The nearest of the objects that look the same, and are as large: of those that are not where they were, for what
+    is new; of those that are new, for what is not where it was.
+    """
     near = []
-    for t in missing:
+    for t in others:
         distance = math.hypot(d.position[0] - t.position[0], d.position[1] - t.position[1])
         as_large = all(abs(a - b) < SAME_SIZE for a, b in zip(sorted(d.size), sorted(t.size), strict=True))
-        if distance < PUSHED and as_large and _alike(d, t):
+        if distance < PUSHED and as_large and (_alike(d, t) if isinstance(d, Detection) else _one_look(d, t)):
             near.append((distance, t.id, t))
     return min(near)[2] if near else None
 

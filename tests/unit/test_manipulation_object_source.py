@@ -4,6 +4,7 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from msgspec import structs
 
 from common.config import config_dir
 from common.household import load_household, load_words, mapped
@@ -52,3 +53,16 @@ def test_the_brain_tells_what_it_was_asked_for() -> None:
     assert asked("red mug", "red toy", UNLISTED) == "mug"
     assert asked("red cup", "red mug", LISTED) == "mug"
     assert asked("something red", "red toy", UNLISTED) == ""
+
+
+def test_what_was_pulled_is_there_until_it_is_seen_elsewhere_than_it_was() -> None:
+    known = source()
+    pulled = structs.replace(SEEN, position=(3.8, -3.0, 0.8), seen_at=7.0)
+    known.moved(SEEN, pulled)
+    assert known.objects() == [pulled]
+    # Half hidden by the arm it is said to be where it was.
+    known.update(WorldObjects(t=8.0, objects=[structs.replace(SEEN, seen_at=8.0)]))
+    assert known.objects() == [pulled]
+    seen = structs.replace(SEEN, position=(3.79, -3.01, 0.8), seen_at=9.0)
+    known.update(WorldObjects(t=9.0, objects=[seen]))
+    assert known.objects() == [seen]
