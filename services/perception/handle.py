@@ -37,7 +37,7 @@ def parted(rows: NDArray[np.intp], columns: NDArray[np.intp], pixel: float) -> P
     mask = np.zeros((int(np.ptp(rows)) + 5, int(np.ptp(columns)) + 5), bool)
     mask[rows - row, columns - column] = True
     # Rims and edges have no depth and may be missing as lines.
-    mask = ndimage.binary_closing(mask, np.ones((3, 3)))
+    mask = ndimage.binary_closing(mask, np.ones((2, 2)))
     side = max(2, round(THICK / pixel))
     body = ndimage.binary_opening(mask, np.ones((side, side)))
     if np.count_nonzero(body) < BODY * len(rows):
@@ -49,13 +49,10 @@ def parted(rows: NDArray[np.intp], columns: NDArray[np.intp], pixel: float) -> P
 
 
 def _handle(mask: NDArray[np.bool_], body: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """The largest thin part, if it is at the side of the body."""
-    none = np.zeros_like(mask)
+    """The largest thin part at the side of the body."""
     labels, count = ndimage.label(mask & ~body, np.ones((3, 3)))
-    if not count:
-        return none
-    part = labels == 1 + int(np.bincount(labels.ravel())[1:].argmax())
     across = np.flatnonzero(body.any(axis=0))
-    middle = float(np.nonzero(part)[1].mean())
-    beside = middle < across[0] or middle > across[-1]
-    return part if beside and np.count_nonzero(part) >= SHARE * np.count_nonzero(mask) else none
+    parts = (labels == n + 1 for n in range(count))
+    beside = [p for p in parts if not across[0] <= float(np.nonzero(p)[1].mean()) <= across[-1]]
+    part = max(beside, key=np.count_nonzero, default=np.zeros_like(mask))
+    return part if np.count_nonzero(part) >= SHARE * np.count_nonzero(mask) else np.zeros_like(mask)

@@ -7,6 +7,7 @@ The shapes are convex, so that they reach as far as their corners do.
 
 import math
 from dataclasses import dataclass, replace
+from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,6 +29,8 @@ BEYOND = 0.35
 less where it is mixed with what is bright behind it."""
 SAMPLE, FEW = 80, 20
 """Points with depth that are used, and how many of them count half."""
+KNOWN = 4.0
+"""Weight of a height that was measured, in directions of the outline."""
 ROBUST, TRIES, STEP = 0.003, 15, 1e-5
 """Distance [m] beyond which a direction counts less, steps of the solver, and difference [m, rad] for slopes."""
 PIXELS_OFF, MOST_OFF = 0.7, 0.0025
@@ -118,20 +121,22 @@ def shape(view: View, seen: Outline, at: Array, floor: float, points: Array) -> 
         tried.append(_fit(view, seen, solids.turned(floor), np.array([*middle, half * foot_share, half, h]), "round"))
     if 0.6 < h / (2 * half) < 1.6:
         tried.append(_fit(view, seen, solids.ball(floor), np.array([*(at[:2] + away * 0.4 * half), half]), "ball"))
-    for yaw in (0.0, 0.5, 1.0):
-        for slim in (1.0, 2.5):
-            # As wide across the line of sight as it is seen.
-            c, s = abs(math.cos(yaw)), abs(math.sin(yaw))
-            side = 2 * half / (slim * s + c)
-            for turn in (yaw, -yaw) if slim != 1.0 and yaw else (yaw,):
-                middle = at[:2] + away * side * (s + slim * c) / 2
-                start = np.array([*middle, ahead + turn, slim * side, side, h])
-                tried.append(_fit(view, seen, solids.box(floor), start, "box"))
+    used = points[:: max(1, len(points) // SAMPLE)] - (0.0, 0.0, floor)
+    # What is lit from above shows how high it is; an outline alone is also that of a lower and deeper box.
+    known = [primitives.quantile(used[:, 2], 0.9)] if len(used) > FEW else []
+    for height, (yaw, slim) in product(
+        [math.nan, *known], ((0.0, 1.0), (0.5, 1.0), (1.0, 1.0), (0.5, 2.5), (-0.5, 2.5))
+    ):
+        # As wide across the line of sight as it is seen.
+        c, s = abs(math.cos(yaw)), abs(math.sin(yaw))
+        side = 2 * half / (slim * s + c)
+        middle = at[:2] + away * side * (s + slim * c) / 2
+        start = np.array([*middle, ahead + yaw, slim * side, side, h if math.isnan(height) else height])
+        tried.append(_fit(view, seen, solids.box(floor), start, "box", height))
     if half > 0.6 * h:
         for turn in (math.pi / 2, math.pi / 4, -math.pi / 4):
             start = np.array([*(at[:2] + away * h / 2), ahead + turn, h / 2, 2 * half / abs(math.sin(turn))])
             tried.append(_fit(view, seen, solids.lying(floor), start, "long"))
-    used = points[:: max(1, len(points) // SAMPLE)] - (0.0, 0.0, floor)
     best = min(tried, key=lambda m: m.residual + SIMPLER * m.free * 0.5 * seen.pixel + _beyond(m, used))
     if best.residual > PIXELS_OFF * seen.pixel + MOST_OFF or seen.solid < SOLID:
         return None
@@ -185,12 +190,22 @@ def _beside(view: View, seen: Outline, body: Measurement) -> float:
     return math.atan2(there[1] - body.y, there[0] - body.x)
 
 
-def _fit(view: View, seen: Outline, corners: solids.Corners, start: Array, family: ShapeFamily) -> Measurement:
+def _fit(
+    view: View,
+    seen: Outline,
+    corners: solids.Corners,
+    start: Array,
+    family: ShapeFamily,
+    height: float = math.nan,
+) -> Measurement:
+    """The shape with the outline, from the parameters `start`; `height` [m]: the last of them, if it is known."""
     count = len(start)
     shifts = np.concatenate([np.zeros((1, count)), STEP * np.eye(count)])
 
     def off(p: Array) -> tuple[Array, Array]:
         apart = np.stack([seen.distance * (_reach(view, corners(q)) - seen.reach) for q in p + shifts])
+        if not math.isnan(height):
+            apart = np.hstack([apart, KNOWN * ((p + shifts)[:, -1:] - height)])
         return apart[0], ((apart[1:] - apart[0]) / STEP).T
 
     p = solve(off, start, ROBUST, TRIES)[0]
@@ -198,7 +213,7 @@ def _fit(view: View, seen: Outline, corners: solids.Corners, start: Array, famil
     noise = max(FREE, 0.4 * seen.pixel)
     information = slopes.T @ slopes / (noise * noise) + np.eye(count) * 25.0
     covariance = np.diag(np.linalg.inv(information))
-    return _measurement(p, covariance, float(np.minimum(np.abs(apart), 0.02).mean()), family)
+    return _measurement(p, covariance, float(np.minimum(np.abs(apart[:DIRECTIONS]), 0.02).mean()), family)
 
 
 def _measurement(p: Array, variance: Array, residual: float, family: ShapeFamily) -> Measurement:

@@ -59,8 +59,9 @@ def handled(body: Solid, r: float, h: float) -> Solid:
     return inside
 
 
-def seen(solid: Solid, beside: bool = False) -> View:
-    """A black thing on a table of which only the table has depth; `beside`: something nearer stands before it."""
+def seen(solid: Solid, beside: bool = False, lit: float = math.inf) -> View:
+    """A black thing on a table of which only the table has depth; `beside`: something nearer stands before it; `lit`:
+    height [m] from which it has depth itself."""
     ahead = np.array([AT[0], AT[1], FLOOR + 0.05]) - EYE
     ahead /= np.linalg.norm(ahead)
     right = np.cross(ahead, (0.0, 0.0, 1.0))
@@ -72,12 +73,13 @@ def seen(solid: Solid, beside: bool = False) -> View:
     depth = (FLOOR - EYE[2]) / np.minimum(rays[..., 2], -1e-3)
     black = np.zeros(u.shape, bool)
     for far in np.arange(0.85, 1.2, 0.004):
-        black |= solid(EYE + rays * far) & (far < depth)
-    depth[black] = 0.0
+        hit = solid(EYE + rays * far) & (far < depth) & ~black
+        black |= hit
+        depth[hit] = np.where(EYE[2] + rays[hit, 2] * far > FLOOR + lit, far, 0.0)
     if beside:
         column = int(np.nonzero(black.any(axis=0))[0].mean())
         depth[:, column:] = 0.5
-    rgb = np.where((black & (depth == 0))[..., None], np.uint8(8), np.uint8(150)).repeat(3, axis=-1)
+    rgb = np.where((black & (depth != 0.5))[..., None], np.uint8(8), np.uint8(150)).repeat(3, axis=-1)
     return View(rgb, depth.astype(np.float32), (FOCAL, FOCAL), (WIDTH / 2, HEIGHT / 2), EYE, rotation)
 
 
@@ -109,6 +111,13 @@ def test_its_outline_tells_shape_size_and_place(
     assert shape.size == pytest.approx(size, abs=0.006)
     assert (shape.x, shape.y) == pytest.approx(AT, abs=0.006)
     assert shape.tilt == (LEVEL if size[0] == 0.14 else 0.0)
+
+
+@pytest.mark.parametrize(("side", "high", "yaw"), [(0.055, 0.055, 0.0), (0.05, 0.08, 0.12)])
+def test_a_lit_upper_face_tells_a_block_from_what_is_lower_and_deeper(side: float, high: float, yaw: float) -> None:
+    (shape,) = found(seen(box(side, side, high, yaw), lit=high - 0.005))
+    assert shape.family == "box"
+    assert shape.size == pytest.approx((side, side, high), abs=0.009)
 
 
 def test_a_handle_is_beside_the_body_and_no_part_of_it() -> None:
