@@ -49,7 +49,10 @@ class Peer:
             rows = list(self.heard[key])
             return next((r for r in rows if all(r.get(k) == v for k, v in fields.items())), None)
 
-        return eventually(found, f"{fields} on {key}; heard {self.heard[key][-3:]}") or {}
+        try:
+            return eventually(found, f"{fields} on {key}") or {}
+        except AssertionError as error:
+            raise AssertionError(f"{error}; heard {self.heard[key][-3:]}") from None
 
 
 def obey(peer: Peer, moving: bool) -> Any:

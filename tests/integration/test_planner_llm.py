@@ -394,7 +394,8 @@ def test_by_itself_it_waits_for_nobody(endpoint: Endpoint) -> None:
 
 def test_a_model_that_did_not_answer_is_left_alone_for_longer_and_longer(endpoint: Endpoint) -> None:
     endpoint.answers = [endpoint.hangs, endpoint.hangs, plans(*MUG)]
-    node = Desk(endpoint, backend="auto", llm_timeout=0.5)
+    # Long enough for a busy machine to have sent the question that is given up.
+    node = Desk(endpoint, backend="auto", llm_timeout=2.0)
     for number, rest in ((1, REST), (2, 2 * REST)):
         plans_by(node, "llm")
         asked, answered = len(endpoint.requests), node.count(topics.ACTION_PLAN)

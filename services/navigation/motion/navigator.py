@@ -101,7 +101,7 @@ class Navigator:
                 raise Ended("arrived")
             if answer.reached and answer.target_id == f"{self._name}#{self._targets}":
                 self._base.reached(pose)
-        pose = self._base.assumed or pose
+        pose = self._base.where(pose)
         if pose is None:
             return self._without_odometry(now)
         if self._base.start is None:
