@@ -374,6 +374,19 @@ def test_a_cup_keeps_its_inside(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     assert not any(Delaunay(vertices).find_simplex(inside) >= 0 for vertices, _ in found)
 
 
+def test_the_seams_of_a_texture_are_sewn_before_a_mesh_is_taken_apart(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("TIDYBOT_CACHE_DIR", str(tmp_path))
+    monkeypatch.setitem(sys.modules, "coacd", Decomposer())
+    corners, triangles = cup()
+    loose = corners[triangles.ravel()]
+    without_area = [[0, 0, 3]]
+    faces = np.concatenate([np.arange(len(loose)).reshape(-1, 3), without_area])
+    sewn, found = convex.parts(loose, faces)[0]
+    assert len(sewn) == len(corners) and len(found) == len(triangles)
+
+
 def test_a_mesh_whose_hull_would_fill_it_is_hollow() -> None:
     corners, triangles = cup()
     assert convex.hollow(corners, triangles)
