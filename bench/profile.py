@@ -38,6 +38,7 @@ PARTS = {
     "services.sim.contacts:Contacts.step": "contact log",
     "common.rendering.renderer:Renderer.load": "state",
     "common.rendering.renderer:Renderer.rgbd": "drawing",
+    "common.rendering.renderer:Renderer.band": "drawing",
     "common.rendering.renderer:Renderer.surfaces": "drawing",
     "services.camera.sensor:StereoCamera.expose": "sensor model",
     "services.perception.detect:ClassicalDetector.detect": "detection",

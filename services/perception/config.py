@@ -11,16 +11,20 @@ class PerceptionConfig(Config, frozen=True):
 
     `detector` is `classical` or `package.module:Class` of a detector of one's own (see detect.Detector).
 
-    A picture is taken every `period` seconds while the robot moves or works, every `idle_period` while it rests,
-    and at once for a query; one of `fine_width` x `fine_height` to `read` what is printed on objects, when words are
-    asked for that name none, and to see what a name is taught for. While the base turns faster than `max_turn` [rad/s]
-    pictures are not worth having."""
+    A picture is taken every `period` seconds while the robot works or stands elsewhere than for the last one, while it
+    drives after each `stride` [m], or `laden_stride` with something in its hand, or `sweep` [rad], every `idle_period`
+    at the latest, and at once for a query; one of `fine_width` x `fine_height` to `read` what is printed on objects,
+    when words are asked for that name none, and to see what a name is taught for. While the base turns faster than
+    `max_turn` [rad/s] pictures are not worth having."""
 
     detector: str = "classical"
     width: int = 640
     height: int = 480
     period: float = 1.0
     idle_period: float = 5.0
+    stride: float = 0.5
+    laden_stride: float = 1.5
+    sweep: float = 0.5
     max_turn: float = 0.35
     max_range: float = 3.5
     detection_seconds: float = 0.15

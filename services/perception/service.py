@@ -144,8 +144,7 @@ class PerceptionService:
         ):
             return
         phase = self._phase()
-        resting = self._looked_from is not None and _near(self._looked_from[0], here) and self._looked_from[1] == phase
-        period = config.idle_period if resting else config.period
+        period = config.idle_period if self._shown(here, phase) else config.period
         wanted = self._inbox.active is not None or self._naming.wants_picture
         if not wanted and now - self._asked_at < period and phase != AIM:
             return
@@ -155,6 +154,17 @@ class PerceptionService:
         width, height = (config.fine_width, config.fine_height) if self._fine else (config.width, config.height)
         request = m.CameraRequest(id=self._picture, camera=camera, width=width, height=height)
         self._io.publish(topics.CAMERA_REQUEST, request)
+
+    def _shown(self, here: Pose2, phase: str) -> bool:
+        """The last picture shows what one from `here` would: the robot rests, or drives and has not come far yet."""
+        if self._looked_from is None or self._looked_from[1] != phase:
+            return False
+        there, config = self._looked_from[0], self._config
+        if not self._state.driving():
+            return _within(there, here, MOVING, MOVING)
+        # Who carries something looks for nothing.
+        stride = config.laden_stride if any(o.held for o in self._published) else config.stride
+        return _within(there, here, stride, config.sweep)
 
     def _wants_fine_picture(self) -> bool:
         """Print is to be read, or what a name is taught for was seen and is to be seen better."""
@@ -339,8 +349,9 @@ def _pose_answer(query: m.ObjectQuery, result: Grounding, picture: bytes) -> m.O
     )  # fmt: skip
 
 
-def _near(a: Pose2, b: Pose2) -> bool:
-    return abs(a[0] - b[0]) + abs(a[1] - b[1]) < MOVING and abs(wrap(a[2] - b[2])) < MOVING
+def _within(a: Pose2, b: Pose2, way: float, turn: float) -> bool:
+    """Two poses are less than `way` [m] and `turn` [rad] apart."""
+    return math.hypot(a[0] - b[0], a[1] - b[1]) < way and abs(wrap(a[2] - b[2])) < turn
 
 
 def _outline(o: m.WorldObject) -> tuple[object, ...]:

@@ -1,5 +1,6 @@
 """Robot state at a stamp: pose of the base and joint angles when a picture was taken, and the model posed by them."""
 
+import math
 from collections import deque
 
 import numpy as np
@@ -14,6 +15,8 @@ from services.perception.self_filter import RobotModel
 
 HISTORY = 100
 """Poses that are kept: 5 s at 20 Hz, longer than a picture is under way."""
+DRIVING = 0.1
+"""Speed [m/s] above which the base drives. Chosen: above the noise of localisation over 0.15 s at rest."""
 
 
 class StateBuffer:
@@ -75,6 +78,13 @@ class StateBuffer:
             return 0.0
         (t0, a), (t1, b) = self._poses[-4], self._poses[-1]
         return abs(wrap(b[2] - a[2])) / max(t1 - t0, 1e-3)
+
+    def driving(self) -> bool:
+        """True while the base moves over the floor, by the last estimates."""
+        if len(self._poses) < 4:
+            return False
+        (t0, a), (t1, b) = self._poses[-4], self._poses[-1]
+        return math.hypot(b[0] - a[0], b[1] - a[1]) > DRIVING * max(t1 - t0, 1e-3)
 
     def robot(self, now: float, t: float | None = None) -> RobotModel | None:
         """The robot's model with its arm as it is, or was at `t`; None while it loads or nothing was felt."""

@@ -20,6 +20,12 @@ FINE, COARSE = 5, 2
 """Steps of a tick. 2 ms is half the time constant of the pads' contacts, the longest that MuJoCo takes for them; while
 the base drives or stands, touches nothing, and every object sleeps, 5 ms do: the loops of the linkage give way a little
 more then, with nothing between the pads."""
+REST = 1e-5
+"""Speed of all joints and objects together [m/s, rad/s] below which the world rests: a hundredth of a millimetre in a
+second. Chosen: what the solver leaves when nothing moves is a tenth of it."""
+CALM, GLANCE = 10, 10
+"""Ticks of rest after which it is not worked out any more, and after how many it is looked at whether it still rests:
+what changes the model from outside is felt within 0.1 s."""
 SETTLE_TICKS = 50
 HOST = "host"
 """What its guests call the robot whose simulation it is."""
@@ -32,7 +38,8 @@ class Physics(Body):
     """One world with its robot; `advance` runs 10 ms of it, at 500 Hz or, while nothing but bases move, at 200 Hz.
 
     `guests` are other robots with where they start; each is told of the world in a description (`mjcfs`) of its own,
-    in which its own parts bear their own names.
+    in which its own parts bear their own names. While nothing moves and nothing is told to, every tenth tick alone is
+    worked out.
     """
 
     def __init__(
@@ -64,7 +71,11 @@ class Physics(Body):
         ]
         self._starts = [(scene.home.x, scene.home.y, scene.home.theta), *(pose for _, pose in guests)]
         self.obstacles = Obstacles(obstacles, self.model, [w.footprint for w in scene.walls] + scene.footprints)
-        self._steps = FINE
+        # What the world rests under: set-points, how hard they are held, and where obstacles are.
+        self._causes = data.ctrl, model.actuator_forcerange, data.mocap_pos
+        self._rested_under = tuple(a.copy() for a in self._causes)
+        self._speeds = data.qvel
+        self._steps, self._calm = FINE, 0
         self.reset()
 
     @property
@@ -75,7 +86,7 @@ class Physics(Body):
     def reset(self) -> None:
         """The layout of the seed, the robots where they start, everything at rest."""
         mujoco.mj_resetData(self.model, self.data)
-        self._steps, self.model.opt.timestep = FINE, DT / FINE
+        self._steps, self.model.opt.timestep, self._calm = FINE, DT / FINE, 0
         for robot, pose in zip(self.robots, self._starts, strict=True):
             robot.at_home(pose)
         for p in self.placements:
@@ -102,21 +113,31 @@ class Physics(Body):
         moves = [(self, start, end - start), *((r, a, b - a) for r, (a, b) in zip(self.guests, guests, strict=True))]
         for robot, _, _ in moves:
             robot.fingers.advance()
-        steps = COARSE if self._alone(moves) else FINE
-        if steps != self._steps:
-            self._steps, model.opt.timestep = steps, DT / steps
-        moving = []
         for robot, begin, change in moves:
             robot.ctrl[:] = begin + robot.lead * change
-            if change.any():
-                moving.append((robot.ctrl, change / steps))
+        rests = self._rests()
+        steps = self._steps if rests else COARSE if self._alone(moves) else FINE
+        if steps != self._steps:
+            self._steps, model.opt.timestep = steps, DT / steps
+        moving = [(robot.ctrl, change / steps) for robot, _, change in moves if change.any()]
         for number in range(1, steps + 1):
             for ctrl, change in moving:
                 ctrl += change
-            mujoco.mj_step(model, data)
+            if not rests:
+                mujoco.mj_step(model, data)
             if data.ncon:
                 for robot, _, _ in moves:
                     robot.contacts.step(data, now + number * DT / steps)
+
+    def _rests(self) -> bool:
+        """Nothing has moved for a while, nothing that moves things has changed, and no glance at it is due."""
+        rows = tuple(zip(self._causes, self._rested_under, strict=True))
+        same = all(np.array_equal(now, was) for now, was in rows)
+        if not same:
+            for now, was in rows:
+                was[:] = now
+        self._calm = self._calm + 1 if same and float(self._speeds @ self._speeds) < REST**2 else 0
+        return self._calm > CALM and self._calm % GLANCE != 0
 
     def _alone(self, moves: Sequence[tuple[Body, NDArray[np.float64], NDArray[np.float64]]]) -> bool:
         """True while the robots touch nothing, nothing but they is awake, and arms and fingers rest."""
@@ -134,6 +155,7 @@ class Physics(Body):
     def restore(self, state: NDArray[np.float64]) -> None:
         """Back to a snapshot of the same model."""
         mujoco.mj_setState(self.model, self.data, state, _STATE)
+        self._calm = 0
         for robot in self.robots:
             robot.fingers.hold()
         mujoco.mj_forward(self.model, self.data)

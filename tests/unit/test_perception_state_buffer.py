@@ -85,3 +85,11 @@ def test_joints_of_another_robot_are_none(robot: Robot) -> None:
     robot.bus.send(topics.JOINT_STATES, m.JointStates(t=0.0, name=["wheel"], position=[0.0], velocity=[], effort=[]))
     robot.step()
     assert not robot.service.felt and robot.state.robot(1.0) is None
+
+
+def test_the_base_drives_when_it_moves_over_the_floor_not_when_its_estimate_shivers(robot: Robot) -> None:
+    told = []
+    for x in (0.0, 0.002, -0.001, 0.001, 0.0, 0.05, 0.10, 0.15, 0.15, 0.15, 0.15):
+        robot.feel(x, 0.0)
+        told.append(robot.state.driving())
+    assert told == [False] * 5 + [True] * 5 + [False]
