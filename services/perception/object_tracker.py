@@ -165,8 +165,8 @@ class ObjectTracker:
         self._tracks = [t for t in self._tracks if t.misses < self._gone_after]
         return seen
 
-    def carry(self, hand: Vec3, holding: bool, now: float) -> None:
-        """Follow the hand: what it closes on is held and moves with it until it opens."""
+    def carry(self, hand: Vec3, holding: bool, now: float) -> bool:
+        """Follow the hand: what it closes on is held and moves with it until it opens; True when anything is or was."""
         held = next((t for t in self._tracks if t.held), None)
         if holding and held is None:
             near = [(math.dist(t.position, hand), t.id, t) for t in self._tracks]
@@ -174,17 +174,18 @@ class ObjectTracker:
                 held = min(near)[2]
                 held.held, held.on, held.seen_at = True, "", now
         if held is None:
-            return
+            return False
         held.looks.points = np.empty((0, 3))
         if holding:
             held.position = hand
-            return
+            return True
         # Where the hand let go; the next look says better.
         held.held, held.misses, held.weight, held.seen_at = False, 0, 0.0, now
         held.yaw_seen = False
         surface = self._household.surface_at(*hand)
         held.on, height = (surface.name, surface.center[2]) if surface else ("", 0.0)
         held.position = (hand[0], hand[1], height + held.size[2] / 2)
+        return True
 
     def objects(self, since: float = -math.inf) -> list[WorldObject]:
         """What is believed, one place for each object of the household, the newest that was sure.

@@ -67,7 +67,7 @@ class PerceptionService:
         self._config, self._io = config, io
         # Inside, surfaces are called as the file has them, whatever people call them meanwhile.
         self._detector = load_detector(config.detector)(io.loaded, config.max_range)
-        self._world = ""
+        self._world, self._told = "", io.household
         self._naming = Naming(io, config)
         self._reset()
         self._state = StateBuffer(io)
@@ -121,8 +121,9 @@ class PerceptionService:
         robot = state.robot(now)
         if robot is not None:
             self._hand_at = robot.hand(base)
-            self._tracker.carry(self._hand_at, state.holds(robot), now)
-            self._publish_objects(now)
+            if self._tracker.carry(self._hand_at, state.holds(robot), now) or io.household is not self._told:
+                self._told = io.household
+                self._publish_objects(now)
 
     def _phase(self) -> str:
         """The phase of the manipulation under way, "" when the arm rests."""
