@@ -17,6 +17,9 @@ from services.manipulation.target import Target
 from services.manipulation.touch import Reaction
 from services.manipulation.trajectory import connect
 
+PLAINLY = 0.012
+"""How much wider [m] than the hand takes a flat thing is that is only taken over an edge: the error of extents of
+what is seen in part."""
 CARTESIAN_STEP = 0.02
 """Distance [m] between the configurations along a straight line. Chosen: joints in between hardly leave it."""
 MAX_JUMP = 0.6
@@ -70,7 +73,7 @@ class Planner:
         """
         arm = self.arm
         yield over_an_edge(target, arm.forward, arm.widest)
-        if flat_and_wide(target, arm.widest + 2 * target.spread):
+        if flat_and_wide(target, arm.widest + PLAINLY):
             return
         rules = candidates(target, arm.forward, arm.widest)
         on_surface = antipodal(target, arm.forward, arm.hand.open, arm.widest)
