@@ -225,6 +225,10 @@ LONGER = 1.15
 
 
 def laid_on_a_side(kind: str, size: tuple[float, float, float]) -> bool:
-    """Something that stands on its end lies on a side, by its extents as it rests, the longer level one first."""
+    """Something that stands on its end lies on a side, by its extents as it rests, the longer level one first.
+
+    What is longest level and higher than deep stands as it is sold: a box of tea bags, a pack of tissues.
+    """
     row = kind_of(kind)
-    return row.upright and "face" in row.rests and size[0] > LONGER * size[2]
+    level = size[0] > LONGER * size[2] and LONGER * size[1] > size[2]
+    return row.upright and "face" in row.rests and level

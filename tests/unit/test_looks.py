@@ -2,7 +2,7 @@
 
 import pytest
 
-from common.kinds import KINDS, LOOKS
+from common.kinds import KINDS, LOOKS, laid_on_a_side
 from common.looks import LEAST, Measures, likely
 
 GOODS = [
@@ -47,3 +47,18 @@ def test_a_little_outside_its_range_a_kind_is_still_likely_and_far_outside_not()
     near, far = (KINDS["can"].look.likelihood(Measures("round", d, 0.12), ["red"]) for d in (0.11, 0.19))  # type: ignore[union-attr]
     assert near > LEAST
     assert far < LEAST / 5
+
+
+@pytest.mark.parametrize(
+    ("size", "lies"),
+    [
+        ((0.28, 0.19, 0.06), True),  # corn flakes on their back
+        ((0.19, 0.07, 0.07), True),  # a milk carton
+        ((0.12, 0.065, 0.085), False),  # tea bags
+        ((0.10, 0.06, 0.15), False),
+    ],
+)
+def test_a_box_lies_on_its_largest_side_and_is_not_stood_on_its_narrow_end(
+    size: tuple[float, float, float], lies: bool
+) -> None:
+    assert laid_on_a_side("box", size) is lies
