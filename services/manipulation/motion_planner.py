@@ -115,12 +115,15 @@ class Planner:
                     return path
         return None
 
-    def to_home(self, now: Array, around: Sequence[Obstacle]) -> list[Array]:
-        """A path to the carry pose; straight where nothing better is found."""
+    def to_home(self, now: Array, around: Sequence[Sequence[Obstacle]]) -> list[Array]:
+        """A path to the carry pose around the first set of obstacles that leaves one; straight where none does."""
         self.arm.hold(None)
-        self.surround(around, now)
         goal = self.arm.nearest_turn(self.arm.home, now)
-        return connect(self.arm, now, goal, self.rng()) or [now, goal]
+        for some in around:
+            self.surround(some, now)
+            if path := connect(self.arm, now, goal, self.rng()):
+                return path
+        return [now, goal]
 
     def straight(self, start: Array, begin: Pose, end: Pose) -> list[Array] | None:
         """Configurations along a straight line of the pinch point, without the first; None when the arm cannot."""

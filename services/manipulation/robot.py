@@ -139,8 +139,10 @@ class Robot:
 
 
 def go_home(robot: Robot) -> Steps[str]:
-    """The carry pose, by a path around what is known."""
-    around = obstacles(robot.io.household, robot.base, robot.source.objects(), margin=0.0)
+    """The carry pose, by a path around what is known; around furniture at least where an object is in the way, which
+    need not be where it was believed once the hand was there."""
+    known = [robot.source.objects(), []]
+    around = [obstacles(robot.io.household, robot.base, objects, margin=0.0) for objects in known]
     path = yield from robot.work(planner_of(robot).to_home, robot.joints.copy(), around)
     yield from robot.follow(path, robot.config.joint_speed)
     return "arm at home"

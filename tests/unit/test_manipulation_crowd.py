@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -130,3 +131,15 @@ def test_fingertips_that_close_do_not_press_on_the_table() -> None:
         plan = plan_grab(PLANNER, rod, [[TABLE]], ARM.home.copy(), 0.1, 0.1, 1.0, frozenset(), [])
         for width in (ARM.hand.open, plan.grasp.width):
             assert PLANNER.clearance.met(plan.grasp.pose, width, [TABLE]) == set()
+
+
+def test_the_arm_goes_home_around_the_table_from_within_what_is_believed_to_stand_there() -> None:
+    now = grab().insert[-1]
+    stale = CAN.grown(0.05)
+    path = PLANNER.to_home(now, [[TABLE, stale], [TABLE]])
+    ARM.set_obstacles([TABLE])
+    ways = [np.linspace(a, b, 20) for a, b in pairwise(path)]
+    free = not any(ARM.collides(q) for way in ways for q in way)
+    straight = any(ARM.collides(q) for q in np.linspace(now, ARM.nearest_turn(ARM.home, now), 60))
+    ARM.set_obstacles(())
+    assert free and straight

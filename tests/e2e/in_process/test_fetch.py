@@ -21,8 +21,8 @@ def seen(outcome: Outcome) -> list[str]:
 
 
 def test_a_recorded_voice_brings_the_mug_home() -> None:
-    robot = Robot(seed=0)
-    outcome = fetch(robot, "red mug", 0, speech=read_wav(VOICE))
+    robot = Robot(seed=7)  # in the next room: half the way of most
+    outcome = fetch(robot, "red mug", 7, speech=read_wav(VOICE))
     assert outcome.claimed == "delivered", outcome.reason
     assert outcome.objections == []
     assert seen(outcome) == FLOW
