@@ -104,4 +104,4 @@ def is_of(points: Array, shape: Measurement) -> NDArray[np.bool_]:
 
 def is_part(points: Array, shapes: list[Measurement]) -> bool:
     """Points (n, 3) are for the most part of an object whose outline was seen."""
-    return any(float(np.mean(is_of(points, shape))) > OWN_SHARE for shape in shapes)
+    return len(points) > 0 and any(float(np.mean(is_of(points, shape))) > OWN_SHARE for shape in shapes)

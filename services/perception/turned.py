@@ -155,7 +155,7 @@ def _within(points: Array, x: float, y: float, rim: float, h: float, eye: Array,
 def _closed(points: Array, rho: Array, r: float, h: float, eye: Array, noise: float) -> bool:
     """The inner part of the upper end is seen from above, and it is level."""
     inner = points[rho < INNER_PART * r]
-    if eye[2] < h + 0.02 or len(inner) < CAVITY * len(points):
+    if eye[2] < h + 0.02 or not len(inner) or len(inner) < CAVITY * len(points):
         return False
     return bool(np.mean(np.abs(inner[:, 2] - h) < FLAT + noise) > LEVEL_SHARE)
 
