@@ -11,6 +11,7 @@ from tests.support import Site, eventually
 PAYLOADS = 3000
 
 
+@pytest.mark.slow  # its storm starves what runs beside it
 @pytest.mark.timeout(600)
 def test_processes_survive_hostile_payloads_and_still_answer(here: Site) -> None:
     with here.session() as session:
