@@ -5,7 +5,7 @@ from typing import NamedTuple
 from common.household import Household
 from common.kinds import KINDS, kind_of
 from common.messages import WorldObject
-from common.naming import ALIKE, ANYTHING, normalise
+from common.naming import ALIKE, listed, normalise, own_words
 
 PLAIN = 0.55
 """Likeness from which words plainly fit: below it a person is asked. Chosen: the word is likelier than all others."""
@@ -80,8 +80,7 @@ class _Words(NamedTuple):
 
 
 def _known(wanted: str, o: WorldObject, household: Household) -> _Words:
-    told = household.words
-    words = {w if w in KINDS else told.kind(w) or told.colour(w) or w for w in wanted.split()} - ANYTHING
+    words = own_words(wanted, household)
     kinds, shades = words & set(KINDS), words & set(ALIKE)
     # "The orange can": what may be a colour is one beside another kind; alone it may be either.
     both = kinds & shades
@@ -104,10 +103,10 @@ def _fit(words: _Words, o: WorldObject) -> float:
 def describes(phrase: str, household: Household) -> bool:
     """One of the words says what the thing looks like, or the household lists it: not so "the pear"."""
     wanted, told = normalise(phrase), household.words
-    if any(wanted in map(normalise, (o.name, *o.aliases)) for o in household.things):
-        return True
     words = (*wanted.split(), wanted)
-    return any(w in KINDS or w in ALIKE or w in told.groups or told.kind(w) or told.colour(w) for w in words)
+    return listed(wanted, household) is not None or any(
+        w in KINDS or w in ALIKE or w in told.groups or told.kind(w) or told.colour(w) for w in words
+    )
 
 
 def plainly(phrase: str, o: WorldObject, household: Household) -> bool:

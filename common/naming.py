@@ -4,6 +4,7 @@ import difflib
 import re
 from collections.abc import Iterable
 
+from common.floor_plan import Thing
 from common.household import Household
 from common.kinds import KINDS, kind_of
 from common.messages import WorldObject
@@ -41,20 +42,28 @@ def match_object(query: str, objects: Iterable[WorldObject], household: Househol
     known = list(objects)
     if taught := [o for o in known if wanted in o.names]:
         return taught
-    spec = next(
-        (o for o in household.things if wanted == normalise(o.name) or wanted in map(normalise, o.aliases)), None
-    )
+    spec = listed(wanted, household)
     names = {wanted, normalise(spec.name)} if spec else {wanted}
     exact = [o for o in known if normalise(o.label) in names]
     if exact:
         return exact
-    told = household.words
-    words = {w if w in KINDS else told.kind(w) or told.colour(w) or w for w in wanted.split()} - ANYTHING
+    words = own_words(wanted, household)
     if not words:
         return []
     fits = [(_fit(words, o), o) for o in known if o.kind]
     best = min((fit for fit, _ in fits), default=UNFIT)
     return [o for fit, o in fits if fit == best] if best < UNFIT else []
+
+
+def listed(wanted: str, household: Household) -> Thing | None:
+    """The thing of the household with a normalised name or alias."""
+    return next((o for o in household.things if wanted in map(normalise, (o.name, *o.aliases))), None)
+
+
+def own_words(wanted: str, household: Household) -> set[str]:
+    """The words of a normalised phrase, kinds and colours by the robot's own words for them; not those for anything."""
+    told = household.words
+    return {w if w in KINDS else told.kind(w) or told.colour(w) or w for w in wanted.split()} - ANYTHING
 
 
 def _fit(words: set[str], o: WorldObject) -> tuple[int, int]:
