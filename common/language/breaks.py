@@ -15,7 +15,7 @@ _STRONG = re.compile(
     r"(?:,\s*|\s+)(?:(?:and|so|but|then|right|ok|okay|just|well|now|hence|therefore),?\s+)*"
     r"(?=(?:can|could|would|will) you\s+(?!see\b|know\b|believe\b|imagine\b)|please\s+(?!and\b|whichever\b)\w|"
     r"(?:can|could|may|might) (?:i|we) (?:please )?(?:have|get)\s|(?:i|we) (?:want|need|would like) "
-    r"you to\s|do me a favou?r|be (?:a|an|so) (?:\\w+ ){1,3}(?:and|as to|to)\\s)"
+    r"you to\s|do me a favou?r)"
 )
 """Before words that can only begin a request."""
 _WEAK = re.compile(

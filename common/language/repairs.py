@@ -157,14 +157,18 @@ def _with_qualities(said: str, wrong: str, right: str) -> str:
 def _with_noun(text: str) -> str:
     """`the mug on the desk, bring it to me` and `bring it to me, the mug` as `bring the mug to me`."""
     if (found := _PRESENTED_AT_ONCE.match(text)) and "," not in text:
-        thing, rest = found["thing"], found["rest"]
-        return re.sub(r"\b(?:it|them|that|those)\b", lambda _: thing, rest, count=1)
+        return _put_in(found["thing"], found["rest"])
     if found := _DISLOCATED.match(without_politeness(text)):
         if found["verb"].split()[0] in COMMANDING:
             return f"{found['verb']} {found['thing']}{found['rest'] or found['near'] or ''}"
     elif (found := _PRESENTED.match(text)) and verb_first(without_politeness(found["rest"])):
-        return re.sub(r"\b(?:it|them|that|those|one)\b", lambda _: found["thing"], found["rest"], count=1)
+        return _put_in(found["thing"], found["rest"])
     return text
+
+
+def _put_in(thing: str, command: str) -> str:
+    """A thing in place of the first pronoun of a command."""
+    return re.sub(r"\b(?:it|them|that|those|one)\b", lambda _: thing, command, count=1)
 
 
 def _repaired(text: str, is_place: IsPlace) -> str:
