@@ -115,7 +115,7 @@ def _shaded(values: Array) -> NDArray[np.bool_]:
     coloured = saturation > COLOURED
     part = (hue * HUE_PARTS).astype(np.intp) % HUE_PARTS
     bright = np.full(HUE_PARTS, np.percentile(high, BRIGHT))
-    for n in range(HUE_PARTS):
+    for n in np.unique(part[coloured]):
         apart = np.abs(part - n)
         near = coloured & (np.minimum(apart, HUE_PARTS - apart) <= 1)
         if np.count_nonzero(near) >= PART * len(values):

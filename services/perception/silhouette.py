@@ -8,6 +8,7 @@ The shapes are convex, so that they reach as far as their corners do.
 import math
 from dataclasses import dataclass, replace
 from itertools import product
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -76,8 +77,7 @@ def foot(view: View, pixels: Pixels, floor: float) -> Array | None:
 
 
 def _ray(view: View, column: float, row: float) -> Array:
-    along = (column + 0.5 - view.middle[0]) / view.focal[0], (row + 0.5 - view.middle[1]) / view.focal[1], 1.0
-    return np.asarray(view.rotation @ np.array(along))
+    return np.asarray(view.rotation @ np.append(_rays(view, np.array([row]), np.array([column])), 1.0))
 
 
 def outline(view: View, pixels: Pixels, at: Array) -> Outline:
@@ -97,7 +97,7 @@ def outline(view: View, pixels: Pixels, at: Array) -> Outline:
     return Outline(reach, distance, pixel, handle, parts.row + int(filled[0]), widths, solid)
 
 
-def _rays(view: View, rows: NDArray[np.intp], columns: NDArray[np.intp]) -> Array:
+def _rays(view: View, rows: NDArray[Any], columns: NDArray[Any]) -> Array:
     """Where (n, 2) [rad] pixels are in the picture."""
     u, v = (columns + 0.5 - view.middle[0]) / view.focal[0], (rows + 0.5 - view.middle[1]) / view.focal[1]
     return np.stack([u, v], axis=1)
