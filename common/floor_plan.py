@@ -109,6 +109,10 @@ class Room(Strict, frozen=True):
     aliases: tuple[str, ...] = ()
     named: bool = True
 
+    def contains(self, x: float, y: float) -> bool:
+        """True when the point (x, y) [map] lies within it or on its edge."""
+        return self.low[0] <= x <= self.high[0] and self.low[1] <= y <= self.high[1]
+
 
 class Place(Strict, frozen=True):
     """A named standing pose of the base."""
@@ -210,8 +214,7 @@ class FloorPlan(Strict, frozen=True, kw_only=True):
 
     def room_at(self, x: float, y: float) -> Room | None:
         """The room that contains the point (x, y)."""
-        inside = (r for r in self.rooms if r.low[0] <= x <= r.high[0] and r.low[1] <= y <= r.high[1])
-        return next(inside, None)
+        return next((r for r in self.rooms if r.contains(x, y)), None)
 
     def fault(self) -> str:
         """What makes the plan impossible, in words; "" when nothing does."""

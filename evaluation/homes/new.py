@@ -85,17 +85,14 @@ def _fetch(rng: np.random.Generator, spec: ObjectSpec, to: str, when: str) -> Li
 def _room(rng: np.random.Generator, world: Scene) -> tuple[Room, tuple[str, ...]]:
     """The room that is gone to and named, and its surfaces: one with surfaces other than that of the start if any."""
     surfaces = {
-        room: tuple(r.name for r in world.receptacles if r.spawn and _within(room, r.center)) for room in world.rooms
+        room: tuple(r.name for r in world.receptacles if r.spawn and room.contains(*r.center[:2]))
+        for room in world.rooms
     }
     start = world.room_at(world.home.x, world.home.y)
     fitting = [room for room in world.rooms if surfaces[room]]
     others = [room for room in fitting if room != start] or fitting
     room = others[int(rng.integers(len(others)))]
     return room, surfaces[room]
-
-
-def _within(room: Room, at: tuple[float, float, float]) -> bool:
-    return all(room.low[k] < at[k] < room.high[k] for k in (0, 1))
 
 
 def mapped_first(case: Case, tell: Callable[[float, str], None]) -> tuple[Case, dict[str, Any]]:
@@ -134,9 +131,8 @@ def _called(room: Room, world: Scene, made: tuple[Room, ...]) -> str:
     place = next(p for p in world.places if p.name == room.name)
 
     def off(other: Room) -> tuple[bool, float]:
-        inside = other.low[0] < place.x < other.high[0] and other.low[1] < place.y < other.high[1]
         middle = [(other.low[k] + other.high[k]) / 2 for k in (0, 1)]
-        return not inside, math.dist(middle, (place.x, place.y))
+        return not other.contains(place.x, place.y), math.dist(middle, (place.x, place.y))
 
     name = min(made, key=off).name if made else room.name
     return name if name.startswith("room ") else f"the {name}"

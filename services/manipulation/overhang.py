@@ -126,7 +126,7 @@ def plan_pull(
     if abs(edge.along(*line[-1][:2])) + half[1] > edge.half:
         raise PlanError("UNREACHABLE", f"beside the {target.label} the edge ends")
     misses = []
-    opening = min(FINGERS, 2 * (half[1] - SIDE - PAD_HALF))
+    opening = _opening(half)
     for tilt in TILTS:
         planner.arm.hold(None)
         planner.arm.open_fingers(opening)
@@ -145,7 +145,7 @@ def can_pull(planner: Planner, target: Target, edge: Edge, around: Sequence[Obst
     normal = _far_side(target, edge)
     half, (x, y, _) = _halves(target, normal), target.position
     planner.arm.hold(None)
-    planner.arm.open_fingers(min(FINGERS, 2 * (half[1] - SIDE - PAD_HALF)))
+    planner.arm.open_fingers(_opening(half))
     try:
         hands = [_hand((x, y, normal), half[0], BEHIND, math.radians(t), edge, target.size[2]) for t in TILTS]
         return any(not isinstance(_down(planner, target, hand, around, now), str) for hand in hands)
@@ -184,6 +184,11 @@ def _halves(target: Target, normal: float) -> tuple[float, float]:
     along = abs(math.cos(normal - target.yaw)) > 0.5
     x, y = target.size[0] / 2, target.size[1] / 2
     return (x, y) if along else (y, x)
+
+
+def _opening(half: tuple[float, float]) -> float:
+    """How far apart [m] the fingers pull at a side, from `_halves`."""
+    return min(FINGERS, 2 * (half[1] - SIDE - PAD_HALF))
 
 
 def _hand(at: Pose2, half: float, gap: float, tilt: float, edge: Edge, height: float) -> Pose:

@@ -374,11 +374,15 @@ def test_a_cup_keeps_its_inside(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     assert not any(Delaunay(vertices).find_simplex(inside) >= 0 for vertices, _ in found)
 
 
-def test_the_seams_of_a_texture_are_sewn_before_a_mesh_is_taken_apart(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+@pytest.fixture
+def in_halves(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Meshes are taken apart into two, and kept below `tmp_path`."""
     monkeypatch.setenv("TIDYBOT_CACHE_DIR", str(tmp_path))
     monkeypatch.setitem(sys.modules, "coacd", Decomposer())
+
+
+@pytest.mark.usefixtures("in_halves")
+def test_the_seams_of_a_texture_are_sewn_before_a_mesh_is_taken_apart() -> None:
     corners, triangles = cup()
     loose = corners[triangles.ravel()]
     without_area = [[0, 0, 3]]
@@ -394,11 +398,8 @@ def test_a_mesh_whose_hull_would_fill_it_is_hollow() -> None:
     assert not convex.hollow(rod.vertices, rod.faces)
 
 
-def test_a_hollow_mesh_that_is_seen_and_collides_is_taken_apart(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv("TIDYBOT_CACHE_DIR", str(tmp_path))
-    monkeypatch.setitem(sys.modules, "coacd", Decomposer())
+@pytest.mark.usefixtures("in_halves")
+def test_a_hollow_mesh_that_is_seen_and_collides_is_taken_apart(tmp_path: Path) -> None:
     corners, triangles = cup()
     lines = [f"v {x} {y} {z}" for x, y, z in corners] + [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in triangles]
     (tmp_path / "cup.obj").write_text("\n".join(lines))

@@ -44,6 +44,11 @@ class Way:
         x, y = (np.interp(distance, self.lengths, column) for column in self.points.T)
         return np.stack((x, y), axis=-1)
 
+    def resampled(self, step: float) -> "Way":
+        """With a point every `step` [m]."""
+        length = float(self.lengths[-1])
+        return Way(self.at(np.arange(0.0, length + step / 2, step) if length > 0 else np.zeros(1)))
+
     def cut(self, length: float) -> "Way":
         """Its first `length` [m]."""
         return Way(self.points[: max(1, int(np.searchsorted(self.lengths, length, side="right")))])

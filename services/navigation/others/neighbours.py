@@ -25,6 +25,8 @@ SILENT = 1.5
 """Silence after which a robot is taken for what the lidar sees of it [s]; chosen: seven messages."""
 THIN, TOLD = 4, 120
 """Of its path a robot tells each so many-th point, of so many at most [count]: 0.2 m apart, 6 m ahead."""
+DENSE = 0.1
+"""Between the points of another robot's way [m]: as dense as the distance between two ways has to be known."""
 MOVING = 1.0
 """Time [s] after its last move in which a robot that gets out of the way is waited for."""
 STILL, STALLED = 0.05, 4.0
@@ -188,11 +190,5 @@ class Neighbours:
 
 
 def _other(name: str, k: _Known, now: float) -> Other:
-    here = (k.told.x, k.told.y)
-    points = np.array([here, *k.told.path], float)
-    steps = np.hypot(*np.diff(points, axis=0).T) if len(points) > 1 else np.zeros(0)
-    along = np.concatenate(([0.0], np.cumsum(steps)))
-    # As dense as the distance between two ways has to be known.
-    at = np.arange(0.0, along[-1] + 0.05, 0.1) if along[-1] > 0 else np.zeros(1)
-    dense = np.stack([np.interp(at, along, column) for column in points.T], axis=1)
-    return Other(name, Way(dense), k.told.radius, stalled=now - k.since > STALLED)
+    way = Way(np.array([(k.told.x, k.told.y), *k.told.path], float))
+    return Other(name, way.resampled(DENSE), k.told.radius, stalled=now - k.since > STALLED)
