@@ -207,7 +207,7 @@ def robots() -> Iterator[Finding]:
     path = config_dir() / "sim.toml"
     written = tomllib.loads(path.read_text(encoding="utf-8")).get("robot") if path.exists() else None
     name = os.environ.get("TIDYBOT__SIM__ROBOT") or written or "tidybot"
-    skin = "the official meshes" if name == "official" else "primitives"
+    skin = "primitives" if name == "tidybot" else "the official meshes"
     yield Finding("ok", "robot", f"sim.robot = {name}: TidyBot, drawn as {skin}")
     root = os.environ.get("MENAGERIE_ROOT", "")
     if root:

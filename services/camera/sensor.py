@@ -31,6 +31,9 @@ EDGE = 0.04
 """Ratio of neighbouring depths from which on an edge goes through the matching window, and no depth is found."""
 DARK, GLARE = 12, 250
 """Level (of 255) below which all channels are too dark to match, and above which all are saturated; chosen."""
+DIM = 60
+"""Level (of 255) of the brightest channel below which the noise of depth grows as the light that comes back falls;
+chosen: a black rubber or plastic thing in a lit room."""
 MIRRORED = 15.0
 """Angle [deg] between a surface as glossy as a mirror and the line of sight below which the projector's light comes
 straight back and saturates the imagers; less gloss, less angle. Chosen: the stripe without depth on a tin."""
@@ -45,6 +48,8 @@ MOUNT_OFFSET, MOUNT_TURN = 0.003, 0.3
 MARGIN = 64
 """By how much [px] the noise that is drawn once is larger than a picture, which takes a piece from a random corner of
 it: drawing it anew would cost as much as the picture."""
+_FAINT = (DIM / np.clip(np.arange(256), DARK, DIM)).astype(np.float32)
+"""How many times larger the noise of depth is, by the level of the brightest channel."""
 
 
 @dataclass(frozen=True)
@@ -127,10 +132,11 @@ def _measure(rgb: Rgb, depth: Depth, focal: float, noise: NDArray[np.float32]) -
     scale = np.float32(focal * BASELINE)
     far = np.where(depth > 0.0, depth, np.inf).astype(np.float32)
     true = scale / far
-    disparity = np.round((true + noise * (NOISE_AT_1_M * scale)) * SUBPIXELS)
-    blind = (far < LEAST_RANGE) | np.isinf(far) | (disparity < 1.0) | _shadowed(true) | _edges(far)
     red, green, blue = (rgb[..., channel] for channel in range(3))
     brightest, darkest = np.maximum(np.maximum(red, green), blue), np.minimum(np.minimum(red, green), blue)
+    noise = noise * _FAINT[brightest]
+    disparity = np.round((true + noise * (NOISE_AT_1_M * scale)) * SUBPIXELS)
+    blind = (far < LEAST_RANGE) | np.isinf(far) | (disparity < 1.0) | _shadowed(true) | _edges(far)
     blind |= (brightest < DARK) | (darkest > GLARE)
     measured = scale * (1000 * SUBPIXELS) / np.maximum(disparity, 1.0)
     measured[blind] = 0.0

@@ -110,7 +110,7 @@ def _beyond(view: View, usable: Mask, r: Receptacle, outline: Rectangle) -> Clou
 
 def _stands_on(segment: Segment, r: Receptacle) -> bool:
     x, y = segment.points[:, :2].T.astype(np.float32)
-    return bool(np.mean(inside(x, y, r.outline)) > MOSTLY_ON)
+    return bool(np.count_nonzero(inside(x, y, r.outline)) > MOSTLY_ON * len(x))
 
 
 def _above_floor(view: View, usable: Mask) -> Cloud:

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 
 from common.robot import home_arm
 from services.sim import calibrate, robot
-from services.sim.menagerie import RobotError, find
+from services.sim.menagerie import NAME, RobotError, find
 
-OURS, OFFICIAL = "tidybot", "official"
+OURS, OFFICIAL = "tidybot", ("official", f"menagerie:{NAME}")
 _SECTIONS = ("default", "contact", "tendon", "equality", "actuator", "custom")
 
 
@@ -57,16 +57,16 @@ def beside(robot: Robot, name: str) -> tuple[str, str]:
 
 @functools.cache
 def load_robot(name: str) -> Robot:
-    """`tidybot`, or `official`: the same body, drawn with the meshes of MuJoCo Menagerie's stanford_tidybot.
+    """`tidybot`, or `official` (`menagerie:stanford_tidybot` says the same): drawn with that model's meshes.
 
     Raises:
         RobotError: there is none of that name, or the official files are not on this machine.
     """
-    if name not in (OURS, OFFICIAL):
-        raise RobotError(f"robot {name}: expected {OURS} or {OFFICIAL}")
+    if name not in (OURS, *OFFICIAL):
+        raise RobotError(f"robot {name}: expected {OURS} or {OFFICIAL[0]}")
     alone = _measured()
     dressed = copy.deepcopy(alone)
-    if name == OFFICIAL:
+    if name in OFFICIAL:
         from services.sim.skin import dress
 
         dress(dressed, find())

@@ -10,6 +10,7 @@ from common.geometry import turn_matrix
 from common.rendering.renderer import Surfaces
 from services.camera.sensor import (
     DARK,
+    DIM,
     GLARE,
     LEAST_RANGE,
     MATCHING_WINDOW,
@@ -34,6 +35,13 @@ def test_depth_noise_grows_with_the_square_of_the_distance(distance: float) -> N
     assert (depth > 0).all()
     assert depth.mean() == pytest.approx(distance, abs=0.001 * distance**2)
     assert depth.std() == pytest.approx(NOISE_AT_1_M * distance**2, rel=0.2)
+
+
+def test_depth_of_what_is_dim_is_noisier() -> None:
+    noises = [
+        StereoCamera(1).expose(grey(level), np.ones(SHAPE), FOCAL, 5).depth.std() for level in (120, DIM, DIM // 2)
+    ]
+    assert noises[1] == noises[0] and noises[2] == pytest.approx(2 * noises[0], rel=0.1)
 
 
 def test_depths_are_steps_of_the_sub_pixel_disparity() -> None:

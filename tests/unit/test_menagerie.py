@@ -219,6 +219,13 @@ def test_a_model_that_lacks_something_is_refused_by_name(
     assert f"nothing to look at for body {THEIRS.get(body, body)}" in str(refused.value)
 
 
+def test_the_model_s_own_name_is_the_official_robot(root: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(menagerie.ROOT, str(root))
+    load_robot.cache_clear()
+    plain, dressed, same = (load_robot(name).assets for name in ("tidybot", "official", "menagerie:stanford_tidybot"))
+    assert same == dressed != plain
+
+
 def test_a_model_under_another_file_name_is_found(tmp_path: Path) -> None:
     standin.write(tmp_path, file="my_tidybot.xml")
     folder = tmp_path / "stanford_tidybot"
