@@ -5,23 +5,33 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+_NO_COLOUR = (0.5, 0.5, 0.5, 1.0)
+"""The RGBA of a geom that was given none (MuJoCo's XML reference, body/geom)."""
 SKY = (200, 215, 232)
 """RGB of what a camera sees where nothing is: a blue between those of the scenes' sky."""
 
 
 def geom_colours(model: Any) -> NDArray[np.float64]:
-    """RGB (n, 3) in shares of the geoms of a model: their own, or the material's with the mean of its picture."""
+    """RGB (n, 3) in shares of the geoms of a model, as MuJoCo draws them: the material's colour unless the geom has its
+    own, times the mean of the material's picture."""
+    own = np.asarray(model.geom_rgba, np.float64)
+    colours = own[:, :3].copy()
+    plain = (own == _NO_COLOUR).all(axis=1)
+    for material in set(model.geom_matid.tolist()) - {-1}:
+        made_of = model.geom_matid == material
+        colours[made_of & plain] = model.mat_rgba[material, :3]
+        colours[made_of] *= _mean_picture(model, material)
+    return colours
+
+
+def _mean_picture(model: Any, material: int) -> NDArray[np.float64]:
+    """Mean RGB (3,) in shares of a material's texture, ones where it has none."""
     import mujoco
 
-    colours = np.array(model.geom_rgba[:, :3], np.float64)
-    role = int(mujoco.mjtTextureRole.mjTEXROLE_RGB)
-    for material in set(model.geom_matid.tolist()) - {-1}:
-        colour = np.array(model.mat_rgba[material, :3], np.float64)
-        texture = int(np.ravel(model.mat_texid[material])[role])
-        if texture >= 0:
-            at, channels = int(model.tex_adr[texture]), int(model.tex_nchannel[texture])
-            count = int(model.tex_width[texture]) * int(model.tex_height[texture]) * channels
-            pixels = model.tex_data[at : at + count].reshape(-1, channels)[:, :3]
-            colour *= pixels.mean(axis=0) / 255
-        colours[model.geom_matid == material] = colour
-    return colours
+    texture = int(np.ravel(model.mat_texid[material])[int(mujoco.mjtTextureRole.mjTEXROLE_RGB)])
+    if texture < 0:
+        return np.ones(3)
+    at, channels = int(model.tex_adr[texture]), int(model.tex_nchannel[texture])
+    count = int(model.tex_width[texture]) * int(model.tex_height[texture]) * channels
+    pixels = model.tex_data[at : at + count].reshape(-1, channels)[:, :3]
+    return np.asarray(pixels.mean(axis=0) / 255)

@@ -134,6 +134,11 @@ def test_things_that_are_drawn_without_pictures_have_their_mean_colour() -> None
     assert red > 0.6 > 0.3 > max(green, blue)
 
 
+def test_a_geom_of_a_shiny_material_keeps_its_own_colour() -> None:
+    model = model_of(spec("can", (0.066, 0.066, 0.115), gloss=0.6))
+    assert geom_colours(model)[model.geom_matid >= 0] == pytest.approx(model.geom_rgba[model.geom_matid >= 0, :3])
+
+
 def test_what_stands_stays() -> None:
     """Plates, books, toys and tools rest where they are put, and none sinks into the table."""
     objects = []
