@@ -1,11 +1,13 @@
 """Mapping against the truth: errors of walls and surfaces, what was missed, and how long exploring took.
 
-`python -m bench.mapping --homes 3 --seed 20000`; `--apartment` for the shipped flat. Exit 1 when the median of a kind
-of error is above its aim, or something was hit. With `--out DIR` the maps are kept, each with its world, so that
-`tidybot eval --world DIR` gives missions in homes that the robot has mapped itself, and with a film of the growing map.
+`python -m bench.mapping --homes 3 --seed 20000`; `--apartment` for the shipped flat, `--world DIR` for worlds of yours.
+Exit 1 when the median of a kind of error is above its aim, or something was hit. With `--out DIR` the maps are kept,
+each with its world, cases and a film of the growing map: `tidybot eval --world DIR` then gives missions in homes that
+the robot has mapped itself.
 """
 
 import argparse
+import shutil
 import sys
 import tempfile
 import time
@@ -23,7 +25,7 @@ from evaluation.homes.explore import Explored, explore
 from evaluation.homes.map_errors import HEIGHT, OUTLINE, WALL, Errors, centimetres, compare
 from evaluation.homes.suite import homes
 from evaluation.stack import Stack
-from evaluation.worlds import WORLD
+from evaluation.worlds import CASES, WORLD, worlds
 
 FILM = "film.webp"
 
@@ -53,17 +55,21 @@ def line(name: str, explored: Explored, errors: Errors, wall_seconds: float) -> 
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--homes", type=int, default=2, help="homes of the generator (default %(default)s)")
+    parser.add_argument("--homes", type=int, help="homes of the generator (default 2; 0 with --world)")
     parser.add_argument("--seed", type=int, default=20000, help="of the first (default %(default)s)")
     parser.add_argument("--apartment", action="store_true", help="the shipped flat as well")
+    parser.add_argument("--world", type=Path, metavar="DIR", help="the worlds there (docs/WORLDS.md)")
     parser.add_argument("--out", type=Path, help="keep the maps there")
     args = parser.parse_args()
     scenes = [("apartment", load_scene("apartment"))] if args.apartment else []
-    for seed in range(args.seed, args.seed + args.homes):
+    outside = worlds(args.world) if args.world else []
+    scenes += [(found.name, found.world) for found in outside]
+    for seed in range(args.seed, args.seed + (args.homes if args.homes is not None else 0 if outside else 2)):
         scene = homes(seed).scene
         assert scene is not None
         scenes.append((f"home {seed}", scene))
     print("errors as median/90 % (walls) and median/worst; aims: walls 3 cm, heights 1 cm, outlines 5 cm")
+    listed = {found.name: found.cases for found in outside if found.cases}
     good = True
     with tempfile.TemporaryDirectory() as kept:
         for name, scene in scenes:
@@ -76,6 +82,8 @@ def main() -> int:
 
             out.mkdir(parents=True, exist_ok=True)
             (out / WORLD).write_text(to_toml(scene), encoding="utf-8")
+            if name in listed:
+                shutil.copyfile(listed[name], out / CASES)
             explored = explore(scene, args.seed, out, tell=told)
             film.save(out / FILM)
             errors = compare(load_household(str(out / HOUSEHOLD)), scene)

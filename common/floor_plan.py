@@ -24,6 +24,8 @@ SUNK = 0.05
 """How far [m] below a surface the centre of what rests on it may be seen: the error of its height."""
 TALLEST = 0.35
 """How far [m] above a surface the centre of what rests on it is looked for: beyond half of the tallest object."""
+ROUNDING = 1e-9
+"""What the edge of a room is off by in arithmetic [m]."""
 SIGHTING_ERROR = 0.02
 """How far [m] over the edge of a surface the centre of what rests on it may be seen: the error at arm's length."""
 
@@ -101,17 +103,32 @@ class Receptacle(Strict, frozen=True):
 
 
 class Room(Strict, frozen=True):
-    """An axis-aligned room between corners `low` and `high`; with `named = false` it is called by a number."""
+    """A room between corners `low` and `high`, then turned by `yaw` about its middle.
+
+    With `named = false` it is called by a number.
+    """
 
     name: str
     low: Vec2
     high: Vec2
+    yaw: float = 0.0
     aliases: tuple[str, ...] = ()
     named: bool = True
 
+    @property
+    def outline(self) -> Rectangle:
+        """The floor that it has."""
+        (x0, y0), (x1, y1) = self.low, self.high
+        return Rectangle((x0 + x1) / 2, (y0 + y1) / 2, x1 - x0, y1 - y0, self.yaw)
+
+    @property
+    def middle(self) -> Vec2:
+        """The middle of its floor."""
+        return self.outline.x, self.outline.y
+
     def contains(self, x: float, y: float) -> bool:
         """True when the point (x, y) [map] lies within it or on its edge."""
-        return self.low[0] <= x <= self.high[0] and self.low[1] <= y <= self.high[1]
+        return self.outline.contains(x, y, ROUNDING)
 
 
 class Place(Strict, frozen=True):
@@ -213,8 +230,9 @@ class FloorPlan(Strict, frozen=True, kw_only=True):
         return [r.outline for r in self.receptacles] + [f.outline for f in self.furniture]
 
     def room_at(self, x: float, y: float) -> Room | None:
-        """The room that contains the point (x, y)."""
-        return next((r for r in self.rooms if r.contains(x, y)), None)
+        """The room that contains the point (x, y), the smallest one: in the corner of an L there may be another."""
+        there = [r for r in self.rooms if r.contains(x, y)]
+        return min(there, key=lambda r: r.outline.length * r.outline.width, default=None)
 
     def fault(self) -> str:
         """What makes the plan impossible, in words; "" when nothing does."""

@@ -93,7 +93,7 @@ def household(link: Link) -> dict[str, Any]:
         "objects": objects(link),
     }
     if home is not None:
-        record["rooms"] = [{"name": r.name, "low": list(r.low), "high": list(r.high)} for r in home.rooms]
+        record["rooms"] = [{"name": r.name, "low": list(r.low), "high": list(r.high), "yaw": r.yaw} for r in home.rooms]
         record["places"] = [{"name": p.name, "x": p.x, "y": p.y} for p in home.places]
         record["surfaces"] = [
             {"name": r.name, "aliases": list(r.aliases), "center": list(r.center)} for r in home.receptacles

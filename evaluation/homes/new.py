@@ -131,8 +131,7 @@ def _called(room: Room, world: Scene, made: tuple[Room, ...]) -> str:
     place = next(p for p in world.places if p.name == room.name)
 
     def off(other: Room) -> tuple[bool, float]:
-        middle = [(other.low[k] + other.high[k]) / 2 for k in (0, 1)]
-        return not other.contains(place.x, place.y), math.dist(middle, (place.x, place.y))
+        return not other.contains(place.x, place.y), math.dist(other.middle, (place.x, place.y))
 
     name = min(made, key=off).name if made else room.name
     return name if name.startswith("room ") else f"the {name}"

@@ -3,6 +3,7 @@
 Source: Bormann et al., "Room segmentation: survey, implementation, and analysis", ICRA 2016 (distance transform).
 """
 
+import cmath
 from collections.abc import Sequence
 
 import numpy as np
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from common.floor_plan import Room, Wall
+from common.geometry import Rectangle
 from services.mapping.grid import FREE, OCCUPIED, RESOLUTION, Grid
 
 DOOR = 0.65
@@ -22,7 +24,7 @@ LEAST_AREA = 2.5
 
 
 def find_rooms(grid: Grid, states: NDArray[np.uint8], walls: Sequence[Wall]) -> list[Room]:
-    """Rectangles around the rooms, the one with the robot's home first; they may overlap a little."""
+    """Rectangles along the walls around the rooms, the one with the robot's home first; they may overlap a little."""
     middles = grid.points((np.arange(max(grid.shape)), np.arange(max(grid.shape))))
     xs, ys = middles[: grid.shape[1], 0], middles[: grid.shape[0], 1]
     tall = grid.covered & (grid.highest > HIGH)
@@ -38,14 +40,26 @@ def find_rooms(grid: Grid, states: NDArray[np.uint8], walls: Sequence[Wall]) -> 
     # Every other cell of the floor belongs to the room whose middle is nearest.
     _, (rows, columns) = ndimage.distance_transform_edt(seeds == 0, return_indices=True)
     grown = np.where(floor, seeds[rows, columns], 0)
-    boxes = []
+    boxes: list[tuple[float, Rectangle]] = []
+    along = Rectangle(0.0, 0.0, 0.0, 0.0, _direction(walls))
     for n in np.unique(grown[grown > 0]):
         rows, columns = np.nonzero((grown == n) & (states == FREE))
         if len(rows) * RESOLUTION**2 < LEAST_AREA:
             continue
         points = grid.points((rows, columns))
-        low, high = np.quantile(points, 0.01, axis=0) - RESOLUTION, np.quantile(points, 0.99, axis=0) + RESOLUTION
-        away = float(np.hypot(points[:, 0], points[:, 1]).min())
-        boxes.append((away, tuple(map(float, low.round(2))), tuple(map(float, high.round(2)))))
-    ordered = enumerate(sorted(boxes), 1)
-    return [Room(name=f"room {i}", low=low, high=high, named=False) for i, (_, low, high) in ordered]  # type: ignore[arg-type]
+        own = np.stack(along.to_local(points[:, 0], points[:, 1]))
+        low, high = np.quantile(own, 0.01, axis=1) - RESOLUTION, np.quantile(own, 0.99, axis=1) + RESOLUTION
+        x, y = along.to_map(*((low + high) / 2).tolist())
+        length, width = (high - low).tolist()
+        boxes.append((float(np.hypot(points[:, 0], points[:, 1]).min()), Rectangle(x, y, length, width, along.yaw)))
+    return [_room(f"room {i}", box) for i, (_, box) in enumerate(sorted(boxes), 1)]
+
+
+def _direction(walls: Sequence[Wall]) -> float:
+    """The angle in (-45, 45] degrees [rad] by which walls at right angles to each other are turned."""
+    return cmath.phase(sum((cmath.rect(w.outline.length, 4 * w.outline.yaw) for w in walls), 0j)) / 4
+
+
+def _room(name: str, box: Rectangle) -> Room:
+    low, high = ((round(box.x + side * box.length / 2, 2), round(box.y + side * box.width / 2, 2)) for side in (-1, 1))
+    return Room(name=name, low=low, high=high, yaw=round(box.yaw, 4), named=False)

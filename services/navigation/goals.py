@@ -93,12 +93,12 @@ class Goals:
 
 def _within(room: Room) -> Choices:
     """All over a room, best in its middle, where perhaps a table stands."""
-    middle = [(room.low[k] + room.high[k]) / 2 for k in (0, 1)]
-    counts = [max(0, math.floor(((room.high[k] - room.low[k]) / 2 - INSIDE) / SPACING)) for k in (0, 1)]
+    outline = room.outline
+    counts = [max(0, math.floor((side / 2 - INSIDE) / SPACING)) for side in (outline.length, outline.width)]
     shifts = [
         (i * SPACING, j * SPACING) for i in range(-counts[0], counts[0] + 1) for j in range(-counts[1], counts[1] + 1)
     ]
-    return [(math.hypot(*s), (middle[0] + s[0], middle[1] + s[1], 0.0)) for s in shifts]
+    return [(math.hypot(*s), (*outline.to_map(*s), 0.0)) for s in shifts]
 
 
 def in_words(goal: Goal) -> str:

@@ -14,8 +14,7 @@ CEILING = 3.5
 
 def lights(scene: Scene) -> str:
     """The lamps of the world, or one for each room."""
-    middle = ((r.low[0] + r.high[0]) / 2 for r in scene.rooms), ((r.low[1] + r.high[1]) / 2 for r in scene.rooms)
-    usual = [Lamp(position=(x, y, CEILING), colour=(1.0, 1.0, 0.97)) for x, y in zip(*middle, strict=True)]
+    usual = [Lamp(position=(*room.middle, CEILING), colour=(1.0, 1.0, 0.97)) for room in scene.rooms]
     return "".join(_light(lamp) for lamp in scene.lamps or usual)
 
 

@@ -42,6 +42,13 @@ HOME = Household(
 )
 
 
+def test_a_room_in_the_corner_of_an_l_is_not_the_l() -> None:
+    around, inside = Room(name="l", low=(0, 0), high=(6, 6)), Room(name="nook", low=(2, 4), high=(6, 5), yaw=1.5708)
+    plan = msgspec.structs.replace(HOME, rooms=(around, inside))
+    found = [plan.room_at(*point) for point in ((1, 1), (4, 6), (2.5, 4.5), (4, 2.5))]
+    assert [room.name if room else "" for room in found] == ["l", "nook", "l", "nook"]
+
+
 def test_what_nobody_named_is_called_by_kind_and_room() -> None:
     named = edited(HOME, m.HouseholdEdits())
     assert [r.name for r in named.rooms] == ["room 1", "room 2"]

@@ -58,17 +58,24 @@ def test_what_goes_round_a_corner_is_cut() -> None:
     assert len(_filled(np.column_stack([line, 0 * line]))) == 1
 
 
-def test_rooms_hang_together_by_doors() -> None:
-    grid = Grid((-4.0, -2.0), (4.0, 2.0))
-    states = np.full(grid.shape, FREE, np.uint8)
-    walls = [Wall(start=(0.0, -2.0), end=(0.0, -0.5)), Wall(start=(0.0, 0.5), end=(0.0, 2.0))]
-    first, second = find_rooms(grid, states, walls)
-    assert (first.name, second.name) == ("room 1", "room 2")
-    assert {round(first.high[0]), round(second.high[0])} == {0, 4} or {round(first.low[0]), round(second.low[0])} == {
-        0,
-        -4,
-    }
-    assert len(find_rooms(grid, states, [])) == 1
+@pytest.mark.parametrize("turn", [0.0, 0.5, -0.6])
+def test_rooms_hang_together_by_doors_and_lie_along_the_walls(turn: float) -> None:
+    """Of 4 x 3 m each, side by side, however the home is turned against where the robot looked when it was put down."""
+    home = Rectangle(0.5, 0.0, 8.0, 3.0, turn)
+    grid = Grid((-6.0, -6.0), (6.0, 6.0))
+    cells = grid.points(tuple(np.indices(grid.shape).reshape(2, -1)))  # type: ignore[arg-type]
+    inside = home.signed_distances(cells[:, 0], cells[:, 1]).reshape(grid.shape) < 0.0
+    states = np.where(inside, FREE, UNKNOWN).astype(np.uint8)
+    ends = (((-4.0, -1.5), (4.0, -1.5)), ((0.0, -1.5), (0.0, -0.5)), ((0.0, 0.5), (0.0, 1.5)))
+    walls = [Wall(start=home.to_map(*a), end=home.to_map(*b)) for a, b in ends]
+    rooms = find_rooms(grid, states, walls)
+    assert [room.name for room in rooms] == ["room 1", "room 2"]
+    middles = sorted(home.to_local(*room.middle) for room in rooms)
+    assert np.array(middles) == pytest.approx(np.array([(-2.0, 0.0), (2.0, 0.0)]), abs=0.15)
+    for room in rooms:
+        assert (room.outline.length, room.outline.width) == pytest.approx((4.0, 3.0), abs=0.3)
+        assert abs(np.sin(2 * (room.yaw - turn))) < 0.01
+    assert len(find_rooms(grid, states, walls[:1])) == 1
 
 
 def test_a_wall_that_was_seen_for_long_from_both_sides_is_one_wall() -> None:

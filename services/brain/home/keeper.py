@@ -105,8 +105,7 @@ class HouseholdKeeper:
             number = home.rooms.index(found.room) - added
             if number >= 0:
                 room = loaded.rooms[number]
-                middle = ((room.low[0] + room.high[0]) / 2, (room.low[1] + room.high[1]) / 2, 0.0)
-                return m.PlaceName(name=name, kind="room", part=room.name, at=middle)
+                return m.PlaceName(name=name, kind="room", part=room.name, at=(*room.middle, 0.0))
             return m.PlaceName(name=name, kind="room", low=found.room.low, high=found.room.high)
         if found.kind == "room":
             low, high = room_around(home, x, y)
@@ -186,7 +185,7 @@ def parts(home: Household, edits: m.HouseholdEdits) -> list[m.HomePart]:
         where = room.name if room else ""
         return m.HomePart(name=name, kind=kind, room=where, given=name in given, x=round(x, 2), y=round(y, 2))
 
-    rooms = [part(r.name, "room", (r.low[0] + r.high[0]) / 2, (r.low[1] + r.high[1]) / 2) for r in home.rooms]
+    rooms = [part(r.name, "room", *r.middle) for r in home.rooms]
     surfaces = [part(r.name, "surface", r.center[0], r.center[1]) for r in home.receptacles]
     return [*rooms, *surfaces, *(part(p.name, "place", p.x, p.y) for p in (home.home, *home.places))]
 

@@ -36,7 +36,7 @@ def place_pose(floor_plan: FloorPlan, name: str, here: Pose2) -> Pose2 | None:
             return place.x, place.y, place.theta
     for room in floor_plan.rooms:
         if name == room.name or name in room.aliases:
-            return (room.low[0] + room.high[0]) / 2, (room.low[1] + room.high[1]) / 2, 0.0
+            return *room.middle, 0.0
     receptacle = floor_plan.receptacle(name)
     if receptacle is None:
         return None

@@ -41,8 +41,7 @@ def opening_view(
     room = floor_plan.room_at(x, y)
     span, middle = SPAN, (x, y)
     if room is not None:
-        span = max(room.high[0] - room.low[0], room.high[1] - room.low[1])
-        middle = (room.low[0] + room.high[0]) / 2, (room.low[1] + room.high[1]) / 2
+        span, middle = max(room.outline.length, room.outline.width), room.middle
     target = np.array([x + TOWARDS_MIDDLE * (middle[0] - x), y + TOWARDS_MIDDLE * (middle[1] - y), HEIGHT])
     distance = FILLED * span / (2 * tan(fov / 2) * min(1.0, max(aspect, 0.3)))
     a, e = radians(AZIMUTH), radians(ELEVATION)
