@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from bench.hand import Bench
+from bench.grasp.hand import Bench
 from common import messages as m
 from common import topics
 from common.scene import Obstacle, load_scene

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 from mcap.reader import make_reader
 
-from bench.payloads import Payloads
+from bench.fuzz.payloads import Payloads
 from cli import replay
 from cli.errors import CliError
 from common import messages as m

@@ -21,7 +21,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from bench.search_homes import CONFIG, THINGS, Place, habits, homes, watched
+from bench.search_order.homes import CONFIG, THINGS, Place, habits, homes, watched
 from common.geometry import Array, Pose2
 from common.viewpoints import LEAST_GAIN
 from common.whereabouts import likelihood

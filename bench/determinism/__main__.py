@@ -19,7 +19,7 @@ from typing import TypeVar
 import msgspec
 import numpy as np
 
-from bench.witness import Sight, Trace, WitnessService
+from bench.determinism.witness import Sight, Trace, WitnessService
 from cli.own_robot import own_robot
 from cli.plan import Plan
 from cli.services import Service
@@ -72,7 +72,7 @@ def in_processes(args: argparse.Namespace) -> Trace:
         harm = rules(args)
         harmed = {rule.service for rule in harm}
         services = [msgspec.structs.replace(s, module=NODE) if s.name in harmed else s for s in plan.services]
-        plan.services = [*services, Service("witness", "bench.witness")]
+        plan.services = [*services, Service("witness", "bench.determinism.witness")]
         case = directory / "case.json"
         case.write_bytes(msgspec.json.encode(case_of(args, harm)))
         waited = ", ".join(f'"{s.name}"' for s in plan.services if s.paced)

@@ -1,6 +1,6 @@
 """A participant of the lockstep that gives one command and keeps a fingerprint of every message of every tick.
 
-`python -m bench.witness` is it as a process; parameters as TIDYBOT__WITNESS__<KEY>.
+`python -m bench.determinism.witness` is it as a process; parameters as TIDYBOT__WITNESS__<KEY>.
 """
 
 import hashlib

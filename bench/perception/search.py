@@ -1,4 +1,4 @@
-"""Whether what is asked for is found, and nothing else: `python -m bench.unknown_search --suite sizes -n 100`.
+"""Whether what is asked for is found, and nothing else: `python -m bench.perception.search --suite sizes -n 100`.
 
 Each world of the suites `sizes`, `clutter` and `lying` is looked at from where the brain would have the robot stand,
 one viewpoint after the other and nearer to what is in doubt, by perception's own detector, tracker and grounding.
@@ -13,8 +13,8 @@ from collections import Counter
 
 import numpy as np
 
-from bench.perception import take
-from bench.unknown_objects import SUITES
+from bench.perception.unlisted import SUITES
+from bench.perception.views import take
 from common.geometry import Pose2
 from common.likeness import LEAST, LIKELY
 from common.messages import WorldObject

@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from bench.perception.views import look_at, visible
 from common.rendering.renderer import Renderer
 from common.scene import ObjectSpec
 from evaluation import unknown
@@ -72,10 +73,9 @@ HEAD = (
     f"{'':10} {'seen':>5} {'found':>6} {'kind':>6} {'first':>6} {'colour':>6} {'first':>6} {'rests':>6}"
     f"  {'position':>11}  {'extents mm':>11} (median, p90)"
 )
-Look = Callable[[Renderer, Placement, list[Placement], np.random.Generator], View | None]
 
 
-def views(args: argparse.Namespace, look: Look) -> Iterator[tuple[View, list[Placement], ClassicalDetector]]:
+def take_all(args: argparse.Namespace) -> Iterator[tuple[View, list[Placement], ClassicalDetector]]:
     """Views of the suite's worlds from random places, with what stands there."""
     rng, made, seed = np.random.default_rng(args.seed), 0, args.seed
     while made < args.views:
@@ -87,7 +87,7 @@ def views(args: argparse.Namespace, look: Look) -> Iterator[tuple[View, list[Pla
         for n in range(VIEWS_PER_WORLD):
             # Half of the views are of what is wanted.
             chosen = placements[0] if n % 2 else placements[int(rng.integers(len(placements)))]
-            view = look(renderer, chosen, placements, rng)
+            view = look_at(args, renderer, chosen, placements, rng)
             if view is not None and made < args.views:
                 made += 1
                 yield view, placements, detector
@@ -95,12 +95,12 @@ def views(args: argparse.Namespace, look: Look) -> Iterator[tuple[View, list[Pla
         seed += 1
 
 
-def measure(args: argparse.Namespace, look: Look, visible: Callable[[View, Placement], bool]) -> None:
+def measure(args: argparse.Namespace) -> None:
     """Print the table for `args.views` views from `args.seed` on."""
     tallies: dict[str, Tally] = {}
     all_of_them, false, seen = Tally(), 0, 0
     seconds: list[float] = []
-    for view, placements, detector in views(args, look):
+    for view, placements, detector in take_all(args):
         began = time.thread_time()
         found = detector.detect(view)
         seconds.append(time.thread_time() - began)

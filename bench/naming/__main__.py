@@ -18,7 +18,7 @@ from pathlib import Path
 
 import numpy as np
 
-from bench.printed import Package, packages
+from bench.naming.printed import Package, packages
 from common.geometry import yaw_quat
 from common.messages import WorldObject
 from common.naming import normalise
@@ -36,7 +36,7 @@ from services.perception.view import View
 DISTANCES = (0.5, 0.7, 0.9, 1.2, 1.6, 2.2)
 """From the camera to the object [m]."""
 TABLE, CAMERA = 0.75, 1.30
-"""Heights [m] of `bench.printed`'s table and camera."""
+"""Heights [m] of `bench.naming.printed`'s table and camera."""
 OPTICAL = np.array([[0.0, -math.sin(0.62), math.cos(0.62)], [-1.0, 0.0, 0.0], [0.0, -math.cos(0.62), -math.sin(0.62)]])
 """Columns: the optical frame's axes (right, down, ahead) in the map."""
 POSE_NOISE, SIZE_NOISE = 0.004, 0.06

@@ -17,7 +17,7 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from bench.whole_robot import Robot
+from bench.day.robot import Robot
 from cli.errors import CliError
 from cli.link import Link, Watch
 from common import messages as m

@@ -11,8 +11,8 @@ from collections.abc import Callable, Iterable
 
 import numpy as np
 
-from bench import unknown
-from bench.hand import Bench
+from bench.grasp import unlisted
+from bench.grasp.hand import Bench
 from common.kinds import KINDS
 from common.scene import ObjectSpec, Scene, load_scene
 from evaluation.statistics import percent
@@ -45,9 +45,9 @@ def main() -> None:
         return lambda seed: trial(scene, specs[kind], seed, config)
 
     def drawn(shape: str, config: ManipulationConfig) -> Callable[[int], str]:
-        return lambda seed: unknown.trial(scene, shape, seed, config)
+        return lambda seed: unlisted.trial(scene, shape, seed, config)
 
-    names: Iterable[str] = unknown.SHAPES if args.unknown else (k for k in KINDS if k in specs)
+    names: Iterable[str] = unlisted.SHAPES if args.unknown else (k for k in KINDS if k in specs)
     make, failed = drawn if args.unknown else known, False
     print(f"{'kind':14} {'variant':14} {'ok':>5} {'of':>4} {'95 %':>12}  failures")
     for kind in args.kinds.split(",") if args.kinds else names:

@@ -19,7 +19,7 @@ from typing import Any
 
 import msgspec
 
-from bench.meter import NOBODY, Meter
+from bench.profile.meter import NOBODY, Meter
 from common.bus.base import IoBase
 from common.rendering.renderer import choose
 from common.time.lockstep import InProcess
@@ -142,18 +142,6 @@ class Mission(msgspec.Struct):
     spent: dict[str, dict[str, float]]
 
 
-def typed(seed: int, settings: tuple[str, ...]) -> tuple[str, float]:
-    """A mission of `bench.fetch`: outcome and robot time [s]."""
-    from bench.fetch import ITEMS
-    from bench.mission import Robot, fetch
-
-    robot = Robot(seed=seed, settings=settings)
-    outcome = fetch(robot, ITEMS[seed % len(ITEMS)], seed)
-    seconds = robot.now
-    robot.close()
-    return "; ".join(outcome.objections) or "delivered", seconds
-
-
 def case_of(suite: str, seed: int, settings: tuple[str, ...]) -> tuple[str, float]:
     """A case of a suite: outcome and robot time [s]."""
     from evaluation import runner
@@ -169,7 +157,7 @@ def measure(suite: str, seed: int, settings: tuple[str, ...]) -> Mission:
     meter = Meter()
     before = strangers()
     with probes(meter) as at_first:
-        outcome, seconds = case_of(suite, seed, settings) if suite else typed(seed, settings)
+        outcome, seconds = case_of(suite, seed, settings)
     parts: dict[str, dict[str, float]] = {}
     for (service, part), spent in meter.take().items():
         parts.setdefault(service, {})[part] = spent
@@ -206,9 +194,7 @@ def table(missions: list[Mission]) -> Iterator[str]:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument(
-        "--suite", default="", help="cases of a suite of `tidybot eval` instead of `bench.fetch`'s missions"
-    )
+    parser.add_argument("--suite", default="fetch", help="of `tidybot eval` (default %(default)s)")
     parser.add_argument("--missions", type=int, default=3, metavar="N", help="(default %(default)s)")
     parser.add_argument("--seed", type=int, default=7, help="of the first (default %(default)s)")
     parser.add_argument("--set", action="append", default=[], metavar="section.key=value")

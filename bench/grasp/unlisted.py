@@ -13,7 +13,7 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from bench.hand import Bench
+from bench.grasp.hand import Bench
 from common import messages as m
 from common import topics
 from common.geometry import Array, yaw_quat

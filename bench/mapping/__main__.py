@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
-from bench.film import Film
+from bench.mapping.film import Film
 from common import messages as m
 from common.household import load_household
 from common.map_file import HOUSEHOLD
