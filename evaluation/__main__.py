@@ -13,8 +13,8 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TaskID, TextC
 
 from cli.errors import CliError
 from cli.main import FAILED, INTERRUPTED, parser
-from cli.plan import machine
-from cli.up import Stopped, interruptible
+from cli.processes.plan import machine
+from cli.processes.up import Stopped, interruptible
 from common.config import ConfigError
 from common.time.clock import monotonic
 from evaluation import cluster, html_report, pool, processes, report, runner, worlds

@@ -11,7 +11,7 @@ import signal
 from collections.abc import Callable
 from pathlib import Path
 
-from cli.supervision import WORLD, Supervision
+from cli.processes.supervision import WORLD, Supervision
 from common.time.clock import monotonic
 from evaluation.case import Case, TimedFault
 from evaluation.fault_reports import FaultReport, Reporter

@@ -12,11 +12,11 @@ from typing import Any
 import msgspec
 
 from cli.errors import CliError
-from cli.own_robot import own_robot
-from cli.plan import Plan
-from cli.services import SERVICES, Service
-from cli.supervision import Supervision
-from cli.up import bring_up
+from cli.processes.own_robot import own_robot
+from cli.processes.plan import Plan
+from cli.processes.services import SERVICES, Service
+from cli.processes.supervision import Supervision
+from cli.processes.up import bring_up
 from common import config, topics
 from common.bus import delivery
 from common.bus.session import BusError, open_session

@@ -9,7 +9,7 @@ from typing import Any
 
 import msgspec
 
-from cli.services import SERVICES
+from cli.processes.services import SERVICES
 from common import config, topics
 from common import messages as m
 from common.bus.memory import MemoryIo

@@ -9,10 +9,10 @@ from pathlib import Path
 
 import psutil  # type: ignore[import-untyped]
 
-from cli.own_robot import own_robot
-from cli.plan import Plan
-from cli.supervision import Supervision
-from cli.up import bring_up
+from cli.processes.own_robot import own_robot
+from cli.processes.plan import Plan
+from cli.processes.supervision import Supervision
+from cli.processes.up import bring_up
 from common.installation import ROOT
 from common.plan_file import to_toml
 from common.scene import Scene

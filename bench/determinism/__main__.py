@@ -20,11 +20,11 @@ import msgspec
 import numpy as np
 
 from bench.determinism.witness import Sight, Trace, WitnessService
-from cli.own_robot import own_robot
-from cli.plan import Plan
-from cli.services import Service
-from cli.supervision import Supervision
-from cli.up import bring_up
+from cli.processes.own_robot import own_robot
+from cli.processes.plan import Plan
+from cli.processes.services import Service
+from cli.processes.supervision import Supervision
+from cli.processes.up import bring_up
 from common.rendering.renderer import choose
 from evaluation.case import Case
 from evaluation.chaos import MISTREATED, TRAFFIC

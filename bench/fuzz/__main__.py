@@ -12,7 +12,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from bench.fuzz.storm import TRUSTED, Storm
-from cli.services import SERVICES
+from cli.processes.services import SERVICES
 from common import messages as m
 from evaluation.stack import service_class
 from tests.support import site

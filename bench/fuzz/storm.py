@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from bench.fuzz.payloads import Payloads
-from cli.services import SERVICES
+from cli.processes.services import SERVICES
 from common import messages as m
 from common import topics
 from common.bus import codec, delivery

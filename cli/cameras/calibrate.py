@@ -20,7 +20,7 @@ def calibrate(args: argparse.Namespace) -> int:
         state = link.latest(topics.BRAIN_STATE)
         if state is not None and state.command:
             raise CliError(f"the robot is at work ({state.command}); `tidybot stop` ends that")
-        from cli.measure import run
+        from cli.cameras.measure import run
 
         return run(link, args.out, args.poses)
 

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from cli.drivers import PERIOD, Driver, Unmet
+from cli.drivers.driver import PERIOD, Driver, Unmet
 from common import messages as m
 from common import topics
 from common.topics import Topic

@@ -1,6 +1,6 @@
 """supervisord with three additions: nothing outlives its parent, crash loops end, and starts are counted.
 
-`python -m cli.supervisord -c FILE` is started by `tidybot up`.
+`python -m cli.processes.supervisord -c FILE` is started by `tidybot up`.
 """
 
 import ctypes
@@ -123,5 +123,5 @@ def main() -> None:
 
 if __name__ == "__main__":
     # The configuration file names this module, which must be the one that runs.
-    sys.modules["cli.supervisord"] = sys.modules["__main__"]
+    sys.modules["cli.processes.supervisord"] = sys.modules["__main__"]
     main()

@@ -3,9 +3,9 @@
 import uuid
 from collections.abc import Callable
 
-from cli.audio import Player
 from cli.errors import CliError
 from cli.link import Link, Watch
+from cli.missions.audio import Player
 from common import messages as m
 from common import topics
 from common.time.clock import monotonic

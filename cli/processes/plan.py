@@ -12,8 +12,8 @@ import msgspec
 
 from cli.errors import CliError, checked
 from cli.link import use_keys
-from cli.services import NAMES, OPTIONAL, SECTIONS, SERVICES, Service
-from cli.supervision import RunInfo, run_dir
+from cli.processes.services import NAMES, OPTIONAL, SECTIONS, SERVICES, Service
+from cli.processes.supervision import RunInfo, run_dir
 from common import config
 from common.household import load_household
 from common.scene import SceneError, load_scene

@@ -8,15 +8,15 @@ import sys
 import uuid
 from pathlib import Path
 
-from cli.audio import Player, padded, read_wav
-from cli.conversation import ACCEPT, Conversation, speak_into, typed
 from cli.errors import CliError, near, port_number
 from cli.link import Link, Watch
-from cli.plan import Plan, add_start_options
-from cli.ports import free_port, port_is_free
-from cli.supervision import Supervision, run_dir
-from cli.up import Stopped, bring_up, check_free, interruptible, state_line
-from cli.verdict import Verdict, Witness
+from cli.missions.audio import Player, padded, read_wav
+from cli.missions.conversation import ACCEPT, Conversation, speak_into, typed
+from cli.missions.verdict import Verdict, Witness
+from cli.processes.plan import Plan, add_start_options
+from cli.processes.ports import free_port, port_is_free
+from cli.processes.supervision import Supervision, run_dir
+from cli.processes.up import Stopped, bring_up, check_free, interruptible, state_line
 from common import messages as m
 from common import topics
 from common.bus.session import open_session

@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 from scipy import ndimage
 
-from cli.mounts import LEAST, Arm, Array, Room, Unseen, rays
+from cli.cameras.mounts import LEAST, Arm, Array, Room, Unseen, rays
 from common.geometry import quat_matrix
 from common.messages import Rgbd
 

@@ -6,11 +6,11 @@ from pathlib import Path
 
 import numpy as np
 
-from cli.drivers import PERIOD, Driver, Unmet
+from cli.cameras.mounts import Arm, Array, Mount, Room, Shot, Unseen, fit
+from cli.cameras.poses import overlooks, poses
+from cli.drivers.driver import PERIOD, Driver, Unmet
 from cli.errors import CliError
 from cli.link import Link, Watch
-from cli.mounts import Arm, Array, Mount, Room, Shot, Unseen, fit
-from cli.poses import overlooks, poses
 from common import calibration, topics
 from common import messages as m
 from common.atomic_file import replace

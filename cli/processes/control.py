@@ -9,8 +9,8 @@ import msgspec
 
 from cli.errors import CliError, checked
 from cli.link import Link, use_keys
-from cli.services import NAMES
-from cli.supervision import WORLD, Supervision, run_dir
+from cli.processes.services import NAMES
+from cli.processes.supervision import WORLD, Supervision, run_dir
 from common.bus.session import BusError, open_session
 from common.security.keys import OFF
 from common.time.clock import monotonic, sleep

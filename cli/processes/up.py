@@ -9,11 +9,11 @@ from types import FrameType
 
 from cli.errors import CliError, port_number
 from cli.link import Link, Watch
-from cli.plan import Plan, add_start_options
-from cli.ports import port_is_free
-from cli.programs import socket_path
-from cli.services import NAMES, OPTIONAL
-from cli.supervision import Supervision, run_dir
+from cli.processes.plan import Plan, add_start_options
+from cli.processes.ports import port_is_free
+from cli.processes.programs import socket_path
+from cli.processes.services import NAMES, OPTIONAL
+from cli.processes.supervision import Supervision, run_dir
 from common import messages as m
 from common import speech_weights, topics
 from common.bus.session import NoRouter, open_session

@@ -9,7 +9,7 @@ import msgspec
 
 from cli.errors import CliError, near
 from cli.link import Link, add_options, linked
-from cli.missions import date_of
+from cli.missions.journal import date_of
 from common import topics
 
 WIDTH = 118

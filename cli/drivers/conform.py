@@ -7,8 +7,8 @@ import argparse
 
 import msgspec
 
-from cli.conformance import LISTENING, MOVING
-from cli.drivers import STALL, Driver, Unmet
+from cli.drivers.driver import STALL, Driver, Unmet
+from cli.drivers.requirements import LISTENING, MOVING
 from cli.errors import CliError
 from cli.link import add_options, linked
 from common import topics

@@ -6,10 +6,10 @@ from typing import get_args
 
 import msgspec
 
-from cli.audio import padded, read_wav
-from cli.conversation import ACCEPT, KEPT, Conversation, Show, speak_into, typed
 from cli.errors import CliError, checked
 from cli.link import Watch, add_options, linked
+from cli.missions.audio import padded, read_wav
+from cli.missions.conversation import ACCEPT, KEPT, Conversation, Show, speak_into, typed
 from common import messages as m
 from common import topics
 from common.time.clock import monotonic

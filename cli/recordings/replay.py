@@ -3,10 +3,10 @@
 import argparse
 from pathlib import Path
 
-from cli import mission_export
 from cli.errors import CliError, checked, port_number
-from cli.programs import become
-from cli.services import NAMES
+from cli.processes.programs import become
+from cli.processes.services import NAMES
+from cli.recordings import export as mission_export
 from common.recording import RAW, Recording, RecordingError, repair
 
 

@@ -13,8 +13,8 @@ from typing import Any
 import msgspec
 
 from cli.errors import CliError
-from cli.programs import ROUTER_SOCKET, WATCHDOG, endpoints, render_config, socket_path
-from cli.services import Service
+from cli.processes.programs import ROUTER_SOCKET, WATCHDOG, endpoints, render_config, socket_path
+from cli.processes.services import Service
 from common import supervisor
 from common.installation import ROOT, workspace
 from common.time import clock
@@ -88,7 +88,7 @@ class Supervision:
         environment["TIDYBOT__DASHBOARD__SUPERVISOR"] = str(socket_path(self.directory))
         with (logs / "supervisord.err").open("wb") as errors:
             self.process = subprocess.Popen(
-                [sys.executable, "-m", "cli.supervisord", "-c", str(config)],
+                [sys.executable, "-m", "cli.processes.supervisord", "-c", str(config)],
                 cwd=ROOT,
                 env=environment,
                 stdin=subprocess.DEVNULL,

@@ -1,4 +1,4 @@
-"""Ends what hangs, so that the supervisor starts it anew: `python -m cli.watchdog`, one of the programs of a run.
+"""Ends what hangs, so that the supervisor starts it anew: `python -m cli.processes.watchdog`, a program of each run.
 
 A service shows twice that it lives: by its liveliness token, which a frozen process loses after the router's lease,
 and by `service/<name>/health` once a second, which a loop that never returns leaves out.
@@ -12,8 +12,8 @@ from typing import Any
 
 from cli.errors import CliError
 from cli.link import Link, use_keys
-from cli.services import SERVICES
-from cli.supervision import ProcessState, Supervision, run_dir
+from cli.processes.services import SERVICES
+from cli.processes.supervision import ProcessState, Supervision, run_dir
 from common import messages as m
 from common import topics
 from common.bus import codec

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NoReturn
 
-from cli.services import Service
+from cli.processes.services import Service
 from common.installation import ROOT
 
 SOCKET_PATH_LIMIT = 100
@@ -65,9 +65,9 @@ def render_config(directory: Path, services: Sequence[Service], connect: str) ->
         "[rpcinterface:supervisor]",
         "supervisor.rpcinterface_factory=supervisor.rpcinterface:make_main_rpcinterface",
         "[rpcinterface:tidybot]",
-        "supervisor.rpcinterface_factory=cli.supervisord:make_rpc",
+        "supervisor.rpcinterface_factory=cli.processes.supervisord:make_rpc",
     ]
-    watchdog = Service(WATCHDOG, "cli.watchdog")
+    watchdog = Service(WATCHDOG, "cli.processes.watchdog")
     for order, service in enumerate((*services, watchdog)):
         name, command = service.name, [sys.executable, "-m", service.module]
         if name == "router":

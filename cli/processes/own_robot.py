@@ -4,7 +4,7 @@ import argparse
 import uuid
 from collections.abc import Sequence
 
-from cli.ports import free_port
+from cli.processes.ports import free_port
 from common.security.keys import OFF
 
 

@@ -11,12 +11,12 @@ from rich.live import Live
 from rich.text import Text
 
 from cli.errors import CliError, port_number
+from cli.home.map_plan import plan_to_map
 from cli.link import Link, Watch
-from cli.map_plan import plan_to_map
-from cli.plan import Plan, add_start_options
-from cli.ports import free_port, port_is_free
-from cli.supervision import Supervision, run_dir
-from cli.up import Stopped, bring_up, check_free, interruptible
+from cli.processes.plan import Plan, add_start_options
+from cli.processes.ports import free_port, port_is_free
+from cli.processes.supervision import Supervision, run_dir
+from cli.processes.up import Stopped, bring_up, check_free, interruptible
 from common import messages as m
 from common import topics
 from common.bus.session import open_session

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import msgspec
 
-from cli.authority import Authority, hosts_of
 from cli.errors import CliError
-from cli.services import NAMES
+from cli.keys.authority import Authority, hosts_of
+from cli.processes.services import NAMES
 from common.security.access import AGENT, OPERATOR, ROUTER, Role, Subject
 from common.security.keys import OFF, default_directory
 

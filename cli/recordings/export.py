@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from cli.errors import CliError, near
-from cli.programs import become
+from cli.processes.programs import become
 from common import topics
 from common.mission_log.recorded import missions
 from common.recording import Recorder, Recording, Row
@@ -76,7 +76,7 @@ def export(path: Path, target: Path, wanted: str, say: Callable[[str], None] = p
     target.parent.mkdir(parents=True, exist_ok=True)
     if target.suffix in PAGES:
         # The renderer and the templates are not for every command to load.
-        from cli.key_frames import key_frames
+        from cli.recordings.key_frames import key_frames
         from common.mission_log.timeline import page
 
         seen = key_frames(recording, record) if recording.of(topics.SIM_STATE.key) else []

@@ -10,9 +10,9 @@ from pathlib import Path
 
 from cli.errors import CliError
 from cli.link import Link, add_options, address
-from cli.recording_files import RecordingFiles
-from cli.supervision import Supervision, run_dir
-from cli.tape import BATCH, FLUSH, Listener, Progress, Tape
+from cli.processes.supervision import Supervision, run_dir
+from cli.recordings.files import RecordingFiles
+from cli.recordings.tape import BATCH, FLUSH, Listener, Progress, Tape
 from common import config
 from common.bus.session import NoRouter, open_session
 from common.config import config_dir
