@@ -18,7 +18,7 @@ from common.rendering.renderer import choose
 from common.scene import Scene, load_scene
 from common.time.clock import ManualClock
 from common.time.lockstep import DT, InProcess
-from evaluation.host_faults import FullDisk, OutageBus
+from evaluation.faults.host import FullDisk, OutageBus
 from evaluation.registry import service_class
 
 Swap = Callable[[Any], Any]

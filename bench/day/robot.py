@@ -16,7 +16,7 @@ from cli.processes.up import bring_up
 from common.installation import ROOT
 from common.plan_file import to_toml
 from common.scene import Scene
-from evaluation.unknown import nothing_listed
+from evaluation.suites.unknown import nothing_listed
 
 RECORDED = 60
 """Newest part [MB] of everything on the bus that is kept."""

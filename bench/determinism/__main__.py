@@ -27,10 +27,10 @@ from cli.processes.supervision import Supervision
 from cli.processes.up import bring_up
 from common.rendering.renderer import choose
 from evaluation.case import Case
-from evaluation.chaos import MISTREATED, TRAFFIC
-from evaluation.faults import Rule, faulty
+from evaluation.faults.messages import Rule, faulty
 from evaluation.node import CASE
 from evaluation.stack import Stack
+from evaluation.suites.chaos import MISTREATED, TRAFFIC
 
 T = TypeVar("T")
 WALL_LIMIT, NODE = 1800.0, "evaluation.node"

@@ -15,7 +15,7 @@ from bench.grasp import unlisted
 from bench.grasp.hand import Bench
 from common.kinds import KINDS
 from common.scene import ObjectSpec, Scene, load_scene
-from evaluation.statistics import percent
+from evaluation.report.statistics import percent
 from services.manipulation.config import ManipulationConfig
 
 

@@ -25,7 +25,7 @@ from evaluation.homes.explore import Explored, explore
 from evaluation.homes.map_errors import HEIGHT, OUTLINE, WALL, Errors, centimetres, compare
 from evaluation.homes.suite import homes
 from evaluation.stack import Stack
-from evaluation.worlds import CASES, WORLD, worlds
+from evaluation.suites.worlds import CASES, WORLD, worlds
 
 FILM = "film.webp"
 

@@ -16,8 +16,8 @@ import numpy as np
 from bench.perception.views import look_at, visible
 from common.rendering.renderer import Renderer
 from common.scene import ObjectSpec
-from evaluation import unknown
 from evaluation.case import Case
+from evaluation.suites import unknown
 from services.perception import colour
 from services.perception.detect import ClassicalDetector
 from services.perception.detection import Detection

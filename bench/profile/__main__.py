@@ -145,7 +145,7 @@ class Mission(msgspec.Struct):
 def case_of(suite: str, seed: int, settings: tuple[str, ...]) -> tuple[str, float]:
     """A case of a suite: outcome and robot time [s]."""
     from evaluation import runner
-    from evaluation.suites import cases
+    from evaluation.suites.table import cases
 
     (case,) = cases(suite, 1, seed, settings)
     result = runner.run(case)
