@@ -6,9 +6,9 @@ import msgspec
 
 from common.household import Household
 from common.scene import Scene
-from evaluation.faults.messages import Rule
-from evaluation.faults.physical.fault import PhysicalFault
-from evaluation.faults.reports import FaultReport
+from evaluation.fault_reports import FaultReport
+from evaluation.faults import Rule
+from evaluation.physical.fault import PhysicalFault
 from judge.claims import Claim
 from judge.effects import Effect, Shown
 from judge.evidence import Evidence, Want
@@ -82,7 +82,8 @@ class Showing(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Case(msgspec.Struct, kw_only=True):
-    """`lines` are what the person says, `thing` what they really want, `expect` what physics should show.
+    """`lines` are what the person says, `thing` what they really want, `called` their words for it if it has others,
+    `expect` what physics should show.
 
     `shown`: all that is wanted is delivered and all `effects` are seen. `wants` and `effects` are as things should be
     at the end. Without a `scene` (the world) it is the shipped flat; without a `household` the robot is
@@ -102,6 +103,7 @@ class Case(msgspec.Struct, kw_only=True):
     wants: tuple[Want, ...] = ()
     effects: tuple[Effect, ...] = ()
     thing: str = ""
+    called: str = ""
     expect: Expect = "delivered"
     honest: bool = False
     spoken: bool = False

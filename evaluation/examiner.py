@@ -11,11 +11,11 @@ from common import topics
 from common.bus.port import Io, Job
 from common.config import Config
 from evaluation.case import Case, Line, Observed
-from evaluation.faults.reports import FaultReport
-from evaluation.person.ego_noise import EgoNoise
-from evaluation.person.simulated_user import Manner, SimulatedUser, seen_at
-from evaluation.person.voice import RATE, Samples, loudness, utter
+from evaluation.ego_noise import EgoNoise
+from evaluation.fault_reports import FaultReport
 from evaluation.shortest import FloorPlan
+from evaluation.simulated_user import Manner, SimulatedUser, seen_at
+from evaluation.voice import RATE, Samples, loudness, utter
 from judge.evidence import Sample
 from judge.observer import WATCH, Observer
 
@@ -50,7 +50,7 @@ class Examiner:
         self._case, self._io = self.case, io
         manner: Manner = "reject" if self._case.name == "rejection" else "correct"
         manner = "silent" if self._case.silent else manner
-        self._user = SimulatedUser(self._case.command, self._case.thing, io.world, manner)
+        self._user = SimulatedUser(self._case.command, self._case.thing, io.world, manner, self._case.called)
         self._observer = Observer(io.world)
         self._begun = False
         self._lines = deque(self._case.lines)

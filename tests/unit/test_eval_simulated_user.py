@@ -3,7 +3,7 @@
 import pytest
 
 from common.scene import load_scene
-from evaluation.person.simulated_user import PATIENCE, Manner, SimulatedUser, seen_at
+from evaluation.simulated_user import PATIENCE, Manner, SimulatedUser, seen_at
 from judge.words import plain
 
 SCENE = load_scene("apartment")
@@ -76,3 +76,9 @@ def test_what_is_seen_where_the_robot_shows() -> None:
 
 def test_plain_words() -> None:
     assert plain("Hey Jarvis, please bring me THE red-mug!") == "bring red mug"
+
+
+def test_who_has_other_words_for_a_thing_knows_it_when_it_is_shown() -> None:
+    one = SimulatedUser("bring me the soap", "red mug", SCENE, called="pink soap")
+    assert one.answer("I see a red mug on the desk. Is that the soap you mean?", "red mug") == "yes"
+    assert one.answer("Which soap?") == "the pink soap"

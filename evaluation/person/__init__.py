@@ -1,1 +1,0 @@
-"""The person who talks to the robot: wishes, answers and voice."""

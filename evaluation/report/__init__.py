@@ -1,1 +1,0 @@
-"""What became of the cases, for terminal, JSON and HTML."""

@@ -1,1 +1,0 @@
-"""The suites of scenarios, and what they are made of."""

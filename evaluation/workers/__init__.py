@@ -1,1 +1,0 @@
-"""Where cases run: in lanes of this machine or of a cluster."""
