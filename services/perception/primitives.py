@@ -68,13 +68,13 @@ def silhouette(points: Array, camera: Array, seen: tuple[bool, bool], half_pixel
     return Silhouette(camera[:2], ahead, ends, distance)
 
 
-def _bearings(outline: Silhouette, x: Array, y: Array) -> Array:
+def bearing_of(outline: Silhouette, x: Array, y: Array) -> Array:
     """Bearings [rad] of points from the camera, about where the silhouette is."""
     bearings = np.arctan2(y - outline.camera[1], x - outline.camera[0]) - outline.ahead
     return np.asarray(np.remainder(bearings + math.pi, 2 * math.pi) - math.pi)
 
 
-def _apart(outline: Silhouette, ends: Array) -> Array:
+def apart(outline: Silhouette, ends: Array) -> Array:
     """How far [m] right and left ends (m, 2) [rad] are from those of the silhouette that are in view (m, e)."""
     return outline.distance * (ends - outline.ends)[:, ~np.isnan(outline.ends)]
 
@@ -87,8 +87,8 @@ def round_ends(half: float) -> Ends:
         widest = r + np.abs(p[:, 3]) * half if p.shape[1] > 3 else r
         far = np.maximum(np.hypot(x - outline.camera[0], y - outline.camera[1]), 1e-3)
         angle = np.arcsin(np.clip(widest / far, -0.99, 0.99))
-        bearing = _bearings(outline, x, y)
-        return _apart(outline, np.stack([bearing - angle, bearing + angle], axis=1))
+        bearing = bearing_of(outline, x, y)
+        return apart(outline, np.stack([bearing - angle, bearing + angle], axis=1))
 
     return ends
 
@@ -101,8 +101,8 @@ def corner_ends(lies: bool) -> Ends:
         length, width = (sides[1], 2 * sides[0]) if lies else sides
         c, s = np.cos(yaw)[:, None], np.sin(yaw)[:, None]
         a, b = np.array([1, 1, -1, -1]) * length[:, None] / 2, np.array([1, -1, 1, -1]) * width[:, None] / 2
-        bearings = _bearings(outline, x[:, None] + c * a - s * b, y[:, None] + s * a + c * b)
-        return _apart(outline, np.stack([bearings.min(axis=1), bearings.max(axis=1)], axis=1))
+        bearings = bearing_of(outline, x[:, None] + c * a - s * b, y[:, None] + s * a + c * b)
+        return apart(outline, np.stack([bearings.min(axis=1), bearings.max(axis=1)], axis=1))
 
     return ends
 

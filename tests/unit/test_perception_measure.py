@@ -33,6 +33,17 @@ def cylinder(x: float, y: float, r: float, h: float) -> Array:
     return np.concatenate([facing(wall, round_about), facing(lid, np.tile([0.0, 0, 1], (500, 1)))])
 
 
+def oval(x: float, y: float, yaw: float, size: tuple[float, float, float]) -> Array:
+    rng = np.random.default_rng(6)
+    turn, up, out = rng.uniform(0, 2 * math.pi, 2500), rng.uniform(0, size[2], 2500), np.sqrt(rng.uniform(0, 1, 500))
+    c, s, (a, b) = math.cos(yaw), math.sin(yaw), (size[0] / 2, size[1] / 2)
+    to_map = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1.0]]).T
+    wall = np.stack([a * np.cos(turn), b * np.sin(turn), up], 1) @ to_map + [x, y, FLOOR]
+    normals = np.stack([b * np.cos(turn), a * np.sin(turn), 0 * turn], 1) @ to_map
+    lid = np.stack([a * out * np.cos(turn[:500]), b * out * np.sin(turn[:500]), np.full(500, size[2])], 1)
+    return np.concatenate([facing(wall, normals), facing(lid @ to_map + [x, y, FLOOR], np.tile([0.0, 0, 1], (500, 1)))])
+
+
 def lying(x: float, y: float, yaw: float, r: float, length: float) -> Array:
     rng = np.random.default_rng(2)
     turn, along = rng.uniform(0, 2 * math.pi, 2000), rng.uniform(-length / 2, length / 2, 2000)
@@ -108,6 +119,17 @@ def test_a_box_of_any_size_keeps_its_sides(yaw: float, size: tuple[float, float,
     near(m, 0.15, -0.1, size)
     if size[0] > 1.5 * size[1]:
         assert abs(math.remainder(m.yaw - yaw, math.pi)) < 0.1
+
+
+@pytest.mark.parametrize("yaw", [0.3, 1.2, 2.4])
+@pytest.mark.parametrize("size", [(0.08, 0.045, 0.2), (0.1, 0.06, 0.24)])
+def test_an_oval_bottle_is_as_deep_as_it_is_and_looks_like_something_round(
+    yaw: float, size: tuple[float, float, float]
+) -> None:
+    m = look(oval(0.1, 0.0, yaw, size))
+    assert m.family == "box" and "round" in [shape.family for _, shape in m.rivals]
+    near(m, 0.1, 0.0, size)
+    assert abs(math.remainder(m.yaw - yaw, math.pi)) < 0.2
 
 
 @pytest.mark.parametrize("r", [0.03, 0.037, 0.05])
