@@ -20,8 +20,9 @@ THRESHOLD = 0.05
 """Concavity that CoACD leaves: its own default. A cup keeps its inside."""
 MOST = 24
 """Parts of one mesh: collisions of more cost more than they are worth to a hand of two fingers."""
-FILLED = 0.6
-"""Volume of a mesh, by that of its convex hull, below which it is hollow. Chosen: a bottle with its neck fills .75."""
+FILLED = 0.8
+"""Volume of a mesh, by that of its convex hull, below which the hull is not what is looked at. Chosen: a bottle with a
+neck fills .75, a banana .7; fingers that close on it would stop in the air."""
 EFFORT = {"preprocess_resolution": 30, "resolution": 1000, "mcts_nodes": 8, "mcts_iterations": 30, "mcts_max_depth": 2}
 """How hard CoACD tries: 5 s for a bowl of 768 triangles, by its own defaults 13 s; as many parts."""
 SEAM_DIGITS = 6
@@ -67,7 +68,7 @@ def _sewn(vertices: Array, faces: NDArray[np.int64]) -> Part:
 
 
 def hollow(vertices: Array, faces: NDArray[np.int64]) -> bool:
-    """The convex hull of a closed mesh would fill what is open: a bowl, a mug."""
+    """The convex hull of a closed mesh would fill what is open or bent: a bowl, a mug, a banana."""
     from scipy.spatial import ConvexHull
 
     a, b, c = (vertices[faces[:, n]] - vertices.mean(axis=0) for n in range(3))
