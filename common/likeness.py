@@ -1,5 +1,6 @@
 """How well words for colours and kinds fit an object by its looks: from plainly to not at all. Pure."""
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from common.household import Household
@@ -22,8 +23,8 @@ NOT_CALLED = 0.54
 """Most likeness of a kind that an object may be and is not called. Chosen: below PLAIN, since a red ball is brought for
 a red apple only when the person says so."""
 UNSEEN, UNTOLD = 0.4, 0.1
-"""Most likeness of what fits but for words that say how a thing is and are not seen (`words.qualities`), and but for
-words that may say anything. Chosen: a person is asked about the first at once, about the second at last."""
+"""Most likeness of what fits but for words that are not seen (`words.qualities`, those before a kind, `words.looks`),
+and but for words that may say anything. Chosen: a person is asked about the first at once, about the second at last."""
 ROUGHLY = 0.15
 """Likeness of the words that are known from which the others are asked about. Chosen: more than one that is near."""
 SHAPELESS, ANY_SHAPE = frozenset({"toy", "tool"}), 0.35
@@ -53,16 +54,44 @@ def likeness(phrase: str, o: WorldObject, household: Household) -> float:
 
 
 def partly(phrase: str, o: WorldObject, household: Household) -> float:
-    """How well a noun fits an object of which some words say nothing that is seen: "the striped mug", "the toy car".
+    """How well a noun fits an object of which some words say nothing that is seen: "the striped mug", "the spray
+    bottle", "the soap", "the toy car".
 
     0 where all its words are known, none is, or those that are do not fit.
     """
-    known = _known(normalise(phrase), o, household)
-    untold = known.rest - set(household.words.qualities)
-    # What has other words printed on it is something else.
-    if not known.any or not known.rest or (untold and o.text) or _fit(known, o) < ROUGHLY:
+    wanted, told = normalise(phrase), household.words
+    known, fit = _known(wanted, o, household), looks_like(phrase, o, household)
+    unseen, untold = known.rest & {*told.qualities, *told.looks}, known.rest - {*told.qualities, *told.looks}
+    # The last word says what it is, those before it which one.
+    headed = _known(wanted.split()[-1], o, household).any
+    if not known.rest or not (known.any or unseen & set(told.looks)) or fit < ROUGHLY or (untold and o.text):
         return 0.0
-    return UNTOLD if untold else min(UNSEEN, _fit(known, o))
+    # What has other words printed on it is hardly the soap.
+    if (untold and not headed) or (o.text and not known.rest <= set(told.qualities)):
+        return UNTOLD
+    return min(UNSEEN, fit)
+
+
+def looks_like(phrase: str, o: WorldObject, household: Household) -> float:
+    """How well those words of a noun fit an object that say what it looks like, 0 to 1; 1 where none does."""
+    wanted = normalise(phrase)
+    return min([_fit(_known(wanted, o, household), o), *(_looks(one, o) for one in _told_looks(wanted, household))])
+
+
+def _told_looks(wanted: str, household: Household) -> list[tuple[str, ...]]:
+    """What the words of a normalised phrase look like that has no kind in it: the soup of a soup can does not count."""
+    told, words = household.words.looks, wanted.split()
+    if own_words(wanted, household) & set(KINDS) - set(ALIKE):
+        return []
+    return [told[word] for word in words if word in told]
+
+
+def _looks(words: Sequence[str], o: WorldObject) -> float:
+    """How well an object fits one of the kinds among the words, in one of the colours among them."""
+    kinds, shades = [w for w in words if w in KINDS], [w for w in words if w in ALIKE and w not in KINDS]
+    # What has any shape is told by its colour, or not at all.
+    kind = max((_has_kind(k, o) for k in kinds if shades or k not in SHAPELESS or k in o.kinds), default=0.0)
+    return kind * max((_has_colour(shade, o) for shade in shades), default=1.0)
 
 
 class _Words(NamedTuple):
@@ -105,7 +134,7 @@ def describes(phrase: str, household: Household) -> bool:
     wanted, told = normalise(phrase), household.words
     words = (*wanted.split(), wanted)
     return listed(wanted, household) is not None or any(
-        w in KINDS or w in ALIKE or w in told.groups or told.kind(w) or told.colour(w) for w in words
+        w in KINDS or w in ALIKE or w in told.groups or w in told.looks or told.kind(w) or told.colour(w) for w in words
     )
 
 

@@ -32,6 +32,7 @@ class Words(Strict, frozen=True):
 
     `groups`: words that stand for several kinds. `mass`: those of them that mean everything of the kind ("rubbish").
     `qualities`: words that say how a thing is and that nobody can tell by its kind and colour ("striped", "favourite").
+    `looks`: words for things that nobody can tell by looks alone ("soap"), each with the kinds and colours it may have.
     `needs`: what helps somebody who is "thirsty". `tidy` and `throw`: where things go that are put away or thrown away;
     the first rule that fits counts.
     """
@@ -42,6 +43,7 @@ class Words(Strict, frozen=True):
     mass: tuple[str, ...] = ()
     needs: dict[str, str] = {}
     qualities: tuple[str, ...] = ()
+    looks: dict[str, tuple[str, ...]] = {}
     tidy: tuple[Destination, ...] = ()
     throw: tuple[Destination, ...] = ()
 
@@ -52,6 +54,7 @@ class Words(Strict, frozen=True):
         """What makes the words impossible, in words; "" when nothing does."""
         named = [*self.kinds, *(kind for group in self.groups.values() for kind in group)]
         named += [kind for rule in (*self.tidy, *self.throw) for kind in rule.kinds]
+        named += [word for look in self.looks.values() for word in look if word not in self.colours]
         unknown = next((kind for kind in named if kind not in KINDS), "")
         return f"words: no kind is called {unknown!r}; known kinds: {', '.join(KINDS)}" if unknown else ""
 
@@ -71,6 +74,7 @@ class Words(Strict, frozen=True):
             groups={**self.groups, **more.groups},
             mass=(*self.mass, *more.mass),
             qualities=(*self.qualities, *more.qualities),
+            looks={**self.looks, **more.looks},
             needs={**self.needs, **more.needs},
             tidy=more.tidy or self.tidy,
             throw=more.throw or self.throw,

@@ -8,10 +8,9 @@ from typing import Any
 import pytest
 
 from cli.errors import CliError
-from evaluation import runner
+from evaluation import cluster, pool, runner
 from evaluation.case import Result
-from evaluation.suites.table import cases
-from evaluation.workers import cluster, pool
+from evaluation.suites import cases
 from tests.network import Machine, Network, network
 from tests.support import eventually
 

@@ -2,7 +2,7 @@
 
 import os
 
-from cli.processes.watchdog import FROZEN, IDLE, STUCK, Pulse, look
+from cli.watchdog import FROZEN, IDLE, STUCK, Pulse, look
 
 
 def heard() -> Pulse:

@@ -79,8 +79,12 @@ def test_a_label_is_enough_for_what_was_put_down() -> None:
         ("striped grey can", CAN, LIKELY, PLAIN),
         ("my favourite can", TIN, LIKELY, PLAIN),
         ("striped mug", TIN, 0.0, LEAST),
-        ("vitamin can", TIN, LEAST, LIKELY),
+        ("vitamin can", TIN, LIKELY, PLAIN),
         ("yellow toy car", DUCK, LEAST, LIKELY),
+        ("duck", DUCK, LEAST, LIKELY),
+        ("soup", TIN, LIKELY, PLAIN),
+        ("soap", TIN, 0.0, LEAST),
+        ("red tomato", TIN, 0.0, LEAST),
         ("vitamins", TIN, 0.0, LEAST),
         ("white can", TIN, 0.0, LEAST),
     ],
@@ -95,11 +99,19 @@ def test_what_has_other_words_on_it_is_not_asked_about() -> None:
     tin = measured("white can", {"can": 1.0}, {"white": 1.0})
     tin.text = "CORN"
     assert partly("vitamin can", tin, HOUSEHOLD) == 0.0 < partly("old can", tin, HOUSEHOLD)
+    assert 0.0 < partly("soup", tin, HOUSEHOLD) < LIKELY < partly("old can", tin, HOUSEHOLD)
 
 
 @pytest.mark.parametrize(
     ("phrase", "says"),
-    [("the red mug", True), ("teacup", True), ("something to drink", True), ("blue thing", True), ("the pear", False)],
+    [
+        ("the red mug", True),
+        ("teacup", True),
+        ("something to drink", True),
+        ("blue thing", True),
+        ("the pear", True),
+        ("the zebra", False),
+    ],
 )
 def test_which_words_say_what_a_thing_looks_like(phrase: str, says: bool) -> None:
     assert describes(phrase, HOUSEHOLD) is says

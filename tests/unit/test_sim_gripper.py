@@ -4,7 +4,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from cli.drivers import requirements as conformance
+from cli import conformance
 from common import messages as m
 from common import topics
 from common.bus import codec

@@ -13,21 +13,24 @@ from services.brain.steps.identify import ANOTHER, MOST_ASKED, ChooseCandidate, 
 from services.brain.tree.composites import Retry, Sequence
 
 
-def ask_whether(ctx: Context, task: Task, least: float = LIKELY) -> Behaviour:
-    """Ask about one object after the other, the likeliest first, until the person says that it is the one."""
+def ask_whether(ctx: Context, task: Task, least: float = LIKELY, near: bool = False) -> Behaviour:
+    """Ask about one object after the other, the likeliest first, until the person says that it is the one.
+
+    `least` and `near` as of `candidate`.
+    """
     ask = Sequence(
         "ask_whether",
-        ChooseCandidate("choose_candidate", ctx, least),
+        ChooseCandidate("choose_candidate", ctx, least, near),
         AskQuestion("whether", ctx, lambda: whether(ctx, task.item)),
         HearIdentity("hear_identity", ctx, lambda: task.item),
         LocateObject("look_for_the_one_meant", ctx, task.item),
     )
-    return Retry("identify", ctx, ask, MOST_ASKED - 1, again=lambda: was_another(ctx) and may_be(ctx, least))
+    return Retry("identify", ctx, ask, MOST_ASKED - 1, again=lambda: was_another(ctx) and may_be(ctx, least, near))
 
 
-def may_be(ctx: Context, least: float = LIKELY) -> bool:
+def may_be(ctx: Context, least: float = LIKELY, near: bool = False) -> bool:
     """An object is seen that may be the one asked for, and nobody was asked about it."""
-    return not ctx.mission.failed_for_good and candidate(ctx, least) is not None
+    return not ctx.mission.failed_for_good and candidate(ctx, least, near) is not None
 
 
 def was_another(ctx: Context) -> bool:
@@ -36,6 +39,8 @@ def was_another(ctx: Context) -> bool:
     return failure is not None and failure.code == ANOTHER
 
 
+ask_about_the_near, near_possible = partial(ask_whether, near=True), partial(may_be, near=True)
+"""Between one look from nearer and the next: what was looked at, and may be it still."""
 ask_about_the_rest = partial(ask_whether, least=LEAST)
 """After the search: also what fits the words badly, because nothing fits them better."""
 remains_possible = partial(may_be, least=LEAST)

@@ -14,6 +14,7 @@ from common.topics import Topic
 from services.brain.mission.context import Context
 from services.brain.mission.mission import SIDES, Failure
 from services.brain.recoveries.clarify import ask_which, several_match
+from services.brain.recoveries.identify import ask_about_the_near, near_possible
 from services.brain.recoveries.recovery import Recovery, Task, with_recoveries
 from services.brain.steps.find import LocateObject
 from services.brain.steps.leaf import SendGoal, Settle
@@ -24,7 +25,10 @@ from services.brain.world.standing_poses import standing_pose
 MOST = 8
 """Looks from nearer, one after the other, for one view (chosen: at as many objects as stand on a table, and at some of
 them from another side)."""
-SEVERAL = (Recovery("several_match", several_match, ask_which),)
+AFTER_A_CLOSER_LOOK = (
+    Recovery("several_match", several_match, ask_which),
+    Recovery("identify_near", near_possible, ask_about_the_near),
+)
 
 
 class MoveCloser(SendGoal):
@@ -85,7 +89,7 @@ def look_closer(ctx: Context, task: Task) -> Behaviour:
         "closer_view",
         MoveCloser("closer", ctx),
         Settle("settle", ctx),
-        with_recoveries("look_or_ask", ctx, looked, SEVERAL, task),
+        with_recoveries("look_or_ask", ctx, looked, AFTER_A_CLOSER_LOOK, task),
     )
     return Retry("look_closer", ctx, look, MOST - 1, again=lambda: unsure(ctx))
 

@@ -23,15 +23,15 @@ MOST_ASKED = 4
 
 
 class ChooseCandidate(Leaf):
-    """Takes up the likeliest object that the person was not asked about, from a likeness of `least` on."""
+    """Takes up the likeliest object that the person was not asked about; `least` and `near` as of `candidate`."""
 
-    def __init__(self, node_id: str, ctx: Context, least: float) -> None:
+    def __init__(self, node_id: str, ctx: Context, least: float, near: bool = False) -> None:
         super().__init__(node_id, ctx)
-        self._least = least
+        self._least, self._near = least, near
 
     def update(self) -> Status:
         search = self.ctx.mission.search
-        search.about = candidate(self.ctx, self._least)
+        search.about = candidate(self.ctx, self._least, self._near)
         return Status.SUCCESS if search.about is not None else Status.FAILURE
 
 
@@ -78,12 +78,16 @@ class HearIdentity(HearAnswer):
         return super().fail_with(failure)
 
 
-def candidate(ctx: Context, least: float) -> m.PossibleObject | None:
-    """The likeliest object that may be meant and that the person can still be asked about; None if there is none."""
+def candidate(ctx: Context, least: float, near: bool = False) -> m.PossibleObject | None:
+    """The likeliest object that may be meant and that the person can still be asked about; None if there is none.
+
+    `least`: its likeness, at least; `near`: of those only that were looked at from nearer.
+    """
     search = ctx.mission.search
     if search.unanswered or len(search.rejected) >= MOST_ASKED:
         return None
-    return next((p for p in search.perhaps if p.likeness >= least and p.id not in search.rejected), None)
+    left = [p for p in search.perhaps if p.likeness >= least and p.id not in search.rejected]
+    return next((p for p in left if not near or p.label in search.inspected), None)
 
 
 class StillMeant(Leaf):

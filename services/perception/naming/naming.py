@@ -13,6 +13,7 @@ from common import messages as m
 from common import topics
 from common.bus.port import Io
 from common.geometry import Pose2
+from common.likeness import LEAST, looks_like
 from common.naming import match_object, normalise
 from services.perception.config import PerceptionConfig
 from services.perception.naming import reader
@@ -148,8 +149,8 @@ class Naming:
         return not answered and bool(self._printed(query))
 
     def unsure(self, query: str, objects: Sequence[m.WorldObject], base: Pose2) -> list[str]:
-        """Labels of objects that could be meant and have to be seen from nearer to tell, the likeliest first, of equal
-        ones that which is nearest to `base`."""
+        """Labels of objects that could be meant and have to be seen from nearer to tell, the likeliest first by what
+        was read and by their looks, of equal ones that which is nearest to `base`."""
         words, name = self._asked_print(query), normalise(query)
         said = name.split()
         beside = {*said, *COLOURS}
@@ -162,8 +163,11 @@ class Naming:
                 sight, score = self._observer.sight(o.id), likeness(words, o.text, beside)
                 if _unlike(o, said, said):
                     score -= OTHER_LOOKS
+                looks = looks_like(query, o, self._io.household)
+                if score < LIKELY and looks < LEAST:
+                    continue
                 if score >= LIKELY or sight is None or not sight.read:
-                    found.append((-score, away, o.label))
+                    found.append((-score - looks, away, o.label))
                 elif not sight.exhausted and (not sight.named or traces(words, o.text) >= LIKELY):
                     # Its print is on another side, or goes on there.
                     found.append((1.0 - traces(words, o.text), away, o.label))

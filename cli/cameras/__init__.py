@@ -1,1 +1,0 @@
-"""Where the cameras really sit: `tidybot calibrate`."""

@@ -1,1 +1,0 @@
-"""What the robot relies on from its drivers: `tidybot conform`."""

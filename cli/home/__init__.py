@@ -1,1 +1,0 @@
-"""What the robot is told of its home: `tidybot map`, `places`, `rules`, `teach`, `forget`."""

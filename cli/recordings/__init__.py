@@ -1,1 +1,0 @@
-"""Recordings of all topics: `tidybot record`, `replay`."""
