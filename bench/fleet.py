@@ -26,7 +26,7 @@ from zenoh import handlers
 
 from bench.mission import Robot
 from cli.fleet.radio import thinning
-from cli.services import NAMES, OPTIONAL
+from cli.processes.services import NAMES, OPTIONAL
 from common import messages as m
 from common import topics
 from common.bus import codec

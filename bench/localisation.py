@@ -19,7 +19,7 @@ from common.geometry import Rectangle, wrap
 from common.time.lockstep import DT
 from evaluation.homes.floor import Floor
 from evaluation.homes.suite import aged
-from evaluation.statistics import interval
+from evaluation.report.statistics import interval
 
 LIMIT, LIMIT_ANGLE = 0.03, math.radians(1.5)
 """Errors RMS [m, rad] that are allowed; chosen: a third of what grasping at a stand-off forgives."""

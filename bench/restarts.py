@@ -20,12 +20,12 @@ import msgspec
 import psutil  # type: ignore[import-untyped]
 
 from cli.link import Link
-from cli.own_robot import own_robot
-from cli.plan import Plan
-from cli.ports import free_port
-from cli.services import SERVICES
-from cli.supervision import Supervision
-from cli.up import bring_up
+from cli.processes.own_robot import own_robot
+from cli.processes.plan import Plan
+from cli.processes.ports import free_port
+from cli.processes.services import SERVICES
+from cli.processes.supervision import Supervision
+from cli.processes.up import bring_up
 from common.bus.session import open_session
 
 PATIENCE, CALM, TRIES = 180.0, 8.0, 10
@@ -102,7 +102,7 @@ class Robot:
             found.connections += sum(c.status == psutil.CONN_ESTABLISHED for c in sockets)
             found.connections += len(p.net_connections(kind="unix"))
             found.half_closed += sum(c.status in (psutil.CONN_CLOSE_WAIT, psutil.CONN_FIN_WAIT2) for c in sockets)
-            name = labels.get(p.pid, "watchdog" if "cli.watchdog" in p.cmdline() else "child")
+            name = labels.get(p.pid, "watchdog" if "cli.processes.watchdog" in p.cmdline() else "child")
             found.handles[name] = found.handles.get(name, 0) + p.num_fds()
             found.memory[name] = found.memory.get(name, 0.0) + p.memory_info().rss / 1e6
         return found

@@ -16,10 +16,10 @@ from pathlib import Path
 
 import msgspec
 
-from cli.authority import Authority
 from cli.errors import CliError
-from cli.ports import port_is_free
-from cli.supervision import Supervision, run_dir
+from cli.keys.authority import Authority
+from cli.processes.ports import port_is_free
+from cli.processes.supervision import Supervision, run_dir
 from common import speech_weights
 from common.config import config_dir
 from common.installation import ROOT

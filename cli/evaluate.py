@@ -5,8 +5,8 @@ import sys
 from pathlib import Path
 
 from cli.errors import CliError, checked
-from cli.plan import add_machine_options
-from cli.programs import become
+from cli.processes.plan import add_machine_options
+from cli.processes.programs import become
 
 SUITES = (
     "seed", "fetch", "tidy", "faults", "dialogue", "chaos", "commands", "spoken", "sizes", "clutter", "lying",

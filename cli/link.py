@@ -11,7 +11,7 @@ from typing import Any, Generic, TypeVar
 import msgspec
 
 from cli.errors import CliError
-from cli.supervision import Supervision, run_dir
+from cli.processes.supervision import Supervision, run_dir
 from common import messages as m
 from common import topics
 from common.bus import codec, delivery

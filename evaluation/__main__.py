@@ -13,17 +13,21 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TaskID, TextC
 
 from cli.errors import CliError
 from cli.main import FAILED, INTERRUPTED, parser
-from cli.plan import machine
-from cli.up import Stopped, interruptible
+from cli.processes.plan import machine
+from cli.processes.up import Stopped, interruptible
 from common.config import ConfigError
 from common.time.clock import monotonic
-from evaluation import cluster, html_report, pool, processes, report, runner, worlds
+from evaluation import processes, runner
 from evaluation.case import Case, Result
-from evaluation.lane import Run
-from evaluation.pool import Progressed, Repeated, Said
-from evaluation.process_faults import unavailable
+from evaluation.faults.processes import unavailable
+from evaluation.report import html as html_report
+from evaluation.report import text as report
 from evaluation.stack import replacement
-from evaluation.suites import BARS, DEFAULT_SCENARIOS, SUITES, cases, dressed
+from evaluation.suites import worlds
+from evaluation.suites.table import BARS, DEFAULT_SCENARIOS, SUITES, cases, dressed
+from evaluation.workers import cluster, pool
+from evaluation.workers.lane import Run
+from evaluation.workers.pool import Progressed, Repeated, Said
 
 PERIOD = 30.0
 """Seconds between lines of progress where there is no terminal to draw a bar on."""

@@ -6,9 +6,9 @@ import msgspec
 
 from common.household import Household
 from common.scene import Scene
-from evaluation.fault_reports import FaultReport
-from evaluation.faults import Rule
-from evaluation.physical.fault import PhysicalFault
+from evaluation.faults.messages import Rule
+from evaluation.faults.physical.fault import PhysicalFault
+from evaluation.faults.reports import FaultReport
 from judge.claims import Claim
 from judge.effects import Effect, Shown
 from judge.evidence import Evidence, Want

@@ -11,11 +11,11 @@ from common import topics
 from common.bus.port import Io, Job
 from common.config import Config
 from evaluation.case import Case, Line, Observed
-from evaluation.ego_noise import EgoNoise
-from evaluation.fault_reports import FaultReport
+from evaluation.faults.reports import FaultReport
+from evaluation.person.ego_noise import EgoNoise
+from evaluation.person.simulated_user import Manner, SimulatedUser, seen_at
+from evaluation.person.voice import RATE, Samples, loudness, utter
 from evaluation.shortest import FloorPlan
-from evaluation.simulated_user import Manner, SimulatedUser, seen_at
-from evaluation.voice import RATE, Samples, loudness, utter
 from judge.evidence import Sample
 from judge.observer import WATCH, Observer
 

@@ -11,8 +11,8 @@ import msgspec
 
 from common.runtime import main
 from evaluation.case import Case
-from evaluation.fault_injection import with_faults
-from evaluation.fault_reports import FaultReportFile
+from evaluation.faults.injection import with_faults
+from evaluation.faults.reports import FaultReportFile
 from evaluation.registry import service_class
 
 CASE = "TIDYBOT_EVAL_CASE"

@@ -12,11 +12,11 @@ from typing import Any
 import msgspec
 
 from cli.errors import CliError
-from cli.own_robot import own_robot
-from cli.plan import Plan
-from cli.services import SERVICES, Service
-from cli.supervision import Supervision
-from cli.up import bring_up
+from cli.processes.own_robot import own_robot
+from cli.processes.plan import Plan
+from cli.processes.services import SERVICES, Service
+from cli.processes.supervision import Supervision
+from cli.processes.up import bring_up
 from common import config, topics
 from common.bus import delivery
 from common.bus.session import BusError, open_session
@@ -28,11 +28,11 @@ from common.service_process import Process
 from common.time.clock import SimClock, monotonic
 from evaluation.case import Case, Observed, Result
 from evaluation.examiner import Examiner, ExaminerConfig, examiner_of
-from evaluation.fault_injection import targets
-from evaluation.fault_reports import FaultReportFile
+from evaluation.faults.injection import targets
+from evaluation.faults.processes import ProcessFaultInjector, unavailable
+from evaluation.faults.reports import FaultReportFile
 from evaluation.node import CASE, FAULT_REPORTS
-from evaluation.picture import last_picture
-from evaluation.process_faults import ProcessFaultInjector, unavailable
+from evaluation.report.picture import last_picture
 from evaluation.runner import REPORT, Progress, idle_services, timeline
 from evaluation.stack import paced_services
 from evaluation.verdict import judge

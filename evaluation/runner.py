@@ -13,12 +13,12 @@ from common.time.clock import monotonic
 from common.time.lockstep import DT
 from evaluation.case import Case, Observed, Result, TimedFault
 from evaluation.examiner import Examiner, examiner_of
-from evaluation.fault_injection import targets, with_faults
-from evaluation.fault_reports import FaultReport, Reporter, ignore
+from evaluation.faults.injection import targets, with_faults
+from evaluation.faults.reports import FaultReport, Reporter, ignore
 from evaluation.homes.new import NotMapped, mapped_first
-from evaluation.picture import last_picture
-from evaluation.showing import show
+from evaluation.report.picture import last_picture
 from evaluation.stack import Stack
+from evaluation.suites.showing import show
 from evaluation.verdict import judge
 
 Progress = Callable[[float, str], None]

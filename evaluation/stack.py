@@ -9,7 +9,7 @@ from typing import Any
 
 import msgspec
 
-from cli.services import SERVICES
+from cli.processes.services import SERVICES
 from common import config, topics
 from common import messages as m
 from common.bus.memory import MemoryIo
@@ -18,7 +18,7 @@ from common.rendering.renderer import choose
 from common.scene import Scene, load_scene
 from common.time.clock import ManualClock
 from common.time.lockstep import DT, InProcess
-from evaluation.host_faults import FullDisk, OutageBus
+from evaluation.faults.host import FullDisk, OutageBus
 from evaluation.registry import service_class
 
 Swap = Callable[[Any], Any]

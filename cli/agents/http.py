@@ -6,7 +6,7 @@ import tomllib
 from typing import TYPE_CHECKING, Any
 
 from cli.errors import CliError
-from cli.supervision import Supervision, run_dir
+from cli.processes.supervision import Supervision, run_dir
 from common import config
 from common.security import web_access
 

@@ -10,11 +10,11 @@ import numpy as np
 from PIL import Image
 
 from cli.errors import CliError
-from cli.explain import mission_record, told
 from cli.link import Link, Watch
-from cli.mission import status_record
+from cli.missions.explain import mission_record, told
+from cli.missions.say import status_record
 from cli.payload import fields
-from cli.record import settings_of
+from cli.recordings.record import settings_of
 from common import config, topics
 from common import messages as m
 from common.household import Household, load_household

@@ -9,10 +9,10 @@ from typing import Literal, TypedDict, TypeVar
 
 from anyio.to_thread import run_sync
 
-from cli.conversation import KEPT, Conversation
 from cli.errors import CliError
 from cli.link import Link, linked
-from cli.up import state_line
+from cli.missions.conversation import KEPT, Conversation
+from cli.processes.up import state_line
 from common import messages as m
 from common import topics
 from common.time.clock import monotonic

@@ -15,14 +15,14 @@ from common.household import load_household
 from common.household_edits import edited
 from common.map_file import HOUSEHOLD
 from common.scene import ObjectSpec, Scene
-from evaluation.blocks import VLA, WORDINGS, random
 from evaluation.case import Case, Line
-from evaluation.drawn import things
 from evaluation.homes.explore import explore
 from evaluation.homes.home import draw_home
 from evaluation.homes.map_errors import compare
 from evaluation.stack import Stack
-from evaluation.unknown import with_room
+from evaluation.suites.blocks import VLA, WORDINGS, random
+from evaluation.suites.drawn import things
+from evaluation.suites.unknown import with_room
 from judge.effects import Effect
 from judge.evidence import Want
 from judge.goal import Goal

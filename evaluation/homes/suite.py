@@ -5,14 +5,14 @@ import math
 
 import msgspec
 
-from evaluation.blocks import random
 from evaluation.case import Case
-from evaluation.drawn import things
+from evaluation.faults.physical.fault import PhysicalFault
 from evaluation.homes.aged import aged as grown_old
 from evaluation.homes.floor import Floor
 from evaluation.homes.home import draw_home
-from evaluation.physical.fault import PhysicalFault
-from evaluation.unknown import fetch
+from evaluation.suites.blocks import random
+from evaluation.suites.drawn import things
+from evaluation.suites.unknown import fetch
 
 IN_A_HOME = (5, 10)
 """Fewest and most things. Chosen: as many as the surfaces of the smallest homes hold."""

@@ -2,9 +2,9 @@
 
 from collections.abc import Callable
 
-from cli.conversation import Conversation
 from cli.link import Link, Watch
-from cli.verdict import Verdict, Witness
+from cli.missions.conversation import Conversation
+from cli.missions.verdict import Verdict, Witness
 from common import messages as m
 from common import topics
 from common.scene import load_scene

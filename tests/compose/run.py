@@ -13,7 +13,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from cli.link import Link
-from cli.services import NAMES, OPTIONAL
+from cli.processes.services import NAMES, OPTIONAL
 from common.bus.session import open_session
 from tests.compose.engine import Engine, download_wheels, install, note, run
 from tests.compose.mission import carry_out

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from cli.services import NAMES
+from cli.processes.services import NAMES
 from common import interfaces, topics
 from common.time.lockstep import period_of
 from common.topics import Topic

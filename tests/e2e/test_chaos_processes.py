@@ -5,8 +5,8 @@ import pytest
 
 from evaluation import processes
 from evaluation.case import TimedFault
-from evaluation.chaos import CELLS, CHAOS_STATES, EVERY, MOMENTS, PARAMETERS, Cell
-from evaluation.suites import cases
+from evaluation.suites.chaos import CELLS, CHAOS_STATES, EVERY, MOMENTS, PARAMETERS, Cell
+from evaluation.suites.table import cases
 
 pytestmark = [pytest.mark.slow, pytest.mark.long, pytest.mark.timeout(900)]
 REAL = ("kill", "hang", "router loss", "disk full", "disk full, kill")

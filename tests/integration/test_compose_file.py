@@ -13,7 +13,7 @@ import pytest
 import yaml
 
 from cli.link import Link
-from cli.services import NAMES, OPTIONAL
+from cli.processes.services import NAMES, OPTIONAL
 from common.bus.session import open_session
 from tests.compose.mission import carry_out
 from tests.support import ROOT, eventually, free_port

@@ -8,9 +8,9 @@ from typing import Any
 import pytest
 import zenoh
 
-from cli import conformance
-from cli.conform import examine
-from cli.drivers import Driver, Unmet
+from cli.drivers import requirements as conformance
+from cli.drivers.conform import examine
+from cli.drivers.driver import Driver, Unmet
 from cli.link import Link
 from common import messages as m
 from common import topics

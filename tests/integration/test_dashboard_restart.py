@@ -4,10 +4,10 @@ from pathlib import Path
 
 import pytest
 
-from cli.ports import free_port
-from cli.programs import socket_path
-from cli.services import SERVICES
-from cli.supervision import RunInfo, Supervision
+from cli.processes.ports import free_port
+from cli.processes.programs import socket_path
+from cli.processes.services import SERVICES
+from cli.processes.supervision import RunInfo, Supervision
 from services.dashboard.supervisor_client import Refused, Supervisor
 from tests.support import eventually
 

@@ -8,9 +8,10 @@ from typing import Any
 import pytest
 
 from cli.errors import CliError
-from evaluation import cluster, pool, runner
+from evaluation import runner
 from evaluation.case import Result
-from evaluation.suites import cases
+from evaluation.suites.table import cases
+from evaluation.workers import cluster, pool
 from tests.network import Machine, Network, network
 from tests.support import eventually
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from bench.fuzz import Storm
+from bench.fuzz.storm import Storm
 from common import messages as m
 from common import topics
 from common.bus import codec, delivery

@@ -9,10 +9,10 @@ from pathlib import Path
 import pytest
 import zenoh
 
-from cli.conversation import Conversation
 from cli.link import Link
 from cli.main import main as tidybot
-from cli.verdict import Verdict, Witness
+from cli.missions.conversation import Conversation
+from cli.missions.verdict import Verdict, Witness
 from common import messages as m
 from common import topics
 from common.bus import codec

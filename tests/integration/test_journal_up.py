@@ -8,10 +8,10 @@ from typing import Any
 import pytest
 
 from cli.link import Link
-from cli.own_robot import own_robot
-from cli.plan import Plan
-from cli.supervision import Supervision
-from cli.up import bring_up
+from cli.processes.own_robot import own_robot
+from cli.processes.plan import Plan
+from cli.processes.supervision import Supervision
+from cli.processes.up import bring_up
 from common import messages as m
 from common import topics
 from common.bus.session import open_session

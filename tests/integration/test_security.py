@@ -13,7 +13,7 @@ import zenoh
 
 from cli.fleet.robots import Desk
 from cli.main import main as tidybot
-from cli.services import NAMES
+from cli.processes.services import NAMES
 from common import topics
 from common.bus import delivery
 from common.bus.session import open_session

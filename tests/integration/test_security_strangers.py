@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 import zenoh
 
-from cli.authority import Authority, hosts_of
+from cli.keys.authority import Authority, hosts_of
 from cli.main import main as tidybot
 from common import topics
 from common.bus.delivery import Publisher

@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from cli.services import NAMES
+from cli.processes.services import NAMES
 from common import topics
 from common.security import access
 from common.security.access import Subject

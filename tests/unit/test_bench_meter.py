@@ -2,7 +2,7 @@
 
 import pytest
 
-from bench.meter import NOBODY, Meter
+from bench.profile.meter import NOBODY, Meter
 
 
 class Clock:

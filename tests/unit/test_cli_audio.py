@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cli.audio import CHUNK, LEAD_IN, RATE, TRAILING, padded, read_wav
-from cli.demo import VOICE
 from cli.errors import CliError
+from cli.missions.audio import CHUNK, LEAD_IN, RATE, TRAILING, padded, read_wav
+from cli.missions.demo import VOICE
 
 
 def written(path: Path, samples: np.ndarray, rate: int = RATE, channels: int = 1, width: int = 2) -> Path:

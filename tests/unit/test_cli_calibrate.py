@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cli.mounts import Arm, Array, Mount, Room, Shot, Unseen, fit
-from cli.poses import LOWEST, WITHIN, FreeSpace, overlooks, poses
+from cli.cameras.mounts import Arm, Array, Mount, Room, Shot, Unseen, fit
+from cli.cameras.poses import LOWEST, WITHIN, FreeSpace, overlooks, poses
 from common import calibration
 from common.geometry import matrix_quat
 from common.messages import Rgbd

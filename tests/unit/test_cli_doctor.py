@@ -12,8 +12,8 @@ from types import SimpleNamespace
 import pytest
 
 from cli import doctor
-from cli.authority import Authority
 from cli.errors import CliError
+from cli.keys.authority import Authority
 from common.rendering import renderer as render
 
 

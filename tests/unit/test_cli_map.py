@@ -5,8 +5,8 @@ import zlib
 import numpy as np
 import pytest
 
+from cli.home.map import line, states, terminal
 from cli.main import main
-from cli.map import line, states, terminal
 from common import messages as m
 from common.map_file import FREE, OCCUPIED, UNKNOWN
 

@@ -2,8 +2,8 @@
 
 from typing import Any
 
-from cli.explain import WIDTH, told
-from cli.missions import listed
+from cli.missions.explain import WIDTH, told
+from cli.missions.journal import listed
 
 RECORD: dict[str, Any] = {
     "id": "mission-1", "command": "bring me the red mug", "started": 10.0, "outcome": "failed",

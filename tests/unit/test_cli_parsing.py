@@ -10,10 +10,11 @@ from typing import Any
 
 import pytest
 
-from cli import main, ports, programs, supervision
-from cli import plan as plans
+from cli import main
 from cli.errors import CliError, checked
-from cli.services import NAMES, OPTIONAL, SERVICES
+from cli.processes import plan as plans
+from cli.processes import ports, programs, supervision
+from cli.processes.services import NAMES, OPTIONAL, SERVICES
 from tests.support import ROOT
 
 
@@ -103,14 +104,14 @@ def test_only_and_without_choose_in_the_order_of_the_table() -> None:
 def test_optional_services_are_started_when_asked_for_and_their_package_is_there(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("cli.plan.importlib.util.find_spec", lambda name: object())
+    monkeypatch.setattr("cli.processes.plan.importlib.util.find_spec", lambda name: object())
     assert not {*plan().names} & {*OPTIONAL}
     gateways = [n for n in OPTIONAL if n != "mapping"]
     for name in gateways:
         assert plan(f"--{name}").names == [n for n in NAMES if n == name or n not in OPTIONAL]
         assert plan("--only", "router", f"--{name}").names == ["router", name]
     assert plan("--only", "router,mapping").names == ["router", "mapping"], "started by `tidybot map`"
-    monkeypatch.setattr("cli.plan.importlib.util.find_spec", lambda name: None)
+    monkeypatch.setattr("cli.processes.plan.importlib.util.find_spec", lambda name: None)
     for name in OPTIONAL:
         with pytest.raises(CliError, match=rf"pip install 'tidybot-zenoh\[{name}\]'"):
             plan("--only", name)

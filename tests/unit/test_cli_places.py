@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from cli import places
 from cli.errors import CliError
+from cli.home import places
 from cli.link import Link
 from cli.main import parser
 from common import messages as m

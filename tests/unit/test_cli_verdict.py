@@ -11,8 +11,8 @@ from typing import Any
 import pytest
 
 from bench import speech
-from cli import verdict
-from cli.verdict import Witness
+from cli.missions import verdict
+from cli.missions.verdict import Witness
 from common import messages as m
 from common import topics
 from common.bus import codec

@@ -2,7 +2,7 @@
 
 import os
 
-from cli.watchdog import FROZEN, IDLE, STUCK, Pulse, look
+from cli.processes.watchdog import FROZEN, IDLE, STUCK, Pulse, look
 
 
 def heard() -> Pulse:

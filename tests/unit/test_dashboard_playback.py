@@ -8,8 +8,9 @@ from typing import Any
 import msgspec
 import pytest
 
-from cli import key_frames, mission_export
 from cli.errors import CliError
+from cli.recordings import export as mission_export
+from cli.recordings import key_frames
 from common import messages as m
 from common import topics
 from common.bus import codec

@@ -13,13 +13,13 @@ from common import messages as m
 from common import topics
 from common.scene import Scene
 from evaluation.case import Case, Line, Observed, Result, TimedFault
-from evaluation.chaos import CELLS, CHAOS_SERVICES, CHAOS_STATES, EVERY, MISTREATED, TRAFFIC, chaos
 from evaluation.examiner import Examiner, ExaminerConfig, examiner_of
-from evaluation.fault_reports import FaultReport
-from evaluation.faults import Rule, faulty
-from evaluation.matrix import cell, chaos_tables, tally
+from evaluation.faults.messages import Rule, faulty
+from evaluation.faults.reports import FaultReport
+from evaluation.report.matrix import cell, chaos_tables, tally
 from evaluation.runner import FaultScheduler
 from evaluation.stack import Stack
+from evaluation.suites.chaos import CELLS, CHAOS_SERVICES, CHAOS_STATES, EVERY, MISTREATED, TRAFFIC, chaos
 from evaluation.verdict import judge
 from judge.claims import Claim
 from judge.evidence import Evidence, ThingEvidence

@@ -8,7 +8,7 @@ import pytest
 
 from common.scene import load_scene
 from evaluation.case import Case, Line, Observed
-from evaluation.commands import ALL, TALKS, TASKS, commands
+from evaluation.suites.commands import ALL, TALKS, TASKS, commands
 from evaluation.verdict import judge
 from judge.claims import Claim
 from judge.effects import Effect, Shown, Watcher, at
@@ -153,7 +153,7 @@ def test_every_command_of_the_page_has_an_effect() -> None:
     told = {task.said: commands(seed) for seed, task in enumerate(TASKS)}
     planned = page()
     assert len(planned) > 20
-    assert not [said for said in planned if said not in told], "evaluation/commands.py has no effect for them"
+    assert not [said for said in planned if said not in told], "evaluation/suites/commands.py has no effect for them"
     assert not [said for said in told if said not in planned], "docs/COMMANDS.md does not have them"
     assert not [said for said, task in told.items() if not task.wants and not task.effects]
     for said, plan in planned.items():

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from evaluation.ego_noise import DRIVE, FAN, FULL, LOOP, WHINE, EgoNoise
-from evaluation.voice import RATE, loudness
+from evaluation.person.ego_noise import DRIVE, FAN, FULL, LOOP, WHINE, EgoNoise
+from evaluation.person.voice import RATE, loudness
 
 SPEECH = 3000.0
 QUIET = np.zeros(RATE, np.int16)

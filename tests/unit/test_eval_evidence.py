@@ -6,10 +6,10 @@ import msgspec
 import pytest
 
 from evaluation.case import Case, Line, Observed
-from evaluation.fault_reports import FaultReport
-from evaluation.physical.fault import PhysicalFault
-from evaluation.report import passed
-from evaluation.statistics import interval, percent, share, wilson
+from evaluation.faults.physical.fault import PhysicalFault
+from evaluation.faults.reports import FaultReport
+from evaluation.report.statistics import interval, percent, share, wilson
+from evaluation.report.text import passed
 from evaluation.verdict import cause, judge
 from judge.claims import Claim
 from judge.effects import Effect, Shown

@@ -9,8 +9,8 @@ from common import topics
 from common.bus.port import Io
 from common.floor_plan import Place
 from common.household import Household
-from evaluation.fault_reports import FaultReport, ignore
-from evaluation.faults import Kind, Rule, faulty
+from evaluation.faults.messages import Kind, Rule, faulty
+from evaluation.faults.reports import FaultReport, ignore
 from tests.node import Node
 
 SCENE = Household(name="empty", low=(-1, -1), high=(1, 1), home=Place(name="home", x=0, y=0))

@@ -9,11 +9,11 @@ from common.approach import EDGE_DISTANCE, FOOTPRINT, STAND_OFF, poses_for
 from common.floor_plan import Box
 from common.plan_file import to_toml
 from common.scene import Scene, load_scene
-from evaluation.blocks import flat
 from evaluation.homes.aged import LIGHT
 from evaluation.homes.home import draw_home
 from evaluation.homes.rooms import NoHome
 from evaluation.homes.suite import aged, homes
+from evaluation.suites.blocks import flat
 from services.navigation.planning.costmap import Costmap
 from services.navigation.planning.planner import PathPlanner
 from services.sim.layout import place_objects

@@ -12,10 +12,11 @@ from common import messages as m
 from common import topics
 from common.bus import codec
 from common.scene import load_scene
-from evaluation import html_report, report
 from evaluation.case import Result
-from evaluation.html_stages import by_stage, reached
-from evaluation.picture import HEIGHT, WIDTH, last_picture
+from evaluation.report import html as html_report
+from evaluation.report import text as report
+from evaluation.report.picture import HEIGHT, WIDTH, last_picture
+from evaluation.report.stages import by_stage, reached
 from services.sim.physics import Physics
 
 

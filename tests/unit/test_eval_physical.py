@@ -5,16 +5,16 @@ from pathlib import Path
 
 import pytest
 
-from bench.hand import Bench
+from bench.grasp.hand import Bench
 from common import messages as m
 from common import topics
 from common.scene import Obstacle, load_scene
-from evaluation.fault_injection import targets, with_faults
-from evaluation.fault_reports import FaultReport, FaultReportFile, ignore
-from evaluation.physical.fault import PhysicalFault
-from evaluation.physical.faults import with_physical_faults
-from evaluation.physical.unfit import InTheWay
-from evaluation.suites import AMOUNT, FAULTS, GRASPED, faults
+from evaluation.faults.injection import targets, with_faults
+from evaluation.faults.physical.fault import PhysicalFault
+from evaluation.faults.physical.faults import with_physical_faults
+from evaluation.faults.physical.unfit import InTheWay
+from evaluation.faults.reports import FaultReport, FaultReportFile, ignore
+from evaluation.suites.table import AMOUNT, FAULTS, GRASPED, faults
 from judge.contacts import is_hit
 from services.manipulation.config import ManipulationConfig
 from services.sim.physics import Physics

@@ -14,11 +14,12 @@ from rich.console import Console
 from cli.errors import CliError
 from cli.main import main, parser
 from evaluation import __main__ as evaluation_main
-from evaluation import cluster, lane, report
 from evaluation.case import Observed, Result
-from evaluation.pool import Progressed, Repeated, evaluate
-from evaluation.suites import BARS, SUITES
+from evaluation.report import text as report
+from evaluation.suites.table import BARS, SUITES
 from evaluation.verdict import judge
+from evaluation.workers import cluster, lane
+from evaluation.workers.pool import Progressed, Repeated, evaluate
 from judge.claims import Claim
 from tests.unit.eval_case import case_of, pretend
 
@@ -55,7 +56,7 @@ def test_a_run_that_is_left_ends_its_workers() -> None:
     run = evaluate([case_of(0, "hangs"), case_of(1, "hangs")], 2, pretend)
     assert isinstance(next(run), Progressed)
     run.close()
-    children = [p for p in psutil.Process().children(recursive=True) if "evaluation.lane" in p.cmdline()]
+    children = [p for p in psutil.Process().children(recursive=True) if "evaluation.workers.lane" in p.cmdline()]
     assert not children
 
 

@@ -3,7 +3,7 @@
 import pytest
 
 from common.scene import load_scene
-from evaluation.simulated_user import PATIENCE, Manner, SimulatedUser, seen_at
+from evaluation.person.simulated_user import PATIENCE, Manner, SimulatedUser, seen_at
 from judge.words import plain
 
 SCENE = load_scene("apartment")

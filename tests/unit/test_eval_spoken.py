@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from cli.errors import CliError
-from evaluation import voice
 from evaluation.case import Speaker
-from evaluation.spoken import SENTENCES, read_corpus, spoken
-from evaluation.suites import cases
+from evaluation.person import voice
+from evaluation.suites.spoken import SENTENCES, read_corpus, spoken
+from evaluation.suites.table import cases
 
 HEAD = "file\ttext\tvoice\tsnr\tkind\n"
 

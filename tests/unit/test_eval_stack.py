@@ -10,7 +10,7 @@ import pytest
 from common import messages as m
 from common import topics
 from evaluation.case import TimedFault
-from evaluation.faults import Rule, faulty
+from evaluation.faults.messages import Rule, faulty
 from evaluation.runner import FaultScheduler
 from evaluation.stack import Stack, paced_services
 

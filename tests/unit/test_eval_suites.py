@@ -10,14 +10,14 @@ from common.bus.codec import decode, encode
 from common.config import config_dir, load, overrides
 from common.plan_file import to_toml
 from common.scene import load_scene
-from evaluation import groceries
-from evaluation.blocks import destination
 from evaluation.case import Case
-from evaluation.chaos import CHAOS_SERVICES
-from evaluation.faults import Rule
+from evaluation.faults.messages import Rule
 from evaluation.homes.new import in_words_of
 from evaluation.stack import replacement, service_class
-from evaluation.suites import DIALOGUES, FAULTS, NAMED, SUITES, cases
+from evaluation.suites import groceries
+from evaluation.suites.blocks import destination
+from evaluation.suites.chaos import CHAOS_SERVICES
+from evaluation.suites.table import DIALOGUES, FAULTS, NAMED, SUITES, cases
 from services.sim.layout import place_objects
 
 SCENE = load_scene("apartment")

@@ -14,11 +14,11 @@ from common.household import load_household, load_words
 from common.kinds import kind_of
 from common.plan_file import to_toml
 from common.scene import ObjectSpec, load_scene
-from evaluation import catalogue, groceries
 from evaluation.case import Case
-from evaluation.drawn import HUES, MEASURES
-from evaluation.suites import SUITES, cases
-from evaluation.unknown import GAP, outline
+from evaluation.suites import catalogue, groceries
+from evaluation.suites.drawn import HUES, MEASURES
+from evaluation.suites.table import SUITES, cases
+from evaluation.suites.unknown import GAP, outline
 from services.sim.physics import Physics
 
 NAMES = ("sizes", "clutter", "lying")

@@ -7,7 +7,7 @@ import pytest
 from common.config import ConfigError, RuntimeConfig
 from common.household import load_household, mapped, told
 from common.scene import SCENES, SceneError, load_scene
-from evaluation.worlds import WorldsError, cases, worlds
+from evaluation.suites.worlds import WorldsError, cases, worlds
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples" / "worlds"
 PLAN = 'name = "x"\nplan = "apartment"\n'

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from bench.payloads import Payloads
+from bench.fuzz.payloads import Payloads
 from common import messages as m
 from common import topics
 from common.bus import codec

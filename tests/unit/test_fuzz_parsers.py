@@ -11,8 +11,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from cli import audio as cli_audio
 from cli.errors import CliError
+from cli.missions import audio as cli_audio
 from common import config, scene
 from services.navigation.config import NavigationConfig
 from services.navigation.places import load_places

@@ -8,7 +8,7 @@ import msgspec
 import numpy as np
 import pytest
 
-from bench.payloads import Payloads
+from bench.fuzz.payloads import Payloads
 from common import messages as m
 from common import topics
 from common.bus import codec

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from cli.authority import Authority
+from cli.keys.authority import Authority
 from cli.main import main as tidybot
-from cli.services import NAMES
+from cli.processes.services import NAMES
 from common.security import keys
 from common.security.access import Subject
 from common.security.certificate import Identity

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
-from bench.hand import Bench
+from bench.grasp.hand import Bench
 from common import messages as m
 from common import topics
 from common.geometry import yaw_quat

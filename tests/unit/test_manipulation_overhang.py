@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from msgspec import structs
 
-from bench.unknown import trial
+from bench.grasp.unlisted import trial
 from common.floor_plan import Receptacle
 from common.messages import WorldObject
 from common.scene import load_scene

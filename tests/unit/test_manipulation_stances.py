@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from bench.grasp import Bench
+from bench.grasp.hand import Bench
 from common import messages as m
 from common.approach import ROOM, clearance
 from common.geometry import compose, inverse

@@ -4,10 +4,11 @@ import msgspec
 import numpy as np
 import pytest
 
-from bench.encounters import Pair, gap
-from bench.meetings import KINDS, Meeting, corridor
+from bench.encounters.meetings import KINDS, Meeting, corridor
+from bench.encounters.pair import Pair
 from common import messages as m
 from common import topics
+from common.bus import codec
 from common.household import load_household
 from common.messages import DriveState
 from services.navigation.others.motion import Other, Way, closes_in, escapes, passes
@@ -75,7 +76,12 @@ def test_who_goes_first_waits_for_one_that_is_not_out_of_its_way_yet() -> None:
     assert not closes_in(mine, RADIUS, Other("o", straight((1.9, 0.6), (1.9, 2.0)), RADIUS))
 
 
-# --- two navigation services in one flat
+# --- two robots in one flat
+def intents(pair: Pair, robot: int) -> list[m.DriveIntent]:
+    """What a robot has told of its way."""
+    return [codec.decode(topics.DRIVE_INTENT, payload) for payload in pair.robots[robot].intents]
+
+
 def ran(meeting: Meeting) -> tuple[Pair, float]:
     pair = Pair(meeting, exchange=True)
     outcome = pair.run()
@@ -89,7 +95,7 @@ def test_two_that_meet_in_a_corridor_both_arrive() -> None:
     starts, goals = ((3.5, 2.0, 0.0), (9.5, 2.0, 3.1)), ((11.0, 2.0, 0.0), (2.0, 2.0, 3.1))
     pair, nearest = ran(Meeting(home, starts, goals))
     assert nearest > 0.03
-    assert any(told.gives_way_to == ["anna"] for told in pair.robots[1].sent(topics.DRIVE_INTENT))
+    assert any(told.gives_way_to == ["anna"] for told in intents(pair, 1))
 
 
 def test_one_with_nothing_to_do_makes_way_and_one_at_work_does_not() -> None:
@@ -101,10 +107,9 @@ def test_one_with_nothing_to_do_makes_way_and_one_at_work_does_not() -> None:
     state = m.BrainState(state="GRABBING", mission_id="m1", command="grab")
     working.robots[0].bus.send(topics.BRAIN_STATE, state)
     before = working.robots[0].true
-    for _ in range(120):
-        working.step()
-    assert working.robots[0].true == before
-    assert gap(working.robots[0].true, working.robots[1].true) > 0.03
+    working.advance(6.0)
+    assert working.robots[0].true == pytest.approx(before, abs=0.002)
+    assert working.gap > 0.03
 
 
 def test_robots_of_other_flats_and_what_is_no_place_are_passed_over() -> None:
@@ -137,7 +142,7 @@ def test_one_that_is_braked_while_it_should_make_way_is_planned_round() -> None:
     """Somebody has pressed its stop: it says that it stays, instead of having the other one wait for it."""
     meeting = Meeting(load_household("apartment"), ((1.3, -0.75, 0.0), (0.2, -0.75, 0.0)), (None, (2.0, -1.5, 0.0)))
     pair = Pair(meeting, exchange=True)
-    pair.robots[0]._drive = lambda dt: None
+    pair.robots[0].bus.send(topics.ROBOT_STOP, m.RobotStop(reason="test", source="test"))
     assert pair.run().arrived
-    said = [told.state for told in pair.robots[0].sent(topics.DRIVE_INTENT)]
+    said = [told.state for told in intents(pair, 0)]
     assert said.index("free") < said.index("fixed")

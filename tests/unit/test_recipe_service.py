@@ -7,7 +7,7 @@ from tests.recipes import Recipe
 ASK = """
 from math import isclose
 
-from cli.services import SERVICES
+from cli.processes.services import SERVICES
 from common import messages as m
 from common import topics
 from common.household import load_household

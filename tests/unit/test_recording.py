@@ -10,9 +10,9 @@ from typing import Any
 import pytest
 from mcap.reader import make_reader
 
-from bench.payloads import Payloads
-from cli import replay
+from bench.fuzz.payloads import Payloads
 from cli.errors import CliError
+from cli.recordings import replay
 from common import messages as m
 from common import topics
 from common.bus import codec

@@ -4,7 +4,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from cli import conformance
+from cli.drivers import requirements as conformance
 from common import messages as m
 from common import topics
 from common.bus import codec

@@ -16,7 +16,7 @@ from scipy.spatial import Delaunay
 from common.body_file import BodyError, extents, load
 from common.rendering.looks import geom_colours
 from common.scene import Finish, Lamp, ObjectSpec, SceneError, load_scene
-from evaluation.drawn import surroundings
+from evaluation.suites.drawn import surroundings
 from services.sim.layout import Placement
 from services.sim.objects import body_xml, made
 from services.sim.physics import Physics

@@ -7,8 +7,8 @@ from common import messages as m
 from common import topics
 from common.bus import codec
 from common.topics import Topic
-from evaluation.commands import LAID, scene_of
 from evaluation.stack import Stack
+from evaluation.suites.commands import LAID, scene_of
 
 M = TypeVar("M", bound=m.Message)
 

@@ -4,8 +4,8 @@ import pytest
 
 from evaluation import runner
 from evaluation.case import Result
-from evaluation.chaos import CELLS, CHAOS_SERVICES, EVERY, Cell
-from evaluation.suites import cases
+from evaluation.suites.chaos import CELLS, CHAOS_SERVICES, EVERY, Cell
+from evaluation.suites.table import cases
 
 pytestmark = [pytest.mark.long, pytest.mark.timeout(1800)]
 

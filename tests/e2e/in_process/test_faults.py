@@ -6,8 +6,8 @@ import pytest
 from common.scene import load_scene
 from evaluation import runner
 from evaluation.case import Case, Line, Result
-from evaluation.faults import Rule
-from evaluation.suites import FAULTS, cases
+from evaluation.faults.messages import Rule
+from evaluation.suites.table import FAULTS, cases
 from judge.evidence import Want
 
 pytestmark = pytest.mark.timeout(600)

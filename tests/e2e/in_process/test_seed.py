@@ -3,7 +3,7 @@
 import pytest
 
 from evaluation import runner
-from evaluation.suites import NAMED, cases
+from evaluation.suites.table import NAMED, cases
 
 ACCEPTED = 4
 """Scenarios of five that the contract wants completed."""

@@ -1,0 +1,251 @@
+"""A long day in one home: `python -m bench.day --hours 12 --missions 100`.
+
+A home of the generator with boxes that its map does not have and people who walk about, every service a process. Things
+are fetched, put elsewhere and asked for all day. Three services are killed in mid-mission, and once the power goes:
+every process at once, and the robot is switched on where it stands. At the start a room is named and a rule is told. At
+the end every mission that was accepted must be in the journal with an outcome, what was told must still be known, no
+claim may be false, and neither memory nor files may have grown beyond their bounds. Exit 1 otherwise.
+"""
+
+import argparse
+import random
+import sys
+import tempfile
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import numpy as np
+
+from bench.day.robot import Robot
+from cli.errors import CliError
+from cli.link import Link, Watch
+from common import messages as m
+from common import topics
+from common.bus.session import open_session
+from common.scene import Scene
+from common.time.clock import monotonic, sleep
+from evaluation.homes.aged import aged
+from evaluation.homes.suite import homes
+
+PATIENCE, WALL = 900.0, 3600.0
+"""Robot time and wall time [s] for one mission, whichever is over first."""
+KILLED = ("navigation", "perception", "brain")
+INTO = 8.0
+"""Robot time [s] into a mission at which somebody is killed, or the power goes."""
+SHARE, MEGABYTES = 0.2, 40.0
+"""What a process may hold more of at the end than after a fifth of the missions: a share of its memory, and MB."""
+DISK = 250.0
+"""Most files [MB]: 15 MB of log for each service, pictures, journal and checkpoints."""
+OPEN = ("WAITING", "LISTENING", "COMPLETED", "ERROR")
+TOLD = (
+    m.HouseholdEdit(do="name", name="den", kind="room", id="day-1"),
+    m.HouseholdEdit(do="rule", id="day-2"),
+)
+
+
+class Account(msgspec.Struct):
+    """What became of the day. `ids`: of all missions that were accepted; `false`: claims that were not so."""
+
+    ids: dict[str, str] = {}
+    outcomes: dict[str, int] = {}
+    unheard: int = 0
+    false: list[str] = []
+    disturbed: list[str] = []
+    memory: list[dict[str, float]] = []
+    disk: list[float] = []
+
+
+class Day:
+    """Missions one after the other, and what becomes of them."""
+
+    def __init__(self, robot: Robot, world: Scene, seed: int) -> None:
+        self.robot, self.world, self.account = robot, world, Account()
+        self._draw = random.Random(seed)
+        self._session: Any = None
+        self.connect()
+
+    def connect(self) -> None:
+        if self._session is not None:
+            self._session.__exit__(None, None, None)
+        self._session = open_session(self.robot.connect, self.robot.namespace)
+        self.link = Link(self._session.__enter__(), self.robot.connect)
+
+    def close(self) -> None:
+        self._session.__exit__(None, None, None)
+
+    @property
+    def now(self) -> float:
+        """Robot time [s]; 0 while the simulation is away."""
+        joints = self.link.latest(topics.JOINT_STATES)
+        return joints.t if joints is not None else 0.0
+
+    def state(self) -> m.BrainState:
+        return self.link.latest(topics.BRAIN_STATE) or m.BrainState(state="IDLE")
+
+    def where(self, thing: str) -> str:
+        place: str = self.link.query(topics.SIM_TRUTH)["objects"][thing]["on"]
+        return place
+
+    # --- at the start
+    def tell(self) -> list[str]:
+        """Name a room and tell a rule; what was not kept."""
+        to = next(r.name for r in self.world.receptacles if r.spawn and not r.depth)
+        rule = m.TidyRule(things="mugs", to=[to], kinds=["mug"])
+        wrong = []
+        for edit in TOLD:
+            watch = Watch(self.link, topics.HOUSEHOLD_EDITED)
+            asked = msgspec.structs.replace(edit, rule=rule if edit.do == "rule" else None)
+            self.link.send(topics.HOUSEHOLD_EDIT, asked)
+            end = monotonic() + 20.0
+            result = None
+            while monotonic() < end and (result is None or result.goal_id != edit.id):
+                result = watch.next(0.5)
+            watch.close()
+            if result is None or not result.ok:
+                wrong.append(f"{edit.do}: {result.detail if result else 'no answer'}")
+        return wrong
+
+    # --- missions
+    def mission(self, number: int, disturb: str) -> None:
+        """One command from its words to the outcome; `disturb`: who is killed in the middle, "power" for all."""
+        thing, command, goal = self._command()
+        known = {*self.account.ids}
+        before = self.state().last
+        began = self.now
+        said = m.VoiceCommand(text=command, confidence=1.0, confirmed=True, id=f"day-{number}")
+        self.link.send(topics.VOICE_COMMAND, said)
+        mission, outcome, end = "", None, monotonic() + WALL
+        while outcome is None and monotonic() < end and not 0.0 < began + PATIENCE < self.now:
+            sleep(0.5)
+            state = self.state()
+            if not mission and state.command == command and state.mission_id not in known:
+                mission = state.mission_id
+                self.account.ids[mission] = command
+            if disturb and mission and self.now - began > INTO:
+                self._disturb(disturb)
+                disturb = ""
+            last = state.last
+            if (
+                last is not None
+                and last != before
+                and (last.id == mission or (not mission and last.command == command))
+            ):
+                self.account.ids[last.id] = command
+                outcome = last
+        name = outcome.outcome if outcome else "timeout" if mission else "unheard"
+        self.account.unheard += name == "unheard"
+        self.account.outcomes[name] = self.account.outcomes.get(name, 0) + 1
+        why = f": {outcome.reason}" if outcome is not None and outcome.outcome != "delivered" else ""
+        if name == "delivered" and goal and self.where(thing) != goal:
+            self.account.false.append(f"{command}: it is on {self.where(thing) or 'the floor'}")
+        self.await_open()
+        self.account.memory.append(self.robot.memory())
+        self.account.disk.append(self.robot.disk())
+        print(f"{self.now / 60:7.1f} min  {number:4d}  {command}: {name}{why}", flush=True)
+
+    def _command(self) -> tuple[str, str, str]:
+        """A thing, what is asked of it, and where it has to be afterwards: "" for a question."""
+        thing = self._draw.choice(self.world.objects).name
+        on = self.where(thing)
+        if self._draw.random() < 0.15:
+            return thing, self._draw.choice(("where is the {}", "where did you last see the {}")).format(thing), ""
+        if on != self.world.delivery:
+            return thing, f"bring me the {thing}", self.world.delivery
+        flat = [r.name for r in self.world.receptacles if r.spawn and not r.depth and r.name != on]
+        goal = self._draw.choice(flat)
+        return thing, f"put the {thing} on the {goal}", goal
+
+    def _disturb(self, who: str) -> None:
+        self.account.disturbed.append(who)
+        print(f"{self.now / 60:7.1f} min        {'power cut' if who == 'power' else f'SIGKILL to {who}'}", flush=True)
+        if who != "power":
+            self.robot.kill(who)
+            return
+        self.robot.power_cut()
+        self.robot.up()
+        self.connect()
+
+    def await_open(self) -> None:
+        """Return when the robot takes commands."""
+        end = monotonic() + 120.0
+        while self.state().state not in OPEN and monotonic() < end:
+            sleep(0.5)
+
+    def rest(self, until: float) -> None:
+        """Nobody wants anything until that robot time [s]."""
+        while self.now < until:
+            sleep(1.0)
+
+    # --- at the end
+    def faults(self) -> list[str]:
+        """What is not as it should be."""
+        wrong = [f"false claim: {claim}" for claim in self.account.false]
+        rows = self.link.query(topics.BRAIN_MISSIONS)
+        kept = {row["id"]: row["outcome"] for row in rows}
+        lost = [i for i in self.account.ids if i not in kept]
+        wrong += [f"mission {i} ({self.account.ids[i]}) is not in the journal" for i in lost]
+        wrong += [f"mission {i} has no outcome" for i in self.account.ids if i in kept and not kept[i]]
+        wrong += [f"{self.account.unheard} commands were not taken"] if self.account.unheard else []
+        edits = self.link.latest(topics.HOUSEHOLD_EDITS) or m.HouseholdEdits()
+        if [n.name for n in edits.names] != ["den"] or [r.things for r in edits.rules] != ["mugs"]:
+            wrong.append(f"of what was told there is left: {edits}")
+        if not (self.link.latest(topics.SIGHTINGS) or m.Sightings(t=0.0)).sightings:
+            wrong.append("nothing is known of what was seen where")
+        fifth, last = self.account.memory[len(self.account.memory) // 5], self.account.memory[-1]
+        for name, mb in last.items():
+            if mb > fifth.get(name, mb) * (1 + SHARE) + MEGABYTES:
+                wrong.append(f"{name}: {fifth[name]:.0f} -> {mb:.0f} MB")
+        if max(self.account.disk) > DISK:
+            wrong.append(f"files of {max(self.account.disk):.0f} MB")
+        return wrong
+
+    def show(self) -> None:
+        """The account."""
+        a = self.account
+        missions = sum(a.outcomes.values())
+        print(f"{self.now / 3600:.2f} h of robot time, {missions} missions: {a.outcomes}; disturbed: {a.disturbed}")
+        print(f"files: {a.disk[0]:.1f} MB after the first mission, {a.disk[-1]:.1f} MB after the last")
+        fifth = a.memory[len(a.memory) // 5]
+        print(f"{'':14}{'a fifth':>9} {'end':>9}  MB")
+        for name, mb in a.memory[-1].items():
+            print(f"{name:14}{fifth.get(name, float('nan')):9.0f} {mb:9.0f}")
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--hours", type=float, default=12.0, help="of robot time, over which the missions are spread")
+    parser.add_argument("--missions", type=int, default=100)
+    parser.add_argument("--seed", type=int, default=12700, help="of the home, its things and the commands")
+    parser.add_argument("--speed", default="max", help="max or realtime (default %(default)s)")
+    args = parser.parse_args()
+    home = homes(args.seed).scene
+    assert home is not None
+    world = aged(home, np.random.default_rng([args.seed, 26]))
+    at = {max(1, round(args.missions * share)): who for share, who in zip((0.2, 0.4, 0.8), KILLED, strict=True)}
+    at[max(2, round(args.missions * 0.6))] = "power"
+    with tempfile.TemporaryDirectory(prefix="tidybot-day-") as directory:
+        robot = Robot(Path(directory), world, home, args.seed, args.speed)
+        try:
+            robot.up()
+            day = Day(robot, world, args.seed)
+            day.await_open()
+            wrong = day.tell()
+            for number in range(1, args.missions + 1):
+                day.mission(number, at.get(number, ""))
+                if day.now > args.hours * 3600:
+                    break
+                day.rest(number / args.missions * args.hours * 3600)
+            wrong += day.faults()
+            day.show()
+            day.close()
+        except CliError as error:
+            wrong = [str(error)]
+        finally:
+            robot.down()
+    print("everything is accounted for" if not wrong else "wrong:", *wrong, sep="\n  ")
+    return int(bool(wrong))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,93 @@
+"""A robot of processes that can be killed one by one or, as by a power cut, all at once."""
+
+import os
+import signal
+import subprocess
+import sys
+import uuid
+from pathlib import Path
+
+import psutil  # type: ignore[import-untyped]
+
+from cli.processes.own_robot import own_robot
+from cli.processes.plan import Plan
+from cli.processes.supervision import Supervision
+from cli.processes.up import bring_up
+from common.installation import ROOT
+from common.plan_file import to_toml
+from common.scene import Scene
+from evaluation.suites.unknown import nothing_listed
+
+RECORDED = 60
+"""Newest part [MB] of everything on the bus that is kept."""
+
+
+class Robot:
+    """The processes of the day; they come and go, directory and simulated world stay."""
+
+    def __init__(self, directory: Path, world: Scene, home: Scene, seed: int, speed: str) -> None:
+        self.directory = directory
+        self.files = {"world": directory / "world.toml", "household": directory / "household.toml"}
+        self.files["world"].write_text(to_toml(world), encoding="utf-8")
+        self.files["household"].write_text(to_toml(nothing_listed(home)), encoding="utf-8")
+        self.supervision = Supervision(directory / "run")
+        self._options = own_robot(
+            "day",
+            speed=speed,
+            seed=seed,
+            without="dashboard",
+            settings=[f"sim.run=world-{uuid.uuid4().hex}"],
+            **{name: str(path) for name, path in self.files.items()},
+        )
+        self._recording: subprocess.Popen[bytes] | None = None
+        self.connect = ""
+        os.environ["TIDYBOT_STATE_DIR"] = str(directory / "state")
+
+    def up(self) -> None:
+        """Switch everything on; the simulated world goes on where it was."""
+        plan = Plan(self._options)
+        self.connect, self.namespace = plan.connect, plan.namespace
+        bring_up(self.supervision, plan, lambda text: None)
+        tape = self.directory / "recordings" / f"day-{uuid.uuid4().hex[:4]}.mcap"
+        record = [sys.executable, "-m", "cli.main", "record", "-o", str(tape), "--keep", str(RECORDED), "--wait", "0"]
+        quiet = subprocess.DEVNULL
+        self._recording = subprocess.Popen(record, cwd=ROOT, env=plan.environ, stdout=quiet, stderr=quiet)
+
+    def down(self) -> None:
+        """Switch everything off."""
+        if self._recording is not None:
+            self._recording.terminate()
+            self._recording.wait()
+        self.supervision.stop()
+
+    def pids(self) -> dict[str, int]:
+        return {p.name: p.pid for p in self.supervision.processes() if p.state == "running"}
+
+    def kill(self, name: str) -> None:
+        os.kill(self.pids()[name], signal.SIGKILL)
+
+    def power_cut(self) -> None:
+        """Every process ends at once, unasked."""
+        if self._recording is not None:
+            self._recording.kill()
+            self._recording.wait()
+        pids = [*self.pids().values(), self.supervision.pid()]
+        for pid in pids:
+            if pid is not None:
+                os.kill(pid, signal.SIGKILL)
+        if self.supervision.process is not None:
+            self.supervision.process.wait()
+        self.supervision = Supervision(self.supervision.directory)
+        self.supervision.stop()
+
+    def memory(self) -> dict[str, float]:
+        found = {}
+        for name, pid in self.pids().items():
+            try:
+                found[name] = psutil.Process(pid).memory_info().rss / 1e6
+            except psutil.NoSuchProcess:
+                continue
+        return found
+
+    def disk(self) -> float:
+        return sum(p.stat().st_size for p in self.directory.rglob("*") if p.is_file()) / 1e6

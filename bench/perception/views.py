@@ -1,0 +1,114 @@
+"""Views of random layouts from random places before a segment of furniture, by the sensor's model."""
+
+import argparse
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from common.geometry import Pose2
+from common.rendering.renderer import Renderer
+from common.scene import Receptacle, Scene, body_name, load_scene
+from services.camera.sensor import StereoCamera
+from services.perception.view import View
+from services.sim.layout import Placement, place_objects
+from services.sim.model import own
+from services.sim.world import world_mjcf
+
+RANGE, MARGIN = 3.0, 12
+"""Depth [m] up to which, and margin of the picture [px] within which an object must be seen."""
+VIEWS_PER_LAYOUT = 5
+"""Standing places for each layout."""
+
+
+def stand(rng: np.random.Generator, scene: Scene, placement: Placement) -> Pose2 | None:
+    """A place before the furniture of an object, roughly facing it; None when that is in another room."""
+    r = scene.receptacle(placement.on)
+    assert r is not None
+    x, y = _before(rng, r)
+    if scene.room_at(x, y) is not scene.room_at(r.center[0], r.center[1]):
+        return None
+    facing = math.atan2(placement.position[1] - y, placement.position[0] - x)
+    return x, y, facing + float(rng.uniform(-0.4, 0.4))
+
+
+def _before(rng: np.random.Generator, r: Receptacle) -> tuple[float, float]:
+    ax, ay = r.approach[int(rng.integers(len(r.approach)))]
+    ux, uy = r.outline.direction(ax, ay)
+    distance = (r.size[0] if ax else r.size[1]) / 2 + rng.uniform(0.4, 1.6)
+    side = rng.uniform(-0.6, 0.6)
+    return float(r.center[0] + ux * distance - uy * side), float(r.center[1] + uy * distance + ux * side)
+
+
+def take_all(args: argparse.Namespace, scene: Scene) -> Iterator[tuple[View, list[Placement]]]:
+    """Views with what stands in the flat."""
+    rng = np.random.default_rng(args.seed)
+    made = 0
+    while made < args.views:
+        placements = place_objects(scene, int(rng.integers(1 << 30)))
+        renderer = Renderer(world_mjcf(scene, placements), args.backend)
+        for _ in range(VIEWS_PER_LAYOUT):
+            pose = stand(rng, scene, placements[int(rng.integers(len(placements)))])
+            if pose is not None and made < args.views:
+                made += 1
+                yield take(renderer, pose, args, rng), placements
+        renderer.close()
+
+
+def take(
+    renderer: Renderer,
+    pose: Pose2,
+    args: argparse.Namespace,
+    rng: np.random.Generator,
+    camera: StereoCamera | None = None,
+) -> View:
+    """The view of the head camera with the base at `pose`, by `camera` or else by any camera of the kind."""
+    model, data = renderer.model, renderer.data
+    names = ("base_x", "base_y", "base_yaw", *(f"joint_{i}" for i in range(1, 8)))
+    for name, value in zip(names, (*pose, *own().home), strict=True):
+        data.qpos[model.joint(name).qposadr[0]] = value
+    renderer.load(data.qpos.copy().tobytes(), b"")
+    rgb, depth = renderer.rgbd("head", args.width, args.height)
+    focal = renderer.focal("head", args.height)
+    if args.sensors == "bought":
+        surfaces = renderer.surfaces("head", args.width, args.height)
+        camera = camera or StereoCamera(int(rng.integers(2**32)))
+        taken = camera.expose(rgb, depth, focal, int(rng.integers(2**31)), surfaces)
+        rgb, depth = taken.rgb, taken.depth / 1000.0
+    position, rotation = renderer.optical_pose("head")
+    # Where the robot believes to be is a little off.
+    x, y, theta = (v + float(rng.normal(0.0, args.pose_noise)) for v in pose)
+    c, s = math.cos(theta), math.sin(theta)
+    turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+    return View(
+        rgb=rgb,
+        depth=(np.round(np.maximum(depth, 0.0) * 1000) / 1000).astype(np.float32),
+        focal=(focal, focal),
+        middle=(args.width / 2, args.height / 2),
+        position=turn @ position + np.array([x, y, 0.0]),
+        rotation=turn @ rotation,
+    )
+
+
+def look_at(
+    args: argparse.Namespace,
+    renderer: Renderer,
+    chosen: Placement,
+    placements: list[Placement],
+    rng: np.random.Generator,
+) -> View | None:
+    """A view of an object of a world that is the shipped flat with other objects; None from another room."""
+    for p in placements:
+        row = renderer.model.joint(body_name(p.spec)).qposadr[0]
+        renderer.data.qpos[row : row + 7] = (*p.position, *p.quat)
+    pose = stand(rng, load_scene("apartment"), chosen)
+    return take(renderer, pose, args, rng) if pose is not None else None
+
+
+def visible(view: View, placement: Placement) -> bool:
+    """Its centre is in the picture, not far, and nothing stands before it."""
+    u, v, z = (float(a) for a in view.project(np.array([placement.position]))[0])
+    h, w = view.shape
+    if not (MARGIN < u < w - MARGIN and MARGIN < v < h - MARGIN and 0.0 < z < RANGE):
+        return False
+    return abs(float(view.depth[int(v), int(u)]) - z) < 0.09

@@ -1,0 +1,1 @@
+"""Where the cameras really sit: `tidybot calibrate`."""

@@ -1,0 +1,46 @@
+"""`tidybot calibrate`: where the cameras really sit, found by looking at the arm and at what both cameras see."""
+
+import argparse
+from pathlib import Path
+
+from cli.errors import CliError
+from cli.link import add_options, linked
+from common import topics
+
+NEEDED = ("sim", "camera")
+
+
+def calibrate(args: argparse.Namespace) -> int:
+    """Checked before anything moves; what measures needs numerical libraries that the other commands do without."""
+    if args.out.exists() and not args.force:
+        raise CliError(f"{args.out} is there already; --force writes over it")
+    with linked(args) as link:
+        if lacking := [name for name in NEEDED if name not in link.alive()]:
+            raise CliError(f"{' and '.join(lacking)} must be up; see `tidybot ps`")
+        state = link.latest(topics.BRAIN_STATE)
+        if state is not None and state.command:
+            raise CliError(f"the robot is at work ({state.command}); `tidybot stop` ends that")
+        from cli.cameras.measure import run
+
+        return run(link, args.out, args.poses)
+
+
+def _count(value: str) -> int:
+    number = int(value)
+    if not 4 <= number <= 40:
+        raise argparse.ArgumentTypeError(f"{number} is not from 4 to 40")
+    return number
+
+
+def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+    parser = commands.add_parser(
+        "calibrate",
+        help="where the cameras really sit: the arm moves, 0.9 m around the robot must be free above 0.35 m",
+    )
+    parser.add_argument("--out", type=Path, default=Path("calibration.toml"), metavar="FILE", help="(%(default)s)")
+    parser.add_argument("--force", action="store_true", help="write over FILE")
+    parser.add_argument(
+        "--poses", type=_count, default=8, metavar="N", help="of the arm, for each camera (%(default)s)"
+    )
+    add_options(parser)
+    parser.set_defaults(run=calibrate)

@@ -1,0 +1,1 @@
+"""What the robot relies on from its drivers: `tidybot conform`."""

@@ -1,0 +1,132 @@
+"""`tidybot say` and `status`: commands to the robot and what becomes of them."""
+
+import argparse
+from pathlib import Path
+from typing import get_args
+
+import msgspec
+
+from cli.errors import CliError, checked
+from cli.link import Watch, add_options, linked
+from cli.missions.audio import padded, read_wav
+from cli.missions.conversation import ACCEPT, KEPT, Conversation, Show, speak_into, typed
+from common import messages as m
+from common import topics
+from common.time.clock import monotonic
+
+
+def say(args: argparse.Namespace) -> int:
+    if (args.wav is None) == (not args.text):
+        raise CliError('say what? `tidybot say "bring me the red mug"` or `tidybot say --wav FILE`')
+    chunks = padded(read_wav(args.wav)) if args.wav else []
+    with linked(args) as link:
+        talk = Conversation(link, _shower(args))
+        if talk.state.state == "CONFIRMING":
+            mission_id, why = talk.answer(" ".join(args.text), chunks), ""
+        elif args.wav:
+            talk.require_open()
+            mission_id, why = speak_into(link, talk, chunks)
+        else:
+            text = " ".join(args.text)
+            link.send(topics.VOICE_COMMAND, typed(text, "cli"))
+            why = talk.closed()
+            # While it still reports on the last mission it keeps the command for after that.
+            mission_id = talk.accepted(ACCEPT if why else KEPT)
+            why = "" if mission_id else why or "the brain started no mission from it"
+        record: dict[str, object] = {"accepted": bool(mission_id), "mission_id": mission_id}
+        if not mission_id:
+            record["reason"] = why
+        outcome = talk.outcome(args.timeout) if mission_id and args.wait else None
+    if outcome is not None:
+        record |= {"outcome": outcome.outcome, "reason": outcome.reason}
+    if args.json:
+        print(msgspec.json.encode(record).decode())
+    elif outcome is not None:
+        print(f"{outcome.outcome}{': ' + outcome.reason if outcome.reason else ''}")
+    else:
+        print(f"mission {mission_id}" if mission_id else f"not accepted: {why}")
+    if not mission_id or (outcome is not None and outcome.outcome != "delivered"):
+        return 1
+    return 0
+
+
+def _shower(args: argparse.Namespace) -> Show:
+    """Print every new state while waiting, unless only JSON is wanted."""
+    shown = ""
+
+    def show(state: m.BrainState) -> None:
+        nonlocal shown
+        line = f"{state.state}  {state.step}  {state.detail}".rstrip()
+        if args.wait and not args.json and line != shown:
+            shown = line
+            print(f"{state.t:8.1f} s  {line}", flush=True)
+
+    return show
+
+
+def status_record(state: m.BrainState, system: m.SystemStatus | None) -> dict[str, object]:
+    """What `tidybot status --json` prints."""
+    mission: dict[str, object] | None = None
+    ended = state.last.id if state.last else ""
+    if state.command and state.mission_id not in ("", ended):
+        mission = {"id": state.mission_id, "command": state.command, "step": state.step, "started": state.started}
+    last: dict[str, object] | None = None
+    if state.last is not None:
+        one = state.last
+        last = {"id": one.id, "command": one.command, "outcome": one.outcome, "reason": one.reason}
+    name = system.state if system else ""
+    return {"state": state.state, "system_status": name, "mission": mission, "last": last, "detail": state.detail}
+
+
+def status(args: argparse.Namespace) -> int:
+    wanted = args.wait.upper() if args.wait else ""
+    if wanted:
+        checked(wanted, (*get_args(m.BrainStateName), "EXECUTING", "SUCCESS"), "state")
+    reached = not wanted
+    with linked(args) as link:
+        watch, system = Watch(link, topics.BRAIN_STATE), Watch(link, topics.SYSTEM_STATUS)
+        state = watch.next(3.0)
+        if state is None:
+            raise CliError("the brain does not answer; see `tidybot ps`")
+        end = monotonic() + args.timeout
+        while wanted and monotonic() < end:
+            folded = system.next(0.0)
+            if state.state == wanted or (folded is not None and folded.state == wanted):
+                reached = True
+                break
+            state = watch.next(0.2) or state
+        folded = link.latest(topics.SYSTEM_STATUS)
+    record = status_record(state, folded)
+    if args.json:
+        print(msgspec.json.encode(record).decode())
+    else:
+        _print_status(record)
+    if not reached:
+        raise CliError(f"not {wanted} within {args.timeout:g} s")
+    return 0
+
+
+def _print_status(record: dict[str, object]) -> None:
+    detail = f"  {record['detail']}" if record["detail"] else ""
+    print(f"state    {record['state']} ({record['system_status'] or 'no system status'}){detail}")
+    for word in ("mission", "last"):
+        value = record[word]
+        if isinstance(value, dict):
+            print(f"{word:8} " + "  ".join(f"{k}: {v}" for k, v in value.items() if v != ""))
+
+
+def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+    parser = commands.add_parser("say", help="command the robot by text, or by a recording")
+    parser.add_argument("text", nargs="*", help="such as: bring me the red mug")
+    parser.add_argument("--wav", type=Path, metavar="FILE", help="a recording to send instead of a microphone's sound")
+    parser.add_argument("--wait", action="store_true", help="until the mission ends; exit 0 only if it succeeded")
+    parser.add_argument("--timeout", type=float, default=1800.0, metavar="S", help="for --wait (default %(default)s)")
+    parser.add_argument("--json", action="store_true")
+    add_options(parser)
+    parser.set_defaults(run=say)
+    parser = commands.add_parser("status", help="what the robot is doing, and how the last mission ended")
+    parser.add_argument("--json", action="store_true")
+    parser.add_argument("--wait", metavar="STATE", help="until the brain, or system_status, is in this state")
+    parser.add_argument("--timeout", type=float, default=600.0, metavar="S", help="for --wait (default %(default)s)")
+    add_options(parser)
+    parser.set_defaults(run=status)

@@ -1,0 +1,1 @@
+"""Recordings of all topics: `tidybot record`, `replay`."""

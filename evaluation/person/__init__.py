@@ -1,0 +1,1 @@
+"""The person who talks to the robot: wishes, answers and voice."""

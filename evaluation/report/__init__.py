@@ -1,0 +1,1 @@
+"""What became of the cases, for terminal, JSON and HTML."""

@@ -1,0 +1,1 @@
+"""The suites of scenarios, and what they are made of."""

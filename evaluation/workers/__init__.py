@@ -1,0 +1,1 @@
+"""Where cases run: in lanes of this machine or of a cluster."""
