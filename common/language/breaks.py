@@ -42,6 +42,7 @@ _SUBJECTS = frozenset(
     }
 )  # fmt: skip
 """Words with which somebody begins to tell something, beside articles."""
+_ANSWER = re.compile(r"^(?:no|nope|yes|yeah|well),\s+")
 _NO_STATEMENT = re.compile(
     r"^(?:if|unless|when|whenever|in case|should|suppose|supposing|imagine|pretend|assume|what|who|why|where|how|"
     r"which|whose|"
@@ -67,6 +68,26 @@ _NOBODY = re.compile(
 )
 LONGEST = 3
 """Breaks of one sentence (chosen)."""
+
+
+_BEHIND = re.compile(
+    r",?\s+(?=(?:i|we|he|she|it|they|there|(?:my|our) \w+|mum|mom|dad|guests|dinner|lunch|somebody|someone)"
+    r"(?: \w+ly| just| really| so| all)?"
+    r" (?:am|is|are|feel|feels|have|has|can not|could not|do not|does not|will|think)\b)"
+)
+"""Before a reason that is said behind a request."""
+_TELLS_WHERE = re.compile(r"^(?:it|they) (?:is|are) (?:\w+ ){0,2}?(?:in|on|at|next|near|beside|under|behind)\b")
+
+
+def without_reason_behind(text: str) -> str:
+    """`get me the bottle i am so thirsty` without why; a text without such a reason as it is."""
+    for found in _BEHIND.finditer(text):
+        head, tail = text[: found.start()], text[found.end() :]
+        first = without_politeness(head).split()
+        asks = len(first) > 1 and first[0] in _VERBS and not _UNFINISHED.search(head)
+        if asks and not _TELLS_WHERE.match(tail) and not HANDLING & set(tail.split()):
+            return head
+    return text
 
 
 def with_breaks(text: str) -> str:
@@ -193,7 +214,7 @@ def is_statement(text: str, ended: bool = True) -> bool:
 
     `ended`: a mark says where it ends, so that it does not go on in what follows.
     """
-    bare = without_politeness(text)
+    bare = without_politeness(_ANSWER.sub("", text.strip()))
     words = bare.replace(",", " ").split()
     if _NOBODY.match(bare):
         return True

@@ -13,10 +13,10 @@ _FILLER = re.compile(
 )
 """Sounds of somebody who thinks while speaking."""
 _STUTTER = re.compile(
-    r"\b(the|a|an|to|my|me|i|in|on|and|of|is|you|it|that|can|could|bring|put|get|go)(?:,? \1\b)+"
-    r"|\b((?!no\b)[a-z]{2,} (?:it|me|that|here))(?:,? \2\b)+"
+    r"\b(?!(?:no|stop|cancel|abort|very|really|hurry|quick|again|wait|chop|tidy|clean|clear)\b)(\w+)(?:,? \1\b)+"
+    r"|\b((?!no\b)[a-z]{2,} \w+)(?:,? \2\b)+"
 )
-"""Words that somebody who hesitates says twice."""
+"""Words that somebody who hesitates says twice; but `no no`, `stop stop`, `if it is not tidy tidy it`."""
 _PART = re.compile(r"\s*[;.!?]+\s*(?:and\s+)?(?:then\s+)?|,?\s+(?:and\s+)?(?:then|after that|afterwards),?\s+")
 _COMMA = re.compile(r"\s*,[\s,]*(?:and\s+)?")
 

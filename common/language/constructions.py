@@ -11,7 +11,8 @@ _BESIDE = "(?:next to|close to|beside|near|right by|by)"
 MODAL = "(?:should|must|has to|have to|needs to|need to|ought to|can|could|is to|are to|shall|will)"
 NP = r"((?:\w|')+(?: (?:\w|')+){0,11}?)"
 _WHO = (
-    r"(?:i|we|(?!(?:\w+ )?(?:might|may|not|never|could|should|would|will|do|did|does|used|no|nobody|if|when|"
+    r"(?:i|we|(?!(?:\w+ )?(?:might|may|not|never|could|should|would(?! (?:like|love)\b)"
+    r"|will|do|did|does|used|no|nobody|if|when|"
     r"what|why)\b)"
     r"(?:(?:my|our|the|your) )?[a-z]+(?: [a-z]+)?)"
 )
@@ -164,7 +165,7 @@ VERBLESS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
         (rf"{NP}(?: to me| to us| over here| here| here now| over)", r"bring me \1"),
         (rf"{NP} (?:back )?(to|into|onto) {NP}", r"put \1 \2 \3"),
         (rf"{NP} and {NP}", r"take \1 to \2"),
-        (rf"into {NP} with {NP}|in {NP} with {NP}", r"put \2\4 in \1\3"),
+        (rf"({TO_PLACE}) {NP} with {NP}", r"put \3 \1 \2"),
     )
 )  # fmt: skip
 """Where the verb is missing."""
@@ -190,7 +191,7 @@ PASSIVE = tuple(
         r" (\w+)( .+)?",
         rf"{NP} {MODAL}(?: now| also| really| please)? be (\w+)( .+)?",
         rf"(?:can|could|should|would|will|may|must){NP.replace('(', '( ', 1)}(?: please| perhaps)? be (\w+)( .+)?",
-        rf"{NP} (?:needs?|wants?|requires?|could do with|is due for)(?: some| a| to be| a good| a bit of)* "
+        rf"{NP} (?:needs?|wants?|requires?|could do with|is due for)(?: some| a bit of| a good| a| to be)* "
         rf"(\w+)( .+)?",
     )
 )

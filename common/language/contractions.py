@@ -5,6 +5,8 @@ Recognised speech and hurried typing leave the apostrophes out, so both spelling
 
 import re
 
+from common.language.lexicon import COMMANDING
+
 _OF_PEOPLE = "i|you|we|they|he|she|it|who"
 _CONTRACTIONS = tuple(
     (re.compile(short), long)
@@ -15,6 +17,8 @@ _CONTRACTIONS = tuple(
         (r"\b(?:thx|tnx|thanx|cheers)\b", "thanks"),
         (r"\b(?:gimme|gimmie)\b", "give me"),
         (r"\blemme\b", "let me"),
+        (r"\b(?:sth|smth|sumthin|somethin)\b", "something"),
+        (r"\b(?:da|de|ze|teh)(?= \w)", "the"),
         (r"\b(?:imma|i'mma|ima)\b", "i will"),
         (r"\b(want|got)ta\b|\bwanna\b", "want to"),
         (r"\b(?:gonna|gon)\b", "going to"),
@@ -26,6 +30,9 @@ _CONTRACTIONS = tuple(
         (r"\b(?:cuz|coz|cos)\b|(?<!\w)'cause\b", "because"),
         (r"\bo'clock\b", "oclock"),
         (r"\boutta\b", "out of"),
+        (r"\banymore\b", "any more"),
+        (r"\b(what|where|who|how|when|why)'?d (?=i|you|we|they|he|she)", r"\1 did "),
+        (r"\b(?:two|too) (?=(?:the|my|our) )", "to "),
         (r"\bin here\b", "here"),
         # With the apostrophe, or without it where no other word is spelled so.
         (r"\b(what|where|who|there|that|how|here|which|when|why)'?s\b(?! up\b)", r"\1 is"),
@@ -48,6 +55,7 @@ _CONTRACTIONS = tuple(
         (r"\blet'?s\b", "let us"),
     )
 )
+_VERB = rf"(?:{'|'.join(sorted(COMMANDING))})"
 _NOUN = r"(?=(?:the|a|an|my|our|your|some|any|one|two|three|all|both|every|that|those)\b)"
 _PREPOSITION = (
     r"(?=(?:on|in|at|by|beside|near|next to|under|behind|between|inside|close to|in front of|to the "
@@ -71,6 +79,15 @@ _SAME = tuple(
         (r"\bone of each(?: of)?,? (?=(?:the|a|an)\b)", ""),
         (r"\b(the|my) (\w+s) (?:all|both|each|every one) of (?:them|those)\b", r"all \1 \2"),
         (r"\b(the \w+) ones? of the (\w+?)s\b", r"\1 \2"),
+        (r"\b(?:of|in) (?:the )?colou?r (?:of )?(\w+)", r"that is \1"),
+        (r"\b(?:of|in) (?!the\b|that\b|this\b|what\b|which\b|any\b|same\b|a\b)(\w+) colou?r\b", r"that is \1"),
+        (rf"\b({_VERB}) (?:please|kindly) (?=(?:the|my|our|a|an|me|us|it|to|in|on|up|that|this)\b)", r"\1 "),
+        (
+            r"^(any\w* (?!idea|chance|clue|sign|way|news)\w.+ (?:in|on|at) (?:the|my|our) \w+(?: \w+)?)[.?!]?$",
+            r"is there \1",
+        ),
+        (r"\b(inside|off|outside) of\b", r"\1"),
+        (r"\bon to (?=the|my|our|a)", "onto "),
         (r"\bone more(?= please$|$)", "another one"),
         (r"\bone more (?!time|go\b|thing|try|shot|attempt|please)", "another "),
         (r"\bnothing (?:but|except|other than) (?=(?:the|a|an|my|one)\b)", ""),

@@ -20,6 +20,7 @@ _FIRST = re.compile(
     r"^(?P<word>after|once|when|as soon as|before) (?:you(?: are| have)?(?: all)?(?: done| finished)? |(?=\w+ing\b))"
     r"(?P<rest>.+)$"
 )
+_ALWAYS = re.compile(r"\b(?:always|from (?:now|today) on|in (?:the )?future|every time)\b")
 _BUT_FIRST = re.compile(r"^(?P<second>.+?),? but (?:first|before that|beforehand),? (?P<first>.+)$")
 _LATER = re.compile(r"^(?P<first>.+?),? (?P<word>before|after) you(?: have)? (?P<second>.+)$")
 _NEXT = frozenset(
@@ -43,6 +44,8 @@ def _in_order(text: str) -> list[str]:
         cut = _second_clause(found["rest"])
         if cut is not None:
             one, other = cut
+            if _ALWAYS.search(text):  # "when you tidy up put the balls in the toy box from now on"
+                return [other]
             return [other, one] if found["word"] == "before" else [one, other]
     if (found := _BUT_FIRST.match(bare)) and verb_first(found["first"]):
         return [found["first"], found["second"]]

@@ -37,6 +37,10 @@ TOLD: tuple[Wording, ...] = (
         heard="forget that rule",
     ),
     Wording(
+        "forget_rule",
+        f"(forget | unlearn) (where | that) <words> {_BELONG} [{_ON} <spot>]",
+    ),
+    Wording(
         "rule_always",
         f"[no] {_ALWAYS} [please] (put | keep | place | store | leave | sort) <thing> {_ON} <spot>"
         f" | [no] (put | keep | place | store | leave | sort) <thing> {_ON} <spot> {_ALWAYS}"

@@ -6,6 +6,8 @@ Frames that speak of the past, of somebody else's words or of what must not be a
 
 import re
 
+from common.language.frame import without_frame
+
 _ADVERBS = (
     r"(?: "
     r"(?:please|just|kindly|maybe|perhaps|possibly|quickly|now|also|really|actually|then|so|simply|like|too|again|"
@@ -22,7 +24,6 @@ _KIND = (
     "best|better|okay|ok|alright|so kind|much appreciated|(?:a )?(?:big|great|real|huge)? ?(?:help|favou?r|relief))"
 )
 _SO = "(?:(?:so|very|ever|most|extremely|eternally|super|really|just|quite|absolutely|truly) )*"
-_PERSON = "(?:i|we)"
 _TIME = (
     "(?:a |the |some |one |any |your )?(?:free |spare )?(?:chance|moment|minute|second|sec|time|hand|opportunity|go)"
 )
@@ -85,83 +86,47 @@ _WAY = (
     r"for|search for)\b)"
 )
 _FRAMES = (
-    # What makes a question or a wish of an order.
+    # What makes a question or a wish of an order, where frame.py does not see that a command follows.
     rf"{_CAN} {_YOU}(?! see (?:the|my|a|any)\b| rather\b){_ADVERBS}(?: to(?= \w))?"
-    rf"(?: (?:be able to|be willing to|be up for|manage to|care to|try to|try and|like to|"
-    rf"want to|"
-    rf"mind|go ahead and|help me (?:and|by)|do me (?:a|the) favou?r(?: and| of)?|"
-    rf"be (?:(?:so|very|a|an|kind|good|nice|enough|dear|angel|sweetheart|star|darling|love|sport|robot|sweet|"
-    rf"really|and|as|"
-    rf"gracious|willing|helpful)(?:\s+|$))+(?:to|and|as to))\b)?",
-    rf"(?:{_PERSON} )?(?:do|would) you mind|mind(?=\s+\w+ing\b)|do you want to|care to|want to(?=\s+\w)",
-    rf"do you (?:think|suppose|reckon|believe) {_YOU} {_CAN}(?: possibly)?",
+    rf"(?: (?:be able to|try to|like to|want to|mind|do me (?:a|the) favou?r(?: and| of)?"
+    rf"|be (?:\w+ ){{1,6}}?(?:to|and|as to))\b)?",
+    r"want to(?=\s+\w)|(?<=please )(?:you|to)(?= \w)",
     r"you(?= (?:bring|give|take|go|get|fetch|throw|find|come|carry|move|clean|tidy|grab|pick)\b"
     r"(?!.*\b(?:always|never|often|yesterday|every|usually|it when)\b))",
-    rf"(?<=please )(?:you|to)(?= \w)|you{_ADVERBS} (?:should|must|have to|need to|could|can|may|might want to|are to|"
-    rf"ought to|are going to|shall|will)",
-    rf"{_PERSON}{_ADVERBS} (?:would |will |am going to )?(?:like|love|want|need|prefer|wish|require|expect|ask|"
-    rf"beg|urge)"
-    rf"(?: that| for| it if)? you(?: to)?(?! (?:in|at|by)\b)",
-    rf"{_PERSON} (?:want|wanted|would like|was going|wish|meant|would love|need)(?:ed)? to ask (?:you )?"
-    rf"(?:if you {_CAN}|whether you {_CAN}|to|that you)",
-    r"(?:may|can|could|might) i (?:please )?(?:ask|trouble|bother|get|have|request|beg)(?: of)? you (?:to|and)",
-    rf"(?:i (?:was|am|have been) )?(?:just )?(?:wondering|asking|hoping|thinking)(?: if| whether| that)? {_YOU}"
-    rf" {_AUX}",
-    rf"i (?:wonder|hope|wondered|hoped|thought|think|guess|suppose|believe|reckon|say)(?: if| whether| that)? {_YOU}"
-    rf" {_AUX}",
+    rf"you{_ADVERBS} (?:should|must|have to|need to|could|can|may|might want to|are to|ought to|are going to|shall|"
+    r"will)",
     rf"(?:would|will|could|might) it be {_SO}(?:ok|okay|alright|all right|possible|a problem|too much(?: trouble|"
-    rf" to ask)?)"
-    rf"(?: for you)?(?: (?:if you(?: {_CAN})?|if i ask(?:ed)? you to|that you|to))?",
+    rf" to ask)?)(?: for you)?(?: (?:if you(?: {_CAN})?|if i ask(?:ed)? you to|that you|to))?",
     r"(?:it|that) would make (?:me|us|my day|him|her)(?: \w+){0,2} if you(?! (?:not|did not|never)\b)",
-    r"(?:is there )?(?:any|a|some) (?:chance|way|possibility)(?: that)?(?=\s+(?:i|we)\b)|"
-    r"you (?:could|would) not(?: possibly| happen to| mind)?(?=\s.* (?:could|would) you$)|"
-    r"do you (?:think|suppose|reckon)(?: that)?(?=\s+(?:i|we) (?:could|can|may|might)\b)|"
-    r"(?:would|will|does|might|could) it (?:trouble|bother|inconvenience|kill|hurt) you(?: too much)?(?: to| if you)|"
-    r"help (?:me|us|(?:a|an|your|my) (?:\w+ )?\w+) out(?: and| by| here and)?|"
-    r"while you are (?:over )?(?:in|at|on) (?:the|my|our) \w+(?: (?:room|table|shelf|box))?|"
-    r"is it (?:ok|okay|possible|alright)(?: for you)?(?: (?:if you(?: can| could)?|to))?",
-    rf"{_PERSON} would {_SO}(?:appreciate|like|love|be "
-    rf"{_SO}(?:grateful|happy|glad|thankful|pleased|obliged|delighted))"
-    rf"(?: it)?(?: (?:very much|a lot|greatly))? if {_YOU}(?: {_CAN})?{_ADVERBS}(?! (?:not|did not|never)\b)",
     rf"(?:it|that) (?:would|will) be {_SO}{_KIND} (?:if|when) {_YOU}(?: {_CAN})?{_ADVERBS}(?! "
     rf"(?:not|did not|never)\b)",
-    rf"(?:it|that) (?:would|will) (?:really |greatly )?help(?: me| us)?(?: a lot| out)? if {_YOU}(?: {_CAN})?(?! "
-    rf"(?:not|did not)\b)",
-    r"why (?:do not|not) (?:you|we)(?=\s+\w)|how about (?:you|we)(?=\s+\w)",
+    r"(?:is there )?(?:any|a|some) (?:chance|way|possibility)(?: that)?(?=\s+(?:i|we)\b)|"
+    r"do you (?:think|suppose|reckon)(?: that)?(?=\s+(?:i|we) (?:could|can|may|might)\b)|"
+    r"help (?:me|us|(?:a|an|your|my) (?:\w+ )?\w+) out(?: and| by| here and)?|"
+    r"while you are (?:over )?(?:in|at|on) (?:the|my|our) \w+(?: (?:room|table|shelf|box))?",
+    r"(?:why (?:do not|not)|how about) (?:you|we)(?=\s+\w)|(?:what|how) about(?=\s+\w+ing\b)",
     r"(?:i|we|people|everyone|everybody|they)(?: always| all| usually)?(?=\s+call\b)|let us|we "
     r"(?:should|could|must|need to|have to|ought to|want to|had better|better)",
-    r"(?:what|how) about(?=\s+\w+ing\b)|i do not suppose you (?:can|could|would|might)(?: possibly)?|"
-    r"you (?:can|could|would) not (?:possibly|happen to|mind)(?= \w)|"
-    r"(?:do )?be (?:a|an|so|very) (?:\w+ ){0,2}?\w+ (?:and|as to|to)|be \w+ enough to|do me "
-    r"(?:a|the|one) favou?r(?: and)?",
-    rf"(?:is there )?(?:any|a) (?:chance|way|possibility) (?:of you|(?:that )?you(?: {_CAN})?)|any chance(?=\s+you)",
-    r"(?:do not|never) (?:forget|fail) to|remember to(?=\s+\w)|(?:make|be) sure (?:to|and|(?:that "
-    r")?you)|see that you|"
-    r"feel free to|go ahead and|get (?:busy|going|to work|moving|up)(?: and)|start (?:by )?(?=\w+ing\b)|try "
-    r"(?:to|and)(?= (?:get|bring|"
-    r"fetch|put|take|grab|throw))",
-    r"(?:your|the) (?:next |first )?(?:task|job|mission|thing|order|command)(?: now| to do)? is(?: to)?|"
-    r"(?:it is |about )?(?:high )?time (?:you (?:\w+ed)?|to|for you to)|it is your (?:turn|job|task) to",
-    r"all (?:you have|i want you) to do is|what (?:i|we) (?:want|need) you to do is|i am (?:going to need|gonna "
-    r"need) you to",
-    r"i (?:have )?changed my mind|on second thoughts?|i have (?:got )?(?:a|another) (?:task|job|request|"
-    r"favou?r)(?: for you| to ask)?",
+    r"(?:do )?be (?:a|an|so|very) (?:\w+ ){0,2}?\w+ (?:and|as to|to)",
+    r"(?:(?:do not|never) (?:forget|fail)|remember|(?:make|be) sure|feel free|try|go ahead|start|"
+    r"get (?:busy|going|to work|moving|up))(?: to| and| by|(?: that)? you)(?=\s+\w)",
+    r"(?:it is |about )?(?:high )?time (?:you (?:\w+ed)?|to|for you to)|"
+    r"what (?:i|we) (?:want|need) you to do is|on second thoughts?",
     r"i (?:think|guess|suppose|believe|reckon|say|suggest)(?: that)?(?= (?:the|my|this|that|we|you|it|i)\b)",
-    r"while you are (?:at it|there|up|about it)|(?:on|along) (?:the|your) way(?: back)?|"
-    r"when you (?:come|get|are|go) back(?= (?:bring|take|get|fetch|put|grab)\b)",
-    r"drop everything(?: else)?(?: and)?(?=\s+\w)|without \w+ing (?:[^,]+?),|without \w+ing .+?(?= throw\b| "
-    r"put\b| bring\b| take\b)",
+    r"while you are (?:at it|there|up|about it)|(?:on|along) (?:the|your) way(?: back)?",
+    r"drop everything(?: else)?(?: and)?(?=\s+\w)|without \w+ing .+?(?=,| throw\b| put\b| bring\b| take\b)",
     _OCCASION,
 )
 """Frames of a request; what is asked for follows."""
 _ENDINGS = (
     "(?:pretty )?please(?: with .+)?|right now|right away|now|quickly|at once|immediately|straight away|for me|"
+    "at the moment|at present|currently|"
     "for us|thanks|thank you"
     "(?: very much| so much| a lot)?|(?<!real )(?<! a )robot|tidybot|jarvis|then|anyway|and|will you please|okay|"
     "ok|alright|(?<=, )right|man|mate|"
     "buddy|dude|my friend|dear|love|darling|sir|real quick|really quick|quick|fast|if you please|or something|or so|"
     "and stuff|(?:any (?:one|\\w+) will do|(?:it|i) (?:does|do) not (?:matter|mind|care) which(?: one)?|"
-    "whichever(?: is (?:closest|nearest|easiest))?)|while you are (?:at it|there|up|about it)|on "
+    "whichever(?: is (?:closest|nearest|easiest))?)|(?:while|when) you are (?:at it|there|up|about it)|on "
     "(?:the|your) way(?: back)?|by the "
     "way|(?<!rooms )(?<!places )(?<!what )(?<!do )you know(?: "
     "that)?|i "
@@ -206,7 +171,7 @@ FRAME = re.compile(rf"(?:{'|'.join(_FRAMES)})\s")
 
 def without_politeness(text: str) -> str:
     """A clause without "could you please ..." and "... right now"; "" when nothing else is in it."""
-    bare = _LEAD.sub("", text.strip(" ,;.!?") + " ").strip()
+    bare = without_lead(text.strip(" ,;.!?"))
     if LONG_SPEECH.match(bare):
         return bare.removesuffix(" please")
     bare = _FOR_ME.sub(r"bring me \1", bare)
@@ -217,4 +182,7 @@ def without_politeness(text: str) -> str:
 
 def without_lead(text: str) -> str:
     """A clause without what is polite before it."""
-    return _LEAD.sub("", text.strip(" ,") + " ").strip()
+    bare = _LEAD.sub("", text.strip(" ,") + " ").strip()
+    while (shorter := _LEAD.sub("", without_frame(bare) + " ").strip()) != bare:
+        bare = shorter
+    return bare

@@ -10,7 +10,7 @@ _TENS = "twenty thirty forty fifty sixty seventy eighty ninety"
 NUMBERS: dict[str, float] = {
     **{word: float(n) for n, word in enumerate(_ONES.split())},
     **{word: 10.0 * n for n, word in enumerate(_TENS.split(), 2)},
-    "half": 0.5, "couple": 2.0, "few": 3.0, "some": 3.0, "hundred": 100.0,
+    "half": 0.5, "quarter": 0.25, "couple": 2.0, "few": 3.0, "some": 3.0, "hundred": 100.0,
 }  # fmt: skip
 """Words for numbers, beside `a`; `a few` is taken for three (chosen)."""
 UNITS = {"second": 1.0, "sec": 1.0, "s": 1.0, "moment": 2.0, "minute": 60.0, "min": 60.0, "hour": 3600.0}

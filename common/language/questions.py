@@ -8,7 +8,7 @@ ABOUT_THE_WORLD: tuple[Wording, ...] = (
         "seen",
         "[tell me] what (do you | can you | are you able to) see [now | right now | here | from (here | there | "
         "where you are)]"
-        " | tell me what you [can] see | what have you seen [so far | today | until now | up to now "
+        " | tell me what you [can] (see | find) | what have you seen [so far | today | until now | up to now "
         "| around here]", heard="what (do | can) you see"
     ),
     Wording(
@@ -16,7 +16,8 @@ ABOUT_THE_WORLD: tuple[Wording, ...] = (
         f"{ASK} (what [else] | (which | what) (things | objects | items | stuff)) ({BE} [there] | lies | lie | "
         f"do you see | do (we | i | you) have | have (we | i | you) got)"
         f" [{LYING}] (on | in | at | inside) <spot>"
-        f" | (tell me | list) (what | everything | all) [that] {BE} [{LYING}] (on | in | at | inside) <spot>"
+        f" | (tell me | list | name) (what | everything | all | [all] the (things | objects | items)) "
+        f"[that] [{BE}] [{LYING}] (on | in | at | inside) <spot>"
         f" | {ASK} what <spot> (has | holds | contains) [on it | in it]",
         heard="what is (on | in) [the] <place>",
     ),
@@ -124,18 +125,23 @@ ABOUT_THE_WORLD: tuple[Wording, ...] = (
 """Where things are, what and how many there are."""
 
 ABOUT_ITSELF: tuple[Wording, ...] = (
-    Wording("holding", "what are you (holding | carrying)", heard="what are you holding"),
+    Wording("holding", "what (are you | is (it | that | this) [that] you are) (holding | carrying)",
+            heard="what are you holding"),
     Wording("holding", "what do you (have | hold) [in your (hand | hands | gripper)]"),
     Wording(
         "holding",
         "(are you (holding | carrying) | do you (have | hold | carry) | have you got | is there)"
-        " (anything | something | it) [in your (hand | hands | gripper)]"
+        " (anything | something | it) [in your (hand | hands | gripper)] | is your hand (empty | free | full)"
         " | what have you got [there | in there | for me]",
     ),
     Wording("holding", "what (is | have you | have you got | do you have | are you holding | do you hold) [that |"
                        " this | it]"
         " in (your | the) (hand | hands | gripper | claw | fingers)"),
-    Wording("whereabouts", f"{ASK} where (are you | you are) | which room are you in", heard="where are you"),
+    Wording(
+        "whereabouts",
+        f"{ASK} where (are you | you are) [standing | at] | [in] (which | what) room are you [standing] [in]",
+        heard="where are you",
+    ),
     Wording(
         "doing",
         "what (are you | you are) (doing | up to | working on | busy with) [there | here | right now | now |"
@@ -164,7 +170,8 @@ ABOUT_ITSELF: tuple[Wording, ...] = (
         "| that) work [out] | (did | have) you (bring | brought | put | fetch "
         "| fetched |"
         " find | found | tidy | tidied | throw | thrown) <words> [already | yet]"
-        " | what have you (done | been doing) [today | so far | lately] | did everything go well",
+        " | what have you (done | been doing) [today | so far | lately] | did everything go well"
+        " | how did (it | that) go",
         heard="what did you [just] do",
     ),
     Wording(
@@ -175,7 +182,8 @@ ABOUT_ITSELF: tuple[Wording, ...] = (
         "| go wrong)"
         " | what (went wrong | was the (problem | matter | trouble | reason) | is the (matter | problem) | happened"
         " [there]) | why not | why (is | was) (that | it) | why (were you not able | "
-        "are you not able) to <words> | how come [<words>]",
+        "are you not able) to <words> | how come [<words>]"
+        " | where (did you | have you) (look | looked | search | searched | check | checked)",
         heard="why did you fail | what went wrong",
     ),
     Wording(
@@ -184,7 +192,7 @@ ABOUT_ITSELF: tuple[Wording, ...] = (
         " fetch | have | had) <thing> [up] [from]"
         " | where (did | was | were) <thing> (stand | sit | lie | be | come from | standing | lying) [before | "
         "originally]"
-        " | where (was | were) <thing> (before | originally) | where does <thing> come from",
+        " | where (was | were) <thing> [before | originally] | where does <thing> come from",
     ),
     Wording(
         "abilities",

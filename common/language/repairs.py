@@ -11,7 +11,7 @@ from common.language.politeness import without_politeness
 
 _REPAIR = re.compile(
     r"(?:,\s*wait,\s*(?=not\b)|[,.;]\s*(?:no|sorry|actually|rather)(?:,\s*|\s+)|,\s*(?:oh|well|hold on|hang on),\s*"
-    r"|(?<=\w)(?<!\bsay)\s+no,?\s+(?=(?:the|my|on|in|to|at)\s)|,?\s+(?:no,? wait|wait,? no|oh,? "
+    r"|(?<=\w)(?<!\bsay)\s+no,?\s+(?=(?:the|my|on|in|to|at)\s)|,?\s+(?:no,? wait|wait,? no|no,? (?:hold|hang) on|oh,? "
     r"wait|no,? sorry|sorry,? no|"
     r"sorry,? i mean(?:t)?|or (?:rather|maybe |even |perhaps )?(?:better|no)(?: yet| still)?|better "
     r"(?:yet|still)|or rather|"
@@ -36,7 +36,8 @@ NOT_WANTED = re.compile(
     r"^(?:(?:never mind|forget(?: about)?|skip|leave|ignore|not|no need for|no more|(?:i|we) do not "
     r"(?:need|want|like))"
     r" (?:the|that|my|those|this)(?: \w+){1,3}?|no (?!the\b|no\b|need\b)\w+(?=,))(?:,\s*(?:and |but )?| and | but | )"
-    rf"(?=(?:please |just |rather )*(?:{'|'.join(sorted(COMMANDING))}|i want|i need|i would like)\b)"
+    rf"(?=(?:please |just |rather )*(?:{'|'.join(sorted(COMMANDING))}|i want|i need|i would like)\b"
+    r"|(?<=, )(?:the|a|an|my) (?!\w+ ones?\b))"
 )
 """What is not wanted, before what is."""
 _AFTERTHOUGHT = re.compile(
@@ -180,7 +181,10 @@ def _repaired(text: str, is_place: IsPlace) -> str:
         meant = _refined(re.sub(r",? i mean(?:t)?$", "", text[found.end() :].strip(" ,.!?")))
         if contrast := _CONTRAST.match(meant):
             meant = _with_qualities(text[: found.start()], contrast["wrong"], contrast["right"])
-        if (repaired := replaced(text[: found.start()], meant, is_place)) is None:
+        meant, comma, rest = meant.partition(", ")
+        if rest.split(" ")[0] not in PREPOSITIONS:  # "the red can, i mean the green can, on the dresser"
+            meant, rest = f"{meant}{comma}{rest}", ""
+        if (repaired := replaced(f"{text[: found.start()]} {rest}", meant, is_place)) is None:
             return text
         text = repaired
     return text

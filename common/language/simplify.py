@@ -16,6 +16,7 @@ _ADVERBS = frozenset(
         "straight",
         "together",
         "somewhere",
+        "anywhere",
     }
 )
 _NO_ADVERBS = frozenset({"only", "family", "early"})

@@ -10,12 +10,15 @@ _NUMBER = rf"(?:a|an|and|of|about|around|another|just|maybe|\d+|{'|'.join(NUMBER
 DURATION = rf"(?:{_NUMBER} )+(?:{'|'.join(UNITS)})s?(?: and a half)?"
 """Words of a length of time, as `quantities.duration` reads them."""
 _APPROXIMATELY = re.compile(r"\b(?:about|around|another|just|maybe) ")
+_LATER = "(?:from now|time|later|on)"
 _FIRST = re.compile(
-    rf"^(?:in|after|wait(?: for)?|give (?:it|me)) (?P<time>{DURATION})(?: from now| time)?,? (?:and "
-    rf"|then )*(?P<rest>.+)$"
+    rf"^(?:(?:in|after|wait(?: for)?|give (?:it|me)) (?P<time>{DURATION})(?: {_LATER})?|"
+    rf"(?P<later>{DURATION}) {_LATER}),? (?:and |then )*(?P<rest>.+)$"
 )
 _JUST = re.compile(rf"^(?:just )?(?P<time>{DURATION}),? (?:and )?then (?P<rest>.+)$")
-_LAST = re.compile(rf"^(?P<rest>.+?),? (?:in|after) (?P<time>{DURATION})(?: from now| time)?$")
+_LAST = re.compile(
+    rf"^(?P<rest>.+?),? (?:(?:in|after) (?P<time>{DURATION})(?: {_LATER})?|(?P<later>{DURATION}) {_LATER})$"
+)
 _STAY = re.compile(
     rf"^(?:(?:go|drive|walk|move|run|head|come) (?P<to>.+?)(?:,| and| then)* "
     rf"(?=stay|remain|wait|stand))?(?:stay|remain|wait|stand|stop|hang "
@@ -35,7 +38,8 @@ def in_time(text: str) -> str:
         return " . ".join(filter(None, (going, f"wait {_plain(found['time'])}", rest)))
     for pattern in (_FIRST, _JUST, _LAST):
         if (found := pattern.match(bare)) and verb_first(without_politeness(found["rest"])):
-            return f"wait {_plain(found['time'])} . {found['rest']}"
+            time = found["time"] or found.groupdict().get("later") or ""
+            return f"wait {_plain(time)} . {found['rest']}"
     return text
 
 

@@ -16,9 +16,9 @@ from common.language.wording import Wording
 WORDINGS: tuple[Wording, ...] = (
     Wording(
         "stop",
-        "[no] (stop | halt | freeze) [it | that | now | there | right there | at once | immediately | everything]"
+        "[no] (stop | halt | freeze | hold it) [it | that | now | [right] there | at once | immediately | everything]"
         " | [no] stop ([please] stop [stop] | moving | driving | going | doing that | what you are doing)"
-        " | hold (it | still) | do not (move | do (that | it | this)) | (that is | it is) enough | enough | quit "
+        " | hold still | do not (move | do (that | it | this)) | (that is | it is) enough | enough | quit "
         "(it | that) | cut it out | stay (there | where you are) | emergency stop",
         heard="stop [it]", kind="reply", reason="stopping needs no plan",
     ),
@@ -42,11 +42,11 @@ WORDINGS: tuple[Wording, ...] = (
         "(yes | yeah | yep | yup) (bring | get | fetch | take | do) (it | that | them) [to me]"
         " | (yes | yeah | yep | yup) [please | thanks | thank you | that is what i (said | meant | "
         "want) | i did | it is | that is right | "
-        "please do | do | do that | "
+        "please do | do | do that | go for it | "
         "exactly | go ahead] | [that is] (correct | right | true) | exactly | sure | okay | ok"
         " | go ahead | do it | do | affirmative | sure thing | of course | absolutely | definitely | indeed | "
         "certainly | fine"
-        " | you bet | by all means | please do | right | that is (it | the one) | uh huh | why not | perfect",
+        " | you bet | huh | mhm | mm | by all means | please do | right | that is (it | the one) | why not | perfect",
         heard="yes [please | it is] | yeah | correct", kind="reply", reason="I did not ask anything",
     ),
     Wording(
@@ -68,7 +68,7 @@ WORDINGS: tuple[Wording, ...] = (
         heard="open (the | your) (hand | gripper)",
     ),
     Wording(
-        "close_hand", "(close | shut) [the | your] (gripper | hand | fingers)",
+        "close_hand", "(close | shut) [the | your] (gripper | hand | fingers) | make a fist",
         heard="close (the | your) (hand | gripper)",
     ),
     *ABOUT_ITSELF,
@@ -96,7 +96,8 @@ WORDINGS: tuple[Wording, ...] = (
         "[with <thing>] | retry"
         " | (try | do it | go) (again | once more | one more time) | (once [more] | again | one more time) [with "
         "<thing>]"
-        " | (look | check | search) (again | once more) | (have | take | give it) (another | one more) (go | try "
+        " | (have | take) another look | (look | check | search) (again | once more) |"
+        " (have | take | give it) (another | one more) (go | try "
         "| shot | attempt)",
         heard="try again | do that again",
     ),

@@ -19,6 +19,8 @@ def doing(builder: PlanBuilder, slots: Slots) -> None:
     if not told.doing:
         hand = f", with the {held.label} in my hand" if held else ""
         builder.say(f"I am doing nothing at the moment{hand}. I am waiting for a command.")
+        if told.last is not None:
+            done(builder, slots)
         return
     now = f" At the moment: {told.step}." if told.step else ""
     builder.say(f'I am busy with "{told.doing}".{now}')

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from contextlib import suppress
 
-from common.language.breaks import is_statement
+from common.language.breaks import is_statement, without_reason_behind
 from common.language.contractions import expand
 from common.language.discourse import commands
 from common.language.exchange import noun_phrases, replaced
@@ -118,6 +118,9 @@ class _Attempts:
             return self._read(self._command)
         except Refusal as refusal:
             taken = self._choices.taken
+            if (asked := without_reason_behind(self._command_words())) != self._command_words():
+                with suppress(Refusal):
+                    return self._read(asked)
             if (read := self._without_slips(refusal, literally)) is not None:
                 return read
             if self._config.open_vocabulary:
@@ -127,6 +130,10 @@ class _Attempts:
             if not literally and (meant := self._nearest()):
                 raise Suggestion(str(refusal), meant) from None
             raise
+
+    def _command_words(self) -> str:
+        """What was said with its marks, in the spelling of the grammar."""
+        return expand(normalise(self._command[:MAX_CHARACTERS], ",;.!?"))
 
     def _nearest(self) -> str:
         """A plain command that can be done and is near to the words; "" when there is none."""
@@ -150,7 +157,7 @@ class _Attempts:
 
     def _without_slips(self, refusal: Refusal, literally: bool) -> list[PlanStep] | None:
         """Slips in verbs and small words are undone; a name is never exchanged for another unasked."""
-        words = expand(normalise(self._command[:MAX_CHARACTERS], ",;.!?")).split()
+        words = self._command_words().split()
         bare = [w.strip(",;.!?") for w in words]
         colours, names = self._vocabulary.words()
         right, named = corrected(bare, colours | WORDS, names)
@@ -170,7 +177,7 @@ def _completed(words: Words, said: Words, builder: PlanBuilder) -> Words:
     """`the green one` after `put the white can in the bin` is to be put there, too."""
     phrase = read(words, builder.vocabulary)
     spans = noun_phrases(list(said))
-    if not isinstance(phrase, Phrase) or phrase.sense.new or not spans or spans[0][1] >= len(said):
+    if not isinstance(phrase, Phrase) or phrase.sense.new or phrase.relation or not spans or spans[0][1] >= len(said):
         return words
     if not any(builder.vocabulary.spot(said[at:]) for at in range(spans[0][1], len(said))):
         return words

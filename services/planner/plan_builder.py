@@ -105,6 +105,10 @@ class PlanBuilder:
             return
         if held is not None:
             self.place(self._set_down(held))
+        if self.steps and self.steps[-1].action == "place" and self.steps[-1].object == item.label:
+            self.steps.pop()  # "take it to the kitchen and leave it by the bowl": it need not be put down between
+            self.world.grasp(item.label)
+            return
         self.find(item, words)
         self.steps.append(PlanStep(action="grasp", object=item.label))
         self.world.grasp(item.label)

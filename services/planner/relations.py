@@ -74,8 +74,8 @@ def is_near(builder: PlanBuilder, item: BelievedObject, place: Spot) -> bool:
 
 
 def between(a: BelievedObject, b: BelievedObject) -> float:
-    assert a.position is not None and b.position is not None
-    return math.dist(a.position, b.position)
+    """Distance of two things [m]; infinite where nobody knows where one of them is, as after it was put somewhere."""
+    return math.dist(a.position, b.position) if a.position and b.position else math.inf
 
 
 def is_between(item: BelievedObject, one: BelievedObject, other: BelievedObject) -> bool:

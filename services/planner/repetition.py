@@ -22,7 +22,8 @@ _NO = re.compile(
 )
 _PLACED = re.compile(r"\w (?:next to|beside|near|on|in|into|onto|to|at) \w")
 _TOO = re.compile(
-    r"^(?!.*\b(?:goes|go|belongs?|is|are|there)\b)(?:and |now |then )?(?P<thing>.+?) (?:too|as well|also)(?: please)?$"
+    r"^(?!.*\b(?:goes|go|belongs?|is|are|there)\b)(?:and |now |then |do )*(?P<thing>.+?)"
+    r" (?:too|as well|also)(?: please)?$"
     r"|^(?:and|what about) (?P<other>.+)$"
 )
 

@@ -1,5 +1,6 @@
 """Slips of typed words: `teh blu botle` as `the blue bottle`, by edit distance to the words that are known. Pure."""
 
+import re
 from collections.abc import Iterable, Sequence
 
 LONG_WORD = 5
@@ -19,10 +20,22 @@ def corrected(words: Sequence[str], plain: Iterable[str], names: Iterable[str]) 
         if word in common or word in nouns or not word.isalpha() or len(word) < 3:
             found.append(word)
             continue
-        near = _nearest(word, common) or (_nearest(word, nouns) if len(word) >= LONG_WORD else None)
-        named = named or (near in nouns and near not in common)
+        near = _alike(word, common | nouns) or _nearest(word, common - nouns)
+        near = near or (_nearest(word, nouns) if len(word) >= LONG_WORD else None)
+        named = named or near in nouns
         found.append(near or word)
     return found, named
+
+
+def _alike(word: str, known: set[str]) -> str | None:
+    """The only known word that is spelled alike but for doubled and silent letters and groups of vowels: `aple`."""
+    alike = [k for k in known if len(k) > 2 and _sound(k) == _sound(word)]
+    return alike[0] if len(alike) == 1 else None
+
+
+def _sound(word: str) -> str:
+    single = re.sub(r"([aeiou])[aeiou]+", r"\1", re.sub(r"(.)\1+", r"\1", word.replace("wh", "w")))
+    return re.sub(r"(?<=[^aeiou])e$", "", single)
 
 
 def _nearest(word: str, known: set[str]) -> str | None:

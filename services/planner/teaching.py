@@ -30,9 +30,9 @@ def _name(builder: PlanBuilder, slots: Slots) -> str:
     """The name as it is to be kept.
 
     Raises:
-        Refusal: it is a place.
+        Refusal: it is a place, or a word that says how a thing is ("the ball is my favourite").
     """
     words = without_determiners(slots["words"])
-    if not words or builder.vocabulary.spot(words):
+    if not words or builder.vocabulary.spot(words) or set(words) <= set(builder.world.household.words.qualities):
         raise Refusal(f"{' '.join(slots['words'])} is no name for a thing")
     return " ".join(words)

@@ -7,12 +7,12 @@ from typing import Any
 from common.floor_plan import Receptacle
 from common.household import Household
 from common.language.lexicon import COMMANDING
-from common.language.normalise import Words, enumeration, normalise, without_determiners
+from common.language.normalise import Words, enumeration, infinitive, normalise, without_determiners
 from common.language.noun_phrase import UNSEEN, WHICH
 from common.language.quantities import UNITS
 from common.naming import normalise as unmarked
 from services.planner.config import PlannerConfig
-from services.planner.senses import ANY, HERE, LONGEST_NAME, MASSES, NO_NOUN, SHORTEST_NAME, WHOLE, Sense, Spot
+from services.planner.senses import ANY, HERE, LIVING, LONGEST_NAME, MASSES, NO_NOUN, SHORTEST_NAME, WHOLE, Sense, Spot
 from services.planner.world import World
 
 
@@ -62,10 +62,10 @@ class Vocabulary:
         self._nouns[noun] = Sense(names=before.names | {label}, kinds=before.kinds)
 
     def _read(self, world: World) -> None:
-        """Words printed on things: any run of up to three of them names the thing, unless it is a word already."""
+        """Words printed on things and of taught names: up to three together name the thing, where they are new."""
         for item in world.objects:
-            words = normalise(item.text).split()
-            runs = {" ".join(words[i : i + n]) for n in (1, 2, 3) for i in range(len(words) - n + 1)}
+            texts = [normalise(text).split() for text in (item.text, *item.names)]
+            runs = {" ".join(t[i : i + n]) for t in texts for n in (1, 2, 3) for i in range(len(t) - n + 1)} - LIVING
             for run in runs - self._nouns.keys() - self.kinds - self.colours.keys():
                 if len(run) > 2 and run not in NO_NOUN:
                     self._printed.setdefault(run, set()).add(item.label)
@@ -100,11 +100,16 @@ class Vocabulary:
                 return Sense(every=True), form, plural or form in MASSES
             if sense := self._nouns.get(form):
                 return sense, form, plural or form in self._mass
+        head, _, last = phrase.rpartition(" ")
+        if head and last.removesuffix("s") in ANY and (named := self.noun(head)) is not None:
+            return named  # that bottle thing
         if phrase.startswith("anything ") and (sense := self._nouns.get(phrase.replace("any", "some", 1))):
             return sense, phrase, False
         whole, found, part = phrase.partition(" of ")
         if found and whole in self.kinds and (named := self.noun(part)) is not None and named[0].names:
             return named  # a can of soup
+        if head and last in self.kinds and (labels := self._printed.get(head)):
+            return Sense(names=frozenset(labels)), phrase, False  # the soup can
         for form, plural in _singulars(phrase):
             if labels := self._printed.get(form):
                 return Sense(names=frozenset(labels)), form, plural
@@ -120,7 +125,8 @@ class Vocabulary:
             words = (words[0], *words[2:])
         if not words or NO_NOUN & set(words):
             return None
-        if words[-1].endswith("ed") or any(
+        acts = words[-1].endswith("ed") or infinitive(words[-1], COMMANDING) in COMMANDING
+        if acts or any(
             len(words) > b - a > 1 and self.spot(words[a:b])
             for a in range(len(words))
             for b in range(a + 2, len(words) + 1)
@@ -139,7 +145,7 @@ class Vocabulary:
         """(colours, words of names) that are known."""
         places = [n for r in self._household.receptacles for n in (r.name, *r.aliases)]
         names = {w for n in (*self._nouns, *self._printed, *self._places, *places, *ANY, *WHOLE) for w in n.split()}
-        return set(self.colours), names | {f"{n}s" for n in names}
+        return set(self.colours), (names | {f"{n}s" for n in names}) - self.colours.keys()
 
     # --- spots
     def spot(self, words: Words, room: str = "") -> list[Spot]:

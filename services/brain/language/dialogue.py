@@ -22,13 +22,21 @@ from common.plan_rules import is_destination
 Reply = Literal["yes", "no", "cancel", "correction"]
 _CORRECTION = re.compile(
     r"^(?:no|nope|yes|yeah|yep|wrong|not that|i said|i meant|i mean|i want(?:ed)?|i need|i would like|actually|"
-    r"rather)\s+"
+    r"rather|almost|nearly|close|not quite|oops|whoops|ugh|sorry|wait|but)\s+"
 )
 
 
 _NO_NAME = frozenset(
     {
         "one",
+        "whichever",
+        "of",
+        "them",
+        "those",
+        "these",
+        "will",
+        "with",
+        "go",
         "the",
         "please",
         "that",

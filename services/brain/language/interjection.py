@@ -47,13 +47,18 @@ _INSTEAD_OF = re.compile(
 _RATHER = re.compile(r"^(?:actually |in fact )?(?:i|we) would (?:rather|prefer|sooner)\b")
 _ONE_MOMENT = re.compile(
     r"^(?:(?:hold on|hang on|wait|stop)(?: (?:a|one|just a|for a))?|one|just a) "
-    r"(?:second|sec|moment|minute|bit|tick)$"
+    r"(?:second|sec|moment|minute|bit|tick)$|^(?:wait|hold on|hang on)(?:,? (?:wait|hold on|hang on))+$"
 )
 _NO_LONGER = re.compile(r"^(?:i|we) (?:do not|no longer) (?:need|want) [^,]+?(?: (?:any ?more|after all|now))?$")
 _CALLED_OFF = re.compile(
     r"^(?:cancel|abort|scrap|skip|forget)(?: about)? (?:the|that|my) (?!.*\b(?:rule|name)\b)\w+(?: \w+)?$"
 )
 """What was asked for is not wanted; there is nothing in its place."""
+
+
+_NEWS = re.compile(r"^(?:i|we|he|she|they|it|there|somebody|someone) (?!(?:goes|has to)\b)\w+")
+_WISH = re.compile(r"\b(?:want|need|like|love|prefer|rather|mean|meant|said|wanted|asked|would|could|should|must)\b")
+"""What somebody tells, and what makes a wish of it."""
 
 
 class Interjection(msgspec.Struct, frozen=True):
@@ -83,6 +88,8 @@ def interjection(said: str) -> Interjection:
         while (shorter := begin.sub("", rest)) != rest:
             rest = shorter
         bare = end.sub("", rest)
+        if kind == "replace" and bare != words and _NEWS.match(bare) and not _WISH.search(bare):
+            return Interjection("cancel", said)  # "never mind, I found it"
         if bare and bare != words:
             return Interjection(kind, bare)  # type: ignore[arg-type]
     return Interjection("aside" if is_question(said) else "queue", said)

@@ -37,7 +37,7 @@ PEAK = 0.95
 FREE = 0.5
 """Confidence of words that no grammar has vouched for. Chosen: below that from which the brain does not ask."""
 WAKE_LIKENESS = 0.85
-"""Least share of letters in common with the wake word (chosen: `they jarvins` has 0.91, `hey charlie` 0.57)."""
+"""Least share of letters in common with the wake word (chosen: `they jarvins` has 0.91, `hey travis` 0.8)."""
 SILENT_PEAK = 1e-4
 """Amplitude of what is silence whatever the detector says: a few steps of 16 bit."""
 
