@@ -1,9 +1,10 @@
-"""Rooms: parts of the floor that hang together by doors only. Pure.
+"""Rooms: parts of the floor between which there are walls, doors and other openings in a wall. Pure.
 
 Source: Bormann et al., "Room segmentation: survey, implementation, and analysis", ICRA 2016 (distance transform).
 """
 
 import cmath
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -14,8 +15,13 @@ from common.floor_plan import Room, Wall
 from common.geometry import Rectangle
 from services.mapping.grid import FREE, OCCUPIED, RESOLUTION, Grid
 
-DOOR = 0.65
-"""Half of the width [m] up to which a passage between two walls is a door."""
+DOOR = 0.55
+"""Half of the width [m] up to which a passage between walls and what is as high is a door: corridors are wider."""
+WIDEST = 5.0
+"""Gap [m] up to which two pieces of wall in one line have an opening between them: a wide arch, an open plan."""
+IN_LINE, END = 0.12, 0.08
+"""How far the pieces of one wall lie out of line, and from its end what belongs to it [m]: half a wall's thickness, and
+the error of an end."""
 HIGH = 0.95
 """Height [m] from which on what stands there may be a wall behind furniture, of which the lidar sees nothing: above
 tables, counters and the backs of sofas."""
@@ -28,8 +34,8 @@ def find_rooms(grid: Grid, states: NDArray[np.uint8], walls: Sequence[Wall]) -> 
     middles = grid.points((np.arange(max(grid.shape)), np.arange(max(grid.shape))))
     xs, ys = middles[: grid.shape[1], 0], middles[: grid.shape[0], 1]
     tall = grid.covered & (grid.highest > HIGH)
-    for wall in walls:
-        tall |= wall.footprint.grown(RESOLUTION / 2).signed_distances(xs[None, :], ys[:, None]) < 0.0
+    for area in (*(wall.footprint.grown(RESOLUTION / 2) for wall in walls), *openings(walls)):
+        tall |= area.signed_distances(xs[None, :], ys[:, None]) < 0.0
     distance = ndimage.distance_transform_edt(~tall) * RESOLUTION
     floor = (states == FREE) | ((states == OCCUPIED) & ~tall)
     labels, count = ndimage.label(floor & (distance > DOOR))
@@ -55,11 +61,34 @@ def find_rooms(grid: Grid, states: NDArray[np.uint8], walls: Sequence[Wall]) -> 
     return [_room(f"room {i}", box) for i, (_, box) in enumerate(sorted(boxes), 1)]
 
 
+def openings(walls: Sequence[Wall]) -> list[Rectangle]:
+    """Doors and wider gaps in a wall: strips from the free end of one piece to that of the next one in its line."""
+    outlines = [wall.outline for wall in walls]
+    found = []
+    for own in outlines:
+        gap = min((g for other in outlines if (g := _gap(own, other)) > 0.0), default=WIDEST)
+        start, middle, end = (own.to_map(own.length / 2 + share * gap, 0.0) for share in (0.0, 0.5, 1.0))
+        if gap < WIDEST and not any(_meets(point, wall, own) for wall in outlines for point in (start, end)):
+            found.append(Rectangle(*middle, gap + 2 * END, 2 * RESOLUTION, own.yaw))
+    return found
+
+
+def _gap(own: Rectangle, other: Rectangle) -> float:
+    """How far [m] ahead of a wall's end another one begins in its line; negative for what is in no line with it."""
+    ends = [own.to_local(*other.to_map(side * other.length / 2, 0.0)) for side in (-1, 1)]
+    return min(u for u, _ in ends) - own.length / 2 if max(abs(v) for _, v in ends) < IN_LINE else -1.0
+
+
+def _meets(end: tuple[float, float], wall: Rectangle, own: Rectangle) -> bool:
+    """True where a wall across runs past the end of one, which is then a corner and no jamb."""
+    return abs(math.sin(wall.yaw - own.yaw)) > 0.5 and wall.contains(*end, wall.width / 2 + END)
+
+
 def _direction(walls: Sequence[Wall]) -> float:
     """The angle in (-45, 45] degrees [rad] by which walls at right angles to each other are turned."""
-    return cmath.phase(sum((cmath.rect(w.outline.length, 4 * w.outline.yaw) for w in walls), 0j)) / 4
+    return cmath.phase(sum(cmath.rect(w.outline.length, 4 * w.outline.yaw) for w in walls)) / 4
 
 
 def _room(name: str, box: Rectangle) -> Room:
     low, high = ((round(box.x + side * box.length / 2, 2), round(box.y + side * box.width / 2, 2)) for side in (-1, 1))
-    return Room(name=name, low=low, high=high, yaw=round(box.yaw, 4), named=False)
+    return Room(name=name, low=low, high=high, yaw=round(box.yaw, 4) + 0.0, named=False)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from common.floor_plan import Wall
+from common.floor_plan import Room, Wall
 from common.geometry import Rectangle
 from services.mapping.grid import FREE, UNKNOWN, Grid
 from services.mapping.plan import _bins, _filled, _rim, _separate
@@ -66,16 +66,23 @@ def test_rooms_hang_together_by_doors_and_lie_along_the_walls(turn: float) -> No
     cells = grid.points(tuple(np.indices(grid.shape).reshape(2, -1)))  # type: ignore[arg-type]
     inside = home.signed_distances(cells[:, 0], cells[:, 1]).reshape(grid.shape) < 0.0
     states = np.where(inside, FREE, UNKNOWN).astype(np.uint8)
-    ends = (((-4.0, -1.5), (4.0, -1.5)), ((0.0, -1.5), (0.0, -0.5)), ((0.0, 0.5), (0.0, 1.5)))
-    walls = [Wall(start=home.to_map(*a), end=home.to_map(*b)) for a, b in ends]
-    rooms = find_rooms(grid, states, walls)
+
+    def parted(*ends: tuple[tuple[float, float], tuple[float, float]]) -> list[Room]:
+        return find_rooms(grid, states, [Wall(start=home.to_map(*a), end=home.to_map(*b)) for a, b in ends])
+
+    side, near, far = ((-4.0, -1.5), (4.0, -1.5)), ((0.0, -1.5), (0.0, -0.5)), ((0.0, 0.5), (0.0, 1.5))
+    rooms = parted(side, near, far)
     assert [room.name for room in rooms] == ["room 1", "room 2"]
     middles = sorted(home.to_local(*room.middle) for room in rooms)
     assert np.array(middles) == pytest.approx(np.array([(-2.0, 0.0), (2.0, 0.0)]), abs=0.15)
     for room in rooms:
         assert (room.outline.length, room.outline.width) == pytest.approx((4.0, 3.0), abs=0.3)
         assert abs(np.sin(2 * (room.yaw - turn))) < 0.01
-    assert len(find_rooms(grid, states, walls[:1])) == 1
+    assert len(parted(side)) == len(parted(side, near)) == 1, "what faces no other piece is no jamb"
+    wide = ((0.0, -1.5), (0.0, -1.1)), ((0.0, 1.1), (0.0, 1.5))
+    assert len(parted(side, *wide)) == 2, "an open plan with two jambs"
+    corners = ((-1.0, -1.1), (1.0, -1.1)), ((-1.0, 1.1), (1.0, 1.1))
+    assert len(parted(side, *wide, *corners)) == 1, "walls across end here: what is between is a corridor"
 
 
 def test_a_wall_that_was_seen_for_long_from_both_sides_is_one_wall() -> None:
@@ -123,9 +130,9 @@ def test_a_corner_behind_which_few_rays_have_passed_is_looked_round() -> None:
 def test_a_wall_that_furniture_hides_from_the_lidar_parts_two_rooms() -> None:
     grid = Grid((-4.0, -2.0), (4.0, 2.0))
     states = np.full(grid.shape, FREE, np.uint8)
-    walls = [Wall(start=(0.0, -2.0), end=(0.0, -1.2)), Wall(start=(0.0, 1.2), end=(0.0, 2.0))]
+    walls = [Wall(start=(0.0, -2.0), end=(0.0, -1.2)), Wall(start=(-4.0, 2.0), end=(4.0, 2.0))]
     assert len(find_rooms(grid, states, walls)) == 1
-    points = np.array([(x, y, 1.1) for x in (-0.02, 0.03) for y in np.arange(-1.2, 0.4, 0.02)])
+    points = np.array([(x, y, 1.1) for x in (-0.02, 0.03) for y in np.arange(-1.2, 1.1, 0.02)])
     for _ in range(3):
         grid.add_picture(np.empty((0, 2)), points)
     assert len(find_rooms(grid, states, walls)) == 2
