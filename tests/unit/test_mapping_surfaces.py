@@ -39,6 +39,14 @@ def test_two_tables_side_by_side_of_different_height_are_two() -> None:
     assert len(heights) == 2 and abs(heights[0] - 0.5) < 0.005 and abs(heights[1] - 0.72) < 0.005
 
 
+def test_a_tray_that_touches_a_sofa_a_little_lower_is_another_surface() -> None:
+    both = np.concatenate([patch(0, 0, 0.8, 1.9, 0, 0.448), patch(-0.58, 0.3, 0.36, 0.5, 0, 0.460, 1)])
+    sofa, tray = find_surfaces(both)
+    assert abs(sofa.height - 0.448) < 0.002 and abs(tray.height - 0.460) < 0.002
+    assert np.allclose(sorted(sofa.outline[2:4]), (0.8, 1.9), atol=0.03)
+    assert np.allclose(sorted(tray.outline[2:4]), (0.36, 0.5), atol=0.05)
+
+
 def test_what_stands_on_a_table_is_no_surface() -> None:
     cup = patch(0.2, 0.0, 0.08, 0.08, 0, 0.82, 2)
     found = find_surfaces(np.concatenate([patch(0, 0, 1.0, 0.6, 0, 0.72), cup]))
