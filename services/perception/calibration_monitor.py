@@ -35,18 +35,18 @@ class CalibrationMonitor:
         self._from_head: dict[str, Vec3] = {}
         self.contradictions: dict[str, str] = {}
 
-    def see(self, view: View, detections: list[Detection], base: Pose2, calibrated: bool) -> dict[str, str]:
+    def see(self, view: View, detections: list[Detection], base: Pose2) -> dict[str, str]:
         """Take a picture and what was found in it, seen from `base`; what has begun to contradict, by camera."""
         before = set(self.contradictions)
         if view.camera == "head":
-            self.look(view, base, calibrated)
+            self.look(view, base)
             self._from_head |= {d.label: d.position for d in detections if d.label and d.whole}
         else:
             for d in detections:
-                self.compare(d.label, d.position, calibrated)
+                self.compare(d.label, d.position, view.calibrated)
         return {c: f"{why}; `tidybot calibrate`" for c, why in self.contradictions.items() if c not in before}
 
-    def look(self, view: View, base: Pose2, calibrated: bool) -> None:
+    def look(self, view: View, base: Pose2) -> None:
         """Take a picture of the head camera, seen from `base`: is the floor where it should be?"""
         found = floor_error(view, base[2])
         if found is None:
@@ -55,7 +55,7 @@ class CalibrationMonitor:
         if len(self._floor) == LOOKS:
             forward, left, height = np.median(self._floor, axis=0)
             tilt = float(np.degrees(np.hypot(forward, left)))
-            most, farthest = MEASURED if calibrated else DRAWN
+            most, farthest = MEASURED if view.calibrated else DRAWN
             wrong = tilt > most or abs(height) > farthest
             what = f"the floor looks tilted by {tilt:.1f} degrees and {1000 * height:+.0f} mm high"
             self._report("head", what if wrong else "")

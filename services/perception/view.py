@@ -21,7 +21,7 @@ NEAR = 0.05
 @dataclass(frozen=True)
 class View:
     """`rgb` (h, w, 3) uint8, `depth` (h, w) [m] with 0 for nothing; `position` (3,) and `rotation` (3, 3) of the
-    optical frame (x right, y down, z forward) in frame map."""
+    optical frame (x right, y down, z forward) in frame map; `calibrated`: measured by `tidybot calibrate`."""
 
     rgb: NDArray[np.uint8]
     depth: NDArray[np.float32]
@@ -31,6 +31,7 @@ class View:
     rotation: Array
     t: float = 0.0
     camera: str = "head"
+    calibrated: bool = False
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -108,4 +109,5 @@ def view_of(image: Rgbd, base: Pose2) -> View:
         rotation=turn @ quat_matrix(image.orientation),
         t=image.t,
         camera=image.camera,
+        calibrated=image.calibrated,
     )

@@ -22,7 +22,11 @@ def mount(yaw: float) -> np.ndarray:
 
 
 def view(
-    turn: tuple[float, float, float] = (0, 0, 0), lift: float = 0.0, yaw: float = 0.0, things: bool = False
+    turn: tuple[float, float, float] = (0, 0, 0),
+    lift: float = 0.0,
+    yaw: float = 0.0,
+    things: bool = False,
+    calibrated: bool = False,
 ) -> View:
     """The floor as a camera sees it that is turned [deg, optical frame] and lifted [m] from where it is believed."""
     believed = mount(yaw)
@@ -36,7 +40,7 @@ def view(
         depth[100:180, 60:140] *= 0.97
     return View(
         np.zeros((*SIZE, 3), np.uint8), depth.astype(np.float32), (FOCAL, FOCAL), (SIZE[1] / 2, SIZE[0] / 2), POSITION,
-        believed,
+        believed, calibrated=calibrated,
     )  # fmt: skip
 
 
@@ -83,10 +87,10 @@ def test_a_camera_is_judged_by_what_is_known_of_it(
     monitor = CalibrationMonitor()
     for n in range(LOOKS):
         assert not monitor.contradictions, "not on one picture"
-        monitor.look(view(turn, lift, things=n % 3 == 0), (0.0, 0.0, 0.0), calibrated)
+        monitor.look(view(turn, lift, things=n % 3 == 0, calibrated=calibrated), HERE)
     assert ("head" in monitor.contradictions) is wrong
     for _ in range(LOOKS):
-        monitor.look(view(), (0.0, 0.0, 0.0), calibrated)
+        monitor.look(view(calibrated=calibrated), HERE)
     assert not monitor.contradictions, "and it is over when it is mended"
 
 
@@ -95,19 +99,17 @@ def test_a_camera_is_judged_by_what_is_known_of_it(
 )
 def test_the_wrist_camera_is_held_against_the_head(aside: float, calibrated: bool, wrong: bool) -> None:
     monitor, rng, said = CalibrationMonitor(), np.random.default_rng(1), []
-    nothing = view()
+    nothing = view(calibrated=calibrated)
     nothing.depth[:] = 0.0
     wrist = replace(nothing, camera="wrist")
     for _ in range(LOOKS + 3):
         x, y, z = rng.normal(0.0, 1.0, 3)
-        monitor.see(
-            nothing, [mug((x, y, z)), mug((x, y, z), ""), mug((x, y, z), "half a can", whole=False)], HERE, calibrated
-        )
+        monitor.see(nothing, [mug((x, y, z)), mug((x, y, z), ""), mug((x, y, z), "half a can", whole=False)], HERE)
         seen = [
             mug((x, y + aside + rng.normal(0.0, 0.003), z)),
             mug((x, y + 0.05, z), "half a can"),
             mug((x, y + 0.05, z), ""),
         ]
-        said += monitor.see(wrist, seen, HERE, calibrated)
-        said += monitor.see(wrist, [mug((x, y + 1.0, z))], HERE, calibrated)
+        said += monitor.see(wrist, seen, HERE)
+        said += monitor.see(wrist, [mug((x, y + 1.0, z))], HERE)
     assert said == (["wrist"] if wrong else []), "and it is said once"
