@@ -70,7 +70,7 @@ class ClassicalDetector:
         found: list[Detection] = []
         for segment in segments:
             if segment.shape is not None:
-                found.append(unlisted.describe(view, segment, segment.shape, view.gains))
+                found.append(unlisted.describe(view, segment, segment.shape))
                 continue
             single = segmentation.extent(segment) < segmentation.MAX_EXTENT
             known = self._explain(view, segment) if single else None
@@ -79,11 +79,10 @@ class ClassicalDetector:
 
     def _measured(self, view: View, segment: Segment) -> list[Detection]:
         """The objects of a segment that no object of the household explains as a whole."""
-        gains = view.gains
         found = separate.pieces(view, segment)
         if len(found) == 1 and found[0].segment is segment:
-            return [unlisted.describe(view, segment, found[0].shape, gains)]
-        return [self._explain(view, p.segment) or unlisted.describe(view, p.segment, p.shape, gains) for p in found]
+            return [unlisted.describe(view, segment, found[0].shape)]
+        return [self._explain(view, p.segment) or unlisted.describe(view, p.segment, p.shape) for p in found]
 
     def _explain(self, view: View, segment: Segment) -> Detection | None:
         """The object of the household that explains a segment; None if none does."""

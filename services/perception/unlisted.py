@@ -32,12 +32,9 @@ MOST_POINTS = 200
 """Points of an object that are told to others."""
 
 
-def describe(view: View, segment: Segment, found: Measurement, gains: Array) -> Detection:
-    """The object that a segment shows, by its looks alone: its shape as `found`.
-
-    `gains` (3,): what makes the picture's neutral surfaces grey (`colour.light`).
-    """
-    shares = colour.shares(view.rgb[segment.rows, segment.columns], gains)
+def describe(view: View, segment: Segment, found: Measurement) -> Detection:
+    """The object that a segment shows, by its looks alone: its shape as `found`."""
+    shares = colour.shares(view.rgb[segment.rows, segment.columns], view.light)
     words = colour.main_words(shares)
     spread = found.spread if not segment.cut else max(found.spread, CUT_SPREAD)
     kinds = kinds_of(found, spread, words)

@@ -59,8 +59,8 @@ class View:
         return np.moveaxis(planes, 0, -1)
 
     @cached_property
-    def gains(self) -> Array:
-        """What makes the picture's neutral surfaces grey (3,)."""
+    def light(self) -> colour.Light:
+        """What light and camera make of the picture's colours."""
         return colour.light(self.rgb)
 
     def project(self, points: Array) -> Array:
