@@ -18,11 +18,12 @@ import msgspec
 
 from cli.errors import CliError
 from cli.keys.authority import Authority
-from cli.processes.ports import port_is_free
+from cli.processes.ports import listener, port_is_free
 from cli.processes.supervision import Supervision, run_dir
 from common import speech_weights
 from common.config import config_dir
 from common.installation import ROOT
+from common.rendering import backend
 from common.security import keys
 from common.time.clock import unix_time
 
@@ -88,9 +89,7 @@ def speech() -> Iterator[Finding]:
 def graphics() -> Iterator[Finding]:
     fix = "apt-get install libegl1 libgl1-mesa-dri   (or libosmesa6)"
     # A library that is there may still not render: the camera's own choice tells, by trying.
-    from common.rendering import renderer  # NumPy is not for every command to load
-
-    found = renderer.best()
+    found = backend.best()
     if found != "raycast":
         yield Finding("ok", "camera GL", f"{found} renders")
     else:
@@ -158,26 +157,6 @@ def certificates() -> Iterator[Finding]:
     state = f"{len(rows)} in {found}; {first.name}'s is the first to expire, on {first.expires[:10]}"
     level = "error" if days < 0 else "note" if days < EXPIRES_SOON else "ok"
     yield Finding(level, "keys", state, "" if level == "ok" else "tidybot keys --force")
-
-
-def listener(port: int) -> str:
-    """`name (pid N)` of the process that listens on a TCP port; "" where that cannot be seen."""
-    inodes = set()
-    for table in ("/proc/net/tcp", "/proc/net/tcp6"):
-        try:
-            rows = Path(table).read_text(encoding="ascii").splitlines()[1:]
-        except OSError:
-            continue
-        inodes |= {r.split()[9] for r in rows if r.split()[3] == "0A" and r.split()[1].endswith(f":{port:04X}")}
-    targets = {f"socket:[{inode}]" for inode in inodes}
-    for process in Path("/proc").glob("[0-9]*"):
-        try:
-            if any(str(fd.readlink()) in targets for fd in (process / "fd").iterdir()):
-                words = (process / "cmdline").read_bytes().replace(b"\0", b" ").decode(errors="replace").strip()
-                return f"{words[:60]} (pid {process.name})"
-        except OSError:
-            continue
-    return ""
 
 
 def machine() -> Iterator[Finding]:

@@ -20,13 +20,12 @@ class Logger:
         clock: Clock,
         level: str = "info",
         sink: Callable[[m.LogRecord], None] | None = None,
-        stderr: bool = True,
     ) -> None:
         if level not in LEVELS:
             raise ValueError(f"log level {level!r} is none of {', '.join(LEVELS)}")
         self.mission = ""
         self.last_error = ""
-        self._service, self._clock, self._sink, self._stderr = service, clock, sink, stderr
+        self._service, self._clock, self._sink = service, clock, sink
         self._threshold = LEVELS[level]
 
     def debug(self, event: str, **fields: Any) -> None:
@@ -48,10 +47,9 @@ class Logger:
         if self.mission:
             fields = {"mission": self.mission, **fields}
         now = self._clock.now()
-        if self._stderr:
-            # A full disk behind it, or a reader that has gone, is no reason to stop working.
-            with contextlib.suppress(OSError):
-                print(render(now, level, self._service, event, fields), file=sys.stderr, flush=True)
+        # A full disk behind it, or a reader that has gone, is no reason to stop working.
+        with contextlib.suppress(OSError):
+            print(render(now, level, self._service, event, fields), file=sys.stderr, flush=True)
         if self._sink is not None:
             plain: dict[str, object] = {
                 k: v if isinstance(v, (str, int, float, bool)) else str(v) for k, v in fields.items()

@@ -8,9 +8,9 @@ from typing import Any
 import msgspec
 import zenoh
 
+from common import messages as m
 from common import topics
 from common.bus import codec
-from common.bus.base import health_of
 from common.bus.zenoh_io import ZenohIo
 from common.process import rss_mb
 from common.time.clock import monotonic
@@ -40,7 +40,12 @@ class Presence:
 
     def tell(self, hz: float) -> None:
         """Publish a health record; `hz`: steps a second since the last."""
-        record = health_of(self.io, monotonic() - self._started, hz, rss_mb(), os.getpid())
+        io = self.io
+        record = m.Health(
+            name=io.name, epoch=io.epoch, t=io.clock.now(), uptime=monotonic() - self._started, hz=hz,
+            drops=sum(io.drops.values()), rss_mb=rss_mb(), pid=os.getpid(), last_error=io.log.last_error,
+            by_key=dict(io.drops),
+        )  # fmt: skip
         self._last = msgspec.json.encode(record)
         self._health.put(self._last)
 

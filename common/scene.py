@@ -6,9 +6,8 @@ origin).
 """
 
 import math
-import tomllib
 from pathlib import Path
-from typing import Annotated, Any, Literal, TypeVar
+from typing import Annotated, Literal
 
 import msgspec
 
@@ -29,19 +28,12 @@ from common.floor_plan import (
     doubled,
     kind_fault,
 )
-from common.installation import ROOT, shipped
+from common.plan_tables import SCENES, SceneError, checked, parse, read
 
 __all__ = [
     "Box", "ObjectSpec", "Obstacle", "Place", "Receptacle", "Rgba", "Room", "Scene", "SceneError", "Vec2",
     "Vec3", "Wall", "body_name", "load_scene", "scene_path",
 ]  # fmt: skip
-SCENES, FLOOR_PLANS = ROOT / "services" / "sim" / "scenes", shipped("config") / "floor_plans"
-S = TypeVar("S", bound=Strict)
-
-
-class SceneError(ValueError):
-    """A world or household file that cannot be used; the message names file, entry and remedy."""
-
 
 FLOOR = "floor"
 """What `on` says of an object that stands on the floor."""
@@ -186,66 +178,3 @@ def _with_bodies(scene: Scene, path: Path) -> Scene:
             raise SceneError(f"{path}: object {spec.name!r}: {error}") from None
         objects.append(msgspec.structs.replace(spec, model=str(file), size=size))
     return msgspec.structs.replace(scene, objects=tuple(objects))
-
-
-def read(path: Path) -> dict[str, Any]:
-    """The TOML of a world or household file, with the floor plan that its `plan` names: one of ours, or a file.
-
-    Raises:
-        SceneError: no such file, or bad TOML.
-    """
-    tables = _tables(path, "scene", SCENES)
-    named = tables.pop("plan", None)
-    if named is None:
-        return tables
-    if not isinstance(named, str):
-        raise SceneError(f"{path}: plan: expected the name of a floor plan or a file")
-    if "/" in named or named.endswith(".toml"):
-        file = path.parent / named
-    else:
-        file = FLOOR_PLANS / f"{named}.toml"
-    try:
-        plan = _tables(file, "floor plan", FLOOR_PLANS)
-    except SceneError as error:
-        raise SceneError(f"{path}: plan: {error}") from None
-    return {k: v for k, v in plan.items() if k in FloorPlan.__struct_fields__} | tables
-
-
-def _tables(path: Path, what: str, shipped: Path) -> dict[str, Any]:
-    try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
-    except (FileNotFoundError, IsADirectoryError, NotADirectoryError):
-        known = ", ".join(sorted(p.stem for p in shipped.glob("*.toml")))
-        raise SceneError(f"no {what} file {path}; shipped {what}s: {known}") from None
-    except OSError as error:
-        raise SceneError(f"{path}: {error.strerror}") from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise SceneError(f"{path}: not valid TOML: {error}") from None
-    except ValueError as error:
-        raise SceneError(f"{path}: {error}") from None
-
-
-def parse(raw: dict[str, Any], kind: type[S], path: Path) -> S:
-    """The struct that a file's tables stand for.
-
-    Raises:
-        SceneError: an unknown key or a wrong type.
-    """
-    try:
-        return msgspec.convert(raw, kind, strict=False)
-    except msgspec.ValidationError as error:
-        raise SceneError(f"{path}: {error}") from None
-
-
-P = TypeVar("P", bound=FloorPlan)
-
-
-def checked(plan: P, path: Path) -> P:
-    """The plan itself.
-
-    Raises:
-        SceneError: it is impossible.
-    """
-    if found := plan.fault():
-        raise SceneError(f"{path}: {found}")
-    return plan

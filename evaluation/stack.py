@@ -14,7 +14,7 @@ from common import config, topics
 from common import messages as m
 from common.bus.memory import MemoryIo
 from common.household import Household, load_words, told
-from common.rendering.renderer import choose
+from common.rendering.backend import choose
 from common.scene import Scene, load_scene
 from common.time.clock import ManualClock
 from common.time.lockstep import DT, InProcess

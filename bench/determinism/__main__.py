@@ -25,7 +25,7 @@ from cli.processes.plan import Plan
 from cli.processes.services import Service
 from cli.processes.supervision import Supervision
 from cli.processes.up import bring_up
-from common.rendering.renderer import choose
+from common.rendering.backend import choose
 from evaluation.case import Case
 from evaluation.faults.messages import Rule, faulty
 from evaluation.node import CASE

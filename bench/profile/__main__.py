@@ -21,7 +21,7 @@ import msgspec
 
 from bench.profile.meter import NOBODY, Meter
 from common.bus.base import IoBase
-from common.rendering.renderer import choose
+from common.rendering.backend import choose
 from common.time.lockstep import InProcess
 
 REST = "rest"

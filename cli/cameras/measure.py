@@ -6,8 +6,10 @@ from pathlib import Path
 
 import numpy as np
 
-from cli.cameras.mounts import Arm, Array, Mount, Room, Shot, Unseen, fit
+from cli.cameras.mounts import Unseen, fit
 from cli.cameras.poses import overlooks, poses
+from cli.cameras.shot import Array, Mount, Shot
+from cli.cameras.surfaces import Arm, Room
 from cli.drivers.driver import PERIOD, Driver, Unmet
 from cli.errors import CliError
 from cli.link import Link, Watch

@@ -5,7 +5,9 @@ from collections.abc import Callable
 import numpy as np
 from scipy import ndimage
 
-from cli.cameras.mounts import LEAST, Arm, Array, Room, Unseen, rays
+from cli.cameras.mounts import LEAST, Unseen
+from cli.cameras.shot import Array, rays
+from cli.cameras.surfaces import Arm, Room
 from common.geometry import quat_matrix
 from common.messages import Rgbd
 

@@ -8,9 +8,9 @@ import hashlib
 import uuid
 from collections import Counter
 from collections.abc import Callable, Iterable
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from typing import Any, Generic, TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from common import topics
 from common.bus import codec
 from common.bus.mailbox import Mailbox
 from common.bus.port import Handler, Outside
+from common.bus.worker import WORKER_LIMIT, WorkerJob
 from common.household import Household
 from common.household_edits import edited
 from common.logs import Logger
@@ -28,28 +29,6 @@ from common.topics import Topic
 
 M = TypeVar("M", bound=m.Message)
 R = TypeVar("R")
-WORKER_LIMIT = 600.0
-"""Wall time that lockstep waits for work that is due [s]; chosen: loading a model on a busy machine."""
-_EPSILON = 1e-6
-"""Rounding of robot time [s]: far below a tick."""
-
-
-class WorkerJob(Generic[R]):
-    """A future whose result shows at a fixed robot time in lockstep, or as soon as ready otherwise."""
-
-    def __init__(self, future: "Future[R]", due: float, lockstep: bool) -> None:
-        self._future, self._due, self._lockstep = future, due, lockstep
-
-    def poll(self, now: float) -> bool:
-        if not self._lockstep:
-            return self._future.done()
-        if now < self._due - _EPSILON:
-            return False
-        self._future.exception(timeout=WORKER_LIMIT)
-        return True
-
-    def result(self) -> R:
-        return self._future.result(timeout=0 if not self._lockstep else WORKER_LIMIT)
 
 
 class IoBase:
@@ -72,14 +51,13 @@ class IoBase:
         lockstep: bool,
         clock: Clock,
         log_level: str = "info",
-        stderr: bool = True,
     ) -> None:
         self.name, self.seed, self.lockstep, self.clock = name, seed, lockstep, clock
         self._world = world
         self.epoch = uuid.uuid4().hex[:12]
         digest = hashlib.sha256(f"{seed}/{name}".encode()).digest()
         self.rng = np.random.default_rng(int.from_bytes(digest[:8], "little"))
-        self.log = Logger(name, clock, log_level, self._send_log, stderr)
+        self.log = Logger(name, clock, log_level, self._send_log)
         self.drops: Counter[str] = Counter()
         self.tick = 0
         self._boxes: dict[str, Mailbox[Any]] = {t.key: Mailbox(t, lockstep) for t in reads}
@@ -253,19 +231,3 @@ class IoBase:
     def shutdown(self) -> None:
         if self._worker is not None:
             self._worker.shutdown(wait=False, cancel_futures=True)
-
-
-def health_of(io: IoBase, uptime: float, hz: float, rss_mb: float, pid: int) -> m.Health:
-    """This process's health record."""
-    return m.Health(
-        name=io.name,
-        epoch=io.epoch,
-        t=io.clock.now(),
-        uptime=uptime,
-        hz=hz,
-        drops=sum(io.drops.values()),
-        rss_mb=rss_mb,
-        pid=pid,
-        last_error=io.log.last_error,
-        by_key=dict(io.drops),
-    )

@@ -5,9 +5,10 @@ from typing import Any, TypeVar
 
 from common import messages as m
 from common.bus import codec
-from common.bus.base import IoBase, WorkerJob
+from common.bus.base import IoBase
 from common.bus.mailbox import UNSTAMPED, Mailbox
 from common.bus.port import Handler
+from common.bus.worker import WorkerJob
 from common.household import Household
 from common.scene import Scene
 from common.time.clock import ManualClock

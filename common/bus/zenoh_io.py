@@ -12,9 +12,10 @@ from zenoh import handlers
 from common import messages as m
 from common import topics
 from common.bus import codec, delivery
-from common.bus.base import IoBase, WorkerJob
+from common.bus.base import IoBase
 from common.bus.mailbox import CAPACITY, UNSTAMPED, Mailbox
 from common.bus.port import Handler, Outside
+from common.bus.worker import WorkerJob
 from common.household import Household
 from common.scene import Scene
 from common.time.clock import Clock, unix_time

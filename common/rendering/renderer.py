@@ -1,30 +1,20 @@
 """One renderer for the streamed state, by EGL, OSMesa or ray casting. Use it in one thread only."""
 
-import os
-import subprocess
-import sys
 from dataclasses import dataclass
-from functools import cache
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from common.geometry import turn_matrix
+from common.rendering.backend import choose
 from common.rendering.looks import SKY
 
 Array = NDArray[np.float64]
-BACKENDS = ("egl", "osmesa", "raycast")
-PROBE_SECONDS = 20.0
-"""Time [s] for a GL library to show that it works."""
 FAR = 25.0
 """Depth [m] from which there is nothing: beyond the largest flat."""
 LAYERS = 12
 """Parts into which what is drawn is sorted by distance [count]; chosen: with more nothing is gained."""
-_PROBE = (
-    "import mujoco; m = mujoco.MjModel.from_xml_string('<mujoco/>'); d = mujoco.MjData(m); "
-    "mujoco.mj_forward(m, d); r = mujoco.Renderer(m, 8, 8); r.update_scene(d); r.render(); r.close()"
-)
 
 
 @dataclass(frozen=True)
@@ -54,46 +44,6 @@ def looks(model: Any) -> tuple[Array, NDArray[np.bool_]]:
     share = np.append(np.minimum(model.mat_specular, model.mat_shininess), 0.0)[material]
     alpha = model.geom_rgba[:, 3]
     return np.clip(2.0 * share - 1.0, 0.0, 1.0), (alpha > 0.0) & (alpha < 1.0)
-
-
-def works(backend: str) -> bool:
-    """True when MuJoCo can render with that GL library; tried in a process of its own, since failures can crash."""
-    if backend == "raycast":
-        return True
-    command = [sys.executable, "-c", _PROBE]
-    try:
-        return (
-            subprocess.run(
-                command, env={**os.environ, **environment(backend)}, capture_output=True, timeout=PROBE_SECONDS
-            ).returncode
-            == 0
-        )
-    except subprocess.TimeoutExpired:
-        return False
-
-
-@cache
-def best() -> str:
-    """The best backend of this machine."""
-    return next(b for b in BACKENDS if works(b))
-
-
-def choose(wanted: str) -> str:
-    """The backend to use. MuJoCo settles on its GL library when it is first imported: before that `wanted` counts,
-    after that only what the environment said then, or ray casting."""
-    if "mujoco" in sys.modules:
-        given = os.environ.get("MUJOCO_GL", "")
-        return given if given in ("egl", "osmesa") and wanted in ("auto", given) else "raycast"
-    backend = wanted if wanted != "auto" else best()
-    os.environ |= environment(backend)
-    return backend
-
-
-def environment(backend: str) -> dict[str, str]:
-    """What tells MuJoCo in a new process to render with a backend."""
-    if backend == "raycast":
-        return {"MUJOCO_GL": "disable"}
-    return {"MUJOCO_GL": backend, "PYOPENGL_PLATFORM": backend}
 
 
 class Renderer:

@@ -19,7 +19,7 @@ from typing import Any
 
 import msgspec
 
-from common.rendering.renderer import best, environment
+from common.rendering.backend import best, environment
 from common.time.clock import monotonic
 from evaluation.case import Case, Observed, Result
 from evaluation.verdict import judge

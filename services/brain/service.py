@@ -14,19 +14,19 @@ from services.brain.journal.open import open_journal
 from services.brain.journal.queries import MissionQueries
 from services.brain.journal.records import Journal
 from services.brain.mission.asides import Asides
-from services.brain.mission.channel import Channel, GoalStatus, Result
 from services.brain.mission.context import Context
 from services.brain.mission.mission import Failure, gripper_holds
 from services.brain.mission.offers import Offers
 from services.brain.mission.remarks import Remarks
+from services.brain.mission.statuses import receive_statuses
 from services.brain.pipelines.fetch import fetch_tree
 from services.brain.pipelines.vla import vla_tree
 from services.brain.resume.resumption import Resumption, suspend
 from services.brain.tree.path import tip
 from services.brain.tree.snapshot import Signature, signature, snapshot
 
-_NAVIGATION: dict[m.NavStatus, GoalStatus] = {"navigating": "busy", "arrived": "ok", "failed": "failed"}
-_MANIPULATION: dict[m.ManipStatus, GoalStatus] = {"executing": "busy", "done": "ok", "failed": "failed"}
+OPEN: tuple[m.BrainStateName, ...] = ("WAITING", "LISTENING", "COMPLETED", "ERROR")
+"""States in which a command begins a mission."""
 
 
 class BrainService:
@@ -71,7 +71,7 @@ class BrainService:
         for channel in ctx.peers.all:
             channel.watch(now)
         ctx.gripper.update(gripper_holds(self._io.latest(topics.JOINT_STATES)), now)
-        self._receive_statuses()
+        receive_statuses(ctx, self._asides, self._remarks)
         self._receive_stops()
         ctx.home.step(ctx.robot_pose)
         ctx.sightings.step(now)
@@ -137,41 +137,6 @@ class BrainService:
             ctx, self.tree, suspend(left, ctx.mission, ctx.gripper), why="joint_states lost: base and arm told to stop"
         )
 
-    # --- answers of the peers
-    def _receive_statuses(self) -> None:
-        """Hand every status and answer of the peers to the channel of its goal."""
-        io, peers = self._io, self.context.peers
-        for status in io.take_all(topics.NAVIGATION_STATUS):
-            self._handle_status(peers.navigation, status, _NAVIGATION.get(status.status), status.code, status.detail)
-        for feedback in io.take_all(topics.NAVIGATION_FEEDBACK):
-            self._remarks.hear(feedback, self.context.now)
-            if peers.navigation.goal_id and feedback.goal_id == peers.navigation.goal_id:
-                self._handle_status(peers.navigation, feedback, _NAVIGATION.get(feedback.status), feedback.code, "")
-        for done in io.take_all(topics.MANIPULATION_STATUS):
-            detail = done.detail or done.phase
-            self._handle_status(peers.manipulation, done, _MANIPULATION.get(done.status), done.code, detail)
-        for heard in io.take_all(topics.SPEECH_RESULT):
-            text = heard.text.strip()
-            if text:
-                status_: GoalStatus = "failed" if text == "ERROR" else "ok"
-                self._handle_status(peers.speech, heard, status_, heard.code, heard.detail)
-        for speech in io.take_all(topics.SPEECH_STATUS):
-            self.context.voice.speaking = speech
-        for plan in io.take_all(topics.ACTION_PLAN):
-            if not self._asides.answered(plan):
-                peers.planner.handle_status(plan.request_id, 0, Result("ok", message=plan))
-        for pose in io.take_all(topics.OBJECT_POSE):
-            peers.perception.handle_status(pose.query_id, 0, Result("ok", message=pose))
-        for taught in io.take_all(topics.TAUGHT):
-            if taught.goal_id == peers.perception.goal_id:  # the page and the command line teach as well
-                peers.perception.handle_status(taught.goal_id, taught.attempt, Result("ok", message=taught))
-
-    @staticmethod
-    def _handle_status(channel: Channel, message: m.Message, status: GoalStatus | None, code: str, detail: str) -> None:
-        if status is not None:  # `idle` of a service that has just started is no answer
-            goal_id, attempt = getattr(message, "goal_id", ""), getattr(message, "attempt", 0)
-            channel.handle_status(goal_id, attempt, Result(status, code, detail, message))
-
     # --- people
     def _receive_stops(self) -> None:
         """Stop and resume with the brake of the robot."""
@@ -217,9 +182,10 @@ class BrainService:
         for command in self._io.take_all(topics.VOICE_COMMAND):
             words = normalise(command.text)
             asked = asks_for(words, "stop", "cancel", "come_back")
+            open_for_it = ctx.state in OPEN
             if command.withdraws:
                 self._withdraw(command.withdraws)
-            elif command.unless_busy and not self._offers.accept(command, self._free):
+            elif command.unless_busy and not self._offers.accept(command, open_for_it and ctx.voice.command is None):
                 self._io.log.info("offer not taken", text=command.text, state=ctx.state)
             elif not words:
                 self._io.count_drop(topics.VOICE_COMMAND.key, "no words")
@@ -232,17 +198,12 @@ class BrainService:
                 ctx.voice.command = None
             elif ctx.state == "CONFIRMING":
                 ctx.voice.reply = m.SpeechResult(text=command.text, confidence=command.confidence)
-            elif ctx.state in ("WAITING", "LISTENING", "COMPLETED", "ERROR"):
+            elif open_for_it:
                 ctx.voice.command = command
             elif ctx.mission.active and ctx.config.pipeline == "vla":
                 self._interject(command)
             else:
                 self._io.log.warning("command ignored", text=command.text, state=ctx.state)
-
-    @property
-    def _free(self) -> bool:
-        ctx = self.context
-        return ctx.state in ("WAITING", "LISTENING", "COMPLETED", "ERROR") and ctx.voice.command is None
 
     def _withdraw(self, command_id: str) -> None:
         """Somebody else carries the command out, or nobody: end its mission, forget it where it waits."""
@@ -259,8 +220,7 @@ class BrainService:
 
     def _interject(self, command: m.VoiceCommand) -> None:
         """What is said to a robot at work: a question or a command for later goes beside, another command instead."""
-        said = self._asides.hear(command)
-        if said is not None:
+        if (said := self._asides.hear(command)) is not None:
             self._interrupt(f"asked for something else: {said.text}")
             self._asides.speak(f"All right, instead of that: {said.text}.")
             self.context.voice.command = msgspec.structs.replace(command, text=said.text)
@@ -268,7 +228,7 @@ class BrainService:
     def _receive_question(self, command: m.VoiceCommand) -> None:
         """Put a client's question to the person, when nothing else is under way: it answers and stops nothing."""
         ctx = self.context
-        if ctx.config.pipeline == "vla" and ctx.state in ("WAITING", "LISTENING", "COMPLETED", "ERROR"):
+        if ctx.config.pipeline == "vla" and ctx.state in OPEN:
             ctx.voice.command = command
         else:
             self._io.log.warning("question ignored", text=command.text, state=ctx.state)

@@ -13,8 +13,8 @@ from common import messages as m
 from common import topics
 from common.geometry import quat_matrix
 from common.household import load_household
-from common.rendering import raycast
-from common.rendering import renderer as render
+from common.rendering import backend, raycast
+from common.rendering.renderer import Renderer
 from common.scene import load_scene
 from services.camera.config import CameraConfig
 from services.camera.service import CameraService
@@ -65,11 +65,11 @@ for rows in ((0, 20), (17, 43), (40, 60)):
 
 
 def test_colour_and_depth_of_one_pass_are_those_of_two() -> None:
-    backend = next((b for b in ("egl", "osmesa") if render.works(b)), None)
-    if backend is None:
+    chosen = next((b for b in ("egl", "osmesa") if backend.works(b)), None)
+    if chosen is None:
         pytest.skip("no GL library works here")
     run = [sys.executable, "-c", ONE_PASS]
-    subprocess.run(run, env=os.environ | render.environment(backend), check=True, timeout=60)
+    subprocess.run(run, env=os.environ | backend.environment(chosen), check=True, timeout=60)
 
 
 @pytest.mark.parametrize("case", [0.0, 0.01])
@@ -162,7 +162,7 @@ def test_a_state_of_another_model_is_counted_and_the_next_one_works(
 
 def test_the_renderer_is_freed_in_the_thread_that_made_it(physics: Physics, monkeypatch: pytest.MonkeyPatch) -> None:
     closed: list[str] = []
-    monkeypatch.setattr(render.Renderer, "close", lambda self: closed.append(threading.current_thread().name))
+    monkeypatch.setattr(Renderer, "close", lambda self: closed.append(threading.current_thread().name))
     node = Lens(monkeypatch)
     node.state(physics)
     node.ask()
@@ -200,8 +200,8 @@ for backend in ("auto", "raycast"):
 
 
 def test_the_renderer_knows_what_is_glossy_and_looks_through_what_is_transparent() -> None:
-    backend = next((b for b in ("egl", "osmesa") if render.works(b)), None)
-    if backend is None:
+    chosen = next((b for b in ("egl", "osmesa") if backend.works(b)), None)
+    if chosen is None:
         pytest.skip("no GL library works here")
-    environ = os.environ | render.environment(backend)
+    environ = os.environ | backend.environment(chosen)
     subprocess.run([sys.executable, "-c", LOOKS], env=environ, check=True, timeout=60)

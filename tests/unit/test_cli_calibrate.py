@@ -5,8 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cli.cameras.mounts import Arm, Array, Mount, Room, Shot, Unseen, fit
+from cli.cameras.mounts import Unseen, fit
 from cli.cameras.poses import LOWEST, WITHIN, FreeSpace, overlooks, poses
+from cli.cameras.shot import Array, Mount, Shot
+from cli.cameras.surfaces import Arm, Room
 from common import calibration
 from common.geometry import matrix_quat
 from common.messages import Rgbd

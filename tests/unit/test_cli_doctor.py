@@ -14,7 +14,7 @@ import pytest
 from cli import doctor
 from cli.errors import CliError
 from cli.keys.authority import Authority
-from common.rendering import renderer as render
+from common.rendering import backend
 
 
 @pytest.fixture(autouse=True)
@@ -30,7 +30,7 @@ def test_everything_that_is_not_well_has_a_fix(
     """A machine that lacks whatever a machine can lack."""
     version = metadata.version
     monkeypatch.setattr(doctor.ctypes.util, "find_library", lambda name: None)
-    monkeypatch.setattr(render, "best", lambda: "raycast")
+    monkeypatch.setattr(backend, "best", lambda: "raycast")
     monkeypatch.setattr(shutil, "which", lambda name: None)
     monkeypatch.setattr(shutil, "disk_usage", lambda path: SimpleNamespace(free=10e6))
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)

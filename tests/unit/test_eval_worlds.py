@@ -6,7 +6,8 @@ import pytest
 
 from common.config import ConfigError, RuntimeConfig
 from common.household import load_household, mapped, told
-from common.scene import SCENES, SceneError, load_scene
+from common.plan_tables import SCENES
+from common.scene import SceneError, load_scene
 from evaluation.suites.worlds import WorldsError, cases, worlds
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples" / "worlds"

@@ -9,8 +9,9 @@ from common import config, topics
 from common import messages as m
 from common.approach import FOOTPRINT
 from common.geometry import Rectangle
+from common.plan_tables import SCENES
 from common.runtime import StartError
-from common.scene import SCENES, Obstacle, load_scene
+from common.scene import Obstacle, load_scene
 from services.sim.base import BaseDriver
 from services.sim.config import SimConfig
 from services.sim.obstacles import DISTANCE, Walker, chosen

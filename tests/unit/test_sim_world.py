@@ -9,8 +9,9 @@ import pytest
 from common import messages as m
 from common import topics
 from common.approach import HALF_WIDTH
+from common.plan_tables import SCENES
 from common.runtime import StartError
-from common.scene import SCENES, SceneError, load_scene
+from common.scene import SceneError, load_scene
 from common.support import MARGIN
 from services.sim.layout import place_objects
 from services.sim.physics import Physics

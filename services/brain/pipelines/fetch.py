@@ -13,11 +13,12 @@ from services.brain.mission.mission import Failure, gripper_holds
 from services.brain.pipelines.shared import drive_home, report_failure
 from services.brain.recoveries.regrasp import grab_failed
 from services.brain.steps.ask import AskQuestion
+from services.brain.steps.begin import Listen, Ready, Wait
 from services.brain.steps.find import reference_to
 from services.brain.steps.home import tell_home
 from services.brain.steps.identify import ChooseCandidate, HearIdentity, survey, whether
 from services.brain.steps.leaf import Call, Leaf, Settle
-from services.brain.steps.motion import Grab, Listen, Navigate, Ready, Release, Wait
+from services.brain.steps.motion import Grab, Navigate, Release
 from services.brain.steps.verify import is_misplaced, verify_placement
 from services.brain.tree.composites import Condition, Retry, Selector, Sequence
 

@@ -7,8 +7,8 @@ from services.brain.mission.context import Context
 from services.brain.pipelines.plan_steps import RunPlan
 from services.brain.pipelines.shared import report_failure
 from services.brain.steps.ask import AskQuestion, HearConfirmation, HearMeaning, HearPerson, meaning, question
+from services.brain.steps.begin import Ready
 from services.brain.steps.leaf import Say, Settle
-from services.brain.steps.motion import Ready
 from services.brain.steps.plan import AwaitCommand, CompleteWithEvidence, PlanIsComplete, RequestPlan, describe_step
 from services.brain.tree.composites import Condition, Retry, Selector, Sequence
 

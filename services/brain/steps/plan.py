@@ -12,8 +12,8 @@ from common.topics import Topic
 from services.brain.mission.channel import Result
 from services.brain.mission.context import Context
 from services.brain.mission.mission import Failure
+from services.brain.steps.begin import take_command
 from services.brain.steps.leaf import Leaf, SendGoal
-from services.brain.steps.motion import take_command
 
 
 class AwaitCommand(Leaf):

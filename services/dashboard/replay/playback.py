@@ -15,8 +15,8 @@ import msgspec
 from common import messages as m
 from common import topics
 from common.bus import codec
-from common.bus.base import WorkerJob
 from common.bus.memory import MemoryBus, MemoryIo
+from common.bus.worker import WorkerJob
 from common.household import load_household
 from common.mission_log import recorded
 from common.mission_log.states import OTHER_STATE, STATE_COLOURS, spans
