@@ -50,6 +50,10 @@ class Picture:
     low: Array
 
 
+class PictureError(ValueError):
+    """A picture that no camera takes; says why."""
+
+
 class CameraModel:
     """Points of pictures, without the robot's own body, which is what stays where it is however the base turns."""
 
@@ -92,12 +96,12 @@ class CameraModel:
         """What the picture shows.
 
         Raises:
-            ValueError: its data do not have its size, or what a camera does not have.
+            PictureError: its data do not have its size, or what a camera does not have.
         """
         depth = _depth(image)
         numbers = (image.cx, image.cy, *image.position, *image.orientation)
         if not (0.0 < image.fx < MAX_VALUE and 0.0 < image.fy < MAX_VALUE and all(abs(v) < MAX_VALUE for v in numbers)):
-            raise ValueError("a picture without a focal length or a pose")
+            raise PictureError("a picture without a focal length or a pose")
         h, w = depth.shape
         depth = np.where(self.own((h, w)), 0.0, depth)
         u = (np.arange(w) + 0.5 - image.cx) / image.fx
@@ -128,7 +132,7 @@ def _level(points: Array, seen: NDArray[np.bool_]) -> NDArray[np.bool_]:
 def _depth(image: m.Rgbd) -> NDArray[np.float32]:
     depth = np.frombuffer(image.depth, "<u2")
     if depth.size != image.width * image.height:
-        raise ValueError(f"{depth.size} depths for {image.width} x {image.height} pixels")
+        raise PictureError(f"{depth.size} depths for {image.width} x {image.height} pixels")
     return depth.reshape(image.height, image.width).astype(np.float32) * np.float32(0.001)
 
 

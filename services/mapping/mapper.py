@@ -50,7 +50,7 @@ class Mapper:
         """Take a picture of a moment at which the wheels said `odometry`; the states of all cells.
 
         Raises:
-            ValueError: the picture's data do not have its size.
+            PictureError: the picture's data do not have its size.
         """
         keyframe = len(self.trajectory) - 1
         pose = compose(inverse(self.trajectory.poses[keyframe]), compose(self.trajectory.odom, odometry))

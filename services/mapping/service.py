@@ -17,6 +17,7 @@ from common.geometry import Pose2, compose
 from common.map_file import MapError
 from common.runtime import StartError
 from services.mapping.config import MappingConfig
+from services.mapping.depth import PictureError
 from services.mapping.exploration import Exploration
 from services.mapping.mapper import Mapper
 from services.mapping.odometry import OdometryBuffer
@@ -77,7 +78,7 @@ class MappingService:
             job, done = self._work.popleft()
             try:
                 result = job.result()
-            except ValueError as error:
+            except PictureError as error:
                 io.count_drop(topics.HEAD_RGBD.key, str(error))
                 continue
             done(result)

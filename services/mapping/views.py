@@ -15,7 +15,7 @@ from scipy import ndimage
 from scipy.sparse import csgraph, csr_matrix
 
 from common.geometry import Pose2
-from services.mapping.grid import FREE, OCCUPIED, RESOLUTION, UNKNOWN, Cells, Grid
+from services.mapping.grid import FREE, OCCUPIED, RESOLUTION, UNKNOWN, Cells, Grid, Index
 from services.mapping.scan import Array
 
 CLEARANCE = 0.36
@@ -23,7 +23,7 @@ CLEARANCE = 0.36
 HEADINGS = 12
 """Directions that are tried at each position [count]: a third of the camera's width apart."""
 SPACING = 6
-"""Cells between positions that are tried [count]: 0.3 m."""
+"""Side of the squares of which one position each is tried [cells]: 0.3 m."""
 HALF_VIEW = math.radians(33)
 """Half of the camera's width [rad], less its rim."""
 FRONTIER_RANGE, SURFACE_RANGE = (0.5, 2.7), (0.55, 1.7)
@@ -66,17 +66,23 @@ def survey(grid: Grid, states: NDArray[np.uint8], here: Pose2, barred: list[tupl
     wanted, places = interesting(grid, states, ndimage.binary_dilation(reached, iterations=12))
     if not wanted.any():
         return Survey(0, area, None)
-    stand = reached & (distance >= CLEARANCE)
-    rows, columns = np.nonzero(stand)
-    on = (rows % SPACING == 0) & (columns % SPACING == 0)
-    spots = grid.points((rows[on], columns[on]))
-    costs = cost[rows[on], columns[on]]
+    stand = _roomiest(np.where(reached & (distance >= CLEARANCE), distance, 0.0))
+    spots, costs = grid.points(stand), cost[stand]
     for x, y in barred:
         far = np.hypot(spots[:, 0] - x, spots[:, 1] - y) > 0.25
         spots, costs = spots[far], costs[far]
     if not len(spots):
         return Survey(places, area, None)
     return Survey(places, area, _best(grid, states, wanted, spots, costs, here))
+
+
+def _roomiest(room: Array) -> Index:
+    """Of each square of SPACING cells the one with the most room: a narrow corridor may lie between any fixed ones."""
+    rows, columns = np.nonzero(room)
+    order = np.argsort(-room[rows, columns], kind="stable")
+    rows, columns = rows[order], columns[order]
+    _, first = np.unique((rows // SPACING) * room.shape[1] + columns // SPACING, return_index=True)
+    return rows[first], columns[first]
 
 
 def interesting(grid: Grid, states: NDArray[np.uint8], near: Cells) -> tuple[Cells, int]:

@@ -4,6 +4,7 @@ import math
 import zlib
 
 import numpy as np
+import pytest
 
 from common import messages as m
 from common.geometry import matrix_quat
@@ -11,7 +12,7 @@ from services.mapping.depth import CameraModel
 from services.mapping.grid import FREE, OCCUPIED, RESOLUTION, UNKNOWN, Grid
 from services.mapping.scan import Scan
 from services.mapping.surfaces import find_surfaces, fit_rectangle
-from services.mapping.views import survey
+from services.mapping.views import SPACING, survey
 
 PITCH, EYE = 0.62, (-0.17, 0.0, 1.30)
 
@@ -149,6 +150,17 @@ def test_the_only_frontier_is_the_door() -> None:
     x, y, theta = found.view.pose
     bearing = math.atan2(0.0 - y, 2.1 - x)
     assert abs(math.remainder(bearing - theta, 2 * math.pi)) < math.radians(34)
+
+
+@pytest.mark.parametrize("shift", range(SPACING))
+def test_a_corridor_is_looked_along_wherever_it_lies_on_the_grid(shift: int) -> None:
+    """0.85 m wide as it is seen: the robot's middle has 15 cm to be in."""
+    grid = Grid((-6.0, -6.0), (6.0, 6.0))
+    states = np.full(grid.shape, UNKNOWN, np.uint8)
+    rows = slice(120 + shift, 137 + shift)
+    states[rows, 60:120], grid.passed[rows, 60:200] = FREE, 1
+    found = survey(grid, states, (*grid.points((np.array([128 + shift]), np.array([70])))[0], 0.0), [])
+    assert found.frontiers >= 1 and found.view is not None and found.view.pose[2] == 0.0
 
 
 def test_where_nothing_is_left_the_survey_ends() -> None:
