@@ -1,6 +1,5 @@
 """The examiner takes part in the lockstep like any service: plays the person, watches physics, ends the case."""
 
-import math
 from collections import deque
 from typing import Any
 
@@ -8,24 +7,21 @@ import numpy as np
 
 from common import messages as m
 from common import topics
-from common.bus.port import Io, Job
+from common.bus.port import Io
 from common.config import Config
 from evaluation.case import Case, Line, Observed
 from evaluation.faults.reports import FaultReport
-from evaluation.person.ego_noise import EgoNoise
-from evaluation.person.simulated_user import Manner, SimulatedUser, seen_at
-from evaluation.person.voice import RATE, Samples, loudness, utter
+from evaluation.person.dialogue import Dialogue
+from evaluation.person.onlooker import Onlooker
 from evaluation.shortest import FloorPlan
+from evaluation.watch import observe
 from judge.evidence import Sample
 from judge.observer import WATCH, Observer
 
 OPEN = ("WAITING", "LISTENING")
 OVER = ("COMPLETED", "ERROR")
-REACTION, QUIET = 0.5, 40.0
-"""Time [s] until the simulated user answers, and of quiet after which a case without an outcome is over."""
-WAKE = "hey jarvis, "
-IDEAL = "sim.sensors=ideal"
-"""The setting with which the robot's microphone does not hear the robot."""
+QUIET = 40.0
+"""Time [s] of quiet after which a case without an outcome is over."""
 
 
 class ExaminerConfig(Config, frozen=True):
@@ -48,21 +44,11 @@ class Examiner:
 
     def __init__(self, config: ExaminerConfig, io: Io) -> None:
         self._case, self._io = self.case, io
-        manner: Manner = "reject" if self._case.name == "rejection" else "correct"
-        manner = "silent" if self._case.silent else manner
-        self._user = SimulatedUser(self._case.command, self._case.thing, io.world, manner, self._case.called)
+        self._dialogue = Dialogue(self._case, io, self.HZ)
         self._observer = Observer(io.world)
-        self._begun = False
+        self._onlooker = Onlooker()
         self._lines = deque(self._case.lines)
         self._line: Line | None = None
-        self._due: deque[tuple[float, str]] = deque()
-        self._voice: Job[Samples] | None = None
-        self._sound: deque[Samples] = deque()
-        self._ego: EgoNoise | None = None
-        self._speed, self._was = 0.0, (0.0, (0.0, 0.0))
-        self._about: tuple[float, float, float] | None = None
-        self._seen = ""
-        self._saying = ""
         self.active = False
         self._ended_at: float | None = None
         self._quiet_since = 0.0
@@ -75,7 +61,7 @@ class Examiner:
         """Observe the world, play the simulated user, note the end of the case."""
         if self.done:
             return
-        self._watch(now)
+        self._watch()
         self._listen(now)
         if not self._observer.ready:
             return
@@ -86,24 +72,13 @@ class Examiner:
             self._conclude(now)
 
     # --- physics
-    def _watch(self, now: float) -> None:
-        io, observer = self._io, self._observer
-        if (model := io.latest(topics.SIM_MODEL)) is None:
-            return
-        observer.model(model)
-        for state in io.take_all(topics.SIM_STATE):
-            first = not observer.ready
-            sample = observer.world(state)
-            if sample is not None:
-                self._seen = seen_at(self._about, {name: o.position for name, o in sample.things.items()})
-                before, there = self._was
-                self._was = state.t, sample.base[:2]
-                self._speed = math.dist(there, sample.base[:2]) / max(state.t - before, 0.01) if before else 0.0
-            if first and sample is not None:
-                self.observed.shortest = self._shortest(sample)
-        for report in io.take_all(topics.SIM_CONTACTS):
-            observer.contacts(report)
-        for status in io.take_all(topics.SIM_STATUS):
+    def _watch(self) -> None:
+        first = not self._observer.ready
+        for t, sample in observe(self._io, self._observer):
+            self._onlooker.see(t, sample)
+            if first:
+                self.observed.shortest, first = self._shortest(sample), False
+        for status in self._io.take_all(topics.SIM_STATUS):
             self.observed.stopped |= status.state == "stopped"
 
     def _shortest(self, sample: Sample) -> float:
@@ -115,16 +90,12 @@ class Examiner:
 
     # --- the robot's words and states
     def _listen(self, now: float) -> None:
+        def begun(text: str) -> None:
+            self.observed.said.append(text)
+            self._observer.sentence(now, text)
+
         for status in self._io.take_all(topics.SPEECH_STATUS):
-            if status.state == "speaking" and status.detail != self._saying:
-                self._saying = status.detail
-                self.observed.said.append(status.detail)
-                self._observer.sentence(now, status.detail)
-            elif status.state != "speaking" and self._saying:
-                answer, self._saying = self._user.answer(self._saying, self._seen), ""
-                self._quiet_since = now
-                if answer:
-                    self._due.append((now + REACTION, answer))
+            self._dialogue.hear(status, now, self._onlooker.shown, begun)
 
     def follow(self, now: float) -> None:
         """Take what the brain says of its mission."""
@@ -133,7 +104,7 @@ class Examiner:
             self._observer.status(now, status)
         for state in self._io.take_all(topics.BRAIN_STATE):
             self._observer.brain(now, state)
-            self._about = state.about
+            self._onlooker.about = state.about
             if not seen.states or seen.states[-1] != state.state:
                 seen.states.append(state.state)
             self._when.setdefault(state.state, now)
@@ -173,27 +144,17 @@ class Examiner:
     def _talk(self, now: float) -> None:
         while self._lines and self._reached(self._lines[0], now):
             self._note_mission()
+            if self._line is None:
+                self._observer.begin()
             self._line = line = self._lines.popleft()
             if line.when == "ended":
-                self._user.set_goal(line.text, line.thing)
+                self._dialogue.user.set_goal(line.text, line.thing)
                 # The next one waits for the end of this one's mission.
                 del self._when["ended"]
-            if not self._begun:
-                self._begun = True
-                self._observer.begin()
             self._observer.expect(self._case.goal_of(line))
-            self._due.append((now, line.text))
-        if self._sound:
-            self._play(now)
-        elif self._voice is not None:
-            if self._voice.poll(now):
-                samples, self._voice = self._voice.result(), None
-                size = RATE // self.HZ
-                if self._ego is None and IDEAL not in self._case.settings:
-                    self._ego = EgoNoise(self._case.seed, loudness(samples))
-                self._sound.extend(samples[i : i + size] for i in range(0, len(samples), size))
-        elif self._due and self._due[0][0] <= now and not self._saying:
-            self._say(self._due.popleft()[1], now)
+            self._dialogue.say(line.text, now)
+        if self._dialogue.step(now, opening=not self.active, speed=self._onlooker.speed):
+            self._ended_at = None
 
     def _note_mission(self) -> None:
         """The mission of the last line is over: what is not as it wants it."""
@@ -205,36 +166,14 @@ class Examiner:
         at = self._when.get(line.when)
         return at is not None and now >= at + line.after
 
-    def _say(self, text: str, now: float) -> None:
-        io = self._io
-        self._quiet_since, self._ended_at = now, None
-        io.log.info("person", says=text)
-        # Who speaks first has to get the robot's attention; speech itself hears only what it listens for.
-        opening = self._case.wake and not self.active
-        if not self._case.spoken and opening:
-            io.publish(topics.VOICE_COMMAND, m.VoiceCommand(text=text, id=io.new_id("typed")))
-            return
-        if not self._case.spoken:
-            io.publish(topics.SPEECH_TEXT, m.TypedText(text=text))
-            return
-        words = WAKE + text if opening else text
-        self._voice = io.submit(utter, words, self._case.noise, self._case.seed, self._case.speaker, seconds=0.2)
-
-    def _play(self, now: float) -> None:
-        part = self._sound.popleft()
-        if self._ego is not None:
-            part = self._ego.over(part, self._speed)
-        chunk = m.AudioChunk(t=now, data=part.astype("<i2").tobytes(), rate=RATE, end=not self._sound)
-        self._io.publish(topics.AUDIO_PCM, chunk)
-        self._quiet_since = now
-
     # --- the end
     def _over(self, now: float) -> bool:
         if now > self._case.limit:
             return True
-        quiet = "ready" in self._when and not self.active and now >= self._quiet_since + QUIET
-        if self._lines or self._due or self._sound or self._voice is not None or self._saying:
-            if quiet and self._begun:
+        quiet_since = max(self._quiet_since, self._dialogue.last)
+        quiet = "ready" in self._when and not self.active and now >= quiet_since + QUIET
+        if self._lines or self._dialogue.busy:
+            if quiet and self._line is not None:
                 # What was said has led to no mission.
                 self._when.setdefault("ended", now)
             return False

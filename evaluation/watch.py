@@ -6,6 +6,7 @@ from common import messages as m
 from common import topics
 from common.bus.port import Io
 from common.config import Config
+from judge.evidence import Sample
 from judge.observer import Observer
 
 
@@ -38,19 +39,27 @@ class Watch:
 
     def step(self, now: float) -> None:
         io, observer = self._io, self.observer
-        if (model := io.latest(topics.SIM_MODEL)) is None:
+        observe(io, observer)
+        if not observer.ready:
             return
-        observer.model(model)
-        for world in io.take_all(topics.SIM_STATE):
-            observer.world(world)
-        for contacts in io.take_all(topics.SIM_CONTACTS):
-            observer.contacts(contacts)
         for said in io.take_all(topics.SPEECH_STATUS):
             self._saying = spoken(said, self._saying, lambda text: observer.sentence(now, text))
         for status in io.take_all(topics.SYSTEM_STATUS):
             observer.status(now, status)
         for state in io.take_all(topics.BRAIN_STATE):
             observer.brain(now, state)
+
+
+def observe(io: Io, observer: Observer) -> list[tuple[float, Sample]]:
+    """Show an observer the world as it has become: its samples, with their robot times [s]; none before its model."""
+    if (model := io.latest(topics.SIM_MODEL)) is None:
+        return []
+    observer.model(model)
+    states = io.take_all(topics.SIM_STATE)
+    samples = [(state.t, sample) for state in states if (sample := observer.world(state)) is not None]
+    for report in io.take_all(topics.SIM_CONTACTS):
+        observer.contacts(report)
+    return samples
 
 
 def spoken(status: m.SpeechStatus, before: str, hear: Callable[[str], None]) -> str:

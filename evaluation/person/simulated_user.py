@@ -3,12 +3,9 @@
 Pure: sentences of the robot in, sentences of the person out. They know nothing of the bus.
 """
 
-import math
 import re
-from collections.abc import Mapping
 from typing import Literal
 
-from common.floor_plan import Vec3
 from common.scene import Scene
 from judge.words import plain
 
@@ -21,20 +18,6 @@ _HEARD = re.compile(r"^did you say,?\s*(.+?)\??$", re.IGNORECASE)
 _AGAIN = re.compile(r"say (?:it|that) again|please repeat|did not (?:hear|understand|catch)|pardon|what did you", re.I)
 _IDENTITY = re.compile(r"is (?:that|this) the .+\?$", re.IGNORECASE)
 _WHICH = re.compile(r"^(?:which\b|do you mean|the .+ or the .+\?)", re.IGNORECASE)
-
-
-SHOWN, NEAREST = 0.10, 0.05
-"""Distance [m] of an object from the place that the robot shows, up to which it is what is seen there, and by how much
-any other has to be farther. Chosen: the size of an object, and half of one; between two neighbours one sees neither."""
-
-
-def seen_at(place: Vec3 | None, objects: Mapping[str, Vec3]) -> str:
-    """The object that a person sees at the place that the robot shows them; "" for none."""
-    if place is None:
-        return ""
-    apart = sorted((math.dist(at, place), name) for name, at in objects.items())
-    alone = len(apart) == 1 or (len(apart) > 1 and apart[1][0] > apart[0][0] + NEAREST)
-    return apart[0][1] if alone and apart[0][0] < SHOWN else ""
 
 
 class SimulatedUser:

@@ -3,7 +3,8 @@
 import pytest
 
 from common.scene import load_scene
-from evaluation.person.simulated_user import PATIENCE, Manner, SimulatedUser, seen_at
+from evaluation.person.onlooker import seen_at
+from evaluation.person.simulated_user import PATIENCE, Manner, SimulatedUser
 from judge.words import plain
 
 SCENE = load_scene("apartment")
