@@ -19,7 +19,7 @@ from common.bus.session import default_connect, open_session
 from common.security.access import OPERATOR
 from common.security.keys import OFF
 from common.time.clock import monotonic
-from common.topics import Topic
+from common.topic import Topic
 
 M = TypeVar("M", bound=m.Message)
 A = TypeVar("A", bound=m.Message)

@@ -17,6 +17,7 @@ from common import messages as m
 from common import topics
 from common.bus import codec, delivery
 from common.time.clock import monotonic, sleep
+from common.topic import Topic
 
 
 def matches(expression: str, key: str) -> bool:
@@ -144,12 +145,12 @@ def pub(args: argparse.Namespace) -> int:
     return 0
 
 
-def _note(link: Link, topic: "topics.Topic[Any]") -> None:
+def _note(link: Link, topic: Topic[Any]) -> None:
     """Let the message leave before the session closes: the answer comes back after it has gone out."""
     delivery.fetch(link.session, topics.HEALTH.key, timeout=1.0)
 
 
-def compose(topic: "topics.Topic[Any]", words: list[str]) -> m.Message:
+def compose(topic: Topic[Any], words: list[str]) -> m.Message:
     """A message from a JSON object, `field=value` words, or bare text where the topic takes text.
 
     Raises:

@@ -22,6 +22,7 @@ from cli.link import Link, Watch, add_options, linked
 from common import messages as m
 from common import topics
 from common.time.clock import monotonic
+from common.topic import Topic
 
 COLOURS = {"RUNNING": "bold blue", "SUCCESS": "green", "FAILURE": "red", "INVALID": "bright_black"}
 GOOD, BAD, FAINT = "green", "bold red", "bright_black"
@@ -78,7 +79,7 @@ class Picture:
         if (who, text) not in list(self.said)[-2:]:
             self.said.append((who, text))
 
-    def get(self, topic: topics.Topic[Any]) -> Any:
+    def get(self, topic: Topic[Any]) -> Any:
         return self.now.get(topic.key)
 
 

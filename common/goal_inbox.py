@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 from typing import Any, Generic, Protocol, TypeVar
 
 from common.bus.port import Io
-from common.topics import Topic
+from common.topic import Topic
 
 
 class Identified(Protocol):

@@ -6,7 +6,7 @@ from common import messages as m
 from common import topics
 from common.bus.port import Io
 from common.gateway import due
-from common.topics import Topic
+from common.topic import Topic
 
 PICTURES = {"head": topics.HEAD_RGBD, "wrist": topics.WRIST_RGBD}
 

@@ -10,7 +10,7 @@ from common import topics
 from common.bus.port import Io
 from common.config import Config
 from common.runtime import main
-from common.topics import Topic
+from common.topic import Topic
 
 
 class Distance(m.Message):

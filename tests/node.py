@@ -11,7 +11,7 @@ from common.household import Household
 from common.scene import Scene
 from common.time.clock import ManualClock
 from common.time.lockstep import DT, period_of
-from common.topics import Topic
+from common.topic import Topic
 
 M = TypeVar("M", bound=m.Message)
 

@@ -6,7 +6,7 @@ import zenoh
 
 from common import messages as m
 from common.bus import codec
-from common.topics import Topic
+from common.topic import Topic
 
 
 class RobotSide:

@@ -9,7 +9,7 @@ from typing import Any
 import msgspec
 
 from common import messages as m
-from common.topics import Topic
+from common.topic import Topic
 
 NUMBERS = (0.0, -0.0, 1.0, -1.0, 0.5, 3.14, 1e-320, 1e9, -1e9, 1e38, 1e200, 1.7e308, -1.7e308)
 """Numbers at the edges of what a float can be."""

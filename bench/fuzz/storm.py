@@ -10,7 +10,7 @@ from cli.processes.services import SERVICES
 from common import messages as m
 from common import topics
 from common.bus import codec, delivery
-from common.topics import Topic
+from common.topic import Topic
 from evaluation.stack import service_class
 from tests.support import Site, eventually, free_port
 

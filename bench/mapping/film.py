@@ -13,7 +13,7 @@ from common import topics
 from common.bus import codec
 from common.geometry import Pose2, compose
 from common.map_file import UNKNOWN, picture
-from common.topics import Topic
+from common.topic import Topic
 from evaluation.stack import Stack
 
 HEIGHT, GAP = 300, 8

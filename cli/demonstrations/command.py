@@ -17,7 +17,7 @@ from common.bus import codec, delivery
 from common.demonstration import PICTURE_SIZE
 from common.process import StopSignal
 from common.time.clock import monotonic
-from common.topics import Topic
+from common.topic import Topic
 
 RENEW = 2.0
 """Time [s] after which a picture that did not come is asked for again."""

@@ -9,7 +9,7 @@ from cli.link import Link
 from common import topics
 from common.bus import codec
 from common.time.clock import monotonic, sleep
-from common.topics import Topic
+from common.topic import Topic
 
 HEARD: tuple[Topic[Any], ...] = (
     topics.JOINT_STATES, topics.ODOMETRY, topics.SCAN, topics.GOAL_REACHED, topics.SIM_STATUS,

@@ -8,7 +8,7 @@ import numpy as np
 from cli.drivers.driver import PERIOD, Driver, Unmet
 from common import messages as m
 from common import topics
-from common.topics import Topic
+from common.topic import Topic
 
 ARM = tuple(f"joint_{i}" for i in range(1, 8))
 JOINTS = ("base_x", "base_y", "base_yaw", *ARM, "gripper")

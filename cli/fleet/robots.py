@@ -10,7 +10,7 @@ from common import messages as m
 from common import topics
 from common.bus import codec, delivery
 from common.mission_log.states import under_way
-from common.topics import Topic
+from common.topic import Topic
 
 M = TypeVar("M", bound=m.Message)
 BRAIN_ALIVE = topics.ALIVE_KEY.format(name="brain")

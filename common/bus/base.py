@@ -25,7 +25,7 @@ from common.household_edits import edited
 from common.logs import Logger
 from common.scene import Scene
 from common.time.clock import Clock, monotonic
-from common.topics import Topic
+from common.topic import Topic
 
 M = TypeVar("M", bound=m.Message)
 R = TypeVar("R")

@@ -6,7 +6,7 @@ import msgspec
 
 from common import messages as m
 from common.bus.validation import bad_field
-from common.topics import Topic
+from common.topic import Topic
 
 M = TypeVar("M", bound=m.Message)
 JSON, MSGPACK = "application/json", "application/msgpack"

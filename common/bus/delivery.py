@@ -16,7 +16,7 @@ from common import messages as m
 from common import topics
 from common.bus import codec
 from common.time.clock import unix_time
-from common.topics import Topic
+from common.topic import Topic
 
 CACHE = 64
 """Messages that an advanced publisher keeps for recovery [count]; chosen: events come a few a second at most, so this

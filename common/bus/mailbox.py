@@ -5,7 +5,7 @@ from typing import Generic, TypeVar
 
 from common import messages as m
 from common.bus import codec
-from common.topics import Topic
+from common.topic import Topic
 
 M = TypeVar("M", bound=m.Message)
 UNSTAMPED = -(2**62)

@@ -12,7 +12,7 @@ from common.bus.worker import WorkerJob
 from common.household import Household
 from common.scene import Scene
 from common.time.clock import ManualClock
-from common.topics import Topic
+from common.topic import Topic
 
 M = TypeVar("M", bound=m.Message)
 

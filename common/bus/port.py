@@ -10,7 +10,7 @@ import numpy as np
 from common import messages as m
 from common.household import Household
 from common.scene import Scene
-from common.topics import Topic
+from common.topic import Topic
 
 M = TypeVar("M", bound=m.Message)
 R = TypeVar("R")

@@ -19,7 +19,7 @@ from common.bus.worker import WorkerJob
 from common.household import Household
 from common.scene import Scene
 from common.time.clock import Clock, unix_time
-from common.topics import Topic
+from common.topic import Topic
 
 _BAD_REQUEST = (ValueError, LookupError, TypeError, AttributeError, ArithmeticError, RecursionError, OSError)
 

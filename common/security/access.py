@@ -15,6 +15,7 @@ from typing import Any, Literal
 import msgspec
 
 from common import topics as t
+from common.topic import ANYONE, EACH, Topic
 
 Role = Literal["service", "operator", "observer", "agent", "fleet", "router", "ros"]
 ROUTER, OPERATOR, AGENT, FLEET, EAR, GATEWAY = "router", "operator", "agent", "fleet", "ear", "ros2"
@@ -85,13 +86,13 @@ def grants(subject: Subject) -> Grants:
     questions = tuple(q.key for q in t.QUERIES if not q.changing)
     if subject.role == "observer":
         return Grants(reads=EVERYTHING, asks=(*questions, *(topic.key for topic in t.TABLE), ALL_HEALTH))
-    puts = tuple(topic.key for topic in t.TABLE if t.ANYONE in topic.writers)
+    puts = tuple(topic.key for topic in t.TABLE if ANYONE in topic.writers)
     return Grants(puts=puts, reads=EVERYTHING, asks=EVERYTHING, tokens=(t.ALIVE_KEY.format(name=EAR),))
 
 
 def _service(name: str) -> Grants:
     """What the rows that name a service, or each, give it: the other side of a row of each does not get both."""
-    written = [row.key for row in t.TABLE if name in row.writers or (t.EACH in row.writers and name not in row.readers)]
+    written = [row.key for row in t.TABLE if name in row.writers or (EACH in row.writers and name not in row.readers)]
     own_rows = t.subscribed(name)
     read = [row.key for row in t.TABLE if row in own_rows or _reads(row, name)]
     latched = [key for key in written if t.BY_KEY[key].latched]
@@ -107,8 +108,8 @@ def _service(name: str) -> Grants:
     )
 
 
-def _reads(row: t.Topic[Any], name: str) -> bool:
-    return name in row.readers or (t.EACH in row.readers and name not in row.writers)
+def _reads(row: Topic[Any], name: str) -> bool:
+    return name in row.readers or (EACH in row.readers and name not in row.writers)
 
 
 def acl(subjects: Iterable[Subject]) -> dict[str, Any]:

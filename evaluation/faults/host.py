@@ -6,7 +6,7 @@ from typing import Any
 
 from common.bus.mailbox import UNSTAMPED
 from common.bus.memory import MemoryBus, MemoryIo
-from common.topics import Topic
+from common.topic import Topic
 
 
 class OutageBus(MemoryBus):

@@ -11,7 +11,7 @@ import numpy as np
 
 from common import messages as m
 from common import topics
-from common.topics import Topic
+from common.topic import Topic
 from evaluation.faults.reports import FaultReport, Reporter, ignore
 
 Kind = Literal["drop", "duplicate", "delay", "reorder", "edit"]

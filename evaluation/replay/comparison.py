@@ -10,7 +10,7 @@ import msgspec
 from common import messages as m
 from common import topics
 from common.bus import codec
-from common.topics import Topic
+from common.topic import Topic
 
 EPOCHS = {"epoch", "world"}  # random for every start of a process
 TIMES = {"t", "seen_at", "started"}

@@ -17,7 +17,7 @@ from common.recording import Recording, Row
 from common.scene import Scene
 from common.time.clock import ManualClock
 from common.time.lockstep import DT, period_of
-from common.topics import Topic
+from common.topic import Topic
 
 M = TypeVar("M", bound=m.Message)
 UNRECORDED = 50

@@ -10,7 +10,7 @@ from common import topics
 from common.bus import codec
 from common.bus.port import Io
 from common.gateway import sound, standing_pose, stop
-from common.topics import Topic
+from common.topic import Topic
 
 
 class Vector(msgspec.Struct):

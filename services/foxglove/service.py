@@ -16,7 +16,7 @@ from common.picture_requests import PICTURES, PictureRequests
 from common.robot_frames import BaseFrames, FramePose, LinkFrames, camera_pose, lidar_pose
 from common.robot_shapes import Shape, shapes
 from common.runtime import StartError
-from common.topics import Topic
+from common.topic import Topic
 from common.urdf import urdf
 from services.foxglove import incoming
 from services.foxglove.config import FoxgloveConfig

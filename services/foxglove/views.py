@@ -14,7 +14,7 @@ from common.household import Household
 from common.robot_frames import FramePose
 from common.robot_shapes import Shape
 from common.schemas import schema_of
-from common.topics import Topic
+from common.topic import Topic
 from services.foxglove import drawing
 from services.foxglove.config import FoxgloveConfig
 from services.foxglove.listener import Listener

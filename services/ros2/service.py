@@ -13,7 +13,7 @@ from common.gateway import due, refusal
 from common.picture_requests import PICTURES, PictureRequests
 from common.robot_frames import BaseFrames, FramePose, LinkFrames, camera_pose, lidar_pose
 from common.runtime import StartError
-from common.topics import Topic
+from common.topic import Topic
 from common.urdf import pivots, urdf
 from services.ros2 import incoming, outgoing
 from services.ros2.config import Ros2Config

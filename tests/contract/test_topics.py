@@ -10,7 +10,7 @@ import pytest
 from cli.processes.services import NAMES
 from common import interfaces, topics
 from common.time.lockstep import period_of
-from common.topics import Topic
+from common.topic import ANYONE, EACH, Topic
 
 SERVICES = tuple(name for name in NAMES if name != "router")
 ROOT = Path(__file__).parents[2]
@@ -45,12 +45,12 @@ def test_a_service_uses_every_topic_whose_row_names_it(name: str) -> None:
 def test_every_read_has_a_writer() -> None:
     for row in topics.TABLE:
         assert row.writers, f"nobody writes {row.key}"
-        assert {*row.writers, *row.readers} <= {*SERVICES, topics.ANYONE, topics.EACH}, row.key
+        assert {*row.writers, *row.readers} <= {*SERVICES, ANYONE, EACH}, row.key
 
 
 def test_one_writer_per_topic() -> None:
     for topic in topics.TABLE:
-        if topic.key not in SHARED and topics.ANYONE not in topic.writers:
+        if topic.key not in SHARED and ANYONE not in topic.writers:
             assert len({*topic.writers} - {*topics.VIEWERS}) == 1, topic.key
 
 

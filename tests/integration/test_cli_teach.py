@@ -13,6 +13,7 @@ import zenoh
 from common import messages as m
 from common import topics
 from common.bus import codec, delivery
+from common.topic import Topic
 from tests.support import ROOT, Site, site
 
 BOX = m.WorldObject(label="white box", kind="box", colour="white", position=(1.0, 0.0, 1.0))
@@ -36,7 +37,7 @@ class Perception:
             session.declare_subscriber(topics.TEACH.key, self._take),
         ]  # fmt: skip
 
-    def _serve(self, topic: topics.Topic, message: m.Message) -> object:  # type: ignore[type-arg]
+    def _serve(self, topic: Topic, message: m.Message) -> object:  # type: ignore[type-arg]
         payload = codec.encode(topic, message)
         return self._session.declare_queryable(topic.key, lambda q: q.reply(q.key_expr, payload))
 

@@ -15,6 +15,7 @@ from cli.link import Link
 from common import messages as m
 from common import topics
 from common.bus import codec
+from common.topic import Topic
 from services.sim.model import own
 from tests.support import Site, eventually
 
@@ -47,7 +48,7 @@ class Puppet:
         self._thread = threading.Thread(target=self._run)
         self._thread.start()
 
-    def _put(self, topic: topics.Topic[Any], message: Any) -> None:
+    def _put(self, topic: Topic[Any], message: Any) -> None:
         changed = self._change(topic.key, message)
         if changed is not None:
             self._session.put(topic.key, codec.encode(topic, changed))

@@ -21,7 +21,7 @@ from common import messages as m
 from common import topics
 from common.bus import codec
 from common.bus.session import open_session
-from common.topics import Topic
+from common.topic import Topic
 from tests.support import Site, eventually, site
 
 MUG = m.WorldObject(label="red mug", kind="mug", colour="red", position=(3.0, 0.0, 0.5))

@@ -15,6 +15,7 @@ from common.bus import codec
 from common.robot import ARM
 from common.scene import load_scene
 from common.schemas import schema_of
+from common.topic import Topic
 from services.foxglove import incoming
 from services.sim.physics import Physics
 from tests.robot_side import RobotSide
@@ -34,7 +35,7 @@ class Robot(RobotSide):
         super().__init__(session)
         self.visitor = visitor
 
-    def shown(self, name: str, topic: topics.Topic[Any], message: m.Message, key: str = "") -> Any:
+    def shown(self, name: str, topic: Topic[Any], message: m.Message, key: str = "") -> Any:
         """The last message that a watched channel shows once this was sent."""
         before = len(self.visitor.heard[name])
 

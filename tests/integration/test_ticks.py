@@ -8,7 +8,7 @@ from common import messages as m
 from common import topics
 from common.bus import codec
 from common.time.clock_transport import AckCollector, ClockPublisher, ClockSubscriber
-from common.topics import Topic
+from common.topic import Topic
 from tests.support import Site, eventually
 
 OWN = topics.SLOWER_CLOCKS[10]

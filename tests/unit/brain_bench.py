@@ -6,7 +6,7 @@ from typing import Any, TypeVar
 from common import messages as m
 from common import topics
 from common.household import load_household
-from common.topics import Topic
+from common.topic import Topic
 from services.brain.config import BrainConfig
 from services.brain.service import BrainService
 from tests.node import Node

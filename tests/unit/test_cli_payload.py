@@ -12,6 +12,7 @@ from cli.zenoh_decoder import decode, decode_text
 from common import messages as m
 from common import topics
 from common.bus import codec
+from common.topic import Topic
 
 
 def test_json_messagepack_and_text_all_print_as_json() -> None:
@@ -36,7 +37,7 @@ def test_a_namespace_before_the_key_does_not_hide_its_type() -> None:
         (topics.SPEECH_GOAL, m.SpeechGoal(goal="listen", id="g1"), "listen"),
     ],
 )
-def test_who_asks_for_text_gets_the_bare_word(topic: topics.Topic[m.Message], message: m.Message, shown: str) -> None:
+def test_who_asks_for_text_gets_the_bare_word(topic: Topic[m.Message], message: m.Message, shown: str) -> None:
     payload = codec.encode(topic, message)
     assert decode_text(f"kitchen-bot/{topic.key}", payload) == shown
     assert msgspec.json.decode(decode(topic.key, payload))

@@ -16,7 +16,7 @@ from cli.missions.verdict import Witness
 from common import messages as m
 from common import topics
 from common.bus import codec
-from common.topics import Topic
+from common.topic import Topic
 from tests.simulation import Simulation
 
 ROOT = Path(__file__).parents[2]

@@ -8,6 +8,7 @@ from rich.console import Console
 from cli import watch
 from common import messages as m
 from common import topics
+from common.topic import Topic
 
 
 class Silent:
@@ -16,7 +17,7 @@ class Silent:
     def __init__(self) -> None:
         self.sent: list[tuple[str, m.Message]] = []
 
-    def send(self, topic: topics.Topic[Any], message: m.Message) -> None:
+    def send(self, topic: Topic[Any], message: m.Message) -> None:
         self.sent.append((topic.key, message))
 
 

@@ -4,6 +4,7 @@ import pytest
 from common import messages as m
 from common import topics
 from common.bus import codec
+from common.topic import Topic
 
 
 @pytest.mark.parametrize(
@@ -59,7 +60,7 @@ def test_structured_topics_refuse_bare_text(payload: bytes) -> None:
 
 
 @pytest.mark.parametrize("topic", topics.TABLE, ids=lambda t: t.key)
-def test_encoded_messages_decode_to_themselves(topic: topics.Topic[m.Message]) -> None:
+def test_encoded_messages_decode_to_themselves(topic: Topic[m.Message]) -> None:
     samples = {str: "listen", float: 0.1, int: 7, bool: True, bytes: b"\x00\xff", list: [], dict: {}}
     values = {}
     for field in msgspec.structs.fields(topic.type):
@@ -86,7 +87,7 @@ def test_the_wrong_type_for_a_topic_is_a_programming_error() -> None:
         codec.encode(topics.BRAIN_STATE, m.GoalReached(reached=True))
 
 
-def refusal(topic: topics.Topic[m.Message], payload: bytes) -> str:
+def refusal(topic: Topic[m.Message], payload: bytes) -> str:
     with pytest.raises(codec.DecodeError) as refused:
         codec.decode(topic, payload)
     assert refused.value.__cause__ is None, "the reason is enough"

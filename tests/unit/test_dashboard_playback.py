@@ -20,7 +20,7 @@ from common.mission_log.states import spans
 from common.recording import Recorder, Recording, Row
 from common.scene import load_scene
 from common.time.lockstep import DT
-from common.topics import Topic
+from common.topic import Topic
 from services.dashboard.replay.playback import Tape, TapeIo, wanted_keys
 from services.sim.model import own
 from services.sim.physics import Physics

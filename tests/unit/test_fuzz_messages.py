@@ -14,7 +14,7 @@ from common import messages as m
 from common import topics
 from common.bus import codec
 from common.bus.validation import LIMIT, bad_field
-from common.topics import Topic
+from common.topic import Topic
 
 QUICK = settings(max_examples=15, deadline=None, suppress_health_check=list(HealthCheck))
 KINDS = sorted({*(t.type for t in topics.TABLE), m.Health, m.LogRecord}, key=lambda k: k.__name__)

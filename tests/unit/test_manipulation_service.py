@@ -13,6 +13,7 @@ from common.bus.memory import MemoryIo
 from common.grip import Grip
 from common.household import load_household
 from common.kinds import KINDS
+from common.topic import Topic
 from evaluation.stack import Stack
 from services.manipulation.arm_model import ArmModel, Obstacle, Pose
 from services.manipulation.config import ManipulationConfig
@@ -332,7 +333,7 @@ def test_fingers_that_did_not_open_hold_the_same_thing_for_the_next_try(monkeypa
     assert robot.truth()["holding"] is None
 
 
-def wait(robot: Stack, topic: topics.Topic[m.Message], goal_id: str, patience: float) -> dict[str, str]:
+def wait(robot: Stack, topic: Topic[m.Message], goal_id: str, patience: float) -> dict[str, str]:
     for _ in range(round(patience * 10)):
         robot.advance(0.1)
         status: dict[str, str] = msgspec.json.decode(robot.bus.last[topic.key])

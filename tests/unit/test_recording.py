@@ -19,6 +19,7 @@ from common.bus import codec
 from common.recording import BULK, Recorder, Recording, RecordingError, repair
 from common.schemas import schema_of
 from common.time.lockstep import DT
+from common.topic import Topic
 from evaluation.replay.__main__ import main as replay_service
 from evaluation.replay.comparison import compare, differs
 from evaluation.stack import Stack
@@ -41,7 +42,7 @@ def check_dialect(schema: dict[str, Any], where: str) -> None:
 
 
 @pytest.mark.parametrize("topic", topics.TABLE, ids=lambda t: t.key)
-def test_the_schema_of_every_topic_is_one_that_foxglove_reads(topic: "topics.Topic[Any]") -> None:
+def test_the_schema_of_every_topic_is_one_that_foxglove_reads(topic: "Topic[Any]") -> None:
     schema = json.loads(schema_of(topic.type))
     check_dialect(schema, topic.key)
     untyped = {*topic.type.__struct_fields__} - {*schema["properties"]}

@@ -13,6 +13,7 @@ from common.plan_tables import SCENES
 from common.runtime import StartError
 from common.scene import SceneError, load_scene
 from common.support import MARGIN
+from common.topic import Topic
 from services.sim.layout import place_objects
 from services.sim.physics import Physics
 from services.sim.robot import JOINT_NAMES
@@ -143,7 +144,7 @@ def test_the_lidar_sees_walls_and_of_the_robot_only_the_posts_around_it() -> Non
         (topics.GRIPPER_COMMAND, m.GripperCommand(position=7.0)),
     ],
 )
-def test_impossible_commands_are_counted_and_move_nothing(topic: topics.Topic[m.Message], message: m.Message) -> None:
+def test_impossible_commands_are_counted_and_move_nothing(topic: Topic[m.Message], message: m.Message) -> None:
     world = World()
     before = world.sim.physics.data.qpos[:10].copy()
     world.bus.send(topic, message)

@@ -8,7 +8,8 @@ import msgspec
 
 from common import messages as m
 from common.bus.port import Io
-from common.topics import BY_KEY, Topic
+from common.topic import Topic
+from common.topics import BY_KEY
 
 GoalStatus = Literal["busy", "ok", "failed"]
 RECENT = 32

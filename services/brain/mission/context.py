@@ -8,7 +8,7 @@ from common.bus.port import Io
 from common.geometry import Array, Pose2
 from common.language.meaning import is_question
 from common.plan_rules import known_world
-from common.topics import Topic
+from common.topic import Topic
 from common.viewpoints import Viewpoints, viewpoints_of
 from common.whereabouts import likelihood
 from services.brain.config import BrainConfig

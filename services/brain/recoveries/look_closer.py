@@ -10,7 +10,7 @@ from py_trees.common import Status
 from common import messages as m
 from common import topics
 from common.geometry import Pose2
-from common.topics import Topic
+from common.topic import Topic
 from services.brain.mission.context import Context
 from services.brain.mission.mission import SIDES, Failure
 from services.brain.recoveries.clarify import ask_which, several_match

@@ -11,7 +11,7 @@ from common import topics
 from common.geometry import Pose2
 from common.likeness import describes
 from common.naming import normalise
-from common.topics import Topic
+from common.topic import Topic
 from services.brain.mission.channel import Result
 from services.brain.mission.context import Context
 from services.brain.mission.mission import SIDES, Failure

@@ -8,7 +8,7 @@ from py_trees.common import Status
 
 from common import messages as m
 from common import topics
-from common.topics import Topic
+from common.topic import Topic
 from services.brain.mission.channel import Channel, Result
 from services.brain.mission.context import Context
 from services.brain.mission.mission import Failure

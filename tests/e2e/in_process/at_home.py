@@ -6,7 +6,7 @@ from typing import TypeVar
 from common import messages as m
 from common import topics
 from common.bus import codec
-from common.topics import Topic
+from common.topic import Topic
 from evaluation.stack import Stack
 from evaluation.suites.commands import LAID, scene_of
 
