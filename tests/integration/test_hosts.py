@@ -27,39 +27,42 @@ pytestmark = [pytest.mark.slow, pytest.mark.timeout(900)]
 SCENE, THING = "minimal", "yellow block"
 SETTINGS = {"TIDYBOT__RUNTIME__SCENE": SCENE, "TIDYBOT__BRAIN__PIPELINE": "fetch", "TIDYBOT__BRAIN__SETTLE": "0.3"}
 PACED = ("camera", "perception", "navigation", "manipulation", "brain")
-MOVING, STILL, PARTITION = 0.25, 0.02, 5.0
+MOVING, STILL, PARTITION = 0.25, 0.01, 5.0
+"""Speed [m/s] of a base that drives, way [m] of one that stands, where it trembles at up to 2 cm/s, and time [s]."""
 STOP_WITHIN = 0.75
 """Time [s] for the base to stand: targets that stay away count for .2, half a metre a second takes .24 at three times
 the configured acceleration, and messages of .3 may be under way on a busy machine."""
 
 
 class Wheels:
-    """Every odometry message, as (robot time, speed), and when it was sent."""
+    """Every odometry message, and when it was sent."""
 
     def __init__(self, session: zenoh.Session) -> None:
-        self.samples: list[tuple[float, float]] = []
+        self.samples: list[m.Odometry] = []
         self._sent: list[float] = []
         self._kept = session.declare_subscriber(topics.ODOMETRY.key, self._receive)
 
     def _receive(self, sample: zenoh.Sample) -> None:
         odometry = codec.decode(topics.ODOMETRY, sample.payload.to_bytes())
         self._sent.append(delivery.sent_at(sample))
-        self.samples.append((odometry.t, math.hypot(odometry.vx, odometry.vy)))
+        self.samples.append(odometry)
 
     @property
     def now(self) -> float:
-        return self.samples[-1][0] if self.samples else 0.0
+        return self.samples[-1].t if self.samples else 0.0
 
     @property
     def speed(self) -> float:
-        return self.samples[-1][1] if self.samples else 0.0
+        return math.hypot(self.samples[-1].vx, self.samples[-1].vy) if self.samples else 0.0
 
     def first_after(self, moment: float) -> float | None:
         """Robot time of the first message sent after a moment [unix s]; what is read late does not make it earlier."""
-        return next((t for (t, _), sent in zip(self.samples, self._sent, strict=False) if sent > moment), None)
+        return next((o.t for o, sent in zip(self.samples, self._sent, strict=False) if sent > moment), None)
 
-    def fastest(self, since: float, until: float) -> float:
-        return max(speed for t, speed in self.samples if since <= t <= until)
+    def way(self, since: float, until: float) -> float:
+        """How far [m] the base has come, at most, from where it was at robot time `since`."""
+        seen = [(o.x, o.y) for o in self.samples if since <= o.t <= until]
+        return max(math.dist(seen[0], at) for at in seen)
 
 
 class Mission:
@@ -94,6 +97,8 @@ def test_a_mission_across_two_machines_outlives_a_cut_cable(tmp_path: Path, monk
             shutil.copytree(keys / name, tmp_path / "two" / name)  # all that the other machine gets
         common = {**SETTINGS, "TIDYBOT_STATE_DIR": str(tmp_path)}
         at_home = {**common, "TIDYBOT_KEYS": str(keys), "TIDYBOT_CONNECT": "tls/127.0.0.1:7447"}
+        # Nobody waits for anybody here: at full speed a busy machine is late with the arm's set-points.
+        at_home["TIDYBOT__SIM__SPEED"] = "0.5"
         away = {**common, "TIDYBOT_KEYS": str(tmp_path / "two"), "TIDYBOT_CONNECT": f"tls/{one.address}:7447"}
         one.start("services.router", "--listen", "tls/0.0.0.0:7447", label="router", TIDYBOT_KEYS=str(keys))
         for name in here[1:]:
@@ -111,7 +116,7 @@ def test_a_mission_across_two_machines_outlives_a_cut_cable(tmp_path: Path, monk
             moment = unix_time()
             cut = eventually(lambda: wheels.first_after(moment), "the simulation goes on")
             eventually(lambda: wheels.now > cut + PARTITION, "5 s of robot time without the other machine", 120)
-            assert wheels.fastest(cut + STOP_WITHIN, cut + PARTITION) < STILL
+            assert wheels.way(cut + STOP_WITHIN, cut + PARTITION) < STILL
             eventually(lambda: set(there).isdisjoint(link.alive()), "the cable was really cut", 60)
             net.cable.heal()
             eventually(lambda: set(there) <= link.alive(), "the other machine is back", 60)
