@@ -47,7 +47,7 @@ _SMALL_WORDS = (
     "thinking going happen manage try trying care willing not too busy free ready able get got go ahead thanks "
     "thank well hey hello hi morning afternoon evening sorry excuse listen look here up about your changed only "
     "so that long soon next first point chore job task let suggest propose require requesting anyhow anyway today "
-    "tonight whenever convenient feel feeling fancy"
+    "tonight whenever convenient convenience leisure possible spare suits fast get gets have has feel feeling fancy"
 )
 _SMALL = frozenset(_SMALL_WORDS.split())
 """What else a frame is made of."""
@@ -56,6 +56,20 @@ _HARMLESS_NOT = frozenset({"mind", "suppose", "trouble", "problem", "busy", "bot
 """Words with which "not" forbids nothing."""
 _OF_DOING = frozenset({"mind", "of", "about", "for", "by", "try", "trying"})
 """Words with which the verb may end in -ing."""
+_OCCASIONS = frozenset({"if", "when", "whenever", "while"})
+_COURTESIES = frozenset({
+    "as soon", "as quickly", "as fast", "once you", "would you", "could you", "can you", "will you", "thanks for",
+    "thank you",
+})  # fmt: skip
+"""How an occasion or a courtesy begins that stands before or behind a request."""
+_EASE = frozenset({
+    "trouble", "problem", "bother", "ok", "okay", "fine", "alright", "possible", "convenient", "suits", "fast", "soon",
+    "thanks",
+})  # fmt: skip
+_FREE = frozenset({"moment", "minute", "second", "time", "day", "hand"})
+"""With which `if you have one moment` is no condition on a thing."""
+_QUESTIONS = frozenset({"what", "who", "how", "which", "where", "why", "whose"})
+_BAG = _SMALL | _ASKING | _DUTIES
 LONGEST = 20
 """Words of the longest frame (chosen)."""
 
@@ -65,11 +79,37 @@ def without_frame(text: str) -> str:
     words = [w.strip(",") for w in text.split()]
     for at in range(1, min(len(words), LONGEST)):
         before = words[:at]
-        if words[at - 1] not in _SMALL | _ASKING | _DUTIES:
+        if words[at - 1] not in _BAG:
             return text
         if _begins_command(words[at], before) and _is_frame(before):
             return " ".join(text.split()[at:])
     return text
+
+
+def without_frame_behind(text: str) -> str:
+    """A clause without the occasion or the courtesy behind it: `... whenever you get the chance`, `... could you`."""
+    words = [w.strip(",") for w in text.split()]
+    if _QUESTIONS.intersection(words):
+        return text
+    for at in range(2, len(words) - 1):
+        if _is_occasion(words[at:]):
+            return " ".join(text.split()[:at]).strip(" ,")
+    return text
+
+
+def _is_occasion(words: list[str]) -> bool:
+    """`if it is not too much trouble`, `as soon as you possibly can`: no condition, only a courtesy."""
+    said = set(words)
+    if words[0] not in _OCCASIONS and " ".join(words[:2]) not in _COURTESIES:
+        return False
+    if (
+        said & {"was", "were"}
+        or {"i", "would"} <= said
+        or (said & {"one", "any", "some", "there"} and not said & _FREE)
+    ):
+        return False
+    asks = said & (_ASKING | _EASE | {"you"})
+    return bool(asks) and _BAG.issuperset(said) and ("not" not in said or bool(_HARMLESS_NOT & said))
 
 
 def _begins_command(word: str, before: list[str]) -> bool:
@@ -81,6 +121,8 @@ def _begins_command(word: str, before: list[str]) -> bool:
 
 
 def _is_frame(words: list[str]) -> bool:
+    if len(words) > 2 and _is_occasion(words):
+        return True
     said = set(words)
     speaks = bool(said & {"i", "we"})
     asks = (said & _ASKING) - (frozenset() if speaks else _WISHES)

@@ -6,7 +6,7 @@ Frames that speak of the past, of somebody else's words or of what must not be a
 
 import re
 
-from common.language.frame import without_frame
+from common.language.frame import without_frame, without_frame_behind
 
 _ADVERBS = (
     r"(?: "
@@ -30,16 +30,9 @@ _TIME = (
 _OCCASION = (
     rf"(?:when|whenever|once|if|as soon as) you (?:(?:have|get|find|have got|got) {_TIME}(?: to spare| free| for it)?"
     r"|can|could|would|like|please|want|may|are not (?:doing anything|too busy|busy)(?: else)?|are (?:free|ready|"
-    r"able|not busy|up for it|around|there)"
-    r"|do not mind|would not mind|(?:would|could) be so kind|feel like it)"
-    r"|if (?:it|that|this)?\s?(?:is|would|will|be)?\s?(?:not|is not|be not)? ?"
-    r"(?:too much(?: (?:trouble|to ask|of a bother))?|asking too much|a (?:problem|bother)|any trouble|too "
-    r"(?:hard|difficult)|"
-    rf"possible|ok|okay|alright|all right|convenient|no trouble|no bother|fine)(?: (?:for|with|by) (?:you|me))?"
-    r"|"
-    r"(?:when|whenever|if)(?:ever)? (?:it|that) (?:suits|pleases|is convenient for) (?:you|me)|if i "
-    r"(?:may|might|can|could)(?: ask| be so bold)?|if need be|if necessary|whenever|at your convenience|at "
-    r"your leisure"
+    r"able|not busy|up for it|around|there))"
+    r"|if (?:it is |that is )?(?:not )?(?:too (?:hard|difficult|much(?: trouble| to ask)?)|asking too much|possible|convenient)"
+    r"|(?:when|whenever) it (?:suits|pleases) you|if need be|if necessary|whenever|at your (?:convenience|leisure)"
 )
 """Occasions and conditions that are none."""
 
@@ -141,7 +134,7 @@ _ENDINGS = (
     "look(?: for it)?|after all|with you|from (?:there|here|where you (?:are|stand))|a (?:little )?bit|a "
     "little|somewhat|for a (?:bit|while)",
     "(?<!try )(?<!it )(?<!that )(?<!same )(?<!thing )(?<!once )(?<!go )(?<!look )again",
-    "as soon as (?:you can|possible)|(?:will|would|could|can|won't) you|would be (?:great|nice|lovely|good)(?= please)",
+    "as soon as possible|would be (?:great|nice|lovely|good)(?= please)",
     r"if (?:you (?:can |could |do |happen to )?(?:find|see|spot|have) (?:it|one|any|them|some)|"
     r"there (?:is|are) (?:still )?(?:one|any|some|(?:room|space)(?: for (?:it|them))?)(?: "
     r"left)?|(?:it|they) (?:is|are) (?:still )?(?:there|around|available))",
@@ -175,7 +168,7 @@ def without_politeness(text: str) -> str:
     if LONG_SPEECH.match(bare):
         return bare.removesuffix(" please")
     bare = _FOR_ME.sub(r"bring me \1", bare)
-    while (shorter := _TAIL.sub("", bare)) != bare:
+    while (shorter := without_frame_behind(_TAIL.sub("", bare))) != bare:
         bare = shorter
     return bare
 
