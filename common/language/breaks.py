@@ -232,4 +232,5 @@ def _asks(text: str, strong: bool) -> bool:
     bare = without_politeness(text.split(".")[0]).replace(",", " ").split()
     if not bare:
         return False
-    return len(bare) > 1 and (strong or bare[0] in _VERBS)
+    bins = (bare[:1] == ["bin"] and bare[1:2] != ["it"]) or bare[:2] == ["bin", "it"]
+    return len(bare) > 1 and (strong or bare[0] in _VERBS or bins)

@@ -10,7 +10,8 @@ from common.language.normalise import DETERMINERS, infinitive
 
 _ASKING_WORDS = (
     "can could would will may might please pls mind kind kindly favour favor possible possibly wish hope hoping "
-    "wonder wondering appreciate grateful glad happy thankful delighted obliged lovely chance trouble ask asking "
+    "wonder wondering appreciate grateful feasible glad happy thankful delighted obliged lovely "
+    "chance trouble ask asking "
     "beg trust expect suppose reckon think help need want love like great nice good wonderful best way request "
     "urge"
 )
@@ -82,7 +83,7 @@ def without_frame(text: str) -> str:
         if words[at - 1] not in _BAG:
             return text
         if _begins_command(words[at], before) and _is_frame(before):
-            return " ".join(text.split()[at:])
+            return " ".join((infinitive(words[at], COMMANDING), *text.split()[at + 1 :]))
     return text
 
 
@@ -115,6 +116,8 @@ def _is_occasion(words: list[str]) -> bool:
 def _begins_command(word: str, before: list[str]) -> bool:
     if before[-1] in DETERMINERS - {"that"}:
         return False
+    if {"if", "would"} <= set(before) and infinitive(word, COMMANDING) in COMMANDING:
+        return True  # "i would be glad if you fetched"
     return word in COMMANDING or (
         word.endswith("ing") and infinitive(word, COMMANDING) in COMMANDING and bool(_OF_DOING & set(before))
     )

@@ -24,7 +24,8 @@ TOLD: tuple[Wording, ...] = (
     Wording(
         "name_place",
         f"[(remember | learn) [that | and]] (this | that | here) is [called | named] {_THE} <words>"
-        f" | (call | name) (this | that | here) {_THE} <words>"
+        f" | (call | name) (this | that | here) {_THE} <words> "
+        f" | (remember | learn) (this | that | here) [place | spot] as {_THE} <words>"
         f" | (you are | you're) [now] (in | at) {_THE} <words> [now]"
         f" | (call | rename) <spot> (to | as) {_THE} <words> | <spot> is [now] (called | named) {_THE} <words>"
         f" | (call | rename) (the | my | our) <spot> {_THE} <words>",

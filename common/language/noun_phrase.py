@@ -36,7 +36,8 @@ WHICH: dict[str, Which] = {
     "larger": "biggest", "tall": "tallest", "tallest": "tallest", "taller": "tallest", "high": "tallest",
     "short": "shortest", "shortest": "shortest", "shorter": "shortest", "tiny": "smallest",
     "smallest": "smallest", "small": "smallest", "little": "smallest", "smaller": "smallest", "first": "first",
-    "second": "second", "third": "third", "last": "last", "middle": "middle", "other": "other", "another": "other",
+    "second": "second", "third": "third", "last": "last", "middle": "middle", "other": "other",
+    "different": "other", "another": "other",
 }  # fmt: skip
 """Words that single one out of several."""
 NUMBERS = {"one": 1, "two": 2, "three": 3, "four": 4, "five": 5, "six": 6, "couple": 2}
@@ -80,7 +81,7 @@ UNSEEN = frozenset(
     {
         "dirty", "clean", "empty", "full", "used", "old", "new", "nice", "fresh", "cold", "hot", "warm", "favourite",
         "favorite", "normal", "regular", "ordinary", "own", "lovely", "pretty", "good", "whole", "remaining", "same",
-        "usual", "certain", "single",
+        "usual", "more", "certain", "single",
     }
 )  # fmt: skip
 """Qualities that nobody can see or that tell nothing apart."""

@@ -31,7 +31,8 @@ _OCCASION = (
     rf"(?:when|whenever|once|if|as soon as) you (?:(?:have|get|find|have got|got) {_TIME}(?: to spare| free| for it)?"
     r"|can|could|would|like|please|want|may|are not (?:doing anything|too busy|busy)(?: else)?|are (?:free|ready|"
     r"able|not busy|up for it|around|there))"
-    r"|if (?:it is |that is )?(?:not )?(?:too (?:hard|difficult|much(?: trouble| to ask)?)|asking too much|possible|convenient)"
+    r"|if (?:it is |that is )?(?:not )?(?:too (?:hard|difficult|much(?: trouble| to ask)?)|asking too much|possible|"
+    r"convenient)"
     r"|(?:when|whenever) it (?:suits|pleases) you|if need be|if necessary|whenever|at your (?:convenience|leisure)"
 )
 """Occasions and conditions that are none."""
@@ -64,7 +65,7 @@ _ADDRESS = (
     "trouble|interrupt) you|"
     "(?:stop|quit) (?:wasting (?:my |our )?time|messing about|fooling around|dawdling)(?: "
     "and)?|sorry (?:to|for|that|if) [^,]{3,40}?(?:,| but)(?= "
-    "(?:can|could|would|will|please|i)\\b)|sorry|by the way|next|guess what|you know what|you "
+    "(?:can|could|would|will|please|i)\\b)|sorry|by the way|next|let me (?:think|see)|guess what|you know what|you "
     "know(?! the| what| where| how| my)|see(?=,)|but(?! not)|"
     "i say|as i said|for me|one more thing|could it be that|"
     "(?:be )?quick|hurry(?: up)?|attention|fast|come on|pretty please|honestly|also|plus|oh and|first of all|"

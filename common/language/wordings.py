@@ -18,7 +18,8 @@ WORDINGS: tuple[Wording, ...] = (
         "stop",
         "[no] (stop | halt | freeze | hold it) [it | that | now | [right] there | at once | immediately | everything]"
         " | [no] stop ([please] stop [stop] | moving | driving | going | doing that | what you are doing)"
-        " | hold still | do not (move | do (that | it | this)) | (that is | it is) enough | enough | quit "
+        " | hold still | do not (move | do (that | it | this))"
+        " | [that is it] [that is | it is] enough | quit "
         "(it | that) | cut it out | stay (there | where you are) | emergency stop",
         heard="stop [it]", kind="reply", reason="stopping needs no plan",
     ),
@@ -45,14 +46,14 @@ WORDINGS: tuple[Wording, ...] = (
         "please do | do | do that | go for it | "
         "exactly | go ahead] | [that is] (correct | right | true) | exactly | sure | okay | ok"
         " | go ahead | do it | do | affirmative | sure thing | of course | absolutely | definitely | indeed | "
-        "certainly | fine"
+        "certainly | fine | that is what i (said | meant | want)"
         " | you bet | huh | mhm | mm | by all means | please do | right | that is (it | the one) | why not | perfect",
         heard="yes [please | it is] | yeah | correct", kind="reply", reason="I did not ask anything",
     ),
     Wording(
         "no", "no no [no] | (no | nope | nah) [thanks | i did not | that is wrong] | [that is] "
               "(wrong | incorrect) | negative "
-              "| not (that | really | at all)"
+              "| not (that | really | at all) | no way"
         " | [no] that is not (what i (said | meant | want | asked for) | right | correct | it | true) | not what "
         "i (said | meant)"
         " | [no] i (did not | never) (say | mean) that | you (misheard | misunderstood) [me] | absolutely not",
@@ -80,7 +81,8 @@ WORDINGS: tuple[Wording, ...] = (
         "teach",
         "[(remember | learn | look) [that | and]] (this | that) [<thing>] is [called] (my | our) <words>"
         " | [(remember | learn) [that | and]] (this | that) [<thing>] is (called | named) <words>"
-        " | <thing> is (called | named) [my | our | the] <words> | (the | this | that) <thing> is (my | our) <words>"
+        " | <thing> (is | shall be | will be) (called | named | known as) [my | our | the] <words>"
+        " | (the | this | that) <thing> is (my | our) <words>"
         " | (call | name) (this | that | it) [<thing>] [my | our | the] <words> | (call | name) (the "
         "| my | our) <thing> <words>"
         " | (remember | learn) (this | that) [<thing>] as [my | our | the] <words>",
@@ -131,10 +133,7 @@ WORDINGS: tuple[Wording, ...] = (
         f" | [go [and]] {LOOK} what (is | lies | there is) [lying | standing] (on | in | at) <spot>"
         f" | (search | inspect | survey | scan | explore) <spot>",
     ),
-    Wording(
-        "check",
-        "(check | inspect | scan) <spot> for <thing>",
-    ),
+    Wording("check", "(check | inspect | scan) <spot> for <thing>"),
     Wording(
         "check",
         f"[go [over] [and | to]] {LOOK} (if | whether) (there is | there are | you (see | find) | "
@@ -184,8 +183,7 @@ WORDINGS: tuple[Wording, ...] = (
     # Tidying, going.
     Wording("tidy", f"({TIDY}) up [<spot>]", heard="(tidy | clean) up [the | my] <place>"),
     Wording("tidy", f"({TIDY}) <spot> [up]", heard="(tidy | clean | clear) [the | my] <place>"),
-    Wording("tidy", "(sort | straighten) <spot> (out | up)"),
-    Wording("tidy", "(clean | clear) <spot> off | empty <spot>"),
+    Wording("tidy", "(sort | straighten) <spot> (out | up) | (clean | clear) <spot> off | empty <spot>"),
     Wording("tidy", "make [some | a bit of | a little] (space | room) (on | in) <spot>"),
     Wording("tidy", "give <spot> a [quick | good] (tidy | clean | tidying | cleaning) [up]"),
     Wording(
@@ -224,7 +222,8 @@ WORDINGS: tuple[Wording, ...] = (
         "mention",
         "[do | can | did | have] [you] (see | know | remember | seen) <thing> [right] |"
         " (in | on | at) <spot> (is | are | there is | there are | stands | lies) <thing> |"
-        " there (is | are | was | were | should be | must be) <thing> | (i | we) (left | put | saw | forgot | "
+        " (start | begin) with <thing> | there (is | are | was | were | should be | must be) <thing>"
+        " | (i | we) (left | put | saw | forgot | "
         "dropped) <thing>"
         " | <thing> (is | are) (in | on | at) <spot> | <thing> (is | are | was | were | looks | look | has | "
         "have) <words>", kind="told",

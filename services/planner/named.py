@@ -15,7 +15,7 @@ MOST_WORDS = 6
 
 
 _PLACED = re.compile(
-    r"\b((?:the|my|a|our) (?:\w+ ){1,3}?)(?:is|are|was|were|lies|stands)(?: still| lying| standing)* "
+    r"\b((?:the|my|a|our) (?:\w+ ){1,3}?)(?:(?:is|are|was|were|lies|stands)(?: still| lying| standing)* )?"
     r"(?:on|in|at) (.+)$"
 )
 """A thing, and where it is said to be."""

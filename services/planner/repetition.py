@@ -19,12 +19,13 @@ _NO = re.compile(
     r"|^(?:wait |no |sorry |actually )*make (?:it|that) (?P<made>.+)$"
     r"|^(?:no |nope |wrong |but )*not (?:this|that|here|there)(?: one| \w+)? (?:but )?(?P<other>(?:the|on|in|to|"
     r"into) .+)$"
+    r"|^(?P<better>(?:on|in|the) .+?) would (?:be|have been) (?:better|nicer|best|preferable)$"
 )
 _PLACED = re.compile(r"\w (?:next to|beside|near|on|in|into|onto|to|at) \w")
 _TOO = re.compile(
     r"^(?!.*\b(?:goes|go|belongs?|is|are|there)\b)(?:and |now |then |do )*(?P<thing>.+?)"
     r" (?:too|as well|also)(?: please)?$"
-    r"|^(?:and|what about) (?P<other>.+)$"
+    r"|^(?:and|(?:now|next)(?= the| my)|what about|do the same (?:for|with)) (?P<other>.+)$"
 )
 
 
@@ -37,7 +38,8 @@ def repeated(command: str, clauses: Sequence[str], told: History, is_place: IsPl
         if wording.action == "again":
             return (replaced(last, " ".join(slots["thing"]), is_place) or last) if "thing" in slots else last
     if (found := _NO.match(expand(normalise(command)))) and (
-        (rest := found["rest"] or found["other"] or found["made"]).split()[0] in DETERMINERS | PREPOSITIONS
+        (rest := found["rest"] or found["other"] or found["made"] or found["better"]).split()[0]
+        in DETERMINERS | PREPOSITIONS
     ):
         return replaced(normalise(last), rest, is_place) or command
     if told.last is not None and told.last.outcome == "cancelled" and (other := _instead(clauses[0], last, is_place)):

@@ -22,12 +22,14 @@ _SMALL = (
     " something somewhere still than then there they to too under until up us was we were what when where whether"
     " which while who why will with without would yes you yourself again ago bit bring fetch get give go going help"
     " like make put take tell thanks please want need try yet now just only also else later soon tomorrow yesterday"
-    " today tonight others goes belongs gets lying standing closest might should must ought said says told asked teh"
+    " today tonight never ever always others"
+    " goes belongs gets lying standing closest might should must ought said says told asked teh"
 )
 _ABSTRACT = (
     "break care lost rest hand kiss hug call lift ride chance look smile clue sign idea reason "
     "answer example name joke"
-    " story attention horses time effort shot turn word note favour favor permission advice truth silence peace easy"
+    " way colour color matter difference sort type story attention horses time effort"
+    " shot turn word note favour favor permission advice truth silence peace easy"
 )
 """Words that are no things: `give me a break` is nothing to be fetched."""
 LIVING = frozenset(

@@ -42,6 +42,8 @@ def _nearest(word: str, known: set[str]) -> str | None:
     """The only word within the allowed distance, of the same beginning if several are."""
     allowed = 2 if len(word) >= VERY_LONG else 1
     near = [k for k in known if len(k) > 2 and abs(len(k) - len(word)) <= allowed and distance(word, k) <= allowed]
+    if len(word) < LONG_WORD:  # another letter makes another word: `hate` is no slip of `have`
+        near = [k for k in near if len(k) != len(word) or sorted(k) == sorted(word)]
     near = [k for k in near if not (k.endswith("s") and k[:-1] in near)]
     near = [k for k in near if k[0] == word[0] or sorted(k) == sorted(word) or len(word) >= LONG_WORD]
     if len(near) > 1:

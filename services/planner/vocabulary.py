@@ -63,12 +63,13 @@ class Vocabulary:
 
     def _read(self, world: World) -> None:
         """Words printed on things and of taught names: up to three together name the thing, where they are new."""
-        for item in world.objects:
-            texts = [normalise(text).split() for text in (item.text, *item.names)]
+        told = [(spec.name, spec.aliases) for spec in self._household.things]
+        for label, said in (*told, *((item.label, (item.text, *item.names)) for item in world.objects)):
+            texts = [normalise(text).split() for text in said]
             runs = {" ".join(t[i : i + n]) for t in texts for n in (1, 2, 3) for i in range(len(t) - n + 1)} - LIVING
             for run in runs - self._nouns.keys() - self.kinds - self.colours.keys():
                 if len(run) > 2 and run not in NO_NOUN:
-                    self._printed.setdefault(run, set()).add(item.label)
+                    self._printed.setdefault(run, set()).add(label)
 
     def _aliases(self, household: Household) -> None:
         for spec in household.things:

@@ -15,6 +15,7 @@ from tests.everyday import CONFIG, HOME, planned, sentences, understand, verdict
 
 LISTS = ("everyday_sentences.tsv", "more_everyday_sentences.tsv", "last_everyday_sentences.tsv")
 CLOSING = ("sealed_everyday_sentences.tsv", "closing_everyday_sentences.tsv")
+SEASONS = ("spring_everyday_sentences.tsv", "summer_everyday_sentences.tsv", "autumn_everyday_sentences.tsv")
 ENOUGH = 0.9
 
 
@@ -39,7 +40,7 @@ def test_what_asks_for_nothing_sets_nothing_in_motion() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["seven_lists.tsv", "development_sentences.tsv", *CLOSING])
+@pytest.mark.parametrize("name", ["seven_lists.tsv", "development_sentences.tsv", *CLOSING, *SEASONS])
 def test_lists_of_many_speakers(name: str) -> None:
     rows = sentences(name)
     verdicts = {row: verdict(row, understand(row)) for row in rows}

@@ -45,13 +45,16 @@ _INSTEAD_OF = re.compile(
 
 
 _RATHER = re.compile(r"^(?:actually |in fact )?(?:i|we) would (?:rather|prefer|sooner)\b")
+_CHANGED = re.compile(r"^(?:(?:no|oh|actually|i have changed my mind|on second thoughts?),? )+")
+_NOT_BUT = re.compile(r"^(?P<right>.+?),? (?:instead of|rather than) (?:\w+ing|the|my|a|that|to) .+$")
+"""`put it on the desk instead of bringing it to me`."""
 _ONE_MOMENT = re.compile(
     r"^(?:(?:hold on|hang on|wait|stop)(?: (?:a|one|just a|for a))?|one|just a) "
     r"(?:second|sec|moment|minute|bit|tick)$|^(?:wait|hold on|hang on)(?:,? (?:wait|hold on|hang on))+$"
 )
 _NO_LONGER = re.compile(r"^(?:i|we) (?:do not|no longer) (?:need|want) [^,]+?(?: (?:any ?more|after all|now))?$")
 _CALLED_OFF = re.compile(
-    r"^(?:cancel|abort|scrap|skip|forget)(?: about)? (?:the|that|my) (?!.*\b(?:rule|name)\b)\w+(?: \w+)?$"
+    r"^(?:cancel|abort|scrap|skip|forget|never mind)(?: about)? (?:the|that|my) (?!.*\b(?:rule|name)\b)\w+(?: \w+)?$"
 )
 """What was asked for is not wanted; there is nothing in its place."""
 
@@ -79,8 +82,10 @@ def interjection(said: str) -> Interjection:
         return Interjection("replace", filled(contrast["right"], contrast["wrong"]))
     if unwanted := NOT_WANTED.match(words):
         return Interjection("replace", words[unwanted.end() :])
-    if _NO_LONGER.match(words) or _CALLED_OFF.match(words):
+    if _NO_LONGER.match(words) or _CALLED_OFF.match(_CHANGED.sub("", words)):
         return Interjection("cancel", said)
+    if other := _NOT_BUT.match(words):
+        return Interjection("replace", other["right"])
     if words.startswith("not ") or _RATHER.match(words):
         return Interjection("replace", said)
     for kind, begin, end in (("replace", _INSTEAD, _INSTEAD_END), ("queue", _LATER, _LATER_END)):
