@@ -17,6 +17,8 @@ _SIDE = re.compile(r"^(?:(?P<a>left|right|middle|nearest|closest|near|far|farthe
                    r"(?: (?:on|at|in|from)? ?(?P<b>left|right|middle))?$")  # fmt: skip
 _PLACE = re.compile(r"^(?P<thing>.+?) (?:on top|on|in|inside|from|at|by|near|next)(?: of)? (?P<place>.+)$")
 _SIZE = {"big": -1, "large": -1, "bigger": -1, "biggest": -1, "small": 1, "little": 1, "smaller": 1, "smallest": 1}
+FLOOR = "floor"
+"""The place of what stands on nothing else."""
 MOST = 6
 """Objects of which it is told that they may be meant. Chosen: more than anybody is asked about."""
 Match = Callable[[str, Sequence[WorldObject]], list[WorldObject]]
@@ -133,6 +135,8 @@ def _take_place(words: str, household: Household) -> tuple[str, str]:
     if match is None:
         return "", words
     wanted = match["place"]
+    if wanted == FLOOR:
+        return FLOOR, match["thing"]
     names = [(r.name, r.aliases) for r in household.receptacles] + [(r.name, r.aliases) for r in household.rooms]
     for name, aliases in names:
         if wanted in map(normalise, (name, *aliases)):
@@ -141,7 +145,7 @@ def _take_place(words: str, household: Household) -> tuple[str, str]:
 
 
 def _is_at(o: WorldObject, place: str, household: Household) -> bool:
-    if o.on == place:
+    if o.on == place or (place == FLOOR and not o.on):
         return True
     room = household.room_at(o.position[0], o.position[1])
     return room is not None and room.name == place

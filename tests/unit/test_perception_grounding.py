@@ -110,6 +110,7 @@ def test_a_place_is_where_it_stands_or_the_room_it_is_in() -> None:
     lost = thing("red mug", 9.0, 9.0, "")
     assert meant("mug in the hall", [lost, BLUE]) == BLUE
     assert meant("mug in the study", [lost, BLUE]) is None
+    assert meant("mug from the floor", [lost, BLUE]) == lost
 
 
 def test_other_words_for_things_are_whole_words() -> None:
