@@ -71,6 +71,11 @@ class Kind:
         return any(rule.hold == "rim" for rule in self.grasps)
 
     @property
+    def open_above(self) -> bool:
+        """A vessel that may be found on its side."""
+        return self.rests >= {"side", "upside down"}
+
+    @property
     def straight(self) -> bool:
         """Round with a vertical wall, or a ball: any part of its surface tells where its axis is."""
         return self.shape == "sphere" or (self.shape == "turned" and not self.lean)

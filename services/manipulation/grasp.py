@@ -252,7 +252,7 @@ def _flat(target: Target, facing: float, rule: GraspRule) -> list[Grasp]:
 def _rim(target: Target, facing: float, rule: GraspRule) -> list[Grasp]:
     """Fingers on either side of a vessel's wall at the rim, along its slope: the near side first."""
     x, y, _ = target.position
-    height, vessel, handle = target.size[2] - RIM_DEPTH, _vessel(target), handle_of(target)
+    height, vessel, handle = target.size[2] - RIM_DEPTH, vessel_of(target), handle_of(target)
     radius = target.size[0] / 2 - RIM_DEPTH * math.tan(vessel.lean) - vessel.wall / 2
     found = []
     for degrees in rule.angles:
@@ -269,7 +269,7 @@ def _rim(target: Target, facing: float, rule: GraspRule) -> list[Grasp]:
     return found
 
 
-def _vessel(target: Target) -> Kind:
+def vessel_of(target: Target) -> Kind:
     """The kind whose wall the object's is like."""
     kind = kind_of(target.kind)
     return kind if kind.wall else USUAL_VESSEL

@@ -12,6 +12,7 @@ from services.manipulation.clearance import HandClearance
 from services.manipulation.grasp import Grasp, candidates
 from services.manipulation.grasped_object import GraspedObject
 from services.manipulation.ik import InverseKinematics
+from services.manipulation.mouth import in_the_mouth
 from services.manipulation.over_edge import flat_and_wide, over_an_edge
 from services.manipulation.target import Target
 from services.manipulation.touch import Reaction
@@ -75,7 +76,7 @@ class Planner:
         yield over_an_edge(target, arm.forward, arm.widest)
         if flat_and_wide(target, arm.widest + PLAINLY):
             return
-        rules = candidates(target, arm.forward, arm.widest)
+        rules = candidates(target, arm.forward, arm.widest) + in_the_mouth(target)
         on_surface = antipodal(target, arm.forward, arm.hand.open, arm.widest)
         shapeless = target.shape in ("long", "irregular") and not target.lies
         yield from ((on_surface, rules) if shapeless else (rules, on_surface))
