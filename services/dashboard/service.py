@@ -6,8 +6,7 @@ from typing import Any
 
 from common import messages as m
 from common import topics
-from common.bus.port import Io, Job
-from common.geometry import Pose2
+from common.bus.port import Io
 from common.mission_log import timeline
 from common.runtime import StartError
 from services.dashboard.background_requests import BackgroundRequests
@@ -19,13 +18,10 @@ from services.dashboard.panels.cameras import Cameras
 from services.dashboard.panels.history_buffers import HealthRecords, Transcript, TreeReasons
 from services.dashboard.panels.plots import Plots
 from services.dashboard.panels.status_bar import status_bar
-from services.dashboard.panels.tracking_error import FRESH, off_path
+from services.dashboard.panels.tracking_error import FRESH
 from services.dashboard.panels.widgets import Panels
-from services.dashboard.scene.drawing import Drawing, draw
-from services.dashboard.scene.follow_camera import FollowCamera
-from services.dashboard.scene.layers import Layers
+from services.dashboard.scene.live import LiveScene
 from services.dashboard.scene.picking import pick
-from services.dashboard.scene.view import View
 from services.dashboard.supervisor_client import Supervisor
 from services.dashboard.teleoperation import Teleoperation
 from services.dashboard.web.events import Asked, Click, Sound, Words
@@ -33,9 +29,7 @@ from services.dashboard.web.listener import PageError
 from services.dashboard.web.server import Web
 
 SLOW, PLOT = 0.25, 0.5
-"""Periods [s] of panels and ghosts, and of the curves; chosen: as often as a person reads them."""
-GRABBING = ("reach", "aim", "grasp")
-"""Phases of a grab in which its candidates are shown."""
+"""Periods [s] of panels and of the curves; chosen: as often as a person reads them."""
 
 
 class DashboardService:
@@ -53,9 +47,8 @@ class DashboardService:
             self.web = Web(config)
         except PageError as error:
             raise StartError(str(error)) from None
-        self.view, self._layers = View(self.web.viser), Layers(self.web.viser)
-        self._camera = FollowCamera(self.web.viser, io.household)
         self.panels = Panels(self.web.viser, config.camera_width, config.camera_height)
+        self.scene = LiveScene(self.web.viser, io, self.panels, config.ghost_after)
         self._cameras = Cameras(config, io, self.panels)
         self._transcript, self._health, self._reasons = Transcript(), HealthRecords(), TreeReasons()
         self._requests = BackgroundRequests(
@@ -65,16 +58,9 @@ class DashboardService:
         self._teleoperation = Teleoperation(io)
         self._hand = HandTeleoperation(io)
         self._plots = Plots(self.panels)
-        self._mjcf = ""
-        self._drawn: Job[Drawing] | None = None
-        self._base: Pose2 = (0.0, 0.0, 0.0)
         self._t = 0.0
         self._move_at = self._slow_at = self._plot_at = float("-inf")
-        self._path: list[tuple[float, float]] = []
-        self._seen_grasps: tuple[object, bool] = (None, False)
         self._shown_bar: object = None
-        self._world: m.WorldObjects | None = None
-        self._ghosts_at = float("-inf")
         self._tree: m.TreeNode | None = None
         io.publish(topics.PAGE_STATUS, m.PageStatus(url=self.web.url))
         io.log.info("page", url=self.web.url)
@@ -87,7 +73,7 @@ class DashboardService:
         self._handle_events(now)
         self._teleoperation.step(now)
         self._hand.step(now)
-        self._redraw_model(now)
+        self.scene.redraw_model(now)
         watched = self.web.watched
         self._requests.step(now, watched)
         if watched or now >= self._move_at:
@@ -101,12 +87,12 @@ class DashboardService:
         if now >= self._move_at:
             # From when it was due, not from now: steps that do not fit the period must not make frames rarer.
             self._move_at = max(self._move_at + period, now)
-            self._move(now)
+            self.scene.move(now, self._t)
         if now - self._slow_at >= (SLOW if watched else 1.0):
             self._slow_at = now
             self._refresh(now)
         if watched:
-            self._cameras.look(now, self._base)
+            self._cameras.look(now, self.scene.base)
             if now - self._plot_at >= PLOT:
                 self._plot_at = now
                 self.panels.redraw()
@@ -118,7 +104,7 @@ class DashboardService:
         if joints is not None and joints.t != t:
             self._t = t = joints.t
             command = io.latest(topics.ARM_COMMAND) if io.age(topics.ARM_COMMAND, now) < FRESH else None
-            self._plots.take(now, joints, command, self._off_path())
+            self._plots.take(now, joints, command, self.scene.off_path)
         for goal in io.take_all(topics.SPEECH_GOAL):
             self._transcript.add_goal(t, goal)
         for result in io.take_all(topics.SPEECH_RESULT):
@@ -135,11 +121,6 @@ class DashboardService:
             else:
                 self.web.play(chunk.data, chunk.rate)
 
-    def _off_path(self) -> float:
-        """How far the base is from its path [m], while it drives along one."""
-        driving = self._io.latest(topics.NAVIGATION_FEEDBACK)
-        return off_path(self._path, self._base) if driving is not None and driving.status == "navigating" else 0.0
-
     # --- from the visitors
     def _handle_events(self, now: float) -> None:
         state = self._io.latest(topics.BRAIN_STATE)
@@ -154,8 +135,8 @@ class DashboardService:
             elif isinstance(event, Click) and (self.panels.clicks or self._commands.naming):
                 world = self._io.latest(topics.WORLD_OBJECTS)
                 objects = world.objects if world is not None else []
-                picked = pick(event.origin, event.direction, self.view.drawing.flat, objects)
-                self._commands.picked(picked, self._base, state, self._t)
+                picked = pick(event.origin, event.direction, self.scene.view.drawing.flat, objects)
+                self._commands.picked(picked, self.scene.base, state, self._t)
 
     def _handle_action(self, words: Words, now: float) -> None:
         if words.do == "drive":
@@ -171,54 +152,6 @@ class DashboardService:
         self.web.answer(asked, timeline.page(record) if record is not None else "")
 
     # --- to the visitors
-    def _redraw_model(self, now: float) -> None:
-        model = self._io.latest(topics.SIM_MODEL)
-        if self._drawn is not None and self._drawn.poll(now):
-            job, self._drawn = self._drawn, None
-            try:
-                self.view.show(job.result())
-            except ValueError as error:
-                self._io.count_drop(topics.SIM_MODEL.key, str(error))
-        if model is not None and model.mjcf != self._mjcf and self._drawn is None:
-            self._mjcf = model.mjcf
-            self._drawn = self._io.submit(partial(draw, model.mjcf, model.files))
-
-    def _move(self, now: float) -> None:
-        io, panels, view = self._io, self.panels, self.view
-        joints, pose = io.latest(topics.JOINT_STATES), io.latest(topics.POSE)
-        q = dict(zip(joints.name, joints.position, strict=False)) if joints is not None else {}
-        if pose is not None:
-            self._base = (pose.x, pose.y, pose.theta)
-        elif joints is not None:
-            self._base = (q.get("base_x", 0.0), q.get("base_y", 0.0), q.get("base_yaw", 0.0))
-        view.pose(q, self._base, q.get("gripper", 0.0))
-        if pose is not None or joints is not None:
-            self._camera.step(self._base, panels.follow)
-        for scan in io.take_all(topics.SCAN):
-            view.scan(scan, self._base, panels.scan)
-        for path in io.take_all(topics.NAV_PATH):
-            self._path = path.points
-            view.path(path.points)
-        self._overlay()
-        view.parts(io.latest(topics.HOUSEHOLD_PARTS), panels.labels)
-        world = io.latest(topics.WORLD_OBJECTS)
-        if world is not None and (world is not self._world or now >= self._ghosts_at):
-            self._world, self._ghosts_at = world, now + SLOW
-            view.objects(world.objects, self._t, self._config.ghost_after, panels.labels)
-
-    def _overlay(self) -> None:
-        """What navigation and manipulation think."""
-        try:
-            self._layers.costmap(self._io.latest(topics.COSTMAP), self.panels.costmap)
-        except ValueError as error:
-            self._io.count_drop(topics.COSTMAP.key, str(error))
-        found, doing = self._io.latest(topics.GRASPS), self._io.latest(topics.MANIPULATION_STATUS)
-        under_path = doing is not None and doing.status == "executing" and doing.phase in GRABBING
-        shown = (found, under_path and self.panels.grasps)
-        if shown != self._seen_grasps:
-            self._seen_grasps = shown
-            self._layers.grasps(*shown)
-
     def _refresh(self, now: float) -> None:
         io, panels = self._io, self.panels
         state, plan = io.latest(topics.BRAIN_STATE), io.latest(topics.ACTION_PLAN)

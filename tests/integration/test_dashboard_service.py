@@ -58,7 +58,7 @@ class Page(Node):
         )
 
     def node(self, ending: str) -> object:
-        nodes = self.service.view.nodes
+        nodes = self.service.scene.view.nodes
         return next(node for path, node in nodes.items() if path.endswith(ending))
 
 
@@ -80,7 +80,7 @@ def drawn(page: Page, monkeypatch: pytest.MonkeyPatch) -> Page:
 
     def there() -> bool:
         page.step()
-        return bool(page.service.view.drawing.links)
+        return bool(page.service.scene.view.drawing.links)
 
     eventually(there, "the model is drawn")
     return page
@@ -113,7 +113,7 @@ def test_objects_come_go_and_turn_into_ghosts(drawn: Page) -> None:
         drawn.joints(t)
         drawn.step()
 
-    view = drawn.service.view
+    view = drawn.service.scene.view
     show(MUG, t=10.0)
     solid = view.object_nodes["1"][0]
     assert solid.opacity is None
@@ -157,7 +157,7 @@ def test_a_model_that_is_none_is_counted_and_a_later_one_is_drawn(drawn: Page) -
         return drawn.io.drops[topics.SIM_MODEL.key] > 0
 
     eventually(counted, "the bad model is counted")
-    assert drawn.service.view.drawing.links, "the old one stays"
+    assert drawn.service.scene.view.drawing.links, "the old one stays"
 
 
 def test_clicks_obey_the_check_box(drawn: Page) -> None:
@@ -229,7 +229,7 @@ def test_a_recording_is_seen_on_the_page_and_nothing_of_it_commands_a_robot(tmp_
         def drawn() -> bool:
             now[0] += 0.5
             film.frame(now[0], 0.0)
-            return bool(film.view.drawing.links)
+            return bool(film.scene.view.drawing.links)
 
         eventually(drawn, "the model is drawn")
         stops = film.deck.bus.tap(topics.ROBOT_STOP)
@@ -237,7 +237,7 @@ def test_a_recording_is_seen_on_the_page_and_nothing_of_it_commands_a_robot(tmp_
             film.web.inbox.put(words)
         film.frame(now[0] + 2, 0.0)
         film.frame(now[0] + 4, 0.5)
-        base = next(node for name, node in film.view.nodes.items() if name.endswith("/base"))
+        base = next(node for name, node in film.scene.view.nodes.items() if name.endswith("/base"))
         assert base.position[0] == pytest.approx(0.73)
         assert stops == []
         film.web.inbox.put(Words("play"))
