@@ -7,11 +7,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 JUMP = 0.6
+"""Largest way [rad] of a joint to its next set-point that is no mistake."""
+LATE = 1.5
+"""Periods without a set-point [count] from which the next one is late."""
 Array = NDArray[np.float64]
 
 
 class ArmDriver:
-    """Moves the set-point (7,) linearly to each commanded one within its period; `limits` lowest and highest angles."""
+    """Moves the set-point (7,) linearly to each commanded one within its period, or the time since the last one where
+    that is late; `limits` lowest and highest angles."""
 
     def __init__(self, position: Array, timeout: float, limits: tuple[Array, Array]) -> None:
         self._low, self._high = limits
@@ -27,7 +31,10 @@ class ArmDriver:
             return "set-point beyond a joint limit"
         if np.abs(goal - self._position).max() > JUMP:
             return f"set-point jumps by more than {JUMP} rad"
-        self._goal, self._left, self._heard = goal, period, now
+        # Where set-points come late it moves as long as they take: it would stop and start again at each of them.
+        gap = now - self._heard
+        self._left = gap if LATE * period < gap < self._timeout else period
+        self._goal, self._heard = goal, now
         return ""
 
     def halt(self, actual: Array) -> None:
