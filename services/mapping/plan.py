@@ -137,8 +137,10 @@ def _bins(grid: Grid, low: Array) -> list[tuple[Rectangle, float]]:
         if len(upper) < RIM_POINTS:
             continue
         height = float(np.quantile(upper[:, 2], 0.8))
-        outer = fit_rectangle(upper[upper[:, 2] > height - RIM_BAND / 2, :2])
-        found.append((outer.grown(-BIN_WALL), height))
+        within = fit_rectangle(upper[upper[:, 2] > height - RIM_BAND / 2, :2]).grown(-BIN_WALL)
+        # The rim is the better measure, unless only a part of it was seen from near.
+        whole = max(abs(within.length - inside.length), abs(within.width - inside.width)) < 2 * RESOLUTION
+        found.append((within if whole else inside, height))
     return found
 
 

@@ -15,8 +15,8 @@ from common.floor_plan import Room, Wall
 from common.geometry import Rectangle
 from services.mapping.grid import FREE, OCCUPIED, RESOLUTION, Grid
 
-DOOR = 0.55
-"""Half of the width [m] up to which a passage between walls and what is as high is a door: corridors are wider."""
+DOOR = 0.42
+"""Half of the width [m] up to which a passage is a door where no two jambs tell, in a corner: corridors are wider."""
 WIDEST = 5.0
 """Gap [m] up to which two pieces of wall in one line have an opening between them: a wide arch, an open plan."""
 IN_LINE, END = 0.12, 0.08

@@ -33,8 +33,11 @@ LEAST_FRONTIER = 5
 GAP, POCKET = 3, 40
 """Width of an opening [cells] below which it is a gap between pixels, and size of what is unknown [cells] below which
 nobody can go there: 0.15 m, and a third of what the robot covers."""
-TRIES = 3
-"""Views without result after which a cell is given up [count]: its floor cannot be seen."""
+FLOOR_TRIES, TOP_TRIES = 5, 3
+"""Pictures without result, two of a view, after which floor and what stands above it are given up [count]."""
+NEARER = 0.75
+"""What each picture without result leaves of the distance from which floor is looked at again [-]: what is not seen
+through a door from along its wall is seen from before it."""
 MOST = 500
 """Cells that gains are counted by, at most [count]; chosen: the choice stays below 0.3 s."""
 HOME_COST = 1.0
@@ -99,8 +102,8 @@ def interesting(grid: Grid, states: NDArray[np.uint8], near: Cells) -> tuple[Cel
     surface = broad & ~grid.near & ndimage.binary_dilation(near, iterations=14)
     found = np.zeros(grid.shape, bool)
     places = 0
-    for cells in (frontier, surface):
-        cells &= grid.looked < TRIES
+    for cells, tries in ((frontier, FLOOR_TRIES), (surface, TOP_TRIES)):
+        cells &= grid.looked < tries
         labels, count = ndimage.label(cells, np.ones((3, 3)))
         sizes = np.bincount(labels.ravel(), minlength=count + 1)
         large = sizes >= LEAST_FRONTIER
@@ -138,15 +141,17 @@ def _best(grid: Grid, states: NDArray[np.uint8], wanted: Cells, spots: Array, co
     cells = grid.points((rows, columns))
     surface = states[rows, columns] == OCCUPIED
     # Positions from which something may be in view: the others show nothing.
-    near = np.hypot(spots[:, None, 0] - cells[None, :, 0], spots[:, None, 1] - cells[None, :, 1]).min(axis=1)
-    spots, costs = spots[near < FRONTIER_RANGE[1]], costs[near < FRONTIER_RANGE[1]]
+    least = np.hypot(spots[:, None, 0] - cells[None, :, 0], spots[:, None, 1] - cells[None, :, 1]).min(axis=1)
+    spots, costs = spots[least < FRONTIER_RANGE[1]], costs[least < FRONTIER_RANGE[1]]
     if len(spots) > MOST:
         order = np.argsort(costs)[:MOST]
         spots, costs = spots[order], costs[order]
     if not len(spots):
         return None
     seen = np.zeros((len(spots), len(cells)), bool)
-    seen[:, ~surface] = _sees(grid, spots, cells[~surface], FRONTIER_RANGE, grid.walls)
+    near, far = FRONTIER_RANGE
+    again = near + (far - near) * NEARER ** grid.looked[rows, columns][~surface]
+    seen[:, ~surface] = _sees(grid, spots, cells[~surface], (near, again), grid.walls)
     seen[:, surface] = _sees(grid, spots, cells[surface], SURFACE_RANGE, grid.tall)
     bearing = np.arctan2(cells[None, :, 1] - spots[:, None, 1], cells[None, :, 0] - spots[:, None, 0])
     best: View | None = None
@@ -165,8 +170,11 @@ def _best(grid: Grid, states: NDArray[np.uint8], wanted: Cells, spots: Array, co
     return best
 
 
-def _sees(grid: Grid, spots: Array, cells: Array, reach: tuple[float, float], blocked: Cells) -> Cells:
-    """Which cells (n, 2) are seen from which spots (k, 2) between two distances, past what is `blocked`: (k, n)."""
+def _sees(grid: Grid, spots: Array, cells: Array, reach: tuple[float, Array | float], blocked: Cells) -> Cells:
+    """Which cells (n, 2) are seen from which spots (k, 2), past what is `blocked`: (k, n).
+
+    `reach`: between which distances; the farthest may be of each cell (n,).
+    """
     dx, dy = cells[None, :, 0] - spots[:, None, 0], cells[None, :, 1] - spots[:, None, 1]
     distance = np.hypot(dx, dy)
     found: Cells = (distance >= reach[0]) & (distance <= reach[1])

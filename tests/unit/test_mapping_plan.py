@@ -40,6 +40,13 @@ def test_an_open_box_is_a_bin_with_its_measures() -> None:
     assert abs(outline.length - 0.34) < 0.02 and abs(outline.width - 0.34) < 0.02
 
 
+def test_a_bin_whose_rim_was_seen_in_part_is_as_large_as_its_hole() -> None:
+    points = ring(0.51, -0.27, 0.34, 0.40)
+    ((outline, _),) = _bins(grid_of(points), points[points[:, 1] > -0.15])
+    assert np.hypot(outline.x - 0.51, outline.y + 0.27) < 0.04
+    assert abs(outline.length - 0.34) < 0.10 and abs(outline.width - 0.34) < 0.10
+
+
 def test_a_high_or_a_large_ring_is_no_bin() -> None:
     for points in (ring(0.0, 0.0, 0.34, 1.0), ring(0.0, 0.0, 1.2, 0.40)):
         assert _bins(grid_of(points), points) == []

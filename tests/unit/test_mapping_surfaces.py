@@ -12,7 +12,7 @@ from services.mapping.depth import CameraModel
 from services.mapping.grid import FREE, OCCUPIED, RESOLUTION, UNKNOWN, Grid
 from services.mapping.scan import Scan
 from services.mapping.surfaces import find_surfaces, fit_rectangle
-from services.mapping.views import SPACING, survey
+from services.mapping.views import FLOOR_TRIES, SPACING, survey
 
 PITCH, EYE = 0.62, (-0.17, 0.0, 1.30)
 
@@ -166,7 +166,7 @@ def test_a_corridor_is_looked_along_wherever_it_lies_on_the_grid(shift: int) -> 
 def test_where_nothing_is_left_the_survey_ends() -> None:
     grid = Grid((-6.0, -6.0), (6.0, 6.0))
     room(grid)
-    grid.looked[:] = 3
+    grid.looked[:] = FLOOR_TRIES
     assert survey(grid, grid.states(), (0.0, 0.0, 0.0), []).view is None
 
 
