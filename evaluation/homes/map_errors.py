@@ -84,8 +84,8 @@ def wall_errors(made: FloorPlan, truth: FloorPlan) -> tuple[np.ndarray, float]:
         # Of a wall that was seen from one side the other one is a guess.
         errors += list(np.minimum(*(_nearest(p, faces + solid) for p in pair)))
     points = np.concatenate([f for w in truth.walls for f in _faces(w.footprint)[:2]])
-    inside = (points > np.array(truth.low) + 0.02).all(axis=1) & (points < np.array(truth.high) - 0.02).all(axis=1)
-    free = inside.copy()
+    # A face that is in no room, nobody can see.
+    free = np.any([r.outline.signed_distances(points[:, 0], points[:, 1]) < -0.02 for r in truth.rooms], axis=0)
     for box in truth.footprints:
         free &= box.grown(0.10).signed_distances(points[:, 0], points[:, 1]) > 0.0
     near = _nearest(points[free], mapped) < 2 * WALL if mapped else np.zeros(1, bool)
