@@ -33,6 +33,9 @@ LEAST_FRONTIER = 5
 GAP, POCKET = 3, 40
 """Width of an opening [cells] below which it is a gap between pixels, and size of what is unknown [cells] below which
 nobody can go there: 0.15 m, and a third of what the robot covers."""
+NO_WALL = 5.0
+"""Distance from what is occupied [cells] from which on no wall parts a cell from the floor beside it: half of the gap
+that two rays of the lidar leave on a wall that they graze."""
 FLOOR_TRIES, TOP_TRIES = 5, 3
 """Pictures without result, two of a view, after which floor and what stands above it are given up [count]."""
 NEARER = 0.75
@@ -91,12 +94,13 @@ def _roomiest(room: Array) -> Index:
 def interesting(grid: Grid, states: NDArray[np.uint8], near: Cells) -> tuple[Cells, int]:
     """Cells that a view should show: frontiers, and what stands above the floor unseen from near; and their places."""
     free = states == FREE
-    # Into gaps and pockets the robot does not fit; where no ray of the lidar has passed a wall is in between. Far from
-    # the lidar there are cells between its rays.
+    # Into gaps and pockets the robot does not fit; where no ray of the lidar has passed, a wall that is near may be in
+    # between. Far from the lidar there are cells between its rays.
+    open_floor = (grid.passed > 0) | (ndimage.distance_transform_edt(states != OCCUPIED) > NO_WALL)
     labels, count = ndimage.label(ndimage.binary_opening(states == UNKNOWN, np.ones((GAP, GAP))))
     sizes = np.bincount(labels.ravel(), minlength=count + 1)
     sizes[0] = 0
-    frontier = (sizes >= POCKET)[labels] & (grid.passed > 0) & ndimage.binary_dilation(free & near)
+    frontier = (sizes >= POCKET)[labels] & open_floor & ndimage.binary_dilation(free & near)
     # A strip along a wall is the wall.
     broad = ndimage.binary_opening(grid.covered & ~grid.walls, np.ones((3, 3)))
     surface = broad & ~grid.near & ndimage.binary_dilation(near, iterations=14)

@@ -5,7 +5,7 @@ import pytest
 
 from common.floor_plan import Room, Wall
 from common.geometry import Rectangle
-from services.mapping.grid import FREE, UNKNOWN, Grid
+from services.mapping.grid import FREE, OCCUPIED, UNKNOWN, Grid
 from services.mapping.plan import _bins, _filled, _rim, _separate
 from services.mapping.rooms import find_rooms
 from services.mapping.surfaces import Surface
@@ -125,13 +125,15 @@ def test_what_is_inside_or_below_a_surface_is_none() -> None:
 def test_a_corner_behind_which_few_rays_have_passed_is_looked_round() -> None:
     grid = Grid((-3.0, -3.0), (3.0, 3.0))
     states = np.full(grid.shape, UNKNOWN, np.uint8)
-    states[20:60, 20:60] = FREE
+    states[18:62, 18:60], states[20:60, 20:60] = OCCUPIED, FREE
     grid.passed[20:60, 20:100:2] = 1
     near = np.ones(grid.shape, bool)
     cells, places = interesting(grid, states, near)
     assert places > 0 and not cells[:, :60].any() and cells[20:60, 60].any()
     grid.passed[:] = 0
-    assert not interesting(grid, states, near)[0].any(), "behind walls nothing has passed"
+    assert interesting(grid, states, near)[0][30:50, 60].any(), "no wall is there either, only no ray has come so far"
+    states[18:62, 60:62] = OCCUPIED
+    assert not interesting(grid, states, near)[0].any(), "behind walls"
 
 
 def test_a_wall_that_furniture_hides_from_the_lidar_parts_two_rooms() -> None:
