@@ -89,7 +89,7 @@ class Dispatch:
             state = desk.state(name)
             if state is not None and self._ours(state):
                 return True
-            if state is not None and state.command_id:
+            if state is not None and under_way(state):
                 break  # it has begun something else meanwhile
             sleep(POLL)
         self.withdraw(name)

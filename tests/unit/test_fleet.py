@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from cli.fleet.choice import EMPTY, LOW, goals, rank, refusal, things
+from cli.fleet.dispatch import Dispatch
 from cli.fleet.distance import path_length
 from cli.fleet.robots import RobotNow, robot
 from common import messages as m
@@ -82,6 +83,36 @@ def test_a_robot_is_what_it_told() -> None:
     assert robot("b").state == "" and not robot("b").free
     asking = robot("c", m.BrainState(state="CONFIRMING", mission_id="m2", command="x", step="Did you say x?"))
     assert asking.question == "Did you say x?"
+
+
+class Desk:
+    """Of one robot that has just ended a mission, tells of it once more, and then begins what it was offered."""
+
+    def __init__(self) -> None:
+        self.told, self.sent = 0, []  # type: ignore[var-annotated]
+
+    def names(self) -> set[str]:
+        return {"anna"}
+
+    def look(self, among: set[str]) -> list[RobotNow]:
+        return [free(name, state="COMPLETED", knows={}) for name in among]
+
+    def send(self, name: str, topic: Any, command: m.VoiceCommand) -> None:
+        self.sent.append(command)
+
+    def state(self, name: str) -> m.BrainState:
+        self.told += 1
+        if self.told > 2:
+            return m.BrainState(state="PLANNING", mission_id="2", command_id=self.sent[0].id)
+        ended = m.MissionOutcome(id="1", command="", outcome="delivered", command_id="old")
+        return m.BrainState(state="COMPLETED", mission_id="1", command_id="old", last=ended)
+
+
+def test_who_reports_on_its_last_mission_has_not_begun_another() -> None:
+    desk = Desk()
+    given = Dispatch(desk, "bring me the red mug")  # type: ignore[arg-type]
+    assert given.offer() and given.by == "anna"
+    assert [c.withdraws for c in desk.sent] == [""]
 
 
 def flat(wall: slice | None = None) -> m.Costmap:
