@@ -66,6 +66,11 @@ def infinitive(word: str, verbs: Container[str]) -> str:
     return next((v for v in (stem, f"{stem}e", stem[:-1]) if v in verbs), word)
 
 
+def indefinite(name: str) -> str:
+    """A name with its article: `an apple`, `a mug`."""
+    return f"{'an' if name[:1] in 'aeiou' else 'a'} {name}"
+
+
 def enumeration(names: list[str], last: str = "and") -> str:
     """Names as spoken: `a, b and c`."""
     return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} {last} {names[-1]}" if names else ""

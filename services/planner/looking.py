@@ -30,19 +30,19 @@ def seen(builder: PlanBuilder, slots: Slots) -> None:
 
 def recall(builder: PlanBuilder, slots: Slots) -> None:
     """What was seen on a surface or in a room; a look is taken only when nothing was."""
-    not_after_moving(builder)
-    place, there, look = things_at(builder, slots["spot"])
-    if not there:
-        builder.look_at(look)
-        builder.look_first(look, f"I have seen nothing there so far, so I would have to go to the {place.name} first")
-    builder.say(told(there, place))
+    _tell_contents(builder, slots, afresh=False)
 
 
 def contents(builder: PlanBuilder, slots: Slots) -> None:
     """All that is on a surface or in a room, which is looked at first."""
+    _tell_contents(builder, slots, afresh=True)
+
+
+def _tell_contents(builder: PlanBuilder, slots: Slots, afresh: bool) -> None:
     not_after_moving(builder)
     place, there, look = things_at(builder, slots["spot"])
-    builder.look_at(look)
+    if afresh or not there:
+        builder.look_at(look)
     if not there:
         builder.look_first(look, f"I have seen nothing there so far, so I would have to go to the {place.name} first")
     builder.say(told(there, place))

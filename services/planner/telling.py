@@ -1,6 +1,6 @@
 """How things, and where they are, are named in an answer. Pure."""
 
-from common.language.normalise import enumeration
+from common.language.normalise import enumeration, indefinite
 from services.planner.plan_builder import PlanBuilder, Refusal
 from services.planner.senses import Spot
 from services.planner.world import BelievedObject
@@ -38,7 +38,7 @@ def not_after_moving(builder: PlanBuilder) -> None:
 
 
 def a(item: BelievedObject) -> str:
-    return f"{'an' if item.label[:1] in 'aeiou' else 'a'} {item.label}"
+    return indefinite(item.label)
 
 
 def be(known: list[BelievedObject]) -> str:

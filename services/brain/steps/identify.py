@@ -6,6 +6,7 @@ from py_trees.common import Status
 
 from common import messages as m
 from common import topics
+from common.language.normalise import indefinite
 from common.likeness import LEAST, PLAIN, likeness
 from common.naming import unnumbered
 from services.brain.language.dialogue import reply
@@ -133,6 +134,5 @@ def whether(ctx: Context, item: str) -> str:
         return ""
     label = unnumbered(about.label)
     where = f" on the {about.on}" if about.on else " on the floor"
-    article = "an" if label[:1] in "aeiou" else "a"
     asked = "one" if label == item else item
-    return f"I see {article} {label}{where}. Is that the {asked} you mean?"
+    return f"I see {indefinite(label)}{where}. Is that the {asked} you mean?"
