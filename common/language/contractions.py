@@ -87,6 +87,7 @@ _SAME = tuple(
             r"is there \1",
         ),
         (r"^got (?=any (?:idea|clue)\b)", ""),
+        (r"\bfrom off(?: of)?\b", "from"),
         (r"\bwhereabouts (?=is|are|did|do|was|were|has|have)", "where "),
         (r"\bwith you (?=to|into|on|in|over)", ""),
         (r",? on (?:the|your) way to (?=the|my|our)", " then go to "),

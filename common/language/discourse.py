@@ -22,7 +22,7 @@ _FIRST = re.compile(
 )
 _ALWAYS = re.compile(r"\b(?:always|from (?:now|today) on|in (?:the )?future|every time)\b")
 _BUT_FIRST = re.compile(r"^(?P<second>.+?),? but (?:first|before that|beforehand),? (?P<first>.+)$")
-_LATER = re.compile(r"^(?P<first>.+?),? (?P<word>before|after) you(?: have)? (?P<second>.+)$")
+_LATER = re.compile(r"^(?P<first>.+?),? (?P<word>before|after) (?:you(?: have)? |(?=\w+ing\b))(?P<second>.+)$")
 _NEXT = frozenset(
     {"me", "us", "it", "them", "to", "into", "back", "here", "all", "up", "out", "everything", "away", "down"}
 )

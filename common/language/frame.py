@@ -37,7 +37,9 @@ _WISHES = frozenset(
     }
 )
 """Those that make one only where the speaker's wish is spoken of."""
-_DUTIES = frozenset({"turn", "job", "task", "mission", "order", "command", "duty", "time", "favour", "favor"})
+_DUTIES = frozenset(
+    {"turn", "job", "task", "mission", "order", "command", "duty", "time", "favour", "favor", "solid", "kindness"}
+)
 """Those that make one of `your job is to`."""
 _SMALL_WORDS = (
     "i we you someone somebody anyone anybody it this that me us one a an the any some my your to of for from in "
@@ -45,7 +47,8 @@ _SMALL_WORDS = (
     "now really quite very too ever even much more most kinda sort bit little lot once again quickly simply "
     "actually still awfully terribly super extremely incredibly absolutely dear angel star sweetheart darling pal "
     "mate friend robot moment minute second time day hand thing problem bother ok okay fine alright right enough "
-    "thinking going happen manage try trying care willing not too busy free ready able get got go ahead thanks "
+    "thinking doing anything special make earliest going happen manage try trying care willing not too busy free "
+    "ready able get got go ahead thanks "
     "thank well hey hello hi morning afternoon evening sorry excuse listen look here up about your changed only "
     "so that long soon next first point chore job task let suggest propose require requesting anyhow anyway today "
     "tonight whenever convenient convenience leisure possible spare suits fast get gets have has feel feeling fancy"
@@ -53,19 +56,19 @@ _SMALL_WORDS = (
 _SMALL = frozenset(_SMALL_WORDS.split())
 """What else a frame is made of."""
 _ROBOT = frozenset({"you", "someone", "somebody", "anyone", "anybody"})
-_HARMLESS_NOT = frozenset({"mind", "suppose", "trouble", "problem", "busy", "bother", "much"})
+_HARMLESS_NOT = frozenset({"mind", "suppose", "trouble", "problem", "busy", "bother", "much", "doing"})
 """Words with which "not" forbids nothing."""
 _OF_DOING = frozenset({"mind", "of", "about", "for", "by", "try", "trying"})
 """Words with which the verb may end in -ing."""
 _OCCASIONS = frozenset({"if", "when", "whenever", "while"})
 _COURTESIES = frozenset({
-    "as soon", "as quickly", "as fast", "once you", "would you", "could you", "can you", "will you", "thanks for",
-    "thank you",
+    "as soon", "as quickly", "as fast", "once you", "would you", "could you", "can you", "will you",
+    "thanks for", "at your", "thank you",
 })  # fmt: skip
 """How an occasion or a courtesy begins that stands before or behind a request."""
 _EASE = frozenset({
     "trouble", "problem", "bother", "ok", "okay", "fine", "alright", "possible", "convenient", "suits", "fast", "soon",
-    "thanks",
+    "thanks", "convenience", "leisure",
 })  # fmt: skip
 _FREE = frozenset({"moment", "minute", "second", "time", "day", "hand"})
 """With which `if you have one moment` is no condition on a thing."""
@@ -127,9 +130,11 @@ def _is_frame(words: list[str]) -> bool:
     if len(words) > 2 and _is_occasion(words):
         return True
     said = set(words)
+    if "anything" in said and "doing" not in said:  # "is there anything you can bring me"
+        return False
     speaks = bool(said & {"i", "we"})
     asks = (said & _ASKING) - (frozenset() if speaks else _WISHES)
-    if words[0] not in ("is", "are", "do", "does") and "my" not in said:
+    if words[0] not in ("is", "are", "does") and words[:2] != ["do", "you"] and "my" not in said:
         asks |= said & _DUTIES
     if not asks or (said & {"was", "were"} and not said & {"wondering", "hoping", "thinking"}):
         return False

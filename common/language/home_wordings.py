@@ -9,7 +9,8 @@ _ALWAYS = (
     " | in the future | generally)"
 )
 _BELONG = (
-    "(go | goes | belong | belongs | live | lives | should go | should be | are kept | are put | are stored"
+    "(go | goes | (have their | has its) place | belong | belongs | live | lives | should go | "
+    "should be | are kept | are put | are stored"
     " | (should | must | are to) be (kept | stored))"
 )
 _USUALLY = "(usually | normally | mostly | generally | typically | most of the time | most often)"
@@ -39,7 +40,8 @@ TOLD: tuple[Wording, ...] = (
     ),
     Wording(
         "forget_rule",
-        f"(forget | unlearn) (where | that) <words> {_BELONG} [{_ON} <spot>]",
+        f"(forget | ignore) what i (said | told you) about <words> | (forget | unlearn) (where | "
+        f"that) <words> {_BELONG} [{_ON} <spot>]",
     ),
     Wording(
         "rule_always",

@@ -36,7 +36,9 @@ MOVING: tuple[Wording, ...] = (
     Wording("put_down", "(drop | release | let go of | let go) <thing> | let go", heard="release it | let go"),
     Wording(
         "put_near",
-        f"({PUT}) <thing> {BACK} {NEAR} <spot>",
+        f"({PUT}) <thing> {BACK} {NEAR} <spot>"
+        f" | <thing> (belongs | belong | goes | go | should go | should stand | has to go | needs to "
+        f"go) (next to | near | beside | close to) <spot>",
         heard=f"(put | place | set) {IT} <near> | move <thing> <near>",
     ),
     Wording("throw_away", f"({THROW}) <thing> (away | out)", heard=f"throw {IT} away"),

@@ -7,6 +7,7 @@ Frames that speak of the past, of somebody else's words or of what must not be a
 import re
 
 from common.language.frame import without_frame, without_frame_behind
+from common.language.lexicon import COMMANDING
 
 _ADVERBS = (
     r"(?: "
@@ -65,7 +66,8 @@ _ADDRESS = (
     "trouble|interrupt) you|"
     "(?:stop|quit) (?:wasting (?:my |our )?time|messing about|fooling around|dawdling)(?: "
     "and)?|sorry (?:to|for|that|if) [^,]{3,40}?(?:,| but)(?= "
-    "(?:can|could|would|will|please|i)\\b)|sorry|by the way|next|let me (?:think|see)|guess what|you know what|you "
+    "(?:can|could|would|will|please|i)\\b)|sorry|by the way|next|let me "
+    "(?:think|see)|(?:quick|one|another|just a) question|guess what|you know what|you "
     "know(?! the| what| where| how| my)|see(?=,)|but(?! not)|"
     "i say|as i said|for me|one more thing|could it be that|"
     "(?:be )?quick|hurry(?: up)?|attention|fast|come on|pretty please|honestly|also|plus|oh and|first of all|"
@@ -109,12 +111,13 @@ _FRAMES = (
     r"i (?:think|guess|suppose|believe|reckon|say|suggest)(?: that)?(?= (?:the|my|this|that|we|you|it|i)\b)",
     r"while you are (?:at it|there|up|about it)|(?:on|along) (?:the|your) way(?: back)?",
     r"drop everything(?: else)?(?: and)?(?=\s+\w)|without \w+ing .+?(?=,| throw\b| put\b| bring\b| take\b)",
+    rf"to(?= (?:{'|'.join(sorted(COMMANDING))}) (?:me|the|my|a|an|it)\b)|(?:go and )?see (?:if|whether) you can",
     _OCCASION,
 )
 """Frames of a request; what is asked for follows."""
 _ENDINGS = (
     "(?:pretty )?please(?: with .+)?|right now|right away|now|quickly|at once|immediately|straight away|for me|"
-    "at the moment|at present|currently|"
+    "at the moment|at all|at present|currently|"
     "for us|thanks|thank you"
     "(?: very much| so much| a lot)?|(?<!real )(?<! a )robot|tidybot|jarvis|then|anyway|and|will you please|okay|"
     "ok|alright|(?<=, )right|man|mate|"

@@ -26,7 +26,8 @@ ABOUT_THE_WORLD: tuple[Wording, ...] = (
         f"{ASK} (is | are) there (anything | something) [{LYING}] (on | in | at) <spot>"
         f" | {ASK} what {BE} (that | this | those | these | there) [thing | things | stuff] [{LYING}] (on | "
         f"in | at) <spot>"
-        f" | {ASK} what (have | did) you [last] (see | seen | find | found | notice | noticed) (on | in | at) <spot>"
+        f" | {ASK} what (have | did) you [last] (see | seen | find | found | notice | noticed) [last] "
+        f"(on | in | at) <spot>"
         f" | {ASK} what (did | have | has) (i | we | you | they | somebody | someone) (leave | left | "
         f"put | forget | forgotten) "
         "(on | in | at) <spot>",
@@ -67,7 +68,8 @@ ABOUT_THE_WORLD: tuple[Wording, ...] = (
     ),
     Wording(
         "where",
-        f"{ASK} [in | on] (which | what) (room | place | surface | shelf | table) {BE} <thing> [in | on]",
+        f"{ASK} [in | on] (which | what) (room | place | surface | shelf | table) ({BE} <thing> | "
+        f"<thing> {BE}) [in | on]",
     ),
     Wording(
         "where", f"{ASK} where (i | we | you) [have] [last] (left | put | saw | seen | have | had) <thing>"
@@ -163,7 +165,8 @@ ABOUT_ITSELF: tuple[Wording, ...] = (
     ),
     Wording(
         "done",
-        f"what {WHAT_DID} | what (was | is) (the last thing you did | your last (task | job | mission | command))"
+        f"what {WHAT_DID} | what (was | is) (the last thing you did | (my | your) last (task | job | "
+        f"mission | command | order | request))"
         " | (did | have) you (manage | managed | succeed | succeeded | finish | finished | do | done) [it | that |"
         " (to | in) <words>] | what did you do (with | to) <words> | what did you (put | bring | move | take | "
         "throw | fetch | tidy) <words> | did (it "

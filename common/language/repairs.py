@@ -109,11 +109,13 @@ _ONE_OF_THOSE = re.compile(
 )
 """Which one of several is meant, the several first."""
 _NEITHER = re.compile(r"\bneither .+? nor (?P<other>(?:the |my )?(?:\w+ ){1,2}?)(?:but )?(?P<one>(?:the|a|my) [^,]+)")
+_MADE_SURE = re.compile(r",? (?:but|and) (?:make sure|mind|see)(?: that)? it is (?=(?:the|a) \w+ one\b)")
 _ANY = re.compile(r"\b(an? (\w+)), any (?:\2|one|of them|will do)\b")
 
 
 def settled(text: str, is_place: IsPlace) -> str:
     """The text without what was taken back."""
+    text = _MADE_SURE.sub(", ", text)
     text = _THAT_IS.sub(r"\g<one>", _APPOSED.sub(r"\g<thing> \g<which> \g<rest>", text))
     text = _ONE_OF_THOSE.sub(_singled_out, text)
     text = _refined(_without_lead(text))

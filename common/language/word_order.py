@@ -24,6 +24,7 @@ _REQUEST_END = re.compile(
     r"and| so| to| i want you"
     r" to| i need you to)+$"
 )
+_COMES = re.compile(rf"^{NP} {MODAL} (?:come|get|go|be|go back|come back)(?: over)? (?:to (?:me|us)|here)$")
 _MOVED = re.compile(
     rf"^{NP} (?:{MODAL} (?:go|get|stand|be|come|lie|sit)(?: standing| lying| sitting| kept| "
     rf"moved)?|goes|go|belongs?|gets?|stands?|moves?)(?: back| over| "
@@ -97,6 +98,8 @@ def _candidates(text: str, words: Words, verbs_only: bool) -> Iterator[str]:
     for pattern in PASSIVE:
         if (found := pattern.match(text)) and (verb := _verb(found[2])):
             yield f"{verb} {found[1]}{found[3] or ''}"
+    if found := _COMES.match(text):
+        yield f"bring me {found[1]}"
     if found := _MOVED.match(text):
         yield f"put {found[1]} {'in' if found[2] == 'to' else found[2]} {found[3]}"
     yield from _topic(words)

@@ -26,7 +26,7 @@ WORDINGS: tuple[Wording, ...] = (
     Wording(
         "cancel",
         "[no] (cancel | abort | scrap) [that | this | it | the (mission | task | job | command | plan)]"
-        " | cancel cancel | abort abort | abort mission"
+        " | [there is] no need [for (it | that)] [any more] | cancel cancel | abort abort | abort mission"
         " | never mind | nevermind | [no | nah | nope] forget [about] (it | that) | leave it [be | then] | skip it | "
         "drop that | call it off"
         " | (i | we) [have] changed (my | our) mind | [actually] do not bother [any more | with (it | that)]"

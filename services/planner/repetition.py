@@ -19,7 +19,8 @@ _NO = re.compile(
     r"|^(?:wait |no |sorry |actually )*make (?:it|that) (?P<made>.+)$"
     r"|^(?:no |nope |wrong |but )*not (?:this|that|here|there)(?: one| \w+)? (?:but )?(?P<other>(?:the|on|in|to|"
     r"into) .+)$"
-    r"|^(?P<better>(?:on|in|the) .+?) would (?:be|have been) (?:better|nicer|best|preferable)$"
+    r"|^(?:(?:never mind|no|well|ok|okay|then) )*(?P<better>(?:on|in|the) .+?) (?:would (?:be|have "
+    r"been) (?:better|nicer|best|preferable)|will do)$"
 )
 _PLACED = re.compile(r"\w (?:next to|beside|near|on|in|into|onto|to|at) \w")
 _TOO = re.compile(

@@ -28,7 +28,7 @@ _SMALL = (
 _ABSTRACT = (
     "break care lost rest hand kiss hug call lift ride chance look smile clue sign idea reason "
     "answer example name joke"
-    " way colour color matter difference sort type story attention horses time effort"
+    " number party seat way colour color matter difference sort type story attention horses time effort"
     " shot turn word note favour favor permission advice truth silence peace easy"
 )
 """Words that are no things: `give me a break` is nothing to be fetched."""

@@ -15,7 +15,7 @@ from tests.everyday import CONFIG, HOME, planned, sentences, understand, verdict
 
 LISTS = ("everyday_sentences.tsv", "more_everyday_sentences.tsv", "last_everyday_sentences.tsv")
 CLOSING = ("sealed_everyday_sentences.tsv", "closing_everyday_sentences.tsv")
-SEASONS = ("spring_everyday_sentences.tsv", "summer_everyday_sentences.tsv", "autumn_everyday_sentences.tsv")
+SEASONS = tuple(f"{season}_everyday_sentences.tsv" for season in ("spring", "summer", "autumn", "winter"))
 ENOUGH = 0.9
 
 

@@ -24,7 +24,7 @@ _LATER = re.compile(
 """Words before a command that put it behind the one under way."""
 _LATER_END = re.compile(
     r"[, ]+(?:after(?:wards| that| this)|next|later(?: on)?|too|as well|"
-    r"(?:when|once) you(?: are|'re| have|'ve) (?:done|finished|ready))$"
+    r"(?:when|once) you(?: are|'re| have|'ve| get| come) (?:done|finished|ready|back))$"
 )
 """The same behind it."""
 _INSTEAD = re.compile(
@@ -45,6 +45,7 @@ _INSTEAD_OF = re.compile(
 
 
 _RATHER = re.compile(r"^(?:actually |in fact )?(?:i|we) would (?:rather|prefer|sooner)\b")
+_MADE = re.compile(r"^(?:(?:no|actually|sorry),? )*make (?:it|that) (?:the|a|an|my|two|both) ")
 _CHANGED = re.compile(r"^(?:(?:no|oh|actually|i have changed my mind|on second thoughts?),? )+")
 _NOT_BUT = re.compile(r"^(?P<right>.+?),? (?:instead of|rather than) (?:\w+ing|the|my|a|that|to) .+$")
 """`put it on the desk instead of bringing it to me`."""
@@ -86,7 +87,7 @@ def interjection(said: str) -> Interjection:
         return Interjection("cancel", said)
     if other := _NOT_BUT.match(words):
         return Interjection("replace", other["right"])
-    if words.startswith("not ") or _RATHER.match(words):
+    if words.startswith("not ") or _RATHER.match(words) or _MADE.match(words):
         return Interjection("replace", said)
     for kind, begin, end in (("replace", _INSTEAD, _INSTEAD_END), ("queue", _LATER, _LATER_END)):
         rest = words
