@@ -22,10 +22,10 @@ import zstandard
 from aiohttp import ClientSession
 
 from cli.link import Link, Watch
+from cli.processes.ports import free_port
 from common import messages as m
 from common import topics
 from common.bus.session import open_session
-from tests.support import free_port
 
 SETTLE = 3.0
 """Time [s] until all visitors are served, before the measurement."""

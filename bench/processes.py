@@ -16,7 +16,7 @@ from typing import Any
 import psutil  # type: ignore[import-untyped]
 
 from bench.mission import Robot, fetch
-from tests.support import free_port
+from cli.processes.ports import free_port
 
 ITEM = "red mug"
 

@@ -14,18 +14,12 @@ from typing import TypeVar
 
 import zenoh
 
+from cli.processes.ports import free_port
 from common.bus.session import open_session
 
 T = TypeVar("T")
 ROOT = Path(__file__).resolve().parent.parent
 PATIENCE = 40.0
-
-
-def free_port() -> int:
-    """A TCP port that was free a moment ago."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])
 
 
 def eventually(probe: Callable[[], T], what: str, patience: float = PATIENCE) -> T:

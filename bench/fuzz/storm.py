@@ -6,13 +6,14 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from bench.fuzz.payloads import Payloads
+from cli.processes.ports import free_port
 from cli.processes.services import SERVICES
 from common import messages as m
 from common import topics
 from common.bus import codec, delivery
 from common.topic import Topic
 from evaluation.stack import service_class
-from tests.support import Site, eventually, free_port
+from tests.support import Site, eventually
 
 BURST = 100
 """Payloads between two looks at the process."""

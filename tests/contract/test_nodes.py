@@ -11,6 +11,7 @@ import pytest
 import zenoh
 from zenoh.handlers import Callback
 
+from cli.processes.ports import free_port
 from common import messages as m
 from common import topics
 from common.bus import codec, delivery
@@ -20,7 +21,7 @@ from services.navigation.service import NavigationService
 from services.planner.service import PlannerService
 from services.sim.service import SimService
 from services.speech.service import SpeechService
-from tests.support import Site, eventually, free_port
+from tests.support import Site, eventually
 
 pytestmark = pytest.mark.long
 

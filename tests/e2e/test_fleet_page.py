@@ -9,8 +9,9 @@ import pytest
 from aiohttp import web
 
 from cli.fleet.page import application
+from cli.processes.ports import free_port
 from tests.e2e.test_page import Visitor, browser, pytestmark
-from tests.support import eventually, free_port
+from tests.support import eventually
 from tests.unit.test_fleet_page import Room
 
 __all__ = ["browser", "pytestmark"]

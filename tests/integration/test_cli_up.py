@@ -13,7 +13,8 @@ from pathlib import Path
 import psutil
 import pytest
 
-from tests.support import ROOT, eventually, free_port
+from cli.processes.ports import free_port
+from tests.support import ROOT, eventually
 
 pytestmark = pytest.mark.long
 

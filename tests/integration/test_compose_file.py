@@ -13,10 +13,11 @@ import pytest
 import yaml
 
 from cli.link import Link
+from cli.processes.ports import free_port
 from cli.processes.services import NAMES, OPTIONAL
 from common.bus.session import open_session
 from tests.compose.mission import carry_out
-from tests.support import ROOT, eventually, free_port
+from tests.support import ROOT, eventually
 
 NODES = tuple(name for name in NAMES if name != "router" and name not in OPTIONAL)
 SHELL = {

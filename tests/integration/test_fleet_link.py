@@ -11,9 +11,10 @@ from zenoh import handlers
 
 from cli.errors import CliError
 from cli.fleet.radio import router_config, thinning
+from cli.processes.ports import free_port
 from common import topics
 from common.bus.session import CONFIGS
-from tests.support import eventually, free_port
+from tests.support import eventually
 
 SECONDS = 2.0
 """Time of the stream [s], at some 100 Hz."""

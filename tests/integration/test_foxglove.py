@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import zenoh
 
+from cli.processes.ports import free_port
 from common import messages as m
 from common import topics
 from common.bus import codec
@@ -19,7 +20,7 @@ from common.topic import Topic
 from services.foxglove import incoming
 from services.sim.physics import Physics
 from tests.robot_side import RobotSide
-from tests.support import ROOT, Site, eventually, free_port, site
+from tests.support import ROOT, Site, eventually, site
 
 pytest.importorskip("foxglove", reason="the extra foxglove is not installed")
 

@@ -11,8 +11,9 @@ from typing import Any
 import pytest
 from PIL import Image
 
+from cli.processes.ports import free_port
 from tests.integration.test_cli_up import Run, run
-from tests.support import ROOT, eventually, free_port
+from tests.support import ROOT, eventually
 
 pytest.importorskip("mcp")
 import anyio

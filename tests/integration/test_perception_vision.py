@@ -11,13 +11,13 @@ import pytest
 from numpy.typing import NDArray
 from PIL import Image
 
+from cli.processes.ports import free_port
 from common import messages as m
 from common import topics
 from services.perception.config import PerceptionConfig
 from services.perception.naming.grounders.grounder import Candidate, GrounderError, Question
 from services.perception.naming.grounders.vision import Vision
 from tests.integration.test_planner_llm import Answer, Endpoint, endpoint, says, send
-from tests.support import free_port
 from tests.unit.painted import Box
 from tests.unit.test_perception_teaching import TEA, VITAMINS, Shown
 

@@ -11,6 +11,7 @@ import openai  # noqa: F401  its import takes long and is not what is measured h
 import pytest
 
 from cli import doctor
+from cli.processes.ports import free_port
 from common import messages as m
 from common import topics
 from common.household import load_household
@@ -20,7 +21,7 @@ from services.planner.config import PlannerConfig
 from services.planner.endpoint import EVERY, REST, installed, look
 from services.planner.service import GRACE, PlannerService
 from tests.node import Node
-from tests.support import Site, eventually, free_port
+from tests.support import Site, eventually
 
 SCENE = load_household("apartment")
 MUG = [

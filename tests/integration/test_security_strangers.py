@@ -10,6 +10,7 @@ import zenoh
 
 from cli.keys.authority import Authority, hosts_of
 from cli.main import main as tidybot
+from cli.processes.ports import free_port
 from common import topics
 from common.bus.delivery import Publisher
 from common.bus.session import BusError, open_session
@@ -17,7 +18,7 @@ from common.security import tls_diagnosis
 from common.security.access import Subject
 from common.security.certificate import Identity
 from tests.network import Machine, network
-from tests.support import Site, eventually, free_port
+from tests.support import Site, eventually
 
 ROUTER = Subject(name="router", role="router")
 OPERATOR = Subject(name="operator", role="operator")

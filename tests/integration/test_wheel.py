@@ -12,7 +12,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.support import ROOT, free_port
+from cli.processes.ports import free_port
+from tests.support import ROOT
 
 PACKAGES = ("common", "services", "cli", "evaluation", "judge")
 

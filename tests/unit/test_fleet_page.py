@@ -9,7 +9,7 @@ import numpy as np
 from aiohttp import ClientSession, web
 
 from cli.fleet.page import application
-from tests.support import free_port
+from cli.processes.ports import free_port
 
 TOKEN = "sixteen-characters-or-more"
 
