@@ -8,10 +8,7 @@ import argparse
 import asyncio
 import itertools
 import json
-import os
-import subprocess
 import sys
-import tempfile
 import time
 from typing import Any
 
@@ -21,6 +18,7 @@ import viser
 import zstandard
 from aiohttp import ClientSession
 
+from bench.commands import commands
 from cli.link import Link, Watch
 from cli.processes.ports import free_port
 from common import messages as m
@@ -143,34 +141,22 @@ def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m bench.page", description=__doc__)
     parser.add_argument("--seconds", type=float, default=20.0, help="length of each of the phases")
     args = parser.parse_args()
-    with tempfile.TemporaryDirectory() as run_dir:
-        environment = {**os.environ, "TIDYBOT_RUN_DIR": run_dir}
-
-        def tidybot(*words: str) -> str:
-            command = [sys.executable, "-m", "cli.main", *words]
-            done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=120)
-            if done.returncode:
-                raise SystemExit(f"bench.page: tidybot {words[0]}: {done.stdout}{done.stderr}")
-            return done.stdout
-
+    with commands() as tidybot:
         port = free_port()
         print("starting the robot ...", file=sys.stderr, flush=True)
-        try:
-            told = tidybot("up", "--detach", "--port", str(port), "--set", "dashboard.port=0")
-            url = next(word for word in told.split() if word.startswith("http://"))
-            rows: list[dict[str, Any]] = json.loads(tidybot("ps", "--json"))
-            pid = next(int(row["pid"]) for row in rows if row["name"] == "dashboard")
-            with open_session(f"tcp/127.0.0.1:{port}") as session:
-                robot = Robot(Link(session, ""), pid)
-                print(f"{'start':22} {robot.cpu():5.1f} s of a core until the page was up", flush=True)
-                for _ in range(2):
-                    seconds, size = asyncio.run(first_picture(url))
-                    print(f"{'first picture':22} {seconds:5.2f} s   {size:.1f} MB", flush=True)
-                for name, viewers, hung in PHASES:
-                    asyncio.run(measure(name, url, robot, args.seconds, viewers, hung))
-            print(f"{'resident':22} {psutil.Process(pid).memory_info().rss / 2**20:5.0f} MB")
-        finally:
-            tidybot("down")
+        told = tidybot("up", "--detach", "--port", str(port), "--set", "dashboard.port=0")
+        url = next(word for word in told.split() if word.startswith("http://"))
+        rows: list[dict[str, Any]] = json.loads(tidybot("ps", "--json"))
+        pid = next(int(row["pid"]) for row in rows if row["name"] == "dashboard")
+        with open_session(f"tcp/127.0.0.1:{port}") as session:
+            robot = Robot(Link(session, ""), pid)
+            print(f"{'start':22} {robot.cpu():5.1f} s of a core until the page was up", flush=True)
+            for _ in range(2):
+                seconds, size = asyncio.run(first_picture(url))
+                print(f"{'first picture':22} {seconds:5.2f} s   {size:.1f} MB", flush=True)
+            for name, viewers, hung in PHASES:
+                asyncio.run(measure(name, url, robot, args.seconds, viewers, hung))
+        print(f"{'resident':22} {psutil.Process(pid).memory_info().rss / 2**20:5.0f} MB")
 
 
 if __name__ == "__main__":

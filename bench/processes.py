@@ -6,15 +6,12 @@ what n processes share counts 1/n for each: that is what the whole takes.
 
 import argparse
 import json
-import os
-import subprocess
-import sys
-import tempfile
 import time
 from typing import Any
 
 import psutil  # type: ignore[import-untyped]
 
+from bench.commands import Tidybot, commands
 from bench.mission import Robot, fetch
 from cli.processes.ports import free_port
 
@@ -23,25 +20,15 @@ ITEM = "red mug"
 
 def main() -> None:
     argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter).parse_args()
-    with tempfile.TemporaryDirectory() as run_dir:
-        environment = {**os.environ, "TIDYBOT_RUN_DIR": run_dir}
-
-        def tidybot(*words: str) -> str:
-            command = [sys.executable, "-m", "cli.main", *words]
-            done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
-            return done.stdout
-
+    with commands() as tidybot:
         began = time.perf_counter()
         tidybot("up", "--detach", "--speed", "max", "--port", str(free_port()))
         ready = time.perf_counter() - began
-        try:
-            before, started = _clock(tidybot), time.perf_counter()
-            tidybot("say", f"bring me the {ITEM}", "--wait")
-            speed = (_clock(tidybot) - before) / (time.perf_counter() - started)
-            rows: list[dict[str, Any]] = json.loads(tidybot("ps", "--json"))
-            taken = {row["name"]: _memory(row["pid"]) for row in rows}
-        finally:
-            tidybot("down")
+        before, started = _clock(tidybot), time.perf_counter()
+        tidybot("say", f"bring me the {ITEM}", "--wait")
+        speed = (_clock(tidybot) - before) / (time.perf_counter() - started)
+        rows: list[dict[str, Any]] = json.loads(tidybot("ps", "--json"))
+        taken = {row["name"]: _memory(row["pid"]) for row in rows}
     alone = fetch(Robot(seed=0), ITEM, 0)
     print(f"{'up to ready':34} {ready:8.1f} s")
     rss, pss = zip(*taken.values(), strict=True)
@@ -57,7 +44,7 @@ def _memory(pid: int) -> tuple[float, float]:
     return info.rss / 1e6, info.pss / 1e6
 
 
-def _clock(tidybot: Any) -> float:
+def _clock(tidybot: Tidybot) -> float:
     """Robot time now."""
     found: float = json.loads(tidybot("topic", "echo", "joint_states", "--count", "1", "--json"))["t"]
     return found
