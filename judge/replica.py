@@ -7,6 +7,7 @@ import mujoco
 import numpy as np
 
 from common import messages as m
+from common.body_extent import lowest
 from common.robot import Hand, pads, subtree
 from common.scene import ObjectSpec, Scene, body_name
 from common.support import support
@@ -69,12 +70,11 @@ class Replica:
             body = self._body[name]
             x, y, z = (float(v) for v in data.xpos[body])
             up = data.xmat[body].reshape(3, 3)[2]
-            reach = sum(abs(float(u)) * s / 2 for u, s in zip(up, spec.size, strict=True))
             held = all(robot[name] & side for side in self._pads) and name not in other
             things[name] = Thing(
                 position=(x, y, z),
                 tilt=math.acos(max(-1.0, min(1.0, float(up[2])))),
-                on="" if held else support(self.scene, x, y, z - reach),
+                on="" if held else support(self.scene, x, y, lowest(model, data, body)),
                 held=held,
                 touched=any(int(model.geom_bodyid[g]) in self._gripper for g in robot[name]),
             )

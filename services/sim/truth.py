@@ -4,6 +4,7 @@ from typing import Any
 
 import msgspec
 
+from common.body_extent import lowest
 from common.support import support
 from services.sim.body import Body
 from services.sim.physics import Physics
@@ -45,15 +46,13 @@ def report(physics: Physics, t: float, epoch: str, body: Body | None = None) -> 
     for p in physics.placements:
         number = physics.bodies[p.spec.name]
         x, y, z = (float(v) for v in data.xpos[number])
-        up = data.xmat[number].reshape(3, 3)[2]
-        reach = sum(abs(float(u)) * s / 2 for u, s in zip(up, p.spec.size, strict=True))
         gripper = {g for g in robot[p.spec.name] if int(physics.model.geom_bodyid[g]) in body.gripper_bodies}
         found[p.spec.name] = {
             "kind": p.spec.kind,
             "colour": p.spec.colour,
             "position": [x, y, z],
             "quaternion": [float(v) for v in data.xquat[number]],
-            "on": "" if held == p.spec.name else support(scene, x, y, z - reach),
+            "on": "" if held == p.spec.name else support(scene, x, y, lowest(physics.model, data, number)),
             "touching_gripper": bool(gripper),
         }
     regions = {

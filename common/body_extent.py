@@ -1,0 +1,32 @@
+"""How low a body reaches, by the shapes of its geoms that collide: for the simulation and its judges."""
+
+import math
+from typing import Any
+
+import mujoco
+
+_TYPE = mujoco.mjtGeom
+
+
+def lowest(model: Any, data: Any, body: int) -> float:
+    """Height [m] of the lowest point of a body as it is placed in `data`: what leans rests on a corner or a spout."""
+    first = int(model.body_geomadr[body])
+    geoms = [g for g in range(first, first + int(model.body_geomnum[body])) if model.geom_contype[g]]
+    return min(float(data.geom_xpos[g][2]) - _below(model, int(g), data.geom_xmat[g][6:]) for g in geoms)
+
+
+def _below(model: Any, g: int, up: Any) -> float:
+    """How far [m] a geom reaches below its origin; `up` (3,): the vertical in its own frame."""
+    kind, size = model.geom_type[g], model.geom_size[g]
+    if kind == _TYPE.mjGEOM_MESH:
+        mesh = int(model.geom_dataid[g])
+        begin = int(model.mesh_vertadr[mesh])
+        return -float((model.mesh_vert[begin : begin + int(model.mesh_vertnum[mesh])] @ up).min())
+    if kind == _TYPE.mjGEOM_ELLIPSOID:
+        return float(math.hypot(*(size * up)))
+    if kind == _TYPE.mjGEOM_BOX:
+        return float(abs(size * up).sum())
+    upright = abs(float(up[2]))
+    if kind == _TYPE.mjGEOM_CYLINDER:
+        return float(size[1] * upright + size[0] * math.sqrt(max(0.0, 1.0 - upright * upright)))
+    return float(size[0] + (size[1] * upright if kind == _TYPE.mjGEOM_CAPSULE else 0.0))
