@@ -26,8 +26,8 @@ TURN = math.radians(12)
 """Turn of a point's own direction against its wall's [rad]; chosen: the noise over some 15 cm of wall."""
 BIN, BAND = 0.01, 0.035
 """Width of the histogram's bins, and distance from a face of the points that count to it [m]: three times the noise."""
-GAP, SHORTEST = 0.40, 0.30
-"""Gap [m] that ends a face, which is less than a door, and length from which it is one: half a cupboard."""
+GAP, SHORTEST = 0.40, 0.22
+"""Gap [m] that ends a face, which is less than a door, and length from which it is one: beside a door."""
 TRIED, TRY, MOST = 3.0, 0.1, 6000
 """Directions that are tried around that of the normals, their step [degrees], and the points that they are tried on
 [count]: in 0.1 degrees a wall of 5 m moves by its noise."""
