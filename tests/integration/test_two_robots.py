@@ -1,4 +1,4 @@
-"""Two whole robots in one simulated flat on one router: the best one is sent, one is killed, the other takes over."""
+"""Two whole robots in one simulated flat on one router: the best one is sent, and a process is killed."""
 
 import math
 import os
@@ -29,8 +29,8 @@ objects = [
   { name = "green can", kind = "can", colour = "green", size = [0.066, 0.066, 0.115], mass = 0.3, rgba = [0.1, 0.6, 0.2, 1], on = "living table" },
 ]
 """  # noqa: E501
-DRIVEN = 0.4
-"""Way [m] from which a robot is under way, and no longer before what others have to get to."""
+DRIVEN = 1.0
+"""Way [m] from which a robot is under way, and what others have to get to is no longer behind it."""
 
 
 class Flat:
@@ -87,7 +87,7 @@ def flat(tmp_path: Path) -> Iterator[Flat]:
 
 
 @pytest.mark.timeout(900)
-def test_the_best_one_delivers_through_a_kill_and_the_other_takes_over_when_it_is_gone(flat: Flat) -> None:
+def test_the_best_one_delivers_through_a_kill_and_takes_the_next_one(flat: Flat) -> None:
     eventually(lambda: flat.free() == {ANNA, BERT}, "both take commands", 60)
     eventually(lambda: {"red mug", "green can"} <= set(flat.desk.look({BERT})[0].knows), "bert sees both things", 60)
     # One process of the best robot is killed on the way; its supervisor brings it back.
@@ -96,9 +96,5 @@ def test_the_best_one_delivers_through_a_kill_and_the_other_takes_over_when_it_i
     os.kill(int(str(navigation["pid"])), signal.SIGKILL)
     flat.end(first, "red mug")
     assert first.by == BERT and not first.lost
-    # All of it goes dark with the next command; the other one does it.
-    eventually(lambda: flat.free() == {ANNA, BERT}, "both take commands again", 60)
-    second = flat.begin("bring me the green can", BERT)
-    flat.runs[BERT].close()
-    flat.end(second, "green can")
-    assert second.by == ANNA and second.lost == [BERT]
+    # At once the next one: it is still the best while it reports on the last.
+    assert flat.begin("bring me the green can", BERT).by == BERT

@@ -125,6 +125,22 @@ def test_robots_of_other_flats_and_what_is_no_place_are_passed_over() -> None:
         assert not flat.service._neighbours.circles
 
 
+def test_a_robot_that_has_fallen_silent_stays_what_stands_there() -> None:
+    flat, gone = Flat(flat="home"), m.DriveIntent(t=0.0, flat="home", x=3.0, y=3.0, theta=0.0, radius=0.3)
+    flat.io.robot = "bert"
+    flat.bus.neighbours = {"anna": Flat().bus}
+    flat.bus.neighbours["anna"].last[topics.DRIVE_INTENT.key] = msgspec.json.encode(gone)
+    flat.step(0.5)
+    assert flat.service._neighbours.circles
+    for _ in range(8):
+        flat.step(0.5)
+    heard = []
+    for _ in range(30):
+        flat.step(0.1)
+        heard += flat.service._neighbours.circles
+    assert not heard, "its last message is still there to be read"
+
+
 def test_a_robot_without_a_name_tells_nobody() -> None:
     flat = Flat()
     flat.step(1.0)

@@ -52,6 +52,7 @@ class Neighbours:
     def __init__(self, config: NavigationConfig, io: Io, costmap: Costmap, planner: PathPlanner) -> None:
         self._config, self._io, self._map = config, io, costmap
         self.right_of_way = RightOfWay(costmap, planner, config.footprint_radius, config.corridor, config.lookahead)
+        self._heard: dict[str, _Known] = {}
         self._known: dict[str, _Known] = {}
         self._told_at = -math.inf
         self._unmoved_until = -math.inf
@@ -83,7 +84,7 @@ class Neighbours:
         for name, told in self._io.others(topics.DRIVE_INTENT).items():
             if told.flat == self.flat and all(map(math.isfinite, (told.x, told.y, told.radius))):
                 self._note(name, told, now)
-        self._known = {n: k for n, k in self._known.items() if now - k.at < SILENT}
+        self._known = {n: k for n, k in self._heard.items() if now - k.at < SILENT}
         self.circles = [(k.told.x, k.told.y, k.told.radius) for k in self._known.values()]
         self.state = self._standing(pose, driving, now)
         if self.state == "fixed":
@@ -103,9 +104,9 @@ class Neighbours:
         self._map.place(fixed)
 
     def _note(self, name: str, told: m.DriveIntent, now: float) -> None:
-        old, here = self._known.get(name), (told.x, told.y)
+        old, here = self._heard.get(name), (told.x, told.y)
         if old is None:
-            self._known[name] = _Known(told, now, here, now)
+            self._heard[name] = _Known(told, now, here, now)
         elif told is not old.told:
             old.told, old.at = told, now
             if math.dist(here, old.stood) > STILL:
