@@ -21,7 +21,7 @@ from common.rendering import raycast
 from common.scene import ObjectSpec, Scene, body_name
 from services.camera.sensor import NOISE_AT_1_M
 from services.manipulation.config import ManipulationConfig
-from services.perception.measure import Measurement, measure
+from services.perception.shapes.measure import Measurement, measure
 
 WIDTH, HEIGHT, FOVY = 480, 360, 62.0
 """A picture of the head camera [px, deg], at three quarters of its resolution."""

@@ -31,7 +31,7 @@ from services.perception.naming.reader import Reader, installed
 from services.perception.naming.recognise import PERHAPS, SAME, unlikeness
 from services.perception.naming.sights import Sight
 from services.perception.naming.text import LIKELY, SURE, likeness, shown
-from services.perception.view import View
+from services.perception.views.view import View
 
 DISTANCES = (0.5, 0.7, 0.9, 1.2, 1.6, 2.2)
 """From the camera to the object [m]."""

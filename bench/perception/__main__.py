@@ -18,10 +18,11 @@ from bench.perception.views import RANGE, take_all, visible
 from common.household import told
 from common.messages import WorldObject
 from common.scene import Scene, load_scene
-from services.perception import colour, segmentation
 from services.perception.detect import ClassicalDetector
 from services.perception.grounding import ground
-from services.perception.view import View
+from services.perception.segments import segmentation
+from services.perception.views import colour
+from services.perception.views.view import View
 from services.sim.layout import Placement
 
 NEAR = 0.10

@@ -30,8 +30,8 @@ from services.camera.sensor import StereoCamera
 from services.perception.config import PerceptionConfig
 from services.perception.detect import ClassicalDetector
 from services.perception.grounding import Grounding, as_called, ground, may_be_meant, parsed, possible
-from services.perception.object_tracker import ObjectTracker
-from services.perception.self_filter import RobotModel
+from services.perception.tracking.object_tracker import ObjectTracker
+from services.perception.views.self_filter import RobotModel
 from services.sim.layout import Placement, place_objects
 from services.sim.model import own
 from services.sim.world import world_mjcf

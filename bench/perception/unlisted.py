@@ -18,10 +18,10 @@ from common.rendering.renderer import Renderer
 from common.scene import ObjectSpec
 from evaluation.case import Case
 from evaluation.suites import unknown
-from services.perception import colour
 from services.perception.detect import ClassicalDetector
 from services.perception.detection import Detection
-from services.perception.view import View
+from services.perception.views import colour
+from services.perception.views.view import View
 from services.sim.layout import Placement, place_objects
 from services.sim.world import world_mjcf
 

@@ -10,7 +10,7 @@ from common.geometry import Pose2
 from common.rendering.renderer import Renderer
 from common.scene import Receptacle, Scene, body_name, load_scene
 from services.camera.sensor import StereoCamera
-from services.perception.view import View
+from services.perception.views.view import View
 from services.sim.layout import Placement, place_objects
 from services.sim.model import own
 from services.sim.world import world_mjcf

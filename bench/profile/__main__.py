@@ -42,9 +42,9 @@ PARTS = {
     "common.rendering.renderer:Renderer.surfaces": "drawing",
     "services.camera.sensor:StereoCamera.expose": "sensor model",
     "services.perception.detect:ClassicalDetector.detect": "detection",
-    "services.perception.self_filter:RobotModel.mask": "its own body",
-    "services.perception.self_filter:RobotModel.pose": "its own body",
-    "services.perception.state_buffer:StateBuffer.update": "robot state",
+    "services.perception.views.self_filter:RobotModel.mask": "its own body",
+    "services.perception.views.self_filter:RobotModel.pose": "its own body",
+    "services.perception.views.state_buffer:StateBuffer.update": "robot state",
     "services.navigation.localisation.localise:Localiser.predict": "localisation",
     "services.navigation.localisation.localise:Localiser.correct": "localisation",
     "services.navigation.planning.costmap:Costmap.see": "costmap",
@@ -58,7 +58,7 @@ PARTS = {
     "common.bus.memory:MemoryBus.put": "delivery",
     "common.rendering.offscreen:Offscreen.__init__": "opening GL",
     "common.rendering.renderer:Renderer.__init__": "its model",
-    "services.perception.self_filter:RobotModel.__init__": "its model",
+    "services.perception.views.self_filter:RobotModel.__init__": "its model",
 }
 """Where the parts are, and what each is called; parts of one name are added up."""
 

@@ -13,16 +13,16 @@ from common.geometry import Pose2
 from common.goal_inbox import GoalInbox
 from common.grip import Grip
 from common.runtime import StartError
-from services.manipulation import place_executor, recovery
 from services.manipulation.config import ManipulationConfig
-from services.manipulation.grasp_store import GraspStore
-from services.manipulation.led_hand import LedHand
-from services.manipulation.motion_planner import Planner
-from services.manipulation.object_source import ObjectSource
-from services.manipulation.policy import PolicyError, load_policy
-from services.manipulation.policy_executor import grab_by_policy
-from services.manipulation.pull_executor import grab_or_pull
-from services.manipulation.robot import Failure, Robot, Steps, T, go_home
+from services.manipulation.execution import place_executor, recovery
+from services.manipulation.execution.led_hand import LedHand
+from services.manipulation.execution.policy import PolicyError, load_policy
+from services.manipulation.execution.policy_executor import grab_by_policy
+from services.manipulation.execution.pull_executor import grab_or_pull
+from services.manipulation.execution.robot import Failure, Robot, Steps, T, go_home
+from services.manipulation.grasps.grasp_store import GraspStore
+from services.manipulation.planning.motion_planner import Planner
+from services.manipulation.planning.object_source import ObjectSource
 
 ARM = tuple(f"joint_{i}" for i in range(1, 8))
 DESCRIPTION_PATIENCE = 3.0

@@ -8,7 +8,7 @@ import numpy as np
 from common.floor_plan import Vec3
 from common.geometry import Array, Pose2
 from services.perception.detection import Detection
-from services.perception.view import View
+from services.perception.views.view import View
 
 LOOKS = 12
 """Looks whose median counts [count]; chosen: what stands on the floor, or a person's foot, spoils some of them."""

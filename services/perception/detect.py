@@ -15,10 +15,14 @@ from common.floor_plan import Thing, Vec3
 from common.geometry import Array
 from common.household import Household
 from common.kinds import kind_of
-from services.perception import colour, segmentation, separate, shapes, toppled, unlisted
+from services.perception import unlisted
 from services.perception.detection import Detection
-from services.perception.segment import Segment
-from services.perception.view import Mask, View
+from services.perception.segments import segmentation, separate
+from services.perception.segments.segment import Segment
+from services.perception.shapes import known as shapes
+from services.perception.shapes import known_toppled as toppled
+from services.perception.views import colour
+from services.perception.views.view import Mask, View
 
 SHAPE_SCALE, HEIGHT_SCALE, COLOUR_SCALE = 0.0035, 0.010, 0.07
 """Standard deviations of a fit's mean distance [m], of the height [m], and of the colour's difference (`colour`)."""

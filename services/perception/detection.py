@@ -7,7 +7,7 @@ import numpy as np
 from common.floor_plan import Vec3
 from common.geometry import Array
 from common.messages import ShapeFamily
-from services.perception.measurement import End
+from services.perception.shapes.measurement import End
 
 
 @dataclass(frozen=True)

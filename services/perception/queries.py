@@ -10,14 +10,14 @@ from common import topics
 from common.bus.port import Io
 from common.goal_inbox import GoalInbox
 from common.likeness import PLAIN
-from services.perception.beliefs import Beliefs
 from services.perception.config import PerceptionConfig
 from services.perception.grounding import Grounding, as_called, ground, may_be_meant, parsed, possible
 from services.perception.naming.naming import Naming
-from services.perception.picture import jpeg
-from services.perception.pictures import Pictures
-from services.perception.state_buffer import StateBuffer
-from services.perception.view import View
+from services.perception.tracking.beliefs import Beliefs
+from services.perception.views.picture import jpeg
+from services.perception.views.pictures import Pictures
+from services.perception.views.state_buffer import StateBuffer
+from services.perception.views.view import View
 
 
 @dataclass

@@ -8,18 +8,18 @@ from common.bus.port import Io, Job
 from common.geometry import Pose2
 from common.kinds import kind_of
 from common.runtime import StartError
-from services.perception.beliefs import Beliefs
 from services.perception.calibration_monitor import CalibrationMonitor
 from services.perception.config import PerceptionConfig
 from services.perception.detect import ClassicalDetector, Detector
 from services.perception.detection import Detection
 from services.perception.naming.naming import Naming
-from services.perception.object_tracker import SURE
-from services.perception.pictures import Pictures
 from services.perception.queries import Queries
-from services.perception.self_filter import RobotModel
-from services.perception.state_buffer import StateBuffer
-from services.perception.view import View
+from services.perception.tracking.beliefs import Beliefs
+from services.perception.tracking.track import SURE
+from services.perception.views.pictures import Pictures
+from services.perception.views.self_filter import RobotModel
+from services.perception.views.state_buffer import StateBuffer
+from services.perception.views.view import View
 
 HAND_RANGE = 0.35
 """Distance [m] from a working hand within which the head camera's detections are left out. Chosen: it may hide a part

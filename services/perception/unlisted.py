@@ -9,14 +9,14 @@ from common.geometry import Array
 from common.kinds import LOOKS, Kind, kind_of, laid_on_a_side
 from common.looks import OTHER, Measures, likely
 from common.messages import ShapeFamily
-from services.perception import colour
 from services.perception.detection import Detection
-from services.perception.handle import parted
-from services.perception.measure import measure
-from services.perception.measurement import LEVEL, Measurement
-from services.perception.segment import Segment
-from services.perception.segmentation import DEPTH_NOISE
-from services.perception.view import View
+from services.perception.segments.segment import Segment
+from services.perception.segments.segmentation import DEPTH_NOISE
+from services.perception.shapes.handle import parted
+from services.perception.shapes.measure import measure
+from services.perception.shapes.measurement import LEVEL, Measurement
+from services.perception.views import colour
+from services.perception.views.view import View
 
 SURE, FEW, LIKE_NOTHING = 0.9, 180, 0.75
 """Confidence of what is seen whole and near, the pixels below which it falls, and its share for what has no shape."""

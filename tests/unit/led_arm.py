@@ -6,7 +6,7 @@ from common import messages as m
 from common import topics
 from common.bus import codec
 from common.household import load_household
-from services.manipulation.arm_model import ArmModel, Array
+from services.manipulation.arm.arm_model import ArmModel, Array
 from services.manipulation.config import ManipulationConfig
 from services.manipulation.service import ManipulationService
 from services.sim.model import own

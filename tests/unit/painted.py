@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
 from common.messages import WorldObject
-from services.perception.view import View
+from services.perception.views.view import View
 
 HEIGHT = 1.0
 """Height [m] of the camera, which looks along x from the origin of the map."""

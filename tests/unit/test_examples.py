@@ -16,9 +16,9 @@ from common.kinds import KINDS
 from common.plan_rules import known_world
 from common.scene import ObjectSpec, load_scene
 from examples.odometer import DISTANCE, OdometerConfig, OdometerService
-from services.manipulation.grasp import candidates
-from services.manipulation.target import Target
-from services.perception.shapes import distances
+from services.manipulation.grasps.grasp import candidates
+from services.manipulation.grasps.target import Target
+from services.perception.shapes.known import distances
 from services.planner import grammar
 from services.planner.config import PlannerConfig
 from services.planner.world import believed

@@ -12,7 +12,7 @@ from common.bus.memory import MemoryBus, MemoryIo
 from common.household import load_household
 from services.dashboard import hand as page
 from services.dashboard.hand import HandTeleoperation
-from services.manipulation.led_hand import SILENCE, SPEED
+from services.manipulation.execution.led_hand import SILENCE, SPEED
 from tests.unit.led_arm import LedArm
 
 READS = (topics.BRAIN_STATE, topics.SIM_STATUS, topics.NAVIGATION_FEEDBACK)

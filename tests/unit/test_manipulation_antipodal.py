@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 from common.geometry import quat_matrix, yaw_quat
-from services.manipulation.antipodal import LEVER, LONGEST, MOST_UPWARD, PLAY, STEEPEST, antipodal
-from services.manipulation.arm_model import Array
-from services.manipulation.clearance import PAD
-from services.manipulation.grasp import Grasp
-from services.manipulation.surface import SPACING, surface
-from services.manipulation.target import Target
+from services.manipulation.arm.arm_model import Array
+from services.manipulation.grasps.antipodal import LEVER, LONGEST, MOST_UPWARD, PLAY, STEEPEST, antipodal
+from services.manipulation.grasps.clearance import PAD
+from services.manipulation.grasps.grasp import Grasp
+from services.manipulation.grasps.surface import SPACING, surface
+from services.manipulation.grasps.target import Target
 
 OPENING, WIDEST = 0.085, 0.0761
 AT = (0.6, 0.1, 0.7)

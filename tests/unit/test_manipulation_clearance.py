@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from services.manipulation.arm_model import Pose
-from services.manipulation.clearance import GAP, MOST, OUTWARD
-from services.manipulation.grasp import Grasp, approach_rotation
-from services.manipulation.motion_planner import Planner
-from services.manipulation.target import Target
+from services.manipulation.arm.arm_model import Pose
+from services.manipulation.grasps.clearance import GAP, MOST, OUTWARD
+from services.manipulation.grasps.grasp import Grasp, approach_rotation
+from services.manipulation.grasps.target import Target
+from services.manipulation.planning.motion_planner import Planner
 from services.sim.model import own
 
 PLANNER = Planner(own().mjcf, seed=0)

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from services.manipulation.contacts import Contact, ContactLog, came_around, new_sides_first, other_side
-from services.manipulation.grasp import approach_rotation
+from services.manipulation.arm.contacts import Contact, ContactLog, came_around, new_sides_first, other_side
+from services.manipulation.grasps.grasp import approach_rotation
 
 FRONT = approach_rotation(0.0, math.radians(40))
 PAD = 0.019

@@ -10,11 +10,11 @@ import pytest
 from common import messages as m
 from common.geometry import yaw_quat
 from common.household import load_household
-from services.manipulation.arm_model import Obstacle
-from services.manipulation.motion_planner import PlanError, Planner
-from services.manipulation.plan_grab import GrabPlan, plan_grab
-from services.manipulation.planning_scene import MARGINS, obstacles, target_of
-from services.manipulation.target import Target
+from services.manipulation.arm.arm_model import Obstacle
+from services.manipulation.grasps.target import Target
+from services.manipulation.planning.motion_planner import PlanError, Planner
+from services.manipulation.planning.plan_grab import GrabPlan, plan_grab
+from services.manipulation.planning.planning_scene import MARGINS, obstacles, target_of
 from services.sim.model import own
 
 PLANNER = Planner(own().mjcf, seed=0)

@@ -5,9 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from services.manipulation.grasp import approach_rotation
-from services.manipulation.grasp_store import GraspStore
-from services.manipulation.grasped_object import GraspedObject
+from services.manipulation.grasps.grasp import approach_rotation
+from services.manipulation.grasps.grasp_store import GraspStore
+from services.manipulation.grasps.grasped_object import GraspedObject
 from tests.unit.test_manipulation_service import Arm
 
 BOTTLE = GraspedObject(

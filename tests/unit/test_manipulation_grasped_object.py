@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from common.geometry import Array
-from services.manipulation.grasp import candidates
-from services.manipulation.grasped_object import GraspedObject, attach
-from services.manipulation.target import Target
+from services.manipulation.grasps.grasp import candidates
+from services.manipulation.grasps.grasped_object import GraspedObject, attach
+from services.manipulation.grasps.target import Target
 
 FORWARD, WIDEST = 0.12, 0.076
 MUG = Target("my mug", "mug", (0.6, 0.1, 0.75), 0.4, (0.07, 0.07, 0.1), tilt=math.pi)

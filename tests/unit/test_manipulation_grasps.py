@@ -7,8 +7,8 @@ import pytest
 
 from common.geometry import quat_matrix
 from common.kinds import KINDS
-from services.manipulation.grasp import RIM_DEPTH, Grasp, approach_rotation, candidates, on_handle, shown
-from services.manipulation.target import Target
+from services.manipulation.grasps.grasp import RIM_DEPTH, Grasp, approach_rotation, candidates, on_handle, shown
+from services.manipulation.grasps.target import Target
 
 FORWARD = 0.12
 BOWL = KINDS["bowl"]

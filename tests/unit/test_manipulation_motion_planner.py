@@ -4,11 +4,11 @@ from itertools import pairwise, takewhile
 
 import numpy as np
 
-from services.manipulation.arm_model import Obstacle
-from services.manipulation.grasp import approach_rotation
-from services.manipulation.grasped_object import GraspedObject
-from services.manipulation.motion_planner import Planner
-from services.manipulation.plan_place import plan_place
+from services.manipulation.arm.arm_model import Obstacle
+from services.manipulation.grasps.grasp import approach_rotation
+from services.manipulation.grasps.grasped_object import GraspedObject
+from services.manipulation.planning.motion_planner import Planner
+from services.manipulation.planning.plan_place import plan_place
 from services.sim.model import own
 
 

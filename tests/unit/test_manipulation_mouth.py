@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from services.manipulation.mouth import in_the_mouth
-from services.manipulation.target import Target
+from services.manipulation.grasps.mouth import in_the_mouth
+from services.manipulation.grasps.target import Target
 
 
 def mug(yaw: float, kind: str = "mug", tilt: float = math.pi / 2) -> Target:

@@ -11,9 +11,9 @@ from common import messages as m
 from common import topics
 from common.geometry import yaw_quat
 from common.scene import ObjectSpec, body_name, load_scene
-from services.manipulation import neighbours
 from services.manipulation.config import ManipulationConfig
-from services.manipulation.robot import Failure, Robot, Steps
+from services.manipulation.execution import neighbours
+from services.manipulation.execution.robot import Failure, Robot, Steps
 
 GREY = (0.5, 0.5, 0.5, 1.0)
 BOX = ObjectSpec(name="thin box", kind="box", colour="grey", size=(0.05, 0.05, 0.12), mass=0.1, rgba=GREY)

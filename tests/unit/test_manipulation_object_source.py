@@ -10,7 +10,7 @@ from common.config import config_dir
 from common.household import load_household, load_words, mapped
 from common.messages import ManipulationGoal, ObjectPose, ObjectRef, WorldObject, WorldObjects
 from services.brain.steps.find import object_ref
-from services.manipulation.object_source import ObjectSource
+from services.manipulation.planning.object_source import ObjectSource
 
 LISTED = load_household("apartment")
 UNLISTED = mapped(LISTED, load_words(config_dir()))

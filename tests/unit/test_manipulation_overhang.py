@@ -10,14 +10,14 @@ from bench.grasp.unlisted import trial
 from common.floor_plan import Receptacle
 from common.messages import WorldObject
 from common.scene import load_scene
-from services.manipulation.arm_model import Obstacle
+from services.manipulation.arm.arm_model import Obstacle
 from services.manipulation.config import ManipulationConfig
-from services.manipulation.motion_planner import PlanError, Planner
-from services.manipulation.over_edge import flat_and_wide, over_an_edge
-from services.manipulation.overhang import LEDGE, facing_edge, plan_pull
-from services.manipulation.plan_grab import Way, feasible
-from services.manipulation.planning_scene import tilt_of
-from services.manipulation.target import Target
+from services.manipulation.grasps.over_edge import flat_and_wide, over_an_edge
+from services.manipulation.grasps.target import Target
+from services.manipulation.planning.motion_planner import PlanError, Planner
+from services.manipulation.planning.overhang import LEDGE, facing_edge, plan_pull
+from services.manipulation.planning.plan_grab import Way, feasible
+from services.manipulation.planning.planning_scene import tilt_of
 from services.sim.model import own
 
 PLANNER = Planner(own().mjcf, seed=0)

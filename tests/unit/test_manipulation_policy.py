@@ -13,9 +13,16 @@ from common import topics
 from common.bus import codec
 from common.demonstration import ACTION, PICTURE_SIZE, STATE
 from common.runtime import StartError
-from services.manipulation.arm_model import Obstacle
-from services.manipulation.policy import PolicyError, action_of, load_policy, observation, picture_of, state_of
-from services.manipulation.servo import COLLISION, OUTSIDE, Servo
+from services.manipulation.arm.arm_model import Obstacle
+from services.manipulation.arm.servo import COLLISION, OUTSIDE, Servo
+from services.manipulation.execution.policy import (
+    PolicyError,
+    action_of,
+    load_policy,
+    observation,
+    picture_of,
+    state_of,
+)
 from services.sim.model import own
 from tests.unit.led_arm import PERIOD, LedArm
 

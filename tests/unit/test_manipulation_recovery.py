@@ -6,7 +6,7 @@ import pytest
 from bench.mission import Robot
 from common import messages as m
 from common import topics
-from services.manipulation.recovery import at_carry
+from services.manipulation.execution.recovery import at_carry
 from tests.unit.test_manipulation_service import wait
 
 ITEM = "red mug"

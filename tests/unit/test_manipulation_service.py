@@ -15,15 +15,15 @@ from common.household import load_household
 from common.kinds import KINDS
 from common.topic import Topic
 from evaluation.stack import Stack
-from services.manipulation.arm_model import ArmModel, Obstacle, Pose
+from services.manipulation.arm.arm_model import ArmModel, Obstacle, Pose
+from services.manipulation.arm.ik import InverseKinematics, seeds
+from services.manipulation.arm.trajectory import connect, free_line, timed
 from services.manipulation.config import ManipulationConfig
-from services.manipulation.grasp import approach_rotation, candidates
-from services.manipulation.grasp_store import GraspStore
-from services.manipulation.grasp_verification import held_badly, judge
-from services.manipulation.ik import InverseKinematics, seeds
+from services.manipulation.grasps.grasp import approach_rotation, candidates
+from services.manipulation.grasps.grasp_store import GraspStore
+from services.manipulation.grasps.grasp_verification import held_badly, judge
+from services.manipulation.grasps.target import Target
 from services.manipulation.service import ManipulationService
-from services.manipulation.target import Target
-from services.manipulation.trajectory import connect, free_line, timed
 from services.perception.config import PerceptionConfig
 from services.sim.model import own
 from services.sim.robot import JOINT_NAMES

@@ -6,7 +6,7 @@ import pytest
 
 from common import messages as m
 from common.household import load_household
-from services.manipulation.planning_scene import GAPS, spots
+from services.manipulation.planning.planning_scene import GAPS, spots
 
 SCENE = load_household("apartment")
 TABLE = SCENE.receptacle("kitchen table")

@@ -11,11 +11,11 @@ from common.geometry import compose, inverse
 from common.household import told
 from common.scene import load_scene
 from services.manipulation.config import ManipulationConfig
-from services.manipulation.motion_planner import PlanError, Planner
-from services.manipulation.plan_grab import plan_grab
-from services.manipulation.planning_scene import obstacles, target_of
-from services.manipulation.stances import SAME, other_stance
-from services.manipulation.target import Target
+from services.manipulation.grasps.target import Target
+from services.manipulation.planning.motion_planner import PlanError, Planner
+from services.manipulation.planning.plan_grab import plan_grab
+from services.manipulation.planning.planning_scene import obstacles, target_of
+from services.manipulation.planning.stances import SAME, other_stance
 from services.sim.model import own
 
 PLANNER = Planner(own().mjcf, seed=0)

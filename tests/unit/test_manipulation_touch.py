@@ -5,10 +5,10 @@ import numpy as np
 import pytest
 
 from common import topics
-from services.manipulation.arm_model import ArmModel
-from services.manipulation.robot import Failure
-from services.manipulation.touch import MET, TOO_HEAVY, TOUCHED, Guard, Reaction, load_limit
-from services.manipulation.trajectory import back_along
+from services.manipulation.arm.arm_model import ArmModel
+from services.manipulation.arm.touch import MET, TOO_HEAVY, TOUCHED, Guard, Reaction, load_limit
+from services.manipulation.arm.trajectory import back_along
+from services.manipulation.execution.robot import Failure
 from services.sim.model import own
 from tests.unit.test_manipulation_service import CONFIG, Arm
 

@@ -13,7 +13,7 @@ from common.bus.memory import MemoryBus, MemoryIo
 from common.household import told
 from common.runtime import StartError
 from common.scene import load_scene
-from services.manipulation.arm_model import ArmModel
+from services.manipulation.arm.arm_model import ArmModel
 from services.sim import calibrate, menagerie
 from services.sim.config import SimConfig
 from services.sim.model import Robot, load_robot, own

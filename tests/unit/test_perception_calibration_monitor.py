@@ -8,7 +8,7 @@ from scipy.spatial.transform import Rotation
 
 from services.perception.calibration_monitor import LOOKS, CalibrationMonitor, floor_error
 from services.perception.detection import Detection
-from services.perception.view import View
+from services.perception.views.view import View
 
 POSITION = np.array([1.0, 2.0, 1.3])
 SIZE, FOCAL = (240, 320), 260.0

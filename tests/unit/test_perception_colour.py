@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from services.perception.colour import Light, light, main_words, name, shares
+from services.perception.views.colour import Light, light, main_words, name, shares
 
 GOODS = {
     "cardboard": ((0.72, 0.55, 0.38), "brown"),

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from common.geometry import Array
-from services.perception import dark
-from services.perception.measure import measure
-from services.perception.view import View
+from services.perception.segments import dark
+from services.perception.shapes.measure import measure
+from services.perception.views.view import View
 from tests.unit.test_perception_separate import EYE, FLOOR, FOCAL, picture
 
 BLACK, RED = (20, 20, 22), (190, 30, 30)

@@ -10,10 +10,11 @@ from common.household import told
 from common.kinds import KINDS
 from common.rendering.raycast import render
 from common.scene import Scene, load_scene
-from services.perception import colour, shapes
 from services.perception.detect import ClassicalDetector, Detection
-from services.perception.self_filter import RobotModel
-from services.perception.view import View
+from services.perception.shapes import known as shapes
+from services.perception.views import colour
+from services.perception.views.self_filter import RobotModel
+from services.perception.views.view import View
 from services.sim import robot
 from services.sim.layout import Placement, place_objects
 from services.sim.model import own

@@ -8,9 +8,9 @@ from scipy.spatial.transform import Rotation
 
 from common.household import load_household
 from services.camera.sensor import StereoCamera
-from services.perception.segmentation import segments
-from services.perception.view import View
-from services.perception.visible_plan import Nearby
+from services.perception.segments.segmentation import segments
+from services.perception.views.view import View
+from services.perception.views.visible_plan import Nearby
 
 SCENE = load_household("minimal")
 WIDTH, HEIGHT, FOCAL = 640, 480, 400.0

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from services.perception.handle import Parts, parted
+from services.perception.shapes.handle import Parts, parted
 
 PIXEL = 0.002
 """Size of a pixel [m]: about that at 0.8 m."""

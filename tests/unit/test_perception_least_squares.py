@@ -9,8 +9,8 @@ from scipy.optimize import least_squares
 from common.floor_plan import Vec3
 from common.geometry import Array
 from common.kinds import KINDS
-from services.perception import shapes
-from services.perception.least_squares import solve
+from services.perception.shapes import known as shapes
+from services.perception.shapes.least_squares import solve
 
 SIZES: dict[str, Vec3] = {
     "mug": (0.074, 0.074, 0.095), "bowl": (0.14, 0.14, 0.06), "bottle": (0.066, 0.066, 0.22),

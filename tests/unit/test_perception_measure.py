@@ -8,7 +8,7 @@ import pytest
 from common.geometry import Array
 from common.kinds import LOOKS
 from common.looks import likely
-from services.perception.measure import Measurement, measure
+from services.perception.shapes.measure import Measurement, measure
 from services.perception.unlisted import measures_of, thinned
 
 CAMERA = np.array([-1.0, -0.4, 1.3])

@@ -10,10 +10,10 @@ import pytest
 from common.household import Household, load_household, told
 from common.rendering.raycast import render
 from common.scene import ObjectSpec, load_scene
-from services.perception import segmentation
 from services.perception.detect import ClassicalDetector
-from services.perception.object_tracker import ObjectTracker
-from services.perception.view import View
+from services.perception.segments import segmentation
+from services.perception.tracking.object_tracker import ObjectTracker
+from services.perception.views.view import View
 from services.sim.layout import place_objects
 from services.sim.world import world_mjcf
 

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from common.geometry import Array
-from services.perception.segment import Segment, Surface
-from services.perception.separate import pieces
-from services.perception.view import View
+from services.perception.segments.segment import Segment, Surface
+from services.perception.segments.separate import pieces
+from services.perception.views.view import View
 
 FLOOR, FOCAL = 0.72, 400.0
 EYE = np.array([0.0, 0.0, 1.35])

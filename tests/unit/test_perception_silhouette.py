@@ -8,11 +8,12 @@ import pytest
 from numpy.typing import NDArray
 
 from common.geometry import Array
-from services.perception import dark, silhouette
-from services.perception.measurement import LEVEL, Measurement
-from services.perception.outlined import on_surface
-from services.perception.view import View
-from services.perception.visible_plan import Cloud
+from services.perception.segments import dark
+from services.perception.segments.outlined import on_surface
+from services.perception.shapes import silhouette
+from services.perception.shapes.measurement import LEVEL, Measurement
+from services.perception.views.view import View
+from services.perception.views.visible_plan import Cloud
 
 FLOOR, FOCAL, WIDTH, HEIGHT = 0.7, 450.0, 200, 140
 EYE = np.array([0.0, 0.0, 1.3])

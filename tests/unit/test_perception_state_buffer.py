@@ -10,7 +10,7 @@ from common import topics
 from common.household import load_household
 from common.robot import ARM
 from services.perception.service import PerceptionService
-from services.perception.state_buffer import StateBuffer
+from services.perception.views.state_buffer import StateBuffer
 from services.sim.model import own
 from tests.node import Node
 

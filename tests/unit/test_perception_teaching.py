@@ -16,7 +16,7 @@ from services.perception.detect import Detection
 from services.perception.naming.naming import HALF_READ
 from services.perception.naming.reader import installed
 from services.perception.service import PerceptionService
-from services.perception.view import Mask, View
+from services.perception.views.view import Mask, View
 from tests.node import Node
 from tests.unit.painted import Box, label, view_of_boxes
 

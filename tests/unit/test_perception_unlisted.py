@@ -12,8 +12,8 @@ from common.messages import WorldObject
 from common.naming import match_object
 from services.perception.detection import Detection
 from services.perception.grounding import may_be_meant
-from services.perception.object_tracker import ObjectTracker
-from services.perception.view import View
+from services.perception.tracking.object_tracker import ObjectTracker
+from services.perception.views.view import View
 
 SCENE = load_household("apartment")
 NOTHING_LISTED = mapped(SCENE)

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from common.geometry import Array, Rectangle
-from services.perception.view import View
-from services.perception.visible_plan import corners, inside
+from services.perception.views.view import View
+from services.perception.views.visible_plan import corners, inside
 
 
 def ahead(turn: float = 0.0) -> View:

@@ -11,8 +11,8 @@ from common.household import load_household
 from common.messages import WorldObject
 from services.perception.detect import Detection
 from services.perception.grounding import ground
-from services.perception.object_tracker import ObjectTracker
-from services.perception.view import View
+from services.perception.tracking.object_tracker import ObjectTracker
+from services.perception.views.view import View
 
 SCENE = load_household("apartment")
 SYNONYMS = {"cup": "mug", "tin": "can"}

@@ -25,9 +25,9 @@ from common.messages import KnownWorld, ObjectPose
 from common.household import load_words, told
 from common.scene import load_scene
 from services.brain.world import placement
-from services.manipulation.grasp import candidates
-from services.manipulation.target import Target
-from services.perception.shapes import fit
+from services.manipulation.grasps.grasp import candidates
+from services.manipulation.grasps.target import Target
+from services.perception.shapes.known import fit
 from services.planner import grammar
 from services.planner.config import PlannerConfig
 from services.planner.world import believed

@@ -10,8 +10,8 @@ from common import topics
 from common.bus import codec
 from common.robot import Hand
 from services.dashboard.scene.drawing import draw
-from services.manipulation.arm_model import ArmModel
-from services.perception.self_filter import RobotModel
+from services.manipulation.arm.arm_model import ArmModel
+from services.perception.views.self_filter import RobotModel
 from services.sim.model import own
 from tests.simulation import Simulation
 

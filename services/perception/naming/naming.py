@@ -26,7 +26,7 @@ from services.perception.naming.recognise import Match, matches
 from services.perception.naming.teaching import Teacher
 from services.perception.naming.text import LIKELY, SURE, likeness, printed_words, shown, traces
 from services.perception.naming.vocabulary import COLOURS, common_words, plain_words, printable, taken, unlike_said
-from services.perception.view import View
+from services.perception.views.view import View
 
 HALF_READ, SOMEWHAT, TRACE = 0.5, 0.4, 0.1
 """Likeness, as `common.likeness` has it, of what reads nearly like the words, of what looks somewhat like the taught

@@ -10,7 +10,7 @@ from services.perception.naming.crop import Crop
 from services.perception.naming.reader import Reader
 from services.perception.naming.sights import RENEWED, Sight, Sights
 from services.perception.naming.text import Line
-from services.perception.view import View
+from services.perception.views.view import View
 
 LOOK_SECONDS, READ_SECONDS = 0.005, 0.4
 """Robot time [s] that a look and a reading take in lockstep; measured on one core by bench.naming."""

@@ -8,7 +8,7 @@ from services.perception.naming.appearance import Look
 from services.perception.naming.crop import Crop, crop_of
 from services.perception.naming.memory import with_look
 from services.perception.naming.text import Line, merged, sure_words
-from services.perception.view import View
+from services.perception.views.view import View
 
 RENEWED = 3.0
 """Time [s] after which an object is looked at anew though it shows no other side. Chosen: three pictures under way."""

@@ -1,0 +1,258 @@
+"""Grasp executor: reach, aim, grasp, retract; another candidate after a miss."""
+
+import numpy as np
+
+from common import messages as m
+from common import topics
+from common.geometry import quat_matrix, yaw_quat
+from common.messages import WorldObject
+from services.manipulation.arm.arm_model import Array, Obstacle
+from services.manipulation.arm.contacts import Contact, came_around
+from services.manipulation.arm.touch import TOO_HEAVY, TOUCHED, load_limit
+from services.manipulation.arm.trajectory import back_along
+from services.manipulation.execution.robot import Failure, Robot, Steps, go_home, planner_of
+from services.manipulation.execution.sighting import MISTAKEN, aimed, sighted
+from services.manipulation.grasps.clearance import PAD
+from services.manipulation.grasps.grasp import shown
+from services.manipulation.grasps.grasp_verification import WIDTH_ERROR, held_badly, judge
+from services.manipulation.grasps.grasped_object import GraspedObject
+from services.manipulation.planning.plan_grab import GrabPlan, plan_grab
+from services.manipulation.planning.planning_scene import MARGINS, obstacles, others, target_of
+from services.manipulation.planning.stances import other_stance
+
+BAD_HOLD = "BAD_HOLD"
+"""Code within an attempt: the fingers hold the object by something else than its body; another grasp is tried."""
+TOO_WIDE = "TOO_WIDE"
+"""Code: the object does not fit between the open fingers."""
+CLOSING_EFFORT = 8.0
+"""Force [N] with which the fingers come before they grip: slow enough that they do not knock (in simulation 0.16 m/s
+each, three times what they do with the whole grip force)."""
+WEIGHED = 3
+"""Points of the lift at whose end what is too heavy has shown: 40 mm, where 30 N bend the arm by 3; slowly, for where
+the arm is nearly stretched its own damping shows as 20 N at twice the speed."""
+SAME_WIDTH = 0.002
+"""Difference [m] up to which two grasps of a measured object have felt the same width: the play of the fingers."""
+INSERTING = 0.3
+"""Share of the joint speed around the object: with 8 mm in the 40 ms until it stops the hand knocks with some 50 N."""
+
+
+TIGHT, GENTLY = 0.008, 0.1
+"""Room [m] beside either finger below which it may meet the object, and the share of the joint speed then: a third of
+the speed, a third of the knock."""
+
+
+def grab(robot: Robot, goal: m.ManipulationGoal, wanted: str) -> Steps[str]:
+    """Reach, grasp, retract; another candidate after a miss. Returns the evidence."""
+    config, planner = robot.config, planner_of(robot)
+    since = robot.now - config.fresh
+    tried: set[str] = set()
+    widths: list[float] = []
+    last = Failure("UNREACHABLE", "no grasp tried")
+    weighed = False
+    for _ in range(config.max_candidates):
+        found = yield from sighted(robot, goal, wanted, since)
+        robot.phase = "reach"
+        target = target_of(found, robot.base, robot.io.household)
+        around = surroundings(robot, found)
+        try:
+            plan = yield from robot.work(
+                plan_grab, planner, target, around, robot.joints.copy(), config.approach_distance, config.lift_height,
+                config.reach, frozenset(tried), _touched(robot, found.label),
+            )  # fmt: skip
+        except Failure as failure:
+            raise (last if tried else (yield from _from_elsewhere(robot, found, failure))) from None
+        candidates = shown(target, plan.options, robot.base, robot.now, tried, plan.grasp.name, goal.id)
+        robot.io.publish(topics.GRASPS, candidates)
+        tried.add(plan.grasp.name)
+        opening = round(1000 * plan.opening) if plan.opening else None
+        robot.io.log.info("grasp chosen", object=found.label, grasp=plan.grasp.name, opening_mm=opening)
+        try:
+            return (yield from _execute_grab(robot, plan, goal, found, widths))
+        except Failure as failure:
+            if failure.code == MISTAKEN:
+                robot.io.log.info("aim mistaken", detail=failure.detail, grasp=plan.grasp.name)
+                tried.discard(plan.grasp.name)
+                since, last = robot.now - config.fresh, failure
+                continue
+            if failure.code not in ("EMPTY_GRASP", "SLIPPED", "BLOCKED", BAD_HOLD, TOUCHED, TOO_HEAVY):
+                raise
+            last = failure
+            robot.io.log.warning("grasp failed", code=failure.code, detail=failure.detail, grasp=plan.grasp.name)
+            if failure.code == "BLOCKED" and robot.grasped is not None and robot.grip.holds():
+                return (yield from _carry_again(robot, robot.grasped, around[-1]))
+            robot.phase = "retract"
+            robot.grasped = None
+            yield from robot.move_gripper(0.0)
+            yield from go_home(robot)
+            if failure.code == TOO_HEAVY:
+                # Fingers that are wedged between a thing and its surface feel the same once, not from another side too.
+                if weighed:
+                    raise
+                weighed = True
+            if failure.code != TOUCHED:
+                robot.contacts.clear()
+            elif robot.contacts.too_wide():
+                detail = f"the open fingers met the {found.label} from two sides; last: {failure.detail}"
+                raise Failure(TOO_WIDE, detail) from None
+            # What was seen while the hand was at work may have been half hidden by it.
+            since = robot.now
+    raise last
+
+
+def _from_elsewhere(robot: Robot, found: m.WorldObject, failure: Failure) -> Steps[Failure]:
+    """The failure to plan a grasp, with where the base would have to stand for one, if that helps."""
+    if failure.code != "UNREACHABLE":
+        return failure
+    config, objects = robot.config, robot.source.objects()
+    stance = yield from robot.work(
+        other_stance, planner_of(robot), robot.io.household, found, objects, robot.base, robot.joints.copy(),
+        config.approach_distance, config.lift_height,
+    )  # fmt: skip
+    if stance is None:
+        return failure
+    where = f"within reach from ({stance[0]:.2f}, {stance[1]:.2f}), facing {np.degrees(stance[2]):.0f} deg"
+    return Failure(failure.code, f"{failure.detail}; {where}", failure.blockers, stance)
+
+
+def surroundings(robot: Robot, found: WorldObject) -> list[list[Obstacle]]:
+    """What the arm keeps clear of, with each of the margins, but for an object."""
+    objects = others(robot.source.objects(), found)
+    return [obstacles(robot.io.household, robot.base, objects, margin=margin) for margin in MARGINS]
+
+
+def _execute_grab(
+    robot: Robot, plan: GrabPlan, goal: m.ManipulationGoal, found: WorldObject, widths: list[float]
+) -> Steps[str]:
+    """`widths`: of earlier bad holds [m]; one that is felt again from another side is the object's own."""
+    config = robot.config
+    yield from robot.move_gripper(0.0)
+    yield from robot.follow(plan.reach, config.joint_speed)
+    plan = yield from aimed(robot, plan, goal, found)
+    if plan.opening is not None:
+        yield from robot.move_gripper(planner_of(robot).arm.hand.share(plan.opening))
+    free = robot.torques.copy()
+    try:
+        yield from robot.follow(plan.insert, config.joint_speed * _inserting(robot, plan), robot.guard(free))
+        robot.phase = "grasp"
+        yield from robot.move_gripper(1.0, CLOSING_EFFORT)
+        yield from robot.move_gripper(1.0)
+        _judge(robot, plan, None, widths)
+    except Failure as failure:
+        if failure.code == TOUCHED:
+            _note_contact(robot, plan, found)
+        yield from _withdraw(robot, plan)
+        raise
+    closed = robot.grip
+    robot.grasped = plan.grasped
+    robot.phase = "retract"
+    way = [plan.lift]
+    try:
+        weight = robot.guard(free, load_limit(config.grip_effort), lifting=True)
+        yield from robot.follow(plan.lift[:WEIGHED], config.joint_speed * 0.25, weight)
+        yield from robot.follow(plan.lift[WEIGHED:], config.joint_speed * 0.5)
+        _judge(robot, plan, closed.width, widths)
+        _check_width(robot, plan, widths)
+        way.append(plan.carry)
+        yield from robot.follow(plan.carry, config.joint_speed * 0.8)
+        yield from robot.wait(0.2)
+        _judge(robot, plan, closed.width, widths)
+    except Failure as failure:
+        if failure.code in ("SLIPPED", BAD_HOLD, TOO_HEAVY) and robot.grip.holds():
+            yield from _set_back(robot, plan, way, free)
+        raise
+    robot.contacts.clear()
+    robot.source.remember(plan.grasped.label, None, "", robot.now)
+    return f"{plan.grasped.label} held: width {robot.grip.width * 1000:.1f} mm, force {robot.grip.force:.0f} N"
+
+
+def _inserting(robot: Robot, plan: GrabPlan) -> float:
+    """Share of the joint speed around the object, by the room that the fingers have if it is as wide as may be."""
+    hand = planner_of(robot).arm.hand
+    room = (min(plan.opening or hand.open, hand.open) - plan.grasp.width - plan.doubt) / 2
+    return GENTLY if room < TIGHT else INSERTING
+
+
+def _note_contact(robot: Robot, plan: GrabPlan, found: WorldObject) -> None:
+    """Remember that the open fingers touched the object, or something before it, on their way around it."""
+    hand, wanted = planner_of(robot).reaction.position(robot.joints), plan.grasp.pose
+    around = came_around(hand, wanted.position, plan.grasped.size, PAD)
+    turn = quat_matrix(yaw_quat(robot.base[2]))
+    robot.contacts.add(found.label, Contact(turn @ wanted.rotation, found.seen_at, around))
+    robot.io.log.info(
+        "contact", object=found.label, around=around, mm=round(1000 * float(np.linalg.norm(hand - wanted.position)))
+    )
+
+
+def _touched(robot: Robot, label: str) -> list[Array]:
+    """Rotations (3, 3) of the hand at contacts with the object, in the base frame."""
+    turn = quat_matrix(yaw_quat(robot.base[2]))
+    return [turn.T @ rotation for rotation in robot.contacts.rotations(label)]
+
+
+def _withdraw(robot: Robot, plan: GrabPlan) -> Steps[None]:
+    """Open and leave the way the hand came: the object may still stand between the fingers."""
+    robot.phase = "retract"
+    yield from robot.move_gripper(0.0)
+    try:
+        yield from robot.follow(back_along(plan.insert, robot.joints), robot.config.joint_speed * 0.6)
+    except Failure as failure:
+        robot.io.log.warning("on the way out", code=failure.code, detail=failure.detail)
+        robot.forget_command()
+
+
+def _set_back(robot: Robot, plan: GrabPlan, way: list[list[Array]], free: Array) -> Steps[None]:
+    """What is held badly goes back to where it was taken: the hand would drop it from where it is.
+
+    What hangs lower in the hand by now stands before the hand is back; `free`: torques (7,) [Nm] in the air.
+    """
+    for path in reversed(way):
+        guard = robot.guard(free) if path is plan.lift else None
+        try:
+            yield from robot.follow(back_along(path, robot.joints), robot.config.joint_speed * 0.5, guard)
+        except Failure as failure:
+            if failure.code != TOUCHED:
+                raise
+            robot.io.log.info("set back", object=plan.grasped.label, felt=failure.detail)
+    yield from _withdraw(robot, plan)
+
+
+def _check_width(robot: Robot, plan: GrabPlan, widths: list[float]) -> None:
+    """A known object that has not its width between the fingers is held by something else than its body.
+
+    Raises:
+        Failure: BAD_HOLD.
+    """
+    held, width = plan.grasped, robot.grip.width
+    spec = robot.io.household.thing(held.label)
+    if spec is None or plan.grasp.rim or plan.doubt or not held_badly(robot.grip, plan.grasp.width, spec.kind):
+        return
+    if any(abs(width - other) < WIDTH_ERROR for other in widths):
+        robot.io.log.warning("not as wide as it should be", object=held.label, mm=round(1000 * width, 1))
+        return
+    widths.append(width)
+    raise Failure(BAD_HOLD, f"width {1000 * width:.1f} mm where the {held.label} has {1000 * plan.grasp.width:.1f}")
+
+
+def _carry_again(robot: Robot, held: GraspedObject, around: list[Obstacle]) -> Steps[str]:
+    """Something was in the way with the object in hand: another path to the carry pose, without letting go."""
+    robot.forget_command()
+    path = yield from robot.work(planner_of(robot).carry, held, robot.joints.copy(), around)
+    yield from robot.follow(path, robot.config.joint_speed * 0.5)
+    if not robot.grip.holds():
+        raise Failure("SLIPPED", f"the {held.label} was lost on the way to the carry pose")
+    robot.source.remember(held.label, None, "", robot.now)
+    return f"{held.label} held: width {robot.grip.width * 1000:.1f} mm, force {robot.grip.force:.0f} N"
+
+
+def _judge(robot: Robot, plan: GrabPlan, at_close: float | None, widths: list[float]) -> None:
+    """Raises `Failure` unless the object is held; a measured width that was felt otherwise twice was measured wrong."""
+    nominal, width = 0.0 if plan.grasp.rim else plan.grasp.width, robot.grip.width
+    if plan.doubt and any(abs(width - other) < SAME_WIDTH for other in widths):
+        nominal = 0.0 if plan.grasp.rim else width
+    code = judge(robot.grip, nominal, at_close, robot.config, plan.doubt)
+    if code:
+        if plan.doubt and robot.grip.holds():
+            widths.append(width)
+        was = "" if at_close is None else f", was {at_close * 1000:.1f} mm"
+        detail = f"width {width * 1000:.1f} mm{was}, force {robot.grip.force:.0f} N"
+        raise Failure(code, detail)

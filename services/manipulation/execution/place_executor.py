@@ -1,0 +1,181 @@
+"""Place executor: the grasped object is set on a receptacle or where there is room; the hand opens when it stands."""
+
+import numpy as np
+from msgspec.structs import replace
+
+from common.floor_plan import Receptacle
+from common.geometry import compose, to_frame
+from common.kinds import kind_of
+from common.messages import ObjectRef, WorldObject
+from services.manipulation.arm.arm_model import Obstacle
+from services.manipulation.arm.touch import TOUCHED
+from services.manipulation.execution.robot import Failure, Robot, Steps, go_home, planner_of
+from services.manipulation.grasps.grasp import approach_rotation
+from services.manipulation.grasps.grasped_object import USUAL_SIZE, GraspedObject
+from services.manipulation.planning.plan_place import PlacePlan, plan_place
+from services.manipulation.planning.planning_scene import obstacles, spots
+
+FLOOR_SPOTS = ((0.48, 0.0), (0.48, 0.2), (0.48, -0.2))
+"""Where things are put on the floor, from the arm's first joint [m]: in front of the base and clear of it."""
+DROP = 0.004
+"""Height [m] above a surface at which the way down ends. Chosen: the error of the surface's measured height."""
+BIN_DROP = 0.06
+"""Height [m] above a bin's rim at which the hand lets go. Chosen: the fingers stay clear of the rim."""
+ACCESS = 0.08
+"""Least free space [m] around an object that is to be left accessible: the breadth of the hand, open."""
+SLOWLY = 0.055
+"""Height [m] above the end of the way down from which it goes slowly: what is held may hang so much lower. Chosen: an
+apple that had slid in the hand met the tray 49 mm early, with 82 N."""
+SETTING_DOWN = 0.12
+"""Speed of that, in joint speeds: some 6 cm/s of the hand. At 0.4 a bottle of 0.4 kg met the tray with 100 N."""
+IN_HANDLE = 0.008
+"""How much farther [m] than the object is wide the fingers open where one of them may be in its handle: a mug that lies
+is taken through it, and 22 mm of room leave 8 beside a finger."""
+STANDS = 0.03
+"""Height [m] above the end of the way down at which what is met is what the object is put on: it may have slid so far
+down in the hand, or have been taken so far above its foot."""
+
+
+def place(robot: Robot, where: str, beside: ObjectRef | None = None, away_from: str = "") -> Steps[str]:
+    """Set the held object down on a receptacle, or with "" on the delivery surface or whatever is in reach.
+
+    `beside`: the object, in frame map, next to which; where it was seen last counts more. `away_from`: the label of one
+    that is to be left accessible.
+    """
+    household = robot.io.household
+    held = robot.grasped or _unknown(robot)
+    robot.phase = "place"
+    stances = [held, held.as_found] if held.as_found is not None else [held]
+    known = [o for o in robot.source.objects() if o.label != held.label]
+    names = [where] if where else [household.delivery, *(r.name for r in household.receptacles if not r.depth)]
+    anchor = next((o for o in known if beside and o.label == beside.label), beside)
+    choices: list[tuple[GraspedObject, str, list[tuple[float, float]], float, float]] = []
+    for stance in stances:
+        for name in dict.fromkeys(names):
+            r = household.receptacle(name)
+            if r is None:
+                continue
+            surface, drop = (r.depth, BIN_DROP) if r.depth else (r.center[2], DROP)
+            # What lies takes up more room than when it stands.
+            free = free_spots(robot, r, max(stance.size[:2]), held.label, anchor, away_from)
+            if free:
+                choices.append((stance, r.name, free, surface, drop))
+        if not where:
+            on_floor = [(planner_of(robot).arm.forward + x, y) for x, y in FLOOR_SPOTS]
+            choices.append((stance, "floor", on_floor, 0.0, DROP))
+    if not choices:
+        near = f" next to the {anchor.label}" if anchor else ""
+        raise Failure("UNREACHABLE", f"no free spot of the {where}{near} is within reach from here")
+    last, planner = Failure("UNREACHABLE", "nothing within reach"), planner_of(robot)
+    for held, name, free, surface, drop in choices:
+        try:
+            around, now = _around(robot, held, name), robot.joints.copy()
+            plan = yield from robot.work(plan_place, planner, held, free, surface, drop, around, now)
+        except Failure as failure:
+            last = failure
+            continue
+        return (yield from _execute_place(robot, plan, held, name, surface))
+    raise last
+
+
+def place_back(robot: Robot, found: WorldObject) -> Steps[str]:
+    """Set the held object down where, and as, it was found.
+
+    Raises:
+        Failure: as `place`; UNREACHABLE also where nothing is known that it rested on.
+    """
+    held, surface = robot.grasped or _unknown(robot), robot.io.household.receptacle(found.on)
+    if surface is None or surface.depth:
+        raise Failure("UNREACHABLE", f"it is not known what the {held.label} was taken from")
+    robot.phase = "place"
+    held = held.as_found or held
+    spot = to_frame(robot.base, (found.position[0], found.position[1]))
+    around, now, height = _around(robot, held, surface.name), robot.joints.copy(), surface.center[2]
+    plan = yield from robot.work(plan_place, planner_of(robot), held, [spot], height, DROP, around, now)
+    return (yield from _execute_place(robot, plan, held, surface.name, height))
+
+
+def free_spots(
+    robot: Robot,
+    r: Receptacle,
+    footprint: float,
+    label: str,
+    anchor: WorldObject | ObjectRef | None = None,
+    away_from: str = "",
+) -> list[tuple[float, float]]:
+    """Free points of a receptacle in the base frame for the object of that label, `footprint` [m] across."""
+    known = [o for o in robot.source.objects() if o.label != label and not r.depth]
+    wider = [(o.size[0] + 2 * ACCESS, o.size[1] + 2 * ACCESS, o.size[2]) for o in known]
+    taken = [replace(o, size=size) if o.label == away_from else o for o, size in zip(known, wider, strict=True)]
+    wide = footprint if not r.depth else max(r.size)
+    return spots(r, robot.base, wide, taken, planner_of(robot).arm.forward, anchor)
+
+
+def _around(robot: Robot, held: GraspedObject, where: str) -> list[Obstacle]:
+    """What the arm must not touch while it puts something down; what lies in a bin may be covered."""
+    r = robot.io.household.receptacle(where)
+    inside = where if r is not None and r.depth else None
+    objects = [o for o in robot.source.objects() if o.on != inside]
+    return obstacles(robot.io.household, robot.base, objects, without=held.label, margin=0.0)
+
+
+def _execute_place(robot: Robot, plan: PlacePlan, held: GraspedObject, name: str, surface: float) -> Steps[str]:
+    config = robot.config
+    yield from robot.follow(plan.reach, config.joint_speed * 0.8)
+    if robot.grip.empty:
+        robot.grasped = None
+        raise Failure("SLIPPED", f"the {held.label} was lost on the way")
+    yield from _lower(robot, plan, held)
+    yield from robot.wait(0.2)
+    robot.phase = "release"
+    hand = planner_of(robot).arm.hand
+    # A finger that is in a handle has to come out of it, and not to spread it.
+    handled = held.as_found is not None and kind_of(held.kind).handle > 0
+    yield from robot.move_gripper(hand.share(held.width + IN_HANDLE) if handled else 0.0)
+    if robot.grip.width < min(planner_of(robot).arm.widest, held.width) + 0.004:
+        # GraspedObject as before, for whoever tries again.
+        raise Failure("STUCK", f"the gripper opened to {robot.grip.width * 1000:.0f} mm only")
+    robot.grasped = None
+    robot.phase = "retract"
+    try:
+        yield from robot.follow(plan.retreat, config.joint_speed * 0.5)
+        yield from robot.move_gripper(0.0)
+        yield from robot.follow(plan.home, config.joint_speed)
+    except Failure as failure:
+        # The object stands; another way home from here.
+        robot.io.log.warning("on the way home", code=failure.code, detail=failure.detail)
+        robot.forget_command()
+        yield from go_home(robot)
+    x, y, _ = compose(robot.base, (*plan.spot, 0.0))
+    robot.source.remember(held.label, (x, y, surface + held.size[2] / 2), name, robot.now)
+    return f"{held.label} on the {name}, gripper open at {robot.grip.width * 1000:.0f} mm"
+
+
+def _lower(robot: Robot, plan: PlacePlan, held: GraspedObject) -> Steps[None]:
+    """Down until it stands: at the end of the way, or a little before that where it is felt to.
+
+    Raises:
+        Failure: BLOCKED, it met something that is not what it is put on.
+    """
+    feel, speed = planner_of(robot).reaction, robot.config.joint_speed
+    guard = robot.guard(robot.torques.copy())
+    heights = [float(feel.position(q)[2]) for q in plan.lower]
+    near = next(n for n, height in enumerate(heights) if height <= heights[-1] + SLOWLY)
+    try:
+        yield from robot.follow(plan.lower[: near + 1], speed * 0.4, guard)
+        yield from robot.follow(plan.lower[near:], speed * SETTING_DOWN, guard)
+    except Failure as failure:
+        if failure.code != TOUCHED:
+            raise
+        above = float(feel.position(robot.joints)[2] - feel.position(plan.lower[-1])[2])
+        if above > STANDS:
+            raise Failure("BLOCKED", f"the {held.label} met something {1000 * above:.0f} mm too high") from None
+        robot.io.log.info("set down", object=held.label, felt=failure.detail, above_mm=round(1000 * above, 1))
+
+
+def _unknown(robot: Robot) -> GraspedObject:
+    """Something is in the gripper that a former process grasped: assume it hangs straight down from the hand."""
+    name = next((o.label for o in robot.source.objects() if o.held), "object")
+    size = next((o.size for o in robot.source.objects() if o.held), USUAL_SIZE)
+    offset = np.array([0.0, 0.0, size[2] / 2])
+    return GraspedObject(name, "", approach_rotation(0.0, np.pi / 2), offset, size, robot.grip.width, 0.0)

@@ -1,0 +1,77 @@
+"""Recovery of an arm that a former process or a stop left somewhere: with an object to the carry pose, empty home."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from common.messages import ObjectRef
+from services.manipulation.arm.arm_model import Array, Obstacle
+from services.manipulation.execution.robot import Failure, Robot, Steps, go_home
+from services.manipulation.grasps.grasped_object import USUAL_SIZE, GraspedObject
+from services.manipulation.planning.motion_planner import PlanError, Planner
+from services.manipulation.planning.planning_scene import obstacles
+
+NEAR = 0.15
+"""Largest joint angle [rad] off a carry pose at which the arm counts as retracted. Chosen: no joint's lag is as
+large."""
+
+
+def at_carry(planner: Planner, joints: Array) -> bool:
+    """True when the arm is retracted to a carry pose."""
+    return any(float(np.abs(planner.arm.nearest_turn(c, joints) - joints).max()) < NEAR for c in planner.carries)
+
+
+def in_hand(planner: Planner, joints: Array, width: float, wanted: ObjectRef | None) -> GraspedObject:
+    """The most likely object in the gripper: the wanted one, upright, grasped at half its height."""
+    size = wanted.size if wanted is not None and min(wanted.size) > 0 else USUAL_SIZE
+    label, kind = (wanted.label, wanted.kind) if wanted is not None else ("object", "")
+    rotation = planner.arm.pose(joints).rotation
+    return GraspedObject(label or "object", kind, rotation, np.array([0.0, 0.0, size[2] / 2]), size, width, 0.0)
+
+
+def retreat(planner: Planner, held: GraspedObject, now: Array, around: Sequence[Obstacle], lift: float) -> list[Array]:
+    """A joint path straight up by `lift` [m], then to a carry pose.
+
+    Raises:
+        PlanError: BLOCKED.
+    """
+    planner.arm.hold(None)
+    here = planner.arm.pose(now)
+    for height in (lift, lift / 2):
+        up = planner.straight(now, here, here.moved(np.array([0.0, 0.0, height])))
+        if up is None:
+            continue
+        try:
+            return [*up, *planner.carry(held, up[-1], around)]
+        except PlanError:
+            continue
+    return planner.carry(held, now, around)
+
+
+def retract_grasped(robot: Robot, wanted: ObjectRef | None) -> Steps[str]:
+    """Lift what the hand was found to hold and retract. Returns the evidence; SLIPPED, BLOCKED when that fails."""
+    planner, config = robot.planner, robot.config
+    label = robot.grasped.label if robot.grasped else ""
+    if planner is not None and not at_carry(planner, robot.joints):
+        held = robot.grasped or in_hand(planner, robot.joints, robot.grip.width, wanted)
+        around = obstacles(robot.io.household, robot.base, robot.source.objects(), without=held.label)
+        robot.phase = "retract"
+        path = yield from robot.work(retreat, planner, held, robot.joints.copy(), around, config.lift_height)
+        yield from robot.follow(path, config.joint_speed * 0.5)
+        yield from robot.wait(0.2)
+        if not robot.grip.holds():
+            robot.grasped = None
+            raise Failure("SLIPPED", f"the {held.label} was lost on the way to the carry pose")
+        robot.grasped = held
+        robot.source.remember(held.label, None, "", robot.now)
+    return f"already holding {label or 'something'}: width {robot.grip.width * 1000:.1f} mm"
+
+
+def retract_empty(robot: Robot) -> Steps[None]:
+    """Open an empty hand and take the arm back, if there is a way."""
+    yield from robot.move_gripper(0.0)
+    if robot.planner is not None and not at_carry(robot.planner, robot.joints):
+        try:
+            yield from go_home(robot)
+        except Failure as failure:
+            robot.io.log.warning("the arm stays where it is", code=failure.code, detail=failure.detail)

@@ -1,0 +1,154 @@
+"""The arm as the sequences see and move it; each `yield` is one step of robot time, a `Failure` ends the goal."""
+
+from collections.abc import Callable, Generator, Sequence
+from typing import Any, TypeVar
+
+import numpy as np
+
+from common import messages as m
+from common import topics
+from common.bus.port import Io
+from common.geometry import Pose2
+from common.grip import Grip
+from services.manipulation.arm.arm_model import Array
+from services.manipulation.arm.contacts import ContactLog
+from services.manipulation.arm.servo import Servo
+from services.manipulation.arm.touch import MET, Guard
+from services.manipulation.arm.trajectory import timed
+from services.manipulation.config import ManipulationConfig
+from services.manipulation.grasps.grasped_object import GraspedObject
+from services.manipulation.planning.motion_planner import PlanError, Planner
+from services.manipulation.planning.object_source import ObjectSource
+from services.manipulation.planning.planning_scene import obstacles
+
+T = TypeVar("T")
+Steps = Generator[None, None, T]
+DT = 0.02
+GRIPPER_TICKS = 5
+
+
+class Failure(Exception):
+    """The goal failed; `code` is the status code, `blockers` the objects in the way, the worst first.
+
+    `stance`: where the base would have to stand for it (x, y, theta) [map].
+    """
+
+    def __init__(self, code: str, detail: str, blockers: Sequence[str] = (), stance: Pose2 | None = None) -> None:
+        super().__init__(detail)
+        self.code, self.detail, self.blockers, self.stance = code, detail, tuple(blockers), stance
+
+
+class Robot:
+    """What the sequences see and move: joint angles, gripper, base pose, and the streams to the drivers."""
+
+    def __init__(self, config: ManipulationConfig, io: Io, source: ObjectSource) -> None:
+        self.config, self.io, self.source = config, io, source
+        self.now = 0.0
+        self.joints: Array = np.zeros(7)
+        self.torques: Array = np.zeros(7)
+        self.grip = Grip(0.0, 0.0)
+        self.base: Pose2 = (0.0, 0.0, 0.0)
+        self.phase = ""
+        self.grasped: GraspedObject | None = None
+        self.contacts = ContactLog()
+        self.planner: Planner | None = None
+        self.servo: Servo | None = None
+        self._command: Array | None = None
+        self._late = 0
+
+    # --- motion
+    def follow(self, path: Sequence[Array], speed: float, guard: Guard | None = None) -> Steps[None]:
+        """Stream a joint path and wait until the arm has come to rest at its end.
+
+        Raises:
+            Failure: BLOCKED, or what the guard feels; the arm then holds where it is.
+        """
+        start = self._command if self._command is not None else self.joints
+        points = [start, *path] if np.abs(start - path[0]).max() > 1e-3 else list(path)
+        for q in timed(points, speed, self.config.joint_acceleration, DT):
+            self.stream(q)
+            yield
+            self._check_blocked(q)
+            self._check_touched(guard)
+        for _ in range(round(self.config.settle / DT)):
+            self.stream(points[-1])
+            yield
+            self._check_touched(guard)
+            if np.abs(self.joints - points[-1]).max() < 0.01:
+                break
+        self._command = None
+
+    def stream(self, q: Array) -> None:
+        """One set-point (7,) [rad] for the next 20 ms."""
+        self._command = q
+        self.io.publish(topics.ARM_COMMAND, m.ArmCommand(position=q.tolist(), period=DT, t=self.now))
+
+    def _check_blocked(self, q: Array) -> None:
+        error = np.abs(self.joints - q)
+        # The servos lag behind a moving set-point; only a lasting error means that something is in the way.
+        self._late = self._late + 1 if error.max() > self.config.blocked_error else 0
+        if self._late > 15:
+            self._late = 0
+            worst = int(error.argmax())
+            raise Failure("BLOCKED", f"joint_{worst + 1} is {error[worst]:.2f} rad behind")
+
+    def guard(self, rest: Array, most: float = MET, lifting: bool = False) -> Guard | None:
+        """For a motion near objects; `rest`: torques (7,) [Nm] of the arm in the air."""
+        return Guard(self.planner.reaction, rest, most, lifting) if self.planner is not None else None
+
+    def _check_touched(self, guard: Guard | None) -> None:
+        code, force = guard.feel(self.joints, self.torques) if guard is not None else ("", 0.0)
+        if code:
+            self.stream(self.joints)
+            self.forget_command()
+            raise Failure(code, f"{force:.0f} N on the hand")
+
+    def forget_command(self) -> None:
+        """The arm was stopped or moved by somebody else."""
+        self._command, self._late = None, 0
+
+    def move_gripper(self, closed: float, effort: float = 0.0) -> Steps[None]:
+        """Open or close and wait until the width has settled. Said again and again: one lost command costs nothing.
+
+        `effort` [N] is what a finger presses at most, the configured one unless told.
+        """
+        command = m.GripperCommand(position=closed, max_effort=effort or self.config.grip_effort)
+        still, last = 0, self.grip.width
+        for n in range(round(1.5 / DT)):
+            if n % GRIPPER_TICKS == 0:
+                self.io.publish(topics.GRIPPER_COMMAND, command)
+            yield
+            still = still + 1 if abs(self.grip.width - last) < 2e-4 else 0
+            last = self.grip.width
+            if still >= 8 and n > 15:
+                return
+
+    def wait(self, seconds: float) -> Steps[None]:
+        for _ in range(round(seconds / DT)):
+            yield
+
+    def work(self, fn: Callable[..., T], *args: Any) -> Steps[T]:
+        """Run slow work in the worker and wait for it."""
+        job = self.io.submit(fn, *args, seconds=self.config.planning_seconds)
+        while not job.poll(self.now):
+            yield
+        try:
+            return job.result()
+        except PlanError as error:
+            raise Failure(error.code, str(error), error.blockers) from None
+
+
+def go_home(robot: Robot) -> Steps[str]:
+    """The carry pose, by a path around what is known; around furniture at least where an object is in the way, which
+    need not be where it was believed once the hand was there."""
+    known = [robot.source.objects(), []]
+    around = [obstacles(robot.io.household, robot.base, objects, margin=0.0) for objects in known]
+    path = yield from robot.work(planner_of(robot).to_home, robot.joints.copy(), around)
+    yield from robot.follow(path, robot.config.joint_speed)
+    return "arm at home"
+
+
+def planner_of(robot: Robot) -> Planner:
+    if robot.planner is None:
+        raise Failure("NO_ROBOT", "no robot/description was received; is the simulation or the arm's driver up?")
+    return robot.planner

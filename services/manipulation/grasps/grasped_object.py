@@ -1,0 +1,80 @@
+"""The object attached to the hand, with the pose in which it was grasped."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from services.manipulation.arm.arm_model import Array
+from services.manipulation.grasps.grasp import Grasp
+from services.manipulation.grasps.target import Target
+
+SHRINK = 0.008
+"""How much smaller [m] than the object its collision box is on every side. Chosen: the errors of size and grasp, so
+that the box is clear of the surface that the object stands on."""
+LEAST_HALF = 0.004
+"""Least half extent [m] of that box. Chosen: half of the thinnest object that is carried."""
+USUAL_SIZE = (0.06, 0.06, 0.10)
+"""Full extents [m] of an object in the hand that nobody described. Chosen: near those of a mug."""
+
+
+@dataclass(frozen=True)
+class GraspedObject:
+    """An object in the gripper: `size` its full extents, `width` between the pads [m].
+
+    `rotation` (3, 3) of the hand and `offset` (3,) [m] of the pinch point are relative to the centre of the object's
+    underside, in a frame with upright z in which the object is turned by `yaw` [rad].
+
+    What lay or stood on its head is described as if it had stood, so that it is put down upright; `as_found` is for
+    where that cannot be.
+    """
+
+    label: str
+    kind: str
+    rotation: Array
+    offset: Array
+    size: tuple[float, float, float]
+    width: float
+    yaw: float
+    as_found: "GraspedObject | None" = None
+
+    def box(self) -> tuple[Array, Array]:
+        """Half extents (3,) and centre (3,) [m] of the object's collision box in the frame of the pinch point."""
+        c, s = np.cos(self.yaw), np.sin(self.yaw)
+        turned = self.rotation.T @ np.array([[c, -s, 0], [s, c, 0], [0, 0, 1.0]])
+        half = np.abs(turned) @ (np.array(self.size) / 2) - SHRINK
+        center = self.rotation.T @ (np.array([0, 0, self.size[2] / 2]) - self.offset)
+        return np.maximum(half, LEAST_HALF), center
+
+
+def lying_rotation(axis: float) -> Array:
+    """Rotation (3, 3) from an upright object to one that lies with its upper end towards `axis` [rad]."""
+    c, s = np.cos(axis), np.sin(axis)
+    return np.array([[0.0, -s, c], [0.0, c, s], [-1.0, 0.0, 0.0]])
+
+
+def turned_over(approach: Array) -> Array:
+    """Rotation (3, 3) by half a turn about the level part of an approach (3,)."""
+    level = np.array([approach[0], approach[1], 0.0])
+    level /= np.linalg.norm(level)
+    found: Array = 2.0 * np.outer(level, level) - np.eye(3)
+    return found
+
+
+def attach(target: Target, grasp: Grasp) -> GraspedObject:
+    """The object as it is attached to the hand once a grasp has closed."""
+    hand, (x, y, z) = grasp.pose, target.position
+    label, kind, width = target.label, target.kind, grasp.width
+    offset = hand.position - np.array([x, y, target.bottom])
+    as_found = GraspedObject(label, kind, hand.rotation, offset, target.size, width, target.yaw)
+    if grasp.turns_over:
+        turn = turned_over(hand.rotation[:, 2])
+        offset = turn @ (hand.position - np.array([x, y, target.bottom + target.size[2]]))
+        yaw = 2 * float(np.arctan2(hand.rotation[1, 2], hand.rotation[0, 2])) - target.yaw
+        return GraspedObject(label, kind, turn @ hand.rotation, offset, target.size, width, yaw, as_found)
+    if grasp.axis is None:
+        return as_found
+    turn = lying_rotation(grasp.axis)
+    length, across, up = target.size
+    foot = np.array([x - length / 2 * np.cos(grasp.axis), y - length / 2 * np.sin(grasp.axis), z])
+    offset = turn.T @ (hand.position - foot)
+    return GraspedObject(label, kind, turn.T @ hand.rotation, offset, (up, across, length), width, 0.0, as_found)

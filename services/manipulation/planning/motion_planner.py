@@ -1,0 +1,140 @@
+"""Collision-free motions of the arm, with and without something in the hand: what grabbing and placing are made of."""
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from services.manipulation.arm.arm_model import ArmModel, Array, Obstacle, Pose
+from services.manipulation.arm.ik import InverseKinematics
+from services.manipulation.arm.touch import Reaction
+from services.manipulation.arm.trajectory import connect
+from services.manipulation.grasps.antipodal import antipodal
+from services.manipulation.grasps.clearance import HandClearance
+from services.manipulation.grasps.grasp import Grasp, candidates
+from services.manipulation.grasps.grasped_object import GraspedObject
+from services.manipulation.grasps.mouth import in_the_mouth
+from services.manipulation.grasps.over_edge import flat_and_wide, over_an_edge
+from services.manipulation.grasps.target import Target
+
+PLAINLY = 0.012
+"""How much wider [m] than the hand takes a flat thing is that is only taken over an edge: the error of extents of
+what is seen in part."""
+CARTESIAN_STEP = 0.02
+"""Distance [m] between the configurations along a straight line. Chosen: joints in between hardly leave it."""
+MAX_JUMP = 0.6
+"""Largest change of a joint [rad] from one of them to the next. Chosen: more is another branch of the inverse
+kinematics."""
+TRANSIT_MARGINS = (0.02, 0.01, 0.005)
+"""Margins [m] around obstacles and the robot's base in free motion, widest first. Chosen: from the error of a sighting
+at 2 m down to that of one at arm's length; the arm itself lags by up to .03 rad, 5 mm at the elbow."""
+# Tip and turn [rad] of the hand at the carry pose: for long objects it is turned or tips up, so that they stay clear.
+_CARRY = tuple((tip, turn) for tip in (0.0, 0.4, 0.8) for turn in (0.0, np.pi / 2, -np.pi / 2))
+
+
+class PlanError(Exception):
+    """No plan; `code` is the status code, the text says why, `blockers` the objects in the way, the worst first."""
+
+    def __init__(self, code: str, detail: str, blockers: Sequence[str] = ()) -> None:
+        super().__init__(detail)
+        self.code, self.blockers = code, tuple(blockers)
+
+
+def inflated(around: Sequence[Obstacle], margin: float) -> list[Obstacle]:
+    """The solids grown by the margin kept in transit."""
+    grow = 2 * margin
+    return [replace(o, size=(o.size[0] + grow, o.size[1] + grow, o.size[2] + grow)) for o in around]
+
+
+def counted(reasons: Iterable[str]) -> str:
+    """`no IK x3, grasp collides x1`."""
+    return ", ".join(f"{why} x{n}" for why, n in Counter(reasons).items())
+
+
+class Planner:
+    """Lives in the worker thread; owns the arm's model."""
+
+    def __init__(self, robot_mjcf: str, seed: int) -> None:
+        self.arm = ArmModel(robot_mjcf)
+        self.ik = InverseKinematics(self.arm)
+        self.clearance = HandClearance(self.arm)
+        self.reaction = Reaction(self.arm)
+        self.carries = tuple(self.arm.home + np.array([0, 0, 0, 0, 0, tip, turn]) for tip, turn in _CARRY)
+        self._seed = seed
+
+    def rng(self) -> np.random.Generator:
+        """The same draws for every plan."""
+        return np.random.default_rng(self._seed)
+
+    def candidates(self, target: Target) -> Iterator[list[Grasp]]:
+        """Every grasp that this hand could try, in stages: over an edge; by the rules of kind and shape; on the seen
+        surface, which comes first where no rule knows the shape. Where neither of these has one, what was seen counts,
+        without what its shape family makes of it. What is plainly too wide is only taken over an edge.
+        """
+        arm = self.arm
+        yield over_an_edge(target, arm.forward, arm.widest)
+        if flat_and_wide(target, arm.widest + PLAINLY):
+            return
+        rules = candidates(target, arm.forward, arm.widest) + in_the_mouth(target)
+        on_surface = antipodal(target, arm.forward, arm.hand.open, arm.widest)
+        shapeless = target.shape in ("long", "irregular") and not target.lies
+        yield from ((on_surface, rules) if shapeless else (rules, on_surface))
+        if target.points is not None and not rules and not on_surface:
+            as_seen = antipodal(replace(target, shape="irregular"), arm.forward, arm.hand.open, arm.widest)
+            yield [replace(g, name=f"as seen, {g.name}") for g in as_seen]
+
+    def surround(self, around: Sequence[Obstacle], end: Array) -> None:
+        """Boxes, and the robot's own base, with the widest transit margin that leaves `end` free, or as they are."""
+        for margin in TRANSIT_MARGINS:
+            self.arm.set_obstacles(inflated(around, margin), margin)
+            if not self.arm.collides(end):
+                return
+        self.arm.set_obstacles(around)
+
+    def carry(self, held: GraspedObject, now: Array, around: Sequence[Obstacle]) -> list[Array]:
+        """A path to a carry pose with the object in hand, from wherever the arm is.
+
+        Raises:
+            PlanError: BLOCKED.
+        """
+        self.arm.hold(*held.box())
+        self.surround(around, now)
+        path = self.to_carry(now, self.rng())
+        self.arm.hold(None)
+        if path is None:
+            raise PlanError("BLOCKED", f"no way to the carry pose with the {held.label} in hand")
+        return path
+
+    def to_carry(self, start: Array, rng: np.random.Generator) -> list[Array] | None:
+        """A path to the first carry pose where the held object is clear of the arm."""
+        for carry in self.carries:
+            goal = self.arm.nearest_turn(carry, start)
+            if not self.arm.collides(goal):
+                path = connect(self.arm, start, goal, rng)
+                if path is not None:
+                    return path
+        return None
+
+    def to_home(self, now: Array, around: Sequence[Sequence[Obstacle]]) -> list[Array]:
+        """A path to the carry pose around the first set of obstacles that leaves one; straight where none does."""
+        self.arm.hold(None)
+        goal = self.arm.nearest_turn(self.arm.home, now)
+        for some in around:
+            self.surround(some, now)
+            if path := connect(self.arm, now, goal, self.rng()):
+                return path
+        return [now, goal]
+
+    def straight(self, start: Array, begin: Pose, end: Pose) -> list[Array] | None:
+        """Configurations along a straight line of the pinch point, without the first; None when the arm cannot."""
+        gap = end.position - begin.position
+        count = max(2, round(float(np.linalg.norm(gap)) / CARTESIAN_STEP))
+        path, q = [], start
+        for i in range(1, count + 1):
+            solved = self.ik.solve(Pose(begin.position + gap * (i / count), begin.rotation), [q])
+            if solved is None or np.abs(solved - q).max() > MAX_JUMP:
+                return None
+            path.append(solved)
+            q = solved
+        return path

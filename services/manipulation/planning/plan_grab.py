@@ -1,0 +1,249 @@
+"""Plans a whole grab: a candidate grasp within reach, collision-free paths to it and away with the object."""
+
+from collections import Counter
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import TypeVar
+
+import numpy as np
+
+from services.manipulation.arm.arm_model import Array, Obstacle
+from services.manipulation.arm.contacts import new_sides_first
+from services.manipulation.arm.ik import seeds
+from services.manipulation.arm.trajectory import connect
+from services.manipulation.grasps.grasp import Grasp, certainly_too_wide
+from services.manipulation.grasps.grasp_verification import MEASURED
+from services.manipulation.grasps.grasped_object import GraspedObject, attach
+from services.manipulation.grasps.target import Target
+from services.manipulation.planning.motion_planner import PlanError, Planner, counted
+from services.manipulation.planning.planning_scene import with_object
+
+T = TypeVar("T")
+STANCE_GRASPS = 12
+"""Grasps of a stage that are tried from where the robot does not stand. Chosen: a quarter of a second for a stance."""
+FINGER_PLAY = 0.012
+"""How much wider [m] than the object on either side the fingers stand that go into a crowd partly closed. Chosen: the
+error of a sighting and of the arm."""
+
+
+@dataclass(frozen=True)
+class GrabPlan:
+    """Joint paths (lists of (7,)) of the phases, and the object as it will be attached to the hand.
+
+    `opening` [m]: how far apart the fingers are on the way in, None as far as they go; `around`: what is kept clear of;
+    `options`: the grasps that were considered; `doubt` [m]: how far off the width between the pads may be.
+    """
+
+    grasp: Grasp
+    reach: list[Array]
+    insert: list[Array]
+    lift: list[Array]
+    carry: list[Array]
+    grasped: GraspedObject
+    opening: float | None = None
+    around: Sequence[Obstacle] = ()
+    options: tuple[Grasp, ...] = ()
+    doubt: float = 0.0
+
+
+@dataclass(frozen=True)
+class Miss:
+    """Why a grasp cannot be planned; `met` are labels of the obstacles that it would touch."""
+
+    reason: str
+    met: frozenset[str] = frozenset()
+
+
+@dataclass(frozen=True)
+class Way:
+    """How the hand goes in: `approach` and `lift` are the straight ways before and after it closes [m].
+
+    `around` is what it must not touch; `shaped`: with the fingers no wider than the object needs.
+    """
+
+    around: Sequence[Obstacle]
+    shaped: bool
+    approach: float
+    lift: float
+
+
+def plan_grab(
+    planner: Planner,
+    target: Target,
+    around: Sequence[Sequence[Obstacle]],
+    now: Array,
+    approach: float,
+    lift: float,
+    reach: float,
+    skip: frozenset[str],
+    touched: list[Array],
+) -> GrabPlan:
+    """The first candidate grasp that can be reached and carried away.
+
+    `around`: what is not to be touched, with the widest margins first. With each of them every grasp is tried with the
+    fingers wide open, then those that met something with them partly closed.
+
+    `skip` names grasps that are not tried; `touched` are rotations (3, 3) of the hand in the base frame with which the
+    open fingers touched the object: grasps from other sides come first.
+
+    Raises:
+        PlanError: UNREACHABLE; TOO_WIDE, there is no grasp of it at all and the measures are certain.
+    """
+    distance = float(np.hypot(target.position[0] - planner.arm.forward, target.position[1]))
+    if distance > reach:
+        raise PlanError("UNREACHABLE", f"{target.label} is {distance:.2f} m from the arm, reach is {reach:.2f} m")
+    misses: dict[str, Miss] = {}
+    tried: list[Grasp] = []
+    options: list[Grasp] = []
+
+    def attempt(some: Sequence[Grasp], way: Way) -> GrabPlan | None:
+        for grasp in some:
+            plan = _with_fingers(planner, target, grasp, way, now, _whole)
+            if isinstance(plan, GrabPlan):
+                return replace(plan, options=tuple(options))
+            misses[grasp.name] = plan
+        return None
+
+    ways = [Way(solids, shaped, approach, lift) for solids in around for shaped in (False, True)]
+    for stage in planner.candidates(target):
+        options += stage
+        left = [g for g in stage if g.name not in skip]
+        left = [left[n] for n in new_sides_first((g.pose.rotation for g in left), touched)]
+        tried += left
+        if plan := attempt(left, ways[0]):
+            return plan
+    for way in ways[1:]:
+        # Where nothing was met neither a narrower hand nor a smaller margin helps.
+        if plan := attempt([g for g in tried if misses[g.name].met], way):
+            return plan
+    on_it = all(g.over_edge and "" in misses[g.name].met for g in tried)
+    if on_it and certainly_too_wide(target, planner.arm.widest) and not skip:
+        raise PlanError("TOO_WIDE", f"{_in_mm(target)}, at most {1000 * planner.arm.widest:.0f} mm go into the hand")
+    if not tried:
+        raise PlanError("UNREACHABLE", f"no grasp left to try on {target.label}")
+    reasons = counted(miss.reason for miss in misses.values())
+    blockers = Counter(label for miss in misses.values() for label in sorted(miss.met) if label)
+    names = [label for label, _ in blockers.most_common()]
+    behind = f"; in the way: {', '.join(names)}" if names else ""
+    raise PlanError(
+        "UNREACHABLE", f"no reachable grasp of {target.label} at {distance:.2f} m: {reasons}{behind}", names
+    )
+
+
+def _in_mm(target: Target) -> str:
+    x, y, z = (1000 * v for v in target.size)
+    return f"{target.label} measures {x:.0f} x {y:.0f} x {z:.0f} mm"
+
+
+def feasible(planner: Planner, target: Target, way: Way, now: Array) -> bool:
+    """Some grasp can be come to and lifted straight; the way there and away is not looked for."""
+    for stage in planner.candidates(target):
+        for wanted in stage[:STANCE_GRASPS]:
+            if isinstance(_with_fingers(planner, target, wanted, way, now, _straight), Lines):
+                return True
+    return False
+
+
+@dataclass(frozen=True)
+class Lines:
+    """The straight parts of a grab: the grasp, `at` which joint angles (7,), the ways `back` and `up` from there."""
+
+    grasp: Grasp
+    at: Array
+    back: list[Array]
+    up: list[Array]
+
+
+Part = Callable[[Planner, Target, Grasp, Way, Array], "T | Miss"]
+
+
+def _with_fingers(planner: Planner, target: Target, wanted: Grasp, way: Way, now: Array, part: "Part[T]") -> "T | Miss":
+    """A part of the plan of a grasp that the hand has room for, with the fingers as they go in."""
+    opening = _opening(planner, wanted, way)
+    grasp = planner.clearance.clear(target, wanted, opening)
+    if grasp is None:
+        return Miss("too deep for the hand")
+    if float(np.linalg.norm(grasp.pose.position - planner.arm.shoulder)) > planner.arm.span:
+        return Miss("beyond the stretched arm")
+    # Closed on the object the fingertips are farther out than open.
+    for width in (opening or planner.arm.hand.open, grasp.width):
+        if met := planner.clearance.met(grasp.pose, width, way.around):
+            return Miss("grasp collides", frozenset(met))
+    planner.arm.hold(None)
+    planner.arm.open_fingers(opening)
+    try:
+        return part(planner, target, grasp, way, now)
+    finally:
+        planner.arm.open_fingers()
+
+
+def _opening(planner: Planner, grasp: Grasp, way: Way) -> float | None:
+    return min(grasp.width + 2 * FINGER_PLAY, planner.arm.hand.open) if way.shaped else None
+
+
+def _straight(planner: Planner, target: Target, grasp: Grasp, way: Way, now: Array) -> "Lines | Miss":
+    arm = planner.arm
+    arm.set_obstacles(way.around)
+    at = planner.ik.solve(grasp.pose, seeds(arm, grasp.pose, now), avoid=True)
+    if at is None:
+        return Miss("no IK")
+    at = arm.nearest_turn(at, now)
+    if arm.collides(at):
+        return Miss("grasp collides", frozenset(arm.met()))
+    back = planner.straight(at, grasp.pose, grasp.pose.moved(-way.approach * grasp.pose.rotation[:, 2]))
+    if back is None:
+        return Miss("no straight approach")
+    up = planner.straight(at, grasp.pose, grasp.pose.moved(np.array([0.0, 0.0, way.lift])))
+    if up is None:
+        return Miss("no straight lift")
+    if any(arm.collides(q) for q in back):
+        return Miss("approach collides", frozenset(arm.met()))
+    return Lines(grasp, at, back, up)
+
+
+def _whole(planner: Planner, target: Target, grasp: Grasp, way: Way, now: Array) -> "GrabPlan | Miss":
+    lines = _straight(planner, target, grasp, way, now)
+    if isinstance(lines, Miss):
+        return lines
+    arm, around, rng = planner.arm, way.around, planner.rng()
+    at, back, up = lines.at, lines.back, lines.up
+    arm.open_fingers()
+    planner.surround(with_object(around, target.grown(0.0)), back[-1])
+    there = connect(arm, now, back[-1], rng)
+    if there is None:
+        return Miss("no path to the pre-grasp")
+    attached = attach(target, grasp)
+    arm.hold(*attached.box())
+    planner.surround(around, up[-1])
+    away = planner.to_carry(up[-1], rng)
+    arm.hold(None)
+    if away is None:
+        return Miss("no path to the carry pose")
+    opening, doubt = _opening(planner, grasp, way), MEASURED + 2 * target.spread
+    return GrabPlan(
+        grasp, there, [at, *back][::-1], [at, *up], away, attached, opening, around,
+        doubt=doubt if target.measured or grasp.on_surface else 0.0,
+    )  # fmt: skip
+
+
+def refine(planner: Planner, plan: GrabPlan, shift: tuple[float, float], approach: float, lift: float) -> GrabPlan:
+    """The same grasp of an object that stands `shift` [m] (x, y in the base frame) from where it was planned.
+
+    Raises:
+        PlanError: UNREACHABLE.
+    """
+    grasp = replace(plan.grasp, pose=plan.grasp.pose.moved(np.array([*shift, 0.0])))
+    arm = planner.arm
+    arm.hold(None)
+    arm.set_obstacles(plan.around)
+    arm.open_fingers(plan.opening)
+    try:
+        at = planner.ik.solve(grasp.pose, [plan.insert[-1]])
+        if at is not None:
+            back = planner.straight(at, grasp.pose, grasp.pose.moved(-approach * grasp.pose.rotation[:, 2]))
+            up = planner.straight(at, grasp.pose, grasp.pose.moved(np.array([0.0, 0.0, lift])))
+            if back is not None and up is not None and not any(arm.collides(q) for q in (at, *back)):
+                return replace(plan, grasp=grasp, insert=[at, *back][::-1], lift=[at, *up])
+    finally:
+        arm.open_fingers()
+    raise PlanError("UNREACHABLE", "the corrected grasp is out of reach")

@@ -1,0 +1,116 @@
+"""Plans a whole placement: the first spot and turn where what is held can be set down and left standing."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from services.manipulation.arm.arm_model import Array, Obstacle, Pose
+from services.manipulation.arm.ik import seeds
+from services.manipulation.arm.trajectory import connect
+from services.manipulation.grasps.grasped_object import GraspedObject
+from services.manipulation.planning.motion_planner import PlanError, Planner, counted
+from services.manipulation.planning.planning_scene import with_object
+
+
+@dataclass(frozen=True)
+class PlacePlan:
+    """Joint paths of the phases, and where the object will stand (x, y in the base frame)."""
+
+    reach: list[Array]
+    lower: list[Array]
+    retreat: list[Array]
+    home: list[Array]
+    spot: tuple[float, float]
+
+
+def plan_place(
+    planner: Planner,
+    held: GraspedObject,
+    spots: Sequence[tuple[float, float]],
+    surface: float,
+    drop: float,
+    around: Sequence[Obstacle],
+    now: Array,
+) -> PlacePlan:
+    """Set the held object down on the first spot of a surface that works, `drop` above it.
+
+    Raises:
+        PlanError: UNREACHABLE.
+    """
+    rng = planner.rng()
+    failures: list[str] = []
+    for spot in spots[:10]:
+        for turn in (0.0, 0.5, -0.5, 1.0, -1.0, 2.0, -2.0, np.pi):
+            plan = _try_place(planner, held, spot, surface + drop, turn, around, now, rng)
+            if isinstance(plan, PlacePlan):
+                return plan
+            failures.append(plan)
+    reasons = counted(failures) or "no free spot within reach"
+    raise PlanError("UNREACHABLE", f"cannot put {held.label} there: {reasons}")
+
+
+def _try_place(
+    planner: Planner,
+    held: GraspedObject,
+    spot: tuple[float, float],
+    height: float,
+    turn: float,
+    around: Sequence[Obstacle],
+    now: Array,
+    rng: np.random.Generator,
+) -> "PlacePlan | str":
+    arm = planner.arm
+    arm.set_obstacles(around)
+    approach = held.rotation[:, 2]
+    # Straight down has no azimuth of its own: the hand's x axis points away from the robot there.
+    level = approach if np.hypot(approach[0], approach[1]) > 0.2 else held.rotation[:, 0]
+    was = np.arctan2(level[1], level[0])
+    delta = np.arctan2(spot[1], spot[0] - arm.forward) - was + turn
+    c, s = np.cos(delta), np.sin(delta)
+    spin = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1.0]])
+    target = Pose(np.array([*spot, height]) + spin @ held.offset, spin @ held.rotation)
+    above = target.moved(np.array([0.0, 0.0, 0.08]))
+    arm.hold(None)
+    high = planner.ik.solve(above, seeds(arm, above, now))
+    if high is None:
+        return "no IK"
+    high = arm.nearest_turn(high, now)
+    down = planner.straight(high, above, target)
+    if down is None:
+        return "no straight way down"
+    if any(arm.collides(q) for q in down):
+        return "placing collides"
+    arm.hold(*held.box())
+    if arm.collides(high):
+        return "object collides above the spot"
+    planner.surround(around, high)
+    there = connect(arm, now, high, rng)
+    arm.hold(None)
+    arm.set_obstacles(around)
+    if there is None:
+        return "no path"
+    tilted = abs(approach[2]) < 0.85
+    away = -0.10 * target.rotation[:, 2] if tilted else np.array([0.0, 0.0, 0.12])
+    stands = Obstacle((*spot, height + held.size[2] / 2), held.size, held.yaw + delta)
+    beside = with_object(around, stands)
+    back = _leave(planner, target, away, [*down[-2::-1], high], down[-1], beside)
+    if back is None:
+        return "no way back"
+    planner.surround(beside, back[-1])
+    home = connect(arm, back[-1], arm.nearest_turn(arm.home, back[-1]), rng)
+    if home is None:
+        return "no path home"
+    return PlacePlan(there, [high, *down], [down[-1], *back], home, spot)
+
+
+def _leave(
+    planner: Planner, target: Pose, away: Array, as_it_came: list[Array], at: Array, beside: Sequence[Obstacle]
+) -> list[Array] | None:
+    """Off what was put down: by `away`, by a part of it, or where the arm is stretched the way it came."""
+    planner.arm.set_obstacles(beside)
+    for share in (1.0, 0.6):
+        path = planner.straight(at, target, target.moved(share * away))
+        if path is not None and not planner.arm.collides(path[-1]):
+            return path
+    return None if planner.arm.collides(as_it_came[-1]) else as_it_came

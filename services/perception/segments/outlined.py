@@ -1,0 +1,107 @@
+"""Objects on a surface of which the picture shows the outline and little else: dark ones that get no depth. Pure."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from common.geometry import Array
+from services.perception.segments.dark import HIGHEST, WIDEST, Blobs, Pixels
+from services.perception.segments.segment import NEARER, RIM, Segment, Surface
+from services.perception.shapes import silhouette
+from services.perception.shapes.measurement import Measurement
+from services.perception.views.view import Mask, View
+from services.perception.views.visible_plan import Cloud
+
+BELOW = 3
+"""How many pixels below an object's lower edge the surface that it stands on is looked for: edges have no depth."""
+LEVEL = 0.012
+"""Distance [m] from the surface, beside noise, within which that is the surface."""
+STANDS = 0.7
+"""Share of the lower edge below which the surface is seen, from which an object stands on it."""
+HIDDEN = 0.08
+"""Share of the band around an outline in which something nearer is seen, from which it is no outline."""
+OWN, OWN_SHARE = 0.015, 0.6
+"""How far [m] around the shape what was measured is of the object itself, and the share of a part that has to be."""
+
+
+def on_surface(view: View, name: str, plane: Array, over: Cloud, own: Mask, dark: Blobs) -> list[Segment]:
+    """The objects on a surface, z = plane (3,) @ (x, y, 1), whose outline alone is seen. `over`: the pixels over it."""
+    if not len(over.pixels):
+        return []
+    low = np.array([over.x.min(), over.y.min()]) - OWN
+    high = np.array([over.x.max(), over.y.max()]) + OWN
+    found = []
+    for number, pixels in dark.unseen():
+        at = silhouette.foot(view, pixels, float(plane[2]))
+        if at is None or not ((low < at[:2]) & (at[:2] < high)).all():
+            continue
+        floor = float(plane @ (at[0], at[1], 1.0))
+        at = silhouette.foot(view, pixels, floor)
+        if at is None or not _is_object(view, pixels, at, plane, own):
+            continue
+        inside = np.isin(over.pixels, pixels[0] * view.shape[1] + pixels[1])
+        points = np.stack([over.x[inside], over.y[inside], over.z[inside]], axis=1).astype(np.float64)
+        points = points[points[:, 2] > floor + LEVEL]
+        shape = silhouette.shape(view, silhouette.outline(view, pixels, at), at, floor, points)
+        if shape is None or max(shape.size[:2]) > WIDEST or shape.size[2] > HIGHEST:
+            continue
+        dark.taken.add(number)
+        found.append(
+            Segment(Surface(name, floor), *pixels, points[is_of(points, shape)], False, (True, True), shape=shape)
+        )
+    return found
+
+
+def _is_object(view: View, pixels: Pixels, at: Array, plane: Array, own: Mask) -> bool:
+    """An outline stands on the surface, is no larger than objects are, and nothing covers a part of it."""
+    rows, columns = pixels
+    distance = float((at - view.position) @ view.rotation[:, 2])
+    pixel = distance / view.focal[0]
+    if max(np.ptp(rows) * pixel / HIGHEST, np.ptp(columns) * pixel / WIDEST) > 1.0:
+        return False
+    top, left = int(rows.min()) - RIM, int(columns.min()) - RIM
+    window = slice(max(0, top), int(rows.max()) + RIM + 1), slice(max(0, left), int(columns.max()) + RIM + 1)
+    mask = np.zeros(view.depth[window].shape, bool)
+    mask[rows - window[0].start, columns - window[1].start] = True
+    band = ndimage.binary_dilation(mask, iterations=RIM) & ~mask
+    depth = view.depth[window]
+    nearer = band & (own[window] | ((depth > 0) & (depth < distance - NEARER)))
+    # What is nearer below is the surface itself.
+    nearer &= own[window] | (_above(view, window, plane) > LEVEL)
+    if np.count_nonzero(nearer) > HIDDEN * np.count_nonzero(band):
+        return False
+    return _stands(view, rows, columns, plane)
+
+
+def _above(view: View, window: tuple[slice, slice], plane: Array) -> NDArray[np.float64]:
+    x, y, z = np.moveaxis(view.points[window], -1, 0)
+    return np.asarray(z - (plane[0] * x + plane[1] * y + plane[2]), np.float64)
+
+
+def _stands(view: View, rows: NDArray[np.intp], columns: NDArray[np.intp], plane: Array) -> bool:
+    """Below its lower edge the surface is seen, wherever there is depth."""
+    lowest = np.full(int(columns.max()) + 1, -1)
+    np.maximum.at(lowest, columns, rows)
+    across = np.flatnonzero(lowest >= 0)
+    below = np.minimum(lowest[across] + BELOW, view.shape[0] - 1)
+    depth = view.depth[below, across]
+    seen = depth > 0
+    if np.count_nonzero(seen) < len(across) / 3:
+        return False
+    x, y, z = view.points[below[seen], across[seen]].T
+    on = np.abs(z - (plane[0] * x + plane[1] * y + plane[2])) < LEVEL
+    return bool(np.mean(on) > STANDS)
+
+
+def is_of(points: Array, shape: Measurement) -> NDArray[np.bool_]:
+    """Which of points (n, 3) belong to an object of that shape, by where they are on the floor plan."""
+    far = np.hypot(points[:, 0] - shape.x, points[:, 1] - shape.y)
+    half = math.hypot(*shape.size[:2]) / 2 if shape.family == "box" else max(shape.size[:2]) / 2
+    return np.asarray(far < half + OWN)
+
+
+def is_part(points: Array, shapes: list[Measurement]) -> bool:
+    """Points (n, 3) are for the most part of an object whose outline was seen."""
+    return len(points) > 0 and any(float(np.mean(is_of(points, shape))) > OWN_SHARE for shape in shapes)

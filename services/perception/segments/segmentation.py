@@ -1,0 +1,284 @@
+"""Segments of a view: the pixels that stand up from a surface, cut into objects. Pure.
+
+The furniture of the floor plan says where surfaces can be; the image says how high they are. Everything above a
+surface, inside its edges and not too tall is kept, cut where the depth jumps, and segments that stand in the same
+spot are joined again.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from common.floor_plan import FloorPlan, Receptacle
+from common.geometry import Array, Rectangle
+from services.perception.segments.dark import Blobs, Pixels, blobs, guessed
+from services.perception.segments.outlined import is_part, on_surface
+from services.perception.segments.segment import Segment, Surface, covered, goes_on
+from services.perception.views.view import Mask, View, Window
+from services.perception.views.visible_plan import Cloud, Nearby, corners, inside
+
+CLEARANCE = 0.008
+"""Height [m] above a surface from which points belong to objects. Chosen: twice the depth noise at 1.5 m."""
+MAX_HEIGHT = 0.30
+"""Height [m] above a surface up to which points belong to objects. Chosen: above the tallest bottle."""
+PLANE_SEARCH = 0.025
+"""How far [m] from the floor plan's height the surface itself is looked for. Chosen: errors of camera pose and
+furniture."""
+EDGE = 0.012
+"""How far [m] inside its edge a surface begins: its own front is seen there."""
+OVERHANG, MOSTLY_ON = 0.10, 0.25
+"""How far [m] objects reach over a free edge, and the least share of one that is over the surface. Chosen: for what is
+pulled there to be taken; what stands beside a table is none of its objects."""
+WALL_EDGE = 0.035
+"""The same for a bin, whose walls are seen, and for furniture, whose edge is soft."""
+LOOKED_DOWN_ON = 0.2
+"""How far [m] below the camera furniture ends whose top is seen."""
+PEAK = 0.006
+"""Distance [m] from a surface's plane within which its points are. Chosen: three times the noise of height at 2 m."""
+TILTED_PLANE, PLANE_SAMPLE = 1500, 1500
+"""Pixels of a surface from which its slopes are measured, and how many of them are used."""
+MOST_TILT = 0.02
+"""Largest slope that a camera a little off its drawing gives a surface: more is something else."""
+GOES_ON = 0.15
+"""Share of the band around a segment from which it goes on beyond its surface. Chosen: objects have .03 and less."""
+MIN_PLANE = 60
+"""Pixels from which the height of a surface is measured rather than taken from the floor plan."""
+MIN_PIXELS = 24
+"""Pixels of the smallest segment. Chosen: about a can of 66 mm at 3.5 m, half hidden."""
+JUMP = 0.022
+"""Step of depth [m] between neighbouring pixels that separates two objects; `JUMP_PER_METRE` is added per metre [m/m],
+as depth noise and the slope between two pixels grow with the distance."""
+JUMP_PER_METRE = 0.012
+JOIN = 0.02
+"""Gap [m] on the floor plan up to which two segments belong to one object: a rim's two sides, a bottle and its cap."""
+JOINED_EXTENT = 0.17
+"""Largest extent [m] on the floor plan of what is joined. Chosen: a bowl and its noise."""
+MAX_EXTENT, CROWD_EXTENT = 0.30, 0.60
+"""Extents [m] on the floor plan from which a segment is no single object, and from which it is furniture."""
+FAR = 2.3
+"""Depth [m] from which its noise makes walls thick."""
+FLOOR_RANGE = 2.2
+"""Distance [m] up to which objects on the floor are looked for. Chosen: beyond it depth noise hides small ones."""
+DEPTH_NOISE = 0.0015
+"""Standard deviation [m] of depth at 1 m, growing with the square of the distance (stereo cameras' data sheets)."""
+DEVIATIONS = 4.0
+"""Standard deviations of height above the floor that are no object: it covers a thousand times the area of the noise's
+bumps, of which one in a thousand is beyond three."""
+FLOOR_SAMPLE = 11
+"""Every which pixel of the floor its plane is fitted to."""
+
+
+def segments(view: View, floor_plan: FloorPlan, max_range: float, robot: Mask | None = None) -> list[Segment]:
+    """The objects that stand on the surfaces of the floor plan. `robot` marks the pixels that show the robot itself."""
+    near = Nearby(floor_plan, float(view.position[0]), float(view.position[1]), max_range)
+    own = robot if robot is not None else np.zeros(view.shape, bool)
+    usable = (view.depth > 0.05) & (view.depth < max_range) & ~own
+    dark = blobs(view)
+    found: list[Segment] = []
+    for r in near.receptacles:
+        surface = Surface(r.name, r.center[2])
+        outline = r.outline.grown(-WALL_EDGE if r.depth else -EDGE)
+        cloud = _over(view, usable, outline, surface.height)
+        if not r.depth:
+            cloud = cloud.joined(_beyond(view, usable, r, outline))
+        found += [s for s in _on(view, surface, cloud, near, own, dark) if r.depth or _stands_on(s, r)]
+    for f, on_it in near.tops(float(view.position[2]) - LOOKED_DOWN_ON):
+        surface = Surface(f.name, f.center[2] + f.size[2] / 2)
+        over = _over(view, usable, f.outline.grown(-WALL_EDGE), surface.height)
+        found += _on(view, surface, over.outside(on_it), near, own, dark)
+    return found + _on(view, Surface("", 0.0), _above_floor(view, usable).outside(near.boxes), near, own, dark)
+
+
+def _over(view: View, usable: Mask, outline: Rectangle, height: float) -> Cloud:
+    """The usable pixels over a surface of that outline and height."""
+    low, high = height - PLANE_SEARCH, height + MAX_HEIGHT
+    cloud = _between(view, usable, low, high, view.window(corners(outline, low, high)))
+    return cloud.kept(inside(cloud.x, cloud.y, outline))
+
+
+def _beyond(view: View, usable: Mask, r: Receptacle, outline: Rectangle) -> Cloud:
+    """The usable pixels of what reaches over the free edges of a receptacle, whose own front ends lower."""
+    depth, width = (side / 2 - EDGE for side in r.size)
+    left, right, below, above = (OVERHANG * (way in r.approach) for way in ((-1, 0), (1, 0), (0, -1), (0, 1)))
+    left, right, below, above = -depth - left, depth + right, -width - below, width + above
+    x, y = r.outline.to_map((left + right) / 2, (below + above) / 2)
+    wider = Rectangle(x, y, right - left, above - below, r.yaw)
+    low, high = r.center[2] + CLEARANCE, r.center[2] + MAX_HEIGHT
+    cloud = _between(view, usable, low, high, view.window(corners(wider, low, high)))
+    return cloud.kept(inside(cloud.x, cloud.y, wider) & ~inside(cloud.x, cloud.y, outline))
+
+
+def _stands_on(segment: Segment, r: Receptacle) -> bool:
+    x, y = segment.points[:, :2].T.astype(np.float32)
+    return bool(np.count_nonzero(inside(x, y, r.outline)) > MOSTLY_ON * len(x))
+
+
+def _above_floor(view: View, usable: Mask) -> Cloud:
+    """The usable pixels that stand up from the floor by more than noise; their heights are above the floor as seen.
+
+    A camera that is tilted by 0.3 degrees more than it is believed to be sees the floor rise by 12 mm within 2.2 m.
+    """
+    cloud = _between(view, usable & (view.depth < FLOOR_RANGE), -PLANE_SEARCH, MAX_HEIGHT, view.everywhere)
+    few = np.abs(cloud.z[::FLOOR_SAMPLE]) < PLANE_SEARCH
+    if few.sum() >= MIN_PLANE:
+        x, y, z = (axis[::FLOOR_SAMPLE][few].astype(np.float64) for axis in (cloud.x, cloud.y, cloud.z))
+        rows = np.stack([x, y, np.ones_like(x)], axis=1)
+        near = np.ones(len(z), bool)
+        for _ in range(2):
+            plane = np.linalg.lstsq(rows[near], z[near], rcond=None)[0]
+            near = np.abs(z - rows @ plane) < PLANE_SEARCH / 2
+        cloud = Cloud(cloud.pixels, cloud.x, cloud.y, cloud.z - (plane[0] * cloud.x + plane[1] * cloud.y + plane[2]))
+    noise = DEVIATIONS * DEPTH_NOISE * float(view.position[2]) * view.depth.ravel()[cloud.pixels]
+    return cloud.kept(cloud.z > np.maximum(noise, CLEARANCE))
+
+
+def _between(view: View, usable: Mask, low: float, high: float, window: Window) -> Cloud:
+    """The usable (h, w) pixels of a window whose points are between two heights."""
+    z = view.points[window][..., 2]
+    chosen = usable[window] & (z > low)
+    chosen &= z < high
+    found = np.flatnonzero(chosen)
+    if window != view.everywhere:
+        rows, columns = np.divmod(found, chosen.shape[1] or 1)
+        found = (rows + window[0].start) * view.shape[1] + columns + window[1].start
+    x, y, z = (plane.ravel()[found] for plane in np.moveaxis(view.points, -1, 0))
+    return Cloud(found, x, y, z)
+
+
+def _on(view: View, expected: Surface, cloud: Cloud, near: Nearby, own: Mask, dark: Blobs | None) -> list[Segment]:
+    """Pieces above one surface, whose plane is measured where enough of it is visible."""
+    plane = _plane(cloud, expected)
+    outlined = on_surface(view, expected.name, plane, cloud, own, dark) if dark else []
+    height = plane[0] * cloud.x + plane[1] * cloud.y + plane[2]
+    noise = DEVIATIONS * DEPTH_NOISE * (float(view.position[2]) - expected.height) * view.depth.ravel()[cloud.pixels]
+    over = (cloud.z > height + np.maximum(noise, CLEARANCE)) & (cloud.z < height + MAX_HEIGHT)
+    kept = cloud.kept(over).outside(near.walls)
+    far = view.depth.ravel()[kept.pixels] > FAR
+    beyond = kept.kept(far).outside(near.far_walls).pixels
+    above = np.concatenate([kept.pixels[~far], beyond])
+    if len(above) < MIN_PIXELS:
+        return outlined
+    rows, columns = np.unravel_index(above, view.shape)
+    top, left = int(rows.min()), int(columns.min())
+    window = (slice(top, int(rows.max()) + 1), slice(left, int(columns.max()) + 1))
+    mask = np.zeros((window[0].stop - top, window[1].stop - left), bool)
+    mask[rows - top, columns - left] = True
+    labels = ndimage.label(_cut(mask, view.depth[window]))[0]
+    boxes = ndimage.find_objects(labels)
+    parts = []
+    for n in np.flatnonzero(np.bincount(labels[mask], minlength=1)[1:] >= MIN_PIXELS // 3):
+        box = boxes[n]
+        part_rows, part_columns = np.nonzero(labels[box] == n + 1)
+        parts.append((part_rows + box[0].start + top, part_columns + box[1].start + left))
+    over_it = np.zeros(view.shape, bool)
+    over_it[rows, columns] = True
+    found = (
+        p for p in _join(view, expected.name, plane, parts, own, dark) if len(p.rows) >= MIN_PIXELS and _is_thing(p)
+    )
+    shapes = [p.shape for p in outlined if p.shape is not None]
+    return outlined + [
+        p for p in found if goes_on(view, p, over_it, CLEARANCE, JUMP) < GOES_ON and not is_part(p.points, shapes)
+    ]
+
+
+def _plane(cloud: Cloud, expected: Surface) -> Array:
+    """Slopes and height (3,) of a surface: z = a x + b y + c, as it is seen, or as it is expected where it is not.
+
+    A camera that is tilted by 0.3 degrees more than it is believed to be sees a counter of 2 m rise by 10 mm.
+    """
+    level = np.array([0.0, 0.0, expected.height])
+    near = np.abs(cloud.z - expected.height) < PLANE_SEARCH
+    if not expected.name or np.count_nonzero(near) < MIN_PLANE:
+        return level
+    x, y, z = (axis[near].astype(np.float64) for axis in (cloud.x, cloud.y, cloud.z))
+    counts, edges = np.histogram(z, bins=25)
+    peak = int(counts.argmax())
+    close = np.abs(z - (edges[peak] + edges[peak + 1]) / 2) < PEAK
+    level[2] = float(np.median(z[close]))
+    if np.count_nonzero(close) < TILTED_PLANE:
+        return level
+    step = max(1, len(x) // PLANE_SAMPLE)
+    rows = np.stack([x, y, np.ones_like(x)], axis=1)[::step]
+    heights, close = z[::step], (np.abs(z - level[2]) < 2 * PEAK)[::step]
+    plane = level
+    for _ in range(3):
+        if np.count_nonzero(close) < MIN_PLANE:
+            return level
+        plane = np.asarray(np.linalg.lstsq(rows[close], heights[close], rcond=None)[0], np.float64)
+        close = np.abs(heights - rows @ plane) < PEAK
+    return plane if np.hypot(plane[0], plane[1]) < MOST_TILT else level
+
+
+def _is_thing(segment: Segment) -> bool:
+    """Neither as wide as furniture nor reaching up like a wall; it may be several objects that touch."""
+    top = float(segment.points[:, 2].max()) - segment.surface.height
+    return extent(segment) < CROWD_EXTENT and top < MAX_HEIGHT - 0.01
+
+
+def extent(segment: Segment) -> float:
+    """The larger extent [m] of a segment on the floor plan."""
+    return float(np.ptp(segment.points[:, :2], axis=0).max())
+
+
+def _cut(mask: Mask, depth: NDArray[np.float32]) -> Mask:
+    """The mask without the far side of every depth jump."""
+    kept = mask.copy()
+    for axis in (0, 1):
+        a = [slice(None), slice(None)]
+        b = [slice(None), slice(None)]
+        a[axis], b[axis] = slice(None, -1), slice(1, None)
+        first, second = tuple(a), tuple(b)
+        step = depth[second] - depth[first]
+        limit = JUMP + JUMP_PER_METRE * np.minimum(depth[first], depth[second])
+        # Where there is no depth there is no step.
+        known = (depth[second] > 0) & (depth[first] > 0)
+        kept[second] &= ~(known & (step > limit))
+        kept[first] &= ~(known & (step < -limit))
+    return kept
+
+
+def _join(view: View, name: str, plane: Array, parts: list[Pixels], own: Mask, dark: Blobs | None) -> list[Segment]:
+    """Parts of one object, such as the two sides of a mug's rim or a bottle's cap, stand in the same spot; those of a
+    dark one are joined by what has no depth between them."""
+    clouds = [view.points[rows, columns].astype(np.float64) for rows, columns in parts]
+    low = np.array([c[:, :2].min(axis=0) for c in clouds])
+    high = np.array([c[:, :2].max(axis=0) for c in clouds])
+    groups = np.arange(len(parts))
+    numbers = dark.of(view, parts) if dark else [0] * len(parts)
+    order = sorted(range(len(parts)), key=lambda i: -len(clouds[i]))
+    for n, i in enumerate(order):
+        # The samples are at least as far apart as their bounds.
+        for j in order[n + 1 :]:
+            one_blob = numbers[i] > 0 and numbers[i] == numbers[j]
+            apart = max(*(low[i] - high[j]), *(low[j] - high[i])) >= JOIN
+            if groups[i] == groups[j] or (apart and not one_blob):
+                continue
+            members = (groups == groups[i]) | (groups == groups[j])
+            extent = (high[members].max(axis=0) - low[members].min(axis=0)).max()
+            if extent < JOINED_EXTENT and (one_blob or _gap(clouds[i], clouds[j]) < JOIN):
+                groups[groups == groups[j]] = groups[i]
+    found = []
+    h, w = view.shape
+    for group in np.unique(groups):
+        members = np.flatnonzero(groups == group)
+        rows = np.concatenate([parts[k][0] for k in members])
+        columns = np.concatenate([parts[k][1] for k in members])
+        hole = dark.hole(blob) if dark and (blob := numbers[members[0]]) else (rows[:0], rows[:0])
+        all_rows, all_columns = np.append(rows, hole[0]), np.append(columns, hole[1])
+        hidden = covered(view, all_rows, all_columns, own)
+        ends = not hidden[2] and int(all_columns.max()) < w - 2, not hidden[1] and int(all_columns.min()) > 1
+        cut = bool(hidden[0] or all_rows.min() <= 1 or all_rows.max() >= h - 2 or not all(ends))
+        points = np.concatenate([clouds[k] for k in members])
+        x, y, _ = points.mean(axis=0)
+        surface = Surface(name, float(plane[0] * x + plane[1] * y + plane[2]))
+        guess = guessed(view, (rows, columns), hole) if len(hole[0]) else np.empty((0, 3))
+        found.append(Segment(surface, rows, columns, points, cut, ends, guess))
+    return found
+
+
+def _gap(a: NDArray[np.float64], b: NDArray[np.float64]) -> float:
+    """Horizontal distance between two clouds, from a sample of each."""
+    pa = a[:: max(1, len(a) // 120), :2]
+    pb = b[:: max(1, len(b) // 120), :2]
+    distance = np.linalg.norm(pa[:, None] - pb[None], axis=2)
+    return float(distance.min())

@@ -1,0 +1,124 @@
+"""Where a round shape that was knocked over must lie to explain the points that were seen of it. Pure.
+
+A can, a bottle or a mug rests on its side: the profile of `shapes` turned about a horizontal axis one radius above the
+surface. A mug or a bowl may also stand upside down: the profile mirrored at half its height.
+"""
+
+import math
+from functools import cache
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from common.floor_plan import Vec3
+from common.geometry import Array
+from common.kinds import Kind
+from services.perception.shapes import known as shapes
+from services.perception.shapes.known import ROBUST, SAMPLE, STRAY, TINY, TRIES, Fit
+from services.perception.shapes.least_squares import solve
+
+STARTS = (0.0, math.pi / 4, math.pi / 2, 3 * math.pi / 4)
+"""Directions of the axis [rad] from which the fit begins, each both ways round."""
+FOLLOWED = 4
+"""Starts that are followed to their end: the two ends of a shape differ little from the side."""
+LEVEL = 0.008
+"""How near [m] the height of a vessel a point of its foot is, when that is on top: twice the noise at 1.5 m."""
+CLOSED = 0.06
+"""Least share of the points on the foot's inner part: a third of what a whole view from 45 degrees above shows."""
+
+
+def heights(kind: Kind, size: Vec3) -> tuple[float, float]:
+    """Lowest and highest top [m] of a shape on its side."""
+    return size[0], size[0] + kind.handle
+
+
+def extents(size: Vec3) -> Vec3:
+    """Full extents on its side: along its axis, across it, upwards."""
+    return size[2], size[0], size[0]
+
+
+@cache
+def _outline(kind: Kind, size: Vec3) -> Array:
+    """Starts and directions (radius, height) of the outline's segments (4, k, 1), the foot among them."""
+    radius = size[0] / 2
+    ends = np.array([*kind.profile(size), ((0, 0), (radius, 0))]).transpose(1, 2, 0)[..., None]
+    return np.concatenate([ends[0], ends[1] - ends[0]])
+
+
+def _from_outline(rho: Array, z: Array, outline: Array) -> tuple[Array, Array, Array]:
+    """Distance (n,) of points at radius `rho` and height `z`, and how it grows with either."""
+    r0, z0, dr, dz = outline
+    across, up = rho - r0, z - z0
+    t = np.clip((across * dr + up * dz) / (dr * dr + dz * dz), 0.0, 1.0)
+    across, up = across - t * dr, up - t * dz
+    squared = across * across + up * up
+    nearest = squared.argmin(axis=0), np.arange(len(rho))
+    distance = np.sqrt(squared[nearest])
+    far = np.maximum(distance, TINY)
+    return distance, across[nearest] / far, up[nearest] / far
+
+
+def _apart(kind: Kind, size: Vec3, points: Array, floor: float, p: Array) -> tuple[Array, Array]:
+    """Distance (n,) of points (n, 3) from a shape that lies at p = (x, y, yaw of its axis), and its slopes (n, 3)."""
+    c, s = math.cos(p[2]), math.sin(p[2])
+    dx, dy, w = points[:, 0] - p[0], points[:, 1] - p[1], points[:, 2] - floor - size[0] / 2
+    along, side = c * dx + s * dy, c * dy - s * dx
+    rho = np.hypot(side, w)
+    distance, outward, endward = _from_outline(rho, along + size[2] / 2, _outline(kind, size))
+    sideward = outward * side / np.maximum(rho, TINY)
+    slopes = np.array([s * sideward - c * endward, -c * sideward - s * endward, side * endward - along * sideward])
+    return distance, slopes.T
+
+
+def _beside(size: Vec3, points: Array, floor: float, p: Array) -> NDArray[np.bool_]:
+    """Which of the points (n, 3) are farther from the axis than the body reaches."""
+    side = math.cos(p[2]) * (points[:, 1] - p[1]) - math.sin(p[2]) * (points[:, 0] - p[0])
+    beside: NDArray[np.bool_] = np.hypot(side, points[:, 2] - floor - size[0] / 2) > size[0] / 2 + STRAY
+    return beside
+
+
+def fit(kind: Kind, size: Vec3, points: Array, floor: float, camera: Array) -> Fit:
+    """Lay a shape on the surface of height `floor` so that it explains `points` (n, 3), seen from `camera` (3,).
+
+    The fit's (x, y) is half-way along the axis; its yaw points from the foot to the top.
+    """
+    used = points[:: max(1, len(points) // SAMPLE)]
+    middle = used[:, :2].mean(axis=0)
+    away = middle - camera[:2]
+    away /= max(1e-6, float(np.linalg.norm(away)))
+
+    def badness(p: Array) -> float:
+        return float(np.minimum(_apart(kind, size, used, floor, p)[0], 0.02).mean())
+
+    turns = [yaw + flip for yaw, flip in product(STARTS, (0.0,) if kind.ends_alike else (0.0, math.pi))]
+    starts = sorted((np.array([*(middle + away * size[0] / 4), yaw]) for yaw in turns), key=badness)
+    best, cost = starts[0], math.inf
+    for begin in starts[:FOLLOWED]:
+        then, new = solve(lambda p: _apart(kind, size, used, floor, p), begin, ROBUST, TRIES)
+        if new < cost:
+            best, cost = then, new
+    if kind.handle:
+        # Once more without the handle, which the profile does not have.
+        own = used[~_beside(size, used, floor, best)]
+        if len(own) > len(used) // 2:
+            used = own
+            best = solve(lambda p: _apart(kind, size, used, floor, p), best, ROBUST / 2, TRIES)[0]
+    left = np.minimum(_apart(kind, size, used, floor, best)[0], 0.02)
+    return Fit(float(best[0]), float(best[1]), math.remainder(float(best[2]), math.tau), float(left.mean()))
+
+
+def closed_above(kind: Kind, size: Vec3, points: Array, floor: float, at: Fit) -> bool:
+    """The foot of a vessel that stands at `at` is seen on top: only then is it upside down.
+
+    The walls alone fit a vessel either way up, all the more when something hides a part of it.
+    """
+    inner = np.hypot(points[:, 0] - at.x, points[:, 1] - at.y) < 0.6 * kind.foot(size)
+    on_top = np.abs(points[:, 2] - floor - size[2]) < LEVEL
+    return bool(np.count_nonzero(inner & on_top) > CLOSED * len(points))
+
+
+def fit_upside_down(kind: Kind, size: Vec3, points: Array, floor: float, camera: Array) -> Fit:
+    """As `shapes.fit` for a shape that stands on its rim."""
+    mirrored = points * (1.0, 1.0, -1.0) + (0.0, 0.0, 2 * floor + size[2])
+    return shapes.fit(kind, size, mirrored, floor, camera)

@@ -1,0 +1,159 @@
+"""Object tracks over time: seen, seen again, moved, grasped, gone. Pure."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from common.floor_plan import Vec3
+from common.geometry import yaw_quat
+from common.household import Household
+from common.messages import WorldObject, WorldObjects
+from services.perception.detection import Detection
+from services.perception.tracking.association import moved_here, overlap, separation, should_show
+from services.perception.tracking.descriptor import shares
+from services.perception.tracking.track import SURE, Track, see
+from services.perception.views.view import View
+
+CERTAIN = 0.8
+"""Confidence from which an object that was not listed is told of after one sighting."""
+HELD_RANGE = 0.12
+"""Distance [m] from the hand within which the object that it closed on was believed to be."""
+DOUBT = 0.45
+"""Weight of the best sighting [1/m2] below which kind and shape are in doubt: that of a whole view from 1.5 m."""
+FRESH = 20.0
+"""For how long [s] an object is new. Chosen: from when the hand begins to move one until all of the place is seen."""
+
+
+class ObjectTracker:
+    """What is where, as far as it was seen."""
+
+    def __init__(self, household: Household, gone_after: int, min_confidence: float) -> None:
+        self._household, self._gone_after, self._min = household, gone_after, min_confidence
+        self._tracks: list[Track] = []
+        self._count = 0
+
+    def update(self, view: View, detections: Sequence[Detection], now: float) -> set[str]:
+        """Take in what a view shows; ids of the objects that were seen."""
+        seen: set[str] = set()
+        free = [t for t in self._tracks if not t.held]
+        pairs = sorted(
+            (apart, n, k)
+            for n, d in enumerate(detections)
+            for k, t in enumerate(free)
+            if (apart := separation(d, t)) is not None
+        )
+        matched: dict[int, Track] = {}
+        for _, n, k in pairs:
+            if n not in matched and free[k].id not in seen:
+                matched[n] = free[k]
+                seen.add(free[k].id)
+        missing = [t for t in free if t.id not in seen and should_show(t, view)]
+        for n, d in enumerate(detections):
+            track = matched.get(n) or moved_here(d, missing)
+            if track in missing:
+                missing.remove(track)
+                seen.add(track.id)
+            if track is None:
+                self._count += 1
+                track = Track(f"object-{self._count}", d.position, d.yaw, d.size, d.on, now, 0.0, tilt=d.tilt)
+                track.began = now
+                self._tracks.append(track)
+                seen.add(track.id)
+            see(track, d, now)
+        for track in missing:
+            track.misses += 1
+            fresh = [t for t in self._tracks if t.began > max(track.began, now - FRESH) and t.id in seen]
+            heir = moved_here(track, fresh)
+            if heir is not None:
+                # It was seen elsewhere before it could be seen that it is gone.
+                heir.id, heir.label, heir.began, track.misses = track.id, track.label, track.began, self._gone_after
+        self._tracks = [t for t in self._tracks if t.misses < self._gone_after]
+        return seen
+
+    def carry(self, hand: Vec3, holding: bool, now: float) -> bool:
+        """Follow the hand: what it closes on is held and moves with it until it opens; True when anything is or was."""
+        held = next((t for t in self._tracks if t.held), None)
+        if holding and held is None:
+            near = [(math.dist(t.position, hand), t.id, t) for t in self._tracks]
+            if near and min(near)[0] < HELD_RANGE:
+                held = min(near)[2]
+                held.held, held.on, held.seen_at = True, "", now
+        if held is None:
+            return False
+        held.looks.points = np.empty((0, 3))
+        if holding:
+            held.position = hand
+            return True
+        # Where the hand let go; the next look says better.
+        held.held, held.misses, held.weight, held.seen_at = False, 0, 0.0, now
+        held.yaw_seen = False
+        surface = self._household.surface_at(*hand)
+        held.on, height = (surface.name, surface.center[2]) if surface else ("", 0.0)
+        held.position = (hand[0], hand[1], height + held.size[2] / 2)
+        return True
+
+    def objects(self, since: float = -math.inf) -> list[WorldObject]:
+        """What is believed, one place for each object of the household, the newest that was sure.
+
+        `since`: only what a picture has shown at that robot time [s] or later.
+        """
+        sure = [t for t in self._tracks if (t.confidence >= self._min or t.held) and t.looked_at >= since]
+        best: dict[str, Track] = {}
+        others: list[Track] = []
+        for track in sure:
+            label = track.name[0]
+            if not track.known:
+                others.append(track)
+                continue
+            rival = best.get(label)
+            if rival is None or (track.held, track.confidence >= SURE, track.seen_at, track.confidence) > (
+                rival.held, rival.confidence >= SURE, rival.seen_at, rival.confidence
+            ):  # fmt: skip
+                best[label] = track
+        chosen = list(best.values())
+        for track in sorted(others, key=lambda t: (-t.sightings * t.confidence, t.id)):
+            told = track.held or track.sightings > 1 or track.confidence >= CERTAIN
+            if told and not any(overlap(track, other) for other in chosen):
+                chosen.append(track)
+        return [_as_object(t, label) for t, label in _labelled(sorted(chosen, key=_age))]
+
+    def doubtful(self) -> set[str]:
+        """Ids of objects that nobody listed and that no view has shown whole and near: they may be something else."""
+        return {t.id for t in self._tracks if not t.held and not t.known and t.clearest < DOUBT}
+
+    def report(self, now: float) -> WorldObjects:
+        return WorldObjects(t=now, objects=self.objects(), source="perception")
+
+
+def _age(track: Track) -> int:
+    return int(track.id.rpartition("-")[2])
+
+
+def _labelled(tracks: Sequence[Track]) -> list[tuple[Track, str]]:
+    """Each track with a label that no other has: the household's, or its colour and kind, numbered if need be."""
+    taken = {t.name[0] for t in tracks if t.known}
+    found = []
+    for t in tracks:
+        if t.known:
+            t.label = t.name[0]
+        else:
+            kind, main = t.looks.name()
+            plain = f"{main} {kind}".strip()
+            numbered = (f"{plain} {n}" for n in range(2, len(tracks) + 2))
+            kept = t.label if t.label == plain or t.label.startswith(plain + " ") else ""
+            t.label = kept if kept and kept not in taken else next(x for x in (plain, *numbered) if x not in taken)
+        taken.add(t.label)
+        found.append((t, t.label))
+    return found
+
+
+def _as_object(t: Track, label: str) -> WorldObject:
+    kind, colour = t.name[1:] if t.known else t.looks.named
+    return WorldObject(
+        label=label, kind=kind, colour=colour, position=t.position, orientation=yaw_quat(t.yaw), size=t.size, on=t.on,
+        confidence=round(t.confidence, 3), seen_at=t.seen_at, held=t.held, id=t.id, tilt=t.tilt, shape=t.looks.shape,
+        colours=[colour] if t.known else t.looks.main_colours, kinds=[] if t.known else t.looks.likely_kinds,
+        kind_shares={} if t.known else shares(t.looks.kinds), colour_shares={} if t.known else shares(t.looks.colours),
+        measured=not t.known, spread=0.0 if t.known else round(t.looks.spread, 4), points=t.looks.packed(t.position),
+    )  # fmt: skip
