@@ -203,7 +203,7 @@ def robots() -> Iterator[Finding]:
 def language_model() -> Iterator[Finding]:
     """Who plans with `planner.backend = "auto"`: the planner's own look at its configuration and endpoint."""
     path = os.pathsep.join(p for p in (str(ROOT), os.environ.get("PYTHONPATH", "")) if p)
-    command = [sys.executable, "-m", "services.planner.diagnosis"]
+    command = [sys.executable, "-m", "services.planner.language_model.diagnosis"]
     done = subprocess.run(command, env={**os.environ, "PYTHONPATH": path}, capture_output=True, text=True)
     if done.returncode:
         why = done.stderr.strip().splitlines()[-1:] or [f"exit status {done.returncode}"]

@@ -11,8 +11,8 @@ from common.messages import ActionPlan, History, MissionOutcome, PlanStep, World
 from common.plan_rules import known_world, objection
 from services.brain.language.dialogue import chosen, corrected, reply
 from services.brain.language.interjection import interjection
-from services.planner import grammar
 from services.planner.config import PlannerConfig
+from services.planner.grammar import grammar
 from services.planner.world import believed
 
 Verdict = Literal["right", "asked back", "not understood", "wrong"]

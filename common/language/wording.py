@@ -14,7 +14,7 @@ Action = Literal[
     "condition", "condition_not", "state", "state_not",
     "rooms", "doing", "done", "why", "origin", "abilities", "identity",
 ]  # fmt: skip
-"""What a wording asks for; `services/planner/rules.py` has a function for each that can be planned."""
+"""What a wording asks for; `services/planner/grammar/rules.py` has a function for each that can be planned."""
 Kind = Literal["command", "reply", "name", "told"]
 QUESTIONS: frozenset[Action] = frozenset(
     {

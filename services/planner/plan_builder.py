@@ -10,8 +10,8 @@ from common.messages import AROUND, GRIPPER, PlanStep
 from common.words import Destination
 from services.planner.choice_points import ChoicePoints
 from services.planner.config import PlannerConfig
-from services.planner.senses import Spot
-from services.planner.vocabulary import Vocabulary
+from services.planner.grammar.senses import Spot
+from services.planner.grammar.vocabulary import Vocabulary
 from services.planner.world import BelievedObject, World
 
 NOT_UNDERSTOOD = "I do not understand"

@@ -8,13 +8,13 @@ from common import messages as m
 from common import topics
 from common.bus.port import Io, Job
 from common.goal_inbox import GoalInbox
-from services.planner import grammar
-from services.planner.backend import Backend
 from services.planner.config import PlannerConfig
-from services.planner.llm import Call, LlmError, NoAnswer, Reply
-from services.planner.paraphrase import Paraphraser, guesses, installed
+from services.planner.grammar import grammar
+from services.planner.grammar.paraphrase import Paraphraser, guesses, installed
+from services.planner.grammar.vocabulary import Vocabulary
+from services.planner.language_model.backend import Backend
+from services.planner.language_model.llm import Call, LlmError, NoAnswer, Reply
 from services.planner.plan_builder import NOT_UNDERSTOOD
-from services.planner.vocabulary import Vocabulary
 from services.planner.world import World, believed
 
 REMEMBERED = 32

@@ -16,9 +16,9 @@ from common import messages as m
 from common import topics
 from common.household import load_household
 from common.runtime import StartError
-from services.planner import diagnosis
 from services.planner.config import PlannerConfig
-from services.planner.endpoint import EVERY, REST, installed, look
+from services.planner.language_model import diagnosis
+from services.planner.language_model.endpoint import EVERY, REST, installed, look
 from services.planner.service import GRACE, PlannerService
 from tests.node import Node
 from tests.support import Site, eventually
@@ -280,7 +280,7 @@ def test_a_dripping_answer_ends_at_the_deadline(endpoint: Endpoint) -> None:
 
 
 def test_a_blocked_worker_does_not_hold_up_the_answer(endpoint: Endpoint, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("services.planner.backend.prepare", lambda: endpoint.over.wait(30))
+    monkeypatch.setattr("services.planner.language_model.backend.prepare", lambda: endpoint.over.wait(30))
     endpoint.answers = [plans(*MUG)]
     node = Desk(endpoint, llm_timeout=5.0)
     node.request()
@@ -416,7 +416,7 @@ def test_in_lockstep_and_without_the_client_it_does_not_look(
     endpoint: Endpoint, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     steady = Desk(endpoint, backend="auto", lockstep=True)
-    monkeypatch.setattr("services.planner.backend.installed", lambda: False)
+    monkeypatch.setattr("services.planner.language_model.backend.installed", lambda: False)
     lacking = Desk(endpoint, backend="auto")
     for node in (steady, lacking):
         node.step(2 * EVERY)
@@ -472,7 +472,7 @@ def test_the_real_process_finds_and_asks_the_endpoint(endpoint: Endpoint, here: 
 def test_without_the_client_the_service_says_what_to_install(
     endpoint: Endpoint, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("services.planner.backend.installed", lambda: False)
+    monkeypatch.setattr("services.planner.language_model.backend.installed", lambda: False)
     with pytest.raises(StartError, match=r"tidybot-zenoh\[llm\]"):
         Desk(endpoint)
     assert installed()

@@ -7,9 +7,9 @@ from common.language.exchange import replaced
 from common.language.meaning import is_question
 from common.language.quantities import duration
 from services.brain.language.interjection import interjection
-from services.planner.paraphrase import Paraphraser, guesses, installed
-from services.planner.spelling import corrected, distance
-from services.planner.vocabulary import Vocabulary
+from services.planner.grammar.paraphrase import Paraphraser, guesses, installed
+from services.planner.grammar.spelling import corrected, distance
+from services.planner.grammar.vocabulary import Vocabulary
 from services.planner.world import World
 from tests.everyday import CONFIG, HOME, planned, sentences, understand, verdict
 

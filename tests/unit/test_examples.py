@@ -19,8 +19,8 @@ from examples.odometer import DISTANCE, OdometerConfig, OdometerService
 from services.manipulation.grasps.grasp import candidates
 from services.manipulation.grasps.target import Target
 from services.perception.shapes.known import distances
-from services.planner import grammar
 from services.planner.config import PlannerConfig
+from services.planner.grammar import grammar
 from services.planner.world import believed
 from services.sim.objects import geoms
 from tests.node import Node

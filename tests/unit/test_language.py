@@ -10,7 +10,7 @@ from common.language.pattern import ANY, Node, Sequence, Slot, Word, first_words
 from common.language.simplify import simplified
 from common.language.wording import Action, Wording
 from common.language.wordings import INTERRUPTS, WORDINGS
-from services.planner.rules import ACTIONS
+from services.planner.grammar.rules import ACTIONS
 
 
 def slots(node: Node) -> set[str]:

@@ -9,8 +9,8 @@ from common import config
 from common.household import Household, load_household
 from common.messages import ActionPlan, History, KnownWorld, PlanStep, RejectedPlan, WorldObject
 from common.plan_rules import known_world, objection
-from services.planner import grammar
 from services.planner.config import PlannerConfig
+from services.planner.grammar import grammar
 from services.planner.world import believed
 
 CONFIG = config.load("planner", PlannerConfig, config.DEFAULT_DIR, {})

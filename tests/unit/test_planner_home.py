@@ -7,7 +7,7 @@ from common.household import load_household
 from common.household_edits import edited
 from common.plan_rules import known_world, objection
 from services.planner.config import PlannerConfig
-from services.planner.grammar import plan
+from services.planner.grammar.grammar import plan
 from services.planner.world import World, believed
 
 DAY = 86400.0

@@ -9,8 +9,8 @@ from common.language.pattern import Pattern, PatternError, needed, parse
 from common.messages import KnownWorld, PlanStep
 from services.planner.choice_points import MAX_RUNS, ChoicePoints, every
 from services.planner.config import PlannerConfig
-from services.planner.llm_plan import Impossible, checked
-from services.planner.vocabulary import Vocabulary
+from services.planner.grammar.vocabulary import Vocabulary
+from services.planner.language_model.llm_plan import Impossible, checked
 from services.planner.world import believed
 
 SCENE = load_household("apartment")

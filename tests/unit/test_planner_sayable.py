@@ -11,8 +11,8 @@ from common import config
 from common.household import load_household
 from common.messages import ActionPlan, RejectedPlan, WorldObject
 from common.plan_rules import known_world, objection
-from services.planner import grammar
 from services.planner.config import PlannerConfig
+from services.planner.grammar import grammar
 from services.planner.world import believed
 from services.speech.config import SpeechConfig
 from services.speech.recognise.grammar import vocabulary

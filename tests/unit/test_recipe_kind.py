@@ -28,7 +28,7 @@ from services.brain.world import placement
 from services.manipulation.grasps.grasp import candidates
 from services.manipulation.grasps.target import Target
 from services.perception.shapes.known import fit
-from services.planner import grammar
+from services.planner.grammar import grammar
 from services.planner.config import PlannerConfig
 from services.planner.world import believed
 from services.sim.objects import geoms

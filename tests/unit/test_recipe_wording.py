@@ -14,7 +14,7 @@ from common import config
 from common.messages import KnownWorld
 from common.household import load_household
 from services.brain.language.intent import parse
-from services.planner import grammar
+from services.planner.grammar import grammar
 from services.planner.config import PlannerConfig
 from services.planner.world import believed
 from services.speech.config import SpeechConfig

@@ -1,0 +1,80 @@
+"""What the robot says about itself: what it does, did and can do, and why something failed. Pure."""
+
+from common.language.normalise import enumeration
+from common.language.pattern import Slots
+from services.planner.plan_builder import PlanBuilder, Refusal
+from services.planner.reference.resolve import referents
+
+ABILITIES = (
+    "I can bring you things, find them, put them somewhere or where they belong, throw them away, "
+    "tidy up a table or a"
+    " room, go somewhere, look around, wait, and say something. You can ask me what I have seen and where, what I am"
+    " doing, what I did and why something failed. Say stop at any time."
+)
+
+
+def doing(builder: PlanBuilder, slots: Slots) -> None:
+    """The command under way, and what is done for it at the moment."""
+    told, held = builder.world.history, builder.world.held
+    if not told.doing:
+        hand = f", with the {held.label} in my hand" if held else ""
+        builder.say(f"I am doing nothing at the moment{hand}. I am waiting for a command.")
+        if told.last is not None:
+            done(builder, slots)
+        return
+    now = f" At the moment: {told.step}." if told.step else ""
+    builder.say(f'I am busy with "{told.doing}".{now}')
+
+
+def done(builder: PlanBuilder, slots: Slots) -> None:
+    """The last command and what came of it."""
+    last = builder.world.history.last
+    if builder.world.history.doing and (last is None or "words" in slots):
+        doing(builder, slots)
+        return
+    if last is None:
+        builder.say("I have done nothing yet.")
+        return
+    came_of_it = {
+        "delivered": "and I have done that",
+        "failed": f"but I did not manage it. {last.spoken or last.reason}".rstrip(". "),
+        "cancelled": "and that was called off",
+    }[last.outcome]
+    builder.say(f'My last command was "{last.command}", {came_of_it}.')
+
+
+def why(builder: PlanBuilder, slots: Slots) -> None:
+    """Why the last command failed."""
+    last = builder.world.history.last
+    if last is None or last.outcome == "delivered":
+        builder.say("Nothing has failed." if last is None else f'Nothing has failed: I have done "{last.command}".')
+        return
+    reason = (last.spoken or last.reason or "I do not know why").rstrip(". ")
+    builder.say(f'You asked me: "{last.command}". {reason[:1].upper()}{reason[1:]}.')
+
+
+def origin(builder: PlanBuilder, slots: Slots) -> None:
+    """Where something stood before the robot took it."""
+    for meant in referents(builder, slots["thing"], prefer_held=True):
+        label = meant.object.label
+        where = builder.world.history.taken_from.get(label)
+        if not where:
+            raise Refusal(f"I have not taken the {label} from anywhere")
+        builder.say(f"I took the {label} from the {where}.")
+
+
+def abilities(builder: PlanBuilder, slots: Slots) -> None:
+    builder.say(ABILITIES)
+
+
+def identity(builder: PlanBuilder, slots: Slots) -> None:
+    builder.say("I am TidyBot, a household robot. I fetch things and tidy up.")
+
+
+def rooms(builder: PlanBuilder, slots: Slots) -> None:
+    names = [f"the {room.name}" for room in builder.world.household.rooms]
+    builder.say(f"I know {enumeration(names)}." if names else "I know no rooms.")
+
+
+def thanks(builder: PlanBuilder, slots: Slots) -> None:
+    builder.say("You are welcome.")

@@ -1,0 +1,57 @@
+"""What the robot does with itself: going, waiting, looking for something, saying something. Pure."""
+
+from common.language.pattern import Slots
+from common.language.quantities import LONGEST, duration
+from services.planner.grammar.phrases import Phrase, read
+from services.planner.grammar.senses import Spot
+from services.planner.plan_builder import PlanBuilder, Refusal
+from services.planner.reference.places import spot
+from services.planner.reference.resolve import referent, referents
+
+
+def go(builder: PlanBuilder, slots: Slots) -> None:
+    """To a place, or up to a thing."""
+    try:
+        place = spot(builder, slots["spot"])
+    except Refusal:
+        phrase = read(slots["spot"], builder.vocabulary)
+        if not isinstance(phrase, Phrase) or phrase.sense.new:
+            raise
+        meant = referent(builder, slots["spot"])
+        builder.approach(meant.object)
+        return
+    builder.go(place)
+
+
+def come_back(builder: PlanBuilder, slots: Slots) -> None:
+    builder.go(Spot(builder.world.household.home.name, home=True))
+
+
+def wait(builder: PlanBuilder, slots: Slots) -> None:
+    """For as long as was said, else for a moment."""
+    seconds = duration(slots["words"]) if "words" in slots else 0.0
+    if seconds is None:
+        raise Refusal(f"I do not understand how long {' '.join(slots['words'])!r} is")
+    if seconds > LONGEST:
+        raise Refusal(f"I wait {LONGEST / 60:.0f} minutes at most")
+    builder.wait(seconds)
+
+
+def wait_there(builder: PlanBuilder, slots: Slots) -> None:
+    """Wait at a place."""
+    go(builder, slots)
+    builder.wait()
+
+
+def find(builder: PlanBuilder, slots: Slots) -> None:
+    everything = referents(builder, slots["thing"])
+    for meant in everything:
+        if meant.at is not None:
+            builder.go(meant.at)
+        builder.find(meant.object, meant.words)
+    builder.last = [m.object for m in everything]
+
+
+def say(builder: PlanBuilder, slots: Slots) -> None:
+    text = " ".join(slots["words"])
+    builder.say(f"{text[0].upper()}{text[1:]}.")

@@ -1,0 +1,38 @@
+"""Names of things: what they are taught for, and which are forgotten. Pure."""
+
+from common.language.normalise import without_determiners
+from common.language.pattern import Slots
+from common.messages import PlanStep
+from common.naming import normalise
+from services.planner.grammar.phrases import Phrase, read
+from services.planner.plan_builder import PlanBuilder, Refusal
+
+
+def teach(builder: PlanBuilder, slots: Slots) -> None:
+    """The thing that is named, or "this", gets a name. Which one that is perception decides, which sees it."""
+    thing = " ".join(without_determiners(slots.get("thing", ())))
+    phrase = read(slots["thing"], builder.vocabulary) if thing else None
+    if thing and (not isinstance(phrase, Phrase) or phrase.sense.new):
+        raise Refusal(f"I know no {thing} that could have a name")
+    builder.steps.append(PlanStep(action="teach", object=thing, text=_name(builder, slots)))
+
+
+def forget(builder: PlanBuilder, slots: Slots) -> None:
+    """A name that was taught is forgotten, of a thing or of a place."""
+    words = " ".join(without_determiners(slots["words"]))
+    if any(n.name == normalise(words) for n in builder.world.edits.names):
+        builder.steps.append(PlanStep(action="forget", target="place", text=words))
+        return
+    builder.steps.append(PlanStep(action="forget", text=_name(builder, slots)))
+
+
+def _name(builder: PlanBuilder, slots: Slots) -> str:
+    """The name as it is to be kept.
+
+    Raises:
+        Refusal: it is a place, or a word that says how a thing is ("the ball is my favourite").
+    """
+    words = without_determiners(slots["words"])
+    if not words or builder.vocabulary.spot(words) or set(words) <= set(builder.world.household.words.qualities):
+        raise Refusal(f"{' '.join(slots['words'])} is no name for a thing")
+    return " ".join(words)

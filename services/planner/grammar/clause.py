@@ -1,0 +1,128 @@
+"""One clause, or several joined by "and", on a plan under construction: as it stands, simplified, reworded."""
+
+from common.language.lexicon import COMMANDING
+from common.language.meaning import VERBS
+from common.language.normalise import DETERMINERS, Words, infinitive
+from common.language.noun_phrase import PLURAL_PRONOUNS, PRONOUNS
+from common.language.politeness import without_politeness
+from common.language.simplify import simplified
+from common.language.word_order import reworded
+from services.planner.grammar.rules import apply_first
+from services.planner.plan_builder import NOT_UNDERSTOOD, PlanBuilder, Refusal
+
+MAX_EFFORT = 120
+"""Most clauses tried for one text (chosen: bounds the time for long lists)."""
+_THING_STARTS = DETERMINERS | PRONOUNS | PLURAL_PRONOUNS | {"all", "every", "two", "three"}
+
+
+class _Failure(Exception):
+    """`at`: how many words were understood before it."""
+
+    def __init__(self, at: int, reason: str) -> None:
+        super().__init__(reason)
+        self.at, self.reason = at, reason
+
+
+def read_clause(words: Words, builder: PlanBuilder, alone: bool, verb: str = "") -> None:
+    """One part of the sentence: one command, or several joined by "and"; `verb` is that of the part before."""
+    try:
+        _joined(words, builder, verb, 0, alone)
+    except _Failure as failure:
+        raise Refusal(failure.reason) from None
+
+
+def _joined(words: Words, builder: PlanBuilder, verb: str, at: int, alone: bool) -> None:
+    """Carry out `words` as the longest command that works, followed by the rest; changes `builder` only on success."""
+    cuts = [len(words), *(i for i in range(len(words) - 1, 0, -1) if words[i] == "and")]
+    worst: _Failure | None = None
+    for cut in cuts:
+        head, rest = words[:cut], words[cut + 1 :]
+        trial = builder.fork()
+        try:
+            _command(head, trial, verb, at, alone and not rest)
+            if rest and not trial.unmet:
+                _joined(rest, trial, head[0] if head[0] in COMMANDING else "put", at + cut, False)
+        except _Failure as failure:
+            worst = failure if worst is None or failure.at >= worst.at else worst
+            continue
+        builder.adopt(trial)
+        return
+    assert worst is not None
+    if not _run_on(words, builder, verb, at):
+        raise worst
+
+
+def _run_on(words: Words, builder: PlanBuilder, verb: str, at: int) -> bool:
+    """Carry out `go to the kitchen look around come back`: commands one after the other without a word between them."""
+    for cut in range(2, len(words)):
+        if words[cut] not in _BEGINS or words[cut - 1] in _NO_END or words[0] not in VERBS:
+            continue
+        trial = builder.fork()
+        try:
+            _command(words[:cut], trial, verb, at, False)
+            if not trial.unmet:
+                _joined(words[cut:], trial, words[0], at + cut, False)
+        except _Failure:
+            continue
+        builder.adopt(trial)
+        return True
+    return False
+
+
+_BEGINS = (COMMANDING | {"look"}) - {"place", "pass", "hand", "spot", "head", "set", "lay", "left", "clean", "clear"}
+"""Verbs with which the next command may begin without a word before it."""
+_NO_END = DETERMINERS | {"and", "to", "not", "you", "i", "we", "that", "please", "can", "or", "never"}
+"""Words with which no command ends."""
+
+
+def _command(words: Words, builder: PlanBuilder, verb: str, at: int, alone: bool) -> None:
+    """The first form that fits the words and can be done; else the reason of the first that fits."""
+    if not words:
+        raise _Failure(at, "I did not hear a command")
+    words = tuple(without_politeness(" ".join(words)).split()) or words
+    builder.effort[0] += 1
+    if builder.effort[0] > MAX_EFFORT:
+        raise Refusal("that is too long a sentence for me")
+    words = (infinitive(words[0], VERBS), *words[1:])
+    reason = _apply(words, builder, verb, alone)
+    if (
+        reason is not None
+        and (simple := simplified(words)) not in ((), words)
+        and _apply(simple, builder, verb, alone) is None
+    ):
+        return
+    if reason is None or _apply_reworded(words, builder, verb, alone):
+        return
+    if any(apply_first(other, builder, "told") is None for other in (words, *reworded(words, verbs_only=True))):
+        return
+    said = " ".join(words)
+    raise _Failure(at if reason else at - 1, reason or f"{NOT_UNDERSTOOD} {said!r}")
+
+
+def _apply_reworded(words: Words, builder: PlanBuilder, verb: str, alone: bool) -> bool:
+    """Carry out the first rewriting of a clause that can be done; was there one?"""
+    for other in reworded(words, builder.vocabulary.new_nouns):
+        builder.effort[0] += 1
+        if builder.effort[0] > MAX_EFFORT:
+            raise Refusal("that is too long a sentence for me")
+        if _apply((infinitive(other[0], VERBS), *other[1:]), builder, verb, alone) is None:
+            return True
+    return False
+
+
+def _apply(words: Words, builder: PlanBuilder, verb: str, alone: bool) -> str | None:
+    """As `apply_first`, for a clause that may be a name alone or lack the `verb` of the one before it."""
+    reason = apply_first(words, builder, "command", "reply")
+    if reason == "" and alone:
+        return apply_first(words, builder, "name")
+    if reason == "" and verb in ("go", "drive", "come", "head", "visit") and builder.vocabulary.spot(words):
+        return apply_first(("go", "to", *words), builder, "command")
+    if reason == "" and verb and _is_thing(words, builder):
+        # "put the mug on the table and the can on the counter": the verb is said once.
+        return apply_first((verb, *words), builder, "command", "reply")
+    return reason
+
+
+def _is_thing(words: Words, builder: PlanBuilder) -> bool:
+    """Do the words begin like a thing's name?"""
+    return words[0] in _THING_STARTS or any(builder.vocabulary.noun(w) for w in words[:3])

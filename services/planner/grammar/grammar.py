@@ -1,0 +1,233 @@
+"""The embedded planner: a sentence and the believed world in, a plan or the reason against it out. Pure."""
+
+from collections.abc import Sequence
+from contextlib import suppress
+
+from common.language.breaks import is_statement, without_reason_behind
+from common.language.contractions import expand
+from common.language.discourse import commands
+from common.language.exchange import noun_phrases, replaced
+from common.language.lexicon import COMMANDING
+from common.language.meaning import WORDS
+from common.language.normalise import Words, normalise
+from common.messages import ActionPlan, PlanStep, RejectedPlan
+from services.planner.choice_points import ChoicePoints, every
+from services.planner.commands import answers
+from services.planner.config import PlannerConfig
+from services.planner.grammar.clause import read_clause
+from services.planner.grammar.named import note
+from services.planner.grammar.nearest import nearest
+from services.planner.grammar.phrases import Phrase, read
+from services.planner.grammar.repetition import repeated
+from services.planner.grammar.spelling import corrected
+from services.planner.grammar.vocabulary import Vocabulary
+from services.planner.plan_builder import NOT_UNDERSTOOD, LookFirst, PlanBuilder, Refusal, same
+from services.planner.world import World
+
+SOURCE = "grammar"
+MAX_CHARACTERS = 2000
+"""Longest text that is read (chosen: a minute of speech has a thousand characters)."""
+MAX_WORDS = 60
+"""Longest clause (chosen: the readings of a pattern grow with the square of its words)."""
+
+
+class Suggestion(Refusal):
+    """`meant`: the command that comes nearest to what was said, to be asked about first."""
+
+    def __init__(self, reason: str, meant: str) -> None:
+        super().__init__(reason)
+        self.meant = meant
+
+
+def plan(
+    command: str,
+    world: World,
+    config: PlannerConfig,
+    rejected: Sequence[RejectedPlan] = (),
+    done: list[PlanStep] | None = None,
+    request_id: str = "",
+) -> ActionPlan:
+    """The preferred plan that differs from every rejected one; without steps when there is none, with the reason."""
+    vocabulary = Vocabulary(world, config)
+
+    literally = any(not r.steps for r in rejected)
+
+    def run(choices: ChoicePoints) -> ActionPlan:
+        try:
+            steps = _Attempts(command, world, vocabulary, config, choices, done).steps(literally)
+        except LookFirst as look:
+            return ActionPlan(request_id=request_id, steps=look.steps, source=SOURCE, again=True)
+        except Refusal as refusal:
+            meant = refusal.meant if isinstance(refusal, Suggestion) else ""
+            return ActionPlan(request_id=request_id, steps=[], source=SOURCE, detail=str(refusal), suggestion=meant)
+        if len(steps) > config.max_steps:
+            detail = f"that is too much at once: {len(steps)} steps"
+            return ActionPlan(request_id=request_id, steps=[], source=SOURCE, detail=detail)
+        return ActionPlan(request_id=request_id, steps=steps, source=SOURCE)
+
+    if not rejected:
+        return run(ChoicePoints())
+    culprits = [c for r in rejected if (c := _culprit(r)) is not None]
+    other: ActionPlan | None = None
+    for candidate in every(run):
+        if not candidate.steps or any(same(candidate.steps, r.steps) for r in rejected):
+            continue
+        if not any(c in candidate.steps for c in culprits):
+            return candidate
+        other = other or candidate
+    return other or _spent(run(ChoicePoints()), rejected[-1])
+
+
+def _spent(first: ActionPlan, rejected: RejectedPlan) -> ActionPlan:
+    """No other plan: the reason against the last one, or why there never was one."""
+    reason = rejected.reason.strip().rstrip(".") or "that plan was rejected and I know no other"
+    detail = reason if first.steps or not first.detail else first.detail
+    return ActionPlan(request_id=first.request_id, steps=[], source=SOURCE, detail=detail)
+
+
+def _culprit(rejected: RejectedPlan) -> PlanStep | None:
+    """The step that the reason is about."""
+    return rejected.steps[rejected.step - 1] if 0 < rejected.step <= len(rejected.steps) else None
+
+
+class _Attempts:
+    """Readings of one command, the more literal first, each with a plan builder of its own."""
+
+    def __init__(
+        self,
+        command: str,
+        world: World,
+        vocabulary: Vocabulary,
+        config: PlannerConfig,
+        choices: ChoicePoints,
+        done: list[PlanStep] | None,
+    ) -> None:
+        self._command, self._world, self._vocabulary, self._config = command, world, vocabulary, config
+        self._choices, self._done = choices, done
+
+    def steps(self, literally: bool) -> list[PlanStep]:
+        """By what is known, as it stands; without slips of typing; with things that nobody has listed or seen.
+
+        `literally`: a slip in a name was asked about and is none.
+
+        Raises:
+            Suggestion: the words are one slip in a name away from a command.
+            Refusal: none of it helps, with the reason against the words as they stand.
+        """
+        try:
+            return self._read(self._command)
+        except Refusal as refusal:
+            taken = self._choices.taken
+            if (asked := without_reason_behind(self._command_words())) != self._command_words():
+                with suppress(Refusal):
+                    return self._read(asked)
+            if (read := self._without_slips(refusal, literally)) is not None:
+                return read
+            if self._config.open_vocabulary:
+                with suppress(Refusal):
+                    return self._read(self._command, new_nouns=True)
+            self._choices.taken = taken
+            if not literally and (meant := self._nearest()):
+                raise Suggestion(str(refusal), meant) from None
+            raise
+
+    def _command_words(self) -> str:
+        """What was said with its marks, in the spelling of the grammar."""
+        return expand(normalise(self._command[:MAX_CHARACTERS], ",;.!?"))
+
+    def _nearest(self) -> str:
+        """A plain command that can be done and is near to the words; "" when there is none."""
+        text = expand(normalise(self._command[:MAX_CHARACTERS]))
+        meant = nearest(tuple(text.split()), self._vocabulary)
+        try:
+            return meant if meant and self._read(meant) else ""
+        except LookFirst:  # it is asked about before anything is looked at
+            return meant
+        except Refusal:
+            return ""
+
+    def _read(self, text: str, new_nouns: bool = False) -> list[PlanStep]:
+        builder = PlanBuilder(self._world.copy(), self._vocabulary, self._config, self._choices.fork(), self._done)
+        self._vocabulary.new_nouns = new_nouns
+        try:
+            return _steps(text, builder)
+        finally:
+            self._choices.taken = builder.choices.taken
+            self._vocabulary.new_nouns = False
+
+    def _without_slips(self, refusal: Refusal, literally: bool) -> list[PlanStep] | None:
+        """Slips in verbs and small words are undone; a name is never exchanged for another unasked."""
+        words = self._command_words().split()
+        bare = [w.strip(",;.!?") for w in words]
+        colours, names = self._vocabulary.words()
+        right, named = corrected(bare, colours | WORDS, names)
+        if right == bare or (named and literally):
+            return None
+        text = " ".join(w.replace(b, r) for w, b, r in zip(words, bare, right, strict=True))
+        try:
+            steps = self._read(text)
+        except Refusal:
+            return None
+        if named:
+            raise Suggestion(str(refusal), text)
+        return steps
+
+
+def _completed(words: Words, said: Words, builder: PlanBuilder) -> Words:
+    """`the green one` after `put the white can in the bin` is to be put there, too."""
+    phrase = read(words, builder.vocabulary)
+    spans = noun_phrases(list(said))
+    if not isinstance(phrase, Phrase) or phrase.sense.new or phrase.relation or not spans or spans[0][1] >= len(said):
+        return words
+    if not any(builder.vocabulary.spot(said[at:]) for at in range(spans[0][1], len(said))):
+        return words
+    return tuple((replaced(" ".join(said), " ".join(words)) or " ".join(words)).split())
+
+
+def _steps(command: str, builder: PlanBuilder) -> list[PlanStep]:
+    def is_place(words: Words) -> bool:
+        return bool(builder.vocabulary.spot(words))
+
+    sentences = commands(command[:MAX_CHARACTERS], is_place)
+    again = repeated(command, sentences, builder.world.history, is_place)
+    if again is not command:
+        sentences = commands(again, is_place)
+    if not sentences:
+        raise Refusal("I did not hear a command")
+    if len(command) > MAX_CHARACTERS or any(len(s.split()) > MAX_WORDS for s in sentences):
+        raise Refusal("that is too long a sentence for me")
+    first = read(tuple(sentences[0].split()), builder.vocabulary)
+    names = len(sentences) > 1 and isinstance(first, Phrase) and not first.sense.new
+    verb = "bring" if names else ""
+    said: Words = ()
+    for number, sentence in enumerate(sentences):
+        words = tuple(sentence.split())
+        following = sentences[number + 1].split() if number + 1 < len(sentences) else []
+        if is_statement(sentence) and words[0] in ("i", "we") and {"it", "them"} & set(following):
+            note(words, builder)  # "I want the apple. Put it on the desk": what is wanted is said in the second
+            continue
+        if words[0] == "otherwise":
+            if not builder.unmet:
+                break
+            builder.unmet, words = "", words[1:]
+        if builder.unmet or not words:
+            continue
+        words = _completed(words, said, builder)
+        try:
+            read_clause(words, builder, alone=len(sentences) == 1, verb=verb)
+        except Refusal:
+            if number + 1 == len(sentences) or not is_statement(sentence):
+                raise
+            note(words, builder)
+        verb, said = words[0] if words[0] in COMMANDING else "bring", words
+    if builder.unmet:
+        builder.say(builder.unmet)
+    if builder.collecting:
+        raise Refusal("I can hold only one thing at a time")
+    if not builder.steps and builder.need:
+        read_clause(("bring", "me", *builder.need.split()), builder, alone=True)
+    if not builder.steps:
+        raise Refusal(f"{NOT_UNDERSTOOD} what I should do")
+    if all(step.action == "find" for step in builder.steps):
+        answers.found(builder)
+    return builder.steps

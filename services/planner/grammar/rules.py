@@ -1,0 +1,112 @@
+"""The grammar rules: what each action of the wordings' table does to the plan under construction."""
+
+from collections.abc import Callable
+
+from common.language.meaning import readings
+from common.language.normalise import Words
+from common.language.pattern import Slots
+from common.language.wording import Action, Kind
+from services.planner.commands import (
+    about_itself,
+    answers,
+    bringing,
+    conditions,
+    going,
+    hand,
+    home,
+    looking,
+    remarks,
+    teaching,
+    tidying,
+)
+from services.planner.plan_builder import PlanBuilder, Refusal
+
+ACTIONS: dict[Action, Callable[[PlanBuilder, Slots], None]] = {
+    "open_hand": hand.open_hand,
+    "close_hand": hand.close_hand,
+    "seen": looking.seen,
+    "contents": looking.contents,
+    "holding": answers.holding,
+    "whereabouts": answers.whereabouts,
+    "where": answers.where,
+    "number": answers.number,
+    "say": going.say,
+    "wait": going.wait,
+    "wait_there": going.wait_there,
+    "come_back": going.come_back,
+    "go": going.go,
+    "remark": remarks.remark,
+    "untidy": remarks.untidy,
+    "throw_away": tidying.throw_away,
+    "put_away": tidying.put_away,
+    "tidy": tidying.tidy,
+    "put": bringing.put,
+    "put_near": bringing.put_near,
+    "put_down": hand.put_down,
+    "deliver": bringing.deliver,
+    "deliver_there": bringing.deliver_there,
+    "fetch": bringing.fetch,
+    "fetch_named": bringing.fetch_named,
+    "pick_up": hand.pick_up,
+    "find": going.find,
+    "teach": teaching.teach,
+    "forget": teaching.forget,
+    "name_place": home.name_place,
+    "rule": home.rule,
+    "rule_always": home.rule_always,
+    "forget_rule": home.forget_rule,
+    "rules": home.rules,
+    "belongs": home.belongs,
+    "usual": home.usual,
+    "last_seen": home.last_seen,
+    "mention": remarks.mention,
+    "put_back": bringing.put_back,
+    "put_where": bringing.put_near,
+    "wish_at": bringing.wish_at,
+    "named_at": bringing.named_at,
+    "put_held": bringing.put_held,
+    "again": remarks.again,
+    "look_around": looking.look_around,
+    "go_and_see": looking.go_and_see,
+    "check": looking.check,
+    "recall": looking.recall,
+    "exists": looking.exists,
+    "is_at": looking.is_at,
+    "colour": answers.colour,
+    "beside": answers.beside,
+    "kinds": answers.number,
+    "extreme": answers.extreme,
+    "compare": answers.compare,
+    "condition": conditions.condition,
+    "condition_not": conditions.condition_not,
+    "state": conditions.state,
+    "state_not": conditions.state_not,
+    "doing": about_itself.doing,
+    "done": about_itself.done,
+    "why": about_itself.why,
+    "origin": about_itself.origin,
+    "abilities": about_itself.abilities,
+    "identity": about_itself.identity,
+    "rooms": about_itself.rooms,
+    "thanks": about_itself.thanks,
+}
+
+
+def apply_first(words: Words, builder: PlanBuilder, *kinds: Kind) -> str | None:
+    """Carry out the first reading of a clause that can be done, in the table's order.
+
+    None when one was; else the reason against the first that fits, "" when none fits.
+    """
+    reason = ""
+    for wording, slots in readings(words, *kinds):
+        trial = builder.fork()
+        try:
+            if wording.reason:
+                raise Refusal(wording.reason)
+            ACTIONS[wording.action](trial, slots)
+        except Refusal as refusal:
+            reason = reason or str(refusal)
+            continue
+        builder.adopt(trial)
+        return None
+    return reason

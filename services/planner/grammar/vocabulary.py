@@ -1,0 +1,238 @@
+"""The words for objects and places: from the household, from what was seen, and from the configuration. Pure."""
+
+import re
+from collections.abc import Iterable
+from typing import Any
+
+from common.floor_plan import Receptacle
+from common.household import Household
+from common.language.lexicon import COMMANDING
+from common.language.normalise import Words, enumeration, infinitive, normalise, without_determiners
+from common.language.noun_phrase import UNSEEN, WHICH
+from common.language.quantities import UNITS
+from common.naming import normalise as unmarked
+from services.planner.config import PlannerConfig
+from services.planner.grammar.senses import (
+    ANY,
+    HERE,
+    LIVING,
+    LONGEST_NAME,
+    MASSES,
+    NO_NOUN,
+    SHORTEST_NAME,
+    WHOLE,
+    Sense,
+    Spot,
+)
+from services.planner.world import World
+
+
+class Vocabulary:
+    """Built for one request."""
+
+    def __init__(self, world: World, config: PlannerConfig) -> None:
+        self.new_nouns = False
+        self.phrases: dict[tuple[bool, Words], Any] = {}
+        self._household = household = world.household
+        known = [*world.specs, *world.objects]
+        words = household.words
+        self.kinds = {t.kind for t in known if t.kind} | set(words.kinds)
+        self.colours = {c: c for c in {*(t.colour for t in known), *(r.colour for r in household.receptacles)} if c}
+        self.colours |= {word: c for c, others in words.colours.items() for word in (c, *others)}
+        self._nouns: dict[str, Sense] = {}
+        self._printed: dict[str, set[str]] = {}
+        self._aliases(household)
+        for item in known:
+            self._nouns.setdefault(normalise(item.label), Sense(names=frozenset({item.label})))
+            for name in item.names:
+                self._name(normalise(name), item.label)
+        self._read(world)
+        for kind in self.kinds:
+            named = self._nouns.get(kind, Sense())
+            only = next(iter(named.names)) if len(named.names) == 1 else ""
+            self._nouns[kind] = Sense(kinds=frozenset({kind}), prefer=only)
+        for kind, others in words.kinds.items():
+            for word in others:
+                self._mean(word, (kind,))
+        for word, group in words.groups.items():
+            self._mean(word, group)
+        self.groups = frozenset(map(normalise, words.groups))
+        self._mass = frozenset(map(normalise, words.mass))
+        self._places = self._standing(household, world.places)
+
+    def _mean(self, word: str, kinds: Iterable[str]) -> None:
+        """A word for objects of these kinds, beside what it means already."""
+        noun = normalise(word)
+        before = self._nouns.get(noun, Sense())
+        if not before.names or before.kinds:
+            self._nouns[noun] = Sense(kinds=before.kinds | frozenset(kinds), prefer=before.prefer)
+
+    def _name(self, noun: str, label: str) -> None:
+        """One more thing that has this name."""
+        before = self._nouns.get(noun, Sense())
+        self._nouns[noun] = Sense(names=before.names | {label}, kinds=before.kinds)
+
+    def _read(self, world: World) -> None:
+        """Words printed on things and of taught names: up to three together name the thing, where they are new."""
+        told = [(spec.name, spec.aliases) for spec in self._household.things]
+        for label, said in (*told, *((item.label, (item.text, *item.names)) for item in world.objects)):
+            texts = [normalise(text).split() for text in said]
+            runs = {" ".join(t[i : i + n]) for t in texts for n in (1, 2, 3) for i in range(len(t) - n + 1)} - LIVING
+            for run in runs - self._nouns.keys() - self.kinds - self.colours.keys():
+                if len(run) > 2 and run not in NO_NOUN:
+                    self._printed.setdefault(run, set()).add(label)
+
+    def _aliases(self, household: Household) -> None:
+        for spec in household.things:
+            for alias in (spec.name, *spec.aliases):
+                self._nouns[normalise(alias)] = Sense(names=frozenset({spec.name}))
+            for alias in spec.aliases:
+                noun = normalise(alias).removeprefix(f"{spec.colour} ")
+                if noun != normalise(alias):
+                    self._nouns.setdefault(noun, Sense(kinds=frozenset({spec.kind})))
+
+    def _standing(self, household: Household, told: Iterable[str]) -> dict[str, Spot]:
+        spots = {normalise(p): Spot(p) for p in told if household.receptacle(p) is None}
+        for place in household.places:
+            spots |= {normalise(n): Spot(place.name) for n in (place.name, *place.aliases)}
+        for room in household.rooms:
+            spots |= {normalise(n): Spot(room.name, room=True) for n in (room.name, *room.aliases)}
+        home = Spot(household.home.name, home=True)
+        return spots | {normalise(n): home for n in (household.home.name, *household.home.aliases, *HERE)}
+
+    # --- nouns
+    def noun(self, phrase: str) -> tuple[Sense, str, bool] | None:
+        """(meaning, singular form, is it a plural) of a noun without colours; None if unknown."""
+        if phrase in WHOLE:
+            return Sense(every=True), "thing", phrase in ("everything", "all", "mess", "all of it", "it all")
+        if "'" in phrase and (taught := self._nouns.get(unmarked(phrase))) is not None:
+            return taught, phrase, False  # "grandmother's can", as it was taught
+        for form, plural in _singulars(phrase):
+            if form in ANY:
+                return Sense(every=True), form, plural or form in MASSES
+            if sense := self._nouns.get(form):
+                return sense, form, plural or form in self._mass
+        head, _, last = phrase.rpartition(" ")
+        if head and last.removesuffix("s") in ANY and (named := self.noun(head)) is not None:
+            return named  # that bottle thing
+        if phrase.startswith("anything ") and (sense := self._nouns.get(phrase.replace("any", "some", 1))):
+            return sense, phrase, False
+        whole, found, part = phrase.partition(" of ")
+        if found and whole in self.kinds and (named := self.noun(part)) is not None and named[0].names:
+            return named  # a can of soup
+        if head and last in self.kinds and (labels := self._printed.get(head)):
+            return Sense(names=frozenset(labels)), phrase, False  # the soup can
+        for form, plural in _singulars(phrase):
+            if labels := self._printed.get(form):
+                return Sense(names=frozenset(labels)), form, plural
+        return None
+
+    def new_noun(self, words: Words) -> Sense | None:
+        """The words as the name of a thing that nobody has listed or seen; None for a place or a part of a sentence."""
+        if not self.new_nouns or not 0 < len(words) <= LONGEST_NAME or words[0] in COMMANDING:
+            return None
+        if not all(w.replace("'", "").isalnum() for w in words) or max(map(len, words)) < SHORTEST_NAME:
+            return None
+        if words[1:2] == ("of",) and words[0] in self.kinds:
+            words = (words[0], *words[2:])
+        if not words or NO_NOUN & set(words):
+            return None
+        acts = words[-1].endswith("ed") or infinitive(words[-1], COMMANDING) in COMMANDING
+        if acts or any(
+            len(words) > b - a > 1 and self.spot(words[a:b])
+            for a in range(len(words))
+            for b in range(a + 2, len(words) + 1)
+        ):
+            return None
+        if words[-1] in self.colours or words[-1] in WHICH or words[-1] in ANY | WHOLE or words[-1] in UNITS:
+            return None
+        known = self.spot(words) or self.furniture(words) or self._and_place(words)
+        return None if known else Sense(names=frozenset({" ".join(words)}), new=True)
+
+    def _and_place(self, words: Words) -> bool:
+        """Are they the name of a thing and that of a place, `box bookshelf`?"""
+        return any(self.noun(" ".join(words[:at])) and self.spot(words[at:]) for at in range(1, len(words)))
+
+    def words(self) -> tuple[set[str], set[str]]:
+        """(colours, words of names) that are known."""
+        places = [n for r in self._household.receptacles for n in (r.name, *r.aliases)]
+        names = {w for n in (*self._nouns, *self._printed, *self._places, *places, *ANY, *WHOLE) for w in n.split()}
+        return set(self.colours), (names | {f"{n}s" for n in names}) - self.colours.keys()
+
+    # --- spots
+    def spot(self, words: Words, room: str = "") -> list[Spot]:
+        """Every place that the words can mean, the best alone when one is meant by name; [] if unknown."""
+        phrase = " ".join(without_determiners(words))
+        if not phrase:
+            return []
+        if whole := [r for r in self._household.receptacles if not room and phrase == normalise(r.name)]:
+            return [Spot(whole[0].name, receptacle=whole[0])]
+        for preposition in ("in", "of", "from", "at"):
+            head, found, tail = phrase.partition(f" {preposition} ")
+            where = self._places.get(" ".join(without_determiners(tuple(tail.split())))) if found else None
+            if where is not None and where.room:
+                return self.spot(tuple(head.split()), where.name)
+        for preposition in ("on", "at", "by"):
+            head, found, tail = phrase.partition(f" {preposition} ")
+            head = re.sub(r" (?:that|which) (?:is|are|stands|lies)$", "", head)
+            inside = self._places.get(" ".join(without_determiners(tuple(head.split())))) if found else None
+            if inside is not None and inside.room:  # in the bedroom on the dresser
+                return self.spot(tuple(tail.split()), inside.name)
+        if words and without_determiners(words)[0] in UNSEEN and len(phrase.split()) > 1:
+            return self.spot(without_determiners(words)[1:], room)
+        if not room and (place := self._places.get(phrase)):
+            return [place]
+        named = [r for r in self._household.receptacles if phrase in map(normalise, (r.name, *r.aliases))]
+        colour, _, rest = phrase.partition(" ")
+        meant = self.colours.get(colour)
+        kin = [
+            r
+            for r in self._household.receptacles
+            if r.kind == phrase
+            or f" {normalise(r.name)}".endswith(f" {phrase}")
+            or (meant and _coloured(r, meant, rest))
+        ]
+        if room:
+            named, kin = [r for r in named if self._is_in(r, room)], [r for r in kin if self._is_in(r, room)]
+        return [Spot(r.name, receptacle=r) for r in named or kin]
+
+    def _is_in(self, r: Receptacle, room: str) -> bool:
+        found = self._household.room_at(r.center[0], r.center[1])
+        return found is not None and found.name == room
+
+    def furniture(self, words: Words) -> str:
+        """The furniture meant, which is in the way but no place to put things."""
+        phrase = " ".join(without_determiners(words))
+        return next((f.name for f in self._household.furniture if phrase and phrase in normalise(f.name)), "")
+
+    def position(self, place: Spot) -> tuple[float, float] | None:
+        """The middle of a surface, or where one stands at a place [m]; None for a room."""
+        if place.receptacle is not None:
+            return place.receptacle.center[0], place.receptacle.center[1]
+        stands = (self._household.home, *self._household.places)
+        return next(((p.x, p.y) for p in stands if p.name == place.name and not place.room), None)
+
+    def surfaces(self, room: str = "") -> list[Receptacle]:
+        """Where things may lie, in a room or everywhere."""
+        return [
+            r for r in self._household.receptacles if r.spawn and not r.depth and (not room or self._is_in(r, room))
+        ]
+
+    def receptacles_named(self) -> str:
+        return enumeration([r.name for r in self._household.receptacles], "or")
+
+
+def _coloured(r: Receptacle, colour: str, rest: str) -> bool:
+    return r.colour == colour and rest in (r.kind, *r.name.split(), r.name, *r.aliases)
+
+
+def _singulars(phrase: str) -> list[tuple[str, bool]]:
+    forms = [(phrase, False)]
+    if phrase.endswith("s"):
+        forms += [(phrase[:-1], True)]
+    if phrase.endswith("es"):
+        forms += [(phrase[:-2], True)]
+    first, _, rest = phrase.partition(" of ")
+    if rest and first.endswith("s"):
+        forms += [(f"{first[:-1]} of {rest}", True)]
+    return forms

@@ -1,0 +1,42 @@
+"""The place that words mean. Pure."""
+
+from common.language.normalise import Words, enumeration, without_determiners
+from services.planner.grammar.phrases import Phrase, read
+from services.planner.grammar.senses import Spot
+from services.planner.plan_builder import PlanBuilder, Refusal
+from services.planner.reference.relations import away
+
+
+def spot(builder: PlanBuilder, words: Words) -> Spot:
+    """The place that is meant.
+
+    Raises:
+        Refusal: no such place, or several.
+    """
+    if " ".join(words) in ("there", "it", "that") and builder.spot is not None:
+        return builder.spot
+    nearest = words[-2:-1] if words[:1] == ("the",) and len(words) == 3 else ()
+    wanted = words[2:] if nearest and nearest[0] in ("nearest", "closest") else words
+    found = builder.vocabulary.spot(wanted)
+    if not found:
+        furniture = builder.vocabulary.furniture(words)
+        phrase = read(words, builder.vocabulary)
+        if furniture or isinstance(phrase, Phrase):
+            raise Refusal(f"the {furniture or ' '.join(without_determiners(words))} is no place that I can use")
+        raise Refusal(f"I know no {' '.join(without_determiners(words))}")
+    if len(found) > 1 and wanted is not words:
+        return min(found, key=lambda s: away(builder, s))
+    if len(found) > 1:
+        raise Refusal(f"I do not know which one you mean: {enumeration([f'the {s.name}' for s in found], 'or')}")
+    return found[0]
+
+
+def anchor_spots(builder: PlanBuilder, phrase: Phrase) -> list[Spot]:
+    """The places that a phrase names behind its relation: `on the desk and the table` names two."""
+    if spots := builder.vocabulary.spot(phrase.anchor):
+        return spots
+    for at, word in enumerate(phrase.anchor):
+        if word in ("and", "or"):
+            parts = [builder.vocabulary.spot(part) for part in (phrase.anchor[:at], phrase.anchor[at + 1 :])]
+            return [s for part in parts for s in part] if all(parts) else []
+    return []

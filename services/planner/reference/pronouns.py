@@ -1,0 +1,36 @@
+"""What `it`, `them` and `one` stand for: what was spoken of, what is held, what the last mission handled. Pure."""
+
+import msgspec
+
+from services.planner.grammar.senses import Spot
+from services.planner.plan_builder import PlanBuilder, Refusal
+from services.planner.world import BelievedObject
+
+
+class Referent(msgspec.Struct, frozen=True):
+    """An object that is meant; `words` where its name alone does not tell; `at` where to look for it first."""
+
+    object: BelievedObject
+    words: str = ""
+    at: Spot | None = None
+
+
+def pronoun(builder: PlanBuilder, plural: bool) -> list[Referent]:
+    if builder.last:
+        return [Referent(builder.world.current(t)) for t in (builder.last if plural else builder.last[-1:])]
+    if held := builder.world.held:
+        return [Referent(held)]
+    if before := handled_before(builder):
+        return [Referent(t) for t in (before if plural else before[-1:])]
+    raise Refusal("I do not know what you mean by that" if plural else "I do not know what you mean by it")
+
+
+def handled_before(builder: PlanBuilder) -> list[BelievedObject]:
+    """What the last mission handled."""
+    named = [BelievedObject(label, "", seen=False) for label in builder.world.history.objects]
+    return [builder.world.current(t) for t in named]
+
+
+def mentioned(builder: PlanBuilder) -> list[BelievedObject]:
+    """What `one` and `other` refer to: the things of this command, else those of the last."""
+    return builder.last or handled_before(builder)
