@@ -101,10 +101,12 @@ def test_navigation_takes_a_pose_and_answers_on_its_feedback(here: Site) -> None
     here.start("services.navigation", TIDYBOT_CLOCK="wall")
     with here.session() as session:
         here.wait_alive(session, "navigation")
-        peer = Peer(session, "navigation_feedback", "brain/navigation_status", "base/target_pose")
+        peer = Peer(session, "navigation_feedback", "navigation/pose", "brain/navigation_status", "base/target_pose")
         mug = {"label": "red mug", "position": [-1.5, -2.2, 0.55]}
         feed = _odometry(peer, here, False)
         base = obey(peer, False)
+        # Which pose before the mug it chooses depends on where it is.
+        peer.wait("navigation/pose")
         peer.put("nav_goal", id="m.1", attempt=1, x=-1.5, y=-1.6, theta=-1.5708, object=mug)
         arrived = peer.wait("navigation_feedback", goal_id="m.1", status="arrived")
         assert (arrived["attempt"], arrived["recoveries"], arrived["code"]) == (1, 0, "")
