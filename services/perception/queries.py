@@ -119,18 +119,22 @@ class Queries:
             self._reading = Reading(seen, view, taken=True, fine=read)
             return
         answer = _message(query, result, jpeg(view) if query.since else b"")
-        if nothing:
-            answer.unsure = self._unsure(query.query)
+        if found is None:
+            answer.unsure = self._unsure(query.query, result.candidates)
         self._reading = None
         # Kept for a query that is sent again, without what costs memory.
         self._inbox.end(query, msgspec.structs.replace(answer, picture=b""))
         self._io.log.info("asked", query=query.query, found=answer.label, detail=answer.detail)
         self._io.publish(topics.OBJECT_POSE, answer)
 
-    def _unsure(self, query: str) -> list[str]:
-        """Labels of objects that have to be seen from nearer to tell whether they are meant."""
+    def _unsure(self, query: str, candidates: list[str]) -> list[str]:
+        """Labels of objects that have to be seen from nearer to tell whether they are meant; of the `candidates`, if
+        there are any."""
         base, seen = self._state.base or (0.0, 0.0, 0.0), self._beliefs.published
-        blurred = may_be_meant(query, seen, self._beliefs.tracker.doubtful(), self._io.household, base)
+        doubtful = self._beliefs.tracker.doubtful()
+        if candidates:
+            return [o.label for o in seen if o.id in doubtful and o.label in candidates]
+        blurred = may_be_meant(query, seen, doubtful, self._io.household, base)
         return list(dict.fromkeys([*self._naming.unsure(query, seen, base), *blurred]))
 
     def _ground(self, query: m.ObjectQuery) -> Grounding:

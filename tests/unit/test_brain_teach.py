@@ -92,11 +92,14 @@ def looking(*things: m.WorldObject) -> Bench:
     return bench
 
 
-def see(bench: Bench, count: int, label: str = "", unsure: tuple[str, ...] = ()) -> None:
+def see(
+    bench: Bench, count: int, label: str = "", unsure: tuple[str, ...] = (), candidates: tuple[str, ...] = ()
+) -> None:
     query = bench.next_goal(topics.OBJECT_QUERY, count)
     pose = m.ObjectPose(
-        query_id=query.id, found=bool(label), label=label, position=(-1.5, -2.3, 0.6), unsure=list(unsure)
-    )
+        query_id=query.id, found=bool(label), label=label, position=(-1.5, -2.3, 0.6), unsure=list(unsure),
+        candidates=list(candidates),
+    )  # fmt: skip
     bench.send(topics.OBJECT_POSE, pose)
     bench.step()
 
@@ -114,6 +117,16 @@ def test_what_cannot_be_read_from_here_is_looked_at_from_nearer_before_anything_
     goal = arrive(bench, 1)
     assert math.dist((goal.x, goal.y), (-1.5, -2.3)) < 0.9
     assert abs(wrap(math.atan2(-2.3 - goal.y, -1.5 - goal.x) - goal.theta)) < 0.1
+    see(bench, 2, label="red can")
+    assert ended(bench).outcome == "delivered"
+
+
+def test_of_several_that_match_those_in_doubt_are_seen_from_nearer_before_anybody_is_asked() -> None:
+    bench = looking(thing("red can", -1.5, -2.3), thing("red box", -1.1, -2.2))
+    said = bench.count(topics.SPEECH_GOAL)
+    see(bench, 1, unsure=("red can", "red box"), candidates=("red can", "red box"))
+    arrive(bench, 1)
+    assert bench.count(topics.SPEECH_GOAL) == said
     see(bench, 2, label="red can")
     assert ended(bench).outcome == "delivered"
 
