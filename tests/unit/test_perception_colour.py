@@ -70,6 +70,12 @@ def test_warm_light_does_not_turn_white_things_yellow() -> None:
     assert main_words(shares(thing, gains)) == ["white"]
 
 
+def test_beige_tiles_before_a_pale_wall_are_not_taken_for_the_light() -> None:
+    wall, floor = pixels((0.68, 0.68, 0.66), 60 * 160), pixels((0.57, 0.51, 0.44), 60 * 160)
+    room = light(np.concatenate([wall, floor]).reshape(120, 160, 3))
+    assert main_words(shares(pixels((0.66, 0.68, 0.7), 300), room)) == ["white"]
+
+
 def test_a_painted_wall_is_not_taken_for_the_light() -> None:
     wall = np.full((120, 160, 3), (180, 60, 50), np.uint8)
     assert np.allclose(light(wall).gains, 1.0)

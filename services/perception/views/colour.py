@@ -30,8 +30,9 @@ MOST_PIXELS = 600
 NEUTRAL, FEW_NEUTRAL, MOST_CAST = 0.22, 0.04, 0.12
 """Saturation up to which a pixel may be neutral, the share of the picture that must be, and the largest cast taken for
 one: beyond it the walls are painted."""
-WALL, PALEST, WHITE = 98, 0.75, (0.38, 0.55)
-"""Percentile of the brightness of neutral pixels that pale walls have, the share of it from which what is pale is white
+LIT, WALL, PALEST, WHITE = 60, 98, 0.75, (0.38, 0.55)
+"""Percentiles of the brightness of neutral pixels from which they show the light's colour, where a floor of beige tiles
+shows its own, and that pale walls have; the share of it from which what is pale is white
 and not grey, and the limits of that. Chosen: white paint reflects 0.9, a pale wall 0.8, what is called grey 0.5."""
 SAMPLE = 6
 """Every which pixel (and row) of the picture the light's colour is estimated from."""
@@ -70,9 +71,10 @@ def light(rgb: NDArray[np.uint8]) -> Light:
     neutral = values[(high > 0.25) & (high < 0.98) & (high - low < NEUTRAL * high)]
     if len(neutral) < FEW_NEUTRAL * len(values):
         return Light()
-    middle = np.median(neutral, axis=0)
+    bright = neutral.max(axis=1)
+    middle = np.median(neutral[bright >= np.percentile(bright, LIT)], axis=0)
     gains = middle.mean() / middle
-    white = float(np.clip(PALEST * np.percentile(neutral.max(axis=1), WALL), *WHITE))
+    white = float(np.clip(PALEST * np.percentile(bright, WALL), *WHITE))
     return Light(gains if np.abs(gains - 1).max() < MOST_CAST else np.ones(3), white)
 
 
