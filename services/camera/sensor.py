@@ -32,8 +32,8 @@ EDGE = 0.04
 DARK, GLARE = 12, 250
 """Level (of 255) below which all channels are too dark to match, and above which all are saturated; chosen."""
 DIM = 60
-"""Level (of 255) of the brightest channel below which the noise of depth grows as the light that comes back falls;
-chosen: a black rubber or plastic thing in a lit room."""
+"""Level (of 255) of the brightest channel below which the noise of depth grows as that of the light does, with the
+square root of how little comes back; chosen: a black rubber or plastic thing in a lit room."""
 MIRRORED = 15.0
 """Angle [deg] between a surface as glossy as a mirror and the line of sight below which the projector's light comes
 straight back and saturates the imagers; less gloss, less angle. Chosen: the stripe without depth on a tin."""
@@ -48,7 +48,7 @@ MOUNT_OFFSET, MOUNT_TURN = 0.003, 0.3
 MARGIN = 64
 """By how much [px] the noise that is drawn once is larger than a picture, which takes a piece from a random corner of
 it: drawing it anew would cost as much as the picture."""
-_FAINT = (DIM / np.clip(np.arange(256), DARK, DIM)).astype(np.float32)
+_FAINT = np.sqrt(DIM / np.clip(np.arange(256), DARK, DIM)).astype(np.float32)
 """How many times larger the noise of depth is, by the level of the brightest channel."""
 
 

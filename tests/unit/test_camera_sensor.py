@@ -39,7 +39,7 @@ def test_depth_noise_grows_with_the_square_of_the_distance(distance: float) -> N
 
 def test_depth_of_what_is_dim_is_noisier() -> None:
     noises = [
-        StereoCamera(1).expose(grey(level), np.ones(SHAPE), FOCAL, 5).depth.std() for level in (120, DIM, DIM // 2)
+        StereoCamera(1).expose(grey(level), np.ones(SHAPE), FOCAL, 5).depth.std() for level in (120, DIM, DIM // 4)
     ]
     assert noises[1] == noises[0] and noises[2] == pytest.approx(2 * noises[0], rel=0.1)
 
