@@ -5,7 +5,6 @@ are chosen on household goods.
 """
 
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,10 +29,12 @@ MOST_PIXELS = 600
 NEUTRAL, FEW_NEUTRAL, MOST_CAST = 0.22, 0.04, 0.12
 """Saturation up to which a pixel may be neutral, the share of the picture that must be, and the largest cast taken for
 one: beyond it the walls are painted."""
-LIT, WALL, PALEST, WHITE = 60, 98, 0.75, (0.38, 0.55)
+LIT, WALL, PALEST = 60, 98, 0.75
 """Percentiles of the brightness of neutral pixels from which they show the light's colour, where a floor of beige tiles
-shows its own, and that pale walls have; the share of it from which what is pale is white
-and not grey, and the limits of that. Chosen: white paint reflects 0.9, a pale wall 0.8, what is called grey 0.5."""
+shows its own, and that pale walls have; the share of it from which what is pale is white and not grey. Chosen: white
+paint reflects 0.9, a pale wall 0.8, what is called grey 0.5."""
+WHITE, DIMMEST = 0.55, 0.38
+"""Brightness from which what is pale is white in a well-lit room, and in the dimmest that is made up for."""
 SAMPLE = 6
 """Every which pixel (and row) of the picture the light's colour is estimated from."""
 
@@ -55,27 +56,19 @@ def difference(a: Sequence[float] | Array, b: Sequence[float] | Array) -> float:
     return float(chroma + 0.06 * abs(first.max() - second.max()))
 
 
-class Light(NamedTuple):
-    """What light and camera make of colours: `gains` (3,) that make what is neutral grey, `white` the brightness from
-    which what is pale is white."""
-
-    gains: Array = np.ones(3)
-    white: float = WHITE[1]
-
-
-def light(rgb: NDArray[np.uint8]) -> Light:
-    """The light of a picture (h, w, 3), by its neutral surfaces."""
+def light(rgb: NDArray[np.uint8]) -> Array:
+    """Gains (3,) that make the neutral surfaces of a picture (h, w, 3) grey, and as bright as in a well-lit room."""
     values = rgb[::SAMPLE, ::SAMPLE].reshape(-1, 3).astype(np.float64) / 255
     red, green, blue = values.T
     high, low = np.maximum(np.maximum(red, green), blue), np.minimum(np.minimum(red, green), blue)
     neutral = values[(high > 0.25) & (high < 0.98) & (high - low < NEUTRAL * high)]
     if len(neutral) < FEW_NEUTRAL * len(values):
-        return Light()
+        return np.ones(3)
     bright = neutral.max(axis=1)
     middle = np.median(neutral[bright >= np.percentile(bright, LIT)], axis=0)
     gains = middle.mean() / middle
-    white = float(np.clip(PALEST * np.percentile(bright, WALL), *WHITE))
-    return Light(gains if np.abs(gains - 1).max() < MOST_CAST else np.ones(3), white)
+    dim = WHITE / np.clip(PALEST * np.percentile(bright, WALL), DIMMEST, WHITE)
+    return np.asarray(dim * (gains if np.abs(gains - 1).max() < MOST_CAST else np.ones(3)))
 
 
 def _hsv(rgb: Array) -> tuple[Array, Array, Array]:
@@ -89,9 +82,8 @@ def _hsv(rgb: Array) -> tuple[Array, Array, Array]:
     return np.remainder(hue / 6, 1.0), (high - low) / np.maximum(high, 1e-9), high
 
 
-def pixel_words(rgb: Array, turn: float = 0.0, white: float = WHITE[1]) -> NDArray[np.intp]:
-    """Place in WORDS (n,) of the name of each colour (n, 3) in 0..1, its hue turned by `turn` [turns]; `white` as of
-    `Light`."""
+def pixel_words(rgb: Array, turn: float = 0.0) -> NDArray[np.intp]:
+    """Place in WORDS (n,) of the name of each colour (n, 3) in 0..1, its hue turned by `turn` [turns]."""
     hue, saturation, value = _hsv(np.clip(rgb, 0.0, 1.0))
     hue = np.remainder(hue + turn, 1.0)
     limits = np.array([limit for limit, _ in _HUES])
@@ -108,22 +100,18 @@ def pixel_words(rgb: Array, turn: float = 0.0, white: float = WHITE[1]) -> NDArr
         | ((saturation < 0.22) & (value > 0.75))
         | ((saturation < 0.28) & (hue > 0.07) & (hue < 0.2) & (value > 0.7))
     )
-    found[pale] = np.where(value[pale] > white, WORDS.index("white"), WORDS.index("grey"))
+    found[pale] = np.where(value[pale] > WHITE, WORDS.index("white"), WORDS.index("grey"))
     found[(value < 0.16) | ((value < 0.22) & (saturation < 0.3))] = WORDS.index("black")
     return np.asarray(found, np.intp)
 
 
-def shares(rgb: NDArray[np.uint8], light: Light) -> dict[str, float]:
+def shares(rgb: NDArray[np.uint8], gains: Array) -> dict[str, float]:
     """The colours of pixels (n, 3) by name, with the share of the pixels that has each; the largest first."""
-    values = rgb.astype(np.float64) / 255 * light.gains
+    values = rgb.astype(np.float64) / 255 * gains
     values = values[~_shaded(values)][:: max(1, len(values) // MOST_PIXELS)]
     counts = np.zeros(len(WORDS))
     for weight, turn, gain in _SHADES:
-        counts += (
-            weight
-            * np.bincount(pixel_words(values * gain, turn, light.white), minlength=len(WORDS))
-            / max(1, len(values))
-        )
+        counts += weight * np.bincount(pixel_words(values * gain, turn), minlength=len(WORDS)) / max(1, len(values))
     return {WORDS[n]: float(counts[n]) for n in np.argsort(-counts, kind="stable") if counts[n] > 0.02}
 
 

@@ -59,8 +59,8 @@ class View:
         return np.moveaxis(planes, 0, -1)
 
     @cached_property
-    def light(self) -> colour.Light:
-        """What light and camera make of the picture's colours."""
+    def light(self) -> Array:
+        """Gains (3,) that make up for what light and camera make of the picture's colours."""
         return colour.light(self.rgb)
 
     def project(self, points: Array) -> Array:
