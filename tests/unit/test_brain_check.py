@@ -86,6 +86,22 @@ def test_a_box_that_is_seen_as_a_book_has_to_stand(asked: str, size: tuple[float
     assert judge_placement(seen, "green book", "delivery tray", unlisted, None, kind).fault == fault
 
 
+@pytest.mark.parametrize(
+    ("asked", "stood", "height", "fault"),
+    [
+        ("the red teapot", 0.14, 0.09, "TOPPLED"),
+        ("the red teapot", 0.14, 0.13, ""),
+        ("the red teapot", 0.0, 0.09, ""),
+        ("the red book", 0.20, 0.03, ""),
+    ],
+)
+def test_what_has_no_kind_is_not_lower_than_it_stood(asked: str, stood: float, height: float, fault: str) -> None:
+    unlisted = msgspec.structs.replace(SCENE, things=())
+    seen = pose(label="red toy", size=(0.16, 0.10, height))
+    kind = kind_meant(asked, unlisted)
+    assert judge_placement(seen, "red toy", "delivery tray", unlisted, kind=kind, stood=stood).fault == fault
+
+
 @pytest.mark.parametrize(("x", "fault"), [(0.4, ""), (1.2, "MISPLACED")])
 def test_what_belongs_next_to_something_is_judged_by_its_distance(x: float, fault: str) -> None:
     anchor = m.ObjectRef(label="apple", position=(x, 0.0, 0.5))

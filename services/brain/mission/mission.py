@@ -125,7 +125,8 @@ class Delivery(msgspec.Struct):
     """What the hand has done. `put_down`: the object released last.
 
     `checked`: what a look after a release showed, in words; `unchecked`: objects put down where nobody could look;
-    `lay`: objects that lay when they were found, which may have been stood on their heads since.
+    `lay`: objects that lay when they were found, which may have been stood on their heads since; `stood`: by label, the
+    height [m] of those that stood, 0 of others.
     """
 
     grabbed: bool = False
@@ -133,6 +134,7 @@ class Delivery(msgspec.Struct):
     put_down: str = ""
     checked: list[str] = []
     lay: list[str] = []
+    stood: dict[str, float] = {}
     unchecked: list[str] = []
 
 

@@ -135,8 +135,12 @@ def _judged(ctx: Context, pose: m.ObjectPose, target: str, near: str) -> Finding
     delivery = ctx.mission.delivery
     if label not in delivery.lay and any(one.tilt > TIPPED for _, one in found):
         delivery.lay = [*delivery.lay, label]
+    if label not in delivery.stood:
+        tallest = max((one.size[2] for _, one in found if one.tilt <= TIPPED), default=0.0)
+        delivery.stood = {**delivery.stood, label: tallest}
     closed = label in delivery.lay and any(k.ends_alike for k in looks)
-    return judge_placement(pose, label, target, household, object_in_map(ctx, near), kind, closed)
+    beside, stood = object_in_map(ctx, near), delivery.stood[label]
+    return judge_placement(pose, label, target, household, beside, kind, closed, stood)
 
 
 def record_finding(ctx: Context, finding: Finding, picture: bytes) -> Status:

@@ -15,7 +15,9 @@ TIPPED = 0.35
 UPSIDE_DOWN = 2.4
 """Tilt [rad] from which an object is upside down rather than on its side: half-way between the two."""
 
-
+FELL, FELL_SHARE = 0.025, 0.25
+"""By how much [m], and by what share of its height, something that was asked for by no known kind is lower when it fell
+over. Chosen: four times the error of a measured height."""
 BESIDE = 0.4
 """Distance [m] between the middles of two objects up to which one is next to the other. Chosen: a hand's breadth or two
 between them, with room for the fingers."""
@@ -43,11 +45,13 @@ def judge_placement(
     beside: ObjectRef | None = None,
     kind: str = "",
     closed: bool = False,
+    stood: float = 0.0,
 ) -> Finding:
     """Judge an object that was seen after it was put down on `target`; "": anywhere will do.
 
     `beside`: the object, with its place in frame map, next to which it belongs. `kind`: what it was asked for as, ""
-    what the household or its label says; `closed`: it lay when it was found, and looks closed from above now.
+    what the household or its label says; `closed`: it lay when it was found, and looks closed from above now; `stood`:
+    its height [m] when it was found standing, 0 if it did not.
     """
     spec, wanted = household.thing(label), household.receptacle(target)
     stands = kind_of(kind or (spec.kind if spec else kind_meant(label, household)))
@@ -67,6 +71,9 @@ def judge_placement(
     if stands.upright and over and not (on and on.depth):
         lies = "lies on its side" if TIPPED < tilt <= UPSIDE_DOWN else "stands upside down"
         return Finding("TOPPLED", f"the {label} {lies} {where}", measured)
+    unknown = not kind and spec is None and not stands.upright
+    if unknown and stood - pose.size[2] > max(FELL, FELL_SHARE * stood) and not (on and on.depth):
+        return Finding("TOPPLED", f"the {label} does not stand {where} as it did", measured)
     if beside is not None:
         apart = math.dist((x, y), beside.position[:2])
         if apart > BESIDE:
