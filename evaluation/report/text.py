@@ -58,9 +58,9 @@ def record(suite: str, results: Sequence[Result], wall_seconds: float, bar: floa
 
 
 def passed(met: int, count: int, false_claims: int, bar: float) -> bool:
-    """No false claim, and at least the share `bar` of the cases ended as expected."""
+    """No false claim, and at least the share `bar` of the cases ended as expected; not so where none has ended."""
     # Shares such as 0.95 have no exact binary form: 19 of 20 are enough for it.
-    return not false_claims and met >= bar * count - 1e-9
+    return bool(count) and not false_claims and met >= bar * count - 1e-9
 
 
 def _words(result: Result) -> dict[str, object]:

@@ -214,7 +214,7 @@ def test_rates_in_words_have_their_interval() -> None:
 @pytest.mark.parametrize(
     ("met", "count", "false", "bar", "good"),
     [(19, 20, 0, 0.95, True), (18, 20, 0, 0.95, False), (20, 20, 1, 0.95, False), (0, 20, 0, 0.0, True),
-     (57, 60, 0, 0.95, True), (6, 6, 0, 1.0, True), (5, 6, 0, 1.0, False)],
+     (57, 60, 0, 0.95, True), (6, 6, 0, 1.0, True), (5, 6, 0, 1.0, False), (0, 0, 0, 0.9, False)],
 )  # fmt: skip
 def test_the_bar_is_met_without_a_false_claim_only(met: int, count: int, false: int, bar: float, good: bool) -> None:
     assert passed(met, count, false, bar) == good
