@@ -143,3 +143,19 @@ def test_the_fetch_pipeline_asks_nothing_about_what_plainly_fits_or_is_listed() 
     for objects in ([looking({"mug": 0.8, "can": 0.2})], [looking({"can": 0.8, "mug": 0.2}), listed], []):
         bench = before(*objects)
         assert bench.manip(1).goal == "grab" and bench.texts(SPEECH) == ["listen"]
+
+
+def test_who_does_not_answer_which_of_several_is_not_asked_from_the_next_view() -> None:
+    bench = planned()
+    several = {"label": "", "candidates": ["blue mug", "green mug"]}
+    query = bench.next_goal(QUERY, 1)
+    bench.send(topics.OBJECT_POSE, m.ObjectPose(query_id=query.id, found=False, **several))
+    bench.until(lambda: bench.count(topics.NAV_GOAL) == 1)
+    asked = [text for text in bench.texts(SPEECH) if "Do you mean" in text]
+    assert asked
+    goal = bench.last(topics.NAV_GOAL)
+    bench.send(topics.NAVIGATION_FEEDBACK, m.NavigationFeedback(goal_id=goal.id, status="arrived"))
+    query = bench.next_goal(QUERY, 2)
+    bench.send(topics.OBJECT_POSE, m.ObjectPose(query_id=query.id, found=False, **several))
+    bench.until(lambda: bench.count(topics.NAV_GOAL) == 2)
+    assert [text for text in bench.texts(SPEECH) if "Do you mean" in text] == asked

@@ -24,10 +24,10 @@ def ask_which(ctx: Context, task: Task) -> Behaviour:
 def several_match(ctx: Context) -> bool:
     """Perception named more than one object that the words can mean, and their names tell them from each other.
 
-    Nobody is asked while some of them can be told better from nearer.
+    Nobody is asked while some of them can be told better from nearer, and nobody who has not answered.
     """
     search = ctx.mission.search
-    if search.unsure:
+    if search.unsure or search.unanswered:
         return False
     names = {unnumbered(name) for name in search.options}
     return len(names) > 1 or (len(search.options) > 1 and not search.perhaps)

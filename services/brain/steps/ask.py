@@ -136,6 +136,11 @@ class HearChoice(HearAnswer):
         self.ctx.note(f"meant: {label}", heard.text)
         return Status.SUCCESS
 
+    def fail_with(self, failure: Failure) -> Status:
+        """Nobody answers: nobody is asked from the next view again."""
+        self.ctx.mission.search.unanswered = True
+        return super().fail_with(failure)
+
 
 class HearPerson(HearAnswer):
     """The person's answer to a client's question; it ends the mission, and is its outcome's reason."""
