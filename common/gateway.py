@@ -10,7 +10,7 @@ from common.messages.base import Quat
 from common.robot_frames import MAP
 
 M = TypeVar("M", bound=m.Message)
-READY = ("IDLE", "WAITING", "LISTENING", "COMPLETED", "ERROR")
+READY = ("IDLE", *m.OPEN_STATES)
 """States of the brain in which no mission is under way, so that others may move the robot."""
 LEVEL = 0.1
 """How far from level a pose on the floor may be, and a quaternion's length from 1 [1]; chosen: rounding and no more."""

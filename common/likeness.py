@@ -61,10 +61,10 @@ def partly(phrase: str, o: WorldObject, household: Household) -> float:
     """
     wanted, told = normalise(phrase), household.words
     known, fit = _known(wanted, o, household), looks_like(phrase, o, household)
-    unseen, untold = known.rest & {*told.qualities, *told.looks}, known.rest - {*told.qualities, *told.looks}
+    untold = known.rest - {*told.qualities, *told.looks}
     # The last word says what it is, those before it which one.
     headed = _known(wanted.split()[-1], o, household).any
-    if not known.rest or not (known.any or unseen & set(told.looks)) or fit < ROUGHLY or (untold and o.text):
+    if not known.rest or not (known.any or known.rest & told.looks.keys()) or fit < ROUGHLY or (untold and o.text):
         return 0.0
     # What has other words printed on it is hardly the soap.
     if (untold and not headed) or (o.text and not known.rest <= set(told.qualities)):

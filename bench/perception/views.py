@@ -1,4 +1,4 @@
-"""Views of random layouts from random places before a segment of furniture, by the sensor's model."""
+"""Views of random layouts from random places before furniture, by the sensor's model."""
 
 import argparse
 import math

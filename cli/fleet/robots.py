@@ -16,8 +16,6 @@ M = TypeVar("M", bound=m.Message)
 BRAIN_ALIVE = topics.ALIVE_KEY.format(name="brain")
 ANSWER = 1.0
 """How long a robot's answer is waited for [s]; chosen: many round trips over WiFi, and a look a second."""
-FREE = ("WAITING", "LISTENING", "COMPLETED", "ERROR")
-"""States of the brain in which it takes a command."""
 TOLD: dict[str, Topic[Any]] = {
     "brain": topics.BRAIN_STATE,
     "pose": topics.POSE,
@@ -53,7 +51,7 @@ class RobotNow(msgspec.Struct, frozen=True, kw_only=True):
     @property
     def free(self) -> bool:
         """It would take a command now."""
-        return self.state in FREE and not self.braked
+        return self.state in m.OPEN_STATES and not self.braked
 
 
 class Desk:

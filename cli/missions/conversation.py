@@ -10,7 +10,6 @@ from common import messages as m
 from common import topics
 from common.time.clock import monotonic
 
-OPEN = ("WAITING", "LISTENING", "COMPLETED", "ERROR")
 ACCEPT, KEPT, HEAR, LISTEN = 5.0, 30.0, 60.0, 90.0
 """Times [s] for a busy brain to refuse a command, for a free one to take it up, for sound to be understood, and until
 the robot listens."""
@@ -64,7 +63,7 @@ class Conversation:
 
     def closed(self) -> str:
         """Why the robot takes no command now; "" when it does."""
-        if self.state.state in OPEN:
+        if self.state.state in m.OPEN_STATES:
             return ""
         if self.state.state == "IDLE":
             return f"the robot is not ready: {self.state.detail or 'IDLE'}"

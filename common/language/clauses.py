@@ -3,13 +3,13 @@
 import re
 
 from common.language.contractions import expand
-from common.language.lexicon import COMMANDING
+from common.language.lexicon import A_VERB
 from common.language.normalise import normalise
 from common.language.politeness import LONG_SPEECH, without_lead, without_politeness
 
 _FILLER = re.compile(
     r"\s*\b(?:u+m+|u+h+|e+r+m*|h+m+|a+h+|o+h+)\b,?|,\s*(?:like|you know)\s*,"
-    rf"|\b(?:you know|like),?(?= (?:{'|'.join(sorted(COMMANDING))})\b)"
+    rf"|\b(?:you know|like),?(?= {A_VERB}\b)"
 )
 """Sounds of somebody who thinks while speaking."""
 _STUTTER = re.compile(

@@ -5,7 +5,7 @@ Recognised speech and hurried typing leave the apostrophes out, so both spelling
 
 import re
 
-from common.language.lexicon import COMMANDING
+from common.language.lexicon import A_VERB
 
 _OF_PEOPLE = "i|you|we|they|he|she|it|who"
 _CONTRACTIONS = tuple(
@@ -55,7 +55,6 @@ _CONTRACTIONS = tuple(
         (r"\blet'?s\b", "let us"),
     )
 )
-_VERB = rf"(?:{'|'.join(sorted(COMMANDING))})"
 _NOUN = r"(?=(?:the|a|an|my|our|your|some|any|one|two|three|all|both|every|that|those)\b)"
 _PREPOSITION = (
     r"(?=(?:on|in|at|by|beside|near|next to|under|behind|between|inside|close to|in front of|to the "
@@ -81,7 +80,7 @@ _SAME = tuple(
         (r"\b(the \w+) ones? of the (\w+?)s\b", r"\1 \2"),
         (r"\b(?:of|in) (?:the )?colou?r (?:of )?(\w+)", r"that is \1"),
         (r"\b(?:of|in) (?!the\b|that\b|this\b|what\b|which\b|any\b|same\b|a\b)(\w+) colou?r\b", r"that is \1"),
-        (rf"\b({_VERB}) (?:please|kindly) (?=(?:the|my|our|a|an|me|us|it|to|in|on|up|that|this)\b)", r"\1 "),
+        (rf"\b({A_VERB}) (?:please|kindly) (?=(?:the|my|our|a|an|me|us|it|to|in|on|up|that|this)\b)", r"\1 "),
         (
             r"^(any\w* (?!idea|chance|clue|sign|way|news)\w.+ (?:in|on|at) (?:the|my|our) \w+(?: \w+)?)[.?!]?$",
             r"is there \1",

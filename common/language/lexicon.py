@@ -82,6 +82,8 @@ COMMANDING: frozenset[str] = frozenset(
     for option in verbs.split(" | ")
 ) - {"bin", "roll", "pop"}
 """First words that make a clause a command; without those that are rather nouns."""
+A_VERB = rf"(?:{'|'.join(sorted(COMMANDING))})"
+"""One of them, as a part of regular expressions."""
 HANDLING: frozenset[str] = frozenset(
     option.split()[0]
     for verbs in (BRING, FETCH, PUT, MOVE, THROW, DISCARD, TIDY, "pick")

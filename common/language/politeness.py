@@ -7,7 +7,7 @@ Frames that speak of the past, of somebody else's words or of what must not be a
 import re
 
 from common.language.frame import without_frame, without_frame_behind
-from common.language.lexicon import COMMANDING
+from common.language.lexicon import A_VERB
 
 _ADVERBS = (
     r"(?: "
@@ -111,7 +111,7 @@ _FRAMES = (
     r"i (?:think|guess|suppose|believe|reckon|say|suggest)(?: that)?(?= (?:the|my|this|that|we|you|it|i)\b)",
     r"while you are (?:at it|there|up|about it)|(?:on|along) (?:the|your) way(?: back)?",
     r"drop everything(?: else)?(?: and)?(?=\s+\w)|without \w+ing .+?(?=,| throw\b| put\b| bring\b| take\b)",
-    rf"to(?= (?:{'|'.join(sorted(COMMANDING))}) (?:me|the|my|a|an|it)\b)|(?:go and )?see (?:if|whether) you can",
+    rf"to(?= {A_VERB} (?:me|the|my|a|an|it)\b)|(?:go and )?see (?:if|whether) you can",
     _OCCASION,
 )
 """Frames of a request; what is asked for follows."""

@@ -5,7 +5,7 @@
 import re
 
 from common.language.exchange import PREPOSITIONS, IsPlace, filled, noun_phrases, replaced, verb_first
-from common.language.lexicon import COMMANDING, HANDLING
+from common.language.lexicon import A_VERB, COMMANDING, HANDLING
 from common.language.normalise import DETERMINERS
 from common.language.politeness import without_politeness
 
@@ -28,15 +28,12 @@ _CONTRAST_OF_ONES = re.compile(
     r"^not (?P<wrong>(?:(?:on|in|to|into) )?(?:the|a|my) (?:\w+ )?\w+?)(?P<right> (?:the|on|in|into|to) .+)$"
 )
 _DO_NOT = re.compile(r"^do not (?P<wrong>\w+ .+?)(?:,\s*(?:but\s+)?|\s+but\s+)(?:rather )?(?P<right>.+)$")
-_DO_NOT_DO = re.compile(
-    rf"^do not (?P<wrong>(?:{'|'.join(sorted(COMMANDING))}) "
-    rf".+?)\s+(?P<right>(?:{'|'.join(sorted(COMMANDING))}) (?:me|us|the|a|an|my|it|to)\b.+)$"
-)
+_DO_NOT_DO = re.compile(rf"^do not (?P<wrong>{A_VERB} .+?)\s+(?P<right>{A_VERB} (?:me|us|the|a|an|my|it|to)\b.+)$")
 NOT_WANTED = re.compile(
     r"^(?:(?:never mind|forget(?: about)?|skip|leave|ignore|not|no need for|no more|(?:i|we) do not "
     r"(?:need|want|like))"
     r" (?:the|that|my|those|this)(?: \w+){1,3}?|no (?!the\b|no\b|need\b)\w+(?=,))(?:,\s*(?:and |but )?| and | but | )"
-    rf"(?=(?:please |just |rather )*(?:{'|'.join(sorted(COMMANDING))}|i want|i need|i would like)\b"
+    rf"(?=(?:please |just |rather )*(?:{A_VERB}|i want|i need|i would like)\b"
     r"|(?<=, )(?:the|a|an|my) (?!\w+ ones?\b))"
 )
 """What is not wanted, before what is."""

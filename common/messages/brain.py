@@ -8,6 +8,8 @@ BrainStateName = Literal[
     "IDLE", "WAITING", "LISTENING", "CONFIRMING", "PLANNING", "GROUNDING", "NAVIGATING",
     "GRABBING", "RETURNING", "RELEASING", "COMPLETED", "ERROR",
 ]  # fmt: skip
+OPEN_STATES: tuple[BrainStateName, ...] = ("WAITING", "LISTENING", "COMPLETED", "ERROR")
+"""States in which a command begins a mission."""
 SystemStateName = Literal["IDLE", "LISTENING", "PLANNING", "GROUNDING", "NAVIGATING", "EXECUTING", "SUCCESS", "ERROR"]
 
 

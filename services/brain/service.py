@@ -25,9 +25,6 @@ from services.brain.resume.resumption import Resumption, suspend
 from services.brain.tree.path import tip
 from services.brain.tree.snapshot import Signature, signature, snapshot
 
-OPEN: tuple[m.BrainStateName, ...] = ("WAITING", "LISTENING", "COMPLETED", "ERROR")
-"""States in which a command begins a mission."""
-
 
 class BrainService:
     """Orchestrates speech, navigation and manipulation into missions."""
@@ -182,7 +179,7 @@ class BrainService:
         for command in self._io.take_all(topics.VOICE_COMMAND):
             words = normalise(command.text)
             asked = asks_for(words, "stop", "cancel", "come_back")
-            open_for_it = ctx.state in OPEN
+            open_for_it = ctx.state in m.OPEN_STATES
             if command.withdraws:
                 self._withdraw(command.withdraws)
             elif command.unless_busy and not self._offers.accept(command, open_for_it and ctx.voice.command is None):
@@ -228,7 +225,7 @@ class BrainService:
     def _receive_question(self, command: m.VoiceCommand) -> None:
         """Put a client's question to the person, when nothing else is under way: it answers and stops nothing."""
         ctx = self.context
-        if ctx.config.pipeline == "vla" and ctx.state in OPEN:
+        if ctx.config.pipeline == "vla" and ctx.state in m.OPEN_STATES:
             ctx.voice.command = command
         else:
             self._io.log.warning("question ignored", text=command.text, state=ctx.state)

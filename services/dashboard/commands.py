@@ -18,7 +18,6 @@ TRAILING = 15
 """Pieces of silence after the last word, 1.5 s, from which speech knows that it was the last; chosen."""
 LONGEST = 400
 """Pieces of one utterance, 40 s; chosen: longer than any command."""
-OPEN = ("WAITING", "LISTENING", "COMPLETED", "ERROR")
 SOURCE = "page"
 
 
@@ -61,7 +60,7 @@ class Commands:
     def picked(self, picked: Picked, base: Pose2, state: m.BrainState | None, t: float) -> None:
         """A click: the object, or with a name like "desk" the part of the home, gets the name that was typed; without
         one the object is fetched, or the robot drives to the place, when no mission is under way."""
-        ready = state is not None and state.state in OPEN
+        ready = state is not None and state.state in m.OPEN_STATES
         if self.naming and picked.hit is not None and kind_named(self.naming) is not None:
             self._name_part(picked.hit, t)
             return

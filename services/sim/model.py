@@ -11,6 +11,7 @@ from services.sim import calibrate, robot
 from services.sim.menagerie import NAME, RobotError, find
 
 OURS, OFFICIAL = "tidybot", ("official", f"menagerie:{NAME}")
+"""What the robot in primitives is called, and what the one with the official meshes is, by either name."""
 _SECTIONS = ("default", "contact", "tendon", "equality", "actuator", "custom")
 
 

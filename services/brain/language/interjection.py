@@ -8,7 +8,7 @@ import msgspec
 from common.language.clauses import without_fillers
 from common.language.contractions import expand
 from common.language.exchange import filled
-from common.language.lexicon import COMMANDING
+from common.language.lexicon import A_VERB
 from common.language.meaning import asks_for, is_question
 from common.language.normalise import normalise
 from common.language.repairs import NOT_WANTED
@@ -38,9 +38,7 @@ _INSTEAD = re.compile(
 _INSTEAD_END = re.compile(r"[, ]+(?:instead(?: of (?:that|it|this))?|rather)$")
 
 
-_INSTEAD_OF = re.compile(
-    rf"^(?:no |and )?instead of (?P<wrong>.+?),? (?P<right>(?:{'|'.join(sorted(COMMANDING))}) .+)$"
-)
+_INSTEAD_OF = re.compile(rf"^(?:no |and )?instead of (?P<wrong>.+?),? (?P<right>{A_VERB} .+)$")
 """`instead of the red mug bring the blue one`."""
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from common.floor_plan import Vec3
 from common.geometry import yaw_quat
 from common.household import Household
-from common.messages import WorldObject, WorldObjects
+from common.messages import WorldObject
 from services.perception.detection import Detection
 from services.perception.tracking.association import moved_here, overlap, separation, should_show
 from services.perception.tracking.descriptor import shares
@@ -121,9 +121,6 @@ class ObjectTracker:
     def doubtful(self) -> set[str]:
         """Ids of objects that nobody listed and that no view has shown whole and near: they may be something else."""
         return {t.id for t in self._tracks if not t.held and not t.known and t.clearest < DOUBT}
-
-    def report(self, now: float) -> WorldObjects:
-        return WorldObjects(t=now, objects=self.objects(), source="perception")
 
 
 def _age(track: Track) -> int:
