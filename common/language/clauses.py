@@ -8,7 +8,7 @@ from common.language.normalise import normalise
 from common.language.politeness import LONG_SPEECH, without_lead, without_politeness
 
 _FILLER = re.compile(
-    r"\s*\b(?:u+m+|u+h+|e+r+m*|h+m+|a+h+|o+h+)\b,?|,\s*(?:like|you know)\s*,"
+    r"\s*\b(?:u+m+|u+h+(?!,? huh\b)|e+r+m*|h+m+|a+h+|o+h+)\b,?|,\s*(?:like|you know)\s*,"
     rf"|\b(?:you know|like),?(?= {A_VERB}\b)"
 )
 """Sounds of somebody who thinks while speaking."""

@@ -47,7 +47,7 @@ WORDINGS: tuple[Wording, ...] = (
         "exactly | go ahead] | [that is] (correct | right | true) | exactly | sure | okay | ok"
         " | go ahead | do it | do | affirmative | sure thing | of course | absolutely | definitely | indeed | "
         "certainly | fine | that is what i (said | meant | want)"
-        " | you bet | huh | mhm | mm | by all means | please do | right | that is (it | the one) | why not | perfect",
+        " | you bet | uh huh | mhm | by all means | please do | right | that is (it | the one) | why not | perfect",
         heard="yes [please | it is] | yeah | correct", kind="reply", reason="I did not ask anything",
     ),
     Wording(

@@ -18,6 +18,10 @@ SCENE = load_household("apartment")
         ("no, the blue mug", "correction", "the blue mug"),
         ("no I said bring me the apple", "correction", "bring me the apple"),
         ("the blue mug", "correction", "the blue mug"),
+        ("uh-huh", "yes", ""),
+        # Who did not understand has agreed to nothing.
+        ("huh?", "correction", "huh"),
+        ("mm", "correction", "mm"),
     ],
 )
 def test_reply(text: str, kind: str, rest: str) -> None:
