@@ -1,7 +1,7 @@
 """What a demonstration's frames are made of: written by the recorder, and seen and answered by policies."""
 
-from common.grip import GRIPPER
-from common.robot import ARM
+from common.robot.grip import GRIPPER
+from common.robot.model import ARM
 
 BASE = ("base_x", "base_y", "base_yaw")
 STATE = (*BASE, *ARM, GRIPPER)

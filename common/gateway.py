@@ -7,7 +7,7 @@ from common.bus.port import Io
 from common.bus.validation import bad_field
 from common.geometry import quat_yaw
 from common.messages.base import Quat
-from common.robot_frames import MAP
+from common.robot.frames import MAP
 
 M = TypeVar("M", bound=m.Message)
 READY = ("IDLE", *m.OPEN_STATES)

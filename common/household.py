@@ -11,9 +11,9 @@ import msgspec
 from common.config import config_dir
 from common.floor_plan import FloorPlan, Thing, doubled, kind_fault
 from common.installation import shipped
+from common.naming.words import Words, words_path
 from common.plan_tables import SCENES, SceneError, checked, parse, read
 from common.scene import Scene
-from common.words import Words, words_path
 
 HOUSEHOLDS = shipped("config") / "households"
 WORLD_KEYS = frozenset({"objects", "obstacles"})

@@ -8,8 +8,8 @@ import msgspec
 from common.floor_plan import Place, Receptacle, Room
 from common.household import Household
 from common.messages import HouseholdEdits, PartKind, PlaceName, TidyRule, Vec3
-from common.part_names import with_part_names
-from common.words import Destination
+from common.naming.part_names import with_part_names
+from common.naming.words import Destination
 
 Part = TypeVar("Part", Receptacle, Room)
 MOVED = 0.6

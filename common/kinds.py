@@ -10,7 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Literal
 
-from common.looks import Look
+from common.naming.looks import Look
 
 Shape = Literal["box", "sphere", "turned"]
 Rest = Literal["face", "side", "upside down"]

@@ -4,10 +4,10 @@ from collections.abc import Sequence
 
 import msgspec
 
-from common.grip import OPENING
 from common.household import Household
 from common.kinds import kind_of
 from common.messages import AROUND, KnownWorld, PlanStep
+from common.robot.grip import OPENING
 
 MAX_STEPS = 60
 """Chosen: 15 objects of four steps each, more than any household has."""

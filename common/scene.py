@@ -11,7 +11,7 @@ from typing import Annotated, Literal
 
 import msgspec
 
-from common.body_file import BodyError, extents
+from common.files.body_file import BodyError, extents
 from common.floor_plan import (
     Box,
     FloorPlan,

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 
 from common.kinds import KINDS
 from common.messages import TidyRule
-from common.naming import normalise
-from common.words import Words
+from common.naming.names import normalise
+from common.naming.words import Words
 
 _ALL = {"all", "every", "each", "any", "our", "your", "these", "those"}
 

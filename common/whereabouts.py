@@ -14,7 +14,7 @@ from common.floor_plan import Receptacle
 from common.geometry import Array
 from common.household import Household
 from common.messages import Sighting
-from common.naming import normalise
+from common.naming.names import normalise
 from common.viewpoints import Viewpoints
 
 HALF_LIFE = 30 * 86400.0

@@ -20,11 +20,11 @@ from cli.processes.up import bring_up
 from common import config, topics
 from common.bus import delivery
 from common.bus.session import BusError, open_session
+from common.files.plan_file import to_toml
 from common.household import load_words, told
-from common.plan_file import to_toml
-from common.process import StopSignal
+from common.process.host import StopSignal
+from common.process.service_process import Process
 from common.scene import load_scene
-from common.service_process import Process
 from common.time.clock import SimClock, monotonic
 from evaluation.case import Case, Observed, Result
 from evaluation.examiner import Examiner, ExaminerConfig, examiner_of

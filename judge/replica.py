@@ -8,7 +8,7 @@ import numpy as np
 
 from common import messages as m
 from common.body_extent import lowest
-from common.robot import Hand, pads, subtree
+from common.robot.model import Hand, pads, subtree
 from common.scene import ObjectSpec, Scene, body_name
 from common.support import support
 from judge.evidence import Sample

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-from common.map_file import FREE, GREY, OCCUPIED, UNKNOWN, GridMap
+from common.files.map_file import FREE, GREY, OCCUPIED, UNKNOWN, GridMap
 
 
 def read_map(path: Path) -> GridMap:

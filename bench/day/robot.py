@@ -13,8 +13,8 @@ from cli.processes.own_robot import own_robot
 from cli.processes.plan import Plan
 from cli.processes.supervision import Supervision
 from cli.processes.up import bring_up
+from common.files.plan_file import to_toml
 from common.installation import ROOT
-from common.plan_file import to_toml
 from common.scene import Scene
 from evaluation.suites.unknown import nothing_listed
 

@@ -17,9 +17,9 @@ import numpy as np
 
 from bench.mapping.film import Film
 from common import messages as m
+from common.files.map_file import HOUSEHOLD
+from common.files.plan_file import to_toml
 from common.household import load_household
-from common.map_file import HOUSEHOLD
-from common.plan_file import to_toml
 from common.scene import load_scene
 from evaluation.homes.explore import Explored, explore
 from evaluation.homes.map_errors import HEIGHT, OUTLINE, WALL, Errors, centimetres, compare

@@ -11,8 +11,8 @@ from PIL import Image, ImageDraw
 from common import messages as m
 from common import topics
 from common.bus import codec
+from common.files.map_file import UNKNOWN, picture
 from common.geometry import Pose2, compose
-from common.map_file import UNKNOWN, picture
 from common.topic import Topic
 from evaluation.stack import Stack
 

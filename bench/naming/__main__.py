@@ -21,7 +21,7 @@ import numpy as np
 from bench.naming.printed import Package, packages
 from common.geometry import yaw_quat
 from common.messages import WorldObject
-from common.naming import normalise
+from common.naming.names import normalise
 from common.rendering.renderer import Renderer
 from services.camera.sensor import StereoCamera
 from services.perception.naming.appearance import look_of

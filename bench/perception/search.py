@@ -16,8 +16,8 @@ import numpy as np
 from bench.perception.unlisted import SUITES
 from bench.perception.views import take
 from common.geometry import Pose2
-from common.likeness import LEAST, LIKELY
 from common.messages import WorldObject
+from common.naming.likeness import LEAST, LIKELY
 from common.rendering.renderer import Renderer
 from common.viewpoints import viewpoints_of
 from evaluation.case import Case

@@ -13,10 +13,11 @@ from cli.cameras.surfaces import Arm, Room
 from cli.drivers.driver import PERIOD, Driver, Unmet
 from cli.errors import CliError
 from cli.link import Link, Watch
-from common import calibration, topics
 from common import messages as m
-from common.atomic_file import replace
-from common.robot import ARM
+from common import topics
+from common.files.atomic_file import replace
+from common.robot import calibration
+from common.robot.model import ARM
 from common.time.clock import monotonic
 
 SPEED = 0.6

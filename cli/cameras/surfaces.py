@@ -12,7 +12,7 @@ from scipy.spatial.transform import Rotation
 from cli.cameras.shot import Array, Mount, Shot, rays
 from common.geometry import quat_matrix
 from common.messages import Rgbd
-from common.robot import ARM, RobotKinematics, arm_limits, home_arm, subtree
+from common.robot.model import ARM, RobotKinematics, arm_limits, home_arm, subtree
 
 SMOOTH, JUMP = 7, 0.03
 """Side [px] of the window over which a surface's normal is taken, and change of depth [m] within it that is an edge."""

@@ -15,7 +15,7 @@ from common import messages as m
 from common import topics
 from common.bus import codec, delivery
 from common.demonstration import PICTURE_SIZE
-from common.process import StopSignal
+from common.process.host import StopSignal
 from common.time.clock import monotonic
 from common.topic import Topic
 

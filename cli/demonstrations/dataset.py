@@ -21,8 +21,8 @@ from PIL import Image
 from cli.demonstrations.sampler import Episode, Picture
 from cli.demonstrations.statistics import Statistics, merged, of_pictures, of_values
 from cli.errors import CliError
-from common.atomic_file import replace
 from common.demonstration import ACTION, STATE
+from common.files.atomic_file import replace
 
 VERSION = "v3.0"
 CHUNK = 1000

@@ -79,7 +79,7 @@ def missing_in(mjcf: str) -> str:
     """What a description lacks for inverse kinematics, collision checks and masks in pictures; "" if nothing."""
     import mujoco
 
-    from common.robot import ARM, HOME, SIDES, Hand, pads
+    from common.robot.model import ARM, HOME, SIDES, Hand, pads
 
     try:
         model = mujoco.MjModel.from_xml_string(mjcf)

@@ -10,7 +10,7 @@ from aiohttp import web
 from cli.agents.http import page_token
 from cli.errors import CliError
 from cli.fleet.watch_room import WatchRoom
-from common.process import StopSignal
+from common.process.host import StopSignal
 from common.security import web_access as access
 
 FILES = Path(__file__).parent / "web"

@@ -20,7 +20,7 @@ from cli.processes.up import Stopped, bring_up, check_free, interruptible
 from common import messages as m
 from common import topics
 from common.bus.session import open_session
-from common.map_file import HOUSEHOLD, OCCUPIED, PICTURE, UNKNOWN, picture
+from common.files.map_file import HOUSEHOLD, OCCUPIED, PICTURE, UNKNOWN, picture
 from common.time.clock import monotonic
 
 NAMES = ("router", "sim", "camera", "navigation", "mapping", "dashboard")

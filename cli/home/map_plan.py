@@ -7,9 +7,7 @@ import numpy as np
 
 from cli.errors import CliError
 from common.config import config_dir
-from common.floor_plan import FloorPlan
-from common.household import Household, load_words, mapped
-from common.map_file import (
+from common.files.map_file import (
     FREE,
     HOUSEHOLD,
     MAP,
@@ -22,7 +20,9 @@ from common.map_file import (
     surface_rows,
     write_map,
 )
-from common.plan_file import to_toml
+from common.files.plan_file import to_toml
+from common.floor_plan import FloorPlan
+from common.household import Household, load_words, mapped
 from common.scene import SceneError, load_scene
 
 RESOLUTION = 0.05

@@ -15,8 +15,8 @@ import msgspec
 from cli.errors import CliError
 from cli.processes.programs import ROUTER_SOCKET, WATCHDOG, endpoints, render_config, socket_path
 from cli.processes.services import Service
-from common import supervisor
 from common.installation import ROOT, workspace
+from common.process import supervisor
 from common.time import clock
 
 STATES = {

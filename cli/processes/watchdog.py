@@ -18,7 +18,7 @@ from common import messages as m
 from common import topics
 from common.bus import codec
 from common.bus.session import BusError, open_session
-from common.process import StopSignal, die_with_parent
+from common.process.host import StopSignal, die_with_parent
 from common.security.keys import OFF
 from common.time.clock import monotonic, unix_time
 

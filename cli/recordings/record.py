@@ -16,9 +16,9 @@ from cli.recordings.tape import BATCH, FLUSH, Listener, Progress, Tape
 from common import config
 from common.bus.session import NoRouter, open_session
 from common.config import config_dir
+from common.files.plan_file import to_toml
 from common.household import load_household
-from common.plan_file import to_toml
-from common.process import StopSignal
+from common.process.host import StopSignal
 from common.recording import Recorder, RecordingError
 from common.scene import SceneError, load_scene
 from common.time.clock import monotonic, unix_time

@@ -10,10 +10,10 @@ import msgspec
 import numpy as np
 
 from common import messages as m
+from common.files.map_file import HOUSEHOLD
 from common.floor_plan import Room
 from common.household import load_household
 from common.household_edits import edited
-from common.map_file import HOUSEHOLD
 from common.scene import ObjectSpec, Scene
 from evaluation.case import Case, Line
 from evaluation.homes.explore import explore

@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 
 from common.config import config_dir
+from common.naming.words import words_path
 from common.scene import ObjectSpec, Receptacle, Scene, load_scene
-from common.words import words_path
 from evaluation.case import Case, Line
 from evaluation.faults.messages import Rule
 from judge.evidence import Want

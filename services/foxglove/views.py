@@ -11,8 +11,8 @@ from foxglove.websocket import Capability
 from common import messages as m
 from common import topics
 from common.household import Household
-from common.robot_frames import FramePose
-from common.robot_shapes import Shape
+from common.robot.frames import FramePose
+from common.robot.shapes import Shape
 from common.schemas import schema_of
 from common.topic import Topic
 from services.foxglove import drawing

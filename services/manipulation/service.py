@@ -11,7 +11,7 @@ from common.bus.port import Io, Job
 from common.gateway import refusal
 from common.geometry import Pose2
 from common.goal_inbox import GoalInbox
-from common.grip import Grip
+from common.robot.grip import Grip
 from common.runtime import StartError
 from services.manipulation.config import ManipulationConfig
 from services.manipulation.execution import place_executor, recovery

@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from common.atomic_file import replace
+from common.files.atomic_file import replace
+from common.files.map_file import HOUSEHOLD, MAP, PICTURE, SURFACES, GridMap, picture, surface_rows, write_map
+from common.files.plan_file import to_toml
 from common.geometry import compose
 from common.household import Household
-from common.map_file import HOUSEHOLD, MAP, PICTURE, SURFACES, GridMap, picture, surface_rows, write_map
-from common.plan_file import to_toml
 from services.mapping.depth import Picture
 from services.mapping.grid import RESOLUTION
 from services.mapping.mapper import Mapper, Shot

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common import messages as m
-from common.lidar import rays_of
+from common.robot.lidar import rays_of
 
 Array = NDArray[np.float64]
 

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from common import messages as m
 from common import topics
 from common.bus.port import Io, Job
+from common.files.map_file import MapError
 from common.geometry import Pose2, compose
-from common.map_file import MapError
 from common.runtime import StartError
 from services.mapping.config import MappingConfig
 from services.mapping.depth import PictureError

@@ -10,7 +10,7 @@ from common.floor_plan import Receptacle, Room
 from common.geometry import Pose2
 from common.household import Household
 from common.messages import WorldObject
-from common.naming import match_object, near_names, normalise
+from common.naming.names import match_object, near_names, normalise
 
 
 class Spot(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

@@ -9,9 +9,9 @@ import msgspec
 
 from common.geometry import Pose2, to_frame
 from common.household import Household
-from common.likeness import LEAST, PLAIN, likeness, partly
 from common.messages import PossibleObject, WorldObject
-from common.naming import ALIKE, match_object, normalise, unnumbered
+from common.naming.likeness import LEAST, PLAIN, likeness, partly
+from common.naming.names import ALIKE, match_object, normalise, unnumbered
 
 _SIDE = re.compile(r"^(?:(?P<a>left|right|middle|nearest|closest|near|far|farthest|other) )?(?P<rest>.*?)"
                    r"(?: (?:on|at|in|from)? ?(?P<b>left|right|middle))?$")  # fmt: skip

@@ -9,7 +9,7 @@ from common import messages as m
 from common import topics
 from common.bus.port import Io
 from common.goal_inbox import GoalInbox
-from common.likeness import PLAIN
+from common.naming.likeness import PLAIN
 from services.perception.config import PerceptionConfig
 from services.perception.grounding import Grounding, as_called, ground, may_be_meant, parsed, possible
 from services.perception.naming.naming import Naming

@@ -7,8 +7,8 @@ import numpy as np
 
 from common.geometry import Array
 from common.kinds import LOOKS, Kind, kind_of, laid_on_a_side
-from common.looks import OTHER, Measures, likely
 from common.messages import ShapeFamily
+from common.naming.looks import OTHER, Measures, likely
 from services.perception.detection import Detection
 from services.perception.segments.segment import Segment
 from services.perception.segments.segmentation import DEPTH_NOISE

@@ -7,7 +7,7 @@ import msgspec
 from common.floor_plan import Receptacle
 from common.language.normalise import enumeration
 from common.messages import AROUND, GRIPPER, PlanStep
-from common.words import Destination
+from common.naming.words import Destination
 from services.planner.choice_points import ChoicePoints
 from services.planner.config import PlannerConfig
 from services.planner.grammar.senses import Spot

@@ -10,7 +10,7 @@ import numpy as np
 from common import messages as m
 from common import topics
 from common.geometry import yaw_quat
-from common.robot_frames import BASE_LINK, LIDAR, MAP, ODOM
+from common.robot.frames import BASE_LINK, LIDAR, MAP, ODOM
 from common.topic import Topic
 from services.ros2.pictures import camera_info, depth, image
 from services.ros2.types import Types

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from common import messages as m
-from common.robot_frames import optical_frame
+from common.robot.frames import optical_frame
 from services.ros2.types import Types
 
 

@@ -11,10 +11,10 @@ from common.bus import codec
 from common.bus.port import Io, Job
 from common.gateway import due, refusal
 from common.picture_requests import PICTURES, PictureRequests
-from common.robot_frames import BaseFrames, FramePose, LinkFrames, camera_pose, lidar_pose
+from common.robot.frames import BaseFrames, FramePose, LinkFrames, camera_pose, lidar_pose
+from common.robot.urdf import pivots, urdf
 from common.runtime import StartError
 from common.topic import Topic
-from common.urdf import pivots, urdf
 from services.ros2 import incoming, outgoing
 from services.ros2.config import Ros2Config
 from services.ros2.types import MISSING, Types

@@ -5,7 +5,7 @@ from typing import Any
 
 from common.bus.validation import LIMIT
 from common.messages.base import Quat, Vec3
-from common.robot_frames import FramePose
+from common.robot.frames import FramePose
 
 NANO = 1_000_000_000
 MISSING = "the ROS 2 gateway needs the package rosbags: pip install 'tidybot-zenoh[ros2]'"

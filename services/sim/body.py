@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from common.robot import ARM, BASE, arm_limits, pads, subtree
+from common.robot.model import ARM, BASE, arm_limits, pads, subtree
 from common.time.lockstep import DT
 from services.sim.contacts import Contacts
 from services.sim.fingers import Fingers, view

@@ -7,7 +7,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from common.robot import (
+from common.robot.model import (
     ARM,
     BASE,
     HAND_ADVANCES,

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import msgspec
 
-from common import atomic_file
+from common.files import atomic_file
 from common.messages import Touch
 
 VERSION = 1

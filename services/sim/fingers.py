@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from common.robot import Hand
+from common.robot.model import Hand
 from common.time.lockstep import DT
 
 SPEED = 0.150

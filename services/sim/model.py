@@ -6,7 +6,7 @@ import xml.etree.ElementTree as ET
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from common.robot import home_arm
+from common.robot.model import home_arm
 from services.sim import calibrate, robot
 from services.sim.menagerie import NAME, RobotError, find
 

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from common.robot import ARM, BASE
+from common.robot.model import ARM, BASE
 
 MODEL = Path(__file__).parent / "robots" / "tidybot.xml"
 JOINT_NAMES = (*BASE, *ARM, "gripper")

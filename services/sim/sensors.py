@@ -8,7 +8,7 @@ from common import messages as m
 from common import topics
 from common.bus.port import Io
 from common.geometry import Pose2
-from common.robot import ARM, BASE
+from common.robot.model import ARM, BASE
 from services.sim.body import Body
 from services.sim.config import SimConfig
 from services.sim.lidar import RANGE_MAX, RANGE_MIN, RAYS, Lidar

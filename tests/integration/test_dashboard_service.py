@@ -17,7 +17,7 @@ from common import topics
 from common.bus import codec
 from common.household import load_household
 from common.recording import Recorder, RecordingError
-from common.robot import Hand
+from common.robot.model import Hand
 from common.scene import load_scene
 from services.dashboard.config import DashboardConfig
 from services.dashboard.replay.playback import opened

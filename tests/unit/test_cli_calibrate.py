@@ -9,10 +9,10 @@ from cli.cameras.mounts import Unseen, fit
 from cli.cameras.poses import LOWEST, WITHIN, FreeSpace, overlooks, poses
 from cli.cameras.shot import Array, Mount, Shot
 from cli.cameras.surfaces import Arm, Room
-from common import calibration
 from common.geometry import matrix_quat
 from common.messages import Rgbd
 from common.rendering.renderer import Renderer
+from common.robot import calibration
 from common.scene import load_scene
 from services.camera.sensor import StereoCamera
 from services.sim.physics import Physics

@@ -8,7 +8,7 @@ import pytest
 from cli.home.map import line, states, terminal
 from cli.main import main
 from common import messages as m
-from common.map_file import FREE, OCCUPIED, UNKNOWN
+from common.files.map_file import FREE, OCCUPIED, UNKNOWN
 
 
 def test_the_progress_is_one_line() -> None:

@@ -6,8 +6,8 @@ import msgspec
 import pytest
 
 from common.approach import EDGE_DISTANCE, FOOTPRINT, STAND_OFF, poses_for
+from common.files.plan_file import to_toml
 from common.floor_plan import Box
-from common.plan_file import to_toml
 from common.scene import Scene, load_scene
 from evaluation.homes.aged import LIGHT
 from evaluation.homes.home import draw_home

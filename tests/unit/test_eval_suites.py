@@ -8,7 +8,7 @@ import pytest
 from common import topics
 from common.bus.codec import decode, encode
 from common.config import config_dir, load, overrides
-from common.plan_file import to_toml
+from common.files.plan_file import to_toml
 from common.scene import load_scene
 from evaluation.case import Case
 from evaluation.faults.messages import Rule

@@ -10,9 +10,9 @@ from scipy.spatial import ConvexHull
 from scipy.spatial.distance import cdist
 
 from common.config import config_dir
+from common.files.plan_file import to_toml
 from common.household import load_household, load_words
 from common.kinds import kind_of
-from common.plan_file import to_toml
 from common.scene import ObjectSpec, load_scene
 from evaluation.case import Case
 from evaluation.suites import catalogue, groceries

@@ -8,9 +8,9 @@ from common.bus.memory import MemoryBus, MemoryIo
 from common.floor_plan import Place, Receptacle, Room
 from common.household import Household, load_household
 from common.household_edits import edited
-from common.part_names import kind_named, with_part_names
+from common.naming.part_names import kind_named, with_part_names
+from common.naming.words import Words
 from common.tidy_rule import rule_about
-from common.words import Words
 from services.speech.recognise.grammar import vocabulary
 from tests.unit.navigation_flat import Flat
 

@@ -4,8 +4,8 @@ import pytest
 
 from common.config import config_dir
 from common.household import Household, load_words, mapped
-from common.likeness import LEAST, LIKELY, PLAIN, describes, likeness, partly
 from common.messages import WorldObject
+from common.naming.likeness import LEAST, LIKELY, PLAIN, describes, likeness, partly
 from common.scene import load_scene
 from services.perception.grounding import ground, parsed, possible
 

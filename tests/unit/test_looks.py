@@ -3,7 +3,7 @@
 import pytest
 
 from common.kinds import KINDS, LOOKS, laid_on_a_side
-from common.looks import LEAST, Measures, likely
+from common.naming.looks import LEAST, Measures, likely
 
 GOODS = [
     ("bottle", Measures("round", 0.065, 0.235, neck=True), "green"),

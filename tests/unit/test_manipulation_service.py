@@ -10,9 +10,9 @@ from bench.mission import Robot
 from common import messages as m
 from common import topics
 from common.bus.memory import MemoryIo
-from common.grip import Grip
 from common.household import load_household
 from common.kinds import KINDS
+from common.robot.grip import Grip
 from common.topic import Topic
 from evaluation.stack import Stack
 from services.manipulation.arm.arm_model import ArmModel, Obstacle, Pose

@@ -11,8 +11,8 @@ pytest.importorskip("gtsam", reason="the extra mapping is not installed")
 pytest.importorskip("small_gicp", reason="the extra mapping is not installed")
 
 from common import messages as m
+from common.files.map_file import FREE, OCCUPIED
 from common.household import load_household
-from common.map_file import FREE, OCCUPIED
 from services.mapping.config import MappingConfig
 from services.mapping.depth import Picture
 from services.mapping.exploration import FIRST_LOOKS, Exploration

@@ -7,7 +7,7 @@ import pytest
 
 from common.geometry import Array
 from common.kinds import LOOKS
-from common.looks import likely
+from common.naming.looks import likely
 from services.perception.shapes.measure import Measurement, measure
 from services.perception.unlisted import measures_of, thinned
 

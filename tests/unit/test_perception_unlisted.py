@@ -9,7 +9,7 @@ import pytest
 from common.geometry import quat_yaw
 from common.household import load_household, mapped
 from common.messages import WorldObject
-from common.naming import match_object
+from common.naming.names import match_object
 from services.perception.detection import Detection
 from services.perception.grounding import may_be_meant
 from services.perception.tracking.object_tracker import ObjectTracker

@@ -4,7 +4,7 @@ import socket
 
 import pytest
 
-from common.process import limit_silence
+from common.process.host import limit_silence
 
 
 def test_tcp_connections_are_given_up_when_nobody_acknowledges() -> None:

@@ -8,7 +8,7 @@ from cli.drivers import requirements as conformance
 from common import messages as m
 from common import topics
 from common.bus import codec
-from common.robot import Hand
+from common.robot.model import Hand
 from services.dashboard.scene.drawing import draw
 from services.manipulation.arm.arm_model import ArmModel
 from services.perception.views.self_filter import RobotModel

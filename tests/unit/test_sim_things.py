@@ -13,7 +13,7 @@ import pytest
 from PIL import Image
 from scipy.spatial import Delaunay
 
-from common.body_file import BodyError, extents, load
+from common.files.body_file import BodyError, extents, load
 from common.rendering.looks import geom_colours
 from common.scene import Finish, Lamp, ObjectSpec, SceneError, load_scene
 from evaluation.suites.drawn import surroundings

@@ -8,10 +8,10 @@ import pytest
 
 from common import messages as m
 from common.geometry import compose, quat_matrix
-from common.robot import ARM, RobotKinematics
-from common.robot_frames import BASE_LINK, MAP, ODOM, BaseFrames, FramePose, LinkFrames
+from common.robot.frames import BASE_LINK, MAP, ODOM, BaseFrames, FramePose, LinkFrames
+from common.robot.model import ARM, RobotKinematics
+from common.robot.urdf import pivots, urdf
 from common.scene import load_scene
-from common.urdf import pivots, urdf
 from services.sim.physics import Physics
 
 POSTURES = [(np.zeros(7), 0.08), (np.linspace(-1.5, 1.5, 7), 0.03), (np.full(7, 0.7), 0.0)]

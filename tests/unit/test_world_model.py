@@ -7,8 +7,8 @@ import pytest
 from common import messages as m
 from common.floor_plan import Place, Receptacle
 from common.geometry import Rectangle
-from common.grip import Grip, grip_of
 from common.household import Household
+from common.robot.grip import Grip, grip_of
 
 TURNED = Rectangle(1.0, 2.0, 2.0, 1.0, math.pi / 6)
 SHELF = Receptacle(name="shelf", kind="shelf", center=(0.0, 0.0, 0.8), size=(1.0, 0.4), yaw=math.pi / 4)

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from common.robot import subtree
+from common.robot.model import subtree
 from common.time.lockstep import DT
 from evaluation.faults.physical.fault import PhysicalFault
 from evaluation.faults.physical.injector import Injector

@@ -8,7 +8,7 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from common.robot import Hand
+from common.robot.model import Hand
 from common.time.lockstep import DT
 from evaluation.faults.physical.fault import PhysicalFault
 from evaluation.faults.physical.injector import Injector

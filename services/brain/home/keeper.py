@@ -7,12 +7,12 @@ import msgspec
 from common import messages as m
 from common import topics
 from common.bus.port import Io
+from common.files.stored_file import StoredFile, home_file
 from common.floor_plan import Receptacle, Room
 from common.geometry import Pose2
 from common.goal_inbox import GoalInbox
 from common.household import Household
-from common.naming import normalise
-from common.stored_file import StoredFile, home_file
+from common.naming.names import normalise
 from services.brain.home.part_meant import Meant, meant, room_around
 
 MAX_NAMES, MAX_RULES = 200, 100

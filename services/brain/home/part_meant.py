@@ -7,7 +7,7 @@ from common.floor_plan import Receptacle, Room
 from common.geometry import Pose2, Rectangle, to_frame
 from common.household import Household
 from common.messages import EditCode, HouseholdEdit, PartKind
-from common.part_names import kind_named
+from common.naming.part_names import kind_named
 
 BEFORE, WIDE = 1.3, 1.2
 """Distance [m] of the base's centre from a surface's outline, and angle [rad] to the heading of its nearest point, up

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from common import messages as m
 from common import topics
 from common.bus.port import Io
-from common.stored_file import StoredFile, home_file
+from common.files.stored_file import StoredFile, home_file
 from common.time.clock import unix_time
 from common.whereabouts import decayed
 

@@ -8,7 +8,7 @@ from common.language.meaning import readings
 from common.language.normalise import Words, normalise, without_determiners
 from common.language.pattern import Slots
 from common.language.politeness import without_politeness
-from common.part_names import kind_named
+from common.naming.part_names import kind_named
 from common.plan_rules import is_destination
 from common.tidy_rule import is_generic, rule_about
 

@@ -5,7 +5,7 @@ import re
 from collections.abc import Callable
 from pathlib import Path
 
-from common import atomic_file
+from common.files import atomic_file
 
 KEPT = 200
 """Files: at some 10 KB each 2 MB, a day of missions."""

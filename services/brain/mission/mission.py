@@ -6,7 +6,7 @@ from typing import Literal
 import msgspec
 
 from common import messages as m
-from common.grip import grip_of
+from common.robot.grip import grip_of
 
 Outcome = Literal["delivered", "failed", "cancelled"]
 

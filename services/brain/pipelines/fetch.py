@@ -5,7 +5,7 @@ from py_trees.common import Status
 
 from common import messages as m
 from common import topics
-from common.likeness import LEAST
+from common.naming.likeness import LEAST
 from services.brain.home.told import edit_told
 from services.brain.language.intent import parse
 from services.brain.mission.context import Context

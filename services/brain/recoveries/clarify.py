@@ -2,7 +2,7 @@
 
 from py_trees.behaviour import Behaviour
 
-from common.naming import unnumbered
+from common.naming.names import unnumbered
 from services.brain.mission.context import Context
 from services.brain.recoveries.recovery import Task
 from services.brain.steps.ask import AskQuestion, HearChoice, which

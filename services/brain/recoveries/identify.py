@@ -4,7 +4,7 @@ from functools import partial
 
 from py_trees.behaviour import Behaviour
 
-from common.likeness import LEAST, LIKELY
+from common.naming.likeness import LEAST, LIKELY
 from services.brain.mission.context import Context
 from services.brain.recoveries.recovery import Task
 from services.brain.steps.ask import AskQuestion

@@ -9,8 +9,8 @@ from py_trees.common import Status
 from common import messages as m
 from common import topics
 from common.geometry import Pose2
-from common.likeness import describes
-from common.naming import normalise
+from common.naming.likeness import describes
+from common.naming.names import normalise
 from common.topic import Topic
 from services.brain.mission.channel import Result
 from services.brain.mission.context import Context

@@ -9,7 +9,7 @@ from py_trees.common import Status
 
 from common import messages as m
 from common import topics
-from common.grip import OPEN_PLAY, OPENING, Grip, grip_of
+from common.robot.grip import OPEN_PLAY, OPENING, Grip, grip_of
 from services.brain.language.dialogue import reply
 from services.brain.mission.channel import Result
 from services.brain.mission.context import Context

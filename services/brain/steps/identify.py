@@ -7,8 +7,8 @@ from py_trees.common import Status
 from common import messages as m
 from common import topics
 from common.language.normalise import indefinite
-from common.likeness import LEAST, PLAIN, likeness
-from common.naming import unnumbered
+from common.naming.likeness import LEAST, PLAIN, likeness
+from common.naming.names import unnumbered
 from services.brain.language.dialogue import reply
 from services.brain.mission.channel import Result
 from services.brain.mission.context import Context

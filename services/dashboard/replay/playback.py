@@ -20,7 +20,7 @@ from common.bus.worker import WorkerJob
 from common.household import load_household
 from common.mission_log import recorded
 from common.mission_log.states import OTHER_STATE, STATE_COLOURS, spans
-from common.process import StopSignal
+from common.process.host import StopSignal
 from common.recording import Recording, RecordingError, Row
 from common.runtime import StartError
 from common.time.clock import monotonic

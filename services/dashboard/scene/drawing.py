@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from common.geometry import matrix_quat, quat_matrix
 
 if TYPE_CHECKING:
-    from common.robot import Hand
+    from common.robot.model import Hand
 
 Array = NDArray[np.float64]
 ROBOT_BODY = "base"
@@ -88,7 +88,7 @@ def draw(mjcf: str, files: dict[str, bytes] | None = None) -> Drawing:
     import mujoco
 
     from common.rendering.looks import geom_colours
-    from common.robot import Hand
+    from common.robot.model import Hand
 
     model: Any = mujoco.MjModel.from_xml_string(mjcf, files or {})
     data: Any = mujoco.MjData(model)

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from common.colours import COLOURS, UNKNOWN_COLOUR
 from common.kinds import kind_of
+from common.naming.colours import COLOURS, UNKNOWN_COLOUR
 from services.dashboard.scene.drawing import Mesh
 
 

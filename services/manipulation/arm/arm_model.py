@@ -9,7 +9,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from common.robot import ARM, Hand, arm_forward, arm_limits, home_arm
+from common.robot.model import ARM, Hand, arm_forward, arm_limits, home_arm
 
 Array = NDArray[np.float64]
 BOXES = 24

@@ -9,7 +9,7 @@ from common import messages as m
 from common import topics
 from common.bus.port import Io
 from common.geometry import Pose2
-from common.grip import Grip
+from common.robot.grip import Grip
 from services.manipulation.arm.arm_model import Array
 from services.manipulation.arm.contacts import ContactLog
 from services.manipulation.arm.servo import Servo

@@ -7,7 +7,7 @@ import mujoco
 import numpy as np
 
 from common.geometry import quat_matrix
-from common.robot import Hand, pads, subtree
+from common.robot.model import Hand, pads, subtree
 from services.manipulation.arm.arm_model import STAND_IN, ArmModel, Array, Obstacle, Pose
 from services.manipulation.grasps.grasp import Grasp
 from services.manipulation.grasps.surface import surface

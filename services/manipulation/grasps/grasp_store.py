@@ -7,7 +7,7 @@ from pathlib import Path
 import msgspec
 import numpy as np
 
-from common import atomic_file
+from common.files import atomic_file
 from services.manipulation.grasps.grasped_object import GraspedObject
 
 NAME, VERSION = "hand", 1

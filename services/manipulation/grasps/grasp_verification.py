@@ -2,8 +2,8 @@
 
 from typing import Literal
 
-from common.grip import EMPTY_WIDTH, Grip
 from common.kinds import kind_of
+from common.robot.grip import EMPTY_WIDTH, Grip
 from services.manipulation.config import ManipulationConfig
 
 TOO_WIDE = 0.006

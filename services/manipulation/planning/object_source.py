@@ -11,7 +11,7 @@ from msgspec import structs
 from common.geometry import Pose2, to_frame
 from common.household import Household
 from common.messages import ManipulationGoal, ObjectRef, WorldObject, WorldObjects
-from common.naming import match_object
+from common.naming.names import match_object
 from services.manipulation.planning.planning_scene import tilt_of
 
 FRONT = 1.2

@@ -6,7 +6,7 @@ import numpy as np
 
 from common import messages as m
 from common.geometry import Pose2
-from common.lidar import rays_of
+from common.robot.lidar import rays_of
 from services.navigation.localisation.distance_field import Array
 
 

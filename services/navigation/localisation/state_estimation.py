@@ -9,7 +9,7 @@ from common import messages as m
 from common import topics
 from common.bus.port import Io
 from common.geometry import Pose2, compose
-from common.lidar import sane
+from common.robot.lidar import sane
 from services.navigation.config import NavigationConfig
 from services.navigation.localisation.distance_field import distance_field
 from services.navigation.localisation.global_localiser import GlobalLocaliser

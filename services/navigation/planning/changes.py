@@ -12,8 +12,8 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
+from common.files.stored_file import StoredFile
 from common.floor_plan import FloorPlan
-from common.stored_file import StoredFile
 
 Cells = tuple[NDArray[np.intp], NDArray[np.intp]]
 """Rows and columns."""

@@ -6,8 +6,8 @@ from pathlib import Path
 import msgspec
 import numpy as np
 
+from common.files.stored_file import StoredFile
 from common.messages import TaughtName, Vec3
-from common.stored_file import StoredFile
 from services.perception.naming.appearance import Look
 from services.perception.naming.text import Line
 

@@ -13,8 +13,8 @@ from common import messages as m
 from common import topics
 from common.bus.port import Io
 from common.geometry import Pose2
-from common.likeness import LEAST, looks_like
-from common.naming import match_object, normalise
+from common.naming.likeness import LEAST, looks_like
+from common.naming.names import match_object, normalise
 from services.perception.config import PerceptionConfig
 from services.perception.naming import reader
 from services.perception.naming.appearance import Look
@@ -29,9 +29,9 @@ from services.perception.naming.vocabulary import COLOURS, common_words, plain_w
 from services.perception.views.view import View
 
 HALF_READ, SOMEWHAT, TRACE = 0.5, 0.4, 0.1
-"""Likeness, as `common.likeness` has it, of what reads nearly like the words, of what looks somewhat like the taught
-thing, and of what shows a part of one word. Chosen: a person is asked about the first two when they are seen, about the
-last when nothing else was found."""
+"""Likeness, as `common.naming.likeness` has it, of what reads nearly like the words, of what looks somewhat like the
+taught thing, and of what shows a part of one word. Chosen: a person is asked about the first two when they are seen,
+about the last when nothing else was found."""
 OTHER_LOOKS = 0.5
 """By how much what has not the colour that was said comes later among those to be looked at."""
 

@@ -9,7 +9,7 @@ from common.bus.port import Io
 from common.geometry import Pose2, to_frame
 from common.goal_inbox import GoalInbox
 from common.household import Household
-from common.naming import match_object, normalise
+from common.naming.names import match_object, normalise
 from services.perception.naming.memory import NameMemory, Taught
 from services.perception.naming.observer import Observer
 from services.perception.naming.sights import Sight

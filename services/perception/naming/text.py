@@ -7,7 +7,7 @@ import re
 from collections.abc import Collection, Iterable, Sequence
 from typing import NamedTuple
 
-from common.naming import normalise
+from common.naming.names import normalise
 
 MAX_LINES = 12
 """Lines kept of one object. Chosen: more than a package shows of its front in letters that can be read."""

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable
 from common.household import Household
 from common.kinds import KINDS
 from common.messages import WorldObject
-from common.naming import normalise
+from common.naming.names import normalise
 
 COLOURS = (
     "red", "orange", "yellow", "green", "blue", "purple", "pink", "brown", "black", "white", "grey", "gray", "beige",

@@ -7,7 +7,7 @@ from scipy import ndimage
 from scipy.spatial import ConvexHull
 
 from common.geometry import Array, Pose2
-from common.robot import RobotKinematics
+from common.robot.model import RobotKinematics
 from services.perception.views.view import Mask, View
 
 STEP = 4

@@ -9,8 +9,8 @@ from common import messages as m
 from common import topics
 from common.bus.port import Io, Job
 from common.geometry import Array, Pose2, wrap
-from common.grip import Grip
-from common.robot import ARM
+from common.robot.grip import Grip
+from common.robot.model import ARM
 from services.perception.views.self_filter import RobotModel
 
 HISTORY = 100

@@ -4,11 +4,11 @@ from common.floor_plan import Receptacle
 from common.language.normalise import Words, enumeration, without_determiners
 from common.language.pattern import Slots
 from common.messages import PlanStep, Sighting
-from common.naming import normalise
-from common.part_names import kind_named
+from common.naming.names import normalise
+from common.naming.part_names import kind_named
+from common.naming.words import Destination
 from common.tidy_rule import ONES, rule_about
 from common.whereabouts import ago, decayed, kind_of_phrase, of_thing
-from common.words import Destination
 from services.planner.commands.answers import where
 from services.planner.grammar.phrases import Phrase, read
 from services.planner.plan_builder import PlanBuilder, Refusal

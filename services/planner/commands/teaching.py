@@ -3,7 +3,7 @@
 from common.language.normalise import without_determiners
 from common.language.pattern import Slots
 from common.messages import PlanStep
-from common.naming import normalise
+from common.naming.names import normalise
 from services.planner.grammar.phrases import Phrase, read
 from services.planner.plan_builder import PlanBuilder, Refusal
 

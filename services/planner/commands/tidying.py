@@ -6,7 +6,7 @@ from common.floor_plan import Receptacle
 from common.language.normalise import Words, without_determiners
 from common.language.noun_phrase import related
 from common.language.pattern import Slots
-from common.words import Destination
+from common.naming.words import Destination
 from services.planner.commands.hand import take
 from services.planner.grammar.senses import Spot
 from services.planner.plan_builder import PlanBuilder, Refusal

@@ -10,7 +10,7 @@ from common.language.lexicon import COMMANDING
 from common.language.normalise import Words, enumeration, infinitive, normalise, without_determiners
 from common.language.noun_phrase import UNSEEN, WHICH
 from common.language.quantities import UNITS
-from common.naming import normalise as unmarked
+from common.naming.names import normalise as unmarked
 from services.planner.config import PlannerConfig
 from services.planner.grammar.senses import (
     ANY,

@@ -5,7 +5,7 @@ from typing import Any
 import msgspec
 
 from common.messages import GRIPPER, RejectedPlan, StepAction
-from common.words import Destination
+from common.naming.words import Destination
 from services.planner.world import World
 
 RULES = """\

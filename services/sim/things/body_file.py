@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from common.body_file import load, middle, standing
+from common.files.body_file import load, middle, standing
 from common.scene import ObjectSpec, body_name
 from services.sim.robot import HULL_GROUP
 from services.sim.things.convex import hollow, parts

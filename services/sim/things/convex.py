@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from common import atomic_file
+from common.files import atomic_file
 
 Array = NDArray[np.float64]
 Part = tuple[Array, NDArray[np.int64]]

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from common.process import return_memory
+from common.process.host import return_memory
 from services.speech.recognise.packed_network import NetworkBuilder, PackedWeights, Weight
 
 LAYERS, HEADS, HEAD_SIZE, ROTARY_SIZE = 8, 8, 52, 32

@@ -11,7 +11,7 @@ from common.household import Household
 from common.language.meaning import asks_for
 from common.language.normalise import normalise
 from common.language.spoken import is_understood, turns
-from common.process import return_memory
+from common.process.host import return_memory
 from services.speech.config import SpeechConfig
 from services.speech.listen.vad import RATE, VoiceDetector, speech_span
 from services.speech.recognise.denoise import noise_ratio, reduce_noise

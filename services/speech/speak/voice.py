@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 
-from common.process import return_memory
+from common.process.host import return_memory
 from services.speech.audio import RATE, Samples, resample
 from services.speech.recognise.packed_network import session
 

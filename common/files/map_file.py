@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from common.atomic_file import replace
+from common.files.atomic_file import replace
 from common.floor_plan import FloorPlan
 
 MAP, SURFACES, HOUSEHOLD, PICTURE = "map", "surfaces.json", "household.toml", "map.png"

@@ -8,7 +8,7 @@ from typing import Generic, TypeVar
 
 import msgspec
 
-from common import atomic_file
+from common.files import atomic_file
 
 T = TypeVar("T")
 

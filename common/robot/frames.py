@@ -12,7 +12,7 @@ import numpy as np
 from common import messages as m
 from common.geometry import IDENTITY_POSE, Pose2, compose, inverse, yaw_quat
 from common.messages.base import Quat, Vec3
-from common.robot import ARM, RobotKinematics
+from common.robot.model import ARM, RobotKinematics
 
 MAP, ODOM, BASE_LINK, LIDAR = "map", "odom", "base_link", "lidar"
 BASE_BODY = "base"

@@ -16,8 +16,8 @@ from common.bus import codec
 from common.bus.port import Outside
 from common.bus.zenoh_io import ZenohIo
 from common.household import Household
-from common.presence import Presence, answer_queries
-from common.process import SILENCE, StopSignal, limit_silence, return_memory
+from common.process.host import SILENCE, StopSignal, limit_silence, return_memory
+from common.process.presence import Presence, answer_queries
 from common.scene import Scene
 from common.time.clock import Clock, Pacer, SimClock, monotonic
 from common.time.clock_transport import AckCollector, ClockPublisher, ClockSubscriber

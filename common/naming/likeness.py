@@ -6,7 +6,7 @@ from typing import NamedTuple
 from common.household import Household
 from common.kinds import KINDS, kind_of
 from common.messages import WorldObject
-from common.naming import ALIKE, listed, normalise, own_words
+from common.naming.names import ALIKE, listed, normalise, own_words
 
 PLAIN = 0.55
 """Likeness from which words plainly fit: below it a person is asked. Chosen: the word is likelier than all others."""

@@ -12,8 +12,8 @@ import numpy as np
 
 from common.geometry import quat_matrix
 from common.messages.base import IDENTITY
-from common.robot_frames import BASE_BODY, FramePose, link_name
-from common.robot_shapes import Shape, shapes
+from common.robot.frames import BASE_BODY, FramePose, link_name
+from common.robot.shapes import Shape, shapes
 
 PIVOT = "_pivot"
 _HINGE, _SLIDE = int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE)

@@ -12,7 +12,7 @@ from common import messages as m
 from common import topics
 from common.bus import codec
 from common.bus.zenoh_io import ZenohIo
-from common.process import rss_mb
+from common.process.host import rss_mb
 from common.time.clock import monotonic
 
 
