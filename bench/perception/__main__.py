@@ -67,7 +67,7 @@ def main() -> int:
     parser.add_argument("--pose-noise", type=float, default=0.0, help="of the robot's own pose [m and rad]")
     parser.add_argument("--backend", default="auto", choices=("auto", "egl", "osmesa", "raycast"))
     parser.add_argument("--verbose", "-v", action="store_true", help="name every mistake")
-    parser.add_argument("--unknown", choices=unlisted.SUITES, help="worlds that perception is not told about")
+    parser.add_argument("--unknown", choices=unlisted.VIEWED, help="worlds that perception is not told about")
     args = parser.parse_args()
     if args.unknown:
         unlisted.measure(args)

@@ -1,8 +1,9 @@
 """Perception of objects that nobody listed: `python -m bench.perception --unknown sizes --views 40`.
 
-The worlds are those of the suites `sizes`, `clutter` and `lying`; perception is told the floor plan alone. Of each
-object in view the table says whether it was found within 5 cm, whether its kind and colour are among the words that it
-answers to, the first of these, and how far position and extents are off; and how many detections are of nothing.
+The worlds are those of the suites `sizes`, `clutter`, `lying`, `labels` and `things`; perception is told the floor
+plan alone. Of each object in view the table says whether it was found within 5 cm, whether its kind and colour are
+among the words that it answers to, the first of these, and how far position and extents are off; and how many
+detections are of nothing.
 """
 
 import argparse
@@ -23,9 +24,11 @@ from services.perception.detection import Detection
 from services.perception.views import colour
 from services.perception.views.view import View
 from services.sim.layout import Placement, place_objects
-from services.sim.world import world_mjcf
+from services.sim.world import world_files, world_mjcf
 
 SUITES: dict[str, Callable[[int], Case]] = {s.__name__: s for s in (unknown.sizes, unknown.clutter, unknown.lying)}
+VIEWED = {**SUITES, "labels": unknown.labels, "things": unknown.scanned}
+"""Those that views are taken of: things with faces as well, which are asked for by their print."""
 NEAR, NOTHING = 0.05, 0.09
 """Distance [m] on the floor plan within which an object was found, and beyond which from all a detection is of none."""
 VIEWS_PER_WORLD = 4
@@ -79,11 +82,12 @@ def take_all(args: argparse.Namespace) -> Iterator[tuple[View, list[Placement], 
     """Views of the suite's worlds from random places, with what stands there."""
     rng, made, seed = np.random.default_rng(args.seed), 0, args.seed
     while made < args.views:
-        case = SUITES[args.unknown](seed)
+        case = VIEWED[args.unknown](seed)
         assert case.scene is not None and case.household is not None
         detector = ClassicalDetector(case.household, 3.5)
         placements = place_objects(case.scene, case.seed)
-        renderer = Renderer(world_mjcf(case.scene, placements), args.backend)
+        mjcf, files = world_mjcf(case.scene, placements), world_files(case.scene, placements)
+        renderer = Renderer(mjcf, args.backend, files)
         for n in range(VIEWS_PER_WORLD):
             # Half of the views are of what is wanted.
             chosen = placements[0] if n % 2 else placements[int(rng.integers(len(placements)))]

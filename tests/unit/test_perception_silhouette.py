@@ -3,12 +3,15 @@
 import math
 from collections.abc import Callable
 
+import msgspec
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from common.floor_plan import Receptacle
 from common.geometry import Array
-from services.perception.segments import dark
+from common.scene import load_scene
+from services.perception.segments import dark, segmentation
 from services.perception.segments.outlined import on_surface
 from services.perception.shapes import silhouette
 from services.perception.shapes.measurement import LEVEL, Measurement
@@ -140,3 +143,13 @@ def test_an_outline_of_no_simple_shape_is_not_explained() -> None:
     at = silhouette.foot(view, pixels, FLOOR)
     assert at is not None
     assert silhouette.shape(view, silhouette.outline(view, pixels, at), at, FLOOR, np.empty((0, 3))) is None
+
+
+@pytest.mark.parametrize("front", [0.6, 0.95])
+def test_what_has_no_depth_at_all_is_of_the_surface_that_it_stands_on(front: float) -> None:
+    depth = 0.6
+    table = Receptacle("table", "table", (front + depth / 2, 0.0, FLOOR), (depth, 1.4), approach=((-1.0, 0.0),))
+    plan = msgspec.structs.replace(load_scene("apartment"), receptacles=(table,), furniture=(), walls=())
+    on_it = [s for s in segmentation.segments(seen(box(0.13, 0.06, 0.17, 0.6)), plan, 3.5) if s.surface.name]
+    assert [s.surface.name for s in on_it] == (["table"] if front < AT[0] else [])
+    assert all(not len(s.points) for s in on_it)

@@ -109,6 +109,9 @@ def _beyond(view: View, usable: Mask, r: Receptacle, outline: Rectangle) -> Clou
 
 
 def _stands_on(segment: Segment, r: Receptacle) -> bool:
+    """Of what is seen by its outline alone there may be no point; its middle says where it stands."""
+    if segment.shape is not None:
+        return r.contains(segment.shape.x, segment.shape.y, 0.0)
     x, y = segment.points[:, :2].T.astype(np.float32)
     return bool(np.count_nonzero(inside(x, y, r.outline)) > MOSTLY_ON * len(x))
 
