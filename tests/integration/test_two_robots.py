@@ -1,4 +1,4 @@
-"""Two whole robots in one simulated flat on one router: the best one is sent, and a process is killed."""
+"""Two whole robots in one simulated flat on one router: the best one is sent, a process and then a robot is killed."""
 
 import math
 import os
@@ -87,7 +87,7 @@ def flat(tmp_path: Path) -> Iterator[Flat]:
 
 
 @pytest.mark.timeout(900)
-def test_the_best_one_delivers_through_a_kill_and_takes_the_next_one(flat: Flat) -> None:
+def test_the_best_one_delivers_through_a_kill_and_the_other_takes_over_when_all_of_it_dies(flat: Flat) -> None:
     eventually(lambda: flat.free() == {ANNA, BERT}, "both take commands", 60)
     eventually(lambda: {"red mug", "green can"} <= set(flat.desk.look({BERT})[0].knows), "bert sees both things", 60)
     # One process of the best robot is killed on the way; its supervisor brings it back.
@@ -97,4 +97,8 @@ def test_the_best_one_delivers_through_a_kill_and_takes_the_next_one(flat: Flat)
     flat.end(first, "red mug")
     assert first.by == BERT and not first.lost
     # At once the next one: it is still the best while it reports on the last.
-    assert flat.begin("bring me the green can", BERT).by == BERT
+    second = flat.begin("bring me the green can", BERT)
+    # Everything of it dies on the way; the other one, which has never seen the can, goes round what is left of it.
+    flat.runs[BERT].close()
+    flat.end(second, "green can")
+    assert (second.by, second.lost) == (ANNA, [BERT])
