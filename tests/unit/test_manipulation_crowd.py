@@ -124,6 +124,15 @@ def test_a_neighbour_at_two_centimetres_leaves_room_for_a_finger() -> None:
         ARM.open_fingers()
 
 
+@pytest.mark.parametrize(("gap", "tall", "higher"), [(0.04, 0.12, True), (0.04, 0.05, False), (0.2, 0.12, False)])
+def test_what_is_held_goes_over_its_neighbours_before_it_goes_away(gap: float, tall: float, higher: bool) -> None:
+    can = beside(180.0, gap, "red can")
+    can = replace(can, size=(*can.size[:2], tall), position=(*can.position[:2], 0.6 + tall / 2))
+    plan = grab(can)
+    risen = float(ARM.pose(plan.lift[-1]).position[2] - plan.grasp.pose.position[2])
+    assert risen == pytest.approx(0.15 if higher else 0.1, abs=0.006)
+
+
 def test_fingertips_that_close_do_not_press_on_the_table() -> None:
     """Bench, rod, seed 30: open they were clear of it, closed they pressed with 33 N, and the rod was too heavy."""
     for low in (0.012, 0.02, 0.03, 0.05):

@@ -15,6 +15,7 @@ from services.manipulation.grasps.grasp import Grasp, certainly_too_wide
 from services.manipulation.grasps.grasp_verification import MEASURED
 from services.manipulation.grasps.grasped_object import GraspedObject, attach
 from services.manipulation.grasps.target import Target
+from services.manipulation.planning.lift import over_neighbours
 from services.manipulation.planning.motion_planner import PlanError, Planner, counted
 from services.manipulation.planning.planning_scene import with_object
 
@@ -214,6 +215,7 @@ def _whole(planner: Planner, target: Target, grasp: Grasp, way: Way, now: Array)
         return Miss("no path to the pre-grasp")
     attached = attach(target, grasp)
     arm.hold(*attached.box())
+    up += over_neighbours(planner, target, grasp, around, up[-1], way.lift)
     planner.surround(around, up[-1])
     away = planner.to_carry(up[-1], rng)
     arm.hold(None)
@@ -241,7 +243,8 @@ def refine(planner: Planner, plan: GrabPlan, shift: tuple[float, float], approac
         at = planner.ik.solve(grasp.pose, [plan.insert[-1]])
         if at is not None:
             back = planner.straight(at, grasp.pose, grasp.pose.moved(-approach * grasp.pose.rotation[:, 2]))
-            up = planner.straight(at, grasp.pose, grasp.pose.moved(np.array([0.0, 0.0, lift])))
+            high = float(planner.arm.pose(plan.lift[-1]).position[2] - plan.grasp.pose.position[2])
+            up = planner.straight(at, grasp.pose, grasp.pose.moved(np.array([0.0, 0.0, max(lift, high)])))
             if back is not None and up is not None and not any(arm.collides(q) for q in (at, *back)):
                 return replace(plan, grasp=grasp, insert=[at, *back][::-1], lift=[at, *up])
     finally:
