@@ -84,15 +84,19 @@ class Context:
         """How likely an item is at each of the viewpoints' points (p,), by what was seen over the days."""
         return likelihood(item, self.io.household, self.sightings.rows, self.sightings.date, self.viewpoints)
 
+    @property
+    def objects(self) -> list[m.WorldObject]:
+        """All objects as last surveyed."""
+        world = self.io.latest(topics.WORLD_OBJECTS)
+        return world.objects if world else []
+
     def known_object(self, label: str) -> m.WorldObject | None:
         """The object of that name as last surveyed."""
-        world = self.io.latest(topics.WORLD_OBJECTS)
-        return next((o for o in world.objects if o.label == label), None) if world else None
+        return next((o for o in self.objects if o.label == label), None)
 
     def known_world(self) -> m.KnownWorld:
         """What the planner is told and plans are checked against."""
-        world, taught = self.io.latest(topics.WORLD_OBJECTS), self.io.latest(topics.HOUSEHOLD_NAMES)
-        seen = world.objects if world else []
+        seen, taught = self.objects, self.io.latest(topics.HOUSEHOLD_NAMES)
         named = {name for o in seen for name in o.names}
         # What was taught and is not in sight is an object all the same.
         hidden = [one.name for one in taught.names if one.name not in named] if taught else []

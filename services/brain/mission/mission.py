@@ -7,6 +7,7 @@ import msgspec
 
 from common import messages as m
 from common.robot.grip import grip_of
+from services.brain.world.neighbours import Stood
 
 Outcome = Literal["delivered", "failed", "cancelled"]
 
@@ -126,7 +127,7 @@ class Delivery(msgspec.Struct):
 
     `checked`: what a look after a release showed, in words; `unchecked`: objects put down where nobody could look;
     `lay`: objects that lay when they were found, which may have been stood on their heads since; `stood`: by label, the
-    height [m] of those that stood, 0 of others.
+    height [m] of those that stood, 0 of others; `around`: by id, what stood near when the hand began to work.
     """
 
     grabbed: bool = False
@@ -136,6 +137,7 @@ class Delivery(msgspec.Struct):
     lay: list[str] = []
     stood: dict[str, float] = {}
     unchecked: list[str] = []
+    around: dict[str, Stood] = {}
 
 
 class Mission(msgspec.Struct):

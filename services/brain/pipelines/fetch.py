@@ -19,7 +19,7 @@ from services.brain.steps.home import tell_home
 from services.brain.steps.identify import ChooseCandidate, HearIdentity, survey, whether
 from services.brain.steps.leaf import Call, Leaf, Settle
 from services.brain.steps.motion import Grab, Navigate, Release
-from services.brain.steps.verify import is_misplaced, verify_placement
+from services.brain.steps.verify import is_misplaced, nothing_fell, verify_placement
 from services.brain.tree.composites import Condition, Retry, Selector, Sequence
 
 
@@ -144,6 +144,8 @@ class Complete(Leaf):
         if task.kind == "fetch" and not (done.grabbed and done.released and not ctx.gripper.holding):
             unsure = f"I am not sure that I brought the {task.item}."
             ctx.record_failure(Failure("COMPLETED", "NO_EVIDENCE", spoken=unsure))
+            return Status.FAILURE
+        if not nothing_fell(ctx):
             return Status.FAILURE
         did = {"fetch": "", "tell": "kept what was told"}.get(task.kind, "back at the start")
         ctx.end_mission("delivered", did)

@@ -13,6 +13,7 @@ from services.brain.mission.channel import Result
 from services.brain.mission.context import Context
 from services.brain.mission.mission import Failure
 from services.brain.steps.leaf import SendGoal
+from services.brain.world.neighbours import standing
 from services.brain.world.standing_poses import place_pose
 
 Text = Callable[[], str]
@@ -92,6 +93,12 @@ class Manipulate(SendGoal):
             node_id, ctx, ctx.peers.manipulation, state=state, timeout=ctx.config.manipulation_timeout, retries=retries
         )
         self._text, self._about = text, about
+
+    def initialise(self) -> None:
+        super().initialise()
+        ctx, delivery = self.ctx, self.ctx.mission.delivery
+        # What has fallen once stays in mind as it stood before.
+        delivery.around = {**standing(ctx.objects, ctx.robot_pose, ctx.now), **delivery.around}
 
     def step(self) -> str:
         return self._text()

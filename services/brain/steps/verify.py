@@ -17,6 +17,7 @@ from services.brain.steps.find import object_in_map
 from services.brain.steps.leaf import Leaf, SendGoal, Settle
 from services.brain.steps.motion import Release
 from services.brain.tree.composites import Condition, Retry, Sequence
+from services.brain.world.neighbours import knocked_over
 from services.brain.world.placement import TIPPED, Finding, judge_absence, judge_placement, kind_meant
 
 MISPLACED_CODES = ("NOT_SEEN", "MISPLACED", "TOPPLED")
@@ -156,6 +157,19 @@ def record_finding(ctx: Context, finding: Finding, picture: bytes) -> Status:
     spoken = f"I put down the {label}, but {finding.words}."
     ctx.record_failure(Failure("RELEASING", finding.fault, finding.evidence, spoken))
     return Status.FAILURE
+
+
+def nothing_fell(ctx: Context) -> bool:
+    """Nothing that stood around the hand has been seen to lie since; else that is what the mission failed by."""
+    mission = ctx.mission
+    handled = {found.label for found in mission.search.found.values()} | {mission.delivery.put_down, mission.task.label}
+    fallen = knocked_over(mission.delivery.around, ctx.objects, handled)
+    if not fallen:
+        return True
+    what = " and ".join(fallen)
+    spoken = f"I did what you asked for, but not with care: {what}. I am sorry."
+    ctx.record_failure(Failure("COMPLETED", "KNOCKED_OVER", "; ".join([*mission.delivery.checked, what]), spoken))
+    return False
 
 
 def verify_placement(ctx: Context, target: str, near: str = "") -> Behaviour:

@@ -1,0 +1,54 @@
+"""What stood around the hand at work, and which of it lies or has fallen off since, by what perception saw. Pure."""
+
+import math
+from collections.abc import Iterable, Mapping
+
+import msgspec
+
+from common.geometry import Pose2
+from common.messages import Vec3, WorldObject
+from services.brain.world.placement import TIPPED, UPSIDE_DOWN
+
+AROUND = 1.5
+"""Distance [m] from the base's middle up to which the arm may come by: its reach and its place on the base."""
+FRESH = 60.0
+"""Age [s] up to which a sighting tells how something stands now. Chosen: it was seen as the robot drove up to it."""
+SHIFTED = 0.03
+"""Least way [m] of the middle of what goes over, more than the error of two sightings: what is only told to lie by
+another look at it has not moved."""
+LOWER = 0.10
+"""How much lower [m] something lies that has fallen off its surface. Chosen: a step of furniture."""
+
+
+class Stood(msgspec.Struct, frozen=True):
+    """A thing that stood when the hand began to work near it: where its middle was [m, map], and on what."""
+
+    label: str
+    position: Vec3
+    on: str
+    seen_at: float
+
+
+def standing(objects: Iterable[WorldObject], base: Pose2, now: float) -> dict[str, Stood]:
+    """What stands within reach of the base, as seen lately, by its id, or label where it has none."""
+    found = {}
+    for o in objects:
+        near = math.dist(base[:2], o.position[:2]) <= AROUND and now - o.seen_at <= FRESH
+        if near and not o.held and o.tilt <= TIPPED:
+            found[o.id or o.label] = Stood(o.label, o.position, o.on, o.seen_at)
+    return found
+
+
+def knocked_over(stood: Mapping[str, Stood], objects: Iterable[WorldObject], handled: Iterable[str]) -> list[str]:
+    """Clauses about what stood and has been seen since to lie, or to have fallen off; `handled`: labels of what the
+    robot was to move."""
+    ours, found = set(handled), []
+    for o in objects:
+        was = stood.get(o.id or o.label)
+        if was is None or o.held or o.seen_at <= was.seen_at or {o.label, was.label} & ours:
+            continue
+        if was.position[2] - o.position[2] > LOWER and o.on != was.on:
+            found.append(f"the {o.label} fell off the {was.on}" if was.on else f"the {o.label} fell down")
+        elif TIPPED < o.tilt <= UPSIDE_DOWN and math.dist(o.position, was.position) > SHIFTED:
+            found.append(f"the {o.label} fell over")
+    return found

@@ -1,0 +1,63 @@
+"""What fell while the hand was at work is noticed, and no mission is called done with it."""
+
+import math
+from typing import Any
+
+import msgspec
+import pytest
+
+from common import messages as m
+from common import topics
+from services.brain.world.neighbours import AROUND, FRESH, knocked_over, standing
+from tests.unit.test_brain_check import brought, ended, look
+from tests.unit.test_brain_vla import SPEECH
+
+CAN = m.WorldObject("yellow can", "can", "yellow", (1.0, 0.2, 0.66), size=(0.06, 0.06, 0.12), on="shelf", seen_at=10.0)
+BASE = (0.3, 0.0, 0.0)
+
+
+def can(**changes: Any) -> m.WorldObject:
+    return msgspec.structs.replace(CAN, **changes)
+
+
+@pytest.mark.parametrize(
+    ("after", "words"),
+    [
+        ({}, []),
+        ({"position": (1.06, 0.2, 0.66)}, []),
+        ({"position": (1.08, 0.2, 0.63), "tilt": math.pi / 2}, ["the yellow can fell over"]),
+        ({"position": (1.01, 0.2, 0.65), "tilt": math.pi / 2}, []),
+        ({"position": (1.2, 0.2, 0.03), "tilt": math.pi / 2, "on": ""}, ["the yellow can fell off the shelf"]),
+        ({"position": (1.08, 0.2, 0.63), "tilt": math.pi / 2, "held": True}, []),
+        ({"position": (1.08, 0.2, 0.63), "tilt": math.pi / 2, "seen_at": 10.0}, []),
+    ],
+)
+def test_what_stood_and_lies_by_a_later_sighting_fell(after: dict[str, Any], words: list[str]) -> None:
+    stood = standing([CAN], BASE, 12.0)
+    seen = can(**{"seen_at": 20.0, **after})
+    assert knocked_over(stood, [seen], ["red mug"]) == words
+    assert knocked_over(stood, [seen], ["yellow can"]) == []
+
+
+def test_only_what_stands_near_and_was_seen_lately_counts() -> None:
+    assert list(standing([CAN], BASE, 12.0)) == ["yellow can"]
+    assert list(standing([can(id="7")], BASE, 12.0)) == ["7"]
+    for other in (can(tilt=1.5), can(held=True), can(position=(0.31 + AROUND, 0.0, 0.66)), can(seen_at=11.9 - FRESH)):
+        assert not standing([other], BASE, 12.0)
+
+
+@pytest.mark.parametrize("fell", [False, True])
+def test_a_mission_that_knocked_something_over_is_not_called_done(fell: bool) -> None:
+    bench = brought()
+    context = bench.brain.context
+    context.mission.delivery.around = {"yellow can": standing([CAN], BASE, 10.0)["yellow can"]}
+    after = can(position=(1.08, 0.2, 0.63), tilt=math.pi / 2) if fell else CAN
+    seen = msgspec.structs.replace(after, seen_at=bench.now)
+    bench.send(topics.WORLD_OBJECTS, m.WorldObjects(t=bench.now, objects=[seen]))
+    look(bench, 2)
+    last = ended(bench)
+    assert last.outcome == ("failed" if fell else "delivered")
+    assert ("KNOCKED_OVER" in last.reason) is fell
+    assert ("COMPLETED" in bench.states()) is not fell
+    if fell:
+        bench.until(lambda: "the yellow can fell over" in bench.texts(SPEECH)[-1])
