@@ -26,8 +26,9 @@ TURN = math.radians(12)
 """Turn of a point's own direction against its wall's [rad]; chosen: the noise over some 15 cm of wall."""
 BIN, BAND = 0.01, 0.035
 """Width of the histogram's bins, and distance from a face of the points that count to it [m]: three times the noise."""
-GAP, SHORTEST = 0.40, 0.22
-"""Gap [m] that ends a face, which is less than a door, and length from which it is one: beside a door."""
+GAP, SHORTEST, CORE = 0.40, 0.20, 0.07
+"""Gap [m] that ends a face, which is less than a door; length from which it is one, beside a door; and of that the
+piece at least whose points have a direction, which the AROUND before either end have not."""
 TRIED, TRY, MOST = 3.0, 0.1, 6000
 """Directions that are tried around that of the normals, their step [degrees], and the points that they are tried on
 [count]: in 0.1 degrees a wall of 5 m moves by its noise."""
@@ -64,10 +65,9 @@ def find_walls(points: Array, eyes: Array, taken: list[Rectangle]) -> list[Wall]
         return []
     normals = _normals(points, eyes, weights)
     known = ~np.isnan(normals)
-    points, eyes, normals, weights = points[known], eyes[known], normals[known], weights[known]
-    if not len(points):
+    if not known.any():
         return []
-    yaw = _refined(points, weights, normals, main_direction(normals))
+    yaw = _refined(points[known], weights[known], normals[known], main_direction(normals[known]))
     c, s = math.cos(yaw), math.sin(yaw)
     turn = np.array([[c, -s], [s, c]])
     faces = _faces(points @ turn, eyes @ turn, normals - yaw)
@@ -149,17 +149,18 @@ def _faces(points: Array, eyes: Array, normals: Array) -> list[Face]:
         for sign in (1, -1):
             on = mine & (side == sign)
             faces = _faces_along(points[on, axis], points[on, across], axis, sign)
-            found += [_extended(f, points[:, axis], points[:, across]) for f in faces]
+            whole = (_extended(f, points[:, axis], points[:, across]) for f in faces)
+            found += [f for f in whole if f.high - f.low >= SHORTEST]
     return found
 
 
 def _faces_along(along: Array, across: Array, axis: int, sign: int) -> list[Face]:
     found: list[Face] = []
     left: NDArray[np.bool_] = np.ones(len(along), bool)
-    while left.sum() > DENSE * SHORTEST:
+    while left.sum() >= DENSE * CORE:
         edges = np.arange(across[left].min() - BIN, across[left].max() + 3 * BIN, BIN)
         count = np.convolve(np.histogram(across[left], edges)[0], np.ones(4), "same")
-        if count.max() < DENSE * SHORTEST:
+        if count.max() < DENSE * CORE:
             break
         middle = float(edges[int(np.argmax(count))])
         on = left & (np.abs(across - middle) < BAND)
@@ -173,7 +174,7 @@ def _faces_along(along: Array, across: Array, axis: int, sign: int) -> list[Face
         a, b = along[on][order], across[on][order]
         for run in np.split(np.arange(len(a)), np.nonzero(np.diff(a) > GAP)[0] + 1):
             low, high = float(a[run[0]]), float(a[run[-1]])
-            if high - low >= SHORTEST and len(run) >= DENSE * (high - low):
+            if high - low >= CORE and len(run) >= max(DENSE * (high - low), 3):
                 # Each piece at its own offset: two cupboards in a row need not stand in one line.
                 found.append(Face(axis, float(np.mean(b[run])), low, high, sign))
                 left &= ~(beside & (along > low) & (along < high))

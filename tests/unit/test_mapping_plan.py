@@ -1,5 +1,7 @@
 """The floor plan out of a grid: bins, furniture round a corner, rooms."""
 
+import math
+
 import numpy as np
 import pytest
 
@@ -103,6 +105,24 @@ def test_a_wall_that_was_seen_for_long_from_both_sides_is_one_wall() -> None:
     assert abs(wall.thickness - 0.12) < 0.01
     assert max(abs(wall.start[1]), abs(wall.end[1])) < 0.005
     assert sorted((wall.start[0], wall.end[0])) == pytest.approx([-1.94, 1.94], abs=0.05)
+
+
+def test_what_is_left_of_a_wall_beside_an_opening_is_one_up_to_its_corner() -> None:
+    """Of a jamb that reaches 24 cm into the room, some points at either end have no direction of their own."""
+    rng = np.random.default_rng(5)
+    ends, eyes = [], []
+    for eye in ((-1.8, 0.9), (1.6, 1.1)):
+        side = math.copysign(1.0, eye[0])
+        along = np.tile(np.arange(0.0, 0.24, 0.03), 30)
+        back = np.tile(np.arange(0.06, 2.5, 0.02), 30)
+        ends += [np.column_stack([0 * along + side * 0.06, along]), np.column_stack([side * back, 0 * back])]
+        eyes += [np.tile(eye, (len(along) + len(back), 1))]
+    points = np.concatenate(ends)
+    walls = find_walls(points + rng.normal(0.0, 0.01, points.shape), np.concatenate(eyes), [])
+    (jamb,) = (wall for wall in walls if abs(wall.start[0] - wall.end[0]) < 0.05)
+    assert jamb.thickness == pytest.approx(0.12, abs=0.02) and abs(jamb.start[0]) < 0.02
+    low, high = (jamb.outline.y - jamb.outline.length / 2, jamb.outline.y + jamb.outline.length / 2)
+    assert low < 0.06 and high == pytest.approx(0.22, abs=0.05)
 
 
 def test_the_rim_of_a_bin_is_no_shelf() -> None:
