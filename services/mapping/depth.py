@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from common import messages as m
+from common.approach import FOOTPRINT
 from common.geometry import Array, quat_matrix
 
 FLOOR_BAND = 0.06
@@ -108,7 +109,8 @@ class CameraModel:
         v = (np.arange(h) + 0.5 - image.cy) / image.fy
         local = np.stack([np.broadcast_to(u, (h, w)), np.broadcast_to(v[:, None], (h, w)), np.ones((h, w))], axis=-1)
         points = (local * depth[..., None]) @ quat_matrix(image.orientation).T + np.array(image.position)
-        seen = (depth > 0.0) & (depth < FAR)
+        # What is where the base stands is the robot, whatever the mask of its own pixels has missed at the arm's rim.
+        seen = (depth > 0.0) & (depth < FAR) & (np.hypot(points[..., 0], points[..., 1]) > FOOTPRINT)
         points = _levelled(points, seen, np.array(image.position))
         height = points[..., 2]
         noise = 3.0 * NOISE * np.square(depth)

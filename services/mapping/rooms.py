@@ -22,6 +22,9 @@ WIDEST = 5.0
 IN_LINE, END = 0.12, 0.08
 """How far the pieces of one wall lie out of line, and from its end what belongs to it [m]: half a wall's thickness, and
 the error of an end."""
+CORNER = 0.65
+"""Length [m] from which a wall across the end of another makes a corner with it: the largest bin, whose sides are faces
+like a wall's where the robot does not fit beside it, has less."""
 HIGH = 0.95
 """Height [m] from which on what stands there may be a wall behind furniture, of which the lidar sees nothing: above
 tables, counters and the backs of sofas."""
@@ -81,7 +84,8 @@ def _gap(own: Rectangle, other: Rectangle) -> float:
 
 def _meets(end: tuple[float, float], wall: Rectangle, own: Rectangle) -> bool:
     """True where a wall across runs past the end of one, which is then a corner and no jamb."""
-    return abs(math.sin(wall.yaw - own.yaw)) > 0.5 and wall.contains(*end, wall.width / 2 + END)
+    across = wall.length > CORNER and abs(math.sin(wall.yaw - own.yaw)) > 0.5
+    return across and wall.contains(*end, wall.width / 2 + END)
 
 
 def _direction(walls: Sequence[Wall]) -> float:

@@ -90,6 +90,8 @@ def test_rooms_hang_together_by_doors_and_lie_along_the_walls(turn: float) -> No
     assert len(parted(side)) == len(parted(side, near)) == 1, "what faces no other piece is no jamb"
     wide = ((0.0, -1.5), (0.0, -1.1)), ((0.0, 1.1), (0.0, 1.5))
     assert len(parted(side, *wide)) == 2, "an open plan with two jambs"
+    bin_side = ((-0.2, -1.1), (0.2, -1.1))
+    assert len(parted(side, *wide, bin_side)) == 2, "a bin beside a jamb makes no corner of it"
     corners = ((-1.0, -1.1), (1.0, -1.1)), ((-1.0, 1.1), (1.0, 1.1))
     assert len(parted(side, *wide, *corners)) == 1, "walls across end here: what is between is a corridor"
 

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from common import messages as m
+from common.approach import FOOTPRINT
 from common.geometry import matrix_quat
 from services.mapping.depth import CameraModel
 from services.mapping.grid import FREE, OCCUPIED, RESOLUTION, UNKNOWN, Grid
@@ -102,6 +103,18 @@ def test_the_robots_own_arm_is_left_out_once_it_was_seen_from_all_sides() -> Non
     for _ in range(CameraModel.MINIMUM):
         model.learn(body)
     assert model.learned and not (model.read(body).above[:, 0] < 0.9).any()
+
+
+def test_what_stands_where_the_base_is_is_the_robot() -> None:
+    body, pitch = image(), PITCH
+    depth = np.frombuffer(body.depth, "<u2").reshape(120, 160).copy()
+    along = 0.3 * math.cos(pitch) - 0.3 * (119.5 - 60) / 100.0 * math.sin(pitch)
+    assert EYE[0] + along < FOOTPRINT, "the lowest row, 0.3 m before the camera"
+    depth[118:, 70:90] = 300
+    body.depth = depth.tobytes()
+    picture = CameraModel().read(body)
+    for layer in (picture.above, picture.level, picture.low):
+        assert not len(layer) or np.hypot(layer[:, 0], layer[:, 1]).min() > FOOTPRINT - 0.02
 
 
 def room(grid: Grid, half: float = 2.0) -> None:
