@@ -56,6 +56,8 @@ def test_a_little_outside_its_range_a_kind_is_still_likely_and_far_outside_not()
         ((0.19, 0.07, 0.07), True),  # a milk carton
         ((0.12, 0.065, 0.085), False),  # tea bags
         ((0.10, 0.06, 0.15), False),
+        ((0.085, 0.05, 0.03), False),  # a dessert to be mixed
+        ((0.08, 0.04, 0.02), False),  # butter
     ],
 )
 def test_a_box_lies_on_its_largest_side_and_is_not_stood_on_its_narrow_end(
