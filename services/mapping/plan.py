@@ -7,10 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from common.approach import EDGE_DISTANCE, ROOM
+from common.approach import EDGE_DISTANCE, FOOTPRINT, ROOM
 from common.floor_plan import BIN_WALL, Box, Place, Receptacle, ReceptacleKind, Vec2, Wall
 from common.geometry import Rectangle
 from common.household import Household
+from services.mapping.bins import RIM_BAND, RING, find_bins
 from services.mapping.grid import FREE, RESOLUTION, Cells, Grid
 from services.mapping.rooms import find_rooms
 from services.mapping.scan import Array
@@ -26,11 +27,6 @@ SOLID = 0.35
 """Share of a surface's free sides at which the lidar meets a body below it, from which on it stands on no legs."""
 BED_SIDE, BED_HIGHEST, SOFA_HIGHEST, LOW_TABLE = 1.1, 0.70, 0.50, 0.52
 """Measures [m] that tell beds, sofas and low tables from tables. Source: DIN EN 1725, DIN 68890 and catalogues."""
-BIN_SIDE, BIN_HEIGHT = (0.15, 0.65), (0.18, 0.62)
-"""Width of the inside of an open bin, and height of its rim [m]."""
-RING, RIM_BAND, RIM_POINTS = 0.06, 0.04, 12
-"""How far around the hole its rim is looked for, the height that counts to it [m], and points without which there is
-none [count]: a cell, and the noise."""
 ASIDE = 3.0
 """How much farther a surface beside or behind the robot's home counts, when one is chosen to bring things to [-]."""
 WHOLE = 0.5
@@ -50,7 +46,7 @@ class Lidar(NamedTuple):
 
 def floor_plan(name: str, lidar: Lidar, grid: Grid, states: NDArray[np.uint8], level: Array, low: Array) -> Household:
     """The household of a mapped home; `level` and `low` (n, 3) [map] are points of level surfaces and of low things."""
-    bins = _bins(grid, low)
+    bins = find_bins(grid, low)
     surfaces = [s for s in _separate(find_surfaces(level)) if not _rim(s, bins)]
     reached = _reached(states)
     receptacles = _named(surfaces, bins, grid, reached)
@@ -91,14 +87,15 @@ def _rim(s: Surface, bins: list[tuple[Rectangle, float]]) -> bool:
 
 
 def _reached(states: NDArray[np.uint8]) -> Cells:
-    """Cells on which the robot's middle may be, connected with its home at the origin or else the largest such part."""
+    """Cells on which the robot's middle may stay, that it gets to from its home at the origin of frame `map`.
+
+    The way there may be as narrow as the robot: it was seen by driving it.
+    """
     distance = ndimage.distance_transform_edt(states == FREE) * RESOLUTION - RESOLUTION / 2
-    labels, count = ndimage.label(distance >= ROOM, np.ones((3, 3)))
-    if not count:
-        return np.zeros(states.shape, bool)
+    labels, _ = ndimage.label(distance >= FOOTPRINT - RESOLUTION / 2, np.ones((3, 3)))
     sizes = np.bincount(labels.ravel())
     sizes[0] = 0
-    found: Cells = labels == int(np.argmax(sizes))
+    found: Cells = (labels == int(np.argmax(sizes))) & (distance >= ROOM)
     return found
 
 
@@ -114,34 +111,6 @@ def approaches(outline: Rectangle, grid: Grid, reached: Cells, rim: float = 0.0)
         if grid.at(spots, reached).any():
             found.append((ax, ay))
     return tuple(found)
-
-
-def _bins(grid: Grid, low: Array) -> list[tuple[Rectangle, float]]:
-    """Outline of the inside and height of the rim of open bins: holes in a ring of something low."""
-    taken = grid.walls | grid.covered
-    labels, _ = ndimage.label(~taken)
-    found = []
-    for n, where in enumerate(ndimage.find_objects(labels), 1):
-        size = [(part.stop - part.start) * RESOLUTION for part in where]
-        if not (BIN_SIDE[0] <= min(size) and max(size) <= BIN_SIDE[1]):
-            continue
-        hole = labels == n
-        ring = ndimage.binary_dilation(hole) & taken
-        rim = float(np.median(grid.highest[ring]))
-        if not BIN_HEIGHT[0] <= rim <= BIN_HEIGHT[1]:
-            continue
-        rows, columns = np.nonzero(hole)
-        inside = fit_rectangle(grid.points((rows, columns))).grown(RESOLUTION / 2)
-        near = inside.grown(RING).signed_distances(low[:, 0], low[:, 1]) < 0.0
-        upper = low[near & (np.abs(low[:, 2] - rim) < RIM_BAND)]
-        if len(upper) < RIM_POINTS:
-            continue
-        height = float(np.quantile(upper[:, 2], 0.8))
-        within = fit_rectangle(upper[upper[:, 2] > height - RIM_BAND / 2, :2]).grown(-BIN_WALL)
-        # The rim is the better measure, unless only a part of it was seen from near.
-        whole = max(abs(within.length - inside.length), abs(within.width - inside.width)) < 2 * RESOLUTION
-        found.append((within if whole else inside, height))
-    return found
 
 
 def _kind(s: Surface, grid: Grid, sides: tuple[Vec2, ...]) -> tuple[str, ReceptacleKind]:

@@ -7,8 +7,9 @@ import pytest
 
 from common.floor_plan import Room, Wall
 from common.geometry import Rectangle
+from services.mapping.bins import find_bins
 from services.mapping.grid import FREE, OCCUPIED, UNKNOWN, Grid
-from services.mapping.plan import _bins, _filled, _rim, _separate
+from services.mapping.plan import _filled, _reached, _rim, _separate
 from services.mapping.rooms import find_rooms
 from services.mapping.surfaces import Surface
 from services.mapping.views import interesting
@@ -36,7 +37,7 @@ def grid_of(above: np.ndarray) -> Grid:
 
 def test_an_open_box_is_a_bin_with_its_measures() -> None:
     points = ring(0.51, -0.27, 0.34, 0.40)
-    ((outline, rim),) = _bins(grid_of(points), points)
+    ((outline, rim),) = find_bins(grid_of(points), points)
     assert abs(rim - 0.40) < 0.01
     assert np.hypot(outline.x - 0.51, outline.y + 0.27) < 0.01
     assert abs(outline.length - 0.34) < 0.02 and abs(outline.width - 0.34) < 0.02
@@ -44,14 +45,38 @@ def test_an_open_box_is_a_bin_with_its_measures() -> None:
 
 def test_a_bin_whose_rim_was_seen_in_part_is_as_large_as_its_hole() -> None:
     points = ring(0.51, -0.27, 0.34, 0.40)
-    ((outline, _),) = _bins(grid_of(points), points[points[:, 1] > -0.15])
+    ((outline, _),) = find_bins(grid_of(points), points[points[:, 1] > -0.15])
     assert np.hypot(outline.x - 0.51, outline.y + 0.27) < 0.04
     assert abs(outline.length - 0.34) < 0.10 and abs(outline.width - 0.34) < 0.10
 
 
+def test_a_bin_in_a_corner_has_two_high_sides_and_may_have_a_gap() -> None:
+    points = ring(0.51, -0.27, 0.34, 0.40)
+    up = np.arange(0.1, 1.2, 0.02)
+    walls = [(x, -0.445, z) for x in np.arange(-1.0, 0.7, 0.02) for z in up]
+    walls += [(0.695, y, z) for y in np.arange(-0.45, 1.0, 0.02) for z in up]
+    walls += [(x, -0.095, z) for x in np.arange(0.62, 0.7, 0.01) for z in up]
+    hidden = (np.abs(points[:, 0] - 0.475) < 0.03) & (points[:, 1] > -0.12)
+    for seen in (points, points[~hidden]):
+        ((outline, rim),) = find_bins(grid_of(np.concatenate([seen, walls])), seen)
+        assert abs(rim - 0.40) < 0.01
+        assert np.hypot(outline.x - 0.51, outline.y + 0.27) < 0.05
+
+
+def test_a_place_behind_a_narrow_passage_is_reached() -> None:
+    """The robot came through; where it stands it has to have room."""
+    states = np.full((60, 120), OCCUPIED, np.uint8)
+    states[2:58, 2:58], states[2:58, 62:118] = FREE, FREE
+    states[24:36, 58:62] = FREE
+    reached = _reached(states)
+    assert reached[30, 30] and reached[30, 90] and not reached[30, 60]
+    states[24:36, 58:62] = OCCUPIED
+    assert not (_reached(states)[30, 30] and _reached(states)[30, 90])
+
+
 def test_a_high_or_a_large_ring_is_no_bin() -> None:
     for points in (ring(0.0, 0.0, 0.34, 1.0), ring(0.0, 0.0, 1.2, 0.40)):
-        assert _bins(grid_of(points), points) == []
+        assert find_bins(grid_of(points), points) == []
 
 
 def test_what_goes_round_a_corner_is_cut() -> None:
