@@ -114,7 +114,9 @@ def _after(tag: str, about: str) -> tuple[list[WorldObject], str, History]:
     if tag not in ("last", "failed"):
         return flat, "", History()
     done = planned(about, FLAT, "", History())
-    label = next(s.object for s in done.steps if s.object)
+    label = next((s.object for s in done.steps if s.object), "")
+    if not label:
+        return flat, "", History(last=MissionOutcome(id="m", command=about, outcome="delivered", reason="", t=NOW - 5))
     origin = next(o.on for o in FLAT if o.label == label)
     target = next((s.target for s in done.steps if s.action == "place"), HOME.delivery)
     if tag == "failed":

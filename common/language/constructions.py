@@ -49,6 +49,11 @@ CONSTRUCTIONS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
          r"me|see|look|report|check|find out)(?: back)? (?:what "
          r"(?:you (?:can )?(?:see|find)|"
          r"is (?:there|in there|on it|in it|on there)|there is))(?: there)?", r"go and look in \1"),
+        (r"(?:do you have )?any (?:idea|clue) (where .+) (?:has|have|had) (?:got|gotten|gone)(?: to)?", r"\1 is"),
+        (r"(tidy|clean|clear|straighten)(?: up)? in ((?:the|my|our) \w+(?: \w+)?)", r"tidy \2"),
+        (rf"(?:can|could|would|might) {NP} (?:go|move|be put|be placed) ({TO_PLACE}|{_BESIDE}) {NP}", r"put \1 \2 \3"),
+        (rf"(?:i|we) would (?:rather|prefer)(?: it| that| if)* {NP} (?:were|was|is|stood|sat|went) "
+         rf"({TO_PLACE}|{_BESIDE}) {NP}", r"put \1 \2 \3"),
         (rf"(?:i|we) {_WANT} {NP} (?:to be |all |nice and )?(?:clean|tidy|clear|neat|spotless|tidied|cleaned|"
          rf"cleared|empty)", r"tidy \1"),
         (rf"(?:i|we) (?:search|seek|look|am searching|are searching) (?:for )?{NP}", r"find \1"),

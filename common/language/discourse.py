@@ -23,6 +23,17 @@ _FIRST = re.compile(
 _ALWAYS = re.compile(r"\b(?:always|from (?:now|today) on|in (?:the )?future|every time)\b")
 _BUT_FIRST = re.compile(r"^(?P<second>.+?),? but (?:first|before that|beforehand),? (?P<first>.+)$")
 _LATER = re.compile(r"^(?P<first>.+?),? (?P<word>before|after) (?:you(?: have)? |(?=\w+ing\b))(?P<second>.+)$")
+_GO_AND_ASK = re.compile(
+    r"\b(?:go|drive|walk|run|head|nip|pop|come|wander|hop|dash)(?: over| along| across| down| up)* (?:to|into|in) "
+    r"(?:the|my|our) \w+(?: \w+)? (?:and|to) (?:see|tell me|check|look|find out|report|let me know) "
+    r"(?=(?:what|which|how many|if|whether)\b.+ (?:on|in|at) \w+)"
+)
+"""The way to what is asked about, where the question says the place itself."""
+_EMPTIED = re.compile(
+    r"\b(?:empty|clear|clear off|clear out) (?P<from>(?:the|my|our) \w+(?: \w+)?)[,;.]? (?:and )?"
+    r"(?:then )?(?:put |move |take |carry |bring )?(?:everything|it all|all of it|the lot)(?: goes)? "
+    r"(?P<to>(?:on|onto|in|into|to) .+)$"
+)
 _NEXT = frozenset(
     {"me", "us", "it", "them", "to", "into", "back", "here", "all", "up", "out", "everything", "away", "down"}
 )
@@ -31,6 +42,7 @@ _NEXT = frozenset(
 def commands(text: str, is_place: IsPlace = lambda _: False) -> list[str]:
     """The clauses of a text in the order in which they are to be done, each without its politeness."""
     whole = without_fillers(expand(normalise(re.sub(r":(?=\s)", ",", text), ",;.!?")))
+    whole = _EMPTIED.sub(r"put everything on \g<from> \g<to>", _GO_AND_ASK.sub("tell me ", whole))
     if LONG_SPEECH.match(without_politeness(whole)):
         return cut_clauses(whole)
     parts = (piece for part in _in_order(whole) for piece in with_breaks(in_time(conditional(part))).split(" . "))

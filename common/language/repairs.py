@@ -83,7 +83,10 @@ _NOT_THERE = re.compile(
     r"(?:the|my|a) \w+(?: \w+)?$"
 )
 """Where something is to be, and where not."""
-_NOT_THAT_ONE = re.compile(r"^(?P<said>(?!not\b).+?),? (?:and |but )?not (?:the|a|my|that) (?:\w+ )?one$")
+_NOT_THAT_ONE = re.compile(
+    r"^(?P<said>(?!not\b).+?),? (?:and |but )?not (?P<one>(?:the|a|my|that) (?:\w+ )?one)"
+    r"(?P<more>(?:,? (?:and|or|nor)(?: not)? (?:the|a|my|that) (?:\w+ )?one)*)$"
+)
 _SEVERAL = re.compile(r"\b(?:all|every|everything|any|do|does|did|(?:the|my|those|these) (?:\w+ )?\w+s)\b")
 _WHERE_IT_IS = re.compile(
     r"^(?P<said>\w+ (?:me )?(?:the|my|a|an|that) [^,]+?),? (?:it|they) (?:is|are|should be|must be|lies|stands)"
@@ -119,7 +122,9 @@ def settled(text: str, is_place: IsPlace) -> str:
     text = _AFTERTHOUGHT.sub(r"\g<said>, i mean \g<meant>", text) if text.count(",") else text
     text = _with_noun(_NEITHER.sub(lambda found: filled(found["one"], found["other"]), text))
     if (found := _NOT_THAT_ONE.match(text)) and not _SEVERAL.search(found["said"]):
-        text = found["said"]
+        others = re.sub(r",? (?:and|nor) not | nor ", " or ", found["more"])
+        one_of = "" if "," in found["said"] else f" but not {found['one']}{others}"
+        text = f"{found['said']}{one_of}"
     found = _WHERE_IT_IS.match(bare := without_politeness(text))
     if found and verb_first(bare) and not PREPOSITIONS & set(found["said"].split()):
         text = f"{found['said']} {found['where']}"

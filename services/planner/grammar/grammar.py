@@ -9,11 +9,12 @@ from common.language.discourse import commands
 from common.language.exchange import noun_phrases, replaced
 from common.language.lexicon import COMMANDING
 from common.language.meaning import WORDS
-from common.language.normalise import Words, normalise
+from common.language.normalise import Words, enumeration, normalise
 from common.messages import ActionPlan, PlanStep, RejectedPlan
 from services.planner.choice_points import ChoicePoints, every
 from services.planner.commands import answers
 from services.planner.config import PlannerConfig
+from services.planner.grammar.accounting import as_command, unaccounted
 from services.planner.grammar.clause import read_clause
 from services.planner.grammar.named import note
 from services.planner.grammar.nearest import nearest
@@ -63,6 +64,11 @@ def plan(
         if len(steps) > config.max_steps:
             detail = f"that is too much at once: {len(steps)} steps"
             return ActionPlan(request_id=request_id, steps=[], source=SOURCE, detail=detail)
+        clauses = commands(command[:MAX_CHARACTERS], lambda words: bool(vocabulary.spot(words)))
+        if ignored := unaccounted(clauses, steps, world, vocabulary):
+            detail = f"{NOT_UNDERSTOOD} what {enumeration(list(map(repr, ignored)))} has to do with it"
+            meant = "" if literally else as_command(steps, world)
+            return ActionPlan(request_id=request_id, steps=[], source=SOURCE, detail=detail, suggestion=meant)
         return ActionPlan(request_id=request_id, steps=steps, source=SOURCE)
 
     if not rejected:

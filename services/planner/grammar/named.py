@@ -20,6 +20,13 @@ _PLACED = re.compile(
 )
 """A thing, and where it is said to be."""
 
+_WHEN = re.compile(
+    r" (?:earlier(?: on)?|yesterday|before|(?:earlier )?today|just now|"
+    r"a (?:moment|minute|while|bit) ago|last (?:night|time)|"
+    r"this (?:morning|afternoon|evening)|again|somewhere|i (?:think|believe|guess))$"
+)
+"""What is said behind a place and is no part of it."""
+
 
 def note(words: Words, builder: PlanBuilder) -> None:
     """What is told before a request: the thing and the place that it names last are what "it" and "there" mean."""
@@ -31,7 +38,7 @@ def note(words: Words, builder: PlanBuilder) -> None:
             with suppress(Refusal):
                 builder.last = [m.object for m in referents(builder, words[at:])]
                 return
-    if placed := _PLACED.search(" ".join(words)):  # "my mug is on the desk"
+    if placed := _PLACED.search(_WHEN.sub("", " ".join(words))):  # "my mug is on the desk"
         with suppress(Refusal):
             builder.last = [m.object for m in referents(builder, (*placed[1].split(), "on", *placed[2].split()))]
             return

@@ -58,9 +58,14 @@ def nearest(words: Words, vocabulary: Vocabulary) -> str:
     )
     towards = before is not None and before[1] in _TO
     for verbs, form, to in _FORMS:
-        known = {option.split()[0] for option in verbs.split(" | ")}
-        if (to and not towards) or not any(infinitive(w, known) in known for w in words):
+        if (to and not towards) or not any(_says(option.split(), words) for option in verbs.split(" | ")):
             continue
         if ("{thing}" in form) == bool(things) and ("{spot}" in form) <= bool(spots):
             return form.format(thing=(things or [""])[0], spot=(spots or [""])[0])
     return ""
+
+
+def _says(verb: list[str], words: Words) -> bool:
+    """Is a verb among the words, in any form and with all of its particles: `got rid of` and not `got`?"""
+    heads = {verb[0]}
+    return any(infinitive(w, heads) in heads and set(verb[1:]) <= set(words[at + 1 :]) for at, w in enumerate(words))
