@@ -103,6 +103,29 @@ def test_what_looked_right_from_afar_has_to_do_so_from_near(kinds: dict[str, flo
     assert bool(bench.count(topics.MANIPULATION_GOAL)) == grabbed
 
 
+@pytest.mark.parametrize("word", ["yes", "no"])
+def test_what_does_not_plainly_fit_from_near_twice_is_asked_about(word: str) -> None:
+    bench = planned()
+    for look in (1, 2):
+        answer(bench, look, label="red mug", id="object-3", position=GREEN)
+        goal = bench.next_goal(topics.NAV_GOAL, look)
+        bench.send(topics.WORLD_OBJECTS, m.WorldObjects(t=0.0, objects=[looking({"can": 0.8, "mug": 0.2})]))
+        bench.send(topics.NAVIGATION_FEEDBACK, m.NavigationFeedback(goal_id=goal.id, status="arrived"))
+    question = "say I see a red can on the desk. Is that the red mug you mean?"
+    bench.until(lambda: question in bench.texts(SPEECH))
+    assert not bench.count(topics.MANIPULATION_GOAL)
+    reply(bench, word)
+    if word == "no":
+        bench.until(lambda: bench.state.last is not None)
+        assert not bench.count(topics.MANIPULATION_GOAL)
+        return
+    assert answer(bench, 3, label="red can", id="object-3", position=GREEN).meant == "object-3"
+    goal = bench.next_goal(topics.NAV_GOAL, 3)
+    bench.send(topics.NAVIGATION_FEEDBACK, m.NavigationFeedback(goal_id=goal.id, status="arrived"))
+    grab = bench.next_goal(topics.MANIPULATION_GOAL, 1)
+    assert grab.object is not None and grab.object.label == "red can"
+
+
 def before(*objects: m.WorldObject) -> Bench:
     """In the fetch pipeline navigation stands before what it took for the red mug."""
     bench = Bench()

@@ -10,6 +10,7 @@ from services.brain.recoveries.recovery import Task
 from services.brain.steps.ask import AskQuestion
 from services.brain.steps.find import LocateObject
 from services.brain.steps.identify import ANOTHER, MOST_ASKED, ChooseCandidate, HearIdentity, candidate, whether
+from services.brain.steps.leaf import Settle
 from services.brain.tree.composites import Retry, Sequence
 
 
@@ -26,6 +27,12 @@ def ask_whether(ctx: Context, task: Task, least: float = LIKELY, near: bool = Fa
         LocateObject("look_for_the_one_meant", ctx, task.item),
     )
     return Retry("identify", ctx, ask, MOST_ASKED - 1, again=lambda: was_another(ctx) and may_be(ctx, least, near))
+
+
+def ask_and_grab(ctx: Context, task: Task) -> Behaviour:
+    """Ask about what stands before the robot and does not plainly fit; grab what is confirmed, it or another one."""
+    asked = ask_whether(ctx, task, LEAST)
+    return Sequence("ask_and_grab", asked, task.approach(), task.grab(), Settle("settle", ctx))
 
 
 def may_be(ctx: Context, least: float = LIKELY, near: bool = False) -> bool:

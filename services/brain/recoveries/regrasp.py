@@ -4,6 +4,7 @@ from py_trees.behaviour import Behaviour
 
 from services.brain.mission.context import Context
 from services.brain.recoveries.recovery import Task
+from services.brain.steps.identify import not_plain
 from services.brain.steps.leaf import Settle
 from services.brain.tree.composites import Retry, Sequence
 
@@ -11,7 +12,8 @@ from services.brain.tree.composites import Retry, Sequence
 def regrasp(ctx: Context, task: Task) -> Behaviour:
     """Find, approach and grab, `grab_retries` times."""
     again = Sequence("look_and_grab_again", task.find(), task.approach(), task.grab(), Settle("settle", ctx))
-    return Retry("regrasp", ctx, again, max(0, ctx.config.grab_retries - 1), again=lambda: grab_failed(ctx))
+    more = max(0, ctx.config.grab_retries - 1)
+    return Retry("regrasp", ctx, again, more, again=lambda: grab_failed(ctx) and not not_plain(ctx))
 
 
 def grab_failed(ctx: Context) -> bool:

@@ -4,12 +4,13 @@ To add one: write its two functions in a module beside this one, and a row here 
 """
 
 from services.brain.recoveries.clarify import ask_which, several_match
-from services.brain.recoveries.identify import ask_about_the_rest, ask_whether, may_be, remains_possible
+from services.brain.recoveries.identify import ask_about_the_rest, ask_and_grab, ask_whether, may_be, remains_possible
 from services.brain.recoveries.look_closer import look_closer, unsure
 from services.brain.recoveries.put_right import needs_replacing, put_right
 from services.brain.recoveries.recovery import Recovery
 from services.brain.recoveries.regrasp import grab_failed, regrasp
 from services.brain.recoveries.search import can_go_on, report_not_found, search
+from services.brain.steps.identify import not_plain
 
 AFTER_LOOKING = (
     Recovery("several_match", several_match, ask_which),
@@ -21,7 +22,10 @@ AFTER_LOOKING = (
 )
 """The object was not seen from where the robot stands, or several match."""
 
-AFTER_GRASPING = (Recovery("grab_failed", grab_failed, regrasp),)
+AFTER_GRASPING = (
+    Recovery("grab_failed", grab_failed, regrasp),
+    Recovery("not_plain", not_plain, ask_and_grab),
+)
 """The hand does not hold the object."""
 
 AFTER_PUTTING_DOWN = (Recovery("lost_or_not_where_it_belongs", needs_replacing, put_right),)

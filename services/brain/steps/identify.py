@@ -19,6 +19,9 @@ from services.brain.steps.leaf import Leaf
 ANOTHER = "ANOTHER_ONE"
 """Code of a person's word that the object is not the one that they asked for."""
 
+NOT_PLAIN = "NOT_PLAIN"
+"""Code of what from near does not plainly fit what was asked for."""
+
 MOST_ASKED = 4
 """Objects that a person is asked about in one mission (chosen: more is a nuisance)."""
 
@@ -107,9 +110,27 @@ class StillMeant(Leaf):
         # Words that are no looks, a taught name or a print, are not to be judged by looks.
         if now is None or item in ctx.mission.search.chosen or not 0.0 < likeness(item, now, ctx.io.household) < PLAIN:
             return Status.SUCCESS
-        detail = f"from near it is a {now.label}"
-        ctx.record_failure(Failure("GRABBING", "NOT_PLAIN", detail, f"I am not sure that it is the {item}."))
+        ctx.mission.search.perhaps = rated(ctx, item, world, now)
+        detail = f"from near it is {indefinite(now.label)}, and that not plainly"
+        ctx.record_failure(Failure("GRABBING", NOT_PLAIN, detail, f"I am not sure that it is the {item}."))
         return Status.FAILURE
+
+
+def not_plain(ctx: Context) -> bool:
+    """What stands before the robot may be what was asked for, and nobody was asked about it."""
+    failure = ctx.mission.failure
+    return failure is not None and failure.code == NOT_PLAIN and candidate(ctx, LEAST) is not None
+
+
+def rated(ctx: Context, item: str, world: m.WorldObjects, first: m.WorldObject | None = None) -> list[m.PossibleObject]:
+    """Those measured that may be what `item` says, the likeliest first, but one that is before all others `first`."""
+    fits = [(likeness(item, o, ctx.io.household), o) for o in world.objects if o.measured and not o.held]
+    ordered = sorted(fits, key=lambda row: (row[1] is not first, -row[0], row[1].label))
+    return [
+        m.PossibleObject(id=o.id, label=o.label, likeness=fit, position=o.position, on=o.on)
+        for fit, o in ordered
+        if fit >= LEAST
+    ]
 
 
 def survey(ctx: Context, item: str) -> bool:
@@ -118,12 +139,7 @@ def survey(ctx: Context, item: str) -> bool:
     known = ctx.known_object(item)
     if world is None or (known is not None and not known.measured) or item in search.confirmed:
         return False
-    rated = [(likeness(item, o, ctx.io.household), o) for o in world.objects if o.measured and not o.held]
-    search.perhaps = [
-        m.PossibleObject(id=o.id, label=o.label, likeness=fit, position=o.position, on=o.on)
-        for fit, o in sorted(rated, key=lambda row: (-row[0], row[1].label))
-        if fit >= LEAST
-    ]
+    search.perhaps = rated(ctx, item, world)
     return bool(search.perhaps) and search.perhaps[0].likeness < PLAIN
 
 
