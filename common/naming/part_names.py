@@ -23,6 +23,8 @@ SURFACES = frozenset({
     "workbench", "surface", "trolley", "washstand",
 })  # fmt: skip
 """Words that a surface's name ends with."""
+FOR_PEOPLE = frozenset({"bed", "sofa", "couch", "chair", "stool", "ottoman", "bench"})
+"""Surfaces that people lie or sit on."""
 PLACES = frozenset({
     "place", "spot", "corner", "door", "doorway", "window", "station", "dock",
 })  # fmt: skip
@@ -41,6 +43,12 @@ def kind_named(name: str) -> PartKind | None:
         if word in PLACES:
             return "place"
     return None
+
+
+def is_for_people(name: str) -> bool:
+    """True for `bed 2 in the bedroom`: things are put there only where there is nothing else."""
+    words = [word for word in name.split(" in ")[0].split() if not word.isdigit()]
+    return bool(words) and words[-1] in FOR_PEOPLE
 
 
 def with_part_names(plan: P) -> P:

@@ -7,6 +7,7 @@ import msgspec
 from common.floor_plan import Receptacle
 from common.language.normalise import enumeration
 from common.messages import AROUND, GRIPPER, PlanStep
+from common.naming.part_names import is_for_people
 from common.naming.words import Destination
 from services.planner.choice_points import ChoicePoints
 from services.planner.config import PlannerConfig
@@ -160,10 +161,10 @@ class PlanBuilder:
         raise Refusal(f"I do not know where the {item.label} goes")
 
     def in_room(self, room: str) -> Receptacle:
-        """A surface of a room to put something on."""
+        """A surface of a room to put something on, a bed or a sofa last."""
         found = self.vocabulary.surfaces(room)
         order = {kind: i for i, kind in enumerate(self.config.set_down)}
-        options = sorted((r for r in found if r.kind in order), key=lambda r: order[r.kind])
+        options = sorted((r for r in found if r.kind in order), key=lambda r: (is_for_people(r.name), order[r.kind]))
         if not options:
             raise Refusal(f"there is nothing in the {room} to put things on")
         return self.choices.pick(options)

@@ -322,6 +322,21 @@ def test_another_scene_has_another_vocabulary() -> None:
     assert "where the green can goes" in ask("throw away the green can", objects=can, scene=scene).detail
 
 
+def test_a_bed_is_where_things_are_put_only_where_there_is_nothing_else() -> None:
+    home = load_household("apartment")
+    scene = msgspec.structs.replace(
+        home,
+        receptacles=tuple(
+            msgspec.structs.replace(r, name="bed 2 in the kitchen") if r.name == "counter" else r
+            for r in home.receptacles
+        ),
+    )
+    assert ask("take the red mug to the kitchen", scene=scene).steps[-1].target == "kitchen table"
+    rest = tuple(r for r in scene.receptacles if r.name != "kitchen table")
+    only = msgspec.structs.replace(scene, receptacles=rest)
+    assert ask("take the red mug to the kitchen", scene=only).steps[-1].target == "bed 2 in the kitchen"
+
+
 def reject(plan: ActionPlan, step: int, reason: str) -> RejectedPlan:
     return RejectedPlan(steps=plan.steps, reason=reason, step=step)
 
