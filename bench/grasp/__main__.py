@@ -7,7 +7,7 @@ With `--unknown` the objects are drawn, lying or standing, alone or in a crowd, 
 import argparse
 import sys
 from collections import Counter
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 
 import numpy as np
 
@@ -47,10 +47,13 @@ def main() -> None:
     def drawn(shape: str, config: ManipulationConfig) -> Callable[[int], str]:
         return lambda seed: unlisted.trial(scene, shape, seed, config)
 
-    names: Iterable[str] = unlisted.SHAPES if args.unknown else (k for k in KINDS if k in specs)
+    names = list(unlisted.SHAPES) if args.unknown else [k for k in KINDS if k in specs]
+    chosen = args.kinds.split(",") if args.kinds else list(names)
+    if wrong := [kind for kind in chosen if kind.partition(" +")[0] not in {*names}]:
+        parser.error(f"there is no {', '.join(wrong)}; there are: {', '.join(names)}")
     make, failed = drawn if args.unknown else known, False
     print(f"{'kind':14} {'variant':14} {'ok':>5} {'of':>4} {'95 %':>12}  failures")
-    for kind in args.kinds.split(",") if args.kinds else names:
+    for kind in chosen:
         for name, config in configs.items():
             run = make(kind, config)
             outcomes = Counter(run(args.seed + n) for n in range(args.trials))

@@ -20,6 +20,7 @@ def seen(outcome: Outcome) -> list[str]:
     return [s for s in outcome.states if s != "WAITING"]
 
 
+@pytest.mark.timeout(420)  # by ray casting, five times as slow as with GL, on a machine that does other work
 def test_a_recorded_voice_brings_the_mug_home() -> None:
     robot = Robot(seed=7)  # in the next room: half the way of most
     outcome = fetch(robot, "red mug", 7, speech=read_wav(VOICE))
