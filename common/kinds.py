@@ -239,5 +239,5 @@ def laid_on_a_side(kind: str, size: tuple[float, float, float]) -> bool:
     stays as it was found.
     """
     row = kind_of(kind)
-    level = size[0] > LONGER * size[2] > LONGER * FLAT and LONGER * size[1] > size[2]
-    return row.upright and "face" in row.rests and level
+    level = size[0] > LONGER * size[2] and LONGER * size[1] > size[2]
+    return row.upright and "face" in row.rests and level and size[2] > FLAT

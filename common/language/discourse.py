@@ -28,12 +28,13 @@ _GO_AND_ASK = re.compile(
     r"(?:the|my|our) \w+(?: \w+)? (?:and|to) (?:see|tell me|check|look|find out|report|let me know) "
     r"(?=(?:what|which|how many|if|whether)\b.+ (?:on|in|at) \w+)"
 )
-"""The way to what is asked about, where the question says the place itself."""
+"""`go to the desk and see` before a question that names the place itself: the way there need not be said."""
 _EMPTIED = re.compile(
     r"\b(?:empty|clear|clear off|clear out) (?P<from>(?:the|my|our) \w+(?: \w+)?)[,;.]? (?:and )?"
     r"(?:then )?(?:put |move |take |carry |bring )?(?:everything|it all|all of it|the lot)(?: goes)? "
     r"(?P<to>(?:on|onto|in|into|to) .+)$"
 )
+"""`empty the table, everything onto the shelf`: what is taken from where, and where it goes."""
 _NEXT = frozenset(
     {"me", "us", "it", "them", "to", "into", "back", "here", "all", "up", "out", "everything", "away", "down"}
 )

@@ -83,7 +83,7 @@ COMMANDING: frozenset[str] = frozenset(
 ) - {"bin", "roll", "pop"}
 """First words that make a clause a command; without those that are rather nouns."""
 A_VERB = rf"(?:{'|'.join(sorted(COMMANDING))})"
-"""One of them, as a part of regular expressions."""
+"""Regular expression for one of the words in COMMANDING."""
 HANDLING: frozenset[str] = frozenset(
     option.split()[0]
     for verbs in (BRING, FETCH, PUT, MOVE, THROW, DISCARD, TIDY, "pick")

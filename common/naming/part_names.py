@@ -24,7 +24,7 @@ SURFACES = frozenset({
 })  # fmt: skip
 """Words that a surface's name ends with."""
 FOR_PEOPLE = frozenset({"bed", "sofa", "couch", "chair", "stool", "ottoman", "bench"})
-"""Surfaces that people lie or sit on."""
+"""Last words of the names of furniture that people lie or sit on."""
 PLACES = frozenset({
     "place", "spot", "corner", "door", "doorway", "window", "station", "dock",
 })  # fmt: skip
@@ -46,7 +46,7 @@ def kind_named(name: str) -> PartKind | None:
 
 
 def is_for_people(name: str) -> bool:
-    """True for `bed 2 in the bedroom`: things are put there only where there is nothing else."""
+    """Does a surface's name, as `bed 2 in the bedroom`, say that people lie or sit on it?"""
     words = [word for word in name.split(" in ")[0].split() if not word.isdigit()]
     return bool(words) and words[-1] in FOR_PEOPLE
 

@@ -13,6 +13,7 @@ from scipy import ndimage
 
 from common.floor_plan import Room, Wall
 from common.geometry import Rectangle
+from services.mapping.bins import BIN_SIDE
 from services.mapping.grid import FREE, OCCUPIED, RESOLUTION, Grid
 
 DOOR = 0.42
@@ -22,9 +23,9 @@ WIDEST = 5.0
 IN_LINE, END = 0.12, 0.08
 """How far the pieces of one wall lie out of line, and from its end what belongs to it [m]: half a wall's thickness, and
 the error of an end."""
-CORNER = 0.65
-"""Length [m] from which a wall across the end of another makes a corner with it: the largest bin, whose sides are faces
-like a wall's where the robot does not fit beside it, has less."""
+CORNER = BIN_SIDE[1]
+"""Length [m] from which a wall across the end of another makes a corner with it: more than the largest bin has, whose
+sides are faces like a wall's where the robot does not fit beside it."""
 HIGH = 0.95
 """Height [m] from which on what stands there may be a wall behind furniture, of which the lidar sees nothing: above
 tables, counters and the backs of sofas."""

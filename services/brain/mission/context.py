@@ -86,7 +86,7 @@ class Context:
 
     @property
     def objects(self) -> list[m.WorldObject]:
-        """All objects as last surveyed."""
+        """The objects of perception's last `world/objects`; [] before the first."""
         world = self.io.latest(topics.WORLD_OBJECTS)
         return world.objects if world else []
 

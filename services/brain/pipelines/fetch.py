@@ -175,11 +175,11 @@ def forget_release(ctx: Context) -> None:
 
 def object_ref(ctx: Context) -> m.ObjectRef | None:
     """Which object to grab, as last reported; none if the robot itself has moved it since."""
-    task, world = ctx.mission.task, ctx.io.latest(topics.WORLD_OBJECTS)
+    task = ctx.mission.task
     meant = ctx.mission.search.confirmed.get(task.item)
     known = ctx.known_object(task.label)
-    if meant is not None and world is not None:
-        known = next((o for o in world.objects if o.id == meant), None)
+    if meant is not None:
+        known = next((o for o in ctx.objects if o.id == meant), None)
     if known is None or known.seen_at <= ctx.gripper.put_down.get(known.label, -1.0):
         return None
     return reference_to(known)

@@ -30,7 +30,7 @@ def ask_whether(ctx: Context, task: Task, least: float = LIKELY, near: bool = Fa
 
 
 def ask_and_grab(ctx: Context, task: Task) -> Behaviour:
-    """Ask about what stands before the robot and does not plainly fit; grab what is confirmed, it or another one."""
+    """Ask which object is meant, the one before the robot first; approach and grab the one that the person confirms."""
     asked = ask_whether(ctx, task, LEAST)
     return Sequence("ask_and_grab", asked, task.approach(), task.grab(), Settle("settle", ctx))
 

@@ -124,8 +124,7 @@ class HearChoice(HearAnswer):
         assert isinstance(heard, m.SpeechResult)
         if reply(heard.text)[0] == "cancel":
             return self.refuse("CANCELLED", "", "All right, I will do nothing.")
-        world = self.ctx.io.latest(topics.WORLD_OBJECTS)
-        known = world.objects if world is not None else []
+        known = self.ctx.objects
         label = chosen(heard.text, mission.search.options, known, self.ctx.io.household)
         if label is None:
             return self.refuse("NOT_CONFIRMED", heard.text, self.spoken())

@@ -5,7 +5,6 @@ from collections.abc import Callable
 from py_trees.common import Status
 
 from common import messages as m
-from common import topics
 from common.language.normalise import indefinite
 from common.naming.likeness import LEAST, PLAIN, likeness
 from common.naming.names import unnumbered
@@ -20,7 +19,7 @@ ANOTHER = "ANOTHER_ONE"
 """Code of a person's word that the object is not the one that they asked for."""
 
 NOT_PLAIN = "NOT_PLAIN"
-"""Code of what from near does not plainly fit what was asked for."""
+"""Failure code: the object before the robot does not plainly fit the words that were said."""
 
 MOST_ASKED = 4
 """Objects that a person is asked about in one mission (chosen: more is a nuisance)."""
@@ -103,28 +102,28 @@ class StillMeant(Leaf):
 
     def update(self) -> Status:
         ctx, item = self.ctx, self._item
-        found, world = ctx.mission.search.found.get(item), ctx.io.latest(topics.WORLD_OBJECTS)
-        if found is None or not found.id or world is None or item in ctx.mission.search.confirmed:
+        found = ctx.mission.search.found.get(item)
+        if found is None or not found.id or item in ctx.mission.search.confirmed:
             return Status.SUCCESS
-        now = next((o for o in world.objects if o.id == found.id and o.measured), None)
+        now = next((o for o in ctx.objects if o.id == found.id and o.measured), None)
         # Words that are no looks, a taught name or a print, are not to be judged by looks.
         if now is None or item in ctx.mission.search.chosen or not 0.0 < likeness(item, now, ctx.io.household) < PLAIN:
             return Status.SUCCESS
-        ctx.mission.search.perhaps = rated(ctx, item, world, now)
+        ctx.mission.search.perhaps = rated(ctx, item, now)
         detail = f"from near it is {indefinite(now.label)}, and that not plainly"
         ctx.record_failure(Failure("GRABBING", NOT_PLAIN, detail, f"I am not sure that it is the {item}."))
         return Status.FAILURE
 
 
 def not_plain(ctx: Context) -> bool:
-    """What stands before the robot may be what was asked for, and nobody was asked about it."""
+    """The grasp failed as NOT_PLAIN, and there is an object that the person was not asked about yet."""
     failure = ctx.mission.failure
     return failure is not None and failure.code == NOT_PLAIN and candidate(ctx, LEAST) is not None
 
 
-def rated(ctx: Context, item: str, world: m.WorldObjects, first: m.WorldObject | None = None) -> list[m.PossibleObject]:
-    """Those measured that may be what `item` says, the likeliest first, but one that is before all others `first`."""
-    fits = [(likeness(item, o, ctx.io.household), o) for o in world.objects if o.measured and not o.held]
+def rated(ctx: Context, item: str, first: m.WorldObject | None = None) -> list[m.PossibleObject]:
+    """The measured objects that the words `item` may mean, the likeliest first; `first` goes before all others."""
+    fits = [(likeness(item, o, ctx.io.household), o) for o in ctx.objects if o.measured and not o.held]
     ordered = sorted(fits, key=lambda row: (row[1] is not first, -row[0], row[1].label))
     return [
         m.PossibleObject(id=o.id, label=o.label, likeness=fit, position=o.position, on=o.on)
@@ -135,11 +134,10 @@ def rated(ctx: Context, item: str, world: m.WorldObjects, first: m.WorldObject |
 
 def survey(ctx: Context, item: str) -> bool:
     """Whether what navigation has found by its words is none that is listed, and does not plainly fit them either."""
-    world, search = ctx.io.latest(topics.WORLD_OBJECTS), ctx.mission.search
-    known = ctx.known_object(item)
-    if world is None or (known is not None and not known.measured) or item in search.confirmed:
+    search, known = ctx.mission.search, ctx.known_object(item)
+    if (known is not None and not known.measured) or item in search.confirmed:
         return False
-    search.perhaps = rated(ctx, item, world)
+    search.perhaps = rated(ctx, item)
     return bool(search.perhaps) and search.perhaps[0].likeness < PLAIN
 
 

@@ -160,7 +160,7 @@ def record_finding(ctx: Context, finding: Finding, picture: bytes) -> Status:
 
 
 def nothing_fell(ctx: Context) -> bool:
-    """Nothing that stood around the hand has been seen to lie since; else that is what the mission failed by."""
+    """True unless perception has seen something fall that stood near the arm at work: recorded as KNOCKED_OVER."""
     mission = ctx.mission
     handled = {found.label for found in mission.search.found.values()} | {mission.delivery.put_down, mission.task.label}
     fallen = knocked_over(mission.delivery.around, ctx.objects, handled)

@@ -7,7 +7,7 @@ import msgspec
 
 from common.geometry import Pose2
 from common.messages import Vec3, WorldObject
-from services.brain.world.placement import TIPPED, UPSIDE_DOWN
+from services.brain.world.placement import TIPPED, lies
 
 AROUND = 1.5
 """Distance [m] from the base's middle up to which the arm may come by: its reach and its place on the base."""
@@ -30,7 +30,7 @@ class Stood(msgspec.Struct, frozen=True):
 
 
 def standing(objects: Iterable[WorldObject], base: Pose2, now: float) -> dict[str, Stood]:
-    """What stands within reach of the base, as seen lately, by its id, or label where it has none."""
+    """The things that stand within reach of the base by sightings of late; keys are ids, or labels of what has none."""
     found = {}
     for o in objects:
         near = math.dist(base[:2], o.position[:2]) <= AROUND and now - o.seen_at <= FRESH
@@ -40,8 +40,10 @@ def standing(objects: Iterable[WorldObject], base: Pose2, now: float) -> dict[st
 
 
 def knocked_over(stood: Mapping[str, Stood], objects: Iterable[WorldObject], handled: Iterable[str]) -> list[str]:
-    """Clauses about what stood and has been seen since to lie, or to have fallen off; `handled`: labels of what the
-    robot was to move."""
+    """What fell over or off its surface, in clauses for people: things that stood and were seen to lie since.
+
+    `handled`: labels of the things that the robot was to move, which are judged elsewhere.
+    """
     ours, found = set(handled), []
     for o in objects:
         was = stood.get(o.id or o.label)
@@ -49,6 +51,6 @@ def knocked_over(stood: Mapping[str, Stood], objects: Iterable[WorldObject], han
             continue
         if was.position[2] - o.position[2] > LOWER and o.on != was.on:
             found.append(f"the {o.label} fell off the {was.on}" if was.on else f"the {o.label} fell down")
-        elif TIPPED < o.tilt <= UPSIDE_DOWN and math.dist(o.position, was.position) > SHIFTED:
+        elif lies(o.tilt) and math.dist(o.position, was.position) > SHIFTED:
             found.append(f"the {o.label} fell over")
     return found

@@ -69,8 +69,8 @@ def judge_placement(
         return Finding("MISPLACED", f"the {label} is {where}, not on the {wanted.name}", measured)
     over = tilt > TIPPED or (closed and "upside down" in stands.rests)
     if stands.upright and over and not (on and on.depth):
-        lies = "lies on its side" if TIPPED < tilt <= UPSIDE_DOWN else "stands upside down"
-        return Finding("TOPPLED", f"the {label} {lies} {where}", measured)
+        how = "lies on its side" if lies(tilt) else "stands upside down"
+        return Finding("TOPPLED", f"the {label} {how} {where}", measured)
     unknown = not kind and spec is None and not stands.upright
     if unknown and stood - pose.size[2] > max(FELL, FELL_SHARE * stood) and not (on and on.depth):
         return Finding("TOPPLED", f"the {label} does not stand {where} as it did", measured)
@@ -80,6 +80,11 @@ def judge_placement(
             return Finding("MISPLACED", f"the {label} is {apart:.1f} m from the {beside.label}", measured)
         where += f" next to the {beside.label}"
     return Finding("", f"the {label} is {where}", measured)
+
+
+def lies(tilt: float) -> bool:
+    """Does an object of that tilt [rad] lie on its side, and neither stand nor stand upside down?"""
+    return TIPPED < tilt <= UPSIDE_DOWN
 
 
 def kind_meant(phrase: str, household: Household) -> str:

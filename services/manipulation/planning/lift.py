@@ -1,4 +1,4 @@
-"""How high what was grasped is lifted before the arm turns away with it: over what stands around it."""
+"""The lift of a grasped object above its neighbours, before the arm turns away with it."""
 
 from collections.abc import Sequence
 
@@ -18,13 +18,18 @@ SIDEWAYS = 0.12
 def over_neighbours(
     planner: Planner, target: Target, grasp: Grasp, around: Sequence[Obstacle], top: Array, lift: float
 ) -> list[Array]:
-    """Configurations (7,) straight on from `top`, the end of a lift by `lift` [m] with the object in hand, until it is
-    over what stands beside it; half as far where the arm cannot, and none where it needs not or cannot at all."""
+    """Joint path, a list of (7,), that lifts a held object on until it is above its neighbours.
+
+    It begins at `top`, the configuration at the end of a lift by `lift` [m]; half as far where the arm cannot, and
+    empty where there is no need or no way.
+    """
     tops = [o.center[2] + o.size[2] / 2 for o in around if o.label and _apart(o, target) < SIDEWAYS]
     more = max(tops, default=-np.inf) + OVER - target.bottom - lift
     begin = grasp.pose.moved(np.array([0.0, 0.0, lift]))
+    if more <= 0:
+        return []
     planner.arm.set_obstacles(around)
-    for share in (1.0, 0.5) if more > 0 else ():
+    for share in (1.0, 0.5):
         path = planner.straight(top, begin, begin.moved(np.array([0.0, 0.0, share * more])))
         if path is not None and not any(planner.arm.collides(q) for q in path):
             return path

@@ -52,6 +52,7 @@ def plan(
     vocabulary = Vocabulary(world, config)
 
     literally = any(not r.steps for r in rejected)
+    clauses = commands(command[:MAX_CHARACTERS], lambda words: bool(vocabulary.spot(words)))
 
     def run(choices: ChoicePoints) -> ActionPlan:
         try:
@@ -64,7 +65,6 @@ def plan(
         if len(steps) > config.max_steps:
             detail = f"that is too much at once: {len(steps)} steps"
             return ActionPlan(request_id=request_id, steps=[], source=SOURCE, detail=detail)
-        clauses = commands(command[:MAX_CHARACTERS], lambda words: bool(vocabulary.spot(words)))
         if ignored := unaccounted(clauses, steps, world, vocabulary):
             detail = f"{NOT_UNDERSTOOD} what {enumeration(list(map(repr, ignored)))} has to do with it"
             meant = "" if literally else as_command(steps, world)
