@@ -56,13 +56,11 @@ class Peer:
             raise AssertionError(f"{error}; heard {self.heard[key][-3:]}") from None
 
 
-def obey(peer: Peer, moving: bool) -> Any:
-    """A base that claims to reach every target at once; with `moving` its odometry goes there too."""
+def obey(peer: Peer) -> Any:
+    """A base that claims to reach every target at once; what it says of where it is comes from `_odometry`."""
 
     def reached(sample: zenoh.Sample) -> None:
         target = json.loads(sample.payload.to_string())
-        if moving:
-            peer.put("base/odom", t=1.0, x=target["x"], y=target["y"], theta=target["theta"])
         peer.put("base/goal_reached", reached=True, target_id=target["id"])
 
     return peer.session.declare_subscriber("base/target_pose", reached)
@@ -79,7 +77,7 @@ def test_navigation_drives_to_the_spot_and_waits_for_the_base(here: Site, odomet
             peer.wait("base/target_pose")
             peer.wait("brain/navigation_status", status="navigating")
             assert peer.heard["brain/navigation_status"][-1]["status"] == "navigating"
-        base = obey(peer, odometry == "jumps")
+        base = obey(peer)
         if odometry != "none":
             feed = _odometry(peer, here, odometry == "still")
         status = peer.wait("brain/navigation_status", status="arrived")
@@ -104,7 +102,7 @@ def test_navigation_takes_a_pose_and_answers_on_its_feedback(here: Site) -> None
         peer = Peer(session, "navigation_feedback", "navigation/pose", "brain/navigation_status", "base/target_pose")
         mug = {"label": "red mug", "position": [-1.5, -2.2, 0.55]}
         feed = _odometry(peer, here, False)
-        base = obey(peer, False)
+        base = obey(peer)
         # Which pose before the mug it chooses depends on where it is.
         peer.wait("navigation/pose")
         peer.put("nav_goal", id="m.1", attempt=1, x=-1.5, y=-1.6, theta=-1.5708, object=mug)
