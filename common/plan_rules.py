@@ -69,13 +69,7 @@ def _objection(step: PlanStep, held: str, found: set[str], world: KnownWorld, ho
         case "find":
             return _not_a_thing(step.object, world, household)
         case "grasp":
-            if not_a_thing := _not_a_thing(step.object, world, household):
-                return not_a_thing
-            if held:
-                return f"the hand already holds the {held}"
-            if _name(step.object, household) not in found:
-                return f"the {step.object} must be found before it can be grasped"
-            return _too_big(step.object, household)
+            return _no_grasp(step.object, held, found, world, household)
         case "place":
             if not held:
                 return "there is nothing in the hand to place"
@@ -100,6 +94,16 @@ def _objection(step: PlanStep, held: str, found: set[str], world: KnownWorld, ho
             return "" if household.receptacle(step.target) else f"there is no {step.target or 'place'} to put things on"
         case _:
             return ""
+
+
+def _no_grasp(thing: str, held: str, found: set[str], world: KnownWorld, household: Household) -> str:
+    if not_a_thing := _not_a_thing(thing, world, household):
+        return not_a_thing
+    if held:
+        return f"the hand already holds the {held}"
+    if _name(thing, household) not in found:
+        return f"the {thing} must be found before it can be grasped"
+    return _too_big(thing, household)
 
 
 def is_destination(name: str, household: Household) -> bool:

@@ -15,7 +15,7 @@ from services.planner.config import PlannerConfig
 from services.planner.grammar import grammar
 from services.planner.world import believed
 
-Verdict = Literal["right", "asked back", "not understood", "wrong"]
+Verdict = Literal["right", "asked rightly", "asked back", "not understood", "wrong"]
 DATA = Path(__file__).parent / "data"
 CONFIG = config.load("planner", PlannerConfig, config.DEFAULT_DIR, {})
 HOME = load_household("apartment")
@@ -163,11 +163,19 @@ def verdict(sentence: Sentence, found: Understood) -> Verdict:
         return "right"
     if sentence.right == "none()" and found.kind in ("cancel", "stop"):
         return "right"
+    if found.asks and _after_a_yes(sentence, found.asks):
+        return "asked rightly"
     if found.asks or (not acts and not found.kind and re.search(r"which|do you mean", found.reason)):
         return "asked back"
     if not acts and not found.kind:
         return "wrong" if found.steps and "answer" not in sentence.right else "not understood"
     return "wrong"
+
+
+def _after_a_yes(sentence: Sentence, asked: str) -> bool:
+    """Does what was asked about come to the right plan?"""
+    tag, _, about = sentence.context.partition(":")
+    return verdict(sentence, planned(asked, *_after(tag, about))) == "right"
 
 
 def _fits(reading: str, sentence: Sentence, found: Understood) -> bool:

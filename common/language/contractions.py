@@ -37,6 +37,7 @@ _CONTRACTIONS = tuple(
         # With the apostrophe, or without it where no other word is spelled so.
         (r"\b(what|where|who|there|that|how|here|which|when|why)'?s\b(?! up\b)", r"\1 is"),
         (r"\b(whatever|everything|anything|something|nobody)'?s\b", r"\1 is"),
+        (r"\b(it|she|he|\w{3,})'s (?=(?:got|gone|been|ended)\b)", r"\1 has "),
         (r"\b(it|she|he)'s\b", r"\1 is"),
         (r"^its (?=the|a|an|my|not|too|time|in|on)\b", "it is "),
         (r"\b(?:can't|cant|cannot)\b", "can not"),

@@ -73,7 +73,8 @@ _EASE = frozenset({
 _FREE = frozenset({"moment", "minute", "second", "time", "day", "hand"})
 """With which `if you have one moment` is no condition on a thing."""
 _QUESTIONS = frozenset({"what", "who", "how", "which", "where", "why", "whose"})
-_BAG = _SMALL | _ASKING | _DUTIES
+SMALL_TALK = _SMALL | _ASKING | _DUTIES
+"""Words that name nothing and ask for nothing in particular."""
 LONGEST = 20
 """Words of the longest frame (chosen)."""
 
@@ -83,7 +84,7 @@ def without_frame(text: str) -> str:
     words = [w.strip(",") for w in text.split()]
     for at in range(1, min(len(words), LONGEST)):
         before = words[:at]
-        if words[at - 1] not in _BAG:
+        if words[at - 1] not in SMALL_TALK:
             return text
         if _begins_command(words[at], before) and _is_frame(before):
             return " ".join((infinitive(words[at], COMMANDING), *text.split()[at + 1 :]))
@@ -113,7 +114,7 @@ def _is_occasion(words: list[str]) -> bool:
     ):
         return False
     asks = said & (_ASKING | _EASE | {"you"})
-    return bool(asks) and _BAG.issuperset(said) and ("not" not in said or bool(_HARMLESS_NOT & said))
+    return bool(asks) and SMALL_TALK.issuperset(said) and ("not" not in said or bool(_HARMLESS_NOT & said))
 
 
 def _begins_command(word: str, before: list[str]) -> bool:

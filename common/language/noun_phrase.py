@@ -112,6 +112,12 @@ _TAILS = (
     "of some sort",
     "somewhere",
     "around here",
+    "in the house",
+    "in the flat",
+    "in the apartment",
+    "in the whole house",
+    "at home",
+    "in the building",
 )
 _CLAUSES = (
     "that is lying",
@@ -153,6 +159,12 @@ _CLAUSES = (
     "lying",
     "standing",
     "that you see",
+    "you see",
+    "you can see",
+    "you saw",
+    "i see",
+    "i saw",
+    "we have",
 )
 
 

@@ -116,13 +116,15 @@ _FRAMES = (
 )
 """Frames of a request; what is asked for follows."""
 _ENDINGS = (
-    "(?:pretty )?please(?: with .+)?|right now|right away|now|quickly|at once|immediately|straight away|for me|"
+    "(?:it )?(?:does|do) not matter(?: which(?: one)?)?|(?:i|we) do not (?:mind|care) which(?: one)?|"
+    "(?:pretty )?please(?: with .+)?|right now|(?:right )?about now|right away|now|quickly|at once|"
+    "immediately|straight away|for me|"
     "at the moment|at all|at present|currently|"
     "for us|thanks|thank you"
     "(?: very much| so much| a lot)?|(?<!real )(?<! a )robot|tidybot|jarvis|then|anyway|and|will you please|okay|"
     "ok|alright|(?<=, )right|man|mate|"
     "buddy|dude|my friend|dear|love|darling|sir|real quick|really quick|quick|fast|if you please|or something|or so|"
-    "and stuff|(?:any (?:one|\\w+) will do|(?:it|i) (?:does|do) not (?:matter|mind|care) which(?: one)?|"
+    "and stuff|(?:any (?:one|\\w+) will do|"
     "whichever(?: is (?:closest|nearest|easiest))?)|(?:while|when) you are (?:at it|there|up|about it)|on "
     "(?:the|your) way(?: back)?|by the "
     "way|(?<!rooms )(?<!places )(?<!what )(?<!do )you know(?: "

@@ -71,7 +71,7 @@ _REFINEMENT = re.compile(
 """A thing, and which one of its kind."""
 _BARE_NOUN = re.compile(r"^\w+(?: \w+)?(?: please)?$")
 _SMALL = "me us and now where is are not no or what which then ok okay yes also i we you he she they so but want need"
-_NO_NOUN = frozenset(_SMALL.split()) | COMMANDING | DETERMINERS | PREPOSITIONS
+NO_NOUN = frozenset(_SMALL.split()) | COMMANDING | DETERMINERS | PREPOSITIONS
 """Words that no name of a thing has."""
 _GOES_ON = frozenset({"for", "except", "than", "and", "or", "then", "but", "not", "with", "to", "as"})
 """Before another thing, which is not the same as the one before."""
@@ -218,7 +218,7 @@ def _refined(text: str) -> str:
     if found is None or found["said"].split()[-1] in _GOES_ON:
         return text
     spans = noun_phrases(found["said"].split())
-    if not spans and _BARE_NOUN.match(found["said"]) and not _NO_NOUN & set(found["said"].split()):
+    if not spans and _BARE_NOUN.match(found["said"]) and not NO_NOUN & set(found["said"].split()):
         return f"{filled(found['one'], found['said'])}{found['rest'].lstrip(',')}"
     if not spans or spans[-1][1] - spans[-1][0] != 2:
         return text

@@ -1,5 +1,6 @@
 """One clause, or several joined by "and", on a plan under construction: as it stands, simplified, reworded."""
 
+from common.language.exchange import noun_phrases, replaced
 from common.language.lexicon import COMMANDING
 from common.language.meaning import VERBS
 from common.language.normalise import DETERMINERS, Words, infinitive
@@ -7,6 +8,7 @@ from common.language.noun_phrase import PLURAL_PRONOUNS, PRONOUNS
 from common.language.politeness import without_politeness
 from common.language.simplify import simplified
 from common.language.word_order import reworded
+from services.planner.grammar.phrases import Phrase, read
 from services.planner.grammar.rules import apply_first
 from services.planner.plan_builder import NOT_UNDERSTOOD, PlanBuilder, Refusal
 
@@ -23,15 +25,15 @@ class _Failure(Exception):
         self.at, self.reason = at, reason
 
 
-def read_clause(words: Words, builder: PlanBuilder, alone: bool, verb: str = "") -> None:
-    """One part of the sentence: one command, or several joined by "and"; `verb` is that of the part before."""
+def read_clause(words: Words, builder: PlanBuilder, alone: bool, said: Words = ()) -> None:
+    """One part of the sentence: one command, or several joined by "and"; `said` is the part before."""
     try:
-        _joined(words, builder, verb, 0, alone)
+        _joined(words, builder, said, 0, alone)
     except _Failure as failure:
         raise Refusal(failure.reason) from None
 
 
-def _joined(words: Words, builder: PlanBuilder, verb: str, at: int, alone: bool) -> None:
+def _joined(words: Words, builder: PlanBuilder, said: Words, at: int, alone: bool) -> None:
     """Carry out `words` as the longest command that works, followed by the rest; changes `builder` only on success."""
     cuts = [len(words), *(i for i in range(len(words) - 1, 0, -1) if words[i] == "and")]
     worst: _Failure | None = None
@@ -39,29 +41,29 @@ def _joined(words: Words, builder: PlanBuilder, verb: str, at: int, alone: bool)
         head, rest = words[:cut], words[cut + 1 :]
         trial = builder.fork()
         try:
-            _command(head, trial, verb, at, alone and not rest)
+            _command(head, trial, said, at, alone and not rest)
             if rest and not trial.unmet:
-                _joined(rest, trial, head[0] if head[0] in COMMANDING else "put", at + cut, False)
+                _joined(rest, trial, head if head[0] in COMMANDING else ("put", *head), at + cut, False)
         except _Failure as failure:
             worst = failure if worst is None or failure.at >= worst.at else worst
             continue
         builder.adopt(trial)
         return
     assert worst is not None
-    if not _run_on(words, builder, verb, at):
+    if not _run_on(words, builder, said, at):
         raise worst
 
 
-def _run_on(words: Words, builder: PlanBuilder, verb: str, at: int) -> bool:
+def _run_on(words: Words, builder: PlanBuilder, said: Words, at: int) -> bool:
     """Carry out `go to the kitchen look around come back`: commands one after the other without a word between them."""
     for cut in range(2, len(words)):
         if words[cut] not in _BEGINS or words[cut - 1] in _NO_END or words[0] not in VERBS:
             continue
         trial = builder.fork()
         try:
-            _command(words[:cut], trial, verb, at, False)
+            _command(words[:cut], trial, said, at, False)
             if not trial.unmet:
-                _joined(words[cut:], trial, words[0], at + cut, False)
+                _joined(words[cut:], trial, words[:cut], at + cut, False)
         except _Failure:
             continue
         builder.adopt(trial)
@@ -75,7 +77,7 @@ _NO_END = DETERMINERS | {"and", "to", "not", "you", "i", "we", "that", "please",
 """Words with which no command ends."""
 
 
-def _command(words: Words, builder: PlanBuilder, verb: str, at: int, alone: bool) -> None:
+def _command(words: Words, builder: PlanBuilder, before: Words, at: int, alone: bool) -> None:
     """The first form that fits the words and can be done; else the reason of the first that fits."""
     if not words:
         raise _Failure(at, "I did not hear a command")
@@ -84,14 +86,14 @@ def _command(words: Words, builder: PlanBuilder, verb: str, at: int, alone: bool
     if builder.effort[0] > MAX_EFFORT:
         raise Refusal("that is too long a sentence for me")
     words = (infinitive(words[0], VERBS), *words[1:])
-    reason = _apply(words, builder, verb, alone)
+    reason = _apply(words, builder, before, alone)
     if (
         reason is not None
         and (simple := simplified(words)) not in ((), words)
-        and _apply(simple, builder, verb, alone) is None
+        and _apply(simple, builder, before, alone) is None
     ):
         return
-    if reason is None or _apply_reworded(words, builder, verb, alone):
+    if reason is None or _apply_reworded(words, builder, before, alone):
         return
     if any(apply_first(other, builder, "told") is None for other in (words, *reworded(words, verbs_only=True))):
         return
@@ -99,19 +101,20 @@ def _command(words: Words, builder: PlanBuilder, verb: str, at: int, alone: bool
     raise _Failure(at if reason else at - 1, reason or f"{NOT_UNDERSTOOD} {said!r}")
 
 
-def _apply_reworded(words: Words, builder: PlanBuilder, verb: str, alone: bool) -> bool:
+def _apply_reworded(words: Words, builder: PlanBuilder, before: Words, alone: bool) -> bool:
     """Carry out the first rewriting of a clause that can be done; was there one?"""
     for other in reworded(words, builder.vocabulary.new_nouns):
         builder.effort[0] += 1
         if builder.effort[0] > MAX_EFFORT:
             raise Refusal("that is too long a sentence for me")
-        if _apply((infinitive(other[0], VERBS), *other[1:]), builder, verb, alone) is None:
+        if _apply((infinitive(other[0], VERBS), *other[1:]), builder, before, alone) is None:
             return True
     return False
 
 
-def _apply(words: Words, builder: PlanBuilder, verb: str, alone: bool) -> str | None:
-    """As `apply_first`, for a clause that may be a name alone or lack the `verb` of the one before it."""
+def _apply(words: Words, builder: PlanBuilder, before: Words, alone: bool) -> str | None:
+    """As `apply_first`, for a clause that may be a name alone or lack what was said in the one `before` it."""
+    verb = before[0] if before else ""
     reason = apply_first(words, builder, "command", "reply")
     if reason == "" and alone:
         return apply_first(words, builder, "name")
@@ -119,8 +122,19 @@ def _apply(words: Words, builder: PlanBuilder, verb: str, alone: bool) -> str | 
         return apply_first(("go", "to", *words), builder, "command")
     if reason == "" and verb and _is_thing(words, builder):
         # "put the mug on the table and the can on the counter": the verb is said once.
-        return apply_first((verb, *words), builder, "command", "reply")
+        return apply_first(_completed(words, before, builder), builder, "command", "reply")
     return reason
+
+
+def _completed(words: Words, said: Words, builder: PlanBuilder) -> Words:
+    """`the green one` after `put the white can in the bin` is to be put there, too; else with the verb alone."""
+    phrase = read(words, builder.vocabulary)
+    known = isinstance(phrase, Phrase) and not phrase.sense.new and not phrase.relation
+    spans = noun_phrases(list(said))
+    places = range(spans[0][1], len(said)) if known and spans else range(0)
+    if any(builder.vocabulary.spot(said[at:]) for at in places):
+        return tuple((replaced(" ".join(said), " ".join(words)) or " ".join(words)).split())
+    return said[0], *words
 
 
 def _is_thing(words: Words, builder: PlanBuilder) -> bool:

@@ -4,9 +4,9 @@ from collections.abc import Sequence
 from contextlib import suppress
 
 from common.language.breaks import is_statement, without_reason_behind
+from common.language.clauses import cut_clauses
 from common.language.contractions import expand
 from common.language.discourse import commands
-from common.language.exchange import noun_phrases, replaced
 from common.language.lexicon import COMMANDING
 from common.language.meaning import WORDS
 from common.language.normalise import Words, enumeration, normalise
@@ -16,8 +16,8 @@ from services.planner.commands import answers
 from services.planner.config import PlannerConfig
 from services.planner.grammar.accounting import as_command, unaccounted
 from services.planner.grammar.clause import read_clause
-from services.planner.grammar.named import note
-from services.planner.grammar.nearest import nearest
+from services.planner.grammar.guess import Guess, guess
+from services.planner.grammar.mention import note
 from services.planner.grammar.phrases import Phrase, read
 from services.planner.grammar.repetition import repeated
 from services.planner.grammar.spelling import corrected
@@ -30,6 +30,8 @@ MAX_CHARACTERS = 2000
 """Longest text that is read (chosen: a minute of speech has a thousand characters)."""
 MAX_WORDS = 60
 """Longest clause (chosen: the readings of a pattern grow with the square of its words)."""
+_LOST = (NOT_UNDERSTOOD, "I know no", "I did not hear", "you did not say", "I do not know wh")
+"""How reasons begin after which the words may mean something else."""
 
 
 class Suggestion(Refusal):
@@ -55,8 +57,9 @@ def plan(
     clauses = commands(command[:MAX_CHARACTERS], lambda words: bool(vocabulary.spot(words)))
 
     def run(choices: ChoicePoints) -> ActionPlan:
+        attempts = _Attempts(command, world, vocabulary, config, choices, done)
         try:
-            steps = _Attempts(command, world, vocabulary, config, choices, done).steps(literally)
+            steps = attempts.steps(literally)
         except LookFirst as look:
             return ActionPlan(request_id=request_id, steps=look.steps, source=SOURCE, again=True)
         except Refusal as refusal:
@@ -67,6 +70,9 @@ def plan(
             return ActionPlan(request_id=request_id, steps=[], source=SOURCE, detail=detail)
         if ignored := unaccounted(clauses, steps, world, vocabulary):
             detail = f"{NOT_UNDERSTOOD} what {enumeration(list(map(repr, ignored)))} has to do with it"
+            other = None if literally else attempts.guessed()
+            if other and not other.answers and not unaccounted(clauses, other.steps, world, vocabulary):
+                steps = other.steps
             meant = "" if literally else as_command(steps, world)
             return ActionPlan(request_id=request_id, steps=[], source=SOURCE, detail=detail, suggestion=meant)
         return ActionPlan(request_id=request_id, steps=steps, source=SOURCE)
@@ -133,24 +139,30 @@ class _Attempts:
                 with suppress(Refusal):
                     return self._read(self._command, new_nouns=True)
             self._choices.taken = taken
-            if not literally and (meant := self._nearest()):
-                raise Suggestion(str(refusal), meant) from None
-            raise
+            if not str(refusal).startswith(_LOST) or (meant := self.guessed()) is None:
+                raise
+            if meant.answers:  # an answer moves nothing, so there is nothing to ask about first
+                return meant.steps
+            if literally:
+                raise
+            plainly = as_command(meant.steps, self._world) or ", then ".join(meant.texts)
+            raise Suggestion(str(refusal), plainly) from None
 
     def _command_words(self) -> str:
         """What was said with its marks, in the spelling of the grammar."""
         return expand(normalise(self._command[:MAX_CHARACTERS], ",;.!?"))
 
-    def _nearest(self) -> str:
-        """A plain command that can be done and is near to the words; "" when there is none."""
-        text = expand(normalise(self._command[:MAX_CHARACTERS]))
-        meant = nearest(tuple(text.split()), self._vocabulary)
-        try:
-            return meant if meant and self._read(meant) else ""
-        except LookFirst:  # it is asked about before anything is looked at
-            return meant
-        except Refusal:
-            return ""
+    def guessed(self) -> Guess | None:
+        """What the words may mean that no construction fits, as it can be done."""
+        whole = [clause for part in self._command_words().split(".") for clause in cut_clauses(part)]
+        for clauses in (commands(self._command[:MAX_CHARACTERS], self._is_place), whole):
+            builder = PlanBuilder(self._world.copy(), self._vocabulary, self._config, self._choices.fork())
+            with suppress(Refusal):
+                return guess(clauses, builder)
+        return None
+
+    def _is_place(self, words: Words) -> bool:
+        return bool(self._vocabulary.spot(words))
 
     def _read(self, text: str, new_nouns: bool = False) -> list[PlanStep]:
         builder = PlanBuilder(self._world.copy(), self._vocabulary, self._config, self._choices.fork(), self._done)
@@ -179,18 +191,13 @@ class _Attempts:
         return steps
 
 
-def _completed(words: Words, said: Words, builder: PlanBuilder) -> Words:
-    """`the green one` after `put the white can in the bin` is to be put there, too."""
-    phrase = read(words, builder.vocabulary)
-    spans = noun_phrases(list(said))
-    if not isinstance(phrase, Phrase) or phrase.sense.new or phrase.relation or not spans or spans[0][1] >= len(said):
-        return words
-    if not any(builder.vocabulary.spot(said[at:]) for at in range(spans[0][1], len(said))):
-        return words
-    return tuple((replaced(" ".join(said), " ".join(words)) or " ".join(words)).split())
+def _sentences(command: str, builder: PlanBuilder) -> list[str]:
+    """The clauses of a command, what is to be repeated in full.
 
+    Raises:
+        Refusal: there is none, or it is too long.
+    """
 
-def _steps(command: str, builder: PlanBuilder) -> list[PlanStep]:
     def is_place(words: Words) -> bool:
         return bool(builder.vocabulary.spot(words))
 
@@ -202,10 +209,14 @@ def _steps(command: str, builder: PlanBuilder) -> list[PlanStep]:
         raise Refusal("I did not hear a command")
     if len(command) > MAX_CHARACTERS or any(len(s.split()) > MAX_WORDS for s in sentences):
         raise Refusal("that is too long a sentence for me")
+    return sentences
+
+
+def _steps(command: str, builder: PlanBuilder) -> list[PlanStep]:
+    sentences = _sentences(command, builder)
     first = read(tuple(sentences[0].split()), builder.vocabulary)
     names = len(sentences) > 1 and isinstance(first, Phrase) and not first.sense.new
-    verb = "bring" if names else ""
-    said: Words = ()
+    said: Words = ("bring",) if names else ()
     for number, sentence in enumerate(sentences):
         words = tuple(sentence.split())
         following = sentences[number + 1].split() if number + 1 < len(sentences) else []
@@ -218,14 +229,13 @@ def _steps(command: str, builder: PlanBuilder) -> list[PlanStep]:
             builder.unmet, words = "", words[1:]
         if builder.unmet or not words:
             continue
-        words = _completed(words, said, builder)
         try:
-            read_clause(words, builder, alone=len(sentences) == 1, verb=verb)
+            read_clause(words, builder, alone=len(sentences) == 1, said=said)
         except Refusal:
             if number + 1 == len(sentences) or not is_statement(sentence):
                 raise
             note(words, builder)
-        verb, said = words[0] if words[0] in COMMANDING else "bring", words
+        said = words if words[0] in COMMANDING else ("bring", *words)
     if builder.unmet:
         builder.say(builder.unmet)
     if builder.collecting:

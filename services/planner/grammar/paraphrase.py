@@ -16,7 +16,7 @@ import numpy.typing as npt
 from common.language.clauses import without_fillers
 from common.language.contractions import expand
 from common.language.normalise import normalise
-from services.planner.grammar.named import named
+from services.planner.grammar.chunks import named
 from services.planner.grammar.vocabulary import Vocabulary
 
 Array = npt.NDArray[np.float32]

@@ -23,15 +23,9 @@ _SMALL = (
     " which while who why will with without would yes you yourself again ago bit bring fetch get give go going help"
     " like make put take tell thanks please want need try yet now just only also else later soon tomorrow yesterday"
     " today tonight never ever always others"
+    " about around through across along against during yourself self"
     " goes belongs gets lying standing closest might should must ought said says told asked teh"
 )
-_ABSTRACT = (
-    "break care lost rest hand kiss hug call lift ride chance look smile clue sign idea reason "
-    "answer example name joke"
-    " number party seat way colour color matter difference sort type story attention horses time effort"
-    " shot turn word note favour favor permission advice truth silence peace easy"
-)
-"""Words that are no things: `give me a break` is nothing to be fetched."""
 LIVING = frozenset(
     {
         "cat", "dog", "baby", "kid", "kids", "child", "children", "person", "people", "man", "woman", "boy", "girl",
@@ -42,7 +36,7 @@ LIVING = frozenset(
     }
 )  # fmt: skip
 """Who is never picked up."""
-NO_NOUN = DETERMINERS | frozenset(_SMALL.split()) | frozenset(_ABSTRACT.split())
+NO_NOUN = DETERMINERS | frozenset(_SMALL.split())
 """Words that are part of no thing's name."""
 HERE = frozenset({"me", "us", "here", "home", "start", "over here", "back"})
 

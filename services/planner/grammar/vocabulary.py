@@ -12,6 +12,7 @@ from common.language.noun_phrase import UNSEEN, WHICH
 from common.language.quantities import UNITS
 from common.naming.names import normalise as unmarked
 from services.planner.config import PlannerConfig
+from services.planner.grammar.abstract_nouns import ABSTRACT
 from services.planner.grammar.senses import (
     ANY,
     HERE,
@@ -113,8 +114,8 @@ class Vocabulary:
             if sense := self._nouns.get(form):
                 return sense, form, plural or form in self._mass
         head, _, last = phrase.rpartition(" ")
-        if head and last.removesuffix("s") in ANY and (named := self.noun(head)) is not None:
-            return named  # that bottle thing
+        if head and last.removesuffix("s") in ANY and head not in self.colours and (named := self.noun(head)):
+            return named  # that bottle thing; the orange thing is no orange
         if phrase.startswith("anything ") and (sense := self._nouns.get(phrase.replace("any", "some", 1))):
             return sense, phrase, False
         whole, found, part = phrase.partition(" of ")
@@ -135,7 +136,7 @@ class Vocabulary:
             return None
         if words[1:2] == ("of",) and words[0] in self.kinds:
             words = (words[0], *words[2:])
-        if not words or NO_NOUN & set(words):
+        if not words or NO_NOUN & set(words) or is_abstract(words):
             return None
         acts = words[-1].endswith("ed") or infinitive(words[-1], COMMANDING) in COMMANDING
         if acts or any(
@@ -224,6 +225,12 @@ class Vocabulary:
 
 def _coloured(r: Receptacle, colour: str, rest: str) -> bool:
     return r.colour == colour and rest in (r.kind, *r.name.split(), r.name, *r.aliases)
+
+
+def is_abstract(words: Words) -> bool:
+    """Is the head of a noun phrase nothing that could be carried?"""
+    head = words[words.index("of") - 1] if "of" in words[1:] else words[-1]
+    return any(form in ABSTRACT for form, _ in _singulars(head))
 
 
 def _singulars(phrase: str) -> list[tuple[str, bool]]:

@@ -2,6 +2,7 @@
 
 import msgspec
 
+from common.kinds import KINDS
 from common.language.normalise import DETERMINERS, Words, enumeration, without_determiners
 from common.language.noun_phrase import NUMBERS, PLURAL_PRONOUNS, PRONOUNS, Which
 from services.planner.grammar.phrases import Phrase, read
@@ -97,7 +98,7 @@ def _resolve(builder: PlanBuilder, phrase: Phrase, prefer_held: bool) -> list[Re
     if held and fits(held) and not phrase.relation and phrase.which != "other":
         seen = [held, *seen]
     specs = [t for t in builder.world.specs if fits(t)]
-    if not seen and not specs and builder.vocabulary.new_nouns and not sense.every:
+    if not seen and not specs and builder.vocabulary.new_nouns and (phrase.colours or not sense.every):
         return _never_seen(builder, phrase)
     if not seen and not specs:
         raise Refusal(unknown(builder, tuple(phrase.text.split()), " ".join((*phrase.colours, phrase.noun))))
@@ -118,10 +119,12 @@ def _new(builder: PlanBuilder, phrase: Phrase) -> Referent:
 
 
 def _never_seen(builder: PlanBuilder, phrase: Phrase) -> list[Referent]:
-    """Of a kind whose word is known, but of which none is listed or seen: one is looked for, all are not."""
+    """Of a kind whose word is known, or of a colour, but of which none is listed or seen: one is looked for, all are
+    not.
+    """
     if phrase.count != 1:
         builder.look_first(builder.vocabulary.surfaces(), f"I have seen no {phrase.singular} yet")
-    if phrase.sense.kinds and phrase.singular in builder.vocabulary.groups:
+    if phrase.sense.kinds and phrase.singular in builder.vocabulary.groups and phrase.singular not in KINDS:
         phrase = msgspec.structs.replace(phrase, singular=builder.choices.pick(sorted(phrase.sense.kinds)))
     return [_new(builder, phrase)]
 

@@ -1,0 +1,65 @@
+"""The known things and places that any words name, whether or not the words are understood. Pure."""
+
+from typing import Literal, NamedTuple
+
+from common.language.normalise import DETERMINERS, Words
+from services.planner.grammar.phrases import Phrase, read
+from services.planner.grammar.senses import NO_NOUN
+from services.planner.grammar.vocabulary import Vocabulary
+
+MOST_WORDS = 6
+"""Words of the longest phrase for a thing or a place (chosen)."""
+POINTING = ("it", "them", "those")
+"""Pronouns that stand for things."""
+_NEVER_FIRST = NO_NOUN - DETERMINERS - {"all", "both", "every", "each"}
+"""Words that no phrase for a thing or a place begins with."""
+
+
+class Chunk(NamedTuple):
+    """Words from `begin` to before `end`, which name a thing or a place; `text` has its article."""
+
+    kind: Literal["thing", "spot"]
+    text: str
+    begin: int
+    end: int
+
+
+def chunks(words: Words, vocabulary: Vocabulary, pronouns: bool = False) -> list[Chunk]:
+    """Phrases for known things and for places among the words, the longest at each spot; pronouns on request."""
+    found: list[Chunk] = []
+    at = 0
+    while at < len(words):
+        chunk = _longest(words, at, vocabulary)
+        if chunk is None and pronouns and words[at] in POINTING:
+            chunk = Chunk("thing", words[at], at, at + 1)
+        found += [chunk] if chunk else []
+        at = chunk.end if chunk else at + 1
+    return found
+
+
+def _longest(words: Words, at: int, vocabulary: Vocabulary) -> Chunk | None:
+    if words[at] in _NEVER_FIRST:
+        return None
+    for end in range(min(len(words), at + MOST_WORDS), at, -1):
+        span = words[at:end]
+        bare = tuple(w for w in span if w not in DETERMINERS)
+        if not bare or span[-1] in DETERMINERS:
+            continue
+        if (places := vocabulary.spot(bare)) and not places[0].home:
+            return Chunk("spot", f"the {' '.join(bare)}", at, end)
+        if isinstance(phrase := read(span, vocabulary), Phrase) and _plain(phrase):
+            text = " ".join(span)
+            return Chunk("thing", text if span[0] in DETERMINERS or phrase.count != 1 else f"the {text}", at, end)
+    return None
+
+
+def _plain(phrase: Phrase) -> bool:
+    """Does it name a kind or a thing, without what that stands next to?"""
+    of_ones = phrase.sense.every and phrase.noun in ("one", "ones") and bool(phrase.colours or phrase.which)
+    return (not phrase.sense.every or of_ones) and not phrase.relation
+
+
+def named(words: Words, vocabulary: Vocabulary) -> tuple[list[str], list[str]]:
+    """The phrases for known things, and those for places."""
+    found = chunks(words, vocabulary)
+    return [c.text for c in found if c.kind == "thing"], [c.text for c in found if c.kind == "spot"]
