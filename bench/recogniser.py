@@ -1,7 +1,7 @@
 """What rebuilding the recogniser's decoder is worth: the networks as they ship against the ones that the robot runs.
 
-`shipped`: both ORT files of the wheel as they are. `packed`: the encoder with its weights unpacked once, the decoder
-rebuilt with packed weights (`services/speech/recognise/decoder.py`). Each in a process of its own: CPU time to load,
+`shipped`: both ORT files of the wheel as they are. `packed`: their matrices stay packed, and the decoder is rebuilt
+(`services/speech/recognise/decoder.py`). Each in a process of its own: CPU time to load,
 memory that is its own after the last utterance and at most, CPU seconds per second of sound, sentences exactly right.
 """
 

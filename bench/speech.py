@@ -1,9 +1,15 @@
 """Recognition on recorded commands, through the code that the service and `tidybot transcribe` use.
 
 Per kind of recording and noise: sentences that are exactly right and accepted; exactly right whatever the verdict; the
-peer, which is the same model without the grammar; accepted at all; wake word heard; CPU seconds per second of sound.
-`python -m bench.speech --limit 0` takes all recordings; `--shard 2/4` a quarter of them. The sentences fall into two
-halves: parameters are tuned on one (`--half tuning`), the other one (`--half held`) shows what that is worth.
+peer, which is the same model without the grammar; accepted at all; taken for another sentence without a question
+(`wrong`); wake word heard; CPU seconds per second of sound. `python -m bench.speech --limit 0` takes all recordings;
+`--shard 2/4` a quarter of them, `--voice NAME` those of one voice. `--noise babble --snr 10` mixes the clean ones with
+noise. The sentences fall into two halves: parameters are tuned on one (`--half tuning`), the other one (`--half held`)
+shows what that is worth.
+
+`--everyday 60` takes everyday sentences of tests/data by lot (`--seed`) in the robot's own voice instead, or the
+recordings of kind `everyday` of `--corpus`, and tells in how many the planner makes of what was heard what it makes of
+the sentence.
 """
 
 import argparse
@@ -12,27 +18,37 @@ import hashlib
 import random
 import sys
 import time
+import zlib
+from collections import Counter
 from pathlib import Path
 
 import psutil  # type: ignore[import-untyped]
 
+from bench.speech_everyday import OUTCOMES, SURE, Outcome, drawn, outcome
+from bench.speech_noise import KINDS, noisy
 from common import config
 from common.household import load_household
 from common.language.normalise import normalise
-from services.speech.audio import RATE, read_wav
+from evaluation.person.voice import utter
+from evaluation.report.statistics import wilson
+from services.speech.audio import RATE, Samples, read_wav
 from services.speech.config import SpeechConfig
-from services.speech.recognise.front_end import without_wake
+from services.speech.recognise.free_text import without_wake
 from services.speech.transcribe import Reader
 
 ROWS = (
     ("cmd", "clean"), ("cmd", "10"), ("wakecmd", "clean"), ("wakecmd", "10"), ("wake", ""), ("near", ""), ("oog", ""),
 )  # fmt: skip
+TITLES = "recordings        n   right    (95 %)   exact    free  accepted  wrong   wake  CPU/s"
+NOISY_ROWS = (("cmd", "clean"), ("wakecmd", "clean"), ("oog", "clean"))
+COLUMNS = ("right", "exact", "free", "accepted", "wrong", "wake")
+Row = dict[str, str]
 CORPUS = Path(__file__).resolve().parents[2] / "shared" / "speech"
 NOTHING = 2
 """Exit status when nothing could be measured."""
 MISSING = """bench.speech: no recordings: {}/manifest.tsv is not there, so nothing was measured.
 Point --corpus at a directory of WAV files (16 kHz mono) with a manifest.tsv, tab-separated, with the columns
-file, text, voice, snr (clean or dB) and kind (cmd, wakecmd, wake, near, oog). The shared recordings belong in
+file, text, voice, snr (clean or dB) and kind (cmd, wakecmd, wake, near, oog, everyday). The shared recordings belong in
 shared/speech beside the checkout; your own can be made with any recorder."""
 
 
@@ -43,9 +59,13 @@ def main() -> int:
     parser.add_argument("--only", default="", help="rows whose name begins like this, such as 'cmd 10'")
     parser.add_argument("--half", choices=("tuning", "held"), help="only that half of the sentences")
     parser.add_argument("--shard", default="1/1", help="such as 2/4: the second quarter of the recordings")
+    parser.add_argument("--voice", default="", help="only recordings of that voice")
+    parser.add_argument("--noise", choices=KINDS, help="mix the clean recordings with noise")
+    parser.add_argument("--snr", type=float, default=10.0, help="how far the noise is below the words [dB]")
+    parser.add_argument("--everyday", type=int, default=0, metavar="N", help="that many everyday sentences instead")
+    parser.add_argument("--seed", type=int, default=0, help="of the lot of everyday sentences")
     parser.add_argument("--errors", action="store_true", help="print what was misheard")
     args = parser.parse_args()
-    shard, shards = (int(part) for part in args.shard.split("/"))
     manifest = args.corpus / "manifest.tsv"
     if not manifest.exists():
         print(MISSING.format(args.corpus), file=sys.stderr)
@@ -55,32 +75,82 @@ def main() -> int:
     with manifest.open(encoding="utf-8") as file:
         recordings = list(csv.DictReader(file, delimiter="\t"))
     random.Random(0).shuffle(recordings)
-    print(f"{'recordings':14} {'n':>4} {'right':>7} {'exact':>7} {'free':>7} {'accepted':>9} {'wake':>6} {'CPU/s':>7}")
-    for kind, noise in ROWS:
-        name = f"{kind} {noise or 'all'}"
+    mix = Mixer(args, recordings)
+    recordings = [r for r in recordings if args.voice in ("", r["voice"])]
+    if args.everyday:
+        _everyday(reader, recordings, mix, args)
+    else:
+        _commands(reader, recordings, mix, parameters, args)
+    memory = psutil.Process().memory_full_info()
+    print(f"memory: {memory.rss / 1e6:.0f} MB resident, {memory.pss / 1e6:.0f} MB proportional")
+    return 0
+
+
+class Mixer:
+    """Recordings with the noise that the arguments ask for; babble is made of those that are no commands."""
+
+    def __init__(self, args: argparse.Namespace, recordings: list[Row]) -> None:
+        self._corpus, self._kind, self._snr = args.corpus, args.noise, args.snr
+        self._talk = [args.corpus / r["file"] for r in recordings if (r["kind"], r["snr"]) == ("oog", "clean")]
+
+    def recorded(self, row: Row) -> Samples:
+        """A recording of the corpus."""
+        return self.over(read_wav(self._corpus / row["file"]), row["text"])
+
+    def over(self, samples: Samples, text: str) -> Samples:
+        """Samples that say `text`, from which the noise is drawn."""
+        if not self._kind:
+            return samples
+        return noisy(samples, self._kind, self._snr, zlib.crc32(text.encode()), self._talk)
+
+
+def _commands(
+    reader: Reader, recordings: list[Row], mix: Mixer, parameters: SpeechConfig, args: argparse.Namespace
+) -> None:
+    shard, shards = (int(part) for part in args.shard.split("/"))
+    print(TITLES)
+    for kind, noise in NOISY_ROWS if args.noise else ROWS:
+        name = f"{kind} {args.noise or noise or 'all'}"
         if not name.startswith(args.only):
             continue
         rows = [r for r in recordings if r["kind"] == kind and r["snr"].startswith(noise)]
         rows = [r for r in rows if args.half in (None, half_of(r["text"]))][: args.limit or None][shard - 1 :: shards]
-        right, exact, free, accepted, woken, heard_seconds, spent = 0, 0, 0, 0, 0, 0.0, 0.0
+        counts: Counter[str] = Counter()
+        seconds, spent = 1e-9, 0.0
         for row in rows:
-            samples = read_wav(args.corpus / row["file"])
+            samples = mix.recorded(row)
             began = time.process_time()
             heard, wake = reader(samples)
             spent += time.process_time() - began
-            heard_seconds += len(samples) / RATE
+            seconds += len(samples) / RATE
             same = heard.text == without_wake(row["text"], parameters.wake)
             taken = heard.verdict == "accept" and bool(heard.text)
-            right, exact, free = right + (same and taken), exact + same, free + (normalise(heard.free) == row["text"])
-            accepted, woken = accepted + taken, woken + wake
+            counts.update(right=same and taken, exact=same, free=normalise(heard.free) == row["text"], accepted=taken)
+            counts.update(wrong=taken and not same and heard.confidence >= SURE, wake=wake)
             if args.errors and ((same and taken) != kind.endswith("cmd") or wake != kind.startswith("wake")):
                 print(f"   {row['file']}: {heard} wake={wake}", flush=True)
         n = max(1, len(rows))
-        figures = f"{right / n:7.3f} {exact / n:7.3f} {free / n:7.3f} {accepted / n:9.3f} {woken / n:6.2f}"
-        print(f"{name:14} {len(rows):4} {figures} {spent / max(heard_seconds, 1e-9):7.2f}", flush=True)
-    memory = psutil.Process().memory_full_info()
-    print(f"memory: {memory.rss / 1e6:.0f} MB resident, {memory.pss / 1e6:.0f} MB proportional")
-    return 0
+        low, high = wilson(counts["right"], n)
+        right, exact, free, accepted, wrong, woken = (counts[key] / n for key in COLUMNS)
+        figures = (
+            f"{right:7.3f} {low:.2f}-{high:.2f} {exact:7.3f} {free:7.3f} {accepted:9.3f} {wrong:6.3f} {woken:6.2f}"
+        )
+        print(f"{name:14} {len(rows):4} {figures} {spent / seconds:6.2f}", flush=True)
+
+
+def _everyday(reader: Reader, recordings: list[Row], mix: Mixer, args: argparse.Namespace) -> None:
+    rows = [r for r in recordings if r["kind"] == "everyday"][: args.everyday]
+    said = {r["text"]: r for r in rows} if rows else dict.fromkeys(drawn(args.everyday, args.seed))
+    outcomes: Counter[Outcome] = Counter()
+    for text, row in said.items():
+        heard, _ = reader(mix.recorded(row) if row else mix.over(utter(text), text))
+        found = outcome(text, heard)
+        outcomes[found] += 1
+        if args.errors and found != "same":
+            print(f"   {found}: {text} | {heard.text} ({heard.verdict}, {heard.confidence:.2f})", flush=True)
+    for name in OUTCOMES:
+        low, high = wilson(outcomes[name], max(1, len(said)))
+        print(f"{name:16} {outcomes[name]:4} of {len(said)}   {low:.2f}-{high:.2f}")
 
 
 def half_of(sentence: str) -> str:

@@ -1,16 +1,26 @@
 """Is a text, as a recogniser writes it down without any grammar, something that the planner would understand? Pure."""
 
+import re
 from collections.abc import Container, Iterator
+from typing import Literal
 
+from common.kinds import KINDS
 from common.language.breaks import is_statement
 from common.language.discourse import commands
 from common.language.meaning import VERBS, WORDS, readings
-from common.language.normalise import Words, infinitive
+from common.language.normalise import DETERMINERS, Words, infinitive
+from common.language.pattern import Slots
 from common.language.quantities import NUMBERS, UNITS
+from common.language.repairs import NO_NOUN
 from common.language.simplify import simplified
 from common.language.word_order import reworded
 from common.language.wording import Action
+from common.naming.names import ALIKE
 
+Understanding = Literal["", "unlisted", "listed"]
+GRADES: tuple[Understanding, ...] = ("", "unlisted", "listed")
+LONGEST = 3
+"""Most words of an unlisted noun (chosen: `portable record player`)."""
 _UNBOUND: frozenset[Action] = frozenset({"say", "teach", "name_place", "forget"})
 """What may be of words that nobody knows."""
 _NOTHING_TO_DO: frozenset[Action] = frozenset({"refuse", "mention", "remark", "thanks", "fetch_named", "named_at"})
@@ -21,20 +31,28 @@ _WORDS_THAT_TURN = (
 )
 _TURNING = frozenset(_WORDS_THAT_TURN.split())
 """Words that make a question, a report or a prohibition of an order."""
+_POINTS = re.compile(r"\b(?:it|them|one|ones)\b")
+"""Words that may stand for a thing of which something was told before."""
+_NAMELESS = DETERMINERS | {"me", "us"} | (ALIKE.keys() - KINDS.keys())
+"""Words that name no thing without another one: after `get me the red` the noun was not heard."""
 _SMALL = frozenset(WORDS) | NUMBERS.keys() | {form for unit in UNITS for form in (unit, f"{unit}s")}
 
 
-def is_understood(text: str, names: Container[str]) -> bool:
-    """Is every part of the text a command, a question or a reply whose things and places are of known `names`?
+def understood(text: str, names: Container[str]) -> Understanding:
+    """Is every part of the text a command, a question or a reply?
 
-    `names` are single words: of things, places and colours.
+    `names` are single words: of things, places and colours. What is "listed" has no others. What is "unlisted" is said
+    or taught in any words, or of one thing that nobody has listed: a determiner and a noun of at most `LONGEST` words;
+    or told in such words before "it" is asked for.
     """
     if not (clauses := commands(text)):
-        return False
-    *before, last = clauses
-    return _is_wording(tuple(last.split()), names) and all(
-        is_statement(clause) or _is_wording(tuple(clause.split()), names) for clause in before
-    )
+        return ""
+    *before, _ = clauses
+    told = [clause for clause in before if is_statement(clause)]
+    grades = [_grade(tuple(clause.split()), names) for clause in clauses if clause not in told]
+    if _POINTS.search(text) and not all(_is_known(word, names) for clause in told for word in clause.split()):
+        grades.append("unlisted")
+    return min(grades, key=GRADES.index)
 
 
 def turns(text: str, part: str) -> bool:
@@ -44,16 +62,37 @@ def turns(text: str, part: str) -> bool:
     return all(word in rest for word in left) and bool(_TURNING.intersection(said).difference(left))
 
 
-def _is_wording(words: Words, names: Container[str]) -> bool:
+def _grade(words: Words, names: Container[str]) -> Understanding:
+    """The best that any reading of a clause is understood."""
     words = words[1:] if words[:1] == ("otherwise",) else words
+    found: set[Understanding] = {""}
     for variant in _variants(words):
         for wording, slots in readings(variant, "command", "reply", "name"):
-            if wording.action in _NOTHING_TO_DO:
-                continue
-            said = [word for slot in slots.values() for word in slot]
-            if wording.action in _UNBOUND or all(word in names or word in _SMALL or word.isdigit() for word in said):
-                return True
-    return False
+            if wording.action not in _NOTHING_TO_DO:
+                found.add(_grade_of_slots(wording.action, slots, names))
+    return max(found, key=GRADES.index)
+
+
+def _grade_of_slots(action: Action, slots: Slots, names: Container[str]) -> Understanding:
+    if action in _UNBOUND:
+        return "unlisted"
+    if "thing" in slots and _NAMELESS.issuperset(slots["thing"]):
+        return ""
+    unlisted = [name for name, said in slots.items() if not all(_is_known(word, names) for word in said)]
+    if not unlisted:
+        return "listed"
+    return "unlisted" if unlisted == ["thing"] and _is_noun(slots["thing"], names) else ""
+
+
+def _is_known(word: str, names: Container[str]) -> bool:
+    return word in names or word in _SMALL or word.isdigit()
+
+
+def _is_noun(words: Words, names: Container[str]) -> bool:
+    """A determiner, a noun with unknown words, and then only what is known: `the oat milk from the desk`."""
+    unknown = [k for k, word in enumerate(words) if not _is_known(word, names)]
+    between = words[1 : unknown[-1] + 1]
+    return words[0] in DETERMINERS and 0 < len(between) <= LONGEST and not NO_NOUN.intersection(between)
 
 
 def _variants(words: Words) -> Iterator[Words]:

@@ -72,10 +72,14 @@ def partly(phrase: str, o: WorldObject, household: Household) -> float:
     return min(UNSEEN, fit)
 
 
-def looks_like(phrase: str, o: WorldObject, household: Household) -> float:
-    """How well those words of a noun fit an object that say what it looks like, 0 to 1; 1 where none does."""
+def looks_like(phrase: str, o: WorldObject, household: Household, packed: bool = False) -> float:
+    """How well those words of a noun fit an object that say what it looks like, 0 to 1; 1 where none does.
+
+    What is `packed` has any colour, and print that says what is inside: only a colour that was said counts.
+    """
     wanted = normalise(phrase)
-    return min([_fit(_known(wanted, o, household), o), *(_looks(one, o) for one in _told_looks(wanted, household))])
+    told = [_looks(one, o, packed) for one in _told_looks(wanted, household)]
+    return min([_fit(_known(wanted, o, household), o), *told])
 
 
 def _told_looks(wanted: str, household: Household) -> list[tuple[str, ...]]:
@@ -86,12 +90,12 @@ def _told_looks(wanted: str, household: Household) -> list[tuple[str, ...]]:
     return [told[word] for word in words if word in told]
 
 
-def _looks(words: Sequence[str], o: WorldObject) -> float:
-    """How well an object fits one of the kinds among the words, in one of the colours among them."""
+def _looks(words: Sequence[str], o: WorldObject, packed: bool) -> float:
+    """How well an object fits one of the kinds among the words, in one of the colours among them unless `packed`."""
     kinds, shades = [w for w in words if w in KINDS], [w for w in words if w in ALIKE and w not in KINDS]
     # What has any shape is told by its colour, or not at all.
     kind = max((_has_kind(k, o) for k in kinds if shades or k not in SHAPELESS or k in o.kinds), default=0.0)
-    return kind * max((_has_colour(shade, o) for shade in shades), default=1.0)
+    return kind if packed else kind * max((_has_colour(shade, o) for shade in shades), default=1.0)
 
 
 class _Words(NamedTuple):
@@ -111,12 +115,11 @@ class _Words(NamedTuple):
 def _known(wanted: str, o: WorldObject, household: Household) -> _Words:
     words = own_words(wanted, household)
     kinds, shades = words & set(KINDS), words & set(ALIKE)
-    # "The orange can": what may be a colour is one beside another kind; alone it may be either.
+    # "The orange can": what may be a colour is one before another word; alone it is what is meant.
+    head = own_words(wanted.split()[-1] if wanted else "", household)
     both = kinds & shades
-    if len(kinds) > 1:
-        kinds -= both
-    elif both:
-        shades -= both
+    kinds -= both - head
+    shades -= both & head
     others = words - kinds - shades
     label = others & set(normalise(o.label).split())
     return _Words(kinds, shades, label, others - label)
@@ -136,11 +139,6 @@ def describes(phrase: str, household: Household) -> bool:
     return listed(wanted, household) is not None or any(
         w in KINDS or w in ALIKE or w in told.groups or w in told.looks or told.kind(w) or told.colour(w) for w in words
     )
-
-
-def plainly(phrase: str, o: WorldObject, household: Household) -> bool:
-    """The words fit an object so well that nobody need be asked."""
-    return likeness(phrase, o, household) >= PLAIN
 
 
 def _has_kind(kind: str, o: WorldObject) -> float:

@@ -44,7 +44,7 @@ def utter(text: str, noise: float | None = None, seed: int = 0, speaker: Speaker
     if noise is None and not speaker.room:
         return whole
     rng = np.random.default_rng([seed, 29])
-    sound = _reverberant(whole, rng) if speaker.room else whole.astype(np.float64)
+    sound = reverberant(whole, rng) if speaker.room else whole.astype(np.float64)
     if noise is not None:
         loudness = float(np.sqrt(np.mean(np.square(speech.astype(np.float64)))))
         hiss = hum(len(whole), rng) if speaker.room else rng.normal(0.0, 1.0, len(whole))
@@ -80,7 +80,7 @@ def _key(text: str) -> str:
     return " ".join("".join(c if c.isalnum() or c == "'" else " " for c in text.lower()).split())
 
 
-def _reverberant(samples: Samples, rng: np.random.Generator) -> Floats:
+def reverberant(samples: Samples, rng: np.random.Generator) -> Floats:
     """Through a room: the direct sound and a tail of noise that decays exponentially."""
     t = np.arange(round(ECHO * RATE)) / RATE
     tail = rng.normal(0.0, 1.0, len(t)) * 10 ** (-3 * t / ECHO)

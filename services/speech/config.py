@@ -9,7 +9,8 @@ class SpeechConfig(Config, frozen=True):
     """`commands` are the patterns of the grammar, around those of `common/language/wordings.py` (`<verb>` and
     `<utterance>`); the lists extend the household's vocabulary. Times in seconds.
 
-    `accept_score`, `ask_score`: log-likelihood ratios per token above which a command is accepted or asked about.
+    `accept_score`, `ask_score`: log-likelihood ratios per token above which a command is accepted or asked about;
+    `guess_score` in place of `ask_score` where the free transcription has less than `certain` of probability per token.
     `beam`: hypotheses of the search. `tempo_weight` and `rare` (what a word costs, a negative log-probability)
     weigh sentences that sound alike. `wake_threshold`: score 0..1 of the wake word; `wake_window`: how long after
     it a command may begin. `interrupt_pause`: the pause after a short utterance at which it is already examined for
@@ -23,6 +24,8 @@ class SpeechConfig(Config, frozen=True):
     listen_timeout: float = 60.0
     accept_score: float = -1.0
     ask_score: float = -1.5
+    guess_score: float = -2.5
+    certain: float = 0.7
     beam: int = 16
     preload: bool = True
     tempo_weight: float = 1.0

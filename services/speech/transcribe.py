@@ -34,7 +34,7 @@ class Reader:
         if self._wake:
             self._wake.restart()
             woken = self._wake(samples) >= self._threshold
-        return self._front_end.recognise(samples, "woken" if woken else "command"), woken
+        return self._front_end.recognise(samples), woken
 
 
 def main() -> int:

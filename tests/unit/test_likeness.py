@@ -5,7 +5,7 @@ import pytest
 from common.config import config_dir
 from common.household import Household, load_words, mapped
 from common.messages import WorldObject
-from common.naming.likeness import LEAST, LIKELY, PLAIN, describes, likeness, partly
+from common.naming.likeness import LEAST, LIKELY, PLAIN, describes, likeness, looks_like, partly
 from common.scene import load_scene
 from services.perception.grounding import ground, parsed, possible
 
@@ -25,6 +25,9 @@ BALL = measured("red ball", {"ball": 0.5, "apple": 0.5}, {"red": 1.0})
 CAN = measured("grey can", {"can": 0.7, "jar": 0.3}, {"grey": 0.65, "white": 0.35})
 DUCK = measured("yellow box", {"box": 0.8, "carton": 0.2}, {"yellow": 0.8, "orange": 0.2})
 TIN = measured("white can", {"can": 1.0}, {"white": 0.6, "red": 0.4})
+
+ORANGE = measured("orange orange", {"orange": 0.6, "ball": 0.4}, {"orange": 1.0})
+BRUSH = measured("orange tool", {"tool": 0.6, "box": 0.4}, {"orange": 1.0})
 
 
 @pytest.mark.parametrize(
@@ -46,10 +49,26 @@ TIN = measured("white can", {"can": 1.0}, {"white": 0.6, "red": 0.4})
         ("red can", TIN, LIKELY, PLAIN),
         ("something white", TIN, PLAIN, 1.0),
         ("vitamin can", TIN, 0.0, LEAST),
+        ("orange", ORANGE, PLAIN, 1.0),
+        ("orange ball", ORANGE, LIKELY, PLAIN),
+        ("orange", BRUSH, 0.0, LEAST),
     ],
 )
 def test_likeness(words: str, seen: WorldObject, low: float, high: float) -> None:
     assert low <= likeness(words, seen, HOUSEHOLD) <= high
+
+
+@pytest.mark.parametrize(("words", "fits"), [("orange brush", True), ("orange remote", True), ("blue brush", False)])
+def test_a_word_for_a_fruit_and_a_colour_is_the_colour_before_another(words: str, fits: bool) -> None:
+    assert (partly(words, BRUSH, HOUSEHOLD) >= LIKELY) is fits
+
+
+def test_a_pack_is_read_from_near_whatever_colour_it_has_and_asked_about_in_its_own_alone() -> None:
+    brown = measured("brown can", {"can": 0.5, "bottle": 0.15}, {"brown": 0.6, "grey": 0.4})
+    assert looks_like("ketchup", brown, HOUSEHOLD, packed=True) >= LEAST > looks_like("ketchup", brown, HOUSEHOLD)
+    assert looks_like("red ketchup", CAN, HOUSEHOLD, packed=True) < LEAST, "that colour was said"
+    assert looks_like("ketchup", DUCK, HOUSEHOLD, packed=True) < LEAST, "that is no bottle"
+    assert partly("ketchup", brown, HOUSEHOLD) == 0.0
 
 
 def test_what_does_not_plainly_fit_is_not_found_and_may_be_meant() -> None:

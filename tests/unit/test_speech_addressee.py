@@ -5,8 +5,8 @@ import pytest
 from common import config
 from services.speech.config import SpeechConfig
 from services.speech.listen.addressee import UtteranceContext, consequence, scope
-from services.speech.recognise.front_end import without_wake
-from services.speech.recognise.recogniser import Recognition
+from services.speech.recognise.free_text import UNLISTED, freely, without_wake
+from services.speech.recognise.recogniser import Recognition, Verdict
 from tests.support import ROOT
 
 CONFIG = config.load("speech", SpeechConfig, ROOT / "config", {})
@@ -20,7 +20,7 @@ STRANGER, WOKEN, LISTENING = UtteranceContext(), UtteranceContext(woken=True), U
         (STRANGER, True, "interrupt"),
         (LISTENING, True, "command"),
         (LISTENING, False, "interrupt"),
-        (WOKEN, True, "woken"),
+        (WOKEN, True, "command"),
         (UtteranceContext(window=True), True, "command"),
         (UtteranceContext(addressed=True), True, "command"),
         (UtteranceContext(speaking=True, listening=True), True, "interrupt"),
@@ -44,25 +44,25 @@ def test_cancel_answers_the_listening_brain_and_else_ends_what_goes_on() -> None
     cancel = Recognition("cancel", "accept", 0.9)
     assert consequence(cancel, "cancel", "command", LISTENING) == "answer"
     assert consequence(cancel, "cancel", "interrupt", UtteranceContext(speaking=True)) == "cancel"
-    assert consequence(cancel, "cancel", "woken", WOKEN) == "cancel"
+    assert consequence(cancel, "cancel", "command", WOKEN) == "cancel"
 
 
 def test_commands_need_the_wake_word_or_an_open_window() -> None:
-    assert consequence(SAID, None, "woken", WOKEN) == "command"
+    assert consequence(SAID, None, "command", WOKEN) == "command"
     assert consequence(SAID, None, "command", UtteranceContext(window=True)) == "command"
     assert consequence(SAID, None, "command", LISTENING) == "answer"
     assert consequence(SAID, None, "command", STRANGER) == "nothing", "the goal was cancelled in the meantime"
 
 
 def test_a_doubtful_command_goes_to_the_brain_which_asks() -> None:
-    assert consequence(Recognition("bring me the apple", "ask", 0.3), None, "woken", WOKEN) == "command"
+    assert consequence(Recognition("bring me the apple", "ask", 0.3), None, "command", WOKEN) == "command"
 
 
 def test_the_wake_word_alone_opens_the_window_and_nonsense_after_it_keeps_it_open() -> None:
-    assert consequence(Recognition("", "accept", 0.9), None, "woken", WOKEN) == "awake"
-    assert consequence(Recognition("", "ask", 0.4, "hey charlotte"), None, "woken", WOKEN) == "awake"
+    assert consequence(Recognition("", "accept", 0.9), None, "command", WOKEN) == "awake"
+    assert consequence(Recognition("", "ask", 0.4, "hey charlotte"), None, "command", WOKEN) == "awake"
     assert (
-        consequence(Recognition("take a bowl", "reject", 0.1, "the weather is fine"), None, "woken", WOKEN) == "again"
+        consequence(Recognition("take a bowl", "reject", 0.1, "the weather is fine"), None, "command", WOKEN) == "again"
     )
 
 
@@ -70,3 +70,33 @@ def test_the_wake_word_is_taken_off() -> None:
     assert without_wake("hey jarvis bring me the apple", CONFIG.wake) == "bring me the apple"
     assert without_wake("hey jarvis", CONFIG.wake) == ""
     assert without_wake("bring me the apple", CONFIG.wake) == "bring me the apple"
+
+
+NAMES = frozenset({"mug", "shelf", "table"})
+DOUBT = CONFIG.certain - 0.01
+
+
+@pytest.mark.parametrize(
+    ("found", "text", "verdict", "confidence"),
+    [
+        (("go to the shelf", "reject", 0.1, "Is the mug on the shelf?", 0.9), "is the mug on the shelf", "accept", 0.9),
+        (("go to the shelf", "ask", 0.4, "Is the mug on the shelf?", 0.4), "is the mug on the shelf", "accept", 0.4),
+        (("the mug", "reject", 0.1, "Hey Jarvis, bring me my wallet.", 0.9), "bring me my wallet", "accept", UNLISTED),
+        (("the mug", "ask", 0.3, "Bring me my wallet.", DOUBT), "the mug", "ask", 0.3),
+        (("the mug", "reject", 0.1, "The mug was broken in May.", 0.9), "the mug", "reject", 0.1),
+        (("hey jarvis put the mug on the table", "accept", 0.7, "Take the mug off the table.", 0.9),
+         "take the mug off the table", "accept", UNLISTED),
+        (("put the mug on the table", "accept", 0.9, "Take the mug off the table.", 0.7),
+         "put the mug on the table", "accept", 0.9),
+        (("where is the mug", "accept", 0.4, "Where's the mug?", 0.9), "where is the mug", "accept", 0.4),
+        (("put the mug there", "accept", 0.9, "Who put the mug there?", 0.5),
+         "who put the mug there", "accept", UNLISTED),
+        (("hey jarvis stop", "accept", 0.6, "Go to the table.", 0.9), "stop", "accept", 0.6),
+        (("hey jarvis", "accept", 0.6, "Go to the table.", 0.9), "", "accept", 0.6),
+    ],
+)  # fmt: skip
+def test_the_sentence_or_the_free_transcription_counts(
+    found: tuple[str, Verdict, float, str, float], text: str, verdict: str, confidence: float
+) -> None:
+    heard = freely(Recognition(*found), NAMES, CONFIG)
+    assert (heard.text, heard.verdict, heard.confidence) == (text, verdict, confidence)

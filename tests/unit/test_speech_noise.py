@@ -3,12 +3,13 @@
 from dataclasses import dataclass
 
 import numpy as np
+import pytest
 
 from common import config
 from services.speech.config import SpeechConfig
 from services.speech.recognise.denoise import noise_power, noise_ratio, reduce_noise
-from services.speech.recognise.recogniser import PreparedUtterance, confidence_of
-from services.speech.recognise.scoring import CANDIDATES, prior_cost, rescored, time_scaled
+from services.speech.recognise.recogniser import PreparedUtterance, confidence_of, verdict_of
+from services.speech.recognise.scoring import CANDIDATES, Choice, prior_cost, rescored, time_scaled
 from tests.support import ROOT
 
 CONFIG = config.load("speech", SpeechConfig, ROOT / "config", {})
@@ -72,6 +73,14 @@ def test_confidence_falls_with_the_likelihood_ratio() -> None:
     assert scores[:2] == [1.0, 1.0] and scores[2] == 0.5 and scores[2] > scores[3] > scores[4] > 0.0
 
 
+def test_more_is_asked_about_where_the_free_transcription_is_doubtful_too() -> None:
+    sure, doubtful = CONFIG.certain, CONFIG.certain - 0.01
+    assert verdict_of(CONFIG.accept_score, 0.0, CONFIG) == verdict_of(CONFIG.accept_score, 1.0, CONFIG) == "accept"
+    assert verdict_of(CONFIG.ask_score, sure, CONFIG) == verdict_of(CONFIG.guess_score, doubtful, CONFIG) == "ask"
+    assert verdict_of(CONFIG.guess_score, sure, CONFIG) == "reject"
+    assert verdict_of(CONFIG.guess_score - 0.1, doubtful, CONFIG) == "reject"
+
+
 @dataclass(frozen=True)
 class Said:
     text: str
@@ -90,18 +99,31 @@ def test_what_is_uncertain_is_judged_again_and_may_turn_out_otherwise() -> None:
         asked.extend(sentences)
         return [-9.0, -6.0, -4.0]
 
-    assert rescored(FOUND, FREE, lambda text: 0.0, again) == (FOUND[1], -0.5)
+    assert rescored(FOUND, FREE, lambda text: 0.0, again)[:2] == (FOUND[1], -0.5)
     assert asked == [FOUND[0], FOUND[1], FREE]
-    assert rescored(FOUND, FREE, lambda text: 5.0 * ("mug" in text), again) == (FOUND[0], -1.25)
+    assert rescored(FOUND, FREE, lambda text: 5.0 * ("mug" in text), again)[:2] == (FOUND[0], -1.25)
+
+
+def test_a_command_shares_with_those_that_sound_alike_and_mean_something_else() -> None:
+    def share(*rivals: Said) -> float:
+        again = [s.log_probability for s in (FOUND[0], *rivals, FREE)]
+        return rescored([FOUND[0], *rivals], FREE, lambda text: 0.0, lambda these: again[: len(these)]).share
+
+    alike, same = Said("bring me the red grass", -6.0), Said("bring me a red glass please", -6.0)
+    assert share() == 1.0 and share(same) == 1.0
+    assert share(alike) == pytest.approx(0.5) and share(alike, same) == pytest.approx(2 / 3)
+    assert 0.5 < share(Said(alike.text, -7.0)) < share(Said(alike.text, -9.0)) < 1.0
+    sure = Said("bring me the red glass", -5.0)
+    assert rescored([FOUND[0], alike], sure, lambda text: 0.0, list).share == pytest.approx(0.5)
 
 
 def test_other_speech_is_no_command_because_its_transcription_does_not_hold() -> None:
     stop = Said("stop", -13.0, 2)
     free = Said("Let's talk market letter today", -8.0, 7)
-    assert rescored([stop], free, lambda text: 0.0, lambda these: [-9.0, -30.0]) == (stop, -2.5)
+    assert rescored([stop], free, lambda text: 0.0, lambda these: [-9.0, -30.0]) == Choice(stop, -2.5, 1.0)
     near = Said("stop", -10.0, 2)
-    assert rescored([near], free, lambda text: 0.0, lambda these: [-9.0, -9.0]) == (near, 0.0)
-    assert rescored([near], free, lambda text: 20.0, lambda these: [-9.0, -9.0]) == (near, -10.0)
+    assert rescored([near], free, lambda text: 0.0, lambda these: [-9.0, -9.0]) == Choice(near, 0.0, 1.0)
+    assert rescored([near], free, lambda text: 20.0, lambda these: [-9.0, -9.0]) == Choice(near, -10.0, 1.0)
 
 
 def test_only_the_best_are_judged_again_and_nothing_where_there_is_no_doubt() -> None:
@@ -115,7 +137,7 @@ def test_only_the_best_are_judged_again_and_nothing_where_there_is_no_doubt() ->
     assert rescored(many, FREE, lambda text: 0.0, again)[0] == many[0]
     assert sizes == [CANDIDATES + 1]
     sure = Said("Bring me the red glass!", -5.0)
-    assert rescored(FOUND, sure, lambda text: 0.0, again) == (FOUND[0], -0.25)
+    assert rescored(FOUND, sure, lambda text: 0.0, again)[:2] == (FOUND[0], -0.25)
     assert len(sizes) == 1
 
 

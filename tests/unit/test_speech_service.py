@@ -16,6 +16,7 @@ from services.speech.audio import RATE, AudioError, read_wav, write_wav
 from services.speech.config import SpeechConfig
 from services.speech.listen.vad import Endpointer
 from services.speech.recognise.grammar import Grammar, vocabulary
+from services.speech.recognise.recogniser import patterns
 from services.speech.recognise.token_trie import TokenTrie
 from services.speech.service import SpeechService
 from services.speech.speak.voice import Voice
@@ -41,6 +42,14 @@ def test_every_object_and_surface_of_the_scene_can_be_named(grammar: Grammar) ->
     for r in SCENE.receptacles:
         assert grammar.accepts(f"put it on the {r.name}")
     assert grammar.accepts("put the apple in the bowl and then come back")
+
+
+def test_the_wake_word_may_stand_before_a_command_or_alone() -> None:
+    config = msgspec.structs.replace(CONFIG, wake=("hey jarvis", "robot"), commands=("go [<where>]", "where = home"))
+    grammar = Grammar(patterns(config, "command"), {})
+    for said in ("go", "go home", "hey jarvis", "hey jarvis go home", "robot", "robot go"):
+        assert grammar.accepts(said)
+    assert not any(grammar.accepts(said) for said in ("", "hey", "hey jarvis robot", "go hey jarvis", "home"))
 
 
 @pytest.mark.parametrize("text", ["", "bring", "bring me the", "the weather is nice", "mug red the me bring", "x"])

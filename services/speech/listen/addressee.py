@@ -31,9 +31,7 @@ def scope(context: UtteranceContext, over: bool) -> Scope:
 
     While the robot speaks, in a mere pause (not `over`) and among strangers it is stop and cancel only.
     """
-    if not over or not context.meant:
-        return "interrupt"
-    return "woken" if context.woken else "command"
+    return "command" if over and context.meant else "interrupt"
 
 
 def consequence(

@@ -6,7 +6,6 @@ name are alternatives, a line without a name is a sentence.
 
 import re
 from collections.abc import Iterable, Mapping
-from copy import copy
 
 from common.household import Household
 from common.language.meaning import heard_parts
@@ -31,9 +30,9 @@ class Grammar:
                 self._parts.setdefault(named[1], []).append(named[2])
             else:
                 sentences.append(line)
-        self._edges: list[dict[str, list[int]]] = []
-        self._silent: list[list[int]] = []
-        self._words: dict[tuple[int, str], int] = {}
+        self._nodes = 0
+        self._edges: dict[tuple[int, str], int] = {}
+        self._silent: dict[int, list[int]] = {}
         self._first, self._final = self._node(), self._node()
         self._depth = 0
         for sentence in sentences:
@@ -43,23 +42,13 @@ class Grammar:
         if self.accepts(""):
             raise PatternError("the grammar accepts silence: a pattern is wholly optional")
 
-    def introduced(self, phrases: Iterable[str]) -> "Grammar":
-        """The same sentences after one of the phrases, or one of the phrases alone. It shares the automaton."""
-        first, after = self._node(), self._node()
-        for phrase in phrases:
-            self._parse(phrase, first, after)
-        self._silent[after] += [self._first, self._final]
-        found = copy(self)
-        found.start = self._closure({first})
-        return found
-
     # --- walking
     def step(self, state: State, character: str) -> State:
         """The state after one character; empty when no sentence goes on like that."""
         key = state, character
         found = self._steps.get(key)
         if found is None:
-            found = self._closure({n for s in state for n in self._edges[s].get(character, ())})
+            found = self._closure({n for s in state if (n := self._edges.get((s, character), 0))})
             self._steps[key] = found
         return found
 
@@ -82,14 +71,17 @@ class Grammar:
 
     # --- building
     def _node(self) -> int:
-        self._edges.append({})
-        self._silent.append([])
-        return len(self._edges) - 1
+        self._nodes += 1
+        return self._nodes
+
+    def _join(self, start: int, end: int) -> None:
+        """Let `end` follow on `start` without a character."""
+        self._silent.setdefault(start, []).append(end)
 
     def _closure(self, nodes: set[int]) -> State:
         stack, seen = list(nodes), set(nodes)
         while stack:
-            for n in self._silent[stack.pop()]:
+            for n in self._silent.get(stack.pop(), ()):
                 if n not in seen:
                     seen.add(n)
                     stack.append(n)
@@ -100,10 +92,9 @@ class Grammar:
         node = start
         for character in f" {word}":
             key = node, character
-            if key not in self._words:
-                self._words[key] = self._node()
-                self._edges[node].setdefault(character, []).append(self._words[key])
-            node = self._words[key]
+            if key not in self._edges:
+                self._edges[key] = self._node()
+            node = self._edges[key]
         return node
 
     def _parse(self, pattern: str, start: int, end: int) -> None:
@@ -113,13 +104,13 @@ class Grammar:
         """Ways from the automaton's node `start` to `end` for each sentence of a pattern's syntax tree."""
         match node:
             case Word(text):
-                self._silent[self._word(start, text)].append(end)
+                self._join(self._word(start, text), end)
             case Slot(name):
                 self._part(name, start, end, pattern)
             case Either(options):
                 for option in options:
                     first = self._node()
-                    self._silent[start].append(first)
+                    self._join(start, first)
                     self._build(option, first, end, pattern)
             case Sequence(parts):
                 at = start
@@ -127,7 +118,7 @@ class Grammar:
                     after = self._node()
                     self._build(part, at, after, pattern)
                     at = after
-                self._silent[at].append(end)
+                self._join(at, end)
 
     def _part(self, name: str, start: int, end: int, pattern: str) -> None:
         if name not in self._parts:
@@ -140,7 +131,7 @@ class Grammar:
                 node = start
                 for word in row.split():
                     node = self._word(node, word)
-                self._silent[node].append(end)
+                self._join(node, end)
             else:
                 self._parse(row, start, end)
         self._depth -= 1

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from common import speech_weights
 from services.speech.recognise.decoder import Cache, Decoder
 from services.speech.recognise.grammar import State
-from services.speech.recognise.packed_network import unpacked
+from services.speech.recognise.packed_network import packed
 from services.speech.recognise.token_trie import BOS, EOS, TokenTrie, read_tokens
 
 Array = NDArray[np.float32]
@@ -64,7 +64,7 @@ class EncodedUtterance:
 def networks(threads: int) -> tuple[Any, Decoder]:
     """Encoder and decoder, shared by all that live in one process."""
     folder = speech_weights.folder()
-    return unpacked(folder / "encoder_model.ort", threads), Decoder(folder / "decoder_model_merged.ort", threads)
+    return packed(folder / "encoder_model.ort", threads), Decoder(folder / "decoder_model_merged.ort", threads)
 
 
 class Moonshine:

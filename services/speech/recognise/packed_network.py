@@ -4,7 +4,7 @@ The networks as they ship unpack each weight at each run; `python -m bench.recog
 """
 
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -31,8 +31,8 @@ class PackedWeights:
 
     def __init__(self, path: Path) -> None:
         with tempfile.TemporaryDirectory(prefix="tidybot-") as folder:
-            self._graph = onnx.load(str(_as_onnx(path, Path(folder)))).graph
-        self.arrays: dict[str, Array] = {t.name: numpy_helper.to_array(t) for t in self._graph.initializer}
+            self.graph = onnx.load(str(_as_onnx(path, Path(folder)))).graph
+        self.arrays: dict[str, Array] = {t.name: numpy_helper.to_array(t) for t in self.graph.initializer}
 
     def weight(self, name: str) -> Weight:
         """A matrix by the name of its unpacked form."""
@@ -55,7 +55,7 @@ class PackedWeights:
 
     def _branches(self) -> Iterator[onnx.GraphProto]:
         """With and without a cache: the two sides of the network's choice."""
-        for node in self._graph.node:
+        for node in self.graph.node:
             if node.op_type == "If":
                 yield from (attribute.g for attribute in node.attribute)
 
@@ -106,6 +106,13 @@ class NetworkBuilder:
             domain="com.microsoft", K=inputs, N=outputs, bits=8, block_size=BLOCK, accuracy_level=4,
         )  # fmt: skip
 
+    def copy(self, node: onnx.NodeProto, weights: PackedWeights) -> None:
+        """Append a node of a shipped network; a matrix that it multiplies by stays packed."""
+        if node.op_type == "MatMul" and weights.is_weight(node.input[1]):
+            self.times(node.input[0], weights.weight(node.input[1]), output=node.output[0])
+        else:
+            self._nodes.append(node)
+
     def session(self, inputs: dict[str, tuple[Any, int]], outputs: list[str], threads: int) -> Any:
         """An inference session of the network; inputs with type and number of dimensions, outputs are floats."""
         takes = [
@@ -115,6 +122,20 @@ class NetworkBuilder:
             for name, (kind, rank) in inputs.items()
         ]
         gives = [helper.make_tensor_value_info(name, TensorProto.FLOAT, None) for name in outputs]
+        return self._session(takes, gives, threads)
+
+    def like(self, graph: onnx.GraphProto, threads: int) -> Any:
+        """A session of the network with inputs, outputs and weights of a shipped one, without what nothing needs."""
+        used, needed = {output.name for output in graph.output}, []
+        for node in reversed(self._nodes):
+            if used.intersection(node.output):
+                needed.append(node)
+                used.update(node.input)
+        self._nodes = needed[::-1]
+        self._tensors += [tensor for tensor in graph.initializer if tensor.name in used]
+        return self._session(graph.input, graph.output, threads)
+
+    def _session(self, takes: Sequence[onnx.ValueInfoProto], gives: Sequence[onnx.ValueInfoProto], threads: int) -> Any:
         graph = helper.make_graph(self._nodes, "network", takes, gives, self._tensors)
         opsets = [helper.make_opsetid(domain, version) for domain, version in OPSETS.items()]
         model = helper.make_model(graph, opset_imports=opsets, ir_version=IR_VERSION)
@@ -144,13 +165,13 @@ def _options(threads: int) -> Any:
     return made
 
 
-def unpacked(path: Path, threads: int) -> Any:
-    """A session of an ORT file with its weights unpacked once instead of at each run.
-
-    onnxruntime computes constants beforehand for ONNX files only, so the file is written out as one and read again.
-    """
-    with tempfile.TemporaryDirectory(prefix="tidybot-") as folder:
-        found = session(_as_onnx(path, Path(folder)), threads)
+def packed(path: Path, threads: int) -> Any:
+    """A session of an ORT file whose matrices stay packed; its other weights are unpacked once, at the start."""
+    weights, net = PackedWeights(path), NetworkBuilder()
+    for node in weights.graph.node:
+        net.copy(node, weights)
+    found = net.like(weights.graph, threads)
+    del weights, net
     return_memory()
     return found
 

@@ -19,19 +19,23 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float32]
 Verdict = Literal["accept", "ask", "reject", "silence"]
-Scope = Literal["command", "woken", "interrupt"]
+Scope = Literal["command", "interrupt"]
 PACES = (16 / 15, 15 / 16)
 """Factors of speed for the second scoring. Chosen: a semitone up and down, far less than voices differ."""
 
 
 @dataclass(frozen=True)
 class Recognition:
-    """What was understood, without the wake word. `verdict`: accept, ask (perhaps), reject (no command), silence."""
+    """What was understood, without the wake word. `verdict`: accept, ask (perhaps), reject (no command), silence.
+
+    `free` is the transcription without any grammar, `certainty` 0..1 the geometric mean probability of its tokens.
+    """
 
     text: str
     verdict: Verdict
     confidence: float
     free: str = ""
+    certainty: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -55,7 +59,7 @@ class PreparedUtterance:
 class Recogniser(Protocol):
     """What turns an utterance into a command.
 
-    `scope` is the grammar: a command, a command after the wake word or the wake word alone, or stop and cancel only.
+    `scope` is the grammar: a command, with or without the wake word, or the wake word alone; or stop and cancel only.
     """
 
     def recognise(self, utterance: PreparedUtterance, scope: Scope) -> Recognition: ...
@@ -89,33 +93,36 @@ class MoonshineRecogniser:
             return prior_cost(text, utterance.seconds, config)
 
         found = self._model.best(encoded, self._tries[scope], prior)
+        certainty = math.exp(free.log_probability / free.tokens)
         if not found:
-            return Recognition("", "reject", 0.0, free.text)
-        command, score = rescored(found, free, prior, lambda sentences: self._score_again(sentences, utterance))
-        confidence = confidence_of(score, config)
-        if score >= config.accept_score:
-            return Recognition(command.text, "accept", confidence, free.text)
-        verdict: Verdict = "ask" if score >= config.ask_score else "reject"
-        return Recognition(command.text, verdict, confidence, free.text)
+            return Recognition("", "reject", 0.0, free.text, certainty)
+        command, score, share = rescored(found, free, prior, lambda rows: self._score_again(rows, utterance))
+        confidence = round(share * confidence_of(score, config), 3)
+        return Recognition(command.text, verdict_of(score, certainty, config), confidence, free.text, certainty)
 
     def _score_again(self, sentences: list["Decoded"], utterance: PreparedUtterance) -> list[float]:
         return self._model.log_probabilities(self._model.encode(utterance.time_scaled()), sentences)
 
 
+def verdict_of(score: float, certainty: float, config: SpeechConfig) -> Verdict:
+    """Accept, ask or reject by a log-likelihood ratio; where the free transcription is doubtful, too, more is asked."""
+    if score >= config.accept_score:
+        return "accept"
+    return "ask" if score >= (config.ask_score if certainty >= config.certain else config.guess_score) else "reject"
+
+
 def confidence_of(score: float, config: SpeechConfig) -> float:
     """Confidence 0..1 of a log-likelihood ratio: one at 0 and above, one half at the threshold of acceptance."""
-    return round(math.exp(min(0.0, score) * math.log(2) / -config.accept_score), 3)
+    return math.exp(min(0.0, score) * math.log(2) / -config.accept_score)
 
 
 def patterns(config: SpeechConfig, scope: Scope) -> list[str]:
-    """The lines of a scope's grammar."""
-    if scope == "command":
-        return list(config.commands)
+    """The lines of a scope's grammar. The wake word may stand before everything, as its detector misses it in noise."""
     wake = _either(config.wake)
     if scope == "interrupt":
         return [f"[{wake}] {_either(line for lines in INTERRUPTS.values() for line in lines)}"]
     sentences = [line for line in config.commands if not _is_part(line)]
-    return [f"{wake} [{_either(sentences)}]", *(line for line in config.commands if _is_part(line))]
+    return [wake, f"[{wake}] {_either(sentences)}", *(line for line in config.commands if _is_part(line))]
 
 
 def grammars(config: SpeechConfig, household: Household, names: Sequence[str] = ()) -> dict[Scope, Grammar]:
@@ -125,9 +132,10 @@ def grammars(config: SpeechConfig, household: Household, names: Sequence[str] = 
         PatternError: a pattern that cannot be used.
     """
     words = vocabulary(household, (*config.objects, *names), config.places, config.colours)
-    commands = Grammar(patterns(config, "command"), words)
-    interrupts = Grammar(patterns(config, "interrupt"), {})
-    return {"command": commands, "woken": commands.introduced(config.wake), "interrupt": interrupts}
+    return {
+        "command": Grammar(patterns(config, "command"), words),
+        "interrupt": Grammar(patterns(config, "interrupt"), {}),
+    }
 
 
 def _is_part(line: str) -> bool:

@@ -38,7 +38,7 @@ class SphinxRecogniser:
         self.learn(household, ())
 
     def learn(self, household: Household, names: Sequence[str]) -> None:
-        scopes: tuple[Scope, ...] = ("command", "woken", "interrupt")
+        scopes: tuple[Scope, ...] = ("command", "interrupt")
         for scope in scopes:
             self._decoder.add_jsgf_string(scope, jsgf(self._config, household, scope, names))
 

@@ -1,0 +1,53 @@
+"""The grammar's sentence or the free transcription: what counts as said. Pure."""
+
+from collections.abc import Container, Iterable
+from dataclasses import replace
+from difflib import SequenceMatcher
+
+from common.language.contractions import expand
+from common.language.meaning import asks_for
+from common.language.normalise import normalise
+from common.language.spoken import turns, understood
+from services.speech.config import SpeechConfig
+from services.speech.recognise.recogniser import Recognition
+
+UNLISTED = 0.5
+"""Most confidence in words that are on no list. Chosen: below that from which the brain does not ask."""
+WAKE_LIKENESS = 0.85
+"""Least share of letters in common with the wake word (chosen: `they jarvins` has 0.91, `hey travis` 0.8)."""
+
+
+def without_wake(text: str, phrases: Iterable[str]) -> str:
+    """Text after the wake word or what is written nearly so (`they jarvins`), or the whole text."""
+    words = text.split()
+    for phrase in phrases:
+        width = len(phrase.split())
+        if SequenceMatcher(None, " ".join(words[:width]).strip(","), phrase).ratio() >= WAKE_LIKENESS:
+            return " ".join(words[width:])
+    return text
+
+
+def freely(found: Recognition, names: Container[str], config: SpeechConfig) -> Recognition:
+    """A recognition without the wake word, with the free transcription in place of the grammar's sentence where that
+    tells more: what the planner would understand.
+
+    In place of a sentence that was accepted it counts where it is more certain, or makes something else of it ("who put
+    the mug there" is no "put the mug there"), and is asked about. Of things that are not among the `names` only a
+    certain transcription tells.
+    """
+    found = replace(found, text=without_wake(found.text, config.wake))
+    free = without_wake(normalise(found.free, ",").strip(" ,"), config.wake).strip(" ,")
+    if found.verdict == "accept":
+        heard = without_wake(normalise(found.free), config.wake)
+        if not found.text or expand(heard) == expand(found.text) or asks_for(found.text, "stop", "cancel", "yes", "no"):
+            return found
+        surer = found.certainty > found.confidence and understood(free, names) == "listed"
+        if surer or turns(heard, found.text):
+            return replace(found, text=free, confidence=min(found.confidence, UNLISTED))
+        return found
+    grade = understood(free, names)
+    if grade == "listed":
+        return replace(found, text=free, verdict="accept", confidence=found.certainty)
+    if grade == "unlisted" and found.certainty >= config.certain:
+        return replace(found, text=free, verdict="accept", confidence=min(found.certainty, UNLISTED))
+    return found
