@@ -8,8 +8,8 @@ GRIPPER = "gripper"
 """Name of the gripper's joint in `joint_states`: its position is the width between the pads [m]."""
 OPENING = 0.085
 """Width between the open pads [m]: the stroke of the Robotiq 2F-85 (data sheet)."""
-EMPTY_WIDTH = 0.003
-"""Width [m] up to which nothing is between closed fingers: less than any wall that is gripped, more than the play."""
+EMPTY_WIDTH = 0.002
+"""Width [m] up to which nothing is between closed fingers: less than a plate's wall leaves; the play is 0.3 mm."""
 OPEN_PLAY = 0.005
 """How much narrower than open [m] fingers must stand to be kept apart by something: twice what open ones give way."""
 HOLDING_FORCE = 3.0

@@ -40,9 +40,6 @@ class RestingPose:
     tilt: float = 0.0
 
 
-RestingPoses = Callable[[Thing], list[RestingPose]]
-
-
 @dataclass(frozen=True)
 class Hypothesis:
     """An object of the household in one resting pose that may explain a segment; `score` in standard deviations."""

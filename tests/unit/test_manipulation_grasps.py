@@ -1,13 +1,24 @@
 """Grasp candidates in full: order, names, where the fingers go, and what does not fit."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from common.geometry import quat_matrix
 from common.kinds import KINDS
-from services.manipulation.grasps.grasp import RIM_DEPTH, Grasp, approach_rotation, candidates, on_handle, shown
+from common.messages.perception import ShapeFamily
+from services.manipulation.grasps.grasp import (
+    RIM_DEPTH,
+    Grasp,
+    approach_rotation,
+    candidates,
+    certainly_too_wide,
+    on_handle,
+    shown,
+    upper_end,
+)
 from services.manipulation.grasps.target import Target
 
 FORWARD = 0.12
@@ -159,7 +170,7 @@ def test_a_bowl_is_taken_at_the_rim_along_its_slope() -> None:
     radius = 0.07 - RIM_DEPTH * math.tan(BOWL.lean) - BOWL.wall / 2
     for grasp, (degrees, turn, palm) in zip(found, order, strict=True):
         azimuth = FACING + math.radians(turn)
-        assert (grasp.width, grasp.height) == (BOWL.wall, pytest.approx(0.06 - RIM_DEPTH))
+        assert grasp.width == BOWL.wall and grasp.height == pytest.approx(0.06 - RIM_DEPTH)
         ahead = np.array([math.cos(azimuth), math.sin(azimuth)])
         assert grasp.pose.position[:2] == pytest.approx(np.array(AT[:2]) - radius * ahead), "the near side of the rim"
         assert grasp.pose.position[2] == pytest.approx(AT[2] - 0.03 + 0.06 - RIM_DEPTH)
@@ -192,3 +203,106 @@ def test_a_handle_seen_from_in_front_of_a_mug_says_whether_a_finger_would_land_o
     rotation = approach_rotation(math.radians(65), math.radians(40))
     assert on_handle(target("mug", (0.074, 0.074, 0.095), math.radians(yaw)), rotation) is lands
     assert not on_handle(target("can", (0.066, 0.066, 0.115), math.radians(yaw)), rotation)
+
+
+# --- what lies, or stands on its head
+@pytest.mark.parametrize("yaw", [0.4, FACING + 0.3, FACING + math.pi - 0.2, -2.5])
+def test_a_lying_bottle_is_taken_below_its_middle_by_a_hand_that_leans_to_its_foot(yaw: float) -> None:
+    lying = replace(target("bottle", (0.25, 0.07, 0.065), yaw=yaw), tilt=math.pi / 2)
+    found = candidates(lying, FORWARD, 0.08)
+    assert [round(math.degrees(g.tilt)) for g in found] == [75, 90, 90, 60]
+    for grasp, azimuth in zip(found, (yaw + math.pi, yaw + math.pi, yaw, yaw + math.pi), strict=True):
+        below = -0.14 * 0.25
+        point = [AT[0] + below * math.cos(yaw), AT[1] + below * math.sin(yaw), AT[2]]
+        assert grasp.pose.position == pytest.approx(point)
+        assert np.allclose(grasp.pose.rotation, approach_rotation(azimuth, grasp.tilt))
+        off = math.degrees(math.remainder(azimuth - FACING, math.tau))
+        assert grasp.name == f"lying, {math.degrees(grasp.tilt):.0f} deg at {off:+.0f}"
+        assert grasp.width == 0.07 and grasp.height == pytest.approx(0.0325)
+        assert grasp.axis is not None and close(grasp.axis, yaw)
+
+
+@pytest.mark.parametrize("off", [0.3, -0.3, 2.0])
+def test_of_two_ends_that_are_alike_the_nearer_way_is_tried_first(off: float) -> None:
+    yaw = FACING + off
+    found = candidates(replace(target("can", (0.12, 0.066, 0.066), yaw=yaw), tilt=1.5), FORWARD, 0.08)
+    assert [round(math.degrees(g.tilt)) for g in found] == [75, 75, 60, 60, 90, 90, 90, 90]
+    ways = (yaw, yaw + math.pi) if abs(off) < math.pi / 2 else (yaw + math.pi, yaw)
+    for grasp, way in zip(found[:4], (*ways, *ways), strict=True):
+        assert close(approach(grasp)[0], way) and grasp.axis is not None and close(grasp.axis, way + math.pi)
+
+
+def test_what_has_no_upper_side_is_put_down_as_it_lay() -> None:
+    found = candidates(replace(target("block", (0.08, 0.05, 0.05)), tilt=1.5), FORWARD, 0.08)
+    assert found and all(g.axis is None for g in found)
+
+
+def test_a_mug_on_its_mouth_is_taken_level_to_be_turned_over_and_else_as_it_stands() -> None:
+    mug = replace(target("mug", (0.074, 0.074, 0.095), yaw=FACING + math.pi), tilt=3.1)
+    found = candidates(mug, FORWARD, 0.08)
+    turned, rest = [g for g in found if g.turns_over], [g for g in found if not g.turns_over]
+    assert [g.turns_over for g in found] == [True] * len(turned) + [False] * len(rest)
+    assert [g.name for g in rest] == [g.name for g in candidates(replace(mug, tilt=0.0), FORWARD, 0.08)]
+    assert [g.name for g in turned] == [f"upside down, {d} deg at {t:+d}" for d in (8, 3, 14) for t in (0, 25, -25)]
+    for grasp in turned:
+        assert grasp.height == pytest.approx(mug.size[2] / 2) and grasp.width == 0.074
+    ball = replace(target("ball", (0.066, 0.066, 0.066)), tilt=3.1)
+    assert not any(g.turns_over for g in candidates(ball, FORWARD, 0.08)), "a ball has no upper side"
+
+
+@pytest.mark.parametrize(
+    ("kind", "tilt", "way", "upper"),
+    [
+        ("bottle", 1.5, 0.0, 0.5), ("bottle", 1.5, math.pi, 0.5), ("can", 1.5, math.pi, 0.5),
+        ("can", 1.5, 0.0, 0.5 - math.pi), ("can", 1.5, 1.5, 0.5 - math.pi), ("can", 1.5, 1.6, 0.5),
+        ("can", 0.0, 0.0, None), ("block", 1.5, 0.0, None),
+    ],
+)  # fmt: skip
+def test_the_end_that_is_above_when_it_stands(kind: str, tilt: float, way: float, upper: float | None) -> None:
+    lying = replace(target(kind, (0.12, 0.06, 0.06), yaw=0.5), tilt=tilt)
+    end = upper_end(lying, approach_rotation(0.5 + way, math.radians(60)))
+    assert (end is None) == (upper is None) and (end is None or upper is None or close(end, upper))
+
+
+@pytest.mark.parametrize(
+    ("size", "spread", "says"),
+    [
+        ((0.09, 0.10), 0.0, True), ((0.10, 0.09), 0.0, True), ((0.10, 0.079), 0.0, False), ((0.08, 0.09), 0.0, False),
+        ((0.09, 0.10), 0.006, False), ((0.093, 0.10), 0.006, True), ((0.2, 0.2), 0.0061, False),
+    ],
+)  # fmt: skip
+def test_too_wide_is_said_where_no_error_of_the_measurement_makes_it_fit(
+    size: tuple[float, float], spread: float, says: bool
+) -> None:
+    assert certainly_too_wide(replace(target("box", (*size, 0.1)), spread=spread), 0.08) is says
+
+
+# --- another shape than the kind's was measured
+def test_a_wide_mug_is_taken_by_its_wall_too() -> None:
+    wide = target("mug", (0.09, 0.1, 0.08), yaw=FACING + math.pi / 2)
+    found = candidates(wide, FORWARD, 0.085)
+    assert found and all(g.rim for g in found) and found[0].width == KINDS["mug"].wall
+    assert sorted({round(math.degrees(g.tilt)) for g in found}) == [70, 80, 90]
+    assert not any(g.rim for g in candidates(replace(wide, size=(0.085, 0.1, 0.08)), FORWARD, 0.085)), "one side fits"
+    bowl = candidates(target("bowl", (0.14, 0.14, 0.06)), FORWARD, 0.085)
+    assert len({g.name for g in bowl}) == len(bowl), "a bowl's own rule is not doubled"
+    assert candidates(target("box", (0.09, 0.1, 0.08)), FORWARD, 0.085) == []
+
+
+@pytest.mark.parametrize(
+    ("kind", "shape", "like"),
+    [
+        ("can", "round", "can"), ("can", "bowl", "can"), ("can", "irregular", "can"), ("can", "long", "can"),
+        ("box", "box", "box"), ("can", "box", ""), ("apple", "round", "apple"), ("can", "ball", "ball"),
+    ],
+)  # fmt: skip
+def test_a_shape_that_is_not_the_kind_s_is_taken_by_its_own_rules(kind: str, shape: ShapeFamily, like: str) -> None:
+    size = (0.06, 0.06, 0.1)
+    found = candidates(replace(target(kind, size), shape=shape), FORWARD, 0.08)
+    assert found and [g.name for g in found] == [g.name for g in candidates(target(like, size), FORWARD, 0.08)]
+
+
+@pytest.mark.parametrize(("shape", "first"), [("round", 15), ("ball", 90), ("irregular", None), ("long", None)])
+def test_what_has_no_kind_is_taken_by_its_shape_or_by_its_surface(shape: ShapeFamily, first: int | None) -> None:
+    found = candidates(replace(target("thing", (0.06, 0.06, 0.1)), shape=shape), FORWARD, 0.08)
+    assert (round(math.degrees(found[0].tilt)) if found else None) == first

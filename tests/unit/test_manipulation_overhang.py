@@ -12,11 +12,13 @@ from common.messages import WorldObject
 from common.scene import load_scene
 from services.manipulation.arm.arm_model import Obstacle
 from services.manipulation.config import ManipulationConfig
+from services.manipulation.grasps.grasped_object import attach
 from services.manipulation.grasps.over_edge import flat_and_wide, over_an_edge
 from services.manipulation.grasps.target import Target
 from services.manipulation.planning.motion_planner import PlanError, Planner
 from services.manipulation.planning.overhang import LEDGE, facing_edge, plan_pull
 from services.manipulation.planning.plan_grab import Way, feasible
+from services.manipulation.planning.plan_place import plan_place
 from services.manipulation.planning.planning_scene import tilt_of
 from services.sim.model import own
 
@@ -37,6 +39,10 @@ def box(x: float, yaw: float, thick: float = 0.05) -> Target:
     return Target("box", "box", (x, 0.02, HEIGHT + thick / 2), yaw, (0.16, 0.11, thick), math.pi / 2, "box")
 
 
+def plate(x: float, tall: float = 0.02) -> Target:
+    return Target("plate", "plate", (x, 0.02, HEIGHT + tall / 2), 0.0, (0.18, 0.18, tall), shape="bowl")
+
+
 def test_what_a_person_calls_a_box_lies_where_a_book_does_not() -> None:
     seen = WorldObject(
         label="green book", kind="book", colour="green", position=(0.5, 0, 0.6), size=(0.19, 0.13, 0.05), shape="box",
@@ -50,6 +56,8 @@ def test_what_a_person_calls_a_box_lies_where_a_book_does_not() -> None:
 def test_only_flat_things_that_are_too_wide_are_pulled() -> None:
     assert flat_and_wide(box(0.55, 0.0), ARM.widest)
     assert not flat_and_wide(box(0.55, 0.0, thick=0.09), ARM.widest)
+    assert flat_and_wide(plate(0.55), ARM.widest)
+    assert not flat_and_wide(plate(0.55, tall=0.05), ARM.widest), "its rim is taken from above"
 
 
 def test_the_edge_is_the_one_that_the_robot_stands_before() -> None:
@@ -94,6 +102,35 @@ def test_a_finger_below_it_has_room_only_over_the_edge() -> None:
     for target, reached in ((within, False), (over, True)):
         way = Way([slab(0.68)], False, 0.1, 0.1)
         assert feasible(PLANNER, target, way, ARM.home.copy()) is reached
+
+
+def test_a_plate_ends_with_its_rim_over_the_edge_and_lies_on_its_foot() -> None:
+    edge = facing_edge(TABLE, (0.0, 0.0, 0.0))
+    assert edge is not None
+    plan = plan_pull(PLANNER, plate(0.60), edge, [slab()], ARM.home.copy(), 0.1)
+    inside = edge.inset(*plan.line[-1][:2])
+    assert LEDGE <= inside < 0.09 - 0.04
+    assert all(abs(math.remainder(at[2], math.tau)) < 0.01 for at in plan.line)
+
+
+def test_a_finger_below_a_rim_has_room_only_over_the_edge_and_is_drawn_out_when_it_is_put_down() -> None:
+    for x, reached in ((0.85, False), (0.73, True)):
+        way = Way([slab(0.68)], False, 0.1, 0.1)
+        assert feasible(PLANNER, plate(x), way, ARM.home.copy()) is reached
+    grasp = over_an_edge(plate(0.73), ARM.forward, ARM.widest)[0]
+    held = attach(plate(0.73), grasp)
+    assert held.from_below and held.opening is not None and held.opening < ARM.widest / 2
+    down = plan_place(PLANNER, held, [(0.6, 0.0)], HEIGHT, 0.004, [slab(0.3)], ARM.home.copy())
+    ARM.set_obstacles([slab(0.3)])
+    ARM.open_fingers(held.opening)
+    assert not any(ARM.collides(q) for q in down.lower)
+    ARM.open_fingers()
+
+
+@pytest.mark.slow
+def test_a_plate_is_brought() -> None:
+    """In physics: pulled until a finger has room below its rim, and put down so that it can come out again."""
+    assert trial(load_scene("apartment"), "plate", 0, ManipulationConfig()) == "ok"
 
 
 @pytest.mark.slow

@@ -35,6 +35,13 @@ def bowl(x: float, y: float, foot: float, rim: float, h: float) -> Array:
 
 
 @pytest.mark.parametrize("x", [-0.35, 0.0, 0.5])
+def test_a_plate_is_a_very_low_bowl(x: float) -> None:
+    found = look(bowl(x, 0.0, 0.045, 0.075, 0.02))
+    assert found.family == "bowl" and found.hollow
+    assert found.size == pytest.approx((0.15, 0.15, 0.02), abs=0.012)
+
+
+@pytest.mark.parametrize("x", [-0.35, 0.0, 0.5])
 @pytest.mark.parametrize(("foot", "rim", "h"), [(0.035, 0.077, 0.053), (0.03, 0.08, 0.066)])
 def test_a_bowl_is_one_from_above_and_from_the_side(x: float, foot: float, rim: float, h: float) -> None:
     found = look(bowl(x, 0.0, foot, rim, h))

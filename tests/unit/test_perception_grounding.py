@@ -1,13 +1,16 @@
 """Words to an object: every way of telling several apart, and what is said when none or several are left."""
 
 import math
+from typing import Any
 
+import msgspec
 import pytest
 
 from common.floor_plan import Place, Receptacle, Room
 from common.household import Household
 from common.messages import WorldObject
-from services.perception.grounding import Grounding, ground
+from common.naming.likeness import PLAIN, likeness, partly
+from services.perception.grounding import Grounding, Phrase, as_called, ground, may_be_meant, parsed, possible
 
 SCENE = Household(
     name="small", low=(-5, -5), high=(5, 5), home=Place(name="home", x=0, y=0),
@@ -123,3 +126,119 @@ def test_other_words_for_things_are_whole_words() -> None:
 
 def test_a_phrase_that_ends_with_no_place_is_all_about_the_thing() -> None:
     assert ground("mug near the moon", MUGS, SCENE, HERE, {}).reason == "no mug near moon is seen"
+
+
+# --- what perception measured: nobody told what it is
+def seen(
+    label: str, x: float, y: float, shares: dict[str, float], colours: dict[str, float], **more: Any
+) -> WorldObject:
+    """An object known by its looks alone; `shares` of kinds and `colours`, the likeliest first."""
+    return WorldObject(
+        label=label, kind=next(iter(shares)), colour=next(iter(colours)), position=(x, y, 0.8), id=f"{label} {x} {y}",
+        kinds=list(shares), colours=list(colours), kind_shares=shares, colour_shares=colours, measured=True,
+        **{"size": (0.08, 0.08, 0.1), "on": "desk", **more},
+    )  # fmt: skip
+
+
+MUG = {"mug": 0.8, "can": 0.2}
+RED_MUG = seen("red mug", 3.0, 0.0, MUG, {"red": 1.0})
+
+
+def test_the_name_of_one_fits_its_numbered_twin_as_well() -> None:
+    twin = seen("red mug 2", 2.0, 0.0, MUG, {"red": 1.0})
+    others = [seen("red mug 3", 2.0, 0.5, MUG, {"red": 1.0}, held=True), BLUE]
+    found = ground("red mug", [RED_MUG, twin, *others], SCENE, HERE, {})
+    assert found.candidates == ["red mug", "red mug 2"] and found.found is None
+    assert ground("red mug 2", [RED_MUG, twin], SCENE, HERE, {}).found == twin
+    assert ground("red mug", [RED_MUG, twin], SCENE, HERE, {}, least=0.0).found == RED_MUG, "the words are its name"
+
+
+def test_what_does_not_plainly_fit_is_not_meant_and_that_is_told() -> None:
+    doubt = seen("red can", 3.0, 0.0, {"can": 0.5, "mug": 0.5}, {"red": 1.0})
+    found = ground("mug", [doubt], SCENE, HERE, {})
+    assert found == Grounding(None, "the red can may be the mug")
+    fit = likeness("mug", doubt, SCENE)
+    assert 0.0 < fit < PLAIN
+    assert ground("mug", [doubt], SCENE, HERE, {}, least=fit).found == doubt, "as much as is asked for is enough"
+    assert ground("mug", [doubt], SCENE, HERE, {}, lambda noun, known: list(known), least=0.0).found == doubt
+    # Nothing is known against what other means than looks found: its name, its print.
+    assert ground("vitamins", [doubt], SCENE, HERE, {}, lambda noun, known: list(known)).found == doubt
+
+
+def test_one_alone_needs_no_size_and_no_side() -> None:
+    assert ground("other red mug", [RED_MUG], SCENE, HERE, {}).found == RED_MUG
+    assert ground("left small red mug", [RED_MUG], SCENE, HERE, {}).found == RED_MUG
+
+
+def test_size_is_volume() -> None:
+    flat = thing("red mug", 1.0, 0.0)
+    flat.size = (0.3, 0.3, 0.01)
+    tall = thing("blue mug", 2.0, 0.0)
+    tall.size = (0.05, 0.05, 0.3)
+    cube = thing("white mug", 3.0, 0.0)
+    cube.size = (0.1, 0.1, 0.1)
+    assert meant("small mug", [flat, cube, tall]) == tall and meant("big mug", [tall, flat, cube]) == cube
+    long = thing("green mug", 3.0, 0.0)
+    long.size = (0.05, 0.4, 0.1)
+    assert meant("big mug", [cube, long]) == long
+
+
+def test_the_parts_of_a_phrase() -> None:
+    assert parsed("the small red mug on the left", SCENE, {}) == Phrase("red mug", "", "small", "left")
+    assert parsed("red mug", SCENE, {}) == Phrase("red mug", "", "", "")
+    assert parsed("left", SCENE, {}).thing == "left", "a side of nothing is a word like others"
+
+
+def test_what_may_be_meant_comes_likeliest_first_with_what_a_person_is_asked_by() -> None:
+    can = seen("red can", 2.0, 1.0, {"can": 0.7, "mug": 0.3}, {"red": 1.0}, on="")
+    blue = seen("blue mug", 1.0, 0.0, MUG, {"blue": 1.0})
+    held = seen("red mug 4", 1.0, 0.0, MUG, {"red": 1.0}, held=True)
+    rows = possible(parsed("red mug", SCENE, {}), [can, blue, held, RED_MUG], SCENE)
+    assert [(r.id, r.label, r.position, r.on) for r in rows] == [
+        (RED_MUG.id, "red mug", RED_MUG.position, "desk"), (can.id, "red can", can.position, ""),
+    ]  # fmt: skip
+    assert rows[0].likeness == 1.0 and rows[1].likeness == round(likeness("red mug", can, SCENE), 3) == 0.429
+    assert [r.id for r in possible(parsed("red mug in the study", SCENE, {}), [can, RED_MUG], SCENE)] == [RED_MUG.id]
+
+
+def test_as_little_as_counts_is_enough_to_be_asked_about() -> None:
+    """A mug of which so much is another colour that it fits by just as much as is needed."""
+    near = seen("orange mug", 1.0, 0.0, {"mug": 1.0}, {"orange": 1.0})
+    assert possible(parsed("red mug", SCENE, {}), [near], SCENE)[0].likeness == 0.15
+    far = seen("orange can", 1.0, 0.0, {"can": 1.0}, {"orange": 1.0})
+    assert possible(parsed("red mug", SCENE, {}), [far], SCENE) == [], "colour and kind would have to be mistaken"
+
+
+def test_words_that_say_nothing_seen_are_asked_about_unless_the_name_was_taught() -> None:
+    striped = parsed("striped mug", SCENE, {})
+    assert [r.likeness for r in possible(striped, [RED_MUG], SCENE)] == [partly("striped mug", RED_MUG, SCENE)]
+    assert possible(striped, [RED_MUG], SCENE, taught=True) == []
+
+
+def test_what_is_in_doubt_may_be_meant_where_its_colour_can_be() -> None:
+    ids = {RED_MUG.id, BLUE.id, WHITE.id}
+    near = seen("orange can", 1.0, 0.0, {"can": 1.0}, {"orange": 0.9, "white": 0.1})
+    held = seen("red can", 0.5, 0.0, {"can": 1.0}, {"red": 1.0}, held=True)
+    known = [RED_MUG, near, held, BLUE]
+    doubtful = {near.id, held.id, *ids}
+    assert may_be_meant("the red box", known, doubtful, SCENE, HERE) == ["orange can", "red mug"], "nearest first"
+    assert may_be_meant("red box", known, ids, SCENE, HERE) == ["red mug"], "only what is in doubt"
+    assert may_be_meant("white box", known, doubtful, SCENE, HERE) == ["orange can"], "a second colour counts"
+    assert may_be_meant("red and white box", known, doubtful, SCENE, HERE) == ["orange can"], "all that are named"
+    assert may_be_meant("box", known, doubtful, SCENE, HERE) == ["orange can", "blue mug", "red mug"]
+    odd = WorldObject(label="thing", kind="", colour="", position=(0.0, 0.0, 5.0), id="odd")
+    assert may_be_meant("red box", [odd], {"odd"}, SCENE, HERE) == [], "what has no colour is not red"
+    assert may_be_meant("box", [RED_MUG, odd], {"odd", *ids}, SCENE, HERE) == ["thing", "red mug"], "on the floor plan"
+
+
+def test_the_words_of_the_household_for_a_colour_count() -> None:
+    words = msgspec.structs.replace(SCENE.words, colours={**SCENE.words.colours, "red": ("crimson",)})
+    told = msgspec.structs.replace(SCENE, words=words)
+    assert may_be_meant("crimson box", [RED_MUG, BLUE], {RED_MUG.id, BLUE.id}, told, HERE) == ["red mug"]
+
+
+def test_a_thing_called_by_its_label_alone_may_be_nothing_else() -> None:
+    called = as_called(RED_MUG)
+    assert (called.kinds, called.colours, called.kind_shares, called.colour_shares) == ([], [], {}, {})
+    assert (called.id, called.label, called.measured) == (RED_MUG.id, "red mug", True)
+    assert as_called(RED_MUG) is not RED_MUG and RED_MUG.kinds == ["mug", "can"]

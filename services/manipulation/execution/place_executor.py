@@ -5,7 +5,6 @@ from msgspec.structs import replace
 
 from common.floor_plan import Receptacle
 from common.geometry import compose, to_frame
-from common.kinds import kind_of
 from common.messages import ObjectRef, WorldObject
 from services.manipulation.arm.arm_model import Obstacle
 from services.manipulation.arm.touch import TOUCHED
@@ -28,9 +27,6 @@ SLOWLY = 0.055
 apple that had slid in the hand met the tray 49 mm early, with 82 N."""
 SETTING_DOWN = 0.12
 """Speed of that, in joint speeds: some 6 cm/s of the hand. At 0.4 a bottle of 0.4 kg met the tray with 100 N."""
-IN_HANDLE = 0.008
-"""How much farther [m] than the object is wide the fingers open where one of them may be in its handle: a mug that lies
-is taken through it, and 22 mm of room leave 8 beside a finger."""
 STANDS = 0.03
 """Height [m] above the end of the way down at which what is met is what the object is put on: it may have slid so far
 down in the hand, or have been taken so far above its foot."""
@@ -129,9 +125,7 @@ def _execute_place(robot: Robot, plan: PlacePlan, held: GraspedObject, name: str
     yield from robot.wait(0.2)
     robot.phase = "release"
     hand = planner_of(robot).arm.hand
-    # A finger that is in a handle has to come out of it, and not to spread it.
-    handled = held.as_found is not None and kind_of(held.kind).handle > 0
-    yield from robot.move_gripper(hand.share(held.width + IN_HANDLE) if handled else 0.0)
+    yield from robot.move_gripper(0.0 if held.opening is None else hand.share(held.opening))
     if robot.grip.width < min(planner_of(robot).arm.widest, held.width) + 0.004:
         # GraspedObject as before, for whoever tries again.
         raise Failure("STUCK", f"the gripper opened to {robot.grip.width * 1000:.0f} mm only")

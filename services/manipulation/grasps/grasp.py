@@ -21,6 +21,8 @@ finger's, seen from the axis of a mug."""
 HANDLE_ROOM, HANDLE_POINTS = 0.008, 4
 """How far [m] beyond the wall of a round object, and how many points there are, that a handle is taken to be: a finger
 goes through one, noise and the fit's error do not reach as far."""
+TURNS = (0, 25, -25, 50, -50)
+"""From where [deg] what is round is taken, off the way from the arm to it, in the order of trying."""
 RIM_DEPTH = 0.012
 """How far [m] below a rim the pads take hold: more than half of a pad's length is on the wall."""
 FITTING: dict[Shape, tuple[ShapeFamily, ...]] = {
@@ -154,7 +156,7 @@ def _round(target: Target, facing: float, rule: GraspRule) -> list[Grasp]:
     found = []
     for degrees in rule.angles:
         tilt = math.radians(degrees)
-        for turn in (0.0, 25.0, -25.0, 50.0, -50.0):
+        for turn in TURNS:
             azimuth = facing + math.radians(turn)
             name = f"{degrees:.0f} deg at {turn:+.0f}"
             grasp = _make(target, target.size[2] * rule.height, azimuth, tilt, 0.0, width, name)
@@ -257,7 +259,7 @@ def _rim(target: Target, facing: float, rule: GraspRule) -> list[Grasp]:
     found = []
     for degrees in rule.angles:
         tilt = math.radians(degrees)
-        for turn in (0.0, 25.0, -25.0, 50.0, -50.0):
+        for turn in TURNS:
             azimuth = facing + math.radians(turn)
             if handle is not None and abs(_off(azimuth + math.pi, handle)) < HANDLE_CONE:
                 continue

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from common.kinds import kind_of
 from services.manipulation.arm.arm_model import Array
 from services.manipulation.grasps.grasp import Grasp
 from services.manipulation.grasps.target import Target
@@ -13,6 +14,12 @@ SHRINK = 0.008
 that the box is clear of the surface that the object stands on."""
 LEAST_HALF = 0.004
 """Least half extent [m] of that box. Chosen: half of the thinnest object that is carried."""
+PLAY = 0.008
+"""How much farther [m] than the object is wide the fingers open where one of them may be in its handle or below it: a
+mug that lies is taken through it, and 22 mm of room leave 8 beside a finger."""
+ABOVE_EACH_OTHER = 0.7
+"""Vertical part of the closing direction, as a share, from which one finger is below what they hold. Chosen: between
+the steepest hold of a plate's rim and the flattest of a bowl's."""
 USUAL_SIZE = (0.06, 0.06, 0.10)
 """Full extents [m] of an object in the hand that nobody described. Chosen: near those of a mug."""
 
@@ -36,6 +43,20 @@ class GraspedObject:
     width: float
     yaw: float
     as_found: "GraspedObject | None" = None
+
+    @property
+    def from_below(self) -> bool:
+        """One finger is below it, and has to come out from under it once it is put down."""
+        return abs(float(self.rotation[2, 1])) > ABOVE_EACH_OTHER
+
+    @property
+    def opening(self) -> float | None:
+        """How far apart [m] the fingers go to let go of it; None: as far as they do.
+
+        A finger that is in a handle has to come out of it, and not to spread it; one that is below has no more room.
+        """
+        handled = self.as_found is not None and kind_of(self.kind).handle > 0
+        return self.width + PLAY if handled or self.from_below else None
 
     def box(self) -> tuple[Array, Array]:
         """Half extents (3,) and centre (3,) [m] of the object's collision box in the frame of the pinch point."""

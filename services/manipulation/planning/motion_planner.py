@@ -15,7 +15,7 @@ from services.manipulation.grasps.clearance import HandClearance
 from services.manipulation.grasps.grasp import Grasp, candidates
 from services.manipulation.grasps.grasped_object import GraspedObject
 from services.manipulation.grasps.mouth import in_the_mouth
-from services.manipulation.grasps.over_edge import flat_and_wide, over_an_edge
+from services.manipulation.grasps.over_edge import flat_and_wide, is_round, over_an_edge
 from services.manipulation.grasps.target import Target
 
 PLAINLY = 0.012
@@ -74,7 +74,7 @@ class Planner:
         """
         arm = self.arm
         yield over_an_edge(target, arm.forward, arm.widest)
-        if flat_and_wide(target, arm.widest + PLAINLY):
+        if not is_round(target) and flat_and_wide(target, arm.widest + PLAINLY):
             return
         rules = candidates(target, arm.forward, arm.widest) + in_the_mouth(target)
         on_surface = antipodal(target, arm.forward, arm.hand.open, arm.widest)

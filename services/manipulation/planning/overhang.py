@@ -19,6 +19,7 @@ from services.manipulation.arm.ik import seeds
 from services.manipulation.arm.trajectory import connect
 from services.manipulation.grasps.clearance import PAD, PAD_HALF
 from services.manipulation.grasps.grasp import approach_rotation
+from services.manipulation.grasps.over_edge import is_round
 from services.manipulation.grasps.target import Target
 from services.manipulation.planning.motion_planner import MAX_JUMP, PlanError, Planner, counted
 from services.manipulation.planning.planning_scene import with_object
@@ -28,6 +29,8 @@ TILTS = (90, 80, 72, 65, 58)
 LEDGE = 0.014
 """How far [m] inside the edge an object's middle stays, so that it does not tip over it: three times the error of its
 measured middle."""
+RIM_OVER = 0.048
+"""How far [m] a round thing is pulled over the edge at most: a finger has room below its rim, and does not tip it."""
 CLOSER = 0.004
 """Least way [m] to there that is worth a pull: the error of the arm."""
 FINGERS = 0.055
@@ -114,7 +117,7 @@ def plan_pull(
     normal = _far_side(target, edge)
     half = _halves(target, normal)
     x, y, _ = target.position
-    way = edge.inset(x, y) - LEDGE
+    way = edge.inset(x, y) - (max(LEDGE, half[1] - RIM_OVER) if is_round(target) else LEDGE)
     if way < CLOSER:
         raise PlanError("TOO_WIDE", f"the {target.label} lies at the edge already")
     line = _curve((x, y, normal), math.atan2(-edge.outward[1], -edge.outward[0]), way)
@@ -175,12 +178,18 @@ def _curve(begin: Pose2, end: float, way: float) -> list[Pose2]:
 
 def _far_side(target: Target, edge: Edge) -> float:
     """Direction [rad] of the normal of the side that is most turned away from the edge."""
+    if is_round(target):
+        return math.atan2(-edge.outward[1], -edge.outward[0])
     sides = [target.yaw + quarter * math.pi / 2 for quarter in range(4)]
     return min(sides, key=lambda a: float(edge.outward @ (math.cos(a), math.sin(a))))
 
 
 def _halves(target: Target, normal: float) -> tuple[float, float]:
-    """Half extents [m] along the direction of a side's normal, and across."""
+    """How far [m] its middle is from where the fingers meet it, along a side's normal, and its half extent across."""
+    if is_round(target):
+        # It lies in between two fingers.
+        radius = max(target.size[:2]) / 2
+        return math.sqrt(radius**2 - (_opening((radius, radius)) / 2) ** 2), radius
     along = abs(math.cos(normal - target.yaw)) > 0.5
     x, y = target.size[0] / 2, target.size[1] / 2
     return (x, y) if along else (y, x)

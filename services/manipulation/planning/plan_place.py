@@ -12,6 +12,9 @@ from services.manipulation.grasps.grasped_object import GraspedObject
 from services.manipulation.planning.motion_planner import PlanError, Planner, counted
 from services.manipulation.planning.planning_scene import with_object
 
+FINGER = 0.018
+"""Height [m] of a fingertip below what it holds at a slant (Robotiq 2F-85)."""
+
 
 @dataclass(frozen=True)
 class PlacePlan:
@@ -33,19 +36,25 @@ def plan_place(
     around: Sequence[Obstacle],
     now: Array,
 ) -> PlacePlan:
-    """Set the held object down on the first spot of a surface that works, `drop` above it.
+    """Set the held object down on the first spot of a surface that works, `drop` above it, and a finger more above it
+    where one is below what is held.
 
     Raises:
         PlanError: UNREACHABLE.
     """
     rng = planner.rng()
     failures: list[str] = []
-    for spot in spots[:10]:
-        for turn in (0.0, 0.5, -0.5, 1.0, -1.0, 2.0, -2.0, np.pi):
-            plan = _try_place(planner, held, spot, surface + drop, turn, around, now, rng)
-            if isinstance(plan, PlacePlan):
-                return plan
-            failures.append(plan)
+    height = surface + drop + (FINGER if held.from_below else 0.0)
+    planner.arm.open_fingers(held.opening)
+    try:
+        for spot in spots[:10]:
+            for turn in (0.0, 0.5, -0.5, 1.0, -1.0, 2.0, -2.0, np.pi):
+                plan = _try_place(planner, held, spot, height, turn, around, now, rng)
+                if isinstance(plan, PlacePlan):
+                    return plan
+                failures.append(plan)
+    finally:
+        planner.arm.open_fingers()
     reasons = counted(failures) or "no free spot within reach"
     raise PlanError("UNREACHABLE", f"cannot put {held.label} there: {reasons}")
 

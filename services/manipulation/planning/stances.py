@@ -1,14 +1,13 @@
 """Where the base would have to stand for a grasp that is out of reach from where it stands, by the arm's kinematics."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 from common.approach import EDGE_DISTANCE, ROOM, STAND_OFF, clearance, poses_for
 from common.geometry import Pose2, compose, inverse
 from common.household import Household
 from common.messages import WorldObject
-from services.manipulation.arm.arm_model import Array, Obstacle
-from services.manipulation.grasps.target import Target
+from services.manipulation.arm.arm_model import Array
 from services.manipulation.planning.motion_planner import Planner
 from services.manipulation.planning.plan_grab import Way, feasible
 from services.manipulation.planning.planning_scene import MARGINS, obstacles, others, target_of
@@ -19,7 +18,6 @@ SAME, SAME_TURN = 0.06, math.radians(10)
 """A pose no farther [m, rad] from the present one is no other stance: navigation stops within a third of it."""
 MOST = 10
 """Stances that are tried."""
-Surroundings = Callable[[Pose2], tuple[Target, Sequence[Obstacle]]]
 
 
 def other_stance(

@@ -164,7 +164,7 @@ class Naming:
                 if _unlike(o, said, said):
                     score -= OTHER_LOOKS
                 looks = looks_like(query, o, self._io.household)
-                if score < LIKELY and looks < LEAST:
+                if score < LIKELY and looks_like(query, o, self._io.household, packed=True) < LEAST:
                     continue
                 if score >= LIKELY or sight is None or not sight.read:
                     found.append((-score - looks, away, o.label))

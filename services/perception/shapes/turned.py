@@ -16,6 +16,8 @@ CAVITY = 0.06
 shows three times as much."""
 SURELY, INSIDE = 0.8, 0.97
 """Shares of the rim's radius within which what is seen through it tells that there is an inside, and belongs to it."""
+DEEP, SHALLOW = 0.012, 0.4
+"""How far [m] below its rim the inside of an object is, and which share of its height where it is low: a plate's."""
 HANDLE = 0.012
 """Distance [m] beyond the wall from which points belong to a handle."""
 HANDLE_REACH = 0.05
@@ -144,7 +146,7 @@ def _on_one_side(from_axis: Array, beyond: NDArray[np.bool_]) -> bool:
 
 def _within(points: Array, x: float, y: float, rim: float, h: float, eye: Array, noise: float) -> NDArray[np.bool_]:
     """Which points (n, 3) are well below the rim and seen through its plane: they are of the inside."""
-    low = points[:, 2] < h - max(0.012, 2.5 * noise)
+    low = points[:, 2] < h - max(min(DEEP, SHALLOW * h), 2.5 * noise)
     if eye[2] < h + 0.02:
         return np.zeros(len(points), bool)
     drop = np.where(low, points[:, 2] - eye[2], -1.0)

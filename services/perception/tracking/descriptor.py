@@ -8,6 +8,7 @@ import numpy as np
 from common.floor_plan import Vec3
 from common.geometry import Array
 from common.messages import ShapeFamily
+from common.naming.likeness import TAKEN_FOR
 from services.perception.detection import Detection
 from services.perception.unlisted import MOST_POINTS, thinned
 from services.perception.views import colour
@@ -18,8 +19,9 @@ LEAST_SPREAD = 0.002
 """Standard deviation [m] that no number of views goes below: the sensor's own bias."""
 STRONGER = 2.5
 """How much likelier another kind or colour must be before a label that others know is changed."""
-POINTS_KEPT = 0.02
-"""Change of position [m] up to which the points of earlier views are kept."""
+FIRM = 0.9
+"""Share of the votes from which a kind counts as seen: one that is nothing like it takes as much to replace it, and is
+asked about before (chosen: a black bottle without depth is a book's back from near)."""
 LIKELY = 0.2
 """Share of the likeliest kind's votes from which a kind may be meant by its word."""
 LEAST_SHARE = 0.02
@@ -31,7 +33,7 @@ class Descriptor:
     """`kinds`, `colours`, `shapes`: votes by name. `size` [m] with `spread` [m]; `points` (n, 3) [map].
 
     `opening`: votes for an open end, from whatever side; they do not fade, as it is no more to be seen when the object
-    stands on it.
+    stands on it. `firm`: the last kind that counted as seen.
     """
 
     size: Vec3
@@ -43,6 +45,7 @@ class Descriptor:
     points: Array = field(default_factory=lambda: np.empty((0, 3)))
     named: tuple[str, str] = ("", "")
     opening: float = 0.0
+    firm: str = ""
 
     def add(self, d: Detection, weight: float, moved: bool) -> None:
         """Take in a view's detection; `weight`: how much it says. `moved`: earlier points and extents do not hold."""
@@ -83,7 +86,10 @@ class Descriptor:
         """Kind and colour by which it is called; once told they stay until others are much likelier."""
         kind, main = self.named
         first, shade = self.likely_kinds[0], (self.main_colours or [""])[0]
-        if not kind or self.kinds[first] > STRONGER * self.kinds.get(kind, 0.0):
+        if self.kinds[first] >= FIRM * sum(self.kinds.values()):
+            self.firm = first
+        credible = self.firm in ("", first) or any({first, self.firm} <= group for group in TAKEN_FOR)
+        if not kind or (credible and self.kinds[first] > STRONGER * self.kinds.get(kind, 0.0)):
             kind = first
         if not main or self.colours.get(shade, 0.0) > STRONGER * self.colours.get(main, 0.0):
             main = shade

@@ -1,0 +1,36 @@
+"""What an object is called when its views contradict each other."""
+
+from services.perception.detection import Detection
+from services.perception.tracking.descriptor import Descriptor
+
+
+def called(*views: tuple[dict[str, float], float]) -> str:
+    """The kind after views with shares of kinds and how much each says."""
+    looks = Descriptor((0.04, 0.04, 0.12))
+    kind = ""
+    for kinds, weight in views:
+        first = max(kinds, key=lambda k: kinds[k])
+        seen = Detection(
+            label="", kind=first, colour="black", position=(1.0, 0.0, 0.7), yaw=0.0, size=(0.04, 0.04, 0.12),
+            confidence=0.9, on="desk", distance=1.0, known=False, kinds=kinds, colours={"black": 1.0}, shape="round",
+        )  # fmt: skip
+        looks.add(seen, weight, False)
+        kind, _ = looks.name()
+    return kind
+
+
+BOTTLE, BACK = {"bottle": 1.0}, {"book": 0.5, "box": 0.4, "bottle": 0.1}
+
+
+def test_a_nearer_view_says_better_what_it_is() -> None:
+    assert called((BACK, 0.2), (BOTTLE, 4.0)) == "bottle"
+    assert called(({"can": 0.6, "mug": 0.4}, 0.2), ({"box": 0.6, "book": 0.4}, 4.0)) == "box", "the first was a guess"
+
+
+def test_what_counted_as_seen_takes_as_much_to_be_something_else() -> None:
+    assert called((BOTTLE, 0.2), (BACK, 4.0), (BACK, 4.0)) == "bottle"
+    assert called((BOTTLE, 0.2), ({"book": 0.97, "box": 0.03}, 4.0)) == "book"
+
+
+def test_what_it_is_easily_taken_for_takes_no_more() -> None:
+    assert called((BOTTLE, 0.2), ({"can": 0.6, "book": 0.4}, 4.0)) == "can"
