@@ -1,4 +1,4 @@
-"""What a building is made of: walls, furniture, receptacles, rooms, places and what may stand in the way.
+"""What a building is made of: walls, furniture, receptacles, rooms and places.
 
 All lengths in metres, angles in radians, everything in frame `map`.
 """
@@ -20,6 +20,9 @@ ReceptacleKind = Literal["table", "counter", "shelf", "bin", "tray", "sink"]
 # behind its top, the thickness of a bin's walls [m].
 LEG, LEG_INSET, BODY_INSET, BIN_WALL = 0.05, 0.04, 0.01, 0.015
 
+DRIVEN_OVER, PASSED_UNDER = 0.02, 1.45
+"""How high [m] a rug is at most, which the base drives over (its bumper is 27 mm above the floor), and from where on
+furniture hangs above the robot."""
 SUNK = 0.05
 """How far [m] below a surface the centre of what rests on it may be seen: the error of its height."""
 TALLEST = 0.35
@@ -69,6 +72,11 @@ class Box(Strict, frozen=True):
     def outline(self) -> Rectangle:
         """Where it stands on the floor plan."""
         return Rectangle(self.center[0], self.center[1], self.size[0], self.size[1], self.yaw)
+
+    @property
+    def top(self) -> float:
+        """Height [m] of its upper side."""
+        return self.center[2] + self.size[2] / 2
 
 
 class Receptacle(Strict, frozen=True):
@@ -141,32 +149,6 @@ class Place(Strict, frozen=True):
     aliases: tuple[str, ...] = ()
 
 
-class Obstacle(Strict, frozen=True):
-    """Something in the simulated world that the robot's map does not have.
-
-    It stands at `position`, turned by `yaw`; `size` is its full extent. With a `path` it goes from there along these
-    points at `speed`: after `start` seconds, and, if `near` is set, once the robot is so near to its place or path.
-    `repeat`: to and fro for ever, else it stays at the end. `polite`: it waits while the robot is in its way.
-    `social`: a person who walks the path to and fro as people do, round others, the robot and furniture.
-    With `placed = false` it is there only when `sim.obstacles` names it.
-    """
-
-    name: str
-    position: Vec2
-    kind: Literal["box", "cylinder"] = "cylinder"
-    size: Vec3 = (0.4, 0.4, 1.65)
-    yaw: float = 0.0
-    path: tuple[Vec2, ...] = ()
-    speed: float = 0.6
-    start: float = 0.0
-    near: float = 0.0
-    repeat: bool = False
-    polite: bool = True
-    social: bool = False
-    placed: bool = True
-    rgba: Rgba = (0.55, 0.35, 0.60, 1.0)
-
-
 class Thing(Strict, frozen=True, kw_only=True):
     """An object by words and look: `kind` is one of `common.kinds`, `size` its full extent (x, y, z) upright."""
 
@@ -225,9 +207,14 @@ class FloorPlan(Strict, frozen=True, kw_only=True):
         return self.surface_at(*position, margin=SIGHTING_ERROR, above=TALLEST)
 
     @property
+    def standing(self) -> list[Box]:
+        """The furniture that is in the base's way: no rug, and nothing that hangs above the robot."""
+        return [f for f in self.furniture if f.top > DRIVEN_OVER and f.top - f.size[2] < PASSED_UNDER]
+
+    @property
     def footprints(self) -> list[Rectangle]:
         """Where receptacles and furniture stand on the floor plan."""
-        return [r.outline for r in self.receptacles] + [f.outline for f in self.furniture]
+        return [r.outline for r in self.receptacles] + [f.outline for f in self.standing]
 
     def room_at(self, x: float, y: float) -> Room | None:
         """The room that contains the point (x, y), the smallest one: in the corner of an L there may be another."""

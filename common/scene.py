@@ -15,7 +15,6 @@ from common.files.body_file import BodyError, extents
 from common.floor_plan import (
     Box,
     FloorPlan,
-    Obstacle,
     Place,
     Receptacle,
     Rgba,
@@ -40,6 +39,32 @@ FLOOR = "floor"
 Pose = Literal["upright", "side", "upside down"]
 Pattern = Literal["plain", "band", "stripes", "dots", "check"]
 Form = Literal["banana", "duck", "car", "boat", "screwdriver", "hammer", "spoon", "brush"]
+
+
+class Obstacle(Strict, frozen=True):
+    """Something in the simulated world that the robot's map does not have.
+
+    It stands at `position`, turned by `yaw`; `size` is its full extent. With a `path` it goes from there along these
+    points at `speed`: after `start` seconds, and, if `near` is set, once the robot is so near to its place or path.
+    `repeat`: to and fro for ever, else it stays at the end. `polite`: it waits while the robot is in its way.
+    `social`: a person who walks the path to and fro as people do, round others, the robot and furniture.
+    With `placed = false` it is there only when `sim.obstacles` names it.
+    """
+
+    name: str
+    position: Vec2
+    kind: Literal["box", "cylinder"] = "cylinder"
+    size: Vec3 = (0.4, 0.4, 1.65)
+    yaw: float = 0.0
+    path: tuple[Vec2, ...] = ()
+    speed: float = 0.6
+    start: float = 0.0
+    near: float = 0.0
+    repeat: bool = False
+    polite: bool = True
+    social: bool = False
+    placed: bool = True
+    rgba: Rgba = (0.55, 0.35, 0.60, 1.0)
 
 
 class ObjectSpec(Thing, frozen=True, kw_only=True):

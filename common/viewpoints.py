@@ -186,7 +186,7 @@ def _poses_before(r: Receptacle) -> list[Pose2]:
 
 def _screens(floor_plan: FloorPlan, height: float) -> list[Rectangle]:
     """What a camera at `height` [m] does not look over: walls, and furniture nearly as high."""
-    tall = [box.outline for box in floor_plan.furniture if box.center[2] + box.size[2] / 2 > height - SEE_OVER]
+    tall = [box.outline for box in floor_plan.furniture if box.top > height - SEE_OVER]
     return [wall.footprint for wall in floor_plan.walls] + tall
 
 

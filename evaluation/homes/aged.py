@@ -5,9 +5,9 @@ import math
 import msgspec
 import numpy as np
 
-from common.floor_plan import Box, Obstacle, Vec2
+from common.floor_plan import Box, Vec2
 from common.geometry import Rectangle
-from common.scene import Scene
+from common.scene import Obstacle, Scene
 from evaluation.homes.floor import CELL, PASSAGE, Floor, Mask
 from services.navigation.planning.costmap import Costmap
 from services.navigation.planning.planner import PathPlanner

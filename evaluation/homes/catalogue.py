@@ -21,9 +21,9 @@ LEAF: Rgba = (0.25, 0.45, 0.25, 1.0)
 class Piece:
     """A piece of furniture: `width` along the wall, `depth` off it and `height` [m].
 
-    With a `kind` things are put on or into it; of a bin `height` is its walls'. `stands`: with its back at a wall, or
-    free in the room at any angle. `chance`: how many rooms of its type have it. `chairs`: most around it. `back`:
-    height [m] of a back rest above the seat.
+    With a `kind` things are put on or into it; of a bin `height` is its walls'. `stands`: with its back at a wall,
+    free in the room at any angle, or flat on the `floor`, whatever stands on it. `chance`: how many rooms of its type
+    have it. `chairs`: most around it. `back`: height [m] of a back rest above the seat.
     """
 
     name: str
@@ -31,7 +31,7 @@ class Piece:
     depth: Range
     height: Range
     kind: ReceptacleKind | None = None
-    stands: Literal["wall", "free"] = "wall"
+    stands: Literal["wall", "free", "floor"] = "wall"
     chance: float = 1.0
     aliases: tuple[str, ...] = ()
     colour: str = ""
@@ -82,3 +82,13 @@ CATALOGUE: dict[str, tuple[Piece, ...]] = {
     ),
     "corridor": (Piece("shoe cabinet", (0.60, 0.90), (0.18, 0.26), (0.75, 0.95), chance=0.5),),
 }  # fmt: skip
+EXTRAS: dict[str, tuple[Piece, ...]] = {
+    "living room": (
+        Piece("rug", (1.20, 2.00), (0.80, 1.40), (0.006, 0.015), stands="floor", rgba=(0.50, 0.22, 0.20, 1.0)),
+        Piece("high shelf", (0.60, 0.90), (0.30, 0.38), (0.90, 1.05), "shelf", chance=0.7),
+        Piece("low shelf", (0.80, 1.20), (0.32, 0.40), (0.28, 0.42), "shelf"),
+    ),
+    "bedroom": (Piece("bedside rug", (1.00, 1.40), (0.60, 0.90), (0.006, 0.015), stands="floor", rgba=CLOTH),),
+    "bathroom": (Piece("laundry basket", (0.32, 0.42), (0.32, 0.42), (0.40, 0.52), "bin", chance=0.7),),
+}  # fmt: skip
+"""What irregular homes have besides."""

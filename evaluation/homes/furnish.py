@@ -1,6 +1,7 @@
 """Furniture into the rooms of a drawn home, so that the robot still gets everywhere. Pure."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -43,8 +44,8 @@ class Furnished:
     places: list[Place] = field(default_factory=list)
 
 
-def furnish(rng: np.random.Generator, shell: Shell) -> Furnished:
-    """Put furniture of each room's type into it.
+def furnish(rng: np.random.Generator, shell: Shell, extras: Mapping[str, tuple[Piece, ...]]) -> Furnished:
+    """Put furniture of each room's type into it, and what `extras` have for it.
 
     Raises:
         NoHome: a room cannot be reached, or there is no place for the tray.
@@ -58,7 +59,7 @@ def furnish(rng: np.random.Generator, shell: Shell) -> Furnished:
     floor.keep(Rectangle(home[0], home[1], 2 * HOME_ROOM, 2 * HOME_ROOM))
     found = Furnished(shell, home, tray)
     for room in shell.rooms:
-        for piece in CATALOGUE[room.name]:
+        for piece in (*CATALOGUE[room.name], *extras.get(room.name, ())):
             if rng.random() < piece.chance:
                 floor = _put(rng, floor, found, room, piece)
     reached = floor.reached(home[:2])
@@ -105,6 +106,9 @@ def _put(rng: np.random.Generator, floor: Floor, found: Furnished, room: Room, p
     width, depth, height = (float(rng.uniform(*r)) for r in (piece.width, piece.depth, piece.height))
     for _ in range(TRIES):
         area = _spot(rng, room, piece, width, depth)
+        if piece.stands == "floor":
+            _add(found, piece, area, height)
+            return floor
         if not floor.fits(area, room, 0.04):
             continue
         trial = floor.copy()
@@ -129,10 +133,14 @@ def _still_reached(floor: Floor, found: Furnished, new: Rectangle | None) -> boo
 
 def _spot(rng: np.random.Generator, room: Room, piece: Piece, width: float, depth: float) -> Rectangle:
     """A random place for a piece: its back at a wall, or free in the room."""
-    (x0, y0), (x1, y1) = room.low, room.high
-    if piece.stands == "free":
+    if piece.stands != "wall":
         yaw = float(rng.integers(2)) * math.pi / 2 + (float(rng.uniform(-0.5, 0.5)) if rng.random() < 0.3 else 0.0)
-        return Rectangle(float(rng.uniform(x0, x1)), float(rng.uniform(y0, y1)), width, depth, yaw)
+        # What lies flat lies in its room only, what stands is held against the walls later.
+        half = math.hypot(width, depth) / 2 if piece.stands == "floor" else 0.0
+        inset = [min(half, (room.high[k] - room.low[k]) / 2 - WALL_HALF) for k in (0, 1)]
+        x, y = (float(rng.uniform(room.low[k] + inset[k], room.high[k] - inset[k])) for k in (0, 1))
+        return Rectangle(x, y, width, depth, yaw)
+    (x0, y0), (x1, y1) = room.low, room.high
     off = WALL_HALF + depth / 2 + float(rng.uniform(*GAP))
     side, along = int(rng.integers(4)), float(rng.uniform(0.0, 1.0))
     if rng.random() < 0.3:

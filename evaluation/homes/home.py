@@ -8,13 +8,16 @@ import numpy as np
 from common.floor_plan import Box, Place, Receptacle, Room, Vec2, Wall
 from common.geometry import Pose2, to_frame, wrap
 from common.scene import ObjectSpec, Scene
+from evaluation.homes.catalogue import EXTRAS
 from evaluation.homes.furnish import Furnished, furnish
-from evaluation.homes.rooms import NoHome, draw_shell
+from evaluation.homes.rooms import NoHome, Shell, draw_shell, united
 
 ROOMS = (1, 6)
 """Fewest and most rooms of a home."""
 DRAWS = 60
 """Shells that are drawn until one can be furnished; some one in three cannot."""
+IRREGULAR = 1 / 3
+"""Share of homes in the shape of an L, with an L of a room from three rooms on, rugs, a low and a high shelf."""
 OUTER_WALL = 0.12
 """Thickness of the walls around [m]."""
 
@@ -29,9 +32,11 @@ def draw_home(seed: int, objects: tuple[ObjectSpec, ...], rooms: int = 0) -> Sce
     """
     rng = np.random.default_rng([seed, 18])
     count = rooms or int(rng.integers(ROOMS[0], ROOMS[1] + 1))
+    # From a stream of its own: the other homes stay as they were before there were irregular ones.
+    irregular = bool(np.random.default_rng([seed, 19]).random() < IRREGULAR)
     for _ in range(DRAWS):
         try:
-            found = furnish(rng, draw_shell(rng, count))
+            found = furnish(rng, draw_shell(rng, count, irregular), EXTRAS if irregular else {})
         except NoHome:
             continue
         if any(r.spawn for r in found.receptacles):
@@ -70,10 +75,20 @@ def _as_scene(found: Furnished, name: str, objects: tuple[ObjectSpec, ...]) -> S
         name=name, low=low, high=high, home=Place(name="home", x=0.0, y=0.0, theta=0.0, aliases=("start", "the dock")),
         delivery=found.tray.name,
         walls=tuple(Wall(start=at(w.start), end=at(w.end), thickness=OUTER_WALL) for w in found.shell.walls),
-        rooms=tuple(map(room, found.shell.rooms)), places=tuple(map(place, found.places)),
+        rooms=tuple(map(room, _rooms(found.shell))), places=tuple(map(place, found.places)),
         furniture=tuple(map(box, found.furniture)),
         receptacles=tuple(map(receptacle, (found.tray, *found.receptacles))), objects=objects,
     )  # fmt: skip
+
+
+def _rooms(shell: Shell) -> list[Room]:
+    """The rooms; two that are joined are one, with the rectangle around both."""
+    if not shell.joined:
+        return shell.rooms
+    first, other = (shell.rooms[i] for i in shell.joined)
+    low, high = united(first, other)
+    rest = [r for r in shell.rooms if r not in (first, other)]
+    return [msgspec.structs.replace(first, low=low, high=high), *rest]
 
 
 def _turned(yaw: float, home: Pose2) -> float:

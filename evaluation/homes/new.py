@@ -85,7 +85,7 @@ def _fetch(rng: np.random.Generator, spec: ObjectSpec, to: str, when: str) -> Li
 def _room(rng: np.random.Generator, world: Scene) -> tuple[Room, tuple[str, ...]]:
     """The room that is gone to and named, and its surfaces: one with surfaces other than that of the start if any."""
     surfaces = {
-        room: tuple(r.name for r in world.receptacles if r.spawn and room.contains(*r.center[:2]))
+        room: tuple(r.name for r in world.receptacles if r.spawn and world.room_at(*r.center[:2]) == room)
         for room in world.rooms
     }
     start = world.room_at(world.home.x, world.home.y)

@@ -1,8 +1,8 @@
 """The shell of a drawn home: rooms, the walls between them and the doors. Pure.
 
 A rectangle is cut into rooms, sometimes on both sides of a corridor. Doors make every room reachable; some neighbours
-have no wall between them (open plan), which also makes L-shaped living spaces. Lengths in metres, in a frame of the
-home's own with its corner at the origin.
+have no wall between them (open plan). Of an irregular home a corner is missing, and the living room goes round one.
+Lengths in metres, in a frame of the home's own with its corner at the origin.
 """
 
 from dataclasses import dataclass, field
@@ -27,6 +27,8 @@ EXTRA_DOOR, OPEN_PLAN, CORRIDOR = 0.25, 0.2, 0.6
 """Chance of a door that is not needed, of no wall in place of a door, and of a corridor from four rooms on."""
 STUB = 0.35
 """Length [m] of the pieces of wall that are left at the sides of an open plan."""
+JOINED_FROM, JOINED_LEAST = 3, 1.8
+"""Rooms from which on an irregular home's living room is two of them in one, and width [m] at which they join."""
 NAMES = ("living room", "kitchen", "bedroom", "study", "bathroom", "guest room")
 """Names in the order in which a home gets rooms."""
 
@@ -46,22 +48,28 @@ class Door:
 
 @dataclass
 class Shell:
-    """Rooms, walls and doors; `corridor` is the name of the room that is one, "" without."""
+    """Rooms, walls and doors; `corridor` is the name of the room that is one, "" without.
+
+    The two rooms `joined` (by their numbers) are one, with nothing in between.
+    """
 
     size: Vec2
     rooms: list[Room]
     walls: list[Wall] = field(default_factory=list)
     doors: list[Door] = field(default_factory=list)
     corridor: str = ""
+    joined: tuple[int, int] | None = None
 
 
-def draw_shell(rng: np.random.Generator, rooms: int) -> Shell:
+def draw_shell(rng: np.random.Generator, rooms: int, irregular: bool = False) -> Shell:
     """The shell of a home of so many rooms (1 to 6), a corridor not counted.
 
     Raises:
         NoHome: the area drawn is too small.
     """
-    area = float(rng.uniform(*FIRST_AREA) + sum(rng.uniform(*NEXT_AREA) for _ in range(rooms - 1)))
+    notched = irregular and rooms > 1
+    cut = rooms + notched
+    area = float(rng.uniform(*FIRST_AREA) + sum(rng.uniform(*NEXT_AREA) for _ in range(cut - 1)))
     length = float(np.sqrt(area * rng.uniform(1.0, 1.7)))
     corridor = rooms >= 4 and rng.random() < CORRIDOR
     breadth = area / length + (sum(CORRIDOR_WIDTH) / 2 if corridor else 0.0)
@@ -69,14 +77,16 @@ def draw_shell(rng: np.random.Generator, rooms: int) -> Shell:
     if corridor:
         width, shift = rng.uniform(*CORRIDOR_WIDTH), rng.uniform(0.45, 0.55)
         edge = (breadth - width) * shift
-        near = _cut(rng, low, (length, edge), rooms // 2)
-        far = _cut(rng, (0.0, edge + width), high, rooms - rooms // 2)
+        near = _cut(rng, low, (length, edge), cut // 2)
+        far = _cut(rng, (0.0, edge + width), high, cut - cut // 2)
         parts = [*near, *far, ((0.0, edge), (length, edge + width))]
     else:
-        parts = _cut(rng, low, high, rooms)
-    count = len(parts) - corridor
-    if count < rooms:
+        parts = _cut(rng, low, high, cut)
+    if len(parts) - corridor < cut:
         raise NoHome(f"{area:.0f} m2 are no {rooms} rooms")
+    corner = _corner(parts, high) if notched else None
+    parts = [part for part in parts if part != corner]
+    count = len(parts) - corridor
     largest = sorted(range(count), key=lambda i: -_area(parts[i]))
     names = [""] * count
     for name, i in zip(NAMES, largest, strict=False):
@@ -87,8 +97,53 @@ def draw_shell(rng: np.random.Generator, rooms: int) -> Shell:
         high, [Room(name=n, low=a, high=b) for n, (a, b) in zip(names, parts, strict=True)],
         corridor="corridor" if corridor else "",
     )  # fmt: skip
+    if irregular and rooms >= JOINED_FROM:
+        shell.joined = _joined(shell)
     _wall_up(rng, shell)
+    if corner is not None:
+        sides = pairwise(_around(*corner))
+        shell.walls += [
+            Wall(start=a, end=b) for a, b in sides if not any(a[k] == b[k] in (0.0, high[k]) for k in (0, 1))
+        ]
     return shell
+
+
+def _around(low: Vec2, high: Vec2) -> list[Vec2]:
+    """The corners of a rectangle, the first one again in the end."""
+    return [low, (high[0], low[1]), high, (low[0], high[1]), low]
+
+
+def _corner(parts: list[tuple[Vec2, Vec2]], size: Vec2) -> tuple[Vec2, Vec2]:
+    """The smallest part in a corner of the home that is no corridor along a side: it will lie outside."""
+    in_corner = [
+        (low, high) for low, high in parts
+        if all(low[k] == 0.0 or high[k] == size[k] for k in (0, 1))
+        and not any(low[k] == 0.0 and high[k] == size[k] for k in (0, 1))
+    ]  # fmt: skip
+    if not in_corner:
+        raise NoHome("no part is a corner alone")
+    return min(in_corner, key=_area)
+
+
+def _joined(shell: Shell) -> tuple[int, int] | None:
+    """The living room and a neighbour on which it makes the longest way round a corner, if any."""
+    first = next(i for i, room in enumerate(shell.rooms) if room.name == NAMES[0])
+    found: list[tuple[float, int]] = []
+    for i, room in enumerate(shell.rooms):
+        border = _shared(shell.rooms[first], room) if i != first and room.name != shell.corridor else None
+        if border is not None and _length(border) > JOINED_LEAST:
+            low, high = united(shell.rooms[first], room)
+            spare = _area((low, high)) - sum(_area((r.low, r.high)) for r in (shell.rooms[first], room))
+            found.append((spare, i))
+    return (first, max(found)[1]) if found else None
+
+
+def united(a: Room, b: Room) -> tuple[Vec2, Vec2]:
+    """The corners of the rectangle around two rooms."""
+    low, high = (tuple(pick(p, q) for p, q in zip(u, v, strict=True)) for pick, u, v in (
+        (min, a.low, b.low), (max, a.high, b.high),
+    ))  # fmt: skip
+    return (low[0], low[1]), (high[0], high[1])
 
 
 def _area(part: tuple[Vec2, Vec2]) -> float:
@@ -122,9 +177,7 @@ def _shared(a: Room, b: Room) -> tuple[Vec2, Vec2] | None:
 
 def _wall_up(rng: np.random.Generator, shell: Shell) -> None:
     """Walls around the home and between its rooms, with as many doors as make every room reachable, and some more."""
-    (width, depth), corner = shell.size, (0.0, 0.0)
-    around = [corner, (width, 0.0), (width, depth), (0.0, depth), corner]
-    shell.walls += [Wall(start=a, end=b) for a, b in pairwise(around)]
+    shell.walls += [Wall(start=a, end=b) for a, b in pairwise(_around((0.0, 0.0), shell.size))]
     borders: dict[tuple[int, int], tuple[Vec2, Vec2]] = {}
     doors = np.zeros((len(shell.rooms), len(shell.rooms)))
     for i, j in combinations(range(len(shell.rooms)), 2):
@@ -135,8 +188,12 @@ def _wall_up(rng: np.random.Generator, shell: Shell) -> None:
         if _length(border) > DOOR_WIDTH[1] + 2 * DOOR_MARGIN:
             # Rooms on a corridor open to it rather than into each other.
             doors[i, j] = float(rng.random()) + (0.1 if _to_corridor(shell, i, j) else 2.0)
+    if shell.joined:
+        doors[min(shell.joined), max(shell.joined)] = 0.01
     needed = {(int(i), int(j)) for i, j in zip(*csgraph.minimum_spanning_tree(doors).nonzero(), strict=True)}
     for pair, border in borders.items():
+        if shell.joined and set(pair) == set(shell.joined):
+            continue
         hall = _to_corridor(shell, *pair)
         if pair not in needed and not (doors[pair] and not hall and rng.random() < EXTRA_DOOR):
             shell.walls.append(Wall(start=border[0], end=border[1]))

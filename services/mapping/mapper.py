@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common import messages as m
+from common.floor_plan import Vec2
 from common.geometry import Pose2, compose, inverse
 from services.mapping.depth import CameraModel, Picture
 from services.mapping.grid import Grid
@@ -90,6 +91,6 @@ class Mapper:
                 if first <= shot.keyframe < end:
                     self._draw(shot)
 
-    def survey(self, here: Pose2, barred: list[tuple[float, float]]) -> Survey:
+    def survey(self, here: Pose2, barred: list[Vec2], barriers: list[Vec2]) -> Survey:
         """What is left to be seen, and from where next."""
-        return survey(self.grid, self.grid.states(), here, barred)
+        return survey(self.grid, self.grid.states(), here, barred, barriers)

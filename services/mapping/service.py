@@ -149,9 +149,9 @@ class MappingService:
         if wanted == "picture" and (not self._asked or now - self._asked_at > 1.5):
             self._ask(True, now)
         elif wanted == "survey":
-            barred = list(self._exploration.barred)
+            barred, barriers = list(self._exploration.barred), list(self._exploration.barriers)
             seconds = self._config.plan_seconds
-            self._submit(self._exploration.surveyed, self._mapper.survey, pose, barred, seconds=seconds)
+            self._submit(self._exploration.surveyed, self._mapper.survey, pose, barred, barriers, seconds=seconds)
         elif wanted == "save":
             self._submit(self._done, self._save, seconds=self._config.save_seconds)
         elif isinstance(wanted, m.NavGoal):

@@ -7,6 +7,7 @@ strategies for exploring indoor environments", 2002.
 """
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -14,6 +15,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 from scipy.sparse import csgraph, csr_matrix
 
+from common.floor_plan import Vec2
 from common.geometry import Pose2
 from services.mapping.grid import FREE, OCCUPIED, RESOLUTION, UNKNOWN, Cells, Grid, Index
 from services.mapping.scan import Array
@@ -41,6 +43,9 @@ FLOOR_TRIES, TOP_TRIES = 5, 3
 NEARER = 0.75
 """What each picture without result leaves of the distance from which floor is looked at again [-]: what is not seen
 through a door from along its wall is seen from before it."""
+BARRED = 0.25
+"""Radius [m] around a position that could not be reached in which no other is tried, and around what held the robot up
+in which its middle does not pass. Chosen: a footprint's."""
 MOST = 500
 """Cells that gains are counted by, at most [count]; chosen: the choice stays below 0.3 s."""
 HOME_COST = 1.0
@@ -62,11 +67,19 @@ class Survey(NamedTuple):
     view: View | None
 
 
-def survey(grid: Grid, states: NDArray[np.uint8], here: Pose2, barred: list[tuple[float, float]]) -> Survey:
-    """What is left to be seen, and from where next; `barred` are positions that could not be reached."""
+def survey(
+    grid: Grid, states: NDArray[np.uint8], here: Pose2, barred: Sequence[Vec2], barriers: Sequence[Vec2] = ()
+) -> Survey:
+    """What is left to be seen, and from where next.
+
+    `barred` are positions that could not be reached, `barriers` those at which something unseen held the robot up.
+    """
     free = states == FREE
     distance = ndimage.distance_transform_edt(free) * RESOLUTION - RESOLUTION / 2
-    cost = _costs(grid, distance >= CLEARANCE - 0.05, here)
+    passable = distance >= CLEARANCE - 0.05
+    for x, y in barriers:
+        passable &= ~_disc(grid, (x, y, 0.0), BARRED)
+    cost = _costs(grid, passable, here)
     reached = np.isfinite(cost)
     area = float(free.sum()) * RESOLUTION**2
     wanted, places = interesting(grid, states, ndimage.binary_dilation(reached, iterations=12))
@@ -75,7 +88,7 @@ def survey(grid: Grid, states: NDArray[np.uint8], here: Pose2, barred: list[tupl
     stand = _roomiest(np.where(reached & (distance >= CLEARANCE), distance, 0.0))
     spots, costs = grid.points(stand), cost[stand]
     for x, y in barred:
-        far = np.hypot(spots[:, 0] - x, spots[:, 1] - y) > 0.25
+        far = np.hypot(spots[:, 0] - x, spots[:, 1] - y) > BARRED
         spots, costs = spots[far], costs[far]
     if not len(spots):
         return Survey(places, area, None)

@@ -1,7 +1,8 @@
 """Walls out of lidar end points: straight faces, and where two of them are the sides of one wall. Pure.
 
-Homes have walls along two directions at right angles; the faces of these are found in histograms of the points'
-offsets, each to a fraction of the lidar's noise by the mean of the many points on it.
+Most walls of a home are along two directions at right angles, some askew (`askew.py`). The faces along a direction
+are found in histograms of the points' offsets, each to a fraction of the lidar's noise by the mean of the many points
+on it.
 """
 
 import math
@@ -13,6 +14,7 @@ from scipy.spatial import KDTree
 
 from common.floor_plan import Wall
 from common.geometry import Rectangle
+from services.mapping.askew import askew
 from services.mapping.scan import Array
 
 AROUND, NEIGHBOURS, LEAST, FLAT = 0.12, 48, 6, 0.85
@@ -67,12 +69,18 @@ def find_walls(points: Array, eyes: Array, taken: list[Rectangle]) -> list[Wall]
     known = ~np.isnan(normals)
     if not known.any():
         return []
-    yaw = _refined(points[known], weights[known], normals[known], main_direction(normals[known]))
-    c, s = math.cos(yaw), math.sin(yaw)
-    turn = np.array([[c, -s], [s, c]])
-    faces = _faces(points @ turn, eyes @ turn, normals - yaw)
-    walls = _paired(faces)
-    return [_wall(w, turn) for w in walls]
+    main = _refined(points[known], weights[known], normals[known], main_direction(normals[known]))
+    rest, others = np.ones(len(points), bool), []
+    for yaw, on in askew(points, normals, main):
+        own = on & known
+        others.append((_refined(points[own], weights[own], normals[own], yaw), on))
+        rest = rest & ~on
+    walls: list[Wall] = []
+    for yaw, on in ((main, rest), *others):
+        c, s = math.cos(yaw), math.sin(yaw)
+        turn = np.array([[c, -s], [s, c]])
+        walls += [_wall(w, turn) for w in _paired(_faces(points[on] @ turn, eyes[on] @ turn, normals[on] - yaw))]
+    return walls
 
 
 def main_direction(normals: Array) -> float:

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.approach import FOOTPRINT
-from common.floor_plan import Obstacle
 from common.geometry import Rectangle
+from common.scene import Obstacle
 
 Point = tuple[float, float]
 RELAXATION = 0.5

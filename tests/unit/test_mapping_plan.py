@@ -134,6 +134,29 @@ def test_a_wall_that_was_seen_for_long_from_both_sides_is_one_wall() -> None:
     assert sorted((wall.start[0], wall.end[0])) == pytest.approx([-1.94, 1.94], abs=0.05)
 
 
+@pytest.mark.parametrize("lean", [6.0, 28.0])
+def test_a_wall_askew_is_one_wall_and_no_stair_of_straight_ones(lean: float) -> None:
+    """Of a room 4 m wide the fourth wall leans; what is short and askew stays furniture."""
+    rng, turn = np.random.default_rng(7), math.radians(lean)
+    top = Rectangle(0.0, 2.0, 4.0 / math.cos(turn), 0.0, turn)
+    half, slope = top.length / 2, 2.0 * math.tan(turn)
+    lines = [((-2.0, -2.0), (2.0, -2.0)), ((2.0, -2.0), (2.0, 2.0 + slope)), ((-2.0, -2.0), (-2.0, 2.0 - slope)),
+             (top.to_map(-half, 0.0), top.to_map(half, 0.0)), ((0.3, -0.3), (0.5, -0.1))]  # fmt: skip
+    points = np.concatenate([np.linspace(a, b, round(800 * math.dist(a, b))) for a, b in lines])
+    points += rng.normal(0.0, 0.01, points.shape)
+    eyes = np.tile((-0.8, 0.4), (len(points), 1))
+    walls = find_walls(points, eyes, [])
+    long = sorted(walls, key=lambda w: -w.outline.length)[:4]
+    assert sorted(abs(math.degrees(math.remainder(w.outline.yaw, math.pi))) for w in long) == pytest.approx(
+        [0.0, lean, 90.0, 90.0], abs=0.3
+    )
+    leaning = min(long, key=lambda w: abs(abs(math.remainder(w.outline.yaw, math.pi)) - turn))
+    # It is seen from one side: its face is in place, its other side is a guess.
+    assert leaning.footprint.length == pytest.approx(top.length, abs=0.1)
+    assert abs(top.to_local(*leaning.outline.to_map(0.0, 0.0))[1]) == pytest.approx(leaning.thickness / 2, abs=0.01)
+    assert all(w.outline.length < 0.5 for w in walls if w not in long)
+
+
 def test_what_is_left_of_a_wall_beside_an_opening_is_one_up_to_its_corner() -> None:
     """Of a jamb that reaches 24 cm into the room, some points at either end have no direction of their own."""
     rng = np.random.default_rng(5)

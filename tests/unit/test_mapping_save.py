@@ -11,6 +11,7 @@ pytest.importorskip("gtsam", reason="the extra mapping is not installed")
 pytest.importorskip("small_gicp", reason="the extra mapping is not installed")
 
 from common import messages as m
+from common.approach import FOOTPRINT
 from common.files.map_file import FREE, OCCUPIED
 from common.household import load_household
 from services.mapping.config import MappingConfig
@@ -155,6 +156,27 @@ def test_a_view_that_is_not_reached_is_barred() -> None:
     course.course._turns = []
     course.run(20.0)
     assert (course.goals[0].x, course.goals[0].y) == (1.0, 0.0)
+
+
+def test_what_holds_the_robot_up_unseen_is_a_barrier_and_tried_once_more_at_the_most() -> None:
+    """A pane of glass, through which camera and lidar see floor: exploring has to end."""
+    numbers = count()
+    course = Exploration(MappingConfig(), lambda name: f"{name}-{next(numbers)}")
+    beyond = Survey(1, 4.0, View((2.0, 0.0, 0.0), 10.0))
+    now, goals = 0.0, 0
+    while now < 600.0 and course.phase == "exploring":
+        now += 0.05
+        wanted = course.step((1.0, 0.0, 0.0), now, busy=False)
+        if wanted == "survey":
+            course.surveyed(Survey(0, 4.0, None) if course.barriers else beyond)
+        elif isinstance(wanted, m.NavGoal):
+            looks = (wanted.x, wanted.y) == (1.0, 0.0)
+            goals += not looks
+            status, code = ("arrived", "") if looks else ("failed", "BLOCKED")
+            course.heard(m.NavigationFeedback(goal_id=wanted.id, status=status, code=code), now)  # type: ignore[arg-type]
+    assert course.phase == "returning" and goals == 2
+    ((x, y),) = course.barriers
+    assert 1.0 + FOOTPRINT < x < 1.5 and y == 0.0
 
 
 def test_told_to_finish_it_drives_home_at_once() -> None:

@@ -176,6 +176,18 @@ def test_a_corridor_is_looked_along_wherever_it_lies_on_the_grid(shift: int) -> 
     assert found.frontiers >= 1 and found.view is not None and found.view.pose[2] == 0.0
 
 
+def test_what_is_behind_a_barrier_is_not_to_be_reached() -> None:
+    """In a corridor that is no wider than the robot needs, with more of it to be seen at one end."""
+    grid = Grid((-6.0, -6.0), (6.0, 6.0))
+    states = np.full(grid.shape, OCCUPIED, np.uint8)
+    states[120:137, 60:200], states[120:137, 200:] = FREE, UNKNOWN
+    grid.passed[120:137, 60:] = 1
+    here, barrier = grid.points((np.array([128, 128]), np.array([70, 90])))
+    free = survey(grid, states, (here[0], here[1], 0.0), [])
+    assert free.view is not None and free.view.pose[0] > barrier[0] + 0.5
+    assert survey(grid, states, (here[0], here[1], 0.0), [], [(barrier[0], barrier[1])]).view is None
+
+
 def test_where_nothing_is_left_the_survey_ends() -> None:
     grid = Grid((-6.0, -6.0), (6.0, 6.0))
     room(grid)

@@ -77,6 +77,20 @@ def test_furniture_tables_bins_and_walls_are_where_the_scene_puts_them() -> None
     assert occupied(scene) == inside(scene, (0.9, 0.5, length, 0.2, math.atan2(0.6, 1.2))) != set()
 
 
+def test_a_rug_and_what_hangs_above_the_robot_are_in_nobodys_way() -> None:
+    rug, lamp = (
+        Box(name="b", center=(0.8, 0.4, middle), size=(0.7, 0.3, height))
+        for middle, height in ((0.01, 0.02), (1.7, 0.4))
+    )
+    assert occupied(flat(furniture=(rug, lamp))) == set()
+    step, cupboard = (
+        Box(name="b", center=(0.8, 0.4, middle), size=(0.7, 0.3, height))
+        for middle, height in ((0.02, 0.04), (1.5, 0.4))
+    )
+    for box in (step, cupboard):
+        assert occupied(flat(furniture=(box,))) == inside(flat(), (0.8, 0.4, 0.7, 0.3, 0.0)) != set()
+
+
 def test_a_bin_counts_with_its_rim() -> None:
     x, y = centre(6, 8)
     sides = (2 * CELL - 0.03, 2 * CELL - 0.03)  # half of it ends 15 mm before the next cell's centre

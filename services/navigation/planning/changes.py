@@ -97,5 +97,5 @@ def fingerprint(plan: FloorPlan) -> str:
 
 def _shape(plan: FloorPlan) -> list[object]:
     """What makes a map another map: not how things in it are called."""
-    boxes = [box.outline for box in plan.furniture] + [(r.outline, r.center[2], r.depth) for r in plan.receptacles]
+    boxes = [box.outline for box in plan.standing] + [(r.outline, r.center[2], r.depth) for r in plan.receptacles]
     return [plan.low, plan.high, [wall.footprint for wall in plan.walls], boxes]

@@ -95,7 +95,7 @@ class Costmap:
         gx, gy = np.moveaxis(self.centres(), 2, 0)
         sides = (gx - floor_plan.low[0], floor_plan.high[0] - gx, gy - floor_plan.low[1], floor_plan.high[1] - gy)
         found: Array = np.minimum.reduce(sides)
-        boxes = [f.outline for f in floor_plan.furniture]
+        boxes = [f.outline for f in floor_plan.standing]
         # A table counts with its whole top: the lidar sees only its legs.
         boxes += [r.outline.grown(BIN_RIM if r.depth else 0.0) for r in floor_plan.receptacles]
         boxes += [wall.footprint for wall in floor_plan.walls]
