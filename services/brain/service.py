@@ -1,6 +1,7 @@
 """The brain: receives, ticks the tree, shows state and tree."""
 
 import msgspec
+from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
 from common import messages as m
@@ -23,7 +24,7 @@ from services.brain.pipelines.fetch import fetch_tree
 from services.brain.pipelines.vla import vla_tree
 from services.brain.resume.resumption import Resumption, suspend
 from services.brain.tree.path import tip
-from services.brain.tree.snapshot import Signature, signature, snapshot
+from services.brain.tree.snapshot import Seen, snapshot
 
 
 class BrainService:
@@ -39,7 +40,7 @@ class BrainService:
         self._journal = journal or open_journal(config, io)
         self.context = Context(config, io, self._journal)
         self.tree = {"fetch": fetch_tree, "vla": vla_tree}[config.pipeline](self.context)
-        self._shown: Signature | None = None
+        self._seen = Seen()
         self._ticks = 0
         self._sim_stopped = False
         self._asides = Asides(self.context)
@@ -80,17 +81,16 @@ class BrainService:
             if self._resumption.suspended:
                 ctx.suspended = suspend(self._resumption.left, ctx.mission, ctx.gripper)
             self._resumption = None
+        ticked = list[Behaviour]()
         if self._resumption is None:
-            self.tree.tick_once()
+            ticked.extend(self.tree.tick())
             for channel in ctx.peers.all:
                 if channel.resuming:  # no leaf has gone on with it
                     channel.abandon()
             ctx.checkpoints.at = tip(self.tree)
             ctx.save()
         self._ticks += 1
-        seen = signature(self.tree)
-        if seen != self._shown:
-            self._shown = seen
+        if self._seen.changed(self.tree, ticked):
             self._io.publish(topics.BRAIN_TREE, snapshot(self.tree, now, self._ticks))
 
     def close(self) -> None:

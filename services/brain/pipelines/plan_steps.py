@@ -90,14 +90,12 @@ def step_tree(ctx: Context, step: PlanStep, carried: str, at_home: bool = False)
             return Say(PLAN_STEP, ctx, lambda: step.text, name=name)
         case "wait":
             return Settle(PLAN_STEP, ctx, name=name, seconds=step.seconds)
-        case "name" | "rule":
-            return tell_home(ctx, lambda: edit_of(step, ctx), PLAN_STEP, name)
-        case "forget" if step.target:
-            return tell_home(ctx, lambda: edit_of(step, ctx), PLAN_STEP, name)
         case "teach":
             return teach(ctx, step, PLAN_STEP, name)
-        case "forget":
+        case "forget" if not step.target:
             return forget(ctx, step, PLAN_STEP, name)
+        case "name" | "rule" | "forget":
+            return tell_home(ctx, lambda: edit_of(step, ctx), PLAN_STEP, name)
         case "return":
             at_start = RememberPlace("at_home", ctx, "home")
             return Sequence(PLAN_STEP, drive_home(ctx), at_start, Settle("settle", ctx), name=name)

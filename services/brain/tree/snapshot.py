@@ -1,21 +1,32 @@
 """The behaviour tree as a message for `brain/tree`."""
 
-from typing import Any
+from collections.abc import Sequence
+from weakref import WeakKeyDictionary
 
 from py_trees.behaviour import Behaviour
+from py_trees.common import Status
 from py_trees.decorators import Decorator
 
 from common.messages import TreeNode, TreeSnapshot
 
-Signature = tuple[Any, ...]
 
+class Seen:
+    """Status and feedback of nodes as last looked at, to tell whether a snapshot of the tree would be another."""
 
-def signature(root: Behaviour) -> Signature:
-    """A value that changes whenever a snapshot would: status and feedback of every node."""
-    nodes = [root]
-    for node in nodes:  # not `iterate()`: its nested generators cost more than the whole tick
-        nodes.extend(node.children)
-    return tuple((node.status, node.feedback_message) for node in nodes)
+    def __init__(self) -> None:
+        # Weak: the nodes of a mission's plan go with it.
+        self._last = WeakKeyDictionary[Behaviour, tuple[Status, str]]()
+
+    def changed(self, root: Behaviour, ticked: Sequence[Behaviour]) -> bool:
+        """True when status or feedback of the root, of a node of the last tick or of a child of one is another.
+
+        What is farther from the tick changes only with these: a node that is stopped stops all below it.
+        """
+        near = {root, *ticked, *(child for node in ticked for child in node.children)}
+        now = {node: (node.status, node.feedback_message) for node in near}
+        changed = any(self._last.get(node) != shown for node, shown in now.items())
+        self._last.update(now)
+        return changed
 
 
 def node_of(behaviour: Behaviour) -> TreeNode:
