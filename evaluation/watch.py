@@ -15,7 +15,7 @@ class WatchConfig(Config, frozen=True):
 
 
 class Watch:
-    """Feeds an `Observer` with what the simulation and the robot publish, at 20 Hz; `renew` gives it a fresh one."""
+    """Feeds an `Observer` with what the simulation and the robot publish, at 20 Hz."""
 
     NAME = "watch"
     HZ = 20
@@ -31,11 +31,6 @@ class Watch:
         self._io = io
         self._saying = ""
         self.observer = Observer(io.world)
-
-    def renew(self) -> Observer:
-        """Judge from here on alone."""
-        self.observer = Observer(self._io.world)
-        return self.observer
 
     def step(self, now: float) -> None:
         io, observer = self._io, self.observer
