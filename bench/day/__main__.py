@@ -17,6 +17,7 @@ from typing import Any
 import msgspec
 import numpy as np
 
+from bench.day.account import Account
 from bench.day.robot import Robot
 from cli.errors import CliError
 from cli.link import Link, Watch
@@ -33,27 +34,11 @@ PATIENCE, WALL = 900.0, 3600.0
 KILLED = ("navigation", "perception", "brain")
 INTO = 8.0
 """Robot time [s] into a mission at which somebody is killed, or the power goes."""
-SHARE, MEGABYTES = 0.2, 40.0
-"""What a process may hold more of at the end than after a fifth of the missions: a share of its memory, and MB."""
-DISK = 250.0
-"""Most files [MB]: 15 MB of log for each service, pictures, journal and checkpoints."""
 OPEN = ("WAITING", "LISTENING", "COMPLETED", "ERROR")
 TOLD = (
     m.HouseholdEdit(do="name", name="den", kind="room", id="day-1"),
     m.HouseholdEdit(do="rule", id="day-2"),
 )
-
-
-class Account(msgspec.Struct):
-    """What became of the day. `ids`: of all missions that were accepted; `false`: claims that were not so."""
-
-    ids: dict[str, str] = {}
-    outcomes: dict[str, int] = {}
-    unheard: int = 0
-    false: list[str] = []
-    disturbed: list[str] = []
-    memory: list[dict[str, float]] = []
-    disk: list[float] = []
 
 
 class Day:
@@ -63,6 +48,7 @@ class Day:
         self.robot, self.world, self.account = robot, world, Account()
         self._draw = random.Random(seed)
         self._session: Any = None
+        self._now = 0.0
         self.connect()
 
     def connect(self) -> None:
@@ -76,9 +62,10 @@ class Day:
 
     @property
     def now(self) -> float:
-        """Robot time [s]; 0 while the simulation is away."""
+        """Robot time [s], as it was last heard: a simulation that starts again, or is busy, does not answer."""
         joints = self.link.latest(topics.JOINT_STATES)
-        return joints.t if joints is not None else 0.0
+        self._now = joints.t if joints is not None else self._now
+        return self._now
 
     def state(self) -> m.BrainState:
         return self.link.latest(topics.BRAIN_STATE) or m.BrainState(state="IDLE")
@@ -116,7 +103,7 @@ class Day:
         said = m.VoiceCommand(text=command, confidence=1.0, confirmed=True, id=f"day-{number}")
         self.link.send(topics.VOICE_COMMAND, said)
         mission, outcome, end = "", None, monotonic() + WALL
-        while outcome is None and monotonic() < end and not 0.0 < began + PATIENCE < self.now:
+        while outcome is None and monotonic() < end and self.now < began + PATIENCE:
             sleep(0.5)
             state = self.state()
             if not mission and state.command == command and state.mission_id not in known:
@@ -192,24 +179,7 @@ class Day:
             wrong.append(f"of what was told there is left: {edits}")
         if not (self.link.latest(topics.SIGHTINGS) or m.Sightings(t=0.0)).sightings:
             wrong.append("nothing is known of what was seen where")
-        fifth, last = self.account.memory[len(self.account.memory) // 5], self.account.memory[-1]
-        for name, mb in last.items():
-            if mb > fifth.get(name, mb) * (1 + SHARE) + MEGABYTES:
-                wrong.append(f"{name}: {fifth[name]:.0f} -> {mb:.0f} MB")
-        if max(self.account.disk) > DISK:
-            wrong.append(f"files of {max(self.account.disk):.0f} MB")
-        return wrong
-
-    def show(self) -> None:
-        """The account."""
-        a = self.account
-        missions = sum(a.outcomes.values())
-        print(f"{self.now / 3600:.2f} h of robot time, {missions} missions: {a.outcomes}; disturbed: {a.disturbed}")
-        print(f"files: {a.disk[0]:.1f} MB after the first mission, {a.disk[-1]:.1f} MB after the last")
-        fifth = a.memory[len(a.memory) // 5]
-        print(f"{'':14}{'a fifth':>9} {'end':>9}  MB")
-        for name, mb in a.memory[-1].items():
-            print(f"{name:14}{fifth.get(name, float('nan')):9.0f} {mb:9.0f}")
+        return wrong + self.account.excess()
 
 
 def main() -> int:
@@ -237,7 +207,7 @@ def main() -> int:
                     break
                 day.rest(number / args.missions * args.hours * 3600)
             wrong += day.faults()
-            day.show()
+            print(*day.account.lines(day.now), sep="\n")
             day.close()
         except CliError as error:
             wrong = [str(error)]

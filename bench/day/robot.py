@@ -5,6 +5,7 @@ import signal
 import subprocess
 import sys
 import uuid
+from contextlib import suppress
 from pathlib import Path
 
 import psutil  # type: ignore[import-untyped]
@@ -90,4 +91,10 @@ class Robot:
         return found
 
     def disk(self) -> float:
-        return sum(p.stat().st_size for p in self.directory.rglob("*") if p.is_file()) / 1e6
+        """Size of all files [MB]."""
+        found = 0
+        for path in self.directory.rglob("*"):
+            # Logs and recordings rotate, journals are swapped meanwhile.
+            with suppress(FileNotFoundError):
+                found += path.stat().st_size if path.is_file() else 0
+        return found / 1e6

@@ -1,0 +1,43 @@
+"""The account of a long day, and its clock."""
+
+from types import SimpleNamespace
+from typing import Any
+
+from bench.day.__main__ import Day
+from bench.day.account import DISK, Account
+from common import messages as m
+
+
+def heard(*times: float | None) -> Any:
+    """A link on which `joint_states` answer with these robot times one after the other, None: nobody answers."""
+    left = list(times)
+
+    def latest(topic: object) -> m.JointStates | None:
+        t = left.pop(0)
+        return None if t is None else m.JointStates(t=t, name=[], position=[], velocity=[], effort=[])
+
+    return SimpleNamespace(latest=latest)
+
+
+def test_robot_time_stays_where_it_was_while_the_simulation_does_not_answer() -> None:
+    day: Any = object.__new__(Day)
+    day._now, day.link = 0.0, heard(None, 61.0, None, 62.5)
+    assert [day.now for _ in range(4)] == [0.0, 61.0, 61.0, 62.5]
+
+
+def test_memory_is_compared_with_a_fifth_into_the_day() -> None:
+    samples = [{"brain": 400.0}, *({"brain": 100.0 + n} for n in range(9))]
+    account = Account(memory=samples, disk=[1.0, 2.0])
+    assert account.grown() == {"brain": (101.0, 108.0)} and account.excess() == []
+    account.memory[-1] = {"brain": 170.0}
+    assert account.excess() == ["brain: 101 -> 170 MB"]
+    account.disk.append(DISK + 1.0)
+    assert len(account.excess()) == 2
+
+
+def test_a_process_that_is_being_restarted_at_the_end_counts_as_it_was_last_seen() -> None:
+    samples = [{"sim": 80.0, "brain": 100.0}] * 6 + [{"sim": 80.0, "brain": 300.0}, {"sim": 80.0}]
+    assert Account(memory=samples).excess() == ["brain: 100 -> 300 MB"]
+    samples = [{"sim": 80.0}] * 3 + [{"sim": 80.0, "brain": 90.0}] * 3
+    assert Account(memory=samples).grown()["brain"] == (90.0, 90.0)
+    assert "brain" in Account(memory=samples, outcomes={"delivered": 3}).lines(3600.0)[-1]
