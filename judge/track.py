@@ -14,6 +14,9 @@ MOVED = 0.03
 TOPPLED = math.radians(15)
 """Tilt [rad] from which an object does not stand: on a flat surface one with a flat bottom stands within 2 degrees or
 has gone over; the slimmest, a bottle of 64 x 210 mm, goes over at 17."""
+DROP = 0.01
+"""Fall [m] of what left the hand that counts as dropped: a put-down lets go some millimetres above a surface, and pads
+on a round wall may lose it for one sample."""
 FALL = 1.0
 """Time [s] that a thing let go above a bin may take to lie in it: a free fall of 1 s is 4.9 m."""
 
@@ -29,7 +32,9 @@ class Thing(msgspec.Struct, frozen=True):
 
 
 class Track(msgspec.Struct):
-    """`carried` [m]: way of the base with it in the hand. `shift` [m], `lean` [rad]: the most since the baseline."""
+    """`carried` [m]: way of the base with it in the hand. `shift` [m], `lean` [rad]: the most since the baseline.
+
+    `lost_at` [m]: height at which the hand lost it, until something holds it up again."""
 
     kind: str
     bins: frozenset[str]
@@ -40,6 +45,7 @@ class Track(msgspec.Struct):
     dropped: bool = False
     drops: int = 0
     let_go: float = 0.0
+    lost_at: float | None = None
     shift: float = 0.0
     lean: float = 0.0
 
@@ -59,16 +65,22 @@ class Track(msgspec.Struct):
             self.carried += driven
             # What slipped and was picked up again is judged by the carry that followed.
             self.dropped = self.dropped and before.held
-        if self.dropped and now.on in self.bins and t - self.let_go < FALL:
-            self.dropped, self.drops = False, self.drops - 1
         if not self.dropped and self._fell(before):
             self.dropped, self.let_go, self.drops = True, t, self.drops + 1
+        if self.dropped and now.on in self.bins and t - self.let_go < FALL:
+            self.dropped, self.drops = False, self.drops - 1
 
     def _fell(self, before: Thing) -> bool:
-        """On the floor, where it did not stand; or out of the hand and on nothing."""
+        """On the floor, where it did not stand; or out of the hand, on nothing, and lower than there."""
         now = self.last
-        on_the_floor = now.on == "floor" and self.baseline.on != "floor"
-        return on_the_floor or (before.held and not now.touched and not now.on)
+        if before.held and not now.touched and not now.on:
+            self.lost_at = before.position[2]
+        elif now.touched:
+            self.lost_at = None
+        fell = self.lost_at is not None and self.lost_at - now.position[2] > DROP
+        if fell or now.on:
+            self.lost_at = None
+        return fell or (now.on == "floor" and self.baseline.on != "floor")
 
     @property
     def toppled(self) -> bool:

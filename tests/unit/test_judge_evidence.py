@@ -182,6 +182,16 @@ def test_set_down_is_not_dropped() -> None:
     assert mug([*GOOD[:5], sample(4.5, changed(ON_TABLE, touched=False)), *GOOD[5:]]).drops == 0
 
 
+@pytest.mark.parametrize(("fall", "drops"), [(0.009, 0), (0.011, 1)])
+def test_what_the_hand_loses_is_dropped_when_it_falls(fall: float, drops: int) -> None:
+    above, below = changed(FALLING, position=(3.0, 0, 0.9)), changed(FALLING, position=(3.0, 0, 0.9 - fall))
+    still = [sample(t, changed(above, held=True, touched=True)) for t in (4.7, 4.8)]
+    assert mug([*GOOD[:5], sample(4.5, above), sample(4.6, below), *still]).drops == drops
+    assert mug([*GOOD[:5], sample(4.5, above), sample(4.6, changed(below, on="tray")), *GOOD[5:]]).drops == drops
+    again = changed(below, touched=True)
+    assert mug([*GOOD[:5], sample(4.5, above), sample(4.6, again), sample(4.7, ON_TRAY), *GOOD[5:]]).drops == 0
+
+
 def test_what_stands_on_the_floor_has_not_fallen() -> None:
     below = changed(ON_TABLE, on="floor")
     assert mug([sample(0.0, below), sample(1.0, below), *GOOD[2:]]).delivered
