@@ -1,10 +1,15 @@
 """What navigation tells of the goal under way: its status, and feedback while it lasts."""
 
+import math
+
 from common import messages as m
 from common import topics
 from common.bus.port import Io
 from services.navigation.localisation.state_estimation import StateEstimator
 from services.navigation.motion.navigator import Navigator
+
+FEEDBACK_PERIOD = 1.0
+"""Time between two feedbacks without news [s]; chosen: often enough for a person who watches."""
 
 
 class Reports:
@@ -14,7 +19,7 @@ class Reports:
         self._io, self._state = io, state
         self._in_words = True
         self._recoveries = 0
-        self._shown = (0, "")
+        self._shown, self._feedback_at = (0, ""), -math.inf
         self.status = m.NavigationStatus(status="idle")
         io.publish(topics.NAVIGATION_STATUS, self.status)
 
@@ -25,7 +30,7 @@ class Reports:
 
     def begin_leg(self) -> None:
         """Another navigator works for the goal."""
-        self._shown = (0, "")
+        self._shown, self._feedback_at = (0, ""), -math.inf
 
     def end_leg(self, navigator: Navigator | None) -> None:
         """A navigator has done its part: its recoveries stay those of the goal."""
@@ -51,7 +56,10 @@ class Reports:
             self._shown = shown
             self._io.log.info("under way", doing=navigator.doing or "driving", recoveries=navigator.recoveries)
             self.feedback(navigator)
-        elif path or navigator.due_feedback(now):
+        elif path:
+            self.feedback(navigator)
+        elif now - self._feedback_at >= FEEDBACK_PERIOD:
+            self._feedback_at = now
             self.feedback(navigator)
 
     def feedback(self, navigator: Navigator | None, doing: str = "") -> None:

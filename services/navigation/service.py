@@ -5,28 +5,21 @@ import math
 from common import messages as m
 from common import topics
 from common.bus.port import Io
-from common.config import config_dir
-from common.geometry import Array, Pose2
+from common.geometry import Pose2
 from common.goal_inbox import GoalInbox
-from common.viewpoints import viewpoints_of
-from common.whereabouts import likelihood
-from services.navigation.approach_history import ApproachHistory
 from services.navigation.config import NavigationConfig
+from services.navigation.destinations import Destinations
 from services.navigation.ended import Ended
-from services.navigation.goals import Choices, Goal, Goals, in_words
+from services.navigation.goals import Choices, Goal, in_words
 from services.navigation.localisation.state_estimation import StateEstimator
 from services.navigation.motion.navigator import Navigator
 from services.navigation.orientation import Orientation
 from services.navigation.others.neighbours import Neighbours
-from services.navigation.places import Places, load_places
 from services.navigation.planning.changes import ChangesFile
 from services.navigation.planning.costmap import Costmap
 from services.navigation.planning.planner import PathPlanner
 from services.navigation.reports import Reports
-from services.navigation.search.coverage import SearchCoverage
 from services.navigation.search.search import Search
-
-PERCEPTION = "perception"
 
 
 class NavigationService:
@@ -39,9 +32,7 @@ class NavigationService:
 
     def __init__(self, config: NavigationConfig, io: Io) -> None:
         self._config, self._io = config, io
-        self._places = load_places(config_dir())
-        self._named = io.household
-        self._goals = Goals(self._named, Places(self._named, self._places), config)
+        self._destinations = Destinations(config, io)
         # Who makes the map takes lasting changes into it.
         lasting_after = math.inf if config.map == "mapping" else config.lasting_after
         self._map = Costmap(io.household, config.resolution, config.obstacle_memory, lasting_after)
@@ -50,8 +41,6 @@ class NavigationService:
             self._map.remember(0.0)
         self._planner = PathPlanner(self._map, config.footprint_radius + config.clearance, config.inflation)
         self._state = StateEstimator(config, io, self._map)
-        self._coverage = SearchCoverage(viewpoints_of(io.household, None))
-        self._approaches = ApproachHistory()
         self._navigator: Navigator | None = None
         self._search: Search | None = None
         self._found: Search | None = None
@@ -101,13 +90,8 @@ class NavigationService:
     def _busy(self) -> bool:
         return self._navigator is not None or self._search is not None
 
-    @property
-    def _status(self) -> m.NavigationStatus:
-        return self._reports.status
-
-    # --- goals
     def _repeat(self, goal: Goal, answer: m.NavigationStatus | None) -> None:
-        self._reports.publish(answer or self._status, self._navigator)
+        self._reports.publish(answer or self._reports.status, self._navigator)
 
     def _preempted(self, old: Goal, new: Goal) -> None:
         self._finish(Ended("failed", "PREEMPTED", f"replaced by {in_words(new)}"))
@@ -119,46 +103,38 @@ class NavigationService:
         if text == "stop":
             self._hold()
             self._reports.tell("idle", "STOPPED", "the base holds", None)
-            self._inbox.end(goal, self._status)
+            self._inbox.end(goal, self._reports.status)
             return
         try:
             self._begin(text, pose)
         except Ended as ended:
             self._finish(ended)
-            return
-        self._reports.tell("navigating", "", text, self._navigator)
+        else:
+            self._reports.tell("navigating", "", text, self._navigator)
 
     def _begin(self, text: str, pose: m.NavGoal | None) -> None:
         """Raises `Ended` for an unknown goal or place."""
-        self._learn_names()
         verb, _, rest = text.partition(" ")
         rest = rest.strip()
         named = pose.object.label if pose is not None and pose.object is not None else ""
-        self._approaches.goal_sent(rest if verb == "find" else named)
+        self._destinations.goal_sent(self._reports.status.goal_id, rest if verb == "find" else named)
         if pose is not None:
-            self._go(self._approaches.penalised(self._status.goal_id, self._goals.pose(pose, self._objects())))
+            self._go(self._destinations.standing_at(pose))
         elif text == "return_to_start":
-            self._go(self._goals.home())
+            self._go(self._destinations.goals.home())
         elif verb == "goto" and rest:
-            self._go(self._goals.place(rest))
+            self._go(self._destinations.goals.place(rest))
         elif verb == "find" and rest:
             self._find(rest)
         else:
             raise Ended("failed", "UNKNOWN_GOAL", f"{text!r}: expected find, goto, return_to_start or stop")
 
-    def _learn_names(self) -> None:
-        """Places are called as people call them now."""
-        if self._io.household is not self._named:
-            self._named = self._io.household
-            self._goals = Goals(self._named, Places(self._named, self._places), self._config)
-
     def _find(self, item: str) -> None:
-        choices = self._approaches_to(item)
-        if self._io.peer(PERCEPTION) is None:
-            self._go(choices or self._goals.spot(item))
+        choices = self._destinations.before(item)
+        if not self._destinations.watched:
+            self._go(choices or self._destinations.goals.spot(item))
             return
-        self._coverage.viewpoints = viewpoints_of(self._io.household, self._io.latest(topics.ROBOT_DESCRIPTION))
-        search = Search(item, self._coverage, self._config, self._now, self._likelihood(item))
+        search = self._destinations.search(item, self._now)
         if choices:
             self._found = search
             self._go(choices)
@@ -166,43 +142,29 @@ class NavigationService:
             self._io.log.info("search", item=item)
             self._search = search
 
-    def _likelihood(self, item: str) -> Array:
-        """Where the item may be, by where it and its like were seen and by where they belong."""
-        seen = self._io.latest(topics.SIGHTINGS)
-        rows, now = (seen.sightings, seen.t) if seen is not None else ([], 0.0)
-        return likelihood(item, self._io.household, rows, now, self._coverage.viewpoints)
-
-    def _approaches_to(self, item: str) -> Choices:
-        return self._approaches.penalised(self._status.goal_id, self._goals.seen(item, self._objects()))
-
-    def _objects(self) -> list[m.WorldObject]:
-        reported = self._io.latest(topics.WORLD_OBJECTS)
-        return reported.objects if reported else []
-
     def _go(self, choices: Choices) -> None:
         self._legs += 1
-        name = f"{self._status.goal_id}/{self._status.attempt}/{self._legs}"
+        name = f"{self._reports.status.goal_id}/{self._reports.status.attempt}/{self._legs}"
         self._navigator = Navigator(self._config, self._map, self._planner, choices, name, self._now)
         self._reports.begin_leg()
 
-    # --- searching
     def _look_for(self, search: Search, now: float) -> None:
         """One step of a search; raises `Ended` when it is over without result."""
-        if choices := self._approaches_to(search.item):
+        if choices := self._destinations.before(search.item):
             self._io.log.info("found", item=search.item, views=search.looked)
             self._search, self._found = None, search
             self._reports.end_leg(self._navigator)
             self._go(choices)
             return
-        if self._io.peer(PERCEPTION) is None:
+        if not self._destinations.watched:
             self._io.log.warning("nobody looks any more", item=search.item)
             self._search = None
-            self._go(self._goals.spot(search.item))
+            self._go(self._destinations.goals.spot(search.item))
             return
         pose = self._state.pose
         if pose is None or search.timed_out(now):
             return
-        looked = self._coverage.look(pose, now, self._config.look_time)
+        looked = self._destinations.coverage.look(pose, now, self._config.look_time)
         if self._navigator is None and (looked or search.fresh):
             view = search.next(pose, self._planner, self._map)
             self._io.log.info("view", item=search.item, number=search.looked, x=view[0], y=view[1])
@@ -210,13 +172,12 @@ class NavigationService:
 
     def _still_there(self, found: Search) -> None:
         """Search on when perception, from nearer, no longer takes anything for what is driven to."""
-        if self._io.peer(PERCEPTION) is None or self._goals.known(found.item, self._objects()):
+        if not self._destinations.watched or self._destinations.known(found.item):
             return
         self._io.log.info("not there after all", item=found.item)
         self._reports.end_leg(self._navigator)
         self._search, self._found, self._navigator = found, None, None
 
-    # --- driving
     def _located(self, reached: list[m.GoalReached], now: float) -> bool:
         """True while the robot knows where it is; else it finds out. Raises `Ended` when it cannot."""
         doing = self._orientation.doing
@@ -250,7 +211,7 @@ class NavigationService:
             target.x, target.y, target.theta = state.localiser.to_odometry((target.x, target.y, target.theta))
             self._io.publish(topics.BASE_TARGET, target)
         if path := navigator.take_new_path():
-            self._io.publish(topics.NAV_PATH, m.NavPath(t=now, points=path[::4], goal_id=self._status.goal_id))
+            self._io.publish(topics.NAV_PATH, m.NavPath(t=now, points=path[::4], goal_id=self._reports.status.goal_id))
         self._reports.under_way(navigator, bool(path), now)
 
     def _with_others(self, now: float) -> None:
@@ -273,14 +234,14 @@ class NavigationService:
         self._navigator = None
         self._orientation.known()
         if ended.status == "arrived":
-            self._approaches.arrived(self._status.goal_id, self._state.pose)
+            self._destinations.arrived(self._state.pose)
         if ended.status == "failed" and navigator is not None and self._state.pose is not None:
             self._hold()
         self._reports.tell(ended.status, ended.code, ended.detail, None)
         if self._inbox.active is not None:
-            self._inbox.end(self._inbox.active, self._status)
+            self._inbox.end(self._inbox.active, self._reports.status)
         log = self._io.log.info if ended.status == "arrived" else self._io.log.warning
-        log(ended.status, id=self._status.goal_id, code=ended.code, detail=ended.detail)
+        log(ended.status, id=self._reports.status.goal_id, code=ended.code, detail=ended.detail)
 
     def _hold(self) -> None:
         """Brake: a velocity stream that falls silent at once."""

@@ -4,6 +4,7 @@ import math
 from collections.abc import Sequence
 
 from services.navigation.config import NavigationConfig
+from services.navigation.ended import Ended
 from services.navigation.motion.obstacle_tracker import Obstacle
 from services.navigation.planning.planner import Point
 
@@ -28,10 +29,15 @@ class Progress:
     """Of one goal: `deadline` is the robot time [s] at which it fails, inf before it is set."""
 
     def __init__(self, config: NavigationConfig, now: float) -> None:
-        self._config = config
+        self._config, self._started = config, now
         self.deadline = math.inf
         self._best, self._best_at = math.inf, now
         self._held_up, self._held_at = 0.0, now
+
+    def check(self, now: float) -> None:
+        """Raises `Ended` TIMEOUT after the deadline."""
+        if now > self.deadline:
+            raise Ended("failed", "TIMEOUT", f"not there after {now - self._started:.0f} s")
 
     def hold_up(self, now: float) -> None:
         """Once a step while people keep it from getting on: that is not its fault."""

@@ -1,0 +1,63 @@
+"""What the robot does when it cannot get on: back the way it came, or aside for who waits for it to go first."""
+
+from collections.abc import Sequence
+
+from common.geometry import Pose2
+from services.navigation.config import NavigationConfig
+from services.navigation.ended import Ended
+from services.navigation.motion.breadcrumbs import Breadcrumbs
+from services.navigation.motion.obstacle_tracker import Obstacle
+from services.navigation.motion.path_follower import PathFollower
+from services.navigation.motion.progress import Standoff
+from services.navigation.motion.retreat import PassingPlace, Retreat, passing_place
+from services.navigation.planning.costmap import Costmap
+from services.navigation.planning.planner import PathPlanner
+
+OUT_OF_SIGHT = 3.0
+"""Age from which what was seen may be gone when there is no path [s]; chosen: longer than somebody hides a cell."""
+
+
+class Recovery:
+    """Of one goal. `under_way` is the way back or aside that the robot is on; None: it is on none."""
+
+    def __init__(self, config: NavigationConfig, costmap: Costmap, planner: PathPlanner) -> None:
+        self._config, self._map, self._planner = config, costmap, planner
+        self._breadcrumbs = Breadcrumbs()
+        self._standoff = Standoff()
+        self._retries = 0
+        self.under_way: Retreat | PassingPlace | None = None
+
+    def came_by(self, pose: Pose2) -> None:
+        """Once a step: where the robot is [map]."""
+        self._breadcrumbs.add(pose)
+
+    def relocated(self) -> None:
+        """The robot is not where it seemed to be, nor did it come that way."""
+        self.under_way, self._breadcrumbs = None, Breadcrumbs()
+
+    def back_off(self, pose: Pose2, now: float, why: str) -> None:
+        """Go back a little the way it came, before another path is looked for.
+
+        These are all the retries of a blocked path: whoever sent the goal adds none.
+
+        Raises:
+            Ended: BLOCKED, after the last retry.
+        """
+        if self._retries >= self._config.retries:
+            raise Ended("failed", "BLOCKED", f"{why} after {self._retries} retries")
+        self._retries += 1
+        self._map.doubt(now, OUT_OF_SIGHT)
+        config = self._config
+        back = self._breadcrumbs.retreat(pose, self._map, config.footprint_radius, config.back_off)
+        self.under_way = Retreat(back, now + config.back_off_time, config.corridor)
+
+    def let_pass(self, pose: Pose2, people: Sequence[Obstacle], now: float) -> None:
+        """Once a step while a person stands before the robot: who waits for it to go first gets room."""
+        person = self._standoff.with_whom((pose[0], pose[1]), people, now)
+        if person is None:
+            return
+        path = passing_place(pose, person, self._map, self._planner)
+        if path is not None:
+            config = self._config
+            follower = PathFollower(path, (*path[-1], pose[2]), config.lookahead, config.corridor)
+            self.under_way = PassingPlace(follower, person, self._map, config.footprint_radius, config.corridor, now)
