@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from evaluation.person.ego_noise import EgoNoise
-from evaluation.person.voice import LEAD, RATE, TAIL, Floats, Samples, hum, loudness, reverberant
+from evaluation.person.voice import Floats, Samples, hum, loudness, reverberant, with_noise, with_silence
 from services.speech.audio import read_wav
 
 KINDS = ("white", "hum", "room", "babble", "drive")
@@ -22,7 +22,7 @@ def noisy(samples: Samples, kind: str, snr: float, seed: int, talk: Sequence[Pat
     """16 kHz samples with silence around them and noise `snr` [dB] below the words over all; `talk`: recordings for
     babble. Repeats for a `seed`."""
     rng = np.random.default_rng([seed, KINDS.index(kind)])
-    whole = np.pad(samples, (round(LEAD * RATE), round(TAIL * RATE)))
+    whole = with_silence(samples)
     level = loudness(samples)
     if kind == "drive":
         return EgoNoise(seed, level).over(whole, SPEED)
@@ -31,7 +31,7 @@ def noisy(samples: Samples, kind: str, snr: float, seed: int, talk: Sequence[Pat
         noise = rng.normal(0.0, 1.0, len(whole))
     else:
         noise = _babble(len(whole), talk, rng) if kind == "babble" else hum(len(whole), rng)
-    return np.clip(heard + level * 10 ** (-snr / 20) * noise, -32768, 32767).astype(np.int16)
+    return with_noise(heard, noise, level, snr)
 
 
 def _babble(count: int, talk: Sequence[Path], rng: np.random.Generator) -> Floats:

@@ -8,13 +8,12 @@ detections are of nothing.
 
 import argparse
 import math
-import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
 
-from bench.perception.views import look_at, visible
+from bench.perception.views import Looked, look_at, visible
 from common.rendering.renderer import Renderer
 from common.scene import ObjectSpec
 from evaluation.case import Case
@@ -22,8 +21,7 @@ from evaluation.suites import unknown
 from services.perception.detect import ClassicalDetector
 from services.perception.detection import Detection
 from services.perception.views import colour
-from services.perception.views.view import View
-from services.sim.layout import Placement, place_objects
+from services.sim.layout import place_objects
 from services.sim.world import world_files, world_mjcf
 
 SUITES: dict[str, Callable[[int], Case]] = {s.__name__: s for s in (unknown.sizes, unknown.clutter, unknown.lying)}
@@ -78,7 +76,7 @@ HEAD = (
 )
 
 
-def take_all(args: argparse.Namespace) -> Iterator[tuple[View, list[Placement], ClassicalDetector]]:
+def take_all(args: argparse.Namespace) -> Iterator[Looked]:
     """Views of the suite's worlds from random places, with what stands there."""
     rng, made, seed = np.random.default_rng(args.seed), 0, args.seed
     while made < args.views:
@@ -94,46 +92,52 @@ def take_all(args: argparse.Namespace) -> Iterator[tuple[View, list[Placement], 
             view = look_at(args, renderer, chosen, placements, rng)
             if view is not None and made < args.views:
                 made += 1
-                yield view, placements, detector
+                yield Looked(view, placements, detector)
         renderer.close()
         seed += 1
 
 
-def measure(args: argparse.Namespace) -> None:
-    """Print the table for `args.views` views from `args.seed` on."""
-    tallies: dict[str, Tally] = {}
-    all_of_them, false, seen = Tally(), 0, 0
-    seconds: list[float] = []
-    for view, placements, detector in take_all(args):
-        began = time.thread_time()
-        found = detector.detect(view)
-        seconds.append(time.thread_time() - began)
-        seen += 1
+class Unlisted:
+    """What perception makes of things that no household lists."""
+
+    def __init__(self, args: argparse.Namespace) -> None:
+        self._args = args
+        self._tallies: dict[str, Tally] = {}
+        self._all, self._false, self._seen = Tally(), 0, 0
+
+    def views(self) -> Iterator[Looked]:
+        """Views of the suite's worlds."""
+        return take_all(self._args)
+
+    def add(self, looked: Looked, found: list[Detection]) -> None:
+        """One view, and what was detected in it."""
+        view, placements, _ = looked
+        self._seen += 1
         for p in placements:
             if not visible(view, p):
                 continue
             near = [(math.dist(d.position[:2], p.position[:2]), n) for n, d in enumerate(found)]
             error, best = min(near, default=(math.inf, 0))
             d = found[best] if error < NEAR else None
-            for tally in (tallies.setdefault(p.spec.kind, Tally()), all_of_them):
+            for tally in (self._tallies.setdefault(p.spec.kind, Tally()), self._all):
                 tally.add(p.spec, d, error)
-            if args.verbose and (d is None or p.spec.kind not in d.kinds or p.spec.colour not in d.colours):
-                print(f"view {seen}: {p.spec.name} {p.spec.size} {p.spec.pose} at {_far(view, p):.2f} m: {_told(d)}")
+            if self._args.verbose and (d is None or p.spec.kind not in d.kinds or p.spec.colour not in d.colours):
+                what, far = f"{p.spec.name} {p.spec.size} {p.spec.pose}", math.dist(view.position, p.position)
+                print(f"view {self._seen}: {what} at {far:.2f} m: {_told(d)}")
         ghosts = [d for d in found if all(math.dist(d.position[:2], p.position[:2]) > NOTHING for p in placements)]
-        false += len(ghosts)
-        if args.verbose:
-            print(*(f"view {seen}: nothing is {_told(d)} at {d.position}" for d in ghosts), sep="\n", end="")
-    print(f"{seen} views of {args.unknown}, {all_of_them.total} visible objects, {args.width} x {args.height}")
-    print(HEAD)
-    for kind in sorted(tallies):
-        print(tallies[kind].row(kind))
-    print(all_of_them.row("all"))
-    print(f"detections of nothing a view: {false / max(1, seen):.3f}")
-    print(f"CPU time a view: median {np.median(seconds) * 1e3:.0f} ms, p95 {np.percentile(seconds, 95) * 1e3:.0f} ms")
+        self._false += len(ghosts)
+        if self._args.verbose:
+            print(*(f"view {self._seen}: nothing is {_told(d)} at {d.position}" for d in ghosts), sep="\n", end="")
 
-
-def _far(view: View, p: Placement) -> float:
-    return math.dist(view.position, p.position)
+    def show(self) -> None:
+        """Print the table."""
+        args = self._args
+        print(f"{self._seen} views of {args.unknown}, {self._all.total} visible objects, {args.width} x {args.height}")
+        print(HEAD)
+        for kind in sorted(self._tallies):
+            print(self._tallies[kind].row(kind))
+        print(self._all.row("all"))
+        print(f"detections of nothing a view: {self._false / max(1, self._seen):.3f}")
 
 
 def _told(d: Detection | None) -> str:

@@ -2,7 +2,7 @@
 
 import argparse
 import math
-from collections.abc import Iterator
+from typing import NamedTuple
 
 import numpy as np
 
@@ -10,15 +10,21 @@ from common.geometry import Pose2
 from common.rendering.renderer import Renderer
 from common.scene import Receptacle, Scene, body_name, load_scene
 from services.camera.sensor import StereoCamera
+from services.perception.detect import ClassicalDetector
 from services.perception.views.view import View
-from services.sim.layout import Placement, place_objects
+from services.sim.layout import Placement
 from services.sim.model import own
-from services.sim.world import world_mjcf
 
 RANGE, MARGIN = 3.0, 12
 """Depth [m] up to which, and margin of the picture [px] within which an object must be seen."""
-VIEWS_PER_LAYOUT = 5
-"""Standing places for each layout."""
+
+
+class Looked(NamedTuple):
+    """A view, what stands there, and a detector that has been told of that home what its robot is."""
+
+    view: View
+    placements: list[Placement]
+    detector: ClassicalDetector
 
 
 def stand(rng: np.random.Generator, scene: Scene, placement: Placement) -> Pose2 | None:
@@ -38,21 +44,6 @@ def _before(rng: np.random.Generator, r: Receptacle) -> tuple[float, float]:
     distance = (r.size[0] if ax else r.size[1]) / 2 + rng.uniform(0.4, 1.6)
     side = rng.uniform(-0.6, 0.6)
     return float(r.center[0] + ux * distance - uy * side), float(r.center[1] + uy * distance + ux * side)
-
-
-def take_all(args: argparse.Namespace, scene: Scene) -> Iterator[tuple[View, list[Placement]]]:
-    """Views with what stands in the flat."""
-    rng = np.random.default_rng(args.seed)
-    made = 0
-    while made < args.views:
-        placements = place_objects(scene, int(rng.integers(1 << 30)))
-        renderer = Renderer(world_mjcf(scene, placements), args.backend)
-        for _ in range(VIEWS_PER_LAYOUT):
-            pose = stand(rng, scene, placements[int(rng.integers(len(placements)))])
-            if pose is not None and made < args.views:
-                made += 1
-                yield take(renderer, pose, args, rng), placements
-        renderer.close()
 
 
 def take(

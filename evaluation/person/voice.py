@@ -38,17 +38,30 @@ def utter(text: str, noise: float | None = None, seed: int = 0, speaker: Speaker
     White noise, or with `speaker.room` the hum of a room (1/f) and its echoes.
     """
     speaker = speaker or Speaker()
-    quiet = np.zeros(round(LEAD * RATE), np.int16), np.zeros(round(TAIL * RATE), np.int16)
     speech = _spoken(text, speaker)
-    whole = np.concatenate((quiet[0], speech, quiet[1]))
+    whole = with_silence(speech)
     if noise is None and not speaker.room:
         return whole
     rng = np.random.default_rng([seed, 29])
     sound = reverberant(whole, rng) if speaker.room else whole.astype(np.float64)
-    if noise is not None:
-        loudness = float(np.sqrt(np.mean(np.square(speech.astype(np.float64)))))
-        hiss = hum(len(whole), rng) if speaker.room else rng.normal(0.0, 1.0, len(whole))
-        sound = sound + loudness * 10 ** (-noise / 20) * hiss
+    if noise is None:
+        return _samples(sound)
+    level = float(np.sqrt(np.mean(np.square(speech.astype(np.float64)))))
+    hiss = hum(len(whole), rng) if speaker.room else rng.normal(0.0, 1.0, len(whole))
+    return with_noise(sound, hiss, level, noise)
+
+
+def with_silence(speech: Samples) -> Samples:
+    """A breath before and silence after."""
+    return np.pad(speech, (round(LEAD * RATE), round(TAIL * RATE)))
+
+
+def with_noise(sound: Floats, noise: Floats, level: float, snr: float) -> Samples:
+    """`sound` (n,) and `noise` (n,) of root mean square 1, which is `snr` [dB] below `level` [int16 steps]."""
+    return _samples(sound + level * 10 ** (-snr / 20) * noise)
+
+
+def _samples(sound: Floats) -> Samples:
     return np.clip(sound, -32768, 32767).astype(np.int16)
 
 
