@@ -26,6 +26,9 @@ the error of an end."""
 CORNER = BIN_SIDE[1]
 """Length [m] from which a wall across the end of another makes a corner with it: more than the largest bin has, whose
 sides are faces like a wall's where the robot does not fit beside it."""
+CORRIDOR = 1.75
+"""Gap [m] up to which what opens between two corners is the mouth of a corridor, and wider a bay of the room: corridors
+in homes are 1.0 to 1.6 m wide."""
 HIGH = 0.95
 """Height [m] from which on what stands there may be a wall behind furniture, of which the lidar sees nothing: above
 tables, counters and the backs of sofas."""
@@ -66,13 +69,20 @@ def find_rooms(grid: Grid, states: NDArray[np.uint8], walls: Sequence[Wall]) -> 
 
 
 def openings(walls: Sequence[Wall]) -> list[Rectangle]:
-    """Doors and wider gaps in a wall: strips from the free end of one piece to that of the next one in its line."""
+    """Doors, wider gaps in a wall and mouths of corridors: strips from the end of one piece to the next in its line.
+
+    Ends are free, or both are corners behind which the sides of a corridor begin.
+    """
     outlines = [wall.outline for wall in walls]
     found = []
     for own in outlines:
         gap = min((g for other in outlines if (g := _gap(own, other)) > 0.0), default=WIDEST)
         start, middle, end = (own.to_map(own.length / 2 + share * gap, 0.0) for share in (0.0, 0.5, 1.0))
-        if gap < WIDEST and not any(_meets(point, wall, own) for wall in outlines for point in (start, end)):
+        if gap >= WIDEST:
+            continue
+        corners = [_across(point, own, outlines) for point in (start, end)]
+        mouth = corners[0] == corners[1] and len(corners[0]) == 1 and gap < CORRIDOR
+        if mouth or not any(_is_corner(point, own, outlines) for point in (start, end)):
             found.append(Rectangle(*middle, gap + 2 * END, 2 * RESOLUTION, own.yaw))
     return found
 
@@ -83,10 +93,24 @@ def _gap(own: Rectangle, other: Rectangle) -> float:
     return min(u for u, _ in ends) - own.length / 2 if max(abs(v) for _, v in ends) < IN_LINE else -1.0
 
 
-def _meets(end: tuple[float, float], wall: Rectangle, own: Rectangle) -> bool:
+def _is_corner(end: tuple[float, float], own: Rectangle, walls: Sequence[Rectangle]) -> bool:
     """True where a wall across runs past the end of one, which is then a corner and no jamb."""
-    across = wall.length > CORNER and abs(math.sin(wall.yaw - own.yaw)) > 0.5
-    return across and wall.contains(*end, wall.width / 2 + END)
+    return any(wall.length > CORNER and _meets(end, wall, own) for wall in walls)
+
+
+def _meets(end: tuple[float, float], wall: Rectangle, own: Rectangle) -> bool:
+    """True for a wall across that goes through, or begins at, the end of one."""
+    return abs(math.sin(wall.yaw - own.yaw)) > 0.5 and wall.contains(*end, wall.width / 2 + END)
+
+
+def _across(end: tuple[float, float], own: Rectangle, walls: Sequence[Rectangle]) -> set[int]:
+    """To which sides of a wall, 1 left and -1 right of it, others go from its end, however short they are."""
+    sides = set()
+    for wall in walls:
+        if _meets(end, wall, own):
+            reach = [own.to_local(*wall.to_map(way * wall.length / 2, 0.0))[1] for way in (-1, 1)]
+            sides |= {side for side in (-1, 1) if max(side * v for v in reach) > own.width / 2 + END}
+    return sides
 
 
 def _direction(walls: Sequence[Wall]) -> float:

@@ -10,7 +10,7 @@ from common.geometry import Rectangle
 from services.mapping.bins import find_bins
 from services.mapping.grid import FREE, OCCUPIED, UNKNOWN, Grid
 from services.mapping.plan import _filled, _reached, _rim, _separate
-from services.mapping.rooms import find_rooms
+from services.mapping.rooms import find_rooms, openings
 from services.mapping.surfaces import Surface
 from services.mapping.views import interesting
 from services.mapping.walls import find_walls
@@ -215,3 +215,25 @@ def test_a_wall_that_furniture_hides_from_the_lidar_parts_two_rooms() -> None:
     for _ in range(3):
         grid.add_picture(np.empty((0, 2)), points)
     assert len(find_rooms(grid, states, walls)) == 2
+
+
+@pytest.mark.parametrize(("width", "rooms"), [(1.4, 2), (2.4, 1)])
+def test_a_corridor_that_opens_between_two_corners_is_a_room_and_a_wide_bay_is_none(width: float, rooms: int) -> None:
+    """A room 5 m wide and 3 m deep, from whose side something 4 m long leads away."""
+    grid, half = Grid((-6.0, -6.0), (6.0, 6.0)), width / 2
+    cells = grid.points(tuple(np.indices(grid.shape).reshape(2, -1)))  # type: ignore[arg-type]
+    parts = Rectangle(0.0, -1.5, 5.0, 3.0), Rectangle(0.0, 2.0, width, 4.0)
+    inside = np.any([p.signed_distances(cells[:, 0], cells[:, 1]) < 0.0 for p in parts], axis=0).reshape(grid.shape)
+    states = np.where(inside, FREE, UNKNOWN).astype(np.uint8)
+    ends = [((-2.5, 0.0), (-half, 0.0)), ((half, 0.0), (2.5, 0.0)), ((-half, 0.0), (-half, 4.0)),
+            ((half, 0.0), (half, 4.0)), ((-half, 4.0), (half, 4.0)), ((-2.5, -3.0), (2.5, -3.0)),
+            ((-2.5, -3.0), (-2.5, 0.0)), ((2.5, -3.0), (2.5, 0.0))]  # fmt: skip
+    assert len(find_rooms(grid, states, [Wall(start=a, end=b) for a, b in ends])) == rooms
+
+
+def test_the_walls_of_rooms_on_both_sides_do_not_part_a_corridor() -> None:
+    """Nor where beside the corner there is no more wall than the jamb of a door."""
+    mouth = [((x, -4.0), (x, 0.0)) for x in (-0.7, 0.7)] + [((-3.0, 0.0), (-0.7, 0.0)), ((0.7, 0.0), (3.0, 0.0))]
+    jambs = [((x, 0.0), (x, 0.3)) for x in (-0.7, 0.7)]
+    assert len(openings([Wall(start=a, end=b) for a, b in mouth])) == 1
+    assert openings([Wall(start=a, end=b) for a, b in [*mouth, *jambs]]) == []
