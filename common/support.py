@@ -9,8 +9,14 @@ MARGIN = 0.02
 
 
 def support(floor_plan: FloorPlan, x: float, y: float, bottom: float) -> str:
-    """The receptacle that an object with its bottom at height `bottom` [m] rests on or in, `floor`, or "" for none."""
+    """What an object with its bottom at height `bottom` [m] rests on or in; "" for nothing.
+
+    A receptacle, `floor`, or the piece of furniture whose top it stands on, as a bed or a washing machine.
+    """
     found = floor_plan.surface_at(x, y, bottom, MARGIN, below=ON_TOP, above=ON_TOP)
     if found is not None:
         return found.name
-    return "floor" if bottom < ON_TOP else ""
+    if bottom < ON_TOP:
+        return "floor"
+    tops = (f for f in floor_plan.furniture if abs(f.top - bottom) < ON_TOP and f.outline.contains(x, y, MARGIN))
+    return next((f.name for f in tops), "")
