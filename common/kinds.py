@@ -46,7 +46,8 @@ class Kind:
     `face`, round objects on their `side` or `upside down`. `ends_alike`: top and bottom cannot be told apart.
     `lean` [rad] and `wall` [m] of a vessel's wall; `handle`: how far one reaches beyond the body [m]. `facets`: how
     much wider [m] than `size` a grip around it may be: the simulated wall has flat pieces. Lying it is taken
-    `lying_point` of its length from the middle towards the top, from `lying_angles` [deg] below horizontal. `look`: the
+    `lying_point` of its length from the middle towards the top, from `lying_angles` [deg] below horizontal. `highest`:
+    height [m] of the highest surface that the arm takes it from, standing; inf where none was met. `look`: the
     measures by which perception takes an object that nobody listed for one of this kind; without it, it never does.
     """
 
@@ -63,6 +64,7 @@ class Kind:
     facets: float = 0.0
     lying_angles: tuple[int, ...] = (75, 90, 60)
     lying_point: float = 0.0
+    highest: float = math.inf
     look: Look | None = field(default=None, compare=False)
 
     @property
@@ -155,7 +157,7 @@ _TABLE = (
         look=Look({"ball": 1, "round": 0.15}, (0.025, 0.25), (0.025, 0.25), (0.8, 1.25), share=0.9),
     ),
     Kind(
-        "block", "box", _ON_FACES, upright=False, ends_alike=True,
+        "block", "box", _ON_FACES, upright=False, ends_alike=True, highest=1.0,
         look=Look({"box": 1}, (0.02, 0.085), (0.02, 0.11), (1.0, 1.7)),
     ),
     Kind(
@@ -165,7 +167,7 @@ _TABLE = (
     ),
     Kind(
         "bowl", "turned", (GraspRule("rim", (65, 72, 58, 80, 90)),), _bowl, rests=frozenset({"upside down"}),
-        lean=0.55, wall=0.006,
+        lean=0.55, wall=0.006, highest=0.86,
         look=Look({"bowl": 1, "round": 0.3}, (0.09, 0.3), (0.03, 0.14), (0.2, 0.8), hollow=_OPEN_OR_HID),
     ),
     Kind(

@@ -22,7 +22,7 @@ from evaluation.homes.map_errors import compare
 from evaluation.stack import Stack
 from evaluation.suites.blocks import VLA, WORDINGS, random
 from evaluation.suites.drawn import things
-from evaluation.suites.unknown import with_room
+from evaluation.suites.unknown import too_high, with_room
 from judge.effects import Effect
 from judge.evidence import Want
 from judge.goal import Goal
@@ -51,7 +51,8 @@ def new(seed: int) -> Case:
     world = with_room(home, lambda: things(count, rng), seed, "new")
     room, goals = _room(rng, world)
     on = {p.spec.name: p.on for p in place_objects(world, seed)}
-    order = sorted(world.objects, key=lambda o: on[o.name] in goals)
+    high = too_high(world, seed)
+    order = sorted(world.objects, key=lambda o: (o.name in high, on[o.name] in goals))
     taken, (first, second) = order[0], order[1:3]
     lines = (
         _fetch(rng, first, world.delivery, "ready"),
@@ -83,7 +84,11 @@ def _fetch(rng: np.random.Generator, spec: ObjectSpec, to: str, when: str) -> Li
 
 
 def _room(rng: np.random.Generator, world: Scene) -> tuple[Room, tuple[str, ...]]:
-    """The room that is gone to and named, and its surfaces: one with surfaces other than that of the start if any."""
+    """The room that is gone to and named, and what things may be put on there: one with surfaces other than that of the
+    start if any.
+
+    The top of a washing machine, or of a bath as homes are drawn, is a surface like others to who only sees it.
+    """
     surfaces = {
         room: tuple(r.name for r in world.receptacles if r.spawn and world.room_at(*r.center[:2]) == room)
         for room in world.rooms
@@ -92,7 +97,8 @@ def _room(rng: np.random.Generator, world: Scene) -> tuple[Room, tuple[str, ...]
     fitting = [room for room in world.rooms if surfaces[room]]
     others = [room for room in fitting if room != start] or fitting
     room = others[int(rng.integers(len(others)))]
-    return room, surfaces[room]
+    tops = tuple(b.name for b in world.furniture if world.room_at(*b.center[:2]) == room)
+    return room, (*surfaces[room], *tops)
 
 
 def mapped_first(case: Case, tell: Callable[[float, str], None]) -> tuple[Case, dict[str, Any]]:

@@ -469,3 +469,23 @@ def test_stop_cuts_any_step_short() -> None:
     assert last is not None and last.outcome == "cancelled"
     assert bench.texts(NAV) == ["stop"]
     assert bench.state.state == "WAITING"
+
+
+@pytest.mark.parametrize(("height", "reached"), [(0.74, True), (1.0, False)])
+def test_what_stands_higher_than_its_kind_is_taken_from_is_refused_before_anything_moves(
+    height: float, reached: bool
+) -> None:
+    bench = planned([m.PlanStep(action="find", object="white bowl"), m.PlanStep(action="grasp", object="white bowl")])
+    query = bench.next_goal(QUERY, 1)
+    at, size = (-1.5, -6.0, height + 0.03), (0.14, 0.14, 0.06)
+    bench.send(
+        topics.OBJECT_POSE,
+        m.ObjectPose(query_id=query.id, found=True, label="white bowl", position=at, size=size, seen_at=bench.now),
+    )
+    if reached:
+        assert bench.next_goal(POSE, 1).object is not None
+        return
+    bench.until(lambda: bench.state.state == "ERROR")
+    assert bench.count(POSE) == bench.count(MANIP) == 0
+    assert "OUT_OF_REACH" in bench.state.detail and "1.00 m" in bench.state.detail
+    assert bench.texts(SPEECH)[-1] == "say The white bowl stands too high for me."

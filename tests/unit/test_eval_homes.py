@@ -11,14 +11,18 @@ from common.floor_plan import Box
 from common.scene import Scene, load_scene
 from evaluation.homes.aged import LIGHT
 from evaluation.homes.home import draw_home
+from evaluation.homes.new import new
 from evaluation.homes.rooms import NoHome
 from evaluation.homes.suite import aged, homes
 from evaluation.suites.blocks import flat
+from evaluation.suites.unknown import too_high
 from services.navigation.planning.costmap import Costmap
 from services.navigation.planning.planner import PathPlanner
 from services.sim.layout import place_objects
 
 OBJECTS = flat().objects[:6]
+HIGH_BLOCK = 41311
+"""Of a new home in which a block stands higher than the arm takes blocks from."""
 DRAWN = [draw_home(seed, OBJECTS) for seed in range(12)]
 
 
@@ -112,3 +116,26 @@ def test_an_aged_home_has_what_its_map_has_not_and_the_robot_still_gets_about(se
     assert all(planner.possible((0.0, 0.0), [(p.x, p.y)]) for p in case.scene.places)
     for person in people:
         assert min(costmap.clearance(*point) for point in (person.position, *person.path)) > 0.2
+
+
+def test_what_stands_too_high_for_its_kind_is_to_be_reported_and_never_asked_for_in_a_new_home() -> None:
+    reported = homes(41011)
+    assert reported.thing == "white bowl" and reported.expect == "reported"
+    assert reported.scene is not None and too_high(reported.scene, 41011) >= {"white bowl"}
+    assert homes(41015).expect == "delivered", "a ball is taken from there"
+    case = new(HIGH_BLOCK)
+    assert case.scene is not None
+    unreached = too_high(case.scene, case.seed)
+    assert unreached and not unreached & {want.thing for want in case.wants}
+
+
+def test_a_home_with_little_room_has_fewer_things() -> None:
+    case = homes(41057)
+    assert case.scene is not None and 3 <= len(case.scene.objects) < 10
+
+
+def test_what_is_taken_to_a_room_may_stand_on_any_top_there() -> None:
+    case = new(41305)
+    assert case.scene is not None and case.lines[-1].text == "take the black can to the bathroom"
+    (goals,) = [want.goals for want in case.wants if case.scene.delivery not in want.goals]
+    assert {"washstand"} < {*goals} <= {"washstand", "washing machine", "bath", "laundry basket"}

@@ -32,8 +32,11 @@ LOST_AFTER = 0.5
 ORIGINS_KEPT = 20
 """Objects of which the gripper's state remembers where they stood (chosen: a day of use)."""
 PERMANENT = frozenset(
-    {"PREEMPTED", "STOPPED", "CANCELLED", "NO_PEER", "TOO_HEAVY", "UNKNOWN_GOAL", "UNKNOWN_PLACE", "UNKNOWN_OBJECT"}
-)
+    {
+        "PREEMPTED", "STOPPED", "CANCELLED", "NO_PEER", "TOO_HEAVY", "OUT_OF_REACH",
+        "UNKNOWN_GOAL", "UNKNOWN_PLACE", "UNKNOWN_OBJECT",
+    }
+)  # fmt: skip
 """Codes of failures that trying the same again cannot mend."""
 
 

@@ -13,7 +13,7 @@ from services.brain.mission.context import Context
 from services.brain.pipelines.shared import drive_home
 from services.brain.recoveries.recovery import Subtree, Task, with_recoveries
 from services.brain.recoveries.table import AFTER_GRASPING, AFTER_LOOKING, AFTER_PUTTING_DOWN
-from services.brain.steps.find import Approach, LocateObject, TurnOnTheSpot, label_of, object_ref
+from services.brain.steps.find import Approach, LocateObject, TurnOnTheSpot, WithinReach, label_of, object_ref
 from services.brain.steps.gripper import MoveGripper, open_hand, set_down_or_open
 from services.brain.steps.home import edit_of, tell_home
 from services.brain.steps.identify import StillMeant
@@ -140,7 +140,8 @@ def grasp(ctx: Context, item: str) -> Node:
     """Approach if needed and grab; after a failed grab its recoveries."""
     near = Condition("near_it", approach(ctx, item), lambda: ctx.mission.at != item)
     still = StillMeant("still_meant", ctx, item)
-    first = Sequence("grasp_once", near, still, grab(ctx, item), Settle("settle", ctx), name=f"grasp {item}")
+    reached = WithinReach("within_reach", ctx, item)
+    first = Sequence("grasp_once", reached, near, still, grab(ctx, item), Settle("settle", ctx), name=f"grasp {item}")
     if not ctx.config.grab_retries:
         return first
     task = Task(

@@ -9,6 +9,8 @@ from py_trees.common import Status
 from common import messages as m
 from common import topics
 from common.geometry import Pose2
+from common.kinds import kind_of
+from common.language.normalise import indefinite
 from common.naming.likeness import describes
 from common.naming.names import normalise
 from common.topic import Topic
@@ -18,7 +20,7 @@ from services.brain.mission.mission import SIDES, Failure
 from services.brain.steps.leaf import Leaf, SendGoal
 from services.brain.steps.motion import Navigate
 from services.brain.world import viewpoint_search
-from services.brain.world.placement import kind_meant
+from services.brain.world.placement import TIPPED, kind_meant
 from services.brain.world.standing_poses import standing_pose
 
 
@@ -170,6 +172,28 @@ class Approach(Navigate):
             return topics.NAV_GOAL, m.NavGoal(id=goal_id, x=told[0], y=told[1], theta=told[2])
         x, y, theta = standing_pose(ctx.io.household, (ref.position[0], ref.position[1]), ctx.robot_pose)
         return topics.NAV_GOAL, m.NavGoal(id=goal_id, x=x, y=y, theta=theta, object=ref)
+
+
+class WithinReach(Leaf):
+    """FAILURE before anything is tried when what was found stands higher than the arm takes its kind from."""
+
+    def __init__(self, node_id: str, ctx: Context, item: str) -> None:
+        super().__init__(node_id, ctx)
+        self._item = item
+
+    def update(self) -> Status:
+        ctx, ref = self.ctx, object_ref(self.ctx, self._item)
+        if ref is None or ref.frame != "map" or ref.tilt > TIPPED:
+            return Status.SUCCESS
+        surface = ctx.io.household.receptacle(ctx.origin_of(ref.label))
+        height = surface.center[2] if surface is not None else ref.position[2] - ref.size[2] / 2
+        kind = kind_of(ref.kind)
+        if height <= kind.highest:
+            return Status.SUCCESS
+        detail = f"it stands at {height:.2f} m, {indefinite(kind.name)} is taken from {kind.highest:.2f} m at the most"
+        spoken = f"The {self._item} stands too high for me."
+        ctx.record_failure(Failure("GRABBING", "OUT_OF_REACH", detail, spoken))
+        return Status.FAILURE
 
 
 def label_of(ctx: Context, item: str) -> str:
