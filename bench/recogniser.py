@@ -21,7 +21,7 @@ import psutil  # type: ignore[import-untyped]
 from bench.speech import CORPUS, MISSING, NOTHING
 from common import config, speech_weights
 from common.household import load_household
-from services.speech.audio import RATE, read_wav
+from common.sound import RATE, read_wav
 from services.speech.config import SpeechConfig
 from services.speech.recognise import moonshine
 from services.speech.recognise.decoder import HEAD_SIZE, HEADS, LAYERS, Array

@@ -29,9 +29,9 @@ from bench.speech_noise import KINDS, noisy
 from common import config
 from common.household import load_household
 from common.language.normalise import normalise
+from common.sound import RATE, Samples, read_wav
 from evaluation.person.voice import utter
 from evaluation.report.statistics import wilson
-from services.speech.audio import RATE, Samples, read_wav
 from services.speech.config import SpeechConfig
 from services.speech.recognise.free_text import without_wake
 from services.speech.transcribe import Reader

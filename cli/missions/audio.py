@@ -1,24 +1,19 @@
 """A recording for speech recognition: read and checked, then sent at the pace of robot time."""
 
-import struct
-import wave
 from collections.abc import Callable
-from math import gcd
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from cli.errors import CliError
 from cli.link import Link, Watch
 from common import messages as m
 from common import topics
 from common.bus import codec, delivery
+from common.sound import RATE, AudioError, Samples, read_wav
 from common.time.clock import monotonic
 from common.time.lockstep import DT
 
-RATE = 16000
-"""Samples per second that speech takes."""
 CHUNK = 0.1
 """Length of a piece of sound [s], as microphones give them."""
 LEAD_IN, TRAILING = 0.3, 1.5
@@ -27,40 +22,15 @@ EAR = "ear"
 _PERIOD = round(CHUNK / DT)
 
 
-def read_wav(path: Path) -> NDArray[np.int16]:
-    """16 kHz mono samples of a PCM WAV file of any rate and number of channels.
-
-    Raises:
-        CliError: no such file, not PCM WAV, truncated, or empty.
-    """
+def recorded(path: Path) -> list[bytes]:
+    """The chunks of a WAV file, with silence before and after; raises `CliError` when it cannot be used."""
     try:
-        size = path.stat().st_size
-        with wave.open(str(path), "rb") as file:
-            channels, width, rate, frames = file.getparams()[:4]
-            raw = file.readframes(frames)
-    except FileNotFoundError:
-        raise CliError(f"{path}: no such file") from None
-    except (OSError, EOFError, wave.Error, struct.error, RuntimeError) as error:  # RuntimeError: a seek beyond the end
-        raise CliError(f"{path}: not a PCM WAV file ({str(error) or 'it ends too early'})") from None
-    if frames == 0:
-        raise CliError(f"{path}: contains no sound")
-    if len(raw) < frames * channels * width:
-        raise CliError(f"{path}: truncated: {len(raw)} of {frames * channels * width} bytes of sound are there")
-    if width != 2 or not 4000 <= rate <= 192000:
-        raise CliError(f"{path}: {8 * width} bit at {rate} Hz; 16 bit PCM is needed (sox in.wav -b 16 out.wav)")
-    if size > 64 * 2**20:
-        raise CliError(f"{path}: {size >> 20} MB; a command lasts seconds")
-    mono = np.frombuffer(raw, "<i2").reshape(-1, channels).mean(axis=1)
-    if rate != RATE:
-        from scipy.signal import resample_poly  # half a second of loading that no other command needs
-
-        common = gcd(rate, RATE)
-        mono = resample_poly(mono, RATE // common, rate // common)
-    samples: NDArray[np.int16] = np.clip(np.rint(mono), -32768, 32767).astype(np.int16)
-    return samples
+        return padded(read_wav(path))
+    except AudioError as error:
+        raise CliError(str(error)) from None
 
 
-def padded(samples: NDArray[np.int16]) -> list[bytes]:
+def padded(samples: Samples) -> list[bytes]:
     """Chunks of 0.1 s with silence before and after, the last one full."""
     quiet = np.zeros(round(LEAD_IN * RATE), np.int16), np.zeros(round(TRAILING * RATE), np.int16)
     whole = np.concatenate((quiet[0], samples, quiet[1]))

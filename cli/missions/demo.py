@@ -10,7 +10,7 @@ from pathlib import Path
 
 from cli.errors import CliError, near, port_number
 from cli.link import Link, Watch
-from cli.missions.audio import Player, padded, read_wav
+from cli.missions.audio import Player, recorded
 from cli.missions.conversation import ACCEPT, Conversation, speak_into, typed
 from cli.missions.verdict import Verdict, Witness
 from cli.processes.plan import Plan, add_start_options
@@ -120,7 +120,7 @@ class Demo:
         if asks and status is not None and status.goal_id != self._answered:
             self._answered = status.goal_id
             self._screen.say(f'{"":13}"yes" from {YES.name}')
-            Player(self._link, padded(read_wav(YES))).play()
+            Player(self._link, recorded(YES)).play()
         self._witness.look()
         self._screen.progress(self._witness.now)
 
@@ -177,7 +177,7 @@ def demo(args: argparse.Namespace) -> int:
     except SceneError as error:
         raise CliError(str(error)) from None
     thing, text, recording = choose(args, scene)
-    chunks = padded(read_wav(recording)) if recording else []
+    chunks = recorded(recording) if recording else []
     plan, screen = Plan(args), Screen()
     supervision = Supervision(run_dir() / f"demo-{uuid.uuid4().hex[:8]}")
     check_free(supervision, plan)

@@ -8,7 +8,7 @@ import msgspec
 
 from cli.errors import CliError, checked
 from cli.link import Watch, add_options, linked
-from cli.missions.audio import padded, read_wav
+from cli.missions.audio import recorded
 from cli.missions.conversation import ACCEPT, KEPT, Conversation, Show, speak_into, typed
 from common import messages as m
 from common import topics
@@ -18,7 +18,7 @@ from common.time.clock import monotonic
 def say(args: argparse.Namespace) -> int:
     if (args.wav is None) == (not args.text):
         raise CliError('say what? `tidybot say "bring me the red mug"` or `tidybot say --wav FILE`')
-    chunks = padded(read_wav(args.wav)) if args.wav else []
+    chunks = recorded(args.wav) if args.wav else []
     with linked(args) as link:
         talk = Conversation(link, _shower(args))
         if talk.state.state == "CONFIRMING":

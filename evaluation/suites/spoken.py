@@ -11,11 +11,11 @@ import msgspec
 
 from cli.errors import CliError
 from common.scene import Scene
+from common.sound import AudioError, read_wav
 from evaluation.case import Case, Line, Speaker
 from evaluation.suites.blocks import VLA, WORDINGS, flat, pick, random
 from judge.effects import Effect
 from judge.evidence import Want
-from services.speech.audio import AudioError, read_wav
 
 SNR = 20.0
 """Signal-to-noise ratio [dB] of a quiet living room: speech of 60 dB at one metre over a hum of 40 dB."""

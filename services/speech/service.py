@@ -15,7 +15,7 @@ from common.language.meaning import asks_for
 from common.language.normalise import normalise
 from common.language.pattern import PatternError
 from common.runtime import StartError
-from services.speech.audio import RATE, AudioError, Samples, read_wav, resample
+from common.sound import RATE, AudioError, Samples, read_wav, resample
 from services.speech.config import SpeechConfig
 from services.speech.listen.addressee import consequence
 from services.speech.listen.utterance_queue import PendingUtterance, UtteranceQueue

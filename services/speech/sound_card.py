@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from common.runtime import StartError
-from services.speech.audio import RATE, Samples
+from common.sound import RATE, Samples
 
 
 class Speakers:

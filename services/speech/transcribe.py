@@ -12,8 +12,8 @@ from common.household import Household, load_household
 from common.language.pattern import PatternError
 from common.runtime import BAD_CONFIGURATION, StartError
 from common.scene import SceneError
+from common.sound import AudioError, Samples, read_wav
 from common.speech_weights import WeightsError
-from services.speech.audio import AudioError, Samples, read_wav
 from services.speech.config import SpeechConfig
 from services.speech.listen.wake_word import WakeWord
 from services.speech.recognise.front_end import FrontEnd

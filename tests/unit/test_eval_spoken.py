@@ -1,6 +1,5 @@
 """Recorded and synthetic voices: what a manifest offers, what a sentence becomes in a room, and bad directories."""
 
-import wave
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +10,7 @@ from evaluation.case import Speaker
 from evaluation.person import voice
 from evaluation.suites.spoken import SENTENCES, read_corpus, spoken
 from evaluation.suites.table import cases
+from tests.sounds import write_wav
 
 HEAD = "file\ttext\tvoice\tsnr\tkind\n"
 
@@ -20,12 +20,7 @@ def record(directory: Path, voice: str, *sentences: str, snr: str = "clean") -> 
     rows = ""
     for text in sentences:
         name = f"{voice}_{text.replace(' ', '_')}_{snr}.wav"
-        with wave.open(str(directory / name), "wb") as file:
-            file.setnchannels(1)
-            file.setsampwidth(2)
-            file.setframerate(16000)
-            tone = 8000 * np.sin(np.arange(1600 * len(text)) / 5.0)
-            file.writeframes(tone.astype("<i2").tobytes())
+        write_wav(directory / name, 8000 * np.sin(np.arange(1600 * len(text)) / 5.0))
         rows += f"{name}\t{text}\t{voice}\t{snr}\tcmd\n"
     return rows
 

@@ -10,7 +10,7 @@ import pytest
 from hibari.g2p import G2P
 from scipy.signal import resample_poly
 
-from services.speech.audio import RATE, resample
+from common.sound import RATE, resample
 from services.speech.speak.packed_mapping import PackedMapping
 from services.speech.speak.pronounce import ASSETS, Pronunciation
 

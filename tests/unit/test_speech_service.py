@@ -1,5 +1,3 @@
-import struct
-import wave
 from pathlib import Path
 
 import msgspec
@@ -12,7 +10,7 @@ from common.bus.memory import MemoryIo
 from common.household import load_household
 from common.language.pattern import PatternError
 from common.runtime import StartError
-from services.speech.audio import RATE, AudioError, read_wav, write_wav
+from common.sound import RATE, read_wav
 from services.speech.config import SpeechConfig
 from services.speech.listen.vad import Endpointer
 from services.speech.recognise.grammar import Grammar, vocabulary
@@ -100,52 +98,6 @@ def test_clicks_do_not_begin_an_utterance() -> None:
         for _ in range(4):
             ends.push(0.0)
     assert not ends.speaking
-
-
-def test_recordings_of_other_forms_are_brought_to_16_khz_mono(tmp_path: Path) -> None:
-    tone = (np.sin(np.arange(44100) * 2 * np.pi * 440 / 44100) * 20000).astype("<i2")
-    path = tmp_path / "stereo.wav"
-    with wave.open(str(path), "wb") as file:
-        file.setnchannels(2)
-        file.setsampwidth(2)
-        file.setframerate(44100)
-        file.writeframes(np.repeat(tone, 2).tobytes())
-    samples = read_wav(path)
-    assert len(samples) == RATE
-    spectrum = np.abs(np.fft.rfft(samples.astype(float)))
-    assert int(spectrum.argmax()) == 440
-
-
-@pytest.mark.parametrize(
-    ("content", "expected"),
-    [
-        (None, "no such file"),
-        (b"", "not a PCM WAV file"),
-        (b"RIFF", "not a PCM WAV file"),
-        (b"this is no sound at all, just words in a file", "not a PCM WAV file"),
-    ],
-)
-def test_what_is_no_recording_is_named(tmp_path: Path, content: bytes | None, expected: str) -> None:
-    path = tmp_path / "x.wav"
-    if content is not None:
-        path.write_bytes(content)
-    with pytest.raises(AudioError, match=expected):
-        read_wav(path)
-
-
-def test_empty_and_truncated_recordings_are_named(tmp_path: Path) -> None:
-    path = tmp_path / "x.wav"
-    write_wav(path, np.zeros(0, np.int16))
-    with pytest.raises(AudioError, match="empty"):
-        read_wav(path)
-    write_wav(path, np.ones(RATE, np.int16))
-    whole = path.read_bytes()
-    path.write_bytes(whole[: len(whole) // 2])
-    with pytest.raises(AudioError, match=r"truncated|not a PCM"):
-        read_wav(path)
-    path.write_bytes(whole[:22] + struct.pack("<H", 0) + whole[24:])
-    with pytest.raises(AudioError):
-        read_wav(path)
 
 
 class Listener(Node):

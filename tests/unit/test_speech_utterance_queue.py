@@ -9,7 +9,7 @@ import pytest
 from common import config, topics
 from common import messages as m
 from common.household import load_household
-from services.speech.audio import RATE, Samples
+from common.sound import RATE, Samples
 from services.speech.config import SpeechConfig
 from services.speech.listen.segmenter import Segment, Segmenter
 from services.speech.recognise.free_text import UNLISTED

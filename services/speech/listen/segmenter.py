@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from services.speech.audio import RATE, Samples
+from common.sound import RATE, Samples
 from services.speech.listen.vad import FRAME, Endpointer, VoiceDetector
 from services.speech.listen.wake_word import WakeWord
 

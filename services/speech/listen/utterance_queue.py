@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 from common.bus.port import Io, Job
 from common.household import Household
-from services.speech.audio import RATE, Samples
+from common.sound import RATE, Samples
 from services.speech.config import SpeechConfig
 from services.speech.listen.addressee import UtteranceContext, scope
 from services.speech.listen.segmenter import Segment, Segmenter

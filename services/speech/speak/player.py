@@ -5,7 +5,7 @@ import numpy as np
 from common import messages as m
 from common import topics
 from common.bus.port import Io, Job
-from services.speech.audio import RATE, Samples
+from common.sound import RATE, Samples
 from services.speech.sound_card import Speakers
 from services.speech.speak.voice import Voice
 

@@ -5,7 +5,7 @@ import re
 import numpy as np
 
 from common.process.host import return_memory
-from services.speech.audio import RATE, Samples, resample
+from common.sound import RATE, Samples, resample
 from services.speech.recognise.packed_network import session
 
 MAX_CHARACTERS = 400

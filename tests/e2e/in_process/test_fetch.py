@@ -7,7 +7,7 @@ import pytest
 
 from bench.mission import Outcome, Robot, fetch
 from common import topics
-from services.speech.audio import read_wav
+from common.sound import read_wav
 
 pytestmark = pytest.mark.long
 

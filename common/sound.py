@@ -1,4 +1,4 @@
-"""Recordings in and out: WAV files checked and brought to 16 kHz mono int16."""
+"""Recordings: WAV files checked and brought to 16 kHz mono int16, which speech and everybody who speaks to it take."""
 
 import struct
 import wave
@@ -15,6 +15,8 @@ MIN_RATE, MAX_RATE = 4000, 192000
 """Samples per second that are accepted (chosen: telephone to studio)."""
 ZERO_CROSSINGS, KAISER_BETA = 10, 5.0
 """Length of the filter to each side, and the shape of its window, as in `scipy.signal.resample_poly`."""
+LARGEST = 64 * 2**20
+"""Bytes of a file at most (chosen): half an hour of sound; a command lasts seconds."""
 CHUNK = 16000
 """Outputs worked out at once, by which memory is bounded: a second of sound."""
 Samples = NDArray[np.int16]
@@ -28,9 +30,11 @@ def read_wav(path: Path) -> Samples:
     """A PCM WAV file as 16 kHz mono.
 
     Raises:
-        AudioError: missing, empty, truncated, or not PCM.
+        AudioError: missing, empty, truncated, too large, or not PCM.
     """
     try:
+        if (size := path.stat().st_size) > LARGEST:
+            raise AudioError(f"{path}: {size >> 20} MB; a command lasts seconds")
         with wave.open(str(path), "rb") as file:
             channels, width, rate, frames, _, _ = file.getparams()
             raw = file.readframes(frames)
@@ -85,12 +89,3 @@ def _polyphase(samples: NDArray[np.float64], up: int, down: int) -> NDArray[np.f
         newest = at // up + reach
         found[start : start + CHUNK] = (around[newest[:, None] - np.arange(reach)] * weights[at % up]).sum(axis=1)
     return found
-
-
-def write_wav(path: Path, samples: Samples) -> None:
-    """16 kHz mono int16 as a WAV file."""
-    with wave.open(str(path), "wb") as file:
-        file.setnchannels(1)
-        file.setsampwidth(2)
-        file.setframerate(RATE)
-        file.writeframes(samples.tobytes())
