@@ -4,6 +4,7 @@ All lengths in metres, angles in radians, everything in frame `map`.
 """
 
 import math
+from collections import Counter
 from collections.abc import Iterable
 from typing import Literal
 
@@ -19,7 +20,6 @@ ReceptacleKind = Literal["table", "counter", "shelf", "bin", "tray", "sink"]
 # How furniture is built: a table's legs and how far inside the top's edge they stand, how far a cabinet's body stays
 # behind its top, the thickness of a bin's walls [m].
 LEG, LEG_INSET, BODY_INSET, BIN_WALL = 0.05, 0.04, 0.01, 0.015
-
 DRIVEN_OVER, PASSED_UNDER = 0.02, 1.45
 """How high [m] a rug is at most, which the base drives over (its bumper is 27 mm above the floor), and from where on
 furniture hangs above the robot."""
@@ -237,13 +237,8 @@ class FloorPlan(Strict, frozen=True, kw_only=True):
 
 
 def doubled(names: Iterable[str]) -> str:
-    """The first name that comes twice, "" when none does."""
-    seen: set[str] = set()
-    for name in names:
-        if name in seen:
-            return name
-        seen.add(name)
-    return ""
+    """The first name that is there more than once, "" when none is."""
+    return next((name for name, count in Counter(names).items() if count > 1), "")
 
 
 def kind_fault(thing: Thing) -> str:

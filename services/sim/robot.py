@@ -1,11 +1,8 @@
-"""Names, groups and constants of the robot whose model is `robots/tidybot.xml`."""
+"""Groups and constants of the robot whose model is `robots/tidybot.xml`."""
 
 from pathlib import Path
 
-from common.robot.model import ARM, BASE
-
 MODEL = Path(__file__).parent / "robots" / "tidybot.xml"
-JOINT_NAMES = (*BASE, *ARM, "gripper")
 GLASS_GROUP = 2
 """Geoms that the lidar's light goes through."""
 ROBOT_GROUP = 3

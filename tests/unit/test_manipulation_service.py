@@ -13,6 +13,7 @@ from common.bus.memory import MemoryIo
 from common.household import load_household
 from common.kinds import KINDS
 from common.robot.grip import Grip
+from common.robot.model import ARM, BASE
 from common.topic import Topic
 from evaluation.stack import Stack
 from services.manipulation.arm.arm_model import ArmModel, Obstacle, Pose
@@ -26,8 +27,9 @@ from services.manipulation.grasps.target import Target
 from services.manipulation.service import ManipulationService
 from services.perception.config import PerceptionConfig
 from services.sim.model import own
-from services.sim.robot import JOINT_NAMES
 from tests.node import Node
+
+JOINT_NAMES = (*BASE, *ARM, "gripper")
 
 pytestmark = pytest.mark.long
 
