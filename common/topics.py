@@ -91,7 +91,7 @@ MAPPING_STATUS = event("mapping/status", m.MappingStatus, by="mapping")
 MAP_GRID = event("mapping/map", m.MapGrid, by="mapping", to="navigation")
 GRASPS = event("manipulation/grasps", m.GraspCandidates, by="manipulation", to="dashboard")
 SCAN = stream("scan", m.LaserScan, by="sim", to="navigation mapping dashboard", rate=10.0, latched=True)
-BATTERY = stream("robot/battery", m.BatteryState, by="sim", to="", rate=1.0, binary=False, latched=True)
+BATTERY = stream("robot/battery", m.BatteryState, by="sim", to="planner", rate=1.0, binary=False, latched=True)
 ROBOT_STOP = goal(
     "robot/stop",
     m.RobotStop,

@@ -64,8 +64,13 @@ _FORBIDS = re.compile(
 _VERBS = COMMANDING | {"make", "let", "show", "help", "look", "arrange", "keep", "open", "clean"}
 """First words of a request."""
 _NOBODY = re.compile(
-    r"^(?:nobody|no one) (?:needs|wants|uses|likes|eats|drinks|plays with) (?:the|my|this|that) [^,]+$"
+    r"^(?:nobody|no one) (?:(?:is )?(?:need|want|us|lik|eat|drink|play)(?:s|es|ing)(?: with)?) (?:the|my|this|that) "
+    r"[^,]+$"
 )
+_OF_IT_ALL = re.compile(
+    r"^(?:it|they) (?:can|could|should|must|may|needs? to|ha(?:s|ve) to|wants? to|ought to|belongs?|goes?)\b"
+)
+"""A request that begins with what was told of."""
 LONGEST = 3
 """Breaks of one sentence (chosen)."""
 
@@ -113,7 +118,7 @@ _AT_END = re.compile(
     r"still)? (?:in|on|at|"
     r"empty|full|messy|untidy|dirty|a mess|cluttered|clean|clear|tidy)|you (?:find|see|spot))(?: .+)?)$"
 )
-_ASKS = re.compile(r"\b(?:tell (?:me|us)|see|know|check|look|find out|ask|say|and)$")
+_ASKS = re.compile(r"\b(?:tell(?: me| us)?|see|know|check|look|find out|ask|say|and)$")
 """How a question goes on with "if"."""
 _IF_THERE = re.compile(
     r"^(?:check|look (?:at|on|in)|go to|search) (?P<spot>(?:the|my) \w+(?: \w+)?),? and,? if "
@@ -233,4 +238,6 @@ def _asks(text: str, strong: bool) -> bool:
     if not bare:
         return False
     bins = (bare[:1] == ["bin"] and bare[1:2] != ["it"]) or bare[:2] == ["bin", "it"]
-    return len(bare) > 1 and (strong or bare[0] in _VERBS or bins)
+    if text.startswith(("where is it", "where are they", "have you any idea where", "do you know where")):
+        return True  # "my ball rolled away, where is it"
+    return len(bare) > 1 and (strong or bare[0] in _VERBS or bins or _OF_IT_ALL.match(" ".join(bare)) is not None)

@@ -17,7 +17,12 @@ _STUTTER = re.compile(
     r"|\b((?!no\b|and\b|then\b)[a-z]{2,}(?: (?!and\b|then\b|or\b)\w+){1,3})(?:,? \2\b)+"
 )
 """Words that somebody who hesitates says twice; but `no no`, `stop stop`, `if it is not tidy tidy it`."""
-_PART = re.compile(r"\s*[;.!?]+\s*(?:and\s+)?(?:then\s+)?|,?\s+(?:and\s+)?(?:then|after that|afterwards),?\s+")
+_PART = re.compile(
+    r"\s*[;.!?]+\s*(?:and\s+)?(?:then\s+)?"
+    r"|,?\s+(?:(?:and|but)\s+)?(?:(?:only|just)\s+)?(?:then|after (?:that|which)|afterwards|thereafter|"
+    r"(?:once|when|as soon as) (?:that|this|it) (?:is|has been) done|when done),?\s+|,\s*(?:and "
+    r")?(?:finally|lastly|last|next),?\s+(?!to\b)"
+)
 _COMMA = re.compile(r"\s*,[\s,]*(?:and\s+)?")
 
 
@@ -40,7 +45,7 @@ def cut_clauses(rest: str) -> list[str]:
         saying = LONG_SPEECH.match(without_lead(rest))
         cut = None if saying else _PART.search(rest)
         head, rest = (rest, "") if cut is None else (rest[: cut.start()], rest[cut.end() :])
-        if bare := without_politeness(head if saying else _commas_as_and(head)):
+        if bare := without_politeness(head if saying else _commas_as_and(without_lead(head))):
             found.append(bare)
     return found
 

@@ -8,7 +8,7 @@ import re
 
 TO_PLACE = "(?:on top of|on|onto|in|into|inside|to|at)"
 _BESIDE = "(?:next to|close to|beside|near|right by|by)"
-MODAL = "(?:should|must|has to|have to|needs to|need to|ought to|can|could|is to|are to|shall|will)"
+MODAL = "(?:should|may|might|must|has to|have to|needs to|need to|ought to|can|could|is to|are to|shall|will)"
 NP = r"((?:\w|')+(?: (?:\w|')+){0,11}?)"
 _WHO = (
     r"(?:i|we|(?!(?:\w+ )?(?:might|may|not|never|could|should|would(?! (?:like|love)\b)"

@@ -21,7 +21,10 @@ _FIRST = re.compile(
     r"(?P<rest>.+)$"
 )
 _ALWAYS = re.compile(r"\b(?:always|from (?:now|today) on|in (?:the )?future|every time)\b")
-_BUT_FIRST = re.compile(r"^(?P<second>.+?),? but (?:first|before that|beforehand),? (?P<first>.+)$")
+_BUT_FIRST = re.compile(
+    r"^(?P<second>.+?),? but (?:first|before (?:that|you do(?: (?:that|it|so))?|doing (?:that|it|so))|beforehand),? "
+    r"(?P<first>.+)$"
+)
 _LATER = re.compile(r"^(?P<first>.+?),? (?P<word>before|after) (?:you(?: have)? |(?=\w+ing\b))(?P<second>.+)$")
 _GO_AND_ASK = re.compile(
     r"\b(?:go|drive|walk|run|head|nip|pop|come|wander|hop|dash)(?: over| along| across| down| up)* (?:to|into|in) "

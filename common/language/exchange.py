@@ -7,25 +7,10 @@ from common.language.lexicon import COMMANDING
 from common.language.normalise import DETERMINERS, Words, infinitive
 from common.language.politeness import without_politeness
 
-PREPOSITIONS = frozenset(
-    {
-        "on",
-        "in",
-        "to",
-        "into",
-        "onto",
-        "at",
-        "from",
-        "next",
-        "near",
-        "beside",
-        "under",
-        "behind",
-        "with",
-        "inside",
-        "off",
-    }
-)
+PREPOSITIONS = frozenset({
+    "on", "in", "to", "into", "onto", "at", "from", "next", "near", "beside", "under", "behind", "with", "inside",
+    "off",
+})  # fmt: skip
 """Words that end a noun phrase."""
 IsPlace = Callable[[Words], bool]
 """Do the words name a place?"""

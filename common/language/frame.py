@@ -17,25 +17,10 @@ _ASKING_WORDS = (
 )
 _ASKING = frozenset(_ASKING_WORDS.split())
 """Words of which one makes a request of a frame."""
-_WISHES = frozenset(
-    {
-        "need",
-        "want",
-        "love",
-        "like",
-        "think",
-        "suppose",
-        "reckon",
-        "trust",
-        "expect",
-        "help",
-        "great",
-        "nice",
-        "good",
-        "best",
-        "way",
-    }
-)
+_WISHES = frozenset({
+    "need", "want", "love", "like", "think", "suppose", "reckon", "trust", "expect", "help", "great", "nice", "good",
+    "best", "way",
+})  # fmt: skip
 """Those that make one only where the speaker's wish is spoken of."""
 _DUTIES = frozenset(
     {"turn", "job", "task", "mission", "order", "command", "duty", "time", "favour", "favor", "solid", "kindness"}

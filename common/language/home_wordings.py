@@ -1,6 +1,6 @@
 """The wordings by which people tell of their home: what its parts are called, where things belong and usually are."""
 
-from common.language.lexicon import ASK
+from common.language.lexicon import ASK, PERSON
 from common.language.wording import Wording
 
 _ON = "(on | in | into | onto | at | inside)"
@@ -9,8 +9,8 @@ _ALWAYS = (
     " | in the future | generally)"
 )
 _BELONG = (
-    "(go | goes | (have their | has its) place | belong | belongs | live | lives | should go | "
-    "should be | are kept | are put | are stored"
+    "(go | goes | (have their | has its) place | belong | belongs | live | lives | "
+    "(should | ought to) (go | be | live | belong) | are kept | are put | are stored"
     " | (should | must | are to) be (kept | stored))"
 )
 _USUALLY = "(usually | normally | mostly | generally | typically | most of the time | most often)"
@@ -33,7 +33,7 @@ TOLD: tuple[Wording, ...] = (
     ),
     Wording(
         "forget_rule",
-        "(forget | drop | delete | undo | remove | take back | cancel) [about] (that | the | this | "
+        "(forget | drop | scrap | erase | delete | undo | remove | take back | cancel) [about] (that | the | this | "
         "my | your) [last | new]"
         " rule [(about | for | on) <words>]",
         heard="forget that rule",
@@ -48,12 +48,15 @@ TOLD: tuple[Wording, ...] = (
         f"[no] {_ALWAYS} [please] (put | keep | place | store | leave | sort) <thing> {_ON} <spot>"
         f" | [no] (put | keep | place | store | leave | sort) <thing> {_ON} <spot> {_ALWAYS}"
         f" | [no] {_ALWAYS} <thing> {_BELONG} {_ON} <spot> | [no] <thing> {_ALWAYS} {_BELONG} {_ON} <spot>"
-        f" | [no] <thing> {_BELONG} {_ON} <spot> {_ALWAYS}",
+        f" | [no] <thing> {_BELONG} {_ON} <spot> {_ALWAYS}"
+        f" | (remember that | note that | learn that | bear in mind that | new rule) <thing> {_BELONG} ({_ON} | to) "
+        f"<spot>",
     ),
     Wording(
         "rule",
         f"[no] [(remember | know | learn | note) [that]] <thing> {_BELONG} {_ON} <spot>"
-        f" | (i | we) (want | would like | prefer) <thing> [to be] (kept | stored | put away) {_ON} <spot>",
+        f" | {PERSON} (want | wants | would like | prefer | prefers) <thing> [to be] (kept | stored | put away) "
+        f"{_ON} <spot>",
     ),
 )  # fmt: skip
 """What is to be kept."""

@@ -42,8 +42,9 @@ WISH = (
     " (use | do with) | am after | would rather have)"
 )
 FAMILY = (
-    "(wife | husband | partner | mother | father | mum | mom | dad | son | daughter | child | kids | children | baby"
-    " | boss | guest | guests | friend | grandma | grandpa | boy | girl | family | brother | sister)"
+    "(wife | husband | partner | mother | father | mum | mom | mummy | mommy | mama | dad | daddy | papa | son"
+    " | daughter | child | kids | children | baby | boss | guest | guests | friend | grandma | grandpa | granny | gran"
+    " | nana | grandad | boy | girl | family | brother | sister)"
 )
 PERSON = f"(i | we | he | she | they | (my | our | the) {FAMILY})"
 """Who wants something."""
@@ -64,7 +65,6 @@ ASK = (
 BE = "(is | are | was | were)"
 LYING = "lying around | lying about | standing around | lying | standing | sitting | left"
 """What things do where they are."""
-WHAT_DID = "(did you [just] (do | finish) | have you [just] (done | finished)) [last | before | just now | now | there]"
 COMMANDING: frozenset[str] = frozenset(
     option.split()[0]
     for verbs in (

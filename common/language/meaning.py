@@ -5,6 +5,8 @@ from collections.abc import Iterator
 
 from common.language.clauses import without_fillers
 from common.language.contractions import expand
+from common.language.itself import WORDS as OF_ITSELF
+from common.language.itself import about_itself
 from common.language.normalise import DETERMINERS, Words, normalise
 from common.language.noun_phrase import SIDES, SMALL, WHICH
 from common.language.pattern import ANY, Pattern, Slots, first_words, words_of
@@ -26,13 +28,15 @@ VERBS: frozenset[str] = frozenset[str]().union(*(first_words(p.tree) for w, p in
 
 
 WORDS: frozenset[str] = frozenset[str]().union(
-    *(words_of(p.tree) for _, p in _RULES), DETERMINERS, WHICH, SIDES, *SMALL
+    *(words_of(p.tree) for _, p in _RULES), OF_ITSELF, DETERMINERS, WHICH, SIDES, *SMALL
 )
 """Words of the wordings and between nouns: all but names and colours."""
 
 
 def readings(words: Words, *kinds: Kind) -> Iterator[tuple[Wording, Slots]]:
     """Every way in which a wording of one of the `kinds` fits the words of a whole clause, in the table's order."""
+    if "command" in kinds and (action := about_itself(words)) is not None:
+        yield Wording(action, ""), {}
     for wording, pattern in _RULES:
         if wording.kind in kinds:
             for slots in pattern.matches(words):
@@ -44,6 +48,8 @@ def asks_for(text: str, *actions: Action) -> Action | None:
     whole = without_fillers(expand(normalise(text)))
     said = {tuple(whole.split()), tuple(without_politeness(whole).split())}
     for action in actions:
+        if action in map(about_itself, said):
+            return action
         for wording, pattern in _RULES:
             if wording.action == action and any(next(pattern.matches(words), None) is not None for words in said):
                 return action

@@ -5,27 +5,47 @@ import re
 from common.language.normalise import Words, infinitive
 from common.language.verb_classes import VERBS, classes
 
-_TELLERS = "i|we|he|she|they|it|who|nobody|everybody|everyone|somebody|someone|people"
-_FORBIDS = re.compile(
-    r"\b(?:not|never|nobody|none|nothing|no one|without|stop|leave|hands off|forbid|forbidden|allowed|hate|no reason|"
-    r"wrong)\b|\b(?:suppose|supposing|imagine|pretend|if (?:i|you|he|she|we|they) (?:were|was|had|could)|used to|"
-    r"tomorrow|tonight|yesterday|already|ago|ever|(?:last|next) (?:week|night|year|month|time)|this morning|later|"
-    r"(?:would|could|should|might|must) (?:not )?have)\b|\b(?:said|says|saying|told|claims?|heard|thinks?|thought|joke|"
-    r"story|song|poem)\b|\b(?:wants?|asks?|asked|begged|tells?) (?:me|him|her|them|us) to\b|"
-    r"\b(?:how|why)\b(?! (?:many|about|not|do not|do you not)\b).* (?:did|do|would|should|could|to)\b"
+
+def _any(phrases: str) -> str:
+    """Regular expression for one of the phrases `a | b c`, as whole words."""
+    return rf"\b(?:{'|'.join(phrase.strip() for phrase in phrases.split(' | '))})\b"
+
+
+_NEGATIONS = (
+    "not | never | nobody | none | nothing | no one | without | stop | leave | hands off | (?:stay|keep) "
+    "(?:away|out|off|clear) | forbid | forbidden | allowed"
+    " | hate | no reason | wrong"
 )
+_SUPPOSITIONS = (
+    r"suppose | supposing | imagine | pretend | used to | if (?:i|you|he|she|we|they) (?:were|was|had|could)"
+)
+_OTHER_TIMES = (
+    "tomorrow | tonight | yesterday | already | ago | ever | this morning | later"
+    " | (?:last|next) (?:week|night|year|month|time) | (?:would|could|should|might|must) (?:it )?(?:not )?have"
+)
+_REPORTS = (
+    "said | says | saying | told | claim | claims | heard | think | thinks | thought | joke | story | song | poem"
+    " | (?:wants?|asks?|asked|begged|tells?) (?:me|him|her|them|us) to"
+)
+_HOW_AND_WHY = r"\b(?:how|why)\b(?! (?:many|about|not|do not|do you not)\b).* (?:did|do|would|should|could|to)\b"
+_FORBIDS = re.compile("|".join((*map(_any, (_NEGATIONS, _SUPPOSITIONS, _OTHER_TIMES, _REPORTS)), _HOW_AND_WHY)))
 _HARMLESS = re.compile(
-    r"\b(?:(?:do|does|would) not (?:mind|matter|care|hesitate)|no (?:matter|hurry|rush|problem|worries|time)|not too|"
-    r"(?:can|could) not (?:\w+ ){0,6}?(?:find|see|spot|reach|get|locate)|why do not you|if you could|"
-    r"i have told you|i told you|not (?:far|much|urgent))\b"
+    _any(
+        "(?:do|does|would) not (?:mind|matter|care|hesitate) | no (?:matter|hurry|rush|problem|worries|time) | not too"
+        " | do not suppose | ever so | would not happen"
+        " | not (?:far|much|urgent) | (?:can|could) not (?:[a-z]+ ){0,6}?(?:find|see|spot|reach|get|locate)"
+        " | why do not you | if you could | i have told you | i told you"
+    )
 )
-"""Negations that forbid nothing."""
+"""What looks like one of these and forbids nothing."""
+SUBJECTS = "i|we|he|she|they|it|who|nobody|everybody|everyone|somebody|someone|people"
 _ADVERBS = "just|already|always|often|about|never|really|once|usually|also|now|still"
-_OWN = re.compile(
-    rf"\b(?:{_TELLERS})(?: (?:will|shall|am|is|are|was|were|have|has|had|going|can|could|might|may|must|should|keeps?|"
-    rf"did|do|does|be|(?:need|want|have|has|would like|like|love|plan|got|going|try|ought|used) to|{_ADVERBS}))*$"
-    rf"|\b(?:is|are|was|were|am|has|had|have|keeps?|kept|went|a|an|the)(?: (?:{_ADVERBS}))*$"
+_AUXILIARIES = (
+    "will|shall|am|is|are|was|were|have|has|had|going|can|could|might|may|must|should|keeps?|did|do|does|be|"
+    "(?:need|want|have|has|would like|like|love|plan|got|going|try|ought|used) to"
 )
+_FINITE = "is|are|was|were|am|has|had|have|keeps?|kept|went|a|an|the"
+_OWN = re.compile(rf"\b(?:{SUBJECTS})(?: (?:{_AUXILIARIES}|{_ADVERBS}))*$|\b(?:{_FINITE})(?: (?:{_ADVERBS}))*$")
 """What stands before a verb whose subject is not the robot."""
 _WAS = frozenset({"was", "were", "had", "did"})
 

@@ -68,7 +68,7 @@ MOVING: tuple[Wording, ...] = (
         f"({PUT} | bring | take | carry) <thing> [over] [to] where <spot> (is | are | stands | lies)",
     ),
     # Bringing.
-    Wording("deliver_there", f"({MOVE} | {PUT}) <thing> [over] there"),
+    Wording("deliver_there", f"({MOVE} | {PUT}) <thing> ([over] there | in [there] too | (in | on) there)"),
     Wording("deliver_there", "<thing> (goes | belongs | go | can go | should go | is to go) there"),
     Wording(
         "fetch",
@@ -163,6 +163,6 @@ MOVING: tuple[Wording, ...] = (
     Wording("fetch", "<thing> would be (nice | great | good | lovely | perfect)"),
     Wording("fetch", "[is there] any chance of [getting | having] <thing>"),
     Wording("fetch", "(pick | grab | fetch | get) (me | us) up <thing>"),
-    Wording("refuse", "(put | place | set) <thing>", reason="you did not say where to put it"),
+    Wording("refuse", "(put | place | set) <thing>", reason="you did not say where to put it", lost=True),
 )
 """In order of trial, as in the table that takes them in."""

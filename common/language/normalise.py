@@ -6,32 +6,17 @@ from collections.abc import Container
 
 Words = tuple[str, ...]
 
-DETERMINERS = frozenset(
-    {
-        "the",
-        "a",
-        "an",
-        "my",
-        "your",
-        "our",
-        "that",
-        "this",
-        "some",
-        "any",
-        "those",
-        "these",
-        "her",
-        "his",
-        "their",
-        "its",
-    }
-)
+DETERMINERS = frozenset({
+    "the", "a", "an", "my", "your", "our", "that", "this", "some", "any", "those", "these", "her", "his", "their",
+    "its",
+})  # fmt: skip
 """Words before a noun that say nothing about which object is meant beyond "one of these"."""
 
 _PAST = {
     "brought": "bring", "took": "take", "taken": "take", "got": "get", "gave": "give", "given": "give", "went": "go",
     "gone": "go", "came": "come", "found": "find", "threw": "throw", "thrown": "throw", "drove": "drive",
-    "driven": "drive", "held": "hold", "laid": "lay", "left": "leave", "stuck": "stick", "said": "say", "told": "tell",
+    "driven": "drive", "held": "hold", "laid": "lay", "left": "leave", "stuck": "stick", "said": "say",
+    "told": "tell", "kept": "keep", "stood": "stand", "sat": "sit",
 }  # fmt: skip
 """Irregular past forms of the verbs of commands."""
 

@@ -6,22 +6,9 @@ from typing import Literal
 from common.language.normalise import Words
 
 Which = Literal[
-    "",
-    "left",
-    "right",
-    "nearest",
-    "farthest",
-    "biggest",
-    "smallest",
-    "tallest",
-    "shortest",
-    "first",
-    "second",
-    "third",
-    "last",
-    "middle",
-    "other",
-]
+    "", "left", "right", "nearest", "farthest", "biggest", "smallest", "tallest", "shortest", "first", "second",
+    "third", "last", "middle", "other",
+]  # fmt: skip
 PRONOUNS = frozenset({"it", "that", "this", "him", "her", "this one", "that one", "this thing", "that thing"})
 PLURAL_PRONOUNS = frozenset(
     {
@@ -61,21 +48,9 @@ SIDES: dict[str, Which] = {
     "on your left": "left", "on your right": "right", "to your left": "left", "to your right": "right",
 }  # fmt: skip
 _BUT = (
-    "and not",
-    "but not in",
-    "not in",
-    "but not",
-    "but no",
-    "except for",
-    "except",
-    "apart from",
-    "other than",
-    "besides",
-    "excluding",
-    "without",
-    "but",
-    "not",
-)
+    "and not", "but not in", "not in", "but not", "but no", "except for", "except", "apart from", "other than",
+    "besides", "excluding", "without", "but", "not",
+)  # fmt: skip
 """Words before what is left out."""
 UNSEEN = frozenset(
     {
@@ -90,82 +65,19 @@ _MEASURES = frozenset(
 )
 """Words before "of" that say how much of it."""
 _TAILS = (
-    "over there",
-    "there",
-    "you see",
-    "you can see",
-    "you found",
-    "you have found",
-    "you are holding",
-    "you hold",
-    "you can find",
-    "you have got",
-    "we have",
-    "we own",
-    "i have",
-    "we have got",
-    "you have",
-    "you know",
-    "of something",
-    "of any kind",
-    "of some kind",
-    "of some sort",
-    "somewhere",
-    "around here",
-    "in the house",
-    "in the flat",
-    "in the apartment",
-    "in the whole house",
-    "at home",
-    "in the building",
-)
+    "over there", "there", "you see", "you can see", "you found", "you have found", "you are holding", "you hold",
+    "you can find", "you have got", "we have", "we own", "i have", "we have got", "you have", "you know",
+    "of something", "of any kind", "of some kind", "of some sort", "somewhere", "around here", "in the house",
+    "in the flat", "in the apartment", "in the whole house", "at home", "in the building",
+)  # fmt: skip
 _CLAUSES = (
-    "that is lying",
-    "that is standing",
-    "that is sitting",
-    "which is lying",
-    "which is standing",
-    "that stands",
-    "that stood",
-    "which stood",
-    "which stands",
-    "that lay",
-    "that sat",
-    "that lies",
-    "that are lying",
-    "that are standing",
-    "you left",
-    "i left",
-    "i put",
-    "that i left",
-    "that i put",
-    "sitting",
-    "that sits",
-    "that was",
-    "that were",
-    "which was",
-    "that is",
-    "that are",
-    "that's",
-    "which is",
-    "what is",
-    "that you can find",
-    "which you can find",
-    "you can find",
-    "that you will find",
-    "kept",
-    "located",
-    "which are",
-    "lying",
-    "standing",
-    "that you see",
-    "you see",
-    "you can see",
-    "you saw",
-    "i see",
-    "i saw",
-    "we have",
-)
+    "that is lying", "that is standing", "that is sitting", "which is lying", "which is standing", "that stands",
+    "that stood", "which stood", "which stands", "that lay", "that sat", "that lies", "that are lying",
+    "that are standing", "you left", "i left", "i put", "that i left", "that i put", "sitting", "that sits",
+    "that was", "that were", "which was", "that is", "that are", "that's", "which is", "what is", "that you can find",
+    "which you can find", "you can find", "that you will find", "kept", "located", "which are", "lying", "standing",
+    "that you see", "you see", "you can see", "you saw", "i see", "i saw", "we have",
+)  # fmt: skip
 
 
 SMALL = tuple(

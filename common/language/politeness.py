@@ -20,11 +20,8 @@ _AUX = (
     rf"(?:{_CAN}|should|must|ought to|need to)"
     "(?: (?:possibly|be able to|be willing to|be so kind (?:as to|and)|please|perhaps|maybe|just))*"
 )
-_KIND = (
-    "(?:great|nice|good|lovely|wonderful|helpful|kind|cool|fantastic|awesome|perfect|super|brilliant|sweet|handy|fine|"
-    "best|better|okay|ok|alright|so kind|much appreciated|(?:a )?(?:big|great|real|huge)? ?(?:help|favou?r|relief))"
-)
-_SO = "(?:(?:so|very|ever|most|extremely|eternally|super|really|just|quite|absolutely|truly) )*"
+_ANY_WORD = r"(?!not\b|never\b|no\b|hard\b|difficult\b|wrong\b|bad\b|i\b|have\b)\w+ "
+"""A word of how something would be: `lovely`, `a terrible bother`."""
 _TIME = (
     "(?:a |the |some |one |any |your )?(?:free |spare )?(?:chance|moment|minute|second|sec|time|hand|opportunity|go)"
 )
@@ -44,8 +41,12 @@ _ADDRESS = (
     r"come|tidy|find|grab|pick)\b)|"
     "basically|essentially|literally|obviously|hopefully|ideally|meanwhile|if so|if yes|in that case|"
     r"i hate to (?:ask|bother you|trouble you)|i know you are busy|no offence|like(?=,? (?:can|could|would|i|you)\b)|"
-    r"(?:scratch|disregard|ignore) that(?=,? \w)|never mind (?:what i said|that)(?=,? \w)|"
-    "(?:hey|hi|hello) there|hey|hello|hi|hiya|yo|oi|howdy|ok|okay|alright|all right|right(?=,)|jarvis|robot|"
+    r"(?:scratch|disregard|ignore) that(?=,? \w)|(?:(?:yes|yeah|yep|sure|right|ok|okay|now|well)(?: "
+    r"then)?|wait)(?=,(?! (?:then|and)\b))|"
+    r"(?:i|we)(?: have)? changed (?:my|our) minds?(?=,? \w)|never mind (?:what i said|that)(?=,? \w)|"
+    "(?:hey|hi|hello|oi|yo),? (?:there|you(?! \\w+ing\\b))(?=,)|(?:hey|hi|hello) there|as i was saying|here is the "
+    "(?:thing|deal)|let us say|"
+    "hey|hello|hi|hiya|yo|oi|howdy|ok|okay|alright|all right|right(?=,)|jarvis|robot|"
     "tidybot|buddy|mate|dude|pal|"
     "man|sir|dear|(?:my|little|good|old|young) (?:man|lad|lady|fellow|chap|friend|helper|love|one)"
     "(?! (?:here |there )?(?:is|was|wants?|would|needs?|has|likes?|said|asked|brought|and)\\b)|sweetie|honey|"
@@ -91,10 +92,10 @@ _FRAMES = (
     r"(?!.*\b(?:always|never|often|yesterday|every|usually|it when)\b))",
     rf"you{_ADVERBS} (?:should|must|have to|need to|could|can|may|might want to|are to|ought to|are going to|shall|"
     r"will)",
-    rf"(?:would|will|could|might) it be {_SO}(?:ok|okay|alright|all right|possible|a problem|too much(?: trouble|"
-    rf" to ask)?)(?: for you)?(?: (?:if you(?: {_CAN})?|if i ask(?:ed)? you to|that you|to))?",
+    rf"(?:(?:would|will|could|might) it(?: be)?|is it(?= [^,]* if you)) (?:{_ANY_WORD}){{1,5}}?(?:if you(?: {_CAN})?|"
+    rf"if i ask(?:ed)? you to|(?:for you )?to|that you)(?= (?:{_ANY_WORD})?(?:{A_VERB}|have|get)\b)",
     r"(?:it|that) would make (?:me|us|my day|him|her)(?: \w+){0,2} if you(?! (?:not|did not|never)\b)",
-    rf"(?:it|that) (?:would|will) be {_SO}{_KIND} (?:if|when) {_YOU}(?: {_CAN})?{_ADVERBS}(?! "
+    rf"(?:it|that) (?:would|will) be (?:{_ANY_WORD}){{1,6}}?(?:if|when) {_YOU}(?: {_CAN})?{_ADVERBS}(?! "
     rf"(?:not|did not|never)\b)",
     r"(?:is there )?(?:any|a|some) (?:chance|way|possibility)(?: that)?(?=\s+(?:i|we)\b)|"
     r"do you (?:think|suppose|reckon)(?: that)?(?=\s+(?:i|we) (?:could|can|may|might)\b)|"
@@ -107,7 +108,7 @@ _FRAMES = (
     r"(?:(?:do not|never) (?:forget|fail)|remember|(?:make|be) sure|feel free|try|go ahead|start|"
     r"get (?:busy|going|to work|moving|up))(?: to| and| by|(?: that)? you)(?=\s+\w)",
     r"(?:it is |about )?(?:high )?time (?:you (?:\w+ed)?|to|for you to)|"
-    r"what (?:i|we) (?:want|need) you to do is|on second thoughts?",
+    r"(?:i|we)(?: have)? decided(?: that)?(?=\s+\w)|what (?:i|we) (?:want|need) you to do is|on second thoughts?",
     r"i (?:think|guess|suppose|believe|reckon|say|suggest)(?: that)?(?= (?:the|my|this|that|we|you|it|i)\b)",
     r"while you are (?:at it|there|up|about it)|(?:on|along) (?:the|your) way(?: back)?",
     r"drop everything(?: else)?(?: and)?(?=\s+\w)|without \w+ing .+?(?=,| throw\b| put\b| bring\b| take\b)",
@@ -123,14 +124,17 @@ _ENDINGS = (
     "for us|thanks|thank you"
     "(?: very much| so much| a lot)?|(?<!real )(?<! a )robot|tidybot|jarvis|then|anyway|and|will you please|okay|"
     "ok|alright|(?<=, )right|man|mate|"
-    "buddy|dude|my friend|dear|love|darling|sir|real quick|really quick|quick|fast|if you please|or something|or so|"
+    "buddy|dude|my friend|(?<!the )(?<!an )(?<!that )(?<!our )(?:old|young|good) "
+    "(?:man|lad|lady|fellow|chap|friend)|dear|love|darling|sir|real quick|really quick|quick|fast|if you please|or "
+    "something|or so|"
     "and stuff|(?:any (?:one|\\w+) will do|"
     "whichever(?: is (?:closest|nearest|easiest))?)|(?:while|when) you are (?:at it|there|up|about it)|on "
     "(?:the|your) way(?: back)?|by the "
     "way|(?<!rooms )(?<!places )(?<!what )(?<!do )you know(?: "
     "that)?|i "
     "guess|i think",
-    "(?:and |but )?hurry(?: up)?|as (?:fast|quickly) as you can|asap|and be quick(?: about it)?|and that "
+    "though|in (?:that|this) order|(?:and |but )?hurry(?: up)?|as (?:fast|quickly) as you can|asap|and be quick(?: "
+    "about it)?|and that "
     "is all|that is all|"
     "come on|go on|chop chop|before i forget|some ?time(?: today)?|today|tonight|this (?:morning|evening|afternoon)|"
     "(?:and )?(?:be|take) care(?:ful)?(?: with (?:it|them|that))?|carefully|gently|when you come back|"

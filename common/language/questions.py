@@ -1,6 +1,6 @@
 """The wordings of questions: what is where, what the robot sees, and what it does, did and can do."""
 
-from common.language.lexicon import ASK, BE, LYING, WHAT_DID
+from common.language.lexicon import ASK, BE, LYING
 from common.language.wording import Wording
 
 ABOUT_THE_WORLD: tuple[Wording, ...] = (
@@ -18,7 +18,7 @@ ABOUT_THE_WORLD: tuple[Wording, ...] = (
         f" [{LYING}] (on | in | at | inside) <spot>"
         f" | (tell me | list | name) (what | everything | all | [all] the (things | objects | items)) "
         f"[that] [{BE}] [{LYING}] (on | in | at | inside) <spot>"
-        f" | {ASK} what <spot> (has | holds | contains) [on it | in it]",
+        f" | {ASK} what <spot> (has | holds | contains) [on it | in it] | what {BE} [{LYING}] there",
         heard="what is (on | in) [the] <place>",
     ),
     Wording(
@@ -77,7 +77,8 @@ ABOUT_THE_WORLD: tuple[Wording, ...] = (
     Wording(
         "where",
         "have you (seen | found | got | noticed | come across) <thing> [anywhere | somewhere]"
-        " | have you <thing> seen | did (i | we | somebody | someone | anybody | anyone) (leave | put | forget | "
+        " | (can | could) (i | we) (find | see) <thing> | have you <thing> seen | did (i | we | somebody | someone "
+        "| anybody | anyone) (leave | put | forget | "
         "lose) <thing>",
     ),
     Wording("where", "(do | can) you (see | know) <thing> [anywhere | somewhere]"),
@@ -126,67 +127,26 @@ ABOUT_THE_WORLD: tuple[Wording, ...] = (
 )  # fmt: skip
 """Where things are, what and how many there are."""
 
+_DID = "put | bring | brought | move | take | throw | thrown | fetch | fetched | find | found | tidy | tidied"
 ABOUT_ITSELF: tuple[Wording, ...] = (
-    Wording("holding", "what (are you | is (it | that | this) [that] you are) (holding | carrying)",
-            heard="what are you holding"),
-    Wording("holding", "what do you (have | hold) [in your (hand | hands | gripper)]"),
-    Wording(
-        "holding",
-        "(are you (holding | carrying) | do you (have | hold | carry) | have you got | is there)"
-        " (anything | something | it) [in your (hand | hands | gripper)] | is your hand (empty | free | full)"
-        " | what have you got [there | in there | for me]",
-    ),
-    Wording("holding", "what (is | have you | have you got | do you have | are you holding | do you hold) [that |"
-                       " this | it]"
-        " in (your | the) (hand | hands | gripper | claw | fingers)"),
-    Wording(
-        "whereabouts",
-        f"{ASK} where (are you | you are) [standing | at] | [in] (which | what) room are you [standing] [in]",
-        heard="where are you",
-    ),
+    Wording("holding", "what are you holding | do you have it", heard="what are you holding"),
+    Wording("whereabouts", "where are you", heard="where are you"),
     Wording(
         "doing",
-        "what (are you | you are) (doing | up to | working on | busy with) [there | here | right now | now |"
-        " at the moment | currently] | what is going on | how is it going | how are you (doing | getting on)"
-        " | how (much longer | long) (will (you | it | that) (be | take | need) | (does | is) it "
-        "(take | going to take)"
-        " | do you need | until you are done) [still]"
-        " | (what | which <words>) are you (getting | bringing | fetching | looking for | searching "
-        "for | taking | after)"
-        " | what (did i | was it [that] i | did we) (ask | asked | tell | told) you [for | to do | "
-        "to bring | to get | to fetch]"
-        " | where are you (going | headed | off to) | what are you (going to do | about to do) [next | now]"
-        " | how far (are you | have you (got | come)) | are you (done | busy | finished | ready | (nearly | almost) "
-        "(there | done | finished | ready)) [yet]"
-        " | what is (happening | your [current | present] (task | job | mission | status)) | what is taking "
-        "[you] so long | "
-        "[status] report | status | (give me | any) [a | an] (update | news) | how are things",
+        "what are you doing | (what | which <words>) are you (getting | bringing | fetching | looking for | searching "
+        "for | taking | after) | what did (i | we) (ask | tell) you [for | to do | to bring | to get | to fetch]",
         heard="what are you doing",
     ),
     Wording(
         "done",
-        f"what {WHAT_DID} | what (was | is) (the last thing you did | (my | your) last (task | job | "
-        f"mission | command | order | request))"
-        " | (did | have) you (manage | managed | succeed | succeeded | finish | finished | do | done) [it | that |"
-        " (to | in) <words>] | what did you do (with | to) <words> | what did you (put | bring | move | take | "
-        "throw | fetch | tidy) <words> | did (it "
-        "| that) work [out] | (did | have) you (bring | brought | put | fetch "
-        "| fetched |"
-        " find | found | tidy | tidied | throw | thrown) <words> [already | yet]"
-        " | what have you (done | been doing) [today | so far | lately] | did everything go well"
-        " | how did (it | that) go",
+        f"what did you [just] (do [(with | to) <words>] | ({_DID}) <words>)"
+        f" | (did | have) you ({_DID} | manage | managed | succeed | succeeded) <words> [already | yet]",
         heard="what did you [just] do",
     ),
     Wording(
         "why",
-        "why (did | have) you [just] (fail | failed | stop | stopped | give up | given up)"
-        " | why (did | could | can | have | do | are | would) (not you | you not) <words> | why did (it | that) "
-        "(fail | not work "
-        "| go wrong)"
-        " | what (went wrong | was the (problem | matter | trouble | reason) | is the (matter | problem) | happened"
-        " [there]) | why not | why (is | was) (that | it) | why (were you not able | "
-        "are you not able) to <words> | how come [<words>]"
-        " | where (did you | have you) (look | looked | search | searched | check | checked)",
+        "why did you fail | what went wrong | why (did | could | can | have | do | are | would) (not you | you not) "
+        "<words> | why you (did | could | can) not <words>",
         heard="why did you fail | what went wrong",
     ),
     Wording(
@@ -197,27 +157,10 @@ ABOUT_ITSELF: tuple[Wording, ...] = (
         "originally]"
         " | where (was | were) <thing> [before | originally] | where does <thing> come from",
     ),
-    Wording(
-        "abilities",
-        "(tell me | explain) what you (can do | are able to do) | what [else | jobs | things | tasks "
-        "| work | stuff] (can | could) you (do | manage | handle) "
-        "[for (me | us) | here] | what are you (able to do | capable of | good (at | for))"
-        " | how can you help [me | us] | what (do you know how to do | can i (ask [you] [for | to do] | "
-        "say [to you]))"
-        " | help [me] | what are your (skills | abilities | capabilities)",
-        heard="what can you do",
-    ),
-    Wording("identity", "who are you | what are you | [tell me] what is your name | introduce yourself | what "
-                        "(should | shall | do | can) i call you"
-        " | are you [really | actually | just] (a | an) [real] (robot | human | person | machine | man | woman | "
-        "computer | ai)"
-        " | are you (real | alive | human)", heard="who are you"),
-    Wording(
-        "rooms",
-        "[tell me] (which | what) (rooms | places) ([do] you know | are there | do you know | can "
-        "you go to | are in <words>)"
-        " | where can you go [to] | how many rooms (are there | do you know)",
-    ),
+    Wording("abilities", "what can you do | help [me]", heard="what can you do"),
+    Wording("battery", "how full is your battery"),
+    Wording("identity", "who are you", heard="who are you"),
+    Wording("rooms", "(which | what) (rooms | places) are in <words>"),
     Wording(
         "thanks",
         "(thank you | thanks | cheers) [very much | a lot | so much | robot] | (well | good) (done | job)"
@@ -225,4 +168,4 @@ ABOUT_ITSELF: tuple[Wording, ...] = (
         kind="reply",
     ),
 )  # fmt: skip
-"""What the robot does, did, holds and can do."""
+"""What can be heard of questions about the robot, and those with other words in them; the rest: itself.py."""

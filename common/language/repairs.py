@@ -63,7 +63,16 @@ _LATE_EXCEPT = re.compile(
     r"^(?P<all>.+) (?P<particle>away|out|back|up|down) (?P<but>(?:except|but not|but|apart from|other than) .+)$"
 )
 """An exception that is said behind a verb's particle."""
-_EXCEPT = re.compile(r",\s*(?:and |but )?(?=(?:not|except|but not|apart from|other than)\b)")
+_SPARED = re.compile(
+    r"^(?P<said>.+?)(?:,\s*|\s+)(?:(?:and|but|only|just|though|while) )?(?:(?:please )?(?:hands off|(?:do not|never) "
+    r"(?:touch|move|take)|leave|spare|keep|ignore|skip|stay away from) (?P<one>(?:the|my|our|any) [^,]+?)"
+    r"(?: (?:there|alone|be|out|in peace|where (?:it|they) (?:is|are)|as (?:it|they) (?:is|are)))?"
+    r"|(?P<other>(?:the|my|our) [^,]+?) (?:(?:can|may|should|must|has to|is to|will) )?(?:stays?|remains?)"
+    r"(?: (?:there|put|here|where (?:it|they) (?:is|are)|as (?:it|they) (?:is|are)))?)(?: though| please)?$"
+)
+"""What is not to be touched, said behind a command that would."""
+_OF_ALL = re.compile(r"^(?:(?:tidy|clean|clear|empty|sort|straighten)\b|.*\b(?:all|everything|every)\b)")
+_EXCEPT = re.compile(r",\s*(?:and |but |only |just )?(?=(?:not|except|but not|apart from|other than)\b)")
 _REFINEMENT = re.compile(
     r"^(?P<said>[^,]+?)(?:,\s*|\s+)(?:(?:you know|well|that is|please),?\s*)?(?P<one>(?:the|a|an) (?:\w+ ){1,2}one)"
     r"(?P<rest>,?(?: (?:and|on|in|to|into|onto|next|from|off) .*)?)$"
@@ -125,6 +134,8 @@ def settled(text: str, is_place: IsPlace) -> str:
         others = re.sub(r",? (?:and|nor) not | nor ", " or ", found["more"])
         one_of = "" if "," in found["said"] else f" but not {found['one']}{others}"
         text = f"{found['said']}{one_of}"
+    if (found := _SPARED.match(text)) and _OF_ALL.match(without_politeness(found["said"])):
+        text = f"{found['said']} except {found['one'] or found['other']}"
     found = _WHERE_IT_IS.match(bare := without_politeness(text))
     if found and verb_first(bare) and not PREPOSITIONS & set(found["said"].split()):
         text = f"{found['said']} {found['where']}"
@@ -151,7 +162,7 @@ def _singled_out(found: re.Match[str]) -> str:
     return f"{found['command']}the {found['which']} {several.removesuffix('s')} {' '.join(where)}"
 
 
-def _with_qualities(said: str, wrong: str, right: str) -> str:
+def with_qualities(said: str, wrong: str, right: str) -> str:
     """`the box` for `the bottle` where `the white bottle` was said is `the white box`."""
     bare, other = ([w for w in text.split() if w not in DETERMINERS] for text in (wrong, right))
     phrases = [said.split()[a:b] for a, b in noun_phrases(said.split())]
@@ -184,7 +195,7 @@ def _repaired(text: str, is_place: IsPlace) -> str:
             return text
         meant = _refined(re.sub(r",? i mean(?:t)?$", "", text[found.end() :].strip(" ,.!?")))
         if contrast := _CONTRAST.match(meant):
-            meant = _with_qualities(text[: found.start()], contrast["wrong"], contrast["right"])
+            meant = with_qualities(text[: found.start()], contrast["wrong"], contrast["right"])
         meant, comma, rest = meant.partition(", ")
         if rest.split(" ")[0] not in PREPOSITIONS:  # "the red can, i mean the green can, on the dresser"
             meant, rest = f"{meant}{comma}{rest}", ""

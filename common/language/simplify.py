@@ -2,23 +2,10 @@
 
 from common.language.normalise import Words
 
-_ADVERBS = frozenset(
-    {
-        "just",
-        "very",
-        "quite",
-        "rather",
-        "perhaps",
-        "maybe",
-        "please",
-        "also",
-        "too",
-        "straight",
-        "together",
-        "somewhere",
-        "anywhere",
-    }
-)
+_ADVERBS = frozenset({
+    "just", "very", "quite", "rather", "perhaps", "maybe", "please", "also", "too", "straight", "together",
+    "somewhere", "anywhere",
+})  # fmt: skip
 _NO_ADVERBS = frozenset({"only", "family", "early"})
 _PARTICLES = frozenset({"back", "over", "out", "up", "down", "on", "along", "off", "away", "round", "across", "right"})
 _AFTER_PARTICLE = frozenset(

@@ -19,10 +19,11 @@ _JUST = re.compile(rf"^(?:just )?(?P<time>{DURATION}),? (?:and )?then (?P<rest>.
 _LAST = re.compile(
     rf"^(?P<rest>.+?),? (?:(?:in|after) (?P<time>{DURATION})(?: {_LATER})?|(?P<later>{DURATION}) {_LATER})$"
 )
+_PASS = re.compile(rf"^(?:let|allow) (?:for )?(?P<time>{DURATION}) (?:to )?(?:pass|go by|elapse)$")
 _STAY = re.compile(
     rf"^(?:(?:go|drive|walk|move|run|head|come) (?P<to>.+?)(?:,| and| then)* "
     rf"(?=stay|remain|wait|stand))?(?:stay|remain|wait|stand|stop|hang "
-    rf"around|rest|park|be)"
+    rf"(?:around|about|out)|rest|park|be)"
     rf"(?: (?:there|here))?(?P<place>(?: over)? (?:in|at|by|near|next to|beside) .+?)? for "
     rf"(?P<time>{DURATION})(?P<rest>(?: and| then|,).+)?$"
 )  # fmt: skip
@@ -36,6 +37,8 @@ def in_time(text: str) -> str:
         going = f"go {found['to']}" if found["to"] else f"go to{_place(found['place'])}"
         rest = re.sub(r"^(?:,| and| then)+ ?", "", found["rest"] or "")
         return " . ".join(filter(None, (going, f"wait {_plain(found['time'])}", rest)))
+    if found := _PASS.match(bare):
+        return f"wait {_plain(found['time'])}"
     for pattern in (_FIRST, _JUST, _LAST):
         if (found := pattern.match(bare)) and verb_first(without_politeness(found["rest"])):
             time = found["time"] or found.groupdict().get("later") or ""

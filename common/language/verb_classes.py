@@ -8,13 +8,14 @@ from typing import Literal
 from common.language.lexicon import BRING, DISCARD, FETCH, GO, MOVE, PUT, SEEK, THROW, TIDY
 from common.language.normalise import infinitive
 
-VerbClass = Literal["bring", "wish", "put", "discard", "tidy", "go", "seek", "hold", "look", "say"]
+VerbClass = Literal["bring", "wish", "put", "discard", "tidy", "go", "seek", "hold", "look", "say", "wait"]
 _WORDS: dict[VerbClass, str] = {
     "bring": f"{BRING} {FETCH} provide supply serve offer obtain procure send reach convey ferry lug haul cart "
     "transport shuttle scoop nab snag bag fish nick whip dig run furnish drag rustle produce return pull",
     "wish": "want need require wish fancy crave desire prefer borrow",
     "put": f"{PUT} {MOVE} deposit park rest settle position locate install arrange pile line store shelve restore "
-    "replace lean lie hang keep insert load lodge bung whack prop bring take run ferry lug cart transport house home "
+    "replace lean lie let hang keep insert load lodge bung whack prop bring take run ferry lug cart transport house "
+    "home "
     "go belong stand sit live end land",
     "discard": f"{THROW} {DISCARD} scrap dump eliminate lose banish rid relieve",
     "tidy": f"{TIDY} order sort smarten spruce neaten arrange empty fix straighten freshen unclutter restore free",
@@ -25,6 +26,7 @@ _WORDS: dict[VerbClass, str] = {
     "mislaid missing",
     "hold": "pick lift hold grasp grip grab clutch seize take raise clasp",
     "look": "look peek peep glance survey scan inspect check examine explore nose watch snoop investigate",
+    "wait": "wait stay remain pause linger rest",
     "say": "say announce tell shout proclaim declare utter call yell broadcast inform speak spread",
 }
 """Verbs and their particles, which are taken out below."""

@@ -100,7 +100,7 @@ def _candidates(text: str, words: Words, verbs_only: bool) -> Iterator[str]:
             yield f"{verb} {found[1]}{found[3] or ''}"
     if found := _COMES.match(text):
         yield f"bring me {found[1]}"
-    if found := _MOVED.match(text):
+    if (found := _MOVED.match(text)) and words[0] != "anything":
         yield f"put {found[1]} {'in' if found[2] == 'to' else found[2]} {found[3]}"
     yield from _topic(words)
     for pattern, result in (*CONSTRUCTIONS, *(() if verbs_only or words[0] in COMMANDING else VERBLESS)):

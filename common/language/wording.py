@@ -5,14 +5,14 @@ from typing import Literal, NamedTuple
 Action = Literal[
     "stop", "cancel", "continue", "yes", "no", "refuse",
     "open_hand", "close_hand", "seen", "contents", "holding", "whereabouts", "where", "number", "say", "wait",
-    "wait_there", "come_back", "go", "remark", "untidy", "throw_away", "put_away", "tidy", "put", "put_near",
+    "wait_there", "come_back", "leave", "go", "remark", "untidy", "throw_away", "put_away", "tidy", "put", "put_near",
     "put_down", "deliver", "deliver_there", "fetch", "fetch_named", "pick_up", "find", "teach", "forget",
     "name_place", "rule", "rule_always", "forget_rule", "rules", "belongs", "usual", "last_seen",
     "look_around", "check", "go_and_see", "mention", "put_back", "put_where", "again", "thanks",
     "recall", "wish_at", "named_at", "put_held",
     "exists", "is_at", "colour", "beside", "kinds", "extreme", "compare",
     "condition", "condition_not", "state", "state_not",
-    "rooms", "doing", "done", "why", "origin", "abilities", "identity",
+    "rooms", "doing", "done", "why", "origin", "abilities", "identity", "battery",
 ]  # fmt: skip
 """What a wording asks for; `services/planner/grammar/rules.py` has a function for each that can be planned."""
 Kind = Literal["command", "reply", "name", "told"]
@@ -20,7 +20,8 @@ QUESTIONS: frozenset[Action] = frozenset(
     {
         "seen", "contents", "holding", "whereabouts", "where", "number", "recall", "exists", "is_at", "colour",
         "beside", "kinds", "extreme", "compare",
-        "rooms", "doing", "done", "why", "origin", "abilities", "identity", "rules", "belongs", "usual", "last_seen",
+        "rooms", "doing", "done", "why", "origin", "abilities", "identity", "battery",
+        "rules", "belongs", "usual", "last_seen",
     }
 )  # fmt: skip
 """What is answered in words."""
@@ -34,7 +35,7 @@ class Wording(NamedTuple):
     of `speech.commands`.
     `kind`: a "command" may be joined to others by "and"; a "reply" is heard by itself only; a "name" is understood
     where nothing else was said; what is "told" beside a command is understood where no command is. `reason`: why the
-    planner has no plan for it, as a clause.
+    planner has no plan for it, as a clause; `lost`: unless they mean something else.
     """
 
     action: Action
@@ -42,3 +43,4 @@ class Wording(NamedTuple):
     heard: str = ""
     kind: Kind = "command"
     reason: str = ""
+    lost: bool = False

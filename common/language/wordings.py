@@ -17,7 +17,8 @@ WORDINGS: tuple[Wording, ...] = (
     Wording(
         "stop",
         "[no] (stop | halt | freeze | hold it) [it | that | now | [right] there | at once | immediately | everything]"
-        " | [no] stop ([please] stop [stop] | moving | driving | going | doing that | what you are doing)"
+        " | [no] stop ([please] stop [stop] | (looking | searching | trying) [for (it | that)] | moving | driving | "
+        "going | doing that | what you are doing)"
         " | hold still | do not (move | do (that | it | this))"
         " | [that is it] [that is | it is] enough | quit "
         "(it | that) | cut it out | stay (there | where you are) | emergency stop",
@@ -47,11 +48,14 @@ WORDINGS: tuple[Wording, ...] = (
         "exactly | go ahead] | [that is] (correct | right | true) | exactly | sure | okay | ok"
         " | go ahead | do it | do | affirmative | sure thing | of course | absolutely | definitely | indeed | "
         "certainly | fine | that is what i (said | meant | want)"
-        " | you bet | uh huh | mhm | by all means | please do | right | that is (it | the one) | why not | perfect",
+        " | go [on | for it] | bang on | spot on | you [have] got it | right you are | you [have] got (it | that) "
+        "right | precisely | you bet | uh huh | mhm | by all "
+        "means | please do | right | that is (it | the one) | why not | perfect",
         heard="yes [please | it is] | yeah | correct", kind="reply", reason="I did not ask anything",
     ),
     Wording(
-        "no", "no no [no] | (no | nope | nah) [thanks | i did not | that is wrong] | [that is] "
+        "no", "no no [no] | (goodness | heavens | gosh | god | hell | dear me | certainly) (no | not) | (no | nope "
+        "| nah) [thanks | i did not | that is wrong] | [that is] "
               "(wrong | incorrect) | negative "
               "| not (that | really | at all) | no way"
         " | [no] that is not (what i (said | meant | want | asked for) | right | correct | it | true) | not what "
@@ -117,14 +121,14 @@ WORDINGS: tuple[Wording, ...] = (
     Wording("wait", "(wait | pause) [here | there | a moment | a bit | a while | for me]", heard="wait"),
     Wording(
         "wait",
-        "(wait | pause | sleep | hold on | hang (on | about | around) | stay [here | there] | stand by | rest) "
+        "(wait | pause | sleep | hold (on | off) | hang (on | about | around) | stay [here | there] | stand by | rest) "
         "[here | there] [for] <words>",
     ),
     Wording(
         "look_around",
         "(look | take a look | have a look | go and look | glance | scan | search) [all] (around | about | round)"
         " [the (room | flat | place | apartment) | you | here | in here]"
-        " | (look | search | scan) [around] everywhere | scan the (room | surroundings)",
+        " | (look | search | scan) [around] everywhere | scan the (room | surroundings) | turn (around | round)",
         heard="[take a] look around",
     ),
     Wording(
@@ -199,7 +203,8 @@ WORDINGS: tuple[Wording, ...] = (
         heard="drive [back] to [the] <place>",
     ),
     Wording("go", "(swing | drop | stop | pop | pass | come | go) by <spot> | visit <spot>"),
-    Wording("come_back", "(get | go | come) out of <spot>"),
+    Wording("leave", "(get | go | come) out of <spot> | (vacate | exit) <spot> | leave <spot> | (get | go) (out | "
+                     "away)"),
     Wording("go", "(approach | look at | head for | make for | set off for) <spot>"),
     Wording(
         "go",

@@ -23,6 +23,10 @@ class Refusal(Exception):
     """Why there is no plan, as a clause that can be spoken after "I cannot do that:"."""
 
 
+class Lost(Refusal):
+    """A refusal of words that may mean something else than what they were taken for."""
+
+
 class LookFirst(Exception):
     """The command needs sight of something: carry out these steps and ask again."""
 
@@ -158,7 +162,7 @@ class PlanBuilder:
                 continue
             if options := self.named(rule.to):
                 return self.choices.pick(options)
-        raise Refusal(f"I do not know where the {item.label} goes")
+        raise Lost(f"I do not know where the {item.label} goes")
 
     def in_room(self, room: str) -> Receptacle:
         """A surface of a room to put something on, a bed or a sofa last."""

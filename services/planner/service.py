@@ -170,6 +170,7 @@ class PlannerService:
         io, history = self._io, request.history
         world = believed(io.household, request.world, seen.objects if seen else [], where, now, history)
         world.edits = io.latest(topics.HOUSEHOLD_EDITS) or world.edits
+        world.battery = io.latest(topics.BATTERY)
         if (seen_before := io.latest(topics.SIGHTINGS)) is not None:
             world.sightings, world.seen_until = seen_before.sightings, seen_before.t
         return world

@@ -6,7 +6,7 @@ import msgspec
 
 from common.floor_plan import Receptacle
 from common.household import Household
-from common.messages import History, HouseholdEdits, KnownWorld, Sighting, Vec3, WorldObject
+from common.messages import BatteryState, History, HouseholdEdits, KnownWorld, Sighting, Vec3, WorldObject
 
 Pose2 = tuple[float, float, float]
 
@@ -35,7 +35,8 @@ class BelievedObject(msgspec.Struct, frozen=True):
 class World(msgspec.Struct):
     """`objects`: seen or held; `specs`: the known things of the household; `pose`: the robot's in the map.
 
-    `edits`: what people told of the home; `sightings`: what was seen where over the days, by the clock of `seen_until`.
+    `edits`: what people told of the home; `sightings`: what was seen where over the days, by the clock of `seen_until`;
+    `battery`: None where nobody tells of it.
     """
 
     household: Household
@@ -48,6 +49,7 @@ class World(msgspec.Struct):
     edits: HouseholdEdits = msgspec.field(default_factory=HouseholdEdits)
     sightings: list[Sighting] = []
     seen_until: float = 0.0
+    battery: BatteryState | None = None
 
     @property
     def held(self) -> BelievedObject | None:

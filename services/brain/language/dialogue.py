@@ -15,51 +15,27 @@ from common.language.meaning import asks_for
 from common.language.normalise import DETERMINERS, Words, infinitive, normalise, without_determiners
 from common.language.noun_phrase import WHICH, Which, related
 from common.language.politeness import without_politeness
+from common.language.repairs import with_qualities
 from common.language.simplify import simplified
 from common.messages import WorldObject
 from common.plan_rules import is_destination
 
 Reply = Literal["yes", "no", "cancel", "correction"]
 _CORRECTION = re.compile(
-    r"^(?:no|nope|yes|yeah|yep|wrong|not that|i said|i meant|i mean|i want(?:ed)?|i need|i would like|actually|"
+    r"^(?:not at all|not really|no way|no|nope|yes|yeah|yep|wrong|not that|i said|i meant|i mean|i want(?:ed)?|i "
+    r"need|i would like|actually|"
     r"rather|almost|nearly|close|not quite|oops|whoops|ugh|sorry|wait|but)\s+"
 )
 
 
-_NO_NAME = frozenset(
-    {
-        "one",
-        "whichever",
-        "of",
-        "them",
-        "those",
-        "these",
-        "will",
-        "with",
-        "go",
-        "the",
-        "please",
-        "that",
-        "this",
-        "mean",
-        "i",
-        "want",
-        "is",
-        "take",
-        "bring",
-        "me",
-        "let",
-        "have",
-        "get",
-        "give",
-        "it",
-        "choose",
-        "would",
-        "like",
-    }
-)
+_NO_NAME = frozenset({
+    "one", "whichever", "of", "them", "those", "these", "will", "with", "go", "the", "please", "that", "this", "mean",
+    "i", "want", "is", "take", "bring", "me", "let", "have", "get", "give", "it", "choose", "would", "like", "you",
+    "said", "mentioned", "think",
+})  # fmt: skip
 _CARDINALS = ("one", "two", "three", "four")
 _MISHEARD = re.compile(r"^no,? (?:not )?(?:the )?\w+(?: \w+)? (?=i (?:said|meant)\s)")
+_CONTRAST = re.compile(r"^(?P<right>(?!not\b).+?),? (?:and |but )?not (?P<wrong>.+)$")
 _SAID = re.compile(r"\s+i (?:said|meant)$")
 
 
@@ -70,17 +46,22 @@ BESIDE = 0.6
 def reply(text: str) -> tuple[Reply, str]:
     """The kind of answer, and for a correction the words without its "no, I said"."""
     rest = without_fillers(expand(normalise(text)))
-    match asks_for(rest, "yes", "no", "cancel"):
-        case "yes":
-            return "yes", ""
-        case "no":
-            return "no", ""
-        case "cancel":
-            return "cancel", ""
+    if (kind := _kind(rest)) is not None:
+        return kind, ""
     rest = _MISHEARD.sub("", rest)
     while (shorter := _CORRECTION.sub("", rest)) != rest:
         rest = shorter
     return "correction", without_politeness(_SAID.sub("", rest)) or rest
+
+
+def _kind(text: str) -> Literal["yes", "no", "cancel"] | None:
+    """What a text without correction says, once or several times: `that is the one, go ahead`."""
+    words = text.split()
+    for kind in ("yes", "no", "cancel"):
+        halves = ((" ".join(words[:at]), " ".join(words[at:])) for at in range(1, len(words)))
+        if asks_for(text, kind) or any(asks_for(a, kind) and asks_for(b, kind) for a, b in halves):
+            return kind
+    return None
 
 
 def corrected(command: str, correction: str, household: Household) -> str:
@@ -89,9 +70,13 @@ def corrected(command: str, correction: str, household: Household) -> str:
     def is_place(words: Words) -> bool:
         return is_destination(" ".join(words), household)
 
+    if contrast := _CONTRAST.match(correction):
+        correction = with_qualities(command, contrast["wrong"], contrast["right"])
     if correction.split()[:1] in (["not"], ["but"]):
         correction = next(iter(commands(correction)), correction)
     thing = correction if correction.split()[:1] and correction.split()[0] in DETERMINERS else f"the {correction}"
+    if set(correction.split()) <= household.words.colours.keys():
+        thing = f"the {correction} one"
     if _is_command(correction):
         return _with_object(correction, command)
     exchanged = replaced(normalise(command), correction if correction.split()[0] in PREPOSITIONS else thing, is_place)

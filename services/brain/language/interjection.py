@@ -28,7 +28,7 @@ _LATER_END = re.compile(
 )
 """The same behind it."""
 _INSTEAD = re.compile(
-    r"^(?:no|stop(?: (?:that|it|this))?|wait|sorry|hold on|hang on|"
+    r"^(?:no|stop(?! by\b)(?: (?:that|it|this))?|wait|sorry|hold on|hang on|"
     r"(?:forget|scrap|leave|drop|cancel|never mind|skip) (?:about )?(?:that|it|this)|never ?mind|"
     r"scratch that|change of plans?|new plan|i(?: have|'ve)? changed my mind|actually|on second thoughts?|"
     r"instead|rather|"
@@ -75,6 +75,11 @@ def interjection(said: str) -> Interjection:
     if control := asks_for(said, "stop", "cancel", "come_back"):
         return Interjection(control, said)  # type: ignore[arg-type]
     words = without_fillers(expand(normalise(said, ",")))
+    first, _, reason = words.partition(", ")
+    if asks_for(words.rpartition(", ")[2], "stop"):
+        return Interjection("stop", said)
+    if _is_news(reason) and (control := asks_for(first, "stop", "cancel")):
+        return Interjection(control, said)  # type: ignore[arg-type]
     if _ONE_MOMENT.match(words):
         return Interjection("stop", said)
     if contrast := _INSTEAD_OF.match(words):
@@ -92,8 +97,13 @@ def interjection(said: str) -> Interjection:
         while (shorter := begin.sub("", rest)) != rest:
             rest = shorter
         bare = end.sub("", rest)
-        if kind == "replace" and bare != words and _NEWS.match(bare) and not _WISH.search(bare):
+        if kind == "replace" and bare != words and _is_news(bare):
             return Interjection("cancel", said)  # "never mind, I found it"
         if bare and bare != words:
             return Interjection(kind, bare)  # type: ignore[arg-type]
     return Interjection("aside" if is_question(said) else "queue", said)
+
+
+def _is_news(text: str) -> bool:
+    """Does somebody tell something, `i found it`, and wish nothing?"""
+    return _NEWS.match(text) is not None and not _WISH.search(text)

@@ -46,6 +46,9 @@ def done(builder: PlanBuilder, slots: Slots) -> None:
 def why(builder: PlanBuilder, slots: Slots) -> None:
     """Why the last command failed."""
     last = builder.world.history.last
+    if builder.world.history.doing:
+        doing(builder, slots)
+        return
     if last is None or last.outcome == "delivered":
         builder.say("Nothing has failed." if last is None else f'Nothing has failed: I have done "{last.command}".')
         return
@@ -69,6 +72,14 @@ def abilities(builder: PlanBuilder, slots: Slots) -> None:
 
 def identity(builder: PlanBuilder, slots: Slots) -> None:
     builder.say("I am TidyBot, a household robot. I fetch things and tidy up.")
+
+
+def battery(builder: PlanBuilder, slots: Slots) -> None:
+    state = builder.world.battery
+    if state is None:
+        builder.say("I cannot tell how full my battery is.")
+        return
+    builder.say(f"My battery is at {state.charge:.0%}{' and charging' if state.charging else ''}.")
 
 
 def rooms(builder: PlanBuilder, slots: Slots) -> None:

@@ -8,7 +8,7 @@ from common.messages import PlanStep
 from services.planner.commands.telling import MANY, a, be, capital, not_after_moving, place_of
 from services.planner.grammar.phrases import Phrase, read
 from services.planner.grammar.senses import ANY, Sense
-from services.planner.plan_builder import NOT_UNDERSTOOD, PlanBuilder, Refusal
+from services.planner.plan_builder import NOT_UNDERSTOOD, Lost, PlanBuilder, Refusal
 from services.planner.reference.fits import unknown
 from services.planner.reference.places import spot
 from services.planner.reference.pronouns import Referent
@@ -40,7 +40,7 @@ def where(builder: PlanBuilder, slots: Slots) -> None:
         if builder.vocabulary.spot(slots["thing"]):
             _place(builder, slots)
             return
-        raise Refusal(unknown(builder, slots["thing"], phrase))
+        raise unknown(builder, slots["thing"], phrase)
 
 
 def found(builder: PlanBuilder) -> None:
@@ -70,7 +70,7 @@ def number(builder: PlanBuilder, slots: Slots) -> None:
     words = (*slots["thing"], "on", *slots["spot"]) if "spot" in slots else slots["thing"]
     phrase = read(words, builder.vocabulary)
     if not isinstance(phrase, Phrase):
-        raise Refusal(unknown(builder, words, phrase))
+        raise unknown(builder, words, phrase)
     try:
         known = [m.object for m in referents(builder, ("all", *words)) if m.object.seen]
     except Refusal:
@@ -114,7 +114,7 @@ def extreme(builder: PlanBuilder, slots: Slots) -> None:
         _told_one_by_one(builder, [m.object for m in referents(builder, ("all", *words, *noun))])
         return
     else:
-        raise Refusal(f"{NOT_UNDERSTOOD} {' '.join(slots['words'])!r}")
+        raise Lost(f"{NOT_UNDERSTOOD} {' '.join(slots['words'])!r}")
     meant = referent(builder, asked).object
     if not meant.seen:
         raise Refusal(f"I have not seen that {' '.join(noun) or 'thing'}")
@@ -127,7 +127,7 @@ def compare(builder: PlanBuilder, slots: Slots) -> None:
     words = slots["words"]
     which = WHICH.get(words[-1])
     if which is None or len(words) > 1:
-        raise Refusal(f"{NOT_UNDERSTOOD} {' '.join(words)!r}")
+        raise Lost(f"{NOT_UNDERSTOOD} {' '.join(words)!r}")
     one, other = (referent(builder, slots[name]).object for name in ("thing", "spot"))
     for item in (one, other):
         if not item.seen:
@@ -163,7 +163,7 @@ def beside(builder: PlanBuilder, slots: Slots) -> None:
             f"{capital(enumeration([a(t) for t in near]))} {be(near)} {where}." if near else f"I see nothing {where}."
         )
         return
-    raise Refusal(f"I do not understand {' '.join(slots['words'])!r}")
+    raise Lost(f"I do not understand {' '.join(slots['words'])!r}")
 
 
 def holding(builder: PlanBuilder, slots: Slots) -> None:

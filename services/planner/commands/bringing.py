@@ -8,7 +8,7 @@ from common.messages import PlanStep
 from services.planner.commands.hand import take
 from services.planner.grammar.phrases import Phrase, read
 from services.planner.grammar.senses import Spot
-from services.planner.plan_builder import PlanBuilder, Refusal
+from services.planner.plan_builder import Lost, PlanBuilder, Refusal
 from services.planner.reference.fits import fitting
 from services.planner.reference.places import spot
 from services.planner.reference.pronouns import Referent, handled_before
@@ -22,11 +22,11 @@ RELEASED = PlanStep(action="release")
 def fetch_named(builder: PlanBuilder, slots: Slots) -> None:
     """A thing's name alone; other words are no command."""
     if isinstance(phrase := read(slots["thing"], builder.vocabulary), Phrase) and phrase.sense.new:
-        raise Refusal(f"I know no {phrase.noun}")
+        raise Lost(f"I know no {phrase.noun}")
     last = builder.vocabulary.noun(slots["thing"][-1])
     named = slots["thing"][0] in DETERMINERS or slots["thing"][0] in builder.vocabulary.colours
     if last is None and not named and not isinstance(read(slots["thing"], builder.vocabulary), Phrase):
-        raise Refusal(f"I do not understand {' '.join(slots['thing'])!r}")
+        raise Lost(f"I do not understand {' '.join(slots['thing'])!r}")
     fetch(builder, slots)
 
 
@@ -52,7 +52,7 @@ def deliver_there(builder: PlanBuilder, slots: Slots) -> None:
         surface = builder.world.receptacle_of(before[-1])
         there = Spot(surface.name, receptacle=surface) if surface else None
     if there is None:
-        raise Refusal("I do not know which place you mean by there")
+        raise Lost("I do not know which place you mean by there")
     _deliver(builder, referents(builder, slots["thing"], prefer_held=True), there)
 
 
@@ -68,7 +68,7 @@ def put(builder: PlanBuilder, slots: Slots) -> None:
 def put_held(builder: PlanBuilder, slots: Slots) -> None:
     """`on the counter` to a robot that holds something."""
     if builder.world.held is None:
-        raise Refusal("there is nothing in my hand")
+        raise Lost("there is nothing in my hand")
     deliver(builder, {"thing": ("it",), **slots})
 
 
@@ -96,7 +96,7 @@ def put_back(builder: PlanBuilder, slots: Slots) -> None:
         origin = builder.world.history.taken_from.get(meant.object.label, "")
         where = builder.world.household.receptacle(origin)
         if where is None:
-            raise Refusal(f"I do not know where the {meant.object.label} was before")
+            raise Lost(f"I do not know where the {meant.object.label} was before")
         _put(builder, meant, where)
     builder.last = [m.object for m in moved]
 

@@ -8,7 +8,7 @@ from common.language.pattern import Slots
 from common.messages import PlanStep
 from services.planner.commands.looking import things_at
 from services.planner.grammar.phrases import Phrase, read
-from services.planner.plan_builder import PlanBuilder, Refusal
+from services.planner.plan_builder import Lost, PlanBuilder, Refusal
 from services.planner.reference.fits import fitting, unknown
 from services.planner.reference.resolve import referents
 from services.planner.world import BelievedObject
@@ -39,7 +39,7 @@ def state(builder: PlanBuilder, slots: Slots, negated: bool = False) -> None:
     words = slots["words"][1:] if slots["words"][0] == "not" else slots["words"]
     quality = " ".join(words)
     if quality not in EMPTY | LITTERED:
-        raise Refusal(f"I cannot see whether the {' '.join(without_determiners(slots['spot']))} is {quality}")
+        raise Lost(f"I cannot see whether the {' '.join(without_determiners(slots['spot']))} is {quality}")
     negated = negated != (len(words) < len(slots["words"]))
     place, there, surfaces = things_at(builder, slots["spot"])
     if not there:
@@ -56,7 +56,7 @@ def _look_into(builder: PlanBuilder, slots: Slots) -> tuple[list[BelievedObject]
     words = (*slots["thing"], "on", *slots["spot"]) if "spot" in slots else slots["thing"]
     phrase = read(words, builder.vocabulary)
     if not isinstance(phrase, Phrase):
-        raise Refusal(unknown(builder, words, phrase))
+        raise unknown(builder, words, phrase)
     name = " ".join((*phrase.colours, phrase.singular or phrase.noun))
     if phrase.relation in ("on", "near") and builder.vocabulary.spot(phrase.anchor):
         place, known, surfaces = things_at(builder, phrase.anchor)

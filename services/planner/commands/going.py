@@ -4,7 +4,7 @@ from common.language.pattern import Slots
 from common.language.quantities import LONGEST, duration
 from services.planner.grammar.phrases import Phrase, read
 from services.planner.grammar.senses import Spot
-from services.planner.plan_builder import PlanBuilder, Refusal
+from services.planner.plan_builder import Lost, PlanBuilder, Refusal
 from services.planner.reference.places import spot
 from services.planner.reference.resolve import referent, referents
 
@@ -27,11 +27,20 @@ def come_back(builder: PlanBuilder, slots: Slots) -> None:
     builder.go(Spot(builder.world.household.home.name, home=True))
 
 
+def leave(builder: PlanBuilder, slots: Slots) -> None:
+    """Out of a place, which is back home; where the robot is sent away without a place there is none to go to."""
+    if slots.get("spot") in (("it",), ("that",), ("there",), ("them",)):
+        raise Lost("I do not know which place you mean")
+    if "spot" not in slots or spot(builder, slots["spot"]).home:
+        raise Refusal("you did not say where to go")
+    come_back(builder, slots)
+
+
 def wait(builder: PlanBuilder, slots: Slots) -> None:
     """For as long as was said, else for a moment."""
     seconds = duration(slots["words"]) if "words" in slots else 0.0
     if seconds is None:
-        raise Refusal(f"I do not understand how long {' '.join(slots['words'])!r} is")
+        raise Lost(f"I do not understand how long {' '.join(slots['words'])!r} is")
     if seconds > LONGEST:
         raise Refusal(f"I wait {LONGEST / 60:.0f} minutes at most")
     builder.wait(seconds)

@@ -11,7 +11,7 @@ from common.tidy_rule import ONES, rule_about
 from common.whereabouts import ago, decayed, kind_of_phrase, of_thing
 from services.planner.commands.answers import where
 from services.planner.grammar.phrases import Phrase, read
-from services.planner.plan_builder import PlanBuilder, Refusal
+from services.planner.plan_builder import Lost, PlanBuilder, Refusal
 from services.planner.reference.fits import fitting
 from services.planner.reference.places import spot
 
@@ -43,7 +43,7 @@ def rule(builder: PlanBuilder, slots: Slots) -> None:
     plural = isinstance(phrase, Phrase) and (phrase.plural or (phrase.sense.new and _is_plural(things[-1])))
     whole = isinstance(phrase, Phrase) and not (phrase.sense.every or phrase.relation or phrase.but)
     if things[0] in ONES or not (plural and whole):
-        raise Refusal(f"I do not know which {' '.join(things)} you mean; say from now on for all")
+        raise Lost(f"I do not know which {' '.join(things)} you mean; say from now on for all")
     rule_always(builder, slots)
 
 
@@ -51,7 +51,7 @@ def rule_always(builder: PlanBuilder, slots: Slots) -> None:
     """Where things of the kind belong from now on."""
     things = " ".join(without_determiners(slots["thing"]))
     if not isinstance(read(slots["thing"], builder.vocabulary), Phrase):
-        raise Refusal(f"I know no {things}")
+        raise Lost(f"I know no {things}")
     where_to = spot(builder, slots["spot"])
     if where_to.room:
         there = builder.vocabulary.surfaces(where_to.name)
@@ -89,7 +89,7 @@ def belongs(builder: PlanBuilder, slots: Slots) -> None:
     """Where things go when they are put away."""
     phrase = read(slots["thing"], builder.vocabulary)
     if not isinstance(phrase, Phrase) or phrase.sense.new:
-        raise Refusal(f"I know no {' '.join(without_determiners(slots['thing']))}")
+        raise Lost(f"I know no {' '.join(without_determiners(slots['thing']))}")
     fits = fitting(builder, phrase)
     known = [t for t in (*builder.world.objects, *builder.world.specs) if fits(t)]
     if known:
@@ -97,7 +97,7 @@ def belongs(builder: PlanBuilder, slots: Slots) -> None:
     else:
         found = _goes(builder, " ".join(slots["thing"]))
         if not found:
-            raise Refusal(f"I do not know where {phrase.noun} go")
+            raise Lost(f"I do not know where {phrase.noun} go")
         to = found[0]
     said = " ".join(slots["thing"])
     verb = "go" if phrase.plural else "goes"

@@ -8,7 +8,7 @@ from services.planner.commands import answers
 from services.planner.commands.telling import a, be, inventory, not_after_moving, told
 from services.planner.grammar.phrases import Phrase, read
 from services.planner.grammar.senses import Spot
-from services.planner.plan_builder import PlanBuilder, Refusal
+from services.planner.plan_builder import PlanBuilder
 from services.planner.reference.fits import fitting, unknown
 from services.planner.reference.places import spot
 from services.planner.world import BelievedObject
@@ -40,7 +40,7 @@ def contents(builder: PlanBuilder, slots: Slots) -> None:
 
 def _tell_contents(builder: PlanBuilder, slots: Slots, afresh: bool) -> None:
     not_after_moving(builder)
-    place, there, look = things_at(builder, slots["spot"])
+    place, there, look = things_at(builder, slots.get("spot", ("there",)))
     if afresh or not there:
         builder.look_at(look)
     if not there:
@@ -90,7 +90,7 @@ def check(builder: PlanBuilder, slots: Slots) -> None:
     thing = slots["thing"]
     phrase = read((*thing, "on", *slots["spot"]) if "spot" in slots else thing, builder.vocabulary)
     if not isinstance(phrase, Phrase):
-        raise Refusal(unknown(builder, thing, phrase))
+        raise unknown(builder, thing, phrase)
     spots = builder.vocabulary.spot(phrase.anchor) if phrase.relation in ("on", "near") else []
     if not spots:
         answers.where(builder, slots)

@@ -1,7 +1,7 @@
 """What is said beside a command: a reason, a thing or a place that is spoken of next. Pure."""
 
 from common.language.pattern import Slots
-from services.planner.plan_builder import NOT_UNDERSTOOD, PlanBuilder, Refusal
+from services.planner.plan_builder import NOT_UNDERSTOOD, Lost, PlanBuilder, Refusal
 from services.planner.reference.places import spot
 from services.planner.reference.resolve import referents
 
@@ -10,7 +10,7 @@ def remark(builder: PlanBuilder, slots: Slots) -> None:
     """A reason for what is asked next, such as "I'm thirsty"; a need that is known is met if nothing else is asked."""
     words = slots.get("words", ())
     if "and" in words:
-        raise Refusal("I do not understand that")
+        raise Lost("I do not understand that")
     needs = builder.world.household.words.needs
     builder.need = next((n for w, n in needs.items() if w in words), builder.need)
 
@@ -18,7 +18,7 @@ def remark(builder: PlanBuilder, slots: Slots) -> None:
 def mention(builder: PlanBuilder, slots: Slots) -> None:
     """A thing that is spoken of next as "it"; where it is said to be is where it is looked for."""
     if "and" in slots.get("words", ()):
-        raise Refusal(f"{NOT_UNDERSTOOD} that")
+        raise Lost(f"{NOT_UNDERSTOOD} that")
     words = (*slots["thing"], "on", *slots["spot"]) if "spot" in slots else slots["thing"]
     try:
         builder.last = [m.object for m in referents(builder, words)]

@@ -5,7 +5,7 @@ from common.language.pattern import Slots
 from common.messages import PlanStep
 from common.naming.names import normalise
 from services.planner.grammar.phrases import Phrase, read
-from services.planner.plan_builder import PlanBuilder, Refusal
+from services.planner.plan_builder import Lost, PlanBuilder, Refusal
 
 
 def teach(builder: PlanBuilder, slots: Slots) -> None:
@@ -13,7 +13,7 @@ def teach(builder: PlanBuilder, slots: Slots) -> None:
     thing = " ".join(without_determiners(slots.get("thing", ())))
     phrase = read(slots["thing"], builder.vocabulary) if thing else None
     if thing and (not isinstance(phrase, Phrase) or phrase.sense.new):
-        raise Refusal(f"I know no {thing} that could have a name")
+        raise Lost(f"I know no {thing} that could have a name")
     builder.steps.append(PlanStep(action="teach", object=thing, text=_name(builder, slots)))
 
 

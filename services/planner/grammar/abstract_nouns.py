@@ -87,7 +87,7 @@ reduction reflex reform refusal regard regret regulation rehabilitation rehearsa
 relationship relevance religion remark removal renaissance repetition reply reproach reputation request research
 resemblance resentment resonance respect respite response responsibility rest restatement restriction result
 resume retailing retention retirement revenge revolt revolution rhythm richness ride ripple risk rite ritual
-roar role roleplaying roughness rpm ruling rumor run running rushing rustling sailing sale salvation sample
+roar role roleplaying roughness rpm rule rules ruling rumor run running rushing rustling sailing sale salvation sample
 sampling satire saturday saving scandal scar scent schedule scheme science score scorn scours scream scrutiny
 search season seat secret seizure selection self selling sending sensation sense sensibility sensitivity
 sentence sentiment september sermon service services session sex shadow shame shape shooting shortage shot

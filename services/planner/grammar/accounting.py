@@ -21,7 +21,7 @@ _OPEN = frozenset({"if", "unless", "otherwise"})
 """First words of clauses that need leave no trace; nor need questions, nor one of two alternatives."""
 _TOLD_APART = re.compile(
     r"\b(?:not|nothing|but|except|excluding|without|other than|apart from|leave|next to|beside|near|nearest|closest|"
-    r"between|left of|right of|in front of|behind|by)\b"
+    r"between|left of|right of|in front of|behind|by)\b|^(?:leave|vacate|exit|(?:get|go|come) out of)\b"
 )
 """Behind these stand things that tell which one is meant, or is not; none of them is in the plan."""
 

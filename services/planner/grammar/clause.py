@@ -2,15 +2,15 @@
 
 from common.language.exchange import noun_phrases, replaced
 from common.language.lexicon import COMMANDING
-from common.language.meaning import VERBS
+from common.language.meaning import VERBS, is_question
 from common.language.normalise import DETERMINERS, Words, infinitive
 from common.language.noun_phrase import PLURAL_PRONOUNS, PRONOUNS
 from common.language.politeness import without_politeness
 from common.language.simplify import simplified
 from common.language.word_order import reworded
 from services.planner.grammar.phrases import Phrase, read
-from services.planner.grammar.rules import apply_first
-from services.planner.plan_builder import NOT_UNDERSTOOD, PlanBuilder, Refusal
+from services.planner.grammar.rules import NoWording, apply_first
+from services.planner.plan_builder import Lost, PlanBuilder, Refusal
 
 MAX_EFFORT = 120
 """Most clauses tried for one text (chosen: bounds the time for long lists)."""
@@ -20,8 +20,8 @@ _THING_STARTS = DETERMINERS | PRONOUNS | PLURAL_PRONOUNS | {"all", "every", "two
 class _Failure(Exception):
     """`at`: how many words were understood before it."""
 
-    def __init__(self, at: int, reason: str) -> None:
-        super().__init__(reason)
+    def __init__(self, at: int, reason: Refusal) -> None:
+        super().__init__(str(reason))
         self.at, self.reason = at, reason
 
 
@@ -30,7 +30,7 @@ def read_clause(words: Words, builder: PlanBuilder, alone: bool, said: Words = (
     try:
         _joined(words, builder, said, 0, alone)
     except _Failure as failure:
-        raise Refusal(failure.reason) from None
+        raise failure.reason from None
 
 
 def _joined(words: Words, builder: PlanBuilder, said: Words, at: int, alone: bool) -> None:
@@ -56,7 +56,7 @@ def _joined(words: Words, builder: PlanBuilder, said: Words, at: int, alone: boo
 
 def _run_on(words: Words, builder: PlanBuilder, said: Words, at: int) -> bool:
     """Carry out `go to the kitchen look around come back`: commands one after the other without a word between them."""
-    for cut in range(2, len(words)):
+    for cut in range(2, 0 if is_question(" ".join(words)) else len(words)):
         if words[cut] not in _BEGINS or words[cut - 1] in _NO_END or words[0] not in VERBS:
             continue
         trial = builder.fork()
@@ -80,7 +80,7 @@ _NO_END = DETERMINERS | {"and", "to", "not", "you", "i", "we", "that", "please",
 def _command(words: Words, builder: PlanBuilder, before: Words, at: int, alone: bool) -> None:
     """The first form that fits the words and can be done; else the reason of the first that fits."""
     if not words:
-        raise _Failure(at, "I did not hear a command")
+        raise _Failure(at, Lost("I did not hear a command"))
     words = tuple(without_politeness(" ".join(words)).split()) or words
     builder.effort[0] += 1
     if builder.effort[0] > MAX_EFFORT:
@@ -97,8 +97,7 @@ def _command(words: Words, builder: PlanBuilder, before: Words, at: int, alone: 
         return
     if any(apply_first(other, builder, "told") is None for other in (words, *reworded(words, verbs_only=True))):
         return
-    said = " ".join(words)
-    raise _Failure(at if reason else at - 1, reason or f"{NOT_UNDERSTOOD} {said!r}")
+    raise _Failure(at - isinstance(reason, NoWording), reason)
 
 
 def _apply_reworded(words: Words, builder: PlanBuilder, before: Words, alone: bool) -> bool:
@@ -112,15 +111,17 @@ def _apply_reworded(words: Words, builder: PlanBuilder, before: Words, alone: bo
     return False
 
 
-def _apply(words: Words, builder: PlanBuilder, before: Words, alone: bool) -> str | None:
+def _apply(words: Words, builder: PlanBuilder, before: Words, alone: bool) -> Refusal | None:
     """As `apply_first`, for a clause that may be a name alone or lack what was said in the one `before` it."""
     verb = before[0] if before else ""
     reason = apply_first(words, builder, "command", "reply")
-    if reason == "" and alone:
+    if not isinstance(reason, NoWording):
+        return reason
+    if alone:
         return apply_first(words, builder, "name")
-    if reason == "" and verb in ("go", "drive", "come", "head", "visit") and builder.vocabulary.spot(words):
+    if verb in ("go", "drive", "come", "head", "visit") and builder.vocabulary.spot(words):
         return apply_first(("go", "to", *words), builder, "command")
-    if reason == "" and verb and _is_thing(words, builder):
+    if verb and _is_thing(words, builder):
         # "put the mug on the table and the can on the counter": the verb is said once.
         return apply_first(_completed(words, before, builder), builder, "command", "reply")
     return reason

@@ -22,7 +22,7 @@ from services.planner.grammar.phrases import Phrase, read
 from services.planner.grammar.repetition import repeated
 from services.planner.grammar.spelling import corrected
 from services.planner.grammar.vocabulary import Vocabulary
-from services.planner.plan_builder import NOT_UNDERSTOOD, LookFirst, PlanBuilder, Refusal, same
+from services.planner.plan_builder import NOT_UNDERSTOOD, LookFirst, Lost, PlanBuilder, Refusal, same
 from services.planner.world import World
 
 SOURCE = "grammar"
@@ -30,8 +30,6 @@ MAX_CHARACTERS = 2000
 """Longest text that is read (chosen: a minute of speech has a thousand characters)."""
 MAX_WORDS = 60
 """Longest clause (chosen: the readings of a pattern grow with the square of its words)."""
-_LOST = (NOT_UNDERSTOOD, "I know no", "I did not hear", "you did not say", "I do not know wh")
-"""How reasons begin after which the words may mean something else."""
 
 
 class Suggestion(Refusal):
@@ -139,7 +137,7 @@ class _Attempts:
                 with suppress(Refusal):
                     return self._read(self._command, new_nouns=True)
             self._choices.taken = taken
-            if not str(refusal).startswith(_LOST) or (meant := self.guessed()) is None:
+            if not isinstance(refusal, Lost) or (meant := self.guessed()) is None:
                 raise
             if meant.answers:  # an answer moves nothing, so there is nothing to ask about first
                 return meant.steps
@@ -206,7 +204,7 @@ def _sentences(command: str, builder: PlanBuilder) -> list[str]:
     if again is not command:
         sentences = commands(again, is_place)
     if not sentences:
-        raise Refusal("I did not hear a command")
+        raise Lost("I did not hear a command")
     if len(command) > MAX_CHARACTERS or any(len(s.split()) > MAX_WORDS for s in sentences):
         raise Refusal("that is too long a sentence for me")
     return sentences
@@ -222,6 +220,9 @@ def _steps(command: str, builder: PlanBuilder) -> list[PlanStep]:
         following = sentences[number + 1].split() if number + 1 < len(sentences) else []
         if is_statement(sentence) and words[0] in ("i", "we") and {"it", "them"} & set(following):
             note(words, builder)  # "I want the apple. Put it on the desk": what is wanted is said in the second
+            continue
+        if {"there", "it"} & set(following) and (topic := builder.vocabulary.spot(words)):
+            builder.spot = topic[0]  # "the bookshelf. What is there?"
             continue
         if words[0] == "otherwise":
             if not builder.unmet:
@@ -243,7 +244,7 @@ def _steps(command: str, builder: PlanBuilder) -> list[PlanStep]:
     if not builder.steps and builder.need:
         read_clause(("bring", "me", *builder.need.split()), builder, alone=True)
     if not builder.steps:
-        raise Refusal(f"{NOT_UNDERSTOOD} what I should do")
+        raise Lost(f"{NOT_UNDERSTOOD} what I should do")
     if all(step.action == "find" for step in builder.steps):
         answers.found(builder)
     return builder.steps

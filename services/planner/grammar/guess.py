@@ -8,16 +8,19 @@ from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from typing import NamedTuple
 
+from common.language.breaks import is_statement
 from common.language.frame import SMALL_TALK
-from common.language.mood import forbids, is_of_others, is_told
+from common.language.itself import about_itself
+from common.language.mood import SUBJECTS, forbids, is_of_others, is_told
 from common.language.normalise import DETERMINERS, Words, infinitive
 from common.language.verb_classes import VERBS, classes
 from common.messages import PlanStep
 from services.planner.grammar.accounting import unaccounted
-from services.planner.grammar.chunks import chunks
+from services.planner.grammar.chunks import POINTING, chunks
 from services.planner.grammar.clause import read_clause
 from services.planner.grammar.mention import note
 from services.planner.grammar.roles import by_roles, is_asked
+from services.planner.grammar.rules import ACTIONS
 from services.planner.plan_builder import PlanBuilder, Refusal
 
 _CONJUNCTIONS = frozenset({"and", "then", "so", "but", "because", "while", "since", "also", "plus", "though"})
@@ -50,8 +53,11 @@ def guess(clauses: Sequence[str], builder: PlanBuilder) -> Guess:
         if forbids(clause) or len(clause.split()) > LONGEST:
             raise Refusal("there is nothing to guess")
     texts: list[str] = []
-    for clause in clauses:
+    for number, clause in enumerate(clauses, 1):
         words = tuple(clause.split())
+        if number < len(clauses) and is_statement(clause) and not is_asked(words):
+            note(words, builder)
+            continue
         texts += _clause(words, builder) or _pieces(words, builder)
     if not texts or not builder.steps:
         raise Refusal("there is nothing to guess")
@@ -73,12 +79,19 @@ def _readings(words: Words, builder: PlanBuilder) -> Iterator[tuple[list[str], s
     """Plans of a clause with the names in it that have nothing to do with them, and the words planned."""
     asks = is_asked(words)
     inside = {at for c in chunks(words, builder.vocabulary) for at in range(c.begin, c.end)}
-    verbs_only = tuple("_" if at in inside else word for at, word in enumerate(words))
+    verbs_only = tuple("_" if at in inside or word in POINTING else word for at, word in enumerate(words))
     tries: list[tuple[Words, Words]] = [((), words)]
     if not asks:
         tries += [(words[:at], (infinitive(words[at], VERBS), *words[at + 1 :])) for at in _beginnings(words)]
-    if not is_told(verbs_only) and (asks or not _is_strange(words, inside)):
+    if ((asks and words[0] not in SUBJECTS.split("|")) or not is_told(verbs_only)) and (
+        asks or not _is_strange(words, inside)
+    ):
         tries += [((), tuple(text.split())) for text in by_roles(words, builder.vocabulary)]
+    itself = about_itself(words, wholly=False) if asks and not inside else None
+    if itself is not None:
+        trial = builder.fork()
+        ACTIONS[itself](trial, {})
+        yield [], " ".join(words), trial
     for told, asked in tries[: MOST + 1]:
         trial = builder.fork()
         trial.effort = [0]
@@ -94,7 +107,11 @@ def _readings(words: Words, builder: PlanBuilder) -> Iterator[tuple[list[str], s
 
 def _beginnings(words: Words) -> list[int]:
     """Where a request may begin: at verbs that the robot is to act by."""
-    return [at for at in range(1, len(words) - 1) if classes(words[at]) and not is_of_others(words, at)]
+    return [
+        at
+        for at, word in enumerate(words[:-1])
+        if at and classes(word) and (word in VERBS or word.endswith("ing")) and not is_of_others(words, at)
+    ]
 
 
 def _is_strange(words: Words, known: set[int]) -> bool:

@@ -22,11 +22,14 @@ _NO = re.compile(
     r"|^(?:(?:never mind|no|well|ok|okay|then) )*(?P<better>(?:on|in|the) .+?) (?:would (?:be|have "
     r"been) (?:better|nicer|best|preferable)|will do)$"
 )
+_NO_BARE = re.compile(
+    r"^(?:(?:hm+|oh|ah|no|nope|wrong|sorry|actually|rather) )+(?:the |my )?(?P<place>\w+(?: \w+){0,2}?)(?: please)?$"
+)
 _PLACED = re.compile(r"\w (?:next to|beside|near|on|in|into|onto|to|at) \w")
 _TOO = re.compile(
     r"^(?!.*\b(?:goes|go|belongs?|is|are|there)\b)(?:and |now |then |do )*(?P<thing>.+?)"
     r" (?:too|as well|also)(?: please)?$"
-    r"|^(?:and|(?:now|next)(?= the| my)|what about|do the same (?:for|with)) (?P<other>.+)$"
+    r"|^(?:and|(?:now|next)(?= the| my)|what about|do (?:the same|likewise|that|it) (?:for|with|to)) (?P<other>.+)$"
 )
 
 
@@ -38,6 +41,8 @@ def repeated(command: str, clauses: Sequence[str], told: History, is_place: IsPl
     for wording, slots in readings(tuple(re.sub(r" (?:as well|too|also)$", "", clauses[0]).split()), "command"):
         if wording.action == "again":
             return (replaced(last, " ".join(slots["thing"]), is_place) or last) if "thing" in slots else last
+    if (bare := _NO_BARE.match(expand(normalise(command)))) and is_place(tuple(bare["place"].split())):
+        return replaced(normalise(last), f"on the {bare['place']}", is_place) or command
     if (found := _NO.match(expand(normalise(command)))) and (
         (rest := found["rest"] or found["other"] or found["made"] or found["better"]).split()[0]
         in DETERMINERS | PREPOSITIONS

@@ -10,7 +10,9 @@ from typing import Literal, NamedTuple
 
 from common.language.exchange import filled
 from common.language.frame import SMALL_TALK
+from common.language.mood import is_of_others
 from common.language.normalise import Words
+from common.language.timing import DURATION
 from common.language.verb_classes import VerbClass, classes
 from services.planner.grammar.chunks import POINTING, Chunk, chunks
 from services.planner.grammar.vocabulary import Vocabulary
@@ -27,25 +29,16 @@ _LOOK_BACK = 3
 """Words before a thing or a place among which its preposition is looked for (chosen: `right next to`)."""
 _QUESTION = re.compile(
     r"^(?:\w+ ){0,3}?(?:where(?! you)|whereabouts|what(?! (?:about|do you say|i|we)\b)|which|who|how many|count|"
-    r"whether|(?:is|are) there|any (?:sign|idea|clue|trace))\b|\bwhere(?:abouts)?$|"
-    r"^(?:is|are(?! you\b)|was|were|did|does|has)\b|^(?:do|have) (?:you|we|i) (?!mind\b)"
+    r"whether|^(?:tell|see|say|know|check)(?: me| us)? if\b(?!.* (?:could|can|should)\b)|(?:is|are) there|any "
+    r"(?:sign|idea|clue|trace))\b|\bwhere(?:abouts)?$|"
+    r"^(?:is|are(?! you\b)|was|were|did|does|has)\b|^(?:do|have) (?:you|we|i) (?!mind\b)|"
+    r"^(?:can|could|might) (?:i|we) (?:find|see)\b"
 )
 """How questions about the world begin or end."""
-_ABOUTPOINTINGSELF: tuple[tuple[re.Pattern[str], str], ...] = tuple(
-    (re.compile(pattern), text)
-    for pattern, text in (
-        (r"\b(?:hands?|gripper|claw|fingers|holding|carrying|grasping)\b", "what are you holding"),
-        (r"\bwhere\b.*\b(?:are you|you are)\b", "where are you"),
-        (r"\b(?:who|name)\b.*\b(?:are you|you are|your)\b|\byour name\b", "who are you"),
-        (r"\b(?:can|could) (?:i|we)\b.*\bhave you\b|\b(?:able|capable|skills?|abilities|good at)\b|"
-         r"\bwhat\b.*\b(?:can|could) you do\b", "what can you do"),
-        (r"\brooms?\b.*\byou\b|\byou\b.*\brooms?\b", "which rooms do you know"),
-        (r"\bwhat\b.*\byou (?:can )?(?:see|spot|notice)\b", "what do you see"),
-        (r"\byou\b.*\b(?:up to|doing|busy|working on)\b", "what are you doing"),
-        (r"\bdid you\b.*\b(?:do|manage|finish|accomplish)\b", "what did you just do"),
-    )
-)  # fmt: skip
-"""Questions about the robot itself, by words of which they are made."""
+_REQUESTED = re.compile(
+    r"^(?:is|would|could|will|can|may|might|do|are) .*\b(?:if|that|for) you\b(?! (?:are|were|have|had|did|do)\b)"
+)
+"""What makes a request of a question: `is it okay if you ...`."""
 _MOVING: frozenset[VerbClass] = frozenset({"put", "bring", "discard", "wish", "tidy"})
 _PLACES: tuple[Role, ...] = ("from", "at", "to")
 _HERE = frozenset({"me", "us", "here", "i", "we", "my", "mine", "our"})
@@ -56,16 +49,27 @@ _UNTIDY = re.compile(
 )
 """Words for how a surface is or is to be."""
 _SAID = re.compile(r"\bthat (\w+ .+)$")
-_YOU = re.compile(r"\byour?\b")
+_YOU = re.compile(r"\byour?\b|\byourself\b")
 _BELONGS = re.compile(r"\b(?:should|ought|does|do|is to|supposed)\b.* (?:go|belong|put|kept|live|stored|placed)\b")
 _CORRECTS = frozenset({"sorry", "no", "rather", "actually", "wait", "mean", "meant", "correction"})
 """Words between what was said and what was meant."""
+_MODALS = (
+    "would should could can may might must shall will has needs ought wants belongs goes deserves coming going getting "
+    "ending"
+)
+_AS_SUBJECT = frozenset(_MODALS.split())
+"""Words behind a thing that is to do something itself: `the bottle would look nicer on the dresser`."""
+_GONE = re.compile(r"\b(?:gone|disappear|vanish|leave|out of (?:here|sight|the way))\b")
 _BACK = re.compile(r"\b(?:here|back|home|to me)\b")
+_FOR = re.compile(rf"\b(?:for|let|another) ({DURATION})\b")
 _OUT = re.compile(r"\b(?:away|out|rid|rubbish|trash|garbage)\b")
 
 
 class _Parts(NamedTuple):
-    """`verbs`: all that its verbs can ask for; `bare`: no other word than polite and small ones is said."""
+    """`verbs`: all that its verbs can ask for; `bare`: no other word than polite and small ones is said.
+
+    `subject`: the first thing is what is to do something.
+    """
 
     text: str
     verbs: frozenset[VerbClass]
@@ -74,27 +78,27 @@ class _Parts(NamedTuple):
     spots: dict[Role, str]
     here: bool
     bare: bool
+    subject: bool
 
 
 def by_roles(words: Words, vocabulary: Vocabulary) -> list[str]:
     """Plain commands or questions that the words may come to, the likeliest first; [] if they name none."""
     parts = _parts(words, vocabulary)
-    if is_asked(words):
-        itself = [text for pattern, text in _ABOUTPOINTINGSELF if pattern.search(parts.text)]
-        return itself[:1] if itself and not parts.things else _questions(parts)
-    return _requests(parts)
+    return _questions(parts) if is_asked(words) else _requests(parts)
 
 
 def is_asked(words: Words) -> bool:
     """Are the words a question about the world rather than a request in the form of one?"""
-    return _QUESTION.search(" ".join(words)) is not None
+    text = " ".join(words)
+    return _QUESTION.search(text) is not None and not _REQUESTED.search(text)
 
 
 def _parts(words: Words, vocabulary: Vocabulary) -> _Parts:
     found = _meant(words, chunks(words, vocabulary, pronouns=True))
     inside = {at for chunk in found for at in range(chunk.begin, chunk.end)}
     others = [w for at, w in enumerate(words) if at not in inside]
-    verbs = frozenset[VerbClass]().union(*map(classes, others))
+    masked = tuple("_" if at in inside else word for at, word in enumerate(words))
+    verbs = frozenset[VerbClass]().union(*(_asked(masked, at) for at in range(len(words)) if at not in inside))
     spots: dict[Role, str] = {}
     things: list[str] = []
     beside = ""
@@ -109,7 +113,15 @@ def _parts(words: Words, vocabulary: Vocabulary) -> _Parts:
         elif chunk.text not in things and not (things and chunk.text in POINTING):
             things = [*(t for t in things if t not in POINTING), chunk.text]
     here, bare = bool(_HERE & set(others)), SMALL_TALK.issuperset(others)
-    return _Parts(" ".join(words), verbs, things, beside, spots, here, bare)
+    first = next((c.end for c in found if c.kind == "thing"), len(words))
+    subject = bool(_AS_SUBJECT & set(words[first : first + 1]))
+    return _Parts(" ".join(words), verbs, things, beside, spots, here, bare, subject)
+
+
+def _asked(words: Words, at: int) -> frozenset[VerbClass]:
+    """What the robot can be asked for by a word; of what others do, only what they wish."""
+    found = classes(words[at])
+    return found & {"wish", "seek"} if found and is_of_others(words, at) else found
 
 
 def _meant(words: Words, found: list[Chunk]) -> list[Chunk]:
@@ -160,6 +172,10 @@ def _requests(parts: _Parts) -> list[str]:
         found += _there(parts, next(iter(parts.spots.values())))
     elif "go" in parts.verbs and _BACK.search(parts.text):
         found.append("come back")
+    elif "look" in parts.verbs:
+        found.append("look around")
+    elif (time := _FOR.search(parts.text)) or "wait" in parts.verbs:
+        found.append(f"wait {time[1]}" if time else "wait")
     return list(dict.fromkeys(found))
 
 
@@ -170,13 +186,17 @@ def _handling(parts: _Parts, thing: str) -> list[str]:
     placed = thing not in POINTING
     source = from_ or (at if to or "discard" in verbs else "")
     whence = f" on {source}" if source and placed else ""
-    goal = to or ("" if from_ or (parts.here and "put" not in verbs) else at) or parts.spots.get("", "")
+    goal = to or ("" if parts.here and "put" not in verbs else at) or parts.spots.get("", "")
     located = f"{thing} from {from_ or at}" if (from_ or at) and placed else thing
     moves = bool(verbs & _MOVING)
     likely: tuple[tuple[bool, str], ...] = (
         ("discard" in verbs and not goal and bool(_OUT.search(text)), f"throw away {thing}{whence}"),
-        (bool(goal) and (not verbs or moves), f"put {thing}{whence} on {goal}"),
-        (bool(parts.beside) and ("put" in verbs or " where " in text), f"put {thing} next to {parts.beside}"),
+        (parts.subject and not to and bool(_GONE.search(text)), f"throw away {thing}{whence}"),
+        (bool(goal) and (not verbs or moves or parts.subject), f"put {thing}{whence} on {goal}"),
+        (
+            bool(parts.beside) and ("put" in verbs or " where " in text or parts.subject),
+            f"put {thing} next to {parts.beside}",
+        ),
         (moves and bool(_AWAY.search(text)), f"put {thing} away"),
         ("seek" in verbs and "bring" not in verbs, f"find {thing}"),
         ("discard" in verbs and not parts.here, f"throw away {thing}"),
@@ -191,10 +211,13 @@ def _handling(parts: _Parts, thing: str) -> list[str]:
 def _there(parts: _Parts, spot: str) -> list[str]:
     """What can be asked of a place where no thing is named."""
     verbs = parts.verbs
+    wait = " and wait" if "wait" in verbs else ""
     likely = (
         ("tidy" in verbs or bool(_UNTIDY.search(parts.text)), f"tidy up {spot}"),
-        ("go" in verbs or ("wish" in verbs and bool(_YOU.search(parts.text))), f"go to {spot}"),
+        ("go" in verbs or ("wish" in verbs and bool(_YOU.search(parts.text))), f"go to {spot}{wait}"),
+        ("yourself" in parts.text, f"go to {spot}"),
         (bool(verbs & {"look", "seek"}), f"look at {spot}"),
+        (bool(wait) or (not verbs and (parts.bare or "to" in parts.spots)), f"go to {spot}{wait}"),
     )
     return [command for fits, command in likely if fits]
 

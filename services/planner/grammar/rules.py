@@ -19,7 +19,7 @@ from services.planner.commands import (
     teaching,
     tidying,
 )
-from services.planner.plan_builder import PlanBuilder, Refusal
+from services.planner.plan_builder import NOT_UNDERSTOOD, Lost, PlanBuilder, Refusal
 
 ACTIONS: dict[Action, Callable[[PlanBuilder, Slots], None]] = {
     "open_hand": hand.open_hand,
@@ -34,6 +34,7 @@ ACTIONS: dict[Action, Callable[[PlanBuilder, Slots], None]] = {
     "wait": going.wait,
     "wait_there": going.wait_there,
     "come_back": going.come_back,
+    "leave": going.leave,
     "go": going.go,
     "remark": remarks.remark,
     "untidy": remarks.untidy,
@@ -87,25 +88,30 @@ ACTIONS: dict[Action, Callable[[PlanBuilder, Slots], None]] = {
     "origin": about_itself.origin,
     "abilities": about_itself.abilities,
     "identity": about_itself.identity,
+    "battery": about_itself.battery,
     "rooms": about_itself.rooms,
     "thanks": about_itself.thanks,
 }
 
 
-def apply_first(words: Words, builder: PlanBuilder, *kinds: Kind) -> str | None:
+class NoWording(Lost):
+    """No wording fits the words."""
+
+
+def apply_first(words: Words, builder: PlanBuilder, *kinds: Kind) -> Refusal | None:
     """Carry out the first reading of a clause that can be done, in the table's order.
 
-    None when one was; else the reason against the first that fits, "" when none fits.
+    None when one was; else the reason against the first that fits.
     """
-    reason = ""
+    reason: Refusal = NoWording(f"{NOT_UNDERSTOOD} {' '.join(words)!r}")
     for wording, slots in readings(words, *kinds):
         trial = builder.fork()
         try:
             if wording.reason:
-                raise Refusal(wording.reason)
+                raise (Lost if wording.lost else Refusal)(wording.reason)
             ACTIONS[wording.action](trial, slots)
         except Refusal as refusal:
-            reason = reason or str(refusal)
+            reason = refusal if isinstance(reason, NoWording) else reason
             continue
         builder.adopt(trial)
         return None

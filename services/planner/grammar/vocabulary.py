@@ -138,7 +138,7 @@ class Vocabulary:
             words = (words[0], *words[2:])
         if not words or NO_NOUN & set(words) or is_abstract(words):
             return None
-        acts = words[-1].endswith("ed") or infinitive(words[-1], COMMANDING) in COMMANDING
+        acts = words[-1].endswith(("ed", "kept")) or infinitive(words[-1], COMMANDING) in COMMANDING
         if acts or any(
             len(words) > b - a > 1 and self.spot(words[a:b])
             for a in range(len(words))

@@ -3,7 +3,7 @@
 from common.language.normalise import enumeration, without_determiners
 from services.planner.grammar.phrases import Phrase
 from services.planner.grammar.senses import Spot
-from services.planner.plan_builder import PlanBuilder, Refusal
+from services.planner.plan_builder import Lost, PlanBuilder, Refusal
 from services.planner.reference.fits import MAX_NAMED
 from services.planner.reference.pronouns import Referent, mentioned
 from services.planner.reference.relations import superlative
@@ -43,7 +43,7 @@ def choose(
         # Perception will find several and the brain asks which one.
         kind, words = next(iter(kinds)), " ".join(without_determiners(tuple(phrase.text.split())))
         return [Referent(BelievedObject(label=kind, kind=kind, size=near[0].size), "" if words == kind else words)]
-    raise Refusal(f"I do not know which one you mean: {enumeration([f'the {n}' for n in names], 'or')}")
+    raise Lost(f"I do not know which one you mean: {enumeration([f'the {n}' for n in names], 'or')}")
 
 
 def unseen(builder: PlanBuilder, phrase: Phrase, specs: list[BelievedObject], at: Spot | None) -> Referent:
@@ -60,6 +60,6 @@ def unseen(builder: PlanBuilder, phrase: Phrase, specs: list[BelievedObject], at
     kinds = sorted({t.kind for t in specs})
     if phrase.colours or (len(kinds) > 1 and not phrase.any_one):
         names = enumeration([f"the {t.label}" for t in specs[:MAX_NAMED]], "or")
-        raise Refusal(f"I do not know which one you mean: {names}")
+        raise Lost(f"I do not know which one you mean: {names}")
     kind = builder.choices.pick(kinds)
     return Referent(BelievedObject(label=kind, kind=kind, seen=False), words, where)

@@ -8,7 +8,7 @@ from common.language.normalise import DETERMINERS, Words, enumeration, without_d
 from common.language.noun_phrase import PLURAL_PRONOUNS, PRONOUNS
 from services.planner.grammar.phrases import Phrase, read
 from services.planner.grammar.senses import LONGEST_NAME
-from services.planner.plan_builder import NOT_UNDERSTOOD, PlanBuilder, Refusal
+from services.planner.plan_builder import NOT_UNDERSTOOD, Lost, PlanBuilder, Refusal
 from services.planner.reference.pronouns import pronoun
 from services.planner.world import BelievedObject
 
@@ -44,7 +44,7 @@ def _left_out(builder: PlanBuilder, phrase: Phrase) -> Callable[[BelievedObject]
             continue
         meant = read(("all", *without_determiners(words)), builder.vocabulary)
         if not isinstance(meant, Phrase):
-            raise Refusal(unknown(builder, words, meant))
+            raise unknown(builder, words, meant)
         if meant.noun in ("one", "ones"):
             meant = msgspec.structs.replace(meant, sense=phrase.sense)
         names |= _labels(builder, meant)
@@ -61,18 +61,18 @@ def _labels(builder: PlanBuilder, phrase: Phrase) -> set[str]:
     return {t.label for t in known}
 
 
-def unknown(builder: PlanBuilder, words: Words, noun: str) -> str:
+def unknown(builder: PlanBuilder, words: Words, noun: str) -> Refusal:
     """Why a phrase means nothing, with what there is instead."""
     if len(noun.split()) > LONGEST_NAME or DETERMINERS & set(noun.split()):
-        return f"{NOT_UNDERSTOOD} {' '.join(words)!r}"
+        return Lost(f"{NOT_UNDERSTOOD} {' '.join(words)!r}")
     *front, last = noun.split() or [""]
     known = builder.vocabulary.noun(last)
     if front and known is not None and not known[0].every:
         names = [t.label for t in builder.world.specs if t.kind in known[0].kinds or t.label in known[0].names]
         if names:
-            return f"I know no {noun}, only {enumeration([f'the {n}' for n in names[:MAX_NAMED]])}"
+            return Lost(f"I know no {noun}, only {enumeration([f'the {n}' for n in names[:MAX_NAMED]])}")
     if furniture := builder.vocabulary.furniture(words):
-        return f"I cannot pick up the {noun or furniture}"
+        return Refusal(f"I cannot pick up the {noun or furniture}")
     if builder.vocabulary.spot(words):
-        return f"I cannot pick up the {noun}"
-    return f"I know no {noun}" if noun else "I did not hear which thing you mean"
+        return Refusal(f"I cannot pick up the {noun}")
+    return Lost(f"I know no {noun}" if noun else "I did not hear which thing you mean")

@@ -3,7 +3,7 @@
 from common.language.normalise import Words, enumeration, without_determiners
 from services.planner.grammar.phrases import Phrase, read
 from services.planner.grammar.senses import Spot
-from services.planner.plan_builder import PlanBuilder, Refusal
+from services.planner.plan_builder import Lost, PlanBuilder, Refusal
 from services.planner.reference.relations import away
 
 
@@ -23,11 +23,11 @@ def spot(builder: PlanBuilder, words: Words) -> Spot:
         phrase = read(words, builder.vocabulary)
         if furniture or isinstance(phrase, Phrase):
             raise Refusal(f"the {furniture or ' '.join(without_determiners(words))} is no place that I can use")
-        raise Refusal(f"I know no {' '.join(without_determiners(words))}")
+        raise Lost(f"I know no {' '.join(without_determiners(words))}")
     if len(found) > 1 and wanted is not words:
         return min(found, key=lambda s: away(builder, s))
     if len(found) > 1:
-        raise Refusal(f"I do not know which one you mean: {enumeration([f'the {s.name}' for s in found], 'or')}")
+        raise Lost(f"I do not know which one you mean: {enumeration([f'the {s.name}' for s in found], 'or')}")
     return found[0]
 
 

@@ -3,7 +3,7 @@
 import msgspec
 
 from services.planner.grammar.senses import Spot
-from services.planner.plan_builder import PlanBuilder, Refusal
+from services.planner.plan_builder import Lost, PlanBuilder
 from services.planner.world import BelievedObject
 
 
@@ -22,7 +22,7 @@ def pronoun(builder: PlanBuilder, plural: bool) -> list[Referent]:
         return [Referent(held)]
     if before := handled_before(builder):
         return [Referent(t) for t in (before if plural else before[-1:])]
-    raise Refusal("I do not know what you mean by that" if plural else "I do not know what you mean by it")
+    raise Lost("I do not know what you mean by that" if plural else "I do not know what you mean by it")
 
 
 def handled_before(builder: PlanBuilder) -> list[BelievedObject]:

@@ -7,7 +7,7 @@ from common.language.normalise import DETERMINERS, Words, enumeration, without_d
 from common.language.noun_phrase import NUMBERS, PLURAL_PRONOUNS, PRONOUNS, Which
 from services.planner.grammar.phrases import Phrase, read
 from services.planner.grammar.senses import LIVING
-from services.planner.plan_builder import PlanBuilder, Refusal
+from services.planner.plan_builder import Lost, PlanBuilder, Refusal
 from services.planner.reference.choosing import choose, unseen
 from services.planner.reference.fits import fitting, unknown
 from services.planner.reference.places import anchor_spots
@@ -46,7 +46,7 @@ def referents(builder: PlanBuilder, words: Words, prefer_held: bool = False) -> 
     for at in range(2, len(words) - 1):  # "the mug the can and the ball", as a recogniser writes it
         if words[at] in _NEW_PHRASE and all(_is_plain(builder, part) for part in (words[:at], words[at:])):
             return [*referents(builder, words[:at], prefer_held), *referents(builder, words[at:], prefer_held)]
-    raise Refusal(unknown(builder, words, phrase))
+    raise unknown(builder, words, phrase)
 
 
 def _shared_place(builder: PlanBuilder, one: Words, other: Words) -> Words:
@@ -101,7 +101,7 @@ def _resolve(builder: PlanBuilder, phrase: Phrase, prefer_held: bool) -> list[Re
     if not seen and not specs and builder.vocabulary.new_nouns and (phrase.colours or not sense.every):
         return _never_seen(builder, phrase)
     if not seen and not specs:
-        raise Refusal(unknown(builder, tuple(phrase.text.split()), " ".join((*phrase.colours, phrase.noun))))
+        raise unknown(builder, tuple(phrase.text.split()), " ".join((*phrase.colours, phrase.noun)))
     if phrase.relation:
         return _related(builder, phrase, seen, specs)
     return choose(builder, phrase, seen, specs)
@@ -189,5 +189,5 @@ def _between(builder: PlanBuilder, phrase: Phrase, seen: list[BelievedObject]) -
         raise Refusal(f"I see no {phrase.noun} between the {ends[0].label} and the {ends[1].label}")
     if len(there) > 1 and phrase.count == 1:
         names = enumeration([f"the {t.label}" for t in there], "or")
-        raise Refusal(f"I do not know which one you mean: {names}")
+        raise Lost(f"I do not know which one you mean: {names}")
     return [Referent(t) for t in there]
