@@ -10,15 +10,15 @@ from services.manipulation.arm.arm_model import Array, Obstacle
 from services.manipulation.arm.contacts import Contact, came_around
 from services.manipulation.arm.touch import TOO_HEAVY, TOUCHED, load_limit
 from services.manipulation.arm.trajectory import back_along
+from services.manipulation.execution.grasp_choice import chosen, surroundings
 from services.manipulation.execution.robot import Failure, Robot, Steps, go_home, planner_of
 from services.manipulation.execution.sighting import MISTAKEN, aimed, sighted
 from services.manipulation.grasps.clearance import PAD
 from services.manipulation.grasps.grasp import shown
 from services.manipulation.grasps.grasp_verification import WIDTH_ERROR, held_badly, judge
 from services.manipulation.grasps.grasped_object import GraspedObject
-from services.manipulation.planning.plan_grab import GrabPlan, plan_grab
-from services.manipulation.planning.planning_scene import MARGINS, obstacles, others, target_of
-from services.manipulation.planning.stances import other_stance
+from services.manipulation.planning.plan_grab import GrabPlan
+from services.manipulation.planning.planning_scene import target_of
 
 BAD_HOLD = "BAD_HOLD"
 """Code within an attempt: the fingers hold the object by something else than its body; another grasp is tried."""
@@ -43,7 +43,7 @@ the speed, a third of the knock."""
 
 def grab(robot: Robot, goal: m.ManipulationGoal, wanted: str) -> Steps[str]:
     """Reach, grasp, retract; another candidate after a miss. Returns the evidence."""
-    config, planner = robot.config, planner_of(robot)
+    config = robot.config
     since = robot.now - config.fresh
     tried: set[str] = set()
     widths: list[float] = []
@@ -52,15 +52,11 @@ def grab(robot: Robot, goal: m.ManipulationGoal, wanted: str) -> Steps[str]:
     for _ in range(config.max_candidates):
         found = yield from sighted(robot, goal, wanted, since)
         robot.phase = "reach"
-        target = target_of(found, robot.base, robot.io.household)
-        around = surroundings(robot, found)
+        target, around = target_of(found, robot.base, robot.io.household), surroundings(robot, found)
         try:
-            plan = yield from robot.work(
-                plan_grab, planner, target, around, robot.joints.copy(), config.approach_distance, config.lift_height,
-                config.reach, frozenset(tried), _touched(robot, found.label),
-            )  # fmt: skip
+            plan = yield from chosen(robot, found, around, frozenset(tried), _touched(robot, found.label))
         except Failure as failure:
-            raise (last if tried else (yield from _from_elsewhere(robot, found, failure))) from None
+            raise (last if tried else failure) from None
         candidates = shown(target, plan.options, robot.base, robot.now, tried, plan.grasp.name, goal.id)
         robot.io.publish(topics.GRASPS, candidates)
         tried.add(plan.grasp.name)
@@ -97,27 +93,6 @@ def grab(robot: Robot, goal: m.ManipulationGoal, wanted: str) -> Steps[str]:
             # What was seen while the hand was at work may have been half hidden by it.
             since = robot.now
     raise last
-
-
-def _from_elsewhere(robot: Robot, found: m.WorldObject, failure: Failure) -> Steps[Failure]:
-    """The failure to plan a grasp, with where the base would have to stand for one, if that helps."""
-    if failure.code != "UNREACHABLE":
-        return failure
-    config, objects = robot.config, robot.source.objects()
-    stance = yield from robot.work(
-        other_stance, planner_of(robot), robot.io.household, found, objects, robot.base, robot.joints.copy(),
-        config.approach_distance, config.lift_height,
-    )  # fmt: skip
-    if stance is None:
-        return failure
-    where = f"within reach from ({stance[0]:.2f}, {stance[1]:.2f}), facing {np.degrees(stance[2]):.0f} deg"
-    return Failure(failure.code, f"{failure.detail}; {where}", failure.blockers, stance)
-
-
-def surroundings(robot: Robot, found: WorldObject) -> list[list[Obstacle]]:
-    """What the arm keeps clear of, with each of the margins, but for an object."""
-    objects = others(robot.source.objects(), found)
-    return [obstacles(robot.io.household, robot.base, objects, margin=margin) for margin in MARGINS]
 
 
 def _execute_grab(
@@ -161,6 +136,7 @@ def _execute_grab(
             yield from _set_back(robot, plan, way, free)
         raise
     robot.contacts.clear()
+    robot.sent_to.pop(plan.grasped.label, None)
     robot.source.remember(plan.grasped.label, None, "", robot.now)
     return f"{plan.grasped.label} held: width {robot.grip.width * 1000:.1f} mm, force {robot.grip.force:.0f} N"
 

@@ -14,8 +14,8 @@ from services.manipulation.execution.place_executor import free_spots, place, pl
 from services.manipulation.execution.robot import Failure, Robot, Steps, planner_of
 from services.manipulation.grasps.target import Target
 from services.manipulation.planning.motion_planner import Planner
-from services.manipulation.planning.plan_grab import Way, feasible
 from services.manipulation.planning.planning_scene import obstacles, target_of
+from services.manipulation.planning.straight_grab import Way, feasible
 
 MOST, CONSIDERED = 2, 4
 """Neighbours that are put elsewhere for one object, and of how many these are chosen. Chosen: what takes less than the

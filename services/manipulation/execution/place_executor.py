@@ -11,13 +11,11 @@ from services.manipulation.arm.touch import TOUCHED
 from services.manipulation.execution.robot import Failure, Robot, Steps, go_home, planner_of
 from services.manipulation.grasps.grasp import approach_rotation
 from services.manipulation.grasps.grasped_object import USUAL_SIZE, GraspedObject
-from services.manipulation.planning.plan_place import PlacePlan, plan_place
+from services.manipulation.planning.plan_place import DROP, PlacePlan, plan_place
 from services.manipulation.planning.planning_scene import obstacles, spots
 
 FLOOR_SPOTS = ((0.48, 0.0), (0.48, 0.2), (0.48, -0.2))
 """Where things are put on the floor, from the arm's first joint [m]: in front of the base and clear of it."""
-DROP = 0.004
-"""Height [m] above a surface at which the way down ends. Chosen: the error of the surface's measured height."""
 BIN_DROP = 0.06
 """Height [m] above a bin's rim at which the hand lets go. Chosen: the fingers stay clear of the rim."""
 ACCESS = 0.08

@@ -39,7 +39,10 @@ class Failure(Exception):
 
 
 class Robot:
-    """What the sequences see and move: joint angles, gripper, base pose, and the streams to the drivers."""
+    """What the sequences see and move: joint angles, gripper, base pose, and the streams to the drivers.
+
+    `sent_to`: by label, the stance (x, y, theta) [map] that was told last for an object that is not grasped yet.
+    """
 
     def __init__(self, config: ManipulationConfig, io: Io, source: ObjectSource) -> None:
         self.config, self.io, self.source = config, io, source
@@ -51,6 +54,7 @@ class Robot:
         self.phase = ""
         self.grasped: GraspedObject | None = None
         self.contacts = ContactLog()
+        self.sent_to: dict[str, Pose2] = {}
         self.planner: Planner | None = None
         self.servo: Servo | None = None
         self._command: Array | None = None

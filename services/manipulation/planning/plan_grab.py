@@ -1,15 +1,13 @@
 """Plans a whole grab: a candidate grasp within reach, collision-free paths to it and away with the object."""
 
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TypeVar
 
 import numpy as np
 
 from services.manipulation.arm.arm_model import Array, Obstacle
 from services.manipulation.arm.contacts import new_sides_first
-from services.manipulation.arm.ik import seeds
 from services.manipulation.arm.trajectory import connect
 from services.manipulation.grasps.grasp import Grasp, certainly_too_wide
 from services.manipulation.grasps.grasp_verification import MEASURED
@@ -18,13 +16,7 @@ from services.manipulation.grasps.target import Target
 from services.manipulation.planning.lift import over_neighbours
 from services.manipulation.planning.motion_planner import PlanError, Planner, counted
 from services.manipulation.planning.planning_scene import with_object
-
-T = TypeVar("T")
-STANCE_GRASPS = 12
-"""Grasps of a stage that are tried from where the robot does not stand. Chosen: a quarter of a second for a stance."""
-FINGER_PLAY = 0.012
-"""How much wider [m] than the object on either side the fingers stand that go into a crowd partly closed. Chosen: the
-error of a sighting and of the arm."""
+from services.manipulation.planning.straight_grab import Miss, Way, opening_of, straight_parts, with_fingers
 
 
 @dataclass(frozen=True)
@@ -47,27 +39,6 @@ class GrabPlan:
     doubt: float = 0.0
 
 
-@dataclass(frozen=True)
-class Miss:
-    """Why a grasp cannot be planned; `met` are labels of the obstacles that it would touch."""
-
-    reason: str
-    met: frozenset[str] = frozenset()
-
-
-@dataclass(frozen=True)
-class Way:
-    """How the hand goes in: `approach` and `lift` are the straight ways before and after it closes [m].
-
-    `around` is what it must not touch; `shaped`: with the fingers no wider than the object needs.
-    """
-
-    around: Sequence[Obstacle]
-    shaped: bool
-    approach: float
-    lift: float
-
-
 def plan_grab(
     planner: Planner,
     target: Target,
@@ -78,6 +49,7 @@ def plan_grab(
     reach: float,
     skip: frozenset[str],
     touched: list[Array],
+    stand_on: float | None = None,
 ) -> GrabPlan:
     """The first candidate grasp that can be reached and carried away.
 
@@ -85,7 +57,7 @@ def plan_grab(
     fingers wide open, then those that met something with them partly closed.
 
     `skip` names grasps that are not tried; `touched` are rotations (3, 3) of the hand in the base frame with which the
-    open fingers touched the object: grasps from other sides come first.
+    open fingers touched the object: grasps from other sides come first. `stand_on`: as in `Way`.
 
     Raises:
         PlanError: UNREACHABLE; TOO_WIDE, there is no grasp of it at all and the measures are certain.
@@ -99,13 +71,13 @@ def plan_grab(
 
     def attempt(some: Sequence[Grasp], way: Way) -> GrabPlan | None:
         for grasp in some:
-            plan = _with_fingers(planner, target, grasp, way, now, _whole)
+            plan = with_fingers(planner, target, grasp, way, now, _whole)
             if isinstance(plan, GrabPlan):
                 return replace(plan, options=tuple(options))
             misses[grasp.name] = plan
         return None
 
-    ways = [Way(solids, shaped, approach, lift) for solids in around for shaped in (False, True)]
+    ways = [Way(solids, shaped, approach, lift, stand_on) for solids in around for shaped in (False, True)]
     for stage in planner.candidates(target):
         options += stage
         left = [g for g in stage if g.name not in skip]
@@ -136,74 +108,8 @@ def _in_mm(target: Target) -> str:
     return f"{target.label} measures {x:.0f} x {y:.0f} x {z:.0f} mm"
 
 
-def feasible(planner: Planner, target: Target, way: Way, now: Array) -> bool:
-    """Some grasp can be come to and lifted straight; the way there and away is not looked for."""
-    for stage in planner.candidates(target):
-        for wanted in stage[:STANCE_GRASPS]:
-            if isinstance(_with_fingers(planner, target, wanted, way, now, _straight), Lines):
-                return True
-    return False
-
-
-@dataclass(frozen=True)
-class Lines:
-    """The straight parts of a grab: the grasp, `at` which joint angles (7,), the ways `back` and `up` from there."""
-
-    grasp: Grasp
-    at: Array
-    back: list[Array]
-    up: list[Array]
-
-
-Part = Callable[[Planner, Target, Grasp, Way, Array], "T | Miss"]
-
-
-def _with_fingers(planner: Planner, target: Target, wanted: Grasp, way: Way, now: Array, part: "Part[T]") -> "T | Miss":
-    """A part of the plan of a grasp that the hand has room for, with the fingers as they go in."""
-    opening = _opening(planner, wanted, way)
-    grasp = planner.clearance.clear(target, wanted, opening)
-    if grasp is None:
-        return Miss("too deep for the hand")
-    if float(np.linalg.norm(grasp.pose.position - planner.arm.shoulder)) > planner.arm.span:
-        return Miss("beyond the stretched arm")
-    # Closed on the object the fingertips are farther out than open.
-    for width in (opening or planner.arm.hand.open, grasp.width):
-        if met := planner.clearance.met(grasp.pose, width, way.around):
-            return Miss("grasp collides", frozenset(met))
-    planner.arm.hold(None)
-    planner.arm.open_fingers(opening)
-    try:
-        return part(planner, target, grasp, way, now)
-    finally:
-        planner.arm.open_fingers()
-
-
-def _opening(planner: Planner, grasp: Grasp, way: Way) -> float | None:
-    return min(grasp.width + 2 * FINGER_PLAY, planner.arm.hand.open) if way.shaped else None
-
-
-def _straight(planner: Planner, target: Target, grasp: Grasp, way: Way, now: Array) -> "Lines | Miss":
-    arm = planner.arm
-    arm.set_obstacles(way.around)
-    at = planner.ik.solve(grasp.pose, seeds(arm, grasp.pose, now), avoid=True)
-    if at is None:
-        return Miss("no IK")
-    at = arm.nearest_turn(at, now)
-    if arm.collides(at):
-        return Miss("grasp collides", frozenset(arm.met()))
-    back = planner.straight(at, grasp.pose, grasp.pose.moved(-way.approach * grasp.pose.rotation[:, 2]))
-    if back is None:
-        return Miss("no straight approach")
-    up = planner.straight(at, grasp.pose, grasp.pose.moved(np.array([0.0, 0.0, way.lift])))
-    if up is None:
-        return Miss("no straight lift")
-    if any(arm.collides(q) for q in back):
-        return Miss("approach collides", frozenset(arm.met()))
-    return Lines(grasp, at, back, up)
-
-
 def _whole(planner: Planner, target: Target, grasp: Grasp, way: Way, now: Array) -> "GrabPlan | Miss":
-    lines = _straight(planner, target, grasp, way, now)
+    lines = straight_parts(planner, target, grasp, way, now)
     if isinstance(lines, Miss):
         return lines
     arm, around, rng = planner.arm, way.around, planner.rng()
@@ -221,7 +127,7 @@ def _whole(planner: Planner, target: Target, grasp: Grasp, way: Way, now: Array)
     arm.hold(None)
     if away is None:
         return Miss("no path to the carry pose")
-    opening, doubt = _opening(planner, grasp, way), MEASURED + 2 * target.spread
+    opening, doubt = opening_of(planner, grasp, way), MEASURED + 2 * target.spread
     return GrabPlan(
         grasp, there, [at, *back][::-1], [at, *up], away, attached, opening, around,
         doubt=doubt if target.measured or grasp.on_surface else 0.0,

@@ -10,10 +10,17 @@ from services.manipulation.arm.ik import seeds
 from services.manipulation.arm.trajectory import connect
 from services.manipulation.grasps.grasped_object import GraspedObject
 from services.manipulation.planning.motion_planner import PlanError, Planner, counted
-from services.manipulation.planning.planning_scene import with_object
+from services.manipulation.planning.planning_scene import EASY, SLAB, with_object
 
 FINGER = 0.018
 """Height [m] of a fingertip below what it holds at a slant (Robotiq 2F-85)."""
+
+TURNS = (0.0, 0.5, -0.5, 1.0, -1.0, 2.0, -2.0, np.pi)
+"""How far [rad] the hand is turned about the vertical, off the way from the arm to the spot, in the order of trying."""
+DROP = 0.004
+"""Height [m] above a surface at which the way down ends. Chosen: the error of the surface's measured height."""
+AMPLE = 0.4
+"""Extents [m] of a surface that reaches as far as the hand around what it puts down, and not to the robot's base."""
 
 
 @dataclass(frozen=True)
@@ -48,7 +55,7 @@ def plan_place(
     planner.arm.open_fingers(held.opening)
     try:
         for spot in spots[:10]:
-            for turn in (0.0, 0.5, -0.5, 1.0, -1.0, 2.0, -2.0, np.pi):
+            for turn in TURNS:
                 plan = _try_place(planner, held, spot, height, turn, around, now, rng)
                 if isinstance(plan, PlacePlan):
                     return plan
@@ -71,7 +78,48 @@ def _try_place(
 ) -> "PlacePlan | str":
     arm = planner.arm
     arm.set_obstacles(around)
-    approach = held.rotation[:, 2]
+    way = _set_down(planner, held, spot, height, turn, now)
+    if isinstance(way, str):
+        return way
+    target, high, down = way.target, way.high, way.down
+    arm.hold(*held.box())
+    planner.surround(around, high)
+    there = connect(arm, now, high, rng)
+    arm.hold(None)
+    arm.set_obstacles(around)
+    if there is None:
+        return "no path"
+    tilted = abs(held.rotation[2, 2]) < 0.85
+    away = -0.10 * target.rotation[:, 2] if tilted else np.array([0.0, 0.0, 0.12])
+    stands = Obstacle((*spot, height + held.size[2] / 2), held.size, held.yaw + way.turned)
+    beside = with_object(around, stands)
+    back = _leave(planner, target, away, [*down[-2::-1], high], down[-1], beside)
+    if back is None:
+        return "no way back"
+    planner.surround(beside, back[-1])
+    home = connect(arm, back[-1], arm.nearest_turn(arm.home, back[-1]), rng)
+    if home is None:
+        return "no path home"
+    return PlacePlan(there, [high, *down], [down[-1], *back], home, spot)
+
+
+@dataclass(frozen=True)
+class _Down:
+    """The hand's pose where it lets go, `high` (7,) above it, the straight way `down` from there; `turned` [rad]: how
+    far the object is then turned about the vertical from how it was grasped.
+    """
+
+    target: Pose
+    high: Array
+    down: list[Array]
+    turned: float
+
+
+def _set_down(
+    planner: Planner, held: GraspedObject, spot: tuple[float, float], height: float, turn: float, now: Array
+) -> "_Down | str":
+    """The straight way down to a spot among the arm's obstacles."""
+    arm, approach = planner.arm, held.rotation[:, 2]
     # Straight down has no azimuth of its own: the hand's x axis points away from the robot there.
     level = approach if np.hypot(approach[0], approach[1]) > 0.2 else held.rotation[:, 0]
     was = np.arctan2(level[1], level[0])
@@ -91,26 +139,27 @@ def _try_place(
     if any(arm.collides(q) for q in down):
         return "placing collides"
     arm.hold(*held.box())
-    if arm.collides(high):
-        return "object collides above the spot"
-    planner.surround(around, high)
-    there = connect(arm, now, high, rng)
+    beside = arm.collides(high)
     arm.hold(None)
-    arm.set_obstacles(around)
-    if there is None:
-        return "no path"
-    tilted = abs(approach[2]) < 0.85
-    away = -0.10 * target.rotation[:, 2] if tilted else np.array([0.0, 0.0, 0.12])
-    stands = Obstacle((*spot, height + held.size[2] / 2), held.size, held.yaw + delta)
-    beside = with_object(around, stands)
-    back = _leave(planner, target, away, [*down[-2::-1], high], down[-1], beside)
-    if back is None:
-        return "no way back"
-    planner.surround(beside, back[-1])
-    home = connect(arm, back[-1], arm.nearest_turn(arm.home, back[-1]), rng)
-    if home is None:
-        return "no path home"
-    return PlacePlan(there, [high, *down], [down[-1], *back], home, spot)
+    return "object collides above the spot" if beside else _Down(target, high, down, float(delta))
+
+
+def can_be_set_down(planner: Planner, held: GraspedObject, surface: float, now: Array) -> bool:
+    """An object can be set down as it is held, on an empty surface of that height [m] in front of the arm."""
+    arm = planner.arm
+    spot = arm.forward + EASY, 0.0
+    slab = Obstacle((*spot, surface - SLAB / 2), (AMPLE, AMPLE, SLAB), 0.0)
+    height = surface + DROP + (FINGER if held.from_below else 0.0)
+    hand = Pose(np.array([*spot, height]) + held.offset, held.rotation)
+    # Closed the fingertips are farther out than open.
+    if any(planner.clearance.met(hand, width, [slab]) for width in (held.opening or arm.hand.open, held.width)):
+        return False
+    arm.set_obstacles([slab])
+    arm.open_fingers(held.opening)
+    try:
+        return any(isinstance(_set_down(planner, held, spot, height, turn, now), _Down) for turn in TURNS)
+    finally:
+        arm.open_fingers()
 
 
 def _leave(

@@ -9,8 +9,8 @@ from common.household import Household
 from common.messages import WorldObject
 from services.manipulation.arm.arm_model import Array
 from services.manipulation.planning.motion_planner import Planner
-from services.manipulation.planning.plan_grab import Way, feasible
 from services.manipulation.planning.planning_scene import MARGINS, obstacles, others, target_of
+from services.manipulation.planning.straight_grab import Way, feasible
 
 STAND_OFFS = (STAND_OFF, STAND_OFF + 0.08, STAND_OFF - 0.07, STAND_OFF + 0.15)
 """Distances [m] from the base's middle to the object that are tried. Chosen: the hand comes level from the farthest."""
@@ -29,15 +29,16 @@ def other_stance(
     joints: Array,
     approach: float,
     lift: float,
+    stand_on: float | None = None,
 ) -> Pose2 | None:
     """A pose (x, y, theta) [map] before an object from which the arm reaches a grasp of it; None if none was found.
 
     `objects`: all that is known to stand around; `joints` (7,) of the arm at rest; `approach`, `lift`: straight ways
-    of the hand [m].
+    of the hand [m]; `stand_on`: as in `Way`.
     """
     for pose in stances(household, found, base, STAND_OFFS)[:MOST]:
         around = obstacles(household, pose, others(objects, found), margin=MARGINS[0])
-        if feasible(planner, target_of(found, pose, household), Way(around, False, approach, lift), joints):
+        if feasible(planner, target_of(found, pose, household), Way(around, False, approach, lift, stand_on), joints):
             return pose
     return None
 

@@ -1,0 +1,78 @@
+"""The choice of a grasp, after which the object can be put down as it is to stand: from here or from another stance."""
+
+import numpy as np
+
+from common.kinds import kind_of
+from common.messages import WorldObject
+from services.manipulation.arm.arm_model import Array, Obstacle
+from services.manipulation.execution.robot import Failure, Robot, Steps, planner_of
+from services.manipulation.planning.plan_grab import GrabPlan, plan_grab
+from services.manipulation.planning.planning_scene import MARGINS, obstacles, others, target_of
+from services.manipulation.planning.stances import other_stance
+
+
+def chosen(
+    robot: Robot, found: WorldObject, around: list[list[Obstacle]], tried: frozenset[str], touched: list[Array]
+) -> Steps[GrabPlan]:
+    """The plan of a grasp that is not among the names `tried`; `around`, `touched`: as in `plan_grab`.
+
+    What lies is taken so that it can be stood up. Where that cannot be from here the base is sent elsewhere, once;
+    after that, or where no stance is better, it is taken so that it can be laid down.
+
+    Raises:
+        Failure: as `plan_grab`; with the stance from which there is a grasp, where there is one.
+    """
+    config, height = robot.config, _stands_on(robot, found)
+    failure = Failure("UNREACHABLE", "")
+    for stand_on in (height, None) if height is not None else (None,):
+        target = target_of(found, robot.base, robot.io.household)
+        try:
+            return (
+                yield from robot.work(
+                    plan_grab, planner_of(robot), target, around, robot.joints.copy(), config.approach_distance,
+                    config.lift_height, config.reach, tried, touched, stand_on,
+                )
+            )  # fmt: skip
+        except Failure as other:
+            failure = other
+        if failure.code != "UNREACHABLE":
+            raise failure
+        if not tried and (stand_on is None or found.label not in robot.sent_to):
+            yield from _look_elsewhere(robot, found, failure, stand_on)
+    raise failure
+
+
+def _stands_on(robot: Robot, found: WorldObject) -> float | None:
+    """Height [m] of the surface on which what lies will have to be stood up, as far as is known; None of what does not.
+
+    Things are brought to the delivery surface, unless somebody says otherwise later.
+    """
+    target, household = target_of(found, robot.base, robot.io.household), robot.io.household
+    surface = household.receptacle(household.delivery) or household.receptacle(found.on)
+    if not target.lies or not kind_of(target.kind).upright or surface is None:
+        return None
+    return surface.center[2]
+
+
+def _look_elsewhere(robot: Robot, found: WorldObject, failure: Failure, stand_on: float | None) -> Steps[None]:
+    """Return where no other stance helps.
+
+    Raises:
+        Failure: the one to plan a grasp, with where the base would have to stand for one.
+    """
+    config, objects = robot.config, robot.source.objects()
+    stance = yield from robot.work(
+        other_stance, planner_of(robot), robot.io.household, found, objects, robot.base, robot.joints.copy(),
+        config.approach_distance, config.lift_height, stand_on,
+    )  # fmt: skip
+    if stance is None:
+        return
+    robot.sent_to[found.label] = stance
+    where = f"within reach from ({stance[0]:.2f}, {stance[1]:.2f}), facing {np.degrees(stance[2]):.0f} deg"
+    raise Failure(failure.code, f"{failure.detail}; {where}", failure.blockers, stance)
+
+
+def surroundings(robot: Robot, found: WorldObject) -> list[list[Obstacle]]:
+    """What the arm keeps clear of, with each of the margins, but for an object."""
+    objects = others(robot.source.objects(), found)
+    return [obstacles(robot.io.household, robot.base, objects, margin=margin) for margin in MARGINS]

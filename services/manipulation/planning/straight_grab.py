@@ -1,0 +1,122 @@
+"""The straight parts of a grab, to the grasp and up from it, with room for the hand now and when it sets down again."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import TypeVar
+
+import numpy as np
+
+from services.manipulation.arm.arm_model import Array, Obstacle
+from services.manipulation.arm.ik import seeds
+from services.manipulation.grasps.grasp import Grasp
+from services.manipulation.grasps.grasped_object import attach
+from services.manipulation.grasps.target import Target
+from services.manipulation.planning.motion_planner import Planner
+from services.manipulation.planning.plan_place import can_be_set_down
+
+T = TypeVar("T")
+STANCE_GRASPS = 12
+"""Grasps of a stage that are tried from where the robot does not stand. Chosen: a quarter of a second for a stance."""
+FINGER_PLAY = 0.012
+"""How much wider [m] than the object on either side the fingers stand that go into a crowd partly closed. Chosen: the
+error of a sighting and of the arm."""
+
+
+@dataclass(frozen=True)
+class Miss:
+    """Why a grasp cannot be planned; `met` are labels of the obstacles that it would touch."""
+
+    reason: str
+    met: frozenset[str] = frozenset()
+
+
+@dataclass(frozen=True)
+class Way:
+    """How the hand goes in: `approach` and `lift` are the straight ways before and after it closes [m].
+
+    `around` is what it must not touch; `shaped`: with the fingers no wider than the object needs; `stand_on`: height
+    [m] of a surface on which the hand has to be able to stand up what lies, None: it may stay lying.
+    """
+
+    around: Sequence[Obstacle]
+    shaped: bool
+    approach: float
+    lift: float
+    stand_on: float | None = None
+
+
+def feasible(planner: Planner, target: Target, way: Way, now: Array) -> bool:
+    """Some grasp can be come to and lifted straight; the way there and away is not looked for."""
+    for stage in planner.candidates(target):
+        for wanted in stage[:STANCE_GRASPS]:
+            if isinstance(with_fingers(planner, target, wanted, way, now, straight_parts), Lines):
+                return True
+    return False
+
+
+@dataclass(frozen=True)
+class Lines:
+    """The straight parts of a grab: the grasp, `at` which joint angles (7,), the ways `back` and `up` from there."""
+
+    grasp: Grasp
+    at: Array
+    back: list[Array]
+    up: list[Array]
+
+
+Part = Callable[[Planner, Target, Grasp, Way, Array], "T | Miss"]
+
+
+def with_fingers(planner: Planner, target: Target, wanted: Grasp, way: Way, now: Array, part: "Part[T]") -> "T | Miss":
+    """A part of the plan of a grasp that the hand has room for, with the fingers as they go in."""
+    opening = opening_of(planner, wanted, way)
+    grasp = planner.clearance.clear(target, wanted, opening)
+    if grasp is None:
+        return Miss("too deep for the hand")
+    if float(np.linalg.norm(grasp.pose.position - planner.arm.shoulder)) > planner.arm.span:
+        return Miss("beyond the stretched arm")
+    # Closed on the object the fingertips are farther out than open.
+    for width in (opening or planner.arm.hand.open, grasp.width):
+        if met := planner.clearance.met(grasp.pose, width, way.around):
+            return Miss("grasp collides", frozenset(met))
+    planner.arm.hold(None)
+    planner.arm.open_fingers(opening)
+    try:
+        return part(planner, target, grasp, way, now)
+    finally:
+        planner.arm.open_fingers()
+
+
+def opening_of(planner: Planner, grasp: Grasp, way: Way) -> float | None:
+    """How far apart [m] the fingers go in; None: as far as they do."""
+    return min(grasp.width + 2 * FINGER_PLAY, planner.arm.hand.open) if way.shaped else None
+
+
+def straight_parts(planner: Planner, target: Target, grasp: Grasp, way: Way, now: Array) -> "Lines | Miss":
+    """The way to a grasp and up from it, from a configuration (7,) near `now`."""
+    arm = planner.arm
+    arm.set_obstacles(way.around)
+    at = planner.ik.solve(grasp.pose, seeds(arm, grasp.pose, now), avoid=True)
+    if at is None:
+        return Miss("no IK")
+    at = arm.nearest_turn(at, now)
+    if arm.collides(at):
+        return Miss("grasp collides", frozenset(arm.met()))
+    back = planner.straight(at, grasp.pose, grasp.pose.moved(-way.approach * grasp.pose.rotation[:, 2]))
+    if back is None:
+        return Miss("no straight approach")
+    up = planner.straight(at, grasp.pose, grasp.pose.moved(np.array([0.0, 0.0, way.lift])))
+    if up is None:
+        return Miss("no straight lift")
+    if any(arm.collides(q) for q in back):
+        return Miss("approach collides", frozenset(arm.met()))
+    if not _stands_again(planner, target, grasp, way, now):
+        return Miss("could not be stood up")
+    return Lines(grasp, at, back, up)
+
+
+def _stands_again(planner: Planner, target: Target, grasp: Grasp, way: Way, now: Array) -> bool:
+    """What lies can be set upright with the hand as it grasps, or need not be."""
+    if grasp.axis is None or way.stand_on is None:
+        return True
+    return can_be_set_down(planner, attach(target, grasp), way.stand_on, now)
