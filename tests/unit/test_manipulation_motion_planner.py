@@ -38,6 +38,7 @@ def test_on_its_way_home_the_arm_keeps_clear_of_what_it_put_down() -> None:
 def test_in_free_motion_the_arm_keeps_away_from_the_mast_and_not_from_where_it_has_to_start() -> None:
     planner = Planner(own().mjcf, 0)
     arm = planner.arm
+    arm.set_obstacles((), 0.0)
     stretching = (arm.home + np.array([0, 0, 0, bend, 0, 0, 0]) for bend in np.arange(0.0, 3.0, 0.01))
     free = [q for q, _ in pairwise(takewhile(lambda q: not arm.collides(q), stretching))][-1]
     pairs = {name for pair in arm.contact_names(free + np.array([0, 0, 0, 0.02, 0, 0, 0])) for name in pair}
@@ -48,3 +49,15 @@ def test_in_free_motion_the_arm_keeps_away_from_the_mast_and_not_from_where_it_h
     assert arm.collides(free), "a way that begins and ends in the open keeps the widest distance"
     planner.surround((), free)
     assert not arm.collides(free)
+
+
+def test_in_straight_motions_the_arm_keeps_off_its_base_by_as_much_as_it_lags() -> None:
+    arm = Planner(own().mjcf, 0).arm
+    arm.set_obstacles((), 0.0)
+    bending = (arm.home + np.array([0, 0, 0, bend, 0, 0, 0]) for bend in np.arange(0.0, 3.0, 0.002))
+    near = list(takewhile(lambda q: not arm.collides(q), bending))[-1]
+    assert not arm.meets_itself([arm.home, near])
+    hand = arm.pose(arm.home).position
+    arm.set_obstacles([Obstacle((hand[0], hand[1], hand[2]), (0.1, 0.1, 0.1), 0.0)])
+    assert arm.collides(arm.home) and not arm.meets_itself([arm.home]), "a box is not the robot"
+    assert arm.meets_itself([arm.home, near])

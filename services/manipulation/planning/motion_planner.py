@@ -85,12 +85,12 @@ class Planner:
             yield [replace(g, name=f"as seen, {g.name}") for g in as_seen]
 
     def surround(self, around: Sequence[Obstacle], end: Array) -> None:
-        """Boxes, and the robot's own base, with the widest transit margin that leaves `end` free, or as they are."""
+        """Boxes, and the robot's base, with the widest transit margin that leaves `end` free, else with none."""
         for margin in TRANSIT_MARGINS:
             self.arm.set_obstacles(inflated(around, margin), margin)
             if not self.arm.collides(end):
                 return
-        self.arm.set_obstacles(around)
+        self.arm.set_obstacles(around, 0.0)
 
     def carry(self, held: GraspedObject, now: Array, around: Sequence[Obstacle]) -> list[Array]:
         """A path to a carry pose with the object in hand, from wherever the arm is.

@@ -151,7 +151,11 @@ def refine(planner: Planner, plan: GrabPlan, shift: tuple[float, float], approac
             back = planner.straight(at, grasp.pose, grasp.pose.moved(-approach * grasp.pose.rotation[:, 2]))
             high = float(planner.arm.pose(plan.lift[-1]).position[2] - plan.grasp.pose.position[2])
             up = planner.straight(at, grasp.pose, grasp.pose.moved(np.array([0.0, 0.0, max(lift, high)])))
-            if back is not None and up is not None and not any(arm.collides(q) for q in (at, *back)):
+            if (
+                back is not None
+                and up is not None
+                and not (any(arm.collides(q) for q in (at, *back)) or arm.meets_itself(up))
+            ):
                 return replace(plan, grasp=grasp, insert=[at, *back][::-1], lift=[at, *up])
     finally:
         arm.open_fingers()

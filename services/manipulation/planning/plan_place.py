@@ -169,6 +169,6 @@ def _leave(
     planner.arm.set_obstacles(beside)
     for share in (1.0, 0.6):
         path = planner.straight(at, target, target.moved(share * away))
-        if path is not None and not planner.arm.collides(path[-1]):
+        if path is not None and not planner.arm.collides(path[-1]) and not planner.arm.meets_itself(path[:-1]):
             return path
     return None if planner.arm.collides(as_it_came[-1]) else as_it_came

@@ -108,6 +108,8 @@ def straight_parts(planner: Planner, target: Target, grasp: Grasp, way: Way, now
     up = planner.straight(at, grasp.pose, grasp.pose.moved(np.array([0.0, 0.0, way.lift])))
     if up is None:
         return Miss("no straight lift")
+    if arm.meets_itself(up):
+        return Miss("lift meets the robot")
     if any(arm.collides(q) for q in back):
         return Miss("approach collides", frozenset(arm.met()))
     if not _stands_again(planner, target, grasp, way, now):
