@@ -1,8 +1,10 @@
 """Plans of the arm alone."""
 
+from dataclasses import replace
 from itertools import pairwise, takewhile
 
 import numpy as np
+import pytest
 
 from services.manipulation.arm.arm_model import Obstacle
 from services.manipulation.grasps.grasp import approach_rotation
@@ -61,3 +63,16 @@ def test_in_straight_motions_the_arm_keeps_off_its_base_by_as_much_as_it_lags() 
     arm.set_obstacles([Obstacle((hand[0], hand[1], hand[2]), (0.1, 0.1, 0.1), 0.0)])
     assert arm.collides(arm.home) and not arm.meets_itself([arm.home]), "a box is not the robot"
     assert arm.meets_itself([arm.home, near])
+
+
+@pytest.mark.parametrize("lay", [False, True])
+def test_with_a_finger_in_its_handle_a_mug_is_left_straight_back(lay: bool) -> None:
+    planner, size = Planner(own().mjcf, 0), (0.071, 0.071, 0.104)
+    level = approach_rotation(0.0, 0.0)
+    stood = GraspedObject("mug", "mug", level, np.array([0.0, 0.0, 0.052]), size, 0.0705, 0.0)
+    held = replace(stood, as_found=stood) if lay else stood
+    assert held.entangled == lay
+    tray = Obstacle((0.7, 0.0, 0.39), (0.36, 0.5, 0.14), 0.0)
+    plan = plan_place(planner, held, [(0.576, 0.0)], 0.46, 0.004, [tray], planner.arm.home.copy())
+    heights = [planner.arm.pose(q).position[2] for q in plan.retreat]
+    assert (np.ptp(heights) < 0.005) == lay, "where nothing holds it back the hand may rise"

@@ -50,13 +50,17 @@ class GraspedObject:
         return abs(float(self.rotation[2, 1])) > ABOVE_EACH_OTHER
 
     @property
+    def entangled(self) -> bool:
+        """A finger may be in its handle, or is below it: moved other than straight back the hand takes it along."""
+        return self.from_below or (self.as_found is not None and kind_of(self.kind).handle > 0)
+
+    @property
     def opening(self) -> float | None:
         """How far apart [m] the fingers go to let go of it; None: as far as they do.
 
         A finger that is in a handle has to come out of it, and not to spread it; one that is below has no more room.
         """
-        handled = self.as_found is not None and kind_of(self.kind).handle > 0
-        return self.width + PLAY if handled or self.from_below else None
+        return self.width + PLAY if self.entangled else None
 
     def box(self) -> tuple[Array, Array]:
         """Half extents (3,) and centre (3,) [m] of the object's collision box in the frame of the pinch point."""

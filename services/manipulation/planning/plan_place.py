@@ -81,7 +81,7 @@ def _try_place(
     way = _set_down(planner, held, spot, height, turn, now)
     if isinstance(way, str):
         return way
-    target, high, down = way.target, way.high, way.down
+    high, down = way.high, way.down
     arm.hold(*held.box())
     planner.surround(around, high)
     there = connect(arm, now, high, rng)
@@ -89,11 +89,9 @@ def _try_place(
     arm.set_obstacles(around)
     if there is None:
         return "no path"
-    tilted = abs(held.rotation[2, 2]) < 0.85
-    away = -0.10 * target.rotation[:, 2] if tilted else np.array([0.0, 0.0, 0.12])
     stands = Obstacle((*spot, height + held.size[2] / 2), held.size, held.yaw + way.turned)
     beside = with_object(around, stands)
-    back = _leave(planner, target, away, [*down[-2::-1], high], down[-1], beside)
+    back = _leave(planner, held, way, beside)
     if back is None:
         return "no way back"
     planner.surround(beside, back[-1])
@@ -157,18 +155,27 @@ def can_be_set_down(planner: Planner, held: GraspedObject, surface: float, now: 
     arm.set_obstacles([slab])
     arm.open_fingers(held.opening)
     try:
-        return any(isinstance(_set_down(planner, held, spot, height, turn, now), _Down) for turn in TURNS)
+        for turn in TURNS:
+            way = _set_down(planner, held, spot, height, turn, now)
+            if isinstance(way, _Down) and _leave(planner, held, way, [slab]) is not None:
+                return True
+            arm.set_obstacles([slab])
+        return False
     finally:
         arm.open_fingers()
 
 
-def _leave(
-    planner: Planner, target: Pose, away: Array, as_it_came: list[Array], at: Array, beside: Sequence[Obstacle]
-) -> list[Array] | None:
-    """Off what was put down: by `away`, by a part of it, or where the arm is stretched the way it came."""
-    planner.arm.set_obstacles(beside)
+def _leave(planner: Planner, held: GraspedObject, way: _Down, beside: Sequence[Obstacle]) -> list[Array] | None:
+    """Off what was put down: straight back or up, or a part of that; where the arm cannot, the way it came, unless a
+    finger would take the object along.
+    """
+    arm, target, at = planner.arm, way.target, way.down[-1]
+    arm.set_obstacles(beside)
+    tilted = held.entangled or abs(held.rotation[2, 2]) < 0.85
+    away = -0.10 * target.rotation[:, 2] if tilted else np.array([0.0, 0.0, 0.12])
     for share in (1.0, 0.6):
         path = planner.straight(at, target, target.moved(share * away))
-        if path is not None and not planner.arm.collides(path[-1]) and not planner.arm.meets_itself(path[:-1]):
+        if path is not None and not arm.collides(path[-1]) and not arm.meets_itself(path[:-1]):
             return path
-    return None if planner.arm.collides(as_it_came[-1]) else as_it_came
+    as_it_came = [*way.down[-2::-1], way.high]
+    return None if held.entangled or arm.collides(as_it_came[-1]) else as_it_came
