@@ -118,7 +118,7 @@ def straight_parts(planner: Planner, target: Target, grasp: Grasp, way: Way, now
 
 
 def _stands_again(planner: Planner, target: Target, grasp: Grasp, way: Way, now: Array) -> bool:
-    """What lies can be set upright with the hand as it grasps, or need not be."""
-    if grasp.axis is None or way.stand_on is None:
+    """What lies can be set upright with the hand as it grasps, or need not be: what was pulled is taken as it is."""
+    if grasp.axis is None or grasp.over_edge or way.stand_on is None:
         return True
     return can_be_set_down(planner, attach(target, grasp), way.stand_on, now)
