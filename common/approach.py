@@ -20,7 +20,8 @@ ROOM = FOOTPRINT + 0.02
 """Clearance that the base's centre needs [m], as navigation plans with."""
 BIN_RIM = 0.02
 """Thickness of a bin's walls, which its `size` does not contain [m]: 15 mm and the play of the map's grid."""
-LATERAL = (0.0, 0.10, -0.10, 0.20, -0.20)
+LATERAL = (0.0, 0.10, -0.10, 0.20, -0.20, 0.30, -0.30)
+"""Steps aside [m] from straight before the object: beside a corner or a bin only the farthest may have room."""
 RING = 16
 
 
