@@ -7,6 +7,7 @@ from typing import Literal
 from common import messages as m
 from common.approach import FOOTPRINT
 from common.geometry import Pose2, wrap
+from services.mapping.barriers import Met
 from services.mapping.config import MappingConfig
 from services.mapping.views import Survey
 
@@ -31,7 +32,7 @@ class Exploration:
         self._config, self._new_id = config, new_id
         self.phase: m.MappingPhase = "exploring"
         self.barred: list[tuple[float, float]] = []
-        self.barriers: list[tuple[float, float]] = []
+        self.barriers: list[Met] = []
         self.pictures = 0
         self.frontiers, self.area = 0, 0.0
         self.detail = ""
@@ -137,7 +138,8 @@ class Exploration:
             way = math.hypot(dx, dy)
             if self._held_up and way > AHEAD:
                 # A pane of glass: all the floor that is seen behind it is to be reached through it.
-                self.barriers.append((pose[0] + AHEAD * dx / way, pose[1] + AHEAD * dy / way))
+                ahead = pose[0] + AHEAD * dx / way, pose[1] + AHEAD * dy / way
+                self.barriers.append(Met((pose[0], pose[1]), ahead))
         self._state, self._since = "settling", now
         return ""
 

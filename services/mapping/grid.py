@@ -41,11 +41,12 @@ BEFORE = 0.06
 
 
 class Grid:
-    """Layers (rows, columns) over the rectangle from `low` to `high` [map]."""
+    """Layers (rows, columns) over the rectangle from `low` to `high` [map]; `shut`: where something unseen stands."""
 
     def __init__(self, low: tuple[float, float], high: tuple[float, float]) -> None:
         self.origin = (round(low[0] / RESOLUTION) * RESOLUTION, round(low[1] / RESOLUTION) * RESOLUTION)
         self.shape = tuple(round((high[k] - low[k]) / RESOLUTION) for k in (1, 0))
+        self.shut: Cells = np.zeros(self.shape, bool)
         self.clear()
         self.near: Cells = np.zeros(self.shape, bool)
         self.looked = np.zeros(self.shape, np.uint8)
@@ -149,7 +150,7 @@ class Grid:
 
     def states(self) -> NDArray[np.uint8]:
         """FREE, OCCUPIED or UNKNOWN for each cell."""
-        taken = self.walls | self.covered
+        taken = self.walls | self.covered | self.shut
         seen = ndimage.binary_closing((self.floor > 0) | self.body, np.ones((3, 3))) | self.body
         free = seen & ndimage.binary_closing(self.passed > 0, np.ones((3, 3))) & ~taken
         return np.where(taken, OCCUPIED, np.where(free, FREE, UNKNOWN)).astype(np.uint8)

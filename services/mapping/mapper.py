@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from common import messages as m
 from common.floor_plan import Vec2
 from common.geometry import Pose2, compose, inverse
+from services.mapping.barriers import Met, panes, shut
 from services.mapping.depth import CameraModel, Picture
 from services.mapping.grid import Grid
 from services.mapping.scan import Scan
@@ -33,6 +34,7 @@ class Mapper:
         self.trajectory = Trajectory()
         self.grid = Grid(low, high)
         self.shots: list[Shot] = []
+        self.panes: list[tuple[Vec2, Vec2]] = []
         self._camera = CameraModel()
         self._unread: list[tuple[m.Rgbd, int, Pose2, bool]] = []
 
@@ -91,6 +93,13 @@ class Mapper:
                 if first <= shot.keyframe < end:
                     self._draw(shot)
 
-    def survey(self, here: Pose2, barred: list[Vec2], barriers: list[Vec2]) -> Survey:
-        """What is left to be seen, and from where next."""
-        return survey(self.grid, self.grid.states(), here, barred, barriers)
+    def survey(self, here: Pose2, barred: list[Vec2], barriers: list[Met]) -> tuple[Survey, NDArray[np.uint8]]:
+        """What is left to be seen, from where next, and the states of all cells.
+
+        `barriers`: where something unseen held the robot up.
+        """
+        self.grid.shut[:] = False
+        self.panes = panes(barriers, self.grid.states(), self.grid)
+        self.grid.shut = shut(barriers, self.panes, self.grid)
+        states = self.grid.states()
+        return survey(self.grid, states, here, barred), states

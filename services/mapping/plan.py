@@ -1,6 +1,7 @@
 """A floor plan out of what was mapped: walls, furniture, surfaces and bins with where they are reached from. Pure."""
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -44,14 +45,25 @@ class Lidar(NamedTuple):
     eyes: Array
 
 
-def floor_plan(name: str, lidar: Lidar, grid: Grid, states: NDArray[np.uint8], level: Array, low: Array) -> Household:
-    """The household of a mapped home; `level` and `low` (n, 3) [map] are points of level surfaces and of low things."""
+def floor_plan(
+    name: str,
+    lidar: Lidar,
+    grid: Grid,
+    states: NDArray[np.uint8],
+    level: Array,
+    low: Array,
+    unseen: Sequence[Wall] = (),
+) -> Household:
+    """The household of a mapped home; `level` and `low` (n, 3) [map] are points of level surfaces and of low things.
+
+    `unseen`: walls that only held the robot up.
+    """
     bins = find_bins(grid, low)
     surfaces = [s for s in _separate(find_surfaces(level)) if not _rim(s, bins)]
     reached = _reached(states)
     receptacles = _named(surfaces, bins, grid, reached)
     taken = [r.outline.grown(0.06) for r in receptacles]
-    walls = find_walls(lidar.points, lidar.eyes, taken)
+    walls = [*find_walls(lidar.points, lidar.eyes, taken), *unseen]
     furniture = _furniture(grid, walls, taken)
     rows, columns = np.nonzero(states == FREE)
     cells = grid.points((rows, columns)) if len(rows) else np.zeros((1, 2))

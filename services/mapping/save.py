@@ -14,6 +14,7 @@ from common.files.map_file import HOUSEHOLD, MAP, PICTURE, SURFACES, GridMap, pi
 from common.files.plan_file import to_toml
 from common.geometry import compose
 from common.household import Household
+from services.mapping.barriers import glass
 from services.mapping.depth import Picture
 from services.mapping.grid import RESOLUTION
 from services.mapping.mapper import Mapper, Shot
@@ -74,7 +75,8 @@ def made_household(name: str, mapper: Mapper, states: NDArray[np.uint8]) -> Hous
     there = grid.at(ends, ndimage.binary_dilation(grid.walls))
     taken = ndimage.binary_dilation(grid.walls | grid.covered)
     level, low = (rows[grid.at(rows, taken)] for rows in (_seen(mapper, "level"), _seen(mapper, "low")))
-    return floor_plan(name, Lidar(ends[there], seen_from[there]), grid, states, level, low)
+    lidar = Lidar(ends[there], seen_from[there])
+    return floor_plan(name, lidar, grid, states, level, low, glass(mapper.panes))
 
 
 def _seen(mapper: Mapper, layer: str) -> Array:

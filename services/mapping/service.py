@@ -23,6 +23,7 @@ from services.mapping.mapper import Mapper
 from services.mapping.odometry import OdometryBuffer
 from services.mapping.save import Saved, SaveError, resume, save
 from services.mapping.scan import scan_of
+from services.mapping.views import Survey
 
 PUBLISHED_EVERY = 0.8
 """Time between two maps while the robot drives [s]; chosen: navigation plans anew once a second."""
@@ -151,7 +152,7 @@ class MappingService:
         elif wanted == "survey":
             barred, barriers = list(self._exploration.barred), list(self._exploration.barriers)
             seconds = self._config.plan_seconds
-            self._submit(self._exploration.surveyed, self._mapper.survey, pose, barred, barriers, seconds=seconds)
+            self._submit(self._surveyed, self._mapper.survey, pose, barred, barriers, seconds=seconds)
         elif wanted == "save":
             self._submit(self._done, self._save, seconds=self._config.save_seconds)
         elif isinstance(wanted, m.NavGoal):
@@ -160,6 +161,11 @@ class MappingService:
             self._io.log.info("view", x=wanted.x, y=wanted.y, left=self._exploration.frontiers)
         elif self._exploration.driving and now - self._asked_at > self._config.picture_period:
             self._ask(False, now)
+
+    def _surveyed(self, found: tuple[Survey, NDArray[np.uint8]]) -> None:
+        survey, states = found
+        self._drawn(states)
+        self._exploration.surveyed(survey)
 
     def _save(self) -> Saved | str:
         """The files that were written, or why they could not be."""

@@ -44,8 +44,7 @@ NEARER = 0.75
 """What each picture without result leaves of the distance from which floor is looked at again [-]: what is not seen
 through a door from along its wall is seen from before it."""
 BARRED = 0.25
-"""Radius [m] around a position that could not be reached in which no other is tried, and around what held the robot up
-in which its middle does not pass. Chosen: a footprint's."""
+"""Radius [m] around a position that could not be reached in which no other is tried. Chosen: a footprint's."""
 MOST = 500
 """Cells that gains are counted by, at most [count]; chosen: the choice stays below 0.3 s."""
 HOME_COST = 1.0
@@ -67,18 +66,11 @@ class Survey(NamedTuple):
     view: View | None
 
 
-def survey(
-    grid: Grid, states: NDArray[np.uint8], here: Pose2, barred: Sequence[Vec2], barriers: Sequence[Vec2] = ()
-) -> Survey:
-    """What is left to be seen, and from where next.
-
-    `barred` are positions that could not be reached, `barriers` those at which something unseen held the robot up.
-    """
+def survey(grid: Grid, states: NDArray[np.uint8], here: Pose2, barred: Sequence[Vec2]) -> Survey:
+    """What is left to be seen, and from where next; `barred` are positions that could not be reached."""
     free = states == FREE
     distance = ndimage.distance_transform_edt(free) * RESOLUTION - RESOLUTION / 2
     passable = distance >= CLEARANCE - 0.05
-    for x, y in barriers:
-        passable &= ~_disc(grid, (x, y, 0.0), BARRED)
     cost = _costs(grid, passable, here)
     reached = np.isfinite(cost)
     area = float(free.sum()) * RESOLUTION**2

@@ -175,7 +175,8 @@ def test_what_holds_the_robot_up_unseen_is_a_barrier_and_tried_once_more_at_the_
             status, code = ("arrived", "") if looks else ("failed", "BLOCKED")
             course.heard(m.NavigationFeedback(goal_id=wanted.id, status=status, code=code), now)  # type: ignore[arg-type]
     assert course.phase == "returning" and goals == 2
-    ((x, y),) = course.barriers
+    ((here, (x, y)),) = course.barriers
+    assert here == (1.0, 0.0)
     assert 1.0 + FOOTPRINT < x < 1.5 and y == 0.0
 
 

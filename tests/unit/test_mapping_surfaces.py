@@ -9,8 +9,10 @@ import pytest
 from common import messages as m
 from common.approach import FOOTPRINT
 from common.geometry import matrix_quat
+from services.mapping.barriers import BEFORE, Met, glass, panes, shut
 from services.mapping.depth import CameraModel
 from services.mapping.grid import FREE, OCCUPIED, RESOLUTION, UNKNOWN, Grid
+from services.mapping.mapper import Mapper
 from services.mapping.scan import Scan
 from services.mapping.surfaces import find_surfaces, fit_rectangle
 from services.mapping.views import FLOOR_TRIES, SPACING, survey
@@ -185,7 +187,45 @@ def test_what_is_behind_a_barrier_is_not_to_be_reached() -> None:
     here, barrier = grid.points((np.array([128, 128]), np.array([70, 90])))
     free = survey(grid, states, (here[0], here[1], 0.0), [])
     assert free.view is not None and free.view.pose[0] > barrier[0] + 0.5
-    assert survey(grid, states, (here[0], here[1], 0.0), [], [(barrier[0], barrier[1])]).view is None
+    states[shut([Met((here[0], here[1]), (barrier[0], barrier[1]))], [], grid)] = OCCUPIED
+    assert survey(grid, states, (here[0], here[1], 0.0), []).view is None
+
+
+def met(y: float, aim: float = 0.0) -> Met:
+    """Held up by what is beyond x = 1, on the way to something `aim` [m] to the left of straight ahead."""
+    return Met((1.02 - BEFORE, y), (1.02 - BEFORE + 0.3, y + aim))
+
+
+def test_a_pane_reaches_from_frame_to_frame_through_where_it_was_met() -> None:
+    """3 m wide in a wall along y; what is met once, or far apart, or from two sides is a place and no pane."""
+    grid = Grid((-6.0, -6.0), (6.0, 6.0))
+    states = np.full(grid.shape, FREE, np.uint8)
+    wall = grid.cells(np.array([(1.02, y) for y in np.arange(-4.0, 4.0, 0.02) if abs(y) > 1.5]))
+    states[wall] = OCCUPIED
+    ((start, end),) = lines = panes([met(0.3, 0.4), met(-0.5)], states, grid)
+    assert sorted((start[1], end[1])) == pytest.approx([-1.5, 1.5], abs=0.06)
+    closed = shut([], lines, grid)
+    assert grid.at(np.array([(1.02, y) for y in np.arange(-1.4, 1.4, 0.1)]), closed).all() and closed.sum() < 70
+    (pane,) = glass(lines)
+    assert pane.glass and pane.start[0] == pane.end[0] == pytest.approx(1.02, abs=0.001)
+    behind = Met((1.3, -0.5), (1.0, -0.5))
+    for places in ([met(0.3)], [met(0.3), met(0.35)], [met(1.3), met(-1.3)], [met(0.3), behind]):
+        assert panes(places, states, grid) == []
+    assert shut([met(0.3)], [], grid).sum() == 1
+    states[wall] = FREE
+    ((start, end),) = panes([met(0.0), met(1.0)], states, grid)
+    assert (start[1], end[1]) == (0.0, 1.0), "without a frame"
+
+
+def test_the_map_that_is_driven_by_has_what_nobody_sees() -> None:
+    mapper = Mapper((-6.0, -6.0), (6.0, 6.0))
+    room(mapper.grid)
+    place = np.array([(0.9, 0.2)])
+    assert mapper.grid.states()[mapper.grid.cells(place)] == FREE
+    _, states = mapper.survey((0.0, 0.0, 0.0), [], [Met((0.5, 0.2), (0.9, 0.2))])
+    assert states[mapper.grid.cells(place)] == mapper.grid.states()[mapper.grid.cells(place)] == OCCUPIED
+    _, states = mapper.survey((0.0, 0.0, 0.0), [], [])
+    assert states[mapper.grid.cells(place)] == FREE
 
 
 def test_where_nothing_is_left_the_survey_ends() -> None:

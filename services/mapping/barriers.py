@@ -1,0 +1,78 @@
+"""What holds the robot up and no sensor sees, as panes of glass do: lines through the places where it was met. Pure."""
+
+import math
+from collections.abc import Sequence
+from itertools import combinations
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from common.approach import FOOTPRINT
+from common.floor_plan import Vec2, Wall
+from services.mapping.grid import OCCUPIED, RESOLUTION, Cells, Grid
+
+PANE = 2.5
+"""Distance [m] of two places up to which one thing held the robot up, and up to which from there the frame of its pane
+is looked for. Chosen: the widest doors of glass that are usual."""
+APART = 0.15
+"""Distance [m] of two places from which on they tell a direction; chosen: three cells."""
+BEFORE = FOOTPRINT + RESOLUTION / 2
+"""From the base's middle to a pane that holds it up [m]: its bumper, and half of a cell."""
+THICKNESS = 0.05
+"""Of a pane [m]: a cell."""
+HEIGHT = 2.0
+"""Of a pane [m]; chosen: above the robot."""
+
+
+class Met(NamedTuple):
+    """Where the base's middle was [map] when it was held up, and the point `ahead` of it that did so."""
+
+    here: Vec2
+    ahead: Vec2
+
+
+def panes(barriers: Sequence[Met], states: NDArray[np.uint8], grid: Grid) -> list[tuple[Vec2, Vec2]]:
+    """Lines (start, end) [map] before each two poses at which one pane may have held the robot up, up to its frame.
+
+    A round bumper is at both as far from the pane, at whatever angle it met it. The frame is what is occupied;
+    where there is none the line ends where the robot was.
+    """
+    found = []
+    for one, other in combinations(barriers, 2):
+        (ax, ay), (bx, by) = one.here, other.here
+        way = math.dist(one.here, other.here)
+        if not APART <= way <= PANE:
+            continue
+        step = ((bx - ax) / way, (by - ay) / way)
+        sides = [(m.ahead[1] - m.here[1]) * step[0] - (m.ahead[0] - m.here[0]) * step[1] for m in (one, other)]
+        if sides[0] * sides[1] <= 0.0:
+            continue
+        off = math.copysign(BEFORE, sides[0])
+        dx, dy = -step[1] * off, step[0] * off
+        start = _frame((ax + dx, ay + dy), (-step[0], -step[1]), states, grid)
+        found.append((start, _frame((bx + dx, by + dy), step, states, grid)))
+    return found
+
+
+def _frame(point: Vec2, step: Vec2, states: NDArray[np.uint8], grid: Grid) -> Vec2:
+    """The first point that way that is occupied, the point itself where there is none within PANE."""
+    along = np.arange(0.0, PANE, RESOLUTION / 2)
+    line = np.array(point) + along[:, None] * np.array(step)
+    met = np.nonzero(grid.at(line, states == OCCUPIED))[0]
+    return (float(line[met[0], 0]), float(line[met[0], 1])) if len(met) else point
+
+
+def shut(barriers: Sequence[Met], lines: Sequence[tuple[Vec2, Vec2]], grid: Grid) -> Cells:
+    """The cells of the places ahead and of the lines."""
+    found = np.zeros(grid.shape, bool)
+    for a, b in (*((met.ahead, met.ahead) for met in barriers), *lines):
+        count = math.ceil(2 * math.dist(a, b) / RESOLUTION) + 1
+        found[grid.cells(np.linspace(a, b, count))] = True
+    return found
+
+
+def glass(lines: Sequence[tuple[Vec2, Vec2]]) -> list[Wall]:
+    """The lines as walls that a lidar does not see."""
+    ends = [tuple((round(x, 3), round(y, 3)) for x, y in line) for line in lines]
+    return [Wall(start=a, end=b, thickness=THICKNESS, height=HEIGHT, glass=True) for a, b in ends]
