@@ -3,9 +3,8 @@
 Per kind of recording and noise: sentences that are exactly right and accepted; exactly right whatever the verdict; the
 peer, which is the same model without the grammar; accepted at all; taken for another sentence without a question
 (`wrong`); wake word heard; CPU seconds per second of sound. `python -m bench.speech --limit 0` takes all recordings;
-`--shard 2/4` a quarter of them, `--voice NAME` those of one voice. `--noise babble --snr 10` mixes the clean ones with
-noise. The sentences fall into two halves: parameters are tuned on one (`--half tuning`), the other one (`--half held`)
-shows what that is worth.
+`--voice NAME` those of one voice. `--noise babble --snr 10` mixes the clean ones with noise. The sentences fall into
+two halves: parameters are tuned on one (`--half tuning`), the other one (`--half held`) shows what that is worth.
 
 `--everyday 60` takes everyday sentences of tests/data by lot (`--seed`) in the robot's own voice instead, or the
 recordings of kind `everyday` of `--corpus`, and tells in how many the planner makes of what was heard what it makes of
@@ -58,7 +57,6 @@ def main() -> int:
     parser.add_argument("--limit", type=int, default=30, help="recordings a row, 0 for all")
     parser.add_argument("--only", default="", help="rows whose name begins like this, such as 'cmd 10'")
     parser.add_argument("--half", choices=("tuning", "held"), help="only that half of the sentences")
-    parser.add_argument("--shard", default="1/1", help="such as 2/4: the second quarter of the recordings")
     parser.add_argument("--voice", default="", help="only recordings of that voice")
     parser.add_argument("--noise", choices=KINDS, help="mix the clean recordings with noise")
     parser.add_argument("--snr", type=float, default=10.0, help="how far the noise is below the words [dB]")
@@ -107,14 +105,13 @@ class Mixer:
 def _commands(
     reader: Reader, recordings: list[Row], mix: Mixer, parameters: SpeechConfig, args: argparse.Namespace
 ) -> None:
-    shard, shards = (int(part) for part in args.shard.split("/"))
     print(TITLES)
     for kind, noise in NOISY_ROWS if args.noise else ROWS:
         name = f"{kind} {args.noise or noise or 'all'}"
         if not name.startswith(args.only):
             continue
         rows = [r for r in recordings if r["kind"] == kind and r["snr"].startswith(noise)]
-        rows = [r for r in rows if args.half in (None, half_of(r["text"]))][: args.limit or None][shard - 1 :: shards]
+        rows = [r for r in rows if args.half in (None, half_of(r["text"]))][: args.limit or None]
         counts: Counter[str] = Counter()
         seconds, spent = 1e-9, 0.0
         for row in rows:

@@ -35,7 +35,6 @@ def main() -> int:
     parser.add_argument("--rate", type=float, default=2000.0, help="payloads a second (default %(default)s)")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--item", default="red mug", help="what to fetch afterwards; empty: nothing")
-    parser.add_argument("--patience", type=float, default=600.0, help="seconds for that (default %(default)s)")
     parser.add_argument("--services", default=",".join(s.name for s in SERVICES if s.token), metavar="A,B")
     args = parser.parse_args()
     with tempfile.TemporaryDirectory() as logs, site(Path(logs)) as here, here.session() as session:
@@ -62,7 +61,7 @@ def main() -> int:
         outcome = "not asked"
         if args.item:
             storm.recover()
-            outcome = storm.fetch(args.item, args.patience)
+            outcome = storm.fetch(args.item)
             print(f"afterwards, bring me the {args.item}: {outcome}")
         silent = [n for n in storm.names if health[n].drops == 0]
         print(f"nobody died; refused nothing: {', '.join(silent) or 'none'}")

@@ -23,6 +23,8 @@ START_LIMIT = 300.0
 TRUSTED = {t.key for t in (*topics.CLOCKS, topics.LOCKSTEP_ACK)}
 QUERIES = (topics.SIM_TRUTH, topics.SIM_RESET, topics.SIM_SNAPSHOT, topics.BRAIN_MISSIONS)
 CALM = {"TIDYBOT__BRAIN__ENABLE_CONFIRMATION": "false", "TIDYBOT__RUNTIME__LOG_LEVEL": "warning"}
+PATIENCE = 600.0
+"""For the mission after the storm [s]; chosen: many times what it takes."""
 
 
 class Storm:
@@ -144,10 +146,10 @@ class Storm:
         delivery.send(self.session, topics.VOICE_COMMAND, m.VoiceCommand(text="cancel", id="calm"))
         delivery.send(self.session, topics.ROBOT_RESUME, m.RobotResume(source="fuzz"))
 
-    def fetch(self, item: str, patience: float) -> str:
+    def fetch(self, item: str) -> str:
         """Ask for an item: `delivered`, `failed`, `cancelled`, or why there is no outcome."""
         wanted = m.VoiceCommand(text=f"bring me the {item}", id="after-the-storm", confirmed=True)
-        end, asked = time.monotonic() + patience, 0.0
+        end, asked = time.monotonic() + PATIENCE, 0.0
         state, before = m.BrainState(state="IDLE"), None
         while time.monotonic() < end:
             for payload in delivery.fetch(self.session, topics.BRAIN_STATE.key).values():
@@ -161,4 +163,4 @@ class Storm:
                 delivery.send(self.session, topics.VOICE_COMMAND, wanted)
             time.sleep(0.5)
         known = f"{state.state} {state.command!r} {state.step} {state.detail}"
-        return f"no outcome in {patience:.0f} s; last seen {known}"
+        return f"no outcome in {PATIENCE:.0f} s; last seen {known}"

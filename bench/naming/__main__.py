@@ -39,6 +39,8 @@ TABLE, CAMERA = 0.75, 1.30
 """Heights [m] of `bench.naming.printed`'s table and camera."""
 OPTICAL = np.array([[0.0, -math.sin(0.62), math.cos(0.62)], [-1.0, 0.0, 0.0], [0.0, -math.cos(0.62), -math.sin(0.62)]])
 """Columns: the optical frame's axes (right, down, ahead) in the map."""
+TURN = 0.4
+"""Most that a printed front is turned away from the camera [rad]; chosen."""
 POSE_NOISE, SIZE_NOISE = 0.004, 0.06
 """Standard deviations of a measured position [m] and extent [share]."""
 
@@ -92,7 +94,7 @@ class Studio:
         self._renderer.close()
 
 
-def read(studios: list[Studio], turn: float) -> None:
+def read(studios: list[Studio]) -> None:
     """The table of print: recall of the own words, precision against all others' words, time."""
     reader = Reader()
     print(f"{'print':>8} {'asked':>6} {'read':>6} {'nearly':>6} {'wrong':>6} {'recall':>7} {'precision':>9} {'ms':>6}")
@@ -101,7 +103,7 @@ def read(studios: list[Studio], turn: float) -> None:
         seconds = []
         for studio in studios:
             for n, package in enumerate(studio.packages):
-                crop = studio.crop(n, distance, float(np.random.default_rng(n).uniform(-turn, turn)))
+                crop = studio.crop(n, distance, float(np.random.default_rng(n).uniform(-TURN, TURN)))
                 if crop is None:
                     continue
                 began = time.thread_time()
@@ -183,7 +185,6 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=100, help="the first of them; thresholds were chosen on 0 to 9")
     parser.add_argument("--width", type=int, default=1920)
     parser.add_argument("--height", type=int, default=1440)
-    parser.add_argument("--turn", type=float, default=0.4, help="most that a printed front is turned away [rad]")
     parser.add_argument("--only", choices=("print", "taught"))
     parser.add_argument("--no-print", action="store_true", help="compare taught names by looks alone")
     parser.add_argument("--verbose", "-v", action="store_true", help="show how the differences are distributed")
@@ -193,7 +194,7 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as folder:
         studios = [Studio(args.seed + k, Path(folder), args.width, args.height) for k in range(args.seeds)]
         if args.only != "taught" and not args.no_print:
-            read(studios, args.turn)
+            read(studios)
         if args.only != "print":
             taught(studios, not args.no_print, args.verbose)
         for studio in studios:

@@ -15,6 +15,7 @@ M = TypeVar("M", bound=m.Message)
 JOINTS = m.JointStates(t=0.0, name=["base_x"], position=[0.0], velocity=[0.0], effort=[0.0])
 START = 10_000
 """The first moment [ticks of 10 ms]: 100 s, because nothing may rely on a clock that starts at 0."""
+HOME = load_household("apartment")
 
 
 class Bench(Node):
@@ -24,8 +25,7 @@ class Bench(Node):
     """
 
     def __init__(self, config: BrainConfig | None = None, joints: bool = True) -> None:
-        scene = load_household("apartment")
-        super().__init__(BrainService, config or BrainConfig(pipeline="fetch"), scene, lockstep=False, tick=START)
+        super().__init__(BrainService, config or BrainConfig(pipeline="fetch"), HOME, lockstep=False, tick=START)
         self.brain: BrainService = self.service
         self.joints: m.JointStates | None = JOINTS if joints else None
 

@@ -5,8 +5,8 @@ import pytest
 from common import messages as m
 from common import topics
 from common.bus.memory import MemoryIo
-from common.household import load_household
-from tests.unit.brain_bench import Bench
+from services.brain.config import BrainConfig
+from tests.unit.brain_bench import HOME, Bench
 
 NAV, MANIP, SPEECH = topics.NAVIGATION_GOAL, topics.MANIPULATION_GOAL, topics.SPEECH_GOAL
 
@@ -250,8 +250,9 @@ def test_a_failed_release_is_tried_again_then_reported_as_held() -> None:
 
 
 def test_silence_of_a_peer_ends_in_error() -> None:
-    bench = start()
-    bench.until(lambda: bench.state.state == "ERROR", limit=600.0)
+    bench = Bench(BrainConfig(pipeline="fetch", navigation_timeout=10.0))
+    bench.hear("bring me the red mug")
+    bench.until(lambda: bench.state.state == "ERROR", limit=60.0)
     assert "TIMEOUT" in bench.state.detail
     assert bench.texts(NAV) == ["find red mug"] * 3 + ["stop"]
 
@@ -275,7 +276,7 @@ def test_speech_status_ends_the_error_as_soon_as_it_is_said() -> None:
 
 
 def peer(bench: Bench, name: str) -> MemoryIo:
-    return MemoryIo(bench.bus, name, (), (), household=load_household("apartment"))
+    return MemoryIo(bench.bus, name, (), (), household=HOME)
 
 
 def test_a_restarted_peer_gets_the_goal_again_with_the_next_attempt() -> None:
