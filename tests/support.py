@@ -16,10 +16,13 @@ import zenoh
 
 from cli.processes.ports import free_port
 from common.bus.session import open_session
+from common.robot.model import ARM, BASE
 
 T = TypeVar("T")
 ROOT = Path(__file__).resolve().parent.parent
 PATIENCE = 40.0
+JOINT_NAMES = (*BASE, *ARM, "gripper")
+"""What `joint_states` tells of, in this order."""
 
 
 def eventually(probe: Callable[[], T], what: str, patience: float = PATIENCE) -> T:

@@ -17,7 +17,7 @@ from common import topics
 from common.bus import codec
 from common.household import load_household
 from common.recording import Recorder, RecordingError
-from common.robot.model import ARM, BASE, Hand
+from common.robot.model import Hand
 from common.scene import load_scene
 from services.dashboard.config import DashboardConfig
 from services.dashboard.replay.playback import opened
@@ -27,9 +27,7 @@ from services.dashboard.web.server import Web
 from services.sim.model import own
 from services.sim.physics import Physics
 from tests.node import Node
-from tests.support import eventually
-
-JOINT_NAMES = (*BASE, *ARM, "gripper")
+from tests.support import JOINT_NAMES, eventually
 
 MJCF = Physics(load_scene("minimal"), 0, ()).mjcf
 SIM_MODEL = m.SimModel(scene="minimal", seed=0, epoch="e", mjcf=MJCF)

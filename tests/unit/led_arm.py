@@ -10,8 +10,8 @@ from services.manipulation.arm.arm_model import ArmModel, Array
 from services.manipulation.config import ManipulationConfig
 from services.manipulation.service import ManipulationService
 from services.sim.model import own
-from services.sim.robot import JOINT_NAMES
 from tests.node import Node
+from tests.support import JOINT_NAMES
 
 PERIOD = 0.02
 HOME = load_household("minimal")

@@ -24,7 +24,7 @@ from common.topic import Topic
 from services.dashboard.replay.playback import Tape, TapeIo, wanted_keys
 from services.sim.model import own
 from services.sim.physics import Physics
-from services.sim.robot import JOINT_NAMES
+from tests.support import JOINT_NAMES
 
 
 def write(path: Path, *, failed: bool = False) -> Path:

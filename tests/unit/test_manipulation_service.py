@@ -13,7 +13,6 @@ from common.bus.memory import MemoryIo
 from common.household import load_household
 from common.kinds import KINDS
 from common.robot.grip import Grip
-from common.robot.model import ARM, BASE
 from common.topic import Topic
 from evaluation.stack import Stack
 from services.manipulation.arm.arm_model import ArmModel, Obstacle, Pose
@@ -28,8 +27,7 @@ from services.manipulation.service import ManipulationService
 from services.perception.config import PerceptionConfig
 from services.sim.model import own
 from tests.node import Node
-
-JOINT_NAMES = (*BASE, *ARM, "gripper")
+from tests.support import JOINT_NAMES
 
 pytestmark = pytest.mark.long
 

@@ -15,10 +15,10 @@ from services.perception.shapes import known as shapes
 from services.perception.views import colour
 from services.perception.views.self_filter import RobotModel
 from services.perception.views.view import View
-from services.sim import robot
 from services.sim.layout import Placement, place_objects
 from services.sim.model import own
 from services.sim.world import world_mjcf
+from tests.support import JOINT_NAMES
 
 mujoco = pytest.importorskip("mujoco")
 WIDTH, HEIGHT, FOVY = 400, 300, 62.0
@@ -36,7 +36,7 @@ def world(seed: int) -> tuple[Scene, list[Placement], object, object]:
 def view(seed: int, x: float, y: float, theta: float, camera: str = "head") -> View:
     """What a camera of a robot at (x, y, theta) sees."""
     _, _, model, data = world(seed)
-    for name, value in zip(robot.JOINT_NAMES[:10], (x, y, theta, *own().home), strict=True):
+    for name, value in zip(JOINT_NAMES[:10], (x, y, theta, *own().home), strict=True):
         data.qpos[model.joint(name).qposadr[0]] = value  # type: ignore[attr-defined]
     mujoco.mj_kinematics(model, data)
     mujoco.mj_camlight(model, data)

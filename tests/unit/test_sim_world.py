@@ -16,8 +16,8 @@ from common.support import MARGIN
 from common.topic import Topic
 from services.sim.layout import place_objects
 from services.sim.physics import Physics
-from services.sim.robot import JOINT_NAMES
 from tests.simulation import Simulation
+from tests.support import JOINT_NAMES
 
 
 class World(Simulation):
