@@ -68,10 +68,6 @@ CONSTRUCTIONS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
         # An exception that is said at the end.
         (rf"(\w+(?: up| away| me)?) {NP} ((?:here|over here|to me|away|back)|{TO_PLACE} (?:\w+ ){{1,3}}?\w+)"
          rf" (but not|but no|except for|except|apart from|other than|besides|but) {NP}", r"\1 \2 \4 \5 \3"),
-        (rf"(\w+(?: up| away| me)?) {NP} ((?:here|over here|to me|away|back)|{TO_PLACE} (?:\w+ ){{1,3}}?\w+)"
-         rf" (?:but|and) (?:please )?(?:leave|keep|spare|do not (?:touch|move|take|bring)) {NP}"
-         r"(?: there| alone| here| where (?:it|they) (?:is|are)| as (?:it|they) (?:is|are))?", r"\1 \2 except \4 \3"),
-        (r"(.+) in here( .+)?", r"\1 here\2"),
         (rf"(\w+ {NP} {TO_PLACE} {NP}) where (?:it|they) belongs?", r"\1"),
         # Clefts.
         (rf"(?:all|what|the only thing|the thing|the one|everything)(?: that)? {_WHO}(?: really| just| "
@@ -81,13 +77,6 @@ CONSTRUCTIONS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
         (rf"{NP} is (?:what|the one|all)(?: that)? (?:i|we)(?: really)? (?:{_WANT}|meant|mean)", r"bring me \1"),
         (rf"the (\w+)(?: that| which)? (?:i|we)(?: really)? (?:{_WANT}|meant|mean) is the "
          rf"(.+) one", r"bring me the \2 \1"),
-        (rf"the (\w+)(?: that| which)? (?:i|we)(?: really)? (?:{_WANT}|meant|mean) is (?!the .+ "
-         rf"one$){NP}", r"bring me \2"),
-        (rf"(?:(?:do|would|don't) you (?:think|suppose|reckon|mind if)|is (?:it|there) (?:possible|any "
-         rf"chance)|any chance|would "
-         rf"it be (?:\w+ )?(?:ok|okay|alright|possible|fine|all right))(?: that| if)? (?:i|we) "
-         rf"(?:can|could|may|might)?(?: please)? "
-         rf"?(?:have|had|get|got|borrow) {NP}", r"i want \1"),
         (r"(?:i|we) (?:can|could|may|might) (?:have|get|borrow|use) ((?:the|my|an?|some|one|two|another|that) .+)",
          r"i want \1"),
         (rf"(?:it|that) would (?:really )?(?:be|make) (?:\w+ ){{1,4}}?(?:to "
@@ -112,10 +101,6 @@ CONSTRUCTIONS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
         (rf"{_WHO}(?: really| also| just| now| only| kind of| do)? {_WANT} {NP}", r"i want \1"),
         (rf"(?:need|want|would like|would love|could use|could do with|looking for|fancy|after) (?!to\b|you\b){NP}",
          r"i want \1"),
-        (rf"(?:could|can|may|might) (?:i|we|somebody|someone)(?: please)? (?:have|get|borrow|"
-         rf"use) {NP}", r"bring me \1"),
-        (rf"(?:i|we) (?:feel like|am in the mood for|could go for) (?:having |eating |drinking |a bit "
-         rf"of )?{NP}", r"bring me \1"),
         (rf"(?:i|we) (?:am|are|was|were) looking for {NP}", r"find \1"),
         # Coming with something is bringing it.
         (rf"(?:come|return|be)(?: back| here| over| to me| over here| back here)* with {NP}", r"bring me \1"),
@@ -125,7 +110,6 @@ CONSTRUCTIONS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
         (rf"(?:go and )?(?:make sure|see|see to it|ensure|make certain|take care)(?: that)? {NP} (?:is|are|gets?|"
          rf"goes|go|ends? up)"
          rf" (?:back |put |placed )?({TO_PLACE}) {NP}", r"put \1 \2 \3"),
-        (rf"(?:in|on|at) {NP} (?:is|are|there is|stands|lies) ((?:a|an|the|my|some) .+)", r"there is \2 on \1"),
         # Looking whether something is there.
         (rf"(?:go (?:and |over )?)?(?:look|check|see|peek)(?: on| in| into| at| over)* {NP} and "
          rf"(?:tell me|see|let me know|"
@@ -141,8 +125,6 @@ CONSTRUCTIONS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
         (rf"(put|place|set|move|lay|drop|leave|stick|pop) (?:down )?{NP}(?: down)? (?:on|in|at|onto) {NP} "
          rf"(?:right )?{_BESIDE} {NP}",
          r"\1 \2 next to \4 on \3"),
-        (rf"(put|place|set|move|lay|drop|leave|stick|pop) {NP} (?:back )?there (on|in|at|onto|"
-         rf"into) {NP}", r"\1 \2 \3 \4"),
         (rf"(get|take|remove|move) {NP} (?:off|from|out of) {NP} and {TO_PLACE} {NP}", r"put \2 on \3 in \4"),
         # What there is of a kind.
         (r"(\w+)(?: me)? (?:whatever|what|anything that|all that|all the stuff that|the stuff that) (?:is|lies|"
@@ -152,14 +134,9 @@ CONSTRUCTIONS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
         # A quality that a place or a thing is to have.
         (rf"(?:make|get|have|keep) {NP} (?:look |be |all )?(?:very |really |a bit )?(?:nice and |neat and )?"
          r"(?:clean|tidy|clear|neat|nice|presentable|spotless|ready)(?: again)?(?: for .+)?", r"tidy \1"),
-        (rf"(?:do|sort|sort out|deal with|take care of) the mess (?:on|in|at) {NP}", r"tidy \1"),
         (rf"(?:make sure|see to it|ensure|make certain)(?: that)? there (?:is|are) (?:no|not any) {NP} (?:left "
          rf")?on {NP}",
-         r"put away all \1 on \2"),
-        (rf"(?:make sure|see to it|ensure|make certain)(?: that)? there (?:is|are) (?:nothing|not anything)(?: "
-         rf"left)? on {NP}", r"tidy \1"),
-        (rf"(?:nothing|no things) (?:should|must|may|can|is to)(?: be left| be| stay| remain| stand| "
-         rf"lie) on {NP}", r"tidy \1"),
+         r"put away all \1 on \2")
     )
 )  # fmt: skip
 VERBLESS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
@@ -170,7 +147,7 @@ VERBLESS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
         (rf"{NP}(?: to me| to us| over here| here| here now| over)", r"bring me \1"),
         (rf"{NP} (?:back )?(to|into|onto) {NP}", r"put \1 \2 \3"),
         (rf"{NP} and {NP}", r"take \1 to \2"),
-        (rf"({TO_PLACE}) {NP} with {NP}", r"put \3 \1 \2"),
+        (rf"({TO_PLACE}) {NP} with {NP}", r"put \3 \1 \2")
     )
 )  # fmt: skip
 """Where the verb is missing."""
@@ -188,8 +165,6 @@ PASSIVE = tuple(
         rf"(?:have|get) {NP} (?:to be |be )?(\w+(?:ed|en|t|d|n))( .+)?",
         rf"(?:i|we) (?:want|need|would like|would love|expect|wish)(?: to see| to have| to get)? {NP} (?:to be |"
         rf"be )?{_PARTICIPLE}( .+)?",
-        rf"(?:i|we) (?:want|need|would like|would love|expect|wish)(?: to see| to have| to get)? {NP} (?:to be |be )"
-        rf"(\w+)( .+)?",
         rf"(?:go and )?(?:make sure|see to it|ensure|make certain|arrange|see)(?: that| for)? {NP} (?:is|are|"
         rf"gets|get|to be|"
         rf"be|will be|ends up|end up)(?: being)?"

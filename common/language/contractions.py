@@ -85,13 +85,14 @@ _SAME = tuple(
         (
             r"^(any\w* (?!idea|chance|clue|sign|way|news)\w.+ (?:(?:in|on|at) (?:the|my|our) \w+(?: "
             r"\w+)?|there|around|about|left))[.?!]?$",
-            r"is there \1",
+            r"is there \1"
         ),
         (r"^got (?=any (?:idea|clue)\b)", ""),
         (r"\bhow come\b", "why"),
         (r"\bany (?:notion|inkling|clue|hint)\b", "any idea"),
         (r"\bof (?:mine|ours|yours)\b", ""),
-        (r"\b(?:that|which) (?:is having|has) (?:a |the )?(\w+) colou?r\b", r"that is \1"),
+        (r"\b(?:(?:that|which) (?:is having|has)|with) (?:a |the )?(\w+) colou?r\b", r"that is \1"),
+        (r", (?:if|when) (?:you (?:would|could|can|please|like|do not mind)|possible|convenient),", ""),
         (r"\boff you (?:go|pop|trot|toddle|run)(?: then)? (?=to|into)", "go "),
         (r"\b(some|any)thing (?:that )?(?:i|we|one) (?:can|could|may|might) (eat|drink)\b", r"\1thing to \2"),
         (r"\b(some|any)thing to (?:munch|nibble|snack|chew)(?: on)?\b", r"\1thing to eat"),
@@ -111,7 +112,7 @@ _SAME = tuple(
         (r"\bnothing (?:but|except|other than) (?=(?:the|a|an|my|one)\b)", ""),
         (r"\b(?:far|extreme|very|outer) (left|right)\b", r"\1"),
         (r"\b(left|right)[- ]hand\b", r"\1"),
-        (r"\ball the way (?=to|on|at|in|over|back|up|down)", ""),
+        (r"\ball the way (?=to|on|at|in|over|back|up|down)", "")
     )
 )  # fmt: skip
 """Several words for which there are fewer, wherever they stand."""

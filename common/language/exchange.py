@@ -3,10 +3,13 @@
 import re
 from collections.abc import Callable
 
+from common.kinds import KINDS
 from common.language.lexicon import COMMANDING
 from common.language.normalise import DETERMINERS, Words, infinitive
 from common.language.politeness import without_politeness
+from common.naming.names import ALIKE
 
+_COLOURS = ALIKE.keys() - KINDS.keys()
 PREPOSITIONS = frozenset({
     "on", "in", "to", "into", "onto", "at", "from", "next", "near", "beside", "under", "behind", "with", "inside",
     "off",
@@ -67,7 +70,9 @@ def noun_phrases(words: list[str]) -> list[tuple[int, int]]:
 
 
 def filled(phrase: str, other: str) -> str:
-    """`the blue one` with the noun of the other phrase, `the red mug`."""
+    """`the blue one` with the noun of the other phrase, `the red mug`; `the blue` likewise."""
+    if " " in phrase and phrase.split()[-1] in _COLOURS:
+        phrase = f"{phrase} one"
     head = other.split()
     if spans := noun_phrases(head):
         head = head[spans[0][0] : spans[0][1]]

@@ -35,7 +35,7 @@ _SMALL_WORDS = (
     "thinking doing anything special make earliest going happen manage try trying care willing not too busy free "
     "ready able get got go ahead thanks "
     "thank well hey hello hi morning afternoon evening sorry excuse listen look here up about your changed only "
-    "so that long soon next first point chore job task let suggest propose require requesting anyhow anyway today "
+    "so that high long soon next first point chore job task let suggest propose require requesting anyhow anyway today "
     "tonight whenever convenient convenience leisure possible spare suits fast get gets have has feel feeling fancy"
 )
 _SMALL = frozenset(_SMALL_WORDS.split())
@@ -105,7 +105,7 @@ def _is_occasion(words: list[str]) -> bool:
 def _begins_command(word: str, before: list[str]) -> bool:
     if before[-1] in DETERMINERS - {"that"}:
         return False
-    if {"if", "would"} <= set(before) and infinitive(word, COMMANDING) in COMMANDING:
+    if ({"if", "would"} <= set(before) or "time" in before) and infinitive(word, COMMANDING) in COMMANDING:
         return True  # "i would be glad if you fetched"
     return word in COMMANDING or (
         word.endswith("ing") and infinitive(word, COMMANDING) in COMMANDING and bool(_OF_DOING & set(before))

@@ -35,7 +35,8 @@ TOLD: tuple[Wording, ...] = (
         "forget_rule",
         "(forget | drop | scrap | erase | delete | undo | remove | take back | cancel) [about] (that | the | this | "
         "my | your) [last | new]"
-        " rule [(about | for | on) <words>]",
+        " rule [(about | for | on) <words>]"
+        " | (i | we) (no longer | do not) (want | need) (that | the | your) rule [(about | for | on) <words>]",
         heard="forget that rule",
     ),
     Wording(

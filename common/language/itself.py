@@ -32,6 +32,8 @@ _ROWS: tuple[tuple[Action, str], ...] = (
     ("identity", "introduce describe + yourself"),
     ("identity", "are + you + human real alive person machine robot computer ai man woman somebody"),
     ("holding", "what + have + you + picked grabbed taken"),
+    ("abilities", "explain + what + you + do"),
+    ("doing", "almost nearly + done finished ready there"),
     ("abilities", "how + can could + i we + use of you + you"),
     ("abilities", f"what how which + can could should able capable + you i we + {_TASKS}"),
     ("abilities", f"what how which + are is + you your + {_ABILITY} capable able"),
@@ -69,7 +71,8 @@ _ASKED = re.compile(
     r"^(?:and |so |but |well |now |"
     r"(?:(?:tell|remind) (?:me|us)|explain|i wonder|do you know|any idea|is it)(?: if| whether)? )*"
     r"(?:what|who|where|whereabouts|why|how|when (?:will|are|is)|which|is|are|am|do|does|did|have|has|was|were|can|"
-    r"could|any|anything|got|(?:in|on) (?:what|which)|status|report|your|(?:a bit )?about yourself|introduce|describe|"
+    r"could|any|anything|got|(?:in|on) (?:what|which)|status|report|your|almost|nearly|(?:a bit )?about yourself|"
+    r"introduce|describe|"
     r"give (?:me|us) (?:a|an|your))\b"
 )
 """How such questions begin."""

@@ -31,8 +31,8 @@ _HOW_AND_WHY = r"\b(?:how|why)\b(?! (?:many|about|not|do not|do you not)\b).* (?
 _FORBIDS = re.compile("|".join((*map(_any, (_NEGATIONS, _SUPPOSITIONS, _OTHER_TIMES, _REPORTS)), _HOW_AND_WHY)))
 _HARMLESS = re.compile(
     _any(
-        "(?:do|does|would) not (?:mind|matter|care|hesitate) | no (?:matter|hurry|rush|problem|worries|time) | not too"
-        " | do not suppose | ever so | would not happen"
+        "(?:do|does|would) not (?:mind|matter|care|hesitate) | not (?:[a-z]+ )?enough | not too"
+        " | no (?:matter|hurry|rush|problem|worries|time) | do not suppose | ever so | would not happen"
         " | not (?:far|much|urgent) | (?:can|could) not (?:[a-z]+ ){0,6}?(?:find|see|spot|reach|get|locate)"
         " | why do not you | if you could | i have told you | i told you"
     )

@@ -22,10 +22,7 @@ from common.language.wording import Wording
 
 MOVING: tuple[Wording, ...] = (
     # Putting.
-    Wording(
-        "put",
-        f"({PUT}) (down <thing> | <thing> down) ({ON} | at) <spot>",
-    ),
+    Wording("put", f"({PUT}) (down <thing> | <thing> down) ({ON} | at) <spot>"),
     Wording("put", f"(line | stack | pile | set | put | lay) <thing> (up | out) ({ON} | at) <spot>"),
     Wording("put", f"drop (off <thing> | <thing> off) ({ON} | at) <spot>"),
     Wording(
@@ -43,11 +40,7 @@ MOVING: tuple[Wording, ...] = (
     ),
     Wording("throw_away", f"({THROW}) <thing> (away | out)", heard=f"throw {IT} away"),
     Wording("throw_away", f"({THROW}) (away | out) <thing> | ({DISCARD}) <thing>"),
-    Wording(
-        "put_away",
-        f"(put | {TIDY}) away <thing> | (put | {TIDY}) <thing> away",
-        heard=f"put {IT} away",
-    ),
+    Wording("put_away", f"(put | {TIDY}) away <thing> | (put | {TIDY}) <thing> away", heard=f"put {IT} away"),
     Wording(
         "put_back",
         "(put | take | bring | return | set | place | move | carry) <thing> [back] (where | to where)"
@@ -59,26 +52,18 @@ MOVING: tuple[Wording, ...] = (
         heard="put (it | that) back [where it was]",
     ),
     Wording(
-        "put_away",
-        "put <thing> [back] (where it belongs | where they belong | in its place | to its place | in order)",
+        "put_away", "put <thing> [back] (where it belongs | where they belong | in its place | to its place | in order)"
     ),
     Wording("put_away", "sort [out] <thing> | <thing> (needs | need) (putting | to be put) away"),
-    Wording(
-        "put_where",
-        f"({PUT} | bring | take | carry) <thing> [over] [to] where <spot> (is | are | stands | lies)",
-    ),
+    Wording("put_where", f"({PUT} | bring | take | carry) <thing> [over] [to] where <spot> (is | are | stands | lies)"),
     # Bringing.
     Wording("deliver_there", f"({MOVE} | {PUT}) <thing> ([over] there | in [there] too | (in | on) there)"),
     Wording("deliver_there", "<thing> (goes | belongs | go | can go | should go | is to go) there"),
     Wording(
-        "fetch",
-        f"({BRING} | find) (me | us) <thing> [back]",
-        heard="(bring | fetch | get | give | hand) me <thing>",
+        "fetch", f"({BRING} | find) (me | us) <thing> [back]", heard="(bring | fetch | get | give | hand) me <thing>"
     ),
     Wording(
-        "fetch",
-        f"({BRING} | move) <thing> [over | back] to (me | us)",
-        heard="(bring | take | carry) <thing> to me",
+        "fetch", f"({BRING} | move) <thing> [over | back] to (me | us)", heard="(bring | take | carry) <thing> to me"
     ),
     Wording("fetch", f"({FETCH}) (<thing> [back | over] here | <thing> (back | over) | over <thing>)"),
     Wording(
@@ -87,16 +72,13 @@ MOVING: tuple[Wording, ...] = (
         heard=f"(put | place | set) {IT} <onto> | throw {IT} (in | into) <inside> | move <thing> (to <spot> | <onto>)",
     ),
     Wording(
-        "deliver",
-        f"({MOVE}) [me] <thing> {BACK} (to | into) <spot>",
-        heard="(bring | take | carry) <thing> to <spot>",
+        "deliver", f"({MOVE}) [me] <thing> {BACK} (to | into) <spot>", heard="(bring | take | carry) <thing> to <spot>"
     ),
     Wording("wish_at", "(bring | get | fetch | carry) <thing> (on | in) <spot>"),
     Wording("put", f"(take | deliver | move | shift | relocate | transfer | swap) <thing> {BACK} (on | in) <spot>"),
     Wording("put", f"({MOVE}) <thing> {BACK} onto <spot>"),
     Wording(
-        "put",
-        f"<thing> (belongs | belong | goes | go | can go | should be | should go | must go) ({ON} | to) <spot>",
+        "put", f"<thing> (belongs | belong | goes | go | can go | should be | should go | must go) ({ON} | to) <spot>"
     ),
     Wording(
         "put",
@@ -124,15 +106,9 @@ MOVING: tuple[Wording, ...] = (
         "(pick | take | grab | lift | gather | collect) up <thing> | pick <thing> up | lift <thing> [up]",
         heard="pick (up <thing> | <thing> up)",
     ),
-    Wording(
-        "pick_up",
-        "(get | take | grab) hold of <thing> | (hold | hang) on to <thing> | hold onto <thing>",
-    ),
+    Wording("pick_up", "(get | take | grab) hold of <thing> | (hold | hang) on to <thing> | hold onto <thing>"),
     Wording("pick_up", "(grab | grasp | take | hold | pick | reach [for]) <thing>", heard="(grab | take) <thing>"),
-    Wording(
-        "find",
-        "check on <thing> | keep an eye (out for | open for | on) <thing> | watch out for <thing>",
-    ),
+    Wording("find", "check on <thing> | keep an eye (out for | open for | on) <thing> | watch out for <thing>"),
     Wording("put_back", "undo <thing> | revert <thing>"),
     Wording("fetch", "(i | we) feel like [having | eating | drinking] <thing>"),
     Wording("find", f"({SEEK}) <thing>", heard="find <thing>"),
@@ -147,18 +123,9 @@ MOVING: tuple[Wording, ...] = (
     Wording("find", "(help me | try to) (look for | find | search for | locate) <thing>"),
     Wording("find", "(search | look | look around) [through | in] <spot> for <thing>"),
     Wording("fetch", f"({FETCH} | get) <thing>"),
-    Wording(
-        "wish_at",
-        f"{PERSON} {WISH} <thing> [to be] {ON} <spot>",
-    ),
-    Wording(
-        "fetch",
-        f"{PERSON} {WISH} <thing> [[over] here]",
-    ),
-    Wording(
-        "fetch",
-        f"{MODAL} (i | we) (have | get) <thing> | let (me | us) (have | borrow | use | hold) <thing>",
-    ),
+    Wording("wish_at", f"{PERSON} {WISH} <thing> [to be] {ON} <spot>"),
+    Wording("fetch", f"{PERSON} {WISH} <thing> [[over] here]"),
+    Wording("fetch", f"{MODAL} (i | we) (have | get) <thing> | let (me | us) (have | borrow | use | hold) <thing>"),
     Wording("fetch", f"{MODAL} i (trouble | bother | ask) you for <thing> | gimme <thing> | how about <thing>"),
     Wording("fetch", "<thing> would be (nice | great | good | lovely | perfect)"),
     Wording("fetch", "[is there] any chance of [getting | having] <thing>"),

@@ -16,10 +16,6 @@ _ADVERBS = (
 )
 _YOU = r"(?:you|someone|somebody|anyone|anybody)(?: guys| all)?"
 _CAN = "(?:can|could|would|will|may|might)"
-_AUX = (
-    rf"(?:{_CAN}|should|must|ought to|need to)"
-    "(?: (?:possibly|be able to|be willing to|be so kind (?:as to|and)|please|perhaps|maybe|just))*"
-)
 _ANY_WORD = r"(?!not\b|never\b|no\b|hard\b|difficult\b|wrong\b|bad\b|i\b|have\b)\w+ "
 """A word of how something would be: `lovely`, `a terrible bother`."""
 _TIME = (
@@ -108,7 +104,8 @@ _FRAMES = (
     r"(?:(?:do not|never) (?:forget|fail)|remember|(?:make|be) sure|feel free|try|go ahead|start|"
     r"get (?:busy|going|to work|moving|up))(?: to| and| by|(?: that)? you)(?=\s+\w)",
     r"(?:it is |about )?(?:high )?time (?:you (?:\w+ed)?|to|for you to)|"
-    r"(?:i|we)(?: have)? decided(?: that)?(?=\s+\w)|what (?:i|we) (?:want|need) you to do is|on second thoughts?",
+    r"(?:(?:i|we)(?: have)? (?:decided|agreed)|let us agree)(?: that)?(?=\s+\w)|"
+    r"what (?:i|we) (?:want|need) you to do is|on second thoughts?",
     r"i (?:think|guess|suppose|believe|reckon|say|suggest)(?: that)?(?= (?:the|my|this|that|we|you|it|i)\b)",
     r"while you are (?:at it|there|up|about it)|(?:on|along) (?:the|your) way(?: back)?",
     r"drop everything(?: else)?(?: and)?(?=\s+\w)|without \w+ing .+?(?=,| throw\b| put\b| bring\b| take\b)",

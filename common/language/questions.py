@@ -9,7 +9,7 @@ ABOUT_THE_WORLD: tuple[Wording, ...] = (
         "[tell me] what (do you | can you | are you able to) see [now | right now | here | from (here | there | "
         "where you are)]"
         " | tell me what you [can] (see | find) | what have you seen [so far | today | until now | up to now "
-        "| around here]", heard="what (do | can) you see"
+        "| around here]", heard="what (do | can) you see",
     ),
     Wording(
         "contents",
@@ -72,7 +72,7 @@ ABOUT_THE_WORLD: tuple[Wording, ...] = (
         f"<thing> {BE}) [in | on]",
     ),
     Wording(
-        "where", f"{ASK} where (i | we | you) [have] [last] (left | put | saw | seen | have | had) <thing>"
+        "where", f"{ASK} where (i | we | you) [have] [last] (left | put | saw | seen | have | had) <thing>",
     ),
     Wording(
         "where",

@@ -1,6 +1,4 @@
-"""What was taken back or made more precise: `the red mug, no wait, the blue one`, `not the red mug, the blue one`,
-`the can, the green one`, `the mug on the desk, bring it to me`. Pure.
-"""
+"""What was taken back or made more precise: `the red mug, no wait, the blue one`, `the can, the green one`. Pure."""
 
 import re
 
@@ -11,27 +9,21 @@ from common.language.politeness import without_politeness
 
 _REPAIR = re.compile(
     r"(?:,\s*wait,\s*(?=not\b)|[,.;]\s*(?:no|sorry|actually|rather)(?:,\s*|\s+)|,\s*(?:oh|well|hold on|hang on),\s*"
-    r"|(?<=\w)(?<!\bsay)\s+no,?\s+(?=(?:the|my|on|in|to|at)\s)|,?\s+(?:no,? wait|wait,? no|no,? (?:hold|hang) on|oh,? "
-    r"wait|no,? sorry|sorry,? no|"
-    r"sorry,? i mean(?:t)?|or (?:rather|maybe |even |perhaps )?(?:better|no)(?: yet| still)?|better "
-    r"(?:yet|still)|or rather|"
-    r"i mean(?:t)?|make that|scratch that|correction|no,? i mean(?:t)?|no,? make (?:that|it)|no,? not that|"
-    r"on second thoughts?)(?:,\s*|\s+))"
-    r"(?:i mean(?:t)?|i said|make (?:that|it)|rather|actually|sorry|wait|no)?\b,?\s*"
+    r"|(?<=\w)(?<!\bsay)\s+no,?\s+(?=(?:the|my|on|in|to|at)\s)|,?\s+(?:(?:no|ah|oh),? (?:wait|hold on|hang on|sorry|no)"
+    r"|wait,? no|sorry,? no|(?:no,? |sorry,? )?i mean(?:t)?|(?:no,? )?make (?:that|it)|scratch that|correction|"
+    r"or rather|or (?:rather|maybe |even |perhaps )?(?:better|no)(?: yet| still)?|better (?:yet|still)|no,? not that|"
+    r"on second thoughts?)(?:,\s*|\s+))(?:i mean(?:t)?|i said|make (?:that|it)|rather|actually|sorry|wait|no)?\b,?\s*"
 )
 """Between what was said and what was meant."""
-_CONTRAST = re.compile(
-    r"^(?:i (?:said|meant|mean|want|wanted) )?not "
-    r"(?P<wrong>.+?)(?:,\s*(?:but\s+)?|\s+but\s+)(?:rather )?(?P<right>.+)$"
-)
+_BUT = r"(?:,\s*(?:but\s+)?|\s+but\s+)(?:rather )?"
+_CONTRAST = re.compile(rf"^(?:i (?:said|meant|mean|want|wanted) )?not (?P<wrong>.+?){_BUT}(?P<right>.+)$")
 _CONTRAST_OF_ONES = re.compile(
     r"^not (?P<wrong>(?:(?:on|in|to|into) )?(?:the|a|my) (?:\w+ )?\w+?)(?P<right> (?:the|on|in|into|to) .+)$"
 )
-_DO_NOT = re.compile(r"^do not (?P<wrong>\w+ .+?)(?:,\s*(?:but\s+)?|\s+but\s+)(?:rather )?(?P<right>.+)$")
+_DO_NOT = re.compile(rf"^do not (?P<wrong>\w+ .+?){_BUT}(?P<right>.+)$")
 _DO_NOT_DO = re.compile(rf"^do not (?P<wrong>{A_VERB} .+?)\s+(?P<right>{A_VERB} (?:me|us|the|a|an|my|it|to)\b.+)$")
 NOT_WANTED = re.compile(
-    r"^(?:(?:never mind|forget(?: about)?|skip|leave|ignore|not|no need for|no more|(?:i|we) do not "
-    r"(?:need|want|like))"
+    r"^(?:(?:never mind|forget(?: about)?|skip|leave|ignore|not|no need for|no more|(?:i|we) do not (?:need|want|like))"
     r" (?:the|that|my|those|this)(?: \w+){1,3}?|no (?!the\b|no\b|need\b)\w+(?=,))(?:,\s*(?:and |but )?| and | but | )"
     rf"(?=(?:please |just |rather )*(?:{A_VERB}|i want|i need|i would like)\b"
     r"|(?<=, )(?:the|a|an|my) (?!\w+ ones?\b))"
@@ -63,27 +55,24 @@ _LATE_EXCEPT = re.compile(
     r"^(?P<all>.+) (?P<particle>away|out|back|up|down) (?P<but>(?:except|but not|but|apart from|other than) .+)$"
 )
 """An exception that is said behind a verb's particle."""
+_AS_IT_IS = "(?: (?:there|here|put|alone|be|out|in peace|(?:where|as) (?:it|they) (?:is|are)))?"
 _SPARED = re.compile(
-    r"^(?P<said>.+?)(?:,\s*|\s+)(?:(?:and|but|only|just|though|while) )?(?:(?:please )?(?:hands off|(?:do not|never) "
-    r"(?:touch|move|take)|leave|spare|keep|ignore|skip|stay away from) (?P<one>(?:the|my|our|any) [^,]+?)"
-    r"(?: (?:there|alone|be|out|in peace|where (?:it|they) (?:is|are)|as (?:it|they) (?:is|are)))?"
-    r"|(?P<other>(?:the|my|our) [^,]+?) (?:(?:can|may|should|must|has to|is to|will) )?(?:stays?|remains?)"
-    r"(?: (?:there|put|here|where (?:it|they) (?:is|are)|as (?:it|they) (?:is|are)))?)(?: though| please)?$"
+    r"^(?P<said>.+?)(?:,\s*|,? (?:and|but|only|just|though|while) )(?:(?:please )?(?:hands off|(?:do not|never) (?:"
+    r"touch|move|take)|leave|spare|keep|ignore|skip|stay away from) (?P<one>(?:the|my|our|any) [^,]+?)|"
+    r"(?P<other>(?:the|my|our) [^,]+?) (?:(?:can|may|should|must|has to|is to|will) )?(?:stays?|remains?))"
+    rf"{_AS_IT_IS}(?: though| please)?$"
 )
 """What is not to be touched, said behind a command that would."""
-_OF_ALL = re.compile(r"^(?:(?:tidy|clean|clear|empty|sort|straighten)\b|.*\b(?:all|everything|every)\b)")
 _EXCEPT = re.compile(r",\s*(?:and |but |only |just )?(?=(?:not|except|but not|apart from|other than)\b)")
 _REFINEMENT = re.compile(
     r"^(?P<said>[^,]+?)(?:,\s*|\s+)(?:(?:you know|well|that is|please),?\s*)?(?P<one>(?:the|a|an) (?:\w+ ){1,2}one)"
     r"(?P<rest>,?(?: (?:and|on|in|to|into|onto|next|from|off) .*)?)$"
 )
 """A thing, and which one of its kind."""
-_BARE_NOUN = re.compile(r"^\w+(?: \w+)?(?: please)?$")
 _SMALL = "me us and now where is are not no or what which then ok okay yes also i we you he she they so but want need"
 NO_NOUN = frozenset(_SMALL.split()) | COMMANDING | DETERMINERS | PREPOSITIONS
-"""Words that no name of a thing has."""
+"""Words that no name of a thing has, and those before another thing, which is not the same as the one before."""
 _GOES_ON = frozenset({"for", "except", "than", "and", "or", "then", "but", "not", "with", "to", "as"})
-"""Before another thing, which is not the same as the one before."""
 _ANSWERS = frozenset({"no", "yes", "not", "if", "when", "unless", "after", "before", "once", "first"})
 LONGEST_LEAD = 4
 """Words before a comma that may be left out (chosen)."""
@@ -119,7 +108,7 @@ _ONE_OF_THOSE = re.compile(
 """Which one of several is meant, the several first."""
 _NEITHER = re.compile(r"\bneither .+? nor (?P<other>(?:the |my )?(?:\w+ ){1,2}?)(?:but )?(?P<one>(?:the|a|my) [^,]+)")
 _MADE_SURE = re.compile(r",? (?:but|and) (?:make sure|mind|see)(?: that)? it is (?=(?:the|a) \w+ one\b)")
-_ANY = re.compile(r"\b(an? (\w+)), any (?:\2|one|of them|will do)\b")
+_ANY = re.compile(r"\b(an? (\w+)), (?:any|either|whichever)(?: (?:\2|one|of them|will do|you (?:like|want)))?\b")
 
 
 def settled(text: str, is_place: IsPlace) -> str:
@@ -134,7 +123,9 @@ def settled(text: str, is_place: IsPlace) -> str:
         others = re.sub(r",? (?:and|nor) not | nor ", " or ", found["more"])
         one_of = "" if "," in found["said"] else f" but not {found['one']}{others}"
         text = f"{found['said']}{one_of}"
-    if (found := _SPARED.match(text)) and _OF_ALL.match(without_politeness(found["said"])):
+    if (found := _SPARED.match(text)) and re.search(
+        rf"\b(?:tidy|clean|clear|empty|sort)\b|{_SEVERAL.pattern}", found["said"]
+    ):
         text = f"{found['said']} except {found['one'] or found['other']}"
     found = _WHERE_IT_IS.match(bare := without_politeness(text))
     if found and verb_first(bare) and not PREPOSITIONS & set(found["said"].split()):
@@ -229,7 +220,7 @@ def _refined(text: str) -> str:
     if found is None or found["said"].split()[-1] in _GOES_ON:
         return text
     spans = noun_phrases(found["said"].split())
-    if not spans and _BARE_NOUN.match(found["said"]) and not NO_NOUN & set(found["said"].split()):
+    if not spans and re.match(r"\w+(?: \w+)?(?: please)?$", found["said"]) and not NO_NOUN & set(found["said"].split()):
         return f"{filled(found['one'], found['said'])}{found['rest'].lstrip(',')}"
     if not spans or spans[-1][1] - spans[-1][0] != 2:
         return text

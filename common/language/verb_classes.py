@@ -14,9 +14,8 @@ _WORDS: dict[VerbClass, str] = {
     "transport shuttle scoop nab snag bag fish nick whip dig run furnish drag rustle produce return pull",
     "wish": "want need require wish fancy crave desire prefer borrow",
     "put": f"{PUT} {MOVE} deposit park rest settle position locate install arrange pile line store shelve restore "
-    "replace lean lie let hang keep insert load lodge bung whack prop bring take run ferry lug cart transport house "
-    "home "
-    "go belong stand sit live end land",
+    "replace lean lie let make hang keep insert load lodge bung whack prop bring take run ferry lug cart transport "
+    "house home go belong stand sit live end land",
     "discard": f"{THROW} {DISCARD} scrap dump eliminate lose banish rid relieve",
     "tidy": f"{TIDY} order sort smarten spruce neaten arrange empty fix straighten freshen unclutter restore free",
     "go": f"go {GO} {MOVE} toddle trot trundle scoot zoom race march saunter amble shuffle potter skip cruise journey "

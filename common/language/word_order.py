@@ -63,7 +63,6 @@ def reworded(words: Words, verbs_only: bool = False, deeper: bool = True) -> Ite
 
 _WITHIN = (
     (re.compile(r"\bwhichever (\w+) is (?:the )?(closest|nearest|biggest|smallest|tallest|shortest)"), r"the \2 \1"),
-    (re.compile(r"\bthe first (\w+) (?:that )?you (?:can )?(?:see|find|get|spot)$"), r"a \1"),
     (re.compile(r"\banother$"), "another one"),
     (re.compile(r"\b(?:the )?(?:others|rest)$"), "the other ones"),
     (

@@ -167,23 +167,14 @@ WORDINGS: tuple[Wording, ...] = (
         heard="come (here | back)",
     ),
     Wording(
-        "come_back", "(come | go | return | head) [back] [to] where (i am | we are | you started | "
-                     "you came from)",
+        "come_back", "(come | go | return | head) [back] [to] where ((i am | we are) [sitting | standing | lying] | "
+                     "you started | you came from)",
     ),
     Wording("come_back", "over here | here to me | to me | this way") ,
     Wording("come_back", "return [home | here | to (start | me | base)] | come | home | back [here | to "
                          "me | home]"),
-    # Two things at once, said of one object.
-    Wording("throw_away", f"{PICK} <thing> [up] and throw (it | them) away"),
-    Wording("put_away", f"{PICK} <thing> [up] and put (it | them) away"),
-    Wording(
-        "put", f"{PICK} <thing> [up] and ({PUT}) (it | them) {BACK} {ON} <spot>",
-    ),
-    Wording(
-        "deliver", f"{PICK} <thing> [up] and (bring | take | carry) (it | them) {BACK} to <spot>",
-    ),
+    Wording("put", f"{PICK} <thing> [up] and ({PUT}) (it | them) {BACK} {ON} <spot>"),
     Wording("fetch", f"(go | get | {GO}) [over | along] and ({BRING} | find) [me | us] <thing>"),
-    Wording("fetch", f"(go | come | run) ({BRING}) [me | us] <thing>"),
     # Tidying, going.
     Wording("tidy", f"({TIDY}) up [<spot>]", heard="(tidy | clean) up [the | my] <place>"),
     Wording("tidy", f"({TIDY}) <spot> [up]", heard="(tidy | clean | clear) [the | my] <place>"),

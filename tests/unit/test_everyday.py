@@ -42,6 +42,18 @@ def test_two_halves_of_one_list(name: str, right: int, wrong: int) -> None:
     assert verdicts.count("right") >= right and verdicts.count("wrong") <= wrong
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("name", "understood", "wrong"),
+    [("porch_everyday_sentences.tsv", 380, 12), ("doorstep_everyday_sentences.tsv", 64, 1)],
+)
+def test_what_is_not_understood_at_once_is_mostly_asked_about(name: str, understood: int, wrong: int) -> None:
+    """The first was worked on, but for readings that its notation cannot express; the second was sealed meanwhile."""
+    verdicts = [verdict(row, understand(row)) for row in sentences(name)]
+    assert verdicts.count("right") + verdicts.count("asked rightly") >= understood
+    assert verdicts.count("wrong") <= wrong
+
+
 def test_what_asks_for_nothing_sets_nothing_in_motion() -> None:
     rows = sentences("nothing_to_do.tsv")
     assert not [row for row in rows if row.right == "none()" and verdict(row, understand(row)) == "wrong"]

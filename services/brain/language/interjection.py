@@ -12,6 +12,7 @@ from common.language.lexicon import A_VERB
 from common.language.meaning import asks_for, is_question
 from common.language.normalise import normalise
 from common.language.repairs import NOT_WANTED
+from common.language.wording import Action
 
 Kind = Literal["stop", "cancel", "come_back", "queue", "replace", "aside"]
 _LATER = re.compile(
@@ -72,9 +73,10 @@ class Interjection(msgspec.Struct, frozen=True):
 
 def interjection(said: str) -> Interjection:
     """What a sentence means to a mission under way; a command without a word about when is for later."""
-    if control := asks_for(said, "stop", "cancel", "come_back"):
-        return Interjection(control, said)  # type: ignore[arg-type]
     words = without_fillers(expand(normalise(said, ",")))
+    now: tuple[Action, ...] = ("stop", "cancel") if _LATER.match(words) else ("stop", "cancel", "come_back")
+    if control := asks_for(said, *now):
+        return Interjection(control, said)  # type: ignore[arg-type]
     first, _, reason = words.partition(", ")
     if asks_for(words.rpartition(", ")[2], "stop"):
         return Interjection("stop", said)

@@ -41,7 +41,7 @@ def rule(builder: PlanBuilder, slots: Slots) -> None:
     things = slots["thing"]
     phrase = read(things, builder.vocabulary)
     plural = isinstance(phrase, Phrase) and (phrase.plural or (phrase.sense.new and _is_plural(things[-1])))
-    whole = isinstance(phrase, Phrase) and not (phrase.sense.every or phrase.relation or phrase.but)
+    whole = isinstance(phrase, Phrase) and not (phrase.sense.every or phrase.relation or phrase.but or phrase.count > 1)
     if things[0] in ONES or not (plural and whole):
         raise Lost(f"I do not know which {' '.join(things)} you mean; say from now on for all")
     rule_always(builder, slots)

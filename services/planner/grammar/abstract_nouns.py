@@ -109,5 +109,7 @@ violence virtue viscosity vision visit vitality vocabulary voice volley voltage 
 wakefulness war warfare warmth warning wave wavelength way weakness weather wednesday week weekend welfare while
 whisper width willingness winter wish wonder word workout worry worship wound wrath wrong year yearning years
 yell yellow yes yesterday zeal
+hello hi goodbye bye welcome wave wink cuddle cheers position positions stance seat spin twirl nod bow salute clap five
+posture presentation rundown heads overview
 """
 ABSTRACT: frozenset[str] = frozenset(_WORDS.split())

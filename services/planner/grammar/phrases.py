@@ -166,7 +166,7 @@ def _known_head(words: Words, vocabulary: Vocabulary) -> Phrase | None:
         elif word == "both":
             count, number = 2, True
         elif word in NUMBERS:
-            count, number = NUMBERS[word], True
+            count, number = count if number else NUMBERS[word], True  # "two of the three mugs"
         elif word in ("a", "an", "any", "some", "either", "whichever"):
             any_one = True
         elif word in DETERMINERS or word in UNSEEN or word == "of":
