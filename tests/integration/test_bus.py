@@ -14,7 +14,7 @@ from common import messages as m
 from common import topics
 from common.bus import codec, delivery
 from common.bus.delivery import Publisher
-from tests.support import ROOT, Site, eventually
+from tests.support import PATIENCE, ROOT, Site, eventually
 
 STATUS = topics.NAVIGATION_STATUS.key
 SCENE = 'name="t"\nlow=[-1.0,-1.0]\nhigh=[1.0,1.0]\nhome={name="home",x=0.0,y=0.0}\n'
@@ -136,7 +136,7 @@ def test_signals_end_a_process_with_status_0(here: Site, number: signal.Signals)
     with here.session() as session:
         here.wait_alive(session, "echo")
     process.send_signal(number)
-    assert process.wait(10) == 0
+    assert process.wait(PATIENCE) == 0
     assert "Traceback" not in here.log("tests.fakes")
 
 
@@ -148,7 +148,7 @@ def test_a_node_started_before_its_router_keeps_trying(here: Site) -> None:
     quitter = start_echo(here)
     eventually(lambda: here.log("tests.fakes").count("waiting for a router") == 2, "both say what they wait for")
     quitter.terminate()
-    assert quitter.wait(10) == 0, "it also ends on a signal while it waits"
+    assert quitter.wait(PATIENCE) == 0, "it also ends on a signal while it waits"
     assert process.poll() is None
     here.start_router()
     with here.session() as session:

@@ -17,7 +17,7 @@ from cli.processes.ports import free_port
 from cli.processes.services import NAMES, OPTIONAL
 from common.bus.session import open_session
 from tests.compose.mission import carry_out
-from tests.support import ROOT, eventually
+from tests.support import PATIENCE, ROOT, eventually
 
 NODES = tuple(name for name in NAMES if name != "router" and name not in OPTIONAL)
 SHELL = {
@@ -145,7 +145,7 @@ class Containers:
 
     def restart(self, name: str) -> None:
         self.running[name].terminate()
-        assert self.running[name].wait(10) == 0
+        assert self.running[name].wait(PATIENCE) == 0
         self.start(name)
 
     def close(self) -> None:

@@ -171,7 +171,8 @@ def test_the_rules_of_a_router() -> None:
 def test_the_rules_of_a_service() -> None:
     made = access.acl([Subject(name="planner", namespace="k")])
     puts = "action_plan planner/status sim/ack service/planner/health log/planner"
-    asks = f"plan_request world/objects household/edits household/sightings navigation/pose {CLOCKS} service/*/health"
+    asks = "plan_request world/objects household/edits household/sightings navigation/pose robot/battery"
+    asks += f" {CLOCKS} service/*/health"
     reads = f"{asks} service/*/alive"
     answers, name = "action_plan planner/status service/planner/health", "k/planner"
     caches = below("k/", "", puts)

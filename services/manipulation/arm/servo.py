@@ -42,7 +42,7 @@ class Servo:
 
     def begin(self, joints: Array, torques: Array, around: Sequence[Obstacle]) -> None:
         """From rest at these joints (7,), with what the motors feel (7,) [Nm] while the hand touches nothing."""
-        self.arm.set_obstacles(around)
+        self.arm.set_obstacles(around, 0.0)
         self.q, self._velocity, self._met = joints.copy(), np.zeros(7), None
         gravity = self._gravity(joints)
         # Some arms tell their own weight with their torques, some have taken it off.
