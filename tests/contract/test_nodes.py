@@ -68,7 +68,7 @@ def obey(peer: Peer) -> Any:
     return peer.session.declare_subscriber("base/target_pose", reached)
 
 
-@pytest.mark.parametrize("odometry", ["none", "still", "jumps"])
+@pytest.mark.parametrize("odometry", ["none", "still", "follows"])
 def test_navigation_drives_to_the_spot_and_waits_for_the_base(here: Site, odometry: str) -> None:
     here.start("services.navigation", TIDYBOT_CLOCK="wall", **UNHURRIED)
     with here.session() as session:
@@ -84,8 +84,8 @@ def test_navigation_drives_to_the_spot_and_waits_for_the_base(here: Site, odomet
             feed = _odometry(peer, here, odometry == "still")
         status = peer.wait("brain/navigation_status", status="arrived")
         assert (status["goal_id"], status["attempt"]) == ("m.1", 1)
-        last = peer.heard["base/target_pose"][-1]
-        assert (last["x"], last["y"]) == pytest.approx((1.0, 1.0))
+        # The base is believed for the spot itself, also when odometry has come since and the way there is led in steps.
+        assert (1.0, 1.0) in [(round(t["x"], 6), round(t["y"], 6)) for t in peer.heard["base/target_pose"]]
         assert json.loads(delivery.fetch(session, "brain/navigation_status")["brain/navigation_status"]) == status
         peer.put("brain/navigation_goal", goal="find red mug", id="m.1", attempt=1)
         eventually(lambda: len(_arrivals(peer)) == 2, "the same goal is answered with the same status")
@@ -130,10 +130,11 @@ def _odometry(peer: Peer, here: Site, still: bool) -> Callable[[], None]:
 
     over = threading.Event()
     where = {"x": 0.0, "y": 0.0, "theta": 0.0}
+    target = dict(where)
 
     def listen(sample: zenoh.Sample) -> None:
         row = json.loads(sample.payload.to_string())
-        where.update({k: row[k] for k in where})
+        target.update({k: row[k] for k in where})
 
     kept = None if still else peer.session.declare_subscriber("base/target_pose", listen)
 
@@ -141,6 +142,10 @@ def _odometry(peer: Peer, here: Site, still: bool) -> Callable[[], None]:
         t = 0.0
         while not over.wait(0.05):
             t += 0.05
+            # What is farther than that from where it was is an odometry that began anew, in a frame of its own.
+            way = math.dist((where["x"], where["y"]), (target["x"], target["y"]))
+            share = min(1.0, 0.1 / way) if way else 1.0
+            where.update({k: where[k] + share * (target[k] - where[k]) for k in where})
             peer.put("base/odom", t=t, **where)
 
     thread = threading.Thread(target=run, daemon=True)
