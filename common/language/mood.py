@@ -13,8 +13,8 @@ def _any(phrases: str) -> str:
 
 _NEGATIONS = (
     "not | never | nobody | none | nothing | no one | without | stop | leave | hands off | (?:stay|keep) "
-    "(?:away|out|off|clear) | forbid | forbidden | allowed"
-    " | hate | no reason | wrong"
+    "(?:away|out|off|clear) | forbid | forbidden | allowed | hate | no reason | wrong | except | excluding"
+    " | (?:and|but) keep"
 )
 _SUPPOSITIONS = (
     r"suppose | supposing | imagine | pretend | used to | if (?:i|you|he|she|we|they) (?:were|was|had|could)"

@@ -41,8 +41,6 @@ _REQUESTED = re.compile(
 """What makes a request of a question: `is it okay if you ...`."""
 _MOVING: frozenset[VerbClass] = frozenset({"put", "bring", "discard", "wish", "tidy"})
 _PLACES: tuple[Role, ...] = ("from", "at", "to")
-_SPARED = re.compile(r"\b(?:except(?: for)?|excluding|without|(?:but|and) (?:not|leave|leaving|keep))(?: \w+)?$")
-"""Words before a thing that is to be left where it is."""
 _HERE = frozenset({"me", "us", "here", "i", "we", "my", "mine", "our"})
 _AWAY = re.compile(r"\b(?:away|belongs?|lives?|(?:its|their|right|proper) (?:place|spot|home|places)|put up)\b")
 _UNTIDY = re.compile(
@@ -84,9 +82,7 @@ class _Parts(NamedTuple):
 
 
 def by_roles(words: Words, vocabulary: Vocabulary) -> list[str]:
-    """Plain commands or questions that the words may come to, likeliest first; [] if they name nothing or spare one."""
-    if any(_SPARED.search(" ".join(words[: chunk.begin])) for chunk in chunks(words, vocabulary)):
-        return []
+    """Plain commands or questions that the words may come to, the likeliest first; [] if they name none."""
     parts = _parts(words, vocabulary)
     return _questions(parts) if is_asked(words) else _requests(parts)
 
