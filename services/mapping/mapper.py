@@ -11,7 +11,7 @@ from common.floor_plan import Vec2
 from common.geometry import Pose2, compose, inverse
 from services.mapping.barriers import Met, panes, shut
 from services.mapping.depth import CameraModel, Picture
-from services.mapping.grid import Grid
+from services.mapping.grid import OCCUPIED, Grid
 from services.mapping.scan import Scan
 from services.mapping.scan_matching import placed
 from services.mapping.trajectory import Trajectory
@@ -99,7 +99,8 @@ class Mapper:
         `barriers`: where something unseen held the robot up.
         """
         self.grid.shut[:] = False
-        self.panes = panes(barriers, self.grid.states(), self.grid)
-        self.grid.shut = shut(barriers, self.panes, self.grid)
         states = self.grid.states()
+        self.panes = panes(barriers, states, self.grid)
+        self.grid.shut = shut(barriers, self.panes, self.grid)
+        states[self.grid.shut] = OCCUPIED
         return survey(self.grid, states, here, barred), states
