@@ -20,7 +20,7 @@ from services.manipulation.planning.motion_planner import PlanError
 from services.manipulation.planning.object_source import ObjectSource
 from services.manipulation.planning.plan_grab import GrabPlan, plan_grab
 from services.manipulation.planning.plan_place import can_be_set_down
-from services.manipulation.planning.planning_scene import SLAB
+from services.manipulation.planning.planning_scene import SLAB, target_of
 from tests.unit.test_manipulation_stances import HOME, PLANNER, REST
 
 CONFIG = ManipulationConfig()
@@ -83,7 +83,7 @@ def test_the_base_is_sent_elsewhere_once_and_then_it_is_taken_as_can_be(monkeypa
     found = WorldObject("bottle", "bottle", "red", (0, 0, 0.8), size=(0.2, 0.07, 0.07), tilt=math.pi / 2)
 
     def choose() -> Any:
-        steps = grasp_choice.chosen(robot, found, [[]], frozenset(), [])
+        steps = grasp_choice.chosen(robot, found, target_of(found, robot.base, HOME), [[]], frozenset(), [])
         while True:
             try:
                 next(steps)

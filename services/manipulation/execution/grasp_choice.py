@@ -6,15 +6,21 @@ from common.kinds import kind_of
 from common.messages import WorldObject
 from services.manipulation.arm.arm_model import Array, Obstacle
 from services.manipulation.execution.robot import Failure, Robot, Steps, planner_of
+from services.manipulation.grasps.target import Target
 from services.manipulation.planning.plan_grab import GrabPlan, plan_grab
-from services.manipulation.planning.planning_scene import MARGINS, obstacles, others, target_of
+from services.manipulation.planning.planning_scene import MARGINS, obstacles, others
 from services.manipulation.planning.stances import other_stance
 
 
 def chosen(
-    robot: Robot, found: WorldObject, around: list[list[Obstacle]], tried: frozenset[str], touched: list[Array]
+    robot: Robot,
+    found: WorldObject,
+    target: Target,
+    around: list[list[Obstacle]],
+    tried: frozenset[str],
+    touched: list[Array],
 ) -> Steps[GrabPlan]:
-    """The plan of a grasp that is not among the names `tried`; `around`, `touched`: as in `plan_grab`.
+    """The plan of a grasp that is not among the names `tried`; `target`, `around`, `touched`: as in `plan_grab`.
 
     What lies is taken so that it can be stood up. Where that cannot be from here the base is sent elsewhere, once;
     after that, or where no stance is better, it is taken so that it can be laid down.
@@ -22,10 +28,9 @@ def chosen(
     Raises:
         Failure: as `plan_grab`; with the stance from which there is a grasp, where there is one.
     """
-    config, height = robot.config, _stands_on(robot, found)
+    config, height = robot.config, _stands_on(robot, found, target)
     failure = Failure("UNREACHABLE", "")
     for stand_on in (height, None) if height is not None else (None,):
-        target = target_of(found, robot.base, robot.io.household)
         try:
             return (
                 yield from robot.work(
@@ -42,12 +47,12 @@ def chosen(
     raise failure
 
 
-def _stands_on(robot: Robot, found: WorldObject) -> float | None:
+def _stands_on(robot: Robot, found: WorldObject, target: Target) -> float | None:
     """Height [m] of the surface on which what lies will have to be stood up, as far as is known; None of what does not.
 
     Things are brought to the delivery surface, unless somebody says otherwise later.
     """
-    target, household = target_of(found, robot.base, robot.io.household), robot.io.household
+    household = robot.io.household
     surface = household.receptacle(household.delivery) or household.receptacle(found.on)
     if not target.lies or not kind_of(target.kind).upright or surface is None:
         return None

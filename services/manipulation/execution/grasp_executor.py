@@ -54,7 +54,7 @@ def grab(robot: Robot, goal: m.ManipulationGoal, wanted: str) -> Steps[str]:
         robot.phase = "reach"
         target, around = target_of(found, robot.base, robot.io.household), surroundings(robot, found)
         try:
-            plan = yield from chosen(robot, found, around, frozenset(tried), _touched(robot, found.label))
+            plan = yield from chosen(robot, found, target, around, frozenset(tried), _touched(robot, found.label))
         except Failure as failure:
             raise (last if tried else failure) from None
         candidates = shown(target, plan.options, robot.base, robot.now, tried, plan.grasp.name, goal.id)
