@@ -15,7 +15,6 @@ PYTHONS = ("3.11", "3.12", "3.13", "3.14")
 ARCHITECTURES = ("x86_64", "aarch64")
 GLIBC = "2_35"
 """Ubuntu 22.04's, on which NVIDIA's JetPack 6 is built; Debian 12 and Raspberry Pi OS have a newer one."""
-NOT_CACHED = "network was disabled"
 UNREACHABLE = ("dns error", "error sending request", "Request failed", "client error (Connect)")
 
 
@@ -25,9 +24,8 @@ def unresolved(lock: Path, python: str, architecture: str) -> str:
     Raises:
         ConnectionError: the package index does not answer, and the cache does not know.
     """
-    said = _resolve(lock, python, architecture, "--offline")
-    if NOT_CACHED in said:
-        said = _resolve(lock, python, architecture)
+    # What uv says of a package that is only missing from its cache differs, and may be that no such version exists.
+    said = _resolve(lock, python, architecture, "--offline") and _resolve(lock, python, architecture)
     if any(word in said for word in UNREACHABLE):
         raise ConnectionError(said.splitlines()[0])
     return said
