@@ -34,7 +34,7 @@ class Thing(msgspec.Struct, frozen=True):
 class Track(msgspec.Struct):
     """`carried` [m]: way of the base with it in the hand. `shift` [m], `lean` [rad]: the most since the baseline.
 
-    `lost_at` [m]: height at which the hand lost it, until something holds it up again."""
+    `lost_at` [m]: height at which the hand lost it, at the time `let_go` [s], until something holds it up again."""
 
     kind: str
     bins: frozenset[str]
@@ -65,22 +65,23 @@ class Track(msgspec.Struct):
             self.carried += driven
             # What slipped and was picked up again is judged by the carry that followed.
             self.dropped = self.dropped and before.held
-        if not self.dropped and self._fell(before):
-            self.dropped, self.let_go, self.drops = True, t, self.drops + 1
+        if not self.dropped and self._fell(before, t):
+            self.dropped, self.drops = True, self.drops + 1
         if self.dropped and now.on in self.bins and t - self.let_go < FALL:
             self.dropped, self.drops = False, self.drops - 1
 
-    def _fell(self, before: Thing) -> bool:
+    def _fell(self, before: Thing, t: float) -> bool:
         """On the floor, where it did not stand; or out of the hand, on nothing, and lower than there."""
-        now = self.last
-        if before.held and not now.touched and not now.on:
-            self.lost_at = before.position[2]
-        elif now.touched:
+        now, lost = self.last, self.lost_at
+        # A hand that goes down with it is lower by itself one sample later: only what is still out of it has fallen.
+        fell = lost is not None and not now.touched and lost - now.position[2] > DROP
+        if fell or now.touched or now.on:
             self.lost_at = None
-        fell = self.lost_at is not None and self.lost_at - now.position[2] > DROP
-        if fell or now.on:
-            self.lost_at = None
-        return fell or (now.on == "floor" and self.baseline.on != "floor")
+        elif before.held:
+            self.lost_at, self.let_go = before.position[2], t
+        if now.on == "floor" and self.baseline.on != "floor":
+            fell, self.let_go = True, t
+        return fell
 
     @property
     def toppled(self) -> bool:

@@ -18,6 +18,7 @@ KINDS = {"mug": "mug", "can": "can", "ball": "ball"}
 ON_TABLE = Thing(position=(3.0, 0.0, 0.7), tilt=0.0, on="table", held=False, touched=False)
 HELD = Thing(position=(3.0, 0.0, 0.9), tilt=0.0, on="", held=True, touched=True)
 FALLING = Thing(position=(3.0, 0.0, 0.8), tilt=0.0, on="", held=False, touched=False)
+LOWER = Thing(position=(3.0, 0.0, 0.7), tilt=0.0, on="", held=False, touched=False)
 ON_TRAY = Thing(position=(0.7, 0.0, 0.5), tilt=0.0, on="tray", held=False, touched=False)
 CAN = Thing(position=(3.3, 0.0, 0.75), tilt=0.0, on="table", held=False, touched=False)
 BALL = Thing(position=(3.6, 0.0, 0.75), tilt=0.0, on="table", held=False, touched=False)
@@ -167,11 +168,8 @@ def test_what_slipped_is_judged_by_the_carry_that_followed() -> None:
     assert (found.drops, found.dropped, found.delivered) == (1, False, True)
     twice = [
         *GOOD[:3],
-        sample(2.5, FALLING),
-        sample(2.6, FALLING),
-        sample(2.8, HELD),
-        sample(2.9, FALLING),
-        sample(3.0, HELD),
+        *(sample(2.5, FALLING), sample(2.6, LOWER), sample(2.8, HELD)),
+        *(sample(2.9, FALLING), sample(3.0, LOWER), sample(3.1, HELD)),
     ]
     assert mug([*twice, *GOOD[5:]]).drops == 2
 
@@ -190,6 +188,12 @@ def test_what_the_hand_loses_is_dropped_when_it_falls(fall: float, drops: int) -
     assert mug([*GOOD[:5], sample(4.5, above), sample(4.6, changed(below, on="tray")), *GOOD[5:]]).drops == drops
     again = changed(below, touched=True)
     assert mug([*GOOD[:5], sample(4.5, above), sample(4.6, again), sample(4.7, ON_TRAY), *GOOD[5:]]).drops == 0
+
+
+def test_what_a_sinking_hand_loses_for_one_sample_is_not_dropped() -> None:
+    held = sample(3.6, changed(HELD, position=FALLING.position))
+    assert mug([*GOOD[:4], sample(3.4, FALLING), held, *GOOD[4:]]).drops == 0
+    assert mug([*GOOD[:4], sample(3.4, FALLING), sample(3.5, LOWER), held, *GOOD[4:]]).drops == 1
 
 
 def test_what_stands_on_the_floor_has_not_fallen() -> None:
