@@ -45,7 +45,8 @@ class NavigationFeedback(Message):
 
     `recoveries` counts other paths taken or tried since the goal was sent; the sender of a goal that failed BLOCKED
     adds to them only what is missing to two. An `attempt` of 0 is one that the navigator does not state. `map_fit` is
-    the share of what the lidar saw lately that the map explains.
+    the share of what the lidar saw lately that the map explains, `met` (x, y) [map] what held the base up last that no
+    sensor sees, such as a pane of glass; empty: nothing.
     """
 
     goal_id: str
@@ -57,6 +58,7 @@ class NavigationFeedback(Message):
     attempt: int = 0
     detail: str = ""
     map_fit: float = 1.0
+    met: list[float] = []
 
 
 LOST = 1.0

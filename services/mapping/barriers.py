@@ -33,13 +33,14 @@ class Met(NamedTuple):
 
 
 def panes(barriers: Sequence[Met], states: NDArray[np.uint8], grid: Grid) -> list[tuple[Vec2, Vec2]]:
-    """Lines (start, end) [map] before each two poses at which one pane may have held the robot up, up to its frame.
+    """Lines (start, end) [map] before two poses at which one pane may have held the robot up, up to its frame.
 
-    A round bumper is at both as far from the pane, at whatever angle it met it. The frame is what is occupied;
-    where there is none the line ends where the robot was.
+    Those farthest apart tell it best; what was met on their line tells of no other. A round bumper is at both as far
+    from the pane, at whatever angle it met it. The frame is what is occupied; where there is none the line ends where
+    the robot was.
     """
-    found = []
-    for one, other in combinations(barriers, 2):
+    found: list[tuple[Vec2, Vec2]] = []
+    for one, other in sorted(combinations(barriers, 2), key=lambda pair: -math.dist(pair[0].here, pair[1].here)):
         (ax, ay), (bx, by) = one.here, other.here
         way = math.dist(one.here, other.here)
         if not APART <= way <= PANE:
@@ -50,9 +51,19 @@ def panes(barriers: Sequence[Met], states: NDArray[np.uint8], grid: Grid) -> lis
             continue
         off = math.copysign(BEFORE, sides[0])
         dx, dy = -step[1] * off, step[0] * off
-        start = _frame((ax + dx, ay + dy), (-step[0], -step[1]), states, grid)
-        found.append((start, _frame((bx + dx, by + dy), step, states, grid)))
+        ends = (ax + dx, ay + dy), (bx + dx, by + dy)
+        if not any(all(_off(end, line) < APART for end in ends) for line in found):
+            back = -step[0], -step[1]
+            found.append((_frame(ends[0], back, states, grid), _frame(ends[1], step, states, grid)))
     return found
+
+
+def _off(point: Vec2, line: tuple[Vec2, Vec2]) -> float:
+    """Distance [m] from a line between two points."""
+    (ax, ay), (bx, by) = line
+    ux, uy, px, py = bx - ax, by - ay, point[0] - ax, point[1] - ay
+    share = min(1.0, max(0.0, (px * ux + py * uy) / max(ux * ux + uy * uy, 1e-9)))
+    return math.hypot(px - share * ux, py - share * uy)
 
 
 def _frame(point: Vec2, step: Vec2, states: NDArray[np.uint8], grid: Grid) -> Vec2:

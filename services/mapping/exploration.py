@@ -5,9 +5,7 @@ from collections.abc import Callable
 from typing import Literal
 
 from common import messages as m
-from common.approach import FOOTPRINT
 from common.geometry import Pose2, wrap
-from services.mapping.barriers import Met
 from services.mapping.config import MappingConfig
 from services.mapping.views import Survey
 
@@ -17,9 +15,6 @@ PATIENCE = 3.0
 """Time [s] that pictures of a view may take; after it the view counts as seen."""
 EMPTY = 2
 """Surveys in a row that must find nothing before the exploration ends [count]."""
-
-AHEAD = FOOTPRINT + 0.10
-"""From the base's centre [m] to what holds it up and no sensor has seen: its bumper, and the depth of a barrier."""
 
 Wanted = Literal["", "picture", "survey", "save"] | m.NavGoal
 State = Literal["choose", "driving", "settling", "looking", "surveying", "saving", "over"]
@@ -32,7 +27,6 @@ class Exploration:
         self._config, self._new_id = config, new_id
         self.phase: m.MappingPhase = "exploring"
         self.barred: list[tuple[float, float]] = []
-        self.barriers: list[Met] = []
         self.pictures = 0
         self.frontiers, self.area = 0, 0.0
         self.detail = ""
@@ -42,7 +36,6 @@ class Exploration:
         self._turns: list[float] | None = None
         self._survey: Survey | None = None
         self._ended = ""
-        self._held_up = False
         self._empty = 0
         self._tried_again = False
 
@@ -59,7 +52,7 @@ class Exploration:
     def heard(self, feedback: m.NavigationFeedback, now: float) -> None:
         """What navigation says of the goal under way."""
         if self._goal is not None and feedback.goal_id == self._goal.id and feedback.status in ("arrived", "failed"):
-            self._ended, self._held_up = feedback.status, feedback.code == "BLOCKED"
+            self._ended = feedback.status
             self.detail = f"{feedback.code} {feedback.detail}".strip() if feedback.status == "failed" else ""
 
     def surveyed(self, survey: Survey) -> None:
@@ -114,9 +107,9 @@ class Exploration:
             self._empty += 1
             self._state = "choose"
             if self._empty >= EMPTY:
-                # Where a way was blocked for a while there may be one now; what holds up twice is there for good.
+                # Where a way was blocked for a while there may be one now.
                 if self.barred and not self._tried_again:
-                    self.barred, self.barriers, self._tried_again = [], [], True
+                    self.barred, self._tried_again = [], True
                 else:
                     self.phase = "returning"
             return ""
@@ -125,7 +118,7 @@ class Exploration:
 
     def _go(self, pose: Pose2, now: float) -> m.NavGoal:
         self._goal = m.NavGoal(x=pose[0], y=pose[1], theta=pose[2], id=self._new_id("mapping"))
-        self._state, self._since, self._ended, self._held_up = "driving", now, "", False
+        self._state, self._since, self._ended = "driving", now, ""
         return self._goal
 
     def _drive(self, pose: Pose2, now: float) -> Wanted:
@@ -134,12 +127,6 @@ class Exploration:
             return ""
         if self._ended != "arrived":
             self.barred.append((self._goal.x, self._goal.y))
-            dx, dy = self._goal.x - pose[0], self._goal.y - pose[1]
-            way = math.hypot(dx, dy)
-            if self._held_up and way > AHEAD:
-                # A pane of glass: all the floor that is seen behind it is to be reached through it.
-                ahead = pose[0] + AHEAD * dx / way, pose[1] + AHEAD * dy / way
-                self.barriers.append(Met((pose[0], pose[1]), ahead))
         self._state, self._since = "settling", now
         return ""
 

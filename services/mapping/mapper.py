@@ -28,12 +28,16 @@ class Shot(NamedTuple):
 
 
 class Mapper:
-    """Lives in the service's worker: everything here may take some tens of milliseconds."""
+    """Lives in the service's worker: everything here may take some tens of milliseconds.
+
+    `met`: what held the robot up unseen, each in the frame of a keyframe, `panes` what that tells of [map].
+    """
 
     def __init__(self, low: tuple[float, float], high: tuple[float, float]) -> None:
         self.trajectory = Trajectory()
         self.grid = Grid(low, high)
         self.shots: list[Shot] = []
+        self.met: list[tuple[int, Met]] = []
         self.panes: list[tuple[Vec2, Vec2]] = []
         self._camera = CameraModel()
         self._unread: list[tuple[m.Rgbd, int, Pose2, bool]] = []
@@ -93,14 +97,29 @@ class Mapper:
                 if first <= shot.keyframe < end:
                     self._draw(shot)
 
-    def survey(self, here: Pose2, barred: list[Vec2], barriers: list[Met]) -> tuple[Survey, NDArray[np.uint8]]:
-        """What is left to be seen, from where next, and the states of all cells.
+    def meet(self, met: Met) -> NDArray[np.uint8]:
+        """Take what held the robot up unseen [map]; the states of all cells."""
+        keyframe = len(self.trajectory) - 1
+        back = inverse(self.trajectory.poses[keyframe])
+        self.met.append((keyframe, _moved(met, back)))
+        return self.states()
 
-        `barriers`: where something unseen held the robot up.
-        """
+    def states(self) -> NDArray[np.uint8]:
+        """FREE, OCCUPIED or UNKNOWN for each cell, with the panes anew: more of their frames may be known."""
+        barriers = [_moved(met, self.trajectory.poses[keyframe]) for keyframe, met in self.met]
         self.grid.shut[:] = False
         states = self.grid.states()
         self.panes = panes(barriers, states, self.grid)
         self.grid.shut = shut(barriers, self.panes, self.grid)
         states[self.grid.shut] = OCCUPIED
+        return states
+
+    def survey(self, here: Pose2, barred: list[Vec2]) -> tuple[Survey, NDArray[np.uint8]]:
+        """What is left to be seen, from where next, and the states of all cells."""
+        states = self.states()
         return survey(self.grid, states, here, barred), states
+
+
+def _moved(met: Met, frame: Pose2) -> Met:
+    here, ahead = (compose(frame, (*point, 0.0))[:2] for point in met)
+    return Met(here, ahead)

@@ -14,7 +14,7 @@ from common.files.map_file import HOUSEHOLD, MAP, PICTURE, SURFACES, GridMap, pi
 from common.files.plan_file import to_toml
 from common.geometry import compose
 from common.household import Household
-from services.mapping.barriers import glass
+from services.mapping.barriers import Met, glass
 from services.mapping.depth import Picture
 from services.mapping.grid import RESOLUTION
 from services.mapping.mapper import Mapper, Shot
@@ -45,7 +45,7 @@ def save(directory: Path, name: str, mapper: Mapper) -> Saved:
     """
     if mapper.trajectory.graph.optimise() > 0.0:
         mapper.draw()
-    states = mapper.grid.states()
+    states = mapper.states()
     household = made_household(name, mapper, states)
     try:
         directory.mkdir(parents=True, exist_ok=True)
@@ -111,13 +111,15 @@ def resume(directory: Path, mapper: Mapper) -> None:
         graph.poses = [tuple(n["pose"]) for n in rows["nodes"]]
         graph.edges = [msgspec.convert((e["from"], e["to"], e["pose"], e["kind"]), Edge) for e in rows["edges"]]
         with np.load(directory / EVIDENCE) as file:
-            scans, shots = _unpacked({k: file[k] for k in file.files})
+            layers = {k: file[k] for k in file.files}
+            scans, shots = _unpacked(layers)
+            met = _met(layers)
     except (OSError, ValueError, KeyError, TypeError, msgspec.ValidationError) as error:
         raise SaveError(f"{directory}: no map to go on with: {error}") from None
     if len(scans) != len(graph.poses):
         raise SaveError(f"{directory}: {len(scans)} scans for {len(graph.poses)} keyframes")
     mapper.trajectory.resume(graph, scans, [int(n) for n in rows["runs"]])
-    mapper.shots = shots
+    mapper.shots, mapper.met = shots, met
     mapper.draw()
 
 
@@ -128,6 +130,8 @@ def _evidence(mapper: Mapper) -> dict[str, Any]:
         "times": np.array([s.t for s in scans]), "lidar": np.array([s.lidar for s in scans]).reshape(-1, 2),
         "at": np.array([s.keyframe for s in shots]), "from": np.array([s.pose for s in shots]).reshape(-1, 3),
         "still": np.array([s.still for s in shots], bool),
+        "met_at": np.array([at for at, _ in mapper.met], np.int64),
+        "met": np.array([m for _, m in mapper.met]).reshape(-1, 4),
     }  # fmt: skip
     for layer, width in (("points", 2), ("passed", 2)):
         found |= _joined(layer, [getattr(s, layer) for s in scans], width)
@@ -159,6 +163,12 @@ def _unpacked(file: dict[str, Array]) -> tuple[list[Scan], list[Shot]]:
         picture = Picture(*(layers[name][n] for name in ("floor", "above", "level", "low")))
         shots.append(Shot(int(at), (float(pose[0]), float(pose[1]), float(pose[2])), picture, bool(still)))
     return scans, shots
+
+
+def _met(file: dict[str, Array]) -> list[tuple[int, Met]]:
+    """What held the robot up; a map of an older version has none."""
+    rows = zip(file["met_at"], file["met"], strict=True) if "met" in file else ()
+    return [(int(at), Met((float(x), float(y)), (float(u), float(v)))) for at, (x, y, u, v) in rows]
 
 
 def _json(rows: Any) -> bytes:

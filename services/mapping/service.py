@@ -16,6 +16,7 @@ from common.bus.port import Io, Job
 from common.files.map_file import MapError
 from common.geometry import Pose2, compose
 from common.runtime import StartError
+from services.mapping.barriers import Met
 from services.mapping.config import MappingConfig
 from services.mapping.depth import PictureError
 from services.mapping.exploration import Exploration
@@ -57,6 +58,7 @@ class MappingService:
         self._work: deque[tuple[Job[Any], Callable[[Any], None]]] = deque()
         self._states: NDArray[np.uint8] | None = None
         self._odom: Pose2 = (0.0, 0.0, 0.0)
+        self._met: list[float] = []
         self._published, self._changed = -1.0, False
         self._asked: dict[str, bool] = {}
         self._asked_at = -1.0
@@ -146,13 +148,16 @@ class MappingService:
         pose = compose(self._odom, here)
         for feedback in self._io.take_all(topics.NAVIGATION_FEEDBACK):
             self._exploration.heard(feedback, now)
+            if feedback.met and feedback.met != self._met:
+                self._met = feedback.met
+                met = Met(pose[:2], (feedback.met[0], feedback.met[1]))
+                self._submit(self._drawn, self._mapper.meet, met, seconds=self._config.plan_seconds)
         wanted = self._exploration.step(pose, now, busy=bool(self._work))
         if wanted == "picture" and (not self._asked or now - self._asked_at > 1.5):
             self._ask(True, now)
         elif wanted == "survey":
-            barred, barriers = list(self._exploration.barred), list(self._exploration.barriers)
-            seconds = self._config.plan_seconds
-            self._submit(self._surveyed, self._mapper.survey, pose, barred, barriers, seconds=seconds)
+            barred, seconds = list(self._exploration.barred), self._config.plan_seconds
+            self._submit(self._surveyed, self._mapper.survey, pose, barred, seconds=seconds)
         elif wanted == "save":
             self._submit(self._done, self._save, seconds=self._config.save_seconds)
         elif isinstance(wanted, m.NavGoal):

@@ -75,5 +75,6 @@ class Reports:
             attempt=status.attempt,
             detail=status.detail,
             map_fit=round(self._state.map_fit.share, 3),
+            met=list(navigator.met) if navigator and navigator.met else [],
         )
         self._io.publish(topics.NAVIGATION_FEEDBACK, feedback)

@@ -12,6 +12,7 @@ from services.navigation.destinations import Destinations
 from services.navigation.ended import Ended
 from services.navigation.goals import Choices, Goal, in_words
 from services.navigation.localisation.state_estimation import StateEstimator
+from services.navigation.motion.contacts import Contacts
 from services.navigation.motion.navigator import Navigator
 from services.navigation.orientation import Orientation
 from services.navigation.others.neighbours import Neighbours
@@ -40,6 +41,7 @@ class NavigationService:
         if self._changes.load(self._map.changes):
             self._map.remember(0.0)
         self._planner = PathPlanner(self._map, config.footprint_radius + config.clearance, config.inflation)
+        self._contacts = Contacts(self._map, config.footprint_radius)
         self._state = StateEstimator(config, io, self._map)
         self._navigator: Navigator | None = None
         self._search: Search | None = None
@@ -62,6 +64,7 @@ class NavigationService:
         if int(now) != self._shown:
             self._shown = int(now)
             self._changes.save(self._map.changes, now)
+            self._contacts.forget(now)
             if io.has_subscribers(topics.COSTMAP):
                 io.publish(topics.COSTMAP, self._map.picture(now))
         if io.take_all(topics.ROBOT_STOP) and self._busy:
@@ -145,7 +148,7 @@ class NavigationService:
     def _go(self, choices: Choices) -> None:
         self._legs += 1
         name = f"{self._reports.status.goal_id}/{self._reports.status.attempt}/{self._legs}"
-        self._navigator = Navigator(self._config, self._map, self._planner, choices, name, self._now)
+        self._navigator = Navigator(self._config, self._map, self._planner, self._contacts, choices, name, self._now)
         self._reports.begin_leg()
 
     def _look_for(self, search: Search, now: float) -> None:
@@ -183,8 +186,10 @@ class NavigationService:
         doing = self._orientation.doing
         if self._state.lost:
             self._orientation.find(reached, now)
-        elif self._orientation.known() and self._navigator is not None:
-            self._navigator.relocated(now)
+        elif self._orientation.known():
+            self._contacts.forget()
+            if self._navigator is not None:
+                self._navigator.relocated(now)
         if self._orientation.doing != doing:
             self._reports.feedback(self._navigator, self._orientation.doing)
         return not self._state.lost

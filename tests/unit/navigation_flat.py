@@ -17,7 +17,7 @@ from tests.node import Node
 
 SCENE = load_household("apartment")
 ANGLES = -math.pi + np.arange(360) * math.radians(1)
-SPEED, TURN = 0.5, 1.5
+SPEED, TURN, BUMPER = 0.5, 1.5, 0.28
 
 
 def cast(pose: Pose2, boxes: list[Rectangle]) -> np.ndarray:
@@ -41,7 +41,8 @@ def ends(ranges: np.ndarray) -> np.ndarray:
 
 
 class Flat(Node):
-    """The navigation service in the apartment; `boxes` is what its map does not have, `wheels` its odometry."""
+    """The navigation service in the apartment; `boxes` is what its map does not have, of `glass` what nothing sees too,
+    `wheels` its odometry."""
 
     def __init__(
         self,
@@ -50,7 +51,7 @@ class Flat(Node):
         state_dir: Path | None = None,
         **parameters: object,
     ) -> None:
-        self.boxes = boxes or []
+        self.boxes, self.glass = boxes or [], list[Rectangle]()
         config = msgspec.convert(parameters, NavigationConfig)
         super().__init__(NavigationService, config, household, state_dir=state_dir)
         self.feedbacks = self.bus.tap(topics.NAVIGATION_FEEDBACK)
@@ -87,7 +88,10 @@ class Flat(Node):
         length = math.hypot(dx, dy)
         share = min(1.0, SPEED * dt / length) if length else 0.0
         step = dx * share, dy * share, max(-TURN * dt, min(TURN * dt, turn))
-        self.true, self.wheels = compose(self.true, step), compose(self.wheels, (step[0], step[1], step[2] + 1e-4))
+        there = compose(self.true, step)
+        if any(pane.distance(*there[:2]) < BUMPER for pane in self.glass):
+            return
+        self.true, self.wheels = there, compose(self.wheels, (step[0], step[1], step[2] + 1e-4))
         done = length * (1 - share) < 0.02 and abs(wrap(turn - step[2])) < 0.05
         if done and self._reached != self._target.id:
             self._reached = self._target.id

@@ -208,6 +208,7 @@ def test_a_pane_reaches_from_frame_to_frame_through_where_it_was_met() -> None:
     assert grid.at(np.array([(1.02, y) for y in np.arange(-1.4, 1.4, 0.1)]), closed).all() and closed.sum() < 70
     (pane,) = glass(lines)
     assert pane.glass and pane.start[0] == pane.end[0] == pytest.approx(1.02, abs=0.001)
+    assert len(panes([met(y) for y in (-0.6, -0.3, 0.3, 0.7)], states, grid)) == 1, "one pane, however often"
     behind = Met((1.3, -0.5), (1.0, -0.5))
     for places in ([met(0.3)], [met(0.3), met(0.35)], [met(1.3), met(-1.3)], [met(0.3), behind]):
         assert panes(places, states, grid) == []
@@ -222,10 +223,14 @@ def test_the_map_that_is_driven_by_has_what_nobody_sees() -> None:
     room(mapper.grid)
     place = np.array([(0.9, 0.2)])
     assert mapper.grid.states()[mapper.grid.cells(place)] == FREE
-    _, states = mapper.survey((0.0, 0.0, 0.0), [], [Met((0.5, 0.2), (0.9, 0.2))])
+    mapper.trajectory.add(Scan(0.0, np.empty((0, 2)), np.empty((0, 2)), (0.0, 0.0)), (0.0, 0.0, 0.0))
+    states = mapper.meet(Met((0.5, 0.2), (0.9, 0.2)))
     assert states[mapper.grid.cells(place)] == mapper.grid.states()[mapper.grid.cells(place)] == OCCUPIED
-    _, states = mapper.survey((0.0, 0.0, 0.0), [], [])
-    assert states[mapper.grid.cells(place)] == FREE
+    _, states = mapper.survey((0.0, 0.0, 0.0), [])
+    assert states[mapper.grid.cells(place)] == OCCUPIED
+    ((at, _),) = mapper.met
+    mapper.met = [(at, Met((0.5, 1.2), (0.9, 1.2)))]
+    assert mapper.states()[mapper.grid.cells(place)] == FREE, "where its keyframe has moved to"
 
 
 def test_where_nothing_is_left_the_survey_ends() -> None:

@@ -51,6 +51,24 @@ def test_a_box_in_the_door_is_driven_around_by_the_other_doors() -> None:
     assert flat.closest > CHASSIS
 
 
+def test_a_pane_of_glass_is_met_and_gone_round() -> None:
+    flat = Flat()
+    flat.glass.append(Rectangle(*KITCHEN_DOOR))
+    flat.ask("goto kitchen")
+    pushed = 0.0
+    while flat.status().status == "navigating" and flat.now < 180.0:
+        before = flat.true
+        flat.step()
+        pushed += 0.05 * (flat.true == before)
+    assert flat.status().status == "arrived" and "HELD_UP" in doings(flat)
+    told = [msgspec.json.decode(f, type=m.NavigationFeedback).met for f in flat.feedbacks]
+    places = {(round(x, 3), round(y, 3)) for x, y in filter(None, told)}
+    assert 1 <= len(places) <= 2
+    assert all(Rectangle(*KITCHEN_DOOR).distance(x, y) < 0.1 for x, y in places)
+    flat.ask("return_to_start", "a.2")
+    assert flat.finish(120.0).status == "arrived" and not flat.feedback().met, "remembered"
+
+
 def test_with_every_way_shut_it_waits_backs_off_tries_twice_and_says_so() -> None:
     flat = Flat([KITCHEN_DOOR, STUDY_DOOR])
     flat.ask("goto kitchen")

@@ -8,6 +8,7 @@ from common.geometry import Pose2
 from services.navigation.config import NavigationConfig
 from services.navigation.ended import Ended
 from services.navigation.motion.collision_avoidance import avoid
+from services.navigation.motion.contacts import Contacts
 from services.navigation.motion.obstacle_tracker import Obstacle
 from services.navigation.motion.path_follower import Lookahead
 from services.navigation.motion.progress import CLOSE, BlockedTimer, Progress, waiting_for
@@ -26,7 +27,8 @@ class Navigator:
     """Steps at the service's rate; returns the next target pose [map] for the base, raises `Ended` when over.
 
     `recoveries` counts detours and retreats, `doing` is what is under way: "", WAITING, PERSON_IN_WAY, ROBOT_IN_WAY,
-    DETOUR, BACKING_OFF or GIVING_WAY. `remaining` is the path that is left [m].
+    DETOUR, BACKING_OFF, HELD_UP or GIVING_WAY. `remaining` is the path that is left [m], `met` what held it up last
+    [map].
     """
 
     def __init__(
@@ -34,6 +36,7 @@ class Navigator:
         config: NavigationConfig,
         costmap: Costmap,
         planner: PathPlanner,
+        contacts: Contacts,
         choices: list[tuple[float, Pose2]],
         name: str,
         now: float,
@@ -43,12 +46,14 @@ class Navigator:
         self._progress = Progress(config, now)
         self._blocked = BlockedTimer()
         self._recovery = Recovery(config, costmap, planner)
+        self._contacts = contacts
         self._targets = Targets(name)
         self.robots: Sequence[tuple[float, float, float]] = ()
         """Circles (x, y, radius) [map, m] of robots that are about to make way."""
         self.recoveries = 0
         self.remaining = 0.0
         self.doing = ""
+        self.met: Point | None = None
 
     @property
     def eta(self) -> float:
@@ -185,10 +190,13 @@ class Navigator:
             self._wait_for(pose, obstacles, now)
             if self._blocked.blocked((pose[0], pose[1]), obstacles, now) > self._config.blocked_wait:
                 self._recover(pose, now, "the way is blocked")
-        else:
-            self._blocked.clear()
-            if self._progress.stuck(now):
-                self._recover(pose, now, "no progress")
+            return
+        self._blocked.clear()
+        if met := self._contacts.check(pose, ahead.pose, now):
+            self.met = met
+            self._recover(pose, now, "held up by something unseen", "HELD_UP")
+        elif self._progress.stuck(now):
+            self._recover(pose, now, "no progress")
 
     def _replan(self, pose: Pose2, people: Sequence[Obstacle], now: float) -> None:
         """Around what was seen; when there is no path round it, on towards it, but not up to it."""
@@ -220,11 +228,11 @@ class Navigator:
             self._progress.hold_up(now)
             self._recovery.let_pass(pose, people, now)
 
-    def _recover(self, pose: Pose2, now: float, why: str) -> None:
+    def _recover(self, pose: Pose2, now: float, why: str, doing: str = "BACKING_OFF") -> None:
         """Raises `Ended` BLOCKED after the last retry."""
         self._recovery.back_off(pose, now, why)
         self.recoveries += 1
-        self.doing = "BACKING_OFF"
+        self.doing = doing
         self._blocked.clear()
 
     def _go_back(

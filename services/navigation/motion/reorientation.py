@@ -7,6 +7,7 @@ from services.navigation.config import NavigationConfig
 from services.navigation.ended import Ended
 from services.navigation.localisation.disambiguation import common_ground, most_telling
 from services.navigation.localisation.state_estimation import StateEstimator
+from services.navigation.motion.contacts import Contacts
 from services.navigation.motion.navigator import Navigator
 from services.navigation.planning.costmap import Costmap
 from services.navigation.planning.planner import PathPlanner
@@ -76,7 +77,10 @@ class Reorientation:
                 return
             self._drives += 1
             self._io.log.info("drives to tell places apart", places=self._places)
-            self._navigator = Navigator(self._config, ground, planner, [(0.0, spot)], f"lost/{self._drives}", now)
+            contacts = Contacts(ground, self._config.footprint_radius)
+            self._navigator = Navigator(
+                self._config, ground, planner, contacts, [(0.0, spot)], f"lost/{self._drives}", now
+            )
 
     def _despair(self) -> Ended:
         known = self._state.everywhere

@@ -101,7 +101,7 @@ class Neighbours:
             else:
                 self.others.append(_other(name, k, now))
         self._map.disown([(x, y, radius + ROBOT) for x, y, radius in self.circles])
-        self._map.place(fixed)
+        self._map.place(fixed, "robots")
 
     def _note(self, name: str, told: m.DriveIntent, now: float) -> None:
         old, here = self._heard.get(name), (told.x, told.y)

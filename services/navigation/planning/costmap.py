@@ -50,7 +50,7 @@ class Costmap:
         self._first_at = np.full(self.shape, np.inf)
         self.changes = Changes(self.shape, lasting_after)
         self._distance: Array | None = self.static_distance
-        self._discs: list[tuple[float, float, float]] = []
+        self._discs: dict[str, list[tuple[float, float, float]]] = {}
         self.version = 0
         reach = math.ceil(_REACH / resolution)
         offsets = np.arange(-reach, reach + 1) * resolution
@@ -108,9 +108,9 @@ class Costmap:
         """To the nearest obstacle, static or seen [m]; made when asked for, by a disc around each seen cell."""
         if self._distance is None:
             grid = self.static_distance.copy()
-            if self._discs:
+            if discs := [disc for of in self._discs.values() for disc in of]:
                 gx, gy = np.moveaxis(self.centres(), 2, 0)
-                for x, y, radius in self._discs:
+                for x, y, radius in discs:
                     np.minimum(grid, np.maximum(np.hypot(gx - x, gy - y) - radius, 0.0), out=grid)
             n, disc = self._disc_reach, self._disc
             for row, column in zip(*(axis.tolist() for axis in np.nonzero(self._seen_at > -np.inf)), strict=True):
@@ -135,13 +135,12 @@ class Costmap:
             self._distance = None
             self.version += 1
 
-    def place(self, discs: Sequence[tuple[float, float, float]]) -> None:
-        """Circles (x, y, radius) [map, m] that are occupied besides, until other ones are told: standing robots."""
-        if len(discs) == len(self._discs) and all(
-            math.dist(a, b) < self.resolution for a, b in zip(discs, self._discs, strict=True)
-        ):
+    def place(self, discs: Sequence[tuple[float, float, float]], of: str) -> None:
+        """Circles (x, y, radius) [map, m] that are occupied besides, until other ones `of` this are told."""
+        old = self._discs.get(of, [])
+        if len(discs) == len(old) and all(math.dist(a, b) < self.resolution for a, b in zip(discs, old, strict=True)):
             return
-        self._discs = list(discs)
+        self._discs[of] = list(discs)
         self._distance = None
         self.version += 1
 

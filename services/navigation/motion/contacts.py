@@ -1,0 +1,57 @@
+"""What holds the base up and no sensor sees, such as a pane of glass: it is sent on, and stays where it is."""
+
+import math
+
+from common.geometry import Pose2, wrap
+from services.navigation.planning.costmap import Costmap
+from services.navigation.planning.planner import Point
+
+PUSHING = 1.2
+"""Time [s] for which the base is sent on and does not move; chosen: several times what it takes to set out."""
+MOVED, TURNED = 0.03, 0.1
+"""Way [m] and turn [rad] from which on it moves; chosen: more than the play of the pose estimate."""
+AWAY = 0.1
+"""Distance [m] of a target from which on it has to move: a driver stops within some centimetres of one."""
+SILENT = 0.2
+"""Time [s] without a check after which the base was doing something else: four steps."""
+RADIUS = 0.05
+"""Of what was met [m]: a cell. The planner goes past it by the footprint."""
+KEPT = 300.0
+"""Time [s] for which it is remembered; chosen: longer than the way round, as nothing but another push tells that
+it is gone."""
+
+
+class Contacts:
+    """Places [map] where something unseen is, told to the costmap for as long as they are remembered."""
+
+    def __init__(self, costmap: Costmap, footprint: float) -> None:
+        self._map, self._ahead = costmap, footprint + costmap.resolution / 2
+        self._met: list[tuple[Point, float]] = []
+        self._from: Pose2 = (math.inf, 0.0, 0.0)
+        self._since = self._at = -math.inf
+
+    def check(self, pose: Pose2, target: Pose2, now: float) -> Point | None:
+        """Once a step while the base is sent on to `target` [map], with nothing in the way: what it is held up by."""
+        moved = math.dist(pose[:2], self._from[:2]) > MOVED or abs(wrap(pose[2] - self._from[2])) > TURNED
+        way = math.dist(pose[:2], target[:2])
+        if moved or way < AWAY or now - self._at > SILENT:
+            self._from, self._since = pose, now
+        self._at = now
+        if now - self._since < PUSHING:
+            return None
+        self._since = now
+        share = self._ahead / way
+        point = pose[0] + (target[0] - pose[0]) * share, pose[1] + (target[1] - pose[1]) * share
+        self._met.append((point, now))
+        self._tell()
+        return point
+
+    def forget(self, now: float = math.inf) -> None:
+        """What was met long before `now`, or everything: the robot was not where it seemed to be."""
+        kept = [(point, at) for point, at in self._met if now - at <= KEPT]
+        if len(kept) != len(self._met):
+            self._met = kept
+            self._tell()
+
+    def _tell(self) -> None:
+        self._map.place([(*point, RADIUS) for point, _ in self._met], "unseen")
