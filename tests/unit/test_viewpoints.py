@@ -38,6 +38,19 @@ def test_every_view_shows_something_new() -> None:
     assert VIEWPOINTS.covered([first, second]).sum() > VIEWPOINTS.covered([first]).sum() > 0
 
 
+def test_what_a_view_would_have_shown_that_was_not_reached_is_looked_at_from_another() -> None:
+    first = viewpoint_search.elsewhere(SCENE, VIEWPOINTS, HOME, [])
+    assert first is not None
+    looked_from: list[Pose2] = []
+    while (view := viewpoint_search.elsewhere(SCENE, VIEWPOINTS, HOME, looked_from, [first])) not in (first, None):
+        looked_from.append(view)
+    assert (VIEWPOINTS.visible(first) & VIEWPOINTS.covered(looked_from)).any()
+    missed = (VIEWPOINTS.visible(first) & ~VIEWPOINTS.covered(looked_from)).any()
+    assert view == (first if missed else None), "the last of all, once more"
+    for times in (2, 5):
+        assert viewpoint_search.elsewhere(SCENE, VIEWPOINTS, HOME, looked_from, [first] * times) is None
+
+
 def test_turning_stays_on_the_spot_and_ends() -> None:
     pose: Pose2 = (0.9, -1.4, 0.0)
     looked_from: list[Pose2] = []

@@ -103,7 +103,8 @@ class Search(msgspec.Struct):
     `unsure`: labels of objects that may be meant and can be told from nearer, or from another side only; `inspected`:
     by label, the directions [rad, map] from it to where the robot has looked at it from nearer, at most SIDES.
 
-    `visited`: poses (x, y, theta) [m, rad] in map that the robot has looked from. `stances`: by label, the pose from
+    `visited`: poses (x, y, theta) [m, rad] in map that the robot has looked from, `unreached` others that it could not
+    get to, as often as it tried. `stances`: by label, the pose from
     which manipulation says that it reaches an object that it did not reach.
 
     `perhaps`: objects that may be meant, as perception had them last, `about` that which the person is being asked
@@ -113,6 +114,7 @@ class Search(msgspec.Struct):
 
     found: dict[str, m.ObjectPose] = {}
     visited: list[tuple[float, float, float]] = []
+    unreached: list[tuple[float, float, float]] = []
     options: list[str] = []
     chosen: dict[str, str] = {}
     unsure: list[str] = []

@@ -81,11 +81,12 @@ class MoveToViewpoint(SendGoal):
         looked_from = [*mission.search.visited, pose]
         if self._elsewhere:
             likely = ctx.likelihood(self._item)
-            self._target = viewpoint_search.elsewhere(ctx.io.household, ctx.viewpoints, pose, looked_from, likely)
+            self._target = viewpoint_search.elsewhere(
+                ctx.io.household, ctx.viewpoints, pose, looked_from, mission.search.unreached, likely
+            )
         else:
             self._target = viewpoint_search.turn(ctx.viewpoints, pose, looked_from)
-        # A view that cannot be reached is not tried a second time either.
-        mission.search.visited = [*mission.search.visited, pose, *([self._target] if self._target else [])]
+        mission.search.visited = looked_from
         mission.at = ""
 
     def update(self) -> Status:
@@ -99,6 +100,18 @@ class MoveToViewpoint(SendGoal):
         assert self._target is not None
         x, y, theta = self._target
         return topics.NAV_GOAL, m.NavGoal(id=goal_id, x=x, y=y, theta=theta)
+
+    def succeed(self, result: Result) -> Status:
+        assert self._target is not None
+        search = self.ctx.mission.search
+        search.visited = [*search.visited, self._target]
+        return super().succeed(result)
+
+    def fail_with(self, failure: Failure) -> Status:
+        assert self._target is not None
+        search = self.ctx.mission.search
+        search.unreached = [*search.unreached, self._target]
+        return super().fail_with(failure)
 
     def step(self) -> str:
         return f"search: {self.name}"

@@ -46,6 +46,10 @@ class Contacts:
         self._tell()
         return point
 
+    def interrupt(self) -> None:
+        """The base is sent somewhere else."""
+        self._at = -math.inf
+
     def forget(self, now: float = math.inf) -> None:
         """What was met long before `now`, or everything: the robot was not where it seemed to be."""
         kept = [(point, at) for point, at in self._met if now - at <= KEPT]

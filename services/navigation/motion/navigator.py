@@ -92,6 +92,7 @@ class Navigator:
             return target
         self.doing = "GIVING_WAY"
         self._progress.excuse(now)
+        self._contacts.interrupt()
         return self._targets.aside((*aside, pose[2]))
 
     def _go_on(self, pose: Pose2, points: Array | None, obstacles: Sequence[Obstacle], now: float) -> m.BaseTarget:
@@ -230,7 +231,7 @@ class Navigator:
 
     def _recover(self, pose: Pose2, now: float, why: str, doing: str = "BACKING_OFF") -> None:
         """Raises `Ended` BLOCKED after the last retry."""
-        self._recovery.back_off(pose, now, why)
+        self._recovery.back_off(pose, now, why, doing == "HELD_UP")
         self.recoveries += 1
         self.doing = doing
         self._blocked.clear()

@@ -35,8 +35,8 @@ class Recovery:
         """The robot is not where it seemed to be, nor did it come that way."""
         self.under_way, self._breadcrumbs = None, Breadcrumbs()
 
-    def back_off(self, pose: Pose2, now: float, why: str) -> None:
-        """Go back a little the way it came, before another path is looked for.
+    def back_off(self, pose: Pose2, now: float, why: str, touching: bool = False) -> None:
+        """Go back a little the way it came, before another path is looked for; from what it is `touching` as well.
 
         These are all the retries of a blocked path: whoever sent the goal adds none.
 
@@ -48,7 +48,10 @@ class Recovery:
         self._retries += 1
         self._map.doubt(now, OUT_OF_SIGHT)
         config = self._config
-        back = self._breadcrumbs.retreat(pose, self._map, config.footprint_radius, config.back_off)
+        radius = config.footprint_radius
+        if touching:
+            radius = min(radius, self._map.clearance(pose[0], pose[1]) - self._map.resolution / 2)
+        back = self._breadcrumbs.retreat(pose, self._map, radius, config.back_off)
         self.under_way = Retreat(back, now + config.back_off_time, config.corridor)
 
     def let_pass(self, pose: Pose2, people: Sequence[Obstacle], now: float) -> None:
