@@ -129,6 +129,17 @@ def test_trajectories_keep_speed_and_acceleration_and_end_where_they_should(arm:
     assert np.abs(np.diff(speed[:-1], axis=0)).max(initial=0.0) / 0.02 <= 2.5 + 1e-6
 
 
+def test_where_a_path_turns_it_is_as_slow_as_the_acceleration_asks_for(arm: ArmModel) -> None:
+    turn = np.array([-0.3, 0.5, -0.4, 0.2, 0.3, 0.1, -0.6])
+    path = [arm.home, arm.home + 0.9, arm.home + 0.9 + turn, arm.home + 0.92 + turn, arm.home]
+    samples = np.vstack([arm.home, timed(path, 1.0, 2.5, 0.02)])
+    speed = np.diff(samples, axis=0) / 0.02
+    assert np.abs(speed).max() <= 1.0 + 1e-6
+    # Braking into a corner and turning in it may fall on the same set-points.
+    assert np.abs(np.diff(speed, axis=0)).max() / 0.02 <= 2 * 2.5 + 1e-6
+    assert all(np.abs(samples - point).max(axis=1).min() < 0.05 for point in path)
+
+
 @pytest.mark.parametrize(
     ("grip", "at_close", "code"),
     [

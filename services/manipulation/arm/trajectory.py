@@ -97,26 +97,48 @@ def back_along(path: Sequence[Array], now: Array) -> list[Array]:
 def timed(path: Sequence[Array], speed: float, acceleration: float, dt: float) -> Array:
     """Set-points (n, 7) every `dt` seconds along a piecewise straight path, from rest to rest.
 
-    The fastest joint runs a trapezoid of `speed` [rad/s] and `acceleration` [rad/s^2]; corners are rounded.
+    The fastest joint keeps to `speed` [rad/s] and `acceleration` [rad/s^2], also where the path turns: corners are
+    rounded over `_SMOOTH` set-points and passed as slowly as that asks for.
     """
     points = np.array(path)
-    lengths = np.abs(np.diff(points, axis=0)).max(axis=1)
-    total = float(lengths.sum())
-    if total < 1e-6:
-        return points[-1:]
-    peak = min(speed, math.sqrt(acceleration * total))
-    ramp = peak / acceleration
-    duration = total / peak + ramp
-    t = np.arange(dt, duration + dt, dt)
-    rising = 0.5 * acceleration * np.square(np.minimum(t, ramp))
-    cruise = peak * np.clip(t - ramp, 0, duration - 2 * ramp)
-    falling = np.clip(t - (duration - ramp), 0, ramp)
-    s = np.minimum(rising + cruise + peak * falling - 0.5 * acceleration * np.square(falling), total)
-    along = np.concatenate([[0.0], np.cumsum(lengths)])
-    samples = np.stack([np.interp(s, along, points[:, k]) for k in range(points.shape[1])], axis=1)
-    if len(path) > 2:
+    points = points[np.concatenate([[True], np.abs(np.diff(points, axis=0)).max(axis=1) > 1e-6])]
+    if len(points) < 2:
+        return np.array(path)[-1:]
+    gaps = np.diff(points, axis=0)
+    lengths = np.abs(gaps).max(axis=1)
+    turns = np.abs(np.diff(gaps / lengths[:, None], axis=0)).max(axis=1)
+    corners = np.minimum(speed, acceleration * _SMOOTH * dt / np.maximum(turns, 1e-9))
+    s = _along(lengths, corners, speed, acceleration, dt)
+    at = np.concatenate([[0.0], np.cumsum(lengths)])
+    samples = np.stack([np.interp(s, at, points[:, k]) for k in range(points.shape[1])], axis=1)
+    if len(points) > 2:
         padded = np.concatenate([np.repeat(points[:1], _SMOOTH, 0), samples, np.repeat(points[-1:], _SMOOTH, 0)])
         kernel = np.ones(_SMOOTH) / _SMOOTH
         samples = np.stack([np.convolve(padded[:, k], kernel, "valid") for k in range(padded.shape[1])], axis=1)
     samples[-1] = points[-1]
     return samples
+
+
+def _along(lengths: Array, corners: Array, speed: float, acceleration: float, dt: float) -> Array:
+    """Way covered (n,) [rad] every `dt` seconds on pieces of `lengths` (m,), from rest to rest and with at most the
+    speeds `corners` (m - 1,) between them.
+    """
+    limits = np.concatenate([[0.0], corners, [0.0]])
+    for i in range(1, len(limits)):
+        limits[i] = min(limits[i], math.sqrt(limits[i - 1] ** 2 + 2 * acceleration * lengths[i - 1]))
+    for i in range(len(limits) - 2, -1, -1):
+        limits[i] = min(limits[i], math.sqrt(limits[i + 1] ** 2 + 2 * acceleration * lengths[i]))
+    begin, end = limits[:-1], limits[1:]
+    peak = np.minimum(speed, np.sqrt(acceleration * lengths + (begin**2 + end**2) / 2))
+    rise, fall = (peak - begin) / acceleration, (peak - end) / acceleration
+    level = np.maximum(lengths - (begin + peak) / 2 * rise - (peak + end) / 2 * fall, 0.0) / peak
+    # Three phases a piece: speed at its beginning, acceleration, duration.
+    times = np.stack([rise, level, fall], axis=1).reshape(-1)
+    speeds = np.stack([begin, peak, peak], axis=1).reshape(-1)
+    gains = np.tile([acceleration, 0.0, -acceleration], len(lengths))
+    starts = np.concatenate([[0.0], np.cumsum(times)])
+    ways = np.concatenate([[0.0], np.cumsum(speeds * times + gains * times**2 / 2)])
+    t = np.arange(dt, starts[-1] + dt, dt)
+    n = np.clip(np.searchsorted(starts, t, side="right") - 1, 0, len(times) - 1)
+    since = np.minimum(t - starts[n], times[n])
+    return np.minimum(ways[n] + speeds[n] * since + gains[n] * since**2 / 2, lengths.sum())
