@@ -94,12 +94,12 @@ def understand(sentence: Sentence) -> Understood:
             label = chosen(sentence.said, options, FLAT, HOME)
             return Understood(f"pick {label}", [], []) if label else Understood("", [], [], "no choice")
         case "busy":
-            said = interjection(sentence.said)
+            said = interjection(sentence.said, about)
             if said.kind in ("queue", "replace", "aside"):
                 history = History(doing=about, step=f"find {about}") if said.kind == "aside" else History()
                 if said.kind == "replace":  # what was under way is the last command by then
                     history = History(last=MissionOutcome(id="m", command=about, outcome="cancelled", reason="", t=NOW))
-                found = planned(said.text, FLAT, "", history)
+                found = planned(said.text, FLAT, "", _after("last", about)[2] if said.kind == "queue" else history)
                 return found._replace(kind="" if said.kind == "aside" else said.kind)
             return Understood(said.kind, [], [])
     return planned(sentence.said, *_after(tag, about))
@@ -159,7 +159,12 @@ def verdict(sentence: Sentence, found: Understood) -> Verdict:
     if any(_fits(reading.strip(), sentence, found) for reading in sentence.right.split("||")):
         return "right"
     acts = [s for s in found.steps if s.action != "say"]
-    if "none()" in sentence.right and not acts and not found.looks and found.kind in ("", "no", "queue"):
+    if (
+        "none()" in sentence.right
+        and not acts
+        and not found.looks
+        and found.kind in ("", "no", "queue", "encouragement")
+    ):
         return "right"
     if sentence.right == "none()" and found.kind in ("cancel", "stop"):
         return "right"

@@ -7,7 +7,8 @@ it is taken for a request.
 
 import re
 
-from common.language.lexicon import COMMANDING, HANDLING
+from common.language.conditional import REQUESTS
+from common.language.lexicon import HANDLING
 from common.language.normalise import DETERMINERS
 from common.language.politeness import without_politeness
 
@@ -30,10 +31,12 @@ _TELLS = re.compile(
 """What is told of a thing before it is spoken of as "it"."""
 _WITH_PRONOUN = re.compile(
     rf"\s+(?=(?:please )?(?:(?:{'|'.join(sorted(HANDLING | {'bin'}))}) (?:(?:rid )?of )?"
-    r"(?:it|them|me (?:it|that|them))\b|(?:i|we) (?:want|need|would like|would love) (?:it|them) "
-    r"(?:on|in|at|back|here|over)\b))"
+    r"(?:it|them|me (?:it|that|them|one))\b|(?:i|we) (?:want|need|would like|would love) (?:it|them)"
+    r"(?: (?:on|in|at|back|here|over)\b|$)))"
 )
 """Before a request that speaks of what was told."""
+_ASKS_WHERE = re.compile(r"^(?:where|whereabouts) (?:is|are) (?!it\b|they\b)\w+ \w+")
+"""Which thing it is that is asked for next."""
 _SUBJECTS = frozenset(
     {
         "i", "we", "he", "she", "they", "it", "there", "someone", "somebody", "everyone", "everybody", "this", "that",
@@ -61,8 +64,6 @@ _REPORTS = re.compile(r"\b(?:said|says|say|told|tells|tell|asked|asks|ask)(?: (?
 _FORBIDS = re.compile(
     r"\b(?:you|nobody|no one|never|always) (?:must|should|may|can|do|will|would|could|did)? ?(?:not|never)\b"
 )
-_VERBS = COMMANDING | {"make", "let", "show", "help", "look", "arrange", "keep", "open", "clean"}
-"""First words of a request."""
 _NOBODY = re.compile(
     r"^(?:nobody|no one) (?:(?:is )?(?:need|want|us|lik|eat|drink|play)(?:s|es|ing)(?: with)?) (?:the|my|this|that) "
     r"[^,]+$"
@@ -89,7 +90,7 @@ def without_reason_behind(text: str) -> str:
     for found in _BEHIND.finditer(text):
         head, tail = text[: found.start()], text[found.end() :]
         first = without_politeness(head).split()
-        asks = len(first) > 1 and first[0] in _VERBS and not _UNFINISHED.search(head)
+        asks = len(first) > 1 and first[0] in REQUESTS and not _UNFINISHED.search(head)
         if asks and not _TELLS_WHERE.match(tail) and not HANDLING & set(tail.split()):
             return head
     return text
@@ -105,111 +106,16 @@ def with_breaks(text: str) -> str:
     return text
 
 
-_CONDITION = re.compile(
-    r"^(?:and |but |then )?(?P<word>(?:only )?if|in case|provided(?: that)?|as long as|assuming|when|unless)\s+"
-    r"(?P<rest>(?:there (?:is|are)|you (?:do not |can not |did not "
-    r")?(?:find|see|spot|notice|discover|come across|have)"
-    r"|(?:the|my|our|any|a|an) .+? (?:is|are|looks?))\s.+)$"
-)
-_INVERTED = re.compile(r"^(?:and |but )?should (?:there be|(?P<you>you)(?= (?:find|see|spot|notice|come)))")
-_AT_END = re.compile(
-    r"^(?P<command>.+?),? (?:but )?(?:only )?(?P<word>if|in case|unless|provided|as long as) "
-    r"(?P<condition>(?:there (?:is|are)|(?:the|my) .+ (?:is|are)|(?:it|they) (?:is|are)(?: not)?(?: "
-    r"still)? (?:in|on|at|"
-    r"empty|full|messy|untidy|dirty|a mess|cluttered|clean|clear|tidy)|you (?:find|see|spot))(?: .+)?)$"
-)
-_ASKS = re.compile(r"\b(?:tell(?: me| us)?|see|know|check|look|find out|ask|say|and)$")
-"""How a question goes on with "if"."""
-_IF_THERE = re.compile(
-    r"^(?:check|look (?:at|on|in)|go to|search) (?P<spot>(?:the|my) \w+(?: \w+)?),? and,? if "
-    r"(?P<thing>(?:the|my|a|an) .+?)"
-    r" (?:is|are) (?:there|on it|in it),? (?P<command>.+)$"
-)
-"""A look, and what is to be done if something is there."""
-_IS_IT = re.compile(
-    r"^(?:is|are) (?P<there>there )?(?P<thing>.+?) (?:on|in|at) (?P<spot>(?:the|my) \w+(?: \w+)?),? "
-    r"(?:and )?if (?:so|yes|it is|there is),?"
-    r" (?P<command>.+)$"
-)
-"""A question, and what is to be done if the answer is yes."""
-_IF_ANY = re.compile(
-    r"^(?P<command>.+?),? if (?:there (?:is|are) (?:one|any|some)|you (?:can )?(?:find|see) "
-    r"(?:it|one|any)|(?:it|one) is (?:there|"
-    r"available)),? (?:and )?(?:otherwise|if not|or else|else),? (?P<other>.+)$"
-)
-"""A condition in the middle, of the thing that was just named."""
-_FIRST_THING = re.compile(r"\b(?:the|a|an|my|all) \w+(?: (?!(?:in|on|to|into|onto|at|from|away|over|next|near)\b)\w+)?")
-_OF_IT = re.compile(r"^(?:it|they)(?= (?:is|are)\b)")
-_ELSE = re.compile(
-    r"(?:,| and| or| but|;|\.|(?<=\w)(?= otherwise))+\s*(?:otherwise|if (?:not|there (?:is|are) (?:none|not any|"
-    r"no))|or else|else),?\s+"
-)
-_BEGINS = frozenset({"the", "a", "an", "my", "our", "me", "us", "it", "them", "to", "one", "all", "that", "those"})
-
-
-_REASON = re.compile(
-    r"^(?:since|as|because|now that|seeing (?:that|as)|given that|while) (?P<reason>(?:you|i|we|"
-    r"it|the|my) .+)$"
-)
-
-
-_IF_SO = re.compile(
-    r"^(?:please |go (?:and )?|could you |can you )*(?:check|see|look|find out) (?:if|whether) "
-    r"(?P<condition>[^,]+?),?(?: and)? if "
-    r"(?:so|yes|it is|there is(?: one)?|they are),? "
-)
-
-
-def _without_reason(text: str) -> str:
-    """`since you are going to the kitchen bring me the mug` without why."""
-    found = _REASON.match(without_politeness(text))
-    if found is None:
-        return text
-    words = found["reason"].split()
-    for at in range(2, len(words) - 1):
-        if words[at].strip(",") in _VERBS and words[at + 1] in _BEGINS:
-            return " ".join(words[at:])
-    return text
-
-
-def conditional(text: str) -> str:
-    """`if there is a mug on the desk bring it` and the same in the other order as `if ... . bring it`."""
-    text = _INVERTED.sub(lambda found: "if you" if found["you"] else "if there is", text)
-    text = re.sub(r"^only (?=\w+ .+ (?:if|when|unless) )", "", text)
-    text = _IF_SO.sub(r"if \g<condition> , ", _without_reason(text))
-    bare = without_politeness(text)
-    if found := _CONDITION.match(bare):
-        word = "unless" if found["word"] == "unless" else "if"
-        rest = _ELSE.sub(" . otherwise ", found["rest"])
-        for comma in re.finditer(r",\s*(?:then\s+)?|\s+then\s+", rest):
-            if without_politeness(rest[comma.end() :]).split(" ")[0] in _VERBS:
-                return f"{word} {rest[: comma.start()]} . {rest[comma.end() :]}"
-        words = rest.split()
-        for at in range(3, len(words) - 1):
-            if words[at] in _VERBS and words[at + 1] in _BEGINS:
-                return f"{word} {' '.join(words[:at])} . {' '.join(words[at:])}"
-    elif found := _IS_IT.match(bare):
-        so = f"there is {found['thing']}" if found["there"] else f"{found['thing']} is"
-        return f"if {so} on {found['spot']} . {found['command']}"
-    elif found := _IF_THERE.match(bare):
-        return f"if {found['thing']} is on {found['spot']} . {found['command']}"
-    elif (found := _IF_ANY.match(bare)) and (thing := _FIRST_THING.search(found["command"])):
-        return f"if you find {thing[0]} . {found['command']} . otherwise {found['other']}"
-    elif (found := _AT_END.match(bare)) and bare.split()[0] in _VERBS and not _ASKS.search(found["command"]):
-        thing = _FIRST_THING.search(found["command"])
-        condition = _OF_IT.sub(thing[0] if thing else "it", found["condition"])
-        return f"{'unless' if found['word'] == 'unless' else 'if'} {condition} . {found['command']}"
-    return text
-
-
 def _break(text: str) -> tuple[int, int] | None:
     begin = max((text.rfind(mark) for mark in ".;!?"), default=-1) + 1
     for pattern in (_STRONG, _WEAK, _WITH_PRONOUN):
         for found in pattern.finditer(text, begin):
             head, tail = text[begin : found.start()].strip(" ,"), text[found.end() :]
-            if pattern is _WITH_PRONOUN and not _TELLS.search(head):
+            if pattern is _WITH_PRONOUN and not (_TELLS.search(head) or _ASKS_WHERE.match(head)):
                 continue
-            if is_statement(head, "," in found[0]) and _asks(tail, pattern is _STRONG):
+            ended = "," in found[0] or " so " in f" {found[0]} "
+            asks_where = pattern is _WITH_PRONOUN and _ASKS_WHERE.match(head) is not None
+            if (asks_where or is_statement(head, ended)) and _asks(tail, pattern is not _WEAK):
                 return found.start(), found.end()
     return None
 
@@ -240,4 +146,4 @@ def _asks(text: str, strong: bool) -> bool:
     bins = (bare[:1] == ["bin"] and bare[1:2] != ["it"]) or bare[:2] == ["bin", "it"]
     if text.startswith(("where is it", "where are they", "have you any idea where", "do you know where")):
         return True  # "my ball rolled away, where is it"
-    return len(bare) > 1 and (strong or bare[0] in _VERBS or bins or _OF_IT_ALL.match(" ".join(bare)) is not None)
+    return len(bare) > 1 and (strong or bare[0] in REQUESTS or bins or _OF_IT_ALL.match(" ".join(bare)) is not None)

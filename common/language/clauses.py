@@ -13,7 +13,8 @@ _FILLER = re.compile(
 )
 """Sounds of somebody who thinks while speaking."""
 _STUTTER = re.compile(
-    r"\b(?!(?:no|stop|cancel|abort|very|really|hurry|quick|again|wait|chop|tidy|clean|clear)\b)(\w+)(?:,? \1\b)+"
+    r"\b(?!(?:no|stop|cancel|abort|very|really|hurry|quick|again|wait|chop|tidy|clean|clear)\b|do,? do not\b)"
+    r"(\w+)(?:,? \1\b)+"
     r"|\b((?!no\b|and\b|then\b)[a-z]{2,}(?: (?!and\b|then\b|or\b)\w+){1,3})(?:,? \2\b)+"
 )
 """Words that somebody who hesitates says twice; but `no no`, `stop stop`, `if it is not tidy tidy it`."""

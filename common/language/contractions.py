@@ -100,6 +100,10 @@ _SAME = tuple(
         (r"^you (could|would|can) not (?!happen)(.+?),? (?:could|would|can) you\??$", r"\1 you \2"),
         (r"^you (?:would|do|could) not (?:happen|chance) to (.+?)(?:,? (?:do|would|could) you)?\??$", r"do you \1"),
         (r",? (?:the one |one )?(?:that|which) (?:is|are) not (?=(?:the )?\w+(?: or \w+)?$)", r" but not "),
+        (
+            r"^what (?:have (?:we|you)(?: got)?|do (?:we|you) have|is there|can i have)(?: there)? to (drink|eat)\b",
+            r"is there anything to \1",
+        ),
         (r"\bfrom off(?: of)?\b", "from"),
         (r"\bwhereabouts (?=is|are|did|do|was|were|has|have)", "where "),
         (r"\bwith you (?=to|into|on|in|over)", ""),

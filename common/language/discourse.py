@@ -6,8 +6,9 @@ clause asks for is none of it. Pure.
 
 import re
 
-from common.language.breaks import conditional, with_breaks
+from common.language.breaks import with_breaks
 from common.language.clauses import cut_clauses, without_fillers
+from common.language.conditional import conditional
 from common.language.contractions import expand
 from common.language.exchange import IsPlace, verb_first
 from common.language.lexicon import COMMANDING

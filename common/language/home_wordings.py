@@ -13,6 +13,7 @@ _BELONG = (
     "(should | ought to) (go | be | live | belong) | are kept | are put | are stored"
     " | (should | must | are to) be (kept | stored))"
 )
+_MUST = "(should | must | ought to | have to | are to)"
 _USUALLY = "(usually | normally | mostly | generally | typically | most of the time | most often)"
 _THE = "[the | my | our | a]"
 
@@ -41,8 +42,11 @@ TOLD: tuple[Wording, ...] = (
     ),
     Wording(
         "forget_rule",
-        f"(forget | ignore) what i (said | told you) about <words> | (forget | unlearn) (where | "
-        f"that) <words> {_BELONG} [{_ON} <spot>]",
+        f"(you | i | we) (do not (have | need) to | need not | no longer (have | need) to) (put | keep | store | take)"
+        f" <words> {_ON} <spot> [any (more | longer)] | stop (putting | keeping | storing) <words> {_ON} <spot>"
+        f" | (no more | no | drop the | cancel the) (rule | rules) (about | for | on) <words>"
+        f" | (forget | ignore) what i (said | told you) about <words>"
+        f" | (forget | unlearn) (where | that) <words> {_BELONG} [{_ON} <spot>]",
     ),
     Wording(
         "rule_always",
@@ -50,12 +54,15 @@ TOLD: tuple[Wording, ...] = (
         f" | [no] (put | keep | place | store | leave | sort) <thing> {_ON} <spot> {_ALWAYS}"
         f" | [no] {_ALWAYS} <thing> {_BELONG} {_ON} <spot> | [no] <thing> {_ALWAYS} {_BELONG} {_ON} <spot>"
         f" | [no] <thing> {_BELONG} {_ON} <spot> {_ALWAYS}"
+        f" | [no] <thing> {_MUST} {_ALWAYS} (go | be | live | belong | stay | be (kept | put | stored)) [back] ({_ON} "
+        f"| to) <spot>"
         f" | (remember that | note that | learn that | bear in mind that | new rule) <thing> {_BELONG} ({_ON} | to) "
         f"<spot>",
     ),
     Wording(
         "rule",
         f"[no] [(remember | know | learn | note) [that]] <thing> {_BELONG} {_ON} <spot>"
+        f" | (i | we) (keep | store) <thing> {_ON} <spot>"
         f" | {PERSON} (want | wants | would like | prefer | prefers) <thing> [to be] (kept | stored | put away) "
         f"{_ON} <spot>",
     ),

@@ -27,6 +27,8 @@ _ROWS: tuple[tuple[Action, str], ...] = (
     ("holding", "what anything something + have + you + got carry hold"),
     ("identity", "who + you i + are am"),
     ("identity", "name + you your"),
+    ("identity", "who + made built created invented + you"),
+    ("doing", "are can do + you + listening hear hearing awake asleep + you me yet still there"),
     ("identity", "call called + what + you your + should shall do can are"),
     ("identity", "tell + about yourself + yourself"),
     ("identity", "introduce describe + yourself"),
@@ -65,7 +67,7 @@ class _Topic(NamedTuple):
 
 _TOPICS = tuple(_Topic(action, tuple(frozenset(g.split()) for g in row.split(" + "))) for action, row in _ROWS)
 WORDS: frozenset[str] = frozenset[str]().union(*(group for topic in _TOPICS for group in topic.groups))
-_REST = "had else left along whole long we low enough use full make"
+_REST = "house flat home apartment place many had else left along whole long we low enough use full make"
 _SMALL = (SMALL_TALK | WORDS | set(_REST.split())) - {"and"}
 _ASKED = re.compile(
     r"^(?:and |so |but |well |now |"

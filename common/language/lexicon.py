@@ -10,7 +10,7 @@ FETCH = "bring | fetch | get | give | hand | pass | carry | retrieve | collect |
 PICK = "(get | fetch | take | grab | pick | pick up | collect | gather | collect up | gather up | round up)"
 """The first half of moving something: `get the mug and put it away`."""
 PUT = (
-    "put | sort | place | set | throw | toss | drop | lay | stick | move | stack | pop | slide | leave | shift"
+    "put | stand | sort | place | set | throw | toss | drop | lay | stick | move | stack | pop | slide | leave | shift"
     " | chuck | dump | relocate | shove | jam | tuck | deposit | stow | plop | plonk | stash | sling "
     "| fling | transfer"
 )

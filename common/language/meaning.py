@@ -11,6 +11,7 @@ from common.language.normalise import DETERMINERS, Words, normalise
 from common.language.noun_phrase import SIDES, SMALL, WHICH
 from common.language.pattern import ANY, Pattern, Slots, first_words, words_of
 from common.language.politeness import without_politeness
+from common.language.refusals import REFUSALS
 from common.language.wording import QUESTIONS, Action, Kind, Wording
 from common.language.wordings import WORDINGS
 
@@ -28,9 +29,9 @@ VERBS: frozenset[str] = frozenset[str]().union(*(first_words(p.tree) for w, p in
 
 
 WORDS: frozenset[str] = frozenset[str]().union(
-    *(words_of(p.tree) for _, p in _RULES), OF_ITSELF, DETERMINERS, WHICH, SIDES, *SMALL
+    *(words_of(p.tree) for w, p in _RULES if w not in REFUSALS), OF_ITSELF, DETERMINERS, WHICH, SIDES, *SMALL
 )
-"""Words of the wordings and between nouns: all but names and colours."""
+"""Words of the wordings that ask for something and between nouns: all but names and colours."""
 
 
 def readings(words: Words, *kinds: Kind) -> Iterator[tuple[Wording, Slots]]:

@@ -14,10 +14,12 @@ def _any(phrases: str) -> str:
 _NEGATIONS = (
     "not | never | nobody | none | nothing | no one | without | stop | leave | hands off | (?:stay|keep) "
     "(?:away|out|off|clear) | forbid | forbidden | allowed | hate | no reason | wrong | except | excluding"
-    " | (?:and|but) keep"
+    " | (?:and|but) keep | no (?:need|point|use) | mistake | quit | hold off | under no | refrain | avoid"
+    " | pointless | unnecessary | (?:was|were) supposed"
 )
 _SUPPOSITIONS = (
-    r"suppose | supposing | imagine | pretend | used to | if (?:i|you|he|she|we|they) (?:were|was|had|could)"
+    "suppose | supposing | imagine | pretend | used to | what if | had (?:i|you|we)"
+    " | if (?:i|you|he|she|we|they) (?:were|was|had|could)"
 )
 _OTHER_TIMES = (
     "tomorrow | tonight | yesterday | already | ago | ever | this morning | later"
@@ -45,7 +47,10 @@ _AUXILIARIES = (
     "(?:need|want|have|has|would like|like|love|plan|got|going|try|ought|used) to"
 )
 _FINITE = "is|are|was|were|am|has|had|have|keeps?|kept|went|a|an|the"
-_OWN = re.compile(rf"\b(?:{SUBJECTS})(?: (?:{_AUXILIARIES}|{_ADVERBS}))*$|\b(?:{_FINITE})(?: (?:{_ADVERBS}))*$")
+_OWN = re.compile(
+    rf"\b(?:{SUBJECTS}|let (?:me|him|her|them))(?: (?:{_AUXILIARIES}|{_ADVERBS}))*$"
+    rf"|\b(?:{_FINITE})(?: (?:{_ADVERBS}))*$"
+)
 """What stands before a verb whose subject is not the robot."""
 _WAS = frozenset({"was", "were", "had", "did"})
 
@@ -57,6 +62,8 @@ def forbids(text: str) -> bool:
 
 def is_of_others(words: Words, at: int) -> bool:
     """Does the verb say what somebody else does, or what was done?"""
+    if words[at] == "let" and words[at + 1 : at + 2] in (("me",), ("him",), ("her",), ("them",)):
+        return True
     past = infinitive(words[at], VERBS) != words[at] and not words[at].endswith("ing")
     return bool(_OWN.search(" ".join(words[:at]))) or (past and words[at - 1 : at] in (("you",), ("robot",)))
 

@@ -108,7 +108,7 @@ MOVING: tuple[Wording, ...] = (
     ),
     Wording("pick_up", "(get | take | grab) hold of <thing> | (hold | hang) on to <thing> | hold onto <thing>"),
     Wording("pick_up", "(grab | grasp | take | hold | pick | reach [for]) <thing>", heard="(grab | take) <thing>"),
-    Wording("find", "check on <thing> | keep an eye (out for | open for | on) <thing> | watch out for <thing>"),
+    Wording("find", "check on <thing> | keep an eye (out | open) for <thing> | watch out for <thing>"),
     Wording("put_back", "undo <thing> | revert <thing>"),
     Wording("fetch", "(i | we) feel like [having | eating | drinking] <thing>"),
     Wording("find", f"({SEEK}) <thing>", heard="find <thing>"),

@@ -1,9 +1,10 @@
 """Words around a noun: numbers, order and size, relations to other things, clauses that add nothing. Pure."""
 
+import re
 from collections.abc import Iterator
 from typing import Literal
 
-from common.language.normalise import Words
+from common.language.normalise import DETERMINERS, Words
 
 Which = Literal[
     "", "left", "right", "nearest", "farthest", "biggest", "smallest", "tallest", "shortest", "first", "second",
@@ -152,6 +153,17 @@ def without_measure(words: Words) -> Words:
                 return ("one", *(w for w in words[at + 1 :] if w not in ("the", "my", "our", "your", "those", "these")))
             return (*words[: at - 1], before, *words[at + 1 :]) if before != "lot" else words[at + 1 :]
     return words
+
+
+_WITH = re.compile(
+    r"^(?P<container>.+?)(?: (?:that|which) (?:is|has))? (?:with|containing|full of|filled with|of) "
+    rf"(?:(?:{'|'.join(sorted(DETERMINERS))}) )*(?P<contents>.+?)(?: (?:in|inside|on) it| inside| in there)?$"
+)
+
+
+def with_contents(words: Words) -> Words:
+    """`the box with my vitamins in it` as `the box of vitamins`; other words stay."""
+    return tuple(_WITH.sub(r"\g<container> of \g<contents>", " ".join(words)).split())
 
 
 def related(words: Words) -> Iterator[tuple[Words, Relation, Words]]:

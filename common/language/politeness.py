@@ -25,14 +25,16 @@ _OCCASION = (
     rf"(?:when|whenever|once|if|as soon as) you (?:(?:have|get|find|have got|got) {_TIME}(?: to spare| free| for it)?"
     r"|can|could|would|like|please|want|may|are not (?:doing anything|too busy|busy)(?: else)?|are (?:free|ready|"
     r"able|not busy|up for it|around|there))"
-    r"|if (?:it is |that is )?(?:not )?(?:too (?:hard|difficult|much(?: trouble| to ask)?)|asking too much|possible|"
+    r"|if (?:it is |that is )?(?:not )?(?:too (?:hard|difficult|"
+    r"much(?: (?:trouble|bother|hassle|of a \w+|to ask))?)|(?:a|any) (?:bother|trouble|problem|hassle)|"
+    r"asking too much|possible|"
     r"convenient)"
     r"|(?:when|whenever) it (?:suits|pleases) you|if need be|if necessary|whenever|at your (?:convenience|leisure)"
 )
 """Occasions and conditions that are none."""
 
 _ADDRESS = (
-    r"no(?=,? (?:bring|put|take|get|fetch|give|go|throw|come|tidy|find|move|leave|set)\b)|"
+    r"whatever (?:you do|happens)|no(?=,? (?:bring|put|take|get|fetch|give|go|throw|come|tidy|find|move|leave|set)\b)|"
     r"(?:second|third|fourth|secondly|thirdly|lastly|firstly)(?=,? (?:bring|put|take|get|fetch|give|go|throw|"
     r"come|tidy|find|grab|pick)\b)|"
     "basically|essentially|literally|obviously|hopefully|ideally|meanwhile|if so|if yes|in that case|"
@@ -63,14 +65,14 @@ _ADDRESS = (
     "trouble|interrupt) you|"
     "(?:stop|quit) (?:wasting (?:my |our )?time|messing about|fooling around|dawdling)(?: "
     "and)?|sorry (?:to|for|that|if) [^,]{3,40}?(?:,| but)(?= "
-    "(?:can|could|would|will|please|i)\\b)|sorry|by the way|next|let me "
+    "(?:can|could|would|will|please|i)\\b)|sorry|by the way|next(?! to )|let me "
     "(?:think|see)|(?:quick|one|another|just a) question|guess what|you know what|you "
     "know(?! the| what| where| how| my)|see(?=,)|but(?! not)|"
     "i say|as i said|for me|one more thing|could it be that|"
     "(?:be )?quick|hurry(?: up)?|attention|fast|come on|pretty please|honestly|also|plus|oh and|first of all|"
     r"(?:hold|hang) on(?! (?:to|for|(?:\w+ "
     r"){1,3}(?:seconds?|minutes?|moments?|secs?))\b)|first(?=\s+\w+\s+\w)|wait(?=\s+(?:stop|cancel|no)\b)|"
-    r"(?:after that|afterwards|and then|forget (?:about )?that)(?=\s+(?!rule\b)\w)"
+    r"(?:after that|afterwards|and then|forget (?:about )?that)(?=\s+(?!rule\b|.+ (?:called|named) )\w)"
 )
 """Words to somebody, that carry no meaning."""
 _WAY = (
@@ -136,6 +138,7 @@ _ENDINGS = (
     "come on|go on|chop chop|before i forget|some ?time(?: today)?|today|tonight|this (?:morning|evening|afternoon)|"
     "(?:and )?(?:be|take) care(?:ful)?(?: with (?:it|them|that))?|carefully|gently|when you come back|"
     "(?:and )?thanks in advance|if you get (?:there|the chance)",
+    "handy|to hand|one (?:after the other|after another|by one|at a time)|in turn|"
     "(?<!the )(?<!one )first|before (?:dinner|lunch|breakfast|supper|bedtime|bed|tea|school|work|the guests "
     "(?:come|arrive))|already|altogether|in total|in all|overall|(?:(?:would|do) you )?mind (?:having|taking) a "
     "look(?: for it)?|after all|with you|from (?:there|here|where you (?:are|stand))|a (?:little )?bit|a "

@@ -18,7 +18,7 @@ ABOUT_THE_WORLD: tuple[Wording, ...] = (
         f" [{LYING}] (on | in | at | inside) <spot>"
         f" | (tell me | list | name) (what | everything | all | [all] the (things | objects | items)) "
         f"[that] [{BE}] [{LYING}] (on | in | at | inside) <spot>"
-        f" | {ASK} what <spot> (has | holds | contains) [on it | in it] | what {BE} [{LYING}] there",
+        f" | {ASK} what <spot> (has | holds | contains) [on it | in it] | {ASK} what {BE} [{LYING}] there",
         heard="what is (on | in) [the] <place>",
     ),
     Wording(

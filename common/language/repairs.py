@@ -2,8 +2,9 @@
 
 import re
 
+from common.language.contrasts import CONTRAST, contrasted, instead, with_qualities
 from common.language.exchange import PREPOSITIONS, IsPlace, filled, noun_phrases, replaced, verb_first
-from common.language.lexicon import A_VERB, COMMANDING, HANDLING
+from common.language.lexicon import COMMANDING, HANDLING
 from common.language.normalise import DETERMINERS
 from common.language.politeness import without_politeness
 
@@ -15,20 +16,6 @@ _REPAIR = re.compile(
     r"on second thoughts?)(?:,\s*|\s+))(?:i mean(?:t)?|i said|make (?:that|it)|rather|actually|sorry|wait|no)?\b,?\s*"
 )
 """Between what was said and what was meant."""
-_BUT = r"(?:,\s*(?:but\s+)?|\s+but\s+)(?:rather )?"
-_CONTRAST = re.compile(rf"^(?:i (?:said|meant|mean|want|wanted) )?not (?P<wrong>.+?){_BUT}(?P<right>.+)$")
-_CONTRAST_OF_ONES = re.compile(
-    r"^not (?P<wrong>(?:(?:on|in|to|into) )?(?:the|a|my) (?:\w+ )?\w+?)(?P<right> (?:the|on|in|into|to) .+)$"
-)
-_DO_NOT = re.compile(rf"^do not (?P<wrong>\w+ .+?){_BUT}(?P<right>.+)$")
-_DO_NOT_DO = re.compile(rf"^do not (?P<wrong>{A_VERB} .+?)\s+(?P<right>{A_VERB} (?:me|us|the|a|an|my|it|to)\b.+)$")
-NOT_WANTED = re.compile(
-    r"^(?:(?:never mind|forget(?: about)?|skip|leave|ignore|not|no need for|no more|(?:i|we) do not (?:need|want|like))"
-    r" (?:the|that|my|those|this)(?: \w+){1,3}?|no (?!the\b|no\b|need\b)\w+(?=,))(?:,\s*(?:and |but )?| and | but | )"
-    rf"(?=(?:please |just |rather )*(?:{A_VERB}|i want|i need|i would like)\b"
-    r"|(?<=, )(?:the|a|an|my) (?!\w+ ones?\b))"
-)
-"""What is not wanted, before what is."""
 _AFTERTHOUGHT = re.compile(
     r"^(?P<said>.+?),?\s+(?P<meant>(?:the|a|my|to|on|in|into) [^,]+?),? (?:i mean(?:t)?|that is|i should say|to "
     r"be precise|actually)$"
@@ -138,27 +125,14 @@ def settled(text: str, is_place: IsPlace) -> str:
     text = _EXCEPT.sub(" but ", text).replace(" but but ", " but ")
     text = _LATE_EXCEPT.sub(r"\g<all> \g<but> \g<particle>", text)
     bare = without_politeness(text)
-    if NOT_WANTED.match(bare):
-        text = bare = without_politeness(NOT_WANTED.sub("", bare))
-    if found := (
-        _CONTRAST.match(bare) or _CONTRAST_OF_ONES.match(bare) or _DO_NOT_DO.match(bare) or _DO_NOT.match(bare)
-    ):
-        text = _contrasted(found["wrong"], found["right"])
-    return text
+    meant = instead(bare) or contrasted(bare)
+    return text if meant == bare else meant
 
 
 def _singled_out(found: re.Match[str]) -> str:
     """`of the things on the desk bring the taller one` as `bring the taller thing on the desk`."""
     _, several, *where = found["those"].split()
     return f"{found['command']}the {found['which']} {several.removesuffix('s')} {' '.join(where)}"
-
-
-def with_qualities(said: str, wrong: str, right: str) -> str:
-    """`the box` for `the bottle` where `the white bottle` was said is `the white box`."""
-    bare, other = ([w for w in text.split() if w not in DETERMINERS] for text in (wrong, right))
-    phrases = [said.split()[a:b] for a, b in noun_phrases(said.split())]
-    phrase = next((p for p in phrases if p[-1:] == bare and len(p) > 2), None)
-    return " ".join((*phrase[:-1], *other)) if phrase and len(other) == 1 else right
 
 
 def _with_noun(text: str) -> str:
@@ -185,7 +159,7 @@ def _repaired(text: str, is_place: IsPlace) -> str:
         if found is None or not text[: found.start()].strip() or not text[found.end() :].strip(" ,.!?"):
             return text
         meant = _refined(re.sub(r",? i mean(?:t)?$", "", text[found.end() :].strip(" ,.!?")))
-        if contrast := _CONTRAST.match(meant):
+        if contrast := CONTRAST.match(meant):
             meant = with_qualities(text[: found.start()], contrast["wrong"], contrast["right"])
         meant, comma, rest = meant.partition(", ")
         if rest.split(" ")[0] not in PREPOSITIONS:  # "the red can, i mean the green can, on the dresser"
@@ -226,24 +200,3 @@ def _refined(text: str) -> str:
         return text
     rest = found["rest"] if found["rest"].startswith((", and", " and")) else found["rest"].lstrip(",")
     return f"{replaced(found['said'], found['one']) or found['said']}{rest}"
-
-
-def _contrasted(wrong: str, right: str) -> str:
-    """`not the red mug, the blue one` is the blue mug; a verb that was said only with the wrong one is kept."""
-    verb, _, thing = wrong.partition(" ")
-    right = re.sub(r",? (?:instead|rather)$", "", without_politeness(right))
-    if verb in COMMANDING and verb_first(right):
-        right = _of_thing(right, thing)
-    if verb in COMMANDING and not verb_first(right):
-        words = wrong.split()
-        receiver = f"{words[1]} " if len(words) > 2 and words[1] in ("me", "us") else ""
-        return f"{verb} {receiver}{filled(right, thing)}"
-    return filled(right, wrong)
-
-
-def _of_thing(command: str, said: str) -> str:
-    """`put it there` with the thing that was spoken of in place of its "it"."""
-    words = said.split()
-    spans = noun_phrases(words)
-    thing = " ".join(words[spans[0][0] : spans[0][1]]) if spans else ""
-    return re.sub(r"(?<=\w )(?:it|them)\b", thing, command, count=1) if thing else command

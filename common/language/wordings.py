@@ -11,6 +11,7 @@ from common.language.home_wordings import ASKED, TOLD
 from common.language.lexicon import BACK, BRING, FAMILY, GO, LOOK, ON, PICK, PUT, TIDY
 from common.language.moving import MOVING
 from common.language.questions import ABOUT_ITSELF, ABOUT_THE_WORLD
+from common.language.refusals import REFUSALS
 from common.language.wording import Wording
 
 WORDINGS: tuple[Wording, ...] = (
@@ -19,7 +20,7 @@ WORDINGS: tuple[Wording, ...] = (
         "[no] (stop | halt | freeze | hold it) [it | that | now | [right] there | at once | immediately | everything]"
         " | [no] stop ([please] stop [stop] | (looking | searching | trying) [for (it | that)] | moving | driving | "
         "going | doing that | what you are doing)"
-        " | hold still | do not (move | do (that | it | this))"
+        " | hold still | [no | please] do not [move | do (that | it | this)]"
         " | [that is it] [that is | it is] enough | quit "
         "(it | that) | cut it out | stay (there | where you are) | emergency stop",
         heard="stop [it]", kind="reply", reason="stopping needs no plan",
@@ -66,8 +67,8 @@ WORDINGS: tuple[Wording, ...] = (
     Wording("refuse", "yes <words>", reason="I did not ask anything"),
     Wording("refuse", "(do not | never | not | did not) <words>", reason="you told me not to, so I leave it"),
     *CONDITIONS,
+    *REFUSALS,
     Wording("refuse", "(if | when | unless) <words>", reason="I cannot wait for conditions"),
-    Wording("refuse", "follow <words>", heard="follow me", reason="I cannot follow people"),
     Wording(
         "open_hand", "(open [up] | let go [of] | release) [the | your] (gripper | hand | fingers)",
         heard="open (the | your) (hand | gripper)",
@@ -89,10 +90,15 @@ WORDINGS: tuple[Wording, ...] = (
         " | (the | this | that) <thing> is (my | our) <words>"
         " | (call | name) (this | that | it) [<thing>] [my | our | the] <words> | (call | name) (the "
         "| my | our) <thing> <words>"
-        " | (remember | learn) (this | that) [<thing>] as [my | our | the] <words>",
+        " | (remember | learn) (this | that) [<thing>] as [my | our | the] <words>"
+        " | (remember | learn) <thing> as (my | our) <words>",
     ),
     Wording("forget", "(forget | unlearn) [about] [the name [of] | what is] (my | our) <words>"),
-    Wording("forget", "(forget | unlearn) the name [of] [the] <words>"),
+    Wording(
+        "forget",
+        "(forget | unlearn) the name [of] [the] <words>"
+        " | (forget | unlearn) that (it | this | that | <thing>) is (called | named) [my | our | the] <words>",
+    ),
     Wording("untidy", "<spot> (is | looks) (a mess | messy | untidy | dirty | a tip)"),
     Wording(
         "again",
@@ -208,11 +214,6 @@ WORDINGS: tuple[Wording, ...] = (
     Wording("go", "(i | we) (need | want) you (in | at | by) <spot>"),
     Wording("go", "(make your way | get yourself | take yourself) [over | back] (to | into) <spot>"),
     *MOVING,
-    Wording(
-        "refuse", "(open | close | shut | lock | unlock) <words>", heard="(open | close) the <openable>",
-        reason="I cannot open or close doors, drawers or lids",
-    ),
-    Wording("refuse", "(turn | switch) (on | off) <words>", reason="I cannot switch things on or off"),
     # What is said beside a command.
     Wording(
         "mention",

@@ -226,7 +226,7 @@ def test_the_planner_answers_a_plain_peer(here: Site) -> None:
             (step,) = peer.wait("action_plan", request_id=f"m.{n}")["steps"]
             assert (step["action"], step["object"], step["target"]) == (action, "", "gripper")
         peer.put("plan_request", id="m.6", command="dance with me")
-        assert "do not understand" in peer.wait("action_plan", request_id="m.6")["detail"]
+        assert "but not that" in peer.wait("action_plan", request_id="m.6")["detail"]
         assert json.loads(delivery.fetch(session, "action_plan")["action_plan"])["request_id"] == "m.6"
 
 

@@ -11,7 +11,7 @@ from services.planner.grammar.paraphrase import Paraphraser, guesses, installed
 from services.planner.grammar.spelling import corrected, distance
 from services.planner.grammar.vocabulary import Vocabulary
 from services.planner.world import World
-from tests.everyday import CONFIG, HOME, planned, sentences, understand, verdict
+from tests.everyday import CONFIG, HOME, Sentence, planned, sentences, understand, verdict
 
 LISTS = ("everyday_sentences.tsv", "more_everyday_sentences.tsv", "last_everyday_sentences.tsv")
 CLOSING = ("sealed_everyday_sentences.tsv", "closing_everyday_sentences.tsv")
@@ -100,6 +100,14 @@ def test_the_judge_of_sentences_can_say_no() -> None:
         ("bring me the red mug no wait the blue one", ["bring me the blue mug"]),
         ("do not bring me the red mug, bring the blue one", ["bring the blue mug"]),
         ("put the apple on the desk, sorry, on the counter", ["put the apple on the counter"]),
+        ("instead of the red mug bring me the blue one", ["bring me the blue mug"]),
+        ("instead of bringing me the apple put it on the counter", ["put the apple on the counter"]),
+        ("put the ball in the toy box instead of on the shelf", ["put the ball in the toy box"]),
+        ("toys do not belong on the shelf, they go in the toy box", ["toys go in the toy box"]),
+        ("not here, on the desk", ["on the desk"]),
+        ("whatever you do do not touch the apple", ["do not touch the apple"]),
+        ("where is the apple i would like it", ["where is the apple", "i would like it"]),
+        ("is there a can if so bring it", ["if there is a can", "bring it"]),
         ("put the apple on the desk, sorry, the counter", ["put the apple on the counter"]),
         ("bring me the mug, I mean go to the kitchen", ["go to the kitchen"]),
         ("before you come back put the mug in the bin", ["put the mug in the bin", "come back"]),
@@ -111,6 +119,41 @@ def test_the_judge_of_sentences_can_say_no() -> None:
 )
 def test_what_is_meant_in_the_end(text: str, expected: list[str]) -> None:
     assert commands(text, lambda words: words == ("counter",)) == expected
+
+
+@pytest.mark.parametrize(
+    ("context", "said", "acts"),
+    [
+        ("-", "get the box with my vitamins", ["find orange box", "grasp orange box", "return", "release"]),
+        ("-", "is there anything to drink if so bring me one",
+         ["find green can", "grasp green can", "return", "release"]),
+        ("-", "if the red mug is in the kitchen leave it there otherwise bring it to me",
+         ["find red mug", "grasp red mug", "return", "release"]),
+        ("-", "mugs should always go back to the counter", ["rule mugs"]),
+        ("-", "forget that it's called vitamin box", ["forget"]),
+        ("failed:put the red mug on the counter", "try the desk",
+         ["navigate desk", "find red mug", "grasp red mug", "place red mug"]),
+        ("last:put the red mug on the desk", "no next to the apple",
+         ["find red mug", "grasp red mug", "place red mug"]),
+        ("last:bring me the white mug", "the other one please", []),
+        ("busy:put the apple on the desk", "and the ball too", ["find red ball", "grasp red ball", "place red ball"]),
+        ("-", "let me put the can in the bin", []),
+        ("last:bring me the apple", "leave the vitamin box where it is", []),
+        ("-", "if there is anything on the desk put it on the counter",
+         ["find white mug", "grasp white mug", "place white mug", "find orange box", "grasp orange box",
+          "place orange box"]),
+    ],
+)  # fmt: skip
+def test_one_part_tells_what_another_means(context: str, said: str, acts: list[str]) -> None:
+    found = understand(Sentence(context, said, ""))
+    assert [" ".join(filter(None, (s.action, s.object or s.target))) for s in found.steps] == acts
+
+
+@pytest.mark.parametrize("said", ["quit putting the apple in the bin", "there is no point in fetching the apple",
+                                  "it would be a mistake to throw the can away", "let me get the apple",
+                                  "what if i put the ball in the toy box", "no need to bring the mug"])  # fmt: skip
+def test_nothing_is_offered_that_was_not_asked_for(said: str) -> None:
+    assert not planned(said).asks
 
 
 def test_what_names_nothing_replaces_nothing() -> None:
@@ -160,11 +203,35 @@ def test_a_slip_in_a_name_is_asked_about_and_taken_literally_after_a_no() -> Non
         ("forget that, bring me the apple", "replace", "bring me the apple"),
         ("what are you doing", "aside", "what are you doing"),
         ("where is the apple", "aside", "where is the apple"),
+        ("hang on", "stop", "hang on"),
+        ("wait for me in the kitchen", "queue", "wait for me in the kitchen"),
+        ("do not bring it to me, put it on the desk", "replace", "do not bring it to me, put it on the desk"),
+        ("instead of the can bring the mug", "replace", "bring the mug"),
+        ("hurry up", "encouragement", "hurry up"),
     ],
 )
 def test_what_is_said_to_a_robot_at_work(said: str, kind: str, text: str) -> None:
     found = interjection(said)
     assert (found.kind, found.text) == (kind, text)
+
+
+@pytest.mark.parametrize(
+    ("said", "kind"),
+    [
+        ("don't put it on the desk", "cancel"), ("stop putting the apple on the desk", "cancel"),
+        ("you needn't bring it", "cancel"), ("leave the apple alone", "cancel"), ("please don't", "stop"),
+        ("don't touch the apple", "cancel"), ("no need to put it there", "cancel"), ("don't drop it", "queue"),
+        ("don't put the ball in the toy box", "queue"), ("no stop bring me the can", "replace"),
+        ("stop what you are doing and come here", "replace"),
+    ],
+)  # fmt: skip
+def test_what_is_forbidden_at_work_is_not_gone_on_with(said: str, kind: str) -> None:
+    assert interjection(said, "put the apple on the desk").kind == kind
+
+
+def test_one_thing_is_spared_of_many_under_way() -> None:
+    assert interjection("don't touch the box", "tidy up the desk").text == "tidy up the desk except the box"
+    assert interjection("don't tidy the desk", "tidy up the desk").kind == "cancel"
 
 
 def test_questions_and_orders_are_told_apart() -> None:

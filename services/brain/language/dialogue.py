@@ -8,6 +8,7 @@ from typing import Literal
 from common.household import Household
 from common.language.clauses import without_fillers
 from common.language.contractions import expand
+from common.language.contrasts import with_qualities
 from common.language.discourse import commands
 from common.language.exchange import PREPOSITIONS, noun_phrases, replaced
 from common.language.lexicon import COMMANDING
@@ -15,7 +16,6 @@ from common.language.meaning import asks_for
 from common.language.normalise import DETERMINERS, Words, infinitive, normalise, without_determiners
 from common.language.noun_phrase import WHICH, Which, related
 from common.language.politeness import without_politeness
-from common.language.repairs import with_qualities
 from common.language.simplify import simplified
 from common.messages import WorldObject
 from common.plan_rules import is_destination

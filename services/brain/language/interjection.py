@@ -7,14 +7,15 @@ import msgspec
 
 from common.language.clauses import without_fillers
 from common.language.contractions import expand
-from common.language.exchange import filled
-from common.language.lexicon import A_VERB
+from common.language.contrasts import NOT_WANTED, contrasted, instead
+from common.language.exchange import PREPOSITIONS
+from common.language.lexicon import COMMANDING
 from common.language.meaning import asks_for, is_question
-from common.language.normalise import normalise
-from common.language.repairs import NOT_WANTED
+from common.language.normalise import DETERMINERS, infinitive, normalise
+from common.language.politeness import without_politeness
 from common.language.wording import Action
 
-Kind = Literal["stop", "cancel", "come_back", "queue", "replace", "aside"]
+Kind = Literal["stop", "cancel", "come_back", "queue", "replace", "aside", "encouragement"]
 _LATER = re.compile(
     r"^(?:and )?(?:"
     r"(?:when|once|as soon as|after) you(?: are| have)?(?: all)? "
@@ -29,7 +30,9 @@ _LATER_END = re.compile(
 )
 """The same behind it."""
 _INSTEAD = re.compile(
-    r"^(?:no|stop(?! by\b)(?: (?:that|it|this))?|wait|sorry|hold on|hang on|"
+    r"^(?:no|stop(?! by\b| (?!bring\b)\w+ing\b)(?: (?:that|it|this|everything|what you are doing))?|"
+    r"wait(?! (?:for|here|there|in|at|by|on|until|till)\b)|sorry|"
+    r"hold on|hang on|"
     r"(?:forget|scrap|leave|drop|cancel|never mind|skip) (?:about )?(?:that|it|this)|never ?mind|"
     r"scratch that|change of plans?|new plan|i(?: have|'ve)? changed my mind|actually|on second thoughts?|"
     r"instead|rather|"
@@ -39,18 +42,12 @@ _INSTEAD = re.compile(
 _INSTEAD_END = re.compile(r"[, ]+(?:instead(?: of (?:that|it|this))?|rather)$")
 
 
-_INSTEAD_OF = re.compile(rf"^(?:no |and )?instead of (?P<wrong>.+?),? (?P<right>{A_VERB} .+)$")
-"""`instead of the red mug bring the blue one`."""
-
-
 _RATHER = re.compile(r"^(?:actually |in fact )?(?:i|we) would (?:rather|prefer|sooner)\b")
 _MADE = re.compile(r"^(?:(?:no|actually|sorry),? )*make (?:it|that) (?:the|a|an|my|two|both) ")
 _CHANGED = re.compile(r"^(?:(?:no|oh|actually|i have changed my mind|on second thoughts?),? )+")
-_NOT_BUT = re.compile(r"^(?P<right>.+?),? (?:instead of|rather than) (?:\w+ing|the|my|a|that|to) .+$")
-"""`put it on the desk instead of bringing it to me`."""
 _ONE_MOMENT = re.compile(
     r"^(?:(?:hold on|hang on|wait|stop)(?: (?:a|one|just a|for a))?|one|just a) "
-    r"(?:second|sec|moment|minute|bit|tick)$|^(?:wait|hold on|hang on)(?:,? (?:wait|hold on|hang on))+$"
+    r"(?:second|sec|moment|minute|bit|tick)$|^(?:wait|hold on|hang on)(?:,? (?:wait|hold on|hang on))*$"
 )
 _NO_LONGER = re.compile(r"^(?:i|we) (?:do not|no longer) (?:need|want) [^,]+?(?: (?:any ?more|after all|now))?$")
 _CALLED_OFF = re.compile(
@@ -59,20 +56,36 @@ _CALLED_OFF = re.compile(
 """What was asked for is not wanted; there is nothing in its place."""
 
 
+_FORBIDDEN = re.compile(
+    r"^(?:(?:no|please|oh|wait|actually),? )*(?:(?:(?:do not|never|(?:there is )?no need to|you need not|"
+    r"you do not (?:need|have) to) (?P<verb>\w+)|(?:quit|stop|no need for) (?P<doing>(?!bring\b)\w+ing))\b(?P<what>.*)"
+    r"|leave (?P<left>it|that|them|(?:the|my) \w+(?: \w+)?)"
+    r"(?: (?:alone|be|there|here|(?:where|as) (?:it|they) (?:is|are)))?)$"
+)
+"""What is to be left undone or untouched."""
 _NEWS = re.compile(r"^(?:i|we|he|she|they|it|there|somebody|someone) (?!(?:goes|has to)\b)\w+")
 _WISH = re.compile(r"\b(?:want|need|like|love|prefer|rather|mean|meant|said|wanted|asked|would|could|should|must)\b")
 """What somebody tells, and what makes a wish of it."""
 
 
+_POINTING = frozenset({"it", "that", "this", "them", "those", "anything", "one"})
+_ALL = re.compile(r"\b(?:tidy|clean|clear|empty|sort|all|every|everything)\b")
+"""Commands of which one thing can be spared."""
+_SMALL = DETERMINERS | PREPOSITIONS | {"me", "us", "and"}
+
+
 class Interjection(msgspec.Struct, frozen=True):
-    """`text`: the command or question without the words that say when."""
+    """`text`: the command or question without the words that say when; an encouragement asks for neither."""
 
     kind: Kind
     text: str
 
 
-def interjection(said: str) -> Interjection:
-    """What a sentence means to a mission under way; a command without a word about when is for later."""
+def interjection(said: str, doing: str = "") -> Interjection:
+    """What a sentence means to a mission under way; a command without a word about when is for later.
+
+    `doing`: the command under way, which a sentence that forbids something of it calls off.
+    """
     words = without_fillers(expand(normalise(said, ",")))
     now: tuple[Action, ...] = ("stop", "cancel") if _LATER.match(words) else ("stop", "cancel", "come_back")
     if control := asks_for(said, *now):
@@ -84,15 +97,20 @@ def interjection(said: str) -> Interjection:
         return Interjection(control, said)  # type: ignore[arg-type]
     if _ONE_MOMENT.match(words):
         return Interjection("stop", said)
-    if contrast := _INSTEAD_OF.match(words):
-        return Interjection("replace", filled(contrast["right"], contrast["wrong"]))
     if unwanted := NOT_WANTED.match(words):
         return Interjection("replace", words[unwanted.end() :])
     if _NO_LONGER.match(words) or _CALLED_OFF.match(_CHANGED.sub("", words)):
         return Interjection("cancel", said)
-    if other := _NOT_BUT.match(words):
-        return Interjection("replace", other["right"])
-    if words.startswith("not ") or _RATHER.match(words) or _MADE.match(words):
+    if meant := instead(re.sub(r"^(?:no|and),? ", "", words)):
+        return Interjection("replace", meant)
+    if forbidden := _forbidden(words, doing):
+        return forbidden
+    if (
+        words.startswith("not ")
+        or (words.startswith("do not ") and contrasted(words) != words)
+        or _RATHER.match(words)
+        or _MADE.match(words)
+    ):
         return Interjection("replace", said)
     for kind, begin, end in (("replace", _INSTEAD, _INSTEAD_END), ("queue", _LATER, _LATER_END)):
         rest = words
@@ -103,7 +121,26 @@ def interjection(said: str) -> Interjection:
             return Interjection("cancel", said)  # "never mind, I found it"
         if bare and bare != words:
             return Interjection(kind, bare)  # type: ignore[arg-type]
-    return Interjection("aside" if is_question(said) else "queue", said)
+    if is_question(said):
+        return Interjection("aside", said)
+    return Interjection("queue" if without_politeness(words) else "encouragement", said)
+
+
+def _forbidden(words: str, doing: str) -> Interjection | None:
+    """What follows for the command under way from words that forbid, and nothing else, a part of it or all of it."""
+    found = _FORBIDDEN.match(words)
+    if found is None or contrasted(words) != words:
+        return None
+    what = (found["left"] or found["what"]).replace(",", "").split()
+    verb = infinitive(found["verb"] or found["doing"] or "leave", COMMANDING)
+    if verb not in COMMANDING | {"touch"} or verb in ("drop", "tell", "wait"):
+        return None
+    shared = (set(doing.split()) - _SMALL).intersection(what)
+    if what and not shared and _ALL.search(doing) and what[0] in DETERMINERS and PREPOSITIONS.isdisjoint(what):
+        return Interjection("replace", f"{doing} except {' '.join(what)}")
+    if what and not shared and _POINTING.isdisjoint(what):
+        return None
+    return Interjection("cancel", words)
 
 
 def _is_news(text: str) -> bool:

@@ -27,10 +27,12 @@ class Asides:
         """Take what was said while a mission is under way; an interjection that has to interrupt it is given back."""
         if asks_for(command.text, "yes", "no", "continue", "thanks"):
             return None
-        said = interjection(command.text)
+        said = interjection(command.text, self._ctx.mission.command)
         match said.kind:
             case "queue":
                 self._queue(command, said.text)
+            case "encouragement":
+                self.speak("I am at it.")
             case "aside":
                 self._waiting, self._asked, self._since = command, "", self._ctx.now
             case _:

@@ -23,6 +23,8 @@ def fetch_named(builder: PlanBuilder, slots: Slots) -> None:
     """A thing's name alone; other words are no command."""
     if isinstance(phrase := read(slots["thing"], builder.vocabulary), Phrase) and phrase.sense.new:
         raise Lost(f"I know no {phrase.noun}")
+    if isinstance(phrase, Phrase) and phrase.but and phrase.sense.every and not (phrase.colours or phrase.which):
+        raise Refusal("you said what you do not want, but not what you want")
     last = builder.vocabulary.noun(slots["thing"][-1])
     named = slots["thing"][0] in DETERMINERS or slots["thing"][0] in builder.vocabulary.colours
     if last is None and not named and not isinstance(read(slots["thing"], builder.vocabulary), Phrase):
@@ -70,6 +72,13 @@ def put_held(builder: PlanBuilder, slots: Slots) -> None:
     if builder.world.held is None:
         raise Lost("there is nothing in my hand")
     deliver(builder, {"thing": ("it",), **slots})
+
+
+def put_where(builder: PlanBuilder, slots: Slots) -> None:
+    """Next to a thing that is named; `leave it where it is` moves nothing."""
+    if " ".join(slots["spot"]) in PRONOUNS | {"they"}:
+        raise Refusal("so I leave it where it is")
+    put_near(builder, slots)
 
 
 def put_near(builder: PlanBuilder, slots: Slots) -> None:

@@ -18,15 +18,21 @@ def condition(builder: PlanBuilder, slots: Slots) -> None:
     """Is the thing there? If so it is what "it" means in what follows; if not, that is left."""
     there, missing = _look_into(builder, slots)
     builder.unmet = "" if there else f"I see {missing}, so I leave it."
-    builder.last = there
+    builder.last = there or _named(builder, slots)
 
 
 def condition_not(builder: PlanBuilder, slots: Slots) -> None:
     """Is the thing missing? If it is there, what follows is left."""
     there, _ = _look_into(builder, slots)
-    with suppress(Refusal):
-        builder.last = [m.object for m in referents(builder, slots["thing"])]
+    builder.last = _named(builder, slots) or builder.last
     builder.unmet = f"I see {enumeration([f'the {t.label}' for t in there])}, so I leave it." if there else ""
+
+
+def _named(builder: PlanBuilder, slots: Slots) -> list[BelievedObject]:
+    """What "it" means where the thing is not at the place that was asked about."""
+    with suppress(Refusal):
+        return [m.object for m in referents(builder, slots["thing"])]
+    return []
 
 
 def state_not(builder: PlanBuilder, slots: Slots) -> None:

@@ -170,9 +170,10 @@ def last_seen(builder: PlanBuilder, slots: Slots) -> None:
     )
     if present or not found:
         where(builder, slots)
-        return
-    s = max(found, key=lambda s: s.last)
-    builder.say(f"I last saw the {thing} {_place(builder, s)}, {ago(builder.world.seen_until - s.last)}.")
+    if found:
+        s = max(found, key=lambda s: s.last)
+        seen = "I last saw it" if present else f"I last saw the {thing} {_place(builder, s)},"
+        builder.say(f"{seen} {ago(builder.world.seen_until - s.last)}.")
 
 
 def _thing(builder: PlanBuilder, words: Words) -> str:

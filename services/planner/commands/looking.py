@@ -45,7 +45,9 @@ def _tell_contents(builder: PlanBuilder, slots: Slots, afresh: bool) -> None:
         builder.look_at(look)
     if not there:
         builder.look_first(look, f"I have seen nothing there so far, so I would have to go to the {place.name} first")
-    builder.say(told(there, place))
+    builder.spot = place
+    if not any(step.text == told(there, place) for step in builder.steps):
+        builder.say(told(there, place))
 
 
 def things_at(builder: PlanBuilder, words: Words) -> tuple[Spot, list[BelievedObject], list[Receptacle]]:

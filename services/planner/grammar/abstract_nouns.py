@@ -110,6 +110,6 @@ wakefulness war warfare warmth warning wave wavelength way weakness weather wedn
 whisper width willingness winter wish wonder word workout worry worship wound wrath wrong year yearning years
 yell yellow yes yesterday zeal
 hello hi goodbye bye welcome wave wink cuddle cheers position positions stance seat spin twirl nod bow salute clap five
-posture presentation rundown heads overview
+hike nap stroll shower bath guess selfie dive bite sip posture presentation rundown heads overview
 """
 ABSTRACT: frozenset[str] = frozenset(_WORDS.split())

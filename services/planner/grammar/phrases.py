@@ -14,6 +14,7 @@ from common.language.noun_phrase import (
     Relation,
     Which,
     related,
+    with_contents,
     without_clause,
     without_exceptions,
     without_measure,
@@ -53,6 +54,9 @@ def read(words: Words, vocabulary: Vocabulary) -> Phrase | str:
         if but and rest[0] in ("everything", "anything", "all"):
             rest = (*rest, *_where(but[-1], rest))
         phrase = _read(rest, vocabulary)
+        if isinstance(phrase, str):
+            of = _read(with_contents(rest), vocabulary)
+            phrase = of if isinstance(of, Phrase) and not of.sense.new else phrase
         whole = msgspec.structs.replace(phrase, but=but) if but and isinstance(phrase, Phrase) else phrase
         vocabulary.phrases[key] = whole
     known: Phrase | str = vocabulary.phrases[key]

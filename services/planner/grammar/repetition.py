@@ -25,6 +25,15 @@ _NO = re.compile(
 _NO_BARE = re.compile(
     r"^(?:(?:hm+|oh|ah|no|nope|wrong|sorry|actually|rather) )+(?:the |my )?(?P<place>\w+(?: \w+){0,2}?)(?: please)?$"
 )
+_ELSEWHERE = re.compile(
+    r"^(?:try|check|(?:have )?(?:you )?(?:look|looked|tried|search|searched)|what about|how about|maybe|perhaps|"
+    r"(?:maybe |perhaps |i think )?(?:it|they) (?:is|are|might be|may be|could be|must be|should be))"
+    r"(?: (?:in|on|at|inside))? (?:the|my|our) (?P<place>\w+(?: \w+){0,2})$"
+)
+"""Where else something may be that was not found."""
+_NO_THERE = re.compile(
+    rf"^(?:(?:hm+|oh|ah|no|nope|wrong|sorry|actually|rather) )+(?P<place>(?:{'|'.join(sorted(PREPOSITIONS))}) .+)$"
+)
 _PLACED = re.compile(r"\w (?:next to|beside|near|on|in|into|onto|to|at) \w")
 _TOO = re.compile(
     r"^(?!.*\b(?:goes|go|belongs?|is|are|there)\b)(?:and |now |then |do )*(?P<thing>.+?)"
@@ -43,12 +52,17 @@ def repeated(command: str, clauses: Sequence[str], told: History, is_place: IsPl
             return (replaced(last, " ".join(slots["thing"]), is_place) or last) if "thing" in slots else last
     if (bare := _NO_BARE.match(expand(normalise(command)))) and is_place(tuple(bare["place"].split())):
         return replaced(normalise(last), f"on the {bare['place']}", is_place) or command
+    if elsewhere := _NO_THERE.match(expand(normalise(command))):
+        return replaced(normalise(last), elsewhere["place"], is_place) or command
     if (found := _NO.match(expand(normalise(command)))) and (
         (rest := found["rest"] or found["other"] or found["made"] or found["better"]).split()[0]
         in DETERMINERS | PREPOSITIONS
     ):
         return replaced(normalise(last), rest, is_place) or command
-    if told.last is not None and told.last.outcome == "cancelled" and (other := _instead(clauses[0], last, is_place)):
+    outcome = told.last.outcome if told.last is not None else ""
+    if outcome == "failed" and (place := _elsewhere(clauses[0], is_place)):
+        return _from(normalise(last).split(), place)
+    if outcome == "cancelled" and (other := _instead(clauses[0], last, is_place)):
         return other
     if found := _TOO.match(without_politeness_at_end(command)):
         thing = found["thing"] or found["other"]
@@ -57,6 +71,18 @@ def repeated(command: str, clauses: Sequence[str], told: History, is_place: IsPl
         if thing.split()[0] in DETERMINERS:
             return replaced(normalise(last), thing, is_place) or command
     return command
+
+
+def _elsewhere(said: str, is_place: IsPlace) -> str:
+    """The place that a clause names as one where something may be; "" if it names none."""
+    found = _ELSEWHERE.match(said)
+    return found["place"] if found and is_place(tuple(found["place"].split())) else ""
+
+
+def _from(last: list[str], place: str) -> str:
+    """The last command with where its thing is to be looked for."""
+    end = next(iter(noun_phrases(last)), (0, len(last)))[1]
+    return " ".join((*last[:end], "from the", place, *last[end:]))
 
 
 def _instead(said: str, last: str, is_place: IsPlace) -> str:

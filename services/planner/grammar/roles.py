@@ -62,6 +62,8 @@ _AS_SUBJECT = frozenset(_MODALS.split())
 _GONE = re.compile(r"\b(?:gone|disappear|vanish|leave|out of (?:here|sight|the way))\b")
 _BACK = re.compile(r"\b(?:here|back|home|to me)\b")
 _FOR = re.compile(rf"\b(?:for|let|another) ({DURATION})\b")
+_TOLD = re.compile(r"^(?:the|my|our|that|this|a|an)\b(?!.*\bplease\b).* (?:is|are|was|were)\b")
+"""What is told of a thing, where no verb asks for anything."""
 _OUT = re.compile(r"\b(?:away|out|rid|rubbish|trash|garbage)\b")
 
 
@@ -203,7 +205,7 @@ def _handling(parts: _Parts, thing: str) -> list[str]:
         (bool(verbs & {"bring", "wish"}) and (parts.here or "hold" not in verbs), f"bring me {located}"),
         ("hold" in verbs, f"pick up {located}"),
         ("tidy" in verbs, f"put {thing} away"),
-        (parts.here or parts.bare, f"bring me {located}"),
+        ((parts.here or parts.bare) and not _TOLD.match(text), f"bring me {located}"),
     )
     return [command for fits, command in likely if fits]
 

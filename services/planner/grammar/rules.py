@@ -62,7 +62,7 @@ ACTIONS: dict[Action, Callable[[PlanBuilder, Slots], None]] = {
     "last_seen": home.last_seen,
     "mention": remarks.mention,
     "put_back": bringing.put_back,
-    "put_where": bringing.put_near,
+    "put_where": bringing.put_where,
     "wish_at": bringing.wish_at,
     "named_at": bringing.named_at,
     "put_held": bringing.put_held,

@@ -40,6 +40,7 @@ class Vocabulary:
         self.kinds = {t.kind for t in known if t.kind} | set(words.kinds)
         self.colours = {c: c for c in {*(t.colour for t in known), *(r.colour for r in household.receptacles)} if c}
         self.colours |= {word: c for c, others in words.colours.items() for word in (c, *others)}
+        self._kind_of = {t.label: t.kind for t in known}
         self._nouns: dict[str, Sense] = {}
         self._printed: dict[str, set[str]] = {}
         self._aliases(household)
@@ -119,8 +120,10 @@ class Vocabulary:
         if phrase.startswith("anything ") and (sense := self._nouns.get(phrase.replace("any", "some", 1))):
             return sense, phrase, False
         whole, found, part = phrase.partition(" of ")
-        if found and whole in self.kinds and (named := self.noun(part)) is not None and named[0].names:
-            return named  # a can of soup
+        if found and (named := self.noun(part)) is not None:
+            kinds = self._nouns.get(whole, Sense()).kinds
+            if inside := frozenset(label for label in named[0].names if self._kind_of.get(label) in kinds):
+                return Sense(names=inside), *named[1:]  # a can of soup
         if head and last in self.kinds and (labels := self._printed.get(head)):
             return Sense(names=frozenset(labels)), phrase, False  # the soup can
         for form, plural in _singulars(phrase):

@@ -39,11 +39,18 @@ def choose(
     if len(set(names)) == 1:
         return [Referent(near[0])]
     kinds = {t.kind for t in near}
-    if len(kinds) == 1 and kinds == phrase.sense.kinds and not phrase.colours:
+    if len(kinds) == 1 and kinds == phrase.sense.kinds and not phrase.colours and phrase.which != "other":
         # Perception will find several and the brain asks which one.
-        kind, words = next(iter(kinds)), " ".join(without_determiners(tuple(phrase.text.split())))
+        kind = next(iter(kinds))
+        words = _words(phrase, kind)
         return [Referent(BelievedObject(label=kind, kind=kind, size=near[0].size), "" if words == kind else words)]
     raise Lost(f"I do not know which one you mean: {enumeration([f'the {n}' for n in names], 'or')}")
+
+
+def _words(phrase: Phrase, kind: str) -> str:
+    """What was said of a thing without its article, with its kind for "one"."""
+    said = without_determiners(tuple(phrase.text.split()))
+    return " ".join(kind if word == "one" == phrase.noun else word for word in said)
 
 
 def unseen(builder: PlanBuilder, phrase: Phrase, specs: list[BelievedObject], at: Spot | None) -> Referent:
@@ -51,7 +58,6 @@ def unseen(builder: PlanBuilder, phrase: Phrase, specs: list[BelievedObject], at
     if not specs:
         raise Refusal(f"I have seen no {phrase.noun}")
     where = at if at is None or not at.home else None
-    words = " ".join(without_determiners(tuple(phrase.text.split()))) if phrase.which or phrase.relation else ""
     if len(specs) == 1:
         return Referent(specs[0], at=where)
     preferred = [t for t in specs if t.label == phrase.sense.prefer]
@@ -62,4 +68,5 @@ def unseen(builder: PlanBuilder, phrase: Phrase, specs: list[BelievedObject], at
         names = enumeration([f"the {t.label}" for t in specs[:MAX_NAMED]], "or")
         raise Lost(f"I do not know which one you mean: {names}")
     kind = builder.choices.pick(kinds)
+    words = _words(phrase, kind) if phrase.which or phrase.relation else ""
     return Referent(BelievedObject(label=kind, kind=kind, seen=False), words, where)

@@ -86,8 +86,10 @@ def referent(builder: PlanBuilder, words: Words, prefer_held: bool = False) -> R
 def _resolve(builder: PlanBuilder, phrase: Phrase, prefer_held: bool) -> list[Referent]:
     sense = phrase.sense
     if sense.every and phrase.noun in ("one", "ones") and (before := mentioned(builder)):
-        sense = msgspec.structs.replace(sense, every=False, kinds=frozenset(t.kind for t in before))
-        phrase = msgspec.structs.replace(phrase, sense=sense)
+        which = phrase.colours or phrase.which or phrase.relation or len(before) == 1
+        kinds, names = (frozenset(t.kind for t in before), ()) if which else ((), frozenset(t.label for t in before))
+        sense = msgspec.structs.replace(sense, every=False, kinds=frozenset(kinds), names=frozenset(names))
+        phrase = msgspec.structs.replace(phrase, sense=sense, any_one=phrase.any_one or phrase.text == "one")
     if sense.new:
         return [_new(builder, phrase)]
     fits = fitting(builder, phrase)
