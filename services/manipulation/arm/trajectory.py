@@ -141,4 +141,5 @@ def _along(lengths: Array, corners: Array, speed: float, acceleration: float, dt
     t = np.arange(dt, starts[-1] + dt, dt)
     n = np.clip(np.searchsorted(starts, t, side="right") - 1, 0, len(times) - 1)
     since = np.minimum(t - starts[n], times[n])
-    return np.minimum(ways[n] + speeds[n] * since + gains[n] * since**2 / 2, lengths.sum())
+    way: Array = np.minimum(ways[n] + speeds[n] * since + gains[n] * since**2 / 2, lengths.sum())
+    return way
