@@ -2,11 +2,15 @@
 
 import math
 
+import msgspec
+import numpy as np
 import pytest
 
 from common import messages as m
+from common.floor_plan import Wall
+from common.geometry import Rectangle
 from common.household import load_household
-from services.manipulation.planning.planning_scene import GAPS, spots
+from services.manipulation.planning.planning_scene import GAPS, obstacles, spots
 
 SCENE = load_household("apartment")
 TABLE = SCENE.receptacle("kitchen table")
@@ -31,3 +35,12 @@ def test_spots_lie_on_the_surface_and_clear_of_what_stands_there(near: bool) -> 
         apart = math.dist(there, anchor.position[:2])
         assert TABLE.contains(*there) and apart > 0.08 + 0.03
         assert not near or apart < 0.08 + max(GAPS) + 0.01
+
+
+def test_the_end_of_a_wall_is_an_obstacle_as_far_as_it_closes_the_corner() -> None:
+    wall = Wall(start=(0.5, -1.0), end=(0.5, 0.3), thickness=0.12)
+    home = msgspec.structs.replace(SCENE, walls=(wall,), furniture=(), receptacles=())
+    (box,) = obstacles(home, (0.0, 0.5, -math.pi / 2), [])
+    solid = Rectangle(*box.center[:2], *box.size[:2], box.yaw)
+    assert solid.contains(0.5 - 0.36 + 0.005, 0.5) and not solid.contains(0.5 - 0.36 - 0.005, 0.5)
+    assert solid.contains(0.2, 0.5) and np.isclose(box.size[2], wall.height)

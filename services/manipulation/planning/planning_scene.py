@@ -113,7 +113,7 @@ def obstacles(
         found += _receptacle(r, base)
     found += [_box(base, f.center, f.size, f.yaw) for f in floor_plan.furniture]
     for wall in floor_plan.walls:
-        x, y, length, width, yaw = wall.outline
+        x, y, length, width, yaw = wall.footprint
         found.append(_box(base, (x, y, wall.height / 2), (length, width, wall.height), yaw))
     near = sorted((b for b in found if _near(b) < RANGE), key=_near)
     boxes = []
