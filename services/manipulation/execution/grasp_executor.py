@@ -50,7 +50,10 @@ def grab(robot: Robot, goal: m.ManipulationGoal, wanted: str) -> Steps[str]:
     last = Failure("UNREACHABLE", "no grasp tried")
     weighed = False
     for _ in range(config.max_candidates):
-        found = yield from sighted(robot, goal, wanted, since)
+        try:
+            found = yield from sighted(robot, goal, wanted, since, touched=bool(tried))
+        except Failure as failure:
+            raise (Failure(last.code, f"{last.detail}; {failure.detail} since") if tried else failure) from None
         robot.phase = "reach"
         target, around = target_of(found, robot.base, robot.io.household), surroundings(robot, found)
         try:

@@ -14,17 +14,26 @@ MISTAKEN = "MISTAKEN"
 """Code: the object is not where the grasp was planned for; a new plan is needed, no attempt was made."""
 
 
-def sighted(robot: Robot, goal: m.ManipulationGoal, wanted: str, since: float) -> Steps[WorldObject]:
-    """The object to grab as it was seen after `since`; an older sighting will do when no newer one comes in time."""
+def sighted(
+    robot: Robot, goal: m.ManipulationGoal, wanted: str, since: float, touched: bool = False
+) -> Steps[WorldObject]:
+    """The object to grab as it was seen after `since`.
+
+    An older sighting will do when no newer one comes in time, unless the hand has `touched` it since then.
+
+    Raises:
+        Failure: NO_OBJECT.
+    """
     robot.phase = "look"
-    end = robot.now + (robot.config.look_patience if robot.io.peer("perception") else 0.0)
+    watched = robot.io.peer("perception")
+    end = robot.now + (robot.config.look_patience if watched else 0.0)
     while True:
         found = robot.source.resolve(goal, wanted, robot.base, since)
-        if found is not None and (found.seen_at >= since or robot.now >= end):
+        if found is not None and (found.seen_at >= since or (robot.now >= end and not (touched and watched))):
             return found
         if robot.now >= end:
             what = wanted or (goal.object.label if goal.object else "object")
-            raise Failure("NO_OBJECT", f"no {what} is known here")
+            raise Failure("NO_OBJECT", f"no {what} is {'seen' if found else 'known'} here")
         yield
 
 
