@@ -5,10 +5,14 @@ import numpy as np
 import pytest
 
 from common import topics
-from services.manipulation.arm.arm_model import ArmModel
-from services.manipulation.arm.touch import MET, TOO_HEAVY, TOUCHED, Guard, Reaction, load_limit
+from services.manipulation.arm.arm_model import ArmModel, Pose
+from services.manipulation.arm.ik import seeds
+from services.manipulation.arm.touch import MET, TOO_HEAVY, TOUCHED, Guard, Reaction, Way, load_limit
 from services.manipulation.arm.trajectory import back_along
 from services.manipulation.execution.robot import Failure
+from services.manipulation.execution.setting_down import SLOWLY, set_down
+from services.manipulation.grasps.grasp import approach_rotation
+from services.manipulation.planning.straight_grab import RESERVE, with_reserve
 from services.sim.model import own
 from tests.unit.test_manipulation_service import CONFIG, Arm
 
@@ -48,21 +52,23 @@ def test_an_arm_takes_its_own_inertia_for_no_contact(
 
 
 @pytest.mark.parametrize(
-    ("force", "lifting", "code"),
+    ("force", "way", "code"),
     [
-        ((0.0, 0.0, -MET - 1), False, TOUCHED),
-        ((0.0, MET + 1, 0.0), False, TOUCHED),
-        ((0.0, 0.0, -MET + 1), False, ""),
-        ((0.0, 0.0, load_limit(25.0) + 1), True, TOO_HEAVY),
-        ((0.0, 0.0, load_limit(25.0) - 1), True, ""),
-        ((0.0, 50.0, -50.0), True, ""),
+        ((0.0, 0.0, -MET - 1), "any", TOUCHED),
+        ((0.0, MET + 1, 0.0), "any", TOUCHED),
+        ((0.0, 0.0, -MET + 1), "any", ""),
+        ((0.0, 0.0, load_limit(25.0) + 1), "up", TOO_HEAVY),
+        ((0.0, 0.0, load_limit(25.0) - 1), "up", ""),
+        ((0.0, 50.0, -50.0), "up", ""),
+        ((0.0, 0.0, -MET - 1), "down", TOUCHED),
+        ((0.0, 50.0, 50.0), "down", ""),
     ],
 )
 def test_a_motion_ends_at_what_it_should_not_meet(
-    arm: ArmModel, force: tuple[float, float, float], lifting: bool, code: str
+    arm: ArmModel, force: tuple[float, float, float], way: Way, code: str
 ) -> None:
     rest = torques(arm, (3.0, 0.0, 9.0))
-    guard = Guard(Reaction(arm), rest, load_limit(25.0) if lifting else MET, lifting)
+    guard = Guard(Reaction(arm), rest, load_limit(25.0) if way == "up" else MET, way)
     found, _ = guard.feel(arm.home, rest + torques(arm, force))
     assert found == code
 
@@ -74,15 +80,41 @@ def test_the_way_back_never_goes_deeper_first() -> None:
         assert back[0][0] == pytest.approx(first) and back[-1][0] == 0.0
 
 
-def test_a_guarded_motion_lets_go_of_its_set_point() -> None:
+@pytest.mark.parametrize(("way", "force"), [("any", -40.0), ("down", -40.0), ("up", 40.0)])
+def test_a_guarded_motion_lets_go_of_its_set_point_unless_it_would_fall(way: Way, force: float) -> None:
     node = Arm()
     node.step(1.0)
     robot = node.service._robot
-    guard = robot.guard(np.zeros(7))
+    guard = robot.guard(np.zeros(7), way=way)
     assert robot.planner is not None and guard is not None
-    robot.torques = torques(robot.planner.arm, (0.0, 0.0, -2 * MET))
+    robot.torques = torques(robot.planner.arm, (0.0, 0.0, force))
     steps = robot.follow([robot.joints + 0.3], CONFIG.joint_speed, guard)
     with pytest.raises(Failure, match="40 N on the hand"):
         for _ in steps:
             pass
-    assert node.sent(topics.ARM_COMMAND)[-1].position == pytest.approx(robot.joints.tolist())
+    left = np.array(node.sent(topics.ARM_COMMAND)[-1].position) - robot.joints
+    assert bool(left.any()) == (way == "up")
+
+
+def test_what_is_in_the_hand_goes_down_slowly_where_it_may_meet_its_surface() -> None:
+    node = Arm()
+    node.step(1.0)
+    robot = node.service._robot
+    assert robot.planner is not None
+    planner, above = robot.planner, Pose(np.array([0.55, 0.0, 0.6]), approach_rotation(0.0, np.pi / 2))
+    top = planner.ik.solve(above, seeds(planner.arm, above, planner.arm.home))
+    assert top is not None
+    down = planner.straight(top, above, above.moved(np.array([0.0, 0.0, -0.12])))
+    assert down is not None
+    robot.joints = top
+    for _ in set_down(robot, [top, *down], None, 0.5):
+        robot.joints = np.array(node.sent(topics.ARM_COMMAND)[-1].position)
+    heights = [planner.reaction.position(np.array(c.position))[2] for c in node.sent(topics.ARM_COMMAND)]
+    sinking = -np.diff(heights)
+    low = np.array(heights[:-1]) < heights[-1] + SLOWLY / 2
+    assert sinking[low].max() < 0.5 * sinking[~low].max()
+
+
+def test_the_hand_keeps_room_to_open_when_it_is_wedged(arm: ArmModel) -> None:
+    openings = [with_reserve(arm.hand, width) for width in (0.04, arm.hand.open - 0.002, arm.hand.open + 0.01)]
+    assert openings == pytest.approx([arm.hand.open - RESERVE, arm.hand.open - 0.001, arm.hand.open])

@@ -1,7 +1,7 @@
 """What the hand meets, felt in the joints' torques: motions near things end when it is more than they should be."""
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import mujoco
 import numpy as np
@@ -10,6 +10,7 @@ from services.manipulation.arm.arm_model import ArmModel, Array
 
 TOUCHED = "TOUCHED"
 TOO_HEAVY = "TOO_HEAVY"
+Way = Literal["any", "up", "down"]
 MET = 20.0
 """Force [N] on the hand from which it has met something: on its way without contact the arm's own inertia shows as at
 most 9 N, and a finger slides an object of 1 kg aside with less than 10."""
@@ -53,7 +54,7 @@ def load_limit(grip_effort: float) -> float:
 
 @dataclass(frozen=True)
 class Guard:
-    """Ends a motion: any force beyond `most` [N] is TOUCHED; with `lifting` an upward one, TOO_HEAVY.
+    """Ends a motion by a force of the hand beyond `most` [N] in its `way`: upwards it is TOO_HEAVY, else TOUCHED.
 
     `rest` are the torques (7,) [Nm] of the arm before it met anything.
     """
@@ -61,12 +62,13 @@ class Guard:
     reaction: Reaction
     rest: Array
     most: float = MET
-    lifting: bool = False
+    way: Way = "any"
 
     def feel(self, joints: Array, torques: Array) -> tuple[str, float]:
         """The code of a motion that has to end here, "" if it may go on, and the force [N] that was felt."""
         force = self.reaction.force(joints, torques - self.rest)
-        felt = float(force[2]) if self.lifting else float(np.linalg.norm(force))
+        upward = float(force[2])
+        felt = {"any": float(np.linalg.norm(force)), "up": upward, "down": -upward}[self.way]
         if felt <= self.most:
             return "", felt
-        return (TOO_HEAVY if self.lifting else TOUCHED), felt
+        return (TOO_HEAVY if self.way == "up" else TOUCHED), felt

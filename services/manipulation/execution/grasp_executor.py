@@ -12,6 +12,7 @@ from services.manipulation.arm.touch import TOO_HEAVY, TOUCHED, load_limit
 from services.manipulation.arm.trajectory import back_along
 from services.manipulation.execution.grasp_choice import chosen, surroundings
 from services.manipulation.execution.robot import Failure, Robot, Steps, go_home, planner_of
+from services.manipulation.execution.setting_down import set_down
 from services.manipulation.execution.sighting import MISTAKEN, aimed, sighted
 from services.manipulation.grasps.clearance import PAD
 from services.manipulation.grasps.grasp import shown
@@ -19,6 +20,7 @@ from services.manipulation.grasps.grasp_verification import WIDTH_ERROR, held_ba
 from services.manipulation.grasps.grasped_object import GraspedObject
 from services.manipulation.planning.plan_grab import GrabPlan
 from services.manipulation.planning.planning_scene import target_of
+from services.manipulation.planning.straight_grab import with_reserve
 
 BAD_HOLD = "BAD_HOLD"
 """Code within an attempt: the fingers hold the object by something else than its body; another grasp is tried."""
@@ -103,11 +105,12 @@ def _execute_grab(
 ) -> Steps[str]:
     """`widths`: of earlier bad holds [m]; one that is felt again from another side is the object's own."""
     config = robot.config
-    yield from robot.move_gripper(0.0)
+    hand = planner_of(robot).arm.hand
+    yield from robot.move_gripper(hand.share(with_reserve(hand, plan.grasp.width)))
     yield from robot.follow(plan.reach, config.joint_speed)
     plan = yield from aimed(robot, plan, goal, found)
     if plan.opening is not None:
-        yield from robot.move_gripper(planner_of(robot).arm.hand.share(plan.opening))
+        yield from robot.move_gripper(hand.share(plan.opening))
     free = robot.torques.copy()
     try:
         yield from robot.follow(plan.insert, config.joint_speed * _inserting(robot, plan), robot.guard(free))
@@ -125,7 +128,7 @@ def _execute_grab(
     robot.phase = "retract"
     way = [plan.lift]
     try:
-        weight = robot.guard(free, load_limit(config.grip_effort), lifting=True)
+        weight = robot.guard(free, load_limit(config.grip_effort), "up")
         yield from robot.follow(plan.lift[:WEIGHED], config.joint_speed * 0.25, weight)
         yield from robot.follow(plan.lift[WEIGHED:], config.joint_speed * 0.5)
         _judge(robot, plan, closed.width, widths)
@@ -146,8 +149,8 @@ def _execute_grab(
 
 def _inserting(robot: Robot, plan: GrabPlan) -> float:
     """Share of the joint speed around the object, by the room that the fingers have if it is as wide as may be."""
-    hand = planner_of(robot).arm.hand
-    room = (min(plan.opening or hand.open, hand.open) - plan.grasp.width - plan.doubt) / 2
+    opening = with_reserve(planner_of(robot).arm.hand, plan.grasp.width)
+    room = (min(plan.opening or opening, opening) - plan.grasp.width - plan.doubt) / 2
     return GENTLY if room < TIGHT else INSERTING
 
 
@@ -185,9 +188,12 @@ def _set_back(robot: Robot, plan: GrabPlan, way: list[list[Array]], free: Array)
     What hangs lower in the hand by now stands before the hand is back; `free`: torques (7,) [Nm] in the air.
     """
     for path in reversed(way):
-        guard = robot.guard(free) if path is plan.lift else None
+        back = back_along(path, robot.joints)
         try:
-            yield from robot.follow(back_along(path, robot.joints), robot.config.joint_speed * 0.5, guard)
+            if path is plan.lift:
+                yield from set_down(robot, back, robot.guard(free, way="down"), 0.5)
+            else:
+                yield from robot.follow(back, robot.config.joint_speed * 0.5)
         except Failure as failure:
             if failure.code != TOUCHED:
                 raise

@@ -9,6 +9,7 @@ from common.messages import ObjectRef, WorldObject
 from services.manipulation.arm.arm_model import Obstacle
 from services.manipulation.arm.touch import TOUCHED
 from services.manipulation.execution.robot import Failure, Robot, Steps, go_home, planner_of
+from services.manipulation.execution.setting_down import set_down
 from services.manipulation.grasps.grasp import approach_rotation
 from services.manipulation.grasps.grasped_object import USUAL_SIZE, GraspedObject
 from services.manipulation.planning.plan_place import DROP, PlacePlan, plan_place
@@ -20,11 +21,6 @@ BIN_DROP = 0.06
 """Height [m] above a bin's rim at which the hand lets go. Chosen: the fingers stay clear of the rim."""
 ACCESS = 0.08
 """Least free space [m] around an object that is to be left accessible: the breadth of the hand, open."""
-SLOWLY = 0.055
-"""Height [m] above the end of the way down from which it goes slowly: what is held may hang so much lower. Chosen: an
-apple that had slid in the hand met the tray 49 mm early, with 82 N."""
-SETTING_DOWN = 0.12
-"""Speed of that, in joint speeds: some 6 cm/s of the hand. At 0.4 a bottle of 0.4 kg met the tray with 100 N."""
 STANDS = 0.03
 """Height [m] above the end of the way down at which what is met is what the object is put on: it may have slid so far
 down in the hand, or have been taken so far above its foot."""
@@ -149,13 +145,9 @@ def _lower(robot: Robot, plan: PlacePlan, held: GraspedObject) -> Steps[None]:
     Raises:
         Failure: BLOCKED, it met something that is not what it is put on.
     """
-    feel, speed = planner_of(robot).reaction, robot.config.joint_speed
-    guard = robot.guard(robot.torques.copy())
-    heights = [float(feel.position(q)[2]) for q in plan.lower]
-    near = next(n for n, height in enumerate(heights) if height <= heights[-1] + SLOWLY)
+    feel = planner_of(robot).reaction
     try:
-        yield from robot.follow(plan.lower[: near + 1], speed * 0.4, guard)
-        yield from robot.follow(plan.lower[near:], speed * SETTING_DOWN, guard)
+        yield from set_down(robot, plan.lower, robot.guard(robot.torques.copy()), 0.4)
     except Failure as failure:
         if failure.code != TOUCHED:
             raise

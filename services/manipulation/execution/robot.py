@@ -13,7 +13,7 @@ from common.robot.grip import Grip
 from services.manipulation.arm.arm_model import Array
 from services.manipulation.arm.contacts import ContactLog
 from services.manipulation.arm.servo import Servo
-from services.manipulation.arm.touch import MET, Guard
+from services.manipulation.arm.touch import MET, TOO_HEAVY, Guard, Way
 from services.manipulation.arm.trajectory import timed
 from services.manipulation.config import ManipulationConfig
 from services.manipulation.grasps.grasped_object import GraspedObject
@@ -96,16 +96,19 @@ class Robot:
             worst = int(error.argmax())
             raise Failure("BLOCKED", f"joint_{worst + 1} is {error[worst]:.2f} rad behind")
 
-    def guard(self, rest: Array, most: float = MET, lifting: bool = False) -> Guard | None:
+    def guard(self, rest: Array, most: float = MET, way: Way = "any") -> Guard | None:
         """For a motion near objects; `rest`: torques (7,) [Nm] of the arm in the air."""
-        return Guard(self.planner.reaction, rest, most, lifting) if self.planner is not None else None
+        return Guard(self.planner.reaction, rest, most, way) if self.planner is not None else None
 
     def _check_touched(self, guard: Guard | None) -> None:
         code, force = guard.feel(self.joints, self.torques) if guard is not None else ("", 0.0)
-        if code:
+        if not code:
+            return
+        if code != TOO_HEAVY:
             self.stream(self.joints)
             self.forget_command()
-            raise Failure(code, f"{force:.0f} N on the hand")
+        # Else the arm stays strained: let go at once it would fall with what it pulls at.
+        raise Failure(code, f"{force:.0f} N on the hand")
 
     def forget_command(self) -> None:
         """The arm was stopped or moved by somebody else."""
