@@ -21,6 +21,8 @@ from common import messages as m
 from common import topics
 from common.bus.session import open_session
 from common.files.map_file import HOUSEHOLD, OCCUPIED, PICTURE, UNKNOWN, picture
+from common.household import Household, load_household
+from common.household_edits import edited
 from common.time.clock import monotonic
 
 NAMES = ("router", "sim", "camera", "navigation", "mapping", "dashboard")
@@ -36,6 +38,8 @@ WIDTH = 72
 """Columns of the map in the terminal."""
 PICTURE_EVERY = 5.0
 """Wall time [s] between two pictures of the growing map."""
+LINE_EVERY = 15.0
+"""Wall time [s] between two lines of progress where there is no terminal to draw in."""
 SAVE_LIMIT = 60.0
 """Wall time [s] that the last files may take after Ctrl-C."""
 
@@ -45,7 +49,8 @@ def run(args: argparse.Namespace) -> int:
     out = args.out.resolve()
     if args.from_plan is not None:
         household = plan_to_map(args.from_plan, out)
-        print(f"{out}: {len(household.receptacles)} surfaces of {household.name}; {_next(args, out)}")
+        print(f"{out}: {len(household.receptacles)} surfaces of {household.name}")
+        print("\n".join([*contents(household), _next(args, out)]))
         return 0
     args.port = args.port or (7447 if port_is_free(7447) else free_port())
     args.only, args.without, args.namespace, args.household = ",".join(NAMES), args.without, None, "unmapped"
@@ -68,8 +73,20 @@ def run(args: argparse.Namespace) -> int:
     if status.phase == "failed" or not status.saves:
         raise CliError(f"no map: {status.detail or status.phase}")
     say(f"{out}: {status.area:.1f} m2, {status.surfaces} surfaces, {status.frontiers} places left to look at")
+    say("\n".join(contents(load_household(str(out / HOUSEHOLD)))))
     say(_next(args, out))
     return 0 if status.phase == "done" else 130
+
+
+def contents(household: Household) -> list[str]:
+    """What there is in each room, by the names that the robot has for it: `room 1: table, bin 2`."""
+    named = edited(household, m.HouseholdEdits())
+    rooms = {
+        room.name: [r.name for r in named.receptacles if named.room_at(*r.center[:2]) == room] for room in named.rooms
+    }
+    lost = [r.name for r in named.receptacles if named.room_at(*r.center[:2]) is None]
+    rows = [*rooms.items(), *([("elsewhere", lost)] if lost else [])]
+    return [f"  {name}: {', '.join(surfaces) or 'nothing to put things on'}" for name, surfaces in rows]
 
 
 def _next(args: argparse.Namespace, out: Path) -> str:
@@ -96,6 +113,7 @@ def follow(link: Link, supervision: Supervision, out: Path, timeout: float) -> m
     status = m.MappingStatus(t=0.0, phase="idle")
     began, drawn = monotonic(), -math.inf
     console = Console(highlight=False)
+    told = began
     with Live(console=console, refresh_per_second=4, transient=True) as live:
         try:
             while status.phase not in ("done", "failed"):
@@ -107,7 +125,11 @@ def follow(link: Link, supervision: Supervision, out: Path, timeout: float) -> m
                 grid = grids.next(0.0) or grids.last
                 shown = states(grid) if grid is not None else None
                 drawing = terminal(shown) if shown is not None and console.is_terminal else []
-                live.update(Text("\n".join([*drawing, line(status)])))
+                if console.is_terminal:
+                    live.update(Text("\n".join([*drawing, line(status)])))
+                elif monotonic() - told > LINE_EVERY:
+                    told = monotonic()
+                    console.print(line(status))
                 if shown is not None and monotonic() - drawn > PICTURE_EVERY:
                     drawn = monotonic()
                     out.mkdir(parents=True, exist_ok=True)

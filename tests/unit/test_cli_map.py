@@ -2,13 +2,15 @@
 
 import zlib
 
+import msgspec
 import numpy as np
 import pytest
 
-from cli.home.map import line, states, terminal
+from cli.home.map import contents, line, states, terminal
 from cli.main import main
 from common import messages as m
 from common.files.map_file import FREE, OCCUPIED, UNKNOWN
+from common.household import load_household
 
 
 def test_the_progress_is_one_line() -> None:
@@ -23,6 +25,15 @@ def test_the_map_is_drawn_with_the_north_above() -> None:
     wide = terminal(np.full((300, 400), FREE, np.uint8))
     assert all(len(row) <= 72 for row in wide)
     assert terminal(np.zeros((1, 1), np.uint8)) == []
+
+
+def test_it_says_what_there_is_in_each_room() -> None:
+    home = load_household("apartment")
+    rows = dict(row.strip().split(": ") for row in contents(home))
+    assert set(rows) == {room.name for room in home.rooms}
+    assert sorted(name for row in rows.values() for name in row.split(", ")) == sorted(r.name for r in home.receptacles)
+    bare = msgspec.structs.replace(home, receptacles=home.receptacles[:1], rooms=home.rooms[:0])
+    assert contents(bare) == [f"  elsewhere: {home.receptacles[0].name}"]
 
 
 def test_the_grid_of_a_message_is_unpacked() -> None:
