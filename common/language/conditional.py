@@ -2,7 +2,7 @@
 
 import re
 
-from common.language.lexicon import COMMANDING
+from common.language.lexicon import COMMANDING, HANDLING
 from common.language.politeness import without_politeness
 
 REQUESTS = COMMANDING | {"make", "let", "show", "help", "look", "arrange", "keep", "open", "clean"}
@@ -33,6 +33,12 @@ _IS_IT = re.compile(
     r"(?:and )?if (?:so|yes|it is|they are|there (?:is|are)(?: any| one| some)?),? (?P<command>.+)$"
 )
 """A question, and what is to be done if the answer is yes."""
+_IS_THERE = re.compile(
+    rf"^(?:is|are) there (?P<thing>(?:still |any |an? |some ).+?),? (?P<command>(?:(?:please|can you|could you) )*"
+    rf"(?:{'|'.join(sorted(HANDLING))}) (?:(?:me|us) )?(?:it|them|one|those|some)\b.*?)"
+    r"(?:,? if (?:so|yes|there (?:is|are)(?: any| one| some)?|they are|it is))?$"
+)
+"""A question, and what is to be done with what it is about."""
 _IF_ANY = re.compile(
     r"^(?P<command>.+?),? if (?:there (?:is|are) (?:one|any|some)|you (?:can )?(?:find|see) "
     r"(?:it|one|any)|(?:it|one) is (?:there|"
@@ -95,6 +101,8 @@ def conditional(text: str) -> str:
         thing = found["thing"].removesuffix(" still")
         so = f"there is {thing}{found['spot'] or ''}" if found["there"] else f"{thing} is{found['at']}"
         return f"if {so} . {_of_all(so, found['command'])}"
+    elif found := _IS_THERE.match(bare):
+        return f"if there is {found['thing']} . {found['command']}"
     elif found := _IF_THERE.match(bare):
         return f"if {found['thing']} is on {found['spot']} . {found['command']}"
     elif (found := _IF_ANY.match(bare)) and (thing := _FIRST_THING.search(found["command"])):

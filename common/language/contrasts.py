@@ -17,7 +17,8 @@ _CONTRASTS = (
     re.compile(rf"^do not (?P<wrong>{A_VERB} .+?)\s+(?P<right>{A_VERB} (?:me|us|the|a|an|my|it|to)\b.+)$"),
     re.compile(rf"^do not (?P<wrong>\w+ .+?){_BUT}(?P<right>.+)$"),
     re.compile(
-        rf"^(?:instead of|rather than) (?P<wrong>.+?),? (?P<right>(?:please )?(?:{A_VERB}|i (?:want|need|would like))"
+        rf"^(?:instead of|rather than) (?P<wrong>.+?),? (?P<right>(?:please )?(?:{A_VERB}|"
+        r"i (?:want|need|would (?:like|have|rather have)|will (?:have|take)))"
         r" .+)$"
     ),
 )

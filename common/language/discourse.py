@@ -21,6 +21,19 @@ _FIRST = re.compile(
     r"^(?P<word>after|once|when|as soon as|before) (?:you(?: are| have)?(?: all)?(?: done| finished)? |(?=\w+ing\b))"
     r"(?P<rest>.+)$"
 )
+_OFF = (
+    r"never ?mind|forget (?:about )?(?:it|that)|(?:cancel|scrap|skip) (?:it|that)|do not bother"
+    r"|(?:i|we) (?:have )?changed (?:my|our) minds?"
+    r"|(?:i|we) (?:(?:have|already|just|can) )*(?:got|found|have|see|spotted) (?:it|them|one|that)"
+    r"(?: (?:here|already|myself|now|after all))*|(?:i|we) (?:do not|no longer) (?:need|want) (?:it|them|that)"
+    r"(?: (?:any ?more|after all|now))*"
+)
+_BUT_NO = r"(?:(?:wait|no|oh|ah|actually|sorry|well|but|hm+|on second thoughts?),? )"
+_RETRACTED = re.compile(
+    r"^(?P<said>(?!say\b|tell\b|ask\b|let\b).+?(?<! and)(?<! then)(?<! or)(?<! to)[,.;!]?) "
+    rf"(?:{_BUT_NO}*(?:{_OFF})|{_BUT_NO}+(?:just )?leave it)[.!]?$"
+)
+"""A command that is taken back in the same breath."""
 _ALWAYS = re.compile(r"\b(?:always|from (?:now|today) on|in (?:the )?future|every time)\b")
 _BUT_FIRST = re.compile(
     r"^(?P<second>.+?),? but (?:first|before (?:that|you do(?: (?:that|it|so))?|doing (?:that|it|so))|beforehand),? "
@@ -50,6 +63,8 @@ def commands(text: str, is_place: IsPlace = lambda _: False) -> list[str]:
     whole = _EMPTIED.sub(r"put everything on \g<from> \g<to>", _GO_AND_ASK.sub("tell me ", whole))
     if LONG_SPEECH.match(without_politeness(whole)):
         return cut_clauses(whole)
+    if (taken_back := _RETRACTED.match(whole)) and verb_first(without_politeness(taken_back["said"])):
+        return ["never mind"]
     parts = (piece for part in _in_order(whole) for piece in with_breaks(in_time(conditional(part))).split(" . "))
     return [clause for part in parts for clause in cut_clauses(settled(part, is_place))]
 

@@ -19,7 +19,7 @@ _NEGATIONS = (
 )
 _SUPPOSITIONS = (
     "suppose | supposing | imagine | pretend | used to | what if | had (?:i|you|we)"
-    " | if (?:i|you|he|she|we|they) (?:were|was|had|could)"
+    " | if (?:i|you|he|she|we|they) (?:were|was|had|could|asked|told|said|wanted)"
 )
 _OTHER_TIMES = (
     "tomorrow | tonight | yesterday | already | ago | ever | this morning | later"
@@ -44,7 +44,7 @@ SUBJECTS = "i|we|he|she|they|it|who|nobody|everybody|everyone|somebody|someone|p
 _ADVERBS = "just|already|always|often|about|never|really|once|usually|also|now|still"
 _AUXILIARIES = (
     "will|shall|am|is|are|was|were|have|has|had|going|can|could|might|may|must|should|keeps?|did|do|does|be|"
-    "(?:need|want|have|has|would like|like|love|plan|got|going|try|ought|used) to"
+    "(?:need|want|have|has|would like|like|love|plan|got|going|try|ought|used|about) to"
 )
 _FINITE = "is|are|was|were|am|has|had|have|keeps?|kept|went|a|an|the"
 _OWN = re.compile(

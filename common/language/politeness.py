@@ -7,7 +7,7 @@ Frames that speak of the past, of somebody else's words or of what must not be a
 import re
 
 from common.language.frame import without_frame, without_frame_behind
-from common.language.lexicon import A_VERB
+from common.language.lexicon import A_VERB, FAMILY
 
 _ADVERBS = (
     r"(?: "
@@ -18,6 +18,7 @@ _YOU = r"(?:you|someone|somebody|anyone|anybody)(?: guys| all)?"
 _CAN = "(?:can|could|would|will|may|might)"
 _ANY_WORD = r"(?!not\b|never\b|no\b|hard\b|difficult\b|wrong\b|bad\b|i\b|have\b)\w+ "
 """A word of how something would be: `lovely`, `a terrible bother`."""
+_FAMILY = FAMILY.replace(" ", "")
 _TIME = (
     "(?:a |the |some |one |any |your )?(?:free |spare )?(?:chance|moment|minute|second|sec|time|hand|opportunity|go)"
 )
@@ -112,6 +113,8 @@ _FRAMES = (
     r"while you are (?:at it|there|up|about it)|(?:on|along) (?:the|your) way(?: back)?",
     r"drop everything(?: else)?(?: and)?(?=\s+\w)|without \w+ing .+?(?=,| throw\b| put\b| bring\b| take\b)",
     rf"to(?= {A_VERB} (?:me|the|my|a|an|it)\b)|(?:go and )?see (?:if|whether) you can",
+    rf"(?:i|we|he|she|they|(?:(?:my|our|the) )?{_FAMILY}) (?:wants?|needs?|would (?:like|love)|am|is|are) "
+    r"(?:to know|wondering|asking|curious)(?: to know)?(?= (?:where|what|which|how|if|whether)\b)",
     _OCCASION,
 )
 """Frames of a request; what is asked for follows."""
@@ -138,7 +141,9 @@ _ENDINGS = (
     "come on|go on|chop chop|before i forget|some ?time(?: today)?|today|tonight|this (?:morning|evening|afternoon)|"
     "(?:and )?(?:be|take) care(?:ful)?(?: with (?:it|them|that))?|carefully|gently|when you come back|"
     "(?:and )?thanks in advance|if you get (?:there|the chance)",
-    "handy|to hand|one (?:after the other|after another|by one|at a time)|in turn|"
+    r"handy|to hand|and leave (?:it|them)(?: there| alone)?|you (?:\w+ )?(?:thing|machine|dummy|darling|fool)|"
+    "(?:please |and )*(?:remember|note) that|(?:and |please )*do not (?:you )?forget (?:that|it)|"
+    "one (?:after the other|after another|by one|at a time)|in turn|"
     "(?<!the )(?<!one )first|before (?:dinner|lunch|breakfast|supper|bedtime|bed|tea|school|work|the guests "
     "(?:come|arrive))|already|altogether|in total|in all|overall|(?:(?:would|do) you )?mind (?:having|taking) a "
     "look(?: for it)?|after all|with you|from (?:there|here|where you (?:are|stand))|a (?:little )?bit|a "

@@ -35,7 +35,8 @@ _POINTS = re.compile(r"\b(?:it|them|one|ones)\b")
 """Words that may stand for a thing of which something was told before."""
 _NAMELESS = DETERMINERS | {"me", "us"} | (ALIKE.keys() - KINDS.keys())
 """Words that name no thing without another one: after `get me the red` the noun was not heard."""
-_SMALL = frozenset(WORDS) | NUMBERS.keys() | {form for unit in UNITS for form in (unit, f"{unit}s")}
+BETWEEN = frozenset(WORDS) | NUMBERS.keys() | {form for unit in UNITS for form in (unit, f"{unit}s")}
+"""Words of what can be said that are no names."""
 
 
 def understood(text: str, names: Container[str]) -> Understanding:
@@ -85,7 +86,7 @@ def _grade_of_slots(action: Action, slots: Slots, names: Container[str]) -> Unde
 
 
 def _is_known(word: str, names: Container[str]) -> bool:
-    return word in names or word in _SMALL or word.isdigit()
+    return word in names or word in BETWEEN or word.isdigit()
 
 
 def _is_noun(words: Words, names: Container[str]) -> bool:

@@ -108,7 +108,7 @@ WORDINGS: tuple[Wording, ...] = (
         "[with <thing>] | retry"
         " | (try | do it | go) (again | once more | one more time) | (once [more] | again | one more time) [with "
         "<thing>]"
-        " | (have | take) another look | (look | check | search) (again | once more) |"
+        " | (have | take) another look | (look | check | search | try) (again | once more | harder | properly) |"
         " (have | take | give it) (another | one more) (go | try "
         "| shot | attempt)",
         heard="try again | do that again",

@@ -108,6 +108,15 @@ def test_the_judge_of_sentences_can_say_no() -> None:
         ("whatever you do do not touch the apple", ["do not touch the apple"]),
         ("where is the apple i would like it", ["where is the apple", "i would like it"]),
         ("is there a can if so bring it", ["if there is a can", "bring it"]),
+        (
+            "are there any blocks on the shelf, put them in the box if there are",
+            ["if there is any blocks on the shelf", "put them in the box"],
+        ),
+        ("bring me the mug wait i have got it here already", ["never mind"]),
+        ("take the can to the kitchen, actually forget it", ["never mind"]),
+        ("put the mug on the counter and leave it there", ["put the mug on the counter"]),
+        ("mum wants to know where the apple is", ["where the apple is"]),
+        ("rather than the can i would have the blue bottle", ["i would have the blue bottle"]),
         ("put the apple on the desk, sorry, the counter", ["put the apple on the counter"]),
         ("bring me the mug, I mean go to the kitchen", ["go to the kitchen"]),
         ("before you come back put the mug in the bin", ["put the mug in the bin", "come back"]),
@@ -138,6 +147,7 @@ def test_what_is_meant_in_the_end(text: str, expected: list[str]) -> None:
         ("last:bring me the white mug", "the other one please", []),
         ("busy:put the apple on the desk", "and the ball too", ["find red ball", "grasp red ball", "place red ball"]),
         ("-", "let me put the can in the bin", []),
+        ("-", "bring me the apple i don't want it any more", []),
         ("last:bring me the apple", "leave the vitamin box where it is", []),
         ("-", "if there is anything on the desk put it on the counter",
          ["find white mug", "grasp white mug", "place white mug", "find orange box", "grasp orange box",
@@ -208,6 +218,7 @@ def test_a_slip_in_a_name_is_asked_about_and_taken_literally_after_a_no() -> Non
         ("do not bring it to me, put it on the desk", "replace", "do not bring it to me, put it on the desk"),
         ("instead of the can bring the mug", "replace", "bring the mug"),
         ("hurry up", "encouragement", "hurry up"),
+        ("i meant the toy box", "replace", "i meant the toy box"),
     ],
 )
 def test_what_is_said_to_a_robot_at_work(said: str, kind: str, text: str) -> None:

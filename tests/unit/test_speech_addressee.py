@@ -7,6 +7,7 @@ from services.speech.config import SpeechConfig
 from services.speech.listen.addressee import UtteranceContext, consequence, scope
 from services.speech.recognise.free_text import UNLISTED, freely, without_wake
 from services.speech.recognise.recogniser import Recognition, Verdict
+from services.speech.recognise.sounding import editex, resounded
 from tests.support import ROOT
 
 CONFIG = config.load("speech", SpeechConfig, ROOT / "config", {})
@@ -100,3 +101,24 @@ def test_the_sentence_or_the_free_transcription_counts(
 ) -> None:
     heard = freely(Recognition(*found), NAMES, CONFIG)
     assert (heard.text, heard.verdict, heard.confidence) == (text, verdict, confidence)
+
+
+@pytest.mark.parametrize(
+    ("heard", "text"),
+    [
+        ("go to the kitten", "go to the kitchen"),
+        ("bring me the read mug", "bring me the red mug"),
+        ("don't go to the kitten", ""),
+        ("the parliament met in the kitten", ""),
+        ("bring me the hammer", "bring me the hammer"),
+    ],
+)
+def test_a_word_that_was_misheard_is_asked_about_as_what_it_sounds_like(heard: str, text: str) -> None:
+    names = {"kitchen", "red", "mug", "apple", "counter"}
+    found = freely(Recognition("", "reject", 0.0, heard, 0.95), names, CONFIG)
+    assert (found.text, found.confidence) == (text, UNLISTED if text else 0.0)
+
+
+def test_letters_of_one_group_sound_alike() -> None:
+    assert [editex("bottle", word) for word in ("bottle", "boddle", "bole", "mug")] == [0, 1, 2, 9]
+    assert resounded(["the", "boll"], {"the"}, {"ball", "bowl"}) is None, "it sounds like both"

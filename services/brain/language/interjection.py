@@ -43,7 +43,10 @@ _INSTEAD_END = re.compile(r"[, ]+(?:instead(?: of (?:that|it|this))?|rather)$")
 
 
 _RATHER = re.compile(r"^(?:actually |in fact )?(?:i|we) would (?:rather|prefer|sooner)\b")
-_MADE = re.compile(r"^(?:(?:no|actually|sorry),? )*make (?:it|that) (?:the|a|an|my|two|both) ")
+_MADE = re.compile(
+    r"^(?:(?:no|oh|actually|sorry),? )*(?:make (?:it|that)|"
+    r"i (?:meant|mean|said)(?: to say)?) (?:the|a|an|my|on|in|two|both) "
+)
 _CHANGED = re.compile(r"^(?:(?:no|oh|actually|i have changed my mind|on second thoughts?),? )+")
 _ONE_MOMENT = re.compile(
     r"^(?:(?:hold on|hang on|wait|stop)(?: (?:a|one|just a|for a))?|one|just a) "

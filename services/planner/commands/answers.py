@@ -75,8 +75,9 @@ def number(builder: PlanBuilder, slots: Slots) -> None:
         known = [m.object for m in referents(builder, ("all", *words)) if m.object.seen]
     except Refusal:
         known = []
+    noun = (phrase.singular or phrase.noun) if len(known) == 1 else phrase.noun
     names = f": {enumeration([f'the {t.label}' for t in known])}" if 0 < len(known) <= MANY else ""
-    builder.say(f"I know of {len(known) or 'no'} {phrase.noun}{names}.")
+    builder.say(f"I know of {len(known) or 'no'} {noun}{names}.")
 
 
 def colour(builder: PlanBuilder, slots: Slots) -> None:

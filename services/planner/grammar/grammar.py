@@ -29,7 +29,7 @@ SOURCE = "grammar"
 MAX_CHARACTERS = 2000
 """Longest text that is read (chosen: a minute of speech has a thousand characters)."""
 MAX_WORDS = 60
-"""Longest clause (chosen: the readings of a pattern grow with the square of its words)."""
+"""Longest clause (chosen: the readings of a pattern grow with its square)."""
 
 
 class Suggestion(Refusal):
@@ -50,7 +50,6 @@ def plan(
 ) -> ActionPlan:
     """The preferred plan that differs from every rejected one; without steps when there is none, with the reason."""
     vocabulary = Vocabulary(world, config)
-
     literally = any(not r.steps for r in rejected)
     clauses = commands(command[:MAX_CHARACTERS], lambda words: bool(vocabulary.spot(words)))
 
@@ -128,7 +127,8 @@ class _Attempts:
             return self._read(self._command)
         except Refusal as refusal:
             taken = self._choices.taken
-            if (asked := without_reason_behind(self._command_words())) != self._command_words():
+            asked = without_reason_behind(self._command_words()) if isinstance(refusal, Lost) else ""
+            if asked not in ("", self._command_words()):
                 with suppress(Refusal):
                     return self._read(asked)
             if (read := self._without_slips(refusal, literally)) is not None:

@@ -1,15 +1,18 @@
 """The grammar's sentence or the free transcription: what counts as said. Pure."""
 
-from collections.abc import Container, Iterable
+from collections.abc import Collection, Iterable
 from dataclasses import replace
 from difflib import SequenceMatcher
 
 from common.language.contractions import expand
+from common.language.lexicon import COMMANDING
 from common.language.meaning import asks_for
+from common.language.mood import forbids
 from common.language.normalise import normalise
-from common.language.spoken import turns, understood
+from common.language.spoken import BETWEEN, turns, understood
 from services.speech.config import SpeechConfig
 from services.speech.recognise.recogniser import Recognition
+from services.speech.recognise.sounding import NEAR, VERY_NEAR, resounded
 
 UNLISTED = 0.5
 """Most confidence in words that are on no list. Chosen: below that from which the brain does not ask."""
@@ -27,13 +30,13 @@ def without_wake(text: str, phrases: Iterable[str]) -> str:
     return text
 
 
-def freely(found: Recognition, names: Container[str], config: SpeechConfig) -> Recognition:
+def freely(found: Recognition, names: Collection[str], config: SpeechConfig) -> Recognition:
     """A recognition without the wake word, with the free transcription in place of the grammar's sentence where that
     tells more: what the planner would understand.
 
     In place of a sentence that was accepted it counts where it is more certain, or makes something else of it ("who put
     the mug there" is no "put the mug there"), and is asked about. Of things that are not among the `names` only a
-    certain transcription tells.
+    certain transcription tells. What sounds like something that would be understood is asked about.
     """
     found = replace(found, text=without_wake(found.text, config.wake))
     free = without_wake(normalise(found.free, ",").strip(" ,"), config.wake).strip(" ,")
@@ -48,6 +51,17 @@ def freely(found: Recognition, names: Container[str], config: SpeechConfig) -> R
     grade = understood(free, names)
     if grade == "listed":
         return replace(found, text=free, verdict="accept", confidence=found.certainty)
+    if near := _misheard(free, names, VERY_NEAR if grade else NEAR):
+        return replace(found, text=near, verdict="accept", confidence=min(found.certainty, UNLISTED))
     if grade == "unlisted" and found.certainty >= config.certain:
         return replace(found, text=free, verdict="accept", confidence=min(found.certainty, UNLISTED))
     return found
+
+
+def _misheard(free: str, names: Collection[str], near: float) -> str:
+    """What sounds like the text and would be understood, of listed words alone; "" for none, and for what forbids."""
+    if forbids(free):
+        return ""
+    words = resounded(free.replace(",", "").split(), BETWEEN.union(names), COMMANDING.union(names), near)
+    text = " ".join(words or ())
+    return text if understood(text, names) == "listed" else ""
