@@ -104,6 +104,8 @@ _SAME = tuple(
             r"^what (?:have (?:we|you)(?: got)?|do (?:we|you) have|is there|can i have)(?: there)? to (drink|eat)\b",
             r"is there anything to \1",
         ),
+        (r"\bdat\b", "that"),
+        (r"^only (?=(?:the|my) .+ (?:goes|belongs|should|needs)\b)", ""),
         (r"\bfrom off(?: of)?\b", "from"),
         (r"\bwhereabouts (?=is|are|did|do|was|were|has|have)", "where "),
         (r"\bwith you (?=to|into|on|in|over)", ""),

@@ -47,7 +47,7 @@ _ADDRESS = (
     "(?:thing|deal)|let us say|"
     "hey|hello|hi|hiya|yo|oi|howdy|ok|okay|alright|all right|right(?=,)|jarvis|robot|"
     "tidybot|buddy|mate|dude|pal|"
-    "man|sir|dear|(?:my|little|good|old|young) (?:man|lad|lady|fellow|chap|friend|helper|love|one)"
+    "man|sir|dear|(?:my|little|good|old|young) (?:man|lad|lady|fellow|chap|friend|helper|love|one|robot|bot)"
     "(?! (?:here |there )?(?:is|was|wants?|would|needs?|has|likes?|said|asked|brought|and)\\b)|sweetie|honey|"
     "no,? (?:wait|no)(?=,? (?:bring|put|take|get|fetch|give|go|throw|come|tidy|find|move)\\b)|i said(?=,? "
     "(?:bring|put|take|get|fetch|give|go|throw|come|tidy|find|move|leave|set|clear|clean|carry)\\b)|"
@@ -111,7 +111,8 @@ _FRAMES = (
     r"what (?:i|we) (?:want|need) you to do is|on second thoughts?",
     r"i (?:think|guess|suppose|believe|reckon|say|suggest)(?: that)?(?= (?:the|my|this|that|we|you|it|i)\b)",
     r"while you are (?:at it|there|up|about it)|(?:on|along) (?:the|your) way(?: back)?",
-    r"drop everything(?: else)?(?: and)?(?=\s+\w)|without \w+ing .+?(?=,| throw\b| put\b| bring\b| take\b)",
+    r"drop everything(?: else)?(?: and)?(?=\s+\w)|without \w+ing .+?(?=,)",
+    rf"without \w+ing .+?(?= {A_VERB} (?:me|the|my|a|an)\b)",
     rf"to(?= {A_VERB} (?:me|the|my|a|an|it)\b)|(?:go and )?see (?:if|whether) you can",
     rf"(?:i|we|he|she|they|(?:(?:my|our|the) )?{_FAMILY}) (?:wants?|needs?|would (?:like|love)|am|is|are) "
     r"(?:to know|wondering|asking|curious)(?: to know)?(?= (?:where|what|which|how|if|whether)\b)",
@@ -141,7 +142,8 @@ _ENDINGS = (
     "come on|go on|chop chop|before i forget|some ?time(?: today)?|today|tonight|this (?:morning|evening|afternoon)|"
     "(?:and )?(?:be|take) care(?:ful)?(?: with (?:it|them|that))?|carefully|gently|when you come back|"
     "(?:and )?thanks in advance|if you get (?:there|the chance)",
-    r"handy|to hand|and leave (?:it|them)(?: there| alone)?|you (?:\w+ )?(?:thing|machine|dummy|darling|fool)|"
+    r"handy|to hand|(?:good)?bye(?: bye)?|"
+    r"and leave (?:it|them)(?: there| alone)?|you (?:\w+ )?(?:thing|machine|dummy|darling|fool)|"
     "(?:please |and )*(?:remember|note) that|(?:and |please )*do not (?:you )?forget (?:that|it)|"
     "one (?:after the other|after another|by one|at a time)|in turn|"
     "(?<!the )(?<!one )first|before (?:dinner|lunch|breakfast|supper|bedtime|bed|tea|school|work|the guests "
