@@ -15,7 +15,8 @@ FRESH = 60.0
 """Age [s] up to which a sighting tells how something stands now. Chosen: it was seen as the robot drove up to it."""
 SHIFTED = 0.03
 """Least way [m] of the middle of what goes over, more than the error of two sightings: what is only told to lie by
-another look at it has not moved."""
+another look at it has not moved. What is measured badly, as from afar, has to have moved by more than its measures are
+off as well."""
 LOWER = 0.10
 """How much lower [m] something lies that has fallen off its surface. Chosen: a step of furniture."""
 
@@ -51,6 +52,6 @@ def knocked_over(stood: Mapping[str, Stood], objects: Iterable[WorldObject], han
             continue
         if was.position[2] - o.position[2] > LOWER and o.on != was.on:
             found.append(f"the {o.label} fell off the {was.on}" if was.on else f"the {o.label} fell down")
-        elif lies(o.tilt) and math.dist(o.position, was.position) > SHIFTED:
+        elif lies(o.tilt) and math.dist(o.position, was.position) > SHIFTED + o.spread:
             found.append(f"the {o.label} fell over")
     return found
