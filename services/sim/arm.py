@@ -8,6 +8,9 @@ from numpy.typing import NDArray
 
 JUMP = 0.6
 """Largest way [rad] of a joint to its next set-point that is no mistake."""
+SPEED = np.array([1.39] * 4 + [1.22] * 3)
+"""Highest speeds (7,) [rad/s] of the joints, those of a Kinova Gen3 (user guide): set-points that were on their way for
+long, or come all at once, are caught up with at these."""
 LATE = 1.5
 """Periods without a set-point [count] from which the next one is late."""
 Array = NDArray[np.float64]
@@ -15,7 +18,7 @@ Array = NDArray[np.float64]
 
 class ArmDriver:
     """Moves the set-point (7,) linearly to each commanded one within its period, or the time since the last one where
-    that is late; `limits` lowest and highest angles."""
+    that is late, and no faster than `SPEED`; `limits` lowest and highest angles."""
 
     def __init__(self, position: Array, timeout: float, limits: tuple[Array, Array]) -> None:
         self._low, self._high = limits
@@ -33,7 +36,8 @@ class ArmDriver:
             return f"set-point jumps by more than {JUMP} rad"
         # Where set-points come late it moves as long as they take: it would stop and start again at each of them.
         gap = now - self._heard
-        self._left = gap if LATE * period < gap < self._timeout else period
+        pace = gap if LATE * period < gap < self._timeout else period
+        self._left = max(pace, float((np.abs(goal - self._position) / SPEED).max()))
         self._goal, self._heard = goal, now
         return ""
 

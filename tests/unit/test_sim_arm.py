@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from services.sim.arm import ArmDriver
+from services.sim.arm import SPEED, ArmDriver
 
 DT, PERIOD = 0.01, 0.02
 WIDE = np.full(7, -3.0), np.full(7, 3.0)
@@ -32,3 +32,12 @@ def test_late_set_points_make_it_slow_and_not_stop_and_go(every: float) -> None:
 
 def test_the_first_set_point_after_a_silence_is_followed_within_its_period() -> None:
     assert ways(0.3)[-30:-28] == pytest.approx(0.01)
+
+
+def test_set_points_that_come_at_once_are_caught_up_with_at_the_speed_of_the_joints() -> None:
+    driver = ArmDriver(np.zeros(7), 0.5, WIDE)
+    for n in range(1, 21):
+        assert driver.follow([0.02 * n] * 7, 0.02, 1.0) == ""
+    way = np.array([np.zeros(7)] + [driver.advance(1.0 + n * 0.01, 0.01) for n in range(40)])
+    assert np.allclose(way[-1], 0.4)
+    assert (np.abs(np.diff(way, axis=0)) <= SPEED * 0.01 + 1e-9).all()
