@@ -28,7 +28,7 @@ def test_commands_by_text_and_by_recording_end_as_physics_says(run: Run, tmp_pat
     waiting = run.command("status", "--wait", "WAITING", "--timeout", "30", "--json")
     assert waiting.returncode == 0 and json.loads(waiting.stdout)["mission"] is None
     # What is no command starts nothing that succeeds.
-    refused = run.command("say", "--json", "--wait", "bring me the moon", timeout=120)
+    refused = run.command("say", "--json", "--wait", "paint the wall green", timeout=120)
     assert refused.returncode == 1
     assert json.loads(refused.stdout).get("outcome") != "delivered"
     # Two broken recordings are refused before the robot hears of them.
