@@ -6,14 +6,13 @@ spot are joined again.
 """
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy import ndimage
 
 from common.floor_plan import FloorPlan, Receptacle
 from common.geometry import Array, Rectangle
-from services.perception.segments.dark import Blobs, Pixels, blobs, guessed
+from services.perception.segments.dark import Blobs, blobs
 from services.perception.segments.outlined import is_part, on_surface
-from services.perception.segments.segment import Segment, Surface, covered, goes_on
+from services.perception.segments.parts import JUMP, joined, parts
+from services.perception.segments.segment import Segment, Surface, goes_on
 from services.perception.views.view import Mask, View, Window
 from services.perception.views.visible_plan import Cloud, Nearby, corners, inside
 
@@ -45,14 +44,6 @@ MIN_PLANE = 60
 """Pixels from which the height of a surface is measured rather than taken from the floor plan."""
 MIN_PIXELS = 24
 """Pixels of the smallest segment. Chosen: about a can of 66 mm at 3.5 m, half hidden."""
-JUMP = 0.022
-"""Step of depth [m] between neighbouring pixels that separates two objects; `JUMP_PER_METRE` is added per metre [m/m],
-as depth noise and the slope between two pixels grow with the distance."""
-JUMP_PER_METRE = 0.012
-JOIN = 0.02
-"""Gap [m] on the floor plan up to which two segments belong to one object: a rim's two sides, a bottle and its cap."""
-JOINED_EXTENT = 0.17
-"""Largest extent [m] on the floor plan of what is joined. Chosen: a bowl and its noise."""
 MAX_EXTENT, CROWD_EXTENT = 0.30, 0.60
 """Extents [m] on the floor plan from which a segment is no single object, and from which it is furniture."""
 FAR = 2.3
@@ -162,21 +153,11 @@ def _on(view: View, expected: Surface, cloud: Cloud, near: Nearby, own: Mask, da
     if len(above) < MIN_PIXELS:
         return outlined
     rows, columns = np.unravel_index(above, view.shape)
-    top, left = int(rows.min()), int(columns.min())
-    window = (slice(top, int(rows.max()) + 1), slice(left, int(columns.max()) + 1))
-    mask = np.zeros((window[0].stop - top, window[1].stop - left), bool)
-    mask[rows - top, columns - left] = True
-    labels = ndimage.label(_cut(mask, view.depth[window]))[0]
-    boxes = ndimage.find_objects(labels)
-    parts = []
-    for n in np.flatnonzero(np.bincount(labels[mask], minlength=1)[1:] >= MIN_PIXELS // 3):
-        box = boxes[n]
-        part_rows, part_columns = np.nonzero(labels[box] == n + 1)
-        parts.append((part_rows + box[0].start + top, part_columns + box[1].start + left))
+    cut = parts(view, rows, columns, MIN_PIXELS // 3)
     over_it = np.zeros(view.shape, bool)
     over_it[rows, columns] = True
     found = (
-        p for p in _join(view, expected.name, plane, parts, own, dark) if len(p.rows) >= MIN_PIXELS and _is_thing(p)
+        p for p in joined(view, expected.name, plane, cut, own, dark) if len(p.rows) >= MIN_PIXELS and _is_thing(p)
     )
     shapes = [p.shape for p in outlined if p.shape is not None]
     return outlined + [
@@ -221,67 +202,3 @@ def _is_thing(segment: Segment) -> bool:
 def extent(segment: Segment) -> float:
     """The larger extent [m] of a segment on the floor plan."""
     return float(np.ptp(segment.points[:, :2], axis=0).max())
-
-
-def _cut(mask: Mask, depth: NDArray[np.float32]) -> Mask:
-    """The mask without the far side of every depth jump."""
-    kept = mask.copy()
-    for axis in (0, 1):
-        a = [slice(None), slice(None)]
-        b = [slice(None), slice(None)]
-        a[axis], b[axis] = slice(None, -1), slice(1, None)
-        first, second = tuple(a), tuple(b)
-        step = depth[second] - depth[first]
-        limit = JUMP + JUMP_PER_METRE * np.minimum(depth[first], depth[second])
-        # Where there is no depth there is no step.
-        known = (depth[second] > 0) & (depth[first] > 0)
-        kept[second] &= ~(known & (step > limit))
-        kept[first] &= ~(known & (step < -limit))
-    return kept
-
-
-def _join(view: View, name: str, plane: Array, parts: list[Pixels], own: Mask, dark: Blobs | None) -> list[Segment]:
-    """Parts of one object, such as the two sides of a mug's rim or a bottle's cap, stand in the same spot; those of a
-    dark one are joined by what has no depth between them."""
-    clouds = [view.points[rows, columns].astype(np.float64) for rows, columns in parts]
-    low = np.array([c[:, :2].min(axis=0) for c in clouds])
-    high = np.array([c[:, :2].max(axis=0) for c in clouds])
-    groups = np.arange(len(parts))
-    numbers = dark.of(view, parts) if dark else [0] * len(parts)
-    order = sorted(range(len(parts)), key=lambda i: -len(clouds[i]))
-    for n, i in enumerate(order):
-        # The samples are at least as far apart as their bounds.
-        for j in order[n + 1 :]:
-            one_blob = numbers[i] > 0 and numbers[i] == numbers[j]
-            apart = max(*(low[i] - high[j]), *(low[j] - high[i])) >= JOIN
-            if groups[i] == groups[j] or (apart and not one_blob):
-                continue
-            members = (groups == groups[i]) | (groups == groups[j])
-            extent = (high[members].max(axis=0) - low[members].min(axis=0)).max()
-            if extent < JOINED_EXTENT and (one_blob or _gap(clouds[i], clouds[j]) < JOIN):
-                groups[groups == groups[j]] = groups[i]
-    found = []
-    h, w = view.shape
-    for group in np.unique(groups):
-        members = np.flatnonzero(groups == group)
-        rows = np.concatenate([parts[k][0] for k in members])
-        columns = np.concatenate([parts[k][1] for k in members])
-        hole = dark.hole(blob) if dark and (blob := numbers[members[0]]) else (rows[:0], rows[:0])
-        all_rows, all_columns = np.append(rows, hole[0]), np.append(columns, hole[1])
-        hidden = covered(view, all_rows, all_columns, own)
-        ends = not hidden[2] and int(all_columns.max()) < w - 2, not hidden[1] and int(all_columns.min()) > 1
-        cut = bool(hidden[0] or all_rows.min() <= 1 or all_rows.max() >= h - 2 or not all(ends))
-        points = np.concatenate([clouds[k] for k in members])
-        x, y, _ = points.mean(axis=0)
-        surface = Surface(name, float(plane[0] * x + plane[1] * y + plane[2]))
-        guess = guessed(view, (rows, columns), hole) if len(hole[0]) else np.empty((0, 3))
-        found.append(Segment(surface, rows, columns, points, cut, ends, guess))
-    return found
-
-
-def _gap(a: NDArray[np.float64], b: NDArray[np.float64]) -> float:
-    """Horizontal distance between two clouds, from a sample of each."""
-    pa = a[:: max(1, len(a) // 120), :2]
-    pb = b[:: max(1, len(b) // 120), :2]
-    distance = np.linalg.norm(pa[:, None] - pb[None], axis=2)
-    return float(distance.min())
