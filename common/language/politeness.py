@@ -115,7 +115,7 @@ _FRAMES = (
     rf"without \w+ing .+?(?= {A_VERB} (?:me|the|my|a|an)\b)",
     rf"to(?= {A_VERB} (?:me|the|my|a|an|it)\b)|(?:go and )?see (?:if|whether) you can",
     rf"(?:i|we|he|she|they|(?:(?:my|our|the) )?{_FAMILY}) (?:wants?|needs?|would (?:like|love)|am|is|are) "
-    r"(?:to know|wondering|asking|curious)(?: to know)?(?= (?:where|what|which|how|if|whether)\b)",
+    r"(?:to know|wondering|asking|curious)(?: to know)?(?= (?:where|what|which|how|(?:if|whether)(?! you\b))\b)",
     _OCCASION,
 )
 """Frames of a request; what is asked for follows."""
@@ -143,7 +143,7 @@ _ENDINGS = (
     "(?:and )?(?:be|take) care(?:ful)?(?: with (?:it|them|that))?|carefully|gently|when you come back|"
     "(?:and )?thanks in advance|if you get (?:there|the chance)",
     r"handy|to hand|(?:good)?bye(?: bye)?|"
-    r"and leave (?:it|them)(?: there| alone)?|you (?:\w+ )?(?:thing|machine|dummy|darling|fool)|"
+    r"and leave (?:it|them)(?: there| alone)?|(?<!are )(?<!is )you (?:\w+ )?(?:thing|machine|dummy|darling|fool)|"
     "(?:please |and )*(?:remember|note) that|(?:and |please )*do not (?:you )?forget (?:that|it)|"
     "one (?:after the other|after another|by one|at a time)|in turn|"
     "(?<!the )(?<!one )first|before (?:dinner|lunch|breakfast|supper|bedtime|bed|tea|school|work|the guests "

@@ -152,6 +152,8 @@ def test_what_is_meant_in_the_end(text: str, expected: list[str]) -> None:
         ("busy:put the apple on the desk", "and the ball too", ["find red ball", "grasp red ball", "place red ball"]),
         ("-", "let me put the can in the bin", []),
         ("-", "bring me the apple i don't want it any more", []),
+        ("-", "he wants to know if you can bring the mug", []),
+        ("-", "are you a machine", ["say"]),
         ("last:bring me the apple", "leave the vitamin box where it is", []),
         ("-", "if there is anything on the desk put it on the counter",
          ["find white mug", "grasp white mug", "place white mug", "find orange box", "grasp orange box",
