@@ -1,6 +1,5 @@
 """Fixtures shared by all layers; the order in which the files are begun, and what stays together."""
 
-import os
 from collections.abc import Iterator
 from itertools import chain, groupby, zip_longest
 from pathlib import Path
@@ -9,15 +8,7 @@ from typing import Any
 import pytest
 from xdist.scheduler import LoadFileScheduling
 
-from common.rendering.backend import best, environment
 from tests.support import Site, site
-
-# Keys in the developer's own `run/` have no part in the tests.
-os.environ["TIDYBOT_KEYS"] = "off"
-# Tests of whole missions import MuJoCo before their camera could choose, and would cast every picture.
-if not os.environ.get("MUJOCO_GL"):
-    os.environ |= environment(best())
-
 
 IN_PROCESS = ("unit", "in_process")
 """Directories of the tests that start no processes."""
