@@ -21,6 +21,7 @@ from services.brain.resume.policy import (
     apply,
     decide,
     refusal,
+    resumes_since_progress,
     step_to_repeat,
 )  # fmt: skip
 
@@ -87,6 +88,12 @@ def test_a_mission_is_taken_up_unless_there_is_a_reason_against_it() -> None:
     tired.resumes = MAX_RESUMES
     why = "the brain was restarted 10 times at the same place"
     assert refusal(tired, config, 1000.0) == Failure("RESTART", "CRASH_LOOP", why)
+
+
+def test_a_mission_whose_base_gets_on_is_in_no_crash_loop() -> None:
+    driving = left(in_plan(0), resumes=9)
+    assert resumes_since_progress(driving, seen(base=(2.0, 2.0, 0.5))) == 1
+    assert [resumes_since_progress(driving, seen(base=base)) for base in (HOME, None)] == [10, 10]
 
 
 # --- where

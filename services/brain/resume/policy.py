@@ -52,6 +52,11 @@ def refusal(left: Checkpoint, config: BrainConfig, now: float) -> Failure | None
     return None
 
 
+def resumes_since_progress(left: Checkpoint, seen: Observation) -> int:
+    """How often, with this time, the mission has been resumed since it advanced or the base got on with it."""
+    return 1 if _moved(left.base, seen.base) else left.resumes + 1
+
+
 def decide(left: Checkpoint, seen: Observation) -> Decision:
     """Go on at the same leaf unless the world has changed: then no further back than the change makes necessary."""
     mission, hand, path = left.mission, left.gripper, left.path

@@ -8,7 +8,7 @@ from common.time.clock import unix_time
 from services.brain.journal.records import Checkpoint, PathNode
 from services.brain.mission.context import Context
 from services.brain.mission.mission import Failure, GripperState, Mission, gripper_holds
-from services.brain.resume.policy import Decision, Observation, apply, decide, refusal
+from services.brain.resume.policy import Decision, Observation, apply, decide, refusal, resumes_since_progress
 from services.brain.tree.path import MISSION, REPORT_FAILURE, PathNotFound, start_at
 
 LOOK = 0.6
@@ -111,7 +111,7 @@ class Resumption:
         if decision.change:
             self._call_off()
         try:
-            ctx.checkpoints.resumed_at(start_at(self._root, decision.path), left.resumes + 1)
+            ctx.checkpoints.resumed_at(start_at(self._root, decision.path), resumes_since_progress(left, seen))
         except PathNotFound as missing:
             self._end(Failure("RESTART", "CANNOT_RESUME", str(missing)))
             return
