@@ -5,8 +5,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from common.geometry import Array
 from services.navigation.motion.obstacle_tracker import Obstacle
-from services.navigation.planning.costmap import Array, Costmap
+from services.navigation.planning.costmap import Costmap
 
 Point = tuple[float, float]
 HORIZON, SAMPLE = 2.4, 0.2

@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 
 from common import messages as m
-from common.geometry import Pose2
+from common.geometry import Array, Pose2
 from services.navigation.config import NavigationConfig
 from services.navigation.ended import Ended
 from services.navigation.motion.collision_avoidance import avoid
@@ -16,7 +16,7 @@ from services.navigation.motion.recovery import Recovery
 from services.navigation.motion.retreat import PassingPlace, Retreat
 from services.navigation.motion.route import DETOUR_PAUSE, Route
 from services.navigation.motion.targets import Targets
-from services.navigation.planning.costmap import Array, Costmap
+from services.navigation.planning.costmap import Costmap
 from services.navigation.planning.planner import PathPlanner, Point
 
 REPLAN_PERIOD = 1.0

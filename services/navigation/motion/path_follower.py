@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from common.geometry import Pose2, wrap
-from services.navigation.planning.costmap import Array, Costmap
+from common.geometry import Array, Pose2, wrap
+from services.navigation.planning.costmap import Costmap
 from services.navigation.planning.planner import SPACING, Point
 
 TURN_AT = 0.9

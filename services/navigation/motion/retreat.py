@@ -5,10 +5,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from common.geometry import Pose2
+from common.geometry import Array, Pose2
 from services.navigation.motion.obstacle_tracker import Obstacle
 from services.navigation.motion.path_follower import PathFollower, braked
-from services.navigation.planning.costmap import Array, Costmap
+from services.navigation.planning.costmap import Costmap
 from services.navigation.planning.planner import PathPlanner, Point
 
 ROOM, APART, ASIDE = 0.9, 2.5, 1.0

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from services.navigation.planning.costmap import Array
+from common.geometry import Array
 
 Point = tuple[float, float]
 SPEED, LAG = 0.42, 0.3

@@ -9,11 +9,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from common.geometry import Pose2
+from common.geometry import Array, Pose2
 from common.messages import DriveState
 from services.navigation.motion.path_follower import Lookahead, PathFollower
 from services.navigation.others.motion import GAP, Other, Way, escapes, passes
-from services.navigation.planning.costmap import Array, Costmap
+from services.navigation.planning.costmap import Costmap
 from services.navigation.planning.planner import PathPlanner
 
 AHEAD = 5.0

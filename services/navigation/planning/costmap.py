@@ -9,15 +9,12 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from common import messages as m
-from common.approach import BIN_RIM
 from common.floor_plan import FloorPlan
-from common.geometry import Pose2
+from common.geometry import Array, Pose2
+from services.navigation.planning.cells import Cells, static_distances
 from services.navigation.planning.changes import Changes
 
 Grid = NDArray[np.bool_]
-Array = NDArray[np.float64]
-_PAD = 0.3
-"""Margin around the floor plan [m]; chosen: less than a footprint, so that nothing drives there."""
 _EXPLAINED = 0.12
 """Distance from the static map within which it explains a lidar point [m]: two cells and the lidar's noise."""
 _REACH = 0.8
@@ -30,8 +27,8 @@ _FAR = 1.0
 """Clearance [m] beyond which viewers see no difference."""
 
 
-class Costmap:
-    """Cells of `resolution`; `static_distance` [m] is from each cell to the nearest obstacle of the static map.
+class Costmap(Cells):
+    """What stands where; `static_distance` [m] is from each cell to the nearest obstacle of the static map.
 
     `memory` [s]: how long what is out of sight is remembered; `lasting_after` [s]: see `Changes`.
     """
@@ -39,12 +36,9 @@ class Costmap:
     def __init__(
         self, floor_plan: FloorPlan, resolution: float, memory: float, lasting_after: float = math.inf
     ) -> None:
-        self.resolution, self.memory = resolution, memory
-        self.origin = (floor_plan.low[0] - _PAD, floor_plan.low[1] - _PAD)
-        width = math.ceil((floor_plan.high[0] - floor_plan.low[0] + 2 * _PAD) / resolution)
-        height = math.ceil((floor_plan.high[1] - floor_plan.low[1] + 2 * _PAD) / resolution)
-        self.shape = (height, width)
-        self.static_distance = self._distance_to_map(floor_plan)
+        super().__init__(floor_plan, resolution)
+        self.memory = memory
+        self.static_distance = static_distances(self, floor_plan)
         self.static: Grid = self.static_distance <= 0
         self._seen_at = np.full(self.shape, -np.inf)
         self._first_at = np.full(self.shape, np.inf)
@@ -87,21 +81,8 @@ class Costmap:
 
     def explains(self, points: Array, limit: float) -> Grid:
         """Which points (n, 2) lie within `limit` [m] of the static map."""
-        found: Grid = self.static_distance[self._cells(points[:, 0], points[:, 1])] <= limit
+        found: Grid = self.static_distance[self.cells(points[:, 0], points[:, 1])] <= limit
         return found
-
-    def _distance_to_map(self, floor_plan: FloorPlan) -> Array:
-        """Of each cell's centre, exactly: counted in cells, the corner of a wall is up to 5 cm nearer than it seems."""
-        gx, gy = np.moveaxis(self.centres(), 2, 0)
-        sides = (gx - floor_plan.low[0], floor_plan.high[0] - gx, gy - floor_plan.low[1], floor_plan.high[1] - gy)
-        found: Array = np.minimum.reduce(sides)
-        boxes = [f.outline for f in floor_plan.standing]
-        # A table counts with its whole top: the lidar sees only its legs.
-        boxes += [r.outline.grown(BIN_RIM if r.depth else 0.0) for r in floor_plan.receptacles]
-        boxes += [wall.footprint for wall in floor_plan.walls]
-        for box in boxes:
-            np.minimum(found, box.signed_distances(gx, gy), out=found)
-        return np.maximum(found, 0.0)
 
     @property
     def distance(self) -> Array:
@@ -126,7 +107,7 @@ class Costmap:
         rows, columns = np.nonzero(self._seen_at > -np.inf)
         if not len(rows) or not discs:
             return
-        xs, ys = (o + (i + 0.5) * self.resolution for o, i in zip(self.origin, (columns, rows), strict=True))
+        xs, ys = self.middles(rows, columns)
         inside = np.zeros(len(rows), bool)
         for x, y, radius in discs:
             inside |= np.hypot(xs - x, ys - y) < radius
@@ -166,12 +147,6 @@ class Costmap:
             self._distance = None
             self.version += 1
 
-    def centres(self) -> Array:
-        """The middle of every cell (rows, columns, 2) [map]."""
-        xs = self.origin[0] + (np.arange(self.shape[1]) + 0.5) * self.resolution
-        ys = self.origin[1] + (np.arange(self.shape[0]) + 0.5) * self.resolution
-        return np.stack(np.meshgrid(xs, ys), axis=2)
-
     def picture(self, now: float) -> m.Costmap:
         """The clearance of every cell, for viewers."""
         cells = np.minimum(self.distance * (255 / _FAR), 255).astype(np.uint8)
@@ -180,20 +155,6 @@ class Costmap:
             t=now, x=self.origin[0], y=self.origin[1], resolution=self.resolution, width=width, height=height,
             far=_FAR, cells=zlib.compress(cells.tobytes(), 1),
         )  # fmt: skip
-
-    # --- cells
-    def cell(self, x: float, y: float) -> tuple[int, int]:
-        """(row, column) of a point, clipped to the map."""
-        column = int((x - self.origin[0]) / self.resolution)
-        row = int((y - self.origin[1]) / self.resolution)
-        return min(max(row, 0), self.shape[0] - 1), min(max(column, 0), self.shape[1] - 1)
-
-    def point(self, row: int, column: int) -> tuple[float, float]:
-        """The centre of a cell."""
-        return (
-            self.origin[0] + (column + 0.5) * self.resolution,
-            self.origin[1] + (row + 0.5) * self.resolution,
-        )
 
     def clearance(self, x: float, y: float) -> float:
         """Distance [m] from a point to the nearest obstacle."""
@@ -204,14 +165,7 @@ class Costmap:
         count = max(2, math.ceil(math.hypot(b[0] - a[0], b[1] - a[1]) / self.resolution) + 1)
         share = np.arange(count) / (count - 1)
         xs, ys = a[0] + (b[0] - a[0]) * share, a[1] + (b[1] - a[1]) * share
-        return float(self.distance[self._cells(xs, ys)].min())
-
-    def _cells(self, xs: Array, ys: Array) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-        """Rows and columns of points, clipped to the map."""
-        columns = ((xs - self.origin[0]) / self.resolution).astype(np.intp)
-        rows = ((ys - self.origin[1]) / self.resolution).astype(np.intp)
-        top, right = self.shape[0] - 1, self.shape[1] - 1
-        return np.minimum(np.maximum(rows, 0), top), np.minimum(np.maximum(columns, 0), right)
+        return float(self.distance[self.cells(xs, ys)].min())
 
     # --- lidar
     def see(
@@ -256,8 +210,7 @@ class Costmap:
         rows, columns = np.nonzero((self._seen_at > -np.inf) | self.changes.known)
         if not len(rows):
             return
-        x = self.origin[0] + (columns + 0.5) * self.resolution - pose[0]
-        y = self.origin[1] + (rows + 0.5) * self.resolution - pose[1]
+        x, y = (middle - at for middle, at in zip(self.middles(rows, columns), pose, strict=False))
         step = angles[1] - angles[0]
         bearing = np.arctan2(y, x) - pose[2] - angles[0]
         ray = np.round(np.mod(bearing, 2 * math.pi) / step).astype(int) % len(angles)
@@ -285,7 +238,7 @@ class Costmap:
 
     def seen_within(self, points: Array, radius: float) -> Grid:
         """Which points (n, 2) have something within `radius` that the static map does not put there."""
-        cells = self._cells(points[:, 0], points[:, 1])
+        cells = self.cells(points[:, 0], points[:, 1])
         near = self.distance[cells]
         found: Grid = (near < radius) & (near < self.static_distance[cells])
         return found
@@ -294,7 +247,7 @@ class Costmap:
         """Which points (n, 2) are where something stands that became a part of the map; to a cell."""
         if not self.changes.lasting.any():
             return np.zeros(len(points), bool)
-        rows, columns = self._cells(points[:, 0], points[:, 1])
+        rows, columns = self.cells(points[:, 0], points[:, 1])
         found: Grid = ndimage.binary_dilation(self.changes.lasting, np.ones((3, 3)))[rows, columns]
         return found
 
