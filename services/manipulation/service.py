@@ -3,28 +3,24 @@
 import math
 from collections.abc import Sequence
 
-import numpy as np
-
 from common import messages as m
 from common import topics
-from common.bus.port import Io, Job
+from common.bus.port import Io
 from common.gateway import refusal
 from common.geometry import Pose2
 from common.goal_inbox import GoalInbox
-from common.robot.grip import Grip
 from common.runtime import StartError
 from services.manipulation.config import ManipulationConfig
 from services.manipulation.execution import place_executor, recovery
+from services.manipulation.execution.feedback import Feedback
 from services.manipulation.execution.led_hand import LedHand
 from services.manipulation.execution.policy import PolicyError, load_policy
 from services.manipulation.execution.policy_executor import grab_by_policy
 from services.manipulation.execution.pull_executor import grab_or_pull
 from services.manipulation.execution.robot import Failure, Robot, Steps, T, go_home
 from services.manipulation.grasps.grasp_store import GraspStore
-from services.manipulation.planning.motion_planner import Planner
 from services.manipulation.planning.object_source import ObjectSource
 
-ARM = tuple(f"joint_{i}" for i in range(1, 8))
 DESCRIPTION_PATIENCE = 3.0
 LETTING_GO = "release"
 """The phase of placing in which the fingers open."""
@@ -45,11 +41,9 @@ class ManipulationService:
             self._policy = load_policy(config.policy) if config.policy else None
         except PolicyError as error:
             raise StartError(f"manipulation.policy: {error}") from None
-        self._source = ObjectSource(io.household)
-        self._robot = Robot(config, io, self._source)
+        self._robot = Robot(config, io, ObjectSource(io.household))
+        self._feedback = Feedback(config, io, self._robot)
         self._store = GraspStore(io.state_dir, lambda why: io.log.warning("not kept what is in the hand", reason=why))
-        self._loading: Job[Planner] | None = None
-        self._description: m.RobotDescription | None = None
         self._steps: Steps[str] | None = None
         self._goal = m.ManipulationGoal(goal="")
         self._inbox: GoalInbox[m.ManipulationGoal, m.ManipulationStatus] = GoalInbox(
@@ -57,7 +51,6 @@ class ManipulationService:
         )
         self._led = LedHand(self._robot)
         self._looked_for = ""
-        self._indices: tuple[list[str], list[int], int] | None = None
         self._waiting_since: float | None = None
         self._status = m.ManipulationStatus(status="idle")
         io.publish(topics.MANIPULATION_STATUS, self._status)
@@ -65,7 +58,10 @@ class ManipulationService:
     def step(self, now: float) -> None:
         io, robot = self._io, self._robot
         robot.now = now
-        self._sense(now)
+        unknown = not self._feedback.begun
+        self._feedback.update(now)
+        if unknown and robot.grip.holds():
+            robot.grasped = self._store.recall(robot.grip.width, self._config.slip_width)
         for look in io.take_all(topics.NAVIGATION_GOAL):
             verb, _, item = look.goal.partition(" ")
             if verb == "find":
@@ -78,62 +74,9 @@ class ManipulationService:
             self._fold()
         if self._steps is not None:
             self._advance(now)
-        self._led.step(self._mjcf, self._steps is not None)
-        if self._indices is not None:
+        self._led.step(self._feedback.mjcf, self._steps is not None)
+        if self._feedback.begun:
             self._store.keep(robot.grasped, robot.grip.width)
-
-    # --- sensing
-    def _sense(self, now: float) -> None:
-        io, robot = self._io, self._robot
-        if robot.planner is None:
-            self._load(now)
-        states = io.latest(topics.JOINT_STATES)
-        if states is not None:
-            self._read_joints(states)
-        robot.base = self._base(now)
-        self._source.update(io.latest(topics.WORLD_OBJECTS))
-
-    def _load(self, now: float) -> None:
-        description = self._io.latest(topics.ROBOT_DESCRIPTION)
-        if description is not None and self._loading is None and description is not self._description:
-            self._description = description
-            self._loading = self._io.submit(Planner, description.mjcf, self._io.seed, seconds=0.5)
-        if self._loading is not None and self._loading.poll(now):
-            loading, self._loading = self._loading, None
-            try:
-                self._robot.planner = loading.result()
-            except (ValueError, KeyError) as error:
-                self._io.count_drop(topics.ROBOT_DESCRIPTION.key, f"not a robot with our joints: {error}")
-
-    def _read_joints(self, states: m.JointStates) -> None:
-        if len(states.position) < len(states.name):
-            return
-        first = self._indices is None
-        if self._indices is None or self._indices[0] != states.name:
-            if not {*ARM, "gripper"} <= set(states.name):
-                return
-            order = {name: i for i, name in enumerate(states.name)}
-            self._indices = states.name, [order[j] for j in ARM], order["gripper"]
-        robot, (_, arm, gripper) = self._robot, self._indices
-        robot.joints = np.array([states.position[i] for i in arm])
-        effort = states.effort[gripper] if len(states.effort) > gripper else 0.0
-        if len(states.effort) > max(arm):
-            robot.torques = np.array([states.effort[i] for i in arm])
-        robot.grip = Grip(states.position[gripper], effort)
-        if first and robot.grip.holds():
-            robot.grasped = self._store.recall(robot.grip.width, self._config.slip_width)
-
-    def _base(self, now: float) -> Pose2:
-        pose = self._io.latest(topics.POSE)
-        if pose is not None and self._io.age(topics.POSE, now) < self._config.state_timeout:
-            return pose.x, pose.y, pose.theta
-        odometry = self._io.latest(topics.ODOMETRY)
-        return (odometry.x, odometry.y, odometry.theta) if odometry else self._robot.base
-
-    @property
-    def _mjcf(self) -> str:
-        """The robot's description, "" before it has come."""
-        return self._description.mjcf if self._description is not None else ""
 
     # --- goals
     def _repeat(self, goal: m.ManipulationGoal, answer: m.ManipulationStatus | None) -> None:
@@ -195,7 +138,7 @@ class ManipulationService:
                 return (yield from self._with_planner(recovery.retract_grasped(robot, goal.object)))
             raise Failure("HAND_FULL", f"the {label} is in the gripper")
         if self._policy is not None:
-            played = grab_by_policy(robot, self._policy, goal, self._looked_for, lambda: self._mjcf)
+            played = grab_by_policy(robot, self._policy, goal, self._looked_for, lambda: self._feedback.mjcf)
             return (yield from self._with_planner(played))
         return (yield from self._with_planner(grab_or_pull(robot, goal, self._looked_for)))
 
