@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 
 JUMP = 0.6
 """Largest way [rad] of a joint to its next set-point that is no mistake."""
-SPEED = np.array([1.39] * 4 + [1.22] * 3)
-"""Highest speeds (7,) [rad/s] of the joints, those of a Kinova Gen3 (user guide): set-points that were on their way for
-long, or come all at once, are caught up with at these."""
+SPEED, ACCELERATION = np.array([1.39] * 4 + [1.22] * 3), np.array([5.2] * 4 + [10.0] * 3)
+"""What the joints (7,) of a Kinova Gen3 can do [rad/s, rad/s^2] (user guide): so set-points that were on their way for
+long, or come all at once, are caught up with."""
 LATE = 1.5
 """Periods without a set-point [count] from which the next one is late."""
 Array = NDArray[np.float64]
@@ -18,11 +18,12 @@ Array = NDArray[np.float64]
 
 class ArmDriver:
     """Moves the set-point (7,) linearly to each commanded one within its period, or the time since the last one where
-    that is late, and no faster than `SPEED`; `limits` lowest and highest angles."""
+    that is late, as far as `SPEED` and `ACCELERATION` allow; `limits` lowest and highest angles."""
 
     def __init__(self, position: Array, timeout: float, limits: tuple[Array, Array]) -> None:
         self._low, self._high = limits
         self._position, self._goal = position.copy(), position.copy()
+        self._velocity: Array = np.zeros(7)
         self._left, self._timeout, self._heard = 0.0, timeout, -math.inf
 
     def follow(self, position: list[float], period: float, now: float) -> str:
@@ -36,21 +37,27 @@ class ArmDriver:
             return f"set-point jumps by more than {JUMP} rad"
         # Where set-points come late it moves as long as they take: it would stop and start again at each of them.
         gap = now - self._heard
-        pace = gap if LATE * period < gap < self._timeout else period
-        self._left = max(pace, float((np.abs(goal - self._position) / SPEED).max()))
+        self._left = gap if LATE * period < gap < self._timeout else period
         self._goal, self._heard = goal, now
         return ""
 
     def halt(self, actual: Array) -> None:
         """Hold the measured position."""
         self._position, self._goal, self._left = actual.copy(), actual.copy(), 0.0
+        self._velocity = np.zeros(7)
 
     def advance(self, now: float, dt: float) -> Array:
         """The set-point after `dt` seconds."""
         if now - self._heard > self._timeout:
             self._left, self._goal = 0.0, self._position
+        way = self._goal - self._position
         if self._left > 0:
-            share = min(1.0, dt / self._left)
-            self._position = self._position + (self._goal - self._position) * share
-            self._left = max(0.0, self._left - dt)
+            wanted = way / max(self._left, dt)
+        else:
+            # Nothing more was said: it comes to rest there.
+            wanted = np.sign(way) * np.minimum(np.abs(way) / dt, np.sqrt(2 * ACCELERATION * np.abs(way)))
+        change = np.clip(wanted - self._velocity, -ACCELERATION * dt, ACCELERATION * dt)
+        self._velocity = np.clip(self._velocity + change, -SPEED, SPEED)
+        self._position = np.clip(self._position + self._velocity * dt, self._low, self._high)
+        self._left = max(0.0, self._left - dt)
         return self._position
