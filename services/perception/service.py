@@ -83,7 +83,7 @@ class PerceptionService:
         robot = state.robot(now)
         if robot is not None:
             self._hand_at = robot.hand(base)
-            carried = self._beliefs.tracker.carry(self._hand_at, state.holds(robot), now)
+            carried = self._beliefs.tracker.carry(self._hand_at, state.holds(robot), now, bool(self._phase()))
             if carried or io.household is not self._told:
                 self._told = io.household
                 self._beliefs.publish(now)

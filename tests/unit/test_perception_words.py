@@ -164,11 +164,19 @@ def test_a_held_thing_moves_with_the_hand_and_stays_where_it_is_let_go() -> None
     assert not found.held and found.on == "delivery tray"
 
 
-def test_what_falls_from_the_hand_is_nowhere_until_it_is_seen() -> None:
+def test_what_falls_on_the_way_is_looked_for_where_the_hand_was() -> None:
     tracker = ObjectTracker(SCENE, 3, 0.6)
     tracker.update(empty_view(), [detection("red mug", 1.2, 0.0)], 0.0)
     tracker.carry((1.2, 0.0, 0.82), True, 1.0)
-    assert tracker.carry((0.3, 0.0, 0.5), False, 2.0), "the change is told"
+    tracker.carry((0.3, 0.0, 0.5), False, 2.0)
+    assert [o.position[:2] for o in tracker.objects()] == [(0.3, 0.0)]
+
+
+def test_what_falls_before_the_base_is_nowhere_until_it_is_seen() -> None:
+    tracker = ObjectTracker(SCENE, 3, 0.6)
+    tracker.update(empty_view(), [detection("red mug", 1.2, 0.0)], 0.0)
+    tracker.carry((1.2, 0.0, 0.82), True, 1.0)
+    assert tracker.carry((0.3, 0.0, 0.5), False, 2.0, working=True), "the change is told"
     assert tracker.objects() == []
     tracker.update(empty_view(), [detection("red mug", 0.6, 0.3)], 3.0)
     assert [o.position[:2] for o in tracker.objects()] == [(0.6, 0.3)]

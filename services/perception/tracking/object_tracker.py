@@ -22,8 +22,8 @@ HELD_RANGE = 0.12
 DOUBT = 0.45
 """Weight of the best sighting [1/m2] below which kind and shape are in doubt: that of a whole view from 1.5 m."""
 FALLEN = 0.15
-"""Height [m] above where it would rest from which what leaves the hand falls and rolls: it may be anywhere. Chosen: a
-tall bottle that is put down is held 0.08 above its middle."""
+"""Height [m] above where it would rest from which what leaves the hand falls. Chosen: a tall bottle that is put down
+is held 0.08 above its middle."""
 FRESH = 20.0
 """For how long [s] an object is new. Chosen: from when the hand begins to move one until all of the place is seen."""
 
@@ -74,10 +74,11 @@ class ObjectTracker:
         self._tracks = [t for t in self._tracks if t.misses < self._gone_after]
         return seen
 
-    def carry(self, hand: Vec3, holding: bool, now: float) -> bool:
+    def carry(self, hand: Vec3, holding: bool, now: float, working: bool = False) -> bool:
         """Follow the hand: what it closes on is held and moves with it until it opens; True when anything is or was.
 
-        What leaves the hand high above everything is forgotten until it is seen again.
+        What falls while the arm rests lies behind on the base's way, where the hand was. While the arm is `working` the
+        base stands there itself: what falls then is forgotten until it is seen again.
         """
         held = next((t for t in self._tracks if t.held), None)
         if holding and held is None:
@@ -94,7 +95,7 @@ class ObjectTracker:
         surface = self._household.surface_at(*hand)
         held.on, height = (surface.name, surface.center[2]) if surface else ("", 0.0)
         held.position = (hand[0], hand[1], height + held.size[2] / 2)
-        if hand[2] - held.position[2] > FALLEN and not (surface and surface.depth):
+        if working and hand[2] - held.position[2] > FALLEN and not (surface and surface.depth):
             self._tracks.remove(held)
             return True
         # Where the hand let go; the next look says better.
