@@ -12,7 +12,7 @@ import zenoh
 from cli.processes.ports import free_port
 from common import messages as m
 from common import topics
-from common.bus import codec
+from common.bus import codec, delivery
 from common.robot.model import ARM
 from common.scene import load_scene
 from common.schemas import schema_of
@@ -32,9 +32,9 @@ PATIENCE = 20.0
 class Robot(RobotSide):
     """A server in a namespace of its own, a visitor, and the robot's bus as its services see it."""
 
-    def __init__(self, session: zenoh.Session, visitor: FoxgloveClient) -> None:
+    def __init__(self, here: Site, session: zenoh.Session, visitor: FoxgloveClient) -> None:
         super().__init__(session)
-        self.visitor = visitor
+        self.here, self.visitor = here, visitor
 
     def shown(self, name: str, topic: Topic[Any], message: m.Message, key: str = "") -> Any:
         """The last message that a watched channel shows once this was sent."""
@@ -63,7 +63,7 @@ def robot(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Robot]:
         settings = {"TIDYBOT__FOXGLOVE__COMMANDS": "true", "TIDYBOT__RUNTIME__SCENE": "minimal"}
         visitor = start(here, session, TIDYBOT__PLANNER__LLM_KEY="hidden", **settings)
         try:
-            yield Robot(session, visitor)
+            yield Robot(here, session, visitor)
         finally:
             visitor.close()
 
@@ -113,7 +113,10 @@ def test_the_present_state_is_shown_at_once(robot: Robot) -> None:
         with query:
             query.reply(query.key_expr, b'{"state": "NAVIGATING"}', encoding=codec.JSON)
 
-    with robot.session.declare_queryable(topics.SYSTEM_STATUS.key, answer):
+    key = topics.SYSTEM_STATUS.key
+    with robot.session.declare_queryable(key, answer), robot.here.session() as another:
+        # The server asks once, and not who has not been heard of yet.
+        eventually(lambda: delivery.fetch(another, key), "the state can be asked for", PATIENCE)
         robot.visitor.watch("system_status")
         eventually(lambda: robot.visitor.heard["system_status"], "the state is shown", PATIENCE)
     assert robot.visitor.heard["system_status"][0]["state"] == "NAVIGATING"
@@ -247,7 +250,7 @@ def test_without_leave_visitors_may_only_stop_the_robot(here: Site) -> None:
     with here.session() as session:
         visitor = start(here, session)
         try:
-            robot = Robot(session, visitor)
+            robot = Robot(here, session, visitor)
             commands, stops = robot.heard(topics.VOICE_COMMAND), robot.heard(topics.ROBOT_STOP)
             say, stop = visitor.offer(1, "/voice_command"), visitor.offer(2, "/robot/stop")
 

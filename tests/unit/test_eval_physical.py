@@ -1,6 +1,7 @@
 """Physical faults in the simulation: each takes effect on a grasp, says so, and is over when it should be."""
 
 import math
+import re
 from pathlib import Path
 
 import pytest
@@ -78,7 +79,9 @@ def test_a_jammed_finger_stays_and_comes_free() -> None:
     bench = bench_of(PhysicalFault(kind="jam", thing="blue block", seconds=3.0), told)
     status = bench.run("grab", "b.1")
     assert (status.status, status.code) == ("failed", "EMPTY_GRASP")
-    assert [s.fault for s in told] == ["jam"] and "85 mm" in told[0].what
+    assert [s.fault for s in told] == ["jam"]
+    # The fingers go in nearly as wide open as they go.
+    assert re.search(r"a finger stays: 8[0-5] mm open", told[0].what)
     assert bench.run("grab", "b.2").status == "done", "one more try, without the jam"
 
 

@@ -44,6 +44,7 @@ def test_an_index_that_does_not_answer_is_no_verdict(
 def test_a_platform_without_wheels_fails(
     answers: dict[tuple[str, ...], str], capsys: pytest.CaptureFixture[str]
 ) -> None:
-    answers["--offline",] = "moonshine-cpp==0.1.4 has no wheels with a matching platform tag"
+    answers["--offline",] = "there is no version of moonshine-cpp==0.1.4"
+    answers[()] = "moonshine-cpp==0.1.4 has no wheels with a matching platform tag"
     assert platforms.main() == 1
     assert capsys.readouterr().out.count("matching platform tag") == 16
