@@ -28,15 +28,17 @@ _IF_THERE = re.compile(
     r" (?:is|are) (?:there|on it|in it),? (?P<command>.+)$"
 )
 """A look, and what is to be done if something is there."""
+_SO = r"(?:so|yes|it is|they are|there (?:is|are)(?: any| one| some)?)"
+"""How a condition says that the answer is yes."""
 _IS_IT = re.compile(
     r"^(?:is|are) (?P<there>there )?(?P<thing>.+?)(?(there)(?P<spot> (?:on|in|at) .+?)?|(?P<at> (?:on|in|at) .+?)),? "
-    r"(?:and )?if (?:so|yes|it is|they are|there (?:is|are)(?: any| one| some)?),? (?P<command>.+)$"
+    rf"(?:and )?if {_SO},? (?P<command>.+)$"
 )
 """A question, and what is to be done if the answer is yes."""
 _IS_THERE = re.compile(
     rf"^(?:is|are) there (?P<thing>(?:still |any |an? |some ).+?),? (?P<command>(?:(?:please|can you|could you) )*"
     rf"(?:{'|'.join(sorted(HANDLING))}) (?:(?:me|us) )?(?:it|them|one|those|some)\b.*?)"
-    r"(?:,? if (?:so|yes|there (?:is|are)(?: any| one| some)?|they are|it is))?$"
+    rf"(?:,? if {_SO})?$"
 )
 """A question, and what is to be done with what it is about."""
 _IF_ANY = re.compile(

@@ -10,6 +10,7 @@ from common.bus.port import Job
 from common.gateway import refusal
 from services.manipulation.arm.arm_model import ArmModel, Array
 from services.manipulation.arm.servo import Servo
+from services.manipulation.execution.feedback import LOADING
 from services.manipulation.execution.robot import DT, Robot
 from services.manipulation.planning.planning_scene import obstacles
 
@@ -19,8 +20,6 @@ SPEED, TURN = 0.12, 0.6
 """Greatest speed [m/s] and rate of turn [rad/s] of the hand, whatever is asked for; chosen: what a person follows."""
 HOMING = 0.5
 """Share of the joints' speed on the way to the carry pose; chosen."""
-LOADING = 0.5
-"""Time that making the arm's model takes in lockstep [s], as for the planner's."""
 
 
 class LedHand:
