@@ -69,8 +69,9 @@ def test_transcribe_reads_good_files_and_names_bad_ones(run: Run, tmp_path: Path
     assert set(rows[0]) >= {"file", "text", "accepted", "confidence", "wake"}
 
 
+@pytest.mark.slow
 @pytest.mark.timeout(400)
-@pytest.mark.parametrize("scene", ["minimal", pytest.param("apartment", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("scene", ["minimal", "apartment"])
 def test_the_demo_delivers_and_leaves_nothing_behind(run: Run, tmp_path: Path, scene: str) -> None:
     # At the greatest speed a busy machine lets minutes of robot time pass before the answer to its question is played.
     done = run.command("demo", "--scene", scene, "--speed", "3", "--out", str(tmp_path / "demo.png"), timeout=360)

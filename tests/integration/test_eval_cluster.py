@@ -2,6 +2,7 @@
 
 import signal
 from collections.abc import Iterator
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -15,8 +16,11 @@ from evaluation.workers import cluster, pool
 from tests.network import Machine, Network, network
 from tests.support import eventually
 
-pytest.importorskip("distributed", reason=f"needs Dask: {cluster.INSTALL}")
-pytestmark = [pytest.mark.slow, pytest.mark.timeout(1200)]
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.timeout(1200),
+    pytest.mark.skipif(find_spec("distributed") is None, reason=f"needs Dask: {cluster.INSTALL}"),
+]
 PORT = 8786
 TTL = "10s"
 """Without a heartbeat for so long the scheduler counts a worker as lost; they beat every 0.5 s."""
