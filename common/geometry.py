@@ -60,6 +60,12 @@ class Rectangle(NamedTuple):
         c, s = math.cos(self.yaw), math.sin(self.yaw)
         return self.x + c * u - s * v, self.y + s * u + c * v
 
+    @property
+    def corners(self) -> list[tuple[float, float]]:
+        """Counter-clockwise, in the frame that it is given in."""
+        half = ((1, 1), (-1, 1), (-1, -1), (1, -1))
+        return [self.to_map(i * self.length / 2, j * self.width / 2) for i, j in half]
+
     def direction(self, u: float, v: float) -> tuple[float, float]:
         """A vector (u, v) of the rectangle's own frame in the frame that it is given in."""
         c, s = math.cos(self.yaw), math.sin(self.yaw)

@@ -130,7 +130,8 @@ def follow(link: Link, supervision: Supervision, out: Path, timeout: float) -> m
                 elif monotonic() - told > LINE_EVERY:
                     told = monotonic()
                     console.print(line(status))
-                if shown is not None and monotonic() - drawn > PICTURE_EVERY:
+                exploring = status.phase not in ("saving", "done", "failed")
+                if shown is not None and exploring and monotonic() - drawn > PICTURE_EVERY:
                     drawn = monotonic()
                     out.mkdir(parents=True, exist_ok=True)
                     picture(shown).save(out / PICTURE)

@@ -16,7 +16,7 @@ from common.files.map_file import (
     SURFACES,
     GridMap,
     MapError,
-    picture,
+    named_picture,
     surface_rows,
     write_map,
 )
@@ -38,11 +38,11 @@ def plan_to_map(world: str, out: Path) -> Household:
     try:
         household = mapped(load_scene(world), load_words(config_dir()))
         out.mkdir(parents=True, exist_ok=True)
-        cells = drawn(household)
-        write_map(out, GridMap(cells, RESOLUTION, household.low), MAP)
+        grid = GridMap(drawn(household), RESOLUTION, household.low)
+        write_map(out, grid, MAP)
         (out / SURFACES).write_bytes(msgspec.json.format(msgspec.json.encode(surface_rows(household)), indent=1))
         (out / HOUSEHOLD).write_text(to_toml(household), encoding="utf-8")
-        picture(cells).save(out / PICTURE)
+        named_picture(grid, household).save(out / PICTURE)
     except (SceneError, MapError) as error:
         raise CliError(str(error)) from None
     except OSError as error:

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image
+from PIL import Image, ImageDraw, ImageFont
 
 from common.files.atomic_file import replace
 from common.floor_plan import FloorPlan
@@ -25,6 +25,8 @@ an unknown cell, 0.19608, is just not free."""
 
 
 COLOURS = {FREE: (255, 255, 255), OCCUPIED: (40, 40, 40), UNKNOWN: (190, 190, 190)}
+ROOM, SURFACE, TOP = (150, 70, 20), (20, 70, 160), (215, 228, 245)
+"""Colours of what is known by name."""
 PIXELS = 4
 """Of a cell in the picture for people."""
 
@@ -76,17 +78,43 @@ def picture(cells: NDArray[np.uint8]) -> Image.Image:
     return Image.fromarray(np.repeat(np.repeat(drawn, PIXELS, axis=0), PIXELS, axis=1))
 
 
+def named_picture(grid: GridMap, plan: FloorPlan) -> Image.Image:
+    """The map for people with the outlines and names of rooms, surfaces and bins."""
+    shown = picture(grid.cells)
+    draw = ImageDraw.Draw(shown)
+
+    def pixel(x: float, y: float) -> tuple[float, float]:
+        scale = PIXELS / grid.resolution
+        return (x - grid.origin[0]) * scale, shown.height - (y - grid.origin[1]) * scale
+
+    def write(x: float, y: float, name: str, colour: tuple[int, int, int], height: int) -> None:
+        font = ImageFont.load_default(height)
+        half = font.getlength(name) / 2 + 2
+        across, down = pixel(x, y)
+        # A bin at a wall would have half of its name outside.
+        at = max(half, min(across, shown.width - half)), down
+        draw.text(at, name, fill=colour, font=font, anchor="mm", stroke_width=2, stroke_fill=(255, 255, 255))
+
+    for room in plan.rooms:
+        draw.polygon([pixel(*corner) for corner in room.outline.corners], outline=ROOM)
+    for r in plan.receptacles:
+        draw.polygon([pixel(*corner) for corner in r.outline.corners], fill=TOP, outline=SURFACE)
+    for room in plan.rooms:
+        write(*room.middle, room.name, ROOM, 16)
+    for r in plan.receptacles:
+        write(*r.center[:2], r.name, SURFACE, 11)
+    return shown
+
+
 def surface_rows(plan: FloorPlan) -> list[dict[str, Any]]:
     """Surfaces and bins for other programs: height (of a bin its rim) [m], corners [map], and the sides that they are
     reached from as unit steps [map]."""
     rows = []
     for r in plan.receptacles:
-        half = ((1, 1), (-1, 1), (-1, -1), (1, -1))
-        corners = [r.outline.to_map(i * r.size[0] / 2, j * r.size[1] / 2) for i, j in half]
         rows.append(
             {
                 "name": r.name, "kind": r.kind, "height": r.depth or r.center[2], "yaw": r.yaw,
-                "outline": [[round(x, 4), round(y, 4)] for x, y in corners],
+                "outline": [[round(x, 4), round(y, 4)] for x, y in r.outline.corners],
                 "reached_from": [[round(v, 4) for v in r.outline.direction(*a)] for a in r.approach],
             }
         )  # fmt: skip

@@ -43,10 +43,7 @@ class Floor:
 
     def fits(self, area: Rectangle, room: Room, margin: float) -> bool:
         """True when the area lies in the room and is free, as is `margin` [m] around it but for walls at its back."""
-        corners = [
-            area.to_map(i * area.length / 2, j * area.width / 2) for i, j in ((1, 1), (1, -1), (-1, 1), (-1, -1))
-        ]
-        if not all(room.low[k] < c[k] < room.high[k] for c in corners for k in (0, 1)):
+        if not all(room.low[k] < c[k] < room.high[k] for c in area.corners for k in (0, 1)):
             return False
         wide = area._replace(length=area.length + 2 * margin)
         return not bool(((self._taken | self._kept) & self._inside(wide)).any())

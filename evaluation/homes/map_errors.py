@@ -62,12 +62,7 @@ def _top(r: Receptacle) -> float:
 
 def edge_error(a: Rectangle, b: Rectangle) -> float:
     """The mean distance [m] of the corners of two rectangles, in the best order."""
-
-    def corners(r: Rectangle) -> list[tuple[float, float]]:
-        half = ((1, 1), (-1, 1), (-1, -1), (1, -1))
-        return [r.to_map(i * r.length / 2, j * r.width / 2) for i, j in half]
-
-    one, two = corners(a), corners(b)
+    one, two = a.corners, b.corners
     return min(sum(math.dist(one[i], two[(i + k) % 4]) for i in range(4)) / 4 for k in range(4)) / math.sqrt(2)
 
 

@@ -28,6 +28,8 @@ SOLID = 0.35
 """Share of a surface's free sides at which the lidar meets a body below it, from which on it stands on no legs."""
 BED_SIDE, BED_HIGHEST, SOFA_HIGHEST, LOW_TABLE = 1.1, 0.70, 0.50, 0.52
 """Measures [m] that tell beds, sofas and low tables from tables. Source: DIN EN 1725, DIN 68890 and catalogues."""
+CABINET = 0.65
+"""Length [m] up to which what has a body is no shelf and no counter: bedside tables, stands and the like."""
 ASIDE = 3.0
 """How much farther a surface beside or behind the robot's home counts, when one is chosen to bring things to [-]."""
 WHOLE = 0.5
@@ -140,7 +142,8 @@ def _kind(s: Surface, grid: Grid, sides: tuple[Vec2, ...]) -> tuple[str, Recepta
         return "bed", "counter"
     if s.outline.length >= 1.2 and s.outline.width >= 0.5 and s.height <= SOFA_HIGHEST:
         return "sofa", "counter"
-    return ("shelf" if s.outline.width <= 0.45 else "counter"), ("shelf" if s.outline.width <= 0.45 else "counter")
+    kind: ReceptacleKind = "shelf" if s.outline.width <= 0.45 else "counter"
+    return ("cabinet" if s.outline.length <= CABINET else kind), kind
 
 
 def _named(

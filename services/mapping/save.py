@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from common.files.atomic_file import replace
-from common.files.map_file import HOUSEHOLD, MAP, PICTURE, SURFACES, GridMap, picture, surface_rows, write_map
+from common.files.map_file import HOUSEHOLD, MAP, PICTURE, SURFACES, GridMap, named_picture, surface_rows, write_map
 from common.files.plan_file import to_toml
 from common.geometry import compose
 from common.household import Household
@@ -52,7 +52,8 @@ def save(directory: Path, name: str, mapper: Mapper) -> Saved:
     except OSError as error:
         raise SaveError(f"{directory}: {error.strerror}") from None
     part, corner = mapper.grid.known(states)
-    write_map(directory, GridMap(part, RESOLUTION, corner), MAP)
+    grid = GridMap(part, RESOLUTION, corner)
+    write_map(directory, grid, MAP)
     _write(
         directory / GRAPH, _json(graph_rows(mapper.trajectory.graph, mapper.trajectory.scans, mapper.trajectory.runs))
     )
@@ -60,7 +61,7 @@ def save(directory: Path, name: str, mapper: Mapper) -> Saved:
     _write(directory / HOUSEHOLD, to_toml(household).encode())
     with (directory / EVIDENCE).open("wb") as file:
         np.savez_compressed(file, **_evidence(mapper))
-    picture(part).save(directory / PICTURE)
+    named_picture(grid, household).save(directory / PICTURE)
     return Saved(str(directory), len(household.receptacles))
 
 

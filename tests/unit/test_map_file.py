@@ -44,6 +44,10 @@ def test_a_plan_becomes_a_map_and_a_household(tmp_path: Path) -> None:
     assert rows["kitchen table"]["height"] == 0.72 and len(rows["kitchen table"]["outline"]) == 4
     assert rows["bin"]["height"] == 0.4 and rows["counter"]["reached_from"] == [[0.0, 1.0]]
     assert picture(grid.cells).size == (4 * grid.cells.shape[1], 4 * grid.cells.shape[0])
+    added = np.asarray(Image.open(tmp_path / "map.png")) != np.asarray(picture(grid.cells))
+    for r in made.receptacles:
+        column, row = 4 * (r.center[0] - grid.origin[0]) / 0.05, len(added) - 4 * (r.center[1] - grid.origin[1]) / 0.05
+        assert added[round(row) - 6 : round(row) + 6, round(column) - 15 : round(column) + 15].any(), r.name
 
 
 def test_a_plan_that_is_not_there_is_named(tmp_path: Path) -> None:

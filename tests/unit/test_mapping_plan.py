@@ -9,7 +9,7 @@ from common.floor_plan import Room, Wall
 from common.geometry import Rectangle
 from services.mapping.bins import find_bins
 from services.mapping.grid import FREE, OCCUPIED, UNKNOWN, Grid
-from services.mapping.plan import _filled, _reached, _rim, _separate
+from services.mapping.plan import _filled, _kind, _reached, _rim, _separate
 from services.mapping.rooms import find_rooms, openings
 from services.mapping.surfaces import Surface
 from services.mapping.views import interesting
@@ -180,6 +180,18 @@ def test_the_rim_of_a_bin_is_no_shelf() -> None:
     hole = Rectangle(0.51, -0.27, 0.34, 0.34)
     assert _rim(rim, [(hole, 0.40)])
     assert not _rim(rim._replace(height=0.75), [(hole, 0.40)]) and not _rim(rim, [(hole._replace(x=1.0), 0.40)])
+
+
+@pytest.mark.parametrize(
+    ("length", "width", "name"), [(0.4, 0.4, "cabinet"), (0.9, 0.35, "shelf"), (1.4, 0.6, "counter")]
+)
+def test_what_has_a_body_is_named_by_its_measures(length: float, width: float, name: str) -> None:
+    """What the robot brings things to, a small thing with a body, was a "shelf"."""
+    outline = Rectangle(0.0, 0.0, length, width)
+    along = [(x, y, 0.4) for x in np.arange(-length / 2, length / 2 + 0.01, 0.02) for y in (-width / 2, width / 2)]
+    grid = grid_of(np.array(along))
+    grid.hits[grid.cells(np.array(along)[:, :2])] = 3
+    assert _kind(Surface(outline, 0.6, np.empty((0, 2))), grid, ((0.0, 1.0), (0.0, -1.0)))[0] == name
 
 
 def test_what_is_inside_or_below_a_surface_is_none() -> None:
