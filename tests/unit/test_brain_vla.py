@@ -315,12 +315,8 @@ def test_the_next_grab_is_tried_from_the_stance_that_manipulation_told_and_only_
     bench = planned()
     see(bench, 1)
     approach(bench, 1)
-    goal, stance = bench.manip(1), (-1.0, -1.7, 0.4)
-    bench.send(
-        topics.MANIPULATION_STATUS,
-        m.ManipulationStatus(status="failed", goal_id=goal.id, attempt=goal.attempt, code="UNREACHABLE", stance=stance),
-    )
-    bench.step()
+    stance = (-1.0, -1.7, 0.4)
+    unreachable(bench, bench.manip(1), stance)
     see(bench, 2)
     told = bench.next_goal(POSE, 2)
     assert (told.x, told.y, told.theta) == stance and told.object is None
@@ -330,6 +326,43 @@ def test_the_next_grab_is_tried_from_the_stance_that_manipulation_told_and_only_
     approach(bench, 3)
     bench.did(bench.manip(3))
     assert bench.nav(1).goal == "return_to_start"
+
+
+def test_what_manipulation_sends_elsewhere_for_is_no_try_as_long_as_it_has_other_stances() -> None:
+    bench = planned()
+    see(bench, 1)
+    approach(bench, 1)
+    for count in (1, 2, 3):
+        unreachable(bench, bench.manip(count), (-1.0, -1.0 - 0.2 * count, 0.4))
+        see(bench, count + 1)
+        told = bench.next_goal(POSE, count + 1)
+        assert told.y == -1.0 - 0.2 * count
+        bench.send(topics.NAVIGATION_FEEDBACK, m.NavigationFeedback(goal_id=told.id, status="arrived"))
+    bench.did(bench.manip(4))
+    assert bench.nav(1).goal == "return_to_start"
+
+
+def test_a_told_stance_that_cannot_be_driven_to_is_left_for_another_try() -> None:
+    bench = planned()
+    see(bench, 1)
+    approach(bench, 1)
+    unreachable(bench, bench.manip(1), (-1.0, -1.7, 0.4))
+    see(bench, 2)
+    for count in (2, 3, 4):
+        told = bench.next_goal(POSE, count)
+        failed = m.NavigationFeedback(goal_id=told.id, attempt=told.attempt, status="failed", code="UNREACHABLE")
+        bench.send(topics.NAVIGATION_FEEDBACK, failed)
+    see(bench, 3)
+    assert bench.next_goal(POSE, 5).object is not None, "wherever navigation finds a place"
+
+
+def unreachable(bench: Bench, goal: m.ManipulationGoal, stance: tuple[float, float, float]) -> None:
+    """Manipulation finds no grasp from here, and says from where."""
+    told = m.ManipulationStatus(
+        status="failed", goal_id=goal.id, attempt=goal.attempt, code="UNREACHABLE", stance=stance
+    )
+    bench.send(topics.MANIPULATION_STATUS, told)
+    bench.step()
 
 
 def test_three_failed_grabs_are_an_error() -> None:

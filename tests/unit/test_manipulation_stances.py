@@ -2,7 +2,9 @@
 
 import math
 
+import numpy as np
 import pytest
+from msgspec import structs
 
 from bench.grasp.hand import Bench
 from common import messages as m
@@ -10,12 +12,14 @@ from common.approach import ROOM, clearance
 from common.geometry import compose, inverse
 from common.household import told
 from common.scene import load_scene
+from services.manipulation.arm.arm_model import Obstacle
 from services.manipulation.config import ManipulationConfig
 from services.manipulation.grasps.target import Target
 from services.manipulation.planning.motion_planner import PlanError, Planner
-from services.manipulation.planning.plan_grab import plan_grab
+from services.manipulation.planning.plan_grab import plan_grab, refine
 from services.manipulation.planning.planning_scene import obstacles, target_of
-from services.manipulation.planning.stances import SAME, other_stance
+from services.manipulation.planning.stances import SAME, other_stance, stances
+from services.manipulation.planning.straight_grab import SHORTER
 from services.sim.model import own
 
 PLANNER = Planner(own().mjcf, seed=0)
@@ -49,7 +53,10 @@ def test_what_is_out_of_reach_from_here_is_in_reach_from_the_stance_that_is_told
     base = (*far, theta)
     with pytest.raises(PlanError):
         plan(found, base)
-    stance = other_stance(PLANNER, HOME, found, [found], base, REST, CONFIG.approach_distance, CONFIG.lift_height)
+    told = [base]
+    stance = other_stance(
+        PLANNER, HOME, found, [found], told, REST, CONFIG.approach_distance, CONFIG.lift_height, CONFIG.reach
+    )
     assert stance is not None
     assert clearance(HOME, *stance[:2]) >= ROOM
     dx, dy, _ = compose(inverse(base), stance)
@@ -57,9 +64,49 @@ def test_what_is_out_of_reach_from_here_is_in_reach_from_the_stance_that_is_told
     plan(found, stance)
 
 
+def test_a_stance_that_was_told_before_is_not_told_again() -> None:
+    ax, ay = TABLE.approach[0]
+    edge = TABLE.size[0] / 2 if ax else TABLE.size[1] / 2
+    found, told = bottle(ax * (edge - 0.12), ay * (edge - 0.12)), [(0.0, 0.0, 0.0)]
+    for _ in range(2):
+        stance = other_stance(
+            PLANNER, HOME, found, [found], told, REST, CONFIG.approach_distance, CONFIG.lift_height, CONFIG.reach
+        )
+        assert stance is not None
+        assert all(math.dist(stance[:2], other[:2]) > SAME or stance[2] != other[2] for other in told)
+        told.append(stance)
+
+
+def test_a_side_with_room_for_one_base_is_a_side_to_stand_before() -> None:
+    ax, ay = TABLE.approach[0]
+    narrow = [structs.replace(r, approach=((-ax, -ay),)) if r is TABLE else r for r in HOME.receptacles]
+    home = structs.replace(HOME, receptacles=tuple(narrow))
+    edge = TABLE.size[0] / 2 if ax else TABLE.size[1] / 2
+    found = bottle(ax * (edge - 0.12), ay * (edge - 0.12))
+    offered = [TABLE.outline.to_local(*pose[:2]) for pose in stances(home, found, [(0.0, 0.0, 0.0)], [0.55])[:6]]
+    sides = [u * ax + v * ay > edge for u, v in offered]
+    assert any(sides) and not all(sides), "before both sides, by turns"
+
+
+def test_at_the_end_of_the_reach_shorter_straight_ways_will_do() -> None:
+    """A mug too wide for the fingers on a high shelf is taken by its rim, with 6 cm instead of 10 in and up."""
+    mug = Target("mug", "mug", (0.535, 0.0, 0.8386), 2.0, (0.078, 0.078, 0.087), shape="round", measured=True)
+    shelf = Obstacle((0.535, 0.0, 0.725), (0.32, 0.88, 0.14))
+    made = plan_grab(
+        PLANNER, mug, [[shelf]], REST, CONFIG.approach_distance, CONFIG.lift_height, CONFIG.reach, frozenset(), []
+    )
+    risen = PLANNER.arm.pose(made.lift[-1]).position - made.grasp.pose.position
+    come = PLANNER.arm.pose(made.insert[0]).position - made.grasp.pose.position
+    assert made.grasp.rim
+    assert min(np.linalg.norm(come), risen[2]) == pytest.approx(SHORTER[-1] * CONFIG.lift_height, abs=4e-3)
+    moved = refine(PLANNER, made, (0.01, 0.0))
+    again = PLANNER.arm.pose(moved.insert[0]).position - moved.grasp.pose.position
+    assert np.linalg.norm(again - come) < 4e-3, "corrected, it is as short"
+
+
 def test_where_nothing_reaches_it_no_stance_is_told() -> None:
     high = m.WorldObject("lamp", "box", "white", (*TABLE.center[:2], 2.1), size=(0.05, 0.05, 0.1))
-    args = ([high], (0.0, 0.0, 0.0), REST, CONFIG.approach_distance, CONFIG.lift_height)
+    args = ([high], [(0.0, 0.0, 0.0)], REST, CONFIG.approach_distance, CONFIG.lift_height, CONFIG.reach)
     assert other_stance(PLANNER, HOME, high, *args) is None
 
 

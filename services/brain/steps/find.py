@@ -186,6 +186,12 @@ class Approach(Navigate):
         x, y, theta = standing_pose(ctx.io.household, (ref.position[0], ref.position[1]), ctx.robot_pose)
         return topics.NAV_GOAL, m.NavGoal(id=goal_id, x=x, y=y, theta=theta, object=ref)
 
+    def fail_with(self, failure: Failure) -> Status:
+        if self.ctx.mission.search.stances.pop(label_of(self.ctx, self._item), None):
+            # What cannot be driven to is a stance less for the hand, which may tell another.
+            failure = msgspec.structs.replace(failure, stage="GRABBING")
+        return super().fail_with(failure)
+
 
 class WithinReach(Leaf):
     """FAILURE before anything is tried when what was found stands higher than the arm takes its kind from."""

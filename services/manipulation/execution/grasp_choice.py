@@ -65,14 +65,14 @@ def _look_elsewhere(robot: Robot, found: WorldObject, failure: Failure, stand_on
     Raises:
         Failure: the one to plan a grasp, with where the base would have to stand for one.
     """
-    config, objects = robot.config, robot.source.objects()
+    config, objects, told = robot.config, robot.source.objects(), robot.sent_to.pop(found.label, [])
     stance = yield from robot.work(
-        other_stance, planner_of(robot), robot.io.household, found, objects, robot.base, robot.joints.copy(),
-        config.approach_distance, config.lift_height, stand_on,
+        other_stance, planner_of(robot), robot.io.household, found, objects, [robot.base, *told], robot.joints.copy(),
+        config.approach_distance, config.lift_height, config.reach, stand_on,
     )  # fmt: skip
     if stance is None:
         return
-    robot.sent_to[found.label] = stance
+    robot.sent_to[found.label] = [*told, stance]
     where = f"within reach from ({stance[0]:.2f}, {stance[1]:.2f}), facing {np.degrees(stance[2]):.0f} deg"
     raise Failure(failure.code, f"{failure.detail}; {where}", failure.blockers, stance)
 

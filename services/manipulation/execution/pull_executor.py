@@ -89,7 +89,7 @@ def _stance(
     base: Pose2, now: Array,
 ) -> Pose2 | None:  # fmt: skip
     """Where the base has to stand to pull an object to the edge; None if the present place is as good as any."""
-    for pose in stances(household, found, base, NEAR)[:MOST_STANCES]:
+    for pose in stances(household, found, [base], NEAR)[:MOST_STANCES]:
         edge = facing_edge(surface, pose)
         around = obstacles(household, pose, others, found.label, MARGINS[1])
         if edge is not None and can_pull(planner, target_of(found, pose, household), edge, around, now):

@@ -41,7 +41,7 @@ class Failure(Exception):
 class Robot:
     """What the sequences see and move: joint angles, gripper, base pose, and the streams to the drivers.
 
-    `sent_to`: by label, the stance (x, y, theta) [map] that was told last for an object that is not grasped yet.
+    `sent_to`: by label, the stances (x, y, theta) [map] that were told for an object that is not grasped yet.
     """
 
     def __init__(self, config: ManipulationConfig, io: Io, source: ObjectSource) -> None:
@@ -54,7 +54,7 @@ class Robot:
         self.phase = ""
         self.grasped: GraspedObject | None = None
         self.contacts = ContactLog()
-        self.sent_to: dict[str, Pose2] = {}
+        self.sent_to: dict[str, list[Pose2]] = {}
         self.planner: Planner | None = None
         self.servo: Servo | None = None
         self._command: Array | None = None

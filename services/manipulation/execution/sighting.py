@@ -67,7 +67,7 @@ def aimed(robot: Robot, plan: GrabPlan, goal: m.ManipulationGoal, found: WorldOb
     robot.io.log.info("aim corrected", object=found.label, by_mm=round(1000 * off, 1))
     try:
         return (yield from robot.work(
-            refine, planner_of(robot), plan, shift, config.approach_distance, config.lift_height
+            refine, planner_of(robot), plan, shift
         ))  # fmt: skip
     except Failure:
         return plan

@@ -121,7 +121,7 @@ def _whole(planner: Planner, target: Target, grasp: Grasp, way: Way, now: Array)
         return Miss("no path to the pre-grasp")
     attached = attach(target, grasp)
     arm.hold(*attached.box())
-    up += over_neighbours(planner, target, grasp, around, up[-1], way.lift)
+    up += over_neighbours(planner, target, grasp, around, up[-1], lines.lift)
     planner.surround(around, up[-1])
     away = planner.to_carry(up[-1], rng)
     arm.hold(None)
@@ -134,7 +134,7 @@ def _whole(planner: Planner, target: Target, grasp: Grasp, way: Way, now: Array)
     )  # fmt: skip
 
 
-def refine(planner: Planner, plan: GrabPlan, shift: tuple[float, float], approach: float, lift: float) -> GrabPlan:
+def refine(planner: Planner, plan: GrabPlan, shift: tuple[float, float]) -> GrabPlan:
     """The same grasp of an object that stands `shift` [m] (x, y in the base frame) from where it was planned.
 
     Raises:
@@ -148,9 +148,9 @@ def refine(planner: Planner, plan: GrabPlan, shift: tuple[float, float], approac
     try:
         at = planner.ik.solve(grasp.pose, [plan.insert[-1]])
         if at is not None:
-            back = planner.straight(at, grasp.pose, grasp.pose.moved(-approach * grasp.pose.rotation[:, 2]))
-            high = float(planner.arm.pose(plan.lift[-1]).position[2] - plan.grasp.pose.position[2])
-            up = planner.straight(at, grasp.pose, grasp.pose.moved(np.array([0.0, 0.0, max(lift, high)])))
+            begin, end = (arm.pose(q).position - plan.grasp.pose.position for q in (plan.insert[0], plan.lift[-1]))
+            back = planner.straight(at, grasp.pose, grasp.pose.moved(begin))
+            up = planner.straight(at, grasp.pose, grasp.pose.moved(np.array([0.0, 0.0, end[2]])))
             if (
                 back is not None
                 and up is not None

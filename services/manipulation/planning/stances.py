@@ -2,22 +2,30 @@
 
 import math
 from collections.abc import Sequence
+from contextlib import suppress
+from itertools import zip_longest
+
+from msgspec import structs
 
 from common.approach import EDGE_DISTANCE, ROOM, STAND_OFF, clearance, poses_for
+from common.floor_plan import Receptacle
 from common.geometry import Pose2, compose, inverse
 from common.household import Household
 from common.messages import WorldObject
 from services.manipulation.arm.arm_model import Array
-from services.manipulation.planning.motion_planner import Planner
+from services.manipulation.planning.motion_planner import PlanError, Planner
+from services.manipulation.planning.plan_grab import plan_grab
 from services.manipulation.planning.planning_scene import MARGINS, obstacles, others, target_of
 from services.manipulation.planning.straight_grab import Way, feasible
 
 STAND_OFFS = (STAND_OFF, STAND_OFF + 0.08, STAND_OFF - 0.07, STAND_OFF + 0.15)
 """Distances [m] from the base's middle to the object that are tried. Chosen: the hand comes level from the farthest."""
 SAME, SAME_TURN = 0.06, math.radians(10)
-"""A pose no farther [m, rad] from the present one is no other stance: navigation stops within a third of it."""
+"""A pose no farther [m, rad] from another is the same stance: navigation stops within a third of it."""
 MOST = 10
 """Stances that are tried."""
+SIDES: tuple[tuple[float, float], ...] = ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0))
+"""Of a surface, as unit steps in its own frame."""
 
 
 def other_stance(
@@ -25,33 +33,57 @@ def other_stance(
     household: Household,
     found: WorldObject,
     objects: Sequence[WorldObject],
-    base: Pose2,
+    but: Sequence[Pose2],
     joints: Array,
     approach: float,
     lift: float,
+    reach: float,
     stand_on: float | None = None,
 ) -> Pose2 | None:
-    """A pose (x, y, theta) [map] before an object from which the arm reaches a grasp of it; None if none was found.
+    """A pose (x, y, theta) [map] before an object from which a whole grab of it can be planned; None if none was found.
 
-    `objects`: all that is known to stand around; `joints` (7,) of the arm at rest; `approach`, `lift`: straight ways
-    of the hand [m]; `stand_on`: as in `Way`.
+    `objects`: all that is known to stand around; `but`: where the base stands and has been sent to; `joints` (7,) of
+    the arm at rest; `approach`, `lift`: straight ways of the hand [m]; `reach`, `stand_on`: as in `plan_grab`.
     """
-    for pose in stances(household, found, base, STAND_OFFS)[:MOST]:
-        around = obstacles(household, pose, others(objects, found), margin=MARGINS[0])
-        if feasible(planner, target_of(found, pose, household), Way(around, False, approach, lift, stand_on), joints):
+    around = others(objects, found)
+    for pose in stances(household, found, but, STAND_OFFS)[:MOST]:
+        target, solids = target_of(found, pose, household), obstacles(household, pose, around, margin=MARGINS[0])
+        # What has no straight way in and up needs no search for the ways there and back.
+        if not feasible(planner, target, Way(solids, False, approach, lift, stand_on), joints):
+            continue
+        with suppress(PlanError):
+            plan_grab(planner, target, [solids], joints, approach, lift, reach, frozenset(), [], stand_on)
             return pose
     return None
 
 
-def stances(household: Household, found: WorldObject, base: Pose2, stand_offs: Sequence[float]) -> list[Pose2]:
-    """Poses with room for the base before the object, other than the present one, those of least penalty first."""
+def stances(household: Household, found: WorldObject, but: Sequence[Pose2], stand_offs: Sequence[float]) -> list[Pose2]:
+    """Poses with room for the base before the object, other than those of `but`, of which the first is the present one.
+
+    Those before the different sides of a surface take turns, on each side those of least penalty first: a side before
+    which there is only room for one base, and which the household does not list for that, may be the one that serves.
+    """
     x, y = found.position[:2]
-    surface = household.receptacle(found.on) or household.surface_at(x, y)
-    rated = []
-    for stand_off in stand_offs:
-        for penalty, pose in poses_for((x, y), surface, stand_off, EDGE_DISTANCE):
-            dx, dy, turn = compose(inverse(base), pose)
-            here = math.hypot(dx, dy) < SAME and abs(turn) < SAME_TURN
-            if not here and clearance(household, pose[0], pose[1]) >= ROOM:
-                rated.append((penalty + 0.3 * math.hypot(dx, dy), pose))
-    return [pose for _, pose in sorted(rated)]
+    surface, room = household.receptacle(found.on) or household.surface_at(x, y), household.room_at(x, y)
+    listed = surface.approach if surface is not None else ()
+    sides: list[Receptacle | None] = [surface]
+    if surface is not None and listed:
+        sides = [structs.replace(surface, approach=(s,)) for s in sorted(SIDES, key=lambda s: s not in listed)]
+    turns = []
+    for before in sides:
+        known = before is not None and any(side in listed for side in before.approach)
+        rated = [
+            (penalty + 0.3 * math.dist(pose[:2], but[0][:2]), pose)
+            for stand_off in stand_offs
+            for penalty, pose in poses_for((x, y), before, stand_off, EDGE_DISTANCE)
+            if not any(_same(pose, other) for other in but)
+            and (known or household.room_at(*pose[:2]) is room)
+            and clearance(household, *pose[:2]) >= ROOM
+        ]
+        turns.append(sorted(rated))
+    return [one[1] for turn in zip_longest(*turns) for one in turn if one is not None]
+
+
+def _same(pose: Pose2, other: Pose2) -> bool:
+    dx, dy, turn = compose(inverse(other), pose)
+    return math.hypot(dx, dy) < SAME and abs(turn) < SAME_TURN

@@ -7,7 +7,7 @@ from typing import TypeVar
 import numpy as np
 
 from common.robot.model import Hand
-from services.manipulation.arm.arm_model import Array, Obstacle
+from services.manipulation.arm.arm_model import Array, Obstacle, Pose
 from services.manipulation.arm.ik import seeds
 from services.manipulation.grasps.grasp import Grasp
 from services.manipulation.grasps.grasped_object import attach
@@ -21,6 +21,10 @@ STANCE_GRASPS = 12
 FINGER_PLAY = 0.012
 """How much wider [m] than the object on either side the fingers stand that go into a crowd partly closed. Chosen: the
 error of a sighting and of the arm."""
+
+SHORTER = (1.0, 0.6)
+"""Shares of the straight ways that will do. Chosen: at the end of the arm's reach the last 4 cm are often too much, and
+what is left leads past a pad's length and more than twice the margin in transit."""
 
 RESERVE = 0.003
 """How much less than fully [m] the hand opens on its way in. Chosen: twice what the fingers give way by at 20 N; fully
@@ -37,7 +41,8 @@ class Miss:
 
 @dataclass(frozen=True)
 class Way:
-    """How the hand goes in: `approach` and `lift` are the straight ways before and after it closes [m].
+    """How the hand goes in: `approach` and `lift` are the straight ways before and after it closes [m], where the arm
+    cannot go so far a share of them.
 
     `around` is what it must not touch; `shaped`: with the fingers no wider than the object needs; `stand_on`: height
     [m] of a surface on which the hand has to be able to stand up what lies, None: it may stay lying.
@@ -61,12 +66,14 @@ def feasible(planner: Planner, target: Target, way: Way, now: Array) -> bool:
 
 @dataclass(frozen=True)
 class Lines:
-    """The straight parts of a grab: the grasp, `at` which joint angles (7,), the ways `back` and `up` from there."""
+    """The straight parts of a grab: the grasp, `at` which joint angles (7,), the ways `back` and `up` from there, the
+    latter by `lift` [m]."""
 
     grasp: Grasp
     at: Array
     back: list[Array]
     up: list[Array]
+    lift: float
 
 
 Part = Callable[[Planner, Target, Grasp, Way, Array], "T | Miss"]
@@ -113,10 +120,10 @@ def straight_parts(planner: Planner, target: Target, grasp: Grasp, way: Way, now
     at = arm.nearest_turn(at, now)
     if arm.collides(at):
         return Miss("grasp collides", frozenset(arm.met()))
-    back = planner.straight(at, grasp.pose, grasp.pose.moved(-way.approach * grasp.pose.rotation[:, 2]))
+    back, _ = _straight(planner, at, grasp.pose, -way.approach * grasp.pose.rotation[:, 2])
     if back is None:
         return Miss("no straight approach")
-    up = planner.straight(at, grasp.pose, grasp.pose.moved(np.array([0.0, 0.0, way.lift])))
+    up, share = _straight(planner, at, grasp.pose, np.array([0.0, 0.0, way.lift]))
     if up is None:
         return Miss("no straight lift")
     if arm.meets_itself(up):
@@ -125,7 +132,15 @@ def straight_parts(planner: Planner, target: Target, grasp: Grasp, way: Way, now
         return Miss("approach collides", frozenset(arm.met()))
     if not _stands_again(planner, target, grasp, way, now):
         return Miss("could not be stood up")
-    return Lines(grasp, at, back, up)
+    return Lines(grasp, at, back, up, share * way.lift)
+
+
+def _straight(planner: Planner, at: Array, begin: Pose, way: Array) -> tuple[list[Array] | None, float]:
+    """Along `way` (3,) [m] or the share of it that the arm can, and which share that is."""
+    for share in SHORTER:
+        if (path := planner.straight(at, begin, begin.moved(share * way))) is not None:
+            return path, share
+    return None, 0.0
 
 
 def _stands_again(planner: Planner, target: Target, grasp: Grasp, way: Way, now: Array) -> bool:
