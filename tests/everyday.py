@@ -112,11 +112,18 @@ def _after(tag: str, about: str) -> tuple[list[WorldObject], str, History]:
         history = History(taken_from={about: next(o.on for o in FLAT if o.label == about)})
         return [o for o in flat if o.label != about], about, history
     if tag not in ("last", "failed"):
-        return flat, "", History()
+        return flat, "", History(said="x")
     done = planned(about, FLAT, "", History())
     label = next((s.object for s in done.steps if s.object), "")
     if not label:
-        return flat, "", History(last=MissionOutcome(id="m", command=about, outcome="delivered", reason="", t=NOW - 5))
+        return (
+            flat,
+            "",
+            History(
+                last=MissionOutcome(id="m", command=about, outcome="delivered", reason="", t=NOW - 5),
+                said=" ".join(s.text for s in done.steps),
+            ),
+        )
     origin = next(o.on for o in FLAT if o.label == label)
     target = next((s.target for s in done.steps if s.action == "place"), HOME.delivery)
     if tag == "failed":

@@ -20,7 +20,8 @@ _STRONG = re.compile(
 )
 """Before words that can only begin a request."""
 _WEAK = re.compile(
-    r",\s*(?:(?:and|so|but|then|right|ok|okay|just|well|now|hence|therefore),?\s+)*|\s+so (?:just |now |then )?"
+    r",\s*(?:(?:and|so|but|then|right|ok|okay|just|well|now|hence|therefore),?\s+)*"
+    r"|\s+(?:so|but) (?:(?:just|now|then|whatever|anyway|anyhow|please),? )*"
 )
 """Before what is a request if it begins with a verb."""
 _TELLS = re.compile(
@@ -41,7 +42,7 @@ _SUBJECTS = frozenset(
     {
         "i", "we", "he", "she", "they", "it", "there", "someone", "somebody", "everyone", "everybody", "this", "that",
         "these", "those", "you", "yesterday", "earlier", "mum", "mom", "mommy", "mummy", "dad", "daddy", "grandma",
-        "grandpa", "guests", "dinner", "lunch",
+        "grandpa", "guests", "dinner", "lunch", "kids", "children", "people", "visitors",
     }
 )  # fmt: skip
 """Words with which somebody begins to tell something, beside articles."""
@@ -72,6 +73,9 @@ _OF_IT_ALL = re.compile(
     r"^(?:it|they) (?:can|could|should|must|may|needs? to|ha(?:s|ve) to|wants? to|ought to|belongs?|goes?)\b"
 )
 """A request that begins with what was told of."""
+_WISHED = re.compile(
+    r"^(?:i|we) (?:want|need|would (?:really )?(?:like|love)|could do with|will have) (?:the|an?|my|some|that|one)\b"
+)
 LONGEST = 3
 """Breaks of one sentence (chosen)."""
 
@@ -113,7 +117,7 @@ def _break(text: str) -> tuple[int, int] | None:
             head, tail = text[begin : found.start()].strip(" ,"), text[found.end() :]
             if pattern is _WITH_PRONOUN and not (_TELLS.search(head) or _ASKS_WHERE.match(head)):
                 continue
-            ended = "," in found[0] or " so " in f" {found[0]} "
+            ended = "," in found[0] or " so " in f" {found[0]} " or " but " in f" {found[0]} "
             asks_where = pattern is _WITH_PRONOUN and _ASKS_WHERE.match(head) is not None
             if (asks_where or is_statement(head, ended)) and _asks(tail, pattern is not _WEAK):
                 return found.start(), found.end()
@@ -146,4 +150,6 @@ def _asks(text: str, strong: bool) -> bool:
     bins = (bare[:1] == ["bin"] and bare[1:2] != ["it"]) or bare[:2] == ["bin", "it"]
     if text.startswith(("where is it", "where are they", "have you any idea where", "do you know where")):
         return True  # "my ball rolled away, where is it"
-    return len(bare) > 1 and (strong or bare[0] in REQUESTS or bins or _OF_IT_ALL.match(" ".join(bare)) is not None)
+    return len(bare) > 1 and (
+        strong or bare[0] in REQUESTS or bins or any(p.match(" ".join(bare)) for p in (_OF_IT_ALL, _WISHED))
+    )

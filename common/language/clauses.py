@@ -9,6 +9,8 @@ from common.language.politeness import LONG_SPEECH, without_lead, without_polite
 
 _FILLER = re.compile(
     r"\s*\b(?:u+m+|u+h+(?!,? huh\b)|e+r+m*|h+m+|a+h+|o+h+)\b,?|,\s*(?:like|you know)\s*,"
+    r"|\b(?:let (?:me|us) (?:think|see)|i was thinking|what was it(?: called)?|how do you (?:say|call it))"
+    r"(?:,? (?:again|now|then|so|well|oh|ah|yes|yeah|ok|okay|right|no)\b)+,?|\blet me think,? (?=the|a|my)"
     rf"|\b(?:you know|like),?(?= {A_VERB}\b)"
 )
 """Sounds of somebody who thinks while speaking."""

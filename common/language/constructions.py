@@ -65,6 +65,7 @@ CONSTRUCTIONS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
         (rf"(?:get|fetch|take|grab|collect|pick)(?: up)? {NP} (?:and )?(?:then "
          rf")?(put|place|set|drop|lay) (?:it |them )?"
          rf"({TO_PLACE}) {NP}", r"\2 \1 \3 \4"),
+        (rf"(\w+) {NP} (?:back |over )?(?:to (?:me|us)|here) (from .+)", r"\1 me \2 \3"),
         # An exception that is said at the end.
         (rf"(\w+(?: up| away| me)?) {NP} ((?:here|over here|to me|away|back)|{TO_PLACE} (?:\w+ ){{1,3}}?\w+)"
          rf" (but not|but no|except for|except|apart from|other than|besides|but) {NP}", r"\1 \2 \4 \5 \3"),
@@ -127,7 +128,7 @@ CONSTRUCTIONS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
          r"\1 \2 next to \4 on \3"),
         (rf"(get|take|remove|move) {NP} (?:off|from|out of) {NP} and {TO_PLACE} {NP}", r"put \2 on \3 in \4"),
         # What there is of a kind.
-        (r"(\w+)(?: me)? (?:whatever|what|anything that|all that|all the stuff that|the stuff that) (?:is|lies|"
+        (r"(\w+)(?: me)? (?:whatever|(?:all )?what|anything that|all that|(?:all )?the stuff that) (?:is|lies|"
          r"stands) (.+)", r"\1 everything \2"),
         (rf"(.+? )(?:whatever|whichever|any|what) {NP} (?:that )?you (?:can |could )?(?:find|see|spot|"
          rf"get)(?: (.+))?", r"\1a \2 \3"),

@@ -67,14 +67,17 @@ class _Topic(NamedTuple):
 
 _TOPICS = tuple(_Topic(action, tuple(frozenset(g.split()) for g in row.split(" + "))) for action, row in _ROWS)
 WORDS: frozenset[str] = frozenset[str]().union(*(group for topic in _TOPICS for group in topic.groups))
-_REST = "house flat home apartment place many had else left along whole long we low enough use full make"
+_REST = (
+    "level state indicate house flat home apartment place many had else left along whole long we low enough use full "
+    "make"
+)
 _SMALL = (SMALL_TALK | WORDS | set(_REST.split())) - {"and"}
 _ASKED = re.compile(
     r"^(?:and |so |but |well |now |"
     r"(?:(?:tell|remind) (?:me|us)|explain|i wonder|do you know|any idea|is it)(?: if| whether)? )*"
     r"(?:what|who|where|whereabouts|why|how|when (?:will|are|is)|which|is|are|am|do|does|did|have|has|was|were|can|"
-    r"could|any|anything|got|(?:in|on) (?:what|which)|status|report|your|almost|nearly|(?:a bit )?about yourself|"
-    r"introduce|describe|"
+    r"could|any|anything|got|state|indicate|(?:in|on) (?:what|which)|status|report|your|almost|nearly|"
+    r"(?:a bit )?about yourself|introduce|describe|"
     r"give (?:me|us) (?:a|an|your))\b"
 )
 """How such questions begin."""

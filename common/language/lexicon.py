@@ -11,7 +11,7 @@ PICK = "(get | fetch | take | grab | pick | pick up | collect | gather | collect
 """The first half of moving something: `get the mug and put it away`."""
 PUT = (
     "put | stand | sort | place | set | throw | toss | drop | lay | stick | move | stack | pop | slide | leave | shift"
-    " | chuck | dump | relocate | shove | jam | tuck | deposit | stow | plop | plonk | stash | sling "
+    " | chuck | yeet | dump | relocate | shove | jam | tuck | deposit | stow | plop | plonk | stash | sling "
     "| fling | transfer"
 )
 MOVE = (
@@ -20,7 +20,7 @@ MOVE = (
     " | convey | switch | send"
 )
 """Verbs of moving to a place that is named with "to"."""
-THROW = "throw | toss | chuck"
+THROW = "throw | toss | chuck | yeet"
 DISCARD = "trash | chuck | discard | recycle | bin | get rid of | dispose of | ditch | junk"
 TIDY = "tidy | clean | clear | declutter | straighten | neaten | sort out | organise | organize"
 GO = (
@@ -51,7 +51,7 @@ PERSON = f"(i | we | he | she | they | (my | our | the) {FAMILY})"
 MOVED = "(put | placed | moved | brought | taken | carried | set | returned | transferred | dropped | left)"
 # Words around them.
 ON = "(in | into | inside | on top of | on | onto | upon)"
-NEAR = "(next to | near | beside | close to | by | with | alongside | together with)"
+NEAR = "(next to | near | beside | [right] (close | closer | nearer) to | by | with | alongside | together with)"
 BACK = "[back | over | straight | down | away]"
 """Particles between an object and its place that change nothing."""
 IT = "(<thing> | it | them)"

@@ -38,6 +38,7 @@ MOVING: tuple[Wording, ...] = (
         f"go) (next to | near | beside | close to) <spot>",
         heard=f"(put | place | set) {IT} <near> | move <thing> <near>",
     ),
+    Wording("put", f"chuck <thing> {BACK} ({ON} | to | at) <spot>"),
     Wording("throw_away", f"({THROW}) <thing> (away | out)", heard=f"throw {IT} away"),
     Wording("throw_away", f"({THROW}) (away | out) <thing> | ({DISCARD}) <thing>"),
     Wording("put_away", f"(put | {TIDY}) away <thing> | (put | {TIDY}) <thing> away", heard=f"put {IT} away"),
@@ -55,7 +56,18 @@ MOVING: tuple[Wording, ...] = (
         "put_away", "put <thing> [back] (where it belongs | where they belong | in its place | to its place | in order)"
     ),
     Wording("put_away", "sort [out] <thing> | <thing> (needs | need) (putting | to be put) away"),
-    Wording("put_where", f"({PUT} | bring | take | carry) <thing> [over] [to] where <spot> (is | are | stands | lies)"),
+    Wording(
+        "put_where",
+        f"({PUT} | bring | take | carry) <thing> [over] [to] where (<spot> (is | are | stands | lies) | (is | are) "
+        f"<spot>)",
+    ),
+    Wording("swap", "(swap | exchange | switch | trade) [over | around | round] <thing> [over | around | round]"),
+    Wording("swap", "(swap | exchange | switch | trade) <thing> with <spot> [over | around | round]"),
+    Wording(
+        "swap",
+        "(swap | exchange | switch | change) the (places | positions) of <thing>"
+        " | (make | let) <thing> (swap | change | trade | exchange | switch) (places | positions)",
+    ),
     # Bringing.
     Wording("deliver_there", f"({MOVE} | {PUT}) <thing> ([over] there | in [there] too | (in | on) there)"),
     Wording("deliver_there", "<thing> (goes | belongs | go | can go | should go | is to go) there"),
@@ -65,7 +77,7 @@ MOVING: tuple[Wording, ...] = (
     Wording(
         "fetch", f"({BRING} | move) <thing> [over | back] to (me | us)", heard="(bring | take | carry) <thing> to me"
     ),
-    Wording("fetch", f"({FETCH}) (<thing> [back | over] here | <thing> (back | over) | over <thing>)"),
+    Wording("fetch", f"({FETCH}) (<thing> [back | over] here | <thing> (back | over) | (over | [over] here) <thing>)"),
     Wording(
         "put",
         f"({PUT}) <thing> {BACK} ({ON} | at | under | to) <spot>",

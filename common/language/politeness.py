@@ -26,8 +26,8 @@ _OCCASION = (
     rf"(?:when|whenever|once|if|as soon as) you (?:(?:have|get|find|have got|got) {_TIME}(?: to spare| free| for it)?"
     r"|can|could|would|like|please|want|may|are not (?:doing anything|too busy|busy)(?: else)?|are (?:free|ready|"
     r"able|not busy|up for it|around|there))"
-    r"|if (?:it is |that is )?(?:not )?(?:too (?:hard|difficult|"
-    r"much(?: (?:trouble|bother|hassle|of a \w+|to ask))?)|(?:a|any) (?:bother|trouble|problem|hassle)|"
+    r"|if (?:it is |that is )?(?:not |no )?(?:too (?:hard|difficult|"
+    r"much(?: (?:trouble|bother|hassle|of a \w+|to ask))?)|(?:an? |any )?(?:bother|trouble|problem|hassle|imposition)|"
     r"asking too much|possible|"
     r"convenient)"
     r"|(?:when|whenever) it (?:suits|pleases) you|if need be|if necessary|whenever|at your (?:convenience|leisure)"
@@ -35,7 +35,8 @@ _OCCASION = (
 """Occasions and conditions that are none."""
 
 _ADDRESS = (
-    r"whatever (?:you do|happens)|no(?=,? (?:bring|put|take|get|fetch|give|go|throw|come|tidy|find|move|leave|set)\b)|"
+    r"whatever (?:you do|happens)|no(?=,? (?:something|bring|put|take|get|fetch|give|go|throw|come|tidy|find|move|leave|"
+    r"set)\b)|"
     r"(?:second|third|fourth|secondly|thirdly|lastly|firstly)(?=,? (?:bring|put|take|get|fetch|give|go|throw|"
     r"come|tidy|find|grab|pick)\b)|"
     "basically|essentially|literally|obviously|hopefully|ideally|meanwhile|if so|if yes|in that case|"
@@ -46,7 +47,8 @@ _ADDRESS = (
     "(?:hey|hi|hello|oi|yo),? (?:there|you(?! \\w+ing\\b))(?=,)|(?:hey|hi|hello) there|as i was saying|here is the "
     "(?:thing|deal)|let us say|"
     "hey|hello|hi|hiya|yo|oi|howdy|ok|okay|alright|all right|right(?=,)|jarvis|robot|"
-    "tidybot|buddy|mate|dude|pal|"
+    "tidybot|buddy|mate|dude|pal|bro|bruh|fam|lowkey|highkey|first things first|ugh|"
+    "the (?:thing|point|problem|trouble|fact|truth) is(?: that)?(?=,? (?:i|we|you|he|she|they|my|our|there|if)\\b)|"
     "man|sir|dear|(?:my|little|good|old|young) (?:man|lad|lady|fellow|chap|friend|helper|love|one|robot|bot)"
     "(?! (?:here |there )?(?:is|was|wants?|would|needs?|has|likes?|said|asked|brought|and)\\b)|sweetie|honey|"
     "no,? (?:wait|no)(?=,? (?:bring|put|take|get|fetch|give|go|throw|come|tidy|find|move)\\b)|i said(?=,? "
@@ -62,7 +64,7 @@ _ADDRESS = (
     "then|also|finally|"
     "just|kindly|quickly|maybe|perhaps|actually|anyway|oh|whoa|woah|hmm|ah|yeah|thanks|thank you|great|good|"
     "perfect|fine|"
-    "cool|lovely|excellent|listen(?: up)?|look(?:(?=,)| here)|excuse me|pardon me|sorry to (?:bother|disturb|"
+    "cool|lovely|excellent|listen(?: up)?|look(?:(?=,)| here)|excuse me|sorry to (?:bother|disturb|"
     "trouble|interrupt) you|"
     "(?:stop|quit) (?:wasting (?:my |our )?time|messing about|fooling around|dawdling)(?: "
     "and)?|sorry (?:to|for|that|if) [^,]{3,40}?(?:,| but)(?= "
@@ -86,6 +88,7 @@ _FRAMES = (
     rf"{_CAN} {_YOU}(?! see (?:the|my|a|any)\b| rather\b){_ADVERBS}(?: to(?= \w))?"
     rf"(?: (?:be able to|try to|like to|want to|mind|do me (?:a|the) favou?r(?: and| of)?"
     rf"|be (?:\w+ ){{1,6}}?(?:to|and|as to))\b)?",
+    rf"(?:execute|perform|initiate|commence|proceed to|carry out)(?: an?| the)?(?= {A_VERB}\b)",
     r"want to(?=\s+\w)|(?<=please )(?:you|to)(?= \w)",
     r"you(?= (?:bring|give|take|go|get|fetch|throw|find|come|carry|move|clean|tidy|grab|pick)\b"
     r"(?!.*\b(?:always|never|often|yesterday|every|usually|it when)\b))",
@@ -142,7 +145,8 @@ _ENDINGS = (
     "come on|go on|chop chop|before i forget|some ?time(?: today)?|today|tonight|this (?:morning|evening|afternoon)|"
     "(?:and )?(?:be|take) care(?:ful)?(?: with (?:it|them|that))?|carefully|gently|when you come back|"
     "(?:and )?thanks in advance|if you get (?:there|the chance)",
-    r"handy|to hand|(?:good)?bye(?: bye)?|"
+    r"that is (?:the one|what) (?:i|we) (?:want|need|would like|meant|mean|am after)|handy|to hand|"
+    r"(?:good)?bye(?: bye)?|"
     r"and leave (?:it|them)(?: there| alone)?|(?<!are )(?<!is )you (?:\w+ )?(?:thing|machine|dummy|darling|fool)|"
     "(?:please |and )*(?:remember|note) that|(?:and |please )*do not (?:you )?forget (?:that|it)|"
     "one (?:after the other|after another|by one|at a time)|in turn|"

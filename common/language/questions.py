@@ -16,7 +16,7 @@ ABOUT_THE_WORLD: tuple[Wording, ...] = (
         f"{ASK} (what [else] | (which | what) (things | objects | items | stuff)) ({BE} [there] | lies | lie | "
         f"do you see | do (we | i | you) have | have (we | i | you) got)"
         f" [{LYING}] (on | in | at | inside) <spot>"
-        f" | (tell me | list | name) (what | everything | all | [all] the (things | objects | items)) "
+        f" | (tell me | list | name) (what | everything | all | [all [of]] [the] (things | objects | items)) "
         f"[that] [{BE}] [{LYING}] (on | in | at | inside) <spot>"
         f" | {ASK} what <spot> (has | holds | contains) [on it | in it] | {ASK} what {BE} [{LYING}] there",
         heard="what is (on | in) [the] <place>",
@@ -95,7 +95,8 @@ ABOUT_THE_WORLD: tuple[Wording, ...] = (
     Wording(
         "is_at",
         "([tell me | let me know | do you know] whether | (tell me | let me know | do you know) if)"
-        " <thing> (is | are) [still] (in | on | at) <spot>",
+        " <thing> (is | are) [still] (in | on | at) <spot>"
+        " | (confirm | verify | double check) [that | if | whether] <thing> (is | are) [still] (in | on | at) <spot>",
     ),
     Wording("is_at", f"{ASK} [if | whether] (is | are) <thing> [still] [{LYING}] (in | on | at) "
                      f"<spot> [still]"),
@@ -158,6 +159,13 @@ ABOUT_ITSELF: tuple[Wording, ...] = (
         " | where (was | were) <thing> [before | originally] | where does <thing> come from",
     ),
     Wording("abilities", "what can you do | help [me]", heard="what can you do"),
+    Wording(
+        "repeat",
+        "say (that | it | this) (again | once more | one more time) | say again | repeat what you [just | have] said"
+        " | what [else] did you [just] (say | tell me | ask [me]) | what have you [just] said | come again | pardon"
+        " | what was that | (i | we) (did not | could not) (hear | catch | get | understand) (that | you | it)",
+        heard="say that again",
+    ),
     Wording("battery", "how full is your battery"),
     Wording("identity", "who are you", heard="who are you"),
     Wording("rooms", "(which | what) (rooms | places) are in <words>"),

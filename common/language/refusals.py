@@ -35,6 +35,12 @@ REFUSALS: tuple[Wording, ...] = (
         "I can bring things, but neither cook, pour nor feed",
     ),
     Wording("refuse", f"make {_IT} <words>", reason="I can bring things, but not make any", lost=True),
+    Wording(
+        "refuse",
+        "(take | shoot | snap | make | get) (a | an | some | another) (picture | photo | photograph | selfie | video)"
+        " [of <words>] | (photograph | film) <words>",
+        reason="I take no pictures for people; my page shows what I see",
+    ),
     _acts(
         "wash | rinse | scrub | wipe | sweep | vacuum | hoover | mop | dust | polish | iron | launder",
         "I can put things away, but neither wash, wipe nor sweep",
@@ -75,6 +81,10 @@ REFUSALS: tuple[Wording, ...] = (
         f"{ASK} what (time | day | date | year | month) (is it | it is) [<words>] | {ASK} what is the (time | date"
         f" | day) [<words>] | have you [got] the time",
         reason="I know neither the time of day nor the date",
+    ),
+    Wording(
+        "refuse", f"{ASK} whose <words> | {ASK} who owns <words> | {ASK} who (does | do) <words> belong to",
+        reason="I do not know what belongs to whom",
     ),
     Wording(
         "refuse",

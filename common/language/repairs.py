@@ -10,7 +10,8 @@ from common.language.politeness import without_politeness
 
 _REPAIR = re.compile(
     r"(?:,\s*wait,\s*(?=not\b)|[,.;]\s*(?:no|sorry|actually|rather)(?:,\s*|\s+)|,\s*(?:oh|well|hold on|hang on),\s*"
-    r"|(?<=\w)(?<!\bsay)\s+no,?\s+(?=(?:the|my|on|in|to|at)\s)|,?\s+(?:(?:no|ah|oh),? (?:wait|hold on|hang on|sorry|no)"
+    r"|(?<=\w)(?<!\bsay)\s+no,?\s+(?:just |only )?(?=(?:the|my|on|in|to|at)\s)"
+    r"|,?\s+(?:(?:no|ah|oh),? (?:wait|hold on|hang on|sorry|no)"
     r"|wait,? no|sorry,? no|(?:no,? |sorry,? )?i mean(?:t)?|(?:no,? )?make (?:that|it)|scratch that|correction|"
     r"or rather|or (?:rather|maybe |even |perhaps )?(?:better|no)(?: yet| still)?|better (?:yet|still)|no,? not that|"
     r"on second thoughts?)(?:,\s*|\s+))(?:i mean(?:t)?|i said|make (?:that|it)|rather|actually|sorry|wait|no)?\b,?\s*"

@@ -12,7 +12,7 @@ Action = Literal[
     "recall", "wish_at", "named_at", "put_held",
     "exists", "is_at", "colour", "beside", "kinds", "extreme", "compare",
     "condition", "condition_not", "state", "state_not",
-    "rooms", "doing", "done", "why", "origin", "abilities", "identity", "battery",
+    "rooms", "doing", "done", "why", "origin", "abilities", "identity", "battery", "repeat", "swap",
 ]  # fmt: skip
 """What a wording asks for; `services/planner/grammar/rules.py` has a function for each that can be planned."""
 Kind = Literal["command", "reply", "name", "told"]
@@ -21,7 +21,7 @@ QUESTIONS: frozenset[Action] = frozenset(
         "seen", "contents", "holding", "whereabouts", "where", "number", "recall", "exists", "is_at", "colour",
         "beside", "kinds", "extreme", "compare",
         "rooms", "doing", "done", "why", "origin", "abilities", "identity", "battery",
-        "rules", "belongs", "usual", "last_seen",
+        "rules", "belongs", "usual", "last_seen", "repeat",
     }
 )  # fmt: skip
 """What is answered in words."""

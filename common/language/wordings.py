@@ -33,7 +33,8 @@ WORDINGS: tuple[Wording, ...] = (
         "drop that | call it off"
         " | (i | we) [have] changed (my | our) mind | [actually] do not bother [any more | with (it | that)]"
         " | [(it | that) is] (not needed | no longer needed | not necessary) [any more]"
-        " | (i | we) (no longer | do not) (need | want) (it | that) [any more]",
+        " | (i | we) (no longer | do not) (need | want) (it | that) [any more] | not (now | yet) | [maybe] (later | "
+        "another time | some other time)",
         heard="cancel [that] | never mind", kind="reply", reason="there is nothing to cancel",
     ),
     Wording(
@@ -65,16 +66,21 @@ WORDINGS: tuple[Wording, ...] = (
         heard="no [thanks] | nope", kind="reply", reason="I did not ask anything",
     ),
     Wording("refuse", "yes <words>", reason="I did not ask anything"),
-    Wording("refuse", "(do not | never | not | did not) <words>", reason="you told me not to, so I leave it"),
+    Wording(
+        "refuse", "(do not | never | not | did not | refrain | avoid) <words>",
+        reason="you told me not to, so I leave it",
+    ),
     *CONDITIONS,
     *REFUSALS,
     Wording("refuse", "(if | when | unless) <words>", reason="I cannot wait for conditions"),
     Wording(
-        "open_hand", "(open [up] | let go [of] | release) [the | your] (gripper | hand | fingers)",
+        "open_hand", "(open [up] | let go [of] | release) [the | your] (gripper | hand | fingers)"
+        " | (set | put) [the | your] (gripper | hand) to open",
         heard="open (the | your) (hand | gripper)",
     ),
     Wording(
-        "close_hand", "(close | shut) [the | your] (gripper | hand | fingers) | make a fist",
+        "close_hand", "(close | shut) [the | your] (gripper | hand | fingers) | make a fist"
+        " | (set | put) [the | your] (gripper | hand) to closed",
         heard="close (the | your) (hand | gripper)",
     ),
     *ABOUT_ITSELF,
@@ -124,7 +130,8 @@ WORDINGS: tuple[Wording, ...] = (
         f" | let (my | our | the) {FAMILY} know "
         "[that] <words>",
     ),
-    Wording("wait", "(wait | pause) [here | there | a moment | a bit | a while | for me]", heard="wait"),
+    Wording("wait", "(wait | pause | hold [your] position) [here | there | a moment | a bit | a while | for me]",
+            heard="wait"),
     Wording(
         "wait",
         "(wait | pause | sleep | hold (on | off) | hang (on | about | around) | stay [here | there] | stand by | rest) "
@@ -212,6 +219,7 @@ WORDINGS: tuple[Wording, ...] = (
         " (to | into | in | at | on | by | near | next to | beside | in front of) <spot>",
     ),
     Wording("go", "(i | we) (need | want) you (in | at | by) <spot>"),
+    Wording("go", "(show | lead | guide | accompany | take) (me | us) [the way] to <spot>"),
     Wording("go", "(make your way | get yourself | take yourself) [over | back] (to | into) <spot>"),
     *MOVING,
     # What is said beside a command.

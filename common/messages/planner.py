@@ -60,7 +60,7 @@ class History(Message):
 
     `doing`: the command under way, `step` what is done for it at the moment, both "" when nothing is. `last`: how the
     last mission ended. `objects`: labels that it handled, in order. `taken_from`: the receptacle that each thing stood
-    on before it was grasped, by label, the latest last.
+    on before it was grasped, by label, the latest last. `said`: what the robot said last.
     """
 
     doing: str = ""
@@ -68,6 +68,7 @@ class History(Message):
     last: MissionOutcome | None = None
     objects: list[str] = []
     taken_from: dict[str, str] = {}
+    said: str = ""
 
 
 class PlanRequest(Message):

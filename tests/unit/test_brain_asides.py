@@ -145,3 +145,10 @@ def test_it_remembers_where_a_thing_stood() -> None:
     bench.until(lambda: bench.states()[-1] == "WAITING")
     hear(bench, "put it back where it was")
     assert bench.next_goal(PLAN, 2).history.taken_from == {"red mug": "living table"}
+
+
+def test_what_was_said_last_is_said_again() -> None:
+    bench = planned()
+    hear(bench, "after that bring me the apple")
+    hear(bench, "say that again")
+    assert bench.next_goal(PLAN, 2).history.said == "I will do that next: bring me the apple."

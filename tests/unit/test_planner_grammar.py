@@ -294,7 +294,7 @@ REFUSED = {
     "don't bring me the red mug": "you told me not to",
     "please do not touch the apple": "you told me not to",
     "when the bell rings bring me the mug": "I cannot wait for conditions",
-    "swap the red mug and the blue mug": "I do not understand",
+    "take a picture": "I take no pictures",
     "bring the apple to the red can": "the red can is no place",
     "what is on the bookshelf": "I have seen nothing there so far",
     "": "I did not hear a command",

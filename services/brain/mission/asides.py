@@ -71,7 +71,7 @@ class Asides:
         """Say something beside the mission."""
         ctx = self._ctx
         ctx.note("said aside", text)
-        ctx.send_only(ctx.peers.speech, topics.SPEECH_GOAL, f"say {text}")
+        ctx.say(text)
 
     def _queue(self, command: m.VoiceCommand, text: str) -> None:
         queued = self._ctx.mission.queued

@@ -45,6 +45,7 @@ class Context:
         self.gripper = GripperState()
         self.previous: Mission | None = None
         self.suspended: Checkpoint | None = None
+        self._said = self._said_before = ""
         self.stopped: str | None = None
         self.home, self.sightings = HouseholdKeeper(io), SightingLog(io)
         self.display = Display(io, config.pipeline, last_outcome(journal))
@@ -117,6 +118,7 @@ class Context:
             last=outcome_of(ended[-1]) if ended else None,
             objects=self.mission.handled if at_work else self.previous.handled if self.previous else [],
             taken_from=self.gripper.taken_from,
+            said=self._said if at_work else self._said_before,
         )
 
     # --- the journal
@@ -147,6 +149,7 @@ class Context:
         """The mission begins with this command; `source`: who brought it, for the timeline."""
         mission = self.mission
         self.voice.reply = None
+        self._said_before = self._said
         mission.heard = Heard(confidence=command.confidence, confirmed=command.confirmed, question=command.question)
         mission.command, mission.started = command.text.strip(), self.now
         mission.command_id = command.id
@@ -176,6 +179,11 @@ class Context:
         goal_id = self.mission.next_goal()
         channel.send_only(topic, topic.type(goal=text, id=goal_id))
         return goal_id
+
+    def say(self, text: str) -> str:
+        """Have something said that nobody waits for; returns the goal's id."""
+        self._said = text
+        return self.send_only(self.peers.speech, topics.SPEECH_GOAL, f"say {text}")
 
     def stop_all(self) -> None:
         """Tell every peer of an ended mission to stop what it does for it."""

@@ -217,7 +217,7 @@ class Say(Leaf):
         ctx, text = self.ctx, " ".join(self._text().split())
         self._heard, self._goal_id = False, ""
         if text and ctx.io.has_subscribers(topics.SPEECH_GOAL):
-            self._goal_id = ctx.send_only(ctx.peers.speech, topics.SPEECH_GOAL, f"say {text}")
+            self._goal_id = ctx.say(text)
         self._estimate = min(SPEECH_START + SPEECH_PER_CHARACTER * len(text), ctx.config.say_timeout)
         self.feedback_message = text
 

@@ -66,6 +66,10 @@ def origin(builder: PlanBuilder, slots: Slots) -> None:
         builder.say(f"I took the {label} from the {where}.")
 
 
+def repeat(builder: PlanBuilder, slots: Slots) -> None:
+    builder.say(builder.world.history.said or "I have said nothing yet.")
+
+
 def abilities(builder: PlanBuilder, slots: Slots) -> None:
     builder.say(ABILITIES)
 

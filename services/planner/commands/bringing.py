@@ -74,6 +74,22 @@ def put_held(builder: PlanBuilder, slots: Slots) -> None:
     deliver(builder, {"thing": ("it",), **slots})
 
 
+def swap(builder: PlanBuilder, slots: Slots) -> None:
+    """Two things take each other's place."""
+    things = [m.object for name in ("thing", "spot") if name in slots for m in referents(builder, slots[name])]
+    if len(things) != 2:
+        raise Refusal("I can swap two things, and you did not name two")
+    if missing := [t.label for t in things if builder.world.receptacle_of(t) is None]:
+        builder.search_first([PlanStep(action="find", object=label) for label in missing])
+    one, other = map(builder.world.receptacle_of, things)
+    if one is None or other is None or one == other:
+        names = enumeration([f"the {t.label}" for t in things])
+        raise Refusal(f"{names} are in the same place" if one == other else f"I have not seen where {names} stand")
+    for item, where in zip(things, (other, one), strict=True):
+        _put(builder, Referent(item), where)
+    builder.last = things
+
+
 def put_where(builder: PlanBuilder, slots: Slots) -> None:
     """Next to a thing that is named; `leave it where it is` moves nothing."""
     if " ".join(slots["spot"]) in PRONOUNS | {"they"}:

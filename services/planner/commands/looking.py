@@ -8,7 +8,7 @@ from services.planner.commands import answers
 from services.planner.commands.telling import a, be, inventory, not_after_moving, told
 from services.planner.grammar.phrases import Phrase, read
 from services.planner.grammar.senses import Spot
-from services.planner.plan_builder import PlanBuilder
+from services.planner.plan_builder import PlanBuilder, Refusal
 from services.planner.reference.fits import fitting, unknown
 from services.planner.reference.places import spot
 from services.planner.world import BelievedObject
@@ -44,7 +44,9 @@ def _tell_contents(builder: PlanBuilder, slots: Slots, afresh: bool) -> None:
     if afresh or not there:
         builder.look_at(look)
     if not there:
-        builder.look_first(look, f"I have seen nothing there so far, so I would have to go to the {place.name} first")
+        if builder.done is None:
+            raise Refusal(f"I have seen nothing there so far, so I would have to go to the {place.name} first")
+        builder.look_at(look)
     builder.spot = place
     if not any(step.text == told(there, place) for step in builder.steps):
         builder.say(told(there, place))
@@ -82,7 +84,7 @@ def go_and_see(builder: PlanBuilder, slots: Slots) -> None:
             seen(builder, slots)
             return
         _, there, _ = things_at(builder, slots["spot"])
-        builder.say(told(there, place) if there else f"I see nothing that I know in the {place.name}.")
+        builder.say(told(there, place))
         return
     contents(builder, slots)
 

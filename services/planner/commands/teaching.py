@@ -5,6 +5,7 @@ from common.language.pattern import Slots
 from common.messages import PlanStep
 from common.naming.names import normalise
 from services.planner.grammar.phrases import Phrase, read
+from services.planner.grammar.senses import LONGEST_NAME
 from services.planner.plan_builder import Lost, PlanBuilder, Refusal
 
 
@@ -33,6 +34,8 @@ def _name(builder: PlanBuilder, slots: Slots) -> str:
         Refusal: it is a place, or a word that says how a thing is ("the ball is my favourite").
     """
     words = without_determiners(slots["words"])
+    if len(words) > LONGEST_NAME:
+        raise Lost(f"{' '.join(words)} is too long a name")
     if not words or builder.vocabulary.spot(words) or set(words) <= set(builder.world.household.words.qualities):
         raise Refusal(f"{' '.join(slots['words'])} is no name for a thing")
     return " ".join(words)

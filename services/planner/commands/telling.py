@@ -29,6 +29,8 @@ def inventory(builder: PlanBuilder, known: list[BelievedObject]) -> str:
 
 def told(there: list[BelievedObject], place: Spot) -> str:
     where = "in" if place.receptacle is None or place.receptacle.depth else "on"
+    if not there:
+        return f"I see nothing that I know {where} the {place.name}."
     return f"{capital(enumeration([a(t) for t in there]))} {be(there)} {where} the {place.name}."
 
 

@@ -32,6 +32,10 @@ MAX_WORDS = 60
 """Longest clause (chosen: the readings of a pattern grow with its square)."""
 
 
+_VERBS = frozenset({"is", "are", "was", "were", "has", "have", "needs", "goes", "belongs"})
+"""Words that make more than a name of a clause that begins with one."""
+
+
 class Suggestion(Refusal):
     """`meant`: the command that comes nearest to what was said, to be asked about first."""
 
@@ -133,7 +137,7 @@ class _Attempts:
                     return self._read(asked)
             if (read := self._without_slips(refusal, literally)) is not None:
                 return read
-            if self._config.open_vocabulary:
+            if self._config.open_vocabulary and isinstance(refusal, Lost):
                 with suppress(Refusal):
                     return self._read(self._command, new_nouns=True)
             self._choices.taken = taken
@@ -220,6 +224,9 @@ def _steps(command: str, builder: PlanBuilder) -> list[PlanStep]:
         following = sentences[number + 1].split() if number + 1 < len(sentences) else []
         if is_statement(sentence) and words[0] in ("i", "we") and {"it", "them"} & set(following):
             note(words, builder)  # "I want the apple. Put it on the desk": what is wanted is said in the second
+            continue
+        if number == 0 and names and "it" in following and _VERBS.isdisjoint(words):
+            note(words, builder)  # "the red can, bin it"
             continue
         if {"there", "it"} & set(following) and (topic := builder.vocabulary.spot(words)):
             builder.spot = topic[0]  # "the bookshelf. What is there?"

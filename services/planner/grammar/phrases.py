@@ -25,15 +25,16 @@ from services.planner.grammar.vocabulary import Vocabulary
 
 
 class Phrase(msgspec.Struct, frozen=True):
-    """`count` 0 means all of them; `any_one`: no matter which; `anchor` are the words after a relation.
+    """`count` 0 means all of them, `among` of how many one is singled out; `any_one`: no matter which.
 
-    `but`: phrases for what is left out.
+    `anchor` are the words after a relation, `but` phrases for what is left out.
     """
 
     sense: Sense
     noun: str
     singular: str = ""
     count: int = 1
+    among: int = 0
     any_one: bool = False
     plural: bool = False
     colours: tuple[str, ...] = ()
@@ -143,6 +144,7 @@ def _new_head(words: Words, vocabulary: Vocabulary) -> Phrase | None:
 
 def _known_head(words: Words, vocabulary: Vocabulary) -> Phrase | None:
     rest, count, any_one, every, number = without_measure(words), 1, False, False, False
+    among = 0
     colours: list[str] = []
     which: Which = ""
     while rest:
@@ -155,6 +157,7 @@ def _known_head(words: Words, vocabulary: Vocabulary) -> Phrase | None:
                 noun=" ".join(rest),
                 singular=singular,
                 count=0 if whole else count,
+                among=among,
                 any_one=any_one or (number and not whole) or rest[0] in ("something", "anything"),
                 plural=plural,
                 colours=tuple(colours),
@@ -169,6 +172,8 @@ def _known_head(words: Words, vocabulary: Vocabulary) -> Phrase | None:
             every = True
         elif word == "both":
             count, number = 2, True
+        elif word in NUMBERS and which:
+            among, number = NUMBERS[word], True  # "the taller of the two mugs"
         elif word in NUMBERS:
             count, number = count if number else NUMBERS[word], True  # "two of the three mugs"
         elif word in ("a", "an", "any", "some", "either", "whichever"):

@@ -10,6 +10,7 @@ from typing import Literal, NamedTuple
 
 from common.language.exchange import filled
 from common.language.frame import SMALL_TALK
+from common.language.lexicon import HANDLING
 from common.language.mood import is_of_others
 from common.language.normalise import Words
 from common.language.timing import DURATION
@@ -92,7 +93,7 @@ def by_roles(words: Words, vocabulary: Vocabulary) -> list[str]:
 def is_asked(words: Words) -> bool:
     """Are the words a question about the world rather than a request in the form of one?"""
     text = " ".join(words)
-    return _QUESTION.search(text) is not None and not _REQUESTED.search(text)
+    return words[0] not in HANDLING and _QUESTION.search(text) is not None and not _REQUESTED.search(text)
 
 
 def _parts(words: Words, vocabulary: Vocabulary) -> _Parts:

@@ -62,6 +62,7 @@ ACTIONS: dict[Action, Callable[[PlanBuilder, Slots], None]] = {
     "last_seen": home.last_seen,
     "mention": remarks.mention,
     "put_back": bringing.put_back,
+    "swap": bringing.swap,
     "put_where": bringing.put_where,
     "wish_at": bringing.wish_at,
     "named_at": bringing.named_at,
@@ -90,6 +91,7 @@ ACTIONS: dict[Action, Callable[[PlanBuilder, Slots], None]] = {
     "identity": about_itself.identity,
     "battery": about_itself.battery,
     "rooms": about_itself.rooms,
+    "repeat": about_itself.repeat,
     "thanks": about_itself.thanks,
 }
 

@@ -27,6 +27,9 @@ from services.planner.grammar.senses import (
 )
 from services.planner.world import World
 
+BESIDE_FURNITURE = 0.8
+"""Farthest the middle of a surface is from furniture that it stands by [m] (chosen: a small table's width)."""
+
 
 class Vocabulary:
     """Built for one request."""
@@ -208,6 +211,16 @@ class Vocabulary:
         """The furniture meant, which is in the way but no place to put things."""
         phrase = " ".join(without_determiners(words))
         return next((f.name for f in self._household.furniture if phrase and phrase in normalise(f.name)), "")
+
+    def surfaces_by(self, words: Words) -> list[Spot]:
+        """The surfaces beside a piece of furniture that is none itself, as the bedside table is by the bed."""
+        name = self.furniture(words)
+        boxes = [f.outline for f in self._household.furniture if f.name == name]
+        return [
+            Spot(r.name, receptacle=r)
+            for r in self._household.receptacles
+            if any(box.distance(*r.center[:2]) < BESIDE_FURNITURE for box in boxes)
+        ]
 
     def position(self, place: Spot) -> tuple[float, float] | None:
         """The middle of a surface, or where one stands at a place [m]; None for a room."""

@@ -20,6 +20,10 @@ def choose(
         if phrase.count != 1:
             builder.look_first(builder.vocabulary.surfaces(), f"I have seen no {phrase.singular} yet")
         return [unseen(builder, phrase, specs, None)]
+    if phrase.among > 1 and len(seen) != phrase.among:
+        seen = [t for t in seen if builder.spot and builder.spot.name in (t.on, builder.world.room_of(t))]
+        if len(seen) != phrase.among:
+            raise Lost(f"I do not know which {phrase.noun} you mean")
     if phrase.which and phrase.which != "other":
         return [Referent(superlative(builder, phrase, seen))]
     near = sorted(seen, key=lambda t: (not t.held, builder.world.distance(t), t.label))

@@ -35,6 +35,8 @@ def anchor_spots(builder: PlanBuilder, phrase: Phrase) -> list[Spot]:
     """The places that a phrase names behind its relation: `on the desk and the table` names two."""
     if spots := builder.vocabulary.spot(phrase.anchor):
         return spots
+    if phrase.relation == "near" and (beside := builder.vocabulary.surfaces_by(phrase.anchor)):
+        return beside
     for at, word in enumerate(phrase.anchor):
         if word in ("and", "or"):
             parts = [builder.vocabulary.spot(part) for part in (phrase.anchor[:at], phrase.anchor[at + 1 :])]
