@@ -33,7 +33,7 @@ ORIGINS_KEPT = 20
 """Objects of which the gripper's state remembers where they stood (chosen: a day of use)."""
 PERMANENT = frozenset(
     {
-        "PREEMPTED", "STOPPED", "CANCELLED", "NO_PEER", "TOO_HEAVY", "OUT_OF_REACH",
+        "PREEMPTED", "STOPPED", "CANCELLED", "NO_PEER", "TOO_HEAVY", "TOO_WIDE", "OUT_OF_REACH",
         "UNKNOWN_GOAL", "UNKNOWN_PLACE", "UNKNOWN_OBJECT",
     }
 )  # fmt: skip
