@@ -7,9 +7,23 @@ import pytest
 from common import topics
 from services.manipulation.arm.arm_model import ArmModel, Pose
 from services.manipulation.arm.ik import seeds
-from services.manipulation.arm.touch import MET, TOO_HEAVY, TOUCHED, Guard, Reaction, Way, load_limit
+from services.manipulation.arm.touch import (
+    BLOCKED,
+    HIT,
+    MET,
+    STRAIN,
+    TOO_HEAVY,
+    TOUCHED,
+    Guard,
+    Reaction,
+    Way,
+    load_limit,
+    tells_weight,
+    watch,
+)
 from services.manipulation.arm.trajectory import back_along
-from services.manipulation.execution.robot import Failure
+from services.manipulation.execution.robot import DT, Failure, go_home
+from services.manipulation.execution.robot import SLOWLY as BACK_SLOWLY
 from services.manipulation.execution.setting_down import SLOWLY, set_down
 from services.manipulation.grasps.grasp import approach_rotation
 from services.manipulation.planning.straight_grab import RESERVE, with_reserve
@@ -118,3 +132,69 @@ def test_what_is_in_the_hand_goes_down_slowly_where_it_may_meet_its_surface() ->
 def test_the_hand_keeps_room_to_open_when_it_is_wedged(arm: ArmModel) -> None:
     openings = [with_reserve(arm.hand, width) for width in (0.04, arm.hand.open - 0.002, arm.hand.open + 0.01)]
     assert openings == pytest.approx([arm.hand.open - RESERVE, arm.hand.open - 0.001, arm.hand.open])
+
+
+@pytest.mark.parametrize("weighs", [False, True])
+@pytest.mark.parametrize(
+    ("carried", "push", "code"),
+    [
+        (0.0, (0.0, HIT - 2, 0.0), ""),
+        (0.0, (0.0, 0.0, HIT + 2), BLOCKED),
+        (12.0, (0.0, HIT - 2, 0.0), ""),
+        (12.0, (HIT + 8, 0.0, 0.0), BLOCKED),
+        (12.0, (0.0, 0.0, -HIT - 8), BLOCKED),
+    ],
+)
+def test_in_free_motion_the_arm_notices_what_it_meets_beside_its_load(
+    arm: ArmModel, weighs: bool, carried: float, push: tuple[float, float, float], code: str
+) -> None:
+    """An arm whose drivers take its own weight off their torques, and one that tells it too."""
+    reaction = Reaction(arm)
+    own_weight = reaction.weight(arm.home) * weighs
+    rest = own_weight + torques(arm, (0.0, 0.0, carried))
+    if not carried:
+        assert tells_weight(reaction, arm.home, rest) == weighs
+    watching = watch(reaction, arm.home, rest, bool(carried), weighs)
+    assert watching.feel(arm.home, rest + torques(arm, push))[0] == code
+
+
+def test_a_blow_on_the_elbow_shows_in_the_joints_below_it(arm: ArmModel) -> None:
+    reaction = Reaction(arm)
+    watching = watch(reaction, arm.home, np.zeros(7), False, False)
+    blow = np.array([0.0, STRAIN + 1, 0.0, 0.0, 0.0, 0.0, 0.0])
+    assert watching.feel(arm.home, blow)[0] == BLOCKED
+    assert watching.feel(arm.home, blow / 2)[0] == ""
+
+
+@pytest.mark.parametrize("times", [1, 2])
+def test_what_is_met_on_the_way_home_is_backed_off_and_passed_slowly(times: int) -> None:
+    node = Arm()
+    node.step(1.0)
+    robot = node.service._robot
+    assert robot.planner is not None
+    arm = robot.planner.arm
+    robot.joints = start = arm.home + np.array([0.0, 0.6, 0.0, 0.4, 0.0, 0.0, 0.0])
+    driven, pushed, met = [start], 0, 0
+    steps = go_home(robot)
+    try:
+        for _ in steps:
+            sent = node.sent(topics.ARM_COMMAND)
+            if sent:
+                robot.joints = np.array(sent[-1].position)
+            driven.append(robot.joints)
+            pushed = pushed - 1 if pushed else 0
+            if met < times and np.abs(robot.joints - start).max() > 0.2 + 0.1 * met:
+                met, pushed = met + 1, 3
+            pressed = np.array([0.0, 0.0, -HIT - 10]) * bool(pushed)
+            robot.torques = robot.planner.reaction.torques(robot.joints, pressed)
+            robot.now += DT
+    except Failure as failure:
+        assert (failure.code, times) == (BLOCKED, 2)
+        return
+    assert times == 1
+    way = np.array([np.abs(q - start).max() for q in driven])
+    assert np.diff(way).min() < 0.0, "it goes back a little"
+    after = int(np.argmax(np.diff(way) < 0.0))
+    speeds = np.abs(np.diff(np.array(driven), axis=0)).max(axis=1) / DT
+    assert speeds[after + 1 :].max() <= BACK_SLOWLY * CONFIG.joint_speed + 1e-6
+    assert driven[-1] == pytest.approx(arm.home, abs=0.01)

@@ -10,10 +10,14 @@ from services.manipulation.arm.arm_model import ArmModel, Array
 
 TOUCHED = "TOUCHED"
 TOO_HEAVY = "TOO_HEAVY"
+BLOCKED = "BLOCKED"
 Way = Literal["any", "up", "down"]
 MET = 20.0
 """Force [N] on the hand from which it has met something: on its way without contact the arm's own inertia shows as at
 most 9 N, and a finger slides an object of 1 kg aside with less than 10."""
+HIT, STRAIN = 30.0, 12.0
+"""Force [N] on the hand, or torque [Nm] of a joint, from which the arm has met something in free motion: at full speed
+its own inertia shows as at most 18 N and 7 Nm, and a light touch there is no reason to stop."""
 GRIP_FRICTION = 0.6
 """Least friction of a pad that is counted on: rubber on smooth painted or plastic faces has 0.6 to 1."""
 
@@ -28,13 +32,28 @@ class Reaction:
 
     def force(self, joints: Array, torques: Array) -> Array:
         """Force (3,) [N] in the base frame with which the hand presses, by `torques` (7,) [Nm] at `joints` (7,)."""
-        model, data, jacobian = self._model, self._data, self._jacobian
-        self._place(joints)
-        mujoco.mj_comPos(model, data)
-        mujoco.mj_jacSite(model, data, jacobian[:3], jacobian[3:], self._pinch)
         # A force at the pinch point alone: with a moment beside it, 2 Nm of the arm's own inertia pass for 20 to 36 N.
-        found: Any = np.linalg.lstsq(jacobian[:3, self._dofs].T, torques, rcond=None)[0]
+        found: Any = np.linalg.lstsq(self._lever(joints), torques, rcond=None)[0]
         return np.asarray(found)
+
+    def torques(self, joints: Array, force: Array) -> Array:
+        """Torques (7,) [Nm] with which the hand presses with `force` (3,) [N]."""
+        return np.asarray(self._lever(joints) @ force)
+
+    def weight(self, joints: Array) -> Array:
+        """Torques (7,) [Nm] that hold the arm's own weight."""
+        self._place(joints)
+        mujoco.mj_comPos(self._model, self._data)
+        mujoco.mj_comVel(self._model, self._data)
+        mujoco.mj_rne(self._model, self._data, 0, bias := np.zeros(self._model.nv))
+        return np.asarray(bias[self._dofs])
+
+    def _lever(self, joints: Array) -> Array:
+        """(7, 3): torques by force on the hand."""
+        self._place(joints)
+        mujoco.mj_comPos(self._model, self._data)
+        mujoco.mj_jacSite(self._model, self._data, self._jacobian[:3], self._jacobian[3:], self._pinch)
+        return np.asarray(self._jacobian[:3, self._dofs].T)
 
     def position(self, joints: Array) -> Array:
         """The pinch point (3,) in the base frame [m]."""
@@ -72,3 +91,39 @@ class Guard:
         if felt <= self.most:
             return "", felt
         return (TOO_HEAVY if self.way == "up" else TOUCHED), felt
+
+
+@dataclass(frozen=True)
+class Watch:
+    """Ends a free motion, with BLOCKED, where the arm meets what it was planned to pass.
+
+    `load` (3,) [N] is the force of the hand that carries what it holds; `weighs`: the torques tell the arm's own weight
+    too, which some drivers take off.
+    """
+
+    reaction: Reaction
+    load: Array
+    weighs: bool
+
+    def feel(self, joints: Array, torques: Array) -> tuple[str, float]:
+        """BLOCKED, or "" where the motion may go on, and the force [N] on the hand that was felt."""
+        extra = torques - self.reaction.torques(joints, self.load)
+        if self.weighs:
+            extra = extra - self.reaction.weight(joints)
+        felt = float(np.linalg.norm(self.reaction.force(joints, extra)))
+        # What hangs beside the pinch point, and swings, shows as up to a half of its weight.
+        most = HIT + float(self.load[2]) / 2
+        return (BLOCKED if felt > most or float(np.abs(extra).max()) > STRAIN else ""), felt
+
+
+def watch(reaction: Reaction, joints: Array, torques: Array, holds: bool, weighs: bool) -> Watch:
+    """For a motion that begins at `joints` (7,) with `torques` (7,) [Nm]; what the hand `holds` hangs on it."""
+    upward = 0.0
+    if holds:
+        upward = float(reaction.force(joints, torques - (reaction.weight(joints) if weighs else 0.0))[2])
+    return Watch(reaction, np.array([0.0, 0.0, max(0.0, upward)]), weighs)
+
+
+def tells_weight(reaction: Reaction, joints: Array, torques: Array) -> bool:
+    """Whether the torques (7,) [Nm] of an arm with an empty hand tell its own weight."""
+    return bool(np.linalg.norm(torques - reaction.weight(joints)) < np.linalg.norm(torques))

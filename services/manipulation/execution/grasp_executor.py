@@ -6,18 +6,18 @@ from common import messages as m
 from common import topics
 from common.geometry import quat_matrix, yaw_quat
 from common.messages import WorldObject
-from services.manipulation.arm.arm_model import Array, Obstacle
+from services.manipulation.arm.arm_model import Array
 from services.manipulation.arm.contacts import Contact, came_around
-from services.manipulation.arm.touch import TOO_HEAVY, TOUCHED, load_limit
+from services.manipulation.arm.touch import BLOCKED, TOO_HEAVY, TOUCHED, load_limit
 from services.manipulation.arm.trajectory import back_along
 from services.manipulation.execution.grasp_choice import chosen, surroundings
-from services.manipulation.execution.robot import Failure, Robot, Steps, go_home, planner_of
+from services.manipulation.execution.recovery import retreat
+from services.manipulation.execution.robot import SLOWLY, Failure, Robot, Steps, back_off, go_home, planner_of
 from services.manipulation.execution.setting_down import set_down
 from services.manipulation.execution.sighting import MISTAKEN, aimed, sighted
 from services.manipulation.grasps.clearance import PAD
 from services.manipulation.grasps.grasp import shown
 from services.manipulation.grasps.grasp_verification import WIDTH_ERROR, held_badly, judge
-from services.manipulation.grasps.grasped_object import GraspedObject
 from services.manipulation.planning.plan_grab import GrabPlan
 from services.manipulation.planning.planning_scene import target_of
 from services.manipulation.planning.straight_grab import with_reserve
@@ -78,12 +78,12 @@ def grab(robot: Robot, goal: m.ManipulationGoal, wanted: str) -> Steps[str]:
                 tried.discard(plan.grasp.name)
                 since, last = robot.now - config.fresh, failure
                 continue
-            if failure.code not in ("EMPTY_GRASP", "SLIPPED", "BLOCKED", BAD_HOLD, TOUCHED, TOO_HEAVY):
+            if failure.code not in ("EMPTY_GRASP", "SLIPPED", BLOCKED, BAD_HOLD, TOUCHED, TOO_HEAVY):
                 raise
             last = failure
             robot.io.log.warning("grasp failed", code=failure.code, detail=failure.detail, grasp=plan.grasp.name)
-            if failure.code == "BLOCKED" and robot.grasped is not None and robot.grip.holds():
-                return (yield from _carry_again(robot, robot.grasped, around[-1]))
+            if failure.code == BLOCKED and robot.grip.holds():
+                raise  # opened here the hand would drop it; the next attempt goes on from where the arm is
             robot.phase = "retract"
             robot.grasped = None
             yield from robot.move_gripper(0.0)
@@ -138,11 +138,10 @@ def _execute_grab(
         _judge(robot, plan, closed.width, widths)
         _check_width(robot, plan, widths)
         way.append(plan.carry)
-        yield from robot.follow(plan.carry, config.joint_speed * 0.8)
-        yield from robot.wait(0.2)
+        yield from _carry(robot, plan)
         _judge(robot, plan, closed.width, widths)
     except Failure as failure:
-        if failure.code in ("SLIPPED", BAD_HOLD, TOO_HEAVY) and robot.grip.holds():
+        if failure.code in ("SLIPPED", BAD_HOLD, TOO_HEAVY, BLOCKED) and robot.grip.holds():
             yield from _set_back(robot, plan, way, free)
         raise
     robot.contacts.clear()
@@ -222,15 +221,21 @@ def _check_width(robot: Robot, plan: GrabPlan, widths: list[float]) -> None:
     raise Failure(BAD_HOLD, f"width {1000 * width:.1f} mm where the {held.label} has {1000 * plan.grasp.width:.1f}")
 
 
-def _carry_again(robot: Robot, held: GraspedObject, around: list[Obstacle]) -> Steps[str]:
-    """Something was in the way with the object in hand: another path to the carry pose, without letting go."""
-    robot.forget_command()
-    path = yield from robot.work(planner_of(robot).carry, held, robot.joints.copy(), around)
-    yield from robot.follow(path, robot.config.joint_speed * 0.5)
-    if not robot.grip.holds():
-        raise Failure("SLIPPED", f"the {held.label} was lost on the way to the carry pose")
-    robot.source.remember(held.label, None, "", robot.now)
-    return f"{held.label} held: width {robot.grip.width * 1000:.1f} mm, force {robot.grip.force:.0f} N"
+def _carry(robot: Robot, plan: GrabPlan) -> Steps[None]:
+    """To the carry pose; where something is met, which may hang lower in the hand than was planned, a little back, up,
+    and on by another path, slowly."""
+    try:
+        yield from robot.follow(plan.carry, robot.config.joint_speed * 0.8)
+    except Failure as failure:
+        if failure.code != BLOCKED or not robot.grip.holds():
+            raise
+        robot.io.log.info("met on the way", object=plan.grasped.label, detail=failure.detail)
+        yield from back_off(robot, plan.carry)
+        path = yield from robot.work(
+            retreat, planner_of(robot), plan.grasped, robot.joints.copy(), plan.around, robot.config.lift_height
+        )
+        yield from robot.follow(path, robot.config.joint_speed * SLOWLY)
+    yield from robot.wait(0.2)
 
 
 def _judge(robot: Robot, plan: GrabPlan, at_close: float | None, widths: list[float]) -> None:

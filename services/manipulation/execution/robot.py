@@ -13,8 +13,19 @@ from common.robot.grip import Grip
 from services.manipulation.arm.arm_model import Array
 from services.manipulation.arm.contacts import ContactLog
 from services.manipulation.arm.servo import Servo
-from services.manipulation.arm.touch import MET, TOO_HEAVY, Guard, Way
-from services.manipulation.arm.trajectory import timed
+from services.manipulation.arm.touch import (
+    BLOCKED,
+    HIT,
+    MET,
+    TOO_HEAVY,
+    TOUCHED,
+    Guard,
+    Watch,
+    Way,
+    tells_weight,
+    watch,
+)
+from services.manipulation.arm.trajectory import back_along, timed
 from services.manipulation.config import ManipulationConfig
 from services.manipulation.grasps.grasped_object import GraspedObject
 from services.manipulation.planning.motion_planner import PlanError, Planner
@@ -25,6 +36,9 @@ T = TypeVar("T")
 Steps = Generator[None, None, T]
 DT = 0.02
 GRIPPER_TICKS = 5
+BACK, CALM, SLOWLY = 0.12, 0.1, 0.3
+"""Way [rad] back off what was met, some 5 cm of the hand; for how long [s] the arm rests before; share of the joint
+speed then. Chosen."""
 
 
 class Failure(Exception):
@@ -59,25 +73,29 @@ class Robot:
         self.servo: Servo | None = None
         self._command: Array | None = None
         self._late = 0
+        self._weighs: bool | None = None
 
     # --- motion
     def follow(self, path: Sequence[Array], speed: float, guard: Guard | None = None) -> Steps[None]:
         """Stream a joint path and wait until the arm has come to rest at its end.
 
+        Without a `guard` it is watched that the arm meets nothing.
+
         Raises:
             Failure: BLOCKED, or what the guard feels; the arm then holds where it is.
         """
+        feeler = guard or self._watch()
         start = self._command if self._command is not None else self.joints
         points = [start, *path] if np.abs(start - path[0]).max() > 1e-3 else list(path)
         for q in timed(points, speed, self.config.joint_acceleration, DT):
             self.stream(q)
             yield
             self._check_blocked(q)
-            self._check_touched(guard)
+            self._check_touched(feeler)
         for _ in range(round(self.config.settle / DT)):
             self.stream(points[-1])
             yield
-            self._check_touched(guard)
+            self._check_touched(feeler)
             if np.abs(self.joints - points[-1]).max() < 0.01:
                 break
         self._command = None
@@ -94,14 +112,22 @@ class Robot:
         if self._late > 15:
             self._late = 0
             worst = int(error.argmax())
-            raise Failure("BLOCKED", f"joint_{worst + 1} is {error[worst]:.2f} rad behind")
+            raise Failure(BLOCKED, f"joint_{worst + 1} is {error[worst]:.2f} rad behind")
 
     def guard(self, rest: Array, most: float = MET, way: Way = "any") -> Guard | None:
         """For a motion near objects; `rest`: torques (7,) [Nm] of the arm in the air."""
         return Guard(self.planner.reaction, rest, most, way) if self.planner is not None else None
 
-    def _check_touched(self, guard: Guard | None) -> None:
-        code, force = guard.feel(self.joints, self.torques) if guard is not None else ("", 0.0)
+    def _watch(self) -> Watch | None:
+        if self.planner is None:
+            return None
+        holds, reaction = self.grip.holds(), self.planner.reaction
+        if self._weighs is None or not holds:
+            self._weighs = tells_weight(reaction, self.joints, self.torques)
+        return watch(reaction, self.joints, self.torques, holds, self._weighs)
+
+    def _check_touched(self, feeler: Guard | Watch | None) -> None:
+        code, force = feeler.feel(self.joints, self.torques) if feeler is not None else ("", 0.0)
         if not code:
             return
         if code != TOO_HEAVY:
@@ -147,12 +173,34 @@ class Robot:
 
 def go_home(robot: Robot) -> Steps[str]:
     """The carry pose, by a path around what is known; around furniture at least where an object is in the way, which
-    need not be where it was believed once the hand was there."""
-    known = [robot.source.objects(), []]
-    around = [obstacles(robot.io.household, robot.base, objects, margin=0.0) for objects in known]
-    path = yield from robot.work(planner_of(robot).to_home, robot.joints.copy(), around)
-    yield from robot.follow(path, robot.config.joint_speed)
+    need not be where it was believed once the hand was there. What is met is backed off, and passed slowly."""
+    for share in (1.0, SLOWLY):
+        known = [robot.source.objects(), []]
+        around = [obstacles(robot.io.household, robot.base, objects, margin=0.0) for objects in known]
+        path = yield from robot.work(planner_of(robot).to_home, robot.joints.copy(), around)
+        try:
+            yield from robot.follow(path, robot.config.joint_speed * share)
+            break
+        except Failure as failure:
+            if failure.code != BLOCKED or share == SLOWLY:
+                raise
+            robot.io.log.warning("on the way home", code=failure.code, detail=failure.detail)
+            yield from back_off(robot, path)
     return "arm at home"
+
+
+def back_off(robot: Robot, path: Sequence[Array]) -> Steps[None]:
+    """A little back along a path, off what was met on it."""
+    robot.forget_command()
+    yield from robot.wait(CALM)
+    gap = back_along(path, robot.joints)[0] - robot.joints
+    back = robot.joints + gap * min(1.0, BACK / max(float(np.abs(gap).max()), 1e-9))
+    try:
+        yield from robot.follow([back], robot.config.joint_speed * SLOWLY, robot.guard(robot.torques.copy(), HIT))
+    except Failure as failure:
+        if failure.code != TOUCHED:
+            raise
+        robot.io.log.warning("while backing off", code=failure.code, detail=failure.detail)
 
 
 def planner_of(robot: Robot) -> Planner:
