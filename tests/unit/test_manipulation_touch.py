@@ -21,7 +21,7 @@ from services.manipulation.arm.touch import (
     tells_weight,
     watch,
 )
-from services.manipulation.arm.trajectory import back_along
+from services.manipulation.arm.trajectory import back_along, divided
 from services.manipulation.execution.robot import DT, Failure, go_home
 from services.manipulation.execution.robot import SLOWLY as BACK_SLOWLY
 from services.manipulation.execution.setting_down import SLOWLY, set_down
@@ -92,6 +92,15 @@ def test_the_way_back_never_goes_deeper_first() -> None:
     for now, first in ((0.4, 0.3), (0.27, 0.2), (0.33, 0.2), (0.02, 0.0), (9.0, 0.3)):
         back = back_along(path, np.full(7, now))
         assert back[0][0] == pytest.approx(first) and back[-1][0] == 0.0
+
+
+def test_a_divided_path_is_the_same_way() -> None:
+    path = [np.full(7, v) for v in (0.0, 0.5, 0.4, 1.0)]
+    for most, end in ((0.3, 0.3), (0.7, 0.7)):
+        near, far = divided(path, lambda q, most=most: q[0] < most)
+        assert near[-1] == pytest.approx(np.full(7, end), abs=0.061) and near[-1] is far[0]
+        assert [*near[:-1], *far[1:]] == path
+    assert divided(path, lambda q: True) == (path, [])
 
 
 @pytest.mark.parametrize(("way", "force"), [("any", -40.0), ("down", -40.0), ("up", 40.0)])

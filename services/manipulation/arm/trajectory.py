@@ -1,5 +1,6 @@
 """Joint paths: collision-free by straight line or RRT-Connect, then timed and sampled for streaming."""
 
+import itertools
 import math
 from collections.abc import Callable, Sequence
 
@@ -92,6 +93,19 @@ def back_along(path: Sequence[Array], now: Array) -> list[Array]:
     """The way back to the beginning of a path from `now`, somewhere on it, without going deeper first."""
     nearest = int(np.argmin([np.abs(q - now).max() for q in path]))
     return list(path[max(nearest - 1, 0) :: -1])
+
+
+def divided(path: Sequence[Array], first: Callable[[Array], bool]) -> tuple[list[Array], list[Array]]:
+    """A path in two: as long as `first` holds of its configurations, and the rest, which begins where the one ends."""
+    head = [path[0]]
+    for n, (a, b) in enumerate(itertools.pairwise(path)):
+        count = max(1, math.ceil(float(np.abs(b - a).max()) / STEP))
+        for i in range(1, count + 1):
+            q = a + (b - a) * (i / count)
+            if not first(q):
+                return [*head, q], [q, *path[n + 1 :]]
+        head.append(b)
+    return head, []
 
 
 def timed(path: Sequence[Array], speed: float, acceleration: float, dt: float) -> Array:
