@@ -233,6 +233,7 @@ def test_a_loss_that_cannot_be_mended_is_no_longer_held() -> None:
             )
         bench.step()
     assert "holding" not in bench.state.detail
+    assert bench.texts(SPEECH)[-1].endswith("Please look whether it lies on my own base.")
 
 
 def test_an_impossible_plan_is_rejected_with_the_reason_and_replanned() -> None:

@@ -22,6 +22,7 @@ from services.manipulation.arm.touch import (
     watch,
 )
 from services.manipulation.arm.trajectory import back_along, divided
+from services.manipulation.execution.grasp_executor import close
 from services.manipulation.execution.robot import DT, Failure, go_home
 from services.manipulation.execution.robot import SLOWLY as BACK_SLOWLY
 from services.manipulation.execution.setting_down import SLOWLY, set_down
@@ -173,6 +174,23 @@ def test_a_blow_on_the_elbow_shows_in_the_joints_below_it(arm: ArmModel) -> None
     blow = np.array([0.0, STRAIN + 1, 0.0, 0.0, 0.0, 0.0, 0.0])
     assert watching.feel(arm.home, blow)[0] == BLOCKED
     assert watching.feel(arm.home, blow / 2)[0] == ""
+
+
+def test_fingers_that_press_a_thing_on_its_surface_stop_and_those_that_push_it_aside_do_not() -> None:
+    node = Arm()
+    node.step(1.0)
+    robot = node.service._robot
+    assert robot.planner is not None
+    guard = robot.guard(np.zeros(7), HIT, "down")
+    for force, code in (((0.0, HIT + 5, 0.0), ""), ((0.0, 0.0, -HIT - 5), BLOCKED)):
+        robot.torques = robot.planner.reaction.torques(robot.joints, np.array(force))
+        ended = ""
+        try:
+            for _ in close(robot, guard):
+                pass
+        except Failure as failure:
+            ended = failure.code
+        assert ended == code
 
 
 @pytest.mark.parametrize("times", [1, 2])

@@ -131,14 +131,16 @@ class Delivery(msgspec.Struct):
     """What the hand has done. `put_down`: the object released last.
 
     `checked`: what a look after a release showed, in words; `unchecked`: objects put down where nobody could look;
-    `lay`: objects that lay when they were found, which may have been stood on their heads since; `stood`: by label, the
-    height [m] of those that stood, 0 of others; `around`: by id, what stood near when the hand began to work.
+    `lost`: labels of what fell from the hand; `lay`: objects that lay when they were found, which may have been stood
+    on their heads since; `stood`: by label, the height [m] of those that stood, 0 of others; `around`: by id, what
+    stood near when the hand began to work.
     """
 
     grabbed: bool = False
     released: bool = False
     put_down: str = ""
     checked: list[str] = []
+    lost: list[str] = []
     lay: list[str] = []
     stood: dict[str, float] = {}
     unchecked: list[str] = []

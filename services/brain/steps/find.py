@@ -153,6 +153,10 @@ class ReportNotFound(Leaf):
         return Status.FAILURE
 
     def _spoken(self) -> str:
+        if label_of(self.ctx, self._item) in self.ctx.mission.delivery.lost:
+            # The arm is carried above the base, which neither camera shows on the way.
+            lost = f"I lost the {self._item} on the way and do not see it."
+            return f"{lost} Please look whether it lies on my own base."
         told, names = f"I could not find the {self._item}.", self.ctx.io.latest(topics.HOUSEHOLD_NAMES)
         taught = {normalise(one.name) for one in names.names} if names else set()
         if normalise(self._item) in taught or describes(self._item, self.ctx.io.household):

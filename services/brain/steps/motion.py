@@ -170,6 +170,7 @@ class Release(Manipulate):
         label = self.ctx.gripper.holding
         if failure.code in LOST:
             self.ctx.gripper.mark_released(self.ctx.now)
+            self.ctx.mission.delivery.lost = [*self.ctx.mission.delivery.lost, label]
             failure = msgspec.structs.replace(failure, spoken=f"I lost the {label or 'object'} on the way.")
         return super().fail_with(failure)
 

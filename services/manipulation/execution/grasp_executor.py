@@ -8,7 +8,7 @@ from common.geometry import quat_matrix, yaw_quat
 from common.messages import WorldObject
 from services.manipulation.arm.arm_model import Array
 from services.manipulation.arm.contacts import Contact, came_around
-from services.manipulation.arm.touch import BLOCKED, TOO_HEAVY, TOUCHED, load_limit
+from services.manipulation.arm.touch import BLOCKED, HIT, TOO_HEAVY, TOUCHED, Guard, load_limit
 from services.manipulation.arm.trajectory import back_along, divided
 from services.manipulation.execution.grasp_choice import chosen, surroundings
 from services.manipulation.execution.recovery import retreat
@@ -121,8 +121,7 @@ def _execute_grab(
     try:
         yield from robot.follow(plan.insert, config.joint_speed * _inserting(robot, plan), robot.guard(free))
         robot.phase = "grasp"
-        yield from robot.move_gripper(1.0, CLOSING_EFFORT)
-        yield from robot.move_gripper(1.0)
+        yield from close(robot, robot.guard(free, HIT, "down"))
         _judge(robot, plan, None, widths)
     except Failure as failure:
         if failure.code == TOUCHED:
@@ -151,6 +150,19 @@ def _execute_grab(
     robot.sent_to.pop(plan.grasped.label, None)
     robot.source.remember(plan.grasped.label, None, "", robot.now)
     return f"{plan.grasped.label} held: width {robot.grip.width * 1000:.1f} mm, force {robot.grip.force:.0f} N"
+
+
+def close(robot: Robot, guard: Guard | None) -> Steps[None]:
+    """Fingers that close on the slope of a thing, or above its middle, press it on its surface.
+
+    Raises:
+        Failure: BLOCKED, more than its surface should bear.
+    """
+    try:
+        yield from robot.move_gripper(1.0, CLOSING_EFFORT, guard)
+        yield from robot.move_gripper(1.0, guard=guard)
+    except Failure as failure:
+        raise Failure(BLOCKED, f"the fingers press it down: {failure.detail}") from None
 
 
 def _inserting(robot: Robot, plan: GrabPlan) -> float:

@@ -140,10 +140,13 @@ class Robot:
         """The arm was stopped or moved by somebody else."""
         self._command, self._late = None, 0
 
-    def move_gripper(self, closed: float, effort: float = 0.0) -> Steps[None]:
+    def move_gripper(self, closed: float, effort: float = 0.0, guard: Guard | None = None) -> Steps[None]:
         """Open or close and wait until the width has settled. Said again and again: one lost command costs nothing.
 
         `effort` [N] is what a finger presses at most, the configured one unless told.
+
+        Raises:
+            Failure: what the guard feels; the fingers go on pressing until they are told otherwise.
         """
         command = m.GripperCommand(position=closed, max_effort=effort or self.config.grip_effort)
         still, last = 0, self.grip.width
@@ -151,6 +154,7 @@ class Robot:
             if n % GRIPPER_TICKS == 0:
                 self.io.publish(topics.GRIPPER_COMMAND, command)
             yield
+            self._check_touched(guard)
             still = still + 1 if abs(self.grip.width - last) < 2e-4 else 0
             last = self.grip.width
             if still >= 8 and n > 15:
