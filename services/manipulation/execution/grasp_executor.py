@@ -12,7 +12,7 @@ from services.manipulation.arm.touch import BLOCKED, HIT, TOO_HEAVY, TOUCHED, Gu
 from services.manipulation.arm.trajectory import back_along, divided
 from services.manipulation.execution.grasp_choice import chosen, surroundings
 from services.manipulation.execution.recovery import retreat
-from services.manipulation.execution.robot import SLOWLY, Failure, Robot, Steps, back_off, go_home, planner_of
+from services.manipulation.execution.robot import SLOWLY, Failure, Robot, Steps, go_home, planner_of
 from services.manipulation.execution.setting_down import set_down
 from services.manipulation.execution.sighting import MISTAKEN, aimed, sighted
 from services.manipulation.grasps.clearance import PAD
@@ -237,8 +237,8 @@ def _check_width(robot: Robot, plan: GrabPlan, widths: list[float]) -> None:
 
 
 def _carry(robot: Robot, plan: GrabPlan) -> Steps[None]:
-    """To the carry pose, slowly at first; where something is met, which may hang lower in the hand than was planned, a
-    little back, up, and on by another path."""
+    """To the carry pose, slowly at first; where something is met, as by what hangs askew in the hand, up and on by
+    another path."""
     speed, reaction = robot.config.joint_speed, planner_of(robot).reaction
     start = reaction.position(plan.carry[0])
     near, far = divided(plan.carry, lambda q: float(np.linalg.norm(reaction.position(q) - start)) < LEAVING)
@@ -250,7 +250,6 @@ def _carry(robot: Robot, plan: GrabPlan) -> Steps[None]:
         if failure.code != BLOCKED or not robot.grip.holds():
             raise
         robot.io.log.info("met on the way", object=plan.grasped.label, detail=failure.detail)
-        yield from back_off(robot, plan.carry)
         path = yield from robot.work(
             retreat, planner_of(robot), plan.grasped, robot.joints.copy(), plan.around, robot.config.lift_height
         )

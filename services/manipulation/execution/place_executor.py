@@ -21,9 +21,10 @@ BIN_DROP = 0.06
 """Height [m] above a bin's rim at which the hand lets go. Chosen: the fingers stay clear of the rim."""
 ACCESS = 0.08
 """Least free space [m] around an object that is to be left accessible: the breadth of the hand, open."""
-STANDS = 0.03
+STANDS, ASKEW = 0.03, 0.3
 """Height [m] above the end of the way down at which what is met is what the object is put on: it may have slid so far
-down in the hand, or have been taken so far above its foot."""
+down in the hand, or have been taken so far above its foot. What is held at its rim hangs askew by a share of its
+breadth. Chosen: 17 degrees."""
 
 
 def place(robot: Robot, where: str, beside: ObjectRef | None = None, away_from: str = "") -> Steps[str]:
@@ -152,7 +153,7 @@ def _lower(robot: Robot, plan: PlacePlan, held: GraspedObject) -> Steps[None]:
         if failure.code != TOUCHED:
             raise
         above = float(feel.position(robot.joints)[2] - feel.position(plan.lower[-1])[2])
-        if above > STANDS:
+        if above > STANDS + (ASKEW * max(held.size[:2]) if held.at_rim else 0.0):
             raise Failure("BLOCKED", f"the {held.label} met something {1000 * above:.0f} mm too high") from None
         robot.io.log.info("set down", object=held.label, felt=failure.detail, above_mm=round(1000 * above, 1))
 

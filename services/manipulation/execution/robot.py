@@ -18,7 +18,6 @@ from services.manipulation.arm.touch import (
     HIT,
     MET,
     TOO_HEAVY,
-    TOUCHED,
     Guard,
     Watch,
     Way,
@@ -79,14 +78,23 @@ class Robot:
     def follow(self, path: Sequence[Array], speed: float, guard: Guard | None = None) -> Steps[None]:
         """Stream a joint path and wait until the arm has come to rest at its end.
 
-        Without a `guard` it is watched that the arm meets nothing.
+        Without a `guard` it is watched that the arm meets nothing; off what it meets it goes back a little.
 
         Raises:
             Failure: BLOCKED, or what the guard feels; the arm then holds where it is.
         """
-        feeler = guard or self._watch()
         start = self._command if self._command is not None else self.joints
         points = [start, *path] if np.abs(start - path[0]).max() > 1e-3 else list(path)
+        try:
+            yield from self._stream_along(points, speed, guard or self._watch())
+        except Failure as failure:
+            if guard is None and failure.code == BLOCKED:
+                self.io.log.info("backing off", detail=failure.detail, phase=self.phase)
+                yield from self._back_off(points)
+            raise
+        self._command = None
+
+    def _stream_along(self, points: Sequence[Array], speed: float, feeler: Guard | Watch | None) -> Steps[None]:
         for q in timed(points, speed, self.config.joint_acceleration, DT):
             self.stream(q)
             yield
@@ -98,7 +106,18 @@ class Robot:
             self._check_touched(feeler)
             if np.abs(self.joints - points[-1]).max() < 0.01:
                 break
-        self._command = None
+
+    def _back_off(self, path: Sequence[Array]) -> Steps[None]:
+        """A little back along a path, slowly, off what was met on it."""
+        self.forget_command()
+        yield from self.wait(CALM)
+        gap = back_along(path, self.joints)[0] - self.joints
+        back = self.joints + gap * min(1.0, BACK / max(float(np.abs(gap).max()), 1e-9))
+        try:
+            yield from self.follow([back], self.config.joint_speed * SLOWLY, self.guard(self.torques.copy(), HIT))
+        except Failure as failure:
+            self.io.log.warning("while backing off", code=failure.code, detail=failure.detail)
+            self.forget_command()
 
     def stream(self, q: Array) -> None:
         """One set-point (7,) [rad] for the next 20 ms."""
@@ -189,22 +208,7 @@ def go_home(robot: Robot) -> Steps[str]:
             if failure.code != BLOCKED or share == SLOWLY:
                 raise
             robot.io.log.warning("on the way home", code=failure.code, detail=failure.detail)
-            yield from back_off(robot, path)
     return "arm at home"
-
-
-def back_off(robot: Robot, path: Sequence[Array]) -> Steps[None]:
-    """A little back along a path, off what was met on it."""
-    robot.forget_command()
-    yield from robot.wait(CALM)
-    gap = back_along(path, robot.joints)[0] - robot.joints
-    back = robot.joints + gap * min(1.0, BACK / max(float(np.abs(gap).max()), 1e-9))
-    try:
-        yield from robot.follow([back], robot.config.joint_speed * SLOWLY, robot.guard(robot.torques.copy(), HIT))
-    except Failure as failure:
-        if failure.code != TOUCHED:
-            raise
-        robot.io.log.warning("while backing off", code=failure.code, detail=failure.detail)
 
 
 def planner_of(robot: Robot) -> Planner:

@@ -50,6 +50,11 @@ class GraspedObject:
         return abs(float(self.rotation[2, 1])) > ABOVE_EACH_OTHER
 
     @property
+    def at_rim(self) -> bool:
+        """Only a side of it is between the pads."""
+        return self.width < min(self.size) / 2
+
+    @property
     def entangled(self) -> bool:
         """A finger may be in its handle, or is below it: moved other than straight back the hand takes it along."""
         return self.from_below or (self.as_found is not None and kind_of(self.kind).handle > 0)
