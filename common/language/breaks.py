@@ -14,7 +14,8 @@ from common.language.politeness import without_politeness
 
 _STRONG = re.compile(
     r"(?:,\s*|\s+)(?:(?:and|so|but|then|right|ok|okay|just|well|now|hence|therefore),?\s+)*"
-    r"(?=(?:can|could|would|will) you\s+(?!see\b|know\b|believe\b|imagine\b)|please\s+(?!and\b|whichever\b)\w|"
+    r"(?=(?:can|could|would|will) you\s+(?!see\b|know\b|believe\b|imagine\b)|"
+    r"please\s+(?!and\b|whichever\b|the\b|an?\b|my\b|that\b)\w|"
     r"(?:can|could|may|might) (?:i|we) (?:please )?(?:have|get)\s|(?:i|we) (?:want|need|would like) "
     r"you to\s|do me a favou?r)"
 )
@@ -73,6 +74,10 @@ _OF_IT_ALL = re.compile(
     r"^(?:it|they) (?:can|could|should|must|may|needs? to|ha(?:s|ve) to|wants? to|ought to|belongs?|goes?)\b"
 )
 """A request that begins with what was told of."""
+_QUESTION = re.compile(
+    r"^(?:and |so )*(?:where|which|what|who|how many|(?:is|are) there|have you (?:seen|found|noticed)|"
+    r"do you (?:know|see))\b"
+)
 _WISHED = re.compile(
     r"^(?:i|we) (?:want|need|would (?:really )?(?:like|love)|could do with|will have) (?:the|an?|my|some|that|one)\b"
 )
@@ -94,7 +99,7 @@ def without_reason_behind(text: str) -> str:
     for found in _BEHIND.finditer(text):
         head, tail = text[: found.start()], text[found.end() :]
         first = without_politeness(head).split()
-        asks = len(first) > 1 and first[0] in REQUESTS and not _UNFINISHED.search(head)
+        asks = len(first) > 1 and (first[0] in REQUESTS or _WISHED.match(head)) and not _UNFINISHED.search(head)
         if asks and not _TELLS_WHERE.match(tail) and not HANDLING & set(tail.split()):
             return head
     return text
@@ -151,5 +156,5 @@ def _asks(text: str, strong: bool) -> bool:
     if text.startswith(("where is it", "where are they", "have you any idea where", "do you know where")):
         return True  # "my ball rolled away, where is it"
     return len(bare) > 1 and (
-        strong or bare[0] in REQUESTS or bins or any(p.match(" ".join(bare)) for p in (_OF_IT_ALL, _WISHED))
+        strong or bare[0] in REQUESTS or bins or any(p.match(" ".join(bare)) for p in (_OF_IT_ALL, _WISHED, _QUESTION))
     )

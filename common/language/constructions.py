@@ -96,6 +96,7 @@ CONSTRUCTIONS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
          rf"remember|wonder) where (?:i|we) "
          rf"(?:have )?(?:put|left|laid|placed) {NP}", r"where is \1"),
         # Wishes, of whomever.
+        (rf"(?:i|we) (?:would )?(?:rather|prefer|sooner)(?: have)? {NP} (?:to|over|than) {NP}", r"bring me \1"),
         (rf"{_WHO}(?: really| also| just| now| only| kind of| do)? {_WANT} to {_CONSUME} {NP}", r"i want \1"),
         (rf"{_WHO}(?: really| also| just| now| only| kind of| do)? {_WANT} {NP} (?:back )?(?:here|back|over "
          rf"here|over)", r"bring me \1"),
@@ -135,6 +136,8 @@ CONSTRUCTIONS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
         # A quality that a place or a thing is to have.
         (rf"(?:make|get|have|keep) {NP} (?:look |be |all )?(?:very |really |a bit )?(?:nice and |neat and )?"
          r"(?:clean|tidy|clear|neat|nice|presentable|spotless|ready)(?: again)?(?: for .+)?", r"tidy \1"),
+        (rf"(?:make sure|see to it|ensure|make certain)(?: that)? {NP} (?:is|gets|looks|be) (?:all |nice and )?"
+         r"(?:clean|tidy|clear|neat|empty|spotless|free of \w+)", r"tidy \1"),
         (rf"(?:make sure|see to it|ensure|make certain)(?: that)? there (?:is|are) (?:no|not any) {NP} (?:left "
          rf")?on {NP}",
          r"put away all \1 on \2")

@@ -18,6 +18,12 @@ _CONTRACTIONS = tuple(
         (r"\b(?:gimme|gimmie)\b", "give me"),
         (r"\b(?:nah|naw|noo+)\b(?= \w|, )", "no"),
         (r"\brn\b", "right now"),
+        (r"\br u\b", "are you"),
+        (r"\bu\b(?!-)", "you"),
+        (r"\b2 (?=me\b|us\b|the\b|da\b|my\b)", "to "),
+        (r"\b4 (?=me\b|us\b)", "for "),
+        (r"\b(?:nvm|nm)\b", "never mind"),
+        (r"\b(?:might|could|would) you(?: perhaps| maybe| possibly)? have (?=seen|noticed|found)", "have you "),
         (r"\b(?:tho|tbh|ngl|fr|innit|lol|imo)\b", ""),
         (r"\b(?:forgive me|my (?:bad|mistake)|(?:my )?apologies|pardon me|w?h?oops(?:ie)?)\b,?(?= \w|, )", "sorry"),
         (

@@ -18,6 +18,8 @@ ABOUT_THE_WORLD: tuple[Wording, ...] = (
         f" [{LYING}] (on | in | at | inside) <spot>"
         f" | (tell me | list | name) (what | everything | all | [all [of]] [the] (things | objects | items)) "
         f"[that] [{BE}] [{LYING}] (on | in | at | inside) <spot>"
+        f" | [go and] (check | see | look) [that | if | whether] there is (nothing | anything) [left] [{LYING}]"
+        " (on | in | at) <spot>"
         f" | {ASK} what <spot> (has | holds | contains) [on it | in it] | {ASK} what {BE} [{LYING}] there",
         heard="what is (on | in) [the] <place>",
     ),

@@ -191,7 +191,7 @@ WORDINGS: tuple[Wording, ...] = (
     # Tidying, going.
     Wording("tidy", f"({TIDY}) up [<spot>]", heard="(tidy | clean) up [the | my] <place>"),
     Wording("tidy", f"({TIDY}) <spot> [up]", heard="(tidy | clean | clear) [the | my] <place>"),
-    Wording("tidy", "(sort | straighten) <spot> (out | up) | (clean | clear) <spot> off | empty <spot>"),
+    Wording("tidy", "(sort | straighten) <spot> [out | up] | (clean | clear) <spot> off | empty <spot>"),
     Wording("tidy", "make [some | a bit of | a little] (space | room) (on | in) <spot>"),
     Wording("tidy", "give <spot> a [quick | good] (tidy | clean | tidying | cleaning) [up]"),
     Wording(

@@ -30,7 +30,8 @@ _LATER_END = re.compile(
 )
 """The same behind it."""
 _INSTEAD = re.compile(
-    r"^(?:no|stop(?! by\b| (?!bring\b)\w+ing\b)(?: (?:that|it|this|everything|what you are doing))?|"
+    r"^(?:no|whatever you are doing|"
+    r"stop(?! by\b| (?!bring\b)\w+ing\b)(?: (?:that|it|this|everything|what you are doing))?|"
     r"wait(?! (?:for|here|there|in|at|by|on|until|till)\b)|sorry|"
     r"hold on|hang on|"
     r"(?:forget|scrap|leave|drop|cancel|never mind|skip) (?:about )?(?:that|it|this)|never ?mind|"

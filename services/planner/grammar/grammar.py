@@ -243,7 +243,10 @@ def _steps(command: str, builder: PlanBuilder) -> list[PlanStep]:
             if number + 1 == len(sentences) or not is_statement(sentence):
                 raise
             note(words, builder)
-        said = words if words[0] in COMMANDING else ("bring", *words)
+        if words[0] in COMMANDING:
+            said = words
+        else:  # a verb that nobody said is understood of what is known alone
+            said = () if builder.vocabulary.new_nouns else ("bring", *words)
     if builder.unmet:
         builder.say(builder.unmet)
     if builder.collecting:

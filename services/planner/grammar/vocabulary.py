@@ -127,7 +127,8 @@ class Vocabulary:
             kinds = self._nouns.get(whole, Sense()).kinds
             if inside := frozenset(label for label in named[0].names if self._kind_of.get(label) in kinds):
                 return Sense(names=inside), *named[1:]  # a can of soup
-        if head and last in self.kinds and (labels := self._printed.get(head)):
+        kinds = self._nouns[last].kinds if last in self._nouns else frozenset[str]()
+        if labels := {label for label in self._printed.get(head, ()) if self._kind_of.get(label) in kinds}:
             return Sense(names=frozenset(labels)), phrase, False  # the soup can
         for form, plural in _singulars(phrase):
             if labels := self._printed.get(form):
