@@ -144,7 +144,10 @@ def _everyday(reader: Reader, recordings: list[Row], mix: Mixer, args: argparse.
         found = outcome(text, heard)
         outcomes[found] += 1
         if args.errors and found != "same":
-            print(f"   {found}: {text} | {heard.text} ({heard.verdict}, {heard.confidence:.2f})", flush=True)
+            print(
+                f"   {found}: {text} | {heard.text} ({heard.verdict}, {heard.confidence:.2f}) | {heard.free}",
+                flush=True,
+            )
     for name in OUTCOMES:
         low, high = wilson(outcomes[name], max(1, len(said)))
         print(f"{name:16} {outcomes[name]:4} of {len(said)}   {low:.2f}-{high:.2f}")

@@ -35,6 +35,7 @@ def outcome(said: str, heard: Recognition) -> Outcome:
 
 
 def _steps(text: str) -> list[PlanStep]:
-    """What the planner makes of a text in the flat of the sentences; empty for what it does not understand."""
+    """What the planner makes of a text in the flat of the sentences, after a yes where it asks; empty for nothing."""
     plan = planned(text)
+    plan = planned(plan.asks) if plan.asks else plan
     return [*plan.looks, *plan.steps]

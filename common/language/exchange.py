@@ -41,6 +41,9 @@ def replaced(said: str, meant: str, is_place: IsPlace = lambda _: False) -> str 
         return None
     bare = tuple(w for w in new if w not in DETERMINERS)
     start, end = spans[-1] if len(spans) > 1 and is_place(bare) else spans[0]
+    at = next((i for i, w in enumerate(new) if w in PREPOSITIONS), len(new))
+    if len(spans) > 1 and is_place(tuple(w for w in new[at + 1 :] if w not in DETERMINERS)):
+        end = len(words)  # both the thing and where it goes are said anew
     return " ".join((*words[:start], *filled(meant, " ".join(words[start:end])).split(), *words[end:]))
 
 

@@ -6,13 +6,16 @@ from typing import Literal
 
 from common.kinds import KINDS
 from common.language.breaks import is_statement
+from common.language.contractions import expand
 from common.language.discourse import commands
 from common.language.meaning import VERBS, WORDS, readings
+from common.language.mood import forbids, is_told
 from common.language.normalise import DETERMINERS, Words, infinitive
 from common.language.pattern import Slots
 from common.language.quantities import NUMBERS, UNITS
 from common.language.repairs import NO_NOUN
 from common.language.simplify import simplified
+from common.language.verb_classes import classes
 from common.language.word_order import reworded
 from common.language.wording import Action
 from common.naming.names import ALIKE
@@ -31,6 +34,7 @@ _WORDS_THAT_TURN = (
 )
 _TURNING = frozenset(_WORDS_THAT_TURN.split())
 """Words that make a question, a report or a prohibition of an order."""
+_IS = frozenset({"is", "are", "was", "were", "has", "have", "had"})
 _POINTS = re.compile(r"\b(?:it|them|one|ones)\b")
 """Words that may stand for a thing of which something was told before."""
 _NAMELESS = DETERMINERS | {"me", "us"} | (ALIKE.keys() - KINDS.keys())
@@ -61,6 +65,16 @@ def turns(text: str, part: str) -> bool:
     said, left = text.split(), part.split()
     rest = iter(said)
     return all(word in rest for word in left) and bool(_TURNING.intersection(said).difference(left))
+
+
+def perhaps(text: str, names: Container[str]) -> bool:
+    """May the text ask for something in words of its own? It names a thing or a place and forbids and tells nothing."""
+    plain = expand(text)
+    words = tuple(plain.replace(",", " ").split())
+    named = any(word in names and word not in _NAMELESS for word in words)
+    asks = any(classes(word) & {"wish", "seek"} for word in words) or (words[0] in DETERMINERS and not _IS & set(words))
+    told = is_told(words) or (is_statement(plain) and not asks)
+    return named and len(words) > 1 and not (told or forbids(plain))
 
 
 def _grade(words: Words, names: Container[str]) -> Understanding:

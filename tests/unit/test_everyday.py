@@ -50,6 +50,7 @@ def test_two_halves_of_one_list(name: str, right: int, wrong: int) -> None:
         ("doorstep_everyday_sentences.tsv", 64, 1),
         ("morning_everyday_sentences.tsv", 156, 1),
         ("garden_everyday_sentences.tsv", 95, 0),
+        ("attic_everyday_sentences.tsv", 54, 1),
     ],
 )
 def test_what_is_not_understood_at_once_is_mostly_asked_about(name: str, understood: int, wrong: int) -> None:

@@ -9,7 +9,7 @@ from common.language.lexicon import COMMANDING
 from common.language.meaning import asks_for
 from common.language.mood import forbids
 from common.language.normalise import normalise
-from common.language.spoken import BETWEEN, turns, understood
+from common.language.spoken import BETWEEN, perhaps, turns, understood
 from services.speech.config import SpeechConfig
 from services.speech.recognise.recogniser import Recognition
 from services.speech.recognise.sounding import NEAR, VERY_NEAR, resounded
@@ -36,7 +36,8 @@ def freely(found: Recognition, names: Collection[str], config: SpeechConfig) -> 
 
     In place of a sentence that was accepted it counts where it is more certain, or makes something else of it ("who put
     the mug there" is no "put the mug there"), and is asked about. Of things that are not among the `names` only a
-    certain transcription tells. What sounds like something that would be understood is asked about.
+    certain transcription tells, and so of what may ask for something in wordings that nobody knows. What sounds like
+    something that would be understood is asked about.
     """
     found = replace(found, text=without_wake(found.text, config.wake))
     free = without_wake(normalise(found.free, ",").strip(" ,"), config.wake).strip(" ,")
@@ -55,6 +56,8 @@ def freely(found: Recognition, names: Collection[str], config: SpeechConfig) -> 
         return replace(found, text=near, verdict="accept", confidence=min(found.certainty, UNLISTED))
     if grade == "unlisted" and found.certainty >= config.certain:
         return replace(found, text=free, verdict="accept", confidence=min(found.certainty, UNLISTED))
+    if found.verdict == "reject" and found.certainty >= config.certain and perhaps(free, names):
+        return replace(found, text=free, verdict="accept", confidence=UNLISTED)
     return found
 
 
