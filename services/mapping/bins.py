@@ -14,13 +14,16 @@ BIN_SIDE, BIN_HEIGHT = (0.15, 0.65), (0.18, 0.62)
 RING, RIM_BAND, RIM_POINTS = 0.06, 0.04, 12
 """How far around the hole its rim is looked for, the height that counts to it [m], and points without which there is
 none [count]: a cell, and the noise."""
+BOTTOM = 0.1
+"""Height [m] up to which what is covered may be the bottom of a bin."""
 RIM_SHARE = 0.4
 """Share of the cells around a hole that are as low as a rim, at least [-]: two of four sides, and a hidden corner."""
 
 
 def find_bins(grid: Grid, low: Array) -> list[tuple[Rectangle, float]]:
     """Outline of the inside and height of the rim of open bins: holes in a ring of something low."""
-    taken = grid.walls | grid.covered
+    # The bottom of a bin, and the noise of it, are no sides.
+    taken = grid.walls | (grid.covered & (grid.highest > BOTTOM))
     found: list[tuple[Rectangle, float]] = []
     # Of a side that a wall hides from the lidar a cell may be missing; a hole of two cells is gone when gaps are shut.
     for ring in (taken, ndimage.binary_closing(taken, np.ones((3, 3)))):

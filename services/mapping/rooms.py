@@ -75,7 +75,8 @@ def openings(walls: Sequence[Wall]) -> list[Rectangle]:
     """
     outlines = [wall.outline for wall in walls]
     found = []
-    for own in outlines:
+    # Two pieces may begin at the same opening, and run away from it.
+    for own in (*outlines, *(one._replace(yaw=one.yaw + math.pi) for one in outlines)):
         gap = min((g for other in outlines if (g := _gap(own, other)) > 0.0), default=WIDEST)
         start, middle, end = (own.to_map(own.length / 2 + share * gap, 0.0) for share in (0.0, 0.5, 1.0))
         if gap >= WIDEST:

@@ -75,16 +75,24 @@ def made_household(name: str, mapper: Mapper, states: NDArray[np.uint8]) -> Hous
     grid = mapper.grid
     there = grid.at(ends, ndimage.binary_dilation(grid.walls))
     taken = ndimage.binary_dilation(grid.walls | grid.covered)
-    level, low = (rows[grid.at(rows, taken)] for rows in (_seen(mapper, "level"), _seen(mapper, "low")))
+    level, low = (rows[grid.at(rows, taken)] for rows in (_seen(mapper, "level"), _low(mapper)))
     lidar = Lidar(ends[there], seen_from[there])
     return floor_plan(name, lidar, grid, states, level, low, glass(mapper.panes))
 
 
-def _seen(mapper: Mapper, layer: str) -> Array:
-    """Points (n, 3) [map] of one layer of all pictures that were taken standing."""
+def _low(mapper: Mapper) -> Array:
+    """Points (n, 3) [map] of what is low; where none was seen standing, as beside a way, those seen driving."""
+    standing, driving = _seen(mapper, "low"), _seen(mapper, "low", still=False)
+    known = np.zeros(mapper.grid.shape, bool)
+    known[mapper.grid.cells(standing[:, :2])] = True
+    return np.concatenate([standing, driving[~mapper.grid.at(driving, ndimage.binary_dilation(known, iterations=4))]])
+
+
+def _seen(mapper: Mapper, layer: str, still: bool = True) -> Array:
+    """Points (n, 3) [map] of one layer of all pictures that were taken standing, or not."""
     parts = [np.empty((0, 3))]
     for shot in mapper.shots:
-        if shot.still:
+        if shot.still == still:
             base = compose(mapper.trajectory.poses[shot.keyframe], shot.pose)
             parts.append(placed(getattr(shot.picture, layer), base))
     return np.concatenate(parts)

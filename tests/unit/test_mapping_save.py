@@ -22,6 +22,7 @@ from services.mapping.save import SaveError, resume, save
 from services.mapping.scan import Scan, scan_of
 from services.mapping.views import Survey, View
 from tests.map_server import read_map
+from tests.unit.test_mapping_plan import ring
 from tests.unit.test_mapping_surfaces import patch
 
 EMPTY = np.empty((0, 3))
@@ -69,6 +70,18 @@ def test_the_files_tell_the_room(tmp_path: Path) -> None:
     assert len(graph["nodes"]) == 3 and {e["kind"] for e in graph["edges"]} >= {"odometry", "scan"}
     (row,) = json.loads((tmp_path / "surfaces.json").read_text())
     assert row["reached_from"]
+
+
+def test_a_bin_that_was_only_seen_in_passing_is_one_all_the_same(tmp_path: Path) -> None:
+    made, rim = mapper(), ring(-1.2, -1.2, 0.34, 0.40)
+    seen = made.shots[0].picture
+    floor = seen.floor[np.abs(seen.floor + 1.2).max(axis=1) > 0.25]
+    standing, driving = Picture(floor, seen.above, seen.level, EMPTY), Picture(floor, rim, EMPTY, rim)
+    made.shots = [Shot(0, (0.0, 0.0, 0.0), one, one is standing) for one in (standing, driving) for _ in range(3)]
+    made.draw()
+    save(tmp_path, "my home", made)
+    found = [r for r in load_household(str(tmp_path / "household.toml")).receptacles if r.depth]
+    assert [(round(r.center[0], 1), round(r.center[1], 1), round(r.depth, 1)) for r in found] == [(-1.2, -1.2, 0.4)]
 
 
 @pytest.mark.slow
