@@ -111,9 +111,10 @@ class Watch:
         if self.weighs:
             extra = extra - self.reaction.weight(joints)
         felt = float(np.linalg.norm(self.reaction.force(joints, extra)))
-        # What hangs beside the pinch point, and swings, shows as up to a half of its weight.
-        most = HIT + float(self.load[2]) / 2
-        return (BLOCKED if felt > most or float(np.abs(extra).max()) > STRAIN else ""), felt
+        # What hangs beside the pinch point, and swings, shows as up to a half of its weight, at half a metre.
+        more = float(self.load[2]) / 2
+        met = felt > HIT + more or float(np.abs(extra).max()) > STRAIN + more / 2
+        return (BLOCKED if met else ""), felt
 
 
 def watch(reaction: Reaction, joints: Array, torques: Array, holds: bool, weighs: bool) -> Watch:
