@@ -14,6 +14,8 @@ from judge.track import Thing, Track, distance
 
 STILL = 0.005
 """Drift [m] over `REST` that still counts as at rest: a rolling apple covers it in half the time."""
+CREEP = 0.001
+"""Drift [m] over `REST` from which a thing moves of itself: physics at rest creeps by less."""
 REST = 0.5
 """Time [s] over which rest is judged: ten samples at 20 Hz."""
 
@@ -79,6 +81,7 @@ class Recorder:
         self._tracks: dict[str, Track] = {}
         self._book = ContactBook()
         self._driven = 0.0
+        self._settling: set[str] = set()
 
     def add(self, sample: Sample) -> None:
         """One more sample."""
@@ -91,6 +94,9 @@ class Recorder:
         for name, now in sample.things.items():
             self._tracks[name].add(now, sample.t, step)
         self._recent = [x for x in self._recent if x.t >= sample.t - REST] + [sample]
+        self._settling = {n for n in self._settling if self._moves_of_itself(n)}
+        for name in self._settling:
+            self._tracks[name].restart()
 
     def feel(self, report: m.SimContacts) -> None:
         """What the simulation's log of contacts says."""
@@ -102,9 +108,15 @@ class Recorder:
         return bool(self._recent)
 
     def restart(self) -> None:
-        """The robot is about to be asked: objects count as moved by where they are now, at rest after the start."""
+        """The robot is about to be asked: objects count as moved by where they are now, at rest after the start; what
+        still topples, as toys do, by where it comes to rest."""
         for track in self._tracks.values():
             track.restart()
+        self._settling = {n for n in self._tracks if self._moves_of_itself(n)}
+
+    def _moves_of_itself(self, name: str) -> bool:
+        then, now = self._recent[0].things[name], self._recent[-1].things[name]
+        return distance(then.position, now.position) > CREEP and not (now.touched or now.held)
 
     def things(self, wants: tuple[Want, ...]) -> list[ThingEvidence]:
         """The evidence for each wanted object at this moment."""

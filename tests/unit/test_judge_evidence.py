@@ -242,6 +242,30 @@ def test_the_world_may_settle_until_the_robot_is_asked() -> None:
     assert found.conclude((WANT,), MUG).disturbed == ["ball", "can"]
 
 
+def test_what_still_topples_as_the_robot_is_asked_counts_from_where_it_comes_to_rest() -> None:
+    falls = [
+        sample(0.1 * n, ON_TABLE, can=changed(CAN, position=(3.3 + 0.02 * min(n, 8), 0.0, 0.75))) for n in range(20)
+    ]
+    found = recorder(falls[:4])
+    found.restart()
+    for one in falls[4:]:
+        found.add(one)
+    assert found.conclude((WANT,), MUG).disturbed == []
+    found.add(sample(2.0, ON_TABLE))
+    assert found.conclude((WANT,), MUG).disturbed == ["can"]
+
+
+def test_what_the_hand_holds_does_not_move_of_itself() -> None:
+    taken = [
+        sample(0.1 * n, ON_TABLE, 0.0, changed(CAN, position=(3.3 + 0.02 * n, 0.0, 0.8), held=True)) for n in range(6)
+    ]
+    found = recorder(taken[:3])
+    found.restart()
+    for one in taken[3:]:
+        found.add(one)
+    assert found.conclude((WANT,), MUG).disturbed == ["can"]
+
+
 def test_what_another_command_wanted_moved_is_not_disturbed() -> None:
     moved = recorder([*GOOD[:-1], sample(6.0, ON_TRAY, 0.0, changed(CAN, position=(1.0, 0.0, 0.75)))])
     assert moved.conclude((WANT,), MUG).disturbed == ["can"]
