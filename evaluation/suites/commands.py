@@ -86,6 +86,7 @@ TASKS: tuple[Task, ...] = (
     ),
     Task("open the fridge", effects=(Effect("says", "I cannot open or close doors, drawers or lids"), STILL)),
     Task("don't touch the red mug", effects=(Effect("says", "you told me not to, so I leave it"), STILL)),
+    Task("swap the red mug and the blue mug", (_on("red mug", "counter"), _on("blue mug", "living table"))),
 )
 """The lines of docs/COMMANDS.md, in its order where it has them."""
 
