@@ -179,7 +179,7 @@ class Day:
             wrong.append(f"of what was told there is left: {edits}")
         if not (self.link.latest(topics.SIGHTINGS) or m.Sightings(t=0.0)).sightings:
             wrong.append("nothing is known of what was seen where")
-        return wrong + self.account.excess()
+        return wrong + self.account.left_out() + self.account.excess()
 
 
 def main() -> int:
@@ -199,6 +199,7 @@ def main() -> int:
         try:
             robot.up()
             day = Day(robot, world, args.seed)
+            day.account.planned = args.missions
             day.await_open()
             wrong = day.tell()
             for number in range(1, args.missions + 1):

@@ -9,11 +9,12 @@ DISK = 250.0
 
 
 class Account(msgspec.Struct):
-    """`ids`: of all missions that were accepted; `false`: claims that were not so.
+    """`planned`: missions of the day; `ids`: of all that were accepted; `false`: claims that were not so.
 
     After each mission: `memory` [MB] of each process that ran, `disk` [MB] of all files.
     """
 
+    planned: int = 0
     ids: dict[str, str] = {}
     outcomes: dict[str, int] = {}
     unheard: int = 0
@@ -33,6 +34,11 @@ class Account(msgspec.Struct):
         for sample in self.memory[fifth:]:
             first, last = {**sample, **first}, {**last, **sample}
         return {name: (first[name], mb) for name, mb in last.items()}
+
+    def left_out(self) -> list[str]:
+        """Missions, and what was to happen in them, for which the day was too short."""
+        done = sum(self.outcomes.values())
+        return [f"{self.planned - done} of {self.planned} missions had no time"] if done < self.planned else []
 
     def excess(self) -> list[str]:
         """What grew beyond its bounds."""

@@ -41,3 +41,10 @@ def test_a_process_that_is_being_restarted_at_the_end_counts_as_it_was_last_seen
     samples = [{"sim": 80.0}] * 3 + [{"sim": 80.0, "brain": 90.0}] * 3
     assert Account(memory=samples).grown()["brain"] == (90.0, 90.0)
     assert "brain" in Account(memory=samples, outcomes={"delivered": 3}).lines(3600.0)[-1]
+
+
+def test_a_day_that_was_too_short_for_its_missions_says_so() -> None:
+    account = Account(planned=5, outcomes={"delivered": 2, "failed": 1})
+    assert account.left_out() == ["2 of 5 missions had no time"]
+    account.outcomes["timeout"] = 2
+    assert account.left_out() == []
