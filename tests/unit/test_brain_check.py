@@ -14,12 +14,13 @@ from common.household import load_household
 from services.brain.config import BrainConfig
 from services.brain.journal.pictures import KEPT, LARGEST, START, Pictures
 from services.brain.steps.verify import ASIDE
-from services.brain.world.placement import judge_absence, judge_placement, kind_meant
+from services.brain.world.placement import Rest, judge_absence, judge_placement, kind_meant, rested
 from tests.unit.brain_bench import Bench
 from tests.unit.test_brain_vla import FETCH, MANIP, POSE, QUERY, SPEECH, approach, planned, see
 
 SCENE = load_household("apartment")
 TRAY = (0.7, 0.0, 0.51)
+Size = tuple[float, float, float]
 LYING = math.pi / 2
 SIDE = (math.sqrt(0.5), 0.0, math.sqrt(0.5), 0.0)
 
@@ -67,8 +68,8 @@ def test_what_no_household_lists_is_judged_as_what_it_was_asked_for(
 ) -> None:
     unlisted = msgspec.structs.replace(SCENE, things=())
     seen = pose(label=label, tilt=tilt)
-    kind = kind_meant(asked, unlisted)
-    assert judge_placement(seen, label, "delivery tray", unlisted, None, kind, closed).fault == fault
+    rest = Rest(kind_meant(asked, unlisted), lay=closed)
+    assert judge_placement(seen, label, "delivery tray", unlisted, rest=rest, alike=closed).fault == fault
 
 
 @pytest.mark.parametrize(
@@ -82,8 +83,8 @@ def test_what_no_household_lists_is_judged_as_what_it_was_asked_for(
 def test_a_box_that_is_seen_as_a_book_has_to_stand(asked: str, size: tuple[float, float, float], fault: str) -> None:
     unlisted = msgspec.structs.replace(SCENE, things=())
     seen = pose(label="green book", size=size)
-    kind = kind_meant(asked, unlisted)
-    assert judge_placement(seen, "green book", "delivery tray", unlisted, None, kind).fault == fault
+    rest = Rest(kind_meant(asked, unlisted))
+    assert judge_placement(seen, "green book", "delivery tray", unlisted, rest=rest).fault == fault
 
 
 @pytest.mark.parametrize(
@@ -98,8 +99,35 @@ def test_a_box_that_is_seen_as_a_book_has_to_stand(asked: str, size: tuple[float
 def test_what_has_no_kind_is_not_lower_than_it_stood(asked: str, stood: float, height: float, fault: str) -> None:
     unlisted = msgspec.structs.replace(SCENE, things=())
     seen = pose(label="red toy", size=(0.16, 0.10, height))
-    kind = kind_meant(asked, unlisted)
-    assert judge_placement(seen, "red toy", "delivery tray", unlisted, kind=kind, stood=stood).fault == fault
+    rest = Rest(kind_meant(asked, unlisted), stood=stood)
+    assert judge_placement(seen, "red toy", "delivery tray", unlisted, rest=rest).fault == fault
+
+
+STANDING, LYING_BOX, LYING_WEDGE = (0.07, 0.07, 0.22), (0.22, 0.07, 0.07), (0.114, 0.055, 0.058)
+
+
+@pytest.mark.parametrize(
+    ("asked", "sights", "now", "fault"),
+    [
+        # It fell, was stood up again, and no end of a carton is like the other.
+        ("milk carton", [("white box", STANDING), ("white box", LYING_BOX)], ("white box", STANDING), "TOPPLED"),
+        ("milk carton", [("white box", STANDING)], ("white box", STANDING), ""),
+        ("white box", [("white box", LYING_BOX)], ("white box", STANDING), ""),
+        # What was a box lies as one, whatever it looks like now.
+        ("cheese", [("yellow box", (0.11, 0.06, 0.055))], ("yellow toy", LYING_WEDGE), "TOPPLED"),
+        ("cheese", [("yellow toy", LYING_WEDGE)], ("yellow toy", LYING_WEDGE), ""),
+    ],
+)
+def test_what_has_lain_is_judged_by_what_it_was(
+    asked: str, sights: list[tuple[str, Size]], now: tuple[str, Size], fault: str
+) -> None:
+    unlisted, rest = msgspec.structs.replace(SCENE, things=()), None
+    for label, size in sights:
+        rest = rested(pose(label=label, size=size), asked, unlisted, rest)
+    label, size = now
+    seen = pose(label=label, size=size)
+    finding = judge_placement(seen, label, "delivery tray", unlisted, rest=rest or Rest(), alike="box" in label)
+    assert finding.fault == fault, finding
 
 
 @pytest.mark.parametrize(("x", "fault"), [(0.4, ""), (1.2, "MISPLACED")])

@@ -8,6 +8,7 @@ import msgspec
 from common import messages as m
 from common.robot.grip import grip_of
 from services.brain.world.neighbours import Stood
+from services.brain.world.placement import Rest
 
 Outcome = Literal["delivered", "failed", "cancelled"]
 
@@ -131,9 +132,8 @@ class Delivery(msgspec.Struct):
     """What the hand has done. `put_down`: the object released last.
 
     `checked`: what a look after a release showed, in words; `unchecked`: objects put down where nobody could look;
-    `lost`: labels of what fell from the hand; `lay`: objects that lay when they were found, which may have been stood
-    on their heads since; `stood`: by label, the height [m] of those that stood, 0 of others; `around`: by id, what
-    stood near when the hand began to work.
+    `lost`: labels of what fell from the hand; `rests`: how objects rested, by the words they were asked for with;
+    `around`: by id, what stood near when the hand began to work.
     """
 
     grabbed: bool = False
@@ -141,8 +141,7 @@ class Delivery(msgspec.Struct):
     put_down: str = ""
     checked: list[str] = []
     lost: list[str] = []
-    lay: list[str] = []
-    stood: dict[str, float] = {}
+    rests: dict[str, Rest] = {}
     unchecked: list[str] = []
     around: dict[str, Stood] = {}
 

@@ -88,6 +88,7 @@ def apply(decision: Decision, mission: Mission, hand: GripperState) -> None:
         mission.delivery.grabbed = True
     elif decision.change == "new world":
         mission.search.found, mission.search.visited, hand.put_down = {}, [], {}
+        mission.delivery.rests = {}
         mission.search.unreached = []
     if decision.change:
         mission.at = ""

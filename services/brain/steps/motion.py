@@ -14,6 +14,7 @@ from services.brain.mission.context import Context
 from services.brain.mission.mission import Failure
 from services.brain.steps.leaf import SendGoal
 from services.brain.world.neighbours import standing
+from services.brain.world.placement import rested
 from services.brain.world.standing_poses import place_pose
 
 Text = Callable[[], str]
@@ -99,6 +100,10 @@ class Manipulate(SendGoal):
         ctx, delivery = self.ctx, self.ctx.mission.delivery
         # What has fallen once stays in mind as it stood before.
         delivery.around = {**standing(ctx.objects, ctx.robot_pose, ctx.now), **delivery.around}
+        delivery.rests = delivery.rests | {
+            item: rested(pose, item, ctx.io.household, delivery.rests.get(item))
+            for item, pose in ctx.mission.search.found.items()
+        }
 
     def step(self) -> str:
         return self._text()

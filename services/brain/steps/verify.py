@@ -18,7 +18,7 @@ from services.brain.steps.leaf import Leaf, SendGoal, Settle
 from services.brain.steps.motion import Release
 from services.brain.tree.composites import Condition, Retry, Sequence
 from services.brain.world.neighbours import knocked_over
-from services.brain.world.placement import TIPPED, Finding, judge_absence, judge_placement, kind_meant
+from services.brain.world.placement import Finding, Rest, judge_absence, judge_placement
 
 MISPLACED_CODES = ("NOT_SEEN", "MISPLACED", "TOPPLED")
 """Codes of a look that shows an object not where, or not as, it belongs."""
@@ -127,21 +127,13 @@ class AlreadyInPlace(Leaf):
 
 def _judged(ctx: Context, pose: m.ObjectPose, target: str, near: str) -> Finding:
     """Judge by the words that it was asked for with: what is called a banana may have been meant as the bottle."""
-    label, household = ctx.mission.delivery.put_down, ctx.io.household
-    found = [(item, one) for item, one in ctx.mission.search.found.items() if one.label == label]
-    kind = next((k for item, _ in found if (k := kind_meant(item, household))), "")
+    mission, label, household = ctx.mission, ctx.mission.delivery.put_down, ctx.io.household
+    asked = (item for item, one in mission.search.found.items() if one.label == label)
+    rest = next((rest for item in asked if (rest := mission.delivery.rests.get(item))), Rest())
     seen = ctx.known_object(label)
-    looks = [kind_of(k) for k in (seen.kind, *seen.kinds[:1])] if seen else []
     # A vessel that lay may have been stood on its mouth, and then looks like a can.
-    delivery = ctx.mission.delivery
-    if label not in delivery.lay and any(one.tilt > TIPPED for _, one in found):
-        delivery.lay = [*delivery.lay, label]
-    if label not in delivery.stood:
-        tallest = max((one.size[2] for _, one in found if one.tilt <= TIPPED), default=0.0)
-        delivery.stood = {**delivery.stood, label: tallest}
-    closed = label in delivery.lay and any(k.ends_alike for k in looks)
-    beside, stood = object_in_map(ctx, near), delivery.stood[label]
-    return judge_placement(pose, label, target, household, beside, kind, closed, stood)
+    alike = any(kind_of(k).ends_alike for k in (seen.kind, *seen.kinds[:1])) if seen else False
+    return judge_placement(pose, label, target, household, object_in_map(ctx, near), rest, alike)
 
 
 def record_finding(ctx: Context, finding: Finding, picture: bytes) -> Status:

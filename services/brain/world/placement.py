@@ -4,6 +4,8 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
+import msgspec
+
 from common.geometry import quat_matrix
 from common.household import Household
 from common.kinds import kind_of, laid_on_a_side
@@ -37,42 +39,67 @@ class Finding:
         return f"{self.words}, {self.measured}" if self.measured else self.words
 
 
+class Rest(msgspec.Struct, frozen=True):
+    """How an object rested before the hand came.
+
+    `asked`: the kind that it was asked for as, `taken`: the one that it was taken for; "" for none. `stood`: its height
+    [m] as it stood, 0 if it lay; `lay`: it has lain at some time, and may have been stood on its head since.
+    """
+
+    asked: str = ""
+    taken: str = ""
+    stood: float = 0.0
+    lay: bool = False
+
+
+def rested(pose: ObjectPose, item: str, household: Household, before: Rest | None) -> Rest:
+    """What is known of the rest of an object that was asked for as `item` and is seen at `pose` before a grasp."""
+    asked, taken = kind_meant(item, household), kind_meant(pose.label, household)
+    lay = _over(asked or taken, pose)
+    if before is not None:
+        return msgspec.structs.replace(before, lay=before.lay or lay)
+    return Rest(asked, taken, 0.0 if lay else pose.size[2], lay)
+
+
 def judge_placement(
     pose: ObjectPose,
     label: str,
     target: str,
     household: Household,
     beside: ObjectRef | None = None,
-    kind: str = "",
-    closed: bool = False,
-    stood: float = 0.0,
+    rest: Rest = Rest(),  # noqa: B008 it is frozen
+    alike: bool = False,
 ) -> Finding:
     """Judge an object that was seen after it was put down on `target`; "": anywhere will do.
 
-    `beside`: the object, with its place in frame map, next to which it belongs. `kind`: what it was asked for as, ""
-    what the household or its label says; `closed`: it lay when it was found, and looks closed from above now; `stood`:
-    its height [m] when it was found standing, 0 if it did not.
+    `beside`: the object, with its place in frame map, next to which it belongs. `rest`: how it rested before; `alike`:
+    by its looks now its ends cannot be told apart, so that one that `lay` may stand on its head.
     """
     spec, wanted = household.thing(label), household.receptacle(target)
-    stands = kind_of(kind or (spec.kind if spec else kind_meant(label, household)))
+    seen = spec.kind if spec else kind_meant(label, household)
+    # What fell may look like another kind since, and has to stand as both.
+    kinds = {rest.asked} if rest.asked else {seen} if spec else {seen, rest.taken}
     on = household.receptacle(pose.on) or household.resting_place(pose.position)
     where = f"on the {on.name}" if on else "on the floor"
     if on and on.depth:
         where = f"in the {on.name}"
     tilt = tilt_of(pose)
-    if spec is None and not tilt and laid_on_a_side(stands.name, pose.size):
+    if spec is None and not tilt and any(laid_on_a_side(kind, pose.size) for kind in kinds):
         # A box on its side is seen as a book that lies as it should.
         tilt = math.pi / 2
     x, y, z = pose.position
     measured = f"at ({x:.2f}, {y:.2f}, {z:.2f}), tilt {math.degrees(tilt):.0f} deg"
     if wanted is not None and on is not wanted:
         return Finding("MISPLACED", f"the {label} is {where}, not on the {wanted.name}", measured)
-    over = tilt > TIPPED or (closed and "upside down" in stands.rests)
-    if stands.upright and over and not (on and on.depth):
+    stands = [kind_of(kind) for kind in kinds if kind_of(kind).upright]
+    in_bin = on is not None and bool(on.depth)
+    if stands and tilt > TIPPED and not in_bin:
         how = "lies on its side" if lies(tilt) else "stands upside down"
         return Finding("TOPPLED", f"the {label} {how} {where}", measured)
-    unknown = not kind and spec is None and not stands.upright
-    if unknown and stood - pose.size[2] > max(FELL, FELL_SHARE * stood) and not (on and on.depth):
+    if rest.lay and alike and any(not kind.ends_alike for kind in stands) and not in_bin:
+        return Finding("TOPPLED", f"the {label} stands {where}, on its head as far as I can tell", measured)
+    unknown = not rest.asked and spec is None and not stands
+    if unknown and rest.stood - pose.size[2] > max(FELL, FELL_SHARE * rest.stood) and not in_bin:
         return Finding("TOPPLED", f"the {label} does not stand {where} as it did", measured)
     if beside is not None:
         apart = math.dist((x, y), beside.position[:2])
@@ -80,6 +107,11 @@ def judge_placement(
             return Finding("MISPLACED", f"the {label} is {apart:.1f} m from the {beside.label}", measured)
         where += f" next to the {beside.label}"
     return Finding("", f"the {label} is {where}", measured)
+
+
+def _over(kind: str, pose: ObjectPose) -> bool:
+    """Does something of that kind, seen so, lie or stand on its head?"""
+    return tilt_of(pose) > TIPPED or laid_on_a_side(kind, pose.size)
 
 
 def lies(tilt: float) -> bool:

@@ -131,8 +131,8 @@ class Vocabulary:
         if labels := {label for label in self._printed.get(head, ()) if self._kind_of.get(label) in kinds}:
             return Sense(names=frozenset(labels)), phrase, False  # the soup can
         for form, plural in _singulars(phrase):
-            if labels := self._printed.get(form):
-                return Sense(names=frozenset(labels)), form, plural
+            if printed := self._printed.get(form):
+                return Sense(names=frozenset(printed)), form, plural
         return None
 
     def new_noun(self, words: Words) -> Sense | None:
