@@ -49,7 +49,6 @@ CONSTRUCTIONS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
          r"me|see|look|report|check|find out)(?: back)? (?:what "
          r"(?:you (?:can )?(?:see|find)|"
          r"is (?:there|in there|on it|in it|on there)|there is))(?: there)?", r"go and look in \1"),
-        (r"(?:do you have )?any (?:idea|clue) (where .+) (?:has|have|had) (?:got|gotten|gone)(?: to)?", r"\1 is"),
         (r"(tidy|clean|clear|straighten)(?: up)? in ((?:the|my|our) \w+(?: \w+)?)", r"tidy \2"),
         (rf"(?:can|could|would|might) {NP} (?:go|move|be put|be placed) ({TO_PLACE}|{_BESIDE}) {NP}", r"put \1 \2 \3"),
         (rf"(?:i|we) would (?:rather|prefer)(?: it| that| if)* {NP} (?:were|was|is|stood|sat|went) "
@@ -65,19 +64,15 @@ CONSTRUCTIONS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
         (rf"(?:get|fetch|take|grab|collect|pick)(?: up)? {NP} (?:and )?(?:then "
          rf")?(put|place|set|drop|lay) (?:it |them )?"
          rf"({TO_PLACE}) {NP}", r"\2 \1 \3 \4"),
-        (rf"(\w+) {NP} (?:back |over )?(?:to (?:me|us)|here) (from .+)", r"\1 me \2 \3"),
         # An exception that is said at the end.
         (rf"(\w+(?: up| away| me)?) {NP} ((?:here|over here|to me|away|back)|{TO_PLACE} (?:\w+ ){{1,3}}?\w+)"
          rf" (but not|but no|except for|except|apart from|other than|besides|but) {NP}", r"\1 \2 \4 \5 \3"),
-        (rf"(\w+ {NP} {TO_PLACE} {NP}) where (?:it|they) belongs?", r"\1"),
         # Clefts.
         (rf"(?:all|what|the only thing|the thing|the one|everything)(?: that)? {_WHO}(?: really| just| "
          rf"actually)? {_WANT}"
          rf"(?: right)? is {NP}", r"bring me \1"),
         (rf"it is {NP}(?: that| which)? (?:i|we)(?: really)? (?:{_WANT}|meant|mean)", r"bring me \1"),
         (rf"{NP} is (?:what|the one|all)(?: that)? (?:i|we)(?: really)? (?:{_WANT}|meant|mean)", r"bring me \1"),
-        (rf"the (\w+)(?: that| which)? (?:i|we)(?: really)? (?:{_WANT}|meant|mean) is the "
-         rf"(.+) one", r"bring me the \2 \1"),
         (r"(?:i|we) (?:can|could|may|might) (?:have|get|borrow|use) ((?:the|my|an?|some|one|two|another|that) .+)",
          r"i want \1"),
         (rf"(?:it|that) would (?:really )?(?:be|make) (?:\w+ ){{1,4}}?(?:to "
@@ -107,7 +102,6 @@ CONSTRUCTIONS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
         # Coming with something is bringing it.
         (rf"(?:come|return|be)(?: back| here| over| to me| over here| back here)* with {NP}", r"bring me \1"),
         (rf"(?:go|drive|walk|run|head|come) (?:over |back )?(?:to|into) {NP} with {NP}", r"take \2 to \1"),
-        (rf"(?:bring|take) along {NP}", r"bring me \1"),
         # What is to be the case.
         (rf"(?:go and )?(?:make sure|see|see to it|ensure|make certain|take care)(?: that)? {NP} (?:is|are|gets?|"
          rf"goes|go|ends? up)"

@@ -103,12 +103,9 @@ _SAME = tuple(
             r"\w+)?|there|around|about|left))[.?!]?$",
             r"is there \1"
         ),
-        (r"^got (?=any (?:idea|clue)\b)", ""),
         (r"\bhow come\b", "why"),
         (r"\bany (?:notion|inkling|clue|hint)\b", "any idea"),
-        (r"\bof (?:mine|ours|yours)\b", ""),
         (r"\b(?:(?:that|which) (?:is having|has)|with) (?:a |the )?(\w+) colou?r\b", r"that is \1"),
-        (r", (?:if|when) (?:you (?:would|could|can|please|like|do not mind)|possible|convenient),", ""),
         (r"\boff you (?:go|pop|trot|toddle|run)(?: then)? (?=to|into)", "go "),
         (r"\b(some|any)thing (?:that )?(?:i|we|one) (?:can|could|may|might) (eat|drink)\b", r"\1thing to \2"),
         (r"\b(some|any)thing to (?:munch|nibble|snack|chew)(?: on)?\b", r"\1thing to eat"),
@@ -121,20 +118,17 @@ _SAME = tuple(
             r"is there anything to \1",
         ),
         (r"\bdat\b", "that"),
-        (r"^only (?=(?:the|my) .+ (?:goes|belongs|should|needs)\b)", ""),
         (r"\bfrom off(?: of)?\b", "from"),
         (r"\bwhereabouts (?=is|are|did|do|was|were|has|have)", "where "),
         (r"\bwith you (?=to|into|on|in|over)", ""),
         (r",? on (?:the|your) way to (?=the|my|our)", " then go to "),
         (r"[.;,]? (not (?:the|a|my) \w+ one)[.;,] (?=(?:the|a|my) )", r", \1, "),
         (r"\b(inside|off|outside) of\b", r"\1"),
-        (r"\bon to (?=the|my|our|a)", "onto "),
         (r"\bone more(?= please$|$)", "another one"),
         (r"\bone more (?!time|go\b|thing|try|shot|attempt|please)", "another "),
         (r"\bnothing (?:but|except|other than) (?=(?:the|a|an|my|one)\b)", ""),
         (r"\b(?:far|extreme|very|outer) (left|right)\b", r"\1"),
         (r"\b(left|right)[- ]hand\b", r"\1"),
-        (r"\ball the way (?=to|on|at|in|over|back|up|down)", "")
     )
 )  # fmt: skip
 """Several words for which there are fewer, wherever they stand."""

@@ -128,8 +128,8 @@ class Vocabulary:
             if inside := frozenset(label for label in named[0].names if self._kind_of.get(label) in kinds):
                 return Sense(names=inside), *named[1:]  # a can of soup
         kinds = self._nouns[last].kinds if last in self._nouns else frozenset[str]()
-        if labels := {label for label in self._printed.get(head, ()) if self._kind_of.get(label) in kinds}:
-            return Sense(names=frozenset(labels)), phrase, False  # the soup can
+        if cans := frozenset(label for label in self._printed.get(head, ()) if self._kind_of.get(label) in kinds):
+            return Sense(names=cans), phrase, False  # the soup can
         for form, plural in _singulars(phrase):
             if printed := self._printed.get(form):
                 return Sense(names=frozenset(printed)), form, plural
