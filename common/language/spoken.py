@@ -13,6 +13,7 @@ from common.language.mood import forbids, is_told
 from common.language.normalise import DETERMINERS, Words, infinitive
 from common.language.pattern import Slots
 from common.language.quantities import NUMBERS, UNITS
+from common.language.refusals import REFUSALS
 from common.language.repairs import NO_NOUN
 from common.language.simplify import simplified
 from common.language.verb_classes import classes
@@ -71,7 +72,9 @@ def perhaps(text: str, names: Container[str]) -> bool:
     """May the text ask for something in words of its own? It names a thing or a place and forbids and tells nothing."""
     plain = expand(text)
     words = tuple(plain.replace(",", " ").split())
-    named = any(word in names and word not in _NAMELESS for word in words)
+    named = any(word in names and word not in _NAMELESS | NO_NOUN | {"of"} for word in words)
+    if any(wording in REFUSALS and not wording.lost for wording, _ in readings(words, "command")):
+        return False
     asks = any(classes(word) & {"wish", "seek"} for word in words) or (words[0] in DETERMINERS and not _IS & set(words))
     told = is_told(words) or (is_statement(plain) and not asks)
     return named and len(words) > 1 and not (told or forbids(plain))
