@@ -14,8 +14,9 @@ from judge.track import Thing, Track, distance
 
 STILL = 0.005
 """Drift [m] over `REST` that still counts as at rest: a rolling apple covers it in half the time."""
-CREEP = 0.001
-"""Drift [m] over `REST` from which a thing moves of itself: physics at rest creeps by less."""
+CREEP = 2e-5
+"""Drift [m] over `REST` from which a thing moves of itself. Chosen: what has come to rest sleeps, a toy that topples
+begins with 50 um in 50 ms."""
 REST = 0.5
 """Time [s] over which rest is judged: ten samples at 20 Hz."""
 
