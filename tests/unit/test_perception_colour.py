@@ -20,6 +20,8 @@ GOODS = {
     "chocolate": ((0.3, 0.18, 0.1), "brown"),
     "grass": ((0.25, 0.55, 0.2), "green"),
     "plum": ((0.4, 0.2, 0.5), "purple"),
+    "beet": ((0.5, 0.05, 0.5), "purple"),
+    "magenta": ((0.95, 0.2, 0.85), "pink"),
     "coal": ((0.1, 0.1, 0.11), "black"),
 }
 

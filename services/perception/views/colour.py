@@ -92,6 +92,8 @@ def pixel_words(rgb: Array, turn: float = 0.0) -> NDArray[np.intp]:
     dull = (saturation < 0.6) & (value < 0.85) | (saturation < 0.78) & (value < 0.45) | (value < 0.36)
     found[warm & dull] = WORDS.index("brown")
     found[(hue > 0.125) & (hue < 0.2) & (value < 0.4)] = WORDS.index("green")
+    # The same hue is magenta where it is bright and purple where it is deep.
+    found[(hue > 0.8) & (hue < 0.9) & (saturation > 0.45) & (value < 0.75)] = WORDS.index("purple")
     reddish = (hue < 0.03) | (hue > 0.93)
     found[reddish & (saturation < 0.5) & (value > 0.7)] = WORDS.index("pink")
     # Cream and ivory are called white.
