@@ -110,7 +110,7 @@ STANDING, LYING_BOX, LYING_WEDGE = (0.07, 0.07, 0.22), (0.22, 0.07, 0.07), (0.11
     ("asked", "sights", "now", "fault"),
     [
         # It fell, was stood up again, and no end of a carton is like the other.
-        ("milk carton", [("white box", STANDING), ("white box", LYING_BOX)], ("white box", STANDING), "TOPPLED"),
+        ("milk carton", [("white box", STANDING), ("white box", LYING_BOX)], ("white box", STANDING), "UNCHECKED"),
         ("milk carton", [("white box", STANDING)], ("white box", STANDING), ""),
         ("white box", [("white box", LYING_BOX)], ("white box", STANDING), ""),
         # What was a box lies as one, whatever it looks like now.

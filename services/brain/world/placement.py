@@ -11,7 +11,7 @@ from common.household import Household
 from common.kinds import kind_of, laid_on_a_side
 from common.messages import ObjectPose, ObjectRef
 
-Fault = Literal["", "NOT_SEEN", "MISPLACED", "TOPPLED"]
+Fault = Literal["", "NOT_SEEN", "MISPLACED", "TOPPLED", "UNCHECKED"]
 TIPPED = 0.35
 """Tilt [rad] from which an object does not stand; perception tells standing, lying (1.57) and upside down (3.14)."""
 UPSIDE_DOWN = 2.4
@@ -92,12 +92,13 @@ def judge_placement(
     if wanted is not None and on is not wanted:
         return Finding("MISPLACED", f"the {label} is {where}, not on the {wanted.name}", measured)
     stands = [kind_of(kind) for kind in kinds if kind_of(kind).upright]
-    in_bin = on is not None and bool(on.depth)
-    if stands and tilt > TIPPED and not in_bin:
+    in_bin, closed = on is not None and bool(on.depth), rest.lay and alike
+    over = tilt > TIPPED or (closed and any("upside down" in kind.rests for kind in stands))
+    if stands and over and not in_bin:
         how = "lies on its side" if lies(tilt) else "stands upside down"
         return Finding("TOPPLED", f"the {label} {how} {where}", measured)
-    if rest.lay and alike and any(not kind.ends_alike for kind in stands) and not in_bin:
-        return Finding("TOPPLED", f"the {label} stands {where}, on its head as far as I can tell", measured)
+    if closed and any(not kind.ends_alike for kind in stands) and not in_bin:
+        return Finding("UNCHECKED", f"the {label} stands {where}, on its head for all I can tell", measured)
     unknown = not rest.asked and spec is None and not stands
     if unknown and rest.stood - pose.size[2] > max(FELL, FELL_SHARE * rest.stood) and not in_bin:
         return Finding("TOPPLED", f"the {label} does not stand {where} as it did", measured)
