@@ -51,7 +51,7 @@ def robot(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     clean = {k: v for k, v in os.environ.items() if not k.startswith("TIDYBOT")}
     environ = {**clean, "PYTHONPATH": str(ROOT), "TIDYBOT_RUN_DIR": str(directory)}
     command = [sys.executable, "-m", "cli.main"]
-    settings = ["--scene", "minimal", "--speed", "2", "--set", "dashboard.port=0", "--set", "dashboard.frame_rate=3"]
+    settings = ["--scene", "minimal", "--speed", "2", "--set", "dashboard.port=0", "--set", "dashboard.frame_rate=1"]
     up = [*command, "up", "--detach", "--port", str(port), *settings]
     try:
         done = subprocess.run(up, env=environ, cwd=ROOT, capture_output=True, text=True, timeout=300)
@@ -89,7 +89,7 @@ class Visitor:
     def __init__(self, browser: Any, url: str) -> None:
         self.asked: list[str] = []
         self.errors: list[str] = []
-        self.page = browser.new_page(viewport={"width": 760, "height": 480})
+        self.page = browser.new_page(viewport={"width": 480, "height": 360})
         self.page.set_default_timeout(PATIENCE)
         self.page.on("request", lambda request: self.asked.append(request.url))
         self.page.on("websocket", lambda opened: self.asked.append(opened.url))
@@ -348,7 +348,7 @@ def test_a_telephone_has_stop_question_and_talk_button_in_sight(visitor: Visitor
         assert page.evaluate("document.documentElement.scrollWidth") <= 390
         visitor.shot("telephone")
     finally:
-        page.set_viewport_size({"width": 760, "height": 480})
+        page.set_viewport_size({"width": 480, "height": 360})
 
 
 @pytest.mark.slow
