@@ -35,6 +35,7 @@ def test_sentences_that_nobody_worked_on() -> None:
     assert verdicts.count("right") >= 50 and verdicts.count("wrong") <= 1, "50 of 60 when they were first tried"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "right", "wrong"), [(LOTS[0], 90, 2), (LOTS[1], 84, 3)])
 def test_two_halves_of_one_list(name: str, right: int, wrong: int) -> None:
     """The first was worked on; the second is sealed: what is lost of it was never won by a look at it."""

@@ -90,6 +90,7 @@ def test_what_cannot_be_carried_is_not_looked_for(said: str) -> None:
     assert planned(said).steps == []
 
 
+@pytest.mark.slow
 def test_sentences_of_a_market() -> None:
     verdicts = [verdict(row, understand(row)) for row in sentences("market_everyday_sentences.tsv")]
     assert len([v for v in verdicts if v.endswith(("right", "rightly"))]) >= 0.93 * len(verdicts)

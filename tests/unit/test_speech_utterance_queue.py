@@ -254,7 +254,9 @@ def test_a_taught_name_is_heard_at_once_and_asked_about_when_it_is_forgotten(
     assert known > UNLISTED >= forgotten
 
 
-@pytest.mark.parametrize("text", ["this is my vitamin box", "bring me the oat milk"])
+@pytest.mark.parametrize(
+    "text", [pytest.param("this is my vitamin box", marks=pytest.mark.slow), "bring me the oat milk"]
+)
 def test_what_is_on_no_list_is_taken_as_it_was_heard_and_to_be_asked_about(
     robot: Robot, said: dict[str, Samples], text: str
 ) -> None:
