@@ -94,3 +94,9 @@ def test_what_cannot_be_carried_is_not_looked_for(said: str) -> None:
 def test_sentences_of_a_market() -> None:
     verdicts = [verdict(row, understand(row)) for row in sentences("market_everyday_sentences.tsv")]
     assert len([v for v in verdicts if v.endswith(("right", "rightly"))]) >= 0.93 * len(verdicts)
+
+
+@pytest.mark.parametrize("thing", ["tuna can", "watering can", "can of paint"])
+def test_a_can_that_nobody_listed_is_looked_for(thing: str) -> None:
+    assert [step.object for step in planned(f"can you bring me the {thing}").steps][:2] == [thing, thing]
+    assert [step.object for step in planned("bring me the can if you can").steps][:1] == ["red can"]

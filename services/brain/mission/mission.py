@@ -110,7 +110,7 @@ class Search(msgspec.Struct):
 
     `perhaps`: objects that may be meant, as perception had them last, `about` that which the person is being asked
     about; `confirmed` the ids of those that are meant, by the plan's name, `rejected` of those that are not.
-    `unanswered`: nobody has answered such a question.
+    `unanswered`: nobody has answered such a question. `too_wide`: labels of what manipulation has called so.
     """
 
     found: dict[str, m.ObjectPose] = {}
@@ -126,6 +126,7 @@ class Search(msgspec.Struct):
     confirmed: dict[str, str] = {}
     rejected: list[str] = []
     unanswered: bool = False
+    too_wide: list[str] = []
 
 
 class Delivery(msgspec.Struct):

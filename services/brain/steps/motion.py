@@ -150,6 +150,11 @@ class Grab(Manipulate):
     def fail_with(self, failure: Failure) -> Status:
         if why := BEYOND_THE_HAND.get(failure.code):
             failure = msgspec.structs.replace(failure, spoken=f"The {self._label()} is {why}.")
+        search = self.ctx.mission.search
+        if failure.code == "TOO_WIDE" and self._label() not in search.too_wide:
+            # From where it was seen first it may have looked larger than it is.
+            search.too_wide = [*search.too_wide, self._label()]
+            failure = msgspec.structs.replace(failure, code="LOOKS_TOO_WIDE")
         return super().fail_with(failure)
 
 

@@ -98,7 +98,8 @@ def judge_placement(
         how = "lies on its side" if lies(tilt) else "stands upside down"
         return Finding("TOPPLED", f"the {label} {how} {where}", measured)
     if closed and any(not kind.ends_alike for kind in stands) and not in_bin:
-        return Finding("UNCHECKED", f"the {label} stands {where}, on its head for all I can tell", measured)
+        words = f"I cannot tell whether the {label} {where} stands on its head"
+        return Finding("UNCHECKED", words, measured)
     unknown = not rest.asked and spec is None and not stands
     if unknown and rest.stood - pose.size[2] > max(FELL, FELL_SHARE * rest.stood) and not in_bin:
         return Finding("TOPPLED", f"the {label} does not stand {where} as it did", measured)

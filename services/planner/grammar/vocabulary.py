@@ -141,9 +141,12 @@ class Vocabulary:
             return None
         if not all(w.replace("'", "").isalnum() for w in words) or max(map(len, words)) < SHORTEST_NAME:
             return None
+        named = words
         if words[1:2] == ("of",) and words[0] in self.kinds:
-            words = (words[0], *words[2:])
-        if not words or NO_NOUN & set(words) or is_abstract(words):
+            words, named = (words[0], *words[2:]), words[2:]  # a can of tuna
+        elif words[-1] in self.kinds:
+            named = words[:-1] or words  # the tuna can
+        if not words or NO_NOUN & set(named) or is_abstract(words):
             return None
         acts = words[-1].endswith(("ed", "kept")) or infinitive(words[-1], COMMANDING) in COMMANDING
         if acts or any(
