@@ -128,6 +128,7 @@ SALAD = (
 WORDS = st.sampled_from(SALAD.split())
 
 
+@pytest.mark.slow
 @settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.too_slow], derandomize=True)
 @given(st.lists(WORDS, max_size=14), st.sampled_from(["", "red mug"]))
 def test_no_salad_of_words_makes_a_bad_plan(words: list[str], held: str) -> None:

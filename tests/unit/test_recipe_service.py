@@ -2,6 +2,8 @@
 
 from pathlib import Path
 
+import pytest
+
 from tests.recipes import Recipe
 
 ASK = """
@@ -27,6 +29,7 @@ print([s.module for s in SERVICES if s.name == "odometer"])
 """
 
 
+@pytest.mark.slow
 def test_the_recipe_for_a_service(tmp_path: Path) -> None:
     recipe = Recipe("A new service", tmp_path)
     assert len(recipe.files) == len(set(recipe.files)) <= 5
