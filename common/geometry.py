@@ -9,6 +9,8 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Pose2 = tuple[float, float, float]
 IDENTITY_POSE: Pose2 = (0.0, 0.0, 0.0)
+SIDES: tuple[tuple[float, float], ...] = ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0))
+"""Of a rectangle, as unit steps outwards in its own frame."""
 Number = TypeVar("Number", float, NDArray[np.floating])
 """A coordinate, or an array of them of any shape."""
 

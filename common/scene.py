@@ -27,6 +27,7 @@ from common.floor_plan import (
     doubled,
     kind_fault,
 )
+from common.geometry import SIDES
 from common.plan_tables import SCENES, SceneError, checked, parse, read
 
 __all__ = [
@@ -141,9 +142,8 @@ class Scene(FloorPlan, frozen=True, kw_only=True):
         if box is None:
             return None
         (x, y, z), (sx, sy, sz) = box.center, box.size
-        sides = ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0))
         return Receptacle(
-            name=name, kind="table", center=(x, y, z + sz / 2), size=(sx, sy), yaw=box.yaw, approach=sides
+            name=name, kind="table", center=(x, y, z + sz / 2), size=(sx, sy), yaw=box.yaw, approach=SIDES
         )
 
     def fault(self) -> str:

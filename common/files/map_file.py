@@ -26,7 +26,7 @@ an unknown cell, 0.19608, is just not free."""
 
 COLOURS = {FREE: (255, 255, 255), OCCUPIED: (40, 40, 40), UNKNOWN: (190, 190, 190)}
 ROOM, SURFACE, TOP = (150, 70, 20), (20, 70, 160), (215, 228, 245)
-"""Colours of what is known by name."""
+"""Colours (red, green, blue, 0 to 255) of outlines and names in the picture for people."""
 PIXELS = 4
 """Of a cell in the picture for people."""
 

@@ -10,7 +10,7 @@ from scipy import ndimage
 
 from common.approach import EDGE_DISTANCE, FOOTPRINT, ROOM
 from common.floor_plan import BIN_WALL, Box, Place, Receptacle, ReceptacleKind, Vec2, Wall
-from common.geometry import Rectangle
+from common.geometry import SIDES, Rectangle
 from common.household import Household
 from services.mapping.bins import RIM_BAND, RING, find_bins
 from services.mapping.grid import FREE, RESOLUTION, Cells, Grid
@@ -19,7 +19,6 @@ from services.mapping.scan import Array
 from services.mapping.surfaces import Surface, find_surfaces, fit_rectangle
 from services.mapping.walls import find_walls
 
-SIDES = ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0))
 LATERAL = (0.0, 0.15, -0.15, 0.3, -0.3)
 """Steps aside [m] from the middle of a side at which it may be reached."""
 BACK = (0.02, 0.08)
@@ -29,7 +28,7 @@ SOLID = 0.35
 BED_SIDE, BED_HIGHEST, SOFA_HIGHEST, LOW_TABLE = 1.1, 0.70, 0.50, 0.52
 """Measures [m] that tell beds, sofas and low tables from tables. Source: DIN EN 1725, DIN 68890 and catalogues."""
 CABINET = 0.65
-"""Length [m] up to which what has a body is no shelf and no counter: bedside tables, stands and the like."""
+"""Length [m] up to which what has a body is no shelf and no counter: bedside tables, stands and the like. Chosen."""
 ASIDE = 3.0
 """How much farther a surface beside or behind the robot's home counts, when one is chosen to bring things to [-]."""
 WHOLE = 0.5

@@ -9,7 +9,7 @@ from msgspec import structs
 
 from common.approach import EDGE_DISTANCE, ROOM, STAND_OFF, clearance, poses_for
 from common.floor_plan import Receptacle
-from common.geometry import Pose2, compose, inverse
+from common.geometry import SIDES, Pose2, compose, inverse
 from common.household import Household
 from common.messages import WorldObject
 from services.manipulation.arm.arm_model import Array
@@ -24,8 +24,6 @@ SAME, SAME_TURN = 0.06, math.radians(10)
 """A pose no farther [m, rad] from another is the same stance: navigation stops within a third of it."""
 MOST = 10
 """Stances that are tried."""
-SIDES: tuple[tuple[float, float], ...] = ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0))
-"""Of a surface, as unit steps in its own frame."""
 
 
 def other_stance(
