@@ -6,6 +6,7 @@ from typing import NamedTuple
 from common.household import Household
 from common.kinds import KINDS, kind_of
 from common.messages import WorldObject
+from common.naming.looks import OTHER
 from common.naming.names import ALIKE, listed, normalise, own_words
 
 PLAIN = 0.55
@@ -29,8 +30,14 @@ ROUGHLY = 0.15
 """Likeness of the words that are known from which the others are asked about. Chosen: more than one that is near."""
 SHAPELESS, ANY_SHAPE = frozenset({"toy", "tool"}), 0.35
 """Kinds that have no shape of their own, and the likeness of anything to them. Chosen: asked about when it is seen."""
-NEAR_COLOUR, NEAR_KIND = 0.15, 0.12
-"""Likeness of a colour next to one that was seen, and of a kind that is easily taken for one. Chosen: rarely right."""
+NEAR_COLOUR, NEAR_KIND, NO_KIND = 0.15, 0.12, 0.2
+"""Likeness of a colour next to one that was seen, of a kind that is easily taken for one, and of any kind to what has
+the shape of none. Chosen: rarely right."""
+BLANK, BLANK_SPREAD = 0.06, 0.03
+"""Likeness of a pack without print to a name that says nothing of looks, and how much more it is of what may as well be
+of other kinds. Chosen: asked about after all else."""
+PACKS = frozenset({"bottle", "can", "jar", "cup", "box", "carton", "block", "book", "tool", "toy", OTHER})
+"""Kinds that go by another name than their kind: by what is in them, or by what they are for."""
 HIDDEN = 0.5
 """Likeness of a ball that looks more like what stands on a foot, or the other way, by that of what it looks like."""
 TAKEN_FOR = (
@@ -55,12 +62,14 @@ def likeness(phrase: str, o: WorldObject, household: Household) -> float:
 
 def partly(phrase: str, o: WorldObject, household: Household) -> float:
     """How well a noun fits an object of which some words say nothing that is seen: "the striped mug", "the spray
-    bottle", "the soap", "the toy car".
+    bottle", "the soap", "the toy car", and least of all "the gizmo".
 
-    0 where all its words are known, none is, or those that are do not fit.
+    0 where all its words are known, or those that are do not fit.
     """
     wanted, told = normalise(phrase), household.words
     known, fit = _known(wanted, o, household), looks_like(phrase, o, household)
+    if known.rest and not known.any and not known.rest & (told.looks.keys() | set(told.qualities)):
+        return _unnamed(o)
     untold = known.rest - {*told.qualities, *told.looks}
     # The last word says what it is, those before it which one.
     headed = _known(wanted.split()[-1], o, household).any
@@ -70,6 +79,12 @@ def partly(phrase: str, o: WorldObject, household: Household) -> float:
     if (untold and not headed) or (o.text and not known.rest <= set(told.qualities)):
         return UNTOLD
     return min(UNSEEN, fit)
+
+
+def _unnamed(o: WorldObject) -> float:
+    """How well an object fits a name that says nothing of looks: 0 for what has print, or goes by its kind."""
+    shares = o.kind_shares or {o.kind: 1.0}
+    return 0.0 if o.text or o.kind not in PACKS else BLANK + BLANK_SPREAD * (1.0 - max(shares.values()))
 
 
 def looks_like(phrase: str, o: WorldObject, household: Household, packed: bool = False) -> float:
@@ -151,7 +166,7 @@ def _has_kind(kind: str, o: WorldObject) -> float:
     has = shares.get(kind, 0.0) / best
     if o.kind_shares and kind != o.kind:
         has = min(has, NOT_CALLED)
-    return max(has, NEAR_KIND * near, ANY_SHAPE * (kind in SHAPELESS))
+    return max(has, NEAR_KIND * near, NO_KIND * (o.kind == OTHER), ANY_SHAPE * (kind in SHAPELESS))
 
 
 def _has_colour(shade: str, o: WorldObject) -> float:

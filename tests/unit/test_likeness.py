@@ -121,6 +121,27 @@ def test_what_has_other_words_on_it_is_not_asked_about() -> None:
     assert 0.0 < partly("soup", tin, HOUSEHOLD) < LIKELY < partly("old can", tin, HOUSEHOLD)
 
 
+def test_a_name_that_says_nothing_of_looks_may_be_any_pack_without_print() -> None:
+    plain = measured("white can", {"can": 1.0}, {"white": 1.0})
+    odd = measured("white thing", {"thing": 0.5, "bottle": 0.5}, {"white": 1.0})
+    assert (
+        LEAST
+        <= partly("gizmo", plain, HOUSEHOLD)
+        < partly("gizmo", odd, HOUSEHOLD)
+        < partly("old can", plain, HOUSEHOLD)
+    )
+    assert partly("gizmo", APPLE, HOUSEHOLD) == 0.0, "an apple goes by its kind"
+    plain.text = "CORN"
+    assert partly("gizmo", plain, HOUSEHOLD) == 0.0, "it says what it is"
+
+
+def test_what_has_the_shape_of_no_kind_may_be_of_any() -> None:
+    odd = measured("white thing", {"thing": 0.6, "bottle": 0.4}, {"white": 1.0})
+    assert LEAST <= likeness("white mug", odd, HOUSEHOLD) < LIKELY
+    assert likeness("red mug", odd, HOUSEHOLD) < LEAST
+    assert LEAST <= partly("teapot", odd, HOUSEHOLD) < LIKELY
+
+
 @pytest.mark.parametrize(
     ("phrase", "says"),
     [

@@ -256,6 +256,9 @@ def test_things_that_nobody_has_seen_are_looked_for() -> None:
     )
     assert text(ask("bring me the blue block on the right", objects=nothing)) == bring("blue block")
     assert text(ask("bring me the toy next to the sofa", objects=nothing)).startswith("no: I do not know which one")
+    assert text(ask("bring me the macaroni and cheese")) == bring("macaroni and cheese")
+    assert text(ask("bring me the salt and pepper")) == f"{bring('salt')}; {bring('pepper')}"
+    assert text(ask("bring me the strawberry jam")) == bring("strawberry jam"), "a verb elsewhere"
     left = ask("bring me the mug on the left", objects=nothing)
     assert left.steps[0] == PlanStep(action="find", object="mug", text="mug on the left")
 

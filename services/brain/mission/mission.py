@@ -109,7 +109,8 @@ class Search(msgspec.Struct):
     which manipulation says that it reaches an object that it did not reach.
 
     `perhaps`: objects that may be meant, as perception had them last, `about` that which the person is being asked
-    about; `confirmed` the ids of those that are meant, by the plan's name, `rejected` of those that are not.
+    about; `confirmed` the ids of those that are meant, by the plan's name, `rejected` of those that are not, which
+    stood at `refused` [m, map].
     `unanswered`: nobody has answered such a question. `too_wide`: labels of what manipulation has called so.
     """
 
@@ -125,6 +126,7 @@ class Search(msgspec.Struct):
     about: m.PossibleObject | None = None
     confirmed: dict[str, str] = {}
     rejected: list[str] = []
+    refused: list[m.Vec3] = []
     unanswered: bool = False
     too_wide: list[str] = []
 

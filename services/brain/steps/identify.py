@@ -1,5 +1,6 @@
 """Leaves that ask the person whether an object that may be the one asked for is."""
 
+import math
 from collections.abc import Callable
 
 from py_trees.common import Status
@@ -21,6 +22,8 @@ ANOTHER = "ANOTHER_ONE"
 NOT_PLAIN = "NOT_PLAIN"
 """Failure code: the object before the robot does not plainly fit the words that were said."""
 
+SAME_PLACE = 0.03
+"""Distance [m] within which an object is one that stood there before. Chosen: half of what two that touch are apart."""
 MOST_ASKED = 4
 """Objects that a person is asked about in one mission (chosen: more is a nuisance)."""
 
@@ -70,7 +73,7 @@ class HearIdentity(HearAnswer):
             search.confirmed[self._item] = about.id
             return Status.SUCCESS
         # Whatever else is said, it is no yes.
-        search.rejected = [*search.rejected, about.id]
+        search.rejected, search.refused = [*search.rejected, about.id], [*search.refused, about.position]
         search.perhaps = [p for p in search.perhaps if p.id != about.id]
         return self.refuse(ANOTHER, f"the {about.label} is not the {self._item}", self.spoken())
 
@@ -89,8 +92,15 @@ def candidate(ctx: Context, least: float, near: bool = False) -> m.PossibleObjec
     search = ctx.mission.search
     if search.unanswered or len(search.rejected) >= MOST_ASKED:
         return None
-    left = [p for p in search.perhaps if p.likeness >= least and p.id not in search.rejected]
+    left = [p for p in search.perhaps if p.likeness >= least and not _asked_about(ctx, p)]
     return next((p for p in left if not near or p.label in search.inspected), None)
+
+
+def _asked_about(ctx: Context, possible: m.PossibleObject) -> bool:
+    """Whether the person has said that it is not the one; one that was lost from sight has another id since."""
+    search = ctx.mission.search
+    stood = any(math.dist(possible.position, place) < SAME_PLACE for place in search.refused)
+    return stood or possible.id in search.rejected
 
 
 class StillMeant(Leaf):

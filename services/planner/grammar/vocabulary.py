@@ -137,7 +137,7 @@ class Vocabulary:
 
     def new_noun(self, words: Words) -> Sense | None:
         """The words as the name of a thing that nobody has listed or seen; None for a place or a part of a sentence."""
-        if not self.new_nouns or not 0 < len(words) <= LONGEST_NAME or words[0] in COMMANDING:
+        if not self.new_nouns or not 0 < len(words) <= LONGEST_NAME or self._commands(words[0]):
             return None
         if not all(w.replace("'", "").isalnum() for w in words) or max(map(len, words)) < SHORTEST_NAME:
             return None
@@ -148,7 +148,7 @@ class Vocabulary:
             named = words[:-1] or words  # the tuna can
         if not words or NO_NOUN & set(named) or is_abstract(words):
             return None
-        acts = words[-1].endswith(("ed", "kept")) or infinitive(words[-1], COMMANDING) in COMMANDING
+        acts = words[-1].endswith(("ed", "kept")) or self._commands(infinitive(words[-1], COMMANDING))
         if acts or any(
             len(words) > b - a > 1 and self.spot(words[a:b])
             for a in range(len(words))
@@ -159,6 +159,10 @@ class Vocabulary:
             return None
         known = self.spot(words) or self.furniture(words) or self._and_place(words)
         return None if known else Sense(names=frozenset({" ".join(words)}), new=True)
+
+    def _commands(self, word: str) -> bool:
+        """Is it a verb of a command, and no thing either, as the jam is?"""
+        return word in COMMANDING and word not in self._household.words.looks
 
     def _and_place(self, words: Words) -> bool:
         """Are they the name of a thing and that of a place, `box bookshelf`?"""

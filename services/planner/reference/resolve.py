@@ -6,7 +6,7 @@ from common.kinds import KINDS
 from common.language.normalise import DETERMINERS, Words, enumeration, without_determiners
 from common.language.noun_phrase import NUMBERS, PLURAL_PRONOUNS, PRONOUNS, Which
 from services.planner.grammar.phrases import Phrase, read
-from services.planner.grammar.senses import LIVING
+from services.planner.grammar.senses import LIVING, Sense
 from services.planner.plan_builder import Lost, PlanBuilder, Refusal
 from services.planner.reference.choosing import choose, unseen
 from services.planner.reference.fits import fitting, unknown
@@ -33,6 +33,8 @@ def referents(builder: PlanBuilder, words: Words, prefer_held: bool = False) -> 
         at = words.index("or", 1)
         options = [referents(builder, part, prefer_held) for part in (words[:at], words[at + 1 :])]
         return builder.choices.pick(options)
+    if (name := _name_of_both(builder, words)) is not None:
+        return [_new(builder, name)]
     for at in range(1, len(words) - 1):
         if words[at] == "and":
             if _is_named(builder, words[:at]) and not _is_named(builder, words[at + 1 :]):
@@ -72,7 +74,25 @@ def _is_plain(builder: PlanBuilder, words: Words) -> bool:
 def _is_named(builder: PlanBuilder, words: Words) -> bool:
     """Do the words begin like a name, or name something known? `dance` of `the red mug and dance` does not."""
     phrase = read(words, builder.vocabulary)
-    return not isinstance(phrase, Phrase) or not phrase.sense.new or words[0] in DETERMINERS
+    known = words[0] in DETERMINERS or words[-1] in builder.world.household.words.looks
+    return not isinstance(phrase, Phrase) or not phrase.sense.new or known
+
+
+def _name_of_both(builder: PlanBuilder, words: Words) -> Phrase | None:
+    """`the macaroni and cheese`, one thing that nobody has listed: only the last word is one that has looks, and no
+    determiner stands before it. `The salt and pepper` are two things."""
+    at = words.index("and") if words.count("and") == 1 else 0
+    if not builder.vocabulary.new_nouns or not 0 < at < len(words) - 1 or words[at + 1] in DETERMINERS:
+        return None
+    one, other = read(words[:at], builder.vocabulary), read(words[at + 1 :], builder.vocabulary)
+    if not isinstance(one, Phrase) or not isinstance(other, Phrase) or not (one.sense.new and other.sense.new):
+        return None
+    looks = builder.world.household.words.looks
+    if one.noun.split()[-1] in looks or words[-1] not in looks:
+        return None
+    noun = f"{one.noun} and {other.noun}"
+    sense = Sense(names=frozenset({noun}), new=True)
+    return msgspec.structs.replace(one, sense=sense, noun=noun, text=" ".join(words))
 
 
 def referent(builder: PlanBuilder, words: Words, prefer_held: bool = False) -> Referent:
