@@ -19,8 +19,8 @@ from services.mapping.scan import Array
 from services.mapping.surfaces import Surface, find_surfaces, fit_rectangle
 from services.mapping.walls import find_walls
 
-LATERAL = (0.0, 0.15, -0.15, 0.3, -0.3)
-"""Steps aside [m] from the middle of a side at which it may be reached."""
+INSET, BESIDE = 0.10, 0.10
+"""Distance [m] from the ends of a side within which nothing need be reached, and steps between the spots before it."""
 BACK = (0.02, 0.08)
 """Steps back [m] from the least distance to an edge at which it may be reached: the cell at the edge is not free."""
 SOLID = 0.35
@@ -118,7 +118,8 @@ def approaches(outline: Rectangle, grid: Grid, reached: Cells, rim: float = 0.0)
     for ax, ay in SIDES:
         half = outline.length / 2 if ax else outline.width / 2
         width = outline.width if ax else outline.length
-        aside = [s for s in LATERAL if abs(s) <= max(width / 2 - 0.1, 0.01)]
+        far = max(width / 2 - INSET, 0.0)
+        aside = np.linspace(-far, far, 2 * math.ceil(far / BESIDE) + 1)
         offs = [half + rim + EDGE_DISTANCE + back for back in BACK]
         spots = np.array([outline.to_map(ax * off - ay * s, ay * off + ax * s) for off in offs for s in aside])
         if grid.at(spots, reached).any():

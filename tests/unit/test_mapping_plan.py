@@ -9,7 +9,7 @@ from common.floor_plan import Room, Wall
 from common.geometry import Rectangle
 from services.mapping.bins import find_bins
 from services.mapping.grid import FREE, OCCUPIED, UNKNOWN, Grid
-from services.mapping.plan import _filled, _kind, _reached, _rim, _separate
+from services.mapping.plan import _filled, _kind, _reached, _rim, _separate, approaches
 from services.mapping.rooms import find_rooms, openings
 from services.mapping.surfaces import Surface
 from services.mapping.views import interesting
@@ -79,6 +79,18 @@ def test_a_place_behind_a_narrow_passage_is_reached() -> None:
     assert reached[30, 30] and reached[30, 90] and not reached[30, 60]
     states[24:36, 58:62] = OCCUPIED
     assert not (_reached(states)[30, 30] and _reached(states)[30, 90])
+
+
+@pytest.mark.parametrize(("width", "free"), [(0.42, (0.08, 0.14)), (2.0, (0.6, 0.8))])
+def test_a_side_is_reached_where_any_of_its_length_is(width: float, free: tuple[float, float]) -> None:
+    """Of a bedside table the half that is away from the bed; of a bench what the table before it leaves."""
+    grid = Grid((-3.0, -3.0), (3.0, 3.0))
+    outline = Rectangle(0.0, 0.0, width, 0.4)
+    reached = np.zeros(grid.shape, bool)
+    assert approaches(outline, grid, reached) == ()
+    x, y = np.meshgrid(np.arange(*free, 0.01), np.arange(-0.62, -0.52, 0.01))
+    reached[grid.cells(np.column_stack([x.ravel(), y.ravel()]))] = True
+    assert approaches(outline, grid, reached) == ((0.0, -1.0),)
 
 
 def test_a_high_or_a_large_ring_is_no_bin() -> None:
