@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from common.approach import EDGE_DISTANCE, FOOTPRINT, ROOM
+from common.approach import EDGE_DISTANCE, FOOTPRINT, LATERAL, ROOM
 from common.floor_plan import BIN_WALL, Box, Place, Receptacle, ReceptacleKind, Vec2, Wall
 from common.geometry import SIDES, Rectangle
 from common.household import Household
@@ -113,17 +113,21 @@ def _reached(states: NDArray[np.uint8]) -> Cells:
 
 
 def approaches(outline: Rectangle, grid: Grid, reached: Cells, rim: float = 0.0) -> tuple[Vec2, ...]:
-    """Sides (unit steps in the outline's frame) before which the robot can stand."""
-    found = []
-    for ax, ay in SIDES:
-        half = outline.length / 2 if ax else outline.width / 2
-        width = outline.width if ax else outline.length
-        far = max(width / 2 - INSET, 0.0)
-        aside = np.linspace(-far, far, 2 * math.ceil(far / BESIDE) + 1)
-        offs = [half + rim + EDGE_DISTANCE + back for back in BACK]
-        spots = np.array([outline.to_map(ax * off - ay * s, ay * off + ax * s) for off in offs for s in aside])
-        if grid.at(spots, reached).any():
-            found.append((ax, ay))
+    """Sides (unit steps in the outline's frame) before which the robot can stand.
+
+    Where it can do so before none it may reach round a corner, as far aside as approach poses are.
+    """
+    found: list[Vec2] = []
+    for beyond in (0.0, max(LATERAL)):
+        for ax, ay in () if found else SIDES:
+            half = outline.length / 2 if ax else outline.width / 2
+            width = outline.width if ax else outline.length
+            far = max(width / 2 - INSET, 0.0) + beyond
+            aside = np.linspace(-far, far, 2 * math.ceil(far / BESIDE) + 1)
+            offs = [half + rim + EDGE_DISTANCE + back for back in BACK]
+            spots = np.array([outline.to_map(ax * off - ay * s, ay * off + ax * s) for off in offs for s in aside])
+            if grid.at(spots, reached).any():
+                found.append((ax, ay))
     return tuple(found)
 
 

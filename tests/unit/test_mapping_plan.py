@@ -93,6 +93,16 @@ def test_a_side_is_reached_where_any_of_its_length_is(width: float, free: tuple[
     assert approaches(outline, grid, reached) == ((0.0, -1.0),)
 
 
+def test_what_the_robot_stands_before_nowhere_is_reached_round_a_corner() -> None:
+    """A bin between a table and a wall; beside what has a side with room it makes no further one."""
+    grid = Grid((-3.0, -3.0), (3.0, 3.0))
+    outline, reached = Rectangle(0.0, 0.0, 0.3, 0.3), np.zeros((120, 120), bool)
+    reached[grid.cells(np.array([(0.27, -0.53)]))] = True
+    assert approaches(outline, grid, reached) == ((0.0, -1.0),)
+    reached[grid.cells(np.array([(0.02, 0.58)]))] = True
+    assert approaches(outline, grid, reached) == ((0.0, 1.0),)
+
+
 def test_a_high_or_a_large_ring_is_no_bin() -> None:
     for points in (ring(0.0, 0.0, 0.34, 1.0), ring(0.0, 0.0, 1.2, 0.40)):
         assert find_bins(grid_of(points), points) == []
