@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from common.approach import EDGE_DISTANCE, FOOTPRINT, LATERAL, ROOM
-from common.floor_plan import BIN_WALL, Box, Place, Receptacle, ReceptacleKind, Vec2, Wall
+from common.floor_plan import BIN_WALL, LEG, LEG_INSET, Box, Place, Receptacle, ReceptacleKind, Vec2, Wall
 from common.geometry import SIDES, Rectangle
 from common.household import Household
 from services.mapping.bins import RIM_BAND, RING, find_bins
@@ -25,6 +25,8 @@ BACK = (0.02, 0.08)
 """Steps back [m] from the least distance to an edge at which it may be reached: the cell at the edge is not free."""
 SOLID = 0.35
 """Share of a surface's free sides at which the lidar meets a body below it, from which on it stands on no legs."""
+AT_LEGS = LEG_INSET + LEG + 1.5 * RESOLUTION
+"""Piece [m] at both ends of a side in which the lidar meets the legs of a table, as cells of the grid tell it."""
 BED_SIDE, BED_HIGHEST, SOFA_HIGHEST, LOW_TABLE = 1.1, 0.70, 0.50, 0.52
 """Measures [m] that tell beds, sofas and low tables from tables. Source: DIN EN 1725, DIN 68890 and catalogues."""
 CABINET = 0.65
@@ -136,7 +138,8 @@ def _kind(s: Surface, grid: Grid, sides: tuple[Vec2, ...]) -> tuple[str, Recepta
     met = []
     for ax, ay in sides:
         # A cell's width inside the edge, where no wall behind it is met.
-        along = np.linspace(-0.45, 0.45, 12) * (s.outline.width if ax else s.outline.length)
+        side = s.outline.width if ax else s.outline.length
+        along = np.linspace(-0.5, 0.5, 12) * max(side - 2 * AT_LEGS, 0.0)
         off = (s.outline.length if ax else s.outline.width) / 2 - 0.02
         spots = np.array([s.outline.to_map(ax * off - ay * a, ay * off + ax * a) for a in along])
         met.append(grid.at(spots, ndimage.binary_dilation(grid.walls)))

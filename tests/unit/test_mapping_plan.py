@@ -224,6 +224,18 @@ def test_what_has_a_body_is_named_by_its_measures(length: float, width: float, n
     assert _kind(Surface(outline, 0.6, np.empty((0, 2))), grid, ((0.0, 1.0), (0.0, -1.0)))[0] == name
 
 
+@pytest.mark.parametrize(("length", "width"), [(0.42, 0.42), (0.9, 0.5), (1.6, 0.8)])
+def test_what_stands_on_legs_is_a_table_however_short_its_sides(length: float, width: float) -> None:
+    """The legs of a bedside table are half of its sides."""
+    grid, legs = Grid((-3.0, -3.0), (3.0, 3.0)), []
+    for i, j in ((-1, -1), (-1, 1), (1, -1), (1, 1)):
+        x, y = i * (length / 2 - 0.04), j * (width / 2 - 0.04)
+        legs += [(x - i * a, y - j * b) for a in np.arange(0.0, 0.051, 0.01) for b in np.arange(0.0, 0.051, 0.01)]
+    grid.hits[grid.cells(np.array(legs))] = 3
+    outline = Rectangle(0.0, 0.0, length, width)
+    assert _kind(Surface(outline, 0.6, np.empty((0, 2))), grid, ((0.0, 1.0), (1.0, 0.0)))[0] == "table"
+
+
 def test_what_is_inside_or_below_a_surface_is_none() -> None:
     def surface(x: float, height: float, length: float) -> Surface:
         return Surface(Rectangle(x, 0.0, length, 0.6 * length), height, np.empty((0, 2)))
