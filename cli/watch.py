@@ -21,6 +21,7 @@ from rich.tree import Tree
 from cli.link import Link, Watch, add_options, linked
 from common import messages as m
 from common import topics
+from common.mission_log.states import limb_words
 from common.time.clock import monotonic
 from common.topic import Topic
 
@@ -100,12 +101,11 @@ def mission(picture: Picture) -> Group:
     plan = picture.get(topics.ACTION_PLAN)
     if plan is not None and state.pipeline == "vla":
         for n, step in enumerate(plan.steps, 1):
-            rows.append(Text(f"  {n}. " + " ".join(w for w in (step.action, step.object, step.target, step.text) if w)))
+            rows.append(Text(f"  {n}. {step.words}"))
     for name, topic in (("base", topics.NAVIGATION_FEEDBACK), ("arm", topics.MANIPULATION_STATUS)):
         status = picture.get(topic)
         if status is not None:
-            words = (status.status, getattr(status, "phase", ""), status.code, status.detail)
-            rows.append(Text(f"{name}: " + " ".join(w for w in words if w)))
+            rows.append(Text(f"{name}: {limb_words(status)}"))
     if state.last is not None:
         why = f" ({state.last.reason})" if state.last.reason else ""
         style = GOOD if state.last.outcome == "delivered" else BAD

@@ -50,6 +50,12 @@ class PlanStep(Message):
     seconds: float = 0.0
 
     @property
+    def words(self) -> str:
+        """The step as people read it, such as `place red mug desk`."""
+        parts = (self.action, self.object, self.target, self.text, self.near and f"near {self.near}")
+        return " ".join(part for part in parts if part)
+
+    @property
     def hand_alone(self) -> bool:
         """A step of the gripper that needs no arm and names no object."""
         return self.action in ("grasp", "release") and self.target == GRIPPER and not self.object

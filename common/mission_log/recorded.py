@@ -99,7 +99,7 @@ def _told(message: m.Message) -> tuple[str, str, str] | None:
         good = message.text != "ERROR"
         return f"heard “{message.text}”" if good else f"not understood: {message.code}", message.detail, "heard"
     if isinstance(message, m.ActionPlan):
-        steps = ", ".join(" ".join(w for w in (s.action, s.object, s.target) if w) for s in message.steps)
+        steps = ", ".join(step.words for step in message.steps)
         return f"plan: {steps}", message.source, "planned"
     if isinstance(message, m.ObjectPose):
         if not message.found:

@@ -24,6 +24,13 @@ def under_way(state: m.BrainState | None) -> bool:
     return not (ended and state.last is not None and state.last.id == state.mission_id)
 
 
+def limb_words(status: m.NavigationFeedback | m.ManipulationStatus) -> str:
+    """What base or arm is doing, or how it ended and why."""
+    doing = f"{status.status} {getattr(status, 'phase', '')}".rstrip()
+    why = f"{status.code} {status.detail}".strip()
+    return f"{doing}: {why}" if why else doing
+
+
 def spans(entries: Sequence[dict[str, Any]], began: float, ended: float) -> list[tuple[str, float, float]]:
     """(state, from, to) [s since the mission began] for each stretch of log entries in one state, without gaps."""
     found: list[tuple[str, float, float]] = []

@@ -160,7 +160,7 @@ class PlannerService:
     def _publish(self, request: m.PlanRequest, plan: m.ActionPlan) -> None:
         self._inbox.end(request, plan)
         self._io.publish(topics.ACTION_PLAN, plan)
-        steps = "; ".join(" ".join(p for p in (s.action, s.object, s.target) if p) for s in plan.steps)
+        steps = "; ".join(step.words for step in plan.steps)
         self._io.log.info("planned", command=request.command, steps=steps, detail=plan.detail, source=plan.source)
 
     def _world(self, request: m.PlanRequest, now: float) -> World:

@@ -346,6 +346,17 @@ def test_a_telephone_has_stop_question_and_talk_button_in_sight(visitor: Visitor
             )
         assert min(boxes[n]["height"] for n in ("#stop", "#talk", "#yes", "#no")) >= 40, "wide enough for a finger"
         assert page.evaluate("document.documentElement.scrollWidth") <= 390
+        panels = page.frame_locator("#view")
+        panels.get_by_role("tab", name="Health").click()
+        button = panels.locator("[data-restart='sim']")
+        button.wait_for()
+        # Laid out anew at the next frame, of which there are few without a graphics card.
+        eventually(
+            lambda: (box := button.bounding_box()) and box["x"] + box["width"] <= 390, "the table is not cut off"
+        )
+        tops = [tab.bounding_box()["y"] for tab in panels.get_by_role("tab").all()]
+        assert len(tops) == 6 and max(tops) == min(tops), "the tabs are in one row"
+        panels.get_by_role("tab", name="Mission").click()
         visitor.shot("telephone")
     finally:
         page.set_viewport_size({"width": 480, "height": 360})

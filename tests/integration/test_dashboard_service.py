@@ -106,6 +106,18 @@ def test_the_fingers_are_as_far_apart_as_the_gripper_says(drawn: Page) -> None:
         assert 2 * np.arctan2(x, w) == pytest.approx(told, abs=1e-3)
 
 
+def test_a_place_that_is_called_as_its_room_is_written_once(drawn: Page) -> None:
+    parts = [
+        m.HomePart(name="kitchen", kind="place", x=1.0),
+        m.HomePart(name="kitchen", kind="room", x=2.0),
+        m.HomePart(name="counter", kind="surface", room="kitchen", x=3.0),
+    ]
+    drawn.bus.send(topics.HOUSEHOLD_PARTS, m.HomeParts(parts=parts))
+    drawn.step()
+    shown = {label.text: label.position[0] for label in drawn.service.scene.view._parts}
+    assert shown == {"kitchen": 2.0, "counter": 3.0}
+
+
 def test_objects_come_go_and_turn_into_ghosts(drawn: Page) -> None:
     def show(*objects: m.WorldObject, t: float = 10.0) -> None:
         drawn.bus.send(topics.WORLD_OBJECTS, m.WorldObjects(t=t, objects=list(objects)))

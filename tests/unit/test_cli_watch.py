@@ -78,7 +78,7 @@ def test_a_mission_on_one_screen(picture: watch.Picture) -> None:
         picture.hear(message)
     shown = text(picture)
     for words in (
-        "STOPPED", "NAVIGATING", "bring me the mug", "for 11 s", "1. grasp red mug", "failed BLOCKED a chair",
+        "STOPPED", "NAVIGATING", "bring me the mug", "for 11 s", "1. grasp red mug", "failed: BLOCKED a chair",
         "fetch the apple: failed", "robot: On my way", "leaf  2 m left", "too slow", "● brain", "✗ sim",
     ):  # fmt: skip
         assert words in shown, words

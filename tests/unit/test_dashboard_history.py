@@ -114,6 +114,11 @@ def test_mission_panel_names_state_step_time_and_plan() -> None:
     ):
         assert word in text
     assert "not been heard" in markup.mission(None, 0.0, [], None, None)
+    over = m.MissionOutcome(id="m-1", command="fetch it", outcome="failed", reason="it is not there")
+    done = m.BrainState(state="WAITING", last=over)
+    text = markup.mission(done, 20.0, steps, None, m.ManipulationStatus(status="failed", code="SLIPPED", detail="0 mm"))
+    assert "fetch it: failed" in text and "it is not there" in text and "failed: SLIPPED 0 mm" in text
+    assert "<li>" not in text, "the plan of a mission that is over is not under way"
 
 
 def grown(status: str, detail: str) -> m.TreeSnapshot:

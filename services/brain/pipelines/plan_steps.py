@@ -19,7 +19,6 @@ from services.brain.steps.home import edit_of, tell_home
 from services.brain.steps.identify import StillMeant
 from services.brain.steps.leaf import Leaf, Say, Settle
 from services.brain.steps.motion import Grab, Navigate
-from services.brain.steps.plan import describe_step
 from services.brain.steps.teach import forget, teach
 from services.brain.steps.verify import AlreadyInPlace, release_and_verify, verify_placement
 from services.brain.tree.composites import Condition, Selector, Sequence
@@ -63,7 +62,7 @@ def step_tree(ctx: Context, step: PlanStep, carried: str, at_home: bool = False)
 
     `at_home`: the plan has brought it to where objects are delivered.
     """
-    name = describe_step(step)
+    name = step.words
     match step.action:
         case "find":
             return find(ctx, step.object)

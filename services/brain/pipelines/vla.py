@@ -9,7 +9,7 @@ from services.brain.pipelines.shared import report_failure
 from services.brain.steps.ask import AskQuestion, HearConfirmation, HearMeaning, HearPerson, meaning, question
 from services.brain.steps.begin import Ready
 from services.brain.steps.leaf import Say, Settle
-from services.brain.steps.plan import AwaitCommand, CompleteWithEvidence, PlanIsComplete, RequestPlan, describe_step
+from services.brain.steps.plan import AwaitCommand, CompleteWithEvidence, PlanIsComplete, RequestPlan
 from services.brain.tree.composites import Condition, Retry, Selector, Sequence
 
 LOOKS = 4
@@ -24,7 +24,7 @@ def vla_tree(ctx: Context) -> Behaviour:
         plan(ctx),
         Condition("look_first", look_first(ctx), lambda: ctx.mission.planning.look_again),
         RunPlan("execute", ctx),
-        CompleteWithEvidence("complete", ctx, lambda: "; ".join(map(describe_step, ctx.mission.planning.steps))),
+        CompleteWithEvidence("complete", ctx, lambda: "; ".join(step.words for step in ctx.mission.planning.steps)),
         Say("report_success", ctx, lambda: success(ctx)),
         Settle("settle", ctx),
     )

@@ -67,7 +67,7 @@ class RequestPlan(SendGoal):
             for step in plan.steps:
                 if step.action == "find" and step.text:
                     ctx.mission.search.chosen.setdefault(step.object, step.text)
-            ctx.note("plan accepted", "; ".join(map(describe_step, plan.steps)), "planned")
+            ctx.note("plan accepted", "; ".join(step.words for step in plan.steps), "planned")
             return Status.SUCCESS
         ctx.mission.planning.suggestion = plan.suggestion
         if not plan.steps and plan.detail:
@@ -84,13 +84,6 @@ class PlanIsComplete(Leaf):
 
     def update(self) -> Status:
         return Status.FAILURE if self.ctx.mission.planning.look_again else Status.SUCCESS
-
-
-def describe_step(step: m.PlanStep) -> str:
-    """A step as `brain/state` and the journal show it."""
-    return " ".join(
-        part for part in (step.action, step.object, step.target, step.text, step.near and f"near {step.near}") if part
-    )
 
 
 class CompleteWithEvidence(Leaf):

@@ -9,7 +9,7 @@ from jinja2 import Environment
 
 from common import messages as m
 from common.html.environment import environment
-from common.mission_log.states import under_way
+from common.mission_log.states import limb_words, under_way
 from services.dashboard.panels.history_buffers import Line, NodePath, ServiceRow
 
 TEMPLATES = Path(__file__).parent / "templates"
@@ -69,24 +69,15 @@ def mission(
     manipulation: m.ManipulationStatus | None,
 ) -> str:
     """State, command, step, plan, status of base and arm at robot time `now` [s], and the last outcome."""
-    busy, last = under_way(state), ""
-    if state is not None and state.last is not None and not (busy and state.last.id == state.mission_id):
-        reason = state.last.reason
-        why = f" {reason}" if reason.startswith("(") else f" ({reason})" if reason else ""
-        last = f"{state.last.command}: {state.last.outcome}{why}"
-    limbs = []
-    for name, status in (("base", navigation), ("arm", manipulation)):
-        if status is not None:
-            words = (status.status, getattr(status, "phase", ""), status.code, status.detail)
-            limbs.append((name, " ".join(w for w in words if w)))
+    busy, last = under_way(state), state.last if state is not None else None
+    if last is not None and state is not None and busy and last.id == state.mission_id:
+        last = None
+    both = (("base", navigation), ("arm", manipulation))
+    limbs = [(name, limb_words(status)) for name, status in both if status is not None]
     now_at = state.plan_step if state is not None else 0
-    shown = [(_words(step), number == now_at) for number, step in enumerate(steps, 1)] if state is not None else []
+    # The plan of a mission that has ended is in its timeline.
+    shown = [(step.words, number == now_at) for number, step in enumerate(steps, 1)] if busy else []
     return _render("mission.html", state=state, now=now, busy=busy, steps=shown, limbs=limbs, last=last)
-
-
-def _words(step: m.PlanStep) -> str:
-    """A step of the plan in words."""
-    return " ".join(w for w in (step.action, step.object, step.target, step.text) if w)
 
 
 def transcript(lines: Iterable[Line]) -> str:

@@ -1,5 +1,6 @@
 """The panels beside the 3-D view, made of viser's own elements."""
 
+from functools import partial
 from typing import Any, Literal
 
 import numpy as np
@@ -18,7 +19,7 @@ class Panels:
 
     def __init__(self, server: viser.ViserServer, width: int, height: int) -> None:
         gui = server.gui
-        gui.configure_theme(show_logo=False, show_share_button=False, control_width="medium")
+        gui.configure_theme(show_logo=False, show_share_button=False, control_width="large")
         gui.main_panel.dock_right()
         gui.set_panel_label("tidybot")
         self.texts: dict[str, str] = {}
@@ -37,7 +38,10 @@ class Panels:
             blank = np.resize(BLANK, (height, width, 3))
             for name in CAMERAS:
                 self._wanted[name] = gui.add_checkbox(f"{name} camera", initial_value=name == "head")
-                self._images[name] = gui.add_image(blank, jpeg_quality=75, format="jpeg")
+                self._images[name] = gui.add_image(
+                    blank, jpeg_quality=75, format="jpeg", visible=self._wanted[name].value
+                )
+                self._wanted[name].on_update(partial(self._show_camera, name))
         with tabs.add_tab("Past"):
             self._html["missions"] = gui.add_html("")
         with tabs.add_tab("Health"):
@@ -71,6 +75,10 @@ class Panels:
     def wanted(self, camera: str) -> bool:
         """A visitor wants to see this camera's pictures."""
         return bool(self._wanted[camera].value)
+
+    def _show_camera(self, camera: str, event: Any) -> None:
+        """A camera that nobody wants to see leaves no black picture behind."""
+        self._images[camera].visible = self._wanted[camera].value
 
     def text(self, name: str, html: str) -> None:
         """Show HTML in the panel `name`; sent only when it changed."""

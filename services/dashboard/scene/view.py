@@ -184,6 +184,9 @@ class View:
         for node in self._parts:
             node.remove()
         parts = known.parts if known is not None and labels else []
+        # A standing place is often called by its room, which has its name already.
+        rooms = {one.name for one in parts if one.kind == "room"}
+        parts = [one for one in parts if one.kind == "room" or one.name not in rooms]
         self._parts = [
             self._scene.add_label(f"/parts/{n}", one.name, position=(one.x, one.y, PART), font_screen_scale=0.7)
             for n, one in enumerate(parts)

@@ -62,9 +62,9 @@ class Web:
         host = "127.0.0.1" if config.host in ("", "0.0.0.0", "::") else config.host
         self.url = f"http://{f'[{host}]' if ':' in host else host}:{self.port}/"
         self.entrance = self.url + (f"?token={self._token}" if self._token else "")
-        # The space bar stops the robot in the view as well.
+        # The space bar stops the robot in the view as well; on a telephone the panels take the whole width.
         self._view_page = VIEW.read_text(encoding="utf-8").replace(
-            "<head>", '<head><script src="/page/keys.js"></script>', 1
+            "<head>", '<head><script src="/page/keys.js"></script><link rel="stylesheet" href="/page/view.css">', 1
         )
         self._runner = self._in_loop(self._start(), OPENING)
 

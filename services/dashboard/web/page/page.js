@@ -43,7 +43,7 @@ function show(s) {
   const doing = mission ? [`“${mission.command}”`, since(mission.seconds), mission.step, s.detail] : [];
   const ended = !mission && last ? `${last.command}: ${last.outcome}` : "";
   const told = s.state === "COMPLETED" ? ended || s.detail : s.detail || ended;
-  const idle = s.stopped && s.left ? `“${s.left}” was cut short` : told;
+  const idle = s.stopped ? (s.left ? `“${s.left}” was cut short` : "the brake is on until you release it") : told;
   $("detail").textContent = mission ? doing.filter(Boolean).join(" · ") : idle;
   $("now").title = $("detail").textContent;
   document.body.dataset.outcome = last ? last.outcome : "";
