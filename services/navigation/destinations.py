@@ -1,5 +1,7 @@
 """Where the base may go for a goal: by the household as people call it now, and by what perception has reported."""
 
+import math
+
 from common import messages as m
 from common import topics
 from common.bus.port import Io
@@ -13,6 +15,9 @@ from services.navigation.goals import Choices, Goals
 from services.navigation.places import Places, load_places
 from services.navigation.search.coverage import SearchCoverage
 from services.navigation.search.search import Search
+
+ON_FLOOR = 0.05
+"""Height [m] of an object's lower side up to which it is on the floor: a rug, and the error of what was measured."""
 
 
 class Destinations:
@@ -65,6 +70,14 @@ class Destinations:
         rows, at = (seen.sightings, seen.t) if seen is not None else ([], 0.0)
         likely = likelihood(item, self._io.household, rows, at, self.coverage.viewpoints)
         return Search(item, self.coverage, self._config, now, likely)
+
+    def on_floor(self) -> list[tuple[float, float, float]]:
+        """Circles (x, y, radius) [map, m] around reported objects on the floor, where the lidar looks over them."""
+        return sorted(
+            (o.position[0], o.position[1], math.hypot(o.size[0], o.size[1]) / 2)
+            for o in self._objects()
+            if not o.held and o.position[2] - o.size[2] / 2 < ON_FLOOR
+        )
 
     def _objects(self) -> list[m.WorldObject]:
         reported = self._io.latest(topics.WORLD_OBJECTS)

@@ -69,6 +69,21 @@ def test_a_pane_of_glass_is_met_and_gone_round() -> None:
     assert flat.finish(120.0).status == "arrived" and not flat.feedback().met, "remembered"
 
 
+@pytest.mark.parametrize(("height", "held", "room"), [(0.06, False, 0.3), (0.80, False, 0.0), (0.06, True, 0.0)])
+def test_a_thing_on_the_floor_is_gone_round_and_not_pushed(height: float, held: bool, room: float) -> None:
+    """It lies below the lidar; what stands on a table or is carried is in nobody's way."""
+    flat = Flat()
+    ball = m.WorldObject(label="ball", kind="ball", colour="red", position=(1.5, -0.9, height), size=(0.1, 0.1, 0.12))
+    flat.bus.send(topics.WORLD_OBJECTS, m.WorldObjects(t=0.0, objects=[msgspec.structs.replace(ball, held=held)]))
+    flat.ask("goto kitchen")
+    closest = math.inf
+    while flat.status().status == "navigating" and flat.now < 60.0:
+        flat.step()
+        closest = min(closest, math.dist(flat.true[:2], ball.position[:2]))
+    assert flat.status().status == "arrived"
+    assert closest > room + 0.05 if room else closest < 0.3
+
+
 def test_with_every_way_shut_it_waits_backs_off_tries_twice_and_says_so() -> None:
     flat = Flat([KITCHEN_DOOR, STUDY_DOOR])
     flat.ask("goto kitchen")
