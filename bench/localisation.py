@@ -9,17 +9,23 @@ carried to PLACES places one after the other. Exit 1 when it once believes to be
 import argparse
 import math
 import sys
+import time
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
-from bench.driving import Driver
+from common import messages as m
+from common import topics
+from common.bus import codec
 from common.geometry import Rectangle, wrap
+from common.scene import Scene
 from common.time.lockstep import DT
+from common.topic import Topic
 from evaluation.homes.floor import Floor
 from evaluation.homes.suite import aged
 from evaluation.report.statistics import interval
+from evaluation.stack import Stack, paced_services
 
 LIMIT, LIMIT_ANGLE = 0.03, math.radians(1.5)
 """Errors RMS [m, rad] that are allowed; chosen: a third of what grasping at a stand-off forgives."""
@@ -31,6 +37,42 @@ WRONG, WRONG_ANGLE = 0.15, math.radians(8.0)
 """Errors [m, rad] beyond which it is somewhere else than it believes; chosen: doors are missed from there on."""
 PERIOD = 5
 """Ticks between two samples: 20 Hz."""
+
+
+class Driver(Stack):
+    """A robot that only drives. `goal` sends it somewhere, `base` is where it is; `seconds` of CPU of each step."""
+
+    def __init__(self, scene: Scene | str = "apartment", seed: int = 0, settings: tuple[str, ...] = ()) -> None:
+        self.goals, self.seconds = 0, list[float]()
+        others = tuple(name for name in paced_services() if name != "navigation")
+        super().__init__(scene, seed, settings, without=others, swaps={"navigation": self._timed})
+        self.advance(0.2)
+
+    def _timed(self, kind: Any) -> Any:
+        seconds = self.seconds
+
+        class Timed(kind):  # type: ignore[misc]
+            def step(self, now: float) -> None:
+                began = time.thread_time()
+                super().step(now)
+                seconds.append(time.thread_time() - began)
+
+        return Timed
+
+    def goal(self, text: str) -> None:
+        self.goals += 1
+        self.bus.send(topics.NAVIGATION_GOAL, m.NavigationGoal(goal=text, id=f"drive.{self.goals}"))
+        self.advance(0.1)
+
+    def last(self, topic: Topic[Any]) -> Any:
+        """The newest message of a topic."""
+        return codec.decode(topic, self.bus.last[topic.key])
+
+    def base(self) -> list[float]:
+        """Where the base really is."""
+        physics = self.sim.physics
+        found: list[float] = physics.data.qpos[physics.qpos_at[:3]].tolist()
+        return found
 
 
 @dataclass
@@ -64,17 +106,17 @@ def drive(seed: int, seconds: float, settings: tuple[str, ...]) -> tuple[list[Er
     goals += [r.name for r in robot.scene.receptacles if r.approach and r.name != robot.scene.delivery]
     estimate, still, wheels = Errors("navigation/pose"), Errors("the same, at rest at goals"), Errors("base/odom")
     travelled, failed, last = 0.0, 0, robot.base()
-    status, told = robot.status(), 0.0
+    status, told = robot.last(topics.NAVIGATION_STATUS), 0.0
     while robot.now < seconds:
         if status.status != "navigating":
             failed += status.status == "failed"
             robot.goal(f"goto {rng.choice(goals)}")
         robot.advance(PERIOD * DT)
-        status, true, pose = robot.status(), robot.base(), robot.pose()
+        status, true, pose = robot.last(topics.NAVIGATION_STATUS), robot.base(), robot.last(topics.POSE)
         travelled += math.dist(last[:2], true[:2])
         last = true
         estimate.add(pose, true)
-        wheels.add(robot.odometry(), true)
+        wheels.add(robot.last(topics.ODOMETRY), true)
         if status.status == "arrived":
             still.add(pose, true)
         if robot.now - told >= 60.0:
@@ -82,7 +124,7 @@ def drive(seed: int, seconds: float, settings: tuple[str, ...]) -> tuple[list[Er
             print(
                 f"  {told:.0f} s: {estimate.rms()[0] * 100:.2f} cm, wheels {wheels.rms()[0] * 100:.1f} cm", flush=True
             )
-    print(f"seed {seed}: {robot.number} goals, {failed} failed, {travelled:.0f} m in {robot.now:.0f} s")
+    print(f"seed {seed}: {robot.goals} goals, {failed} failed, {travelled:.0f} m in {robot.now:.0f} s")
     return [estimate, still, wheels], robot
 
 
@@ -104,13 +146,13 @@ def carried(seed: int) -> list[tuple[str, float]]:
         since, noticed = robot.now, False
         while robot.now < since + PATIENCE:
             robot.advance(PERIOD * DT)
-            lost = robot.pose().lost
+            lost = robot.last(topics.POSE).lost
             noticed |= lost
             if (noticed or robot.now > since + PATIENCE / 4) and not lost:
                 break
         seconds = robot.now - since
         robot.advance(SETTLED)
-        pose_now, true = robot.pose(), robot.base()
+        pose_now, true = robot.last(topics.POSE), robot.base()
         off = math.dist((pose_now.x, pose_now.y), true[:2]), abs(wrap(pose_now.theta - true[2]))
         right = off[0] < WRONG and off[1] < WRONG_ANGLE
         rows.append(("lost" if pose_now.lost else "found" if right else "wrong" if noticed else "unnoticed", seconds))
@@ -147,7 +189,7 @@ def main() -> int:
         print(f"{'':28} {'n':>6} {'rms cm':>8} {'max cm':>8} {'rms deg':>8} {'max deg':>8}")
         for one in errors:
             print(one.line())
-        mean, high = np.mean(robot.timed.seconds) * 1000, np.percentile(robot.timed.seconds, 99) * 1000
+        mean, high = np.mean(robot.seconds) * 1000, np.percentile(robot.seconds, 99) * 1000
         print(f"navigation step {mean:.2f} ms mean, {high:.1f} ms p99")
         distance, angle = errors[0].rms()
         bad += distance > LIMIT or angle > LIMIT_ANGLE

@@ -2,8 +2,7 @@
 
 `python -m bench.mapping --homes 3 --seed 20000`; `--apartment` for the shipped flat, `--world DIR` for worlds of yours.
 Exit 1 when the median of a kind of error is above its aim, or something was hit. With `--out DIR` the maps are kept,
-each with its world, cases and a film of the growing map: `tidybot eval --world DIR` then gives missions in homes that
-the robot has mapped itself.
+each with its world and cases: `tidybot eval --world DIR` then gives missions in homes that the robot has mapped itself.
 """
 
 import argparse
@@ -15,7 +14,6 @@ from pathlib import Path
 
 import numpy as np
 
-from bench.mapping.film import Film
 from common import messages as m
 from common.files.map_file import HOUSEHOLD
 from common.files.plan_file import to_toml
@@ -26,8 +24,6 @@ from evaluation.homes.map_errors import HEIGHT, OUTLINE, WALL, Errors, centimetr
 from evaluation.homes.suite import homes
 from evaluation.stack import Stack
 from evaluation.suites.worlds import CASES, WORLD, worlds
-
-FILM = "film.webp"
 
 
 def say(stack: Stack, status: m.MappingStatus) -> None:
@@ -74,18 +70,12 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as kept:
         for name, scene in scenes:
             out = (args.out or Path(kept)) / name.replace(" ", "_")
-            began, film = time.monotonic(), Film()
-
-            def told(stack: Stack, status: m.MappingStatus, film: Film = film) -> None:
-                film.add(stack)
-                say(stack, status)
-
+            began = time.monotonic()
             out.mkdir(parents=True, exist_ok=True)
             (out / WORLD).write_text(to_toml(scene), encoding="utf-8")
             if name in listed:
                 shutil.copyfile(listed[name], out / CASES)
-            explored = explore(scene, args.seed, out, tell=told)
-            film.save(out / FILM)
+            explored = explore(scene, args.seed, out, tell=say)
             errors = compare(load_household(str(out / HOUSEHOLD)), scene)
             print(line(name, explored, errors, time.monotonic() - began), flush=True)
             for words in (
