@@ -4,14 +4,10 @@ import argparse
 import sys
 from pathlib import Path
 
-from cli.errors import CliError, checked
+from cli.errors import CliError
 from cli.processes.plan import add_machine_options
 from cli.processes.programs import become
 
-SUITES = (
-    "seed", "fetch", "tidy", "faults", "dialogue", "chaos", "commands", "spoken", "sizes", "clutter", "lying",
-    "labels", "things", "taught", "homes", "aged", "lost", "new",
-)  # fmt: skip
 EXAMPLES = """examples:
   tidybot eval --suite seed                                  the five scenarios of the VLA contract, with their logs
   tidybot eval --suite fetch --scenarios 100 --seed 7 --jobs 2
@@ -32,7 +28,6 @@ cases ended as expected, 130 after Ctrl-C."""
 
 def evaluate(args: argparse.Namespace) -> int:
     """Become `python -m evaluation` with the same words."""
-    checked(args.suite, SUITES, "suite")
     if (args.voices or args.snr is not None) and args.suite != "spoken":
         raise CliError("--voices and --snr are for --suite spoken")
     if args.replace and args.processes:
@@ -75,7 +70,7 @@ def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") ->
         "eval", help="random scenarios at full speed, judged by physics", epilog=EXAMPLES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )  # fmt: skip
-    parser.add_argument("--suite", default="fetch", metavar="NAME", help=f"one of {', '.join(SUITES)} (%(default)s)")
+    parser.add_argument("--suite", default="fetch", metavar="NAME", help="one of those that --list shows (%(default)s)")
     parser.add_argument("--list", action="store_true", help="the suites, what a case of each is, and its bar")
     parser.add_argument("--world", type=Path, metavar="DIR", help="worlds of your own instead (docs/WORLDS.md)")
     parser.add_argument("--scenarios", "-n", type=_positive, metavar="N", help="how many (default: the suite's own)")

@@ -11,7 +11,7 @@ import msgspec
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
 
-from cli.errors import CliError
+from cli.errors import CliError, checked
 from cli.main import FAILED, INTERRUPTED, parser
 from cli.processes.plan import machine
 from cli.processes.up import Stopped, interruptible
@@ -24,7 +24,7 @@ from evaluation.report import html as html_report
 from evaluation.report import text as report
 from evaluation.stack import replacement
 from evaluation.suites import worlds
-from evaluation.suites.table import BARS, DEFAULT_SCENARIOS, SUITES, cases, dressed
+from evaluation.suites.table import SUITES, WORLD_BAR, cases, dressed
 from evaluation.workers import cluster, pool
 from evaluation.workers.lane import Run
 from evaluation.workers.pool import Progressed, Repeated, Said
@@ -75,8 +75,8 @@ def main(argv: list[str]) -> int:
     """Exit status 0 when the bar is met, 1 when fewer did as expected or a claim was false, 130 after Ctrl-C."""
     args = parser("eval").parse_args(["eval", *argv])
     if args.list:
-        for name, make in SUITES.items():
-            print(f"{name:9} {100 * BARS[name]:3.0f} %  {(make.__doc__ or '').splitlines()[0]}")
+        for name, suite in SUITES.items():
+            print(f"{name:9} {100 * suite.bar:3.0f} %  {(suite.make.__doc__ or '').splitlines()[0]}")
         return 0
     args.suite = "world" if args.world else args.suite
     console = Console(stderr=bool(args.json == "-"), soft_wrap=True)
@@ -86,6 +86,7 @@ def main(argv: list[str]) -> int:
             return FAILED
     settings = (*machine(args), *args.set)
     try:
+        bar = WORLD_BAR if args.world else SUITES[checked(args.suite, SUITES, "suite")].bar
         for entry in args.replace:
             replacement(entry)
         todo = _cases(args, settings)
@@ -97,7 +98,7 @@ def main(argv: list[str]) -> int:
     except (CliError, ConfigError, LookupError) as error:
         print(f"tidybot: {error}", file=sys.stderr)
         return FAILED
-    bar = BARS[args.suite] if args.at_least is None else args.at_least
+    bar = bar if args.at_least is None else args.at_least
     found = report.record(args.suite, results, seconds, bar)
     report.show(console, found, results)
     if args.json:
@@ -121,7 +122,7 @@ def _cases(args: argparse.Namespace, settings: tuple[str, ...]) -> list[Case]:
     if args.world:
         found = worlds.cases(args.world, args.scenarios, args.seed)
         return [dressed(case, settings, args.pipeline, replaced) for case in found]
-    count = args.scenarios or DEFAULT_SCENARIOS.get(args.suite, 10)
+    count = args.scenarios or SUITES[args.suite].scenarios
     return cases(args.suite, count, args.seed, settings, args.pipeline, args.voices, args.snr, replaced)
 
 

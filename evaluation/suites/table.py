@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
+from typing import NamedTuple
 
 import msgspec
 import numpy as np
@@ -76,7 +77,7 @@ def cases(
     `voices` is a directory of recordings for the suite `spoken`, `snr` its signal-to-noise ratio [dB]. `replaced` are
     classes that stand in for services.
     """
-    make = SUITES[suite]
+    make = SUITES[suite].make
     if suite == "spoken":
         voices = voices or (HERE if (HERE / MANIFEST).exists() else None)
         make = partial(spoken, corpus=read_corpus(voices) if voices else None, snr=snr)
@@ -213,23 +214,37 @@ def tidy(seed: int) -> Case:
     )  # fmt: skip
 
 
-SUITES: dict[str, Make] = {
-    "fetch": fetch, "seed": named, "tidy": tidy, "faults": faults, "dialogue": dialogue, "chaos": chaos,
-    "commands": commands, "spoken": spoken, "sizes": sizes, "clutter": clutter, "lying": lying,
-    "labels": labels, "things": scanned, "taught": taught,
-    "homes": homes, "aged": aged, "lost": lost, "new": new,
-}  # fmt: skip
-DEFAULT_SCENARIOS = {
-    "seed": len(NAMED),
-    "dialogue": len(DIALOGUES),
-    "faults": len(FAULTS) * 2,
-    "chaos": len(CHAOS_SERVICES) * len(CHAOS_STATES),
-    "commands": len(ALL),
+class Suite(NamedTuple):
+    """`make`: a case from a seed. `bar`: the share of cases that must end as expected. `scenarios` unless told.
+
+    The bar is all where every case is a scenario of the contract or a dialogue, less where a random scene, voice or
+    fault at a random moment may leave nothing to be done.
+    """
+
+    make: Make
+    bar: float
+    scenarios: int = 10
+
+
+SUITES: dict[str, Suite] = {
+    "fetch": Suite(fetch, 0.95),
+    "seed": Suite(named, 1.0, len(NAMED)),
+    "tidy": Suite(tidy, 0.9),
+    "faults": Suite(faults, 0.9, 2 * len(FAULTS)),
+    "dialogue": Suite(dialogue, 1.0, len(DIALOGUES)),
+    "chaos": Suite(chaos, 0.95, len(CHAOS_SERVICES) * len(CHAOS_STATES)),
+    "commands": Suite(commands, 0.9, len(ALL)),
+    "spoken": Suite(spoken, 0.8),
+    "sizes": Suite(sizes, 0.95),
+    "clutter": Suite(clutter, 0.9),
+    "lying": Suite(lying, 0.9),
+    "labels": Suite(labels, 0.9),
+    "things": Suite(scanned, 0.85),
+    "taught": Suite(taught, 0.9),
+    "homes": Suite(homes, 0.95),
+    "aged": Suite(aged, 0.9),
+    "lost": Suite(lost, 0.9),
+    "new": Suite(new, 0.85),
 }
-BARS = {
-    "fetch": 0.95, "seed": 1.0, "tidy": 0.9, "faults": 0.9, "dialogue": 1.0, "chaos": 0.95, "commands": 0.9,
-    "spoken": 0.8, "world": 0.9, "sizes": 0.95, "clutter": 0.9, "lying": 0.9, "labels": 0.9, "things": 0.85,
-    "taught": 0.9, "homes": 0.95, "aged": 0.9, "lost": 0.9, "new": 0.85,
-}  # fmt: skip
-"""The share of cases that must end as expected: all where every case is a scenario of the contract or a dialogue,
-less where a random scene, voice or fault at a random moment may leave nothing to be done."""
+WORLD_BAR = 0.9
+"""The bar of worlds from outside; chosen: as of the suites in homes that somebody has furnished."""

@@ -43,7 +43,7 @@ def test_the_household_knows_words_and_no_thing(suite: str) -> None:
 
 
 def test_every_kind_and_colour_is_drawn_within_the_hand() -> None:
-    drawn = [o for suite in NAMES for seed in range(40) for o in objects(SUITES[suite](seed))]
+    drawn = [o for suite in NAMES for seed in range(40) for o in objects(SUITES[suite].make(seed))]
     assert {o.kind for o in drawn} == set(MEASURES) and {o.colour for o in drawn} == set(HUES)
     assert len({o.size for o in drawn}) > len(drawn) / 2, "sizes differ from world to world"
     for o in drawn:
@@ -53,8 +53,8 @@ def test_every_kind_and_colour_is_drawn_within_the_hand() -> None:
 
 def test_a_seed_repeats() -> None:
     for suite in NAMES:
-        assert SUITES[suite](3) == SUITES[suite](3)
-        assert SUITES[suite](3).scene != SUITES[suite](4).scene
+        assert SUITES[suite].make(3) == SUITES[suite].make(3)
+        assert SUITES[suite].make(3).scene != SUITES[suite].make(4).scene
 
 
 def _apart(a: np.ndarray, b: np.ndarray) -> float:
@@ -98,7 +98,7 @@ def test_scanned_things_are_asked_for_where_they_are_installed() -> None:
     for o in drawn:
         assert kind_of(o.kind).by_the_rim or min(o.size) <= 0.105, o.name  # a mug's size has its handle
         assert min(o.size) > 0.01 and max(o.size) < 0.25, o.name
-    case = SUITES["things"](2)
+    case = SUITES["things"].make(2)
     assert case.household is not None and not case.household.things and case.thing in case.command
 
 
@@ -113,7 +113,7 @@ def test_without_the_extra_it_says_what_to_install(monkeypatch: pytest.MonkeyPat
 def test_neighbours_are_near_and_do_not_touch() -> None:
     crowded = 0
     for seed in SEEDS:
-        wanted, *others = [o for o in objects(SUITES["clutter"](seed)) if o.position is not None]
+        wanted, *others = [o for o in objects(SUITES["clutter"].make(seed)) if o.position is not None]
         for o in others:
             gap = _apart(outline(wanted), outline(o))
             assert GAP[0] - 1e-3 < gap < GAP[1] * math.sqrt(2) + 1e-3, f"seed {seed}: {gap:.4f} m to the {o.name}"
@@ -128,7 +128,7 @@ def test_neighbours_are_near_and_do_not_touch() -> None:
 def test_the_world_stays_as_it_is_laid_out(suite: str) -> None:
     """Nothing is pushed out of anything at the start, and what lies has its axis level."""
     for seed in (0, 5):
-        case = SUITES[suite](seed)
+        case = SUITES[suite].make(seed)
         assert case.scene is not None
         physics = Physics(case.scene, seed)
         for placed in physics.placements:
@@ -142,7 +142,7 @@ def test_the_world_stays_as_it_is_laid_out(suite: str) -> None:
 
 
 def test_an_outline_is_convex_and_counter_clockwise() -> None:
-    for o in objects(SUITES["sizes"](1)):
+    for o in objects(SUITES["sizes"].make(1)):
         corners = outline(o)
         assert len(ConvexHull(corners).vertices) == len(corners)
         x, y = corners.T
@@ -150,7 +150,7 @@ def test_an_outline_is_convex_and_counter_clockwise() -> None:
 
 
 def test_world_and_household_survive_their_files(tmp_path: Path) -> None:
-    case = SUITES["clutter"](2)
+    case = SUITES["clutter"].make(2)
     assert case.scene is not None and case.household is not None
     world, household = tmp_path / "a.toml", tmp_path / "b.toml"
     world.write_text(to_toml(case.scene))
