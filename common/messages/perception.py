@@ -97,7 +97,8 @@ class ObjectPose(Message):
     """The answer to a query. `candidates` names the objects that match when several do and none is chosen.
 
     `id` is the object's in `WorldObject`. `perhaps`: objects that may be meant, the likeliest first, for the person to
-    say; nothing that is `found` is among them.
+    say; nothing that is `found` is among them. `unsure`: labels of objects that may be meant and can be told from
+    nearer or from another side, the likeliest first; `unlikely`: others of which that is not expected.
     `seen_at`: when a picture last showed the object; `on` names its receptacle, "" the floor or not known; `tilt` as
     in `WorldObject`. `picture`: a JPEG of the view behind the answer, for queries with `since`.
     """
@@ -114,6 +115,7 @@ class ObjectPose(Message):
     detail: str = ""
     candidates: list[str] = []
     unsure: list[str] = []
+    unlikely: list[str] = []
     perhaps: list[PossibleObject] = []
     id: str = ""
     on: str = ""

@@ -13,6 +13,7 @@ from common.naming.likeness import PLAIN
 from services.perception.config import PerceptionConfig
 from services.perception.grounding import Grounding, as_called, ground, may_be_meant, parsed, possible
 from services.perception.naming.naming import Naming
+from services.perception.naming.promise import PROMISING
 from services.perception.tracking.beliefs import Beliefs
 from services.perception.views.picture import jpeg
 from services.perception.views.pictures import Pictures
@@ -120,22 +121,24 @@ class Queries:
             return
         answer = _message(query, result, jpeg(view) if query.since else b"")
         if found is None:
-            answer.unsure = self._unsure(query.query, result.candidates)
+            answer.unsure, answer.unlikely = self._unsure(query.query, result.candidates)
         self._reading = None
         # Kept for a query that is sent again, without what costs memory.
         self._inbox.end(query, msgspec.structs.replace(answer, picture=b""))
         self._io.log.info("asked", query=query.query, found=answer.label, detail=answer.detail)
         self._io.publish(topics.OBJECT_POSE, answer)
 
-    def _unsure(self, query: str, candidates: list[str]) -> list[str]:
-        """Labels of objects that have to be seen from nearer to tell whether they are meant; of the `candidates`, if
-        there are any."""
+    def _unsure(self, query: str, candidates: list[str]) -> tuple[list[str], list[str]]:
+        """Labels of objects that have to be seen from nearer to tell whether they are meant, of the `candidates` if
+        there are any; and of those of which not much is promised by that."""
         base, seen = self._state.base or (0.0, 0.0, 0.0), self._beliefs.published
         doubtful = self._beliefs.tracker.doubtful()
         if candidates:
-            return [o.label for o in seen if o.id in doubtful and o.label in candidates]
+            return [o.label for o in seen if o.id in doubtful and o.label in candidates], []
+        promised = self._naming.unsure(query, seen, base)
         blurred = may_be_meant(query, seen, doubtful, self._io.household, base)
-        return list(dict.fromkeys([*self._naming.unsure(query, seen, base), *blurred]))
+        near = list(dict.fromkeys([*(label for share, label in promised if share >= PROMISING), *blurred]))
+        return near, [label for _, label in promised if label not in near]
 
     def _ground(self, query: m.ObjectQuery) -> Grounding:
         base, household, config = self._state.base or (0.0, 0.0, 0.0), self._io.household, self._config

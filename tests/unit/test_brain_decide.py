@@ -9,7 +9,8 @@ from common.messages import ObjectPose, PlanStep
 from services.brain.config import BrainConfig
 from services.brain.journal.records import Checkpoint, PathNode, Pose
 from services.brain.mission.channel import SentGoal
-from services.brain.mission.mission import Delivery, Failure, GripperState, Mission, Planning, Search, Task
+from services.brain.mission.mission import Delivery, Failure, GripperState, Mission, Planning, Task
+from services.brain.mission.search import Search
 from services.brain.resume.policy import (
     CLOCK_SLACK,
     MAX_RESUMES,

@@ -2,6 +2,7 @@
 
 import math
 
+import msgspec
 import pytest
 
 from common import messages as m
@@ -146,8 +147,59 @@ def test_what_cannot_be_read_from_one_side_is_looked_at_from_others_and_no_more_
 
 
 def test_one_that_cannot_be_reached_is_passed_over_for_another() -> None:
-    bench = looking(thing("red can", -1.5, -2.3), thing("red can 2", 4.5, -3.1))
+    bench = looking(thing("red can", -1.5, -2.3), thing("red can 2", -1.5, 1.5))
     see(bench, 1, unsure=("red can", "red can 2"))
     arrive(bench, 1, "failed")
     second = arrive(bench, 2)
-    assert math.dist((second.x, second.y), (4.5, -3.1)) < 0.9
+    assert math.dist((second.x, second.y), (-1.5, 1.5)) < 0.9
+
+
+def test_what_is_seen_through_a_door_is_looked_at_when_nothing_else_is_left() -> None:
+    bench = looking(thing("red can", 4.5, -3.1), thing("red can 2", -1.5, -2.3))
+    see(bench, 1, unsure=("red can", "red can 2"))
+    first = arrive(bench, 1)
+    assert math.dist((first.x, first.y), (-1.5, -2.3)) < 0.9
+    see(bench, 2, unsure=("red can",))
+    arrive(bench, 2)
+    assert "search" in bench.state.step
+
+
+def test_under_another_name_it_is_not_looked_at_from_the_same_side_again() -> None:
+    bench = looking(thing("red can", -1.3, -2.2))
+    see(bench, 1, unsure=("red can",))
+    first = arrive(bench, 1)
+    renamed = [thing("tomato soup", -9.0, 9.0), thing("brown jar", -1.3, -2.21)]
+    bench.send(topics.WORLD_OBJECTS, m.WorldObjects(t=bench.now, objects=renamed))
+    see(bench, 2, unsure=("brown jar",))
+    second = arrive(bench, 2)
+    one, two = (math.atan2(goal.y + 2.2, goal.x + 1.3) for goal in (first, second))
+    assert "brown jar" in bench.state.step and abs(wrap(one - two)) > 0.5
+
+
+def test_what_stands_before_the_robot_is_looked_at_from_another_side() -> None:
+    bench = looking(thing("red can", 0.8, 0.0))
+    shown = msgspec.structs.replace(thing("red can", 0.8, 0.0), seen_at=bench.now + 60.0)
+    bench.send(topics.WORLD_OBJECTS, m.WorldObjects(t=bench.now, objects=[shown]))
+    see(bench, 1, unsure=("red can",))
+    goal = arrive(bench, 1)
+    assert abs(wrap(math.atan2(goal.y, goal.x - 0.8) - math.pi)) > 0.5
+
+
+def test_what_is_unlikely_to_be_it_is_looked_at_after_the_search_only() -> None:
+    bench = looking(thing("white tool", -1.5, -2.3))
+    steps: list[str] = []
+    looks = 0
+    while not steps or "look closer" not in steps[-1]:
+        goals = bench.count(topics.NAV_GOAL)
+        if looks < bench.count(topics.OBJECT_QUERY):
+            looks += 1
+            query = bench.next_goal(topics.OBJECT_QUERY, looks)
+            pose = m.ObjectPose(query_id=query.id, found=False, unlikely=["white tool"])
+            bench.send(topics.OBJECT_POSE, pose)
+        elif goals > len(steps):
+            steps.append(bench.state.step)
+            goal = bench.last(topics.NAV_GOAL)
+            bench.send(topics.NAVIGATION_FEEDBACK, m.NavigationFeedback(goal_id=goal.id, status="arrived"))
+        bench.step()
+    assert len(steps) > 3 and all("search" in step for step in steps[:-1])
+    assert math.dist((goal.x, goal.y), (-1.5, -2.3)) < 0.9

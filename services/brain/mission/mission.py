@@ -7,6 +7,7 @@ import msgspec
 
 from common import messages as m
 from common.robot.grip import grip_of
+from services.brain.mission.search import Search
 from services.brain.world.neighbours import Stood
 from services.brain.world.placement import Rest
 
@@ -92,43 +93,6 @@ class Planning(msgspec.Struct):
     looked: list[m.PlanStep] = []
     look_again: bool = False
     suggestion: str = ""
-
-
-SIDES = 3
-"""Sides from which an object is looked at from nearer. Chosen: a can shows all of what goes around it in three."""
-
-
-class Search(msgspec.Struct):
-    """What looking has shown: `found` objects and the `chosen` one of several `options`, by the plan's name for them.
-
-    `unsure`: labels of objects that may be meant and can be told from nearer, or from another side only; `inspected`:
-    by label, the directions [rad, map] from it to where the robot has looked at it from nearer, at most SIDES.
-
-    `visited`: poses (x, y, theta) [m, rad] in map that the robot has looked from, `unreached` others that it could not
-    get to, as often as it tried. `stances`: by label, the pose from
-    which manipulation says that it reaches an object that it did not reach.
-
-    `perhaps`: objects that may be meant, as perception had them last, `about` that which the person is being asked
-    about; `confirmed` the ids of those that are meant, by the plan's name, `rejected` of those that are not, which
-    stood at `refused` [m, map].
-    `unanswered`: nobody has answered such a question. `too_wide`: labels of what manipulation has called so.
-    """
-
-    found: dict[str, m.ObjectPose] = {}
-    visited: list[tuple[float, float, float]] = []
-    unreached: list[tuple[float, float, float]] = []
-    options: list[str] = []
-    chosen: dict[str, str] = {}
-    unsure: list[str] = []
-    inspected: dict[str, list[float]] = {}
-    stances: dict[str, tuple[float, float, float]] = {}
-    perhaps: list[m.PossibleObject] = []
-    about: m.PossibleObject | None = None
-    confirmed: dict[str, str] = {}
-    rejected: list[str] = []
-    refused: list[m.Vec3] = []
-    unanswered: bool = False
-    too_wide: list[str] = []
 
 
 class Delivery(msgspec.Struct):

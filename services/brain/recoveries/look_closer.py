@@ -2,6 +2,8 @@
 and then from other sides."""
 
 import math
+from collections.abc import Callable, Collection
+from functools import partial
 from typing import Any
 
 from py_trees.behaviour import Behaviour
@@ -12,7 +14,8 @@ from common import topics
 from common.geometry import Pose2
 from common.topic import Topic
 from services.brain.mission.context import Context
-from services.brain.mission.mission import SIDES, Failure
+from services.brain.mission.mission import Failure
+from services.brain.mission.search import SIDES
 from services.brain.recoveries.clarify import ask_which, several_match
 from services.brain.recoveries.identify import ask_about_the_near, near_possible
 from services.brain.recoveries.recovery import Recovery, Task, with_recoveries
@@ -32,34 +35,32 @@ AFTER_A_CLOSER_LOOK = (
 
 
 class MoveCloser(SendGoal):
-    """Drives before the first of the objects that may be meant: of those that were looked at from nearer least often.
+    """Drives before one of the objects that may be meant, of which `left` tells, one after the other.
 
     One that was looked at is seen from another side.
     """
 
-    def __init__(self, node_id: str, ctx: Context) -> None:
+    def __init__(self, node_id: str, ctx: Context, left: Callable[[Context], list[m.WorldObject]]) -> None:
         limit = ctx.config.navigation_timeout
         super().__init__(node_id, ctx, ctx.peers.navigation, state="GROUNDING", timeout=limit)
+        self._left = left
         self._target: m.WorldObject | None = None
-
         self._pose: Pose2 | None = None
 
     def initialise(self) -> None:
         super().initialise()
         ctx, search = self.ctx, self.ctx.mission.search
         self._target = self._pose = None
-        while self._pose is None and search.unsure:
-            label = min(search.unsure, key=lambda name: len(search.inspected.get(name, ())))
-            search.unsure = [other for other in search.unsure if other != label]
-            found, seen_from = ctx.known_object(label), search.inspected.get(label, [])
-            if found is None:
-                continue
+        plan, here = ctx.io.household, ctx.robot_pose
+        while self._pose is None and (left := self._left(ctx)):
+            found = min(left, key=lambda o: len(search.directions(o.position)))
+            search.drop(found.label)
             x, y, _ = found.position
-            plan, here = ctx.io.household, ctx.robot_pose
+            seen_from = search.directions(found.position)
             self._pose = reading_pose(plan, (x, y), here, seen_from) if seen_from else standing_pose(plan, (x, y), here)
             # One that cannot be reached, or has no other side, is not tried again either.
             angles = [math.atan2(self._pose[1] - y, self._pose[0] - x)] if self._pose else [0.0] * SIDES
-            search.inspected = {**search.inspected, label: [*seen_from, *angles]}
+            search.looked_near(found.position, angles)
             self._target = found
         ctx.mission.at = ""
 
@@ -82,18 +83,51 @@ class MoveCloser(SendGoal):
         return "I could not look at it from nearer."
 
 
-def look_closer(ctx: Context, task: Task) -> Behaviour:
-    """Drive up to one of them after the other and look again, until one is the object or none is left."""
+def look_closer(ctx: Context, task: Task, left: Callable[[Context], list[m.WorldObject]] | None = None) -> Behaviour:
+    """Drive up to one of them after the other and look again, until one is the object or none is `left`."""
     looked = LocateObject("look", ctx, task.item)
+    left = left or promising
     look = Sequence(
         "closer_view",
-        MoveCloser("closer", ctx),
+        MoveCloser("closer", ctx, left),
         Settle("settle", ctx),
         with_recoveries("look_or_ask", ctx, looked, AFTER_A_CLOSER_LOOK, task),
     )
-    return Retry("look_closer", ctx, look, MOST - 1, again=lambda: unsure(ctx))
+    return Retry("look_closer", ctx, look, MOST - 1, again=lambda: bool(left(ctx)))
+
+
+def promising(ctx: Context) -> list[m.WorldObject]:
+    """The objects that may be meant and can be told from nearer, of those in this room if none of them was asked for.
+
+    What is seen through a door is seen again from its own room.
+    """
+    search, plan = ctx.mission.search, ctx.io.household
+    x, y, _ = ctx.robot_pose
+    room = plan.room_at(x, y)
+    known = _known(ctx, search.unsure)
+    return known if search.options else [o for o in known if plan.room_at(o.position[0], o.position[1]) is room]
+
+
+def remaining(ctx: Context) -> list[m.WorldObject]:
+    """All objects that may be meant and can be told from nearer, those that are unlikely to be last."""
+    return _known(ctx, [*ctx.mission.search.unsure, *ctx.mission.search.unlikely])
+
+
+def _known(ctx: Context, labels: Collection[str]) -> list[m.WorldObject]:
+    if ctx.mission.failed_for_good:
+        return []
+    return [o for label in labels if (o := ctx.known_object(label)) is not None]
 
 
 def unsure(ctx: Context) -> bool:
-    """Perception named objects that may be meant and were not looked at from nearer in this mission."""
-    return bool(ctx.mission.search.unsure) and not ctx.mission.failed_for_good
+    """Perception named objects that may be meant, and they are worth a look before the search goes on."""
+    return bool(promising(ctx))
+
+
+look_at_the_rest = partial(look_closer, left=remaining)
+"""After the search: also at what is unlikely to be meant, because nothing else was."""
+
+
+def unseen_from_near(ctx: Context) -> bool:
+    """The search has left objects that may be meant and were not looked at from nearer."""
+    return bool(remaining(ctx))

@@ -5,7 +5,7 @@ To add one: write its two functions in a module beside this one, and a row here 
 
 from services.brain.recoveries.clarify import ask_which, several_match
 from services.brain.recoveries.identify import ask_about_the_rest, ask_and_grab, ask_whether, may_be, remains_possible
-from services.brain.recoveries.look_closer import look_closer, unsure
+from services.brain.recoveries.look_closer import look_at_the_rest, look_closer, unseen_from_near, unsure
 from services.brain.recoveries.put_right import needs_replacing, put_right
 from services.brain.recoveries.recovery import Recovery
 from services.brain.recoveries.regrasp import grab_failed, regrasp
@@ -17,6 +17,7 @@ AFTER_LOOKING = (
     Recovery("look_closer", unsure, look_closer),
     Recovery("identify", may_be, ask_whether),
     Recovery("search", can_go_on, search),
+    Recovery("look_at_the_rest", unseen_from_near, look_at_the_rest),
     Recovery("identify_at_last", remains_possible, ask_about_the_rest),
     Recovery("not_found", can_go_on, report_not_found),
 )

@@ -16,11 +16,13 @@ from common.naming.names import normalise
 from common.topic import Topic
 from services.brain.mission.channel import Result
 from services.brain.mission.context import Context
-from services.brain.mission.mission import SIDES, Failure
+from services.brain.mission.mission import Failure
+from services.brain.mission.search import SIDES
 from services.brain.steps.leaf import Leaf, SendGoal
 from services.brain.steps.motion import Navigate
 from services.brain.world import viewpoint_search
 from services.brain.world.placement import TIPPED, kind_meant
+from services.brain.world.reading_poses import FARTHEST, shows_another_side
 from services.brain.world.standing_poses import standing_pose
 
 
@@ -52,7 +54,8 @@ class LocateObject(SendGoal):
         search = ctx.mission.search
         search.options = pose.candidates
         search.perhaps = [p for p in pose.perhaps if p.id not in search.rejected]
-        search.unsure = [label for label in pose.unsure if len(search.inspected.get(label, ())) < SIDES]
+        self._note_near_looks([*pose.unsure, *pose.unlikely])
+        search.unsure, search.unlikely = self._left(pose.unsure), self._left(pose.unlikely)
         if not pose.found:
             self.feedback_message = pose.detail or "not seen"
             code = "AMBIGUOUS" if pose.candidates else "NOT_FOUND"
@@ -62,6 +65,21 @@ class LocateObject(SendGoal):
         evidence = f"{pose.label} at ({x:.2f}, {y:.2f}, {z:.2f}), confidence {pose.confidence:.2f}"
         ctx.note(f"found {self._item}", evidence, "saw")
         return Status.SUCCESS
+
+    def _note_near_looks(self, labels: list[str]) -> None:
+        """What the last pictures have shown of these from where the robot stands it need not come nearer for."""
+        x, y, _ = self.ctx.robot_pose
+        for o in self.ctx.objects:
+            if o.label in labels and o.seen_at >= self.since and math.dist((x, y), o.position[:2]) <= FARTHEST:
+                angle = math.atan2(y - o.position[1], x - o.position[0])
+                if shows_another_side(angle, self.ctx.mission.search.directions(o.position)):
+                    self.ctx.mission.search.looked_near(o.position, [angle])
+
+    def _left(self, labels: list[str]) -> list[str]:
+        """Those of the labels whose objects were not looked at from nearer from all sides."""
+        places = {o.label: o.position for o in self.ctx.objects}
+        search = self.ctx.mission.search
+        return [n for n in labels if n not in places or len(search.directions(places[n])) < SIDES]
 
 
 class MoveToViewpoint(SendGoal):

@@ -13,6 +13,7 @@ from services.brain.language.dialogue import reply
 from services.brain.mission.channel import Result
 from services.brain.mission.context import Context
 from services.brain.mission.mission import Failure
+from services.brain.mission.search import SAME_PLACE
 from services.brain.steps.ask import HearAnswer
 from services.brain.steps.leaf import Leaf
 
@@ -22,8 +23,6 @@ ANOTHER = "ANOTHER_ONE"
 NOT_PLAIN = "NOT_PLAIN"
 """Failure code: the object before the robot does not plainly fit the words that were said."""
 
-SAME_PLACE = 0.03
-"""Distance [m] within which an object is one that stood there before. Chosen: half of what two that touch are apart."""
 MOST_ASKED = 4
 """Objects that a person is asked about in one mission (chosen: more is a nuisance)."""
 
@@ -93,7 +92,7 @@ def candidate(ctx: Context, least: float, near: bool = False) -> m.PossibleObjec
     if search.unanswered or len(search.rejected) >= MOST_ASKED:
         return None
     left = [p for p in search.perhaps if p.likeness >= least and not _asked_about(ctx, p)]
-    return next((p for p in left if not near or p.label in search.inspected), None)
+    return next((p for p in left if not near or search.directions(p.position)), None)
 
 
 def _asked_about(ctx: Context, possible: m.PossibleObject) -> bool:

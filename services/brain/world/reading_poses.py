@@ -12,6 +12,8 @@ DIRECTIONS = 24
 """Directions around the object that are tried."""
 DISTANCES = (0.55, 0.65, 0.75, 0.85, 0.95)
 """Distances [m] of the base from the object; from further away small print is not read."""
+FARTHEST = DISTANCES[-1]
+"""Distance [m] of the base from an object up to which its print is read from where the robot stands."""
 APART = 0.6
 """Angle [rad] to the directions from which it was seen that shows another side. Chosen: a third of what a can shows."""
 
@@ -23,7 +25,7 @@ def reading_pose(floor_plan: FloorPlan, point: Point, here: Pose2, seen_from: Se
     options: list[tuple[float, Pose2]] = []
     for k in range(DIRECTIONS):
         angle = math.tau * k / DIRECTIONS
-        if any(abs(wrap(angle - seen)) < APART for seen in seen_from):
+        if not shows_another_side(angle, seen_from):
             continue
         for distance in DISTANCES:
             x, y = point[0] + distance * math.cos(angle), point[1] + distance * math.sin(angle)
@@ -32,3 +34,8 @@ def reading_pose(floor_plan: FloorPlan, point: Point, here: Pose2, seen_from: Se
                 options.append((cost, (x, y, wrap(angle + math.pi))))
                 break
     return min(options)[1] if options else None
+
+
+def shows_another_side(angle: float, seen_from: Sequence[float]) -> bool:
+    """Whether a direction [rad] is APART from all those that an object was seen from."""
+    return all(abs(wrap(angle - seen)) >= APART for seen in seen_from)

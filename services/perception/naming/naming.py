@@ -13,7 +13,6 @@ from common import messages as m
 from common import topics
 from common.bus.port import Io
 from common.geometry import Pose2
-from common.naming.likeness import LEAST, looks_like
 from common.naming.names import match_object, normalise
 from services.perception.config import PerceptionConfig
 from services.perception.naming import reader
@@ -22,18 +21,17 @@ from services.perception.naming.consult import Consultant
 from services.perception.naming.grounders.load import load_grounder
 from services.perception.naming.memory import NameMemory
 from services.perception.naming.observer import Observer
+from services.perception.naming.promise import promise, unlike
 from services.perception.naming.recognise import Match, matches
 from services.perception.naming.teaching import Teacher
 from services.perception.naming.text import LIKELY, SURE, likeness, printed_words, shown, traces
-from services.perception.naming.vocabulary import COLOURS, common_words, plain_words, printable, taken, unlike_said
+from services.perception.naming.vocabulary import COLOURS, common_words, plain_words, printable, taken
 from services.perception.views.view import View
 
 HALF_READ, SOMEWHAT, TRACE = 0.5, 0.4, 0.1
 """Likeness, as `common.naming.likeness` has it, of what reads nearly like the words, of what looks somewhat like the
 taught thing, and of what shows a part of one word. Chosen: a person is asked about the first two when they are seen,
 about the last when nothing else was found."""
-OTHER_LOOKS = 0.5
-"""By how much what has not the colour that was said comes later among those to be looked at."""
 
 
 class Naming:
@@ -126,7 +124,7 @@ class Naming:
         read = [o for o in known if scores[o.id] >= max(SURE, min(best, 0.99))]
         # "Green tea" is what has both words on it, where several have "tea".
         others = [w for w in said if w not in words]
-        read = [o for o in read if not _unlike(o, said, others)]
+        read = [o for o in read if not unlike(o, said, others)]
         hits = {o.id: sum(likeness([w], o.text, beside) >= SURE for w in others) for o in read}
         return [o for o in read if hits[o.id] == max(hits.values())]
 
@@ -148,30 +146,20 @@ class Naming:
             return bool(self._memory.names[name].lines) and any(s is not None and not s.read for s in named)
         return not answered and bool(self._printed(query))
 
-    def unsure(self, query: str, objects: Sequence[m.WorldObject], base: Pose2) -> list[str]:
-        """Labels of objects that could be meant and have to be seen from nearer to tell, the likeliest first by what
-        was read and by their looks, of equal ones that which is nearest to `base`."""
+    def unsure(self, query: str, objects: Sequence[m.WorldObject], base: Pose2) -> list[tuple[float, str]]:
+        """Labels of objects that could be meant and have to be seen from nearer to tell, each with how much such a look
+        promises, 0 to 1; the most promising first, of equal ones that which is nearest to `base`."""
         words, name = self._asked_print(query), normalise(query)
-        said = name.split()
-        beside = {*said, *COLOURS}
         found: list[tuple[float, float, str]] = []
         for o in objects:
-            away = math.hypot(o.position[0] - base[0], o.position[1] - base[1])
-            if not o.held and name in self._matches.get(o.id, Match()).perhaps:
-                found.append((-1.0, away, o.label))
-            elif not o.held and words and self._observer.can_read and printable(o):
-                sight, score = self._observer.sight(o.id), likeness(words, o.text, beside)
-                if _unlike(o, said, said):
-                    score -= OTHER_LOOKS
-                looks = looks_like(query, o, self._io.household)
-                if score < LIKELY and looks_like(query, o, self._io.household, packed=True) < LEAST:
-                    continue
-                if score >= LIKELY or sight is None or not sight.read:
-                    found.append((-score - looks, away, o.label))
-                elif not sight.exhausted and (not sight.named or traces(words, o.text) >= LIKELY):
-                    # Its print is on another side, or goes on there.
-                    found.append((1.0 - traces(words, o.text), away, o.label))
-        return [label for _, _, label in sorted(found)]
+            sight, promised = self._observer.sight(o.id), 0.0
+            if name in self._matches.get(o.id, Match()).perhaps:
+                promised = 1.0
+            elif words and self._observer.can_read and printable(o):
+                promised = promise(name, words, o, sight, self._io.household)
+            if promised and not o.held:
+                found.append((-promised, math.hypot(o.position[0] - base[0], o.position[1] - base[1]), o.label))
+        return [(-promised, label) for promised, _, label in sorted(found)]
 
     def perhaps(self, query: str, objects: Sequence[m.WorldObject]) -> list[m.PossibleObject]:
         """The objects of which a person has to say whether they are meant: their print was half read, or they look
@@ -185,7 +173,7 @@ class Naming:
             if name in self._matches.get(o.id, Match()).perhaps:
                 like = SOMEWHAT
             elif words and sight is not None and sight.read and printable(o):
-                half = likeness(words, o.text, beside) >= LIKELY and not _unlike(o, said, said)
+                half = likeness(words, o.text, beside) >= LIKELY and not unlike(o, said, said)
                 like = HALF_READ if half else TRACE if traces(words, o.text) >= SURE else 0.0
             if like and not o.held:
                 found.append(m.PossibleObject(id=o.id, label=o.label, likeness=like, position=o.position, on=o.on))
@@ -212,7 +200,3 @@ class Naming:
     def _publish(self) -> None:
         names = [taught.message for taught in self._memory.names.values()]
         self._io.publish(topics.HOUSEHOLD_NAMES, m.TaughtNames(names=names))
-
-
-def _unlike(o: m.WorldObject, said: Sequence[str], others: Sequence[str]) -> bool:
-    return unlike_said(o, others, lambda word: likeness([word], o.text, {*said, *COLOURS}) >= SURE)

@@ -16,6 +16,8 @@ MAX_SIDES = 4
 """Looks kept of an object in sight; the newest count."""
 LEGIBLE = 1000.0
 """Pixels per metre from which print of a package is legible: letters of 8 mm have 8 pixels."""
+ROUGHLY = 650.0
+"""Pixels per metre from which words that were read for sure are those that are printed (bench.naming, 1.8 m)."""
 APART = 0.5
 """Angle [rad] between two directions from which different sides are read. Chosen: what goes around a can is read up to
 1.15 to either side, at the edge with few letters."""
@@ -53,6 +55,11 @@ class Sight:
     def named(self) -> bool:
         """Words were read on it for sure."""
         return bool(sure_words(self.lines))
+
+    @property
+    def told(self) -> bool:
+        """Words were read on it for sure, from near enough not to take others for them."""
+        return self.named and self.legible >= ROUGHLY
 
     def unread_side(self, crop: Crop) -> bool:
         """A crop shows a side that was not read yet, or shows it more finely."""

@@ -1,0 +1,51 @@
+"""How much a nearer look at an object may tell of whether it is the one that was asked for by its print. Pure."""
+
+from collections.abc import Sequence
+
+from common.household import Household
+from common.messages import WorldObject
+from common.naming.likeness import LEAST, LIKELY, describes, looks_like
+from services.perception.naming.sights import Sight
+from services.perception.naming.text import LIKELY as HALF_READ
+from services.perception.naming.text import SURE, likeness, traces
+from services.perception.naming.vocabulary import COLOURS, unlike_said
+
+PROMISING = LIKELY
+"""Promise from which an object is looked at before the search goes on. Chosen: as likely as one is asked about."""
+PACKED = frozenset({"bottle", "can", "jar", "box", "carton", "block", "book"})
+"""Kinds that have print more often than not."""
+RARELY, ELSEWHERE, OTHERWISE, NAMED = 0.25, 0.6, 0.5, 0.05
+"""What is left of the promise of what is of another kind when no word tells of looks, of what was read on this side in
+vain, of what has not the colour that was said, and of what has other words on it. Chosen: a mug has print in one of
+four, a box shows it on another side in one of two; the last is a misread word in twenty."""
+
+
+def promise(query: str, words: Sequence[str], o: WorldObject, sight: Sight | None, household: Household) -> float:
+    """How likely the `words` of a query that may be print are on an object that was looked at as `sight` says, 0 to 1.
+
+    0 for what is of none of the kinds that the query's words tell of, and for what was read from all sides in vain.
+    """
+    said = query.split()
+    beside = {*said, *COLOURS}
+    score, part = likeness(words, o.text, beside), traces(words, o.text)
+    other = unlike(o, said, said)
+    if score >= HALF_READ:
+        return OTHERWISE * score if other else score
+    if looks_like(query, o, household, packed=True) < LEAST and not other:
+        return 0.0
+    found = max(LEAST, looks_like(query, o, household))
+    if not describes(query, household) and o.kind not in PACKED:
+        found *= RARELY
+    if other:
+        found *= OTHERWISE
+    if sight is None or not (sight.read or sight.told):
+        return found
+    if sight.exhausted:
+        return 0.0
+    # A part of a word goes on around the side; other words say what else it is.
+    return max(found * ELSEWHERE, part) if part >= HALF_READ else found * (NAMED if sight.named else ELSEWHERE)
+
+
+def unlike(o: WorldObject, said: Sequence[str], others: Sequence[str]) -> bool:
+    """Whether a colour or a fruit among `others` of the words `said` is neither the object's nor printed on it."""
+    return unlike_said(o, others, lambda word: likeness([word], o.text, {*said, *COLOURS}) >= SURE)
