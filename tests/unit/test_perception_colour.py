@@ -94,3 +94,14 @@ def test_a_yellow_thing_in_a_dim_room_is_not_green() -> None:
     room = light(np.broadcast_to(pixels((0.5, 0.49, 0.47), 60 * 60).reshape(60, 60, 3), (60, 60, 3)))
     assert main_words(shares(pixels((0.38, 0.34, 0.09), 300), room))[0] == "yellow"
     assert main_words(shares(pixels((0.38, 0.34, 0.09), 300), np.ones(3)))[0] == "green"
+
+
+def test_a_white_bowl_is_white_also_where_most_of_it_is_turned_from_the_lamp() -> None:
+    lit, turned = pixels((0.75, 0.75, 0.73), 60), pixels((0.48, 0.48, 0.47), 240)
+    assert main_words(shares(np.concatenate([lit, turned]), np.ones(3))) == ["white"]
+    assert main_words(shares(pixels((0.48, 0.48, 0.47), 300), np.ones(3)))[0] == "grey"
+
+
+def test_black_print_on_white_and_a_dark_lid_stay_what_they_are() -> None:
+    parts = pixels((0.8, 0.8, 0.8), 150), pixels((0.08, 0.08, 0.08), 80), pixels((0.35, 0.35, 0.36), 80)
+    assert set(main_words(shares(np.concatenate(parts), np.ones(3)))) == {"white", "black", "grey"}
