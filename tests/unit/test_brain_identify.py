@@ -186,3 +186,34 @@ def test_who_does_not_answer_which_of_several_is_not_asked_from_the_next_view() 
     bench.send(topics.OBJECT_POSE, m.ObjectPose(query_id=query.id, found=False, **several))
     bench.until(lambda: bench.count(topics.NAV_GOAL) == 2)
     assert [text for text in bench.texts(SPEECH) if "Do you mean" in text] == asked
+
+
+@pytest.mark.parametrize(
+    ("said", "looked_for"),
+    [("no, the green one", "green one"), ("the small blue box on the counter", "small blue box on the counter"),
+     ("no that is an orange", ""), ("no, it is broken", ""), ("not that one", "")],
+)  # fmt: skip
+def test_what_is_said_to_look_otherwise_is_looked_for_in_those_words(said: str, looked_for: str) -> None:
+    bench = planned()
+    answer(bench, 1, maybe("object-3"))
+    reply(bench, said)
+    bench.until(lambda: bench.count(QUERY) > 1 or bench.count(topics.NAV_GOAL))
+    assert bool(looked_for) == (bench.count(QUERY) > 1)
+    if looked_for:
+        query = answer(bench, 2, label="green box", id="object-4", position=RED)
+        assert (query.query, query.excluded, query.meant) == (looked_for, ["object-3"], "")
+        goal = bench.next_goal(topics.NAV_GOAL, 1)
+        assert goal.object is not None and goal.object.label == "green box"
+
+
+def test_before_everything_was_looked_at_few_are_asked_about_that_half_fit() -> None:
+    bench = planned()
+    places = [(float(n), 1.0, 0.8) for n in range(4)]
+    several = [maybe(f"object-{n}", 0.4, position=place) for n, place in enumerate(places)]
+    answer(bench, 1, *several)
+    for count in (1, 2):
+        while bench.texts(SPEECH).count(ASKED) < count:
+            bench.step()
+        reply(bench, "no")
+    bench.until(lambda: bench.count(topics.NAV_GOAL))
+    assert bench.texts(SPEECH).count(ASKED) == 2

@@ -6,9 +6,11 @@ from collections.abc import Callable
 from py_trees.common import Status
 
 from common import messages as m
-from common.language.normalise import indefinite
-from common.naming.likeness import LEAST, PLAIN, likeness
-from common.naming.names import unnumbered
+from common.household import Household
+from common.language.normalise import indefinite, without_determiners
+from common.language.noun_phrase import WHICH, related
+from common.naming.likeness import LEAST, PLAIN, describes, likeness
+from common.naming.names import ANYTHING, unnumbered
 from services.brain.language.dialogue import reply
 from services.brain.mission.channel import Result
 from services.brain.mission.context import Context
@@ -23,8 +25,11 @@ ANOTHER = "ANOTHER_ONE"
 NOT_PLAIN = "NOT_PLAIN"
 """Failure code: the object before the robot does not plainly fit the words that were said."""
 
-MOST_ASKED = 4
-"""Objects that a person is asked about in one mission (chosen: more is a nuisance)."""
+MOST_ASKED, AT_FIRST = 4, 2
+"""Objects that a person is asked about in one mission, and before everything was looked at unless the words fit them
+HALF (chosen: more is a nuisance, and a better one may come)."""
+HALF = 0.5
+"""Likeness of an object of which half of the words are seen. Chosen: no other is likelier."""
 
 
 class ChooseCandidate(Leaf):
@@ -41,7 +46,8 @@ class ChooseCandidate(Leaf):
 
 
 class HearIdentity(HearAnswer):
-    """Whether the object asked about is the one that is meant; SUCCESS once the person has said so."""
+    """Whether the object asked about is the one that is meant; SUCCESS once the person has said so, or what it looks
+    like instead."""
 
     def __init__(self, node_id: str, ctx: Context, item: Callable[[], str]) -> None:
         super().__init__(node_id, ctx)
@@ -60,7 +66,7 @@ class HearIdentity(HearAnswer):
     def succeed(self, result: Result) -> Status:
         search, heard = self.ctx.mission.search, result.message
         assert isinstance(heard, m.SpeechResult)
-        kind, _ = reply(heard.text)
+        kind, rest = reply(heard.text)
         about, search.about = search.about, None
         self.ctx.note(f"reply: {kind}", heard.text, "heard")
         self.feedback_message = kind
@@ -74,6 +80,9 @@ class HearIdentity(HearAnswer):
         # Whatever else is said, it is no yes.
         search.rejected, search.refused = [*search.rejected, about.id], [*search.refused, about.position]
         search.perhaps = [p for p in search.perhaps if p.id != about.id]
+        if meant := reworded(rest, self.ctx.io.household):
+            search.chosen[self._item] = meant
+            return Status.SUCCESS
         return self.refuse(ANOTHER, f"the {about.label} is not the {self._item}", self.spoken())
 
     def fail_with(self, failure: Failure) -> Status:
@@ -91,6 +100,8 @@ def candidate(ctx: Context, least: float, near: bool = False) -> m.PossibleObjec
     search = ctx.mission.search
     if search.unanswered or len(search.rejected) >= MOST_ASKED:
         return None
+    if least > LEAST and len(search.rejected) >= AT_FIRST:
+        least = max(least, HALF)
     left = [p for p in search.perhaps if p.likeness >= least and not _asked_about(ctx, p)]
     return next((p for p in left if not near or search.directions(p.position)), None)
 
@@ -148,6 +159,15 @@ def survey(ctx: Context, item: str) -> bool:
         return False
     search.perhaps = rated(ctx, item)
     return bool(search.perhaps) and search.perhaps[0].likeness < PLAIN
+
+
+def reworded(text: str, household: Household) -> str:
+    """What a person says instead of yes where it tells what a thing looks like: `green one on the counter`; else ""."""
+    words, told = without_determiners(tuple(text.split())), household.words
+    head = next((head for head, _, _ in related(words)), words)
+    plain = {*ANYTHING, *WHICH, *told.qualities}
+    known = all(word in plain or describes(word, household) for word in head)
+    return " ".join(words) if known and describes(" ".join(head), household) else ""
 
 
 def whether(ctx: Context, item: str) -> str:
