@@ -34,10 +34,12 @@ NEAR_COLOUR, NEAR_KIND, NO_KIND = 0.15, 0.12, 0.2
 """Likeness of a colour next to one that was seen, of a kind that is easily taken for one, and of any kind to what has
 the shape of none. Chosen: rarely right."""
 BLANK, BLANK_SPREAD = 0.06, 0.03
-"""Likeness of a pack without print to a name that says nothing of looks, and how much more it is of what may as well be
-of other kinds. Chosen: asked about after all else."""
+"""Likeness of a pack without print to a name that says nothing of looks, and how much more it is of what has the shape
+of no kind: who means a can says so. Chosen: asked about after all else."""
 PACKS = frozenset({"bottle", "can", "jar", "cup", "box", "carton", "block", "book", "tool", "toy", OTHER})
 """Kinds that go by another name than their kind: by what is in them, or by what they are for."""
+FLAVOURS = frozenset({"apple", "orange", "lemon", "banana"})
+"""Kinds that say what is in a pack when they stand before another word."""
 HIDDEN = 0.5
 """Likeness of a ball that looks more like what stands on a foot, or the other way, by that of what it looks like."""
 TAKEN_FOR = (
@@ -70,13 +72,14 @@ def partly(phrase: str, o: WorldObject, household: Household) -> float:
     known, fit = _known(wanted, o, household), looks_like(phrase, o, household)
     if known.rest and not known.any and not known.rest & (told.looks.keys() | set(told.qualities)):
         return _unnamed(o)
-    untold = known.rest - {*told.qualities, *told.looks}
+    untold = known.rest - {*told.qualities, *told.looks, *told.shades}
     # The last word says what it is, those before it which one.
     headed = _known(wanted.split()[-1], o, household).any
-    if not known.rest or not (known.any or known.rest & told.looks.keys()) or fit < ROUGHLY or (untold and o.text):
+    named = known.rest & told.looks.keys()
+    if not known.rest or not (known.any or named) or fit < ROUGHLY or (untold and o.text and not named):
         return 0.0
     # What has other words printed on it is hardly the soap.
-    if (untold and not headed) or (o.text and not known.rest <= set(told.qualities)):
+    if (untold and not headed) or (o.text and not known.rest <= {*told.qualities, *told.shades}):
         return UNTOLD
     return min(UNSEEN, fit)
 
@@ -84,7 +87,8 @@ def partly(phrase: str, o: WorldObject, household: Household) -> float:
 def _unnamed(o: WorldObject) -> float:
     """How well an object fits a name that says nothing of looks: 0 for what has print, or goes by its kind."""
     shares = o.kind_shares or {o.kind: 1.0}
-    return 0.0 if o.text or o.kind not in PACKS else BLANK + BLANK_SPREAD * (1.0 - max(shares.values()))
+    shaped = max((share for kind, share in shares.items() if kind not in {*SHAPELESS, OTHER}), default=0.0)
+    return 0.0 if o.text or o.kind not in PACKS else BLANK + BLANK_SPREAD * (1.0 - shaped)
 
 
 def looks_like(phrase: str, o: WorldObject, household: Household, packed: bool = False) -> float:
@@ -92,17 +96,15 @@ def looks_like(phrase: str, o: WorldObject, household: Household, packed: bool =
 
     What is `packed` has any colour, and print that says what is inside: only a colour that was said counts.
     """
-    wanted = normalise(phrase)
-    told = [_looks(one, o, packed) for one in _told_looks(wanted, household)]
-    return min([_fit(_known(wanted, o, household), o), *told])
+    known, told = _known(normalise(phrase), o, household), _told_looks(normalise(phrase), household)
+    # "The blue duck" is not yellow.
+    return min(_fit(known, o), _looks(told, o, packed or bool(known.shades)) if told else 1.0)
 
 
-def _told_looks(wanted: str, household: Household) -> list[tuple[str, ...]]:
-    """What the words of a normalised phrase look like that has no kind in it: the soup of a soup can does not count."""
-    told, words = household.words.looks, wanted.split()
-    if own_words(wanted, household) & set(KINDS) - set(ALIKE):
-        return []
-    return [told[word] for word in words if word in told]
+def _told_looks(wanted: str, household: Household) -> tuple[str, ...]:
+    """What the last word of a normalised phrase looks like: tomato sauce is a sauce, a soup can is no soup."""
+    told, head = household.words.looks, (wanted.split() or [""])[-1]
+    return told.get(head) or told.get(f"{head}s") or told.get(head.removesuffix("s")) or ()
 
 
 def _looks(words: Sequence[str], o: WorldObject, packed: bool) -> float:
@@ -114,17 +116,19 @@ def _looks(words: Sequence[str], o: WorldObject, packed: bool) -> float:
 
 
 class _Words(NamedTuple):
-    """Those of a phrase that name kinds, that name colours, others of the object's `label`, and the `rest`."""
+    """Those of a phrase that name kinds, that name colours, others of the object's `label`, and the `rest`, among them
+    words for colours `between`, here by the colours that they may look like."""
 
     kinds: set[str]
     shades: set[str]
     label: set[str]
     rest: set[str]
+    between: tuple[tuple[str, ...], ...] = ()
 
     @property
     def any(self) -> bool:
         """One of them says what the object is."""
-        return bool(self.kinds or self.shades or self.label)
+        return bool(self.kinds or self.shades or self.label or self.between)
 
 
 def _known(wanted: str, o: WorldObject, household: Household) -> _Words:
@@ -133,26 +137,33 @@ def _known(wanted: str, o: WorldObject, household: Household) -> _Words:
     # "The orange can": what may be a colour is one before another word; alone it is what is meant.
     head = own_words(wanted.split()[-1] if wanted else "", household)
     both = kinds & shades
-    kinds -= both - head
+    # And a fruit before another word is what that is made of, or smells of.
+    kinds -= (both | FLAVOURS) - head
     shades -= both & head
     others = words - kinds - shades
     label = others & set(normalise(o.label).split())
-    return _Words(kinds, shades, label, others - label)
+    rest, told = others - label, household.words
+    # Hand cream is no colour.
+    named = head & told.looks.keys()
+    between = tuple(told.shades[w] for w in sorted(rest - named) if w in told.shades)
+    return _Words(kinds, shades, label, rest, between)
 
 
 def _fit(words: _Words, o: WorldObject) -> float:
     found = min((_has_kind(kind, o) for kind in words.kinds), default=1.0)
     for shade in words.shades:
         found *= _has_colour(shade, o)
+    for several in words.between:
+        found *= max(_has_colour(shade, o) for shade in several)
     return found
 
 
 def describes(phrase: str, household: Household) -> bool:
     """One of the words says what the thing looks like, or the household lists it: not so "the pear"."""
     wanted, told = normalise(phrase), household.words
-    words = (*wanted.split(), wanted)
+    plain = {*KINDS, *ALIKE, *told.groups, *told.looks, *told.shades}
     return listed(wanted, household) is not None or any(
-        w in KINDS or w in ALIKE or w in told.groups or w in told.looks or told.kind(w) or told.colour(w) for w in words
+        w in plain or told.kind(w) or told.colour(w) for w in (*wanted.split(), wanted)
     )
 
 

@@ -11,7 +11,7 @@ from common.messages import WorldObject
 
 _FILLER = {"the", "a", "an", "my", "that", "this", "some", "please", "to", "of"}
 
-ANYTHING = {"thing", "things", "object", "objects", "item", "something", "anything", "stuff"}
+ANYTHING = {"thing", "things", "object", "objects", "item", "something", "anything", "stuff", "one", "ones"}
 """Words for any object."""
 UNFIT = (9, 9)
 """Worse than any fit of words to an object."""

@@ -31,6 +31,7 @@ class Words(Strict, frozen=True):
     """`kinds` and `colours`: the word that the robot uses, and other words for the same.
 
     `groups`: words that stand for several kinds. `mass`: those of them that mean everything of the kind ("rubbish").
+    `shades`: words for colours between those, each with the colours that one may take it for ("beige").
     `qualities`: words that say how a thing is and that nobody can tell by its kind and colour ("striped", "favourite").
     `looks`: words for things that nobody can tell by looks alone ("soap"), each with the kinds and colours it may have.
     `needs`: what helps somebody who is "thirsty". `tidy` and `throw`: where things go that are put away or thrown away;
@@ -42,6 +43,7 @@ class Words(Strict, frozen=True):
     groups: dict[str, tuple[str, ...]] = {}
     mass: tuple[str, ...] = ()
     needs: dict[str, str] = {}
+    shades: dict[str, tuple[str, ...]] = {}
     qualities: tuple[str, ...] = ()
     looks: dict[str, tuple[str, ...]] = {}
     tidy: tuple[Destination, ...] = ()
@@ -55,8 +57,11 @@ class Words(Strict, frozen=True):
         named = [*self.kinds, *(kind for group in self.groups.values() for kind in group)]
         named += [kind for rule in (*self.tidy, *self.throw) for kind in rule.kinds]
         named += [word for look in self.looks.values() for word in look if word not in self.colours]
-        unknown = next((kind for kind in named if kind not in KINDS), "")
-        return f"words: no kind is called {unknown!r}; known kinds: {', '.join(KINDS)}" if unknown else ""
+        if unknown := next((kind for kind in named if kind not in KINDS), ""):
+            return f"words: no kind is called {unknown!r}; known kinds: {', '.join(KINDS)}"
+        between = [colour for colours in self.shades.values() for colour in colours]
+        unknown = next((colour for colour in between if colour not in self.colours), "")
+        return f"words: no colour is called {unknown!r}; known: {', '.join(self.colours)}" if unknown else ""
 
     def kind(self, word: str) -> str:
         """The kind that a word names, "" for none."""
@@ -73,6 +78,7 @@ class Words(Strict, frozen=True):
             colours={**self.colours, **more.colours},
             groups={**self.groups, **more.groups},
             mass=(*self.mass, *more.mass),
+            shades={**self.shades, **more.shades},
             qualities=(*self.qualities, *more.qualities),
             looks={**self.looks, **more.looks},
             needs={**self.needs, **more.needs},

@@ -155,3 +155,41 @@ def test_what_has_the_shape_of_no_kind_may_be_of_any() -> None:
 )
 def test_which_words_say_what_a_thing_looks_like(phrase: str, says: bool) -> None:
     assert describes(phrase, HOUSEHOLD) is says
+
+
+def test_a_colour_between_two_may_be_either_and_is_asked_about() -> None:
+    tin = measured("white can", {"can": 1.0}, {"white": 0.8, "red": 0.2})
+    for phrase in ("beige can", "the cream can", "something beige", "beige thing"):
+        assert likeness(phrase, tin, HOUSEHOLD) == 0.0 and LIKELY < partly(phrase, tin, HOUSEHOLD) < PLAIN
+    assert partly("turquoise can", tin, HOUSEHOLD) == partly("beige mug", BALL, HOUSEHOLD) == 0.0
+    assert ground("beige can", [tin], HOUSEHOLD, (0.0, 0.0, 0.0), {}).found is None
+
+
+def test_one_is_a_word_for_anything() -> None:
+    found = ground("the red one", [BALL, TIN], HOUSEHOLD, (0.0, 0.0, 0.0), {})
+    assert found.found is not None and found.found.label == "red ball"
+    assert likeness("white one", TIN, HOUSEHOLD) >= PLAIN
+
+
+@pytest.mark.parametrize(
+    ("phrase", "kind", "fits"),
+    [
+        ("tomato sauce", "can", True), ("tomato sauce", "apple", False), ("apple juice", "bottle", True),
+        ("apple juice", "apple", False), ("pepper mill", "bottle", True), ("soup can", "can", True),
+        ("can of soup", "can", True), ("chocolate milk", "carton", True), ("pickle", "jar", True),
+        ("corn flakes", "box", True), ("lemon", "lemon", True), ("lemon tea", "box", True),
+    ],
+)  # fmt: skip
+def test_the_last_word_says_what_it_is(phrase: str, kind: str, fits: bool) -> None:
+    thing = measured(f"white {kind}", {kind: 1.0}, {"white": 1.0})
+    assert (looks_like(phrase, thing, HOUSEHOLD, packed=True) >= LEAST) is fits
+
+
+def test_a_colour_that_is_said_goes_before_the_usual_one() -> None:
+    blue = measured("blue toy", {"toy": 1.0}, {"blue": 1.0})
+    assert looks_like("blue duck", blue, HOUSEHOLD) > LIKELY > looks_like("duck", blue, HOUSEHOLD)
+
+
+def test_for_a_name_that_tells_nothing_what_has_no_shape_is_asked_about_first() -> None:
+    tin, tool = measured("white can", {"can": 1.0}, {"white": 1.0}), measured("grey tool", {"tool": 1.0}, {"grey": 1.0})
+    assert partly("tongs", tool, HOUSEHOLD) > partly("tongs", tin, HOUSEHOLD) >= LEAST

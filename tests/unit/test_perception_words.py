@@ -42,7 +42,7 @@ WORLD = [
         ("red mug", "red mug"),
         ("the red mug", "red mug"),
         ("red cup", "red mug"),
-        ("blue one", ""),
+        ("blue one", "blue mug"),
         ("mug on the left", "red mug"),
         ("the left mug", "red mug"),
         ("the mug on the right", "blue mug"),
