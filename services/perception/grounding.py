@@ -75,7 +75,7 @@ def ground(
         # "Red mug" is the name of one and fits "red mug 2" as well.
         found += [o for o in objects if not o.held and o is not found[0] and unnumbered(o.label) == found[0].label]
     if phrase.place:
-        found = [o for o in found if _is_at(o, phrase.place, household)]
+        found = [o for o in found if is_at(o, phrase.place, household)]
     if not found:
         held = any(o.held for o in match_noun(thing, objects))
         return Grounding(None, f"the {thing} is in the gripper" if held else f"no {thing} is seen{phrase.where}")
@@ -112,7 +112,7 @@ def possible(
     rated = [
         (likeness(phrase.thing, o, household) or (not taught and partly(phrase.thing, o, household)), o)
         for o in objects
-        if not o.held and (not phrase.place or _is_at(o, phrase.place, household))
+        if not o.held and (not phrase.place or is_at(o, phrase.place, household))
     ]
     rated.sort(key=lambda row: (-row[0], row[1].label))
     return [
@@ -144,7 +144,8 @@ def _take_place(words: str, household: Household) -> tuple[str, str]:
     return "", words
 
 
-def _is_at(o: WorldObject, place: str, household: Household) -> bool:
+def is_at(o: WorldObject, place: str, household: Household) -> bool:
+    """An object stands on the receptacle or in the room of that name, or on the floor."""
     if o.on == place or (place == FLOOR and not o.on):
         return True
     room = household.room_at(o.position[0], o.position[1])

@@ -11,7 +11,7 @@ from common.bus.port import Io
 from common.goal_inbox import GoalInbox
 from common.naming.likeness import PLAIN
 from services.perception.config import PerceptionConfig
-from services.perception.grounding import Grounding, as_called, ground, may_be_meant, parsed, possible
+from services.perception.grounding import Grounding, as_called, ground, is_at, may_be_meant, parsed, possible
 from services.perception.naming.naming import Naming
 from services.perception.naming.promise import PROMISING
 from services.perception.tracking.beliefs import Beliefs
@@ -135,15 +135,22 @@ class Queries:
         doubtful = self._beliefs.tracker.doubtful()
         if candidates:
             return [o.label for o in seen if o.id in doubtful and o.label in candidates], []
+        phrase = parsed(query, self._io.household, self._config.synonyms)
+        if phrase.place:
+            query, seen = phrase.thing, [o for o in seen if is_at(o, phrase.place, self._io.household)]
         promised = self._naming.unsure(query, seen, base)
-        blurred = may_be_meant(query, seen, doubtful, self._io.household, base)
-        near = list(dict.fromkeys([*(label for share, label in promised if share >= PROMISING), *blurred]))
-        return near, [label for _, label in promised if label not in near]
+        near = [label for share, label in promised if share >= PROMISING]
+        later = [label for _, label in promised if label not in near]
+        # What is printed is hardly on what looks like none of its kinds, be it from far away.
+        blurred = may_be_meant(self._naming.described(query), seen, doubtful, self._io.household, base)
+        (later if self._naming.reads(query) else near).extend(o for o in blurred if o not in (*near, *later))
+        return near, later
 
     def _ground(self, query: m.ObjectQuery) -> Grounding:
         base, household, config = self._state.base or (0.0, 0.0, 0.0), self._io.household, self._config
         looks = [o for o in self._beliefs.objects(query.since or -math.inf) if o.id not in query.excluded]
         if meant := next((o for o in looks if o.id == query.meant and not o.held), None):
+            self._naming.confirm(query.query, meant.id)
             return Grounding(meant)
         doubtful = self._beliefs.tracker.doubtful()
         objects = [as_called(o) if o.id in doubtful else o for o in looks]
@@ -158,7 +165,7 @@ class Queries:
         phrase = parsed(query.query, household, config.synonyms)
         read = self._naming.perhaps(query.query, looks)
         alike = possible(phrase, looks, household, taught=self._naming.knows(query.query))
-        return Grounding(None, result.reason, perhaps=[*read, *alike])
+        return Grounding(None, result.reason, perhaps=sorted([*read, *alike], key=lambda p: -p.likeness))
 
 
 def _message(query: m.ObjectQuery, result: Grounding, picture: bytes) -> m.ObjectPose:

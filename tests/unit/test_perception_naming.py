@@ -9,7 +9,7 @@ import pytest
 from services.perception.naming.appearance import Look, difference, look_of
 from services.perception.naming.crop import Crop, crop_of
 from services.perception.naming.memory import FILE, MAX_LOOKS, NameMemory, Taught
-from services.perception.naming.recognise import PERHAPS, SAME, Match, matches, unlikeness
+from services.perception.naming.recognise import PERHAPS, SAME, Match, evidence, matches, unlikeness
 from services.perception.naming.sights import Sight
 from services.perception.naming.text import Line
 from tests.unit.painted import Box, label, view_of_boxes
@@ -138,3 +138,32 @@ def test_looks_from_other_sides_are_learnt_and_bounded(tmp_path: Path) -> None:
         memory.learn("vitamin box", Look(one.histogram, one.size, (math.cos(angle), math.sin(angle), 0.0), 0.9), [])
     assert 6 <= len(memory.names["vitamin box"].looks) <= MAX_LOOKS
     assert NameMemory(tmp_path, print).names == memory.names
+
+
+def test_a_part_of_a_word_tells_as_much_as_the_word() -> None:
+    pytest.importorskip("rapidfuzz", reason="the extra `ocr`")
+    taught = named(VITAMINS, "ADE")
+    assert evidence(taught, sight(VITAMINS, "LEMONADE")) == "same"
+    assert evidence(named(VITAMINS, "LEMONADE"), sight(VITAMINS, "LEM")) == "same"
+    assert evidence(taught, sight(VITAMINS, "COLA")) == "other"
+    assert evidence(taught, sight(VITAMINS)) == evidence(named(VITAMINS), sight(VITAMINS, "COLA")) == "silent"
+
+
+def test_what_has_print_is_known_by_its_print_alone_and_asked_about_else() -> None:
+    pytest.importorskip("rapidfuzz", reason="the extra `ocr`")
+    taught = {"vitamin box": named(VITAMINS, "FORTE")}
+    turned, same, other = sight(VITAMINS), sight(VITAMINS, "FORTE"), sight(VITAMINS, "COLA")
+    assert matches(taught, {"a": turned, "b": other}, {}, reads=True)["a"] == Match((), ("vitamin box",))
+    assert matches(taught, {"a": turned, "b": same}, {}, reads=True) == {"a": Match(), "b": Match(("vitamin box",))}
+
+
+@pytest.mark.parametrize(("read_from", "words", "sure"), [([], (), 0), ([0.0], (), 0), ([0.0, 1.0], (), 1),
+                                                         ([0.0, 1.0], ("COLA",), 0)])  # fmt: skip
+def test_a_pack_without_print_is_known_once_it_was_seen_to_have_none(
+    read_from: list[float], words: tuple[str, ...], sure: int
+) -> None:
+    pytest.importorskip("rapidfuzz", reason="the extra `ocr`")
+    seen = sight(VITAMINS, *words)
+    seen.read_from = read_from
+    found = matches({"vitamin box": named(VITAMINS)}, {"a": seen}, {}, reads=True)["a"]
+    assert (len(found.names), len(found.perhaps)) == (sure, 1 - sure)

@@ -46,7 +46,10 @@ def told(text: str, legible: float = LEGIBLE) -> Sight:
         ("zest", ["zest"], seen("mug"), None, False),
         ("zest mug", ["zest"], seen("mug"), None, True),
         ("ketchup", ["ketchup"], seen("bottle", "red"), None, True),
-        ("ketchup", ["ketchup"], seen("bottle", "white"), None, False),
+        ("ketchup", ["ketchup"], seen("bottle", "white"), None, True),
+        ("tomato sauce", ["tomato", "sauce"], seen("can", "green"), None, True),
+        ("apple juice", ["apple", "juice"], seen("bottle", "white"), None, True),
+        ("corn flakes", ["corn", "flakes"], seen("box", "white"), None, True),
     ],
 )  # fmt: skip
 def test_what_promises_most_is_looked_at_first(
@@ -62,6 +65,8 @@ def test_neither_another_kind_nor_what_was_read_from_all_sides_is_looked_at() ->
     assert promise("lemonade", ["lemonade"], seen("can"), everywhere, HOME) == 0.0
 
 
-def test_a_colour_that_was_said_comes_first() -> None:
-    green, white = (promise("green tea", ["green", "tea"], seen("box", c), None, HOME) for c in ("green", "white"))
-    assert green > white > 0.0
+@pytest.mark.parametrize(("query", "usual", "other"), [("green tea", "green", "white"), ("ketchup", "red", "white")])
+def test_the_colour_that_was_said_or_is_usual_comes_first(query: str, usual: str, other: str) -> None:
+    kind = "bottle" if query == "ketchup" else "box"
+    one, another = (promise(query, query.split(), seen(kind, c), None, HOME) for c in (usual, other))
+    assert one > another > 0.0

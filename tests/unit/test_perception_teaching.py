@@ -188,3 +188,10 @@ def test_a_fruit_that_was_asked_for_is_not_another_one_of_which_there_is_juice_t
     node = Shown(Box(0.62, 0.1, carton), Box(0.62, -0.1, VITAMINS))
     assert not node.ask("the apple juice").found
     assert node.ask("the orange juice").label == "white box 0"
+
+
+@pytest.mark.skipif(not installed(), reason="the extra `ocr`")
+def test_where_a_place_is_named_only_what_stands_there_is_worth_a_nearer_look() -> None:
+    node = Shown(Box(2.4, 0.0, TEA))
+    assert node.ask("ginger biscuits on the floor").unsure == ["white box 0"]
+    assert not node.ask("ginger biscuits on the table").unsure

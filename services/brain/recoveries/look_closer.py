@@ -28,6 +28,8 @@ from services.brain.world.standing_poses import standing_pose
 MOST = 8
 """Looks from nearer, one after the other, for one view (chosen: at as many objects as stand on a table, and at some of
 them from another side)."""
+MOST_OF_THE_REST = 5
+"""Such looks after the search [count]. Chosen: each takes some ten seconds, and little comes of them."""
 AFTER_A_CLOSER_LOOK = (
     Recovery("several_match", several_match, ask_which),
     Recovery("identify_near", near_possible, ask_about_the_near),
@@ -83,7 +85,9 @@ class MoveCloser(SendGoal):
         return "I could not look at it from nearer."
 
 
-def look_closer(ctx: Context, task: Task, left: Callable[[Context], list[m.WorldObject]] | None = None) -> Behaviour:
+def look_closer(
+    ctx: Context, task: Task, left: Callable[[Context], list[m.WorldObject]] | None = None, most: int = MOST
+) -> Behaviour:
     """Drive up to one of them after the other and look again, until one is the object or none is `left`."""
     looked = LocateObject("look", ctx, task.item)
     left = left or promising
@@ -93,7 +97,7 @@ def look_closer(ctx: Context, task: Task, left: Callable[[Context], list[m.World
         Settle("settle", ctx),
         with_recoveries("look_or_ask", ctx, looked, AFTER_A_CLOSER_LOOK, task),
     )
-    return Retry("look_closer", ctx, look, MOST - 1, again=lambda: bool(left(ctx)))
+    return Retry("look_closer", ctx, look, most - 1, again=lambda: bool(left(ctx)))
 
 
 def promising(ctx: Context) -> list[m.WorldObject]:
@@ -109,8 +113,9 @@ def promising(ctx: Context) -> list[m.WorldObject]:
 
 
 def remaining(ctx: Context) -> list[m.WorldObject]:
-    """All objects that may be meant and can be told from nearer, those that are unlikely to be last."""
-    return _known(ctx, [*ctx.mission.search.unsure, *ctx.mission.search.unlikely])
+    """All objects that may be meant and can be told from nearer, the nearest first."""
+    known = _known(ctx, [*ctx.mission.search.unsure, *ctx.mission.search.unlikely])
+    return sorted(known, key=lambda o: math.dist(o.position[:2], ctx.robot_pose[:2]))
 
 
 def _known(ctx: Context, labels: Collection[str]) -> list[m.WorldObject]:
@@ -124,7 +129,7 @@ def unsure(ctx: Context) -> bool:
     return bool(promising(ctx))
 
 
-look_at_the_rest = partial(look_closer, left=remaining)
+look_at_the_rest = partial(look_closer, left=remaining, most=MOST_OF_THE_REST)
 """After the search: also at what is unlikely to be meant, because nothing else was."""
 
 

@@ -13,6 +13,7 @@ from common import messages as m
 from common import topics
 from common.bus.port import Io
 from common.geometry import Pose2
+from common.naming.likeness import LEAST
 from common.naming.names import match_object, normalise
 from services.perception.config import PerceptionConfig
 from services.perception.naming import reader
@@ -21,17 +22,23 @@ from services.perception.naming.consult import Consultant
 from services.perception.naming.grounders.load import load_grounder
 from services.perception.naming.memory import NameMemory
 from services.perception.naming.observer import Observer
-from services.perception.naming.promise import promise, unlike
-from services.perception.naming.recognise import Match, matches
+from services.perception.naming.promise import promise, unlike, worth_a_look
+from services.perception.naming.recognise import TURNED, Evidence, Match, evidence, matches
+from services.perception.naming.sights import Sight
 from services.perception.naming.teaching import Teacher
 from services.perception.naming.text import LIKELY, SURE, likeness, printed_words, shown, traces
 from services.perception.naming.vocabulary import COLOURS, common_words, plain_words, printable, taken
 from services.perception.views.view import View
 
-HALF_READ, SOMEWHAT, TRACE = 0.5, 0.4, 0.1
-"""Likeness, as `common.naming.likeness` has it, of what reads nearly like the words, of what looks somewhat like the
-taught thing, and of what shows a part of one word. Chosen: a person is asked about the first two when they are seen,
-about the last when nothing else was found."""
+HALF_READ, TRACE = 0.5, 0.41
+"""Likeness, as `common.naming.likeness` has it, of what reads nearly like the words, and of what shows a part of one
+word. Chosen: a person is asked about both when they are seen, about the second rather than about what shows none."""
+SOMEWHAT: dict[Evidence, float] = {"same": 0.5, "silent": 0.4, "other": 0.1}
+"""Likeness of what looks like the taught thing, by what print says of it. Chosen: a person is asked about the first two
+when they are seen, about the last when nothing else was found."""
+DOUBTFUL = 0.2
+"""Likeness of what looks like the taught thing and was read from fewer than TURNED sides. Chosen: from another its
+words are seen."""
 
 
 class Naming:
@@ -80,7 +87,8 @@ class Naming:
         names = len(self._memory.names), *self._memory.names
         self._teacher.step(now)
         if changed or names != (len(self._memory.names), *self._memory.names):
-            self._matches = matches(self._memory.names, self._observer.sights.by_id, self._teacher.bound)
+            by_id, bound = self._observer.sights.by_id, self._teacher.bound
+            self._matches = matches(self._memory.names, by_id, bound, self._observer.can_read)
             return True
         return False
 
@@ -107,6 +115,15 @@ class Naming:
     def knows(self, phrase: str) -> bool:
         """It is a name that was taught."""
         return normalise(phrase) in self._memory.names
+
+    def described(self, phrase: str) -> str:
+        """A phrase, or colour and kind of what was taught by that name."""
+        taught = self._memory.names.get(normalise(phrase))
+        return f"{taught.colour} {taught.kind}" if taught is not None else phrase
+
+    def reads(self, phrase: str) -> bool:
+        """What is printed can tell what is meant."""
+        return self._observer.can_read and bool(self._asked_print(phrase))
 
     def match(self, phrase: str, objects: Sequence[m.WorldObject]) -> list[m.WorldObject]:
         """The objects that a phrase can mean: by their names and words, else by what is printed on them."""
@@ -142,22 +159,23 @@ class Naming:
             return False
         name = normalise(query)
         if name in self._memory.names:
-            named = [self._observer.sight(key) for key, match in self._matches.items() if name in match.names]
-            return bool(self._memory.names[name].lines) and any(s is not None and not s.read for s in named)
+            alike = [key for key, match in self._matches.items() if name in (*match.names, *match.perhaps)]
+            return any((sight := self._observer.sight(key)) is not None and not sight.read for key in alike)
         return not answered and bool(self._printed(query))
 
     def unsure(self, query: str, objects: Sequence[m.WorldObject], base: Pose2) -> list[tuple[float, str]]:
         """Labels of objects that could be meant and have to be seen from nearer to tell, each with how much such a look
         promises, 0 to 1; the most promising first, of equal ones that which is nearest to `base`."""
-        words, name = self._asked_print(query), normalise(query)
+        words, name = self._asked_print(query) if self._observer.can_read else [], normalise(query)
         found: list[tuple[float, float, str]] = []
         for o in objects:
             sight, promised = self._observer.sight(o.id), 0.0
             if name in self._matches.get(o.id, Match()).perhaps:
-                promised = 1.0
-            elif words and self._observer.can_read and printable(o):
+                # What has other words on it is looked at again when nothing else was found.
+                promised = LEAST if sight is not None and self._evidence(name, sight) == "other" else 1.0
+            elif words and printable(o):
                 promised = promise(name, words, o, sight, self._io.household)
-            if promised and not o.held:
+            if worth_a_look(promised) and not o.held:
                 found.append((-promised, math.hypot(o.position[0] - base[0], o.position[1] - base[1]), o.label))
         return [(-promised, label) for promised, _, label in sorted(found)]
 
@@ -170,8 +188,10 @@ class Naming:
         found = []
         for o in objects:
             sight, like = self._observer.sight(o.id), 0.0
-            if name in self._matches.get(o.id, Match()).perhaps:
-                like = SOMEWHAT
+            if name in self._matches.get(o.id, Match()).perhaps and sight is not None:
+                like = SOMEWHAT[self._evidence(name, sight)]
+                if like == SOMEWHAT["silent"] and len(sight.read_from) < TURNED:
+                    like = DOUBTFUL
             elif words and sight is not None and sight.read and printable(o):
                 half = likeness(words, o.text, beside) >= LIKELY and not unlike(o, said, said)
                 like = HALF_READ if half else TRACE if traces(words, o.text) >= SURE else 0.0
@@ -190,6 +210,15 @@ class Naming:
         return printed_words(query, plain_words(self._io.household) if common is None else common)
 
     # --- names
+    def confirm(self, phrase: str, key: str) -> None:
+        """A person has said that the object with this id is the one that was taught by that name."""
+        name = normalise(phrase)
+        if name in self._memory.names and self._observer.sight(key) is not None:
+            self._teacher.bound[name] = key
+
+    def _evidence(self, name: str, sight: Sight) -> Evidence:
+        return evidence(self._memory.names[name], sight)
+
     def _learn(self, key: str, look: Look) -> None:
         """What was followed since it was taught is known better with each side that it shows."""
         for name, bound in self._teacher.bound.items():

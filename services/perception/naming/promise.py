@@ -8,16 +8,16 @@ from common.naming.likeness import LEAST, LIKELY, describes, looks_like
 from services.perception.naming.sights import Sight
 from services.perception.naming.text import LIKELY as HALF_READ
 from services.perception.naming.text import SURE, likeness, traces
-from services.perception.naming.vocabulary import COLOURS, unlike_said
+from services.perception.naming.vocabulary import COLOURS, PACKED, unlike_said
 
+LITTLE = 0.04
+"""Promise up to which nobody looks. Chosen: what has other words on it, unless all that was said fits its looks."""
 PROMISING = LIKELY
 """Promise from which an object is looked at before the search goes on. Chosen: as likely as one is asked about."""
-PACKED = frozenset({"bottle", "can", "jar", "box", "carton", "block", "book"})
-"""Kinds that have print more often than not."""
 RARELY, ELSEWHERE, OTHERWISE, NAMED = 0.25, 0.6, 0.5, 0.05
 """What is left of the promise of what is of another kind when no word tells of looks, of what was read on this side in
-vain, of what has not the colour that was said, and of what has other words on it. Chosen: a mug has print in one of
-four, a box shows it on another side in one of two; the last is a misread word in twenty."""
+vain, of what has not the colour that was said or that is usual, and of what has other words on it. Chosen: a mug has
+print in one of four, a box shows it on another side in one of two; the last is a misread word in twenty."""
 
 
 def promise(query: str, words: Sequence[str], o: WorldObject, sight: Sight | None, household: Household) -> float:
@@ -31,9 +31,11 @@ def promise(query: str, words: Sequence[str], o: WorldObject, sight: Sight | Non
     other = unlike(o, said, said)
     if score >= HALF_READ:
         return OTHERWISE * score if other else score
-    if looks_like(query, o, household, packed=True) < LEAST and not other:
+    packed = looks_like(query, o, household, packed=True)
+    if packed < LEAST and not other:
         return 0.0
-    found = max(LEAST, looks_like(query, o, household))
+    # A pack may have any colour, and "green" may be what is printed on it.
+    found = max(OTHERWISE * packed, looks_like(query, o, household), OTHERWISE * LIKELY if other else 0.0)
     if not describes(query, household) and o.kind not in PACKED:
         found *= RARELY
     if other:
@@ -44,6 +46,11 @@ def promise(query: str, words: Sequence[str], o: WorldObject, sight: Sight | Non
         return 0.0
     # A part of a word goes on around the side; other words say what else it is.
     return max(found * ELSEWHERE, part) if part >= HALF_READ else found * (NAMED if sight.named else ELSEWHERE)
+
+
+def worth_a_look(promised: float) -> bool:
+    """Whether a nearer look is worth its way when nothing else is left."""
+    return promised > LITTLE
 
 
 def unlike(o: WorldObject, said: Sequence[str], others: Sequence[str]) -> bool:

@@ -64,6 +64,11 @@ def sure_words(lines: Iterable[Line]) -> list[str]:
     return [w for line in lines if line.confidence >= SURE for w in normalise(line.text).split() if len(w) >= READABLE]
 
 
+def parts(lines: Iterable[Line]) -> list[str]:
+    """The words of lines that were read for sure, and what may be parts of such: of a can's print the end is seen."""
+    return [w for line in lines if line.confidence >= SURE for w in normalise(line.text).split() if len(w) >= SHORT]
+
+
 def shown(lines: Iterable[Line]) -> str:
     """What was read, for `WorldObject.text`."""
     return " / ".join(line.text for line in lines)

@@ -20,7 +20,8 @@ RELATIONS = (
 )
 """Words between and around nouns, and those for containers that a print is on."""
 
-
+PACKED = frozenset({"bottle", "can", "jar", "box", "carton", "block", "book"})
+"""Kinds that have print more often than not."""
 BARE = frozenset({"apple", "orange", "banana", "lemon", "fruit", "ball", "bowl", "plate"})
 """Kinds on which nothing is printed."""
 
@@ -36,9 +37,10 @@ def common_words(household: Household) -> frozenset[str]:
 def plain_words(household: Household) -> frozenset[str]:
     """Those that are hardly ever a name on a package: "tea" is another word for a mug, and may be one."""
     colours = [w for word, others in household.words.colours.items() for w in (word, *others)]
-    return _split(
-        (*KINDS, *household.words.kinds, *COLOURS, RELATIONS, *colours, *household.words.qualities, *_spots(household))
-    )
+    words = household.words
+    # "Cream" may be one, and what is in a pack.
+    between = words.shades.keys() - words.looks.keys()
+    return _split((*KINDS, *words.kinds, *COLOURS, RELATIONS, *colours, *between, *words.qualities, *_spots(household)))
 
 
 def _split(phrases: Iterable[str]) -> frozenset[str]:
