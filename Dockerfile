@@ -20,7 +20,8 @@ COPY judge judge
 COPY services services
 COPY docs/audio docs/audio
 RUN pip install --no-cache-dir --no-deps --no-build-isolation -e . && python -m compileall -q /app \
-    && python -m common.speech_weights && pip uninstall --quiet --yes hatchling pip
+    && python -m common.speech_weights && python -m services.speech.prepared \
+    && pip uninstall --quiet --yes hatchling pip
 
 FROM ${BASE_IMAGE}
 # libegl1 libgl1-mesa-dri give the cameras OpenGL; without them they use ray casting. "" leaves them out.

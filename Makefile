@@ -26,6 +26,7 @@ $(STAMP): requirements.lock pyproject.toml
 	$(PIP) install --quiet -r requirements.lock
 	$(PIP) install --quiet --no-deps --no-build-isolation -e .
 	$(BIN)/python -m common.speech_weights >/dev/null
+	$(BIN)/python -m services.speech.prepared >/dev/null
 	$(BIN)/python -m compileall -q -j 0 common services cli judge evaluation
 	@touch $(STAMP)
 	@echo "ready: $(BIN)/tidybot"

@@ -25,7 +25,7 @@ from common.sound import RATE, read_wav
 from services.speech.config import SpeechConfig
 from services.speech.recognise import moonshine
 from services.speech.recognise.decoder import HEAD_SIZE, HEADS, LAYERS, Array
-from services.speech.recognise.packed_network import session
+from services.speech.recognise.inference import session
 from services.speech.transcribe import Reader
 
 VARIANTS = ("packed", "shipped")

@@ -1,18 +1,22 @@
 """Writing networks with packed weights, and the decoder that is written anew against the one that ships."""
 
+from pathlib import Path
+
 import numpy as np
+import onnx
 import pytest
 
 from common.speech_weights import folder as models
+from services.speech.recognise.inference import session
 from services.speech.recognise.moonshine import networks
-from services.speech.recognise.packed_network import BLOCK, NetworkBuilder, session
+from services.speech.recognise.packed_network import BLOCK, NetworkBuilder
 from services.speech.recognise.token_trie import BOS
 from services.speech.speak.voice import Voice
 
 HEADS, LAYERS, WIDTH = 8, 8, 52
 
 
-def test_packed_weights_multiply_as_unpacked_ones() -> None:
+def test_packed_weights_multiply_as_unpacked_ones(tmp_path: Path) -> None:
     rng = np.random.default_rng(0)
     q = rng.integers(-128, 128, (2 * BLOCK, 24)).astype(np.int8)
     scale, zero = np.array([0.02], np.float32), -7
@@ -21,7 +25,9 @@ def test_packed_weights_multiply_as_unpacked_ones() -> None:
     net = NetworkBuilder()
     doubled = net.op("Add", "x", "x")
     net.times(doubled, (q, scale, added), output="y")
-    (found,) = net.session({"x": (np.float32, 2)}, ["y"], 1).run(None, {"x": x})
+    path = tmp_path / "net.onnx"
+    onnx.save_model(net.model({"x": (np.float32, 2)}, ["y"]), path)
+    (found,) = session(path, 1).run(None, {"x": x})
     wanted = 2 * x @ (q * scale + added)
     assert np.abs(found - wanted).max() < 0.02 * np.abs(wanted).max()
 

@@ -3,6 +3,7 @@
 import gzip
 import json
 from fractions import Fraction
+from pathlib import Path
 
 import msgspec
 import numpy as np
@@ -11,15 +12,22 @@ from hibari.g2p import G2P
 from scipy.signal import resample_poly
 
 from common.sound import RATE, resample
-from services.speech.speak.packed_mapping import PackedMapping
-from services.speech.speak.pronounce import ASSETS, Pronunciation
+from services.speech.prepared import prepared
+from services.speech.speak.dictionaries import assets
+from services.speech.speak.packed_mapping import PackedMapping, write
+from services.speech.speak.pronounce import Pronunciation
 
 
-def packed(words: dict[str, object]) -> PackedMapping:
-    return PackedMapping(msgspec.json.decode(json.dumps(words), type=dict[str, msgspec.Raw]))
+def pronunciation() -> Pronunciation:
+    with prepared() as folder:
+        return Pronunciation(folder)
 
 
-def test_a_table_reads_like_the_dictionary_it_was_made_from() -> None:
+def test_a_table_reads_like_the_dictionary_it_was_made_from(tmp_path: Path) -> None:
+    def packed(words: dict[str, object]) -> PackedMapping:
+        write(msgspec.json.decode(json.dumps(words), type=dict[str, msgspec.Raw]), tmp_path / "words")
+        return PackedMapping(tmp_path / "words")
+
     words: dict[str, object] = {"mug": "mˈʌɡ", "": 1, "é": {"DT": 0.5}, "Mug": ["a", None], "mugs": "z", "zoo": "x"}
     table = packed(words)
     assert dict(table) == words
@@ -34,12 +42,12 @@ def test_a_table_reads_like_the_dictionary_it_was_made_from() -> None:
 
 def test_the_packed_dictionaries_of_the_voice_are_the_librarys_own() -> None:
     name = "lexicon_us_gold.json.gz"
-    own = json.loads(gzip.decompress((ASSETS / name).read_bytes()))
-    assert dict(Pronunciation().lexicon.golds.d) == own
+    own = json.loads(gzip.decompress((assets() / name).read_bytes()))
+    assert dict(pronunciation().lexicon.golds.d) == own
 
 
 def test_it_pronounces_as_the_library_does() -> None:
-    ours, theirs = Pronunciation(), G2P()
+    ours, theirs = pronunciation(), G2P()
     for text in ("I read the live records; they read 12.5 at 10:30.", "Did you say: bring me Dr. Smith's teacup?"):
         assert ours(text) == theirs(text)
 

@@ -13,9 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common import speech_weights
+from services.speech.prepared import prepared
 from services.speech.recognise.decoder import Cache, Decoder
 from services.speech.recognise.grammar import State
-from services.speech.recognise.packed_network import packed
+from services.speech.recognise.inference import session
 from services.speech.recognise.token_trie import BOS, EOS, TokenTrie, read_tokens
 
 Array = NDArray[np.float32]
@@ -25,6 +26,8 @@ BEAM_THRESHOLD = 10.0
 """Natural logarithm of how much less likely than the best a hypothesis may be to stay in the beam."""
 RATE = 16000
 """Samples per second of the network's input."""
+ENCODER = "encoder.onnx"
+"""File of the encoder's network, its matrices packed."""
 
 
 @dataclass(frozen=True)
@@ -63,8 +66,8 @@ class EncodedUtterance:
 @cache
 def networks(threads: int) -> tuple[Any, Decoder]:
     """Encoder and decoder, shared by all that live in one process."""
-    folder = speech_weights.folder()
-    return packed(folder / "encoder_model.ort", threads), Decoder(folder / "decoder_model_merged.ort", threads)
+    with prepared() as folder:
+        return session(folder / ENCODER, threads), Decoder(folder, threads)
 
 
 class Moonshine:
@@ -75,10 +78,9 @@ class Moonshine:
     """
 
     def __init__(self, beam: int = 8, threads: int = 1) -> None:
-        folder = speech_weights.folder()
         self._encoder, self._decoder = networks(threads)
         self._beam = beam
-        self.tokens = read_tokens(folder / "tokenizer.bin")
+        self.tokens = read_tokens(speech_weights.folder() / "tokenizer.bin")
 
     def encode(self, variants: Array) -> EncodedUtterance:
         """Encode 16 kHz samples (variants, n) of one utterance."""

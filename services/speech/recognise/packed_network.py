@@ -13,7 +13,7 @@ import onnx
 from numpy.typing import NDArray
 from onnx import TensorProto, helper, numpy_helper
 
-from common.process.host import return_memory
+from services.speech.recognise.inference import options
 
 BLOCK = 32
 """Weights per scale of `MatMulNBits`; the operator takes 16, 32, 64 and so on."""
@@ -113,8 +113,8 @@ class NetworkBuilder:
         else:
             self._nodes.append(node)
 
-    def session(self, inputs: dict[str, tuple[Any, int]], outputs: list[str], threads: int) -> Any:
-        """An inference session of the network; inputs with type and number of dimensions, outputs are floats."""
+    def model(self, inputs: dict[str, tuple[Any, int]], outputs: list[str]) -> onnx.ModelProto:
+        """The network as a model; inputs with type and number of dimensions, outputs are floats."""
         takes = [
             helper.make_tensor_value_info(
                 name, helper.np_dtype_to_tensor_dtype(np.dtype(kind)), [f"{name}{k}" for k in range(rank)]
@@ -122,10 +122,10 @@ class NetworkBuilder:
             for name, (kind, rank) in inputs.items()
         ]
         gives = [helper.make_tensor_value_info(name, TensorProto.FLOAT, None) for name in outputs]
-        return self._session(takes, gives, threads)
+        return self._model(takes, gives)
 
-    def like(self, graph: onnx.GraphProto, threads: int) -> Any:
-        """A session of the network with inputs, outputs and weights of a shipped one, without what nothing needs."""
+    def like(self, graph: onnx.GraphProto) -> onnx.ModelProto:
+        """The network as a model with inputs, outputs and weights of a shipped one, without what nothing needs."""
         used, needed = {output.name for output in graph.output}, []
         for node in reversed(self._nodes):
             if used.intersection(node.output):
@@ -133,54 +133,27 @@ class NetworkBuilder:
                 used.update(node.input)
         self._nodes = needed[::-1]
         self._tensors += [tensor for tensor in graph.initializer if tensor.name in used]
-        return self._session(graph.input, graph.output, threads)
+        return self._model(graph.input, graph.output)
 
-    def _session(self, takes: Sequence[onnx.ValueInfoProto], gives: Sequence[onnx.ValueInfoProto], threads: int) -> Any:
+    def _model(self, takes: Sequence[onnx.ValueInfoProto], gives: Sequence[onnx.ValueInfoProto]) -> onnx.ModelProto:
         graph = helper.make_graph(self._nodes, "network", takes, gives, self._tensors)
         opsets = [helper.make_opsetid(domain, version) for domain, version in OPSETS.items()]
-        model = helper.make_model(graph, opset_imports=opsets, ir_version=IR_VERSION)
-        with tempfile.TemporaryDirectory(prefix="tidybot-") as folder:
-            path = Path(folder) / "model.onnx"
-            path.write_bytes(model.SerializeToString())
-            return session(path, threads)
+        return helper.make_model(graph, opset_imports=opsets, ir_version=IR_VERSION)
 
 
-def session(path: Path, threads: int) -> Any:
-    """An inference session of an ONNX or ORT file. Given the bytes themselves it would keep them for good."""
-    import onnxruntime
-
-    return onnxruntime.InferenceSession(str(path), _options(threads), providers=["CPUExecutionProvider"])
-
-
-def _options(threads: int) -> Any:
-    import onnxruntime
-
-    made = onnxruntime.SessionOptions()
-    made.intra_op_num_threads = threads
-    made.inter_op_num_threads = 1
-    made.log_severity_level = 3
-    # Memory patterns and the arena would keep the space of the longest utterance for good.
-    made.enable_mem_pattern = False
-    made.enable_cpu_mem_arena = False
-    return made
-
-
-def packed(path: Path, threads: int) -> Any:
-    """A session of an ORT file whose matrices stay packed; its other weights are unpacked once, at the start."""
+def write(path: Path, target: Path) -> None:
+    """Write the network of an ORT file with matrices that stay packed; its other weights are unpacked at the start."""
     weights, net = PackedWeights(path), NetworkBuilder()
     for node in weights.graph.node:
         net.copy(node, weights)
-    found = net.like(weights.graph, threads)
-    del weights, net
-    return_memory()
-    return found
+    onnx.save_model(net.like(weights.graph), target)
 
 
 def _as_onnx(path: Path, folder: Path) -> Path:
     """An ORT file as an ONNX file, unchanged otherwise."""
     import onnxruntime
 
-    copy, writing = folder / "model.onnx", _options(1)
+    copy, writing = folder / "model.onnx", options(1)
     writing.graph_optimization_level = onnxruntime.GraphOptimizationLevel.ORT_DISABLE_ALL
     writing.optimized_model_filepath = str(copy)
     writing.add_session_config_entry("session.save_model_format", "ONNX")

@@ -6,7 +6,9 @@ import numpy as np
 
 from common.process.host import return_memory
 from common.sound import RATE, Samples, resample
-from services.speech.recognise.packed_network import session
+from services.speech.prepared import prepared
+from services.speech.recognise.inference import session
+from services.speech.speak.pronounce import SAMPLE_RATE, LeanHibari
 
 MAX_CHARACTERS = 400
 """Longest text that is spoken (chosen: half a minute)."""
@@ -19,11 +21,8 @@ class Voice:
     """Loads in seconds and speaks in milliseconds: make it in the worker."""
 
     def __init__(self) -> None:
-        from hibari import SAMPLE_RATE
-
-        from services.speech.speak.pronounce import LeanHibari
-
-        self._voice, self._rate = LeanHibari(session), int(SAMPLE_RATE)
+        with prepared() as folder:
+            self._voice = LeanHibari(session, folder)
         self.speak("ready")  # what else it needs it loads with the first word
         return_memory()
 
@@ -36,4 +35,4 @@ class Voice:
             audio = np.asarray(self._voice(words, seed=0), dtype=np.float32)
         except (LookupError, ValueError, TypeError, ArithmeticError, RecursionError):
             return pause  # a text that the library cannot pronounce must not silence the robot for good
-        return np.concatenate([resample(audio * 32000, self._rate), pause])
+        return np.concatenate([resample(audio * 32000, SAMPLE_RATE), pause])
