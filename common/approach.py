@@ -20,6 +20,9 @@ ROOM = FOOTPRINT + 0.02
 """Clearance that the base's centre needs [m], as navigation plans with."""
 BIN_RIM = 0.02
 """Thickness of a bin's walls, which its `size` does not contain [m]: 15 mm and the play of the map's grid."""
+HANDED, BEFORE = 0.65, math.radians(45)
+"""Distance [m] and direction against ahead [rad] of the edge of a surface up to which what is brought can be put on it
+from the robot's home: the arm reaches 0.1 m farther, without a step aside."""
 LATERAL = (0.0, 0.10, -0.10, 0.20, -0.20, 0.30, -0.30)
 """Steps aside [m] from straight before the object: beside a corner or a bin only the farthest may have room."""
 RING = 16
@@ -56,6 +59,19 @@ def poses_for(
             far = max(0.0, math.hypot(distance, side) - stand_off - 0.04)
             found.append((4.0 * far + 1.5 * abs(side), (bx, by, theta)))
     return found
+
+
+def delivers_at_home(floor_plan: FloorPlan) -> bool:
+    """True when the robot puts down at its home what it brings: there is no surface for it, or it is before it."""
+    receptacle, home = floor_plan.receptacle(floor_plan.delivery), floor_plan.home
+    if receptacle is None:
+        return True
+    outline = receptacle.outline
+    u, v = outline.to_local(home.x, home.y)
+    half, across = outline.length / 2, outline.width / 2
+    x, y = outline.to_map(min(max(u, -half), half), min(max(v, -across), across))
+    bearing = math.atan2(y - home.y, x - home.x) - home.theta
+    return math.dist((x, y), (home.x, home.y)) <= HANDED and abs(math.remainder(bearing, 2 * math.pi)) <= BEFORE
 
 
 def clearance(floor_plan: FloorPlan, x: float, y: float) -> float:

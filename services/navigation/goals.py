@@ -3,7 +3,7 @@
 import math
 
 from common import messages as m
-from common.approach import poses_for
+from common.approach import delivers_at_home, poses_for
 from common.floor_plan import Receptacle, Room
 from common.geometry import Pose2
 from common.household import Household
@@ -41,7 +41,7 @@ class Goals:
             return _within(place)
         if not isinstance(place, Receptacle):
             return [(0.0, place)]
-        if place.name == self._household.delivery:
+        if place.name == self._household.delivery and delivers_at_home(self._household):
             return self.home()
         return self._before((place.center[0], place.center[1]), place)
 

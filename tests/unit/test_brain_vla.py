@@ -3,6 +3,7 @@
 import math
 from typing import Any
 
+import msgspec
 import pytest
 
 from common import messages as m
@@ -117,6 +118,22 @@ def test_the_contracts_sequence() -> None:
         ("PLANNING", 0), ("GROUNDING", 1), ("NAVIGATING", 2), ("GRABBING", 2), ("RETURNING", 3), ("RELEASING", 4),
         ("COMPLETED", 0),
     ]  # fmt: skip
+
+
+def test_it_goes_to_where_things_are_brought_when_that_is_not_its_home(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A home in which the robot does not start before a table; what it holds is not put on the floor there."""
+    elsewhere = msgspec.structs.replace(SCENE, delivery="kitchen table")
+    monkeypatch.setattr("tests.unit.brain_bench.HOME", elsewhere)
+    bench = planned()
+    see(bench, 1)
+    approach(bench, 1)
+    bench.did(bench.manip(1))
+    assert bench.nav(1).goal == "goto kitchen table"
+    bench.drove(bench.nav(1))
+    assert bench.manip(2).goal == "release"
+    pose = place_pose(elsewhere, "kitchen table", (0.0, 0.0, 0.0))
+    table = elsewhere.receptacle("kitchen table")
+    assert pose is not None and table is not None and table.outline.distance(*pose[:2]) < 0.5
 
 
 def test_the_tree_is_the_contracts_sequence_of_steps() -> None:

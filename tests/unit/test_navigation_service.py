@@ -7,12 +7,15 @@ import pytest
 
 from common import messages as m
 from common import topics
-from common.approach import poses_for
+from common.approach import delivers_at_home, poses_for
+from common.config import config_dir
 from common.geometry import quat_yaw
 from common.household import told
 from common.scene import load_scene
 from services.navigation.config import NavigationConfig
+from services.navigation.goals import Goals
 from services.navigation.motion.path_follower import PathFollower
+from services.navigation.places import Places, load_places
 from services.navigation.planning.costmap import Costmap
 from services.navigation.planning.planner import PathPlanner, Point
 from services.navigation.service import NavigationService
@@ -81,6 +84,21 @@ def test_every_object_has_a_stand_that_is_free_reachable_and_close(
         for s in good:
             bearing = math.atan2(y - s[1], x - s[0])
             assert abs(math.remainder(bearing - s[2], 2 * math.pi)) < 0.01, "the robot faces the object"
+
+
+@pytest.mark.parametrize(
+    ("home", "expected"), [((0.0, 0.0, 0.0), True), ((0.0, 0.0, 1.6), False), ((-0.3, 0.0, 0.0), False)]
+)
+def test_what_is_brought_is_put_down_from_home_where_its_surface_is_before_it(
+    home: tuple[float, float, float], expected: bool
+) -> None:
+    x, y, theta = home
+    scene = msgspec.structs.replace(SCENE, home=msgspec.structs.replace(SCENE.home, x=x, y=y, theta=theta))
+    assert delivers_at_home(scene) is expected
+    goals = Goals(scene, Places(scene, load_places(config_dir())), CONFIG)
+    ((_, pose), *others) = goals.place(scene.delivery)
+    assert (pose == home) is expected and bool(others) is not expected
+    assert delivers_at_home(msgspec.structs.replace(scene, delivery=""))
 
 
 def test_the_lidar_marks_what_the_map_lacks_and_clears_it_again() -> None:

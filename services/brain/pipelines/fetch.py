@@ -103,7 +103,7 @@ def identify(ctx: Context) -> Behaviour:
 
 def bring_home(ctx: Context) -> Behaviour:
     """Drive home and let go."""
-    return Sequence("bring_home", drive_home(ctx), Settle("settle", ctx), Release("release_it", ctx))
+    return Sequence("bring_home", drive_home(ctx, carrying=True), Settle("settle", ctx), Release("release_it", ctx))
 
 
 def put_down_at_home(ctx: Context) -> Behaviour:

@@ -97,7 +97,7 @@ def step_tree(ctx: Context, step: PlanStep, carried: str, at_home: bool = False)
             return tell_home(ctx, lambda: edit_of(step, ctx), PLAN_STEP, name)
         case "return":
             at_start = RememberPlace("at_home", ctx, "home")
-            return Sequence(PLAN_STEP, drive_home(ctx), at_start, Settle("settle", ctx), name=name)
+            return Sequence(PLAN_STEP, drive_home(ctx, bool(carried)), at_start, Settle("settle", ctx), name=name)
 
 
 def navigate(ctx: Context, where: str, name: str) -> Sequence:
@@ -203,8 +203,8 @@ def go_and_settle(ctx: Context, where: str) -> Behaviour:
 
 
 def home_and_settle(ctx: Context) -> Behaviour:
-    """Drive home and come to rest."""
-    return Sequence("back", drive_home(ctx), Settle("settle", ctx))
+    """Bring what is carried home and come to rest."""
+    return Sequence("back", drive_home(ctx, carrying=True), Settle("settle", ctx))
 
 
 class RememberPlace(Leaf):

@@ -2,6 +2,7 @@
 
 from py_trees.behaviour import Behaviour
 
+from common.approach import delivers_at_home
 from services.brain.mission.context import Context
 from services.brain.mission.mission import Failure
 from services.brain.steps.leaf import Call, Say
@@ -9,15 +10,17 @@ from services.brain.steps.motion import Navigate
 from services.brain.tree.composites import Sequence
 
 
-def drive_home(ctx: Context) -> Behaviour:
-    """Drive back to where the mission began."""
+def drive_home(ctx: Context, carrying: bool = False) -> Behaviour:
+    """Drive back to where the mission began; when `carrying`, to the surface that things are brought to."""
+    household = ctx.io.household
+    elsewhere = carrying and not delivers_at_home(household)
     return Navigate(
         "return",
         ctx,
-        text=lambda: "return_to_start",
+        text=lambda: f"goto {household.delivery}" if elsewhere else "return_to_start",
         spoken=lambda: "I could not come back" + (f" with the {ctx.gripper.holding}." if ctx.gripper.holding else "."),
         state="RETURNING",
-        place=ctx.io.household.home.name,
+        place=household.delivery if elsewhere else household.home.name,
     )
 
 

@@ -2,7 +2,7 @@
 
 import math
 
-from common.approach import ROOM, Point, clearance, poses_for
+from common.approach import ROOM, Point, clearance, delivers_at_home, poses_for
 from common.floor_plan import FloorPlan
 from common.geometry import Pose2
 
@@ -40,6 +40,6 @@ def place_pose(floor_plan: FloorPlan, name: str, here: Pose2) -> Pose2 | None:
     receptacle = floor_plan.receptacle(name)
     if receptacle is None:
         return None
-    if receptacle.name == floor_plan.delivery:
+    if receptacle.name == floor_plan.delivery and delivers_at_home(floor_plan):
         return floor_plan.home.x, floor_plan.home.y, floor_plan.home.theta
     return standing_pose(floor_plan, (receptacle.center[0], receptacle.center[1]), here)
