@@ -214,7 +214,9 @@ def test_what_lies_is_said_picked_up_and_put_right() -> None:
     bench.did(bench.manip(4))
     look(bench, 5)
     assert ended(bench).outcome == "delivered"
-    said = "say I put down the red mug, but the red mug lies on its side on the delivery tray. I will try again."
+    said = (
+        "say I did not put down the red mug well: the red mug lies on its side on the delivery tray. I will try again."
+    )
     assert said in bench.texts(SPEECH)
 
 

@@ -146,7 +146,7 @@ def record_finding(ctx: Context, finding: Finding, picture: bytes) -> Status:
         mission.delivery.checked = [*mission.delivery.checked, finding.evidence]
         return Status.SUCCESS
     mission.delivery.released = False
-    spoken = f"I put down the {label}, but {finding.words}."
+    spoken = f"I did not put down the {label} well: {finding.words}."
     ctx.record_failure(Failure("RELEASING", finding.fault, finding.evidence, spoken))
     return Status.FAILURE
 
