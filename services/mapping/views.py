@@ -15,13 +15,15 @@ from numpy.typing import NDArray
 from scipy import ndimage
 from scipy.sparse import csgraph, csr_matrix
 
+from common.approach import FOOTPRINT
 from common.floor_plan import Vec2
 from common.geometry import Pose2
 from services.mapping.grid import FREE, OCCUPIED, RESOLUTION, UNKNOWN, Cells, Grid, Index
 from services.mapping.scan import Array
 
-CLEARANCE = 0.36
-"""Distance [m] from what is not free that a pose has: the footprint, what navigation adds, and a cell."""
+CLEARANCE = FOOTPRINT + RESOLUTION / 2
+"""Distance [m] from the edge of what is not free that a pose has: the footprint and half of a cell; a way has a cell
+less, as navigation plans it by the middles of cells."""
 HEADINGS = 12
 """Directions that are tried at each position [count]: a third of the camera's width apart."""
 SPACING = 6
@@ -70,7 +72,7 @@ def survey(grid: Grid, states: NDArray[np.uint8], here: Pose2, barred: Sequence[
     """What is left to be seen, and from where next; `barred` are positions that could not be reached."""
     free = states == FREE
     distance = ndimage.distance_transform_edt(free) * RESOLUTION - RESOLUTION / 2
-    passable = distance >= CLEARANCE - 0.05
+    passable = distance >= CLEARANCE - RESOLUTION
     cost = _costs(grid, passable, here)
     reached = np.isfinite(cost)
     area = float(free.sum()) * RESOLUTION**2

@@ -40,7 +40,9 @@ class NavigationService:
         self._changes = ChangesFile(io.state_dir, io.household, lambda why: io.log.warning("map", reason=why))
         if self._changes.load(self._map.changes):
             self._map.remember(0.0)
-        self._planner = PathPlanner(self._map, config.footprint_radius + config.clearance, config.inflation)
+        # While a map is made its cells are the error: a door that the robot just fits through is passed.
+        spare = 0.0 if config.map == "mapping" else config.clearance
+        self._planner = PathPlanner(self._map, config.footprint_radius + spare, config.inflation)
         self._contacts = Contacts(self._map, config.footprint_radius)
         self._state = StateEstimator(config, io, self._map)
         self._navigator: Navigator | None = None

@@ -8,7 +8,7 @@ import pytest
 
 from common import messages as m
 from common import topics
-from common.geometry import Pose2
+from common.geometry import Pose2, Rectangle
 from common.household import load_household
 from services.navigation.planning.costmap import Costmap
 from tests.unit.mapping_flat import BOXES
@@ -78,6 +78,28 @@ def test_the_next_grid_takes_the_place_of_the_one_before() -> None:
     robot.bus.send(topics.MAP_GRID, grid(width=9.8))
     robot.step(2)
     assert drive(robot, 3.6, -1.0).status == "arrived"
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.3, 0.7])
+@pytest.mark.parametrize("shift", [0.0, 0.02, 0.04])
+def test_a_narrow_door_is_passed_however_the_cells_lie_in_it(turn: float, shift: float) -> None:
+    """Of 0.75 m, with a cell of what the lidar's noise and the camera's edges add; what is narrower than the robot is
+    no door."""
+    size = 80
+    gy, gx = np.mgrid[:size, :size] * 0.05 - 1.975
+    frame = Rectangle(0.0, 0.0, 0.0, 0.0, turn)
+    for width, passes in ((0.75, True), (0.50, False)):
+        middles = [frame.to_map(0.0, side * (width / 2 + 2.0) + shift) for side in (-1, 1)]
+        jambs = [Rectangle(*middle, 0.12, 4.0, turn) for middle in middles]
+        taken = np.min([jamb.signed_distances(gx, gy) for jamb in jambs], axis=0) < 0.05
+        cells = zlib.compress(taken.astype(np.uint8).tobytes())
+        robot = Flat(boxes=jambs, household=load_household("unmapped"), map="mapping")
+        made = m.MapGrid(t=0.0, x=-2.0, y=-2.0, resolution=0.05, width=size, height=size, cells=cells, odom=(0, 0, 0))
+        robot.bus.send(topics.MAP_GRID, made)
+        robot.true = robot.wheels = (*frame.to_map(-1.0, 0.0), 0.0)
+        robot.step(4)
+        told = drive(robot, *frame.to_map(1.0, 0.0))
+        assert (told.status == "arrived") is passes, told
 
 
 def test_a_grid_that_cannot_be_used_is_dropped() -> None:

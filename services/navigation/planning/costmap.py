@@ -69,10 +69,10 @@ class Costmap(Cells):
         part = cells.reshape(grid.height, grid.width)[top - row :, left - column :] != 0
         part = part[: self.shape[0] - top, : self.shape[1] - left]
         inside = slice(top, top + part.shape[0]), slice(left, left + part.shape[1])
-        # All around it is unknown. Half a cell less: to the edge of the cell that is taken, not to its middle.
-        around = ndimage.distance_transform_edt(~np.pad(part, 1, constant_values=True))[1:-1, 1:-1] - 0.5
+        # All around it is unknown. To the middles of taken cells: a wall is somewhere in those that it touches.
+        around = ndimage.distance_transform_edt(~np.pad(part, 1, constant_values=True))[1:-1, 1:-1]
         self.static_distance = np.zeros(self.shape)
-        self.static_distance[inside] = np.maximum(around * self.resolution, 0.0)
+        self.static_distance[inside] = around * self.resolution
         self.static = self.static_distance <= 0
         explained = self.static_distance <= _EXPLAINED
         self._seen_at[explained], self._first_at[explained] = -np.inf, np.inf
