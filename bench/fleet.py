@@ -41,6 +41,7 @@ PROBE = topics.POSE
 ROBOTS_A_PROCESS = 5
 """Robots that one player plays [count]; chosen: Python's part in them is far below a core."""
 ITEM, LEAD = "red mug", 1.0
+"""What the recorded mission is for, and time [s] for all players to begin together."""
 READERS = tuple(name for name in NAMES if name != "router" and name not in OPTIONAL)
 
 

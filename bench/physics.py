@@ -20,6 +20,7 @@ SECONDS = 5.0
 RUNS = 5
 """Measurements, of which the median counts."""
 OBJECTS = 12
+"""Of the flat's objects, as many as lie about in a lived-in home [count]."""
 BASE_TURN, ARM_TURN = 2, 3
 """Of the ten set-points: the base's yaw and the arm's first joint."""
 SWING = 0.5

@@ -91,6 +91,7 @@ class Watch(Generic[M]):
     """Messages of one topic as they come; of a latched one the present value first, and again after an outage."""
 
     REFRESH = 2.0
+    """Silence [s] after which the present value is asked for: an outage of the router may have cost one."""
 
     def __init__(self, link: Link, topic: Topic[M]) -> None:
         self._link, self._topic = link, topic

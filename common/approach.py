@@ -26,6 +26,7 @@ from the robot's home: the arm reaches 0.1 m farther, without a step aside."""
 LATERAL = (0.0, 0.10, -0.10, 0.20, -0.20, 0.30, -0.30)
 """Steps aside [m] from straight before the object: beside a corner or a bin only the farthest may have room."""
 RING = 16
+"""Candidates around an object [count]: one every 22.5 degrees."""
 
 
 def poses_for(

@@ -21,7 +21,7 @@ from services.navigation.planning.planner import PathPlanner
 CONFIG = NavigationConfig()
 THINGS = (("mug", "mug"), ("book", "book"), ("can", "can"), ("ball", "ball"), ("keys", ""))
 """Names and kinds; nobody knows what kind keys are."""
-DAY = 86400.0
+DAY = 86400.0  # seconds
 SEEN = 0.5
 """Share of the days on which the robot sees a thing."""
 FAVOURITES, LOYALTY = 3, 0.8

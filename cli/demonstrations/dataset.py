@@ -28,6 +28,7 @@ VERSION = "v3.0"
 CHUNK = 1000
 """Files in a folder, as LeRobot has it."""
 JPEG_QUALITY = 90
+"""Of the data set's pictures [1 to 95]; chosen: policies are trained on them."""
 DATA = "data/chunk-{chunk_index:03d}/file-{file_index:03d}.parquet"
 EPISODES = "meta/episodes/chunk-{chunk_index:03d}/file-{file_index:03d}.parquet"
 COUNTERS = {"frame_index": "int64", "episode_index": "int64", "index": "int64", "task_index": "int64"}

@@ -43,6 +43,7 @@ class Player:
     """Sends a chunk every 0.1 s of robot time. In lockstep it takes part, so that the simulation waits for it."""
 
     SILENCE = 10.0
+    """Wall time [s] without a tick after which robot time stands still; chosen: a busy machine takes 1 s."""
 
     def __init__(self, link: Link, chunks: list[bytes]) -> None:
         self._link, self._chunks = link, chunks

@@ -17,6 +17,7 @@ from common.floor_plan import FloorPlan
 MAP, SURFACES, HOUSEHOLD, PICTURE = "map", "surfaces.json", "household.toml", "map.png"
 """Files of a directory that holds a map; the first without its suffix."""
 FREE, OCCUPIED, UNKNOWN = 0, 1, 2
+"""What a cell of the grid is."""
 GREY = {FREE: 254, OCCUPIED: 0, UNKNOWN: 205}
 """Of a state, as map_saver writes it."""
 OCCUPIED_ABOVE, FREE_BELOW = 0.65, 0.196

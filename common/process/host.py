@@ -11,6 +11,7 @@ from pathlib import Path
 from types import FrameType
 
 _PR_SET_PDEATHSIG = 1
+"""Option of Linux's prctl(2): the signal that comes when the parent dies."""
 SILENCE = 3.0
 """Time without acknowledgement after which a connection is given up [s]: longer than the lease in config/zenoh."""
 _PAGE_MB = resource.getpagesize() / 2**20

@@ -43,6 +43,7 @@ class ClockSubscriber:
     """
 
     SILENCE = 1.0
+    """Wall time [s] without a slower clock's tick after which the fast one is followed: ten ticks of the slowest."""
 
     def __init__(self, opened: zenoh.Session, period: int, drops: Counter[str]) -> None:
         self._opened, self._period, self._drops = opened, period, drops

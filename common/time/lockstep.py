@@ -44,6 +44,7 @@ class Barrier:
     """
 
     AGAIN = 1.0
+    """Wall time [s] after which a tick that somebody has not acknowledged is sent again: a message may be lost."""
 
     def __init__(
         self,

@@ -28,6 +28,7 @@ class Measures:
 
 
 FRUIT = (700.0, 950.0)
+"""Density of fruit [kg/m^3]; chosen: below that of water, in which apples float."""
 MEASURES: dict[str, Measures] = {
     "mug": Measures((0.066, 0.080), height=(0.075, 0.110), density=(450, 750)),
     "can": Measures((0.052, 0.074), height=(0.085, 0.150), density=(300, 800)),

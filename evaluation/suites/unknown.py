@@ -29,10 +29,12 @@ IN_A_WORLD = (7, 12)
 GAP = (0.015, 0.05)
 """Nearest and farthest [m] that a neighbour stands from the one that is wanted."""
 NEIGHBOURS = (2, 4)
+"""Fewest and most things that stand about the one that is wanted [count]."""
 TALLEST = 1.2
 """Height of a box that lies by its other extents, at least: without print nothing else tells how it is to stand.
 Chosen: the error of what is measured."""
 TRIES = 60
+"""Draws [count] before a world is given up as too small for its objects."""
 LEAST = 3
 """Fewest objects of a world with little room [count]: what the suite `new` asks for."""
 EDGE = 0.02

@@ -7,6 +7,7 @@ from common.geometry import Pose2, compose, inverse, wrap
 from services.sim.config import SimConfig
 
 SETPOINT_LEAD = 0.05
+"""How far [m] the set-point may be ahead of the base, and twice it in [rad]: a base that is held stays near it."""
 MASS = 69.0
 """Of the whole robot [kg]."""
 YIELD = 120.0
@@ -15,6 +16,7 @@ more is somebody who pushes."""
 PUSHED = 0.03
 """For how long [s] that has to be so: three readings, longer than a knock of the arm."""
 _STILL = 0.02
+"""Speed [m/s] below which the base rests."""
 STREAM = 5  # targets in a row
 
 
@@ -33,14 +35,11 @@ class BaseDriver:
     stopped: bool = False
     yielding: bool = False
     """The set-point goes where the base goes: the wheels only brake."""
-    _twist: tuple[float, float, float] = field(default=(0.0, 0.0, 0.0))
+    _twist: tuple[float, float, float] = (0.0, 0.0, 0.0)
     _twist_until: float = -1.0
     _targeted_at: float = -math.inf
     _targets_in_a_row: int = 0
-    _was: Pose2 | None = None
-    _braking: bool = False
-    _pushed: float = 0.0
-    _inertia: tuple[float, float] = (0.0, 0.0)
+    _brake: "Brake" = field(default_factory=lambda: Brake())
 
     def go_to(self, x: float, y: float, theta: float, target_id: str, now: float) -> None:
         """Run to a pose; replaces whatever was asked before.
@@ -61,7 +60,7 @@ class BaseDriver:
     def halt(self, actual: Pose2) -> None:
         """Brake as hard as the wheels can, and stay where that ends."""
         if not self.stopped:
-            self.pose, self.velocity, self._braking = actual, (0.0, 0.0, 0.0), True
+            self.pose, self.velocity, self._brake.applied = actual, (0.0, 0.0, 0.0), True
         self.target, self._twist_until, self.stopped = None, -1.0, True
 
     def reached(self, odometry: Pose2) -> bool:
@@ -80,12 +79,9 @@ class BaseDriver:
         `actual` is where the servos are, `odometry` what the wheels report, `force` (x, y) [N] what they push with,
         where that is known.
         """
-        moving = self._was is not None and math.dist(actual[:2], self._was[:2]) > _STILL * dt
-        self._was = actual
-        self._braking = self._braking and moving
-        self.yielding = self._braking or self._gives_way(force, dt)
+        self.yielding = self._brake.holds(actual, force, dt)
         if self.yielding:
-            self.pose, self.velocity, self._inertia = actual, (0.0, 0.0, 0.0), (0.0, 0.0)
+            self.pose, self.velocity, self._brake.inertia = actual, (0.0, 0.0, 0.0), (0.0, 0.0)
             return self.pose
         before = self.velocity
         wanted, limit, turn_limit = self._wanted(actual, odometry, now, dt)
@@ -101,14 +97,8 @@ class BaseDriver:
             yaw = actual[2] + math.copysign(2 * SETPOINT_LEAD, yaw - actual[2])
             omega *= 0.5
         self.pose, self.velocity = (x, y, yaw), (vx, vy, omega)
-        self._inertia = MASS * (vx - before[0]) / dt, MASS * (vy - before[1]) / dt
+        self._brake.inertia = MASS * (vx - before[0]) / dt, MASS * (vy - before[1]) / dt
         return self.pose
-
-    def _gives_way(self, force: tuple[float, float] | None, dt: float) -> bool:
-        """True while the wheels push against something other than the robot's own mass."""
-        beyond = force is not None and math.hypot(force[0] - self._inertia[0], force[1] - self._inertia[1]) > YIELD
-        self._pushed = self._pushed + dt if beyond else 0.0
-        return self._pushed >= PUSHED
 
     def _abandoned(self, now: float) -> bool:
         """A stream of targets fell silent; the last one stands again when the stream goes on."""
@@ -138,6 +128,30 @@ class BaseDriver:
             world = (k * (cos * vx - sin * vy), k * (sin * vx + cos * vy), max(-c.max_turn, min(c.max_turn, omega)))
             return world, 2 * c.acceleration, 2 * c.turn_acceleration
         return (0.0, 0.0, 0.0), 3 * c.acceleration, 3 * c.turn_acceleration
+
+
+@dataclass
+class Brake:
+    """Whether the wheels only brake: after a stop until the base rests, and while somebody pushes it.
+
+    `inertia` (x, y) [N]: what the wheels have to push with to accelerate the robot itself.
+    """
+
+    applied: bool = False
+    inertia: tuple[float, float] = (0.0, 0.0)
+    _was: Pose2 | None = None
+    _pushed: float = 0.0
+
+    def holds(self, actual: Pose2, force: tuple[float, float] | None, dt: float) -> bool:
+        """For the next `dt` seconds, with the base at `actual` and the wheels pushing with `force` (x, y) [N]."""
+        moving = self._was is not None and math.dist(actual[:2], self._was[:2]) > _STILL * dt
+        self._was = actual
+        self.applied = self.applied and moving
+        if self.applied:
+            return True
+        beyond = force is not None and math.hypot(force[0] - self.inertia[0], force[1] - self.inertia[1]) > YIELD
+        self._pushed = self._pushed + dt if beyond else 0.0
+        return self._pushed >= PUSHED
 
 
 def _profile(distance: float, deceleration: float, limit: float, dt: float) -> float:

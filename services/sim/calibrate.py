@@ -22,6 +22,7 @@ from common.robot.model import (
 
 Array = NDArray[np.float64]
 STEPS, SETTLE = 11, 500
+"""Postures of the gripper that are measured, and steps of physics [2 ms] until it rests in each."""
 
 
 def load(root: ET.Element) -> tuple[Any, Any]:

@@ -9,6 +9,7 @@ from common.files import atomic_file
 from common.messages import Touch
 
 VERSION = 1
+"""Of the file's form; another one is not resumed from."""
 NAME = "sim.checkpoint"
 
 

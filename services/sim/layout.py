@@ -9,8 +9,11 @@ from common.kinds import kind_of
 from common.scene import ObjectSpec, Receptacle, Scene, SceneError
 
 EDGE_NEAR, EDGE_FAR = 0.10, 0.22
+"""Distances [m] of an object's middle from the edge of its surface, within the arm's reach."""
 SPACING = 0.17
+"""Least distance [m] of two objects' middles: the open hand is 0.15 m wide."""
 TRIES = 400
+"""Draws of a spot before a surface counts as full."""
 LIFT = 0.0005
 """How far [m] above its surface an object is let go: a contact of its own at the first step, and no fall."""
 _ROLL = {"upright": 0.0, "side": math.pi / 2, "upside down": math.pi}

@@ -14,6 +14,7 @@ SEEN = 0
 """A group of geoms that lidars see."""
 BASE_BODY = "base"
 RAYS, RANGE_MIN, RANGE_MAX = 360, 0.05, 10.0
+"""Rays of a turn [count] and nearest and farthest range [m], as small lidars for indoors have them."""
 _TAKES_NORMAL = "normal" in (mujoco.mj_multiRay.__doc__ or "")
 Array = NDArray[np.float64]
 

@@ -8,6 +8,7 @@ from common.geometry import IDENTITY_POSE, Pose2, compose, inverse
 from services.sim.config import SimConfig
 
 _TURN_RADIUS = 0.2
+"""Distance of the wheels from the base's middle [m]: what turning on the spot rolls."""
 SLIP = 0.1
 """Share of the way that the wheels miss while they slide (chosen: what an anti-lock brake of a car aims at)."""
 

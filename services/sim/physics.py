@@ -27,6 +27,7 @@ CALM, GLANCE = 10, 10
 """Ticks of rest after which it is not worked out any more, and after how many it is looked at whether it still rests:
 what changes the model from outside is felt within 0.1 s."""
 SETTLE_TICKS = 50
+"""Ticks [10 ms] in which objects come to rest before anything is published."""
 HOST = "host"
 """What its guests call the robot whose simulation it is."""
 _STATE = mujoco.mjtState.mjSTATE_INTEGRATION

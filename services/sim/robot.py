@@ -6,6 +6,7 @@ MODEL = Path(__file__).parent / "robots" / "tidybot.xml"
 GLASS_GROUP = 2
 """Geoms that the lidar's light goes through."""
 ROBOT_GROUP = 3
+"""Geoms of the robot itself, which its own lidar does not see."""
 MAST = ("mast", "mast_arm", "head")
 """Geoms that carry the head camera, on a corner of the base where the elbow does not come; Stanford's has them not."""
 HULL_GROUP = 4

@@ -27,6 +27,7 @@ from services.sim.unit import Unit
 from services.sim.viewer import Viewer
 
 CHECKPOINT_TICKS = 50
+"""Ticks [10 ms] between two saves of the world: a restart loses half a second."""
 
 
 class Pause(msgspec.Struct):

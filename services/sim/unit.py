@@ -16,6 +16,7 @@ from services.sim.physics import Physics
 from services.sim.sensors import Sensors
 
 SCAN_TICKS, STATE_TICKS, BATTERY_TICKS = 10, 5, 100
+"""Periods [ticks of 10 ms] of lidar, `sim/state` and battery."""
 
 
 class Unit:

@@ -16,6 +16,7 @@ _WOOD, _WHITE, _STEEL = "0.62 0.46 0.32 1", "0.90 0.89 0.86 1", "0.72 0.74 0.76 
 _COLOURS = {"grey": "0.45 0.46 0.48 1", "green": "0.25 0.50 0.30 1", "yellow": "0.80 0.68 0.25 1"}
 _GLASS = "0.75 0.85 0.88 0.2"
 _TOP = 0.03
+"""Thickness of a table's or a cupboard's top [m]."""
 
 
 def _box(name: str, center: Sequence[float], size: Sequence[float], rgba: str, yaw: float = 0.0, group: int = 0) -> str:

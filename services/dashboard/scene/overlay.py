@@ -14,6 +14,7 @@ AGREES = 0.12
 """Difference [m] to the picture's own depth up to which a believed object is marked; chosen:
 a belief that is off by some centimetres is still marked."""
 COLOUR, BACK = (255, 214, 10), (0, 0, 0)
+"""Colours [sRGB] of frames and names, and of the rim that makes names readable on anything."""
 
 
 def boxes(
