@@ -10,7 +10,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, Required, TypedDict, TypeVar, Unpack
 
 import numpy as np
 
@@ -24,11 +24,25 @@ from common.household import Household
 from common.household_edits import edited
 from common.logs import Logger
 from common.scene import Scene
-from common.time.clock import Clock, monotonic
+from common.time.clock import Clock, ManualClock, monotonic
 from common.topic import Topic
 
 M = TypeVar("M", bound=m.Message)
 R = TypeVar("R")
+
+
+class Setting(TypedDict, total=False):
+    """What a service is told of the home, whose time it follows, whose seed it draws from.
+
+    Unless told otherwise: lockstep on a clock of its own, seed 0, no knowledge of the world, errors alone in the log.
+    """
+
+    household: Required[Household]
+    world: Scene | None
+    seed: int
+    lockstep: bool
+    clock: Clock
+    log_level: str
 
 
 class IoBase:
@@ -44,25 +58,20 @@ class IoBase:
         name: str,
         reads: Iterable[Topic[Any]],
         writes: Iterable[Topic[Any]],
-        *,
-        household: Household,
-        world: Scene | None = None,
-        seed: int,
-        lockstep: bool,
-        clock: Clock,
-        log_level: str = "info",
+        **setting: Unpack[Setting],
     ) -> None:
-        self.name, self.seed, self.lockstep, self.clock = name, seed, lockstep, clock
-        self._world = world
+        self.name, self.seed = name, setting.get("seed", 0)
+        self.lockstep, self.clock = setting.get("lockstep", True), setting.get("clock") or ManualClock()
+        self._world = setting.get("world")
         self.epoch = uuid.uuid4().hex[:12]
-        digest = hashlib.sha256(f"{seed}/{name}".encode()).digest()
+        digest = hashlib.sha256(f"{self.seed}/{name}".encode()).digest()
         self.rng = np.random.default_rng(int.from_bytes(digest[:8], "little"))
-        self.log = Logger(name, clock, log_level, self._send_log)
+        self.log = Logger(name, self.clock, setting.get("log_level", "error"), self._send_log)
         self.drops: Counter[str] = Counter()
         self.tick = 0
-        self._boxes: dict[str, Mailbox[Any]] = {t.key: Mailbox(t, lockstep) for t in reads}
+        self._boxes: dict[str, Mailbox[Any]] = {t.key: Mailbox(t, self.lockstep) for t in reads}
         self._open_order = tuple(self._boxes.values())
-        self.household = household
+        self.household = setting["household"]
         self.fresh = False
         self.unstamped: list[str] = []
         self._writes = {t.key for t in writes}

@@ -1,17 +1,14 @@
 """The bus of a single process: the same visibility rules and the same bytes as over Zenoh, no network."""
 
 from collections.abc import Iterable
-from typing import Any, TypeVar
+from typing import Any, TypeVar, Unpack
 
 from common import messages as m
 from common.bus import codec
-from common.bus.base import IoBase
+from common.bus.base import IoBase, Setting
 from common.bus.mailbox import UNSTAMPED, Mailbox
 from common.bus.port import Handler
 from common.bus.worker import WorkerJob
-from common.household import Household
-from common.scene import Scene
-from common.time.clock import ManualClock
 from common.topic import Topic
 
 M = TypeVar("M", bound=m.Message)
@@ -80,25 +77,9 @@ class MemoryIo(IoBase):
         name: str,
         reads: Iterable[Topic[Any]],
         writes: Iterable[Topic[Any]],
-        *,
-        household: Household,
-        world: Scene | None = None,
-        seed: int = 0,
-        clock: ManualClock | None = None,
-        log_level: str = "error",
-        lockstep: bool = True,
+        **setting: Unpack[Setting],
     ) -> None:
-        super().__init__(
-            name,
-            reads,
-            writes,
-            household=household,
-            world=world,
-            seed=seed,
-            lockstep=lockstep,
-            clock=clock or ManualClock(),
-            log_level=log_level,
-        )
+        super().__init__(name, reads, writes, **setting)
         self.bus = bus
         self.served: dict[str, Handler] = {}
         self.out_stamp: int | None = None

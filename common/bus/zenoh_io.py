@@ -3,7 +3,7 @@
 import queue
 from collections.abc import Callable, Iterable
 from contextlib import ExitStack
-from typing import Any
+from typing import Any, Unpack
 
 import msgspec
 import zenoh
@@ -12,13 +12,11 @@ from zenoh import handlers
 from common import messages as m
 from common import topics
 from common.bus import codec, delivery
-from common.bus.base import IoBase
+from common.bus.base import IoBase, Setting
 from common.bus.mailbox import CAPACITY, UNSTAMPED, Mailbox
 from common.bus.port import Handler, Outside
 from common.bus.worker import WorkerJob
-from common.household import Household
-from common.scene import Scene
-from common.time.clock import Clock, unix_time
+from common.time.clock import unix_time
 from common.topic import Topic
 
 _BAD_REQUEST = (ValueError, LookupError, TypeError, AttributeError, ArithmeticError, RecursionError, OSError)
@@ -33,29 +31,13 @@ class ZenohIo(IoBase):
         name: str,
         reads: Iterable[Topic[Any]],
         writes: Iterable[Topic[Any]],
-        *,
-        household: Household,
-        world: Scene | None = None,
-        seed: int,
-        lockstep: bool,
-        clock: Clock,
-        log_level: str = "info",
         on_demand: Iterable[Topic[Any]] = (),
+        **setting: Unpack[Setting],
     ) -> None:
         reads, writes, later = tuple(reads), tuple(writes), {t.key for t in on_demand}
         self._session = opened
         self._log_publisher: Any = opened.declare_publisher(topics.LOG.of(name), encoding=codec.JSON)
-        super().__init__(
-            name,
-            reads,
-            writes,
-            household=household,
-            world=world,
-            seed=seed,
-            lockstep=lockstep,
-            clock=clock,
-            log_level=log_level,
-        )
+        super().__init__(name, reads, writes, **setting)
         self._started = unix_time()
         self.out_tick: int | None = None
         self._peers: dict[str, str] = {}
@@ -65,7 +47,7 @@ class ZenohIo(IoBase):
         self._outer: Any = None
         self._heard: dict[str, dict[str, bytes]] = {}
         self._streams: list[tuple[Any, Mailbox[Any]]] = []
-        self._publishers = {t.key: delivery.Publisher(opened, t, lossless=lockstep) for t in writes}
+        self._publishers = {t.key: delivery.Publisher(opened, t, lossless=self.lockstep) for t in writes}
         self._demanded: dict[str, Any] = {}
         for topic in reads:
             if topic.key not in later:
