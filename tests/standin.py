@@ -7,8 +7,6 @@ body than the gripper's. Frames, joints, masses and limits are those of our own 
 import xml.etree.ElementTree as ET
 from pathlib import Path
 
-import trimesh
-
 from services.sim import robot
 from services.sim.skin import MERGED, THEIRS
 
@@ -18,6 +16,8 @@ ASKEW = ((0.23, 0.22, -0.03), (-0.24, 0.22, -0.03), (-0.24, -0.23, -0.03), (0.23
 
 def _meshes(folder: Path) -> None:
     """The files that the model names, as STL: corners are not shared, axes are not principal."""
+    import trimesh  # not for everybody who collects the tests to load
+
     folder.mkdir(parents=True, exist_ok=True)
     rod = trimesh.creation.cylinder(0.03, 0.12, sections=24)
     rod.apply_transform(trimesh.transformations.rotation_matrix(0.7, (1, 2, 3), (0, 0, 0)))

@@ -6,7 +6,8 @@ import subprocess
 import sys
 from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import asynccontextmanager
-from typing import Any
+from importlib.util import find_spec
+from typing import TYPE_CHECKING, Any
 
 import pytest
 from PIL import Image
@@ -15,18 +16,22 @@ from cli.processes.ports import free_port
 from tests.integration.test_cli_up import Run, run
 from tests.support import ROOT, eventually
 
-pytest.importorskip("mcp")
+if find_spec("mcp") is None:
+    pytest.skip("the extra mcp is not installed", allow_module_level=True)
 import anyio
-from mcp import Client, StdioServerParameters
-from mcp.client.streamable_http import streamable_http_client
-from mcp_types import BlobResourceContents, CallToolResult, ImageContent, TextContent, TextResourceContents
+
+if TYPE_CHECKING:  # takes more than a second to load, which every worker would spend
+    from mcp import Client
+    from mcp_types import CallToolResult
 
 __all__ = ["run"]
 
 
 @asynccontextmanager
-async def agent(run: Run, *words: str) -> AsyncIterator[Client]:
+async def agent(run: Run, *words: str) -> AsyncIterator["Client"]:
     """The SDK's client on a server that it starts itself, as an agent's host does."""
+    from mcp import Client, StdioServerParameters
+
     started = StdioServerParameters(
         command=sys.executable, args=["-m", "cli.main", "mcp", *words], env=run.environ, cwd=ROOT
     )
@@ -34,24 +39,28 @@ async def agent(run: Run, *words: str) -> AsyncIterator[Client]:
         yield client
 
 
-def text_of(result: CallToolResult) -> str:
+def text_of(result: "CallToolResult") -> str:
+    from mcp_types import TextContent
+
     return " ".join(c.text for c in result.content if isinstance(c, TextContent))
 
 
-async def called(client: Client, tool: str, **arguments: Any) -> Any:
+async def called(client: "Client", tool: str, **arguments: Any) -> Any:
     result = await client.call_tool(tool, arguments)
     assert not result.is_error, text_of(result)
     record = result.structured_content
     return record["result"] if record is not None and set(record) == {"result"} else record
 
 
-async def refused(client: Client, tool: str, **arguments: Any) -> str:
+async def refused(client: "Client", tool: str, **arguments: Any) -> str:
     result = await client.call_tool(tool, arguments)
     assert result.is_error, text_of(result)
     return text_of(result)
 
 
-async def read(client: Client, uri: str) -> str | bytes:
+async def read(client: "Client", uri: str) -> str | bytes:
+    from mcp_types import BlobResourceContents, TextResourceContents
+
     content = (await client.read_resource(uri)).contents[0]
     if isinstance(content, TextResourceContents):
         return content.text
@@ -112,6 +121,8 @@ def test_over_http_only_the_token_opens_the_door(run: Run, serving: Callable[...
 
     async def tools(headers: dict[str, str]) -> int:
         import httpx2
+        from mcp import Client
+        from mcp.client.streamable_http import streamable_http_client
 
         async with (
             httpx2.AsyncClient(headers=headers) as http,
@@ -163,7 +174,7 @@ def test_an_agent_s_missions_done_refused_asked_and_stopped(run: Run) -> None:
     anyio.run(talk)
 
 
-async def _refusals(client: Client) -> None:
+async def _refusals(client: "Client") -> None:
     """What a person would be refused, an agent is, with the same reason; and it is in the journal."""
     reason = await refused(client, "bring", object="banana")
     assert "failed: " in reason and "banana" in reason
@@ -172,7 +183,9 @@ async def _refusals(client: Client) -> None:
     assert "asks nothing" in await refused(client, "answer", text="yes")
 
 
-async def _delivery(client: Client) -> None:
+async def _delivery(client: "Client") -> None:
+    from mcp_types import ImageContent
+
     told: list[str] = []
 
     async def progress(count: float, total: float | None, message: str | None) -> None:
@@ -203,7 +216,7 @@ async def _delivery(client: Client) -> None:
     assert [row["outcome"] for row in journal] == ["failed", "delivered"]
 
 
-async def _question(client: Client, run: Run) -> None:
+async def _question(client: "Client", run: Run) -> None:
     """The person's answer comes back; nothing else happens."""
     answers: list[Any] = []
 
@@ -218,7 +231,7 @@ async def _question(client: Client, run: Run) -> None:
     assert answers[0]["outcome"] == "delivered" and answers[0]["text"] == "no"
 
 
-async def _waiting_and_stop(client: Client) -> None:
+async def _waiting_and_stop(client: "Client") -> None:
     """A call given up leaves the robot to it; `wait` finds it again; `stop` brakes, and no agent releases that."""
     with anyio.CancelScope() as scope:
 
@@ -243,5 +256,5 @@ async def until(holds: Callable[[], Awaitable[bool]]) -> None:
             await anyio.sleep(0.05)
 
 
-async def _state(client: Client, wanted: str) -> bool:
+async def _state(client: "Client", wanted: str) -> bool:
     return bool((await called(client, "status"))["state"] == wanted)
