@@ -95,6 +95,13 @@ class Rectangle(NamedTuple):
         return self._replace(length=self.length + 2 * margin, width=self.width + 2 * margin)
 
 
+def transformed(frame: Pose2, points: Array) -> Array:
+    """Points (n, 2) of `frame` in its parent."""
+    c, s = np.cos(frame[2]), np.sin(frame[2])
+    moved: Array = points @ np.array([[c, s], [-s, c]]) + frame[:2]
+    return moved
+
+
 def yaw_quat(yaw: float) -> tuple[float, float, float, float]:
     """Rotation by `yaw` about z."""
     return math.cos(yaw / 2), 0.0, 0.0, math.sin(yaw / 2)

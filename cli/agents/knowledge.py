@@ -3,7 +3,6 @@
 import io
 import os
 import uuid
-import zlib
 from typing import Any, Literal
 
 import numpy as np
@@ -17,6 +16,7 @@ from cli.payload import fields
 from cli.recordings.record import settings_of
 from common import config, topics
 from common import messages as m
+from common.cells import unpacked
 from common.household import Household, load_household
 from common.scene import SceneError
 from common.time.clock import monotonic
@@ -29,6 +29,7 @@ PICTURE_LIMIT = 10.0
 MAP_LIMIT = 3.0
 """Time [s] for the costmap, which comes at 1 Hz."""
 JPEG_QUALITY = 85
+"""Of pictures for agents [1 to 95]; chosen: print on a label can still be read."""
 
 
 def picture(link: Link, camera: Camera) -> bytes:
@@ -105,12 +106,15 @@ def map_picture(link: Link) -> bytes:
     """The costmap as PNG, north up: white is room for the base's centre, black is not; the robot is red.
 
     Raises:
-        CliError: navigation does not publish one.
+        CliError: navigation does not publish one, or what it publishes is none.
     """
     seen = Watch(link, topics.COSTMAP).next(MAP_LIMIT)
     if seen is None:
         raise CliError("navigation publishes no costmap; see `tidybot ps`")
-    cells = np.frombuffer(zlib.decompress(seen.cells), np.uint8).reshape(seen.height, seen.width)
+    try:
+        cells = unpacked(seen)
+    except ValueError as error:
+        raise CliError(f"{topics.COSTMAP.key}: {error}") from None
     shown = np.repeat(cells[:, :, None], 3, axis=2)
     pose = link.latest(topics.POSE)
     if pose is not None:

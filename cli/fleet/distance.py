@@ -1,7 +1,6 @@
 """How far a robot has to drive, on the map that it drives by. Pure."""
 
 import math
-import zlib
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +9,7 @@ from scipy.sparse.csgraph import dijkstra
 
 from common import messages as m
 from common.approach import ROOM
+from common.cells import unpacked
 
 REACH = 0.9
 """How near the base's centre has to come to a thing [m]; chosen: the arm's reach."""
@@ -25,11 +25,7 @@ def free_cells(costmap: m.Costmap) -> NDArray[np.bool_]:
     Raises:
         ValueError: the map is not as large as it says.
     """
-    try:
-        cells = np.frombuffer(zlib.decompress(costmap.cells), np.uint8)
-    except zlib.error as error:
-        raise ValueError(f"a map that cannot be unpacked: {error}") from None
-    return (cells.reshape(costmap.height, costmap.width) * (costmap.far / 255.0) >= ROOM).astype(np.bool_)
+    return (unpacked(costmap) * (costmap.far / 255.0) >= ROOM).astype(np.bool_)
 
 
 def path_length(costmap: m.Costmap, start: tuple[float, float], end: tuple[float, float]) -> float | None:

@@ -2,7 +2,6 @@
 
 import argparse
 import math
-import zlib
 from pathlib import Path
 
 import numpy as np
@@ -20,6 +19,7 @@ from cli.processes.up import Stopped, bring_up, check_free, interruptible
 from common import messages as m
 from common import topics
 from common.bus.session import open_session
+from common.cells import unpacked
 from common.files.map_file import HOUSEHOLD, OCCUPIED, PICTURE, UNKNOWN, picture
 from common.household import Household, load_household
 from common.household_edits import edited
@@ -123,7 +123,7 @@ def follow(link: Link, supervision: Supervision, out: Path, timeout: float) -> m
                 if monotonic() - began > timeout:
                     raise Stopped
                 grid = grids.next(0.0) or grids.last
-                shown = states(grid) if grid is not None else None
+                shown = unpacked(grid) if grid is not None else None
                 drawing = terminal(shown) if shown is not None and console.is_terminal else []
                 if console.is_terminal:
                     live.update(Text("\n".join([*drawing, line(status)])))
@@ -149,11 +149,6 @@ def _save_now(link: Link, statuses: Watch[m.MappingStatus], status: m.MappingSta
         if status.saves > saves:
             return status
     raise CliError(f"not saved after {SAVE_LIMIT:.0f} s; see the log of mapping")
-
-
-def states(grid: m.MapGrid) -> "np.ndarray[tuple[int, ...], np.dtype[np.uint8]]":
-    """The states (rows, columns) of a map's cells."""
-    return np.frombuffer(zlib.decompress(grid.cells), np.uint8).reshape(grid.height, grid.width)
 
 
 def line(status: m.MappingStatus) -> str:

@@ -6,9 +6,10 @@ import numpy as np
 
 from common import messages as m
 from common import topics
-from common.approach import FOOTPRINT, HALF_WIDTH
+from common.approach import FOOTPRINT
 from common.bus.port import Io
 from common.gateway import refusal
+from common.robot.lidar import rays_of
 
 HOLD = 0.4
 """Time [s] after a visitor's last word at which the base stops (dead-man switch); chosen: eight words of 50 ms."""
@@ -75,11 +76,11 @@ def limit(scan: m.LaserScan | None, x: float, y: float) -> float:
     """
     if scan is None:
         return 0.0
-    ranges = np.frombuffer(scan.ranges[: len(scan.ranges) // 4 * 4], "<f4").astype(np.float64)
-    angles = scan.angle_min + np.arange(len(ranges)) * scan.angle_increment
-    seen = np.isfinite(ranges) & (ranges > scan.range_min) & (ranges < scan.range_max)
-    ends = np.stack([scan.x + ranges * np.cos(angles), scan.y + ranges * np.sin(angles)], axis=1)
-    points = ends[seen & (np.abs(ends).max(axis=1) >= HALF_WIDTH)]  # nearer is the robot's own body
+    try:
+        rays = rays_of(scan)
+    except ValueError:
+        return 0.0  # what is no scan shows no free way
+    points = rays.ends[rays.hit]
     speed = hypot(x, y)
     if not speed or not len(points):
         return SPEED

@@ -3,7 +3,6 @@
 Source: https://docs.foxglove.dev/docs/sdk/schemas
 """
 
-import zlib
 from io import BytesIO
 from typing import Any
 
@@ -12,6 +11,7 @@ from foxglove import messages as fm
 from PIL import Image
 
 from common import messages as m
+from common.cells import unpacked
 from common.geometry import Rectangle, yaw_quat
 from common.household import Household
 from common.kinds import kind_of
@@ -146,12 +146,6 @@ def grid(message: m.Costmap) -> Any:
     Raises:
         ValueError: not as many cells as it says.
     """
-    try:
-        cells = zlib.decompress(message.cells)
-    except zlib.error as error:
-        raise ValueError(f"cells: {error}") from None
-    if len(cells) != message.width * message.height:
-        raise ValueError(f"{len(cells)} cells of {message.width} x {message.height}")
     field = fm.PackedElementField(name="clearance", offset=0, type=fm.PackedElementFieldNumericType.Uint8)
     return fm.Grid(
         timestamp=timestamp(message.t),
@@ -162,7 +156,7 @@ def grid(message: m.Costmap) -> Any:
         row_stride=message.width,
         cell_stride=1,
         fields=[field],
-        data=cells,
+        data=unpacked(message).tobytes(),
     )
 
 

@@ -1,6 +1,5 @@
 """What the robot publishes, as ROS messages: one row for each ROS topic."""
 
-import zlib
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
@@ -9,6 +8,7 @@ import numpy as np
 
 from common import messages as m
 from common import topics
+from common.cells import unpacked
 from common.geometry import yaw_quat
 from common.robot.frames import BASE_LINK, LIDAR, MAP, ODOM
 from common.topic import Topic
@@ -97,12 +97,7 @@ def occupancy(types: Types, message: m.Costmap) -> Any:
     Raises:
         ValueError: not as many cells as it says.
     """
-    try:
-        cells = np.frombuffer(zlib.decompress(message.cells), np.uint8)
-    except zlib.error as error:
-        raise ValueError(f"cells: {error}") from None
-    if len(cells) != message.width * message.height:
-        raise ValueError(f"{len(cells)} cells of {message.width} x {message.height}")
+    cells = unpacked(message).ravel()
     info = types.new(
         "nav_msgs/MapMetaData",
         map_load_time=types.stamp(message.t),

@@ -1,12 +1,10 @@
 """`tidybot map`: what it prints, and what it says to those who mistype."""
 
-import zlib
-
 import msgspec
 import numpy as np
 import pytest
 
-from cli.home.map import contents, line, states, terminal
+from cli.home.map import contents, line, terminal
 from cli.main import main
 from common import messages as m
 from common.files.map_file import FREE, OCCUPIED, UNKNOWN
@@ -34,13 +32,6 @@ def test_it_says_what_there_is_in_each_room() -> None:
     assert sorted(name for row in rows.values() for name in row.split(", ")) == sorted(r.name for r in home.receptacles)
     bare = msgspec.structs.replace(home, receptacles=home.receptacles[:1], rooms=home.rooms[:0])
     assert contents(bare) == [f"  elsewhere: {home.receptacles[0].name}"]
-
-
-def test_the_grid_of_a_message_is_unpacked() -> None:
-    cells = np.arange(6, dtype=np.uint8).reshape(2, 3) % 3
-    packed = zlib.compress(cells.tobytes())
-    sent = m.MapGrid(t=0, x=0, y=0, resolution=0.05, width=3, height=2, cells=packed, odom=(0, 0, 0))
-    assert (states(sent) == cells).all()
 
 
 def test_nothing_to_go_on_with_is_said(tmp_path: "pytest.TempPathFactory", capsys: pytest.CaptureFixture[str]) -> None:

@@ -149,7 +149,7 @@ def test_a_lidar_that_has_fallen_silent_stops_it() -> None:
 
 def test_without_a_lidar_it_turns_only() -> None:
     assert limit(None, 1.0, 0.0) == 0.0
-    assert limit(m.LaserScan(t=0.0, ranges=b"", angle_min=-pi), 1.0, 0.0) == SPEED
+    assert limit(m.LaserScan(t=0.0, ranges=b"", angle_min=-pi), 1.0, 0.0) == 0.0, "what is no scan shows no free way"
 
 
 def test_beside_the_simulation_it_drives_up_to_the_table_and_stands() -> None:

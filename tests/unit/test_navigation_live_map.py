@@ -114,3 +114,12 @@ def test_a_grid_that_cannot_be_used_is_dropped() -> None:
     robot.bus.send(topics.MAP_GRID, wrong)
     robot.step(2)
     assert drive(robot, 0.0, -1.0).status == "arrived", "the one before still counts"
+
+
+def test_a_grid_that_is_none_is_counted_and_harms_nothing() -> None:
+    robot = flat()
+    broken = grid()
+    broken.cells = b"nonsense"
+    robot.bus.send(topics.MAP_GRID, broken)
+    robot.step()
+    assert robot.io.drops[topics.MAP_GRID.key] == 1

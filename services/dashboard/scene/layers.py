@@ -1,6 +1,5 @@
 """What navigation and manipulation think, laid over the 3-D view: costmap and grasp candidates."""
 
-import zlib
 from typing import Any
 
 import numpy as np
@@ -8,14 +7,13 @@ import viser
 from numpy.typing import NDArray
 
 from common import messages as m
+from common.cells import unpacked
 from common.geometry import quat_matrix
 
 FOOTPRINT = 0.3
 """Clearance [m] up to which the base's centre cannot be."""
 FLOOR = 0.012
 """Height [m] of the costmap above the floor; chosen: the two do not flicker."""
-LARGEST = 4_000_000
-"""Cells of a costmap that is drawn: 100 x 100 m at 5 cm."""
 STATES = {"open": (150, 150, 150), "failed": (224, 49, 49), "chosen": (47, 158, 68)}
 FINGER, DEPTH, STEM = 0.05, 0.05, 0.08
 """Lengths [m] of the drawn fork: its fingers, how far its palm is behind the pinch point, its stem; chosen: about the
@@ -28,16 +26,7 @@ def picture(costmap: m.Costmap) -> NDArray[np.uint8]:
     Raises:
         ValueError: not as many cells as it says.
     """
-    count = costmap.width * costmap.height
-    if not 0 < count <= LARGEST:
-        raise ValueError(f"{costmap.width} x {costmap.height} cells")
-    try:
-        cells = zlib.decompressobj().decompress(costmap.cells, count + 1)
-    except zlib.error as error:
-        raise ValueError(str(error)) from None
-    if len(cells) != count:
-        raise ValueError(f"{len(cells)} cells for {costmap.width} x {costmap.height}")
-    room = np.frombuffer(cells, np.uint8).reshape(costmap.height, costmap.width) * (costmap.far / 255)
+    room = unpacked(costmap) * (costmap.far / 255)
     shown = np.zeros((costmap.height, costmap.width, 4), np.uint8)
     shown[..., 0] = np.where(room <= 0, 90, 230)
     shown[..., 1] = np.clip(room / costmap.far * 220, 0, 220)

@@ -62,7 +62,10 @@ class LiveScene:
         if pose is not None or joints is not None:
             self._camera.step(self.base, panels.follow)
         for scan in io.take_all(topics.SCAN):
-            view.scan(scan, self.base, panels.scan)
+            try:
+                view.scan(scan, self.base, panels.scan)
+            except ValueError as error:
+                io.count_drop(topics.SCAN.key, str(error))
         for path in io.take_all(topics.NAV_PATH):
             self._path = path.points
             view.path(path.points)

@@ -7,7 +7,8 @@ import viser
 from numpy.typing import NDArray
 
 from common import messages as m
-from common.geometry import Pose2
+from common.geometry import Pose2, transformed
+from common.robot.lidar import rays_of
 from services.dashboard.scene.drawing import Drawing, Mesh, posture, quaternion
 from services.dashboard.scene.shapes import fallback
 
@@ -16,7 +17,9 @@ GHOST = 0.3
 """Opacity of an object that was not seen for long; chosen: visible, yet not to be mistaken for a fresh sighting."""
 STILL = 1e-4
 """Change of a joint [m or rad] below which a link is not sent again: a tenth of a millimetre."""
-SCAN_COLOUR, PATH_COLOUR = (255, 60, 60), (40, 160, 255)
+SCAN_COLOUR, PATH_COLOUR = (255, 60, 60), (40, 160, 255)  # sRGB
+LIDAR_HEIGHT = 0.2
+"""Of the lidar's points in the view [m]: about the slot in the base that it looks out of."""
 PART = 1.0
 """Height [m] of the names of rooms and surfaces: above tables, below the robot's head."""
 FRUSTUM = 0.25
@@ -125,15 +128,14 @@ class View:
 
     # --- what it senses and believes
     def scan(self, scan: m.LaserScan, base: Pose2, visible: bool) -> None:
-        """Draw the lidar's points around `base` (frame map)."""
-        ranges = np.frombuffer(scan.ranges[: len(scan.ranges) // 4 * 4], "<f4").astype(np.float64)
-        angles = scan.angle_min + np.arange(len(ranges)) * scan.angle_increment + base[2]
-        seen = np.isfinite(ranges) & (ranges > scan.range_min) & (ranges < scan.range_max)
-        cos, sin = np.cos(base[2]), np.sin(base[2])
-        x, y = base[0] + cos * scan.x - sin * scan.y, base[1] + sin * scan.x + cos * scan.y
-        points = np.stack(
-            [x + ranges * np.cos(angles), y + ranges * np.sin(angles), np.full(len(ranges), 0.2)], axis=1
-        )[seen]
+        """Draw what the lidar meets around `base` (frame map).
+
+        Raises:
+            ValueError: it is not the scan of a lidar.
+        """
+        rays = rays_of(scan)
+        ends = transformed(base, rays.ends[rays.hit])
+        points = np.column_stack([ends, np.full(len(ends), LIDAR_HEIGHT)])
         if self._scan is None:
             self._scan = self._scene.add_point_cloud(
                 "/scan", points.astype(np.float32), SCAN_COLOUR, point_size=0.03, point_shape="circle",

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from common import messages as m
-from common.geometry import Pose2
+from common.geometry import Pose2, transformed
 from common.robot.lidar import rays_of
 from services.navigation.localisation.distance_field import Array
 
@@ -40,10 +40,3 @@ def scan_of(message: m.LaserScan) -> Scan:
     reach = np.where(rays.own, 0.0, rays.ranges)
     points, ranges = rays.ends[rays.hit], rays.ranges[rays.hit]
     return Scan(points, ranges, rays.angles, reach, (message.x, message.y), message.range_max)
-
-
-def transformed(frame: Pose2, points: Array) -> Array:
-    """Points (n, 2) of `frame` in its parent."""
-    c, s = np.cos(frame[2]), np.sin(frame[2])
-    moved: Array = points @ np.array([[c, s], [-s, c]]) + frame[:2]
-    return moved

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from common import messages as m
 from common import topics
 from common.bus.port import Io
-from common.geometry import Array, Pose2, compose
+from common.geometry import Array, Pose2, compose, transformed
 from common.robot.lidar import sane
 from services.navigation.config import NavigationConfig
 from services.navigation.localisation.distance_field import distance_field
@@ -16,7 +16,7 @@ from services.navigation.localisation.global_localiser import GlobalLocaliser
 from services.navigation.localisation.live_map import LiveMap
 from services.navigation.localisation.localise import Localiser
 from services.navigation.localisation.map_fit import MapFit
-from services.navigation.localisation.scan import Scan, scan_of, transformed
+from services.navigation.localisation.scan import Scan, scan_of
 from services.navigation.motion.obstacle_tracker import ObstacleTracker
 from services.navigation.planning.costmap import Costmap
 

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from common import messages as m
+from common.cells import unpacked
 from common.floor_plan import FloorPlan
 from common.geometry import Array, Pose2
 from services.navigation.planning.cells import Cells, static_distances
@@ -59,14 +60,12 @@ class Costmap(Cells):
         """
         if abs(grid.resolution - self.resolution) > 1e-9:
             raise ValueError(f"cells of {grid.resolution} m, not {self.resolution} m")
-        cells = np.frombuffer(zlib.decompress(grid.cells), np.uint8)
-        if cells.size != grid.width * grid.height:
-            raise ValueError(f"{cells.size} cells for {grid.width} x {grid.height}")
+        cells = unpacked(grid)
         row, column = (
             round((v - o) / self.resolution) for v, o in ((grid.y, self.origin[1]), (grid.x, self.origin[0]))
         )
         top, left = max(0, row), max(0, column)
-        part = cells.reshape(grid.height, grid.width)[top - row :, left - column :] != 0
+        part = cells[top - row :, left - column :] != 0
         part = part[: self.shape[0] - top, : self.shape[1] - left]
         inside = slice(top, top + part.shape[0]), slice(left, left + part.shape[1])
         # All around it is unknown. To the middles of taken cells: a wall is somewhere in those that it touches.
