@@ -5,7 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from common.sound import RATE, Samples
-from services.speech.listen.vad import FRAME, Endpointer, VoiceDetector
+from services.speech.listen.loudness import FRAME, LOUDER, BackgroundVoices, Gain
+from services.speech.listen.vad import STOP_AT, Endpointer, VoiceDetector
 from services.speech.listen.wake_word import WakeWord
 
 PRE_ROLL = int(0.4 * RATE)
@@ -29,6 +30,7 @@ class Segmenter:
     def __init__(self, end_silence: float, max_utterance: float, pause: float, short: float, wake: bool) -> None:
         self._detector = VoiceDetector()
         self._endpointer = Endpointer(end_silence, max_utterance)
+        self._gain, self._background = Gain(), BackgroundVoices()
         self._wakes = wake
         self._wake: WakeWord | None = None
         self._pause, self._short = round(pause * RATE / FRAME), short * RATE
@@ -75,7 +77,11 @@ class Segmenter:
 
     def _frame(self, frame: Samples) -> Segment | None:
         before = self.speaking
-        ended = self._endpointer.push(self._detector(frame))
+        probability = self._detector(self._gain(frame))
+        power = float(np.mean(np.square(frame, dtype=np.float32)))
+        if self._background.push(power, probability > STOP_AT) < LOUDER:
+            probability = 0.0
+        ended = self._endpointer.push(probability)
         self._frames.append(frame)
         if not self.speaking:
             self._frames = self._frames[-(PRE_ROLL // FRAME) :]

@@ -5,9 +5,9 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-RATE = 16000
-FRAME = 512
-"""Samples that the detector takes at once: 32 ms, fixed by Silero's network."""
+from common.sound import RATE
+from services.speech.listen.loudness import FRAME, FULL_SCALE, LOUD, MOST_GAIN
+
 START_AT, STOP_AT = 0.5, 0.35
 """Probabilities at which speech begins and below which it pauses: Silero's default, and its 0.15 of hysteresis."""
 START_FRAMES = 3
@@ -34,7 +34,8 @@ class VoiceDetector:
 def speech_span(audio: NDArray[np.float32], detector: VoiceDetector) -> tuple[int, int] | None:
     """First and last sample of speech; None when there is none."""
     detector.reset()
-    samples = (np.clip(audio, -1, 1) * 32767).astype(np.int16)
+    factor = LOUD / max(float(np.abs(audio).max(initial=0.0)), LOUD / MOST_GAIN)
+    samples = (audio * np.float32(factor * FULL_SCALE)).astype(np.int16)
     voiced = [i for i in range(0, len(samples) - FRAME + 1, FRAME) if detector(samples[i : i + FRAME]) > STOP_AT]
     return (voiced[0], voiced[-1] + FRAME) if len(voiced) >= START_FRAMES else None
 

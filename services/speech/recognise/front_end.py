@@ -8,8 +8,9 @@ from numpy.typing import NDArray
 
 from common.household import Household
 from common.process.host import return_memory
+from common.sound import RATE
 from services.speech.config import SpeechConfig
-from services.speech.listen.vad import RATE, VoiceDetector, speech_span
+from services.speech.listen.vad import VoiceDetector, speech_span
 from services.speech.recognise.denoise import noise_ratio, reduce_noise
 from services.speech.recognise.free_text import freely, without_wake
 from services.speech.recognise.grammar import Grammar, known_names
