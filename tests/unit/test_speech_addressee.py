@@ -97,6 +97,7 @@ DOUBT = CONFIG.certain - 0.01
         (("the mug", "reject", 0.1, "Keep hold of that mug for me.", DOUBT), "the mug", "reject", 0.1),
         (("the mug", "reject", 0.1, "Turn off the light over the table.", 0.9), "the mug", "reject", 0.1),
         (("the mug", "reject", 0.1, "Nobody should keep hold of that mug.", 0.9), "the mug", "reject", 0.1),
+        (("the mug", "reject", 0.1, "", 0.9), "the mug", "reject", 0.1),
         (("hey jarvis stop", "accept", 0.6, "Go to the table.", 0.9), "stop", "accept", 0.6),
         (("hey jarvis", "accept", 0.6, "Go to the table.", 0.9), "", "accept", 0.6),
     ],

@@ -49,6 +49,8 @@ def freely(found: Recognition, names: Collection[str], config: SpeechConfig) -> 
         if surer or turns(heard, found.text):
             return replace(found, text=free, confidence=min(found.confidence, UNLISTED))
         return found
+    if not free:
+        return found  # the network is sure that nobody said anything
     grade = understood(free, names)
     if grade == "listed":
         return replace(found, text=free, verdict="accept", confidence=found.certainty)
