@@ -89,8 +89,13 @@ class Moonshine:
         return EncodedUtterance(self._decoder.cross_attention_cache(hidden), len(variants), limit)
 
     def free(self, utterance: EncodedUtterance) -> Decoded:
-        """The transcription without any grammar, the likeliest token at a time."""
+        """The transcription without any grammar, the likeliest token at a time.
+
+        Something was said, as voice detection knows: in noise the network would rather end at once.
+        """
         scores, cache = self._first(utterance)
+        scores = scores.copy()
+        scores[:, EOS] = -np.inf
         numbers: list[int] = []
         total = 0.0
         for _ in range(utterance.limit):
