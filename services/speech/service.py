@@ -181,6 +181,8 @@ class SpeechService:
         elif found == "command":
             self._queue.close_window(now)
             self._command(text, recognition.confidence)
+        elif found == "mistaken":
+            self._queue.close_window(now)
         elif found == "awake":
             self._queue.open_window(now)
         elif found == "again":

@@ -34,7 +34,8 @@ class Reader:
         if self._wake:
             self._wake.restart()
             woken = self._wake(samples) >= self._threshold
-        return self._front_end.recognise(samples), woken
+        found = self._front_end.recognise(samples, "woken" if woken else "command")
+        return found, woken and not found.mistaken
 
 
 def main() -> int:

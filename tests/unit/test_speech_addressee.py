@@ -21,7 +21,8 @@ STRANGER, WOKEN, LISTENING = UtteranceContext(), UtteranceContext(woken=True), U
         (STRANGER, True, "interrupt"),
         (LISTENING, True, "command"),
         (LISTENING, False, "interrupt"),
-        (WOKEN, True, "command"),
+        (WOKEN, True, "woken"),
+        (UtteranceContext(woken=True, window=True), True, "command"),
         (UtteranceContext(window=True), True, "command"),
         (UtteranceContext(addressed=True), True, "command"),
         (UtteranceContext(speaking=True, listening=True), True, "interrupt"),
@@ -65,6 +66,14 @@ def test_the_wake_word_alone_opens_the_window_and_nonsense_after_it_keeps_it_ope
     assert (
         consequence(Recognition("take a bowl", "reject", 0.1, "the weather is fine"), None, "command", WOKEN) == "again"
     )
+
+
+def test_what_only_sounded_like_the_wake_word_has_no_consequence() -> None:
+    near = Recognition("bring me the apple", "accept", 0.9, "Hey Travis, bring me the apple.", 0.9, mistaken=True)
+    assert consequence(near, None, "woken", WOKEN) == "mistaken"
+    assert consequence(near, None, "command", UtteranceContext(window=True)) == "command"
+    stop = Recognition("stop", "accept", 0.9, "Hey Travis, stop.", 0.9, mistaken=True)
+    assert consequence(stop, "stop", "woken", WOKEN) == "stop", "whoever is meant"
 
 
 def test_the_wake_word_is_taken_off() -> None:

@@ -6,7 +6,7 @@ from typing import Literal
 from common.language.wording import Action
 from services.speech.recognise.recogniser import Recognition, Scope
 
-Consequence = Literal["stop", "cancel", "answer", "command", "awake", "again", "nothing"]
+Consequence = Literal["stop", "cancel", "answer", "command", "awake", "mistaken", "again", "nothing"]
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,9 @@ def scope(context: UtteranceContext, over: bool) -> Scope:
 
     While the robot speaks, in a mere pause (not `over`) and among strangers it is stop and cancel only.
     """
-    return "command" if over and context.meant else "interrupt"
+    if not (over and context.meant):
+        return "interrupt"
+    return "command" if context.listening or context.window or context.addressed else "woken"
 
 
 def consequence(
@@ -39,7 +41,8 @@ def consequence(
 ) -> Consequence:
     """What follows from an utterance recognised with the grammar `asked`; `interrupt` is stop or cancel if it says so.
 
-    `again`: the robot was addressed but did not understand. A cancel that answers the brain's listening is the answer.
+    `again`: the robot was addressed but did not understand; `mistaken`: it only seemed to be addressed. A cancel that
+    answers the brain's listening is the answer.
     """
     understood = recognition.verdict == "accept"
     if understood and interrupt == "stop":
@@ -48,6 +51,8 @@ def consequence(
         return "answer" if context.listening else "cancel"
     if asked == "interrupt" or not context.meant:
         return "nothing"
+    if asked == "woken" and recognition.mistaken:
+        return "mistaken"
     if understood and not recognition.text:
         return "awake"
     if context.listening:

@@ -26,6 +26,8 @@ BEAM_THRESHOLD = 10.0
 """Natural logarithm of how much less likely than the best a hypothesis may be to stay in the beam."""
 RATE = 16000
 """Samples per second of the network's input."""
+REPLACED = 4
+"""Most first words of a transcription that may be two misheard ones (chosen: `hey jarvis` as `he is a john is`)."""
 ENCODER = "encoder.onnx"
 """File of the encoder's network, its matrices packed."""
 
@@ -153,6 +155,12 @@ class Moonshine:
                     options[text] = longer, row
         kept = sorted(options.values(), key=lambda o: -o[0].total)[: self._beam]
         return [o for o in kept if o[0].total > max(leader, kept[0][0].total) - BEAM_THRESHOLD]
+
+    def begun_with(self, numbers: tuple[int, ...], sentence: Decoded) -> list[Decoded]:
+        """The sentence with these tokens in place of none of its words, of its first one, and so on."""
+        starts = [k for k, n in enumerate(sentence.numbers[:-1]) if self.tokens[n].startswith(" ") or k == 0]
+        cuts = [*starts, sentence.tokens - 1][: REPLACED + 1]
+        return [Decoded("", 0.0, (*numbers, *sentence.numbers[cut:])) for cut in cuts]
 
     def log_probabilities(self, utterance: EncodedUtterance, sentences: list[Decoded]) -> list[float]:
         """Log-probability of each sentence for these input variants, in the tokens that it was found in."""

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from functools import cache
 from typing import TYPE_CHECKING, Literal, Protocol
 
 import numpy as np
@@ -15,11 +16,11 @@ from services.speech.recognise.grammar import Grammar, vocabulary
 from services.speech.recognise.scoring import prior_cost, rescored, time_scaled
 
 if TYPE_CHECKING:
-    from services.speech.recognise.moonshine import Decoded
+    from services.speech.recognise.moonshine import Decoded, EncodedUtterance
 
 Array = NDArray[np.float32]
 Verdict = Literal["accept", "ask", "reject", "silence"]
-Scope = Literal["command", "interrupt"]
+Scope = Literal["command", "woken", "interrupt"]
 PACES = (16 / 15, 15 / 16)
 """Factors of speed for the second scoring. Chosen: a semitone up and down, far less than voices differ."""
 
@@ -29,6 +30,7 @@ class Recognition:
     """What was understood, without the wake word. `verdict`: accept, ask (perhaps), reject (no command), silence.
 
     `free` is the transcription without any grammar, `certainty` 0..1 the geometric mean probability of its tokens.
+    `mistaken`: what began the utterance was taken for the wake word and is something else.
     """
 
     text: str
@@ -36,6 +38,7 @@ class Recognition:
     confidence: float
     free: str = ""
     certainty: float = 0.0
+    mistaken: bool = False
 
 
 @dataclass(frozen=True)
@@ -59,7 +62,8 @@ class PreparedUtterance:
 class Recogniser(Protocol):
     """What turns an utterance into a command.
 
-    `scope` is the grammar: a command, with or without the wake word, or the wake word alone; or stop and cancel only.
+    `scope` is the grammar: a command, with or without the wake word, or the wake word alone (where `woken`, it is also
+    verified that the wake word was said); or stop and cancel only.
     """
 
     def recognise(self, utterance: PreparedUtterance, scope: Scope) -> Recognition: ...
@@ -92,16 +96,33 @@ class MoonshineRecogniser:
         def prior(text: str) -> float:
             return prior_cost(text, utterance.seconds, config)
 
-        found = self._model.best(encoded, self._tries[scope], prior)
-        certainty = math.exp(free.log_probability / free.tokens)
-        if not found:
-            return Recognition("", "reject", 0.0, free.text, certainty)
-        command, score, share = rescored(found, free, prior, lambda rows: self._score_again(rows, utterance))
-        confidence = round(share * confidence_of(score, config), 3)
-        return Recognition(command.text, verdict_of(score, certainty, config), confidence, free.text, certainty)
+        @cache
+        def encoded_again() -> "EncodedUtterance":
+            return self._model.encode(utterance.time_scaled())
 
-    def _score_again(self, sentences: list["Decoded"], utterance: PreparedUtterance) -> list[float]:
-        return self._model.log_probabilities(self._model.encode(utterance.time_scaled()), sentences)
+        def score_again(sentences: list["Decoded"]) -> list[float]:
+            return self._model.log_probabilities(encoded_again(), sentences)
+
+        found = self._model.best(encoded, self._tries["interrupt" if scope == "interrupt" else "command"], prior)
+        certainty = math.exp(free.log_probability / free.tokens)
+        mistaken = scope == "woken" and self._wake_ratio(encoded, free, score_again) < config.wake_score
+        if not found:
+            return Recognition("", "reject", 0.0, free.text, certainty, mistaken)
+        command, score, share = rescored(found, free, prior, score_again)
+        confidence = round(share * confidence_of(score, config), 3)
+        verdict = verdict_of(score, certainty, config)
+        return Recognition(command.text, verdict, confidence, free.text, certainty, mistaken)
+
+    def _wake_ratio(
+        self, encoded: "EncodedUtterance", free: "Decoded", score: Callable[[list["Decoded"]], list[float]]
+    ) -> float:
+        """Log-likelihood ratio of the wake word in place of the first words of the free transcription."""
+        wake = self._model.best(encoded, self._tries["woken"], lambda text: 0.0)
+        if not wake:
+            return -math.inf
+        begun = wake[0].numbers[:-1]
+        total, *others = score([free, *self._model.begun_with(begun, free)])
+        return max(others) - total
 
 
 def verdict_of(score: float, certainty: float, config: SpeechConfig) -> Verdict:
@@ -119,6 +140,8 @@ def confidence_of(score: float, config: SpeechConfig) -> float:
 def patterns(config: SpeechConfig, scope: Scope) -> list[str]:
     """The lines of a scope's grammar. The wake word may stand before everything, as its detector misses it in noise."""
     wake = _either(config.wake)
+    if scope == "woken":
+        return [wake]
     if scope == "interrupt":
         return [f"[{wake}] {_either(line for lines in INTERRUPTS.values() for line in lines)}"]
     sentences = [line for line in config.commands if not _is_part(line)]
@@ -134,6 +157,7 @@ def grammars(config: SpeechConfig, household: Household, names: Sequence[str] = 
     words = vocabulary(household, (*config.objects, *names), config.places, config.colours)
     return {
         "command": Grammar(patterns(config, "command"), words),
+        "woken": Grammar(patterns(config, "woken"), {}),
         "interrupt": Grammar(patterns(config, "interrupt"), {}),
     }
 

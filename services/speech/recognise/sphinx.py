@@ -38,9 +38,10 @@ class SphinxRecogniser:
         self.learn(household, ())
 
     def learn(self, household: Household, names: Sequence[str]) -> None:
-        scopes: tuple[Scope, ...] = ("command", "interrupt")
+        scopes: tuple[Scope, ...] = ("command", "woken", "interrupt")
         for scope in scopes:
-            self._decoder.add_jsgf_string(scope, jsgf(self._config, household, scope, names))
+            said: Scope = "interrupt" if scope == "interrupt" else "command"
+            self._decoder.add_jsgf_string(scope, jsgf(self._config, household, said, names))
 
     def recognise(self, utterance: PreparedUtterance, scope: Scope) -> Recognition:
         self._decoder.activate_search(scope)
