@@ -27,6 +27,7 @@ from services.sim.things.finish import GROUND, picture
 from services.sim.things.forms import FORMS
 from services.sim.things.mesh import turned
 from services.sim.things.primitives import GROUP, materials
+from services.sim.things.thinning import mapped
 
 SIZES = {
     "banana": (0.17, 0.06, 0.036), "duck": (0.08, 0.06, 0.07), "car": (0.11, 0.05, 0.05), "boat": (0.13, 0.05, 0.07),
@@ -277,6 +278,17 @@ def test_large_meshes_are_thinned_and_keep_their_picture(tmp_path: Path) -> None
 
 
 # --- lamps and covers
+def test_a_cover_gets_no_picture_of_the_many_pages_under_it() -> None:
+    square = np.array([[(0, 0, 0), (1, 0, 0), (1, 1, 0)], [(0, 0, 0), (1, 1, 0), (0, 1, 0)]], float)
+    # Upright strips that end just under the cover, all over it: their middles are nearer to the new cover's.
+    at = np.linspace(0.02, 0.98, 60)
+    pages = np.array([[(x, 0, -0.01), (x, 1, -0.01), (x, 0.5, -0.02)] for x in at])
+    uv = np.concatenate([np.full((2, 3, 2), 0.1), np.full((60, 3, 2), 0.9)])
+    across = np.array([[(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(1, 0, 0), (1, 1, 0), (0, 1, 0)]], float)
+    assert np.allclose(mapped(np.concatenate([square, pages]), uv, across), 0.1)
+    assert np.allclose(mapped(np.concatenate([square, pages]), uv, pages[:1]), 0.9)
+
+
 def test_covers_are_seen_and_change_nothing_else() -> None:
     """A covered flat has the same contacts, the same lidar and, to a millimetre, the same depth; the colours differ."""
     bare = load_scene("apartment")
