@@ -8,6 +8,7 @@ from common.kinds import KINDS, kind_of
 from common.messages import WorldObject
 from common.naming.looks import OTHER
 from common.naming.names import ALIKE, listed, normalise, own_words
+from common.naming.small_print import telling
 
 PLAIN = 0.55
 """Likeness from which words plainly fit: below it a person is asked. Chosen: the word is likelier than all others."""
@@ -75,11 +76,11 @@ def partly(phrase: str, o: WorldObject, household: Household) -> float:
     untold = known.rest - {*told.qualities, *told.looks, *told.shades}
     # The last word says what it is, those before it which one.
     headed = _known(wanted.split()[-1], o, household).any
-    named = known.rest & told.looks.keys()
-    if not known.rest or not (known.any or named) or fit < ROUGHLY or (untold and o.text and not named):
+    named, printed = known.rest & told.looks.keys(), telling(o.text)
+    if not known.rest or not (known.any or named) or fit < ROUGHLY or (untold and printed and not named):
         return 0.0
     # What has other words printed on it is hardly the soap.
-    if (untold and not headed) or (o.text and not known.rest <= {*told.qualities, *told.shades}):
+    if (untold and not headed and not named) or (printed and not known.rest <= {*told.qualities, *told.shades}):
         return UNTOLD
     return min(UNSEEN, fit)
 
@@ -88,7 +89,7 @@ def _unnamed(o: WorldObject) -> float:
     """How well an object fits a name that says nothing of looks: 0 for what has print, or goes by its kind."""
     shares = o.kind_shares or {o.kind: 1.0}
     shaped = max((share for kind, share in shares.items() if kind not in {*SHAPELESS, OTHER}), default=0.0)
-    return 0.0 if o.text or o.kind not in PACKS else BLANK + BLANK_SPREAD * (1.0 - shaped)
+    return 0.0 if telling(o.text) or o.kind not in PACKS else BLANK + BLANK_SPREAD * (1.0 - shaped)
 
 
 def looks_like(phrase: str, o: WorldObject, household: Household, packed: bool = False) -> float:

@@ -105,12 +105,10 @@ def parsed(query: str, household: Household, synonyms: Mapping[str, str]) -> Phr
     return Phrase(match["rest"] if side and match["rest"] else words, place, size, side)
 
 
-def possible(
-    phrase: Phrase, objects: Sequence[WorldObject], household: Household, taught: bool = False
-) -> list[PossibleObject]:
-    """The objects that a phrase may mean by their looks, the likeliest first; of a `taught` name all words count."""
+def possible(phrase: Phrase, objects: Sequence[WorldObject], household: Household) -> list[PossibleObject]:
+    """The objects that a phrase may mean by their looks, the likeliest first."""
     rated = [
-        (likeness(phrase.thing, o, household) or (not taught and partly(phrase.thing, o, household)), o)
+        (likeness(phrase.thing, o, household) or partly(phrase.thing, o, household), o)
         for o in objects
         if not o.held and (not phrase.place or is_at(o, phrase.place, household))
     ]

@@ -164,8 +164,11 @@ class Queries:
             return Grounding(chosen, result.reason, perhaps=[])
         phrase = parsed(query.query, household, config.synonyms)
         read = self._naming.perhaps(query.query, looks)
-        alike = possible(phrase, looks, household, taught=self._naming.knows(query.query))
-        return Grounding(None, result.reason, perhaps=sorted([*read, *alike], key=lambda p: -p.likeness))
+        taught = self._naming.knows(query.query)
+        alike = self._naming.resembling(query.query, looks) if taught else possible(phrase, looks, household)
+        named = {p.id for p in read}
+        fitting = [*read, *(p for p in alike if p.id not in named)]
+        return Grounding(None, result.reason, perhaps=sorted(fitting, key=lambda p: -p.likeness))
 
 
 def _message(query: m.ObjectQuery, result: Grounding, picture: bytes) -> m.ObjectPose:

@@ -157,13 +157,16 @@ def test_what_has_print_is_known_by_its_print_alone_and_asked_about_else() -> No
     assert matches(taught, {"a": turned, "b": same}, {}, reads=True) == {"a": Match(), "b": Match(("vitamin box",))}
 
 
-@pytest.mark.parametrize(("read_from", "words", "sure"), [([], (), 0), ([0.0], (), 0), ([0.0, 1.0], (), 1),
-                                                         ([0.0, 1.0], ("COLA",), 0)])  # fmt: skip
-def test_a_pack_without_print_is_known_once_it_was_seen_to_have_none(
-    read_from: list[float], words: tuple[str, ...], sure: int
+@pytest.mark.parametrize(
+    ("kind", "read_from", "words", "sure"),
+    [("mug", [], (), 0), ("mug", [0.0], (), 1), ("mug", [0.0], ("COLA",), 0), ("ball", [], (), 1),
+     ("box", [0.0, 1.0, 2.0], (), 0)],
+)  # fmt: skip
+def test_what_has_no_print_is_known_by_its_looks_once_it_was_seen_to_have_none_and_a_pack_is_asked_about(
+    kind: str, read_from: list[float], words: tuple[str, ...], sure: int
 ) -> None:
     pytest.importorskip("rapidfuzz", reason="the extra `ocr`")
-    seen = sight(VITAMINS, *words)
-    seen.read_from = read_from
-    found = matches({"vitamin box": named(VITAMINS)}, {"a": seen}, {}, reads=True)["a"]
+    seen, taught = sight(VITAMINS, *words), named(VITAMINS)
+    seen.read_from, taught.kind = read_from, kind
+    found = matches({"vitamin box": taught}, {"a": seen}, {}, reads=True)["a"]
     assert (len(found.names), len(found.perhaps)) == (sure, 1 - sure)

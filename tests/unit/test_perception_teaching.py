@@ -14,6 +14,7 @@ from common.household import Household, load_household
 from services.perception.config import PerceptionConfig
 from services.perception.detect import Detection
 from services.perception.naming.naming import HALF_READ
+from services.perception.naming.naming import RESEMBLES as LAST
 from services.perception.naming.reader import installed
 from services.perception.service import PerceptionService
 from services.perception.views.view import Mask, View
@@ -195,3 +196,11 @@ def test_where_a_place_is_named_only_what_stands_there_is_worth_a_nearer_look() 
     node = Shown(Box(2.4, 0.0, TEA))
     assert node.ask("ginger biscuits on the floor").unsure == ["white box 0"]
     assert not node.ask("ginger biscuits on the table").unsure
+
+
+def test_what_has_but_the_colour_and_the_kind_of_a_taught_thing_is_asked_about_at_last(tmp_path: Path) -> None:
+    assert Shown(Box(0.9, 0.0, VITAMINS), state_dir=tmp_path).teach("vitamin box").ok
+    wide = Box(1.1, 0.0, VITAMINS, width=0.2, height=0.3, depth=0.2)
+    answer = Shown(wide, state_dir=tmp_path).ask("vitamin box")
+    assert not answer.found and not answer.candidates
+    assert [(p.label, p.likeness <= LAST) for p in answer.perhaps] == [("white box 0", True)]

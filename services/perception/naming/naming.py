@@ -16,6 +16,7 @@ from common.geometry import Pose2
 from common.naming.likeness import LEAST
 from common.naming.names import match_object, normalise
 from services.perception.config import PerceptionConfig
+from services.perception.grounding import Phrase, possible
 from services.perception.naming import reader
 from services.perception.naming.appearance import Look
 from services.perception.naming.consult import Consultant
@@ -36,6 +37,8 @@ word. Chosen: a person is asked about both when they are seen, about the second 
 SOMEWHAT: dict[Evidence, float] = {"same": 0.5, "silent": 0.4, "other": 0.1}
 """Likeness of what looks like the taught thing, by what print says of it. Chosen: a person is asked about the first two
 when they are seen, about the last when nothing else was found."""
+RESEMBLES = 0.15
+"""Most likeness of what has but colour and kind of the taught thing. Chosen: asked about when nothing else is found."""
 DOUBTFUL = 0.2
 """Likeness of what looks like the taught thing and was read from fewer than TURNED sides. Chosen: from another its
 words are seen."""
@@ -120,6 +123,13 @@ class Naming:
         """A phrase, or colour and kind of what was taught by that name."""
         taught = self._memory.names.get(normalise(phrase))
         return f"{taught.colour} {taught.kind}" if taught is not None else phrase
+
+    def resembling(self, phrase: str, objects: Sequence[m.WorldObject]) -> list[m.PossibleObject]:
+        """The objects that have colour and kind of what was taught by that name, and no other words on them."""
+        name = normalise(phrase)
+        others = {o.id for o in objects if (s := self._observer.sight(o.id)) and self._evidence(name, s) == "other"}
+        alike = possible(Phrase(self.described(phrase)), [o for o in objects if o.id not in others], self._io.household)
+        return [msgspec.structs.replace(p, likeness=min(p.likeness, RESEMBLES)) for p in alike]
 
     def reads(self, phrase: str) -> bool:
         """What is printed can tell what is meant."""

@@ -24,7 +24,8 @@ CLEAR = 0.06
 READ_SAME, READ_OTHER = -0.06, 0.12
 """What print adds to the difference: words that were read when it was taught, and others in place of them."""
 TURNED = 2
-"""Sides from which a pack has to have been read to have no print. Chosen: on the front of a box it is seen from one."""
+"""Sides from which it has to have been read before a person is asked about what shows no print. Chosen: what is on the
+front of a box is seen from one."""
 
 
 class Match(NamedTuple):
@@ -62,12 +63,12 @@ def _shared(word: str, lines: Sequence[Line]) -> bool:
 def proven(taught: Taught, sight: Sight) -> bool:
     """What is printed leaves no doubt that one that looks so is the one that was taught, where print can be read.
 
-    What goes by its looks alone has to have been near enough to show that nothing is printed on it, packs from several
-    sides.
+    What goes by its looks alone has to have been near enough to show that nothing is printed on it; a pack, of which
+    the print was not seen when it was taught, does not.
     """
     if parts(taught.text):
         return evidence(taught, sight) == "same"
-    return not sight.named and (taught.kind in BARE or len(sight.read_from) >= (TURNED if taught.kind in PACKED else 1))
+    return taught.kind not in PACKED and not sight.named and (taught.kind in BARE or sight.read)
 
 
 def matches(

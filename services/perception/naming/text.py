@@ -8,6 +8,7 @@ from collections.abc import Collection, Iterable, Sequence
 from typing import NamedTuple
 
 from common.naming.names import normalise
+from common.naming.small_print import telling
 
 MAX_LINES = 12
 """Lines kept of one object. Chosen: more than a package shows of its front in letters that can be read."""
@@ -18,8 +19,6 @@ SHORT = 3
 SURE, LIKELY = 0.85, 0.72
 """Likeness of the words asked for to what was read, from which it is that and from which a nearer look is worth it.
 Chosen: one wrong letter in seven, and one in four (bench.naming)."""
-READABLE = 4
-"""Letters of a word from which its absence tells something."""
 WORST_WORD = 0.7
 """Likeness that each of the words must have: "tomato" to "potato" has .67."""
 ALIKE = ("nwmh", "hrkax", "ocqdg0", "iltj1", "tfyr", "efb", "uvy", "s58b", "prfd", "ceo", "gs6")
@@ -60,8 +59,8 @@ def _worth(line: Line) -> float:
 
 
 def sure_words(lines: Iterable[Line]) -> list[str]:
-    """The words of lines that were read for sure."""
-    return [w for line in lines if line.confidence >= SURE for w in normalise(line.text).split() if len(w) >= READABLE]
+    """The words of lines that were read for sure, and that not every pack has."""
+    return [w for line in lines if line.confidence >= SURE for w in telling(line.text)]
 
 
 def parts(lines: Iterable[Line]) -> list[str]:
