@@ -11,7 +11,7 @@ from cli.agents.http import page_token
 from cli.errors import CliError
 from cli.fleet.watch_room import WatchRoom
 from common.process.host import StopSignal
-from common.security import web_access as access
+from common.security.web_door import door
 
 FILES = Path(__file__).parent / "web"
 POLICY = "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data:; frame-ancestors 'none'"
@@ -23,24 +23,13 @@ def application(room: WatchRoom, token: str) -> web.Application:
     """The page and what it asks for."""
 
     @web.middleware
-    async def door(
+    async def json_only(
         request: web.Request, handler: Callable[[web.Request], Awaitable[web.StreamResponse]]
     ) -> web.StreamResponse:
-        host = request.host
-        if not access.host_is_ours(host, token) or not access.same_origin(request.headers.get("Origin"), host):
-            raise web.HTTPForbidden(text="This address is not the fleet's page.\n")
-        shown = request.query.get("token")
-        if not access.admits(token, request.cookies.get(access.COOKIE), shown):
-            raise web.HTTPUnauthorized(text="Open the address with ?token=..., as printed at the start.\n")
         # Forms of other sites can post, but not JSON.
         if request.method == "POST" and request.content_type != "application/json":
             raise web.HTTPUnsupportedMediaType(text="JSON only.\n")
-        answer = await handler(request)
-        if token and shown:
-            answer.set_cookie(access.COOKIE, token, httponly=True, samesite="Strict", max_age=12 * 3600)
-        answer.headers["Content-Security-Policy"] = POLICY
-        answer.headers["X-Content-Type-Options"] = "nosniff"
-        return answer
+        return await handler(request)
 
     async def index(request: web.Request) -> web.StreamResponse:
         return web.FileResponse(FILES / "fleet.html")
@@ -62,7 +51,7 @@ def application(room: WatchRoom, token: str) -> web.Application:
                 raise web.HTTPBadRequest(text="expected stop, answer or say\n")
         return web.json_response({})
 
-    app = web.Application(middlewares=[door], client_max_size=4096)
+    app = web.Application(middlewares=[door(token, POLICY, "the fleet's"), json_only], client_max_size=4096)
     app.router.add_get("/", index)
     app.router.add_get("/state", state)
     app.router.add_post("/act", act)

@@ -9,7 +9,6 @@ import asyncio
 import contextlib
 import queue
 import secrets
-from collections.abc import Awaitable, Callable
 from concurrent.futures import Future
 from pathlib import Path
 from typing import Any
@@ -20,6 +19,7 @@ import viser
 from aiohttp import ClientSession, web
 
 from common.security import web_access as access
+from common.security.web_door import door
 from services.dashboard.config import DashboardConfig
 from services.dashboard.web.events import Asked, Click, Event
 from services.dashboard.web.listener import PageError, guarded, listen
@@ -99,7 +99,9 @@ class Web:
 
     # --- the loop's side
     async def _start(self) -> web.AppRunner:
-        app = web.Application(middlewares=[self._door], client_max_size=MAX_CHUNK)
+        us = " ".join(f"http://{name}:{self.port}" for name in OTHER_NAME)
+        entrance = door(self._token, POLICY.format(us=us), "the robot's")
+        app = web.Application(middlewares=[entrance], client_max_size=MAX_CHUNK)
         app.router.add_get("/", self._page)
         app.router.add_get("/view", self._view)
         app.router.add_get("/view/", self._view)
@@ -117,28 +119,6 @@ class Web:
         await self.visitors.close()
         await self._inner.close()
         await self._runner.cleanup()
-
-    @web.middleware
-    async def _door(
-        self, request: web.Request, handler: Callable[[web.Request], Awaitable[web.StreamResponse]]
-    ) -> web.StreamResponse:
-        host = request.host
-        if not access.host_is_ours(host, self._token) or not access.same_origin(request.headers.get("Origin"), host):
-            raise web.HTTPForbidden(text="This address is not the robot's page.\n")
-        shown = request.query.get("token")
-        if not access.admits(self._token, request.cookies.get(access.COOKIE), shown):
-            raise web.HTTPUnauthorized(text="Open the address with ?token=..., as printed when the robot started.\n")
-        if self._token and shown and request.path == "/":
-            answer: web.StreamResponse = web.Response(status=303, headers={"Location": "/"})
-            answer.set_cookie(access.COOKIE, self._token, httponly=True, samesite="Strict", max_age=12 * 3600)
-            return answer
-        answer = await handler(request)
-        if not answer.prepared:
-            us = " ".join(f"http://{name}:{self.port}" for name in OTHER_NAME)
-            answer.headers["Content-Security-Policy"] = POLICY.format(us=us)
-            answer.headers["X-Content-Type-Options"] = "nosniff"
-            answer.headers["Referrer-Policy"] = "no-referrer"
-        return answer
 
     async def _page(self, request: web.Request) -> web.StreamResponse:
         port = request.url.port
