@@ -5,11 +5,11 @@ from collections.abc import Sequence
 from itertools import pairwise, permutations
 
 import numpy as np
-from scipy import sparse
 from scipy.sparse import csgraph
 
 from common.approach import poses_for
 from common.geometry import Pose2
+from common.grid_graph import graph_of
 from common.scene import Receptacle, Scene
 from services.navigation.config import NavigationConfig
 from services.navigation.planning.costmap import Costmap
@@ -17,9 +17,8 @@ from services.navigation.planning.costmap import Costmap
 Point = tuple[float, float]
 MAX_ORDERED = 5
 """Objects whose every order is tried for the shortest way: 120 orders."""
-_STEPS = [
-    (r, c) for r in range(-2, 3) for c in range(-2, 3) if math.gcd(r, c) == 1 and (r > 0 or (r == 0 and c > 0))
-]  # fmt: skip
+REACH = 2
+"""Rows and columns of the longest step of a way [cells]: 16 directions."""
 
 
 class FloorPlan:
@@ -30,19 +29,7 @@ class FloorPlan:
         self._config, self._scene = config, scene
         self._map = Costmap(scene, config.resolution, 1.0)
         self._free = self._map.distance >= config.footprint_radius
-        rows, columns = self._map.shape
-        numbers = np.arange(rows * columns).reshape(rows, columns)
-        heads, tails, lengths = [], [], []
-        for dr, dc in _STEPS:
-            a = (slice(0, rows - dr), slice(max(0, -dc), columns - max(0, dc)))
-            b = (slice(dr, rows), slice(max(0, dc), columns + min(0, dc)))
-            both = self._free[a] & self._free[b]
-            heads.append(numbers[a][both])
-            tails.append(numbers[b][both])
-            lengths.append(np.full(int(both.sum()), math.hypot(dr, dc) * config.resolution))
-        size = rows * columns
-        edges = (np.concatenate(heads), np.concatenate(tails))
-        self._graph = sparse.csr_matrix((np.concatenate(lengths), edges), shape=(size, size))
+        self._graph = graph_of(self._free, config.resolution, REACH)
 
     def length(self, start: Point, ends: Sequence[Point]) -> float:
         """Of the path to the nearest of `ends` [m]; inf when none can be reached."""

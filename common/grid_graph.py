@@ -1,0 +1,35 @@
+"""The cells of a floor plan as a graph: for the shortest ways on it. Pure."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import sparse
+
+Step = tuple[int, int]
+"""Rows and columns from a cell to another."""
+
+
+def steps(reach: int) -> list[Step]:
+    """To one half of the neighbours up to `reach` rows and columns away [cells]; the others lead there by the same."""
+    there = range(-reach, reach + 1)
+    return [(r, c) for r in there for c in there if math.gcd(r, c) == 1 and (r > 0 or (r == 0 and c > 0))]
+
+
+def graph_of(free: NDArray[np.bool_], resolution: float, reach: int) -> sparse.csr_matrix:
+    """Links [m] in one direction between `free` cells (rows, columns) that are one of the `steps(reach)` apart.
+
+    Node `row * columns + column` is that cell.
+    """
+    rows, columns = free.shape
+    numbers = np.arange(free.size).reshape(free.shape)
+    heads, tails, lengths = [], [], []
+    for down, right in steps(reach):
+        here = slice(0, rows - down), slice(max(0, -right), columns - max(0, right))
+        there = slice(down, rows), slice(max(0, right), columns + min(0, right))
+        both = free[here] & free[there]
+        heads.append(numbers[here][both])
+        tails.append(numbers[there][both])
+        lengths.append(np.full(int(both.sum()), math.hypot(down, right) * resolution))
+    ends = np.concatenate(heads), np.concatenate(tails)
+    return sparse.csr_matrix((np.concatenate(lengths), ends), shape=(free.size, free.size))
