@@ -163,7 +163,7 @@ def carried(seed: int) -> list[tuple[str, float]]:
 
 
 def anywhere(homes: int, first: int) -> int:
-    """The exit status."""
+    """Carry the robot about in so many homes; the exit status."""
     rows = [row for seed in range(first, first + homes) for row in carried(seed)]
     for what in ("found", "lost", "unnoticed", "wrong"):
         times = [t for w, t in rows if w == what]

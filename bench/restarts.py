@@ -180,7 +180,7 @@ def main() -> int:
 
 
 def run(robot: Robot, restarts: int, seconds: float) -> int:
-    """Both halves; the exit status."""
+    """Kill both halves of the services in turn; the exit status."""
     wrong: list[str] = []
     for half in HALVES:
         robot.kill(half)  # once before counting: the first start of all is another one

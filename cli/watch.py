@@ -155,7 +155,7 @@ def services(picture: Picture) -> Table:
 
 
 def drawn(picture: Picture) -> Layout:
-    """Everything on one screen."""
+    """The whole screen: mission, tree, speech, services."""
     talk = Text()
     for who, text in picture.said:
         talk.append(f"{who}: ", style=FAINT if who == "heard" else "blue").append(f"{text}\n")

@@ -43,7 +43,7 @@ class RuntimeConfig(Config, frozen=True):
 
     @property
     def world_file(self) -> str:
-        """What the simulation builds."""
+        """Path or name of the world that the simulation builds."""
         return self.world or self.scene
 
     @property

@@ -11,7 +11,7 @@ Step = tuple[int, int]
 
 
 def steps(reach: int) -> list[Step]:
-    """To one half of the neighbours up to `reach` rows and columns away [cells]; the others lead there by the same."""
+    """Steps to one half of the neighbours up to `reach` rows and columns away; the same lead back from the others."""
     there = range(-reach, reach + 1)
     return [(r, c) for r in there for c in there if math.gcd(r, c) == 1 and (r > 0 or (r == 0 and c > 0))]
 

@@ -23,7 +23,7 @@ Outline = Callable[["Kind", float, float], list[Segment]]
 
 @dataclass(frozen=True)
 class GraspRule:
-    """From where an upright object is taken. `angles` [deg] are the approach's below horizontal, in order of trying.
+    """How an upright object is approached: `angles` [deg] below horizontal, in order of trying.
 
     `hold`: `around` the axis from any side, on two opposite `faces`, with one finger inside the `rim`. `height` is
     where, as a share of the object's height. The rule is for objects between `least` and `most` [m] high.
@@ -69,7 +69,7 @@ class Kind:
 
     @property
     def by_the_rim(self) -> bool:
-        """It is held at its wall: what the fingers close on is no measure of the object."""
+        """True when an object of the kind is held at its wall, whose width is no measure of the object."""
         return any(rule.hold == "rim" for rule in self.grasps)
 
     @property

@@ -98,7 +98,7 @@ def spread(found: Mapping[str, float], household: Household, viewpoints: Viewpoi
 
 
 def _prior(kind: str, household: Household, surfaces: Sequence[Receptacle]) -> Array:
-    """By room for things, and by where those of the kind go when they are put away."""
+    """Weights of surfaces before any sighting: by room for things, and by where the kind is put away."""
     rule = next((d for d in household.words.tidy if not d.names and not d.colours and kind in d.kinds), None)
     weights = np.array([r.size[0] * r.size[1] for r in surfaces])
     if kind and rule is not None:

@@ -117,7 +117,7 @@ def main(argv: list[str]) -> int:
 
 
 def _cases(args: argparse.Namespace, settings: tuple[str, ...]) -> list[Case]:
-    """Of the suite, or of the worlds in a directory."""
+    """The cases of the suite, or of the worlds in a directory."""
     replaced = tuple(args.replace)
     if args.world:
         found = worlds.cases(args.world, args.scenarios, args.seed)

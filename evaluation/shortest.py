@@ -32,7 +32,7 @@ class FloorPlan:
         self._graph = graph_of(self._free, config.resolution, REACH)
 
     def length(self, start: Point, ends: Sequence[Point]) -> float:
-        """Of the path to the nearest of `ends` [m]; inf when none can be reached."""
+        """Length [m] of the path to the nearest of `ends`; inf when none can be reached."""
         points = self.path(start, ends)
         return sum(math.dist(a, b) for a, b in pairwise(points)) if points else math.inf
 
@@ -88,7 +88,7 @@ class FloorPlan:
         return self.stands(receptacle.center[0], receptacle.center[1], receptacle)
 
     def mission(self, start: Pose2, deliveries: Sequence[tuple[Point, str, str]]) -> float:
-        """From `start` over every (object's place, what it stands on, where it goes), in the best order [m]."""
+        """Length [m] of the way from `start` over every (object's place, what it is on, its goal), best order."""
         scene = self._scene
         pick = [self.stands(*where, scene.receptacle(on)) for where, on, _ in deliveries]
         drop = [self._goal(goal) for _, _, goal in deliveries]

@@ -125,7 +125,7 @@ class Stack:
         return service
 
     def kill(self, name: str) -> None:
-        """As SIGKILL: it neither reads nor writes any more, and what it knew is gone."""
+        """End a service as SIGKILL does: it neither reads nor writes any more, and what it knew is gone."""
         service, io = self.members.pop(name)
         self._hung.pop(name, None)
         self.world.remove(service)
@@ -136,12 +136,12 @@ class Stack:
         gc.collect()
 
     def hang(self, name: str, seconds: float) -> None:
-        """As SIGSTOP and, later, SIGCONT: its mail piles up meanwhile."""
+        """Freeze a service as SIGSTOP does, until SIGCONT: its mail piles up meanwhile."""
         self.world.remove(self.members[name][0])
         self._hung[name] = max(self.now + seconds, self._hung.get(name, 0.0))
 
     def restart_sim(self) -> None:
-        """As SIGKILL of the simulation and its successor: the world goes on from its checkpoint, and so does time."""
+        """Kill the simulation and start its successor: the world goes on from its checkpoint, and so does time."""
         self.bus.detach(self._sim_io)
         self._sim_io.shutdown()
         self.sim, self._sim_io = self._make(service_class("sim"))
@@ -162,7 +162,7 @@ class Stack:
                 self.hang(name, seconds)
 
     def fill_disk(self, seconds: float) -> bool:
-        """Nothing more goes onto any disk; True when a write was tried and failed."""
+        """Fill every disk for so long [s]; True when a write was tried and failed."""
         self._full_until = self.now + seconds
         return self._disk.full(True)
 

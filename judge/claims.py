@@ -44,7 +44,7 @@ class ClaimListener:
         self._mission = self._command = ""
 
     def state(self, now: m.BrainState) -> list[Statement]:
-        """From `brain/state`: an outcome `delivered` that is new, and the state COMPLETED when it is entered."""
+        """Claims in `brain/state`: an outcome `delivered` that is new, and the state COMPLETED when it is entered."""
         before, self._state = self._state, now
         if now.mission_id:
             self._mission, self._command = now.mission_id, now.command
@@ -58,7 +58,7 @@ class ClaimListener:
         return found
 
     def status(self, now: m.SystemStatus) -> list[Statement]:
-        """From `system_status`: SUCCESS when it is entered."""
+        """A claim in `system_status`: SUCCESS when it is entered."""
         before, self._status = self._status, now.state
         if now.state != "SUCCESS" or before == "SUCCESS":
             return []
@@ -66,7 +66,7 @@ class ClaimListener:
         return [Statement("system_status", text, now.mission_id or self._mission, self._command)]
 
     def sentence(self, text: str) -> list[Statement]:
-        """From what the robot says aloud."""
+        """Claims in what the robot says aloud."""
         return [self._statement("speech", text)] if announces(text) else []
 
     def _statement(self, source: str, text: str) -> Statement:

@@ -50,7 +50,7 @@ class ContactBook:
         return [describe(t) for t in self._touches.values() if is_hit(t)]
 
     def felt(self) -> list[str]:
-        """All touches but grazes."""
+        """Every touch that is no graze."""
         return [describe(t) for t in self._touches.values() if t.force >= FELT]
 
 

@@ -56,7 +56,7 @@ class ThingEvidence(msgspec.Struct):
 
 
 class Evidence(msgspec.Struct):
-    """The whole case.
+    """What physics shows of a whole case.
 
     `hits`: what the robot or the object in its hand touched too hard, itself included; `touches`: whatever they touched
     more than barely. `moved`: objects that moved or went over, whoever touched
@@ -85,7 +85,7 @@ class Recorder:
         self._settling: set[str] = set()
 
     def add(self, sample: Sample) -> None:
-        """One more sample."""
+        """Take one more sample of the world."""
         if not self._recent:
             self._tracks = {n: Track(self._kinds[n], self._bins, thing, thing) for n, thing in sample.things.items()}
             self._recent = [sample]
@@ -126,7 +126,7 @@ class Recorder:
         return [self._judge(want) for want in wants]
 
     def conclude(self, wants: tuple[Want, ...], may_move: frozenset[str]) -> Evidence:
-        """Everything seen so far. `may_move`: objects that may have been moved."""
+        """The evidence of all samples so far. `may_move`: objects that may have been moved."""
         moved = [n for n, track in sorted(self._tracks.items()) if track.disturbed]
         return Evidence(
             things=self.things(wants),

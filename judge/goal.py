@@ -7,7 +7,7 @@ from judge.evidence import ThingEvidence, Want
 
 
 class Goal(msgspec.Struct, frozen=True):
-    """All of it must be so; an empty goal can never be reached."""
+    """What a case has to bring about, all of it; an empty goal can never be reached."""
 
     wants: tuple[Want, ...] = ()
     effects: tuple[Effect, ...] = ()

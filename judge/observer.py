@@ -71,7 +71,7 @@ class Observer:
         self._hold(now, self._listener.state(state))
 
     def status(self, now: float, status: m.SystemStatus) -> None:
-        """A message on `system_status`."""
+        """Take a message of `system_status`."""
         self._hold(now, self._listener.status(status))
 
     def sentence(self, now: float, text: str) -> None:
@@ -99,5 +99,5 @@ class Observer:
         return sorted(self._watcher.lifted - self._may_move)
 
     def conclude(self, goal: Goal) -> Evidence:
-        """Everything seen so far, held against `goal`."""
+        """The evidence of all that was seen, held against `goal`."""
         return self._recorder.conclude(goal.wants, self._may_move | goal.things)

@@ -50,7 +50,7 @@ class Track(msgspec.Struct):
     lean: float = 0.0
 
     def restart(self) -> None:
-        """Everything counts from here: what has happened so far was the world settling."""
+        """Begin anew: what has happened so far was the world settling."""
         self.baseline, self.shift, self.lean = self.last, 0.0, 0.0
 
     def add(self, now: Thing, t: float, driven: float) -> None:
@@ -71,7 +71,7 @@ class Track(msgspec.Struct):
             self.dropped, self.drops = False, self.drops - 1
 
     def _fell(self, before: Thing, t: float) -> bool:
-        """On the floor, where it did not stand; or out of the hand, on nothing, and lower than there."""
+        """True for an object on the floor, where it did not stand, or fallen out of the hand onto nothing."""
         now, lost = self.last, self.lost_at
         # A hand that goes down with it is lower by itself one sample later: only what is still out of it has fallen.
         fell = lost is not None and not now.touched and lost - now.position[2] > DROP
@@ -85,7 +85,7 @@ class Track(msgspec.Struct):
 
     @property
     def toppled(self) -> bool:
-        """It does not stand although it has an upright and lies in no bin where it may; ends that are alike are one."""
+        """True for what does not stand although it has an upright and is in no bin; ends that are alike are one."""
         kind, tilt = kind_of(self.kind), self.last.tilt
         off = min(tilt, math.pi - tilt) if kind.ends_alike else tilt
         return kind.upright and off > TOPPLED and self.last.on not in self.bins

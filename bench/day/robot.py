@@ -68,7 +68,7 @@ class Robot:
         os.kill(self.pids()[name], signal.SIGKILL)
 
     def power_cut(self) -> None:
-        """Every process ends at once, unasked."""
+        """Kill every process at once, as when the power goes."""
         if self._recording is not None:
             self._recording.kill()
             self._recording.wait()

@@ -38,7 +38,7 @@ WALL_LIMIT, NODE = 1800.0, "evaluation.node"
 
 
 def in_memory(args: argparse.Namespace) -> Trace:
-    """Every service in this process."""
+    """Run every service in this process."""
     harm = rules(args)
     swaps = {rule.service: partial(faulty, rules=harm) for rule in harm}
     robot = Stack(args.scene, args.seed, settings(args), without=tuple(args.without.split(",")), swaps=swaps)
@@ -98,7 +98,7 @@ def in_processes(args: argparse.Namespace) -> Trace:
 
 
 def rules(args: argparse.Namespace) -> tuple[Rule, ...]:
-    """With `--faults`: for each kind of harm one key of every service that is run."""
+    """Faults of messages for `--faults`: of each kind one, on one key of every service that runs."""
     if not args.faults:
         return ()
     rng = np.random.default_rng([args.seed, 14])

@@ -20,7 +20,7 @@ MET = 1.5
 
 @dataclass
 class Tally:
-    """Of one kind of meeting, with or without the exchange."""
+    """Results of one kind of meeting, with or without the exchange."""
 
     meetings: int = 0
     met: int = 0

@@ -71,14 +71,14 @@ class Guide:
 
 
 def at_door(rng: np.random.Generator) -> Meeting:
-    """Both want through the same door, from both sides."""
+    """A meeting of two robots that want through the same door, from both sides."""
     guide, (a, b) = Guide(APARTMENT), DOORS[int(rng.integers(len(DOORS)))]
     one, two = guide.near(rng, a, 0.4), guide.near(rng, b, 0.4)
     return Meeting(APARTMENT, (one, two), (guide.near(rng, b, 0.6), guide.near(rng, a, 0.6)), float(rng.uniform(0, 3)))
 
 
 def in_corridor(rng: np.random.Generator) -> Meeting:
-    """Both want through a corridor in which they cannot pass each other."""
+    """A meeting in a corridor through which both want and in which they cannot pass each other."""
     home = corridor()
     guide, x = Guide(home), rng.uniform(0.0, 1.0, 2)
     one, two = guide.near(rng, (2.0 + 2.0 * x[0], 2.0), 0.1), guide.near(rng, (11.0 - 2.0 * x[1], 2.0), 0.1)

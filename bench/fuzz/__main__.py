@@ -19,7 +19,7 @@ from tests.support import site
 
 
 def table(storm: Storm, health: dict[str, m.Health]) -> Iterable[str]:
-    """One line a process."""
+    """Print a line for each process."""
     yield f"{'process':14} {'payloads':>9} {'refused':>9} {'Hz':>6} {'MB':>6}  keys refused on"
     for name in storm.names:
         reads = {t.key for t in service_class(name).READS} | TRUSTED

@@ -27,7 +27,7 @@ from evaluation.suites.worlds import CASES, WORLD, worlds
 
 
 def say(stack: Stack, status: m.MappingStatus) -> None:
-    """A line a minute."""
+    """Print how far exploring has come, once a minute."""
     if round(stack.now) % 60 == 0:
         words = f"{stack.now:5.0f} s {status.phase}, {status.area:.1f} m2, {status.frontiers} left"
         print(f"    {words}, {status.keyframes} keyframes {status.detail}", flush=True)

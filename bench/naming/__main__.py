@@ -79,7 +79,7 @@ class Studio:
         return crop_of(view, self._believed(package, (x, y, CAMERA - height), angle))
 
     def _believed(self, package: Package, at: tuple[float, float, float], angle: float) -> WorldObject:
-        """As perception would have it: of what is round no yaw, everything a little off."""
+        """The object as perception would have it: of what is round no yaw, everything a little off."""
         position = np.array(at) + self._rng.normal(0.0, POSE_NOISE, 3)
         size = np.array(package.size) * self._rng.normal(1.0, SIZE_NOISE, 3)
         x, y, z = (float(v) for v in position)

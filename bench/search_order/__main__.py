@@ -51,7 +51,7 @@ def searched(place: Place, home: Pose2, point: int, likely: Array | None) -> flo
 
 
 def by_chance(place: Place, home: Pose2, point: int, rng: np.random.Generator) -> float:
-    """As `searched`, from one random viewpoint that shows something new to the next."""
+    """Search from one random viewpoint that shows something new to the next; returns as `searched`."""
     views, unseen = place.viewpoints, ~place.viewpoints.visible(home)
     pose, now = home, 0.0
     able = _free(place)

@@ -130,7 +130,7 @@ class Missions:
     async def _followed(
         self, talk: Conversation, wait: float, progress: Progress, answered: str = "", expected: bool = False
     ) -> Mission:
-        """Every new state to `progress`. Being cancelled between two states ends the waiting, never the mission.
+        """Follow a mission, each new state to `progress`. Being cancelled ends the waiting, never the mission.
 
         Args:
             answered: the question that has been answered already and may still be shown.
@@ -158,7 +158,7 @@ class Missions:
 
 
 def sentence(text: str, what: str) -> str:
-    """One line of words.
+    """A text as one line of printable words.
 
     Raises:
         CliError: empty, too long or not text.

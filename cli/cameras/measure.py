@@ -68,7 +68,7 @@ class Photographer:
             self.move(self._arm.home)
 
     def move(self, goal: Array) -> None:
-        """In a straight line in joint space, gently at both ends.
+        """Move the arm on a straight line in joint space, gently at both ends.
 
         Raises:
             CliError: the arm does not follow.

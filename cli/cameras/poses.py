@@ -64,7 +64,7 @@ def poses(arm: Arm, image: Rgbd, count: int, seed: int = 0) -> list[Array]:
 
 
 def _choose(arm: Arm, space: FreeSpace, useful: Callable[[], bool], count: int, seed: int) -> list[Array]:
-    """Of random poses near the carry pose that are `useful` and safe, those that differ most."""
+    """Choose, of random poses near the carry pose that are `useful` and safe, those that differ most."""
     rng = np.random.default_rng(seed)
     found: list[Array] = []
     features: list[Array] = []

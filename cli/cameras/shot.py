@@ -39,7 +39,7 @@ class Mount:
     pictures: int
 
     def as_drawn(self) -> bool:
-        """Within `TRUE_OFFSET` and `TRUE_TURN` and twice the deviation of where it is taken to be."""
+        """True within `TRUE_OFFSET` and `TRUE_TURN` and twice the deviation of where the camera is taken to be."""
         off, by = float(np.linalg.norm(self.offset)), 2 * float(np.linalg.norm(self.offset_deviation))
         turned, about = float(np.linalg.norm(self.turn)), 2 * float(np.linalg.norm(self.turn_deviation))
         return off < TRUE_OFFSET + by and turned < TRUE_TURN + about

@@ -108,7 +108,7 @@ class Room:
         self._points, self._normals, self._usable = points, normals, steady & (steep < JUMP)
 
     def take(self, shot: Shot) -> None:
-        """It stays as it is."""
+        """Do nothing: the surface is the same in every picture."""
 
     def match(self, origin: Array, directions: Array, points: Array, shape: tuple[int, int]) -> Match:
         local = (points - self._position) @ self._rotation
@@ -132,7 +132,7 @@ class Room:
 
 
 def _inner(hit: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Without the pixels (h, w) at the rim."""
+    """A mask (h, w) without its pixels at the rim."""
     inner = hit.copy()
     inner[1:] &= hit[:-1]
     inner[:-1] &= hit[1:]

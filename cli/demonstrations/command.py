@@ -51,7 +51,7 @@ class Pictures:
 
 
 def demonstrate(args: argparse.Namespace, link: Link, stop: StopSignal) -> int:
-    """Until Ctrl-C or `--duration`; an episode whose mission has not ended by then is left out.
+    """Record until Ctrl-C or `--duration`; an episode whose mission has not ended by then is left out.
 
     Raises:
         CliError: the folder cannot be used, or the disk does not take it.

@@ -56,7 +56,7 @@ class Dataset:
 
     @property
     def episodes(self) -> int:
-        """How many it has."""
+        """Number of episodes in the data set."""
         return int(self._info["total_episodes"])
 
     @property
@@ -159,7 +159,7 @@ class Dataset:
         return pa.table(columns).replace_schema_metadata(_hub_schema(self._info["features"])), stats
 
     def _statistics(self, newest: Mapping[str, Statistics]) -> Json:
-        """Of all episodes, by feature."""
+        """Statistics of all episodes, by feature."""
         names = tuple(next(iter(newest.values())))
         return {
             key: merged([{name: row[f"stats/{key}/{name}"] for name in names} for row in self._episodes])

@@ -13,13 +13,13 @@ PICTURES = 100
 
 
 def of_values(values: Any) -> Statistics:
-    """Of (n,) or (n, d) values, over n; lists of length d, of 1 for (n,)."""
+    """Statistics of (n,) or (n, d) values over n; lists of length d, of 1 for (n,)."""
     rows = np.asarray(values, np.float64).reshape(len(values), -1)
     return _summary(rows, len(rows))
 
 
 def of_pictures(pictures: Sequence[Picture]) -> Statistics:
-    """Of the three channels between 0 and 1, over all pixels of some pictures; nested lists of shape (3, 1, 1)."""
+    """Statistics of three channels (0 to 1) over all pixels of some pictures; nested lists of shape (3, 1, 1)."""
     chosen = np.unique(np.linspace(0, len(pictures) - 1, min(len(pictures), PICTURES)).round().astype(int))
     pixels = [np.frombuffer(pictures[i].rgb, np.uint8).reshape(-1, 3) for i in chosen]
     found = _summary(np.concatenate(pixels) / 255.0, len(chosen))
@@ -27,7 +27,7 @@ def of_pictures(pictures: Sequence[Picture]) -> Statistics:
 
 
 def merged(parts: Sequence[Statistics]) -> Statistics:
-    """Of several samples together: means weighted by count, variances with the spread of the means.
+    """Statistics of several samples together: means weighted by count, variances with the spread of the means.
 
     Source: Chan, Golub, LeVeque, "Updating formulae and a pairwise algorithm for computing sample variances", 1979.
     """

@@ -54,7 +54,7 @@ class Driver:
         return dict(zip(row.name, row.position, strict=False))
 
     def speed(self) -> float:
-        """Of the base, in the plane [m/s]."""
+        """Speed of the base in the plane [m/s]."""
         row = self.heard[topics.JOINT_STATES.key][-1]
         v = dict(zip(row.name, row.velocity, strict=False))
         return math.hypot(v.get("base_x", 0.0), v.get("base_y", 0.0))

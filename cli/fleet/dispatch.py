@@ -45,7 +45,7 @@ def metres(desk: Desk, robots: list[RobotNow], text: str) -> dict[str, float | N
 
 
 def way(costmap: m.Costmap | None, start: tuple[float, float], end: tuple[float, float]) -> float | None:
-    """By path where there is a map, else guessed from the straight line."""
+    """Length of the way [m]: by path where there is a map, else guessed from the straight line."""
     if costmap is None:
         return DETOUR * math.dist(start, end)
     return path_length(costmap, start, end)

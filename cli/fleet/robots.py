@@ -50,7 +50,7 @@ class RobotNow(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def free(self) -> bool:
-        """It would take a command now."""
+        """True when the robot would take a command now."""
         return self.state in m.OPEN_STATES and not self.braked
 
 

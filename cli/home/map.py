@@ -45,7 +45,7 @@ SAVE_LIMIT = 60.0
 
 
 def run(args: argparse.Namespace) -> int:
-    """The command."""
+    """Explore a home, or take over a plan of it; the exit status."""
     out = args.out.resolve()
     if args.from_plan is not None:
         household = plan_to_map(args.from_plan, out)

@@ -98,7 +98,7 @@ class Authority:
 
     # --- who there is; the router lets in nobody else
     def subjects(self) -> list[Subject]:
-        """Everybody with a certificate.
+        """The owners of all certificates.
 
         Raises:
             CliError: the list cannot be read.

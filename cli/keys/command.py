@@ -30,7 +30,7 @@ def everybody(namespace: str, domain: int = 0) -> list[Subject]:
 
 
 def keys(args: argparse.Namespace) -> int:
-    """The command."""
+    """Make, renew or list certificates; the exit status."""
     authority = Authority(_directory(args))
     _check(args)
     if args.list:

@@ -139,7 +139,7 @@ class Supervision:
 
     # --- control
     def call(self, method: str, *args: Any) -> Any:
-        """An XML-RPC call.
+        """Call a method of supervisord over XML-RPC.
 
         Raises:
             CliError: nothing is up in this directory, or supervisord refuses.

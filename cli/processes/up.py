@@ -48,7 +48,7 @@ def interruptible() -> Iterator[None]:
 
 
 def check_free(supervision: Supervision, plan: Plan) -> None:
-    """Nothing of ours is up here and the port can be had.
+    """Check that no run is up in this directory and that the port can be had.
 
     Raises:
         CliError: says what to do.
@@ -188,7 +188,7 @@ def follow(supervision: Supervision, plan: Plan, say: Callable[[str], None]) -> 
 
 
 def run(args: argparse.Namespace) -> int:
-    """The command."""
+    """Start everything and follow it until interrupted; the exit status."""
     supervision, plan = Supervision(run_dir()), Plan(args)
     check_free(supervision, plan)
 

@@ -40,7 +40,7 @@ class Pulse:
         self._at_work: dict[str, tuple[int, float, float]] = {}
 
     def hear(self, name: str, pid: int, now: float) -> None:
-        """A health record came."""
+        """Note when a health record of a process came."""
         self._heard[name] = pid, now
 
     def hangs(self, name: str, pid: int, token: bool, stopped: bool, worked: float, now: float) -> str:
@@ -75,7 +75,7 @@ def look(pid: int) -> tuple[bool, float]:
 
 
 def watch(supervision: Supervision, stop: StopSignal) -> None:
-    """Until told to stop."""
+    """End what hangs until told to stop."""
     info, pulse = supervision.info(), Pulse()
     tokens = {s.name for s in SERVICES if s.token}
     use_keys(info.keys or OFF)

@@ -31,7 +31,7 @@ def encoding_of(topic: Topic[Any]) -> str:
 
 
 def encode(topic: Topic[M], message: M) -> bytes:
-    """Bytes on the wire.
+    """Encode a message as its topic has it on the wire.
 
     Raises:
         TypeError: the message is not of the topic's type.

@@ -56,7 +56,7 @@ class Mailbox(Generic[M]):
         return ready
 
     def newest(self) -> M | None:
-        """Decoded once per payload.
+        """The newest message, decoded once for each payload.
 
         Raises:
             codec.DecodeError: the newest payload is bad; the one before it stays the newest.

@@ -34,7 +34,7 @@ class MemoryBus:
                 box.put(self.last[key])
 
     def detach(self, io: "MemoryIo") -> None:
-        """As when the process dies: it reads and answers nothing more, and its token is gone."""
+        """Take an io off the bus, as when its process dies: it reads and answers nothing more, its token is gone."""
         self.ios.pop(io.name, None)
         for key, handler in io.served.items():
             if self.handlers.get(key) is handler:
@@ -121,7 +121,7 @@ class MemoryIo(IoBase):
         return self.submit(lambda: answer)
 
     def demand(self, topic: Topic[Any], wanted: bool) -> None:
-        """Nothing: in memory every topic that a service reads is delivered."""
+        """Do nothing: in memory every topic that a service reads is delivered."""
 
     def peer(self, name: str) -> str | None:
         other = self.bus.ios.get(name)

@@ -29,7 +29,7 @@ class Presence:
         self._token: Any = None
 
     def announce(self) -> None:
-        """The service is ready."""
+        """Show that the service is ready, by its liveliness token."""
         self._token = self.session.liveliness().declare_token(topics.ALIVE_KEY.format(name=self.io.name))
         self.tell(0.0)
 

@@ -24,7 +24,7 @@ def free_view(renderer: Renderer, azimuth: float = 225.0) -> View:
 
 
 def _clear(model: Any, data: Any, view: View) -> bool:
-    """Nothing stands between the eye and the robot; cast from the robot outwards, where walls are thick."""
+    """True when nothing stands between eye and robot; cast from the robot outwards, where walls are thick."""
     import mujoco  # after the renderer has chosen its GL library
 
     a, e = np.radians(view.azimuth), np.radians(view.elevation)

@@ -62,7 +62,7 @@ class Renderer:
         self._gloss, self._clear = looks(self.model)
 
     def load(self, qpos: bytes, mocap: bytes) -> None:
-        """Take a streamed state.
+        """Put the model into a streamed state.
 
         Raises:
             ValueError: it belongs to another model.

@@ -24,7 +24,7 @@ class Grip(NamedTuple):
 
     @property
     def empty(self) -> bool:
-        """Closed on nothing."""
+        """True when the hand has closed on nothing."""
         return self.width <= EMPTY_WIDTH
 
     @property

@@ -16,7 +16,7 @@ FEWEST = 8
 
 
 class Rays(NamedTuple):
-    """Of n rays: `angles` (n,) [rad], `directions` (n, 2), `ranges` (n,) [m], `ends` (n, 2) [base].
+    """The n rays of a scan: `angles` (n,) [rad], `directions` (n, 2), `ranges` (n,) [m], `ends` (n, 2) [base].
 
     `own` (n,): those that end on the robot's body, `hit` (n,): on something else.
     """

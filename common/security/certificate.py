@@ -66,7 +66,7 @@ class Identity:
         return {**found, "listen_certificate": cert, "listen_private_key": key} if serving else found
 
     def context(self) -> ssl.SSLContext:
-        """The same for Python's own TLS."""
+        """The certificate as a context of Python's own TLS."""
         context = ssl.create_default_context(cafile=str(self.ca))
         context.load_cert_chain(self.cert, self.key)
         return context

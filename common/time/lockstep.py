@@ -17,7 +17,7 @@ DT = 0.01
 
 
 class Stepped(Protocol):
-    """A service object."""
+    """A service object that is stepped in lockstep."""
 
     HZ: int
 

@@ -44,7 +44,7 @@ class ProcessFaultInjector:
         self._world = state_dir / WORLD
 
     def step(self, now: float, state: str) -> None:
-        """At robot time `now` with the brain in `state`."""
+        """Inject what is due at robot time `now` with the brain in `state`."""
         self._since.setdefault(state, now)
         for fault in [s for s in self._waiting if now >= self._since.get(s.state, float("inf")) + s.after]:
             self._waiting.remove(fault)
@@ -59,7 +59,7 @@ class ProcessFaultInjector:
                 self._end_full(now)
 
     def finish(self, now: float) -> None:
-        """The case is over."""
+        """End every fault that still lasts: the case is over."""
         if self._full is not None:
             self._end_full(now)
         for _, process in self._frozen:
@@ -143,7 +143,7 @@ def _modified(path: Path) -> int:
 
 
 def _send(process: int, number: signal.Signals) -> bool:
-    """To the very process that the descriptor was opened for; False when it has ended."""
+    """Send a signal to the very process that the descriptor was opened for; False when it has ended."""
     try:
         signal.pidfd_send_signal(process, number)
     except ProcessLookupError:

@@ -33,7 +33,7 @@ class SimulatedUser:
         self.answers = 0
 
     def set_goal(self, command: str, thing: str = "") -> None:
-        """From now on this is what was said, and meant; without a `thing` the one that was wanted before."""
+        """Note what was said, and meant, from now on; without a `thing` the one that was wanted before."""
         self._command, self.answers = command, 0
         if thing:
             self._thing = self._words = thing
@@ -65,7 +65,7 @@ class SimulatedUser:
         return self._canonical(heard) == self._canonical(self._command)
 
     def _canonical(self, text: str) -> str:
-        """With aliases of objects replaced by their names."""
+        """A sentence with aliases of objects replaced by their names."""
         words = plain(text)
         for spec in self._scene.objects:
             for alias in sorted(spec.aliases, key=len, reverse=True):

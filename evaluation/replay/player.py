@@ -108,7 +108,7 @@ class Player:
 
     @property
     def seconds(self) -> float:
-        """Robot time covered."""
+        """Robot time that the replay covers [s]."""
         return (self._ticks[-1] - self._ticks[0]) * DT if self._ticks else 0.0
 
     def covers(self, row: Row) -> bool:
@@ -124,7 +124,7 @@ class Player:
 
     @property
     def exact(self) -> bool:
-        """Every input has its tick, or the step that heard it is known: the replay sees each in the same step."""
+        """True when the replay sees every input in the same step: it has its tick, or who heard it said when."""
         return self.lockstep and all(row.tick is not None for row in self._rows)
 
     def _due(self) -> list[int]:

@@ -107,7 +107,7 @@ def _ranges(kind: str) -> tuple[Range, Range, Range]:
 
 
 def things(count: int, rng: np.random.Generator, printed: bool = False) -> list[ObjectSpec]:
-    """So many objects with names of their own; the first has print on it where that is asked for."""
+    """Draw objects with names of their own; the first has print on it where that is asked for."""
     found: dict[str, ObjectSpec] = {}
     rows = [i for i in CATALOGUE if i.label] if printed else list(CATALOGUE)
     while len(found) < count:

@@ -91,7 +91,7 @@ def thing(kind: str, word: str, rng: np.random.Generator) -> ObjectSpec:
 
 
 def things(count: int, rng: np.random.Generator, first: tuple[str, ...] = ()) -> list[ObjectSpec]:
-    """So many objects that differ in their words; the first is of one of the kinds `first`, if there are any."""
+    """Draw objects that differ in their words; the first is of one of the kinds `first`, if there are any."""
     found: list[ObjectSpec] = []
     taken: set[tuple[int, str]] = set()
     while len(found) < count:

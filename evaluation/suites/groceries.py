@@ -68,7 +68,7 @@ ROWS = (
 
 
 def directory() -> Path:
-    """Where the assets are.
+    """Directory of the scanned assets.
 
     Raises:
         AssetsMissing: they are not installed.
@@ -100,7 +100,7 @@ def thing(row: Row, assets: Path) -> ObjectSpec:
 
 
 def things(count: int, rng: np.random.Generator) -> list[ObjectSpec]:
-    """So many different ones with different names.
+    """Draw scanned things with different names.
 
     Raises:
         AssetsMissing: the extra is not installed.

@@ -93,7 +93,7 @@ def dressed(case: Case, settings: tuple[str, ...], pipeline: str, replaced: tupl
 
 
 def _wakes(settings: tuple[str, ...]) -> bool:
-    """In the VLA pipeline the robot has to be addressed before it takes a command."""
+    """True when the robot has to be addressed before it takes a command: in the VLA pipeline."""
     chosen = [s.partition("=")[2] for s in settings if s.startswith("brain.pipeline=")]
     return (chosen[-1] if chosen else load("brain", BrainConfig, config_dir(), {}).pipeline) == "vla"
 

@@ -58,7 +58,7 @@ class Asked(Strict, frozen=True, kw_only=True):
 
 
 class CaseFile(Strict, frozen=True, kw_only=True):
-    """A whole case file."""
+    """The contents of a file of cases."""
 
     case: tuple[Asked, ...]
 
@@ -79,7 +79,7 @@ def cases(directory: Path, count: int | None, seed: int) -> list[Case]:
 
 
 def worlds(directory: Path) -> list[Found]:
-    """Of every sub-directory with a `world.toml`, and every `NAME.world.toml` in the directory itself, by name.
+    """The worlds of sub-directories with a `world.toml` and of `NAME.world.toml` in the directory itself, by name.
 
     Raises:
         WorldsError: there is none, or a file that cannot be used.
@@ -151,7 +151,7 @@ def _case(found: Found, row: Asked | None, seed: int, again: bool) -> Case:
 
 
 def _drawn(found: Found, seed: int) -> Asked:
-    """To fetch an object that the household has words for, and nothing else in the world answers to."""
+    """A case of fetching an object that the household has words for, and nothing else in the world answers to."""
     rng = random(seed, 31)
     sayable = [(o, words) for o in found.world.objects if (words := said(o, found.world, found.household))]
     fitting = [(o, w) for o, w in sayable if kind_of(o.kind).by_the_rim or min(o.size) <= NARROW]

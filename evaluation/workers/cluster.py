@@ -44,7 +44,7 @@ class Mismatch(RuntimeError):
 def evaluate(
     cases: list[Case], address: str, jobs: int, run: Run, limit: float = WALL_LIMIT, silence: float = SILENCE
 ) -> Generator[Said, None, None]:
-    """As `pool.evaluate`, on the workers of the scheduler at `address`; `local` starts `jobs` of them here.
+    """Run cases on the workers of the scheduler at `address`, as `pool.evaluate`; `local` starts `jobs` of them here.
 
     Raises:
         CliError: Dask is missing, nobody answers at the address, no worker, or one with other code.

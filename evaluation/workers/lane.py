@@ -44,7 +44,7 @@ class LaneClosed(Exception):
 
 
 def name_of(run: Run) -> str:
-    """`module:function`"""
+    """The name of a function as `module:function`."""
     return f"{run.__module__}:{run.__qualname__}"
 
 
@@ -131,7 +131,7 @@ class Lane:
             return self._pipe
 
     def _status(self) -> int | None:
-        """Of a process whose pipe has closed; it may still be on its way out."""
+        """Exit status of a process whose pipe has closed; it may still be on its way out."""
         process = self._process
         if process is None:
             return None

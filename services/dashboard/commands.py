@@ -31,7 +31,7 @@ class Commands:
         self.naming = ""
 
     def use_transcript(self, transcript: Transcript) -> None:
-        """From now on, what visitors do is noted there."""
+        """Note in this transcript what visitors do from now on."""
         self._transcript = transcript
 
     def words(self, do: str, text: str, t: float) -> None:
@@ -110,7 +110,7 @@ class Commands:
         self._transcript.add(t, "robot", done if result.ok else f"{result.name} was not learnt: {result.detail}")
 
     def sound(self, data: bytes, t: float) -> None:
-        """From the microphone; an empty piece ends the utterance, which is then padded with silence."""
+        """Take sound of the microphone; an empty piece ends the utterance, which is then padded with silence."""
         if data:
             if len(data) % 2:
                 self._io.count_drop(topics.AUDIO_PCM.key, "not 16 bit samples")

@@ -33,7 +33,7 @@ SHEET = 0.01
 
 
 def timestamp(t: float) -> Any:
-    """Robot time [s]."""
+    """Foxglove's Timestamp of a robot time [s]."""
     return fm.Timestamp.from_epoch_secs(max(t, 0.0))
 
 
@@ -55,7 +55,7 @@ def colour(rgba: Colour) -> Any:
 
 
 def frames(poses: list[FramePose]) -> Any:
-    """A FrameTransforms."""
+    """Frames as a FrameTransforms."""
     return fm.FrameTransforms(
         transforms=[
             fm.FrameTransform(
@@ -190,7 +190,7 @@ def log(message: m.LogRecord) -> Any:
 
 
 def image(message: m.Rgbd) -> Any:
-    """A JPEG.
+    """The colours of a picture as a JPEG.
 
     Raises:
         ValueError: not as many pixels as it says.
@@ -204,7 +204,7 @@ def image(message: m.Rgbd) -> Any:
 
 
 def depth(message: m.Rgbd) -> Any:
-    """Millimetres, 0 where nothing is seen.
+    """Depth of a picture in millimetres, 0 where nothing is seen.
 
     Raises:
         ValueError: not as many pixels as it says.
@@ -223,7 +223,7 @@ def depth(message: m.Rgbd) -> Any:
 
 
 def calibration(message: m.Rgbd) -> Any:
-    """A pinhole without distortion."""
+    """The camera of a picture as a pinhole without distortion."""
     fx, fy, cx, cy = message.fx, message.fy, message.cx, message.cy
     return fm.CameraCalibration(
         timestamp=timestamp(message.t),

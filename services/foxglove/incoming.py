@@ -20,7 +20,7 @@ class Vector(msgspec.Struct):
 
 
 class Twist(msgspec.Struct):
-    """As the Teleop panel sends it: geometry_msgs/Twist."""
+    """A geometry_msgs/Twist, as the Teleop panel sends it."""
 
     linear: Vector
     angular: Vector
@@ -43,14 +43,14 @@ class Header(msgspec.Struct):
 
 
 class PoseStamped(msgspec.Struct):
-    """As the 3D panel's Publish tool sends it: geometry_msgs/PoseStamped."""
+    """A geometry_msgs/PoseStamped, as the 3D panel's Publish tool sends it."""
 
     header: Header
     pose: Pose
 
 
 class Words(msgspec.Struct):
-    """As the Publish panel sends it: std_msgs/String."""
+    """A std_msgs/String, as the Publish panel sends it."""
 
     data: str = ""
 

@@ -79,7 +79,7 @@ class Listener:
         return [Parameter(name, value=known[name]) for name in names if name in known]
 
     def on_parameters_subscribe(self, param_names: list[str]) -> None:
-        """Nothing: changes are published to whom they concern by the server."""
+        """Do nothing: the server publishes changes to whom they concern."""
 
     def on_parameters_unsubscribe(self, param_names: list[str]) -> None:
         """Nothing."""

@@ -114,7 +114,7 @@ class Server:
         self._draw(drawing.home(household), t)
 
     def draw_robot(self, solids: list[Shape], t: float) -> None:
-        """The robot's links."""
+        """Show the robot's links."""
         self._draw(drawing.robot(solids), t)
 
     def draw_objects(self, known: m.WorldObjects, gone: set[str]) -> None:
@@ -129,7 +129,7 @@ class Server:
         self.tf.out.log(drawing.frames(poses), log_time=nanoseconds(t))
 
     def tell_time(self, t: float) -> None:
-        """Robot time [s]."""
+        """Tell visitors the robot's time [s]."""
         self._server.broadcast_time(nanoseconds(t))
 
     def tell_parameters(self, values: dict[str, Any]) -> None:

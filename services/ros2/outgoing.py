@@ -44,7 +44,7 @@ def field(name: str) -> Convert:
 
 
 def whole(types: Types, message: m.Message) -> Any:
-    """All of a message, as JSON in a string."""
+    """A whole message as JSON in a String."""
     return types.text(msgspec.json.encode(message).decode())
 
 

@@ -34,7 +34,7 @@ def depth(types: Types, message: m.Rgbd) -> Any:
 
 
 def camera_info(types: Types, message: m.Rgbd) -> Any:
-    """A pinhole without distortion."""
+    """The camera of a picture as a pinhole without distortion."""
     fx, fy, cx, cy = message.fx, message.fy, message.cx, message.cy
     whole_picture = types.new(
         "sensor_msgs/RegionOfInterest", x_offset=0, y_offset=0, height=0, width=0, do_rectify=False

@@ -52,7 +52,7 @@ class Types:
         return self.new("std_msgs/String", data=words)
 
     def stamp(self, t: float) -> Any:
-        """Robot time [s]."""
+        """The builtin_interfaces/Time of a robot time [s]."""
         whole, nanoseconds = divmod(round(min(max(t, 0.0), LIMIT) * NANO), NANO)
         return self.new("builtin_interfaces/Time", sec=min(whole, 2**31 - 1), nanosec=nanoseconds)
 

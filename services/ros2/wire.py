@@ -30,7 +30,7 @@ class Qos(NamedTuple):
     depth: int = 10
 
     def encoded(self) -> str:
-        """As in a token: reliability, durability, history, deadline, lifespan, liveliness; a default is empty."""
+        """Text for a token: reliability, durability, history, deadline, lifespan, liveliness; a default is empty."""
         return f":{1 if self.transient else ''}:,{self.depth}:,:,:,,"
 
 

@@ -21,6 +21,6 @@ class Battery:
         self.charge, self.power = charge, IDLE + ARM
 
     def draw(self, vx: float, vy: float, omega: float, seconds: float) -> None:
-        """So many seconds at these velocities of the base [m/s, m/s, rad/s]."""
+        """Take the charge of so many seconds at these velocities of the base [m/s, m/s, rad/s]."""
         self.power = IDLE + ARM + ROLLING * hypot(vx, vy) + TURNING * abs(omega)
         self.charge = max(0.0, self.charge - self.power * seconds / (3600.0 * CAPACITY))

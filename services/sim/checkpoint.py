@@ -35,7 +35,7 @@ class Checkpoint(msgspec.Struct):
 
 
 def fingerprint(mjcf: str) -> str:
-    """Names a model."""
+    """Hash that names a model."""
     return hashlib.sha256(mjcf.encode()).hexdigest()[:16]
 
 

@@ -50,7 +50,7 @@ class Contacts:
         self.forget()
 
     def forget(self) -> None:
-        """The world begins anew."""
+        """Forget all contacts: the world begins anew."""
         self._touches: list[m.Touch] = []
         self._current: dict[Pair, m.Touch] = {}
         self._fresh: dict[int, m.Touch] = {}
@@ -61,7 +61,7 @@ class Contacts:
         self._touches = touches
 
     def step(self, data: Any, now: float) -> None:
-        """After the physics step that ends at `now` [s], while `data.ncon` contacts exist."""
+        """Log the contacts of the physics step that ends at `now` [s], while `data` has them."""
         count = data.ncon
         view = self._views.get(count)
         if view is None:
@@ -78,7 +78,7 @@ class Contacts:
             self._note(data, pairs, now)
 
     def _classify(self, geoms: NDArray[np.int32]) -> tuple[tuple[int, Pair], ...]:
-        """Of the touching geoms (n, 2) those that count: index and pair."""
+        """Those of the touching geoms (n, 2) that count: index and pair."""
         rows: list[tuple[int, int]] = [(int(a), int(b)) for a, b in geoms]
         left, right = (
             {self._object[other] for a, b in rows for geom, other in ((a, b), (b, a)) if geom in pad}

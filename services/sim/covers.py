@@ -30,7 +30,7 @@ def _used(scene: Scene) -> list[str]:
 
 
 def assets(scene: Scene) -> str:
-    """Materials and textures."""
+    """MJCF of the materials and textures."""
     return "".join(finish.assets(name) for name in _used(scene))
 
 
@@ -40,7 +40,7 @@ def files(scene: Scene) -> dict[str, bytes]:
 
 
 def floor(scene: Scene) -> str:
-    """The floor's material."""
+    """Name of the floor's material."""
     return f"finish_{scene.finish.floor}" if scene.finish.floor else "floor"
 
 

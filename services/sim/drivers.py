@@ -33,7 +33,7 @@ class Drivers:
         body.grip(0.0, self.effort)
 
     def resume(self, state: Checkpoint) -> None:
-        """At rest where another process left the robot, nothing commanded."""
+        """Stand at rest where another process left the robot, nothing commanded."""
         actual = self._body.joints
         self.put((float(actual[0]), float(actual[1]), float(actual[2])), stopped=state.stopped)
         self.setpoint[3:] = state.setpoint[3:]

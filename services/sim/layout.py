@@ -45,13 +45,13 @@ def _rolls_about_x(spec: ObjectSpec) -> bool:
 
 
 def _height(spec: ObjectSpec) -> float:
-    """Of the centre above the surface [m]."""
+    """Height of an object's centre above its surface [m]."""
     axis = {"upright": 2, "upside down": 2, "side": 1 if _rolls_about_x(spec) else 0}[spec.pose]
     return spec.size[axis] / 2
 
 
 def _radius(spec: ObjectSpec) -> float:
-    """Of the circle that it covers [m]."""
+    """Radius of the circle that an object covers [m]."""
     return max(spec.size if spec.pose == "side" else spec.size[:2]) / 2
 
 
@@ -112,7 +112,7 @@ def place_objects(scene: Scene, seed: int) -> list[Placement]:
 
 
 def _fixed(scene: Scene, spec: ObjectSpec, rng: np.random.Generator) -> Placement:
-    """Of an object whose place the world's file gives."""
+    """Placement of an object whose place the world's file gives."""
     surface, (x, y) = scene.surface(spec.on), spec.position or (0.0, 0.0)
     assert surface is not None  # load_scene has seen to it
     yaw = float(rng.uniform(-math.pi, math.pi)) if spec.yaw is None else spec.yaw

@@ -103,7 +103,7 @@ class Walker:
 
 
 class Obstacles:
-    """All of them; `moving` tells whether any moved in the last step. `solids` is what people walk round."""
+    """All obstacles; `moving` tells whether any moved in the last step. `solids` is what people walk round."""
 
     def __init__(self, obstacles: tuple[Obstacle, ...], model: Any, solids: Sequence[Rectangle] = ()) -> None:
         self._all: list[Walker | Pedestrian] = []

@@ -81,7 +81,7 @@ class Physics(Body):
 
     @property
     def robots(self) -> list[Body]:
-        """All of them, this one first."""
+        """The bodies of all robots, this one's first."""
         return [self, *self.guests]
 
     def reset(self) -> None:
@@ -101,7 +101,7 @@ class Physics(Body):
         self.obstacles.reset()
 
     def reseed(self, seed: int) -> None:
-        """Another layout in the same world."""
+        """Lay the objects out anew in the same world."""
         self.seed, self.placements = seed, place_objects(self.scene, seed)
         self.reset()
 
@@ -131,7 +131,7 @@ class Physics(Body):
                     robot.contacts.step(data, now + number * DT / steps)
 
     def _rests(self) -> bool:
-        """Nothing has moved for a while, nothing that moves things has changed, and no glance at it is due."""
+        """True when nothing has moved for a while, no cause to has come, and no glance at it is due."""
         rows = tuple(zip(self._causes, self._rested_under, strict=True))
         same = all(np.array_equal(now, was) for now, was in rows)
         if not same:
@@ -148,7 +148,7 @@ class Physics(Body):
         return all(robot.arm_rests(change) for robot, _, change in moves)
 
     def snapshot(self) -> NDArray[np.float64]:
-        """The full integration state."""
+        """MuJoCo's full integration state."""
         state = np.empty(mujoco.mj_stateSize(self.model, _STATE))
         mujoco.mj_getState(self.model, self.data, state, _STATE)
         return state

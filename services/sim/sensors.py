@@ -31,7 +31,7 @@ class Sensors:
         self._lidar = Lidar(body.names, body.lidar_site, noise, missing, io.rng)
 
     def feel(self, t: float) -> None:
-        """Odometry and joint states."""
+        """Publish odometry and joint states."""
         io, body = self._io, self._body
         arm = body.joints.tolist()
         actual = (arm[0], arm[1], arm[2])

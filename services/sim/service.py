@@ -108,7 +108,7 @@ class SimService:
         own.tell("stopped" if state.stopped else "running", "resumed")
 
     def _save(self) -> None:
-        """Twice a second."""
+        """Save the world, twice a second."""
         if self._saved is None or self._tick % CHECKPOINT_TICKS:
             return
         state = checkpoint.Checkpoint(

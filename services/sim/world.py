@@ -27,7 +27,7 @@ def _box(name: str, center: Sequence[float], size: Sequence[float], rgba: str, y
 
 
 def _apart(box: str) -> str:
-    """In a body of its own: one large body around everything would have to be searched for every link of the robot."""
+    """A part in a body of its own: one large body around all would be searched for every link of the robot."""
     return f"<body>{box}</body>"
 
 

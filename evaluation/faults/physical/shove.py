@@ -56,7 +56,7 @@ class Shove(Injector):
                 return
 
     def _free(self, at: Any, half: float) -> bool:
-        """On the same surface, with nobody else there."""
+        """True when a point is on the same surface and nothing else stands there."""
         physics = self.physics
         x, y = (float(v) for v in self.thing()[:2])
         on = [r for r in physics.scene.receptacles if r.contains(x, y, MARGIN)]
@@ -74,7 +74,7 @@ class Shove(Injector):
         return stays and all(np.linalg.norm(where - at) > half + size + 0.01 for where, size in others)
 
     def _push(self, gone: float) -> None:
-        """On until it is clear of the hand, which may still be coming."""
+        """Push the object on until it is clear of the hand, which may still be coming."""
         self._pushing -= 1
         ahead = float((self.thing() - self.pinch())[:2] @ self._way)
         on = self._pushing > 0 and (gone < SHOVE or ahead < self._beyond)

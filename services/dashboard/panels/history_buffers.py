@@ -63,7 +63,7 @@ NodePath = tuple[str, ...]
 
 
 def places(node: m.TreeNode, path: NodePath = ()) -> Iterator[tuple[NodePath, m.TreeNode]]:
-    """Every child of a node, and theirs."""
+    """All nodes below a node, each with its path."""
     for n, child in enumerate(node.children):
         place = (*path, f"{n} {child.name}")
         yield place, child

@@ -70,7 +70,7 @@ class TapeIo(MemoryIo):
         return self.submit(lambda: answer)
 
     def forget(self) -> None:
-        """Nothing has been received yet."""
+        """Empty every mailbox, as if nothing had been received yet."""
         for box in self._boxes.values():
             box.waiting.clear()
             box.take()
@@ -92,7 +92,7 @@ class Tape:
         self._next = 0
 
     def seek(self, t: float) -> list[Row]:
-        """Everything as it was at `t`; the speech until then."""
+        """Deliver everything as it was at `t`; returns the speech until then."""
         self.at = min(max(t, self.first), self.last)
         self._next = bisect_right(self._times, self.at)
         self._io.forget()
@@ -152,7 +152,7 @@ class Playback(DashboardService):
         self.deck.take_all(topics.SPEECH_RESULT)
 
     def pause(self, t: float) -> None:
-        """Stand still at `t`."""
+        """Pause the tape at `t`."""
         self.playing = False
         self.jump(t)
 

@@ -80,7 +80,7 @@ class Drawing:
 
 
 def draw(mjcf: str, files: dict[str, bytes] | None = None) -> Drawing:
-    """Everything of a model but what moves without the robot.
+    """The meshes of a model, without what moves by itself.
 
     Raises:
         ValueError: not a model.
@@ -190,14 +190,14 @@ def moved(mesh: Mesh, place: Array, turn: Array) -> Mesh:
 
 
 def cut(mesh: Mesh, height: float) -> Mesh:
-    """Nothing of it stands higher; for upright boxes."""
+    """The mesh of upright boxes, none of them higher than `height`."""
     vertices = mesh.vertices.copy()
     vertices[:, 2] = np.minimum(vertices[:, 2], height)
     return Mesh(vertices, mesh.faces, mesh.colours)
 
 
 def joined(meshes: list[Mesh]) -> Mesh | None:
-    """All as one; None when there is nothing."""
+    """One mesh of several; None when there is nothing."""
     meshes = [m for m in meshes if len(m.faces)]
     if not meshes:
         return None
@@ -240,5 +240,5 @@ def _about(axis: Array, angle: float) -> Array:
 
 
 def quaternion(turn: Array) -> tuple[float, float, float, float]:
-    """(w, x, y, z)."""
+    """The quaternion (w, x, y, z) of a rotation matrix."""
     return matrix_quat(turn)

@@ -69,7 +69,7 @@ class Layers:
         self._grasps: Any = None
 
     def costmap(self, costmap: m.Costmap | None, visible: bool) -> None:
-        """Show the newest one.
+        """Show the newest costmap.
 
         Raises:
             ValueError: it is none.

@@ -50,7 +50,7 @@ class LiveScene:
             self._drawn = self._io.submit(partial(draw, model.mjcf, model.files))
 
     def move(self, now: float, t: float) -> None:
-        """Everything where it is now; `t`: robot time [s]."""
+        """Draw everything where it is now; `t`: robot time [s]."""
         io, panels, view = self._io, self._panels, self.view
         joints, pose = io.latest(topics.JOINT_STATES), io.latest(topics.POSE)
         q = dict(zip(joints.name, joints.position, strict=False)) if joints is not None else {}

@@ -51,12 +51,12 @@ class Visitors:
         return socket
 
     def tell(self, kind: str, text: str) -> None:
-        """To every page, and to those that open before there is a newer one of this kind."""
+        """Send a text to every page, and to those that open before there is a newer one of this kind."""
         self._last[kind] = text
         self.spread(text)
 
     def spread(self, message: str | bytes) -> None:
-        """To every page that is open now."""
+        """Send a message to every page that is open now."""
         for visitor, outbox in list(self._open.items()):
             try:
                 outbox.put_nowait(message)
