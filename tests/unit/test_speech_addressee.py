@@ -38,8 +38,14 @@ def test_stop_is_obeyed_in_every_setting(setting: UtteranceContext) -> None:
     assert consequence(Recognition("stop", "accept", 0.9), "stop", scope(setting, True), setting) == "stop"
 
 
-def test_a_stop_that_was_hardly_understood_is_no_stop() -> None:
-    assert consequence(Recognition("stop", "ask", 0.3), "stop", "interrupt", STRANGER) == "nothing"
+def test_a_stop_that_was_hardly_understood_is_one_for_a_robot_that_was_addressed() -> None:
+    perhaps = Recognition("stop", "ask", 0.3)
+    assert consequence(perhaps, "stop", "interrupt", STRANGER) == "nothing"
+    assert consequence(perhaps, "stop", "interrupt", LISTENING) == "nothing", "there it competes with nothing"
+    assert consequence(perhaps, "stop", "command", LISTENING) == "stop"
+    assert consequence(perhaps, "stop", "woken", WOKEN) == "stop"
+    assert consequence(Recognition("stop", "ask", 0.3, mistaken=True), "stop", "woken", WOKEN) == "mistaken"
+    assert consequence(Recognition("stop", "reject", 0.1), "stop", "command", LISTENING) == "answer"
 
 
 def test_cancel_answers_the_listening_brain_and_else_ends_what_goes_on() -> None:
@@ -106,6 +112,9 @@ DOUBT = CONFIG.certain - 0.01
         (("the mug", "reject", 0.1, "Keep hold of that mug for me.", DOUBT), "the mug", "reject", 0.1),
         (("the mug", "reject", 0.1, "Turn off the light over the table.", 0.9), "the mug", "reject", 0.1),
         (("the mug", "reject", 0.1, "Nobody should keep hold of that mug.", 0.9), "the mug", "reject", 0.1),
+        (("the mug", "ask", 0.2, "The bag.", 0.9), "the mug", "ask", 0.2),
+        (("the mug", "ask", 0.19, "The bag.", 0.9), "the mug", "reject", 0.19),
+        (("hey jarvis", "ask", 0.1, "Hey Jones.", 0.6), "", "ask", 0.1),
         (("the mug", "reject", 0.1, "", 0.9), "the mug", "reject", 0.1),
         (("hey jarvis stop", "accept", 0.6, "Go to the table.", 0.9), "stop", "accept", 0.6),
         (("hey jarvis", "accept", 0.6, "Go to the table.", 0.9), "", "accept", 0.6),

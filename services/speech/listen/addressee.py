@@ -42,10 +42,12 @@ def consequence(
     """What follows from an utterance recognised with the grammar `asked`; `interrupt` is stop or cancel if it says so.
 
     `again`: the robot was addressed but did not understand; `mistaken`: it only seemed to be addressed. A cancel that
-    answers the brain's listening is the answer.
+    answers the brain's listening is the answer. To a robot that was addressed a stop that was perhaps heard among all
+    that can be said is one: it costs less than a stop that is not obeyed.
     """
     understood = recognition.verdict == "accept"
-    if understood and interrupt == "stop":
+    perhaps = recognition.verdict == "ask" and context.meant and asked != "interrupt" and not recognition.mistaken
+    if interrupt == "stop" and (understood or perhaps):
         return "stop"
     if understood and interrupt == "cancel":
         return "answer" if context.listening else "cancel"
