@@ -9,11 +9,12 @@ import mujoco
 
 from common import messages as m
 from common import topics
-from common.bus.port import Io, Job
+from common.bus.port import Io
 from common.config import settings
-from common.gateway import due, refusal
+from common.gateway import refusal
 from common.picture_requests import PICTURES, PictureRequests
-from common.robot.frames import BaseFrames, FramePose, LinkFrames, camera_pose, lidar_pose
+from common.robot.frames import FramePose, camera_pose, lidar_pose
+from common.robot.moving_frames import MovingFrames
 from common.robot.shapes import Shape, shapes
 from common.robot.urdf import urdf
 from common.runtime import StartError
@@ -71,15 +72,12 @@ class FoxgloveService:
         self._watched: Counter[int] = Counter()
         self._newest: dict[str, m.Message] = {}
         self._gone: set[str] = set()
-        self._base, self._links, self._shapes = BaseFrames(), None, []
-        self._reading: Job[tuple[LinkFrames, list[Shape], str]] | None = None
+        self._frames = MovingFrames(io, _read)
+        self._shapes: list[Shape] = []
         self._fixed: dict[str, FramePose] = {}
         self._pictures = PictureRequests(io, config.camera_rate, config.camera_width, config.camera_height)
-        self._t, self._tf_at = 0.0, -inf
+        self._t = 0.0
         io.log.info("listening", url=self.server.url, commands=config.commands)
-
-    _links: LinkFrames | None
-    _shapes: list[Shape]
 
     def step(self, now: float) -> None:
         """Hear the visitors, then show them what is new of what they look at."""
@@ -168,16 +166,11 @@ class FoxgloveService:
     def _take(self, topic: Topic[Any], message: m.Message) -> None:
         before = self._newest.get(topic.key)
         self._newest[topic.key] = message
-        if isinstance(message, m.Odometry):
-            self._base.odometry(message)
-        elif isinstance(message, m.PoseEstimate):
-            self._base.estimate(message)
-        elif isinstance(message, m.LaserScan):
+        self._frames.take(message)
+        if isinstance(message, m.LaserScan):
             self._fixed["lidar"] = lidar_pose(message)
         elif isinstance(message, m.Rgbd):
             self._fixed[message.camera] = camera_pose(message)
-        elif isinstance(message, m.RobotDescription) and message != before:
-            self._reading = self._io.submit(_read, message.mjcf)
         elif isinstance(message, m.WorldObjects):
             labels = {one.label for one in message.objects}
             self._gone = {o.label for o in before.objects} - labels if isinstance(before, m.WorldObjects) else set()
@@ -197,14 +190,9 @@ class FoxgloveService:
             self._io.count_drop(topic.key, str(error))
 
     def _describe(self, now: float) -> None:
-        if self._reading is None or not self._reading.poll(now):
+        if (found := self._frames.described(now)) is None:
             return
-        job, self._reading = self._reading, None
-        try:
-            self._links, self._shapes, text = job.result()
-        except (ValueError, KeyError) as error:
-            self._io.count_drop(topics.ROBOT_DESCRIPTION.key, str(error))
-            return
+        self._shapes, text = found
         self._listener.parameters[DESCRIPTION] = text
         self.server.tell_parameters({DESCRIPTION: text})
         self._draw()
@@ -218,15 +206,9 @@ class FoxgloveService:
             self.server.draw_objects(known, self._gone)
 
     def _move(self, now: float) -> None:
-        rate = self._rate("tf_rate")
-        if not self._watched[int(self.server.tf.out.id())] or not due(rate, now - self._tf_at):
+        if not self._watched[int(self.server.tf.out.id())]:
             return
-        self._tf_at = now
-        poses = self._base.poses()
-        joints = self._newest.get(topics.JOINT_STATES.key)
-        if self._links is not None and isinstance(joints, m.JointStates):
-            poses += self._links.poses(joints)
-        if poses:
+        if poses := self._frames.poses(now, self._rate("tf_rate")):
             t = poses[0].t
             self.server.move([*poses, *(pose._replace(t=t) for pose in self._fixed.values())], t)
 
@@ -235,12 +217,11 @@ class FoxgloveService:
         self.server.close()
 
 
-def _read(mjcf: str) -> tuple[LinkFrames, list[Shape], str]:
-    """The links of a robot's description, what they look like, and the same as URDF.
+def _read(mjcf: str) -> tuple[list[Shape], str]:
+    """What a robot's links look like, and its description as URDF.
 
     Raises:
         ValueError: not a model, or one that cannot be said in URDF.
-        KeyError: not of this robot's build.
     """
     model: Any = mujoco.MjModel.from_xml_string(mjcf)
-    return LinkFrames(mjcf), shapes(model), urdf(mjcf)
+    return shapes(model), urdf(mjcf)

@@ -3,15 +3,16 @@
 import queue
 from collections import deque
 from functools import partial
-from typing import Any, NamedTuple
+from typing import Any
 
 from common import messages as m
 from common import topics
 from common.bus import codec
-from common.bus.port import Io, Job
-from common.gateway import due, refusal
+from common.bus.port import Io
+from common.gateway import refusal
 from common.picture_requests import PICTURES, PictureRequests
-from common.robot.frames import BaseFrames, FramePose, LinkFrames, camera_pose, lidar_pose
+from common.robot.frames import FramePose, camera_pose, lidar_pose
+from common.robot.moving_frames import MovingFrames
 from common.robot.urdf import pivots, urdf
 from common.runtime import StartError
 from common.topic import Topic
@@ -31,22 +32,14 @@ ALL = tuple(dict.fromkeys((*(row.topic for row in outgoing.ROWS), *TF_TOPICS)))
 """What may have to be subscribed to."""
 
 
-class Description(NamedTuple):
-    """What a robot's drawing says to ROS."""
-
-    text: str
-    links: LinkFrames
-    pivots: list[FramePose]
-
-
-def describe(mjcf: str) -> Description:
-    """Read a robot's MJCF.
+def describe(mjcf: str) -> tuple[str, list[FramePose]]:
+    """A robot's description as URDF, and the frames of it that do not move.
 
     Raises:
         ValueError: it cannot be said in URDF.
         KeyError: not of this robot's build.
     """
-    return Description(urdf(mjcf), LinkFrames(mjcf), pivots(mjcf))
+    return urdf(mjcf), pivots(mjcf)
 
 
 class Ros2Service:
@@ -84,13 +77,9 @@ class Ros2Service:
         self._newest: dict[str, m.Message] = {}
         self._fed: set[Outlet] = set()
         self._cameras = PictureRequests(io, config.camera_rate, config.camera_width, config.camera_height)
-        self._base, self._description, self._reading = BaseFrames(), None, None
+        self._frames = MovingFrames(io, describe)
         self._static: dict[str, FramePose] = {}
-        self._tf_at = float("-inf")
         io.log.info("ros graph", node=f"{self._prefix}/{NODE}", domain=config.domain, distro=config.distro)
-
-    _description: Description | None
-    _reading: Job[Description] | None
 
     def _topic(self, name: str, kind: str, qos: Qos | None = None) -> RosTopic:
         absolute = name if name.startswith("/") else f"{self._prefix}/{name}"
@@ -154,14 +143,9 @@ class Ros2Service:
     def _pass_on(self, topic: Topic[Any], message: m.Message) -> None:
         if topic.command and codec.encode(topic, message) in self._sent:
             return  # a peer's own, which its subscribers have from the peer
-        before, self._newest[topic.key] = self._newest.get(topic.key), message
-        if isinstance(message, m.Odometry):
-            self._base.odometry(message)
-        elif isinstance(message, m.PoseEstimate):
-            self._base.estimate(message)
-        elif isinstance(message, m.RobotDescription) and message != before:
-            self._reading = self._io.submit(describe, message.mjcf)
-        elif isinstance(message, m.LaserScan):
+        self._newest[topic.key] = message
+        self._frames.take(message)
+        if isinstance(message, m.LaserScan):
             self._fix(lidar_pose(message))
         elif isinstance(message, m.Rgbd) and self._tf.wanted:
             self._put(self._tf, self._types.frames([camera_pose(message)]))
@@ -192,28 +176,12 @@ class Ros2Service:
 
     # --- frames
     def _send_frames(self, now: float) -> None:
-        self._take_description(now)
-        if not self._tf.wanted or not due(self._config.tf_rate, now - self._tf_at):
-            return
-        self._tf_at = now
-        poses = self._base.poses()
-        joints = self._newest.get(topics.JOINT_STATES.key)
-        if self._description is not None and isinstance(joints, m.JointStates):
-            poses += self._description.links.poses(joints)
-        if poses:
+        if (found := self._frames.described(now)) is not None:
+            text, fixed = found
+            self._put(self._robot, self._types.text(text))
+            self._fix(*fixed)
+        if self._tf.wanted and (poses := self._frames.poses(now, self._config.tf_rate)):
             self._put(self._tf, self._types.frames(poses))
-
-    def _take_description(self, now: float) -> None:
-        if self._reading is None or not self._reading.poll(now):
-            return
-        job, self._reading = self._reading, None
-        try:
-            self._description = job.result()
-        except (ValueError, KeyError) as error:
-            self._io.count_drop(topics.ROBOT_DESCRIPTION.key, str(error))
-            return
-        self._put(self._robot, self._types.text(self._description.text))
-        self._fix(*self._description.pivots)
 
     def _fix(self, *poses: FramePose) -> None:
         """Publish the frames that do not move, when there are others than before."""

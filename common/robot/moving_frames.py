@@ -1,0 +1,64 @@
+"""The robot's frames from what it says of itself, for gateways to tools that draw it."""
+
+from collections.abc import Callable
+from math import inf
+from typing import Generic, TypeVar
+
+from common import messages as m
+from common import topics
+from common.bus.port import Io, Job
+from common.gateway import due
+from common.robot.frames import BaseFrames, FramePose, LinkFrames
+
+D = TypeVar("D")
+
+
+class MovingFrames(Generic[D]):
+    """Base and links where the newest messages have them; `read`: what else a gateway makes of the robot's MJCF.
+
+    A description is read in the worker. One that `read` refuses (ValueError, KeyError) is counted.
+    """
+
+    def __init__(self, io: Io, read: Callable[[str], D]) -> None:
+        self._io, self._read = io, read
+        self._base = BaseFrames()
+        self._links: LinkFrames | None = None
+        self._joints: m.JointStates | None = None
+        self._mjcf = ""
+        self._reading: Job[tuple[LinkFrames, D]] | None = None
+        self._told = -inf
+
+    def take(self, message: m.Message) -> None:
+        """Take a message; of others than those about the robot itself nothing is taken."""
+        if isinstance(message, m.Odometry):
+            self._base.odometry(message)
+        elif isinstance(message, m.PoseEstimate):
+            self._base.estimate(message)
+        elif isinstance(message, m.JointStates):
+            self._joints = message
+        elif isinstance(message, m.RobotDescription) and message.mjcf != self._mjcf:
+            self._mjcf = message.mjcf
+            self._reading = self._io.submit(self._described, message.mjcf)
+
+    def _described(self, mjcf: str) -> tuple[LinkFrames, D]:
+        return LinkFrames(mjcf), self._read(mjcf)
+
+    def described(self, now: float) -> D | None:
+        """What was read of a description that is new; None when there is none."""
+        if self._reading is None or not self._reading.poll(now):
+            return None
+        job, self._reading = self._reading, None
+        try:
+            self._links, found = job.result()
+        except (ValueError, KeyError) as error:
+            self._io.count_drop(topics.ROBOT_DESCRIPTION.key, str(error))
+            return None
+        return found
+
+    def poses(self, now: float, rate: float) -> list[FramePose]:
+        """The frames that move, `rate` times a second [Hz]; none in between, and none before the first odometry."""
+        if not due(rate, now - self._told):
+            return []
+        self._told = now
+        links = self._links.poses(self._joints) if self._links is not None and self._joints is not None else []
+        return self._base.poses() + links
