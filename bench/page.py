@@ -8,6 +8,7 @@ import argparse
 import asyncio
 import itertools
 import json
+import re
 import sys
 import time
 from typing import Any
@@ -58,7 +59,9 @@ async def first_picture(url: str) -> tuple[float, float]:
     """Seconds until a new viewer has the flat and the robot, and the megabytes that came until then."""
     began, size, missing = time.perf_counter(), 0, {b"/flat", b"/walls", b"/robot/base"}
     async with ClientSession() as session:
-        for path in ("", "page/page.js", "page/tape.js", "page/keys.js", "page/page.css", "view/"):
+        async with session.get(url) as answer:
+            page = await answer.text()
+        for path in (*re.findall(r'"/(page/[^"]+)"', page), "view/"):
             async with session.get(url + path) as answer:
                 size += len(await answer.read())
         protocol = f"viser-v{viser.__version__}"
