@@ -226,6 +226,9 @@ def test_the_base_is_driven_as_long_as_a_key_or_a_button_is_held(browser: Any) -
         page.locator("#drive").click()
         page.keyboard.down("ArrowUp")
         page.wait_for_timeout(300)
+        page.fill("#text", "")
+        page.locator("#name").click()
+        assert page.evaluate("document.activeElement.id") == "text", "the name is to be typed first"
         assert web.inbox.empty(), "neither typing nor a closed pad drives"
         assert window.errors == []
         page.close()

@@ -74,6 +74,7 @@ $("say").onsubmit = (event) => {
 $("name").onclick = () => {
   const text = $("text").value.trim();
   if (text) act("name", text);
+  else { $("text").placeholder = "type its name first"; $("text").focus(); }
   $("text").value = "";
 };
 
