@@ -7,7 +7,7 @@ from common.household import Household
 from common.kinds import KINDS, kind_of
 from common.messages import WorldObject
 from common.naming.looks import OTHER
-from common.naming.names import ALIKE, listed, normalise, own_words
+from common.naming.names import ALIKE, ANYTHING, listed, normalise, own_words
 from common.naming.small_print import telling
 
 PLAIN = 0.55
@@ -144,9 +144,9 @@ def _known(wanted: str, o: WorldObject, household: Household) -> _Words:
     others = words - kinds - shades
     label = others & set(normalise(o.label).split())
     rest, told = others - label, household.words
-    # Hand cream is no colour.
-    named = head & told.looks.keys()
-    between = tuple(told.shades[w] for w in sorted(rest - named) if w in told.shades)
+    # Hand cream is no colour, nor is that of cream cheese.
+    edible = set() if head & {*KINDS, *ANYTHING} or not head else told.looks.keys()
+    between = tuple(told.shades[w] for w in sorted(rest - edible) if w in told.shades)
     return _Words(kinds, shades, label, rest, between)
 
 

@@ -161,6 +161,8 @@ def test_a_colour_between_two_may_be_either_and_is_asked_about() -> None:
     tin = measured("white can", {"can": 1.0}, {"white": 0.8, "red": 0.2})
     for phrase in ("beige can", "the cream can", "something beige", "beige thing"):
         assert likeness(phrase, tin, HOUSEHOLD) == 0.0 and LIKELY < partly(phrase, tin, HOUSEHOLD) < PLAIN
+    cheese = measured("blue box", {"box": 1.0}, {"blue": 1.0})
+    assert looks_like("cream cheese", cheese, HOUSEHOLD) == looks_like("hand cream", tin, HOUSEHOLD) == 1.0
     assert partly("turquoise can", tin, HOUSEHOLD) == partly("beige mug", BALL, HOUSEHOLD) == 0.0
     assert ground("beige can", [tin], HOUSEHOLD, (0.0, 0.0, 0.0), {}).found is None
 
