@@ -105,3 +105,10 @@ def test_a_white_bowl_is_white_also_where_most_of_it_is_turned_from_the_lamp() -
 def test_black_print_on_white_and_a_dark_lid_stay_what_they_are() -> None:
     parts = pixels((0.8, 0.8, 0.8), 150), pixels((0.08, 0.08, 0.08), 80), pixels((0.35, 0.35, 0.36), 80)
     assert set(main_words(shares(np.concatenate(parts), np.ones(3)))) == {"white", "black", "grey"}
+
+
+def test_what_may_as_well_be_white_in_less_light_has_both_words() -> None:
+    found = shares(pixels((0.51, 0.51, 0.5), 300), np.ones(3))
+    assert main_words(found) == ["grey", "white"] and found["white"] > 0.2
+    assert main_words(shares(pixels((0.62, 0.62, 0.6), 300), np.ones(3))) == ["white"]
+    assert main_words(shares(pixels((0.4, 0.4, 0.4), 300), np.ones(3))) == ["grey"]

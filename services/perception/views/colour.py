@@ -38,6 +38,9 @@ WHITE, DIMMEST = 0.55, 0.38
 FACING = 95
 """Percentile of the brightness of what is pale that shows its shade: the side that faces the lamp most. Chosen: of 21
 white things in lamps of all kinds 3 are grey then, 8 by all their pixels, and of these in shades of 0.6 all are."""
+DOUBT = 0.85, 1.17
+"""Least and most by which the light at an object may differ from that of the room, evenly: what is then white as well
+as grey has both words. Chosen: what lamps in a corner of the ceiling leave open."""
 SAMPLE = 6
 """Every which pixel (and row) of the picture the light's colour is estimated from."""
 
@@ -129,7 +132,8 @@ def _evenly_lit(values: Array) -> Array:
         return values
     bright = np.percentile(high[pale], FACING)
     lit = pale & (high > SHADOW * bright)
-    return np.where(lit[:, None], values * (bright / np.maximum(high, 1e-3))[:, None], values)
+    factors = bright / np.maximum(high, 1e-3) * np.linspace(*DOUBT, len(values))
+    return np.where(lit[:, None], values * factors[:, None], values)
 
 
 def _shaded(values: Array) -> NDArray[np.bool_]:
