@@ -12,13 +12,13 @@ class SpeechConfig(Config, frozen=True):
     `accept_score`, `ask_score`: log-likelihood ratios per token above which a command is accepted or asked about;
     `guess_score` in place of `ask_score` where the free transcription has less than `certain` of probability per token.
     `beam`: hypotheses of the search. `tempo_weight` and `rare` (what a word costs, a negative log-probability)
-    weigh sentences that sound alike. `wake_threshold`: score 0..1 of the wake word; `wake_score`: log-likelihood ratio
-    of the wake word to what else was transcribed, below which its detector was mistaken; `wake_window`: how long after
-    it a command may begin. `interrupt_pause`: the pause after a short utterance at which it is already
-    examined for "stop" and "cancel"; `interrupt_longest`: how short. `recognition_seconds`, `interrupt_seconds`,
-    `synthesis_seconds`: modelled times in lockstep. `typed_memory`: how long typed text waits for a listener.
-    `wav`: a recording to hear instead of a microphone. `preload`: load the models at start rather than when
-    somebody speaks.
+    weigh sentences that sound alike. `wake_threshold`: score 0..1 of the wake word's detector; `wake_score`: sum of its
+    log-odds and of the log-likelihood ratio of the wake word to what else was transcribed, from which it was said;
+    `wake_window`: how long after it a command may begin. `interrupt_pause`: the pause after a short utterance at which
+    it is already examined for "stop" and "cancel"; `interrupt_longest`: how short. `recognition_seconds`,
+    `interrupt_seconds`, `synthesis_seconds`: modelled times in lockstep. `typed_memory`: how long typed text waits for
+    a listener. `wav`: a recording to hear instead of a microphone. `preload`: load the models at start rather than
+    when somebody speaks.
     """
 
     recogniser: Literal["moonshine", "pocketsphinx"] = "moonshine"
@@ -40,8 +40,8 @@ class SpeechConfig(Config, frozen=True):
     microphone: bool = False
     speakers: bool = False
     wake_word: bool = True
-    wake_threshold: float = 0.15
-    wake_score: float = -7.5
+    wake_threshold: float = 0.1
+    wake_score: float = -7.0
     wake_window: float = 6.0
     wake: tuple[str, ...] = ("hey jarvis",)
     interrupt_pause: float = 0.25

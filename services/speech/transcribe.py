@@ -30,11 +30,12 @@ class Reader:
 
     def __call__(self, samples: Samples) -> tuple[Recognition, bool]:
         """What 16 kHz samples (n,) say, and whether the wake word is in them."""
-        woken = False
+        score = 0.0
         if self._wake:
             self._wake.restart()
-            woken = self._wake(samples) >= self._threshold
-        found = self._front_end.recognise(samples, "woken" if woken else "command")
+            score = self._wake(samples)
+        woken = score >= self._threshold
+        found = self._front_end.recognise(samples, "woken" if woken else "command", score)
         return found, woken and not found.mistaken
 
 

@@ -150,7 +150,7 @@ class UtteranceQueue:
         if self._front_end is None:
             self._front_end = self._io.submit(self._load, seconds=LOADING)
             self._teach(self._front_end)
-        front_end, samples = self._front_end, segment.samples
+        front_end, samples, wake = self._front_end, segment.samples, segment.wake
         seconds = config.interrupt_seconds if asked == "interrupt" else config.recognition_seconds
-        job = self._io.submit(lambda: front_end.result().recognise(samples, asked), seconds=seconds)
+        job = self._io.submit(lambda: front_end.result().recognise(samples, asked, wake), seconds=seconds)
         self._pending.append(PendingUtterance(job, asked, context, key, self._began))

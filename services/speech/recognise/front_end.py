@@ -73,12 +73,12 @@ class FrontEnd:
         else:
             self._recogniser = MoonshineRecogniser(config, found)
 
-    def recognise(self, samples: NDArray[np.int16], scope: Scope = "command") -> Recognition:
-        """What 16 kHz int16 samples (n,) say, without the wake word."""
+    def recognise(self, samples: NDArray[np.int16], scope: Scope = "command", detected: float = 0.0) -> Recognition:
+        """What 16 kHz int16 samples (n,) say, without the wake word, for which its detector gave a score."""
         utterance = prepare(samples.astype(np.float32) / np.float32(32768), self._detector)
         if utterance is None:
             return Recognition("", "silence", 0.0)
-        found = self._recogniser.recognise(utterance, scope)
+        found = self._recogniser.recognise(utterance, scope, detected)
         return_memory()
         if scope == "interrupt":
             return replace(found, text=without_wake(found.text, self._config.wake))

@@ -157,10 +157,14 @@ class Moonshine:
         return [o for o in kept if o[0].total > max(leader, kept[0][0].total) - BEAM_THRESHOLD]
 
     def begun_with(self, numbers: tuple[int, ...], sentence: Decoded) -> list[Decoded]:
-        """The sentence with these tokens in place of none of its words, of its first one, and so on."""
+        """The sentence with these tokens in place of none of its words, of its first one, and so on.
+
+        The text of each is what follows on these tokens.
+        """
         starts = [k for k, n in enumerate(sentence.numbers[:-1]) if self.tokens[n].startswith(" ") or k == 0]
         cuts = [*starts, sentence.tokens - 1][: REPLACED + 1]
-        return [Decoded("", 0.0, (*numbers, *sentence.numbers[cut:])) for cut in cuts]
+        rest = ["".join(self.tokens[n] for n in sentence.numbers[cut:-1]).strip() for cut in cuts]
+        return [Decoded(text, 0.0, (*numbers, *sentence.numbers[cut:])) for text, cut in zip(rest, cuts, strict=True)]
 
     def log_probabilities(self, utterance: EncodedUtterance, sentences: list[Decoded]) -> list[float]:
         """Log-probability of each sentence for these input variants, in the tokens that it was found in."""

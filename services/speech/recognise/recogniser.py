@@ -29,8 +29,9 @@ PACES = (16 / 15, 15 / 16)
 class Recognition:
     """What was understood, without the wake word. `verdict`: accept, ask (perhaps), reject (no command), silence.
 
-    `free` is the transcription without any grammar, `certainty` 0..1 the geometric mean probability of its tokens.
-    `mistaken`: what began the utterance was taken for the wake word and is something else.
+    `free` is the transcription without any grammar (where the wake word was verified, without that, however it was
+    transcribed), `certainty` 0..1 the geometric mean probability of its tokens. `mistaken`: what began the utterance
+    was taken for the wake word and is something else.
     """
 
     text: str
@@ -63,10 +64,10 @@ class Recogniser(Protocol):
     """What turns an utterance into a command.
 
     `scope` is the grammar: a command, with or without the wake word, or the wake word alone (where `woken`, it is also
-    verified that the wake word was said); or stop and cancel only.
+    verified that the wake word was said, of which the detector's score is `detected`); or stop and cancel only.
     """
 
-    def recognise(self, utterance: PreparedUtterance, scope: Scope) -> Recognition: ...
+    def recognise(self, utterance: PreparedUtterance, scope: Scope, detected: float = 0.0) -> Recognition: ...
 
     def learn(self, household: Household, names: Sequence[str]) -> None:
         """Listen for these names of things from now on, beside what the configuration and the household have."""
@@ -88,7 +89,7 @@ class MoonshineRecogniser:
         found = grammars(self._config, household, names)
         self._tries = {scope: self._trie(grammar) for scope, grammar in found.items()}
 
-    def recognise(self, utterance: PreparedUtterance, scope: Scope) -> Recognition:
+    def recognise(self, utterance: PreparedUtterance, scope: Scope, detected: float = 0.0) -> Recognition:
         config = self._config
         encoded = self._model.encode(utterance.variants)
         free = self._model.free(encoded)
@@ -105,24 +106,34 @@ class MoonshineRecogniser:
 
         found = self._model.best(encoded, self._tries["interrupt" if scope == "interrupt" else "command"], prior)
         certainty = math.exp(free.log_probability / free.tokens)
-        mistaken = scope == "woken" and self._wake_ratio(encoded, free, score_again) < config.wake_score
+        rest = self._after_wake(encoded, free, score_again, detected) if scope == "woken" else free.text
+        mistaken, rest = rest is None, free.text if rest is None else rest
         if not found:
-            return Recognition("", "reject", 0.0, free.text, certainty, mistaken)
+            return Recognition("", "reject", 0.0, rest, certainty, mistaken)
         command, score, share = rescored(found, free, prior, score_again)
         confidence = round(share * confidence_of(score, config), 3)
         verdict = verdict_of(score, certainty, config)
-        return Recognition(command.text, verdict, confidence, free.text, certainty, mistaken)
+        if not rest and verdict != "accept":
+            return Recognition("", "ask", confidence, rest, certainty)
+        return Recognition(command.text, verdict, confidence, rest, certainty, mistaken)
 
-    def _wake_ratio(
-        self, encoded: "EncodedUtterance", free: "Decoded", score: Callable[[list["Decoded"]], list[float]]
-    ) -> float:
-        """Log-likelihood ratio of the wake word in place of the first words of the free transcription."""
+    def _after_wake(
+        self,
+        encoded: "EncodedUtterance",
+        free: "Decoded",
+        score: Callable[[list["Decoded"]], list[float]],
+        detected: float,
+    ) -> str | None:
+        """The free transcription after the words in whose place the wake word is likeliest; None where that and the
+        detector's score, as independent evidence, speak against it."""
         wake = self._model.best(encoded, self._tries["woken"], lambda text: 0.0)
         if not wake:
-            return -math.inf
-        begun = wake[0].numbers[:-1]
-        total, *others = score([free, *self._model.begun_with(begun, free)])
-        return max(others) - total
+            return None
+        options = self._model.begun_with(wake[0].numbers[:-1], free)
+        total, *others = score([free, *options])
+        best = int(np.argmax(others))
+        evidence = others[best] - total + log_odds(detected)
+        return options[best].text if evidence >= self._config.wake_score else None
 
 
 def verdict_of(score: float, certainty: float, config: SpeechConfig) -> Verdict:
@@ -135,6 +146,12 @@ def verdict_of(score: float, certainty: float, config: SpeechConfig) -> Verdict:
 def confidence_of(score: float, config: SpeechConfig) -> float:
     """Confidence 0..1 of a log-likelihood ratio: one at 0 and above, one half at the threshold of acceptance."""
     return math.exp(min(0.0, score) * math.log(2) / -config.accept_score)
+
+
+def log_odds(probability: float) -> float:
+    """Natural logarithm of the odds of a probability, of which none counts as certain."""
+    bounded = min(max(probability, 1e-3), 1 - 1e-3)
+    return math.log(bounded / (1 - bounded))
 
 
 def patterns(config: SpeechConfig, scope: Scope) -> list[str]:

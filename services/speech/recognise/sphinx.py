@@ -43,7 +43,7 @@ class SphinxRecogniser:
             said: Scope = "interrupt" if scope == "interrupt" else "command"
             self._decoder.add_jsgf_string(scope, jsgf(self._config, household, said, names))
 
-    def recognise(self, utterance: PreparedUtterance, scope: Scope) -> Recognition:
+    def recognise(self, utterance: PreparedUtterance, scope: Scope, detected: float = 0.0) -> Recognition:
         self._decoder.activate_search(scope)
         self._decoder.start_utt()
         self._decoder.process_raw((utterance.variants[0] * 32000).astype(np.int16).tobytes(), full_utt=True)
