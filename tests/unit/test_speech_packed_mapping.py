@@ -9,7 +9,6 @@ import msgspec
 import numpy as np
 import pytest
 from hibari.g2p import G2P
-from scipy.signal import resample_poly
 
 from common.sound import RATE, resample
 from services.speech.prepared import prepared
@@ -54,6 +53,8 @@ def test_it_pronounces_as_the_library_does() -> None:
 
 @pytest.mark.parametrize(("rate", "count"), [(24000, 7000), (48000, 20001), (44100, 9000), (8000, 500), (24000, 1)])
 def test_sound_is_resampled_as_scipy_does_it(rate: int, count: int) -> None:
+    from scipy.signal import resample_poly  # takes a second to load
+
     ratio = Fraction(RATE, rate)
     samples = np.random.default_rng(rate + count).normal(0.0, 6000.0, count)
     expected = resample_poly(samples, ratio.numerator, ratio.denominator)
