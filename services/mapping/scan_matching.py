@@ -15,10 +15,10 @@ from services.mapping.scan import Array
 
 LAYERS = (-0.1, 0.0, 0.1)
 """Heights at which the points are repeated [m]: as far apart as neighbours on a wall some metres away."""
-VOXEL = 0.02
-"""Points closer together are merged [m]: below the lidar's noise times two."""
+VOXEL = 0.05
+"""Points closer together are merged [m]: what several scans saw of one spot is one point, with less noise than each."""
 NEIGHBOURS = 12
-"""Points that a normal is fitted to [count]: four of each layer."""
+"""Points that a normal is fitted to [count]: four of each layer, 0.2 m of a wall."""
 REACH = 0.30
 """Greatest distance of two points that are taken for the same [m]; chosen: the drift between two keyframes and more."""
 INLIER = 0.05

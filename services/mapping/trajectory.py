@@ -9,8 +9,12 @@ from services.mapping.pose_graph import Edge, PoseGraph
 from services.mapping.scan import Array, Scan
 from services.mapping.scan_matching import Target, placed
 
-WINDOW = 8
-"""Keyframes before the newest that it is matched to [count]; chosen: they show the same room."""
+BESIDE, OLDEST = 1.0, 5
+"""Distance [m] of keyframes that the newest is matched to beside the last one, and how many of them, the oldest ones.
+Chosen: they see the same walls; where the robot turns on the spot or comes again, no error adds up."""
+AROUND = 4
+"""Keyframes before and after the nearest old one that a loop is closed to with it [count]; chosen: they show the same
+room."""
 NEAR, AGO = 2.5, 20
 """Distance [m] and age [count] of keyframes that a loop may close to; chosen: they see the same walls."""
 LOOP_EVERY = 4
@@ -66,12 +70,13 @@ class Trajectory:
         last = len(self.scans) - 1
         guess = compose(self.poses[last], step)
         edges = [Edge(last, last + 1, step, "odometry")]
-        window = range(max(0, last - WINDOW + 1), last + 1)
-        if len(points := self._points(window)):
+        near = [i for i in range(last) if math.dist(self.poses[i][:2], guess[:2]) < BESIDE][:OLDEST]
+        if len(points := self._points([*near, last])):
             match = Target(points).match(scan.points, guess)
             if match.fit >= SCAN_FIT and math.dist(match.pose[:2], guess[:2]) < 0.2:
                 guess = match.pose
-                edges.append(Edge(last, last + 1, compose(inverse(self.poses[last]), guess), "scan"))
+                anchor = near[0] if near else last
+                edges.append(Edge(anchor, last + 1, compose(inverse(self.poses[anchor]), guess), "scan"))
         self._keep(scan, odometry, guess, edges)
         return self._close()
 
@@ -98,7 +103,7 @@ class Trajectory:
         self._odometry.append(odometry)
         self.odom = compose(pose, inverse(odometry))
 
-    def _points(self, numbers: "range | list[int]") -> Array:
+    def _points(self, numbers: list[int]) -> Array:
         """End points (n, 2) [map] of some keyframes."""
         parts = [placed(self.scans[i].points, self.poses[i]) for i in numbers if len(self.scans[i].points)]
         return np.concatenate(parts) if parts else np.empty((0, 2))
@@ -114,7 +119,7 @@ class Trajectory:
             return False
         self._tried = here
         nearest = min(old, key=lambda i: math.dist(self.poses[i][:2], pose[:2]))
-        around = [i for i in old if abs(i - nearest) <= WINDOW // 2]
+        around = [i for i in old if abs(i - nearest) <= AROUND]
         match = Target(self._points(around)).match(self.scans[here].points, pose, LOOP_REACH)
         shift = compose(inverse(pose), match.pose)
         if match.fit < LOOP_FIT or math.hypot(*shift[:2]) > LOOP_SHIFT[0] or abs(shift[2]) > LOOP_SHIFT[1]:
