@@ -8,7 +8,8 @@ from common import messages as m
 from common import topics
 from common.bus.port import Io, Job
 from common.gateway import due
-from common.robot.frames import BaseFrames, FramePose, LinkFrames
+from common.robot.frames import BaseFrames, FramePose
+from common.robot.link_frames import LinkFrames
 
 D = TypeVar("D")
 

@@ -6,7 +6,7 @@ import mujoco
 
 from common.geometry import quat_matrix
 from common.messages.base import Quat, Vec3
-from common.robot.frames import BASE_BODY, link_name
+from common.robot.link_frames import BASE_BODY, link_name
 
 HIDDEN_GROUP = 4
 """First MuJoCo geom group that is not drawn: collision shapes are in it and above."""

@@ -12,7 +12,8 @@ import numpy as np
 
 from common.geometry import quat_matrix
 from common.messages.base import IDENTITY
-from common.robot.frames import BASE_BODY, FramePose, link_name
+from common.robot.frames import FramePose
+from common.robot.link_frames import BASE_BODY, link_name
 from common.robot.shapes import Shape, shapes
 
 PIVOT = "_pivot"
