@@ -1,5 +1,7 @@
 """What an object is called when its views contradict each other."""
 
+import numpy as np
+
 from services.perception.detection import Detection
 from services.perception.tracking.descriptor import Descriptor
 
@@ -34,3 +36,22 @@ def test_what_counted_as_seen_takes_as_much_to_be_something_else() -> None:
 
 def test_what_it_is_easily_taken_for_takes_no_more() -> None:
     assert called((BOTTLE, 0.2), ({"can": 0.6, "book": 0.4}, 4.0)) == "can"
+
+
+def test_what_was_seen_from_far_does_not_blur_what_was_seen_from_near() -> None:
+    def view(distance: float, at: float, whole: bool = True) -> Detection:
+        return Detection(
+            label="", kind="can", colour="red", position=(1.0, 0.0, 0.7), yaw=0.0, size=(0.06, 0.06, 0.1),
+            confidence=0.9, on="desk", distance=distance, known=False, whole=whole, kinds={"can": 1.0},
+            colours={"red": 1.0}, shape="round", points=np.array([[at, 0.0, 0.7]]),
+        )  # fmt: skip
+
+    def seen(*views: Detection) -> set[float]:
+        looks = Descriptor((0.06, 0.06, 0.1))
+        for one in views:
+            looks.add(one, 1.0, False)
+        return {float(x) for x in looks.points[:, 0]}
+
+    assert seen(view(2.0, 0.9), view(0.8, 1.0)) == seen(view(0.8, 1.0), view(2.0, 0.9)) == {1.0}
+    assert seen(view(0.9, 0.9), view(0.8, 1.0)) == {0.9, 1.0}
+    assert seen(view(2.0, 0.9), view(0.8, 1.0, whole=False)) == {0.9, 1.0}, "a part replaces nothing"

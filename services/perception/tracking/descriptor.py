@@ -24,13 +24,16 @@ FIRM = 0.9
 asked about before (chosen: a black bottle without depth is a book's back from near)."""
 LIKELY = 0.2
 """Share of the likeliest kind's votes from which a kind may be meant by its word."""
+BLURRED = 1.4
+"""How many times as far a view is whose points are twice as noisy: a depth camera's noise grows with the square."""
 LEAST_SHARE = 0.02
 """Share of the votes below which a word is not told of."""
 
 
 @dataclass
 class Descriptor:
-    """`kinds`, `colours`, `shapes`: votes by name. `size` [m] with `spread` [m]; `points` (n, 3) [map].
+    """`kinds`, `colours`, `shapes`: votes by name. `size` [m] with `spread` [m]; `points` (n, 3) [map], seen from no
+    farther than about `nearest` [m].
 
     `opening`: votes for an open end, from whatever side; they do not fade, as it is no more to be seen when the object
     stands on it. `firm`: the last kind that counted as seen.
@@ -46,6 +49,7 @@ class Descriptor:
     named: tuple[str, str] = ("", "")
     opening: float = 0.0
     firm: str = ""
+    nearest: float = math.inf
 
     def add(self, d: Detection, weight: float, moved: bool) -> None:
         """Take in a view's detection; `weight`: how much it says. `moved`: earlier points and extents do not hold."""
@@ -62,7 +66,16 @@ class Descriptor:
             share = self.spread**2 / (self.spread**2 + spread**2)
             self.size = _between(self.size, _aligned(d, self.yaw), share)
             self.spread = max(LEAST_SPREAD, self.spread * math.sqrt(1 - share))
-        self.points = d.points if moved or not len(self.points) else _merged(self.points, d.points)
+        self._add_points(d, moved)
+
+    def _add_points(self, d: Detection, moved: bool) -> None:
+        """Views of like noise are merged; what was seen from much farther blurs what was seen from near."""
+        if not len(d.points):
+            return
+        if moved or not len(self.points) or (d.whole and d.distance < self.nearest / BLURRED):
+            self.points, self.nearest = d.points, d.distance
+        elif d.distance < self.nearest * BLURRED:
+            self.points, self.nearest = _merged(self.points, d.points), min(self.nearest, d.distance)
 
     def turned(self, d: Detection) -> float:
         """The yaw [rad] of a detection, by which its extents are in the order of `size`."""
@@ -135,7 +148,5 @@ def _aligned(d: Detection, yaw: float) -> Vec3:
 
 def _merged(old: Array, new: Array) -> Array:
     """Points of earlier views and of this one, the newest of each place."""
-    if not len(new):
-        return old
     together = thinned(np.concatenate([old, new]))
     return together[:MOST_POINTS]
