@@ -51,6 +51,15 @@ MOST_UPWARD, LAID_DOWN = 0.25, 0.6
 be put down as it lies: as much as good contacts are worth."""
 LOW = 0.09
 """Height [m] up to which an object is better taken from above."""
+LEAST_SHARE, OF_PART = 0.25, 0.4
+"""Least share of a pad that lies on the surface, and of the parts of something that is too wide for the hand: a ball of
+40 mm and the tube of a ring have .4 to .5, the edge of something, and the sloping rim of a plate, less."""
+THIN, FINGER = 0.012, 0.022
+"""Width [m] below which a part of something thicker is the noise of its outline, and the depth of a finger behind its
+pad (Robotiq 2F-85)."""
+ASIDE = 0.008
+"""Distance [m] of places across something that is too wide for the hand, of which parts are taken: a quarter of the
+pads' height."""
 
 
 @dataclass(frozen=True)
@@ -71,18 +80,20 @@ def antipodal(target: Target, forward: float, opening: float, widest: float) -> 
     """
     points, centre = surface(target), np.array(target.position)
     facing = math.atan2(target.position[1], target.position[0] - forward)
+    least = THIN if min(target.size) > 2 * THIN else 0.0
     found: list[tuple[float, Grasp]] = []
     for rotation, tilt, off, name in _directions(target, facing):
         if on_handle(target, rotation):
             continue
         floor = rotation[2], target.bottom - target.position[2] + PLAY
-        for place, contact in _contacts((points - centre) @ rotation, floor, opening):
-            if contact.width > widest:
+        for place, contact in _places((points - centre) @ rotation, floor, opening):
+            if not least <= contact.width <= widest:
                 continue
             at = centre + rotation @ place
             if float(np.hypot(*(at - centre)[:2])) > LEVER:
                 continue
-            label = f"{name}, {1000 * place[0]:+.0f}/{1000 * place[2]:+.0f} mm"
+            beside = f"{1000 * place[1]:+.0f}/" if abs(float(place[1])) > LONGEST / 2 else ""
+            label = f"{name}, {1000 * place[0]:+.0f}/{beside}{1000 * place[2]:+.0f} mm"
             grasp = Grasp(
                 Pose(at, rotation), contact.width, float(at[2]) - target.bottom, math.radians(tilt), label,
                 upper_end(target, rotation), on_surface=True,
@@ -90,6 +101,22 @@ def antipodal(target: Target, forward: float, opening: float, widest: float) -> 
             worth = _worth(target, contact, at - centre, tilt, off, widest) - _from_below(grasp)
             found.append((worth, grasp))
     return _different(sorted(found, key=lambda entry: -entry[0]))
+
+
+def _places(local: Array, floor: tuple[Array, float], opening: float) -> Iterator[tuple[Array, Contact]]:
+    """As `_contacts`; of what is wider than the fingers go the parts that have room for a finger on either side."""
+    low, high = float(local[:, 1].min()), float(local[:, 1].max())
+    if high - low <= opening - 2 * PLAY:
+        yield from (found for found in _contacts(local, floor, opening) if found[1].share >= LEAST_SHARE)
+        return
+    for across in np.arange(low, high + ASIDE, ASIDE):
+        apart = np.abs(local[:, 1] - across)
+        if not (apart < ASIDE).any():
+            continue
+        part = local[apart <= opening / 2 + FINGER]
+        for place, contact in _contacts(part, floor, opening):
+            if abs(float(place[1]) - across) <= ASIDE / 2 and contact.share >= OF_PART:
+                yield place, contact
 
 
 def _from_below(grasp: Grasp) -> float:
@@ -150,6 +177,26 @@ def _contacts(local: Array, floor: tuple[Array, float], opening: float) -> list[
             at = np.array([along, float(middle[i, k]), deep])
             found.append((at, Contact(float(width[i, k]), float(share[i, k]), float(slope[i, k]))))
     return found
+
+
+def contact_at(surface: Array, pose: Pose) -> Contact | None:
+    """What both pads find where they close at a pose on a surface of points (n, 3); None when one of them finds
+    nothing.
+    """
+    local = (surface - pose.position) @ pose.rotation
+    index = np.floor((local[:, (0, 2)] + (PAD_HALF, PAD)) / CELL).astype(int)
+    within = ((index >= 0) & (index < CELLS)).all(axis=1)
+    if not within.any():
+        return None
+    left, right = np.full(CELLS, -np.inf), np.full(CELLS, np.inf)
+    np.maximum.at(left, tuple(index[within].T), local[within, 1])
+    np.minimum.at(right, tuple(index[within].T), local[within, 1])
+    tops = float(left.max()), float(-right.min())
+    touched = [
+        _touched(pad[None, None], np.array([[top]]), (1, 1)) for pad, top in zip((left, -right), tops, strict=True)
+    ]
+    shares, slopes = zip(*touched, strict=True)
+    return Contact(sum(tops), float(np.minimum(*shares)[0, 0]), float(np.maximum(*slopes)[0, 0]))
 
 
 def _deepest(up: Array, level: float, along: float) -> float:

@@ -32,6 +32,12 @@ MOST = 0.016
 """Farthest [m] that the hand keeps back from something round: its widest line stays 3 mm within the pads."""
 HAND = 0.22
 """No part of the hand is farther [m] from the pinch point (Robotiq 2F-85: 163 mm from its flange)."""
+FAR = 0.05
+"""Greatest distance [m] that is told: the hand needs no more room."""
+SUNK, STRAYS = 0.001, 2
+"""How deep [m] in the hand a seen point is no noise, and how many such points are none: mixed pixels."""
+COMING = (0.0, 0.025, 0.05)
+"""Distances [m] before the grasp at which the open hand must be clear of what was seen: apart by a finger's width."""
 OVERLAP = 0.6
 """Least share of a pad's length that lies on a flat face."""
 
@@ -73,7 +79,20 @@ class HandClearance:
             if back is None:
                 return None
             pose = pose.moved(-back * pose.rotation[:, 2])
-        return replace(grasp, pose=pose)
+        return None if self._meets(target, pose, opening or self.hand.open) else replace(grasp, pose=pose)
+
+    def _meets(self, target: Target, pose: Pose, width: float) -> bool:
+        """The hand, `width` [m] open, would be where something of a measured object was seen, there or before that."""
+        if target.points is None or not target.measured:
+            return False
+        seen = target.points + np.array(target.position)
+        self._spread(width)
+        for back in COMING:
+            at = pose.moved(-back * pose.rotation[:, 2])
+            apart = self._apart((seen - at.position) @ at.rotation, self._all)
+            if np.count_nonzero(apart < -SUNK) > STRAYS:
+                return True
+        return False
 
     def _needed(self, target: Target, pose: Pose, widths: tuple[float, float], on_surface: bool) -> float | None:
         back, most = self._outward(target, pose, widths[1]), MOST if on_surface else _most(target, pose)
@@ -125,15 +144,21 @@ class HandClearance:
     def _room_on_surface(self, target: Target, pose: Pose, width: float) -> float:
         """The same for the completed surface of the object; every part of the hand counts as the box around it."""
         self._spread(width)
+        return float(self._apart(self._local(target, pose), self._parts).min(initial=FAR))
+
+    def _apart(self, points: Array, parts: Sequence[int]) -> Array:
+        """Distance (n,) [m] of points (n, 3), in the frame of the pinch point, from the nearest of the hand's `parts`;
+        negative inside, at most `FAR`.
+        """
         model, data = self._model, self._data
         site = data.site("pinch")
-        points = self._local(target, pose) @ site.xmat.reshape(3, 3).T + site.xpos
-        least = 0.05
-        for part in self._parts:
+        local = points @ site.xmat.reshape(3, 3).T + site.xpos
+        least = np.full(len(points), FAR)
+        for part in parts:
             box = model.geom_aabb[part]
-            beyond = np.abs((points - data.geom_xpos[part]) @ data.geom_xmat[part].reshape(3, 3) - box[:3]) - box[3:]
+            beyond = np.abs((local - data.geom_xpos[part]) @ data.geom_xmat[part].reshape(3, 3) - box[:3]) - box[3:]
             inside = np.minimum(beyond.max(axis=1), 0.0)
-            least = min(least, float((np.linalg.norm(np.maximum(beyond, 0.0), axis=1) + inside).min()))
+            least = np.minimum(least, np.linalg.norm(np.maximum(beyond, 0.0), axis=1) + inside)
         return least
 
     def _spread(self, width: float) -> None:

@@ -13,6 +13,7 @@ from common.geometry import Pose2, matrix_quat, quat_matrix, yaw_quat
 from common.kinds import KINDS, UNKNOWN, GraspRule, Kind, Shape, kind_of
 from common.messages.perception import ShapeFamily
 from services.manipulation.arm.arm_model import Array, Pose
+from services.manipulation.grasps.surface import rim_lean
 from services.manipulation.grasps.target import Target
 
 HANDLE_CONE = math.radians(50)
@@ -25,6 +26,9 @@ TURNS = (0, 25, -25, 50, -50)
 """From where [deg] what is round is taken, off the way from the arm to it, in the order of trying."""
 RIM_DEPTH = 0.012
 """How far [m] below a rim the pads take hold: more than half of a pad's length is on the wall."""
+OFF_WALL = (0, 7, -7, 15, -15, -25)
+"""By how much [deg] the hand may come off the slope of a wall that it takes at the rim. Chosen: what the rules of kinds
+have about the slope of theirs."""
 FITTING: dict[Shape, tuple[ShapeFamily, ...]] = {
     "turned": ("round", "bowl"),
     "sphere": ("ball", "round"),
@@ -255,9 +259,11 @@ def _rim(target: Target, facing: float, rule: GraspRule) -> list[Grasp]:
     """Fingers on either side of a vessel's wall at the rim, along its slope: the near side first."""
     x, y, _ = target.position
     height, vessel, handle = target.size[2] - RIM_DEPTH, vessel_of(target), handle_of(target)
-    radius = target.size[0] / 2 - RIM_DEPTH * math.tan(vessel.lean) - vessel.wall / 2
+    measured = rim_lean(target)
+    lean = vessel.lean if measured is None else measured
+    radius = target.size[0] / 2 - RIM_DEPTH * math.tan(lean) - vessel.wall / 2
     found = []
-    for degrees in rule.angles:
+    for degrees in rule.angles if measured is None else _along_wall(lean):
         tilt = math.radians(degrees)
         for turn in TURNS:
             azimuth = facing + math.radians(turn)
@@ -269,6 +275,12 @@ def _rim(target: Target, facing: float, rule: GraspRule) -> list[Grasp]:
                 name = f"rim at {turn:+.0f}, {degrees} deg, {'palm up' if roll < 0 else 'palm down'}"
                 found.append(Grasp(Pose(point, rotation), vessel.wall, height, tilt, name, rim=True))
     return found
+
+
+def _along_wall(lean: float) -> list[int]:
+    """Approaches [deg] below horizontal along a wall that leans outwards by `lean` [rad], the nearest to it first."""
+    along = 90 - round(math.degrees(lean))
+    return sorted({min(90, along + off) for off in OFF_WALL}, key=lambda angle: abs(angle - along))
 
 
 def vessel_of(target: Target) -> Kind:

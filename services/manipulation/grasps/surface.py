@@ -17,6 +17,13 @@ GAP = 0.009
 visible half of an object of 10 cm lie 7 mm apart."""
 BAND = 0.010
 """Height [m] of the bands in which the radius of a round object is measured: each holds a dozen points."""
+WALL = 0.004
+"""How far [m] within its outer wall, and below its rim, what was seen of a vessel is its inside. Chosen: three times
+the noise of depth at arm's length."""
+SECTORS, AROUND = 12, 0.75
+"""Into how many sectors a vessel is divided, and in which share of them some of it is seen: of its rim one sees all."""
+UPPER_WALL = 0.03
+"""How far [m] below a rim its wall is what the pads are laid on: their length less what is above it."""
 UPPER, THINNER = 8, 0.012
 """Points on the upper face of a box from which it counts as seen, and how much thinner [m] than its extents what was
 seen of it must be that these do not count: more than points 7 mm apart leave out on either side."""
@@ -71,12 +78,37 @@ def _turned(target: Target) -> Array:
         across, length = list(target.size[:2]), target.size[2]
     heights = _steps(-length / 2, length / 2)
     radii = _profile(seen, heights, max(across) / 2)
-    rings = [_ring(radius, height) for radius, height in zip(radii, heights, strict=True)]
-    lids = [
-        _ring(r, end) for end, most in ((heights[0], radii[0]), (heights[-1], radii[-1])) for r in _steps(0.0, most)
-    ]
-    found = np.concatenate(rings + lids)
+    inside = _inside(seen, heights, radii) if target.family == "bowl" and not target.lies else np.empty((0, 2))
+    mouth = min(float(inside[:, 0].max()), radii[-1]) if len(inside) else 0.0
+    flat = [(r, heights[0]) for r in _steps(0.0, radii[0])] + [(r, heights[-1]) for r in _steps(mouth, radii[-1])]
+    walls = zip(radii, heights, strict=True)
+    found = np.concatenate([_ring(float(radius), float(height)) for radius, height in (*walls, *flat, *inside)])
     return found[:, [2, 0, 1]] if target.lies else found
+
+
+def rim_lean(target: Target) -> float | None:
+    """How far [rad] the wall of a vessel leans outwards below its rim, where that was seen; None of what was not."""
+    seen, top = _own(target), target.size[2] / 2
+    if not target.measured or target.lies or len(seen) == 0:
+        return None
+    run = min(UPPER_WALL, target.size[2] / 2)
+    low, high = _profile(seen, np.array([top - run, top]), max(target.size[:2]) / 2)
+    return max(0.0, math.atan2(float(high - low), run))
+
+
+def all_around(points: Array) -> bool:
+    """Points (n, 3) lie on all sides of the axis."""
+    sectors = np.floor(np.arctan2(points[:, 1], points[:, 0]) / math.tau * SECTORS)
+    return len(np.unique(sectors)) >= AROUND * SECTORS
+
+
+def _inside(seen: Array, heights: Array, radii: Array) -> Array:
+    """Radius and height (n, 2) [m] of the inside of a vessel: what was seen well within its wall and below its rim."""
+    radius = np.hypot(seen[:, 0], seen[:, 1])
+    inner = (radius < np.interp(seen[:, 2], heights, radii) - WALL) & (seen[:, 2] < heights[-1] - WALL)
+    cells = np.stack([radius[inner], seen[inner, 2]], axis=1) / SPACING
+    found: Array = np.unique(np.round(cells), axis=0) * SPACING
+    return found
 
 
 def _ring(radius: float, height: float) -> Array:

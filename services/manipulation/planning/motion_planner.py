@@ -12,10 +12,12 @@ from services.manipulation.arm.touch import Reaction
 from services.manipulation.arm.trajectory import connect
 from services.manipulation.grasps.antipodal import antipodal
 from services.manipulation.grasps.clearance import HandClearance
+from services.manipulation.grasps.evidence import as_held, seen_between
 from services.manipulation.grasps.grasp import Grasp, candidates
 from services.manipulation.grasps.grasped_object import GraspedObject
 from services.manipulation.grasps.mouth import in_the_mouth
 from services.manipulation.grasps.over_edge import flat_and_wide, is_round, over_an_edge
+from services.manipulation.grasps.surface import surface
 from services.manipulation.grasps.target import Target
 
 PLAINLY = 0.012
@@ -69,20 +71,27 @@ class Planner:
 
     def candidates(self, target: Target) -> Iterator[list[Grasp]]:
         """Every grasp that this hand could try, in stages: over an edge; by the rules of kind and shape; on the seen
-        surface, which comes first where no rule knows the shape. Where neither of these has one, what was seen counts,
-        without what its shape family makes of it. What is plainly too wide is only taken over an edge.
+        surface, which comes first where no rule knows the shape. What is plainly too wide is only taken over an edge;
+        nothing is held where nothing of it was seen.
         """
         arm = self.arm
         yield over_an_edge(target, arm.forward, arm.widest)
         if not is_round(target) and flat_and_wide(target, arm.widest + PLAINLY):
             return
-        rules = candidates(target, arm.forward, arm.widest) + in_the_mouth(target)
-        on_surface = antipodal(target, arm.forward, arm.hand.open, arm.widest)
+        stages = self._rules, self._on_surface
         shapeless = target.shape in ("long", "irregular") and not target.lies
-        yield from ((on_surface, rules) if shapeless else (rules, on_surface))
-        if target.points is not None and not rules and not on_surface:
-            as_seen = antipodal(replace(target, shape="irregular"), arm.forward, arm.hand.open, arm.widest)
-            yield [replace(g, name=f"as seen, {g.name}") for g in as_seen]
+        for stage in reversed(stages) if shapeless else stages:
+            yield [grasp for grasp in stage(target) if seen_between(target, grasp)]
+
+    def _rules(self, target: Target) -> list[Grasp]:
+        arm = self.arm
+        points = surface(target)
+        by_rule = (as_held(target, points, grasp) for grasp in candidates(target, arm.forward, arm.widest))
+        return [grasp for grasp in by_rule if grasp is not None] + in_the_mouth(target)
+
+    def _on_surface(self, target: Target) -> list[Grasp]:
+        arm = self.arm
+        return antipodal(target, arm.forward, arm.hand.open, arm.widest)
 
     def surround(self, around: Sequence[Obstacle], end: Array) -> None:
         """Boxes, and the robot's base, with the widest transit margin that leaves `end` free, else with none."""
