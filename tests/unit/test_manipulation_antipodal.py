@@ -8,9 +8,10 @@ import pytest
 
 from common.geometry import quat_matrix, yaw_quat
 from services.manipulation.arm.arm_model import Array
-from services.manipulation.grasps.antipodal import LEVER, LONGEST, MOST_UPWARD, PLAY, STEEPEST, antipodal
+from services.manipulation.grasps.antipodal import LEVER, MOST_UPWARD, antipodal
 from services.manipulation.grasps.clearance import PAD
 from services.manipulation.grasps.grasp import Grasp
+from services.manipulation.grasps.pads import LONGEST, PLAY, STEEPEST
 from services.manipulation.grasps.surface import SPACING, surface
 from services.manipulation.grasps.target import Target
 

@@ -7,9 +7,10 @@ import numpy as np
 from scipy.spatial import ConvexHull, cKDTree
 
 from services.manipulation.arm.arm_model import Array
-from services.manipulation.grasps.antipodal import LEAST_SHARE, contact_at
+from services.manipulation.grasps.antipodal import LEAST_SHARE
 from services.manipulation.grasps.clearance import PAD, PAD_HALF
 from services.manipulation.grasps.grasp import CERTAIN, Grasp
+from services.manipulation.grasps.pads import contact_at
 from services.manipulation.grasps.surface import all_around, surface
 from services.manipulation.grasps.target import Target
 
