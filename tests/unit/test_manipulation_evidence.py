@@ -62,8 +62,9 @@ def test_what_a_shape_explains_stays_what_it_is() -> None:
 
 def test_a_vessel_is_seen_all_around() -> None:
     """Two legs of a bracket are not the rim of a bowl."""
-    bowl = seen("bowl", (0.12, 0.12, 0.05), around([(0.04, -0.025), (0.06, 0.025)], 24, half=False))
-    assert explained(bowl)
+    wall = around([(0.04, -0.025), (0.06, 0.025)], 24, half=False)
+    floor = around([(0.005, -0.02), (0.035, -0.019)], 12, half=False)
+    assert explained(seen("bowl", (0.12, 0.12, 0.05), np.concatenate([wall, floor])))
     assert not explained(seen("bowl", (0.12, 0.12, 0.05), plane((0.0, 0.06), (-0.05, 0.05), (0.02, 0.02))))
 
 
@@ -109,8 +110,10 @@ def grasps(of: Target) -> list[Grasp]:
     return antipodal(of, 0.0, OPENING, WIDEST)
 
 
-def test_a_ring_too_wide_for_the_hand_is_taken_by_its_tube() -> None:
-    ring = seen("bowl", (0.12, 0.12, 0.026), tube(0.047, 0.013))
+@pytest.mark.parametrize("taken_for", ["bowl", "round"])
+def test_a_ring_too_wide_for_the_hand_is_taken_by_its_tube(taken_for: str) -> None:
+    ring = believed(seen(taken_for, (0.12, 0.12, 0.026), tube(0.047, 0.013)))
+    assert ring.family == "irregular"
     found = grasps(ring)
     assert found
     for grasp in found:

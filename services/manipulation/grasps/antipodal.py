@@ -31,9 +31,9 @@ MOST_UPWARD, LAID_DOWN = 0.25, 0.6
 be put down as it lies: as much as good contacts are worth."""
 LOW = 0.09
 """Height [m] up to which an object is better taken from above."""
-LEAST_SHARE, OF_PART = 0.25, 0.4
+LEAST_SHARE, OF_PART = 0.25, 0.33
 """Least share of a pad that lies on the surface, and of the parts of something that is too wide for the hand: a ball of
-40 mm and the tube of a ring have .4 to .5, the edge of something, and the sloping rim of a plate, less."""
+40 mm and the tube of a ring have .33 to .5, the edge of something, and the sloping rim of a plate, less."""
 THIN, FINGER = 0.012, 0.022
 """Width [m] below which a part of something thicker is the noise of its outline, and the depth of a finger behind its
 pad (Robotiq 2F-85)."""

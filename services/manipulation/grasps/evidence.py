@@ -20,6 +20,9 @@ shape does not explain the object. Measured over drawn objects: boxes, cans, bot
 their handle .08; a wedge taken for a can, a teapot taken for one that lies, a bracket taken for a bowl .10 to .25."""
 STRAYS = 0.02
 """Share of the points that may lie outside the extents: mixed pixels at the edge of a thing."""
+HOLE, FILLED = 0.5, 0.05
+"""Share of the radius within which a ring is open, and the least share of the points there of what is not: of an even
+upper side a quarter lies there."""
 BESIDE, BEFORE = 0.006, 0.045
 """How far [m] beside the pads, and before their middle, what is seen counts as between them: points lie 7 mm apart, and
 of what the hand comes to from its seen side only the front may be seen."""
@@ -38,8 +41,17 @@ def explained(target: Target) -> bool:
         return True
     if target.shape == "bowl" and not all_around(target.points):
         return False
+    if target.shape in ("round", "bowl") and _is_ring(target.points, target.size):
+        return False
     distance, _ = cKDTree(surface(target)).query(target.points + np.array(target.position))
     return float(np.mean(distance > OFF)) < UNEXPLAINED
+
+
+def _is_ring(points: Array, size: tuple[float, float, float]) -> bool:
+    """Something low and round of which nothing was seen in the middle, where one looks at its upper side or into it."""
+    radius = max(size[:2]) / 2
+    middle = np.hypot(points[:, 0], points[:, 1]) < HOLE * radius
+    return size[2] < radius and bool(np.mean(middle) < FILLED)
 
 
 def believed(target: Target) -> Target:
