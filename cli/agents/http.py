@@ -1,4 +1,4 @@
-"""`tidybot mcp --http`: the server over Streamable HTTP, behind the same door as the operator's page."""
+"""`tidybot mcp --http`: the server over Streamable HTTP, with the access rules of the operator's page."""
 
 import os
 import sys
@@ -40,7 +40,7 @@ def _settings_of_run() -> dict[str, str]:
         return {}
 
 
-class Door:
+class AccessMiddleware:
     """Lets in who shows the token (`Authorization: Bearer`), under an address of ours, from no other site's page."""
 
     def __init__(self, app: "ASGIApp", token: str) -> None:
@@ -79,9 +79,11 @@ async def serve(server: "MCPServer[Any]", host: str, port: int) -> None:
     from mcp.server.transport_security import TransportSecuritySettings
 
     token = page_token(host)
-    # The door below decides about hosts and origins, by the page's rules.
+    # The middleware below decides about hosts and origins, by the page's rules.
     security = TransportSecuritySettings(enable_dns_rebinding_protection=False)
-    app = Door(server.streamable_http_app(streamable_http_path=PATH, transport_security=security, host=host), token)
+    app = AccessMiddleware(
+        server.streamable_http_app(streamable_http_path=PATH, transport_security=security, host=host), token
+    )
     shown = f"[{host}]" if ":" in host else host
     print(f"agents: http://{shown}:{port}{PATH}", file=sys.stderr)
     if token:

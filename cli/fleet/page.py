@@ -1,4 +1,4 @@
-"""`tidybot fleet page`: one page for all robots, behind the same door as the page of one."""
+"""`tidybot fleet page`: one page for all robots, with the access rules of the page of one."""
 
 import asyncio
 import sys
@@ -11,7 +11,7 @@ from cli.agents.http import page_token
 from cli.errors import CliError
 from cli.fleet.watch_room import WatchRoom
 from common.process.host import StopSignal
-from common.security.web_door import door
+from common.security.web_middleware import access_middleware
 
 FILES = Path(__file__).parent / "web"
 POLICY = "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data:; frame-ancestors 'none'"
@@ -51,7 +51,9 @@ def application(room: WatchRoom, token: str) -> web.Application:
                 raise web.HTTPBadRequest(text="expected stop, answer or say\n")
         return web.json_response({})
 
-    app = web.Application(middlewares=[door(token, POLICY, "the fleet's"), json_only], client_max_size=4096)
+    app = web.Application(
+        middlewares=[access_middleware(token, POLICY, "the fleet's"), json_only], client_max_size=4096
+    )
     app.router.add_get("/", index)
     app.router.add_get("/state", state)
     app.router.add_post("/act", act)

@@ -1,4 +1,4 @@
-"""The page's web server. The only module with a thread: viser's event loop, which also runs the front door.
+"""The page's web server. The only module with a thread: viser's event loop, which also runs the front server.
 
 Visitors reach one port: our page with the stop button, microphone and voice, and viser's 3-D view below `/view`, passed
 on to viser's own server on a loopback port that answers nobody else. The service talks to it through `inbox`, `say`
@@ -19,7 +19,7 @@ import viser
 from aiohttp import ClientSession, web
 
 from common.security import web_access as access
-from common.security.web_door import door
+from common.security.web_middleware import access_middleware
 from services.dashboard.config import DashboardConfig
 from services.dashboard.web.events import Asked, Click, Event
 from services.dashboard.web.listener import PageError, guarded, listen
@@ -100,8 +100,8 @@ class Web:
     # --- the loop's side
     async def _start(self) -> web.AppRunner:
         us = " ".join(f"http://{name}:{self.port}" for name in OTHER_NAME)
-        entrance = door(self._token, POLICY.format(us=us), "the robot's")
-        app = web.Application(middlewares=[entrance], client_max_size=MAX_CHUNK)
+        access_rules = access_middleware(self._token, POLICY.format(us=us), "the robot's")
+        app = web.Application(middlewares=[access_rules], client_max_size=MAX_CHUNK)
         app.router.add_get("/", self._page)
         app.router.add_get("/view", self._view)
         app.router.add_get("/view/", self._view)

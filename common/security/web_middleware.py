@@ -1,4 +1,4 @@
-"""The door of a page: an aiohttp middleware that lets in whoever may, and says what the page may load."""
+"""Access to a page: an aiohttp middleware that lets in whoever may, and says what the page may load."""
 
 from collections.abc import Awaitable, Callable
 
@@ -11,7 +11,7 @@ STAYS = 12 * 3600
 """Time [s] for which a browser that has shown the token is let in again; chosen: a working day."""
 
 
-def door(token: str, policy: str, whose: str) -> Middleware:
+def access_middleware(token: str, policy: str, whose: str) -> Middleware:
     """Lets in under addresses of ours only, with the `token` where there is one.
 
     `policy`: the Content-Security-Policy of every answer; `whose` page it is, for those who are refused.
