@@ -6,7 +6,6 @@ import select
 import sys
 import termios
 import tty
-from collections import deque
 from collections.abc import Iterator
 from typing import Any
 
@@ -22,6 +21,8 @@ from cli.link import Link, Watch, add_options, linked
 from common import messages as m
 from common import topics
 from common.mission_log.states import limb_words
+from common.mission_log.transcript import Transcript
+from common.process.health_records import HealthRecords
 from common.time.clock import monotonic
 from common.topic import Topic
 
@@ -48,10 +49,8 @@ class Picture:
             )
         }  # fmt: skip
         self.now: dict[str, Any] = {}
-        self.said: deque[tuple[str, str]] = deque(maxlen=LINES)
-        self.health: dict[str, m.Health] = {}
+        self.said, self.health = Transcript(), HealthRecords()
         self.alive: set[str] = set()
-        self.restarts: dict[str, int] = {}
         self._asked = float("-inf")
 
     def update(self) -> None:
@@ -62,23 +61,17 @@ class Picture:
         if monotonic() - self._asked >= SERVICES_EVERY:
             self._asked = monotonic()
             self.alive = self._link.alive()
-            for name, record in self._link.health().items():
-                before = self.health.get(name)
-                if before is not None and before.epoch != record.epoch:
-                    self.restarts[name] = self.restarts.get(name, 0) + 1
-                self.health[name] = record
+            for record in self._link.health().values():
+                self.health.take(record)
 
     def hear(self, message: m.Message) -> None:
-        if isinstance(message, m.SpeechGoal) and message.goal.startswith("say "):
-            self._note("robot", message.goal[4:])
-        elif isinstance(message, m.SpeechResult) and message.code != "TIMEOUT":
-            self._note("heard", f"({message.code or 'nothing'})" if message.text == "ERROR" else message.text)
+        """Note what is said in a message, in either direction."""
+        if isinstance(message, m.SpeechGoal):
+            self.said.add_goal(monotonic(), message)
+        elif isinstance(message, m.SpeechResult):
+            self.said.add_result(monotonic(), message)
         elif isinstance(message, m.VoiceCommand):
-            self._note("heard", message.text)
-
-    def _note(self, who: str, text: str) -> None:
-        if (who, text) not in list(self.said)[-2:]:
-            self.said.append((who, text))
+            self.said.add_command(monotonic(), message)
 
     def get(self, topic: Topic[Any]) -> Any:
         return self.now.get(topic.key)
@@ -138,27 +131,28 @@ def tree(snapshot: m.TreeSnapshot | None) -> Tree | Text:
 
 def services(picture: Picture) -> Table:
     table = Table(box=None, pad_edge=False, padding=(0, 1, 0, 0))
-    for n, name in enumerate(("", "service", "again", "Hz", "MB", "drops", "up s")):
+    for n, name in enumerate(("", "service", "restarts", "Hz", "MB", "drops", "up s")):
         table.add_column(name, justify="right" if n > 1 else "left", no_wrap=True)
-    for name in sorted(picture.health.keys() | picture.alive):
-        there = name in picture.alive
-        word = Text("●", style=GOOD) if there else Text("✗", style=BAD)
-        record = picture.health.get(name)
-        if record is None:
+    rows = {row.name: row for row in picture.health.rows(lambda name: name in picture.alive)}
+    for name in sorted(rows.keys() | picture.alive):
+        word = Text("●", style=GOOD) if name in picture.alive else Text("✗", style=BAD)
+        row = rows.get(name)
+        if row is None:
             table.add_row(word, name)
             continue
-        numbers = (picture.restarts.get(name, 0), record.hz, record.rss_mb, record.drops, record.uptime)
+        numbers = (row.restarts, row.hz, row.rss_mb, row.drops, row.uptime)
         table.add_row(word, name, *(f"{n:.0f}" for n in numbers))
-        if record.last_error:
-            table.add_row("", Text(record.last_error[:60], style=BAD))
+        if row.error:
+            table.add_row("", Text(row.error[:60], style=BAD))
     return table
 
 
 def drawn(picture: Picture) -> Layout:
     """The whole screen: mission, tree, speech, services."""
     talk = Text()
-    for who, text in picture.said:
-        talk.append(f"{who}: ", style=FAINT if who == "heard" else "blue").append(f"{text}\n")
+    for line in list(picture.said.lines)[-LINES:]:
+        heard = line.who == "heard"
+        talk.append("heard: " if heard else "robot: ", style=FAINT if heard else "blue").append(f"{line.text}\n")
     layout = Layout()
     layout.split_row(Layout(name="left"), Layout(name="right"))
     layout["left"].split_column(

@@ -6,8 +6,8 @@ from common import messages as m
 from common import topics
 from common.bus.port import Io
 from common.geometry import Pose2
+from common.mission_log.transcript import Transcript
 from common.naming.part_names import kind_named
-from services.dashboard.panels.history_buffers import Transcript
 from services.dashboard.scene.picking import Picked
 
 RATE = 16000

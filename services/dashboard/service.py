@@ -8,6 +8,8 @@ from common import messages as m
 from common import topics
 from common.bus.port import Io
 from common.mission_log import timeline
+from common.mission_log.transcript import Transcript
+from common.process.health_records import HealthRecords
 from common.runtime import StartError
 from services.dashboard.background_requests import BackgroundRequests
 from services.dashboard.commands import Commands
@@ -15,7 +17,7 @@ from services.dashboard.config import DashboardConfig
 from services.dashboard.hand import HandTeleoperation
 from services.dashboard.panels import markup
 from services.dashboard.panels.cameras import Cameras
-from services.dashboard.panels.history_buffers import HealthRecords, Transcript, TreeReasons
+from services.dashboard.panels.history_buffers import TreeReasons
 from services.dashboard.panels.plots import Plots
 from services.dashboard.panels.status_bar import status_bar
 from services.dashboard.panels.tracking_error import FRESH

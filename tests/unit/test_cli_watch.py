@@ -66,7 +66,7 @@ def test_a_mission_on_one_screen(picture: watch.Picture) -> None:
         ),
     }  # fmt: skip
     health = {"t": 0.0, "uptime": 5.0, "hz": 20.0, "rss_mb": 61.0, "pid": 1}
-    picture.health = {"sim": m.Health(name="sim", epoch="a", drops=7, last_error="too slow", **health)}  # type: ignore[arg-type]
+    picture.health.take(m.Health(name="sim", epoch="a", drops=7, last_error="too slow", **health))  # type: ignore[arg-type]
     picture.alive = {"brain"}
     for message in (
         m.SpeechGoal(goal="say On my way"),

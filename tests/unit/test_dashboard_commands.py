@@ -11,9 +11,9 @@ from common import topics
 from common.bus import codec
 from common.bus.memory import MemoryBus, MemoryIo
 from common.household import load_household
+from common.mission_log.transcript import Transcript
 from common.topic import Topic
 from services.dashboard.commands import CHUNK, LONGEST, TRAILING, Commands
-from services.dashboard.panels.history_buffers import Transcript
 from services.dashboard.scene.picking import Picked
 
 WRITES = (

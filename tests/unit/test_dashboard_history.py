@@ -4,8 +4,10 @@ import numpy as np
 import pytest
 
 from common import messages as m
+from common.mission_log.transcript import Transcript
+from common.process.health_records import HealthRecords
 from services.dashboard.panels import markup
-from services.dashboard.panels.history_buffers import Curves, HealthRecords, Jitter, Transcript, TreeReasons
+from services.dashboard.panels.history_buffers import Curves, Jitter, TreeReasons
 
 
 def health(name: str, epoch: str, **more: object) -> m.Health:

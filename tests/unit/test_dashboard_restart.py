@@ -9,9 +9,9 @@ import pytest
 from common import topics
 from common.bus.memory import MemoryBus, MemoryIo
 from common.household import load_household
+from common.process.health_records import ServiceRow
 from services.dashboard.background_requests import BackgroundRequests
 from services.dashboard.panels import markup
-from services.dashboard.panels.history_buffers import ServiceRow
 from services.dashboard.supervisor_client import NOBODY, Refused, Supervisor
 
 

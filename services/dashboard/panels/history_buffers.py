@@ -1,61 +1,14 @@
-"""History buffers of the page: the last minutes of speech, tree reasons, health records and curves."""
+"""History buffers of the page: reasons of the tree's nodes, and curves of the last minute."""
 
 from collections import deque
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
 
 from common import messages as m
 
-LINES = 60
-"""Lines of the transcript that are kept; chosen: two screens."""
-REPEATED = 2.0
-"""Time [s] within which the same words of the same speaker are one line: a command comes by two topics."""
 Array = NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class Line:
-    """One line of the transcript; `who` is heard, typed, said or robot."""
-
-    t: float
-    who: str
-    text: str
-
-
-class Transcript:
-    """Speech in both directions, newest last."""
-
-    def __init__(self) -> None:
-        self.lines: deque[Line] = deque(maxlen=LINES)
-        self.changed = True
-
-    def add(self, t: float, who: str, text: str) -> None:
-        """Append a line said at robot time `t` [s]; a repetition within `REPEATED` is left out."""
-        text = text.strip()
-        if not text:
-            return
-        if any(line.text == text and line.who == who and t - line.t < REPEATED for line in self.lines):
-            return
-        self.lines.append(Line(t, who, text))
-        self.changed = True
-
-    def add_result(self, t: float, result: m.SpeechResult) -> None:
-        """Append what was understood at `t` [s], or why nothing was."""
-        if result.code == "TIMEOUT":
-            return
-        if result.text == "ERROR":
-            self.add(t, "robot", f"not understood: {result.code} {result.detail}".strip())
-        else:
-            self.add(t, "heard", result.text)
-
-    def add_goal(self, t: float, goal: m.SpeechGoal) -> None:
-        """Append what the robot says from `t` [s] on."""
-        verb, _, words = goal.goal.strip().partition(" ")
-        if verb == "say":
-            self.add(t, "said", words)
 
 
 NodePath = tuple[str, ...]
@@ -86,44 +39,6 @@ class TreeReasons:
             reset = node.status == "INVALID" and place in self.last
             if node.detail and not reset and self.last.get(place, (0.0, "", ""))[1:] != said:
                 self.last[place] = (tree.t, *said)
-
-
-@dataclass(frozen=True)
-class ServiceRow:
-    """A service as the table shows it."""
-
-    name: str
-    alive: bool
-    restarts: int
-    hz: float
-    rss_mb: float
-    drops: int
-    uptime: float
-    error: str
-
-
-class HealthRecords:
-    """Health records by name; a new epoch of a name is a restart."""
-
-    def __init__(self) -> None:
-        self._last: dict[str, m.Health] = {}
-        self._restarts: dict[str, int] = {}
-
-    def take(self, health: m.Health) -> None:
-        """Note a health record."""
-        before = self._last.get(health.name)
-        if before is not None and before.epoch != health.epoch:
-            self._restarts[health.name] = self._restarts.get(health.name, 0) + 1
-        self._last[health.name] = health
-
-    def rows(self, alive: Callable[[str], bool]) -> list[ServiceRow]:
-        """One row for every service ever heard of, by name."""
-        return [
-            ServiceRow(
-                h.name, alive(h.name), self._restarts.get(h.name, 0), h.hz, h.rss_mb, h.drops, h.uptime, h.last_error
-            )
-            for h in sorted(self._last.values(), key=lambda one: one.name)
-        ]
 
 
 class Curves:

@@ -10,7 +10,9 @@ from jinja2 import Environment
 from common import messages as m
 from common.html.environment import environment
 from common.mission_log.states import limb_words, under_way
-from services.dashboard.panels.history_buffers import Line, NodePath, ServiceRow
+from common.mission_log.transcript import Line
+from common.process.health_records import ServiceRow
+from services.dashboard.panels.history_buffers import NodePath
 
 TEMPLATES = Path(__file__).parent / "templates"
 GOOD, BAD, FAINT = "#2b8a3e", "#c92a2a", "#868e96"

@@ -20,12 +20,12 @@ from common.bus.worker import WorkerJob
 from common.household import load_household
 from common.mission_log import recorded
 from common.mission_log.states import OTHER_STATE, STATE_COLOURS, spans
+from common.mission_log.transcript import Transcript
 from common.process.host import StopSignal
 from common.recording import Recording, RecordingError, Row
 from common.runtime import StartError
 from common.time.clock import monotonic
 from services.dashboard.config import DashboardConfig
-from services.dashboard.panels.history_buffers import Transcript
 from services.dashboard.service import DashboardService
 from services.dashboard.web.events import Words
 
