@@ -99,13 +99,13 @@ def understand(sentence: Sentence) -> Understood:
                 history = History(doing=about, step=f"find {about}") if said.kind == "aside" else History()
                 if said.kind == "replace":  # what was under way is the last command by then
                     history = History(last=MissionOutcome(id="m", command=about, outcome="cancelled", reason="", t=NOW))
-                found = planned(said.text, FLAT, "", _after("last", about)[2] if said.kind == "queue" else history)
+                found = planned(said.text, FLAT, "", after("last", about)[2] if said.kind == "queue" else history)
                 return found._replace(kind="" if said.kind == "aside" else said.kind)
             return Understood(said.kind, [], [])
-    return planned(sentence.said, *_after(tag, about))
+    return planned(sentence.said, *after(tag, about))
 
 
-def _after(tag: str, about: str) -> tuple[list[WorldObject], str, History]:
+def after(tag: str, about: str) -> tuple[list[WorldObject], str, History]:
     """Flat, what is in the hand, and history of a context."""
     flat = list(FLAT)
     if tag == "held":
@@ -187,7 +187,7 @@ def verdict(sentence: Sentence, found: Understood) -> Verdict:
 def _after_a_yes(sentence: Sentence, asked: str) -> bool:
     """Does what was asked about come to the right plan?"""
     tag, _, about = sentence.context.partition(":")
-    return verdict(sentence, planned(asked, *_after(tag, about))) == "right"
+    return verdict(sentence, planned(asked, *after(tag, about))) == "right"
 
 
 def _fits(reading: str, sentence: Sentence, found: Understood) -> bool:

@@ -11,13 +11,11 @@ class PlannerConfig(Config, frozen=True):
     `llm_tries` answers are asked for within `llm_timeout`; in lockstep they show after `llm_seconds`.
 
     With `open_vocabulary` a thing that nobody has named is looked for by its words, else only what the household names
-    or perception has seen is known. With `paraphrase` and its extra, what no wording covers is compared with
-    known commands by a sentence embedding; in lockstep that shows after `guess_seconds`. Times in seconds.
+    or perception has seen is known. Times in seconds.
     """
 
     backend: Literal["auto", "grammar", "llm"] = "auto"
     open_vocabulary: bool = True
-    paraphrase: bool = True
     set_down: tuple[str, ...] = ("counter", "table", "shelf")
     max_steps: int = 60
     fresh: float = 5.0
@@ -28,4 +26,3 @@ class PlannerConfig(Config, frozen=True):
     llm_timeout: float = 12.0
     llm_tries: int = 2
     llm_seconds: float = 2.0
-    guess_seconds: float = 0.5

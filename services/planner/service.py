@@ -10,11 +10,8 @@ from common.bus.port import Io, Job
 from common.goal_inbox import GoalInbox
 from services.planner.config import PlannerConfig
 from services.planner.grammar import grammar
-from services.planner.grammar.paraphrase import Paraphraser, guesses, installed
-from services.planner.grammar.vocabulary import Vocabulary
 from services.planner.language_model.backend import Backend
 from services.planner.language_model.llm import Call, LlmError, NoAnswer, Reply
-from services.planner.plan_builder import NOT_UNDERSTOOD
 from services.planner.world import World, believed
 
 REMEMBERED = 32
@@ -34,15 +31,6 @@ class Pending(msgspec.Struct):
     job: Job[Reply]
 
 
-class Guess(msgspec.Struct):
-    """A command that was not understood, whose nearest known one is looked for; `plan` is what is said without it."""
-
-    request: m.PlanRequest
-    plan: m.ActionPlan
-    world: World
-    job: Job[str]
-
-
 class PlannerService:
     """Turns a command into steps that fit the known world."""
 
@@ -55,8 +43,6 @@ class PlannerService:
         self._config, self._io = config, io
         self._backend = Backend(config, io)
         self._pending: Pending | None = None
-        self._guess: Guess | None = None
-        self._paraphraser = Paraphraser() if config.paraphrase and installed() else None
         self._inbox: GoalInbox[m.PlanRequest, m.ActionPlan] = GoalInbox(
             io, (topics.PLAN_REQUEST,), self._take, self._repeat
         )
@@ -67,7 +53,6 @@ class PlannerService:
         self._now = now
         self._inbox.receive()
         self._poll(now)
-        self._poll_guess(now)
         self._backend.step(now, self._pending is None)
 
     # --- the language model
@@ -83,7 +68,7 @@ class PlannerService:
         plan = self._by_grammar(request, world, rejected)
         llm = self._backend.llm
         if llm is None or plan.again:
-            self._finish(request, plan, world, rejected)
+            self._publish(request, plan)
             return
         call, seconds = Call(), self._config.llm_seconds
         job = self._io.submit(llm.plan, request.command, world, rejected, call, seconds=seconds)
@@ -97,39 +82,13 @@ class PlannerService:
         if ready or (now > pending.due and not self._io.lockstep):
             self.close()
             outcome = self._outcome(pending, ready, now)
-            self._finish(pending.request, outcome, pending.world, pending.rejected)
-
-    def _finish(self, request: m.PlanRequest, plan: m.ActionPlan, world: World, rejected: list[m.RejectedPlan]) -> None:
-        """Publish a plan; what was not understood gets the nearest known command, unless that was no help before."""
-        lost = not plan.steps and not plan.suggestion and plan.detail.startswith(NOT_UNDERSTOOD)
-        if not lost or self._paraphraser is None or any(not r.steps for r in rejected):
-            self._publish(request, plan)
-            return
-        known = guesses(request.command, Vocabulary(world, self._config))
-        seconds = self._config.guess_seconds
-        job = self._io.submit(self._paraphraser.nearest, request.command, known, seconds=seconds)
-        self._guess = Guess(request, plan, world, job)
-
-    def _poll_guess(self, now: float) -> None:
-        guess = self._guess
-        if guess is None or not guess.job.poll(now):
-            return
-        self._guess = None
-        try:
-            meant = guess.job.result()
-        except Exception as error:
-            self._io.log.error("no paraphrases", error=repr(error))
-            self._paraphraser, meant = None, ""
-        if meant and grammar.plan(meant, guess.world, self._config).steps:
-            guess.plan.suggestion = meant
-        self._publish(guess.request, guess.plan)
+            self._publish(pending.request, outcome)
 
     def close(self) -> None:
         """Let go of the question under way."""
         if self._pending is not None:
             self._pending.call.cancelled = True
             self._pending = None
-        self._guess = None
 
     def _outcome(self, pending: Pending, ready: bool, now: float) -> m.ActionPlan:
         """The model's plan; the grammar's where the model failed or knows none."""

@@ -7,9 +7,10 @@ from common.language.exchange import replaced
 from common.language.meaning import is_question
 from common.language.quantities import duration
 from services.brain.language.interjection import interjection
-from services.planner.grammar.paraphrase import Paraphraser, guesses, installed
 from services.planner.grammar.spelling import corrected, distance
 from services.planner.grammar.vocabulary import Vocabulary
+from services.planner.semantic.forms import tokens
+from services.planner.semantic.parse import parse
 from services.planner.world import World
 from tests.everyday import CONFIG, HOME, Sentence, planned, sentences, understand, verdict
 
@@ -267,17 +268,16 @@ def test_questions_and_orders_are_told_apart() -> None:
         assert not is_question(text), text
 
 
-def test_guesses_name_the_things_and_places_that_were_said() -> None:
-    vocabulary = Vocabulary(World(HOME), CONFIG)
-    found = guesses("the kitchen table would look better with the red mug on it", vocabulary)
-    assert "put the red mug on the kitchen table" in found and "tidy up the kitchen table" in found
-    assert "bring me something to drink" in guesses("my throat is dry", vocabulary)
-
-
-@pytest.mark.skipif(not installed(), reason="the extra paraphrase is not installed")
-def test_a_paraphrase_is_nearest_to_what_it_means() -> None:
-    nearest = Paraphraser().nearest
-    forms = ["go to the bedroom", "tidy up the bedroom", "what is on the bedroom"]
-    assert nearest("relocate yourself to the bedroom", forms) == forms[0]
-    assert nearest("the capital of france is paris", forms) == ""
-    assert nearest("anything", []) == ""
+@pytest.mark.parametrize(
+    ("said", "meant"),
+    [
+        ("the kitchen table would look better with the red mug on it", "put the red mug on the kitchen table"),
+        ("my throat is dry", "bring me something to drink"),
+        ("relocate yourself to the bedroom", "go to the bedroom"),
+        ("the capital of france is paris", ""),
+        ("anything", ""),
+    ],
+)
+def test_a_paraphrase_means_the_likeliest_command(said: str, meant: str) -> None:
+    parts = parse(tokens(said), Vocabulary(World(HOME), CONFIG))
+    assert next((part.meant.text for part in parts if part.meant.text), "") == meant

@@ -97,14 +97,7 @@ def test_a_request_that_does_not_decode_is_counted() -> None:
 
 
 def test_what_no_wording_covers_is_compared_with_known_commands() -> None:
-    """With a network by hand that finds the bottle's command nearest."""
-
-    class Nearest:
-        def nearest(self, said: str, candidates: list[str]) -> str:
-            return next(c for c in candidates if c.startswith("bring me"))
-
     node = Desk()
-    node.service._paraphraser = Nearest()
     plan = node.ask("my heart longs for the blue bottle")
     assert (plan.steps, plan.suggestion) == ([], "bring me the blue bottle")
     literally = {"steps": [], "reason": "not meant"}

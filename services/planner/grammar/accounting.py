@@ -17,7 +17,7 @@ from services.planner.world import World
 MOST_WORDS = 3
 """Words of the longest name of a place (chosen)."""
 _ACTS = frozenset({"find", "grasp", "place", "navigate", "release", "return"})
-_OPEN = frozenset({"if", "unless", "otherwise"})
+CONDITIONS = frozenset({"if", "unless", "otherwise"})
 """First words of clauses that need leave no trace; nor need questions, nor one of two alternatives."""
 _TOLD_APART = re.compile(
     r"\b(?:not|nothing|but|except|excluding|without|other than|apart from|leave|next to|beside|near|nearest|closest|"
@@ -32,7 +32,7 @@ def unaccounted(clauses: Sequence[str], steps: Sequence[PlanStep], world: World,
         return []
     trace = _Trace(steps, world, vocabulary)
     asked = [_asked(clause, trace.certain).split() for clause in clauses if not is_question(clause)]
-    definite = [tuple(words) for words in asked if words and words[0] not in _OPEN and "or" not in words]
+    definite = [tuple(words) for words in asked if words and words[0] not in CONDITIONS and "or" not in words]
     return [word for words in definite for word in trace.missing(words)]
 
 

@@ -14,15 +14,18 @@ from common.messages import ActionPlan, PlanStep, RejectedPlan
 from services.planner.choice_points import ChoicePoints, every
 from services.planner.commands import answers
 from services.planner.config import PlannerConfig
-from services.planner.grammar.accounting import as_command, unaccounted
+from services.planner.grammar.accounting import CONDITIONS, as_command, unaccounted
 from services.planner.grammar.clause import read_clause
-from services.planner.grammar.guess import Guess, guess
+from services.planner.grammar.guess import Guess, answer, guess
 from services.planner.grammar.mention import note
 from services.planner.grammar.phrases import Phrase, read
 from services.planner.grammar.repetition import repeated
 from services.planner.grammar.spelling import corrected
 from services.planner.grammar.vocabulary import Vocabulary
 from services.planner.plan_builder import NOT_UNDERSTOOD, LookFirst, Lost, PlanBuilder, Refusal, same
+from services.planner.semantic.deeds import contradicted
+from services.planner.semantic.forms import tokens
+from services.planner.semantic.parse import parse
 from services.planner.world import World
 
 SOURCE = "grammar"
@@ -34,6 +37,10 @@ MAX_WORDS = 60
 
 _VERBS = frozenset({"is", "are", "was", "were", "has", "have", "needs", "goes", "belongs"})
 """Words that make more than a name of a clause that begins with one."""
+
+
+SURE = 0.5
+"""Least probability of a guess at what was understood otherwise and refused (chosen on lists left out)."""
 
 
 class Suggestion(Refusal):
@@ -69,8 +76,7 @@ def plan(
         if len(steps) > config.max_steps:
             detail = f"that is too much at once: {len(steps)} steps"
             return ActionPlan(request_id=request_id, steps=[], source=SOURCE, detail=detail)
-        if ignored := unaccounted(clauses, steps, world, vocabulary):
-            detail = f"{NOT_UNDERSTOOD} what {enumeration(list(map(repr, ignored)))} has to do with it"
+        if detail := _doubt(command, clauses, steps, world, vocabulary):
             other = None if literally else attempts.guessed()
             if other and not other.answers and not unaccounted(clauses, other.steps, world, vocabulary):
                 steps = other.steps
@@ -89,6 +95,16 @@ def plan(
             return candidate
         other = other or candidate
     return other or _spent(run(ChoicePoints()), rejected[-1])
+
+
+def _doubt(command: str, clauses: Sequence[str], steps: list[PlanStep], world: World, vocabulary: Vocabulary) -> str:
+    """Why a plan may not be what is meant, so that it is asked about first; "" for no reason."""
+    if ignored := unaccounted(clauses, steps, world, vocabulary):
+        return f"{NOT_UNDERSTOOD} what {enumeration(list(map(repr, ignored)))} has to do with it"
+    if any(clause.split()[0] in CONDITIONS for clause in clauses):  # what else is to be done need not be
+        return ""
+    unlike = contradicted(tokens(command[:MAX_CHARACTERS]), steps, vocabulary)
+    return f"{NOT_UNDERSTOOD} for certain what I should do" if unlike else ""
 
 
 def _spent(first: ActionPlan, rejected: RejectedPlan) -> ActionPlan:
@@ -141,7 +157,8 @@ class _Attempts:
                 with suppress(Refusal):
                     return self._read(self._command, new_nouns=True)
             self._choices.taken = taken
-            if not isinstance(refusal, Lost) or (meant := self.guessed()) is None:
+            lost = isinstance(refusal, Lost)
+            if (meant := self.guessed()) is None or (not lost and (meant.answers or meant.p < SURE)):
                 raise
             if meant.answers:  # an answer moves nothing, so there is nothing to ask about first
                 return meant.steps
@@ -158,10 +175,14 @@ class _Attempts:
         """What the words may mean that no construction fits, as it can be done."""
         whole = [clause for part in self._command_words().split(".") for clause in cut_clauses(part)]
         for clauses in (commands(self._command[:MAX_CHARACTERS], self._is_place), whole):
-            builder = PlanBuilder(self._world.copy(), self._vocabulary, self._config, self._choices.fork())
             with suppress(Refusal):
-                return guess(clauses, builder)
+                return answer(clauses, self._builder())
+        with suppress(Refusal):
+            return guess(parse(tokens(self._command[:MAX_CHARACTERS]), self._vocabulary), self._builder())
         return None
+
+    def _builder(self) -> PlanBuilder:
+        return PlanBuilder(self._world.copy(), self._vocabulary, self._config, self._choices.fork())
 
     def _is_place(self, words: Words) -> bool:
         return bool(self._vocabulary.spot(words))

@@ -1,0 +1,119 @@
+"""What a sentence shows of a candidate command, as numbers of hashed features. Pure.
+
+Things and places are replaced by what they are in the candidate, so that nothing depends on their names; then single
+words, pairs and triples count, the verb's class and the preposition before each thing and place, and how many of the
+named things and places the candidate leaves aside. Hashing: Weinberger et al., "Feature hashing for large scale
+multitask learning", 2009.
+"""
+
+from collections.abc import Iterator, Sequence
+from functools import lru_cache
+from itertools import pairwise
+from typing import NamedTuple
+from zlib import crc32
+
+from common.language.mood import forbids, is_told
+from common.language.normalise import Words
+from common.language.politeness import without_politeness
+from common.language.verb_classes import classes
+from services.planner.grammar.chunks import POINTING, Chunk
+from services.planner.grammar.questions import is_asked
+from services.planner.semantic.forms import MARK, Candidate
+
+BITS = 18
+"""Features are counted modulo 2**BITS (chosen: 80 000 features are seen in tests/data, so few share a number)."""
+UNKNOWN, BEGIN, END = "<unknown>", "<begin>", "<end>"
+_PREPOSITIONS = frozenset({
+    "to", "into", "onto", "towards", "in", "on", "at", "inside", "from", "off", "of", "by", "near", "beside", "next",
+    "with", "under", "over",
+})  # fmt: skip
+_COUNTED = 3
+"""Things and places left aside, and words not known, are counted up to this many (chosen)."""
+_QUARTERS, _LONG = 4, 6
+"""Steps in which lengths are told apart: a length by four words up to 24, a share by quarters (chosen)."""
+
+
+class Said(NamedTuple):
+    """`parts`: the words, with the number of a thing or place in `found` for its words; `signs`: of the whole."""
+
+    parts: list[str | int]
+    found: Sequence[Chunk]
+    signs: list[str]
+
+
+def abstracted(words: Words, found: Sequence[Chunk], known: frozenset[str]) -> Said:
+    """A sentence in words and marks without the names in it; a word that is not `known` stands for all of them."""
+    begins = {chunk.begin: number for number, chunk in enumerate(found)}
+    parts: list[str | int] = []
+    at = 0
+    while at < len(words):
+        number = begins.get(at)
+        parts.append((words[at] if words[at] in known else UNKNOWN) if number is None else number)
+        at = at + 1 if number is None else found[number].end
+    return Said(parts, found, _signs(words, found))
+
+
+def _signs(words: Words, found: Sequence[Chunk]) -> list[str]:
+    """What the hand-written rules of mood and politeness see in the whole sentence."""
+    bare = tuple(word for word in words if word != MARK)
+    inside = {at for chunk in found for at in range(chunk.begin, chunk.end)}
+    verbs_only = tuple("_" if at in inside else word for at, word in enumerate(words) if word != MARK)
+    moods = (forbids(" ".join(bare)), is_told(verbs_only), bool(bare) and is_asked(bare))
+    rest = without_politeness(" ".join(words).replace(f" {MARK}", MARK)).replace(MARK, "").split()
+    seen = [name for name, is_so in zip(("forbids", "told", "asked"), moods, strict=True) if is_so]
+    share = _QUARTERS * len(rest) // max(len(words), 1)
+    return [*(seen or ["plain"]), f"first {rest[:1]}", f"first two {rest[:2]}", f"asks {share}"]
+
+
+def features(said: Said, candidate: Candidate) -> list[int]:
+    """Numbers below 2**BITS of the features of one candidate; a feature counts once each time it is listed."""
+    return [crc32(name.encode()) % (1 << BITS) for name in _names(said, candidate)]
+
+
+def _names(said: Said, candidate: Candidate) -> Iterator[str]:
+    form, kind, roles = candidate.form, candidate.kind, candidate.roles
+    marks = [BEGIN, *(t if isinstance(t, str) else _mark(said.found[t], roles.get(t, "")) for t in said.parts), END]
+    counts = {name: min(marks.count(name), _COUNTED) for name in ("#thing", "#spot", UNKNOWN)}
+    for of in (form, kind):
+        for name, count in counts.items():
+            yield f"{of} {name} {count}"
+        for name in (*said.signs, *sorted(set(marks))):
+            yield f"{of} 1 {name}"
+        for first, second in pairwise(marks):
+            yield f"{of} 2 {first} {second}"
+    for triple in zip(marks, marks[1:], marks[2:], strict=False):
+        yield f"{form} 3 {' '.join(triple)}"
+    yield form
+    yield f"{form} length {min(len(marks) // _QUARTERS, _LONG)}"
+    yield f"{kind} begins {' '.join(marks[:4])}"
+    yield f"{form} order {' '.join(m for m in marks if m[0] == '#')}"
+    yield from _governed(form, marks)
+
+
+def _governed(form: str, marks: Sequence[str]) -> Iterator[str]:
+    """By which verb and preposition each thing and place is reached."""
+    verb = preposition = ""
+    verbs: set[str] = set()
+    for mark in marks:
+        if mark[0] == "#":
+            yield f"{form} verb {verb} {mark}"
+            yield f"{form} preposition {preposition} {mark}"
+            yield f"{form} both {verb} {preposition} {mark}"
+            preposition = ""
+        elif mark in _PREPOSITIONS:
+            preposition = mark
+        elif of := _classes(mark):
+            verb = of
+            verbs.add(of)
+    for of in verbs:
+        yield f"{form} class {of}"
+    yield f"{form} classes {' '.join(sorted(verbs))}"
+
+
+def _mark(chunk: Chunk, role: str) -> str:
+    return f"#{role or chunk.kind}{' it' if chunk.text in POINTING else ''}"
+
+
+@lru_cache(maxsize=10_000)
+def _classes(word: str) -> str:
+    return "/".join(sorted(classes(word)))

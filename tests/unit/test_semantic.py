@@ -1,0 +1,96 @@
+"""The learnt reading of sentences: candidates of the things they name, features without names, cuts, and learning."""
+
+from importlib.resources import files
+
+import numpy as np
+import pytest
+
+from bench.semantic import examples, learn
+from services.planner.grammar.chunks import Chunk
+from services.planner.grammar.vocabulary import Vocabulary
+from services.planner.semantic.deeds import contradicted
+from services.planner.semantic.features import UNKNOWN, abstracted, features
+from services.planner.semantic.forms import NONE, OTHER, candidates, tokens
+from services.planner.semantic.parse import LONGEST, parse
+from services.planner.semantic.ranker import WEIGHTS, Ranker
+from services.planner.world import World
+from tests.everyday import CONFIG, HOME, planned
+
+VOCABULARY = Vocabulary(World(HOME), CONFIG)
+MUG, DESK, SHELF = Chunk("thing", "the mug", 1, 3), Chunk("spot", "the desk", 4, 6), Chunk("spot", "the shelf", 7, 9)
+MOST_BYTES = 1_000_000
+"""Largest model that the repository is to carry [bytes] (chosen)."""
+
+
+def _meant(text: str) -> list[str]:
+    return [part.meant.text or part.meant.form for part in parse(tokens(text), VOCABULARY)]
+
+
+def test_every_form_is_tried_with_every_thing_and_place() -> None:
+    texts = [c.text for c in candidates([MUG, DESK, SHELF])]
+    assert {"bring me the mug", "put the mug on the desk on the shelf", "tidy up the desk", "come back"} <= set(texts)
+    assert "put the mug on the desk on the desk" not in texts and len(texts) == len(set(texts)) + 1
+    assert [c.form for c in candidates([])][:2] == [NONE, OTHER]
+
+
+def test_things_of_one_command_are_named_together() -> None:
+    can = Chunk("thing", "the can", 4, 6)
+    texts = [c.text for c in candidates([MUG, can, can._replace(text="the ball")])]
+    assert {"bring me the mug and the can", "bring me the mug and the can and the ball"} <= set(texts)
+    assert "put the mug next to the can" in texts and "put the mug next to the mug" not in texts
+
+
+def test_names_leave_no_feature() -> None:
+    known = frozenset({"bring", "here"})
+    one = abstracted(("bring", "the", "mug", "here"), [MUG], known)
+    other = abstracted(("bring", "the", "can", "here"), [MUG._replace(text="the can")], known)
+    for mug, can in zip(candidates([MUG]), candidates([MUG._replace(text="the can")]), strict=True):
+        assert features(one, mug) == features(other, can)
+    assert abstracted(("fetch", "the", "mug", "here"), [MUG], known).parts == [UNKNOWN, 0, "here"]
+
+
+def test_probabilities_sum_to_one_and_the_likeliest_is_first() -> None:
+    ranked = Ranker.shipped().rank(tokens("fetch me the red mug"), VOCABULARY)
+    assert sum(r.p for r in ranked) == pytest.approx(1.0)
+    assert [r.p for r in ranked] == sorted((r.p for r in ranked), reverse=True)
+    assert ranked[0].candidate.text == "bring me the red mug"
+
+
+def test_a_sentence_of_two_requests_is_cut() -> None:
+    assert _meant("right then, apple to me, and after that you can clear the desk") == [
+        "bring me the apple", "tidy up the desk",
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize("text", ["", ",", "and", " ".join(f"word{n}" for n in range(LONGEST + 1))])
+def test_what_is_no_sentence_means_nothing(text: str) -> None:
+    assert _meant(text) == []
+
+
+@pytest.mark.parametrize("said", ["she never wanted the apple", "my uncle paints mugs", "mow the lawn"])
+def test_of_what_asks_for_nothing_nothing_is_guessed(said: str) -> None:
+    found = planned(said)
+    assert (found.steps, found.asks) == ([], "")
+
+
+def test_the_model_is_small() -> None:
+    assert len((files("services.planner.semantic") / WEIGHTS).read_bytes()) < MOST_BYTES
+
+
+@pytest.mark.slow
+def test_what_is_right_is_learnt_from_examples() -> None:
+    rows = examples(["sealed_everyday_sentences.tsv"])
+    weights, known = learn(rows)
+    ranker = Ranker(weights, known)
+    idle = [e for e in rows if e.sentence.context == "-"]
+    best = [ranker.rank(e.words, VOCABULARY)[0].candidate for e in idle]
+    assert np.mean([e.right[e.meant.index(b)] for e, b in zip(idle, best, strict=True)]) > 0.9, "it has seen them"
+
+
+def test_a_plan_that_does_something_else_is_asked_about() -> None:
+    said = tokens("could you bring me the red mug")
+    assert contradicted(said, planned("tidy up the desk").steps, VOCABULARY)
+    assert not contradicted(said, planned("bring me the red mug").steps, VOCABULARY)
+    assert not contradicted(said, planned("where is the red mug").steps, VOCABULARY), "words do no harm"
+    found = planned("robot vacuum go to the kitchen")
+    assert (found.steps, found.asks) == ([], "go to the kitchen")
