@@ -33,6 +33,8 @@ CABINET = 0.65
 """Length [m] up to which what has a body is no shelf and no counter: bedside tables, stands and the like. Chosen."""
 ASIDE = 3.0
 """How much farther a surface beside or behind the robot's home counts, when one is chosen to bring things to [-]."""
+SEATS = ("bed", "sofa")
+"""What surfaces are called that people sit and lie on."""
 WHOLE = 0.5
 """Share of its rectangle that a piece of furniture fills at least, else it is cut."""
 ROBOT = 1.45
@@ -73,11 +75,10 @@ def floor_plan(
     ends = np.array([p for w in walls for p in (w.start, w.end)] or cells)
     first, last = np.minimum(cells.min(axis=0), ends.min(axis=0)), np.maximum(cells.max(axis=0), ends.max(axis=0))
     home = Place(name="home", x=0.0, y=0.0, theta=0.0, aliases=("start", "the dock", "dock", "base"))
-    delivery, receptacles = _delivery(receptacles)
     return Household(
         name=name, low=_rounded(first - MARGIN), high=_rounded(last + MARGIN), home=home, walls=tuple(walls),
         furniture=tuple(furniture), rooms=tuple(find_rooms(grid, states, walls)), receptacles=tuple(receptacles),
-        delivery=delivery,
+        delivery=_delivery(receptacles),
     )  # fmt: skip
 
 
@@ -232,13 +233,15 @@ def _box(name: str, cells: Array, grid: Grid) -> Box:
     )  # fmt: skip
 
 
-def _delivery(receptacles: list[Receptacle]) -> tuple[str, list[Receptacle]]:
-    """What the robot brings things to: the surface before its home, else the nearest one."""
+def _delivery(receptacles: list[Receptacle]) -> str:
+    """What the robot brings things to: the surface before its home, else the nearest; seats only if there is no other.
+
+    "" where no surface was found.
+    """
     flat = [r for r in receptacles if not r.depth]
-    if not flat:
-        return "", receptacles
+    flat = [r for r in flat if not r.name.startswith(SEATS)] or flat
 
     def off(r: Receptacle) -> float:
         return math.hypot(r.center[0], r.center[1]) * (1.0 if r.center[0] > abs(r.center[1]) else ASIDE)
 
-    return min(flat, key=off).name, receptacles
+    return min(flat, key=off).name if flat else ""

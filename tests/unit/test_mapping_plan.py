@@ -5,11 +5,11 @@ import math
 import numpy as np
 import pytest
 
-from common.floor_plan import Room, Wall
+from common.floor_plan import Receptacle, Room, Wall
 from common.geometry import Rectangle
 from services.mapping.bins import find_bins
 from services.mapping.grid import FREE, OCCUPIED, UNKNOWN, Grid
-from services.mapping.plan import _filled, _kind, _reached, _rim, _separate, approaches
+from services.mapping.plan import _delivery, _filled, _kind, _reached, _rim, _separate, approaches
 from services.mapping.rooms import find_rooms, openings
 from services.mapping.surfaces import Surface
 from services.mapping.views import interesting
@@ -234,6 +234,20 @@ def test_what_stands_on_legs_is_a_table_however_short_its_sides(length: float, w
     grid.hits[grid.cells(np.array(legs))] = 3
     outline = Rectangle(0.0, 0.0, length, width)
     assert _kind(Surface(outline, 0.6, np.empty((0, 2))), grid, ((0.0, 1.0), (1.0, 0.0)))[0] == "table"
+
+
+def test_things_are_brought_to_a_table_and_not_to_the_sofa_before_it() -> None:
+    def surface(name: str, x: float, depth: float = 0.0) -> Receptacle:
+        return Receptacle(name=name, kind="counter", center=(x, 0.0, 0.4), size=(1.0, 0.6), depth=depth)
+
+    sofa, table, behind, bin_ = (
+        surface("sofa", 1.0),
+        surface("table", 2.0),
+        surface("bench", -1.5),
+        surface("bin", 0.5, 0.4),
+    )
+    assert _delivery([sofa, bin_, behind, table])[0] == "table"
+    assert _delivery([sofa, bin_])[0] == "sofa" and _delivery([bin_])[0] == ""
 
 
 def test_what_is_inside_or_below_a_surface_is_none() -> None:
