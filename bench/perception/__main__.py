@@ -11,17 +11,13 @@ import numpy as np
 
 from bench.perception.listed import Listed
 from bench.perception.unlisted import VIEWED, Unlisted
+from bench.perception.views import add_options
 
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--views", type=int, default=200)
-    parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--width", type=int, default=640)
-    parser.add_argument("--height", type=int, default=480)
-    parser.add_argument("--sensors", choices=("bought", "ideal"), default="bought", help="the camera's (bought)")
-    parser.add_argument("--pose-noise", type=float, default=0.0, help="of the robot's own pose [m and rad]")
-    parser.add_argument("--backend", default="auto", choices=("auto", "egl", "osmesa", "raycast"))
+    add_options(parser, pose_noise=0.0)
     parser.add_argument("--verbose", "-v", action="store_true", help="name every mistake")
     parser.add_argument("--unknown", choices=VIEWED, help="worlds that perception is not told about")
     args = parser.parse_args()

@@ -14,7 +14,7 @@ from collections import Counter
 import numpy as np
 
 from bench.perception.unlisted import SUITES
-from bench.perception.views import take
+from bench.perception.views import add_options, take
 from common.geometry import Pose2
 from common.messages import WorldObject
 from common.naming.likeness import LEAST, LIKELY
@@ -168,12 +168,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--suite", choices=SUITES, default="sizes")
     parser.add_argument("-n", "--worlds", type=int, default=50)
-    parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--width", type=int, default=640)
-    parser.add_argument("--height", type=int, default=480)
-    parser.add_argument("--sensors", choices=("bought", "ideal"), default="bought", help="the camera's (bought)")
-    parser.add_argument("--pose-noise", type=float, default=0.006, help="of the robot's own pose [m and rad]")
-    parser.add_argument("--backend", default="auto", choices=("auto", "egl", "osmesa", "raycast"))
+    add_options(parser, pose_noise=0.006)
     args = parser.parse_args()
     counts: Counter[str] = Counter()
     questions = 0

@@ -19,6 +19,16 @@ RANGE, MARGIN = 3.0, 12
 """Depth [m] up to which, and margin of the picture [px] within which an object must be seen."""
 
 
+def add_options(parser: argparse.ArgumentParser, pose_noise: float) -> None:
+    """Add the options of how views are taken; `pose_noise` [m and rad] unless told."""
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--width", type=int, default=640)
+    parser.add_argument("--height", type=int, default=480)
+    parser.add_argument("--sensors", choices=("bought", "ideal"), default="bought", help="the camera's (bought)")
+    parser.add_argument("--pose-noise", type=float, default=pose_noise, help="of the robot's own pose [m and rad]")
+    parser.add_argument("--backend", default="auto", choices=("auto", "egl", "osmesa", "raycast"))
+
+
 class Looked(NamedTuple):
     """A view, what stands there, and a detector that has been told of that home what its robot is."""
 
