@@ -246,8 +246,8 @@ def test_things_are_brought_to_a_table_and_not_to_the_sofa_before_it() -> None:
         surface("bench", -1.5),
         surface("bin", 0.5, 0.4),
     )
-    assert _delivery([sofa, bin_, behind, table])[0] == "table"
-    assert _delivery([sofa, bin_])[0] == "sofa" and _delivery([bin_])[0] == ""
+    assert _delivery([sofa, bin_, behind, table]) == "table"
+    assert _delivery([sofa, bin_]) == "sofa" and _delivery([bin_]) == ""
 
 
 def test_what_is_inside_or_below_a_surface_is_none() -> None:
