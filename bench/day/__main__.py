@@ -20,7 +20,7 @@ import numpy as np
 from bench.day.account import Account
 from bench.day.robot import Robot
 from cli.errors import CliError
-from cli.link import Link, Watch
+from cli.link import Link
 from common import messages as m
 from common import topics
 from common.bus.session import open_session
@@ -34,6 +34,8 @@ PATIENCE, WALL = 900.0, 3600.0
 KILLED = ("navigation", "perception", "brain")
 INTO = 8.0
 """Robot time [s] into a mission at which somebody is killed, or the power goes."""
+ANSWER = 20.0
+"""Wall time [s] within which the brain says whether it has kept what it was told."""
 OPEN = ("WAITING", "LISTENING", "COMPLETED", "ERROR")
 TOLD = (
     m.HouseholdEdit(do="name", name="den", kind="room", id="day-1"),
@@ -81,16 +83,10 @@ class Day:
         rule = m.TidyRule(things="mugs", to=[to], kinds=["mug"])
         wrong = []
         for edit in TOLD:
-            watch = Watch(self.link, topics.HOUSEHOLD_EDITED)
             asked = msgspec.structs.replace(edit, rule=rule if edit.do == "rule" else None)
-            self.link.send(topics.HOUSEHOLD_EDIT, asked)
-            end = monotonic() + 20.0
-            result = None
-            while monotonic() < end and (result is None or result.goal_id != edit.id):
-                result = watch.next(0.5)
-            watch.close()
-            if result is None or not result.ok:
-                wrong.append(f"{edit.do}: {result.detail if result else 'no answer'}")
+            result = self.link.ask(topics.HOUSEHOLD_EDIT, asked, topics.HOUSEHOLD_EDITED, ANSWER, "the brain")
+            if not result.ok:
+                wrong.append(f"{edit.do}: {result.detail}")
         return wrong
 
     # --- missions
