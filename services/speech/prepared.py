@@ -69,8 +69,8 @@ def _kept(place: Path, name: str) -> bool:
         return False
     try:
         _work_out(scratch)
-        _remove_older(place, scratch)
         scratch.rename(place / name)
+        _remove_others(place, name)
     except OSError:
         return (place / name).is_dir()  # another process was faster; what it left is as good
     finally:
@@ -87,9 +87,9 @@ def _work_out(folder: Path) -> None:
         raise speech_weights.WeightsError(f"the networks of speech could not be worked out: {why}")
 
 
-def _remove_older(place: Path, new: Path) -> None:
+def _remove_others(place: Path, name: str) -> None:
     for folder in place.glob(f"{STEM}*"):
-        if folder != new and folder.suffix != ".part":
+        if folder.name != name and folder.suffix != ".part":
             shutil.rmtree(folder, ignore_errors=True)
 
 

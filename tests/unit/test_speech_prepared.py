@@ -36,6 +36,22 @@ def test_it_is_worked_out_once_and_kept(works: list[Path], tmp_path: Path) -> No
     assert [path.name for path in first.parent.iterdir()] == [first.name], "nothing half done is left"
 
 
+def test_of_two_processes_at_once_the_first_is_kept(
+    works: list[Path], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    def work_out(folder: Path) -> None:
+        (folder / FILE).write_text("second", encoding="ascii")
+        if not works:
+            works.append(folder)
+            with prepared() as first:
+                (first / FILE).write_text("first", encoding="ascii")
+
+    monkeypatch.setattr(module, "_work_out", work_out)
+    with prepared() as folder:
+        assert (folder / FILE).read_text(encoding="ascii") == "first"
+    assert [path.name for path in (tmp_path / "first").iterdir()] == [folder.name]
+
+
 def test_other_code_or_packages_have_it_worked_out_again(works: list[Path], monkeypatch: pytest.MonkeyPatch) -> None:
     with prepared() as old:
         pass
