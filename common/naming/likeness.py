@@ -29,6 +29,8 @@ UNSEEN, UNTOLD = 0.4, 0.1
 and but for words that may say anything. Chosen: a person is asked about the first at once, about the second at last."""
 ROUGHLY = 0.15
 """Likeness of the words that are known from which the others are asked about. Chosen: more than one that is near."""
+OFF_COLOUR = 0.7
+"""What is left of the likeness of what has not the colour of what it is made of. Chosen: not asked about at once."""
 SHAPELESS, ANY_SHAPE = frozenset({"toy", "tool"}), 0.35
 """Kinds that have no shape of their own, and the likeness of anything to them. Chosen: asked about when it is seen."""
 NEAR_COLOUR, NEAR_KIND, NO_KIND = 0.15, 0.12, 0.2
@@ -76,13 +78,29 @@ def partly(phrase: str, o: WorldObject, household: Household) -> float:
     untold = known.rest - {*told.qualities, *told.looks, *told.shades}
     # The last word says what it is, those before it which one.
     headed = _known(wanted.split()[-1], o, household).any
-    named, printed = known.rest & told.looks.keys(), telling(o.text)
+    named, printed = known.rest & told.looks.keys(), other_goods(wanted, o.text, household)
     if not known.rest or not (known.any or named) or fit < ROUGHLY or (untold and printed and not named):
         return 0.0
     # What has other words printed on it is hardly the soap.
     if (untold and not headed and not named) or (printed and not known.rest <= {*told.qualities, *told.shades}):
         return UNTOLD
-    return min(UNSEEN, fit)
+    return min(UNSEEN, fit) * (OFF_COLOUR if _of_another_flavour(wanted, o, household) else 1.0)
+
+
+def other_goods(phrase: str, text: str, household: Household) -> list[str]:
+    """The words of a text that say of a pack that something else is in it than a phrase says; no brands."""
+    wanted, told = set(normalise(phrase).split()), household.words
+    goods = {*told.looks, *FLAVOURS}
+    found = [w for w in telling(text) if {w, w.removesuffix("s"), f"{w}s"} & goods]
+    return [w for w in found if not {w, w.removesuffix("s"), f"{w}s"} & wanted]
+
+
+def _of_another_flavour(wanted: str, o: WorldObject, household: Household) -> bool:
+    """Whether words before the last say of a colour that an object has nothing of: tomato sauce is red, or in red."""
+    told = household.words.looks
+    before = [told.get(w, ()) if w not in FLAVOURS else (w,) for w in wanted.split()[:-1]]
+    shades = {w for looks in before for w in looks if w in ALIKE}
+    return bool(shades) and max(_has_colour(shade, o) for shade in shades) < ROUGHLY
 
 
 def _unnamed(o: WorldObject) -> float:

@@ -5,7 +5,7 @@ import pytest
 from common.config import config_dir
 from common.household import Household, load_words, mapped
 from common.messages import WorldObject
-from common.naming.likeness import LEAST, LIKELY, PLAIN, describes, likeness, looks_like, partly
+from common.naming.likeness import LEAST, LIKELY, PLAIN, describes, likeness, looks_like, other_goods, partly
 from common.scene import load_scene
 from services.perception.grounding import ground, parsed, possible
 
@@ -195,3 +195,20 @@ def test_a_colour_that_is_said_goes_before_the_usual_one() -> None:
 def test_for_a_name_that_tells_nothing_what_has_no_shape_is_asked_about_first() -> None:
     tin, tool = measured("white can", {"can": 1.0}, {"white": 1.0}), measured("grey tool", {"tool": 1.0}, {"grey": 1.0})
     assert partly("tongs", tool, HOUSEHOLD) > partly("tongs", tin, HOUSEHOLD) >= LEAST
+
+
+def test_a_brand_says_nothing_against_a_pack_and_other_goods_do() -> None:
+    tin = measured("red can", {"can": 1.0}, {"red": 1.0})
+    plain = partly("tomato sauce", tin, HOUSEHOLD)
+    tin.text = "MELISSA"
+    assert other_goods("tomato sauce", "MELISSA / Sauce / Nutrition", HOUSEHOLD) == []
+    assert partly("tomato sauce", tin, HOUSEHOLD) == plain > LIKELY
+    tin.text = "BAKED BEANS"
+    assert other_goods("bean soup", tin.text, HOUSEHOLD) == [] != other_goods("tomato sauce", tin.text, HOUSEHOLD)
+    assert 0.0 < partly("tomato sauce", tin, HOUSEHOLD) < LIKELY
+
+
+def test_what_has_nothing_of_the_colour_of_what_it_is_made_of_is_asked_about_later() -> None:
+    red, black = (measured(f"{c} bottle", {"bottle": 1.0}, {c: 1.0}) for c in ("red", "black"))
+    assert partly("tomato sauce", red, HOUSEHOLD) > LIKELY > partly("tomato sauce", black, HOUSEHOLD) > LEAST
+    assert partly("bbq sauce", black, HOUSEHOLD) == partly("tomato sauce", red, HOUSEHOLD)

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from common.household import Household
 from common.messages import WorldObject
-from common.naming.likeness import LEAST, LIKELY, describes, looks_like
+from common.naming.likeness import LEAST, LIKELY, describes, looks_like, other_goods
 from services.perception.naming.sights import Sight
 from services.perception.naming.text import LIKELY as HALF_READ
 from services.perception.naming.text import SURE, likeness, traces
@@ -45,7 +45,8 @@ def promise(query: str, words: Sequence[str], o: WorldObject, sight: Sight | Non
     if sight.exhausted:
         return 0.0
     # A part of a word goes on around the side; other words say what else it is.
-    return max(found * ELSEWHERE, part) if part >= HALF_READ else found * (NAMED if sight.named else ELSEWHERE)
+    others = other_goods(query, o.text, household)
+    return max(found * ELSEWHERE, part) if part >= HALF_READ else found * (NAMED if others else ELSEWHERE)
 
 
 def worth_a_look(promised: float) -> bool:
