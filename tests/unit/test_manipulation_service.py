@@ -157,6 +157,14 @@ def test_width_and_force_decide_what_a_grasp_is_worth(grip: Grip, at_close: floa
 
 
 @pytest.mark.parametrize(
+    ("width", "certain", "code"), [(0.032, True, "SLIPPED"), (0.032, False, ""), (0.056, True, "")]
+)
+def test_a_handle_is_no_body_whose_shape_was_measured(width: float, certain: bool, code: str) -> None:
+    """A mug of 71 mm; held 15 mm off its middle it feels 57 mm wide, of what was half seen no more is asked."""
+    assert judge(Grip(width, 25.0), 0.071, width, CONFIG, 0.010, certain) == code
+
+
+@pytest.mark.parametrize(
     ("kind", "nominal", "width", "bad"),
     [
         ("can", 0.066, 0.0658, False),

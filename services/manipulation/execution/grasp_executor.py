@@ -262,7 +262,9 @@ def _judge(robot: Robot, plan: GrabPlan, at_close: float | None, widths: list[fl
     nominal, width = 0.0 if plan.grasp.rim else plan.grasp.width, robot.grip.width
     if plan.doubt and any(abs(width - other) < SAME_WIDTH for other in widths):
         nominal = 0.0 if plan.grasp.rim else width
-    code = judge(robot.grip, nominal, at_close, robot.config, plan.doubt)
+    code = judge(
+        robot.grip, nominal, at_close, robot.config, plan.doubt, certain=plan.doubt > 0 and not plan.grasp.on_surface
+    )
     if code:
         if plan.doubt and robot.grip.holds():
             widths.append(width)
