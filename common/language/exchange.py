@@ -25,8 +25,11 @@ def verb_first(text: str) -> bool:
     return bool(words) and infinitive(words[0], COMMANDING) in COMMANDING
 
 
-def replaced(said: str, meant: str, is_place: IsPlace = lambda _: False) -> str | None:
-    """What was said with the part exchanged that `meant` stands for: a command, a place or a thing; None if none."""
+def replaced(said: str, meant: str, is_place: IsPlace = lambda _: False, explains: bool = False) -> str | None:
+    """What was said with the part exchanged that `meant` stands for: a command, a place or a thing; None if none.
+
+    `explains`: it may say what "one" is: `the blue one, the block I mean`.
+    """
     meant = without_politeness(meant)
     words, new = said.strip(" ,").split(), meant.split()
     if not new:
@@ -44,7 +47,10 @@ def replaced(said: str, meant: str, is_place: IsPlace = lambda _: False) -> str 
     at = next((i for i, w in enumerate(new) if w in PREPOSITIONS), len(new))
     if len(spans) > 1 and is_place(tuple(w for w in new[at + 1 :] if w not in DETERMINERS)):
         end = len(words)  # both the thing and where it goes are said anew
-    return " ".join((*words[:start], *filled(meant, " ".join(words[start:end])).split(), *words[end:]))
+    old = " ".join(words[start:end])
+    names = explains and len(new) == 2 and end - start > 2 and words[end - 1].strip(",") == "one"
+    whole = filled(old, meant) if names else filled(meant, old)
+    return " ".join((*words[:start], *whole.split(), *words[end:]))
 
 
 def _with_thing(meant: str, said: list[str]) -> str:

@@ -165,7 +165,7 @@ def _repaired(text: str, is_place: IsPlace) -> str:
         meant, comma, rest = meant.partition(", ")
         if rest.split(" ")[0] not in PREPOSITIONS:  # "the red can, i mean the green can, on the dresser"
             meant, rest = f"{meant}{comma}{rest}", ""
-        if (repaired := replaced(f"{text[: found.start()]} {rest}", meant, is_place)) is None:
+        if (repaired := replaced(f"{text[: found.start()]} {rest}", meant, is_place, "mean" in found[0])) is None:
             return text
         text = repaired
     return text

@@ -108,6 +108,8 @@ def test_the_judge_of_sentences_can_say_no() -> None:
         ("bring me the red mug no wait the blue one", ["bring me the blue mug"]),
         ("do not bring me the red mug, bring the blue one", ["bring the blue mug"]),
         ("put the apple on the desk, sorry, on the counter", ["put the apple on the counter"]),
+        ("bring me the blue one, the block i mean", ["bring me the blue block"]),
+        ("bring me the blue one, sorry, the block", ["bring me the block"]),
         ("instead of the red mug bring me the blue one", ["bring me the blue mug"]),
         ("instead of bringing me the apple put it on the counter", ["put the apple on the counter"]),
         ("put the ball in the toy box instead of on the shelf", ["put the ball in the toy box"]),
@@ -229,6 +231,7 @@ def test_a_slip_in_a_name_is_asked_about_and_taken_literally_after_a_no() -> Non
         ("instead of the can bring the mug", "replace", "bring the mug"),
         ("hurry up", "encouragement", "hurry up"),
         ("i meant the toy box", "replace", "i meant the toy box"),
+        ("make it the kitchen table instead", "replace", "make it the kitchen table"),
     ],
 )
 def test_what_is_said_to_a_robot_at_work(said: str, kind: str, text: str) -> None:

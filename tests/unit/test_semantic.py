@@ -92,5 +92,17 @@ def test_a_plan_that_does_something_else_is_asked_about() -> None:
     assert contradicted(said, planned("tidy up the desk").steps, VOCABULARY)
     assert not contradicted(said, planned("bring me the red mug").steps, VOCABULARY)
     assert not contradicted(said, planned("where is the red mug").steps, VOCABULARY), "words do no harm"
-    found = planned("robot vacuum go to the kitchen")
-    assert (found.steps, found.asks) == ([], "go to the kitchen")
+
+
+@pytest.mark.parametrize(
+    ("said", "asked"),
+    [
+        ("robot vacuum go to the kitchen", "go to the kitchen"),
+        ("bring me my keys", ""),
+        ("put my keys on the counter", ""),
+        ("bring me the purple cup", ""),
+    ],
+)
+def test_a_thing_nobody_knows_is_doubted_beside_a_likelier_request(said: str, asked: str) -> None:
+    found = planned(said)
+    assert (bool(found.steps), found.asks) == (not asked, asked)

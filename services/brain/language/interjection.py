@@ -115,7 +115,7 @@ def interjection(said: str, doing: str = "") -> Interjection:
         or _RATHER.match(words)
         or _MADE.match(words)
     ):
-        return Interjection("replace", said)
+        return Interjection("replace", _INSTEAD_END.sub("", said))
     for kind, begin, end in (("replace", _INSTEAD, _INSTEAD_END), ("queue", _LATER, _LATER_END)):
         rest = words
         while (shorter := begin.sub("", rest)) != rest:
