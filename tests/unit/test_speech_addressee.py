@@ -95,9 +95,8 @@ DOUBT = CONFIG.certain - 0.01
 @pytest.mark.parametrize(
     ("found", "text", "verdict", "confidence"),
     [
-        (("go to the shelf", "reject", 0.1, "Is the mug on the shelf?", 0.9), "is the mug on the shelf", "accept",
-         0.81),
-        (("go to the shelf", "ask", 0.4, "Is the mug on the shelf?", 0.4), "is the mug on the shelf", "accept", 0.16),
+        (("go to the shelf", "reject", 0.1, "Is the mug on the shelf?", 0.9), "is the mug on the shelf", "accept", 0.9),
+        (("go to the shelf", "ask", 0.4, "Is the mug on the shelf?", 0.4), "is the mug on the shelf", "accept", 0.4),
         (("the mug", "reject", 0.1, "Hey Jarvis, bring me my wallet.", 0.9), "bring me my wallet", "accept", UNLISTED),
         (("the mug", "ask", 0.3, "Bring me my wallet.", DOUBT), "the mug", "ask", 0.3),
         (("the mug", "reject", 0.1, "The mug was broken in May.", 0.9), "the mug", "reject", 0.1),
@@ -130,7 +129,7 @@ def test_the_sentence_or_the_free_transcription_counts(
     found: tuple[str, Verdict, float, str, float], text: str, verdict: str, confidence: float
 ) -> None:
     heard = freely(Recognition(*found), NAMES, CONFIG)
-    assert (heard.text, heard.verdict, round(heard.confidence, 6)) == (text, verdict, confidence)
+    assert (heard.text, heard.verdict, heard.confidence) == (text, verdict, confidence)
 
 
 @pytest.mark.parametrize(

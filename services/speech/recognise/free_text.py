@@ -19,10 +19,6 @@ UNLISTED = 0.5
 LEAST = 0.2
 """Confidence from which a sentence of the grammar is asked about. Chosen on five voices in noise and echoes: below it
 one question of nine was right, above it two of five."""
-UNCONFIRMED = 2.0
-"""Power of its certainty that a transcription is worth which the grammar does not confirm. Chosen on eleven voices in
-noise and echoes: with a certainty of 0.8 to 0.9 five of 21 that the planner understood were wrong, above that one of
-15; the brain asks below 0.8."""
 FAINT = 0.4
 """Certainty of the free transcription below which a sentence of the grammar that it does not confirm is asked about.
 Chosen on five voices in noise: below it two of five sentences that were accepted were wrong, above it none of 80."""
@@ -64,7 +60,7 @@ def freely(found: Recognition, names: Collection[str], config: SpeechConfig) -> 
         return found  # nothing but the wake word
     grade = understood(free, names)
     if grade == "listed":
-        return replace(found, text=free, verdict="accept", confidence=found.certainty**UNCONFIRMED)
+        return replace(found, text=free, verdict="accept", confidence=found.certainty)
     if near := _misheard(free, names, VERY_NEAR if grade else NEAR):
         return replace(found, text=near, verdict="accept", confidence=min(found.certainty, UNLISTED))
     if grade == "unlisted" and found.certainty >= config.certain:
