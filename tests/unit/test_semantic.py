@@ -101,6 +101,7 @@ def test_a_plan_that_does_something_else_is_asked_about() -> None:
         ("bring me my keys", ""),
         ("put my keys on the counter", ""),
         ("bring me the purple cup", ""),
+        ("I need the stapler, bring it to me", ""),
     ],
 )
 def test_a_thing_nobody_knows_is_doubted_beside_a_likelier_request(said: str, asked: str) -> None:

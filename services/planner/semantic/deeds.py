@@ -5,6 +5,7 @@ from typing import Literal
 
 from common.language.normalise import Words
 from common.messages import PlanStep
+from services.planner.grammar.chunks import POINTING
 from services.planner.grammar.vocabulary import Vocabulary
 from services.planner.semantic.forms import NONE, OTHER
 from services.planner.semantic.ranker import rank
@@ -40,13 +41,20 @@ def contradicted(words: Words, steps: Sequence[PlanStep], vocabulary: Vocabulary
         return False
     ranked = rank(words, vocabulary)
     strange = any(not _is_known(step.object, vocabulary) for step in steps if step.object)
-    if strange and sum(p for candidate, p in ranked if candidate.kind == "act") > LIKELY:
+    # "bring it" beside "I need the stapler" asks for the stapler itself
+    others = (p for candidate, p in ranked if candidate.kind == "act" and not _points(candidate.text))
+    if strange and sum(others) > LIKELY:
         return True
     shares: dict[str, float] = {}
     for candidate, p in ranked:
         shares[candidate.form] = shares.get(candidate.form, 0.0) + p
     alike = shares[OTHER] + sum(shares.get(form, 0.0) for deed in deeds for form in _FORMS[deed])
     return alike < UNLIKELY * (1.0 - shares[NONE])
+
+
+def _points(text: str) -> bool:
+    """Does a command handle what a pronoun stands for?"""
+    return not set(POINTING).isdisjoint(text.split())
 
 
 def _is_known(label: str, vocabulary: Vocabulary) -> bool:
