@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from common import topics
+from common.config import ConfigError
 from common.time.clock import monotonic
 from common.time.lockstep import DT
 from evaluation.case import Case, Observed, Result, TimedFault
@@ -76,7 +77,11 @@ class FaultScheduler:
 
 
 def run(case: Case, progress: Progress = lambda t, state: None) -> Result:
-    """Run and judge one case. What a service raises ends the case as `crashed`."""
+    """Run and judge one case. What a service raises ends the case as `crashed`.
+
+    Raises:
+        ConfigError: the settings, which all cases of a run share, cannot be used.
+    """
     began = monotonic()
     with tempfile.TemporaryDirectory(prefix="case-") as state_dir:
         keeps = bool(case.timed_faults or case.showing)
@@ -95,6 +100,8 @@ def _run(case: Case, progress: Progress, began: float, state_dir: Path | None) -
         except NotMapped as error:
             seen = Observed(claimed="failed", reason=str(error), failed_at="NAVIGATING", code="NOT_MAPPED", ended=True)
             return judge(case, seen, monotonic() - began)
+        except ConfigError:
+            raise
         except Exception as error:
             return judge(case, Observed(crash=_words(error)), monotonic() - began)
     try:
@@ -103,6 +110,8 @@ def _run(case: Case, progress: Progress, began: float, state_dir: Path | None) -
             swaps=_swaps(case, reports.append), without=idle_services(case), state_dir=state_dir,
             replaced=case.replaced,
         )  # fmt: skip
+    except ConfigError:
+        raise
     except Exception as error:
         return judge(case, Observed(crash=_words(error)), monotonic() - began)
     try:

@@ -19,6 +19,7 @@ from typing import Any
 
 import msgspec
 
+from common.config import ConfigError
 from common.rendering.backend import best, environment
 from common.time.clock import monotonic
 from evaluation.case import Case, Observed, Result
@@ -65,6 +66,7 @@ class Lane:
 
         Raises:
             LaneClosed: `close` was called by another thread.
+            ConfigError: the case's settings cannot be used, so that a second attempt would end alike.
         """
         began = monotonic()
         for attempt in range(1, ATTEMPTS + 1):
@@ -93,7 +95,9 @@ class Lane:
                     if now - heard > self._silence:
                         return f"no sign of life for {self._silence:.0f} s"
                     continue
-                said = msgspec.msgpack.decode(pipe.recv_bytes(), type=tuple[float, str] | Result)
+                said = msgspec.msgpack.decode(pipe.recv_bytes(), type=tuple[float, str] | Result | str)
+                if isinstance(said, str):
+                    raise ConfigError(said)
                 if isinstance(said, Result):
                     return said
                 heard = monotonic()
@@ -179,7 +183,11 @@ def child(descriptor: int, name: str) -> None:
         while True:
             case = msgspec.msgpack.decode(pipe.recv_bytes(), type=Case)
             pipe.send_bytes(encode((0.0, "starting")))
-            pipe.send_bytes(encode(run(case, lambda t, state: pipe.send_bytes(encode((t, state))))))
+            try:
+                found: Result | str = run(case, lambda t, state: pipe.send_bytes(encode((t, state))))
+            except ConfigError as error:
+                found = str(error)
+            pipe.send_bytes(encode(found))
     except (EOFError, BrokenPipeError, ConnectionResetError, SystemExit):
         status = 0
     except Exception:

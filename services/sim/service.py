@@ -10,6 +10,7 @@ import numpy as np
 
 from common import topics
 from common.bus.port import Io
+from common.config import ConfigError
 from common.geometry import Pose2
 from common.runtime import StartError
 from common.time.lockstep import DT
@@ -187,7 +188,7 @@ def _robot(name: str) -> Robot:
     try:
         return load_robot(name)
     except RobotError as error:
-        raise StartError(f"sim.robot: {error}") from None
+        raise ConfigError(f"sim.robot: {error}") from None
 
 
 def _speed(text: str) -> float | None:

@@ -157,6 +157,11 @@ def test_a_mistyped_suite_is_named(capsys: pytest.CaptureFixture[str]) -> None:
     assert "fetch" in capsys.readouterr().err
 
 
+def test_settings_that_no_case_can_use_end_the_run(capsys: pytest.CaptureFixture[str]) -> None:
+    assert evaluation_main.main(["-n", "3", "--set", "sim.robot=ostrich"]) == 1
+    assert capsys.readouterr().err == "tidybot: sim.robot: robot ostrich: expected tidybot or official\n"
+
+
 def test_without_dask_the_line_that_installs_it_is_given(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "distributed", None)
     with pytest.raises(CliError, match=r"pip install 'tidybot-zenoh\[cluster\]'"):
