@@ -18,6 +18,8 @@ from pathlib import Path
 from common import speech_weights
 
 STEM = "speech-"
+ENCODER = "encoder.onnx"
+"""File of the encoder's network, its matrices packed."""
 SOURCES = (
     "recognise/decoder.py", "recognise/decoder_networks.py", "recognise/packed_network.py", "speak/packed_mapping.py",
     "speak/dictionaries.py", "prepared.py",
@@ -45,7 +47,6 @@ def prepared() -> Iterator[Path]:
 def write(folder: Path) -> None:
     """Work out all files into a folder."""
     from services.speech.recognise import decoder_networks, packed_network
-    from services.speech.recognise.moonshine import ENCODER
     from services.speech.speak import dictionaries
 
     weights = speech_weights.folder()

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common import speech_weights
-from services.speech.prepared import prepared
+from services.speech.prepared import ENCODER, prepared
 from services.speech.recognise.decoder import Cache, Decoder
 from services.speech.recognise.grammar import State
 from services.speech.recognise.inference import session
@@ -28,8 +28,6 @@ RATE = 16000
 """Samples per second of the network's input."""
 REPLACED = 4
 """Most first words of a transcription that may be two misheard ones (chosen: `hey jarvis` as `he is a john is`)."""
-ENCODER = "encoder.onnx"
-"""File of the encoder's network, its matrices packed."""
 
 
 @dataclass(frozen=True)
