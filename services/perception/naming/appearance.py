@@ -33,7 +33,7 @@ STOPS = 6.0
 GREY = 12.0
 """Brightness (of 255) below which chromaticity is noise."""
 EXTENT_NOISE, EXTENT_SHARE = 0.007, 0.07
-"""Standard deviation of a measured extent: this [m], and this share of it (bench.naming)."""
+"""Standard deviation of a measured extent: this [m], and this share of it; measured on drawn packages."""
 SHAPE_WEIGHT = 0.08
 """What a squared standard deviation of shape beyond the first counts for in `difference`. Chosen: at twice the noise it
 is a third of what separates two colours, at three times more than colours can say for it."""

@@ -13,7 +13,7 @@ from services.perception.naming.text import Line
 from services.perception.views.view import View
 
 LOOK_SECONDS, READ_SECONDS = 0.005, 0.4
-"""Robot time [s] that a look and a reading take in lockstep; measured on one core by bench.naming."""
+"""Robot time [s] that a look and a reading take in lockstep; measured on one core."""
 MAX_READ = 8
 """Objects that are read in one go, the nearest first. Chosen: three seconds."""
 

@@ -20,7 +20,7 @@ the reader's network was trained on."""
 LARGEST = 4.0
 """Factor of enlargement from which no more letters are read, only more time is spent."""
 CONFIDENT = 0.6
-"""Confidence of a line below which it is noise rather than print (bench.naming)."""
+"""Confidence of a line below which it is noise rather than print; measured on drawn packages."""
 LETTERS = 2
 """Fewest letters of a line."""
 ENOUGH = 0.8

@@ -17,10 +17,10 @@ Evidence = Literal["same", "other", "silent"]
 
 SAME, PERHAPS = 0.20, 0.34
 """Differences of appearance up to which an object is the one that was taught, and up to which a person is asked whether
-it is (bench.naming: one in twenty of the taught things is above the first, one in a hundred of their look-alikes
-below)."""
+it is. Measured on drawn packages: one in twenty of the taught things is above the first, one in a hundred of their
+look-alikes below."""
 CLEAR = 0.06
-"""How much more alike the best must be than the second for that to be another object (bench.naming)."""
+"""How much more alike the best must be than the second for that to be another object; measured likewise."""
 READ_SAME, READ_OTHER = -0.06, 0.12
 """What print adds to the difference: words that were read when it was taught, and others in place of them."""
 TURNED = 2

@@ -17,7 +17,7 @@ MAX_SIDES = 4
 LEGIBLE = 1000.0
 """Pixels per metre from which print of a package is legible: letters of 8 mm have 8 pixels."""
 ROUGHLY = 650.0
-"""Pixels per metre from which words that were read for sure are those that are printed (bench.naming, 1.8 m)."""
+"""Pixels per metre from which words that were read for sure are those that are printed (measured: 1.8 m)."""
 APART = 0.5
 """Angle [rad] between two directions from which different sides are read. Chosen: what goes around a can is read up to
 1.15 to either side, at the edge with few letters."""

@@ -18,11 +18,11 @@ SHORT = 3
 """Letters up to which a word has to be read exactly: "tea" is one letter from "pea" and "ten"."""
 SURE, LIKELY = 0.85, 0.72
 """Likeness of the words asked for to what was read, from which it is that and from which a nearer look is worth it.
-Chosen: one wrong letter in seven, and one in four (bench.naming)."""
+Chosen: one wrong letter in seven, and one in four."""
 WORST_WORD = 0.7
 """Likeness that each of the words must have: "tomato" to "potato" has .67."""
 ALIKE = ("nwmh", "hrkax", "ocqdg0", "iltj1", "tfyr", "efb", "uvy", "s58b", "prfd", "ceo", "gs6")
-"""Letters that small print makes look alike: "NATER" and "WATEH" were read for "WATER" (bench.naming)."""
+"""Letters that small print makes look alike: "NATER" and "WATEH" were read for "WATER"."""
 MISTAKEN = 0.65
 """What one of them in place of another counts, where any other letter counts 1. Chosen: one in five letters is no
 doubt, one in four is."""

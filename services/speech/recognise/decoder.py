@@ -1,7 +1,7 @@
 """The recogniser's decoder as one step for many beam hypotheses at once, rebuilt from the weights of the shipped one.
 
 The shipped network keeps the encoder's keys and values for each hypothesis, gets its cache rearranged from outside and
-unpacks its weights at each run: six times the CPU time (`python -m bench.recogniser`). Here the encoder's part is kept
+unpacks its weights at each run: six times the CPU time. Here the encoder's part is kept
 once, the choice of the hypotheses that go on happens inside, and the matrices stay packed in 8 bits
 (`decoder_networks.py` writes these networks).
 """
