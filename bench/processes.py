@@ -28,7 +28,11 @@ def main() -> None:
         tidybot("say", f"bring me the {ITEM}", "--wait")
         speed = (_clock(tidybot) - before) / (time.perf_counter() - started)
         rows: list[dict[str, Any]] = json.loads(tidybot("ps", "--json"))
-        taken = {row["name"]: _memory(row["pid"]) for row in rows}
+        names = {row["pid"]: row["name"] for row in rows}
+        supervisor = psutil.Process(rows[0]["pid"]).parent()
+        names |= {supervisor.pid: "supervisor"}
+        names |= {child.pid: "watchdog" for child in supervisor.children() if child.pid not in names}
+        taken = {name: _memory(pid) for pid, name in names.items()}
     alone = fetch(Robot(seed=0), ITEM, 0)
     print(f"{'up to ready':34} {ready:8.1f} s")
     rss, pss = zip(*taken.values(), strict=True)

@@ -1,4 +1,4 @@
-"""supervisord with three additions: nothing outlives its parent, crash loops end, and starts are counted.
+"""supervisord with additions: services are forks, nothing outlives its parent, crash loops end, starts are counted.
 
 `python -m cli.processes.supervisord -c FILE` is started by `tidybot up`.
 """
@@ -15,6 +15,7 @@ from supervisor.options import ProcessConfig, ServerOptions, decode_wait_status
 from supervisor.process import Subprocess
 from supervisor.states import ProcessStates
 
+from cli.processes import forked
 from common.time import clock
 
 PR_SET_PDEATHSIG = 1
@@ -77,6 +78,12 @@ class Options(ServerOptions):  # type: ignore[misc]
         follow_parent(signal.SIGKILL, int(os.environ["TIDYBOT_SUPERVISOR"]))
         return super().setpgrp()
 
+    def execve(self, filename: str, argv: list[str], env: dict[str, str]) -> Any:
+        """Called in the child: become the program, without a new interpreter where it can do with this one."""
+        if forked.module_of(argv):
+            forked.become(argv, env)
+        return super().execve(filename, argv, env)
+
 
 class Extra:
     """What plain supervisord does not tell over XML-RPC."""
@@ -113,6 +120,8 @@ def main() -> None:
     if parent:
         follow_parent(signal.SIGTERM, int(parent))
     os.environ["TIDYBOT_SUPERVISOR"] = str(os.getpid())
+    if sys.platform == "linux":
+        forked.load()
     options = Options()
     options.realize(sys.argv[1:], doc=__doc__)
     options.first, options.test = True, False
