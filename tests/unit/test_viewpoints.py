@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from common import messages as m
+from common.floor_plan import Box, FloorPlan, Place, Receptacle, Wall
 from common.geometry import Pose2
 from common.household import load_household
 from common.viewpoints import NOMINAL, REACH, Viewpoints, viewpoints_of
@@ -115,3 +116,30 @@ def test_nothing_beyond_the_camera_s_reach_is_shown() -> None:
         eye = (pose[0] + NOMINAL.x * math.cos(pose[2]), pose[1] + NOMINAL.x * math.sin(pose[2]))
         assert shows.any()
         assert np.hypot(*(VIEWPOINTS.points[shows, :2] - eye).T).max() < REACH
+
+
+def test_where_there_is_little_room_it_looks_last_and_where_no_way_leads_never() -> None:
+    """A room of 4 x 4 m with a table, a desk in a gangway of 0.85 m, and a closet without a door with a shelf."""
+
+    def surface(name: str, x: float, y: float, side: tuple[float, float]) -> Receptacle:
+        return Receptacle(name=name, kind="table", center=(x, y, 0.75), size=(0.8, 0.6), approach=(side,))
+
+    flat = FloorPlan(
+        name="flat", low=(0.0, 0.0), high=(6.0, 4.0), home=Place(name="home", x=1.0, y=2.0),
+        walls=(Wall(start=(4.0, 0.0), end=(4.0, 4.0)),),
+        furniture=(Box(name="wardrobe", center=(2.9, 1.75, 1.0), size=(1.6, 0.6, 2.0)),),
+        receptacles=(
+            surface("table", 0.5, 3.6, (0.0, -1.0)), surface("desk", 2.9, 0.3, (0.0, 1.0)),
+            surface("shelf", 5.0, 0.4, (0.0, 1.0)),
+        ),
+    )  # fmt: skip
+    views = Viewpoints(flat, NOMINAL)
+    shown = [views.surface == n for n in range(3)]
+    looked_from: list[Pose2] = []
+    while (view := viewpoint_search.elsewhere(flat, views, (1.0, 2.0, 0.0), looked_from)) is not None:
+        looked_from.append(view)
+        if len(looked_from) == 1:
+            assert views.visible(view)[shown[0]].any() and not views.visible(view)[shown[1]].any()
+    covered = views.covered(looked_from)
+    assert covered[shown[1]].mean() > 0.9, "the desk is looked at from the gangway"
+    assert not covered[shown[2]].any()

@@ -4,17 +4,16 @@ import math
 from collections import Counter
 from collections.abc import Collection
 
-from common.approach import clearance
 from common.floor_plan import FloorPlan
 from common.geometry import Array, Pose2
 from common.viewpoints import Viewpoints
+from services.brain.world.ways import Ways
 
-CLEARANCE = 0.48
-"""Free floor around a viewpoint [m]; chosen: the footprint's radius 0.29 and what an unknown chair takes of it."""
+AMPLE = 0.48
+"""Free floor around a viewpoint [m] that is preferred; chosen: the footprint's radius 0.29 and what an unknown chair
+takes of it. Where a surface shows from narrower places only, these are taken in the end."""
 TRIES = 2
 """Times that a viewpoint is driven to in vain before it is given up [count]."""
-ROOM_CHANGE = 3.0
-"""What a door on the way costs [m of way]; chosen: about the detour that it makes of a straight line."""
 
 
 def turn(viewpoints: Viewpoints, here: Pose2, looked_from: Collection[Pose2]) -> Pose2 | None:
@@ -36,20 +35,23 @@ def elsewhere(
     any, then each once more: who stood in the way may have gone. `likelihood` (p,) of each point, as `Viewpoints.best`
     takes it.
     """
-    room = floor_plan.room_at(here[0], here[1])
+    ways = Ways(floor_plan, (here[0], here[1]))
 
     def cost(to: Pose2) -> float:
-        other = floor_plan.room_at(to[0], to[1]) is not room
-        return math.dist(here[:2], to[:2]) + ROOM_CHANGE * other
+        return ways.length((to[0], to[1]))
 
-    def free(to: Pose2) -> bool:
-        return clearance(floor_plan, to[0], to[1]) >= CLEARANCE
+    def ample(to: Pose2) -> bool:
+        return ways.room((to[0], to[1])) >= AMPLE and math.isfinite(cost(to))
+
+    def fits(to: Pose2) -> bool:
+        return math.isfinite(cost(to))
 
     unseen, failed = _unseen(viewpoints, looked_from), Counter(unreached)
     for most in range(1, TRIES + 1):
         tried = {*looked_from, *(pose for pose, times in failed.items() if times >= most)}
-        if (found := viewpoints.best(unseen, tried, cost, free, likelihood)) is not None:
-            return found
+        for free in (ample, fits):
+            if (found := viewpoints.best(unseen, tried, cost, free, likelihood)) is not None:
+                return found
     return None
 
 

@@ -10,9 +10,9 @@ from scipy import ndimage
 
 from common import messages as m
 from common.cells import unpacked
+from common.floor_grid import Cells, static_distances
 from common.floor_plan import FloorPlan
 from common.geometry import Array, Pose2
-from services.navigation.planning.cells import Cells, static_distances
 from services.navigation.planning.changes import Changes
 
 Grid = NDArray[np.bool_]

@@ -1,4 +1,4 @@
-"""The cells of a map, and how far each of them is from what the floor plan has."""
+"""The cells of a floor plan, and how far each of them is from what stands there. Pure."""
 
 import math
 
