@@ -44,9 +44,10 @@ class NavigationFeedback(Message):
     """How a goal stands: `distance_remaining` [m], `eta` [s].
 
     `recoveries` counts other paths taken or tried since the goal was sent; the sender of a goal that failed BLOCKED
-    adds to them only what is missing to two. An `attempt` of 0 is one that the navigator does not state. `map_fit` is
-    the share of what the lidar saw lately that the map explains, `met` (x, y) [map] what held the base up last that no
-    sensor sees, such as a pane of glass; empty: nothing.
+    adds to them only what is missing to two. One that failed PERSON_IN_WAY would have a way but for people, who walk
+    on. An `attempt` of 0 is one that the navigator does not state. `map_fit` is the share of what the lidar saw lately
+    that the map explains, `met` (x, y) [map] what held the base up last that no sensor sees, such as a pane of glass;
+    empty: nothing.
     """
 
     goal_id: str

@@ -427,6 +427,23 @@ def test_retries_of_several_attempts_add_up_and_other_failures_are_counted_alone
     assert "BLOCKED" in bench.state.detail and len(bench.sent(POSE)) == 2
 
 
+def test_people_in_the_way_are_waited_for_longer_than_things_and_not_for_ever() -> None:
+    bench = planned()
+    see(bench, 1)
+    patience = BrainConfig().people_patience
+    began, count = bench.now, 0
+    while bench.now - began < patience:
+        count += 1
+        approach(bench, count, "failed", "PERSON_IN_WAY", recoveries=2)
+        until = bench.now + patience / 6
+        while bench.now < until:
+            bench.step()
+    assert count == len(bench.sent(POSE)) - 1 == 6 and bench.state.state == "NAVIGATING"
+    approach(bench, count + 1, "failed", "PERSON_IN_WAY", recoveries=2)
+    bench.until(lambda: bench.state.state == "ERROR")
+    assert "PERSON_IN_WAY" in bench.state.detail
+
+
 def test_the_standing_pose_is_free_and_faces_the_thing() -> None:
     """Any navigator could drive there: no part of the base is in furniture, a surface or a wall."""
     for placed in (p for seed in range(20) for p in place_objects(WORLD, seed)):

@@ -24,6 +24,7 @@ from services.navigation.motion.progress import (
     BlockedTimer,
     Progress,
     Standoff,
+    anybody_near,
     waiting_for,
 )
 from services.navigation.motion.retreat import passing_place
@@ -34,6 +35,7 @@ from tests.unit.navigation_flat import ANGLES, SCENE, Flat, cast
 
 KITCHEN_DOOR = (2.5, -0.75, 0.4, 0.9, 0.0)
 STUDY_DOOR = (-0.45, 2.0, 0.9, 0.4, 0.0)
+STUDY_DOOR_SHUT = Rectangle(*STUDY_DOOR)
 CHASSIS = 0.30
 
 
@@ -117,17 +119,52 @@ def test_it_does_not_back_off_into_what_has_come_up_behind_it() -> None:
 
 
 def test_waiting_for_somebody_who_passes_costs_no_retry() -> None:
-    passer, here = person(1.0, 0.0, 0.0, 0.5), (0.0, 0.0)
+    here = (0.0, 0.0)
 
-    def blocked(movers: list[Obstacle], seconds: float) -> float:
-        patience = BlockedTimer()
-        return max(patience.blocked(here, movers, 100.0 + 0.05 * n) for n in range(round(seconds / 0.05) + 1))
+    def blocked(people: list[Obstacle], seconds: float) -> float:
+        patience, by_people = BlockedTimer(), anybody_near(here, people)
+        return max(patience.blocked(by_people, 100.0 + 0.05 * n) for n in range(round(seconds / 0.05) + 1))
 
-    wait = NavigationConfig().blocked_wait
+    wait, passer = NavigationConfig().blocked_wait, person(1.0, 0.0, 0.0, 0.5)
     assert blocked([], 5.0) == pytest.approx(5.0)
     assert blocked([person(9.0, 0.0, 0.0, 0.5)], 5.0) == pytest.approx(5.0), "far away"
     assert blocked([passer], 18.0) < wait
     assert blocked([passer], PASSING + 10.0) > wait, "somebody who stays is in the way"
+
+
+def walks_in(flat: Flat, since: float) -> list[Rectangle]:
+    """Somebody who comes to stand in the kitchen's door, in which a box leaves room for nobody else."""
+    x = max(2.5, 4.2 - 0.5 * (flat.now - since))
+    return [STUDY_DOOR_SHUT, Rectangle(2.5, -0.45, 0.3, 0.25), Rectangle(x, -0.85, 0.3, 0.3)]
+
+
+def test_who_stands_beside_a_box_in_the_only_door_is_no_thing_that_blocks_it() -> None:
+    flat = Flat([STUDY_DOOR_SHUT])
+    flat.ask("goto kitchen")
+    began = flat.now
+    while flat.status().status == "navigating" and flat.now - began < 300.0:
+        flat.boxes = walks_in(flat, began)
+        flat.step()
+    assert flat.status().code == "PERSON_IN_WAY" and flat.now - began > PASSING
+    assert "PERSON_IN_WAY" in doings(flat) and flat.closest > CHASSIS
+
+
+def test_what_a_person_leaves_is_forgotten_and_what_stood_there_before_is_not() -> None:
+    made, here = costmap(), (0.0, -1.0, 0.0)
+    box, body = Rectangle(1.5, -1.3, 0.3, 0.3), Rectangle(1.5, -0.8, 0.3, 0.3)
+    flat = rectangles(SCENE, 0.2)
+    for tick in range(100):
+        boxes = [box, body] if tick > 50 else [box]
+        people = [(1.5, -0.8, 0.45)] if tick > 60 else []
+        made.see(here, ANGLES, cast(here, [*flat, *boxes]), 10.0, 0.1 * tick, people)
+    free = made.distance_but_for_people()
+    assert made.clearance(1.36, -0.8) < 0.1 < free[made.cell(1.36, -0.8)]
+    assert free[made.cell(1.36, -1.3)] < 0.1 and made.clearance(1.36, -1.3) < 0.1
+    away = (-1.0, 3.0, 0.0)
+    for tick in range(100, 200):
+        made.see(away, ANGLES, cast(away, flat), 10.0, 0.1 * tick)
+    assert made.clearance(1.36, -1.3) < 0.1, "a box stands where it stood"
+    assert made.clearance(1.36, -0.8) > 0.1, "people walk on"
 
 
 def test_a_way_that_opens_while_it_waits_is_taken() -> None:
@@ -215,6 +252,27 @@ def test_who_walked_and_stands_is_still_a_person() -> None:
     assert not one.moves and one.walked
     assert waiting_for((1.0, 1.0), [one]) == "PERSON_IN_WAY"
     assert waiting_for((-1.0, 1.0), [one]) == waiting_for((1.0, 1.0), []) == "WAITING"
+    assert waiting_for((-1.0, 1.0), [one], by_people=True) == "PERSON_IN_WAY"
+
+
+def test_a_person_who_was_hidden_for_a_moment_is_still_a_person_and_only_one_of_them() -> None:
+    arc = np.linspace(-0.6, 0.6, 9)
+
+    def body(x: float, y: float) -> np.ndarray:
+        return np.stack([x - 0.2 * np.cos(arc), y + 0.2 * np.sin(arc)], 1)
+
+    def seen_after(hidden: int) -> list[Obstacle]:
+        movers = ObstacleTracker()
+        for k in range(21):
+            movers.update(body(2.0, 0.06 * k), (0.0, 0.0), 0.1 * k)
+        for k in range(21, 21 + hidden):
+            movers.update(np.empty((0, 2)), (0.0, 0.0), 0.1 * k)
+        for k in range(21 + hidden, 26 + hidden):
+            movers.update(np.concatenate([body(2.0, 1.6), body(2.2, 2.2)]), (0.0, 0.0), 0.1 * k)
+        return movers.people()
+
+    assert len(seen_after(15)) == 1
+    assert seen_after(60) == []
 
 
 def test_clusters_split_at_gaps_and_leave_out_walls() -> None:

@@ -101,9 +101,9 @@ class SendGoal(Leaf):
     def succeed(self, result: Result) -> Status:
         return Status.SUCCESS
 
-    def spent(self, code: str) -> int:
-        """How many of the retries the peer has made itself before it failed."""
-        return 0
+    def try_again(self, code: str) -> bool:
+        """After a failure with `code`: the goal is sent once more."""
+        return self._tries < self._retries
 
     def unfinished(self) -> None:
         """The goal was cut short or timed out: its effect on the world is unknown."""
@@ -189,13 +189,13 @@ class SendGoal(Leaf):
         return Status.RUNNING
 
     def _failed(self, code: str, detail: str) -> Status:
-        spent = self.spent(code)
+        again = self.try_again(code)
         self.channel.abandon()
         failure = Failure(stage=self.state, code=code, detail=detail, spoken=self.spoken())
-        if self._tries + spent < self._retries and not failure.permanent:
+        if again and not failure.permanent:
             self._tries += 1
             self._again_at = self.ctx.now + self.ctx.config.settle
-            self.feedback_message = f"retry {self._tries} of {self._retries} after {code}"
+            self.feedback_message = f"retry {self._tries} after {code}"
             self.ctx.note(f"{self.step()}: {self.feedback_message}", detail)
             return Status.RUNNING
         self.feedback_message = code

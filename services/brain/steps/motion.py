@@ -12,6 +12,7 @@ from common.topic import Topic
 from services.brain.mission.channel import Result
 from services.brain.mission.context import Context
 from services.brain.mission.mission import Failure
+from services.brain.mission.remarks import PERSON
 from services.brain.steps.leaf import SendGoal
 from services.brain.world.neighbours import standing
 from services.brain.world.placement import rested
@@ -28,7 +29,8 @@ class Navigate(SendGoal):
     """A navigation goal in words, or as the pose of `place` with `drive_by = "poses"`.
 
     A way that is blocked is tried again on another path `navigation_retries` times in all: what navigation reports as
-    `recoveries` counts, only what is missing is made up for by further attempts.
+    `recoveries` counts, only what is missing is made up for by further attempts. Where people are all that is in the
+    way it is tried again for `people_patience`: they walk on.
     """
 
     def __init__(
@@ -64,12 +66,16 @@ class Navigate(SendGoal):
     def spoken(self) -> str:
         return self._spoken()
 
-    def spent(self, code: str) -> int:
+    def try_again(self, code: str) -> bool:
+        if code == PERSON:
+            return self.elapsed < self.ctx.config.people_patience
+        if code != "BLOCKED":
+            return super().try_again(code)
         told = self.ctx.io.latest(topics.NAVIGATION_FEEDBACK)
         ours = told is not None and told.goal_id == self.channel.goal_id
-        if code == "BLOCKED" and told is not None and ours and told.attempt in (0, self.channel.attempt):
+        if told is not None and ours and told.attempt in (0, self.channel.attempt):
             self._recovered += max(0, told.recoveries)
-        return self._recovered if code == "BLOCKED" else 0
+        return self._tries + self._recovered < self._retries
 
     def fail_with(self, failure: Failure) -> Status:
         if failure.code == "TIMEOUT":

@@ -153,14 +153,15 @@ class StateEstimator:
     def mark(self, costmap: Costmap, frame: Pose2, now: float) -> None:
         """Enter the newest scan in a costmap in whose frame the base is at `frame`."""
         if (scan := self.scan) is not None:
-            people = [(p.x, p.y, p.radius + AROUND) for p in self.tracker.people()]
+            around = self.tracker.people()
+            people, moving = ([(o.x, o.y, o.radius + AROUND) for o in around if o.walked is w] for w in (True, False))
             eye, reach = compose(frame, (*scan.lidar, 0.0)), scan.reach
             if self.robots and not self.lost:
                 angles = scan.angles + eye[2]
                 ends = eye[:2] + reach[:, None] * np.stack((np.cos(angles), np.sin(angles)), axis=1)
                 # What another robot holds up tells nothing, as what this one does.
                 reach = np.where(_within(ends, self.robots), 0.0, reach)
-            costmap.see(eye, scan.angles, reach, scan.range_max, now, people)
+            costmap.see(eye, scan.angles, reach, scan.range_max, now, people, moving)
 
 
 def _within(points: Array, circles: list[tuple[float, float, float]]) -> NDArray[np.bool_]:

@@ -11,7 +11,7 @@ from services.navigation.motion.collision_avoidance import avoid
 from services.navigation.motion.contacts import Contacts
 from services.navigation.motion.obstacle_tracker import Obstacle
 from services.navigation.motion.path_follower import Lookahead
-from services.navigation.motion.progress import CLOSE, BlockedTimer, Progress, waiting_for
+from services.navigation.motion.progress import CLOSE, PERSON, BlockedTimer, Progress, anybody_near, waiting_for
 from services.navigation.motion.recovery import Recovery
 from services.navigation.motion.retreat import PassingPlace, Retreat
 from services.navigation.motion.route import DETOUR_PAUSE, Route
@@ -45,6 +45,7 @@ class Navigator:
         self._route = Route(config, costmap, planner, choices)
         self._progress = Progress(config, now)
         self._blocked = BlockedTimer()
+        self._by_people = False
         self._recovery = Recovery(config, costmap, planner)
         self._contacts = contacts
         self._targets = Targets(name)
@@ -76,7 +77,7 @@ class Navigator:
         """`points` (n, 2) [map] is what the lidar sees around, `obstacles` the people there.
 
         Raises:
-            Ended: arrived, or failed TIMEOUT, NO_PATH or BLOCKED.
+            Ended: arrived, or failed TIMEOUT, NO_PATH, BLOCKED, or PERSON_IN_WAY where only people block the way.
         """
         pose = self._targets.where(pose, reached)
         if pose is None:
@@ -188,9 +189,10 @@ class Navigator:
             self.doing = ""
         if ahead.blocked:
             self._progress.excuse(now)
+            self._by_people = anybody_near((pose[0], pose[1]), obstacles)
             self._wait_for(pose, obstacles, now)
-            if self._blocked.blocked((pose[0], pose[1]), obstacles, now) > self._config.blocked_wait:
-                self._recover(pose, now, "the way is blocked")
+            if self._blocked.blocked(self._by_people, now) > self._config.blocked_wait:
+                self._recover(pose, now, "the way is blocked", by_people=self._by_people)
             return
         self._blocked.clear()
         if met := self._contacts.check(pose, ahead.pose, now):
@@ -209,29 +211,32 @@ class Navigator:
 
     def _wait(self, pose: Pose2, obstacles: Sequence[Obstacle], now: float) -> m.BaseTarget:
         """No path at this moment: stand, look for one every second, lose patience in time."""
-        self._wait_for(pose, obstacles, now)
-        blocked = self._blocked.blocked((pose[0], pose[1]), obstacles, now)
-        if now - self._route.planned_at > REPLAN_PERIOD and self._plan(pose, now, obstacles):
-            self._blocked.clear()
-        elif blocked > self._config.blocked_wait:
-            self._recover(pose, now, "something stands in every way there")
+        if now - self._route.planned_at > REPLAN_PERIOD:
+            if self._plan(pose, now, obstacles):
+                self._blocked.clear()
+                return self._targets.next(pose)
+            self._by_people = self._route.possible_but_for_people(pose)
+        self._wait_for(pose, obstacles, now, self._by_people)
+        if self._blocked.blocked(self._by_people, now) > self._config.blocked_wait:
+            who = "somebody" if self._by_people else "something"
+            self._recover(pose, now, f"{who} stands in every way there", by_people=self._by_people)
         return self._targets.next(pose)
 
-    def _wait_for(self, pose: Pose2, people: Sequence[Obstacle], now: float) -> None:
+    def _wait_for(self, pose: Pose2, people: Sequence[Obstacle], now: float, by_people: bool = False) -> None:
         """Blocked at this moment: by a person, who may want to get past the robot, or by something."""
         if any(math.dist(pose[:2], (x, y)) < CLOSE + radius for x, y, radius in self.robots):
             self.doing = "ROBOT_IN_WAY"
             self._progress.hold_up(now)
             self._blocked.clear()
             return
-        self.doing = waiting_for((pose[0], pose[1]), people)
-        if self.doing == "PERSON_IN_WAY":
+        self.doing = waiting_for((pose[0], pose[1]), people, by_people)
+        if self.doing == PERSON:
             self._progress.hold_up(now)
             self._recovery.let_pass(pose, people, now)
 
-    def _recover(self, pose: Pose2, now: float, why: str, doing: str = "BACKING_OFF") -> None:
-        """Raises `Ended` BLOCKED after the last retry."""
-        self._recovery.back_off(pose, now, why, doing == "HELD_UP")
+    def _recover(self, pose: Pose2, now: float, why: str, doing: str = "BACKING_OFF", by_people: bool = False) -> None:
+        """Raises `Ended` BLOCKED, or PERSON_IN_WAY, after the last retry."""
+        self._recovery.back_off(pose, now, why, PERSON if by_people else "BLOCKED", doing == "HELD_UP")
         self.recoveries += 1
         self.doing = doing
         self._blocked.clear()

@@ -25,6 +25,9 @@ MIN_SIGHTINGS, MAX_SILENCE = 4, 0.6
 WALKED = 0.5
 """Way [m] from where it was first seen after which a track is a person, who may walk on: more than the apparent motion
 of what stands."""
+HIDDEN, STRIDES = 3.0, 1.0
+"""Time [s] for which somebody who went out of sight is expected to show again, at up to this speed [m/s]; chosen:
+behind another person or a door's frame, at a walk."""
 SHRINK = 0.9
 """Share of its radius that a track keeps when less of it is seen [-]."""
 
@@ -56,6 +59,7 @@ class ObstacleTracker:
 
     def __init__(self) -> None:
         self._tracks: list[Obstacle] = []
+        self._hidden: list[Obstacle] = []
 
     def update(self, points: Array, eye: Point, now: float) -> None:
         """Take the unexplained points (n, 2) [map] of a scan, in the order of their angles, seen from `eye`."""
@@ -63,11 +67,21 @@ class ObstacleTracker:
         for x, y, radius in clusters(points, eye):
             best = min(free, key=lambda t: math.hypot(*_ahead(t, now, x, y)), default=None)
             if best is None or math.hypot(*_ahead(best, now, x, y)) > MATCH:
-                self._tracks.append(Obstacle(x, y, radius, now, start=(x, y)))
+                self._tracks.append(Obstacle(x, y, radius, now, start=(x, y), walked=self._shows_again(x, y, now)))
                 continue
             free.remove(best)
             _correct(best, x, y, radius, now)
+        self._hidden = [t for t in self._hidden if now - t.seen_at < HIDDEN]
+        self._hidden += [t for t in self._tracks if t.walked and now - t.seen_at >= MAX_SILENCE]
         self._tracks = [t for t in self._tracks if now - t.seen_at < MAX_SILENCE]
+
+    def _shows_again(self, x: float, y: float, now: float) -> bool:
+        """A person who went out of sight may have come to a point by now; each shows again once."""
+        for person in self._hidden:
+            if math.dist((person.x, person.y), (x, y)) < MATCH + STRIDES * (now - person.seen_at):
+                self._hidden.remove(person)
+                return True
+        return False
 
     def people(self) -> list[Obstacle]:
         """What moves, and what stands after it has walked."""

@@ -8,6 +8,8 @@ from services.navigation.ended import Ended
 from services.navigation.motion.obstacle_tracker import Obstacle
 from services.navigation.planning.planner import Point
 
+PERSON = "PERSON_IN_WAY"
+"""What navigation does, and why it fails, where people are all that keeps it from getting on."""
 TICK = 0.1
 """Longest time between two steps that are one wait [s]: two periods."""
 STEP = 0.05
@@ -16,9 +18,9 @@ NEAR = 3.0
 """Who is within this of the robot may be what blocks the path [m]: as far as collision avoidance looks."""
 CLOSE = 1.5
 """Who is within this of the robot that waits is asked to let it pass [m]; chosen: a doorway and a step."""
-PASSING = 30.0
-"""Time that a goal waits for people before its waiting counts again [s]: several times what a person needs to clear a
-door; somebody who stays is reported as BLOCKED."""
+PASSING = 60.0
+"""Time that a goal waits for people before its waiting counts again [s]; chosen: two who talk in a door have been asked
+several times by then. Who stays is reported as PERSON_IN_WAY."""
 HELD_UP = 90.0
 """By how much people put off the time limit of a goal at most [s]: both kinds of waiting and the ways aside."""
 STANDOFF, MEETINGS = 2.5, 3
@@ -86,11 +88,11 @@ class BlockedTimer:
         self._at = 0.0
         self._left = PASSING
 
-    def blocked(self, here: Point, obstacles: Sequence[Obstacle], now: float) -> float:
-        """Once a step while the path is blocked: for how long it has been [s]. `obstacles` are the people around."""
+    def blocked(self, by_people: bool, now: float) -> float:
+        """Once a step while the path is blocked: for how long it has been [s], but for people."""
         if self._since is None:
             self._since = self._at = now
-        elif self._left > 0.0 and any(math.dist((o.x, o.y), here) < NEAR + o.radius for o in obstacles):
+        elif self._left > 0.0 and by_people:
             self._left -= now - self._at
             self._since += now - self._at
         self._at = now
@@ -101,10 +103,18 @@ class BlockedTimer:
         self._since = None
 
 
-def waiting_for(here: Point, people: Sequence[Obstacle]) -> str:
-    """What a robot at `here` that cannot go on does: WAITING, or PERSON_IN_WAY where somebody stands before it."""
+def anybody_near(here: Point, people: Sequence[Obstacle]) -> bool:
+    """True when somebody is so near that they may be what blocks the path."""
+    return any(math.dist((o.x, o.y), here) < NEAR + o.radius for o in people)
+
+
+def waiting_for(here: Point, people: Sequence[Obstacle], by_people: bool = False) -> str:
+    """What a robot at `here` that cannot go on does: WAITING, or PERSON_IN_WAY where somebody stands before it.
+
+    `by_people`: they are known to be all that blocks its way, near or not.
+    """
     near = any(math.dist((o.x, o.y), here) < CLOSE + o.radius for o in people)
-    return "PERSON_IN_WAY" if near else "WAITING"
+    return PERSON if near or by_people else "WAITING"
 
 
 class Standoff:

@@ -35,16 +35,16 @@ class Recovery:
         """The robot is not where it seemed to be, nor did it come that way."""
         self.under_way, self._breadcrumbs = None, Breadcrumbs()
 
-    def back_off(self, pose: Pose2, now: float, why: str, touching: bool = False) -> None:
+    def back_off(self, pose: Pose2, now: float, why: str, code: str, touching: bool = False) -> None:
         """Go back a little the way it came, before another path is looked for; from what it is `touching` as well.
 
         These are all the retries of a blocked path: whoever sent the goal adds none.
 
         Raises:
-            Ended: BLOCKED, after the last retry.
+            Ended: `code`, after the last retry.
         """
         if self._retries >= self._config.retries:
-            raise Ended("failed", "BLOCKED", f"{why} after {self._retries} retries")
+            raise Ended("failed", code, f"{why} after {self._retries} retries")
         self._retries += 1
         self._map.doubt(now, OUT_OF_SIGHT)
         config = self._config

@@ -74,6 +74,11 @@ class Route:
         """True when an empty flat has a path to one of the choices."""
         return self._planner.possible((pose[0], pose[1]), [(goal[0], goal[1]) for _, goal in self.choices])
 
+    def possible_but_for_people(self, pose: Pose2) -> bool:
+        """True when there would be a path to one of the choices if nobody stood anywhere."""
+        goals = [(goal[0], goal[1]) for _, goal in self.choices]
+        return self._planner.possible((pose[0], pose[1]), goals, self._map.distance_but_for_people())
+
     def plan(self, pose: Pose2, now: float, people: Sequence[Obstacle] = ()) -> Found:
         """Choose the pose to stand at and the path there; without one at this moment nothing changes.
 

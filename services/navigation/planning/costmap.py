@@ -14,14 +14,15 @@ from common.floor_grid import Cells, static_distances
 from common.floor_plan import FloorPlan
 from common.geometry import Array, Pose2
 from services.navigation.planning.changes import Changes
+from services.navigation.planning.changes import Mask as Grid
+from services.navigation.planning.seen_cells import STANDS, STIRS, SeenCells
 
-Grid = NDArray[np.bool_]
+Discs = Sequence[tuple[float, float, float]]
+"""Circles (x, y, radius) [map, m]."""
 _EXPLAINED = 0.12
 """Distance from the static map within which it explains a lidar point [m]: two cells and the lidar's noise."""
 _REACH = 0.8
 """Distance from something seen up to which clearance counts it [m]: beyond `navigation.inflation`."""
-_LASTING, _BRIEF = 2.0, 4.0
-"""Something seen for longer than the first stands there, anything else is forgotten after the second [s]."""
 _BEHIND = 0.15
 """How far beyond a cell a ray must reach to clear it [m]: three cells."""
 _FAR = 1.0
@@ -41,8 +42,7 @@ class Costmap(Cells):
         self.memory = memory
         self.static_distance = static_distances(self, floor_plan)
         self.static: Grid = self.static_distance <= 0
-        self._seen_at = np.full(self.shape, -np.inf)
-        self._first_at = np.full(self.shape, np.inf)
+        self._seen = SeenCells(self.shape, memory)
         self.changes = Changes(self.shape, lasting_after)
         self._distance: Array | None = self.static_distance
         self._discs: dict[str, list[tuple[float, float, float]]] = {}
@@ -73,8 +73,7 @@ class Costmap(Cells):
         self.static_distance = np.zeros(self.shape)
         self.static_distance[inside] = around * self.resolution
         self.static = self.static_distance <= 0
-        explained = self.static_distance <= _EXPLAINED
-        self._seen_at[explained], self._first_at[explained] = -np.inf, np.inf
+        self._seen.drop(self.static_distance <= _EXPLAINED)
         self._distance = None
         self.version += 1
 
@@ -85,38 +84,48 @@ class Costmap(Cells):
 
     @property
     def distance(self) -> Array:
-        """To the nearest obstacle, static or seen [m]; made when asked for, by a disc around each seen cell."""
+        """To the nearest obstacle, static or seen [m]; made when asked for."""
         if self._distance is None:
-            grid = self.static_distance.copy()
-            if discs := [disc for of in self._discs.values() for disc in of]:
-                gx, gy = np.moveaxis(self.centres(), 2, 0)
-                for x, y, radius in discs:
-                    np.minimum(grid, np.maximum(np.hypot(gx - x, gy - y) - radius, 0.0), out=grid)
-            n, disc = self._disc_reach, self._disc
-            for row, column in zip(*(axis.tolist() for axis in np.nonzero(self._seen_at > -np.inf)), strict=True):
-                top, left = max(0, row - n), max(0, column - n)
-                part = grid[top : row + n + 1, left : column + n + 1]
-                shift, aside = top - (row - n), left - (column - n)
-                np.minimum(part, disc[shift : shift + part.shape[0], aside : aside + part.shape[1]], out=part)
-            self._distance = grid
+            self._distance = self._distances(self._seen.known)
         return self._distance
 
-    def disown(self, discs: Sequence[tuple[float, float, float]]) -> None:
-        """Forget what was seen in circles (x, y, radius) [map, m]: it was a robot."""
-        rows, columns = np.nonzero(self._seen_at > -np.inf)
-        if not len(rows) or not discs:
-            return
-        xs, ys = self.middles(rows, columns)
-        inside = np.zeros(len(rows), bool)
-        for x, y, radius in discs:
-            inside |= np.hypot(xs - x, ys - y) < radius
-        if inside.any():
-            self._drop(rows, columns, inside)
+    def distance_but_for_people(self) -> Array:
+        """The same as if nobody stood anywhere."""
+        return self._distances(self._seen.things)
+
+    def _distances(self, seen: Grid) -> Array:
+        """To the nearest of the static map, the circles placed and the cells `seen` [m], by a disc around each cell."""
+        grid = self.static_distance.copy()
+        if discs := [disc for of in self._discs.values() for disc in of]:
+            gx, gy = np.moveaxis(self.centres(), 2, 0)
+            for x, y, radius in discs:
+                np.minimum(grid, np.maximum(np.hypot(gx - x, gy - y) - radius, 0.0), out=grid)
+        n, disc = self._disc_reach, self._disc
+        for row, column in zip(*(axis.tolist() for axis in np.nonzero(seen)), strict=True):
+            top, left = max(0, row - n), max(0, column - n)
+            part = grid[top : row + n + 1, left : column + n + 1]
+            shift, aside = top - (row - n), left - (column - n)
+            np.minimum(part, disc[shift : shift + part.shape[0], aside : aside + part.shape[1]], out=part)
+        return grid
+
+    def disown(self, discs: Discs) -> None:
+        """Forget what was seen in circles: it was a robot."""
+        cells = self._within(discs)
+        if len(cells[0]):
+            self._seen.drop(cells)
             self._distance = None
             self.version += 1
 
-    def place(self, discs: Sequence[tuple[float, float, float]], of: str) -> None:
-        """Circles (x, y, radius) [map, m] that are occupied besides, until other ones `of` this are told."""
+    def _within(self, discs: Discs) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+        """Rows and columns of the cells in circles in which something was seen."""
+        rows, columns = self._seen.cells()
+        if not len(rows) or not discs:
+            return rows[:0], columns[:0]
+        inside = _inside(*self.middles(rows, columns), discs)
+        return rows[inside], columns[inside]
+
+    def place(self, discs: Discs, of: str) -> None:
+        """Circles that are occupied besides, until other ones `of` this are told."""
         old = self._discs.get(of, [])
         if len(discs) == len(old) and all(math.dist(a, b) < self.resolution for a, b in zip(discs, old, strict=True)):
             return
@@ -132,7 +141,7 @@ class Costmap(Cells):
 
     def forget(self) -> None:
         """Forget all that was seen of late: it was not where it seemed to be."""
-        self._seen_at[:], self._first_at[:] = -np.inf, np.inf
+        self._seen.drop(self._seen.known)
         self.changes.forget_brief()
         self._distance = None if self._discs else self.static_distance
         self.version += 1
@@ -142,7 +151,7 @@ class Costmap(Cells):
         """Take the lasting changes for seen at robot time `now` [s]."""
         kept = self.changes.lasting
         if kept.any():
-            self._seen_at[kept], self._first_at[kept] = np.maximum(self._seen_at[kept], now), -np.inf
+            self._seen.keep(kept, now)
             self._distance = None
             self.version += 1
 
@@ -174,12 +183,13 @@ class Costmap(Cells):
         ranges: Array,
         range_max: float,
         now: float,
-        people: Sequence[tuple[float, float, float]] = (),
+        people: Discs = (),
+        moving: Discs = (),
     ) -> None:
         """Mark what the static map does not explain, clear what the rays passed through, forget what is old.
 
-        A range of 0 is a ray that the robot's own body holds up: it tells nothing of what is behind. `people`, circles
-        (x, y, radius) [map, m], never become a part of the map, however long they stand.
+        A range of 0 is a ray that the robot's own body holds up: it tells nothing of what is behind. `people`, who have
+        walked, and what is `moving` never become a part of the map, however long they stand.
         """
         hit = (ranges <= range_max) & (ranges > 0.0)
         directions = angles[hit] + pose[2]
@@ -189,24 +199,23 @@ class Costmap(Cells):
         inside = (rows >= 0) & (rows < self.shape[0]) & (columns >= 0) & (columns < self.shape[1])
         rows, columns = rows[inside], columns[inside]
         new = self.static_distance[rows, columns] > _EXPLAINED
-        before = self._seen_at > -np.inf
+        before = self._seen.known
         if not new.any() and not before.any() and not self.changes.known.any():
             return
         self._clear(pose, angles, np.minimum(ranges, range_max), now)
         rows, columns = rows[new], columns[new]
-        self._seen_at[rows, columns] = now
-        person = np.zeros(len(rows), bool)
-        for x, y, radius in people:
-            person |= np.hypot(xs[inside][new] - x, ys[inside][new] - y) < radius
-        self._first_at[rows, columns] = np.minimum(self._first_at[rows, columns], now)
+        self._seen.mark((rows, columns), now)
+        self._seen.mark_people(self._within(moving), STIRS, now)
+        self._seen.mark_people(self._within(people), STANDS, now)
+        person = _inside(xs[inside][new], ys[inside][new], [*people, *moving])
         self.changes.occupied((rows[~person], columns[~person]), now)
-        after = self._seen_at > -np.inf
+        after = self._seen.known
         if (after != before).any():
             self._distance = None if after.any() or self._discs else self.static_distance
             self.version += 1
 
     def _clear(self, pose: Pose2, angles: Array, reach: Array, now: float) -> None:
-        rows, columns = np.nonzero((self._seen_at > -np.inf) | self.changes.known)
+        rows, columns = np.nonzero(self._seen.known | self.changes.known)
         if not len(rows):
             return
         x, y = (middle - at for middle, at in zip(self.middles(rows, columns), pose, strict=False))
@@ -214,24 +223,17 @@ class Costmap(Cells):
         bearing = np.arctan2(y, x) - pose[2] - angles[0]
         ray = np.round(np.mod(bearing, 2 * math.pi) / step).astype(int) % len(angles)
         passed = reach[ray] > np.hypot(x, y) + _BEHIND
-        seen_at = self._seen_at[rows, columns]
-        # What was there for a moment only was walking by.
-        lasting = seen_at - self._first_at[rows, columns] > _LASTING
-        old = now - seen_at > np.where(lasting, self.memory, min(_BRIEF, self.memory))
-        old &= ~self.changes.lasting[rows, columns]
+        old = self._seen.outdated((rows, columns), now) & ~self.changes.lasting[rows, columns]
         self.changes.passed((rows[passed], columns[passed]))
-        self._drop(rows, columns, passed | old)
-
-    def _drop(self, rows: NDArray[np.intp], columns: NDArray[np.intp], gone: Grid) -> None:
-        self._seen_at[rows[gone], columns[gone]] = -np.inf
-        self._first_at[rows[gone], columns[gone]] = np.inf
+        gone = passed | old
+        self._seen.drop((rows[gone], columns[gone]))
 
     def doubt(self, now: float, age: float) -> None:
         """Forget what has been out of sight for `age` seconds: it may be gone."""
-        rows, columns = np.nonzero(self._seen_at > -np.inf)
-        gone = now - self._seen_at[rows, columns] > age
+        rows, columns = self._seen.cells()
+        gone = self._seen.unseen_for((rows, columns), age, now)
         if gone.any():
-            self._drop(rows, columns, gone)
+            self._seen.drop((rows[gone], columns[gone]))
             self._distance = None
             self.version += 1
 
@@ -253,4 +255,12 @@ class Costmap(Cells):
     @property
     def sees_unmapped(self) -> bool:
         """True while something is there that the static map does not have."""
-        return bool((self._seen_at > -np.inf).any())
+        return not self._seen.empty
+
+
+def _inside(xs: Array, ys: Array, discs: Discs) -> Grid:
+    """Which points (n,) lie in one of the circles."""
+    found = np.zeros(len(xs), bool)
+    for x, y, radius in discs:
+        found |= np.hypot(xs - x, ys - y) < radius
+    return found

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from scipy import ndimage, sparse
 from scipy.sparse import csgraph
 
+from common.geometry import Array
 from services.navigation.planning.costmap import Costmap
 
 Point = tuple[float, float]
@@ -71,9 +72,12 @@ class PathPlanner:
         """Path cost [m and more] to a point; inf when there is no way."""
         return float(field.cost[self._map.cell(*goal)])
 
-    def possible(self, start: Point, goals: Sequence[Point]) -> bool:
-        """True when the static map alone has a way to one of the goals."""
-        distance = self._map.static_distance
+    def possible(self, start: Point, goals: Sequence[Point], distance: Array | None = None) -> bool:
+        """True when there is a way to one of the goals by a `distance` [m] from each cell to the nearest obstacle.
+
+        Without it, by the static map alone.
+        """
+        distance = self._map.static_distance if distance is None else distance
         labels, _ = ndimage.label(distance >= self._radius, np.ones((3, 3)))
         here = labels[self._nearest_free(self._map.cell(*start), distance)]
         return bool(here) and any(labels[self._map.cell(*goal)] == here for goal in goals)

@@ -1,0 +1,81 @@
+"""What the lidar has seen of late and the static map does not have: when, for how long, and whether it is a person."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from common.geometry import Array
+from services.navigation.planning.changes import Cells, Mask
+
+_NEW = 3.0
+"""Time [s] since the first sight of a cell within which who is around it is what is in it; chosen: longer than it takes
+to tell that somebody walks. What was there before them is no part of them."""
+STANDS, STIRS = 300.0, 3.0
+"""Time [s] for which a cell counts as a person when somebody who has walked was there, and when something moved there,
+which may have seemed so only; chosen: nobody stands for five minutes without moving a foot, and beside a thing a person
+is not told from it."""
+_LASTING, _BRIEF = 2.0, 4.0
+"""Something seen for longer than the first stands there, anything else is forgotten after the second [s]."""
+
+
+class SeenCells:
+    """Cells of a grid of `shape`; `memory` [s]: how long what stands there is remembered once it is out of sight.
+
+    Who is a person is forgotten as soon as what was seen for a moment only: people walk on.
+    """
+
+    def __init__(self, shape: tuple[int, int], memory: float) -> None:
+        self._memory = memory
+        self._at: Array = np.full(shape, -np.inf)
+        self._first: Array = np.full(shape, np.inf)
+        self._person_until: Array = np.full(shape, -np.inf)
+
+    @property
+    def known(self) -> Mask:
+        """Where something is (rows, columns)."""
+        found: Mask = self._at > -np.inf
+        return found
+
+    @property
+    def things(self) -> Mask:
+        """Where something is that was no person when it was seen last (rows, columns)."""
+        return self.known & (self._person_until < self._at)
+
+    @property
+    def empty(self) -> bool:
+        """Nothing was seen."""
+        return not self.known.any()
+
+    def cells(self) -> Cells:
+        """Rows and columns (n,) of where something is."""
+        rows, columns = np.nonzero(self.known)
+        return rows, columns
+
+    def mark(self, cells: Cells, now: float) -> None:
+        """Something is seen in these cells."""
+        self._at[cells], self._first[cells] = now, np.minimum(self._first[cells], now)
+
+    def mark_people(self, cells: Cells, seconds: float, now: float) -> None:
+        """What came into these cells of late is a person, and counts as one for so long if it stands there."""
+        until = self._person_until[cells]
+        new = (now - self._first[cells] < _NEW) | (until >= now)
+        self._person_until[cells] = np.where(new, np.maximum(until, now + seconds), until)
+
+    def keep(self, cells: Cells | Mask, now: float) -> None:
+        """What is in these cells was there all along, and was seen at `now`."""
+        self._at[cells], self._first[cells] = np.maximum(self._at[cells], now), -np.inf
+
+    def outdated(self, cells: Cells, now: float) -> NDArray[np.bool_]:
+        """Which of the cells (n,) were seen so long ago that they are forgotten."""
+        at = self._at[cells]
+        stands = (at - self._first[cells] > _LASTING) & (self._person_until[cells] < at)
+        found: NDArray[np.bool_] = now - at > np.where(stands, self._memory, min(_BRIEF, self._memory))
+        return found
+
+    def unseen_for(self, cells: Cells, age: float, now: float) -> NDArray[np.bool_]:
+        """Which of the cells (n,) have been out of sight for `age` seconds."""
+        found: NDArray[np.bool_] = now - self._at[cells] > age
+        return found
+
+    def drop(self, cells: Cells | Mask) -> None:
+        """Nothing is in these cells."""
+        self._at[cells], self._first[cells], self._person_until[cells] = -np.inf, np.inf, -np.inf
