@@ -6,7 +6,6 @@ import importlib.util
 import os
 import platform
 import shutil
-import subprocess
 import sys
 import tomllib
 from collections.abc import Iterator
@@ -19,6 +18,7 @@ import msgspec
 from cli.errors import CliError
 from cli.keys.authority import Authority
 from cli.processes.ports import listener, port_is_free
+from cli.processes.programs import said_by
 from cli.processes.supervision import Supervision, run_dir
 from common import speech_weights
 from common.config import config_dir
@@ -202,14 +202,10 @@ def robots() -> Iterator[Finding]:
 
 def language_model() -> Iterator[Finding]:
     """Who plans with `planner.backend = "auto"`: the planner's own look at its configuration and endpoint."""
-    path = os.pathsep.join(p for p in (str(ROOT), os.environ.get("PYTHONPATH", "")) if p)
-    command = [sys.executable, "-m", "services.planner.language_model.diagnosis"]
-    done = subprocess.run(command, env={**os.environ, "PYTHONPATH": path}, capture_output=True, text=True)
-    if done.returncode:
-        why = done.stderr.strip().splitlines()[-1:] or [f"exit status {done.returncode}"]
-        yield Finding("error", "language model", f"the planner cannot tell: {why[0]}", "make setup")
-        return
-    yield msgspec.json.decode(done.stdout, type=Finding)
+    try:
+        yield msgspec.json.decode(said_by("services.planner.language_model.diagnosis"), type=Finding)
+    except CliError as error:
+        yield Finding("error", "language model", f"the planner cannot tell: {error}", "make setup")
 
 
 def doctor(args: argparse.Namespace) -> int:

@@ -1,8 +1,10 @@
 """Errors that the command line shows as one line, and suggestions for mistyped words."""
 
 import argparse
-from collections.abc import Iterable
+import math
+from collections.abc import Callable, Iterable
 from difflib import get_close_matches
+from typing import Any
 
 
 class CliError(Exception):
@@ -30,12 +32,21 @@ def checked(word: str, known: Iterable[str], what: str) -> str:
     return word
 
 
-def port_number(text: str) -> int:
-    """The type of a `--port` option.
+def number(low: float, high: float = math.inf, unit: str = "", whole: bool = True) -> Callable[[str], Any]:
+    """The type of an option that takes a number from `low` to `high`, a `whole` one or a fraction as well."""
+    upper = f"to {high:.10g}" if math.isfinite(high) else "or more"
 
-    Raises:
-        argparse.ArgumentTypeError: not a port that a program can listen on.
-    """
-    if not text.isdecimal() or not 0 < int(text) < 65536:
-        raise argparse.ArgumentTypeError(f"{text!r}: expected 1 to 65535")
-    return int(text)
+    def read(text: str) -> int | float:
+        try:
+            value = int(text) if whole else float(text)
+        except ValueError:
+            value = math.nan
+        if not (low <= value <= high and math.isfinite(value)):
+            raise argparse.ArgumentTypeError(f"{text!r}: expected {low:.10g} {upper} {unit}".rstrip())
+        return value
+
+    return read
+
+
+port_number = number(1, 65535)
+"""The type of a `--port` option: what a program can listen on."""

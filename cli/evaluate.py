@@ -4,7 +4,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from cli.errors import CliError
+from cli.errors import CliError, number
 from cli.processes.plan import add_machine_options
 from cli.processes.programs import become
 
@@ -40,31 +40,6 @@ def evaluate(args: argparse.Namespace) -> int:
     become("evaluation", *words)
 
 
-def _positive(text: str) -> int:
-    number = int(text)
-    if number < 1:
-        raise argparse.ArgumentTypeError(f"{number} is not 1 or more")
-    return number
-
-
-def _level(text: str) -> float:
-    """The type of `--snr` [dB]: from drowned to silent."""
-    try:
-        level = float(text)
-    except ValueError:
-        level = float("nan")
-    if not -20.0 <= level <= 80.0:
-        raise argparse.ArgumentTypeError(f"{text!r}: expected -20 to 80 dB")
-    return level
-
-
-def _share(text: str) -> float:
-    number = float(text)
-    if not 0.0 <= number <= 1.0:
-        raise argparse.ArgumentTypeError(f"{number} is not a share from 0 to 1")
-    return number
-
-
 def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
     parser = commands.add_parser(
         "eval", help="random scenarios at full speed, judged by physics", epilog=EXAMPLES,
@@ -73,21 +48,22 @@ def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") ->
     parser.add_argument("--suite", default="fetch", metavar="NAME", help="one of those that --list shows (%(default)s)")
     parser.add_argument("--list", action="store_true", help="the suites, what a case of each is, and its bar")
     parser.add_argument("--world", type=Path, metavar="DIR", help="worlds of your own instead (docs/WORLDS.md)")
-    parser.add_argument("--scenarios", "-n", type=_positive, metavar="N", help="how many (default: the suite's own)")
+    parser.add_argument("--scenarios", "-n", type=number(1), metavar="N", help="how many (default: the suite's own)")
     parser.add_argument("--seed", type=int, default=0, metavar="S", help="of the first case (default %(default)s)")
-    parser.add_argument("--jobs", "-j", type=_positive, default=1, metavar="J", help="worker processes")
+    parser.add_argument("--jobs", "-j", type=number(1), default=1, metavar="J", help="worker processes")
     parser.add_argument(
         "--cluster", metavar="ADDRESS", help="a Dask scheduler such as tcp://HOST:8786; `local` starts J workers here"
     )
     parser.add_argument("--voices", type=Path, metavar="DIR", help="recordings and manifest.tsv for the suite spoken")
-    parser.add_argument("--snr", type=_level, metavar="DB", help="signal-to-noise ratio of the suite spoken (20)")
+    level, share = number(-20, 80, "dB", whole=False), number(0, 1, whole=False)
+    parser.add_argument("--snr", type=level, metavar="DB", help="signal-to-noise ratio of the suite spoken (20)")
     parser.add_argument("--processes", action="store_true", help="every service a process, as with `tidybot up`")
     parser.add_argument("--pipeline", choices=("fetch", "vla"), default="", help="where the suite leaves it open")
     parser.add_argument("--json", metavar="FILE", help="write the report there, - for standard output")
     parser.add_argument("--html", metavar="FILE", help="write a report with plots and pictures of failures, one file")
     parser.add_argument("--timeline", action="store_true", help="print each case's mission log")
     parser.add_argument(
-        "--at-least", type=_share, metavar="SHARE", help="exit 1 when fewer did as expected (default: the suite's bar)"
+        "--at-least", type=share, metavar="SHARE", help="exit 1 when fewer did as expected (default: the suite's bar)"
     )
     parser.add_argument(
         "--replace", action="append", default=[], metavar="MODULE:CLASS", help="a class of yours in a service's place"

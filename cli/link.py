@@ -4,7 +4,7 @@ import argparse
 import os
 import queue
 import uuid
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any, Generic, TypeVar
 
@@ -23,6 +23,8 @@ from common.topic import Topic
 
 M = TypeVar("M", bound=m.Message)
 A = TypeVar("A", bound=m.Message)
+FIRST = 3.0
+"""Time [s] for a value that is there already to come over a fresh link."""
 
 
 class Link:
@@ -39,6 +41,16 @@ class Link:
             except codec.DecodeError as error:
                 raise CliError(f"{topic.key}: {error}") from None
         return None
+
+    def present(self, topic: Topic[M]) -> M:
+        """The latched value.
+
+        Raises:
+            CliError: its writer does not answer.
+        """
+        if (value := self.latest(topic)) is None:
+            raise unanswered(topic)
+        return value
 
     def alive(self) -> set[str]:
         """Names of the services whose liveliness token is seen."""
@@ -67,12 +79,10 @@ class Link:
         """
         watch = Watch(self, answers)
         self.send(topic, request)
-        end = monotonic() + seconds
-        while monotonic() < end:
-            answer = watch.next(0.5)
-            if answer is not None and answer.goal_id == request.id:  # type: ignore[attr-defined]
-                return answer
-        raise CliError(f"{who} did not answer within {seconds:.0f} s; see `tidybot ps`")
+        answer = watch.until(lambda one: one.goal_id == request.id, seconds)  # type: ignore[attr-defined]
+        if answer is None:
+            raise CliError(f"{who} did not answer within {seconds:.0f} s; see `tidybot ps`")
+        return answer
 
     def query(self, key: str, request: dict[str, object] | None = None) -> Any:
         """The JSON answer of a queryable.
@@ -119,8 +129,31 @@ class Watch(Generic[M]):
                 if monotonic() >= end:
                     return None
 
+    def until(self, wanted: Callable[[M], bool], seconds: float) -> M | None:
+        """The first message that is `wanted`; None when none comes within so many seconds."""
+        end = monotonic() + seconds
+        while (left := end - monotonic()) > 0.0:
+            if (message := self.next(min(left, 0.2))) is not None and wanted(message):
+                return message
+        return None
+
+    def first(self) -> M:
+        """The present value of a latched topic, when the link is fresh.
+
+        Raises:
+            CliError: its writer does not answer.
+        """
+        if (value := self.next(FIRST)) is None:
+            raise unanswered(self._topic)
+        return value
+
     def close(self) -> None:
         self._kept.undeclare()
+
+
+def unanswered(topic: Topic[Any]) -> CliError:
+    """The error of a writer that does not answer."""
+    return CliError(f"{topic.writers[0]} does not answer; see `tidybot ps`")
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:

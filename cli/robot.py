@@ -6,7 +6,6 @@ from cli.errors import CliError
 from cli.link import Link, Watch, add_options, linked
 from common import messages as m
 from common import topics
-from common.time.clock import monotonic
 
 CONFIRM = 3.0
 """Time [s] for the simulation to say that it has stopped or goes on."""
@@ -38,28 +37,15 @@ def resume(args: argparse.Namespace) -> int:
         watch, states = Watch(link, topics.SIM_STATUS), Watch(link, topics.BRAIN_STATE)
         link.send(topics.ROBOT_RESUME, m.RobotResume(source="tidybot", go_on=not args.cancel))
         _confirm(watch, "running")
-        command = _taken_up(states) if left and not args.cancel else ""
+        begun = states.until(lambda s: bool(s.mission_id), CONFIRM) if left and not args.cancel else None
+    command = begun.command if begun is not None else ""
     print(f"running; goes on with {command!r}" if command else "running; no mission is under way")
     return 0
 
 
-def _taken_up(states: "Watch[m.BrainState]") -> str:
-    """The command of the mission that the brain goes on with; "" when it does not."""
-    end = monotonic() + CONFIRM
-    while monotonic() < end:
-        state = states.next(0.2)
-        if state is not None and state.mission_id:
-            return state.command
-    return ""
-
-
 def _confirm(watch: "Watch[m.SimStatus]", state: str) -> None:
-    end = monotonic() + CONFIRM
-    while monotonic() < end:
-        status = watch.next(0.2)
-        if status is not None and status.state == state:
-            return
-    raise CliError(f"the simulation did not confirm within {CONFIRM:.0f} s that it is {state}; see `tidybot ps`")
+    if watch.until(lambda status: status.state == state, CONFIRM) is None:
+        raise CliError(f"the simulation did not confirm within {CONFIRM:.0f} s that it is {state}; see `tidybot ps`")
 
 
 def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:

@@ -4,7 +4,6 @@ import argparse
 
 import msgspec
 
-from cli.errors import CliError
 from cli.link import Watch, add_options, linked
 from common import messages as m
 from common import topics
@@ -30,9 +29,7 @@ def drawn(snapshot: m.TreeSnapshot) -> str:
 def tree(args: argparse.Namespace) -> int:
     with linked(args) as link:
         watch = Watch(link, topics.BRAIN_TREE)
-        snapshot = watch.next(3.0)
-        if snapshot is None:
-            raise CliError("the brain shows no tree; see `tidybot ps`")
+        snapshot: m.TreeSnapshot | None = watch.first()
         while True:
             if snapshot is not None:
                 print(msgspec.json.encode(snapshot).decode() if args.json else drawn(snapshot), flush=True)

@@ -90,12 +90,12 @@ class Examiner:
 
     # --- the robot's words and states
     def _listen(self, now: float) -> None:
-        def begun(text: str) -> None:
-            self.observed.said.append(text)
-            self._observer.sentence(now, text)
-
         for status in self._io.take_all(topics.SPEECH_STATUS):
-            self._dialogue.hear(status, now, self._onlooker.shown, begun)
+            before = self._observer.saying
+            saying = self._observer.speech(now, status)
+            if saying and saying != before:
+                self.observed.said.append(saying)
+            self._dialogue.hear(saying, now, self._onlooker.shown)
 
     def follow(self, now: float) -> None:
         """Take what the brain says of its mission."""

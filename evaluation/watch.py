@@ -1,8 +1,5 @@
 """A participant that only watches for the judge: for benchmarks and tests that drive the robot themselves."""
 
-from collections.abc import Callable
-
-from common import messages as m
 from common import topics
 from common.bus.port import Io
 from common.config import Config
@@ -29,7 +26,6 @@ class Watch:
 
     def __init__(self, config: WatchConfig, io: Io) -> None:
         self._io = io
-        self._saying = ""
         self.observer = Observer(io.world)
 
     def step(self, now: float) -> None:
@@ -38,7 +34,7 @@ class Watch:
         if not observer.ready:
             return
         for said in io.take_all(topics.SPEECH_STATUS):
-            self._saying = spoken(said, self._saying, lambda text: observer.sentence(now, text))
+            observer.speech(now, said)
         for status in io.take_all(topics.SYSTEM_STATUS):
             observer.status(now, status)
         for state in io.take_all(topics.BRAIN_STATE):
@@ -55,11 +51,3 @@ def observe(io: Io, observer: Observer) -> list[tuple[float, Sample]]:
     for report in io.take_all(topics.SIM_CONTACTS):
         observer.contacts(report)
     return samples
-
-
-def spoken(status: m.SpeechStatus, before: str, hear: Callable[[str], None]) -> str:
-    """The sentence that is being said, "" for none; `hear` gets each one as it begins."""
-    now = status.detail if status.state == "speaking" else ""
-    if now and now != before:
-        hear(now)
-    return now

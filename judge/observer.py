@@ -16,7 +16,10 @@ WATCH = 10.0
 
 
 class Observer:
-    """`claims` holds every success announced so far, each with what physics said at that moment."""
+    """`claims` holds every success announced so far, each with what physics said at that moment.
+
+    `saying`: the sentence that the robot is saying aloud, "" for none.
+    """
 
     def __init__(self, scene: Scene) -> None:
         self._scene = scene
@@ -28,6 +31,7 @@ class Observer:
         self._goal = Goal()
         self._goals: dict[str, Goal] = {}
         self._may_move: frozenset[str] = frozenset()
+        self.saying = ""
         self.claims: list[Claim] = []
 
     @property
@@ -73,6 +77,14 @@ class Observer:
     def status(self, now: float, status: m.SystemStatus) -> None:
         """Take a message of `system_status`."""
         self._hold(now, self._listener.status(status))
+
+    def speech(self, now: float, status: m.SpeechStatus) -> str:
+        """What the robot says aloud at robot time `now`, "" while it is silent; each sentence counts as it begins."""
+        saying = status.detail if status.state == "speaking" else ""
+        if saying and saying != self.saying:
+            self.sentence(now, saying)
+        self.saying = saying
+        return saying
 
     def sentence(self, now: float, text: str) -> None:
         """A sentence that the robot says aloud."""

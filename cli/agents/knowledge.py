@@ -19,7 +19,6 @@ from common import messages as m
 from common.cells import unpacked
 from common.household import Household, load_household
 from common.scene import SceneError
-from common.time.clock import monotonic
 
 Camera = Literal["head", "wrist"]
 PICTURE_SIZE = (640, 480)
@@ -44,15 +43,12 @@ def picture(link: Link, camera: Camera) -> bytes:
         id=f"agent-{uuid.uuid4().hex[:8]}", camera=camera, width=PICTURE_SIZE[0], height=PICTURE_SIZE[1]
     )
     link.send(topics.CAMERA_REQUEST, request)
-    end = monotonic() + PICTURE_LIMIT
-    while monotonic() < end:
-        seen = watch.next(0.2)
-        if seen is not None and seen.id == request.id:
-            image = Image.frombytes("RGB", (seen.width, seen.height), seen.rgb)
-            out = io.BytesIO()
-            image.save(out, "JPEG", quality=JPEG_QUALITY)
-            return out.getvalue()
-    raise CliError(f"the {camera} camera does not answer; see `tidybot ps`")
+    seen = watch.until(lambda picture: picture.id == request.id, PICTURE_LIMIT)
+    if seen is None:
+        raise CliError(f"the {camera} camera does not answer; see `tidybot ps`")
+    out = io.BytesIO()
+    Image.frombytes("RGB", (seen.width, seen.height), seen.rgb).save(out, "JPEG", quality=JPEG_QUALITY)
+    return out.getvalue()
 
 
 def objects(link: Link) -> list[dict[str, Any]]:
@@ -61,9 +57,7 @@ def objects(link: Link) -> list[dict[str, Any]]:
     Raises:
         CliError: perception does not answer.
     """
-    world, pose = link.latest(topics.WORLD_OBJECTS), link.latest(topics.POSE)
-    if world is None:
-        raise CliError("perception does not answer; see `tidybot ps`")
+    world, pose = link.present(topics.WORLD_OBJECTS), link.latest(topics.POSE)
     now = max(world.t, pose.t if pose is not None else 0.0)
     return [
         {
@@ -131,9 +125,7 @@ def status(link: Link) -> dict[str, Any]:
     Raises:
         CliError: the brain does not answer.
     """
-    state = link.latest(topics.BRAIN_STATE)
-    if state is None:
-        raise CliError("the brain does not answer; see `tidybot ps`")
+    state = link.present(topics.BRAIN_STATE)
     sim = link.latest(topics.SIM_STATUS)
     return {
         **status_record(state, link.latest(topics.SYSTEM_STATUS)),

@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from cli.errors import CliError
+from cli.errors import CliError, number
 from cli.link import add_options, linked
 from common import topics
 
@@ -25,13 +25,6 @@ def calibrate(args: argparse.Namespace) -> int:
         return run(link, args.out, args.poses)
 
 
-def _count(value: str) -> int:
-    number = int(value)
-    if not 4 <= number <= 40:
-        raise argparse.ArgumentTypeError(f"{number} is not from 4 to 40")
-    return number
-
-
 def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
     parser = commands.add_parser(
         "calibrate",
@@ -40,7 +33,7 @@ def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") ->
     parser.add_argument("--out", type=Path, default=Path("calibration.toml"), metavar="FILE", help="(%(default)s)")
     parser.add_argument("--force", action="store_true", help="write over FILE")
     parser.add_argument(
-        "--poses", type=_count, default=8, metavar="N", help="of the arm, for each camera (%(default)s)"
+        "--poses", type=number(4, 40), default=8, metavar="N", help="of the arm, for each camera (%(default)s)"
     )
     add_options(parser)
     parser.set_defaults(run=calibrate)

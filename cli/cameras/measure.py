@@ -18,7 +18,6 @@ from common import topics
 from common.files.atomic_file import replace
 from common.robot import calibration
 from common.robot.model import ARM
-from common.time.clock import monotonic
 
 SPEED = 0.6
 """Of the fastest joint [rad/s]; chosen: slow enough to be watched."""
@@ -49,12 +48,10 @@ class Photographer:
         identity = f"calibrate-{next(self._numbers)}"
         request = m.CameraRequest(id=identity, camera=camera, width=WIDTH, height=HEIGHT)  # type: ignore[arg-type]
         driver.link.send(topics.CAMERA_REQUEST, request)
-        end = monotonic() + PATIENCE
-        while monotonic() < end:
-            image = self._pictures[camera].next(PERIOD)
-            if image is not None and image.id == identity:
-                return Shot(image, self.angles(), driver.joints()["gripper"])
-        raise CliError(f"no picture of the {camera} camera within {PATIENCE:.0f} s; see `tidybot logs camera`")
+        image = self._pictures[camera].until(lambda picture: picture.id == identity, PATIENCE)
+        if image is None:
+            raise CliError(f"no picture of the {camera} camera within {PATIENCE:.0f} s; see `tidybot logs camera`")
+        return Shot(image, self.angles(), driver.joints()["gripper"])
 
     def angles(self) -> Array:
         joints = self._driver.joints()

@@ -142,13 +142,11 @@ def follow(link: Link, supervision: Supervision, out: Path, timeout: float) -> m
 
 def _save_now(link: Link, statuses: Watch[m.MappingStatus], status: m.MappingStatus) -> m.MappingStatus:
     """Have the map saved as it is."""
-    saves, end = status.saves, monotonic() + SAVE_LIMIT
     link.send(topics.MAPPING_GOAL, m.MappingGoal(goal="save", id="ctrl-c"))
-    while monotonic() < end:
-        status = statuses.next(0.5) or status
-        if status.saves > saves:
-            return status
-    raise CliError(f"not saved after {SAVE_LIMIT:.0f} s; see the log of mapping")
+    saved = statuses.until(lambda now: now.saves > status.saves, SAVE_LIMIT)
+    if saved is None:
+        raise CliError(f"not saved after {SAVE_LIMIT:.0f} s; see the log of mapping")
+    return saved
 
 
 def line(status: m.MappingStatus) -> str:

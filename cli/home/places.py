@@ -15,19 +15,19 @@ ANSWER = 10.0
 
 def places(args: argparse.Namespace) -> int:
     with linked(args) as link:
-        return _list(_known(link), args.json)
+        return _list(link.present(topics.HOUSEHOLD_PARTS).parts, args.json)
 
 
 def name(args: argparse.Namespace) -> int:
     with linked(args) as link:
-        part = _part(_known(link), args.part) if args.part else ""
+        part = _part(link, args.part) if args.part else ""
         edit = m.HouseholdEdit(do="name", name=" ".join(args.name), part=part, kind=args.kind, id=fresh_id())
         return _ask(link, edit, args.json)
 
 
 def rename(args: argparse.Namespace) -> int:
     with linked(args) as link:
-        edit = m.HouseholdEdit(do="name", name=args.new, part=_part(_known(link), args.old), id=fresh_id())
+        edit = m.HouseholdEdit(do="name", name=args.new, part=_part(link, args.old), id=fresh_id())
         return _ask(link, edit, args.json)
 
 
@@ -38,9 +38,7 @@ def forget(args: argparse.Namespace) -> int:
 
 def rules(args: argparse.Namespace) -> int:
     with linked(args) as link:
-        known = link.latest(topics.HOUSEHOLD_EDITS)
-        if known is None:
-            raise CliError("the brain does not answer; see `tidybot ps`")
+        known = link.present(topics.HOUSEHOLD_EDITS)
         if args.json:
             print(msgspec.json.encode(known.rules).decode())
             return 0
@@ -56,20 +54,13 @@ def forget_rule(args: argparse.Namespace) -> int:
         return _ask(link, m.HouseholdEdit(do="forget rule", name=" ".join(args.things), id=fresh_id()), args.json)
 
 
-def _known(link: Link) -> list[m.HomePart]:
-    known = link.latest(topics.HOUSEHOLD_PARTS)
-    if known is None:
-        raise CliError("the brain does not answer; see `tidybot ps`")
-    return known.parts
-
-
-def _part(known: list[m.HomePart], wanted: str) -> str:
+def _part(link: Link, wanted: str) -> str:
     """A part's name as the home has it.
 
     Raises:
         CliError: there is none of that name; with the nearest.
     """
-    names = [p.name for p in known]
+    names = [p.name for p in link.present(topics.HOUSEHOLD_PARTS).parts]
     if wanted not in names:
         raise CliError(f"nothing is called {wanted!r}{near(wanted, names)}; `tidybot places` lists all")
     return wanted

@@ -64,9 +64,7 @@ def _remedy(result: m.TeachResult) -> str:
 
 
 def _list(link: Link, as_json: bool) -> int:
-    known = link.latest(topics.HOUSEHOLD_NAMES)
-    if known is None:
-        raise CliError("perception does not answer; see `tidybot ps`")
+    known = link.present(topics.HOUSEHOLD_NAMES)
     if as_json:
         print(msgspec.json.encode(known.names).decode())
         return 0

@@ -22,10 +22,7 @@ class Conversation:
     def __init__(self, link: Link, show: Show = lambda state: None) -> None:
         self._link, self._show = link, show
         self._watch = Watch(link, topics.BRAIN_STATE)
-        first = self._watch.next(3.0)
-        if first is None:
-            raise CliError("the brain does not answer; see `tidybot ps`")
-        self.state = first
+        self.state = first = self._watch.first()
         show(first)
         self._before = {first.mission_id, first.last.id if first.last else ""}
         self.mission_id = ""

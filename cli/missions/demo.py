@@ -3,7 +3,6 @@
 import argparse
 import os
 import shutil
-import subprocess
 import sys
 import uuid
 from pathlib import Path
@@ -15,6 +14,7 @@ from cli.missions.conversation import ACCEPT, Conversation, speak_into, typed
 from cli.missions.verdict import Verdict, Witness
 from cli.processes.plan import Plan, add_start_options
 from cli.processes.ports import free_port, port_is_free
+from cli.processes.programs import said_by
 from cli.processes.supervision import Supervision, run_dir
 from cli.processes.up import Stopped, bring_up, check_free, interruptible, state_line
 from common import messages as m
@@ -30,6 +30,8 @@ VOICE = shipped("audio") / "bring_me_the_red_mug.wav"
 YES = shipped("audio") / "yes.wav"
 SPOKEN = "red mug"
 OUT = (workspace() or Path.cwd()) / "out"
+PICTURE = 60.0
+"""Time [s] for the picture at the end; chosen: far above what drawing takes."""
 PROGRESS = 10.0
 """Time [s] between two lines of progress where the output is no terminal."""
 
@@ -128,18 +130,12 @@ class Demo:
 def take_picture(plan: Plan, path: Path) -> str:
     """A picture of the scene as it is now; what was done about it."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    command = [sys.executable, "-m", "services.camera.picture", "--view", "delivery", "--out", str(path)]
-    environment = {**plan.environ, "PYTHONPATH": str(ROOT)}
+    words = ("--view", "delivery", "--out", str(path))
     try:
-        done = subprocess.run(
-            command, cwd=ROOT, env=environment, capture_output=True, text=True, timeout=60, errors="replace"
-        )
-    except subprocess.TimeoutExpired:
-        return "no picture: the camera did not answer"
-    if done.returncode == 0 and path.exists():
-        return f"picture: {path.relative_to(ROOT) if path.is_relative_to(ROOT) else path}"
-    words = done.stderr.strip().splitlines()
-    return f"no picture: {words[-1] if words else 'the camera failed'}"
+        said_by("services.camera.picture", *words, environ=plan.environ, timeout=PICTURE)
+    except CliError as error:
+        return f"no picture: {error}"
+    return f"picture: {path.relative_to(ROOT) if path.is_relative_to(ROOT) else path}"
 
 
 def troubles(supervision: Supervision, names: list[str]) -> list[str]:

@@ -85,9 +85,7 @@ def status(args: argparse.Namespace) -> int:
     reached = not wanted
     with linked(args) as link:
         watch, system = Watch(link, topics.BRAIN_STATE), Watch(link, topics.SYSTEM_STATUS)
-        state = watch.next(3.0)
-        if state is None:
-            raise CliError("the brain does not answer; see `tidybot ps`")
+        state = watch.first()
         end = monotonic() + args.timeout
         while wanted and monotonic() < end:
             folded = system.next(0.0)

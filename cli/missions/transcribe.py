@@ -1,22 +1,14 @@
 """`tidybot transcribe`: recordings through the speech service's own recogniser."""
 
 import argparse
-import os
-import subprocess
-import sys
 from pathlib import Path
 
-from common.installation import ROOT
-
-MODULE = "services.speech.transcribe"
+from cli.processes.programs import become
 
 
 def transcribe(args: argparse.Namespace) -> int:
     options = ["--json"] if args.json else []
-    words = [str(path) for path in args.wav]
-    path = os.pathsep.join(p for p in (str(ROOT), os.environ.get("PYTHONPATH", "")) if p)
-    environment = {**os.environ, "PYTHONPATH": path}
-    return subprocess.run([sys.executable, "-m", MODULE, *options, *words], env=environment).returncode
+    become("services.speech.transcribe", *options, *(str(path) for path in args.wav))
 
 
 def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:

@@ -5,7 +5,6 @@ from typing import Any
 import msgspec
 
 from cli.link import Link, Watch
-from common import messages as m
 from common import topics
 from common.scene import Scene
 from common.time.clock import monotonic
@@ -42,7 +41,6 @@ class Witness:
         self._brain = Watch(link, topics.BRAIN_STATE)
         self._status = Watch(link, topics.SYSTEM_STATUS)
         self._speech = Watch(link, topics.SPEECH_STATUS)
-        self._saying = ""
         self.now = 0.0
 
     def begin(self) -> None:
@@ -66,17 +64,11 @@ class Witness:
         for contacts in _drain(self._contacts):
             observer.contacts(contacts)
         for status in _drain(self._speech):
-            self._hear(status)
+            observer.speech(self.now, status)
         for system in _drain(self._status):
             observer.status(self.now, system)
         for state in _drain(self._brain):
             observer.brain(self.now, state)
-
-    def _hear(self, status: m.SpeechStatus) -> None:
-        now = status.detail if status.state == "speaking" else ""
-        if now and now != self._saying:
-            self._observer.sentence(self.now, now)
-        self._saying = now
 
     def judge(self) -> Verdict:
         """After the mission, watch on and conclude."""

@@ -4,12 +4,14 @@ import hashlib
 import os
 import re
 import shlex
+import subprocess
 import sys
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NoReturn
 
+from cli.errors import CliError
 from cli.processes.services import Service
 from common.installation import ROOT
 
@@ -19,11 +21,33 @@ ROUTER_SOCKET, ENDPOINT_PATH = "router.sock", re.compile(r"[\w./-]+", re.ASCII)
 WATCHDOG = "watchdog"
 
 
+def environment_of(environ: Mapping[str, str] = os.environ) -> dict[str, str]:
+    """The environment in which `python -m` finds our modules from any directory."""
+    path = os.pathsep.join(p for p in (str(ROOT), environ.get("PYTHONPATH", "")) if p)
+    return {"OMP_NUM_THREADS": "1", **environ, "PYTHONPATH": path}
+
+
 def become(module: str, *words: str) -> NoReturn:
     """Replace this process by `python -m module words`, as commands do whose work needs services in their process."""
-    path = os.pathsep.join(p for p in (str(ROOT), os.environ.get("PYTHONPATH", "")) if p)
-    environment = {"OMP_NUM_THREADS": "1", **os.environ, "PYTHONPATH": path}
-    os.execve(sys.executable, [sys.executable, "-m", module, *words], environment)
+    os.execve(sys.executable, [sys.executable, "-m", module, *words], environment_of())
+
+
+def said_by(module: str, *words: str, environ: Mapping[str, str] = os.environ, timeout: float | None = None) -> str:
+    """What `python -m module words` prints.
+
+    Raises:
+        CliError: it failed, with its last words, or took longer than `timeout` [s].
+    """
+    command, environment = [sys.executable, "-m", module, *words], environment_of(environ)
+    try:
+        done = subprocess.run(
+            command, env=environment, capture_output=True, text=True, timeout=timeout, errors="replace"
+        )
+    except subprocess.TimeoutExpired:
+        raise CliError(f"no answer within {timeout:.0f} s") from None
+    if done.returncode:
+        raise CliError((done.stderr.strip().splitlines() or [f"exit status {done.returncode}"])[-1])
+    return done.stdout
 
 
 def socket_path(directory: Path) -> Path:

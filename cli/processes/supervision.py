@@ -13,7 +13,7 @@ from typing import Any
 import msgspec
 
 from cli.errors import CliError
-from cli.processes.programs import ROUTER_SOCKET, WATCHDOG, endpoints, render_config, socket_path
+from cli.processes.programs import ROUTER_SOCKET, WATCHDOG, endpoints, environment_of, render_config, socket_path
 from cli.processes.services import Service
 from common.installation import ROOT, workspace
 from common.process import supervisor
@@ -80,7 +80,7 @@ class Supervision:
         config = self.directory / "supervisord.conf"
         config.write_text(render_config(self.directory, services, connect), encoding="utf-8")
         (self.directory / "run.json").write_bytes(msgspec.json.encode(info))
-        environment = {**environ, "PYTHONPATH": _python_path(environ)}
+        environment = environment_of(environ)
         if not detach:
             environment["TIDYBOT_FOREGROUND_PARENT"] = str(os.getpid())
         environment["TIDYBOT_RUN_DIR"] = str(self.directory)
@@ -213,11 +213,6 @@ class Supervision:
             return self.log_path(name).read_text(errors="replace").splitlines()[-lines:]
         except OSError:
             return []
-
-
-def _python_path(environ: Mapping[str, str]) -> str:
-    given = environ.get("PYTHONPATH", "")
-    return f"{ROOT}{os.pathsep}{given}" if given else str(ROOT)
 
 
 def _alive(pid: int) -> bool:

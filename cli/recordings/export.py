@@ -8,7 +8,7 @@ from cli.errors import CliError, near
 from cli.processes.programs import become
 from common import topics
 from common.mission_log.recorded import missions
-from common.recording import Recorder, Recording, Row
+from common.recording import Recording, Row, copy
 
 BEFORE, AFTER = 2.0, 2.0
 """Seconds that are kept on either side of a mission."""
@@ -89,16 +89,4 @@ def export(path: Path, target: Path, wanted: str, say: Callable[[str], None] = p
 def _write(recording: Recording, target: Path, begin: float, end: float) -> None:
     if target.resolve() == recording.path.resolve():
         raise CliError(f"{target} is the recording itself")
-    recorder = Recorder(target)
-    try:
-        for name, facts in recording.facts.items():
-            recorder.note(name, facts)
-        for name, data in recording.files.items():
-            recorder.attach(name, data, 0.0)
-        for row in cut(recording, begin, end):
-            if row.key.endswith("/alive"):
-                recorder.presence(row.key.split("/")[1], b"true" in row.payload, row.t, row.wall)
-            elif not row.junk:
-                recorder.write(row.key, row.payload, row.t, row.wall, row.tick)
-    finally:
-        recorder.close()
+    copy(recording, target, (row for row in cut(recording, begin, end) if not row.junk))

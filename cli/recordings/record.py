@@ -8,7 +8,7 @@ from collections.abc import Callable
 from importlib.util import find_spec
 from pathlib import Path
 
-from cli.errors import CliError
+from cli.errors import CliError, number
 from cli.link import Link, add_options, address
 from cli.processes.supervision import Supervision, run_dir
 from cli.recordings.files import RecordingFiles
@@ -163,22 +163,6 @@ def _close(recorder: Recorder) -> None:
         print("nothing was heard; no file is kept", file=sys.stderr)
 
 
-def _rate(text: str) -> int:
-    if not text.isdecimal() or not 1 <= int(text) <= FASTEST:
-        raise argparse.ArgumentTypeError(f"{text!r}: expected 1 to {FASTEST}")
-    return int(text)
-
-
-def _megabytes(text: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = -1.0
-    if not 1.0 <= value < 1e7:
-        raise argparse.ArgumentTypeError(f"{text!r}: expected MB, 1 or more")
-    return value
-
-
 def _cameras(text: str) -> tuple[str, ...]:
     found = tuple(dict.fromkeys(text.split(",")))
     if not set(found) <= set(CAMERAS):
@@ -190,8 +174,9 @@ def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") ->
     parser = commands.add_parser("record", help="every topic into an MCAP file, until Ctrl-C")
     parser.add_argument("-o", "--output", type=Path, metavar="FILE", help="default: out/run-<time>.mcap")
     parser.add_argument("--duration", type=float, default=0.0, metavar="S", help="wall seconds (default: until Ctrl-C)")
+    size = number(1, unit="MB", whole=False)
     parser.add_argument(
-        "--keep", type=_megabytes, default=0.0, metavar="MB", help="the newest so many MB only, in several files"
+        "--keep", type=size, default=0.0, metavar="MB", help="the newest so many MB only, in several files"
     )
     parser.add_argument(
         "--wait", type=float, default=3.0, metavar="S", help="for the robot's router; 0: as long as it takes"
@@ -200,7 +185,9 @@ def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") ->
     learning.add_argument(
         "--lerobot", type=Path, metavar="DIR", help="missions as episodes of a LeRobotDataset, new or continued"
     )
-    learning.add_argument("--fps", type=_rate, default=10, metavar="N", help="frames a second, 1 to 50 (%(default)s)")
+    learning.add_argument(
+        "--fps", type=number(1, FASTEST), default=10, metavar="N", help="frames a second, 1 to 50 (%(default)s)"
+    )
     learning.add_argument("--cameras", type=_cameras, default=CAMERAS, metavar="A,B", help="head, wrist or both (both)")
     learning.add_argument("--all", action="store_true", help="also missions that failed or were cancelled")
     add_options(parser)

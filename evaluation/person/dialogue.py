@@ -1,7 +1,6 @@
 """The person's side of the conversation with the robot: sentences typed or by voice, and answers to questions."""
 
 from collections import deque
-from collections.abc import Callable
 
 from common import messages as m
 from common import topics
@@ -10,7 +9,6 @@ from evaluation.case import Case
 from evaluation.person.ego_noise import EgoNoise
 from evaluation.person.simulated_user import Manner, SimulatedUser
 from evaluation.person.voice import RATE, Samples, loudness, utter
-from evaluation.watch import spoken
 
 REACTION = 0.5
 """Time [s] until the simulated user answers."""
@@ -38,10 +36,10 @@ class Dialogue:
         """Somebody speaks, or is about to."""
         return bool(self._due or self._sound or self._voice is not None or self._saying)
 
-    def hear(self, status: m.SpeechStatus, now: float, seen: str, begun: Callable[[str], None]) -> None:
-        """What the robot says: `begun` gets each sentence as it begins; at its end the person, who has `seen` what it
-        shows, answers."""
-        before, self._saying = self._saying, spoken(status, self._saying, begun)
+    def hear(self, saying: str, now: float, seen: str) -> None:
+        """What the robot says, "" for nothing; at the end of a sentence the person, who has `seen` what it shows,
+        answers."""
+        before, self._saying = self._saying, saying
         if before and not self._saying:
             self.last = now
             if answer := self.user.answer(before, seen):

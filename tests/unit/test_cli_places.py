@@ -9,7 +9,7 @@ import pytest
 
 from cli.errors import CliError
 from cli.home import places
-from cli.link import Link
+from cli.link import Link, Watch
 from cli.main import parser
 from common import messages as m
 from common import topics
@@ -27,7 +27,7 @@ EDITS = m.HouseholdEdits(rules=[m.TidyRule(things="mugs", to=["shelf"], kinds=["
 class FakeLink:
     """Keeps what was sent; everything is done but for names that mean something else."""
 
-    ask = Link.ask
+    ask, present = Link.ask, Link.present
 
     def __init__(self) -> None:
         self.sent: list[m.HouseholdEdit] = []
@@ -48,6 +48,8 @@ def link(monkeypatch: pytest.MonkeyPatch) -> FakeLink:
         yield fake
 
     class Answers:
+        until = Watch.until
+
         def __init__(self, link: FakeLink, topic: Any) -> None:
             self._others = [m.EditResult(goal_id="somebody else's", ok=True)]
 

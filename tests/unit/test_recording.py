@@ -118,6 +118,18 @@ def test_a_torn_file_gives_all_that_was_flushed_and_is_repaired(tmp_path: Path) 
     assert [(r.t, r.payload) for r in again.rows] == [(r.t, r.payload) for r in Recording(torn).rows]
 
 
+def test_a_repaired_file_says_who_was_there(tmp_path: Path) -> None:
+    path, mended = tmp_path / "whole.mcap", tmp_path / "mended.mcap"
+    recorder = Recorder(path)
+    recorder.presence("brain", True, 0.5, 5.0)
+    recorder.presence("brain", False, 2.0, 6.5)
+    recorder.close()
+    assert repair(path, mended) == 2
+    again = Recording(mended)
+    assert list(again.spans) == ["service/brain/alive"], "no message that is none"
+    assert [json.loads(row.payload)["alive"] for row in again.rows] == [True, False]
+
+
 def test_damage_ends_the_reading_and_is_told(tmp_path: Path) -> None:
     path, rng = tmp_path / "damaged.mcap", random.Random(1)
     recorded(path, 100)
