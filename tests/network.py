@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.support import ROOT
+from tests.support import ROOT, end
 
 _NUMBERS = itertools.count(os.getpid() % 200)
 
@@ -57,15 +57,7 @@ class Machine:
         return (self.log_dir / f"{self.name}.{label}.log").read_text(errors="replace")
 
     def close(self) -> None:
-        for process in self.processes.values():
-            if process.poll() is None:
-                process.terminate()
-        for process in self.processes.values():
-            try:
-                process.wait(10)
-            except subprocess.TimeoutExpired:
-                process.kill()
-                process.wait()
+        end(self.processes.values())
         _ip("netns", "del", self.name)
 
 

@@ -1,6 +1,5 @@
 """A scene and a seed as MJCF: apartment, robot, free objects."""
 
-import math
 from collections.abc import Sequence
 
 from common.floor_plan import BIN_WALL, BODY_INSET, LEG, LEG_INSET
@@ -34,12 +33,10 @@ def _apart(box: str) -> str:
 def _walls(scene: Scene) -> str:
     parts = []
     for n, wall in enumerate(scene.walls):
-        dx, dy = wall.end[0] - wall.start[0], wall.end[1] - wall.start[1]
-        length = math.hypot(dx, dy) + wall.thickness
-        center = ((wall.start[0] + wall.end[0]) / 2, (wall.start[1] + wall.end[1]) / 2, wall.height / 2)
-        size = (length, wall.thickness, wall.height)
+        around = wall.footprint
+        center, size = (around.x, around.y, wall.height / 2), (around.length, around.width, wall.height)
         rgba, group = (_GLASS, GLASS_GROUP) if wall.glass else ("0.86 0.84 0.80 1", 0)
-        parts.append(_apart(_box(f"wall_{n}", center, size, rgba, math.atan2(dy, dx), group)))
+        parts.append(_apart(_box(f"wall_{n}", center, size, rgba, around.yaw, group)))
     return "".join(parts)
 
 

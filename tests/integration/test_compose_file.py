@@ -17,7 +17,7 @@ from cli.processes.ports import free_port
 from cli.processes.services import NAMES, OPTIONAL
 from common.bus.session import open_session
 from tests.compose.mission import carry_out
-from tests.support import PATIENCE, ROOT, eventually
+from tests.support import PATIENCE, ROOT, end, eventually
 
 NODES = tuple(name for name in NAMES if name != "router" and name not in OPTIONAL)
 SHELL = {
@@ -149,15 +149,7 @@ class Containers:
         self.start(name)
 
     def close(self) -> None:
-        for process in reversed(self.running.values()):
-            if process.poll() is None:
-                process.terminate()
-        for process in self.running.values():
-            try:
-                process.wait(10)
-            except subprocess.TimeoutExpired:
-                process.kill()
-                process.wait()
+        end(reversed(self.running.values()))
 
 
 @pytest.fixture

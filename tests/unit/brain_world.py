@@ -218,6 +218,13 @@ class World:
         self.node.service.context.journal.close()  # as the system does with the files of a dead process
         self.node = None
 
+    def restart_brain(self, down: float = 0.0) -> None:
+        """Kill the brain, let `down` seconds pass, and start it again."""
+        self.kill_brain()
+        if down:
+            self.step(down)
+        self.start_brain()
+
     def end_brain(self) -> None:
         """As SIGTERM does."""
         assert self.node is not None

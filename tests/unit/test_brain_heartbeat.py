@@ -35,8 +35,7 @@ def last(world: World, topic: Any) -> Any:
 def test_lost_in_each_state_it_stops_says_so_and_goes_on_when_they_return(
     pipeline: str, state: str, tmp_path: Path
 ) -> None:
-    world = begun(pipeline, tmp_path / "j.db")
-    world.until(lambda: world.state.state == state)
+    world = begun(pipeline, tmp_path / "j.db", at=state)
     mission = world.state.mission_id
     world.step(0.3)
     lost(world)
@@ -55,8 +54,7 @@ def test_lost_in_each_state_it_stops_says_so_and_goes_on_when_they_return(
 
 @pytest.mark.parametrize("pipeline", PIPELINES)
 def test_what_stays_away_ends_in_a_spoken_error_and_a_resume_goes_on_later(pipeline: str, tmp_path: Path) -> None:
-    world = begun(pipeline, tmp_path / "j.db", heartbeat_patience=5.0)
-    world.until(lambda: world.state.state == "RETURNING")
+    world = begun(pipeline, tmp_path / "j.db", heartbeat_patience=5.0, at="RETURNING")
     lost(world)
     world.until(lambda: world.state.state == "ERROR", 10.0)
     assert world.outcome == "failed" and "NO_JOINT_STATES" in world.state.detail
@@ -74,8 +72,7 @@ def test_what_stays_away_ends_in_a_spoken_error_and_a_resume_goes_on_later(pipel
 
 
 def test_what_fell_meanwhile_is_fetched_again(tmp_path: Path) -> None:
-    world = begun("vla", tmp_path / "j.db")
-    world.until(lambda: world.state.state == "RETURNING")
+    world = begun("vla", tmp_path / "j.db", at="RETURNING")
     lost(world)
     world.silent, world.held, world.item_at = False, "", "item"
     finished(world)
@@ -83,8 +80,7 @@ def test_what_fell_meanwhile_is_fetched_again(tmp_path: Path) -> None:
 
 
 def test_a_pause_of_the_simulation_is_no_loss_for_good(tmp_path: Path) -> None:
-    world = begun("fetch", tmp_path / "j.db", heartbeat_patience=5.0)
-    world.until(lambda: world.state.state == "RETURNING")
+    world = begun("fetch", tmp_path / "j.db", heartbeat_patience=5.0, at="RETURNING")
     world.bus.send(topics.SIM_STATUS, m.SimStatus(state="paused"))
     lost(world, 30.0)
     assert world.state.state == "IDLE" and not world.outcome
@@ -99,8 +95,7 @@ def test_a_pause_of_the_simulation_is_no_loss_for_good(tmp_path: Path) -> None:
 def test_robot_time_that_stands_still_is_a_loss_when_the_simulation_alone_is_gone(
     sim: bool, others: bool, suspended: bool, tmp_path: Path
 ) -> None:
-    world = begun("vla", tmp_path / "j.db")
-    world.until(lambda: world.state.state == "NAVIGATING")
+    world = begun("vla", tmp_path / "j.db", at="NAVIGATING")
     kept = MemoryIo(world.bus, "sim", (), (), household=SCENE, lockstep=False) if sim else None
     if not others:
         for peer in world.peers.values():

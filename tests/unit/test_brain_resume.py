@@ -20,12 +20,15 @@ STATES = {
 }
 
 
-def begun(pipeline: str, path: Path, **parameters: Any) -> World:
+def begun(pipeline: str, path: Path, at: str = "", **parameters: Any) -> World:
+    """A world in which the mug is asked for, `at` a state of that mission."""
     world = World(pipeline, path, **parameters)
     if pipeline == "vla":
         world.until(lambda: world.state.state == "WAITING")
         world.asked = True
         world.bus.send(topics.VOICE_COMMAND, m.VoiceCommand(text="bring me the red mug"))
+    if at:
+        world.until(lambda: world.state.state == at)
     return world
 
 
@@ -59,13 +62,10 @@ def test_without_a_kill_it_is_delivered(pipeline: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize(("into", "down"), [(0.0, 0.3), (1.0, 8.0), (2.5, 0.3)])
 @pytest.mark.parametrize(("pipeline", "state"), [(p, s) for p in PIPELINES for s in STATES[p]])
 def test_killed_in_each_state(pipeline: str, state: str, down: float, into: float, tmp_path: Path) -> None:
-    world = begun(pipeline, tmp_path / "j.db")
-    world.until(lambda: world.state.state == state)
+    world = begun(pipeline, tmp_path / "j.db", at=state)
     mission = world.state.mission_id
     world.step(into)
-    world.kill_brain()
-    world.step(down)
-    world.start_brain()
+    world.restart_brain(down=down)
     finished(world)
     delivered_once(world)
     assert world.state.last is not None and world.state.last.id == mission
@@ -77,8 +77,7 @@ def test_killed_in_each_state(pipeline: str, state: str, down: float, into: floa
 def test_nodes_may_be_shown_under_other_names_after_the_restart(
     pipeline: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    world = begun(pipeline, tmp_path / "j.db")
-    world.until(lambda: world.state.state == "RETURNING")
+    world = begun(pipeline, tmp_path / "j.db", at="RETURNING")
     world.kill_brain()
     monkeypatch.setattr("services.brain.tree.composites.shown", lambda node_id, name="": f"<{node_id}>")
     world.start_brain()
@@ -90,8 +89,7 @@ def test_nodes_may_be_shown_under_other_names_after_the_restart(
 
 @pytest.mark.parametrize("pipeline", PIPELINES)
 def test_a_journal_of_a_version_with_other_nodes_is_refused_in_words(pipeline: str, tmp_path: Path) -> None:
-    world = begun(pipeline, tmp_path / "j.db")
-    world.until(lambda: world.state.state == "RETURNING")
+    world = begun(pipeline, tmp_path / "j.db", at="RETURNING")
     world.kill_brain()
     with sqlite3.connect(tmp_path / "j.db") as file:
         body = json.loads(file.execute("select body from checkpoint").fetchone()[0])
@@ -112,9 +110,7 @@ def test_killed_again_and_again(pipeline: str, seed: int, tmp_path: Path) -> Non
     while world.state.last is None:
         world.step(dice.uniform(0.05, 4.0))
         if kills < 9 and world.state.last is None and world.state.state not in ("LISTENING", "WAITING"):
-            world.kill_brain()
-            world.step(dice.choice((0.05, 0.5, 5.0)))
-            world.start_brain()
+            world.restart_brain(down=dice.choice((0.05, 0.5, 5.0)))
             kills += 1
     delivered_once(world)
     assert kills > 0
@@ -124,8 +120,7 @@ def test_killed_again_and_again(pipeline: str, seed: int, tmp_path: Path) -> Non
 @pytest.mark.parametrize("state", ["NAVIGATING", "GRABBING", "RETURNING", "RELEASING"])
 def test_killed_with_the_peers(pipeline: str, state: str, tmp_path: Path) -> None:
     """As after a power cut: nobody remembers anything but the journal."""
-    world = begun(pipeline, tmp_path / "j.db")
-    world.until(lambda: world.state.state == state)
+    world = begun(pipeline, tmp_path / "j.db", at=state)
     world.step(1.0)
     world.kill_brain()
     for name in list(world.peers):
@@ -139,8 +134,7 @@ def test_killed_with_the_peers(pipeline: str, state: str, tmp_path: Path) -> Non
 # --- the world has changed meanwhile
 @pytest.mark.parametrize("pipeline", PIPELINES)
 def test_an_object_lost_while_the_brain_was_down_is_fetched_again(pipeline: str, tmp_path: Path) -> None:
-    world = begun(pipeline, tmp_path / "j.db")
-    world.until(lambda: world.state.state == "RETURNING")
+    world = begun(pipeline, tmp_path / "j.db", at="RETURNING")
     world.step(1.0)
     world.kill_brain()
     world.held, world.item_at = "", "item"
@@ -154,8 +148,7 @@ def test_an_object_lost_while_the_brain_was_down_is_fetched_again(pipeline: str,
 @pytest.mark.parametrize("pipeline", PIPELINES)
 def test_an_object_that_is_in_the_hand_already_is_not_fetched_again(pipeline: str, tmp_path: Path) -> None:
     """As when the last checkpoints did not reach the disk."""
-    world = begun(pipeline, tmp_path / "j.db")
-    world.until(lambda: world.state.state == "NAVIGATING")
+    world = begun(pipeline, tmp_path / "j.db", at="NAVIGATING")
     world.kill_brain()
     world.step(5.0)
     world.held, world.item_at = "red mug", "hand"
@@ -168,8 +161,7 @@ def test_an_object_that_is_in_the_hand_already_is_not_fetched_again(pipeline: st
 @pytest.mark.parametrize("pipeline", PIPELINES)
 @pytest.mark.parametrize("state", ["GRABBING", "RELEASING"])
 def test_a_base_that_was_moved_drives_there_again(pipeline: str, state: str, tmp_path: Path) -> None:
-    world = begun(pipeline, tmp_path / "j.db")
-    world.until(lambda: world.state.state == state)
+    world = begun(pipeline, tmp_path / "j.db", at=state)
     world.kill_brain()
     world.restart("manipulation")
     world.place = "elsewhere"
@@ -182,8 +174,7 @@ def test_a_base_that_was_moved_drives_there_again(pipeline: str, state: str, tmp
 
 @pytest.mark.parametrize("pipeline", PIPELINES)
 def test_a_simulation_begun_anew_is_looked_at_anew(pipeline: str, tmp_path: Path) -> None:
-    world = begun(pipeline, tmp_path / "j.db")
-    world.until(lambda: world.state.state == "GRABBING")
+    world = begun(pipeline, tmp_path / "j.db", at="GRABBING")
     world.kill_brain()
     for name in list(world.peers):
         world.restart(name)
@@ -197,11 +188,8 @@ def test_a_simulation_begun_anew_is_looked_at_anew(pipeline: str, tmp_path: Path
 # --- what is not taken up
 @pytest.mark.parametrize("pipeline", PIPELINES)
 def test_an_ended_mission_is_over(pipeline: str, tmp_path: Path) -> None:
-    world = begun(pipeline, tmp_path / "j.db")
-    world.until(lambda: world.state.state == "COMPLETED")
-    world.kill_brain()
-    world.step(0.5)
-    world.start_brain()
+    world = begun(pipeline, tmp_path / "j.db", at="COMPLETED")
+    world.restart_brain(down=0.5)
     world.step(20.0)
     delivered_once(world)
     assert world.state.state in ("WAITING", "LISTENING") and world.drives == ["item", "home"]
@@ -210,8 +198,7 @@ def test_an_ended_mission_is_over(pipeline: str, tmp_path: Path) -> None:
 def test_a_failed_mission_is_over_and_the_hand_stays_known(tmp_path: Path) -> None:
     world = begun("fetch", tmp_path / "j.db", navigation_timeout=2.0, navigation_retries=0)
     world.until(lambda: world.state.state == "ERROR", limit=60)
-    world.kill_brain()
-    world.start_brain()
+    world.restart_brain()
     world.step(5.0)
     assert world.outcome == "failed" and world.state.state == "LISTENING"
 
@@ -232,12 +219,10 @@ def test_a_robot_stopped_while_the_brain_was_down_stays_stopped(pipeline: str, t
 
 
 def test_what_is_in_the_hand_outlives_a_mission_that_was_called_off(tmp_path: Path) -> None:
-    world = begun("fetch", tmp_path / "j.db")
-    world.until(lambda: world.state.state == "RETURNING")
+    world = begun("fetch", tmp_path / "j.db", at="RETURNING")
     world.bus.send(topics.VOICE_COMMAND, m.VoiceCommand(text="cancel"))
     world.step(1.0)
-    world.kill_brain()
-    world.start_brain()
+    world.restart_brain()
     world.until(lambda: world.state.state == "LISTENING")
     world.bus.send(topics.VOICE_COMMAND, m.VoiceCommand(text="bring me the red mug"))
     world.until(lambda: world.outcome == "delivered")
@@ -245,8 +230,7 @@ def test_what_is_in_the_hand_outlives_a_mission_that_was_called_off(tmp_path: Pa
 
 
 def test_an_orderly_end_ends_the_mission(tmp_path: Path) -> None:
-    world = begun("fetch", tmp_path / "j.db")
-    world.until(lambda: world.state.state == "RETURNING")
+    world = begun("fetch", tmp_path / "j.db", at="RETURNING")
     world.end_brain()
     world.start_brain()
     world.step(10.0)
@@ -255,8 +239,7 @@ def test_an_orderly_end_ends_the_mission(tmp_path: Path) -> None:
 
 
 def test_within_a_run_an_orderly_restart_goes_on(tmp_path: Path) -> None:
-    world = begun("fetch", tmp_path / "j.db", run="run-1")
-    world.until(lambda: world.state.state == "RETURNING")
+    world = begun("fetch", tmp_path / "j.db", run="run-1", at="RETURNING")
     world.end_brain()
     world.start_brain()
     finished(world)
@@ -264,21 +247,17 @@ def test_within_a_run_an_orderly_restart_goes_on(tmp_path: Path) -> None:
 
 
 def test_a_mission_of_long_ago_is_not_taken_up(tmp_path: Path) -> None:
-    world = begun("fetch", tmp_path / "j.db", resume_within=-1.0)
-    world.until(lambda: world.state.state == "RETURNING")
-    world.kill_brain()
-    world.start_brain()
+    world = begun("fetch", tmp_path / "j.db", resume_within=-1.0, at="RETURNING")
+    world.restart_brain()
     world.step(10.0)
     assert world.outcome == "failed" and "TOO_LATE" in world.state.last.reason and world.held  # type: ignore[union-attr]
 
 
 def test_a_mission_that_kills_its_brain_is_given_up(tmp_path: Path) -> None:
-    world = begun("fetch", tmp_path / "j.db")
-    world.until(lambda: world.state.state == "GRABBING")
+    world = begun("fetch", tmp_path / "j.db", at="GRABBING")
     for _ in range(15):
         world.peers["manipulation"].job = None
-        world.kill_brain()
-        world.start_brain()
+        world.restart_brain()
         world.step(1.0)
         if world.state.last is not None:
             break
@@ -286,8 +265,7 @@ def test_a_mission_that_kills_its_brain_is_given_up(tmp_path: Path) -> None:
 
 
 def test_a_mission_of_another_pipeline_is_given_up_honestly(tmp_path: Path) -> None:
-    world = begun("vla", tmp_path / "j.db")
-    world.until(lambda: world.state.state == "NAVIGATING")
+    world = begun("vla", tmp_path / "j.db", at="NAVIGATING")
     world.kill_brain()
     world.config = type(world.config)(pipeline="fetch", journal=world.config.journal)
     world.start_brain()
@@ -296,10 +274,8 @@ def test_a_mission_of_another_pipeline_is_given_up_honestly(tmp_path: Path) -> N
 
 
 def test_cancel_is_heard_while_looking(tmp_path: Path) -> None:
-    world = begun("fetch", tmp_path / "j.db")
-    world.until(lambda: world.state.state == "RETURNING")
-    world.kill_brain()
-    world.start_brain()
+    world = begun("fetch", tmp_path / "j.db", at="RETURNING")
+    world.restart_brain()
     world.step(0.2)
     world.bus.send(topics.VOICE_COMMAND, m.VoiceCommand(text="cancel"))
     world.step(10.0)

@@ -33,8 +33,7 @@ def go_on(world: World) -> None:
 
 @pytest.mark.parametrize(("pipeline", "state"), [(p, s) for p in PIPELINES for s in STATES[p]])
 def test_stopped_in_each_state_it_goes_on(pipeline: str, state: str, tmp_path: Path) -> None:
-    world = begun(pipeline, tmp_path / "j.db")
-    world.until(lambda: world.state.state == state)
+    world = begun(pipeline, tmp_path / "j.db", at=state)
     mission = world.state.mission_id
     world.step(0.3)
     stop(world)
@@ -48,8 +47,7 @@ def test_stopped_in_each_state_it_goes_on(pipeline: str, state: str, tmp_path: P
 
 @pytest.mark.parametrize("pipeline", PIPELINES)
 def test_a_plain_resume_only_releases(pipeline: str, tmp_path: Path) -> None:
-    world = begun(pipeline, tmp_path / "j.db")
-    world.until(lambda: world.state.state == "RETURNING")
+    world = begun(pipeline, tmp_path / "j.db", at="RETURNING")
     stop(world)
     drives = list(world.drives)
     resume(world, go_on=False)
@@ -62,8 +60,7 @@ def test_a_plain_resume_only_releases(pipeline: str, tmp_path: Path) -> None:
 
 
 def test_a_hand_that_closed_just_before_the_stop_is_noticed_by_the_grab_itself(tmp_path: Path) -> None:
-    world = begun("vla", tmp_path / "j.db")
-    world.until(lambda: world.state.state == "GRABBING")
+    world = begun("vla", tmp_path / "j.db", at="GRABBING")
     stop(world)
     world.held, world.item_at = "red mug", "hand"
     go_on(world)
@@ -71,8 +68,7 @@ def test_a_hand_that_closed_just_before_the_stop_is_noticed_by_the_grab_itself(t
 
 
 def test_what_fell_while_stopped_is_fetched_again(tmp_path: Path) -> None:
-    world = begun("fetch", tmp_path / "j.db")
-    world.until(lambda: world.state.state == "RELEASING")
+    world = begun("fetch", tmp_path / "j.db", at="RELEASING")
     stop(world)
     world.held, world.item_at = "", "item"
     go_on(world)
@@ -80,8 +76,7 @@ def test_what_fell_while_stopped_is_fetched_again(tmp_path: Path) -> None:
 
 
 def test_a_mission_that_was_called_off_is_not_gone_on_with(tmp_path: Path) -> None:
-    world = begun("fetch", tmp_path / "j.db")
-    world.until(lambda: world.state.state == "RETURNING")
+    world = begun("fetch", tmp_path / "j.db", at="RETURNING")
     world.bus.send(topics.VOICE_COMMAND, m.VoiceCommand(text="cancel"))
     world.step(1.0)
     drives = list(world.drives)
@@ -99,27 +94,23 @@ def test_stopped_while_the_brain_was_down_it_goes_on_when_asked(tmp_path: Path) 
 
 
 def test_the_journal_tells_of_both(tmp_path: Path) -> None:
-    world = begun("fetch", tmp_path / "j.db")
-    world.until(lambda: world.state.state == "NAVIGATING")
+    world = begun("fetch", tmp_path / "j.db", at="NAVIGATING")
     stop(world)
     go_on(world)
     story = world.timeline()
     assert "stopped: button" in story and "resumed" in story
     finished(world)
-    world.kill_brain()
-    world.start_brain()
+    world.restart_brain()
     world.step(1.0)
     assert world.state.last is not None and world.state.last.outcome == "delivered"
 
 
 @pytest.mark.parametrize("pipeline", PIPELINES)
 def test_a_brain_that_dies_while_stopped_still_knows(pipeline: str, tmp_path: Path) -> None:
-    world = begun(pipeline, tmp_path / "j.db")
-    world.until(lambda: world.state.state == "RETURNING")
+    world = begun(pipeline, tmp_path / "j.db", at="RETURNING")
     mission = world.state.mission_id
     stop(world)
-    world.kill_brain()
-    world.start_brain()
+    world.restart_brain()
     world.step(3.0)
     assert world.outcome == "cancelled" and not world.state.mission_id
     go_on(world)
@@ -128,8 +119,7 @@ def test_a_brain_that_dies_while_stopped_still_knows(pipeline: str, tmp_path: Pa
 
 
 def test_a_new_command_takes_the_place_of_what_was_put_off(tmp_path: Path) -> None:
-    world = begun("fetch", tmp_path / "j.db")
-    world.until(lambda: world.state.state == "NAVIGATING")
+    world = begun("fetch", tmp_path / "j.db", at="NAVIGATING")
     stop(world)
     resume(world, go_on=False)
     world.until(lambda: world.state.state in ("WAITING", "LISTENING"))

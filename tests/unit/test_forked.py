@@ -1,5 +1,6 @@
 """A service as a fork of supervisord behaves like one with an interpreter of its own."""
 
+import json
 import subprocess
 import sys
 from pathlib import Path
@@ -10,45 +11,60 @@ from cli.processes import forked
 from tests.support import ROOT
 
 PARENT = """
-import os, signal, sys, threading
+import json, os, signal, sys
 from cli.processes import forked
 forked.load()
-# Room for the names of what it becomes, as supervisord's own command line has.
 signal.signal(signal.SIGTERM, lambda number, frame: None)
-sys.stdout.flush()
-child = os.fork()
-if child == 0:
-    forked.become([sys.executable, "-m", "child", "--word"], {"PATH": os.environ["PATH"], "GIVEN": "1"})
-print("status", os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))
+ended = []
+for number in range(int(sys.argv[1])):
+    child = os.fork()
+    if child == 0:
+        for name, stream in (("out", 1), ("err", 2)):
+            os.dup2(os.open(f"{name}{number}", os.O_CREAT | os.O_WRONLY), stream)
+        forked.become([sys.executable, "-m", f"child{number}", "--word"], {"PATH": os.environ["PATH"], "GIVEN": "1"})
+    ended.append(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))
+print(json.dumps(ended))
 """
 CASES = {
-    "import sys; sys.exit(3)": ("status 3", ""),
-    "import sys; sys.exit('no')": ("status 1", "no"),
-    "raise ValueError('broken')": ("status 1", "ValueError: broken"),
-    "import sys; print(__name__, sys.argv[1:])": ("__main__ ['--word']\nstatus 0", ""),
-    "import os; print(sorted(os.environ))": ("['GIVEN', 'PATH']\nstatus 0", ""),
-    "import signal; signal.raise_signal(signal.SIGTERM)": ("status -15", ""),
-    "import atexit; atexit.register(print, 'last')": ("last\nstatus 0", ""),
-    "import threading; threading.Thread(target=print, args=('joined',)).start()": ("joined\nstatus 0", ""),
-    "print(open('/proc/self/cmdline').read().rstrip('\\0').split('\\0')[1:])": ("['-m', 'child', '--word']", ""),
-    "import sys; print([n for n in sys.modules if n.split('.')[0] in ('cli', 'common')])": ("[]\nstatus 0", ""),
-    "import numpy, zenoh, os; print(len(os.listdir('/proc/self/task')))": ("1\nstatus 0", ""),
+    "import sys; sys.exit(3)": (3, "", ""),
+    "import sys; sys.exit('no')": (1, "", "no"),
+    "raise ValueError('broken')": (1, "", "ValueError: broken"),
+    "import sys; print(__name__, sys.argv[1:])": (0, "__main__ ['--word']", ""),
+    "import os; print(sorted(os.environ))": (0, "['GIVEN', 'PATH']", ""),
+    "import signal; signal.raise_signal(signal.SIGTERM)": (-15, "", ""),
+    "import atexit; atexit.register(print, 'last')": (0, "last", ""),
+    "import threading; threading.Thread(target=print, args=('joined',)).start()": (0, "joined", ""),
+    "print(open('/proc/self/cmdline').read().split('\\0')[1:3])": (0, "['-m', '{module}']", ""),
+    "import sys; print([n for n in sys.modules if n.split('.')[0] in ('cli', 'common')])": (0, "[]", ""),
+    "import numpy, zenoh, os; print(len(os.listdir('/proc/self/task')))": (0, "1", ""),
 }
+"""A module's code, and its exit status, output and last words."""
 
 
-def run(directory: Path, code: str) -> "subprocess.CompletedProcess[str]":
-    (directory / "child.py").write_text(code, encoding="utf-8")
+@pytest.fixture(scope="module")
+def ended(tmp_path_factory: pytest.TempPathFactory) -> dict[str, tuple[int, str, str]]:
+    """What became of each case, as a fork of one parent."""
+    directory = tmp_path_factory.mktemp("children")
+    for number, code in enumerate(CASES):
+        (directory / f"child{number}.py").write_text(code, encoding="utf-8")
     environment = {"PATH": "/usr/bin:/bin", "PYTHONPATH": f"{ROOT}:{directory}", "OMP_NUM_THREADS": "1"}
-    line = [sys.executable, "-c", PARENT]
-    return subprocess.run(line, env=environment, cwd=directory, capture_output=True, text=True, timeout=60)
+    line = [sys.executable, "-c", PARENT, str(len(CASES))]
+    done = subprocess.run(line, env=environment, cwd=directory, capture_output=True, text=True, timeout=60)
+    assert done.returncode == 0, done.stderr
+
+    def written(name: str, number: int) -> str:
+        return Path(directory / f"{name}{number}").read_text(encoding="utf-8").strip()
+
+    return {
+        code: (status, written("out", n), written("err", n).split("\n")[-1])
+        for n, (code, status) in enumerate(zip(CASES, json.loads(done.stdout), strict=True))
+    }
 
 
 @pytest.mark.parametrize("code", CASES)
-def test_a_module_runs_as_in_a_new_interpreter(tmp_path: Path, code: str) -> None:
-    out, errors = CASES[code]
-    done = run(tmp_path, code)
-    assert out in done.stdout, done
-    assert errors in done.stderr
+def test_a_module_runs_as_in_a_new_interpreter(ended: dict[str, tuple[int, str, str]], code: str) -> None:
+    status, out, errors = CASES[code]
+    assert ended[code] == (status, out.format(module=f"child{list(CASES).index(code)}"), errors)
 
 
 def test_what_renders_or_is_no_module_gets_an_interpreter_of_its_own() -> None:
