@@ -53,6 +53,7 @@ SHAPES: dict[str, Draw] = {
     "block": _sized("block", (0.02, 0.02, 0.02), (0.07, 0.07, 0.08)),
     "carton": _sized("box", (0.04, 0.06, 0.09), (0.07, 0.12, 0.2)),
     "carton lying": _sized("box", (0.042, 0.08, 0.12), (0.068, 0.13, 0.19), lies=True),
+    "book lying": _sized("block", (0.15, 0.09, 0.018), (0.21, 0.145, 0.045)),
     "book standing": _sized("block", (0.015, 0.1, 0.15), (0.04, 0.16, 0.22)),
     "ball": _sized("ball", (0.04, 0, 0), (0.072, 0, 0)),
     "mug": _sized("mug", (0.062, 0, 0.075), (0.073, 0, 0.11)),

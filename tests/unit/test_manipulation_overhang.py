@@ -1,6 +1,7 @@
 """What is too wide as it lies is pulled over the edge of its surface and taken from there."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -15,9 +16,10 @@ from services.manipulation.config import ManipulationConfig
 from services.manipulation.grasps.grasped_object import attach
 from services.manipulation.grasps.over_edge import flat_and_wide, over_an_edge
 from services.manipulation.grasps.target import Target
+from services.manipulation.planning.edge_spots import INSET, edge_spots
 from services.manipulation.planning.motion_planner import PlanError, Planner
 from services.manipulation.planning.overhang import LEDGE, facing_edge, plan_pull
-from services.manipulation.planning.plan_place import plan_place
+from services.manipulation.planning.plan_place import plan_place, plan_placements
 from services.manipulation.planning.planning_scene import tilt_of
 from services.manipulation.planning.straight_grab import Way, feasible
 from services.sim.model import own
@@ -125,6 +127,40 @@ def test_a_finger_below_a_rim_has_room_only_over_the_edge_and_is_drawn_out_when_
     ARM.open_fingers(held.opening)
     assert not any(ARM.collides(q) for q in down.lower)
     ARM.open_fingers()
+
+
+def test_what_is_held_level_from_below_is_put_down_over_the_edge() -> None:
+    edge = facing_edge(TABLE, (0.0, 0.0, 0.0))
+    assert edge is not None
+    lies = Target("book", "book", (0.66, 0.02, HEIGHT + 0.015), 0.1, (0.19, 0.13, 0.03), shape="box")
+    held = attach(lies, over_an_edge(lies, ARM.forward, ARM.widest)[0])
+    assert held.level
+    with pytest.raises(PlanError):
+        plan_place(PLANNER, held, [(0.6, 0.0)], HEIGHT, 0.004, [slab()], ARM.home.copy())
+    free = edge_spots(held, edge, [], ARM.forward)
+    down = plan_placements(PLANNER, held, free, HEIGHT + 0.004, [slab()], ARM.home.copy())
+    assert edge.inset(*down.spot) >= INSET
+    ARM.set_obstacles([slab()])
+    ARM.open_fingers(held.opening)
+    assert not any(ARM.collides(q) for q in (*down.lower, *down.retreat))
+    ARM.open_fingers()
+    beside = edge_spots(held, edge, [(*down.spot, 0.05)], ARM.forward)
+    assert beside and all(math.dist(spot, down.spot) > 0.05 + 0.095 for spot, _ in beside)
+
+
+def test_what_would_tip_over_the_edge_is_not_put_down_there() -> None:
+    edge = facing_edge(TABLE, (0.0, 0.0, 0.0))
+    assert edge is not None
+    lies = Target("book", "book", (0.66, 0.0, HEIGHT + 0.015), 0.0, (0.13, 0.19, 0.03), shape="box")
+    held = attach(lies, over_an_edge(lies, ARM.forward, ARM.widest)[0])
+    deep = replace(held, offset=held.offset * (0.4, 1.0, 1.0))
+    assert edge_spots(held, edge, [], ARM.forward) and not edge_spots(deep, edge, [], ARM.forward)
+
+
+@pytest.mark.slow
+def test_a_book_is_brought() -> None:
+    """In physics: pulled, taken from below, put down over the edge of the tray."""
+    assert trial(load_scene("apartment"), "book lying", 64002, ManipulationConfig()) == "ok"
 
 
 @pytest.mark.slow

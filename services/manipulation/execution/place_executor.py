@@ -1,5 +1,8 @@
 """Place executor: the grasped object is set on a receptacle or where there is room; the hand opens when it stands."""
 
+from collections.abc import Callable
+from functools import partial
+
 import numpy as np
 from msgspec.structs import replace
 
@@ -12,9 +15,13 @@ from services.manipulation.execution.robot import Failure, Robot, Steps, go_home
 from services.manipulation.execution.setting_down import set_down
 from services.manipulation.grasps.grasp import approach_rotation
 from services.manipulation.grasps.grasped_object import USUAL_SIZE, GraspedObject
-from services.manipulation.planning.plan_place import DROP, PlacePlan, plan_place
+from services.manipulation.planning.edge_spots import Placement, edge_spots
+from services.manipulation.planning.overhang import facing_edge
+from services.manipulation.planning.plan_place import DROP, PlacePlan, plan_place, plan_placements
 from services.manipulation.planning.planning_scene import obstacles, spots
 
+Plan = Callable[..., PlacePlan]
+"""Plans a placement among the obstacles around, from joints (7,)."""
 FLOOR_SPOTS = ((0.48, 0.0), (0.48, 0.2), (0.48, -0.2))
 """Where things are put on the floor, from the arm's first joint [m]: in front of the base and clear of it."""
 BIN_DROP = 0.06
@@ -40,7 +47,8 @@ def place(robot: Robot, where: str, beside: ObjectRef | None = None, away_from: 
     known = [o for o in robot.source.objects() if o.label != held.label]
     names = [where] if where else [household.delivery, *(r.name for r in household.receptacles if not r.depth)]
     anchor = next((o for o in known if beside and o.label == beside.label), beside)
-    choices: list[tuple[GraspedObject, str, list[tuple[float, float]], float, float]] = []
+    choices: list[tuple[GraspedObject, str, float, Plan]] = []
+    planner = planner_of(robot)
     for stance in stances:
         for name in dict.fromkeys(names):
             r = household.receptacle(name)
@@ -49,19 +57,21 @@ def place(robot: Robot, where: str, beside: ObjectRef | None = None, away_from: 
             surface, drop = (r.depth, BIN_DROP) if r.depth else (r.center[2], DROP)
             # What lies takes up more room than when it stands.
             free = free_spots(robot, r, max(stance.size[:2]), held.label, anchor, away_from)
-            if free:
-                choices.append((stance, r.name, free, surface, drop))
+            plans = [partial(plan_place, planner, stance, free, surface, drop)] if free else []
+            if anchor is None and (over := _over_edge(robot, r, stance)):
+                # A hand that is level has its knuckles in the surface, wherever else it sets down what it holds.
+                plans.insert(0 if stance.level else 1, partial(plan_placements, planner, stance, over, surface + DROP))
+            choices += [(stance, r.name, surface, plan) for plan in plans]
         if not where:
-            on_floor = [(planner_of(robot).arm.forward + x, y) for x, y in FLOOR_SPOTS]
-            choices.append((stance, "floor", on_floor, 0.0, DROP))
+            on_floor = [(planner.arm.forward + x, y) for x, y in FLOOR_SPOTS]
+            choices.append((stance, "floor", 0.0, partial(plan_place, planner, stance, on_floor, 0.0, DROP)))
     if not choices:
         near = f" next to the {anchor.label}" if anchor else ""
         raise Failure("UNREACHABLE", f"no free spot of the {where}{near} is within reach from here")
-    last, planner = Failure("UNREACHABLE", "nothing within reach"), planner_of(robot)
-    for held, name, free, surface, drop in choices:
+    last = Failure("UNREACHABLE", "nothing within reach")
+    for held, name, surface, planned in choices:
         try:
-            around, now = _around(robot, held, name), robot.joints.copy()
-            plan = yield from robot.work(plan_place, planner, held, free, surface, drop, around, now)
+            plan = yield from robot.work(planned, _around(robot, held, name), robot.joints.copy())
         except Failure as failure:
             last = failure
             continue
@@ -84,6 +94,16 @@ def place_back(robot: Robot, found: WorldObject) -> Steps[str]:
     around, now, height = _around(robot, held, surface.name), robot.joints.copy(), surface.center[2]
     plan = yield from robot.work(plan_place, planner_of(robot), held, [spot], height, DROP, around, now)
     return (yield from _execute_place(robot, plan, held, surface.name, height))
+
+
+def _over_edge(robot: Robot, r: Receptacle, held: GraspedObject) -> list[Placement]:
+    """Placements over the edge of a surface that the robot stands before, of what is held from below."""
+    edge = facing_edge(r, robot.base) if held.from_below and not r.depth else None
+    if edge is None:
+        return []
+    known = [o for o in robot.source.objects() if o.label != held.label and not o.held]
+    taken = [(*to_frame(robot.base, (o.position[0], o.position[1])), max(o.size[:2]) / 2) for o in known]
+    return edge_spots(held, edge, taken, planner_of(robot).arm.forward)
 
 
 def free_spots(

@@ -20,6 +20,9 @@ mug that lies is taken through it, and 22 mm of room leave 8 beside a finger."""
 ABOVE_EACH_OTHER = 0.7
 """Vertical part of the closing direction, as a share, from which one finger is below what they hold. Chosen: between
 the steepest hold of a plate's rim and the flattest of a bowl's."""
+LEVEL = 0.35
+"""Vertical part of the approach, as a share, up to which the hand is level. Chosen: at 20 degrees the knuckles of a
+2F-85, 60 mm below its axis and 70 behind the pads, are as low as its lower finger."""
 USUAL_SIZE = (0.06, 0.06, 0.10)
 """Full extents [m] of an object in the hand that nobody described. Chosen: near those of a mug."""
 
@@ -48,6 +51,11 @@ class GraspedObject:
     def from_below(self) -> bool:
         """One finger is below it, and has to come out from under it once it is put down."""
         return abs(float(self.rotation[2, 1])) > ABOVE_EACH_OTHER
+
+    @property
+    def level(self) -> bool:
+        """One finger is below it, and the hand points level: its knuckles reach farther down than that finger."""
+        return self.from_below and abs(float(self.rotation[2, 2])) < LEVEL
 
     @property
     def at_rim(self) -> bool:

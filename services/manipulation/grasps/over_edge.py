@@ -15,6 +15,9 @@ from services.manipulation.grasps.target import Target
 OVERLAPS = (0.034, 0.026, 0.018, 0.010, 0.004)
 """How far [m] the pads' middle is within what is taken over an edge, deepest first. Chosen: from all of a pad's length
 and a little to the least that holds."""
+PUT_BACK = 0.055
+"""How much less [m] than its half that is: put down over another edge, with 25 mm of the fingers before that, it lies
+with its middle 30 mm inside."""
 ASIDE = (0.0, 0.02, -0.02)
 """How far [m] beside the middle of its side."""
 DEPTHS = (0.020, 0.015, 0.010)
@@ -57,7 +60,7 @@ def over_an_edge(target: Target, forward: float, widest: float) -> list[Grasp]:
             continue
         c, s = math.cos(azimuth), math.sin(azimuth)
         for aside in ASIDE:
-            for overlap in OVERLAPS:
+            for overlap in (o for o in OVERLAPS if o <= max(half - PUT_BACK, OVERLAPS[-2])):
                 at = np.array([x - c * (half - overlap) - s * aside, y - s * (half - overlap) + c * aside, z])
                 for roll in (math.pi / 2, -math.pi / 2):
                     pose = Pose(at, approach_rotation(azimuth, 0.0, roll))

@@ -89,6 +89,11 @@ class Edge:
         """How far [m] along the edge a point is from its middle, to the left seen from outside."""
         return float(self.outward[0] * y - self.outward[1] * x) - self.middle
 
+    def point(self, inset: float, along: float) -> tuple[float, float]:
+        """The point (x, y) that is so far inside and along the edge [m]."""
+        (ox, oy), out, side = self.outward, self.offset - inset, along + self.middle
+        return float(out * ox - side * oy), float(out * oy + side * ox)
+
 
 def facing_edge(surface: Receptacle, base: Pose2) -> Edge | None:
     """The free edge that the robot stands before; None before none."""

@@ -1,5 +1,6 @@
 """Plans a whole placement: the first spot and turn where what is held can be set down and left standing."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -9,6 +10,7 @@ from services.manipulation.arm.arm_model import Array, Obstacle, Pose
 from services.manipulation.arm.ik import seeds
 from services.manipulation.arm.trajectory import connect
 from services.manipulation.grasps.grasped_object import GraspedObject
+from services.manipulation.planning.edge_spots import Placement
 from services.manipulation.planning.motion_planner import PlanError, Planner, counted
 from services.manipulation.planning.planning_scene import EASY, SLAB, with_object
 
@@ -49,17 +51,34 @@ def plan_place(
     Raises:
         PlanError: UNREACHABLE.
     """
+    height = surface + drop + (FINGER if held.from_below else 0.0)
+    bearings = [(spot, math.atan2(spot[1], spot[0] - planner.arm.forward)) for spot in spots[:10]]
+    headings = [(spot, bearing + turn) for spot, bearing in bearings for turn in TURNS]
+    return plan_placements(planner, held, headings, height, around, now)
+
+
+def plan_placements(
+    planner: Planner,
+    held: GraspedObject,
+    placements: Sequence[Placement],
+    height: float,
+    around: Sequence[Obstacle],
+    now: Array,
+) -> PlacePlan:
+    """Let go of the held object at the first placement that works, its underside at a height [m].
+
+    Raises:
+        PlanError: UNREACHABLE.
+    """
     rng = planner.rng()
     failures: list[str] = []
-    height = surface + drop + (FINGER if held.from_below else 0.0)
     planner.arm.open_fingers(held.opening)
     try:
-        for spot in spots[:10]:
-            for turn in TURNS:
-                plan = _try_place(planner, held, spot, height, turn, around, now, rng)
-                if isinstance(plan, PlacePlan):
-                    return plan
-                failures.append(plan)
+        for spot, heading in placements:
+            plan = _try_place(planner, held, spot, height, heading, around, now, rng)
+            if isinstance(plan, PlacePlan):
+                return plan
+            failures.append(plan)
     finally:
         planner.arm.open_fingers()
     reasons = counted(failures) or "no free spot within reach"
@@ -71,14 +90,14 @@ def _try_place(
     held: GraspedObject,
     spot: tuple[float, float],
     height: float,
-    turn: float,
+    heading: float,
     around: Sequence[Obstacle],
     now: Array,
     rng: np.random.Generator,
 ) -> "PlacePlan | str":
     arm = planner.arm
     arm.set_obstacles(around)
-    way = _set_down(planner, held, spot, height, turn, now)
+    way = _set_down(planner, held, spot, height, heading, now)
     if isinstance(way, str):
         return way
     high, down = way.high, way.down
@@ -114,14 +133,13 @@ class _Down:
 
 
 def _set_down(
-    planner: Planner, held: GraspedObject, spot: tuple[float, float], height: float, turn: float, now: Array
+    planner: Planner, held: GraspedObject, spot: tuple[float, float], height: float, heading: float, now: Array
 ) -> "_Down | str":
-    """The straight way down to a spot among the arm's obstacles."""
+    """The straight way down to a spot among the arm's obstacles, the hand pointing to `heading` [rad] there."""
     arm, approach = planner.arm, held.rotation[:, 2]
     # Straight down has no azimuth of its own: the hand's x axis points away from the robot there.
     level = approach if np.hypot(approach[0], approach[1]) > 0.2 else held.rotation[:, 0]
-    was = np.arctan2(level[1], level[0])
-    delta = np.arctan2(spot[1], spot[0] - arm.forward) - was + turn
+    delta = heading - np.arctan2(level[1], level[0])
     c, s = np.cos(delta), np.sin(delta)
     spin = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1.0]])
     target = Pose(np.array([*spot, height]) + spin @ held.offset, spin @ held.rotation)
