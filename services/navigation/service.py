@@ -22,6 +22,9 @@ from services.navigation.planning.planner import PathPlanner
 from services.navigation.reports import Reports
 from services.navigation.search.search import Search
 
+STALE = 0.1
+"""Age [s] of the odometry from which on nobody knows whether the base moves: ten samples at 100 Hz."""
+
 
 class NavigationService:
     """Drives the base to items, places and poses; `arrived` only after the base says that it is there."""
@@ -200,6 +203,8 @@ class NavigationService:
     def _advance(self, navigator: Navigator, reached: list[m.GoalReached], now: float) -> None:
         """Raises `Ended` when the goal has."""
         state = self._state
+        if state.age(now) > STALE:
+            self._contacts.interrupt()
         try:
             aside = self._neighbours.steer(navigator, self._known_pose, state.points, now)
             target = (

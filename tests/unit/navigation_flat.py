@@ -42,7 +42,7 @@ def ends(ranges: np.ndarray) -> np.ndarray:
 
 class Flat(Node):
     """The navigation service in the apartment; `boxes` is what its map does not have, of `glass` what nothing sees too,
-    `wheels` its odometry."""
+    `wheels` its odometry, `mute`: neither that nor scans are reported."""
 
     def __init__(
         self,
@@ -60,6 +60,7 @@ class Flat(Node):
         self._plan = rectangles(household, 0.2)
         self.true: Pose2 = (0.0, 0.0, 0.0)
         self.wheels: Pose2 = (0.0, 0.0, 0.0)
+        self.mute = False
         self._target: m.BaseTarget | None = None
         self._reached = ""
         self.closest = math.inf
@@ -68,6 +69,8 @@ class Flat(Node):
         """50 ms: the base moves, the sensors report."""
         self._drive(0.05)
         x, y, theta = self.wheels
+        if self.mute:
+            return
         self.bus.send(topics.ODOMETRY, m.Odometry(t=self.now, x=x, y=y, theta=theta))
         if self.tick % 10 == 0:
             ranges = cast(self.true, self._plan + self.boxes)

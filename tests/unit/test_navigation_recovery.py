@@ -15,6 +15,7 @@ from common.viewpoints import viewpoints_of
 from services.navigation.config import NavigationConfig
 from services.navigation.localisation.distance_field import rectangles
 from services.navigation.motion.collision_avoidance import avoid
+from services.navigation.motion.contacts import STOPPED
 from services.navigation.motion.obstacle_tracker import Obstacle, ObstacleTracker, clusters
 from services.navigation.motion.progress import (
     HELD_UP,
@@ -57,18 +58,33 @@ def test_a_pane_of_glass_is_met_and_gone_round() -> None:
     flat = Flat()
     flat.glass.append(Rectangle(*KITCHEN_DOOR))
     flat.ask("goto kitchen")
-    pushed = 0.0
+    pushed = longest = 0.0
     while flat.status().status == "navigating" and flat.now < 180.0:
         before = flat.true
         flat.step()
-        pushed += 0.05 * (flat.true == before)
+        told = flat.feedback().code
+        pushed = pushed + 0.05 if flat.true == before and told == "" else 0.0
+        longest = max(longest, pushed)
     assert flat.status().status == "arrived" and "HELD_UP" in doings(flat)
+    assert longest < STOPPED + 0.15, "a base that stops in full motion is not pushed on"
     told = [msgspec.json.decode(f, type=m.NavigationFeedback).met for f in flat.feedbacks]
     places = {(round(x, 3), round(y, 3)) for x, y in filter(None, told)}
     assert 1 <= len(places) <= 2
     assert all(Rectangle(*KITCHEN_DOOR).distance(x, y) < 0.1 for x, y in places)
     flat.ask("return_to_start", "a.2")
     assert flat.finish(120.0).status == "arrived" and not flat.feedback().met, "remembered"
+
+
+def test_silent_sensors_are_no_pane_of_glass() -> None:
+    flat = Flat()
+    flat.ask("goto kitchen")
+    for _ in range(40):
+        flat.step()
+    flat.mute = True
+    for _ in range(8):
+        flat.step()
+    flat.mute = False
+    assert flat.finish(60.0).status == "arrived" and "HELD_UP" not in doings(flat)
 
 
 @pytest.mark.parametrize(("height", "held", "room"), [(0.06, False, 0.3), (0.80, False, 0.0), (0.06, True, 0.0)])

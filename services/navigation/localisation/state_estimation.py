@@ -99,6 +99,10 @@ class StateEstimator:
         covariance = _diagonal(ANYWHERE) if unsure else self.localiser.covariance.ravel().tolist()
         io.publish(topics.POSE, m.PoseEstimate(t=measured, x=x, y=y, theta=theta, covariance=covariance))
 
+    def age(self, now: float) -> float:
+        """How old what `pose` was measured by is [s]."""
+        return now - self._measured
+
     def silence(self, now: float) -> float:
         """Time since the wheels last reported [s]."""
         return min(self._io.age(topics.ODOMETRY, now), self._io.age(topics.JOINT_STATES, now))

@@ -1,6 +1,8 @@
 """What holds the base up and no sensor sees, such as a pane of glass: it is sent on, and stays where it is."""
 
 import math
+from collections import deque
+from itertools import pairwise
 
 from common.geometry import Pose2, wrap
 from services.navigation.planning.costmap import Costmap
@@ -10,6 +12,13 @@ PUSHING = 1.2
 """Time [s] for which the base is sent on and does not move; chosen: several times what it takes to set out."""
 MOVED, TURNED = 0.03, 0.1
 """Way [m] and turn [rad] from which on it moves; chosen: more than the play of the pose estimate."""
+STOPPED = 0.3
+"""Time [s] in which a base under way has not moved although it is sent on; chosen: from 0.2 m/s a base that brakes and
+sets out again moves MOVED in less."""
+FAST = 0.2
+"""Speed [m/s] of a base that is under way; chosen: half of the usual one."""
+ONWARD = 0.5
+"""Least cosine of the angle between the way that the base came and the way it is sent [-]: who turns about stops."""
 AWAY = 0.1
 """Distance [m] of a target from which on it has to move: a driver stops within some centimetres of one."""
 SILENT = 0.2
@@ -29,16 +38,22 @@ class Contacts:
         self._met: list[tuple[Point, float]] = []
         self._from: Pose2 = (math.inf, 0.0, 0.0)
         self._since = self._at = -math.inf
+        self._trail: deque[tuple[float, Pose2]] = deque()
 
     def check(self, pose: Pose2, target: Pose2, now: float) -> Point | None:
         """Once a step while the base is sent on to `target` [map], with nothing in the way: what it is held up by."""
         moved = math.dist(pose[:2], self._from[:2]) > MOVED or abs(wrap(pose[2] - self._from[2])) > TURNED
         way = math.dist(pose[:2], target[:2])
-        if moved or way < AWAY or now - self._at > SILENT:
+        if way < AWAY or now - self._at > SILENT:
+            self._trail.clear()
+            moved = True
+        if moved:
             self._from, self._since = pose, now
         self._at = now
-        if now - self._since < PUSHING:
+        self._trail.append((now, pose))
+        if now - self._since < PUSHING and not self._stopped_short(target, now):
             return None
+        self._trail.clear()
         self._since = now
         share = self._ahead / way
         point = pose[0] + (target[0] - pose[0]) * share, pose[1] + (target[1] - pose[1]) * share
@@ -46,8 +61,24 @@ class Contacts:
         self._tell()
         return point
 
+    def _stopped_short(self, target: Pose2, now: float) -> bool:
+        """The base was under way in the direction in which it is sent, and all at once stays where it is."""
+        while self._trail and self._trail[0][0] < now - 2 * STOPPED:
+            self._trail.popleft()
+        before = [pose for at, pose in self._trail if at <= now - STOPPED]
+        if len(before) < 2 or self._trail[0][0] > now - 1.8 * STOPPED:
+            return False
+        (ax, ay, _), (bx, by, turned), (x, y, theta) = before[0], before[-1], self._trail[-1][1]
+        came, leap = math.hypot(bx - ax, by - ay), max(math.dist(p[:2], q[:2]) for p, q in pairwise(before))
+        # A pose that was corrected all at once says nothing of how the base moves.
+        if came < FAST * STOPPED or leap > came / 2 or math.hypot(x - bx, y - by) > MOVED / 2:
+            return False
+        onward = (bx - ax) * (target[0] - x) + (by - ay) * (target[1] - y)
+        far = came * math.hypot(target[0] - x, target[1] - y)
+        return abs(wrap(theta - turned)) < TURNED and onward > ONWARD * far
+
     def interrupt(self) -> None:
-        """The base is sent somewhere else."""
+        """The base is sent somewhere else, or nobody knows whether it moves."""
         self._at = -math.inf
 
     def forget(self, now: float = math.inf) -> None:
