@@ -8,9 +8,10 @@ from common.config import Config
 class BrainConfig(Config, frozen=True):
     """`settle` follows every arrival and every finished manipulation; a limit of n retries means n + 1 tries.
     `navigation_retries` counts what navigation has tried itself on a blocked way; where people are all that blocks it
-    (`PERSON_IN_WAY`), it is tried again for `people_patience`: people at home walk on within minutes. `drive_by`:
-    places and the way home as words on `brain/navigation_goal`, or as poses on `nav_goal` for a navigator that takes
-    nothing else.
+    (`PERSON_IN_WAY`), it is tried again for `people_patience`: people at home walk on within minutes. A search that is
+    held up on the way to a view for `view_patience`, several times what it takes to pass by, looks elsewhere first.
+    `drive_by`: places and the way home as words on `brain/navigation_goal`, or as poses on `nav_goal` for a navigator
+    that takes nothing else.
 
     A mission is suspended while `joint_states` stay away; after `heartbeat_patience` seconds (ten times what a killed
     simulation needs to come back on a busy machine) it ends in ERROR.
@@ -39,6 +40,7 @@ class BrainConfig(Config, frozen=True):
     say_timeout: float = 15.0
     navigation_retries: int = 2
     people_patience: float = 300.0
+    view_patience: float = 30.0
     drive_by: Literal["words", "poses"] = "words"
     grab_retries: int = 2
     release_retries: int = 2

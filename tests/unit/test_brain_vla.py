@@ -299,6 +299,32 @@ def test_search_turns_then_looks_from_elsewhere() -> None:
     bench.manip(1)
 
 
+def test_a_search_that_is_held_up_on_its_way_looks_elsewhere_first() -> None:
+    bench = planned()
+    see(bench, 1, found=False)
+    for count in (1, 2):
+        bench.drove(bench.next_goal(POSE, count))
+        see(bench, count + 1, found=False)
+    first, patience = bench.next_goal(POSE, 3), BrainConfig().view_patience
+    began = bench.now
+
+    def hold_up(code: str, seconds: float) -> None:
+        until = bench.now + seconds
+        while bench.now < until and len(bench.sent(POSE)) == 3:
+            told = m.NavigationFeedback(goal_id=first.id, status="navigating", code=code)
+            bench.send(topics.NAVIGATION_FEEDBACK, told)
+            bench.step()
+
+    hold_up("PERSON_IN_WAY", patience / 2)
+    hold_up("DETOUR", patience)
+    assert len(bench.sent(POSE)) == 3, "it is getting on"
+    hold_up("GIVING_WAY", patience)
+    second = bench.next_goal(POSE, 4)
+    assert bench.now - began > 2 * patience
+    assert (second.x, second.y, second.theta) != (first.x, first.y, first.theta)
+    assert bench.texts(NAV) == ["stop"]
+
+
 def test_an_absent_object_is_reported_after_three_attempts() -> None:
     bench = planned()
     see(bench, 1, found=False)

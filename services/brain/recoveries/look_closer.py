@@ -20,7 +20,8 @@ from services.brain.recoveries.clarify import ask_which, several_match
 from services.brain.recoveries.identify import ask_about_the_near, near_possible
 from services.brain.recoveries.recovery import Recovery, Task, with_recoveries
 from services.brain.steps.find import LocateObject
-from services.brain.steps.leaf import SendGoal, Settle
+from services.brain.steps.leaf import Settle
+from services.brain.steps.motion import GoAndLook
 from services.brain.tree.composites import Retry, Sequence
 from services.brain.world.reading_poses import reading_pose
 from services.brain.world.standing_poses import standing_pose
@@ -36,15 +37,14 @@ AFTER_A_CLOSER_LOOK = (
 )
 
 
-class MoveCloser(SendGoal):
+class MoveCloser(GoAndLook):
     """Drives before one of the objects that may be meant, of which `left` tells, one after the other.
 
     One that was looked at is seen from another side.
     """
 
     def __init__(self, node_id: str, ctx: Context, left: Callable[[Context], list[m.WorldObject]]) -> None:
-        limit = ctx.config.navigation_timeout
-        super().__init__(node_id, ctx, ctx.peers.navigation, state="GROUNDING", timeout=limit)
+        super().__init__(node_id, ctx)
         self._left = left
         self._target: m.WorldObject | None = None
         self._pose: Pose2 | None = None

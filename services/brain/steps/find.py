@@ -19,7 +19,7 @@ from services.brain.mission.context import Context
 from services.brain.mission.mission import Failure
 from services.brain.mission.search import SIDES
 from services.brain.steps.leaf import Leaf, SendGoal
-from services.brain.steps.motion import Navigate
+from services.brain.steps.motion import GoAndLook, Navigate
 from services.brain.world import viewpoint_search
 from services.brain.world.placement import TIPPED, kind_meant
 from services.brain.world.reading_poses import FARTHEST, shows_another_side
@@ -82,14 +82,11 @@ class LocateObject(SendGoal):
         return [n for n in labels if n not in places or len(search.directions(places[n])) < SIDES]
 
 
-class MoveToViewpoint(SendGoal):
+class MoveToViewpoint(GoAndLook):
     """Brings the camera to the view that shows most that is new: by turning on the spot, or `elsewhere`."""
 
     def __init__(self, node_id: str, ctx: Context, elsewhere: bool, name: str = "", item: str = "") -> None:
-        config = ctx.config
-        super().__init__(
-            node_id, ctx, ctx.peers.navigation, state="GROUNDING", timeout=config.navigation_timeout, name=name
-        )
+        super().__init__(node_id, ctx, name)
         self._elsewhere, self._item = elsewhere, item
         self._target: Pose2 | None = None
 
