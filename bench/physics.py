@@ -25,7 +25,6 @@ BASE_TURN, ARM_TURN = 2, 3
 """Of the ten set-points: the base's yaw and the arm's first joint."""
 SWING = 0.5
 """Amplitude [rad]."""
-"""Objects in the flat."""
 
 
 def speed(advance: Callable[[], None], seconds_a_call: float) -> float:

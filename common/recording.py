@@ -6,7 +6,7 @@ publication plus one, 0 for a message that carries none. https://mcap.dev/spec
 
 import struct
 import zlib
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import IO, Any
 
@@ -210,34 +210,6 @@ class Recording:
     def of(self, key: str) -> list[Row]:
         """The messages of one key."""
         return [row for row in self.rows if row.key == key]
-
-
-def copy(source: Recording, target: Path, rows: Iterable[Row]) -> None:
-    """Write rows of a recording, with its facts and files, into a file of their own.
-
-    Raises:
-        RecordingError: the file cannot be written.
-    """
-    writer = Recorder(target)
-    try:
-        for name, facts in source.facts.items():
-            writer.note(name, facts)
-        for name, data in source.files.items():
-            writer.attach(name, data, 0.0)
-        for row in rows:
-            if row.key.endswith("/alive"):
-                writer.presence(row.key.split("/")[1], b"true" in row.payload, row.t, row.wall)
-            else:
-                writer.write(row.key, row.payload, row.t, row.wall, row.tick)
-    finally:
-        writer.close()
-
-
-def repair(source: Path, target: Path) -> int:
-    """Copy what a torn file still holds into a whole one; the number of messages."""
-    torn = Recording(source)
-    copy(torn, target, torn.rows)
-    return len(torn.rows)
 
 
 def _records(file: IO[bytes]) -> Iterator[Any]:

@@ -6,9 +6,10 @@ from typing import Any
 
 from cli.errors import CliError, near
 from cli.processes.programs import become
+from cli.recordings.copies import copy
 from common import topics
 from common.mission_log.recorded import missions
-from common.recording import Recording, Row, copy
+from common.recording import Recording, Row
 
 BEFORE, AFTER = 2.0, 2.0
 """Seconds that are kept on either side of a mission."""

@@ -7,7 +7,8 @@ from cli.errors import CliError, checked, port_number
 from cli.processes.programs import become
 from cli.processes.services import NAMES
 from cli.recordings import export as mission_export
-from common.recording import RAW, Recording, RecordingError, repair
+from cli.recordings.copies import repair
+from common.recording import RAW, Recording, RecordingError
 
 
 def info(path: Path) -> int:

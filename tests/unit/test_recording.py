@@ -13,10 +13,11 @@ from mcap.reader import make_reader
 from bench.fuzz.payloads import Payloads
 from cli.errors import CliError
 from cli.recordings import replay
+from cli.recordings.copies import repair
 from common import messages as m
 from common import topics
 from common.bus import codec
-from common.recording import BULK, Recorder, Recording, RecordingError, repair
+from common.recording import BULK, Recorder, Recording, RecordingError
 from common.schemas import schema_of
 from common.time.lockstep import DT
 from common.topic import Topic

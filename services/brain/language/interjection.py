@@ -91,6 +91,16 @@ def interjection(said: str, doing: str = "") -> Interjection:
     `doing`: the command under way, which a sentence that forbids something of it calls off.
     """
     words = without_fillers(expand(normalise(said, ",")))
+    found = _control(said, words) or _replacement(said, words, doing) or _timed(said, words)
+    if found is not None:
+        return found
+    if is_question(said):
+        return Interjection("aside", said)
+    return Interjection("queue" if without_politeness(words) else "encouragement", said)
+
+
+def _control(said: str, words: str) -> Interjection | None:
+    """A sentence that stops or calls off what is under way."""
     now: tuple[Action, ...] = ("stop", "cancel") if _LATER.match(words) else ("stop", "cancel", "come_back")
     if control := asks_for(said, *now):
         return Interjection(control, said)  # type: ignore[arg-type]
@@ -99,8 +109,11 @@ def interjection(said: str, doing: str = "") -> Interjection:
         return Interjection("stop", said)
     if _is_news(reason) and (control := asks_for(first, "stop", "cancel")):
         return Interjection(control, said)  # type: ignore[arg-type]
-    if _ONE_MOMENT.match(words):
-        return Interjection("stop", said)
+    return Interjection("stop", said) if _ONE_MOMENT.match(words) else None
+
+
+def _replacement(said: str, words: str, doing: str) -> Interjection | None:
+    """A sentence that puts something, or nothing, in the place of what is under way."""
     if unwanted := NOT_WANTED.match(words):
         return Interjection("replace", words[unwanted.end() :])
     if _NO_LONGER.match(words) or _CALLED_OFF.match(_CHANGED.sub("", words)):
@@ -116,6 +129,11 @@ def interjection(said: str, doing: str = "") -> Interjection:
         or _MADE.match(words)
     ):
         return Interjection("replace", _INSTEAD_END.sub("", said))
+    return None
+
+
+def _timed(said: str, words: str) -> Interjection | None:
+    """A command with words that say when: instead of what is under way, or after it."""
     for kind, begin, end in (("replace", _INSTEAD, _INSTEAD_END), ("queue", _LATER, _LATER_END)):
         rest = words
         while (shorter := begin.sub("", rest)) != rest:
@@ -125,9 +143,7 @@ def interjection(said: str, doing: str = "") -> Interjection:
             return Interjection("cancel", said)  # "never mind, I found it"
         if bare and bare != words:
             return Interjection(kind, bare)  # type: ignore[arg-type]
-    if is_question(said):
-        return Interjection("aside", said)
-    return Interjection("queue" if without_politeness(words) else "encouragement", said)
+    return None
 
 
 def _forbidden(words: str, doing: str) -> Interjection | None:

@@ -12,11 +12,10 @@ from services.brain.mission.context import Context
 from services.brain.mission.mission import Failure, gripper_holds
 from services.brain.pipelines.shared import drive_home, report_failure
 from services.brain.recoveries.regrasp import grab_failed
-from services.brain.steps.ask import AskQuestion
 from services.brain.steps.begin import Listen, Ready, Wait
 from services.brain.steps.find import reference_to
 from services.brain.steps.home import tell_home
-from services.brain.steps.identify import ChooseCandidate, HearIdentity, survey, whether
+from services.brain.steps.identify import ask_identity, survey
 from services.brain.steps.leaf import Call, Leaf, Settle
 from services.brain.steps.motion import Grab, Navigate, Release
 from services.brain.steps.verify import is_misplaced, nothing_fell, verify_placement
@@ -86,19 +85,10 @@ def acquire(ctx: Context) -> Behaviour:
         state="NAVIGATING",
     )
     grab = Grab("grab", ctx, lambda: ctx.mission.task.label, lambda: object_ref(ctx))
-    asked = Condition("identify", identify(ctx), lambda: survey(ctx, ctx.mission.task.item))
+    question = ask_identity(ctx, lambda: ctx.mission.task.item, LEAST)
+    asked = Condition("identify", question, lambda: survey(ctx, ctx.mission.task.item))
     once = Sequence("approach_and_grab", find, Settle("settle", ctx), asked, grab, Settle("settle", ctx))
     return Retry("acquire", ctx, once, ctx.config.grab_retries, again=lambda: grab_failed(ctx))
-
-
-def identify(ctx: Context) -> Behaviour:
-    """Ask whether what was found is what is meant; FAILURE unless the person says yes."""
-    return Sequence(
-        "ask_whether",
-        ChooseCandidate("choose_candidate", ctx, LEAST),
-        AskQuestion("whether", ctx, lambda: whether(ctx, ctx.mission.task.item)),
-        HearIdentity("hear_identity", ctx, lambda: ctx.mission.task.item),
-    )
 
 
 def bring_home(ctx: Context) -> Behaviour:

@@ -7,9 +7,8 @@ from py_trees.behaviour import Behaviour
 from common.naming.likeness import LEAST, LIKELY
 from services.brain.mission.context import Context
 from services.brain.recoveries.recovery import Task
-from services.brain.steps.ask import AskQuestion
 from services.brain.steps.find import LocateObject
-from services.brain.steps.identify import ANOTHER, MOST_ASKED, ChooseCandidate, HearIdentity, candidate, whether
+from services.brain.steps.identify import ANOTHER, MOST_ASKED, ask_identity, candidate
 from services.brain.steps.leaf import Settle
 from services.brain.tree.composites import Retry, Sequence
 
@@ -19,13 +18,8 @@ def ask_whether(ctx: Context, task: Task, least: float = LIKELY, near: bool = Fa
 
     `least` and `near` as of `candidate`.
     """
-    ask = Sequence(
-        "ask_whether",
-        ChooseCandidate("choose_candidate", ctx, least, near),
-        AskQuestion("whether", ctx, lambda: whether(ctx, task.item)),
-        HearIdentity("hear_identity", ctx, lambda: task.item),
-        LocateObject("look_for_the_one_meant", ctx, task.item),
-    )
+    look = LocateObject("look_for_the_one_meant", ctx, task.item)
+    ask = ask_identity(ctx, lambda: task.item, least, near, look)
     return Retry("identify", ctx, ask, MOST_ASKED - 1, again=lambda: was_another(ctx) and may_be(ctx, least, near))
 
 

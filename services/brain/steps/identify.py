@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable
 
+from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
 from common import messages as m
@@ -16,8 +17,9 @@ from services.brain.mission.channel import Result
 from services.brain.mission.context import Context
 from services.brain.mission.mission import Failure
 from services.brain.mission.search import SAME_PLACE
-from services.brain.steps.ask import HearAnswer
+from services.brain.steps.ask import AskQuestion, HearAnswer
 from services.brain.steps.leaf import Leaf
+from services.brain.tree.composites import Sequence
 
 ANOTHER = "ANOTHER_ONE"
 """Code of a person's word that the object is not the one that they asked for."""
@@ -179,3 +181,17 @@ def whether(ctx: Context, item: str) -> str:
     where = f" on the {about.on}" if about.on else " on the floor"
     asked = "one" if label == item else item
     return f"I see {indefinite(label)}{where}. Is that the {asked} you mean?"
+
+
+def ask_identity(ctx: Context, item: Callable[[], str], least: float, near: bool = False, *then: Behaviour) -> Sequence:
+    """Ask whether what was found is the `item` that is meant; FAILURE unless the person says yes, else `then`.
+
+    `least` and `near` as of `candidate`.
+    """
+    return Sequence(
+        "ask_whether",
+        ChooseCandidate("choose_candidate", ctx, least, near),
+        AskQuestion("whether", ctx, lambda: whether(ctx, item())),
+        HearIdentity("hear_identity", ctx, item),
+        *then,
+    )
