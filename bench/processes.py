@@ -6,21 +6,32 @@ what n processes share counts 1/n for each: that is what the whole takes.
 
 import argparse
 import json
+import os
+import tempfile
 import time
+from collections.abc import Callable
+from contextlib import ExitStack
+from functools import partial
 from typing import Any
 
 import psutil  # type: ignore[import-untyped]
 
-from bench.commands import Tidybot, commands
 from bench.mission import Robot, fetch
 from cli.processes.ports import free_port
+from cli.processes.programs import said_by
 
 ITEM = "red mug"
+PATIENCE = 600.0
+"""Time [s] for one command: a mission of `say --wait`, on a busy machine."""
+Tidybot = Callable[..., str]
 
 
 def main() -> None:
     argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter).parse_args()
-    with commands() as tidybot:
+    with tempfile.TemporaryDirectory() as run_dir, ExitStack() as stack:
+        own = {**os.environ, "TIDYBOT_RUN_DIR": run_dir}
+        tidybot = partial(said_by, "cli.main", environ=own, timeout=PATIENCE)
+        stack.callback(tidybot, "down")
         began = time.perf_counter()
         tidybot("up", "--detach", "--speed", "max", "--port", str(free_port()))
         ready = time.perf_counter() - began

@@ -24,9 +24,11 @@ from services.perception.views import colour
 from services.sim.layout import place_objects
 from services.sim.world import world_files, world_mjcf
 
-SUITES: dict[str, Callable[[int], Case]] = {s.__name__: s for s in (unknown.sizes, unknown.clutter, unknown.lying)}
-VIEWED = {**SUITES, "labels": unknown.labels, "things": unknown.scanned}
-"""Those that views are taken of: things with faces as well, which are asked for by their print."""
+VIEWED: dict[str, Callable[[int], Case]] = {
+    "sizes": unknown.sizes, "clutter": unknown.clutter, "lying": unknown.lying, "labels": unknown.labels,
+    "things": unknown.scanned,
+}  # fmt: skip
+"""The suites whose worlds are looked at."""
 NEAR, NOTHING = 0.05, 0.09
 """Distance [m] on the floor plan within which an object was found, and beyond which from all a detection is of none."""
 VIEWS_PER_WORLD = 4

@@ -61,9 +61,8 @@ def take(
     pose: Pose2,
     args: argparse.Namespace,
     rng: np.random.Generator,
-    camera: StereoCamera | None = None,
 ) -> View:
-    """The view of the head camera with the base at `pose`, by `camera` or else by any camera of the kind."""
+    """The view of the head camera with the base at `pose`, by any camera of the kind."""
     model, data = renderer.model, renderer.data
     names = ("base_x", "base_y", "base_yaw", *(f"joint_{i}" for i in range(1, 8)))
     for name, value in zip(names, (*pose, *own().home), strict=True):
@@ -73,7 +72,7 @@ def take(
     focal = renderer.focal("head", args.height)
     if args.sensors == "bought":
         surfaces = renderer.surfaces("head", args.width, args.height)
-        camera = camera or StereoCamera(int(rng.integers(2**32)))
+        camera = StereoCamera(int(rng.integers(2**32)))
         taken = camera.expose(rgb, depth, focal, int(rng.integers(2**31)), surfaces)
         rgb, depth = taken.rgb, taken.depth / 1000.0
     position, rotation = renderer.optical_pose("head")

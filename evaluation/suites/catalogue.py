@@ -18,7 +18,6 @@ PACKED: dict[str, Measures] = {
     "book": Measures((0.110, 0.150), (0.018, 0.040), (0.160, 0.220), density=(500, 800)),
     "plate": Measures((0.160, 0.210), height=(0.018, 0.028), density=(350, 600)),
     "orange": Measures((0.062, 0.078), density=FRUIT),
-    "lemon": Measures((0.050, 0.060), height=(0.062, 0.080), density=FRUIT),
 }
 """Sizes of the kinds, as `evaluation.suites.drawn` has them, and of more."""
 FORMS: dict[Form, tuple[Range, Range, Range]] = {
@@ -26,7 +25,6 @@ FORMS: dict[Form, tuple[Range, Range, Range]] = {
     "car": ((0.09, 0.13), (0.045, 0.060), (0.045, 0.055)), "boat": ((0.11, 0.14), (0.045, 0.060), (0.06, 0.08)),
     "screwdriver": ((0.17, 0.23), (0.026, 0.034), (0.026, 0.034)),
     "hammer": ((0.22, 0.28), (0.08, 0.10), (0.026, 0.032)),
-    "spoon": ((0.20, 0.26), (0.042, 0.055), (0.014, 0.018)), "brush": ((0.17, 0.22), (0.045, 0.055), (0.04, 0.05)),
 }  # fmt: skip
 """Length, width and height [m] of bodies that no kind has by itself."""
 BY_KIND = frozenset({"book", "mug"})
