@@ -1,7 +1,6 @@
 """`tidybot down`, `ps`, `restart`, `logs`: the processes of a run."""
 
 import argparse
-import os
 import sys
 from pathlib import Path
 
@@ -47,19 +46,20 @@ def rows(supervision: Supervision) -> list[dict[str, object]]:
         record = record if record is not None and record.pid == p.pid else None
         present = p.name in alive and p.pid > 0
         state = "running" if present and p.state == "starting" else p.state
-        rss = round(record.rss_mb if record else rss_of(p.pid), 1)
+        rss, pss = memory(p.pid)
         row = {"name": p.name, "pid": p.pid, "state": state, "restarts": p.restarts, "alive": present, "rss_mb": rss}
-        found.append({**row, "epoch": record.epoch if record else "", "detail": p.detail})
+        found.append({**row, "pss_mb": pss, "epoch": record.epoch if record else "", "detail": p.detail})
     return found
 
 
-def rss_of(pid: int) -> float:
-    """Resident memory of a process [MB], 0 when it is gone."""
+def memory(pid: int) -> tuple[float, float]:
+    """Resident memory of a process [MB], and in proportion, where what n processes share counts 1/n; 0 of none."""
     try:
-        pages = int(Path(f"/proc/{pid}/statm").read_text(encoding="ascii").split()[1])
-    except (OSError, IndexError):
-        return 0.0
-    return pages * os.sysconf("SC_PAGE_SIZE") / 2**20
+        text = Path(f"/proc/{pid}/smaps_rollup").read_text(encoding="ascii")
+    except OSError:
+        return 0.0, 0.0
+    sizes = {line.partition(":")[0]: line.split()[1] for line in text.splitlines()[1:]}
+    return round(float(sizes.get("Rss", 0)) / 1024, 1), round(float(sizes.get("Pss", 0)) / 1024, 1)
 
 
 def ps(args: argparse.Namespace) -> int:
@@ -67,12 +67,12 @@ def ps(args: argparse.Namespace) -> int:
     if args.json:
         print(msgspec.json.encode(found).decode())
         return 0
-    print(f"{'name':13} {'pid':>7}  {'state':9} {'restarts':>8}  {'alive':5} {'rss MB':>7}  epoch")
+    print(f"{'name':13} {'pid':>7}  {'state':9} {'restarts':>8}  {'alive':5} {'MB':>7}  epoch")
     for r in found:
         alive = "yes" if r["alive"] else "no"
         tail = r["detail"] or r["epoch"]
-        print(f"{r['name']:13} {r['pid']:>7}  {r['state']:9} {r['restarts']:>8}  {alive:5} {r['rss_mb']:>7}  {tail}")
-    print(f"{'':42} total {sum(float(str(r['rss_mb'])) for r in found):>7.1f}")
+        print(f"{r['name']:13} {r['pid']:>7}  {r['state']:9} {r['restarts']:>8}  {alive:5} {r['pss_mb']:>7}  {tail}")
+    print(f"{'':42} total {sum(float(str(r['pss_mb'])) for r in found):>7.1f}")
     return 0
 
 

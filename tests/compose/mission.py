@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from cli.link import Link, Watch
+from cli.link import Link
 from cli.missions.conversation import Conversation
 from cli.missions.verdict import Verdict, Witness
 from common import messages as m
@@ -44,14 +44,3 @@ def carry_out(
     if outcome.outcome != "delivered":
         return Verdict(False, f"{outcome.outcome}: {outcome.reason}; {verdict.why}")
     return verdict
-
-
-def wait_for_state(link: Link, states: tuple[str, ...], patience: float) -> str:
-    """The first of the states that the brain shows."""
-    watch = Watch(link, topics.BRAIN_STATE)
-    end = monotonic() + patience
-    while monotonic() < end:
-        state = watch.next(0.5) or watch.last
-        if state is not None and state.state in states:
-            return state.state
-    raise AssertionError(f"none of {states} within {patience:.0f} s; last {watch.last}")
