@@ -54,7 +54,17 @@ class Bench(Node):
         self.until(lambda: self.count(topic) >= count, limit)
         return self.sent(topic)[count - 1]
 
+    @property
+    def outcome(self) -> str:
+        """How the last mission ended, "" while none has."""
+        return self.state.last.outcome if self.state.last is not None else ""
+
     # --- peers
+    def command(self, text: str, **more: Any) -> None:
+        """A voice command, and a step with it."""
+        self.send(topics.VOICE_COMMAND, m.VoiceCommand(text=text, **more))
+        self.step()
+
     def hear(self, text: str, count: int = 1) -> None:
         """Result the listen goal number `count` with a text."""
         goal = self.next_goal(topics.SPEECH_GOAL, count)

@@ -10,8 +10,7 @@ SAYS = m.PlanStep(action="say", text="I am busy.")
 
 def hear(bench: Bench, text: str) -> None:
     """Somebody says something, whatever the robot is doing."""
-    bench.send(topics.VOICE_COMMAND, m.VoiceCommand(text=text, confidence=1.0))
-    bench.step()
+    bench.command(text, confidence=1.0)
 
 
 def finish(bench: Bench) -> None:
@@ -78,8 +77,7 @@ def test_a_command_instead_takes_the_place_of_the_mission() -> None:
     hear(bench, "forget that, bring me the apple")
     assert "instead of that: bring me the apple" in bench.texts(SPEECH)[-1]
     assert bench.next_goal(PLAN, 2).command == "bring me the apple"
-    last = bench.state.last
-    assert last is not None and last.outcome == "cancelled"
+    assert bench.outcome == "cancelled"
 
 
 def test_yes_and_thanks_change_nothing() -> None:
@@ -128,7 +126,7 @@ def test_nobody_answers_a_guess() -> None:
     bench = guessed()
     bench.until(lambda: bench.state.last is not None)
     assert len(bench.sent(PLAN)) == 1
-    assert bench.state.last is not None and bench.state.last.outcome == "failed"
+    assert bench.outcome == "failed"
 
 
 def test_it_remembers_where_a_thing_stood() -> None:

@@ -196,7 +196,7 @@ def test_without_a_planner_names_and_rules_are_kept_as_well() -> None:
     bench = Bench(BrainConfig(pipeline="fetch"))
     bench.hear("mugs go on the counter")
     bench.until(lambda: bench.state.last is not None)
-    assert bench.state.last is not None and bench.state.last.outcome == "delivered"
+    assert bench.outcome == "delivered"
     assert [r.things for r in bench.last(topics.HOUSEHOLD_EDITS).rules] == ["mugs"]
     assert any("mugs go on the counter from now on" in text for text in bench.texts(topics.SPEECH_GOAL))
     assert not bench.count(topics.NAVIGATION_GOAL)

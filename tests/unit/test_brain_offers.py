@@ -22,8 +22,7 @@ def offer(bench: Bench, name: str, text: str = MUG) -> None:
 
 
 def withdraw(bench: Bench, name: str) -> None:
-    bench.send(topics.VOICE_COMMAND, m.VoiceCommand(text="", withdraws=name))
-    bench.step()
+    bench.command("", withdraws=name)
 
 
 def test_a_free_robot_takes_it_and_says_which_it_was() -> None:

@@ -11,8 +11,7 @@ SPEECH, PLAN = topics.SPEECH_GOAL, topics.PLAN_REQUEST
 def asked(text: str = "Shall I bring you the red mug?", pipeline: str = "vla") -> Bench:
     bench = Bench(BrainConfig(pipeline=pipeline))
     bench.step()
-    bench.send(topics.VOICE_COMMAND, m.VoiceCommand(text=text, confirmed=True, question=True))
-    bench.step()
+    bench.command(text, confirmed=True, question=True)
     return bench
 
 
@@ -41,8 +40,7 @@ def test_the_answer_is_the_outcome_and_nothing_is_planned() -> None:
 
 def test_an_answer_in_writing_counts_while_the_question_is_said() -> None:
     bench = asked()
-    bench.send(topics.VOICE_COMMAND, m.VoiceCommand(text="yes", confirmed=True))
-    bench.step()
+    bench.command("yes", confirmed=True)
     assert outcome(bench).reason == "yes"
 
 
@@ -64,8 +62,7 @@ def test_who_calls_the_question_off_cancels() -> None:
 def test_a_question_with_the_words_of_a_stop_stops_nothing() -> None:
     bench = Bench(BrainConfig(pipeline="vla", enable_confirmation=False))
     bench.step()
-    bench.send(topics.VOICE_COMMAND, m.VoiceCommand(text="bring me the red mug"))
-    bench.step()
+    bench.command("bring me the red mug")
     for text in ("stop", "cancel", "yes"):
         bench.send(topics.VOICE_COMMAND, m.VoiceCommand(text=text, question=True))
     bench.step()

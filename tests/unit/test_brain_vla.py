@@ -39,8 +39,7 @@ def bench_of(**changes: Any) -> Bench:
 def asked(text: str = "bring me the red mug", **changes: Any) -> Bench:
     """A command is in, nothing confirmed."""
     bench = bench_of(**changes)
-    bench.send(topics.VOICE_COMMAND, m.VoiceCommand(text=text, confidence=0.9))
-    bench.step()
+    bench.command(text, confidence=0.9)
     return bench
 
 
@@ -111,8 +110,7 @@ def test_the_contracts_sequence() -> None:
     assert [(g.x, g.y) for g in bench.sent(POSE)] == [(stance.x, stance.y)]
     assert bench.texts(NAV) == ["return_to_start"]
     assert bench.texts(MANIP) == ["grab", "release"]
-    last = bench.state.last
-    assert last is not None and last.outcome == "delivered"
+    assert bench.outcome == "delivered"
     steps = dict.fromkeys((s.state, s.plan_step) for s in bench.sent(topics.BRAIN_STATE) if s.mission_id)
     assert list(steps)[1:] == [
         ("PLANNING", 0), ("GROUNDING", 1), ("NAVIGATING", 2), ("GRABBING", 2), ("RETURNING", 3), ("RELEASING", 4),
@@ -176,8 +174,7 @@ def test_confirmation_by_need() -> None:
     assert asked(enable_confirmation=False, confirm_below=0.8).state.state == "PLANNING"
     assert asked(enable_confirmation=False, confirm_below=0.95).state.state == "CONFIRMING"
     bench = bench_of()
-    bench.send(topics.VOICE_COMMAND, m.VoiceCommand(text="bring me the red mug", confirmed=True))
-    bench.step()
+    bench.command("bring me the red mug", confirmed=True)
     assert bench.state.state == "PLANNING"
 
 
@@ -185,16 +182,14 @@ def test_cancel_as_an_answer_is_no_error() -> None:
     bench = asked()
     reply(bench, "never mind")
     bench.until(lambda: bench.states()[-1] == "WAITING")
-    last = bench.state.last
-    assert last is not None and last.outcome == "cancelled"
+    assert bench.outcome == "cancelled"
     assert "ERROR" not in bench.states()
 
 
 def test_an_answer_during_the_question_counts_and_cuts_it_short() -> None:
     bench = asked()
     assert bench.texts(SPEECH) == ["say Did you say bring me the red mug?"]
-    bench.send(topics.VOICE_COMMAND, m.VoiceCommand(text="no, the blue bottle", confidence=1.0))
-    bench.step()
+    bench.command("no, the blue bottle", confidence=1.0)
     bench.until(lambda: len(bench.texts(SPEECH)) == 3)
     assert bench.texts(SPEECH)[1:] == ["cancel", "say Did you say bring me the blue bottle?"]
     bench.send(topics.VOICE_COMMAND, m.VoiceCommand(text="yes", confidence=1.0))
@@ -205,8 +200,7 @@ def test_an_answer_during_the_question_counts_and_cuts_it_short() -> None:
 def test_a_typed_yes_counts() -> None:
     bench = asked()
     bench.until(lambda: "listen" in bench.texts(SPEECH))
-    bench.send(topics.VOICE_COMMAND, m.VoiceCommand(text="yes"))
-    bench.step()
+    bench.command("yes")
     bench.next_goal(PLAN, 1)
 
 
@@ -232,8 +226,7 @@ def test_what_was_lost_on_the_way_is_fetched_again() -> None:
     bench.until(lambda: bench.states()[-1] == "WAITING")
     assert bench.texts(NAV) == ["return_to_start"] * 2 and len(bench.sent(POSE)) == 2
     assert bench.texts(MANIP)[-2:] == ["grab", "release"]
-    last = bench.state.last
-    assert last is not None and last.outcome == "delivered"
+    assert bench.outcome == "delivered"
 
 
 def test_a_loss_that_cannot_be_mended_is_no_longer_held() -> None:
@@ -525,7 +518,7 @@ def test_a_plan_that_only_looks_is_followed_by_another_with_what_was_seen() -> N
     answer_plan(bench, 2, [m.PlanStep(action="say", text="The table is tidy already.")])
     bench.until(lambda: "say The table is tidy already." in bench.texts(SPEECH))
     bench.until(lambda: bench.state.last is not None)
-    assert bench.state.last is not None and bench.state.last.outcome == "delivered"
+    assert bench.outcome == "delivered"
 
 
 def test_a_planner_that_only_ever_wants_to_look_is_not_followed_for_ever() -> None:
@@ -536,7 +529,7 @@ def test_a_planner_that_only_ever_wants_to_look_is_not_followed_for_ever() -> No
         bench.send(topics.ACTION_PLAN, m.ActionPlan(request_id=request.id, steps=look, again=True))
         bench.step()
     bench.until(lambda: bench.state.last is not None)
-    assert bench.state.last is not None and bench.state.last.outcome == "failed"
+    assert bench.outcome == "failed"
 
 
 def test_the_words_of_a_step_are_what_perception_is_asked_for() -> None:
@@ -559,8 +552,7 @@ def test_stop_cuts_any_step_short() -> None:
     bench.next_goal(POSE, 1)
     bench.send(topics.VOICE_COMMAND, m.VoiceCommand(text="stop"))
     bench.step(1.0)
-    last = bench.state.last
-    assert last is not None and last.outcome == "cancelled"
+    assert bench.outcome == "cancelled"
     assert bench.texts(NAV) == ["stop"]
     assert bench.state.state == "WAITING"
 
