@@ -32,6 +32,7 @@ from services.navigation.motion.retreat import passing_place
 from services.navigation.motion.route import Route
 from services.navigation.planning.costmap import Costmap
 from services.navigation.planning.planner import PathPlanner
+from services.navigation.planning.seen_cells import SETTLED
 from tests.unit.navigation_flat import ANGLES, SCENE, Flat, cast
 
 KITCHEN_DOOR = (2.5, -0.75, 0.4, 0.9, 0.0)
@@ -108,6 +109,7 @@ def test_with_every_way_shut_it_waits_backs_off_tries_twice_and_says_so() -> Non
     status = flat.finish(180.0)
     assert (status.status, status.code) == ("failed", "BLOCKED")
     assert "after 2 retries" in status.detail
+    assert flat.now > SETTLED, "until then it may be somebody who stands there"
     assert {"WAITING", "BACKING_OFF"} <= set(doings(flat))
     assert flat.feedback().recoveries >= 2 and flat.feedback().code == "BLOCKED"
     here = flat.true
@@ -163,6 +165,15 @@ def test_who_stands_beside_a_box_in_the_only_door_is_no_thing_that_blocks_it() -
         flat.step()
     assert flat.status().code == "PERSON_IN_WAY" and flat.now - began > PASSING
     assert "PERSON_IN_WAY" in doings(flat) and flat.closest > CHASSIS
+
+
+def test_who_stood_in_the_only_door_before_the_robot_came_is_waited_for() -> None:
+    flat = Flat([KITCHEN_DOOR, STUDY_DOOR])
+    flat.ask("goto kitchen")
+    while flat.now < 50.0 and flat.status().status == "navigating":
+        flat.step()
+    flat.boxes.clear()
+    assert flat.finish(60.0).status == "arrived"
 
 
 def test_what_a_person_leaves_is_forgotten_and_what_stood_there_before_is_not() -> None:

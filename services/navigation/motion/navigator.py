@@ -14,7 +14,7 @@ from services.navigation.motion.path_follower import Lookahead
 from services.navigation.motion.progress import CLOSE, PERSON, BlockedTimer, Progress, anybody_near, waiting_for
 from services.navigation.motion.recovery import Recovery
 from services.navigation.motion.retreat import PassingPlace, Retreat
-from services.navigation.motion.route import DETOUR_PAUSE, Route
+from services.navigation.motion.route import DETOUR_PAUSE, Blocker, Route
 from services.navigation.motion.targets import Targets
 from services.navigation.planning.costmap import Costmap
 from services.navigation.planning.planner import PathPlanner, Point
@@ -45,7 +45,7 @@ class Navigator:
         self._route = Route(config, costmap, planner, choices)
         self._progress = Progress(config, now)
         self._blocked = BlockedTimer()
-        self._by_people = False
+        self._blocker: Blocker = "things"
         self._recovery = Recovery(config, costmap, planner)
         self._contacts = contacts
         self._targets = Targets(name)
@@ -189,10 +189,10 @@ class Navigator:
             self.doing = ""
         if ahead.blocked:
             self._progress.excuse(now)
-            self._by_people = anybody_near((pose[0], pose[1]), obstacles)
+            self._blocker = "people" if anybody_near((pose[0], pose[1]), obstacles) else "things"
             self._wait_for(pose, obstacles, now)
-            if self._blocked.blocked(self._by_people, now) > self._config.blocked_wait:
-                self._recover(pose, now, "the way is blocked", by_people=self._by_people)
+            if self._blocked.blocked(self._blocker == "people", now) > self._config.blocked_wait:
+                self._recover(pose, now, "the way is blocked", by_people=self._blocker == "people")
             return
         self._blocked.clear()
         if met := self._contacts.check(pose, ahead.pose, now):
@@ -215,11 +215,14 @@ class Navigator:
             if self._plan(pose, now, obstacles):
                 self._blocked.clear()
                 return self._targets.next(pose)
-            self._by_people = self._route.possible_but_for_people(pose)
-        self._wait_for(pose, obstacles, now, self._by_people)
-        if self._blocked.blocked(self._by_people, now) > self._config.blocked_wait:
-            who = "somebody" if self._by_people else "something"
-            self._recover(pose, now, f"{who} stands in every way there", by_people=self._by_people)
+            self._blocker = self._route.blocked_by(pose, now)
+        by_people = self._blocker == "people"
+        self._wait_for(pose, obstacles, now, by_people)
+        if self._blocker == "newcomers":
+            self._progress.hold_up(now)
+        if self._blocked.blocked(self._blocker != "things", now) > self._config.blocked_wait:
+            who = "somebody" if by_people else "something"
+            self._recover(pose, now, f"{who} stands in every way there", by_people=by_people)
         return self._targets.next(pose)
 
     def _wait_for(self, pose: Pose2, people: Sequence[Obstacle], now: float, by_people: bool = False) -> None:

@@ -89,7 +89,7 @@ class BlockedTimer:
         self._left = PASSING
 
     def blocked(self, by_people: bool, now: float) -> float:
-        """Once a step while the path is blocked: for how long it has been [s], but for people."""
+        """Once a step while the path is blocked: for how long it has been [s], but for who may be people."""
         if self._since is None:
             self._since = self._at = now
         elif self._left > 0.0 and by_people:

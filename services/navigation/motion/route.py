@@ -29,6 +29,9 @@ TOUCHING = 0.02
 Found = Literal["", "kept", "new", "detour"]
 """What a plan has brought: no path, the old one, another, or another because something blocks the old one."""
 
+Blocker = Literal["people", "newcomers", "things"]
+"""What blocks every way: people, what has come lately and may be somebody who stands, or what stands there for long."""
+
 
 class Shut(NamedTuple):
     """A path in which somebody or something stands `at` [map], seen first at `since` [s], with `left` [m] to go."""
@@ -47,6 +50,8 @@ class Route:
         self._map, self._planner, self.choices = costmap, planner, choices
         self._lookahead, self._corridor, self._speed = config.lookahead, config.corridor, config.usual_speed
         self._radius = config.footprint_radius - TOUCHING
+        # Who makes the map has everything in it, and other places to go to.
+        self._patient = config.map != "mapping"
         self.follower: PathFollower | None = None
         self.detour_at = -math.inf
         self.planned_at = -math.inf
@@ -74,10 +79,14 @@ class Route:
         """True when an empty flat has a path to one of the choices."""
         return self._planner.possible((pose[0], pose[1]), [(goal[0], goal[1]) for _, goal in self.choices])
 
-    def possible_but_for_people(self, pose: Pose2) -> bool:
-        """True when there would be a path to one of the choices if nobody stood anywhere."""
-        goals = [(goal[0], goal[1]) for _, goal in self.choices]
-        return self._planner.possible((pose[0], pose[1]), goals, self._map.distance_but_for_people())
+    def blocked_by(self, pose: Pose2, now: float) -> Blocker:
+        """What keeps it from getting to any of the choices, where a plan found no path: without that there is one."""
+        here, goals = (pose[0], pose[1]), [(goal[0], goal[1]) for _, goal in self.choices]
+        if self._planner.possible(here, goals, self._map.distance_but_for_people()):
+            return "people"
+        if self._patient and self._planner.possible(here, goals, self._map.distance_to_things(now)):
+            return "newcomers"
+        return "things"
 
     def plan(self, pose: Pose2, now: float, people: Sequence[Obstacle] = ()) -> Found:
         """Choose the pose to stand at and the path there; without one at this moment nothing changes.

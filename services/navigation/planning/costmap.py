@@ -93,6 +93,10 @@ class Costmap(Cells):
         """The same as if nobody stood anywhere."""
         return self._distances(self._seen.things)
 
+    def distance_to_things(self, now: float) -> Array:
+        """The same without what may be somebody whom nobody has seen walk."""
+        return self._distances(self._seen.settled(now))
+
     def _distances(self, seen: Grid) -> Array:
         """To the nearest of the static map, the circles placed and the cells `seen` [m], by a disc around each cell."""
         grid = self.static_distance.copy()

@@ -9,6 +9,9 @@ from services.navigation.planning.changes import Cells, Mask
 _NEW = 3.0
 """Time [s] since the first sight of a cell within which who is around it is what is in it; chosen: longer than it takes
 to tell that somebody walks. What was there before them is no part of them."""
+SETTLED = 60.0
+"""Time [s] for which something has to have stood to be no person whom nobody has seen walk; chosen: few stand in a way
+for longer, and waiting costs a robot that has no other way little."""
 STANDS, STIRS = 300.0, 3.0
 """Time [s] for which a cell counts as a person when somebody who has walked was there, and when something moved there,
 which may have seemed so only; chosen: nobody stands for five minutes without moving a foot, and beside a thing a person
@@ -39,6 +42,10 @@ class SeenCells:
     def things(self) -> Mask:
         """Where something is that was no person when it was seen last (rows, columns)."""
         return self.known & (self._person_until < self._at)
+
+    def settled(self, now: float) -> Mask:
+        """Where something is that has stood there for so long that it is a thing (rows, columns)."""
+        return self.things & (self._first < now - SETTLED)
 
     @property
     def empty(self) -> bool:
