@@ -1,7 +1,7 @@
 """Is a seed's run the same every time, in one process and with every process real?
 
 `python -m bench.determinism --seed 3 --runs memory,memory,processes,processes`; exit 1 when a trajectory differs.
-Pictures are cast; with MUJOCO_GL=egl, or osmesa, in the environment they are drawn, and it is faster.
+With MUJOCO_GL=disable in the environment pictures are cast, which takes longer.
 Prints a hash of all physics and joint states of each run and, of two that differ, the first message that does. With
 `--faults` messages are dropped, doubled, late and out of order, by the same seed.
 """

@@ -21,7 +21,6 @@ import msgspec
 
 from bench.profile.meter import NOBODY, Meter
 from common.bus.base import IoBase
-from common.rendering.backend import choose
 from common.time.lockstep import InProcess
 
 REST = "rest"
@@ -200,8 +199,6 @@ def main() -> None:
     parser.add_argument("--set", action="append", default=[], metavar="section.key=value")
     parser.add_argument("--json", action="store_true", help="a line for each mission instead of the table")
     args = parser.parse_args()
-    # What is imported after this draws with the best library there is.
-    choose("auto")
     missions = []
     for seed in range(args.seed, args.seed + args.missions):
         mission = measure(args.suite, seed, tuple(args.set))

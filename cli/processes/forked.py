@@ -19,37 +19,31 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NoReturn
 
-from cli.processes.services import SERVICES
-
 LIBRARIES = (
     "msgspec", "numpy", "zenoh", "mujoco", "PIL.Image", "scipy.ndimage", "scipy.sparse.csgraph", "scipy.spatial",
 )  # fmt: skip
 """What several services import, and starts no thread as it is imported: a fork has only the thread that forked."""
 OURS = {"cli", "common", "services"}
 """Packages that a fork imports anew: a service that is restarted runs the code that is on disk by then."""
-APART = {s.module for s in SERVICES if s.renders}
-"""Modules that get an interpreter of their own: MuJoCo settles on its GL library when it is imported."""
 ARGUMENTS = 47, 48
 """Where in proc(5)'s `stat` are the addresses of the command line's begin and end, counted from 0."""
 
 
 def load() -> None:
     """Import the libraries, and keep the garbage collector from writing to the pages that they are on."""
-    before = os.environ.get("MUJOCO_GL")
-    os.environ["MUJOCO_GL"] = "disable"
+    given = dict(os.environ)
+    os.environ["MUJOCO_GL"] = "disable"  # who draws loads a GL library itself
     for library in LIBRARIES:
         importlib.import_module(library)
-    del os.environ["MUJOCO_GL"]
-    if before is not None:
-        os.environ["MUJOCO_GL"] = before
+    os.environ.clear()
+    os.environ.update(given)
     gc.collect()
     gc.freeze()
 
 
 def module_of(command: Sequence[str]) -> str:
-    """The module that a command line `python -m MODULE ...` runs, "" when it needs an interpreter of its own."""
-    apart = sys.platform != "linux" or list(command[1:2]) != ["-m"] or command[2] in APART
-    return "" if apart else command[2]
+    """The module that a command line `python -m MODULE ...` runs, "" for another one or on another system."""
+    return command[2] if sys.platform == "linux" and list(command[1:2]) == ["-m"] else ""
 
 
 def become(command: Sequence[str], environment: Mapping[str, str]) -> NoReturn:

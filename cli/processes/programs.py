@@ -112,6 +112,4 @@ def render_config(directory: Path, services: Sequence[Service], connect: str) ->
             "stdout_logfile_maxbytes=5MB",
             "stdout_logfile_backups=2",
         ]
-        if not service.renders:
-            lines.append("environment=MUJOCO_GL=disable")
     return "\n".join(lines) + "\n"

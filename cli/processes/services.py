@@ -5,21 +5,20 @@ import msgspec
 
 class Service(msgspec.Struct, frozen=True):
     """A process `python -m <module>`. `paced`: follows the simulation in lockstep. `token`: shows itself on the bus.
-    `renders`: with OpenGL; the others do not load it. `needs`: off by default, and of the extra of its name, whose
+    `needs`: off by default, and of the extra of its name, whose
     package that is."""
 
     name: str
     module: str
     paced: bool = True
     token: bool = True
-    renders: bool = False
     needs: str = ""
 
 
 SERVICES = (
     Service("router", "services.router", paced=False, token=False),
     Service("sim", "services.sim", paced=False),
-    Service("camera", "services.camera", renders=True),
+    Service("camera", "services.camera"),
     Service("navigation", "services.navigation"),
     Service("mapping", "services.mapping", needs="gtsam"),
     Service("manipulation", "services.manipulation"),

@@ -1,11 +1,15 @@
 """The GL library that MuJoCo draws with: EGL or OSMesa where one works, else ray casting."""
 
+import importlib
 import os
 import subprocess
 import sys
 from functools import cache
+from typing import Any
 
-BACKENDS = ("egl", "osmesa", "raycast")
+GL = ("egl", "osmesa")
+"""MuJoCo's modules for drawing without a screen, by the name of their library."""
+BACKENDS = (*GL, "raycast")
 PROBE_SECONDS = 20.0
 """Time [s] for a GL library to show that it works."""
 _PROBE = (
@@ -37,14 +41,24 @@ def best() -> str:
 
 
 def choose(wanted: str) -> str:
-    """The backend to use. MuJoCo settles on its GL library when it is first imported: before that `wanted` counts,
-    after that only what the environment said then, or ray casting."""
-    if "mujoco" in sys.modules:
-        given = os.environ.get("MUJOCO_GL", "")
-        return given if given in ("egl", "osmesa") and wanted in ("auto", given) else "raycast"
-    backend = wanted if wanted != "auto" else best()
-    os.environ |= environment(backend)
-    return backend
+    """The backend to use: `wanted`, or for "auto" what MUJOCO_GL says, else the best of this machine.
+
+    A process draws with one GL library: where it has loaded one, another is ray casting instead.
+    """
+    loaded = next((b for b in GL if f"mujoco.{b}" in sys.modules), "")
+    if loaded:
+        return loaded if wanted in ("auto", loaded) else "raycast"
+    given = os.environ.get("MUJOCO_GL", "")
+    if wanted == "auto":
+        wanted = given if given in GL else "raycast" if given == "disable" else best()
+    if wanted != "raycast" or "mujoco" not in sys.modules:
+        os.environ |= environment(wanted)
+    return wanted
+
+
+def context(backend: str, width: int, height: int) -> Any:
+    """A GL context of that library, whatever MUJOCO_GL said when MuJoCo was imported."""
+    return importlib.import_module(f"mujoco.{backend}").GLContext(width, height)
 
 
 def environment(backend: str) -> dict[str, str]:

@@ -7,6 +7,8 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from common.rendering.backend import context
+
 MAX_GEOMS = 10000
 """Geoms of a scene: the default of `mujoco.Renderer`."""
 HIDDEN = 5
@@ -18,10 +20,10 @@ Layers = Sequence[NDArray[np.intp]]
 class Offscreen:
     """A GL context with a frame buffer of one size, and the scene drawn in it."""
 
-    def __init__(self, model: Any, width: int, height: int) -> None:
+    def __init__(self, model: Any, backend: str, width: int, height: int) -> None:
         self._model = model
         self._scene = mujoco.MjvScene(model, maxgeom=MAX_GEOMS)
-        self._gl: Any = mujoco.GLContext(width, height)
+        self._gl: Any = context(backend, width, height)
         self._gl.make_current()
         self._context: Any = mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_150.value)
         mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN.value, self._context)

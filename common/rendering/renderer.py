@@ -197,7 +197,7 @@ class Renderer:
             self.close()
             self.model.vis.global_.offwidth = max(width, self.model.vis.global_.offwidth)
             self.model.vis.global_.offheight = max(height, self.model.vis.global_.offheight)
-            self._gl[width, height] = Offscreen(self.model, width, height)
+            self._gl[width, height] = Offscreen(self.model, self.backend, width, height)
         return self._gl[width, height]
 
     def close(self) -> None:

@@ -72,6 +72,37 @@ def test_colour_and_depth_of_one_pass_are_those_of_two() -> None:
     subprocess.run(run, env=os.environ | backend.environment(chosen), check=True, timeout=60)
 
 
+LATE = f"""
+import mujoco, os, sys
+from common.rendering.renderer import Renderer
+assert not hasattr(mujoco, "GLContext")
+del os.environ["MUJOCO_GL"]
+ours, chosen = Renderer('''{TINY}''', sys.argv[1]), sys.argv[1]
+ours.load(ours.data.qpos.tobytes(), b"")
+assert ours.backend == chosen and abs(ours.rgbd("down", 80, 60)[1][30, 40] - 1.5) < 0.002
+assert Renderer('''{TINY}''', "auto").backend == chosen
+assert Renderer('''{TINY}''', "osmesa" if chosen == "egl" else "egl").backend == "raycast", "one library a process"
+"""
+
+
+def test_a_library_is_loaded_after_mujoco_was_imported_without_any() -> None:
+    chosen = next((b for b in ("egl", "osmesa") if backend.works(b)), None)
+    if chosen is None:
+        pytest.skip("no GL library works here")
+    subprocess.run(
+        [sys.executable, "-c", LATE, chosen], env={**os.environ, "MUJOCO_GL": "disable"}, check=True, timeout=60
+    )
+
+
+def test_who_wants_no_library_gets_cast_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in backend.GL:
+        monkeypatch.delitem(sys.modules, f"mujoco.{name}", raising=False)
+    monkeypatch.setenv("MUJOCO_GL", "disable")
+    assert backend.choose("auto") == "raycast"
+    monkeypatch.setenv("MUJOCO_GL", "osmesa")
+    assert backend.choose("auto") == "osmesa" and backend.choose("raycast") == "raycast"
+
+
 @pytest.mark.parametrize("case", [0.0, 0.01])
 def test_ray_cast_points_lie_where_they_are_also_close_and_off_the_axis(case: float) -> None:
     """A slanted view of the floor from 20 cm, from inside a case or without one."""

@@ -126,7 +126,6 @@ def test_the_generated_configuration_has_one_program_a_service(tmp_path: Path) -
     assert "--listen tcp/127.0.0.1:7001" in parsed["program:router"]["command"]
     assert "--listen" not in parsed["program:brain"]["command"]
     assert "100%% run" in parsed["program:brain"]["stdout_logfile"]
-    assert {s.name for s in SERVICES if "environment" not in parsed[f"program:{s.name}"]} == {"camera"}
 
 
 def test_the_processes_of_a_run_reach_its_router_through_a_socket_where_that_can_be(tmp_path: Path) -> None:
