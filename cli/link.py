@@ -158,8 +158,25 @@ def unanswered(topic: Topic[Any]) -> CliError:
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     """`--connect` and `--namespace` for commands that talk to the robot."""
-    parser.add_argument("--connect", metavar="ENDPOINTS", help="router endpoints (default: the run's, TIDYBOT_CONNECT)")
-    parser.add_argument("--namespace", metavar="NAME", help="the robot's namespace (default: TIDYBOT_NAMESPACE)")
+    which = parser.add_argument_group("which robot")
+    which.add_argument("--connect", metavar="ENDPOINTS", help="router endpoints (default: the run's, TIDYBOT_CONNECT)")
+    which.add_argument("--namespace", metavar="NAME", help="the robot's namespace (default: TIDYBOT_NAMESPACE)")
+
+
+def robot_command(
+    commands: "argparse._SubParsersAction[argparse.ArgumentParser]",
+    run: Callable[[argparse.Namespace], int],
+    what: str,
+    json: bool = False,
+    **more: Any,
+) -> argparse.ArgumentParser:
+    """The parser of a command that talks to the robot, called like its function; `what` it does, for the help."""
+    parser = commands.add_parser(run.__name__, help=what, **more)
+    parser.set_defaults(run=run)
+    if json:
+        parser.add_argument("--json", action="store_true")
+    add_options(parser)
+    return parser
 
 
 def address(args: argparse.Namespace) -> tuple[str, str]:

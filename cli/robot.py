@@ -3,7 +3,7 @@
 import argparse
 
 from cli.errors import CliError
-from cli.link import Link, Watch, add_options, linked
+from cli.link import Link, Watch, linked, robot_command
 from common import messages as m
 from common import topics
 
@@ -49,11 +49,7 @@ def _confirm(watch: "Watch[m.SimStatus]", state: str) -> None:
 
 
 def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
-    parser = commands.add_parser("stop", aliases=["stop-robot"], help="brake base and arm now; stays so until `resume`")
+    parser = robot_command(commands, stop, "brake base and arm now; stays so until `resume`", aliases=["stop-robot"])
     parser.add_argument("reason", nargs="?", default="operator")
-    add_options(parser)
-    parser.set_defaults(run=stop)
-    parser = commands.add_parser("resume", help="release the brake and go on with the mission that was stopped")
+    parser = robot_command(commands, resume, "release the brake and go on with the mission that was stopped")
     parser.add_argument("--cancel", action="store_true", help="only release the brake; the mission stays cancelled")
-    add_options(parser)
-    parser.set_defaults(run=resume)

@@ -11,7 +11,7 @@ from typing import Any
 import msgspec
 
 from cli.errors import CliError, near
-from cli.link import Link, add_options, known_keys, linked
+from cli.link import Link, known_keys, linked, robot_command
 from cli.payload import line
 from common import messages as m
 from common import topics
@@ -198,23 +198,17 @@ def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") ->
     one = actions.add_parser("list", help="every topic with payload, writers and rate")
     one.add_argument("--json", action="store_true")
     one.set_defaults(run=list_topics)
-    one = actions.add_parser("echo", help="print what is and comes on a key; wildcards: 'brain/**'")
+    one = robot_command(actions, echo, "print what is and comes on a key; wildcards: 'brain/**'")
     one.add_argument("key")
     one.add_argument("--count", "-n", type=int, default=0, help="end after so many messages")
     one.add_argument("--timeout", type=float, default=0.0, metavar="S", help="end after so many seconds")
     one.add_argument("--json", action="store_true", help="the payload alone, without the key")
-    add_options(one)
-    one.set_defaults(run=echo)
-    one = actions.add_parser("hz", help="rate, period and volume of a key")
+    one = robot_command(actions, hz, "rate, period and volume of a key")
     one.add_argument("key")
     one.add_argument("--window", type=positive, default=2.0, metavar="S", help="seconds a line (default %(default)s)")
     one.add_argument("--count", "-n", type=int, default=0, help="end after so many lines")
-    add_options(one)
-    one.set_defaults(run=hz)
-    one = actions.add_parser("pub", help="publish: JSON, field=value ..., or bare text")
+    one = robot_command(actions, pub, "publish: JSON, field=value ..., or bare text")
     one.add_argument("key")
     one.add_argument("value", nargs="+")
     one.add_argument("--count", "-n", type=int, default=1)
     one.add_argument("--rate", type=positive, default=10.0, metavar="HZ", help="with --count (default %(default)s)")
-    add_options(one)
-    one.set_defaults(run=pub)

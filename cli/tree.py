@@ -4,7 +4,7 @@ import argparse
 
 import msgspec
 
-from cli.link import Watch, add_options, linked
+from cli.link import Watch, linked, robot_command
 from common import messages as m
 from common import topics
 
@@ -39,8 +39,5 @@ def tree(args: argparse.Namespace) -> int:
 
 
 def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
-    parser = commands.add_parser("tree", help="the brain's behaviour tree as it is now")
+    parser = robot_command(commands, tree, "the brain's behaviour tree as it is now", json=True)
     parser.add_argument("--follow", "-f", action="store_true", help="print it again whenever it changes")
-    parser.add_argument("--json", action="store_true")
-    add_options(parser)
-    parser.set_defaults(run=tree)

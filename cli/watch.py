@@ -17,7 +17,7 @@ from rich.table import Table
 from rich.text import Text
 from rich.tree import Tree
 
-from cli.link import Link, Watch, add_options, linked
+from cli.link import Link, Watch, linked, robot_command
 from common import messages as m
 from common import topics
 from common.mission_log.states import limb_words
@@ -208,8 +208,6 @@ def watch(args: argparse.Namespace) -> int:
 
 
 def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
-    parser = commands.add_parser("watch", help="state, tree, plan, speech and services in the terminal; space stops")
+    parser = robot_command(commands, watch, "state, tree, plan, speech and services in the terminal; space stops")
     parser.add_argument("--once", action="store_true", help="print one picture and leave")
     parser.add_argument("--height", type=int, default=40, help="lines of that picture (default %(default)s)")
-    add_options(parser)
-    parser.set_defaults(run=watch)

@@ -4,7 +4,7 @@ import argparse
 import importlib.util
 
 from cli.errors import CliError
-from cli.link import add_options
+from cli.link import robot_command
 from common.security.access import AGENT
 
 PORT = 8765
@@ -46,7 +46,7 @@ def mcp(args: argparse.Namespace) -> int:
 
 
 def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
-    parser = commands.add_parser("mcp", help="let an agent use the robot (Model Context Protocol, on stdio or HTTP)")
+    parser = robot_command(commands, mcp, "let an agent use the robot (Model Context Protocol, on stdio or HTTP)")
     parser.add_argument(
         "--http",
         nargs="?",
@@ -57,5 +57,3 @@ def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") ->
     )
     parser.add_argument("--confirm", action="store_true", help="the robot asks a person about every command first")
     parser.add_argument("--client", default=AGENT, metavar="NAME", help="whose certificate (default: %(default)s)")
-    add_options(parser)
-    parser.set_defaults(run=mcp)

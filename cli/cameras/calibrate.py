@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 
 from cli.errors import CliError, number
-from cli.link import add_options, linked
+from cli.link import linked, robot_command
 from common import topics
 
 NEEDED = ("sim", "camera")
@@ -26,14 +26,13 @@ def calibrate(args: argparse.Namespace) -> int:
 
 
 def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
-    parser = commands.add_parser(
-        "calibrate",
-        help="where the cameras really sit: the arm moves, 0.9 m around the robot must be free above 0.35 m",
+    parser = robot_command(
+        commands,
+        calibrate,
+        "where the cameras really sit: the arm moves, 0.9 m around the robot must be free above 0.35 m",
     )
     parser.add_argument("--out", type=Path, default=Path("calibration.toml"), metavar="FILE", help="(%(default)s)")
     parser.add_argument("--force", action="store_true", help="write over FILE")
     parser.add_argument(
         "--poses", type=number(4, 40), default=8, metavar="N", help="of the arm, for each camera (%(default)s)"
     )
-    add_options(parser)
-    parser.set_defaults(run=calibrate)

@@ -10,7 +10,7 @@ import msgspec
 from cli.drivers.driver import STALL, Driver, Unmet
 from cli.drivers.requirements import LISTENING, MOVING
 from cli.errors import CliError
-from cli.link import add_options, linked
+from cli.link import linked, robot_command
 from common import topics
 from common.time.clock import monotonic, sleep
 
@@ -58,10 +58,9 @@ def conform(args: argparse.Namespace) -> int:
 
 
 def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
-    parser = commands.add_parser("conform", help="does a driver (simulated or real) serve what the robot relies on?")
+    parser = robot_command(
+        commands, conform, "does a driver (simulated or real) serve what the robot relies on?", json=True
+    )
     parser.add_argument(
         "--move", action="store_true", help="let it move too: 0.3 m of free floor are needed all around"
     )
-    parser.add_argument("--json", action="store_true")
-    add_options(parser)
-    parser.set_defaults(run=conform)

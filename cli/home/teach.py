@@ -5,7 +5,7 @@ import argparse
 import msgspec
 
 from cli.errors import CliError
-from cli.link import Link, add_options, fresh_id, linked
+from cli.link import Link, fresh_id, linked, robot_command
 from common import messages as m
 from common import topics
 
@@ -77,14 +77,10 @@ def _list(link: Link, as_json: bool) -> int:
 
 
 def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
-    parser = commands.add_parser("teach", help="give the thing before the robot a name; without a name list them")
+    parser = robot_command(
+        commands, teach, "give the thing before the robot a name; without a name list them", json=True
+    )
     parser.add_argument("name", nargs="*", help='what it is called, such as "vitamin box"')
     parser.add_argument("--label", help="the thing meant, as `tidybot topic echo world/objects` names it")
-    parser.add_argument("--json", action="store_true")
-    add_options(parser)
-    parser.set_defaults(run=teach)
-    parser = commands.add_parser("forget", help="forget a taught name")
+    parser = robot_command(commands, forget, "forget a taught name", json=True)
     parser.add_argument("name", nargs="+")
-    parser.add_argument("--json", action="store_true")
-    add_options(parser)
-    parser.set_defaults(run=forget)

@@ -8,7 +8,7 @@ from typing import Any
 import msgspec
 
 from cli.errors import CliError, near
-from cli.link import Link, add_options, linked
+from cli.link import Link, linked, robot_command
 from cli.missions.journal import date_of
 from common import topics
 
@@ -87,9 +87,6 @@ def explain(args: argparse.Namespace) -> int:
 
 
 def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
-    parser = commands.add_parser("explain", help="one mission as a timeline, and why it failed")
+    parser = robot_command(commands, explain, "one mission as a timeline, and why it failed", json=True)
     parser.add_argument("id", nargs="?", default="last", help="a mission's id, or last (the default)")
-    parser.add_argument("--json", action="store_true")
     parser.add_argument("--html", type=Path, metavar="FILE", help="write the timeline as a picture, one HTML file")
-    add_options(parser)
-    parser.set_defaults(run=explain)

@@ -6,7 +6,7 @@ from typing import Any
 
 import msgspec
 
-from cli.link import add_options, linked
+from cli.link import linked, robot_command
 from common import topics
 
 
@@ -39,7 +39,4 @@ def missions(args: argparse.Namespace) -> int:
 
 
 def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
-    parser = commands.add_parser("missions", help="all missions and how they ended; `explain` tells of one")
-    parser.add_argument("--json", action="store_true")
-    add_options(parser)
-    parser.set_defaults(run=missions)
+    robot_command(commands, missions, "all missions and how they ended; `explain` tells of one", json=True)

@@ -7,7 +7,7 @@ from typing import get_args
 import msgspec
 
 from cli.errors import CliError, checked
-from cli.link import Watch, add_options, linked
+from cli.link import Watch, linked, robot_command
 from cli.missions.audio import recorded
 from cli.missions.conversation import ACCEPT, KEPT, Conversation, Show, speak_into, typed
 from common import messages as m
@@ -114,17 +114,11 @@ def _print_status(record: dict[str, object]) -> None:
 
 
 def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
-    parser = commands.add_parser("say", help="command the robot by text, or by a recording")
+    parser = robot_command(commands, say, "command the robot by text, or by a recording", json=True)
     parser.add_argument("text", nargs="*", help="such as: bring me the red mug")
     parser.add_argument("--wav", type=Path, metavar="FILE", help="a recording to send instead of a microphone's sound")
     parser.add_argument("--wait", action="store_true", help="until the mission ends; exit 0 only if it succeeded")
     parser.add_argument("--timeout", type=float, default=1800.0, metavar="S", help="for --wait (default %(default)s)")
-    parser.add_argument("--json", action="store_true")
-    add_options(parser)
-    parser.set_defaults(run=say)
-    parser = commands.add_parser("status", help="what the robot is doing, and how the last mission ended")
-    parser.add_argument("--json", action="store_true")
+    parser = robot_command(commands, status, "what the robot is doing, and how the last mission ended", json=True)
     parser.add_argument("--wait", metavar="STATE", help="until the brain, or system_status, is in this state")
     parser.add_argument("--timeout", type=float, default=600.0, metavar="S", help="for --wait (default %(default)s)")
-    add_options(parser)
-    parser.set_defaults(run=status)

@@ -9,7 +9,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from cli.errors import CliError, number
-from cli.link import Link, add_options, address
+from cli.link import Link, address, robot_command
 from cli.processes.supervision import Supervision, run_dir
 from cli.recordings.files import RecordingFiles
 from cli.recordings.tape import BATCH, FLUSH, Listener, Progress, Tape
@@ -171,7 +171,7 @@ def _cameras(text: str) -> tuple[str, ...]:
 
 
 def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
-    parser = commands.add_parser("record", help="every topic into an MCAP file, until Ctrl-C")
+    parser = robot_command(commands, record, "every topic into an MCAP file, until Ctrl-C")
     parser.add_argument("-o", "--output", type=Path, metavar="FILE", help="default: out/run-<time>.mcap")
     parser.add_argument("--duration", type=float, default=0.0, metavar="S", help="wall seconds (default: until Ctrl-C)")
     size = number(1, unit="MB", whole=False)
@@ -190,5 +190,3 @@ def register(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") ->
     )
     learning.add_argument("--cameras", type=_cameras, default=CAMERAS, metavar="A,B", help="head, wrist or both (both)")
     learning.add_argument("--all", action="store_true", help="also missions that failed or were cancelled")
-    add_options(parser)
-    parser.set_defaults(run=record)
