@@ -4,14 +4,14 @@ import math
 from collections.abc import Mapping
 
 import numpy as np
+from numpy.typing import NDArray
 
 from common.geometry import Array
 from common.kinds import LOOKS, Kind, kind_of, laid_on_a_side
 from common.messages import ShapeFamily
 from common.naming.looks import OTHER, Measures, likely
 from services.perception.detection import Detection
-from services.perception.segments.segment import Segment
-from services.perception.segments.segmentation import DEPTH_NOISE
+from services.perception.segments.segment import DEPTH_NOISE, Segment
 from services.perception.shapes.handle import parted
 from services.perception.shapes.measure import measure
 from services.perception.shapes.measurement import LEVEL, Measurement
@@ -88,10 +88,10 @@ def kinds_of(found: Measurement, spread: float, words: list[str]) -> dict[str, f
     return {kind: votes[kind] / total for kind in ordered if votes[kind] > 0.04 * total} or {OTHER: 1.0}
 
 
-def measured(view: View, segment: Segment) -> Measurement:
-    """The shape of a segment, its noise by its distance."""
+def measured(view: View, segment: Segment, hanging: NDArray[np.bool_] | None = None) -> Measurement:
+    """The shape of a segment, its noise by its distance; `hanging` (n,): which of its pixels hang beside its body."""
     far = float(np.median((segment.points - view.position) @ view.rotation[:, 2]))
-    parts = parted(segment.rows, segment.columns, far / view.focal[0])
+    handle = parted(segment.rows, segment.columns, far / view.focal[0]).of_handle(segment.rows, segment.columns)
     return measure(
         segment.points,
         segment.surface.height,
@@ -100,7 +100,7 @@ def measured(view: View, segment: Segment) -> Measurement:
         0.5 / view.focal[0],
         noise_of(view, segment),
         segment.dark,
-        parts.of_handle(segment.rows, segment.columns),
+        handle if hanging is None else handle | hanging,
     )
 
 

@@ -1,6 +1,7 @@
 """Objects on a surface of which the picture shows the outline and little else: dark ones that get no depth. Pure."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +25,9 @@ HIDDEN = 0.08
 """Share of the band around an outline in which something nearer is seen, from which it is no outline."""
 OWN, OWN_SHARE = 0.015, 0.6
 """How far [m] around the shape what was measured is of the object itself, and the share of a part that has to be."""
+
+SEAM = 2
+"""Width [pixels] of the line between two parts that is of neither."""
 
 
 def on_surface(view: View, name: str, plane: Array, over: Cloud, own: Mask, dark: Blobs) -> list[Segment]:
@@ -102,6 +106,27 @@ def is_of(points: Array, shape: Measurement) -> NDArray[np.bool_]:
     return np.asarray(far < half + OWN)
 
 
-def is_part(points: Array, shapes: list[Measurement]) -> bool:
+def with_parts(view: View, segment: Segment, parts: list[Segment]) -> Segment:
+    """An object that was seen by its outline, and the lit parts of it: its shape is that of the whole outline.
+
+    The dark foot of a stapler is no object by itself, and neither is the coloured half above it.
+    """
+    if not parts or segment.shape is None:
+        return segment
+    mask = np.zeros(view.shape, bool)
+    for one in (segment, *parts):
+        mask[one.rows, one.columns] = True
+    # Between two parts there is a line of mixed pixels.
+    rows, columns = np.nonzero(ndimage.binary_closing(mask, iterations=SEAM) | mask)
+    pixels = rows, columns
+    points = np.concatenate([segment.points, *(p.points for p in parts)])
+    floor, shape = segment.surface.height, None
+    if (at := silhouette.foot(view, pixels, floor)) is not None:
+        shape = silhouette.shape(view, silhouette.outline(view, pixels, at), at, floor, points)
+    whole = shape is not None and max(shape.size[:2]) <= WIDEST and shape.size[2] <= HIGHEST
+    return replace(segment, rows=rows, columns=columns, points=points, shape=shape if whole else segment.shape)
+
+
+def is_part(points: Array, shape: Measurement) -> bool:
     """Points (n, 3) are for the most part of an object whose outline was seen."""
-    return len(points) > 0 and any(float(np.mean(is_of(points, shape))) > OWN_SHARE for shape in shapes)
+    return len(points) > 0 and float(np.mean(is_of(points, shape))) > OWN_SHARE

@@ -5,6 +5,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from common.geometry import Array
+from services.perception.segments.air import ATTACHED, gap, hangs
 from services.perception.segments.dark import Blobs, Pixels, guessed
 from services.perception.segments.segment import Segment, Surface, covered
 from services.perception.views.view import Mask, View
@@ -72,13 +73,15 @@ def joined(view: View, name: str, plane: Array, parts: list[Pixels], own: Mask, 
             extent = (high[members].max(axis=0) - low[members].min(axis=0)).max()
             if extent < JOINED_EXTENT and (one_blob or _gap(clouds[i], clouds[j]) < JOIN):
                 groups[groups == groups[j]] = groups[i]
+    _carried(view, plane, clouds, groups)
     found = []
     h, w = view.shape
     for group in np.unique(groups):
         members = np.flatnonzero(groups == group)
         rows = np.concatenate([parts[k][0] for k in members])
         columns = np.concatenate([parts[k][1] for k in members])
-        hole = dark.hole(blob) if dark and (blob := numbers[members[0]]) else (rows[:0], rows[:0])
+        blob = max(numbers[k] for k in members)
+        hole = dark.hole(blob) if dark and blob else (rows[:0], rows[:0])
         all_rows, all_columns = np.append(rows, hole[0]), np.append(columns, hole[1])
         hidden = covered(view, all_rows, all_columns, own)
         ends = not hidden[2] and int(all_columns.max()) < w - 2, not hidden[1] and int(all_columns.min()) > 1
@@ -89,6 +92,22 @@ def joined(view: View, name: str, plane: Array, parts: list[Pixels], own: Mask, 
         guess = guessed(view, (rows, columns), hole) if len(hole[0]) else np.empty((0, 3))
         found.append(Segment(surface, rows, columns, points, cut, ends, guess))
     return found
+
+
+def _carried(view: View, plane: Array, clouds: list[NDArray[np.float64]], groups: NDArray[np.intp]) -> None:
+    """Give each group of parts (n,) that hangs in the air to the nearest one that may carry it."""
+    for group in np.unique(groups):
+        members = np.flatnonzero(groups == group)
+        if len(members) in (0, len(groups)):
+            continue  # it carries one before it, or there is nothing that could carry it
+        points = np.concatenate([clouds[k] for k in members])
+        x, y, _ = points.mean(axis=0)
+        if not hangs(view, points, float(plane @ (x, y, 1.0))):
+            continue
+        others = [k for k in range(len(clouds)) if groups[k] != group]
+        distance, nearest = min((gap(points, clouds[k]), k) for k in others)
+        if distance < ATTACHED:
+            groups[groups == groups[nearest]] = group
 
 
 def _gap(a: NDArray[np.float64], b: NDArray[np.float64]) -> float:

@@ -9,6 +9,8 @@ from scipy import ndimage
 from services.perception.shapes.measurement import Measurement
 from services.perception.views.view import Mask, View, Window
 
+DEPTH_NOISE = 0.0015
+"""Standard deviation [m] of depth at 1 m, growing with the square of the distance (stereo cameras' data sheets)."""
 RIM = 3
 """Width [pixels] of the band around a segment in which something nearer is looked for."""
 NEARER = 0.03

@@ -10,9 +10,9 @@ import numpy as np
 from common.floor_plan import FloorPlan, Receptacle
 from common.geometry import Array, Rectangle
 from services.perception.segments.dark import Blobs, blobs
-from services.perception.segments.outlined import is_part, on_surface
+from services.perception.segments.outlined import is_part, on_surface, with_parts
 from services.perception.segments.parts import JUMP, joined, parts
-from services.perception.segments.segment import Segment, Surface, goes_on
+from services.perception.segments.segment import DEPTH_NOISE, Segment, Surface, goes_on
 from services.perception.views.view import Mask, View, Window
 from services.perception.views.visible_plan import Cloud, Nearby, corners, inside
 
@@ -50,8 +50,6 @@ FAR = 2.3
 """Depth [m] from which its noise makes walls thick."""
 FLOOR_RANGE = 2.2
 """Distance [m] up to which objects on the floor are looked for. Chosen: beyond it depth noise hides small ones."""
-DEPTH_NOISE = 0.0015
-"""Standard deviation [m] of depth at 1 m, growing with the square of the distance (stereo cameras' data sheets)."""
 DEVIATIONS = 4.0
 """Standard deviations of height above the floor that are no object: it covers a thousand times the area of the noise's
 bumps, of which one in a thousand is beyond three."""
@@ -156,13 +154,13 @@ def _on(view: View, expected: Surface, cloud: Cloud, near: Nearby, own: Mask, da
     cut = parts(view, rows, columns, MIN_PIXELS // 3)
     over_it = np.zeros(view.shape, bool)
     over_it[rows, columns] = True
-    found = (
-        p for p in joined(view, expected.name, plane, cut, own, dark) if len(p.rows) >= MIN_PIXELS and _is_thing(p)
-    )
-    shapes = [p.shape for p in outlined if p.shape is not None]
-    return outlined + [
-        p for p in found if goes_on(view, p, over_it, CLEARANCE, JUMP) < GOES_ON and not is_part(p.points, shapes)
-    ]
+    left = [p for p in joined(view, expected.name, plane, cut, own, dark) if len(p.rows) >= MIN_PIXELS and _is_thing(p)]
+    whole = []
+    for one in outlined:
+        own_parts = [p for p in left if one.shape is not None and is_part(p.points, one.shape)]
+        left = [p for p in left if not any(p is part for part in own_parts)]
+        whole.append(with_parts(view, one, own_parts))
+    return whole + [p for p in left if goes_on(view, p, over_it, CLEARANCE, JUMP) < GOES_ON]
 
 
 def _plane(cloud: Cloud, expected: Surface) -> Array:

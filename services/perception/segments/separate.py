@@ -1,7 +1,8 @@
 """Objects that touch: one segment into the pieces that are objects of their own. Pure.
 
 A segment stays whole when one shape explains it, whatever is printed on it. Otherwise pieces of one colour each, and
-pieces on both sides of a valley, are tried: what they are must be explained much better one by one.
+pieces on both sides of a valley, are tried: what they are must be explained much better one by one, and none of them
+may hang in the air.
 """
 
 import itertools
@@ -13,6 +14,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from common.geometry import Array
+from services.perception.segments.air import hangs
 from services.perception.segments.segment import Segment
 from services.perception.segments.segmentation import MAX_EXTENT, MIN_PIXELS, extent
 from services.perception.shapes.measurement import Measurement
@@ -38,10 +40,14 @@ BESIDE, APART = 0.2, 0.75
 widths."""
 EXPLAINED = 0.6
 """Mean distance from a part's shape, by that of the whole's, up to which the part is an object of its own."""
+HIGH = 0.03
+"""Height [m] over the surface from which a piece begins that stands on another one. Chosen: a brick's."""
+OVER = 0.01
+"""How far [m] beyond what was seen of the others, whose far side is hidden, a piece may be that stands on them."""
 VALLEY = 0.75
 """Height on the line between two pieces, by that of the lower one, below which there is a valley."""
-BAND = 0.006
-"""Half width [m] of that line."""
+BAND, BRIDGE = 0.006, 0.01
+"""Half width [m] of that line, and of what is looked through under it."""
 SPLITS = 2
 """How often pieces are cut again."""
 
@@ -65,7 +71,7 @@ def _crowd(view: View, segment: Segment) -> list[Segment]:
     """The parts of a segment that is too wide for one object, by their colours, else by the valley between them."""
     cut = by_colour(view, segment, IN_A_CROWD)
     if cut is None:
-        cut = by_valley(segment)
+        cut = by_valley(view, segment)
     return _cut(segment, cut) if cut is not None else []
 
 
@@ -74,10 +80,19 @@ def _pieces(view: View, whole: Piece, again: int) -> list[Piece]:
     noise = noise_of(view, segment)
     if again == 0 or len(segment.rows) < 2 * MIN_PIXELS or whole.shape.residual < FINE + FINE_NOISE * noise:
         return [whole]
-    for cut in (by_colour(view, segment), by_valley(segment)):
+    for cut in (by_colour(view, segment), by_valley(view, segment)):
         if cut is None:
             continue
-        parts = [Piece(s, measured(view, s)) for s in _cut(segment, cut)]
+        cuts = _cut(segment, cut)
+        hanging = np.isin(cut, [n for n, s in enumerate(cuts) if hangs(view, s.points, s.surface.height)])
+        if hanging.any():
+            # It is no object by itself, and no part of the body: a handle, a spout.
+            beside = Piece(segment, measured(view, segment, hanging))
+            whole = beside if beside.shape.residual < whole.shape.residual else whole
+            continue
+        parts = [Piece(s, measured(view, s)) for s in cuts]
+        if any(_stands_on(p, segment, parts) for p in parts):
+            continue
         share = np.array([len(p.segment.rows) for p in parts]) / len(segment.rows)
         residual = float(share @ [p.shape.residual for p in parts])
         shaped = all(p.shape.family != "irregular" for p in parts)
@@ -86,6 +101,15 @@ def _pieces(view: View, whole: Piece, again: int) -> list[Piece]:
         if better or (whole.shape.family == "irregular" and shaped) or _mostly(whole, parts):
             return [found for p in parts for found in _pieces(view, p, again - 1)]
     return [whole]
+
+
+def _stands_on(piece: Piece, segment: Segment, parts: list[Piece]) -> bool:
+    """A piece begins high over the surface, with its middle over the others: a candle in its holder, a cap."""
+    if quantile(piece.segment.points[:, 2], 0.05) - segment.surface.height < HIGH:
+        return False
+    below = np.concatenate([segment.dark, *(p.segment.points for p in parts if p is not piece)])[:, :2]
+    middle = np.array([piece.shape.x, piece.shape.y])
+    return bool(((below.min(axis=0) - OVER < middle) & (middle < below.max(axis=0) + OVER)).all())
 
 
 def _mostly(whole: Piece, parts: list[Piece]) -> bool:
@@ -179,8 +203,10 @@ def _alike_joined(cut: NDArray[np.intp], rgb: Array) -> NDArray[np.intp] | None:
     return found.reshape(-1).astype(np.intp) if len(names) > 1 else None
 
 
-def by_valley(segment: Segment) -> NDArray[np.intp] | None:
-    """Number (n,) of the side of a valley, seen from above, on which each point lies; None if there is none."""
+def by_valley(view: View, segment: Segment) -> NDArray[np.intp] | None:
+    """Number (n,) of the side of a valley, seen from above, on which each point lies; None if there is none, or if a
+    bridge hangs over it.
+    """
     plan = segment.points[:, :2]
     middle = plan.mean(axis=0)
     axis = np.linalg.eigh(np.cov((plan - middle).T))[1][:, 1]
@@ -199,4 +225,6 @@ def by_valley(segment: Segment) -> NDArray[np.intp] | None:
             best, depth = float(at), ratio
     side = (along >= best).astype(np.intp)
     few = min(np.count_nonzero(side), np.count_nonzero(side == 0))
-    return side if depth < VALLEY and few >= max(MIN_PIXELS, LEAST_SHARE * len(side)) else None
+    if depth >= VALLEY or few < max(MIN_PIXELS, LEAST_SHARE * len(side)):
+        return None
+    return None if hangs(view, segment.points[np.abs(along - best) < BRIDGE], segment.surface.height) else side

@@ -26,6 +26,10 @@ HANDLED = 0.35
 """Share of that for a shape with a handle, which leaves a gap."""
 LAID = 0.95
 """Length on the floor plan by height from which a shape may lie on its side: the shortest mug is as long as wide."""
+VAGUE, VAGUE_NOISE, VAGUELY, LEAST_NOISE = 0.006, 4.0, 1.75, 0.001
+"""Spread [m] of what lies, plus that of noise, which is much, and how much of it times the points' distance by their
+noise (`LEAST_NOISE` [m] at least) is too much: the points do not tell where its axis is, and do not fit it. Chosen:
+cans, bottles and mugs on their side have 1 and less, a mug of which one end is seen 1.7; teapots 2 to 13."""
 DOUBT, DOUBT_NOISE = 0.0003, 0.12
 """Difference [m] of two shapes' costs, plus that of noise, at which the worse one is 1/e as likely."""
 LEAST_RIVAL = 0.1
@@ -76,7 +80,8 @@ def measure(
     if 0.6 < h / wide < 1.5:
         shapes.append(_ball(used, h, outline, noise))
     if wide > LAID * h:
-        shapes += lying.lying(used, h, outline, eye, noise)
+        laid = lying.lying(used, h, outline, eye, noise)
+        shapes += [s for s in laid if not all(seen) or not _vague(s, noise)]
     if h > 0.6 * wide and len(whole) == len(local) and min(s.residual for s in shapes) > UNEXPLAINED * noise:
         shapes += [found] if (found := oval.standing(used, h, outline, noise)) is not None else []
     gaps = GAPS * max(0.0, SOLID - primitives.solidity(whole, eye))
@@ -93,6 +98,12 @@ def measure(
     if best.residual > IRREGULAR + IRREGULAR_NOISE * noise:
         best = _irregular(used, h, noise, best.residual)
     return replace(best, yaw=math.remainder(best.yaw, math.tau))
+
+
+def _vague(laid: Measurement, noise: float) -> bool:
+    """A shape on its side is not what the points are of."""
+    much = laid.spread / (VAGUE + VAGUE_NOISE * noise)
+    return much * laid.residual / max(noise, LEAST_NOISE) > VAGUELY
 
 
 def _ball(points: Array, h: float, outline: Silhouette, noise: float) -> Measurement:
