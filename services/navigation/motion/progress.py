@@ -23,8 +23,9 @@ PASSING = 60.0
 several times by then. Who stays is reported as PERSON_IN_WAY."""
 HELD_UP = 90.0
 """By how much people put off the time limit of a goal at most [s]: both kinds of waiting and the ways aside."""
-STANDOFF, MEETINGS = 2.5, 3
-"""Time after which a person who stands before the waiting robot is given room [s], how often in one goal [count]."""
+STANDOFF, LATER, MEETINGS = 2.5, 8.0, 3
+"""Time [s] after which a person who stands before the waiting robot is given room, and the time after so many meetings
+of one goal [count]; chosen: who comes again and again has no other way, and any time may be the one that suits both."""
 
 
 class Progress:
@@ -122,7 +123,7 @@ class Standoff:
 
     def __init__(self) -> None:
         self._since = self._at = -math.inf
-        self._left = MEETINGS
+        self._met = 0
 
     def with_whom(self, here: Point, people: Sequence[Obstacle], now: float) -> Point | None:
         """Once a step while a person stands before the robot: where, once that has lasted; None until then."""
@@ -130,7 +131,7 @@ class Standoff:
             self._since = now
         self._at = now
         near = min(people, key=lambda o: math.dist((o.x, o.y), here), default=None)
-        if near is None or now - self._since < STANDOFF or self._left <= 0:
+        if near is None or now - self._since < (STANDOFF if self._met < MEETINGS else LATER):
             return None
-        self._since, self._left = now, self._left - 1
+        self._since, self._met = now, self._met + 1
         return near.x, near.y
