@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from common.floor_plan import Box, Place, Receptacle, Wall
-from common.household import Household
+from common.household import Household, load_household
 from services.navigation.planning.costmap import Costmap
 from services.navigation.planning.planner import SPACING, PathPlanner, Point
 
@@ -428,3 +428,16 @@ def test_corners_are_cut_only_as_far_as_the_path_kept_clear() -> None:
     # Over both corners of the box at the distance that the planner prefers.
     by_hand = 2 * math.dist(start, (2.5 - INFLATION / 2, 4.0 + INFLATION / 2)) + 1.0 + INFLATION
     assert 0.9 * by_hand < length < 1.1 * by_hand
+
+
+def test_a_way_out_of_a_narrow_place_comes_no_closer_to_anything_than_the_base_stands() -> None:
+    made = Costmap(load_household("apartment"), 0.05, 30.0)
+    planner, rng, tried = PathPlanner(made, 0.31, 0.65), np.random.default_rng(1), 0
+    while tried < 60:
+        x, y = rng.uniform(-2.5, 5.5), rng.uniform(-3.0, 4.5)
+        room = made.clearance(x, y)
+        if not 0.24 < room < 0.31 or (path := planner.path(planner.field(x, y), (x, y), (0.0, 0.0))) is None:
+            continue
+        tried += 1
+        points = np.array(path)
+        assert made.distance[made.cells(points[:, 0], points[:, 1])].min() > room - 0.02

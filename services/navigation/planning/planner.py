@@ -115,15 +115,19 @@ class PathPlanner:
         return int(rows[best]), int(columns[best])
 
     def _shorten(self, points: list[Point]) -> list[Point]:
-        """Straight lines where they keep the clearance that the path had."""
+        """Straight lines where they keep the clearance that the path had, and room for the base.
+
+        Where it stands closer to something than it needs, nothing on its way is closer still.
+        """
         kept, i = [points[0]], 0
         clearances = np.array([self._map.clearance(*p) for p in points])
+        fits = min(self._radius, float(clearances[0]))
         while i < len(points) - 1:
             j = min(len(points) - 1, i + _JUMP)
             while j > i + 1:
                 least = float(clearances[i : j + 1 : 3].min())
                 straight = self._map.line_clearance(points[i], points[j])
-                if straight >= min(least, self._inflation) - _LOST and (straight >= self._radius or i == 0):
+                if straight >= min(least, self._inflation) - _LOST and straight >= (self._radius if i else fits):
                     break
                 j -= max(1, (j - i) // 4)
             kept.append(points[j])
