@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from common.bus.memory import MemoryBus, MemoryIo
+from common.config import ConfigError
 from common.household import told
-from common.runtime import StartError
 from common.scene import load_scene
 from services.manipulation.arm.arm_model import ArmModel
 from services.sim import calibrate, menagerie
@@ -249,7 +249,7 @@ def test_what_is_not_there_is_said_with_the_cure(
         monkeypatch.setenv(menagerie.ROOT, str(tmp_path))
     load_robot.cache_clear()
     io = MemoryIo(MemoryBus(), "sim", SimService.READS, SimService.WRITES, household=told(SCENE), world=SCENE)
-    with pytest.raises(StartError) as refused:
+    with pytest.raises(ConfigError) as refused:
         SimService(SimConfig(robot=name), io)
     assert cure in str(refused.value)
 
