@@ -16,10 +16,21 @@ def steps(reach: int) -> list[Step]:
     return [(r, c) for r in there for c in there if math.gcd(r, c) == 1 and (r > 0 or (r == 0 and c > 0))]
 
 
-def graph_of(free: NDArray[np.bool_], resolution: float, reach: int) -> sparse.csr_matrix:
+def nearest_free(free: NDArray[np.bool_], cell: tuple[int, int]) -> tuple[int, int]:
+    """The cell itself where it is `free` (rows, columns) or none is, else the nearest that is."""
+    if free[cell] or not free.any():
+        return cell
+    rows, columns = np.nonzero(free)
+    nearest = int(np.argmin(np.square(rows - cell[0]) + np.square(columns - cell[1])))
+    return int(rows[nearest]), int(columns[nearest])
+
+
+def graph_of(
+    free: NDArray[np.bool_], resolution: float, reach: int, weight: NDArray[np.float64] | None = None
+) -> sparse.csr_matrix:
     """Links [m] in one direction between `free` cells (rows, columns) that are one of the `steps(reach)` apart.
 
-    Node `row * columns + column` is that cell.
+    `weight` (rows, columns): what a metre costs in each cell, None: 1. Node `row * columns + column` is that cell.
     """
     rows, columns = free.shape
     numbers = np.arange(free.size).reshape(free.shape)
@@ -30,6 +41,7 @@ def graph_of(free: NDArray[np.bool_], resolution: float, reach: int) -> sparse.c
         both = free[here] & free[there]
         heads.append(numbers[here][both])
         tails.append(numbers[there][both])
-        lengths.append(np.full(int(both.sum()), math.hypot(down, right) * resolution))
+        mean = 1.0 if weight is None else 0.5 * (weight[here] + weight[there])[both]
+        lengths.append(np.full(int(both.sum()), math.hypot(down, right) * resolution) * mean)
     ends = np.concatenate(heads), np.concatenate(tails)
     return sparse.csr_matrix((np.concatenate(lengths), ends), shape=(free.size, free.size))

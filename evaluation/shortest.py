@@ -4,12 +4,11 @@ import math
 from collections.abc import Sequence
 from itertools import pairwise, permutations
 
-import numpy as np
 from scipy.sparse import csgraph
 
 from common.approach import poses_for
 from common.geometry import Pose2
-from common.grid_graph import graph_of
+from common.grid_graph import graph_of, nearest_free
 from common.scene import Receptacle, Scene
 from services.navigation.config import NavigationConfig
 from services.navigation.planning.costmap import Costmap
@@ -65,11 +64,7 @@ class FloorPlan:
         return corners
 
     def _index(self, point: Point) -> int:
-        row, column = self._map.cell(*point)
-        if not self._free[row, column]:
-            rows, columns = np.nonzero(self._free)
-            best = int(np.argmin(np.square(rows - row) + np.square(columns - column)))
-            row, column = int(rows[best]), int(columns[best])
+        row, column = nearest_free(self._free, self._map.cell(*point))
         return row * self._map.shape[1] + column
 
     # --- missions

@@ -32,9 +32,7 @@ TRIES = 40
 
 def aged(home: Scene, rng: np.random.Generator) -> Scene:
     """The home with what its map does not have; the robot still gets everywhere it got before."""
-    floor = Floor(home.low, home.high, home.walls)
-    for outline in home.footprints:
-        floor.take(outline)
+    floor = Floor.of(home)
     before = floor.reached((home.home.x, home.home.y))
     left: list[Obstacle] = []
     for n in range(int(rng.integers(LEFT[0], LEFT[1] + 1))):

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from common.approach import EDGE_DISTANCE, ROOM
-from common.floor_plan import Room, Vec2, Wall
+from common.floor_plan import FloorPlan, Room, Vec2, Wall
 from common.geometry import Rectangle
 
 Mask = NDArray[np.bool_]
@@ -31,6 +31,14 @@ class Floor:
         self._kept: Mask = self._taken.copy()
         for wall in walls:
             self._taken |= self._inside(wall.footprint)
+
+    @classmethod
+    def of(cls, home: FloorPlan) -> "Floor":
+        """The floor of a home with what stands there."""
+        floor = cls(home.low, home.high, home.walls)
+        for outline in home.footprints:
+            floor.take(outline)
+        return floor
 
     def _inside(self, area: Rectangle, margin: float = 0.0) -> Mask:
         u, v = area.to_local(self._x, self._y)

@@ -46,9 +46,7 @@ def lost(seed: int) -> Case:
     case, rng = homes(seed), random(seed, 27)
     home = case.scene
     assert home is not None
-    floor = Floor(home.low, home.high, home.walls)
-    for outline in home.footprints:
-        floor.take(outline)
+    floor = Floor.of(home)
     within = floor.reached((home.home.x, home.home.y))
     spots = [floor.somewhere(rng, within) for _ in range(SPOTS)]
     x, y = max(spots, key=lambda spot: math.hypot(*spot)) if rng.random() < 0.5 else spots[0]

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from services.sim.menagerie import RobotError
 from services.sim.robot import HULL_GROUP, MAST, ROBOT_GROUP
+from services.sim.things.thinning import corners
 
 Array = NDArray[np.float64]
 THEIRS = {"base": "base_link", "arm_base": "gen3/base_link", "gripper": "base"}
@@ -83,11 +84,8 @@ def _text(values: Any) -> str:
 
 def simplified(model: Any, mesh: int) -> tuple[Array, NDArray[np.int64]]:
     """Corners (n, 3) [m] and triangles (k, 3) of a compiled mesh, decimated to at most `FACES` or little more."""
-    at, count = int(model.mesh_vertadr[mesh]), int(model.mesh_vertnum[mesh])
-    begin, faces = int(model.mesh_faceadr[mesh]), int(model.mesh_facenum[mesh])
-    vertices = np.array(model.mesh_vert[at : at + count], np.float64)
-    triangles = np.array(model.mesh_face[begin : begin + faces])
-    if faces <= FACES:
+    vertices, triangles = corners(model, mesh)
+    if len(triangles) <= FACES:
         return vertices, triangles
     fewer, left = fast_simplification.simplify(vertices, triangles, target_count=FACES, agg=CARE)
     # A corner where surfaces meet may be thrown beyond the body: it stays within its bounds.

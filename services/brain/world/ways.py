@@ -10,7 +10,7 @@ from common.approach import ROOM
 from common.floor_grid import Cells, static_distances
 from common.floor_plan import FloorPlan
 from common.geometry import Array
-from common.grid_graph import graph_of
+from common.grid_graph import graph_of, nearest_free
 
 Point = tuple[float, float]
 RESOLUTION = 0.05
@@ -45,13 +45,9 @@ class _Ground:
     def lengths(self, start: Point) -> Array:
         """Lengths (rows, columns) [m] from a point; one where the base does not fit counts as the nearest where it
         does."""
-        row, column = self.cells.cell(*start)
         if not self._free.any():
             return np.full(self.cells.shape, math.inf)
-        if not self._free[row, column]:
-            rows, columns = np.nonzero(self._free)
-            nearest = int(np.argmin(np.square(rows - row) + np.square(columns - column)))
-            row, column = int(rows[nearest]), int(columns[nearest])
+        row, column = nearest_free(self._free, self.cells.cell(*start))
         index = row * self.cells.shape[1] + column
         found: Array = csgraph.dijkstra(self._graph, directed=False, indices=index).reshape(self.cells.shape)
         return found

@@ -10,13 +10,12 @@ from scipy import ndimage, sparse
 from scipy.sparse import csgraph
 
 from common.geometry import Array
+from common.grid_graph import graph_of, nearest_free
 from services.navigation.planning.costmap import Costmap
 
 Point = tuple[float, float]
 SPACING = 0.05
 """Distance between the points of a path [m]: the costmap's resolution."""
-_NEIGHBOURS = ((0, 1, 1.0), (1, 0, 1.0), (1, 1, math.sqrt(2)), (1, -1, math.sqrt(2)))
-"""Row and column to the neighbours that a cell is joined to, and their distance [cells]; the others join themselves."""
 _WEIGHT = 4.0
 """Cost of a cell where the base just fits, beside its length [-]; chosen: a detour of four times the way."""
 _JUMP = 60
@@ -48,7 +47,7 @@ class PathPlanner:
 
     def field(self, x: float, y: float) -> Field:
         """Costs from a point; a start that is too close to something is moved to the nearest free cell."""
-        start = self._nearest_free(self._map.cell(x, y), self._map.distance)
+        start = nearest_free(self._map.distance >= self._radius, self._map.cell(x, y))
         index = start[0] * self._map.shape[1] + start[1]
         cost, previous = csgraph.dijkstra(
             self._edges(), directed=False, indices=index, return_predecessors=True, min_only=False
@@ -79,7 +78,7 @@ class PathPlanner:
         """
         distance = self._map.static_distance if distance is None else distance
         labels, _ = ndimage.label(distance >= self._radius, np.ones((3, 3)))
-        here = labels[self._nearest_free(self._map.cell(*start), distance)]
+        here = labels[nearest_free(distance >= self._radius, self._map.cell(*start))]
         return bool(here) and any(labels[self._map.cell(*goal)] == here for goal in goals)
 
     def _edges(self) -> sparse.csr_matrix:
@@ -89,30 +88,9 @@ class PathPlanner:
         free = distance >= self._radius
         lack = np.clip((self._inflation - distance) / (self._inflation - self._radius), 0, 1)
         weight = 1.0 + _WEIGHT * np.square(lack)
-        rows, columns = self._map.shape
-        numbers = np.arange(rows * columns).reshape(rows, columns)
-        heads, tails, costs = [], [], []
-        for dr, dc, length in _NEIGHBOURS:
-            a = (slice(0, rows - dr), slice(max(0, -dc), columns - max(0, dc)))
-            b = (slice(dr, rows), slice(max(0, dc), columns + min(0, dc)))
-            both = free[a] & free[b]
-            heads.append(numbers[a][both])
-            tails.append(numbers[b][both])
-            costs.append((weight[a] + weight[b])[both] * (0.5 * length * self._map.resolution))
-        size = rows * columns
-        self._graph = sparse.csr_matrix(
-            (np.concatenate(costs), (np.concatenate(heads), np.concatenate(tails))), shape=(size, size)
-        )
+        self._graph = graph_of(free, self._map.resolution, 1, weight)
         self._version = self._map.version
         return self._graph
-
-    def _nearest_free(self, cell: tuple[int, int], distance: NDArray[np.float64]) -> tuple[int, int]:
-        free = distance >= self._radius
-        if free[cell] or not free.any():
-            return cell
-        rows, columns = np.nonzero(free)
-        best = int(np.argmin(np.square(rows - cell[0]) + np.square(columns - cell[1])))
-        return int(rows[best]), int(columns[best])
 
     def _shorten(self, points: list[Point]) -> list[Point]:
         """Straight lines where they keep the clearance that the path had, and room for the base.
