@@ -14,6 +14,7 @@ from services.navigation.goals import Choices, Goal, in_words
 from services.navigation.localisation.state_estimation import StateEstimator
 from services.navigation.motion.contacts import Contacts
 from services.navigation.motion.navigator import Navigator
+from services.navigation.motion.progress import PASSING, PASSING_BY
 from services.navigation.orientation import Orientation
 from services.navigation.others.neighbours import Neighbours
 from services.navigation.planning.changes import ChangesFile
@@ -151,10 +152,14 @@ class NavigationService:
             self._io.log.info("search", item=item)
             self._search = search
 
-    def _go(self, choices: Choices) -> None:
+    def _go(self, choices: Choices, patience: float = PASSING) -> None:
         self._legs += 1
         name = f"{self._reports.status.goal_id}/{self._reports.status.attempt}/{self._legs}"
-        self._navigator = Navigator(self._config, self._map, self._planner, self._contacts, choices, name, self._now)
+        if self._config.map == "mapping":
+            patience = PASSING_BY
+        self._navigator = Navigator(
+            self._config, self._map, self._planner, self._contacts, choices, name, self._now, patience
+        )
         self._reports.begin_leg()
 
     def _look_for(self, search: Search, now: float) -> None:
@@ -177,7 +182,7 @@ class NavigationService:
         if self._navigator is None and (looked or search.fresh):
             view = search.next(pose, self._planner, self._map)
             self._io.log.info("view", item=search.item, number=search.looked, x=view[0], y=view[1])
-            self._go([(0.0, view)])
+            self._go([(0.0, view)], PASSING_BY)
 
     def _still_there(self, found: Search) -> None:
         """Search on when perception, from nearer, no longer takes anything for what is driven to."""

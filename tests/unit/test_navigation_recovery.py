@@ -140,14 +140,14 @@ def test_it_does_not_back_off_into_what_has_come_up_behind_it() -> None:
 def test_waiting_for_somebody_who_passes_costs_no_retry() -> None:
     here = (0.0, 0.0)
 
-    def blocked(people: list[Obstacle], seconds: float) -> float:
-        patience, by_people = BlockedTimer(), anybody_near(here, people)
-        return max(patience.blocked(by_people, 100.0 + 0.05 * n) for n in range(round(seconds / 0.05) + 1))
+    def blocked(people: list[Obstacle], seconds: float, patience: float = PASSING) -> float:
+        timer, by_people = BlockedTimer(patience), anybody_near(here, people)
+        return max(timer.blocked(by_people, 100.0 + 0.05 * n) for n in range(round(seconds / 0.05) + 1))
 
     wait, passer = NavigationConfig().blocked_wait, person(1.0, 0.0, 0.0, 0.5)
     assert blocked([], 5.0) == pytest.approx(5.0)
     assert blocked([person(9.0, 0.0, 0.0, 0.5)], 5.0) == pytest.approx(5.0), "far away"
-    assert blocked([passer], 18.0) < wait
+    assert blocked([passer], 18.0) < wait < blocked([passer], 18.0, patience=10.0)
     assert blocked([passer], PASSING + 10.0) > wait, "somebody who stays is in the way"
 
 

@@ -11,7 +11,15 @@ from services.navigation.motion.collision_avoidance import avoid
 from services.navigation.motion.contacts import Contacts
 from services.navigation.motion.obstacle_tracker import Obstacle
 from services.navigation.motion.path_follower import Lookahead
-from services.navigation.motion.progress import CLOSE, PERSON, BlockedTimer, Progress, anybody_near, waiting_for
+from services.navigation.motion.progress import (
+    CLOSE,
+    PASSING,
+    PERSON,
+    BlockedTimer,
+    Progress,
+    anybody_near,
+    waiting_for,
+)
 from services.navigation.motion.recovery import Recovery
 from services.navigation.motion.retreat import PassingPlace, Retreat
 from services.navigation.motion.route import DETOUR_PAUSE, Blocker, Route
@@ -28,7 +36,7 @@ class Navigator:
 
     `recoveries` counts detours and retreats, `doing` is what is under way: "", WAITING, PERSON_IN_WAY, ROBOT_IN_WAY,
     DETOUR, BACKING_OFF, HELD_UP or GIVING_WAY. `remaining` is the path that is left [m], `met` what held it up last
-    [map].
+    [map]. `patience`: how long it waits for who may be people [s].
     """
 
     def __init__(
@@ -40,11 +48,12 @@ class Navigator:
         choices: list[tuple[float, Pose2]],
         name: str,
         now: float,
+        patience: float = PASSING,
     ) -> None:
         self._config, self._map = config, costmap
         self._route = Route(config, costmap, planner, choices)
         self._progress = Progress(config, now)
-        self._blocked = BlockedTimer()
+        self._blocked = BlockedTimer(patience)
         self._blocker: Blocker = "things"
         self._recovery = Recovery(config, costmap, planner)
         self._contacts = contacts

@@ -21,6 +21,8 @@ CLOSE = 1.5
 PASSING = 60.0
 """Time that a goal waits for people before its waiting counts again [s]; chosen: two who talk in a door have been asked
 several times by then. Who stays is reported as PERSON_IN_WAY."""
+PASSING_BY = 20.0
+"""The same of a goal that is one of several, as the views of a search are [s]; chosen: one crosses a room by then."""
 HELD_UP = 90.0
 """By how much people put off the time limit of a goal at most [s]: both kinds of waiting and the ways aside."""
 STANDOFF, LATER, MEETINGS = 2.5, 8.0, 3
@@ -84,10 +86,10 @@ class Progress:
 class BlockedTimer:
     """How long a path has been blocked; the time in which somebody may just be passing is not counted."""
 
-    def __init__(self) -> None:
+    def __init__(self, patience: float = PASSING) -> None:
         self._since: float | None = None
         self._at = 0.0
-        self._left = PASSING
+        self._left = patience
 
     def blocked(self, by_people: bool, now: float) -> float:
         """Once a step while the path is blocked: for how long it has been [s], but for who may be people."""

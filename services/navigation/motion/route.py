@@ -50,8 +50,6 @@ class Route:
         self._map, self._planner, self.choices = costmap, planner, choices
         self._lookahead, self._corridor, self._speed = config.lookahead, config.corridor, config.usual_speed
         self._radius = config.footprint_radius - TOUCHING
-        # Who makes the map has everything in it, and other places to go to.
-        self._patient = config.map != "mapping"
         self.follower: PathFollower | None = None
         self.detour_at = -math.inf
         self.planned_at = -math.inf
@@ -80,11 +78,11 @@ class Route:
         return self._planner.possible((pose[0], pose[1]), [(goal[0], goal[1]) for _, goal in self.choices])
 
     def blocked_by(self, pose: Pose2, now: float) -> Blocker:
-        """What keeps it from getting to any of the choices, where a plan found no path: without that there is one."""
+        """Why a plan found no path to any of the choices: without that there is one."""
         here, goals = (pose[0], pose[1]), [(goal[0], goal[1]) for _, goal in self.choices]
         if self._planner.possible(here, goals, self._map.distance_but_for_people()):
             return "people"
-        if self._patient and self._planner.possible(here, goals, self._map.distance_to_things(now)):
+        if self._planner.possible(here, goals, self._map.distance_to_things(now)):
             return "newcomers"
         return "things"
 
