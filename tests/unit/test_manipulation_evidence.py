@@ -77,7 +77,8 @@ def test_nothing_is_held_where_nothing_was_seen() -> None:
     options = candidates(box, 0.0, WIDEST)
     assert options
     far = replace(options[0], pose=options[0].pose.moved(np.array([0.07, 0.0, 0.0])))
-    near = replace(options[0], pose=options[0].pose.moved(np.array([-0.06, 0.0, 0.05])))
+    upwards = AT[2] + 0.05 - options[0].pose.position[2]
+    near = replace(options[0], pose=options[0].pose.moved(np.array([-0.06, 0.0, upwards])))
     assert seen_between(box, far), "a sure box is one to its far side"
     guess = replace(box, spread=0.03)
     assert not seen_between(guess, far) and seen_between(guess, near)

@@ -1,6 +1,8 @@
 """A neighbour in the way is put elsewhere, and the object grasped then: in real physics."""
 
 import math
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -97,3 +99,10 @@ def test_a_neighbour_that_finds_no_place_is_put_back_where_it_stood(monkeypatch:
     for name, thing in truth["objects"].items():
         assert math.dist(thing["position"], before[name]) < 0.02
         assert abs(thing["quaternion"][1]) + abs(thing["quaternion"][2]) < 0.05, "it stands"
+
+
+def test_a_neighbour_that_is_not_known_any_more_stays_in_the_way() -> None:
+    robot: Any = SimpleNamespace(source=SimpleNamespace(objects=list))
+    goal = m.ManipulationGoal(goal="grab")
+    with pytest.raises(Failure, match="in the way: post 1"):
+        next(neighbours._put_elsewhere(robot, goal, "post 1", Failure("UNREACHABLE", "in the way: post 1")))

@@ -21,7 +21,7 @@ from services.manipulation.arm.trajectory import connect, free_line, timed
 from services.manipulation.config import ManipulationConfig
 from services.manipulation.grasps.grasp import approach_rotation, candidates
 from services.manipulation.grasps.grasp_store import GraspStore
-from services.manipulation.grasps.grasp_verification import held_badly, judge
+from services.manipulation.grasps.grasp_verification import held_badly, judge, settled
 from services.manipulation.grasps.target import Target
 from services.manipulation.service import ManipulationService
 from services.perception.config import PerceptionConfig
@@ -154,6 +154,11 @@ def test_where_a_path_turns_it_is_as_slow_as_the_acceleration_asks_for(arm: ArmM
 )
 def test_width_and_force_decide_what_a_grasp_is_worth(grip: Grip, at_close: float | None, code: str) -> None:
     assert judge(grip, 0.066, at_close, CONFIG) == code
+
+
+@pytest.mark.parametrize(("width", "later"), [(0.052, 0.052), (0.059, 0.060), (0.040, 0.060), (0.001, 0.060)])
+def test_what_turns_its_narrow_side_between_the_pads_is_held(width: float, later: float) -> None:
+    assert settled(Grip(width, 25.0), 0.060, CONFIG) == later
 
 
 @pytest.mark.parametrize(

@@ -17,7 +17,7 @@ from services.manipulation.execution.setting_down import set_down
 from services.manipulation.execution.sighting import MISTAKEN, aimed, sighted
 from services.manipulation.grasps.clearance import PAD
 from services.manipulation.grasps.grasp import shown
-from services.manipulation.grasps.grasp_verification import WIDTH_ERROR, held_badly, judge
+from services.manipulation.grasps.grasp_verification import WIDTH_ERROR, held_badly, judge, settled
 from services.manipulation.planning.plan_grab import GrabPlan
 from services.manipulation.planning.planning_scene import target_of
 from services.manipulation.planning.straight_grab import with_reserve
@@ -128,7 +128,7 @@ def _execute_grab(
             _note_contact(robot, plan, found)
         yield from _withdraw(robot, plan)
         raise
-    closed = robot.grip
+    held = closed = robot.grip.width
     robot.grasped = plan.grasped
     robot.phase = "retract"
     way = [plan.lift]
@@ -136,12 +136,16 @@ def _execute_grab(
         for part, share, limit in ((plan.lift[:2], STRAINING, SURE), (plan.lift[1:WEIGHED], 0.25, 1.0)):
             weight = robot.guard(free, limit * load_limit(config.grip_effort), "up")
             yield from robot.follow(part, config.joint_speed * share, weight)
+            # What begins to slip is set back from a few centimetres, and falls nowhere.
+            if plan.doubt and not plan.grasp.rim:
+                held = settled(robot.grip, closed, config)
+            _judge(robot, plan, held, widths)
         yield from robot.follow(plan.lift[WEIGHED:], config.joint_speed * 0.5)
-        _judge(robot, plan, closed.width, widths)
+        _judge(robot, plan, held, widths)
         _check_width(robot, plan, widths)
         way.append(plan.carry)
         yield from _carry(robot, plan)
-        _judge(robot, plan, closed.width, widths)
+        _judge(robot, plan, held, widths)
     except Failure as failure:
         if failure.code in ("SLIPPED", BAD_HOLD, TOO_HEAVY, BLOCKED) and robot.grip.holds():
             yield from _set_back(robot, plan, way, free)

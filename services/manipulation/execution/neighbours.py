@@ -74,9 +74,12 @@ def _put_elsewhere(robot: Robot, goal: m.ManipulationGoal, label: str, failure: 
     """Grab a neighbour and put it on a free spot.
 
     Raises:
-        Failure: the one that it was to mend, when the neighbour cannot be grasped either, or had to be put back.
+        Failure: the one that it was to mend, when the neighbour is not known any more, cannot be grasped either, or had
+            to be put back.
     """
-    found = next(o for o in robot.source.objects() if o.label == label)
+    found = next((o for o in robot.source.objects() if o.label == label), None)
+    if found is None:
+        raise failure  # the last look takes it for something else
     robot.io.log.info("making room", object=label)
     own = m.ManipulationGoal(goal="grab", id=goal.id, attempt=goal.attempt, object=reference(found))
     try:

@@ -13,7 +13,7 @@ from common.geometry import Pose2, matrix_quat, quat_matrix, yaw_quat
 from common.kinds import KINDS, UNKNOWN, GraspRule, Kind, Shape, kind_of
 from common.messages.perception import ShapeFamily
 from services.manipulation.arm.arm_model import Array, Pose
-from services.manipulation.grasps.surface import rim_lean
+from services.manipulation.grasps.surface import rim_lean, seen_open
 from services.manipulation.grasps.target import Target
 
 HANDLE_CONE = math.radians(50)
@@ -35,6 +35,9 @@ FITTING: dict[Shape, tuple[ShapeFamily, ...]] = {
     "box": ("box",),
 }
 """What an object of a kind may be measured as."""
+UNSEEN = (0.1, 0.35)
+"""Share of the points that may be lower, and the height, by the whole, below which nothing else was seen of an object
+whose lower part is not seen: a stapler's black foot, the legs of a toy."""
 _BESIDE, _ABOVE = (15, 25, 40, 60, 90), (90, 65, 45, 30)
 BY_SHAPE: dict[str, tuple[GraspRule, ...]] = {
     "round": (GraspRule("around", _ABOVE, most=0.07), GraspRule("around", _BESIDE, least=0.07)),
@@ -113,6 +116,8 @@ def _standing(target: Target, facing: float, widest: float) -> list[Grasp]:
     rules = _rules(target)
     if kind_of(target.kind).wall and min(target.size[:2]) > widest and all(r.hold != "rim" for r in rules):
         rules = (*rules, *OPEN_VESSEL)
+    if not seen_open(target):
+        rules = tuple(r for r in rules if r.hold != "rim")
     return [g for r in rules if r.least <= tall < r.most for g in makers[r.hold](target, facing, r)]
 
 
@@ -154,6 +159,18 @@ def _make(target: Target, height: float, azimuth: float, tilt: float, roll: floa
     return Grasp(Pose(np.array([x, y, target.bottom + height]), rotation), width, height, tilt, name)
 
 
+def _height(target: Target, rule: GraspRule) -> float:
+    """Height [m] over its underside at which an object is taken by a rule: where it is seen, if its lower part is not.
+
+    That may be something narrower, on which fingers fold in and squeeze what is above them out of the hand.
+    """
+    tall = target.size[2]
+    if target.points is None or not target.measured:
+        return tall * rule.height
+    lowest = float(np.quantile(target.points[:, 2], UNSEEN[0])) + tall / 2
+    return max(rule.height * tall, (lowest + tall) / 2) if lowest > UNSEEN[1] * tall else rule.height * tall
+
+
 def _round(target: Target, facing: float, rule: GraspRule) -> list[Grasp]:
     """Fingers on either side of a round object's axis, from the front and up to 50 degrees to the sides."""
     width = max(target.size[0], target.size[1])
@@ -163,7 +180,7 @@ def _round(target: Target, facing: float, rule: GraspRule) -> list[Grasp]:
         for turn in TURNS:
             azimuth = facing + math.radians(turn)
             name = f"{degrees:.0f} deg at {turn:+.0f}"
-            grasp = _make(target, target.size[2] * rule.height, azimuth, tilt, 0.0, width, name)
+            grasp = _make(target, _height(target, rule), azimuth, tilt, 0.0, width, name)
             if not on_handle(target, grasp.pose.rotation):
                 found.append(grasp)
     return found
@@ -234,7 +251,7 @@ def handle_of(target: Target) -> float | None:
 
 def _flat(target: Target, facing: float, rule: GraspRule) -> list[Grasp]:
     """Fingers on two parallel faces."""
-    found, height = [], target.size[2] * rule.height
+    found, height = [], _height(target, rule)
     for degrees in rule.angles:
         tilt = math.radians(degrees)
         options = []

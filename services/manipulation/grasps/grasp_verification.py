@@ -22,6 +22,9 @@ narrow as its chord there."""
 CHANGED = 0.4
 """Share of a width that was read off an incomplete surface which is felt at least. Chosen: half seen it may be thought
 twice as wide."""
+TURNING = 0.012
+"""By how much less [m] something may be held than when the fingers closed, once it has turned its narrow side to them.
+Chosen: ovals of a hand's width are 6 to 10 mm wider than deep; what slips out goes on."""
 FLEX = 0.003
 """Most [m] that it may be under that: the motor goes on by 2 mm while the fingers' linkage gives under the grip."""
 
@@ -52,6 +55,14 @@ def judge(
         # On a handle or a rim, not around the body.
         return "EMPTY_GRASP" if at_close is None else "SLIPPED"
     return ""
+
+
+def settled(grip: Grip, at_close: float, config: ManipulationConfig) -> float:
+    """The width [m] that is held once something has come off its surface, `at_close` before: what is no circle turns
+    its narrow side between the pads then, and stays so.
+    """
+    narrower = at_close - grip.width
+    return grip.width if grip.holds() and config.slip_width < narrower < TURNING else at_close
 
 
 def least_width(nominal: float, doubt: float, certain: bool) -> float:

@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 
-from common.kinds import PLATE_FOOT
+from common.kinds import PLATE_FOOT, kind_of
 from services.manipulation.arm.arm_model import Pose
 from services.manipulation.grasps.grasp import TURNS, Grasp, approach_rotation, upper_end, vessel_of
 from services.manipulation.grasps.target import Target
@@ -60,7 +60,7 @@ def over_an_edge(target: Target, forward: float, widest: float) -> list[Grasp]:
             continue
         c, s = math.cos(azimuth), math.sin(azimuth)
         for aside in ASIDE:
-            for overlap in (o for o in OVERLAPS if o <= max(half - PUT_BACK, OVERLAPS[-2])):
+            for overlap in _overlaps(target, half):
                 at = np.array([x - c * (half - overlap) - s * aside, y - s * (half - overlap) + c * aside, z])
                 for roll in (math.pi / 2, -math.pi / 2):
                     pose = Pose(at, approach_rotation(azimuth, 0.0, roll))
@@ -71,6 +71,14 @@ def over_an_edge(target: Target, forward: float, widest: float) -> list[Grasp]:
                     axis = upper_end(target, pose.rotation)
                     found.append(Grasp(pose, thick, thick / 2, 0.0, name, axis, over_edge=True))
     return found
+
+
+def _overlaps(target: Target, half: float) -> list[float]:
+    """How far [m] the pads' middle is within a side, `half` from the middle; what is stood up is not put back over an
+    edge."""
+    if target.lies and kind_of(target.kind).upright:
+        return list(OVERLAPS)
+    return [overlap for overlap in OVERLAPS if overlap <= max(half - PUT_BACK, OVERLAPS[-2])]
 
 
 def _rim(target: Target, facing: float) -> list[Grasp]:

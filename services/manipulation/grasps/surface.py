@@ -8,6 +8,7 @@ from scipy import ndimage
 from scipy.spatial import cKDTree
 
 from services.manipulation.arm.arm_model import Array
+from services.manipulation.grasps.slices import slices
 from services.manipulation.grasps.target import Target
 
 SPACING = 0.004
@@ -22,8 +23,16 @@ WALL = 0.004
 the noise of depth at arm's length."""
 SECTORS, AROUND = 12, 0.75
 """Into how many sectors a vessel is divided, and in which share of them some of it is seen: of its rim one sees all."""
+DEEP, DEEP_BY, BEYOND, OPEN = 0.022, 0.6, 0.25, 0.08
+"""How far [m] below the top, by the height where that is low, and how far beyond the axis, by the radius, what was seen
+is the inside of a vessel and no lid with its knob; and the share of all points from which it is open: a mug at 2 m
+shows twice as much."""
 UPPER_WALL = 0.03
 """How far [m] below a rim its wall is what the pads are laid on: their length less what is above it."""
+UPRIGHT, UPRIGHT_BY = 0.05, 0.7
+"""Height [m], and by the lesser of the level extents, from which something irregular is seen from its front."""
+FRONT = 0.5
+"""Share of what was seen that lies below its top from which that is of its front."""
 UPPER, THINNER = 8, 0.012
 """Points on the upper face of a box from which it counts as seen, and how much thinner [m] than its extents what was
 seen of it must be that these do not count: more than points 7 mm apart leave out on either side."""
@@ -45,7 +54,21 @@ def _maker(target: Target) -> Callable[[Target], Array]:
         return _ball
     if target.points is None or (target.family == "box" and not _thinner(target)):
         return _box
-    return _columns
+    # Of a box whose top was seen that tells how deep it is.
+    return _slices if target.family != "box" and _stands_up(target) else _columns
+
+
+def _stands_up(target: Target) -> bool:
+    """One sees more of its front than of what is on top."""
+    seen = _own(target)
+    front = float(np.mean(seen[:, 2] < target.size[2] / 2 - BAND)) if len(seen) else 0.0
+    tall = target.size[2] > max(UPRIGHT, UPRIGHT_BY * min(target.size[:2]))
+    return not target.lies and tall and front > FRONT
+
+
+def _slices(target: Target) -> Array:
+    found = slices(_own(target), _away(target), target.size[2], SPACING)
+    return found if len(found) else _box(target)
 
 
 def _thinner(target: Target) -> bool:
@@ -94,6 +117,23 @@ def rim_lean(target: Target) -> float | None:
     run = min(UPPER_WALL, target.size[2] / 2)
     low, high = _profile(seen, np.array([top - run, top]), max(target.size[:2]) / 2)
     return max(0.0, math.atan2(float(high - low), run))
+
+
+def seen_open(target: Target) -> bool:
+    """The far wall of a vessel was seen from inside, below its rim; True of what was not measured."""
+    if target.points is None or not target.measured:
+        return True
+    seen, height = _own(target), target.size[2]
+    deep = min(DEEP, DEEP_BY * height)
+    beyond = seen[:, :2] @ _away(target) > BEYOND * max(target.size[:2]) / 2
+    return float(np.mean(beyond & (seen[:, 2] < height / 2 - deep))) > OPEN
+
+
+def _away(target: Target) -> Array:
+    """The level direction (2,) from the robot to an object, along the object's own axes."""
+    at = np.array(target.position[:2])
+    found: Array = at @ _yaw(target.yaw)[:2, :2] / np.linalg.norm(at)
+    return found
 
 
 def all_around(points: Array) -> bool:

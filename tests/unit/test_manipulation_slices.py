@@ -1,0 +1,69 @@
+"""The whole of something irregular that stands, from what its front shows of it."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from services.manipulation.arm.arm_model import Array
+from services.manipulation.grasps.antipodal import antipodal
+from services.manipulation.grasps.grasp import candidates
+from services.manipulation.grasps.surface import seen_open, surface
+from services.manipulation.grasps.target import Target
+
+AT = (0.6, 0.0, 0.8)
+TALL = 0.2
+
+
+def front(half: tuple[float, float], low: float, high: float, beside: float = 0.0) -> Array:
+    """Points of the side that faces the robot of an upright oval with half extents (away, across) [m]."""
+    turns, heights = np.linspace(math.pi / 2, 3 * math.pi / 2, 9), np.arange(low, high, 0.01)
+    return np.array([(half[0] * math.cos(t), beside + half[1] * math.sin(t), z) for z in heights for t in turns])
+
+
+def irregular(points: Array) -> Target:
+    return Target("thing", "", AT, 0.0, (0.09, 0.07, TALL), 0.0, "irregular", points, 0.01, True)
+
+
+BODY = front((0.024, 0.033), -TALL / 2, 0.06)
+HEAD = front((0.013, 0.045), 0.06, TALL / 2)
+SPRAY = irregular(np.concatenate([BODY, HEAD]))
+
+
+@pytest.mark.parametrize("yaw", [0.0, 0.9])
+def test_a_body_is_as_wide_and_deep_as_its_slice_and_has_nothing_under_its_head(yaw: float) -> None:
+    found = surface(replace(SPRAY, yaw=yaw)) - np.array(AT)
+    body, head = found[found[:, 2] < 0.04], found[found[:, 2] > 0.08]
+    assert np.ptp(body[:, 1]) == pytest.approx(0.066, abs=0.008)
+    assert np.ptp(body[:, 0]) == pytest.approx(0.048, abs=0.012)
+    assert np.ptp(head[:, 1]) == pytest.approx(0.09, abs=0.008)
+
+
+def test_it_is_held_by_its_body_from_the_front() -> None:
+    grasps = antipodal(SPRAY, 0.0, 0.085, 0.0761)
+    around = [g for g in grasps if abs(g.pose.rotation[1, 1]) > 0.9 and g.pose.position[2] < AT[2]]
+    assert around and min(abs(g.width - 0.066) for g in around) < 0.01
+
+
+def test_a_handle_beside_a_body_is_no_part_of_it() -> None:
+    mug = irregular(
+        np.concatenate([front((0.03, 0.03), -TALL / 2, TALL / 2), front((0.005, 0.005), -0.05, 0.05, 0.06)])
+    )
+    found = surface(mug) - np.array(AT)
+    level = found[np.abs(found[:, 2]) < 0.02]
+    assert not ((level[:, 1] > 0.036) & (level[:, 1] < 0.05)).any()
+
+
+def test_only_into_what_is_seen_to_be_open_a_finger_goes() -> None:
+    """A vessel's far wall is seen from inside; of a jug with its lid on, or a money box, only what faces the robot."""
+    outside = front((0.05, 0.05), -0.04, 0.04)
+    lid = np.array([(r * math.cos(t), r * math.sin(t), 0.04) for r in (0.01, 0.03) for t in np.arange(0, 6.3, 0.6)])
+    inside = front((0.046, 0.046), -0.01, 0.035) * (-1.0, 1.0, 1.0)
+    closed = Target(
+        "thing", "mug", AT, 0.0, (0.1, 0.1, 0.08), 0.0, "round", np.concatenate([outside, lid]), 0.003, True
+    )
+    vessel = replace(closed, points=np.concatenate([outside, inside]))
+    assert seen_open(vessel) and not seen_open(closed) and seen_open(replace(closed, measured=False))
+    assert any(g.rim for g in candidates(vessel, 0.0, 0.0761))
+    assert not any(g.rim for g in candidates(closed, 0.0, 0.0761))
