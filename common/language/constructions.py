@@ -43,16 +43,12 @@ CONSTRUCTIONS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
          r"for (?:dinner|lunch|breakfast|supper|tea|good|a change|"
          r"him|her|them|"
          r"(?:the|my|our|your) (?:\w+ )?\w+|\w+ing .+)", r"\1"),
-        # What is there and has to go elsewhere.
-        (rf"there (?:is|are) {NP} (?:that|which) ({MODAL}|goes|go|belongs?) (.+)", r"\1 \2 \3"),
         (r"(?:go|drive|walk|run|head|move|come) (?:over )?(?:to|into|in) (.+?) and (?:tell "
          r"me|see|look|report|check|find out)(?: back)? (?:what "
          r"(?:you (?:can )?(?:see|find)|"
          r"is (?:there|in there|on it|in it|on there)|there is))(?: there)?", r"go and look in \1"),
         (r"(tidy|clean|clear|straighten)(?: up)? in ((?:the|my|our) \w+(?: \w+)?)", r"tidy \2"),
         (rf"(?:can|could|would|might) {NP} (?:go|move|be put|be placed) ({TO_PLACE}|{_BESIDE}) {NP}", r"put \1 \2 \3"),
-        (rf"(?:i|we) would (?:rather|prefer)(?: it| that| if)* {NP} (?:were|was|is|stood|sat|went) "
-         rf"({TO_PLACE}|{_BESIDE}) {NP}", r"put \1 \2 \3"),
         (rf"(?:i|we) {_WANT} {NP} (?:to be |all |nice and )?(?:clean|tidy|clear|neat|spotless|tidied|cleaned|"
          rf"cleared|empty)", r"tidy \1"),
         (rf"(?:i|we) (?:search|seek|look|am searching|are searching) (?:for )?{NP}", r"find \1"),
@@ -78,9 +74,6 @@ CONSTRUCTIONS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
         (rf"(?:it|that) would (?:really )?(?:be|make) (?:\w+ ){{1,4}}?(?:to "
          rf"(?:have|get)|having|getting|if (?:i|we) (?:had|got|could "
          rf"have)) {NP}", r"i want \1"),
-        (rf"it is (?:about |high )?time(?: that| for)? {NP} (?:to go|went|go|goes|were put|was put|got|returned) "
-         rf"(?:back )?({TO_PLACE}) {NP}", r"put \1 \2 \3"),
-        (rf"there (?:is|are) {NP} (?:that |which )?(?:i|we) {_WANT}", r"bring me \1"),
         (r"((?!(?:can|could|would|will|do|you|please|he|she|they|who)\b)(?:\w+ ){1,4}?\w+) "
          r"(?:bring|give|get|hand|pass) (?:me|us)",
          r"bring me \1"),
@@ -125,16 +118,11 @@ CONSTRUCTIONS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
         # What there is of a kind.
         (r"(\w+)(?: me)? (?:whatever|(?:all )?what|anything that|all that|(?:all )?the stuff that) (?:is|lies|"
          r"stands) (.+)", r"\1 everything \2"),
-        (rf"(.+? )(?:whatever|whichever|any|what) {NP} (?:that )?you (?:can |could )?(?:find|see|spot|"
-         rf"get)(?: (.+))?", r"\1a \2 \3"),
         # A quality that a place or a thing is to have.
         (rf"(?:make|get|have|keep) {NP} (?:look |be |all )?(?:very |really |a bit )?(?:nice and |neat and )?"
          r"(?:clean|tidy|clear|neat|nice|presentable|spotless|ready)(?: again)?(?: for .+)?", r"tidy \1"),
         (rf"(?:make sure|see to it|ensure|make certain)(?: that)? {NP} (?:is|gets|looks|be) (?:all |nice and )?"
          r"(?:clean|tidy|clear|neat|empty|spotless|free of \w+)", r"tidy \1"),
-        (rf"(?:make sure|see to it|ensure|make certain)(?: that)? there (?:is|are) (?:no|not any) {NP} (?:left "
-         rf")?on {NP}",
-         r"put away all \1 on \2")
     )
 )  # fmt: skip
 VERBLESS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
