@@ -6,10 +6,11 @@ python -m bench.semantic --folds 6       # leaves lists out in turn and prints w
 
 import argparse
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import msgspec
 import numpy as np
 import numpy.typing as npt
 from scipy.optimize import minimize
@@ -22,7 +23,7 @@ from services.planner.semantic import ranker
 from services.planner.semantic.features import BITS, abstracted, features
 from services.planner.semantic.forms import NONE, OTHER, Candidate, candidates, tokens
 from services.planner.world import believed
-from tests.everyday import CONFIG, DATA, HOME, NOW, Sentence, after, planned, sentences, understand, verdict
+from tests.everyday import CONFIG, HOME, NOW, Sentence, Understood, after, lists, planned, understand, verdict
 
 Array = npt.NDArray[Any]
 RIDGE = 1.0
@@ -31,14 +32,16 @@ ITERATIONS = 80
 """Steps of L-BFGS (chosen: 40 more change nothing on lists left out)."""
 LEAST = 2
 """Times a word is to be said to be known (chosen: what is said once stands for all unknown words)."""
+PLAINLY = msgspec.structs.replace(CONFIG, guess=False)
+"""Settings of a planner that does not guess, so that no guess is learnt from."""
 STEPS = 127
 """Steps of an 8-bit weight."""
 
 
 class Example(NamedTuple):
-    """A labelled sentence with its candidates; `right`: those that are planned as it means (n,)."""
+    """A labelled sentence of a list with its candidates; `right`: those that are planned as it means (n,)."""
 
-    file: str
+    list: str
     sentence: Sentence
     words: tuple[str, ...]
     found: list[Chunk]
@@ -46,44 +49,46 @@ class Example(NamedTuple):
     right: list[bool]
 
 
-def examples(files: Sequence[str]) -> list[Example]:
-    """All sentences of the files that are said to a robot with nothing under way."""
+def examples(of: Mapping[str, Sequence[Sentence]]) -> list[Example]:
+    """All sentences of some lists that are said to a robot with nothing under way."""
     planner = _Planner()
-    rows = [(file, row) for file in files for row in sentences(file)]
-    return [e for file, row in rows if (e := planner.example(file, row)) is not None]
+    rows = [(number, row) for number, rows in of.items() for row in rows]
+    return [e for number, row in rows if (e := planner.example(number, row)) is not None]
 
 
 class _Planner:
     """What the commands come to, each planned once."""
 
     def __init__(self) -> None:
-        self._right: dict[tuple[str, str, str], bool] = {}
+        self._plans: dict[tuple[str, str], Understood | None] = {}
         self._vocabularies: dict[str, Vocabulary] = {}
 
-    def example(self, file: str, row: Sentence) -> Example | None:
+    def example(self, number: str, row: Sentence) -> Example | None:
         words = tokens(row.said)
         if not words or row.context.partition(":")[0] not in ("-", "held", "last", "failed"):
             return None
-        found = chunks(words, self._vocabulary(row.context), pronouns=True)
+        found = chunks(words, self._vocabulary(row.context), pronouns=True, unlisted=True)
         meant = candidates(found)
         idle = "none()" in row.right or "refuse()" in row.right
         right = [(idle and c.form == NONE) or self._is_right(row, c, idle) for c in meant]
         right[1] = not any(right)
         assert meant[1].form == OTHER
-        return Example(file, row, words, found, meant, right)
+        return Example(number, row, words, found, meant, right)
 
     def _is_right(self, row: Sentence, candidate: Candidate, idle: bool) -> bool:
         if not candidate.text or (idle and candidate.kind == "ask" and "answer" not in row.right):
             return False
-        key = (row.context, candidate.text, row.right)
-        if key not in self._right:
-            tag, _, about = row.context.partition(":")
+        plan = self._plan(row.context, candidate.text)
+        return plan is not None and bool(plan.steps) and verdict(row, plan) == "right"
+
+    def _plan(self, context: str, text: str) -> Understood | None:
+        if (context, text) not in self._plans:
+            tag, _, about = context.partition(":")
             try:
-                plan = planned(candidate.text, *after(tag, about))
+                self._plans[context, text] = planned(text, *after(tag, about), PLAINLY)
             except AssertionError:  # the brain would object to it
-                plan = None
-            self._right[key] = plan is not None and bool(plan.steps) and verdict(row, plan) == "right"
-        return self._right[key]
+                self._plans[context, text] = None
+        return self._plans[context, text]
 
     def _vocabulary(self, context: str) -> Vocabulary:
         if context not in self._vocabularies:
@@ -155,15 +160,16 @@ def learn(rows: Sequence[Example]) -> tuple[npt.NDArray[np.float32], frozenset[s
 
 def left_out(rows: Sequence[Example], folds: int) -> dict[str, Counter[str]]:
     """Verdicts of each list on what the planner makes of it with a model that has seen nothing of it."""
-    sizes = Counter(e.file for e in rows)
+    sizes = Counter(e.list for e in rows)
     groups: list[list[str]] = [[] for _ in range(folds)]
-    for file, _ in sizes.most_common():
-        min(groups, key=lambda g: sum(sizes[f] for f in g)).append(file)
+    for number, _ in sizes.most_common():
+        min(groups, key=lambda g: sum(sizes[n] for n in g)).append(number)
     found: dict[str, Counter[str]] = {}
+    every = lists()
     for group in groups:
-        ranker.use(ranker.Ranker(*learn([e for e in rows if e.file not in group])))
-        for file in group:
-            found[file] = Counter(verdict(row, understand(row)) for row in sentences(file))
+        ranker.use(ranker.Ranker(*learn([e for e in rows if e.list not in group])))
+        for number in group:
+            found[number] = Counter(verdict(row, understand(row)) for row in every[number])
     return found
 
 
@@ -176,17 +182,16 @@ def save(weights: npt.NDArray[np.float32], words: frozenset[str], path: Path) ->
 
 def _report(found: dict[str, Counter[str]]) -> None:
     kinds = ("right", "asked rightly", "asked back", "not understood", "wrong")
-    print(f"{'list':32}", *(f"{kind:>14}" for kind in kinds))
-    for file, counts in [*sorted(found.items()), ("all", sum(found.values(), Counter()))]:
-        print(f"{file.removesuffix('.tsv'):32}", *(f"{counts[kind]:14}" for kind in kinds))
+    print(f"{'list':4}", *(f"{kind:>14}" for kind in kinds))
+    for number, counts in [*sorted(found.items()), ("all", sum(found.values(), Counter()))]:
+        print(f"{number:4}", *(f"{counts[kind]:14}" for kind in kinds))
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--folds", type=int, default=0, help="groups of lists left out in turn; 0: learn from all")
     args = parser.parse_args()
-    ranker.use(ranker.Ranker(np.zeros(1 << BITS, np.float32), frozenset()))  # no guess is to be learnt from
-    rows = examples(sorted(path.name for path in DATA.glob("*.tsv")))
+    rows = examples(lists())
     if args.folds:
         _report(left_out(rows, args.folds))
         return

@@ -7,7 +7,7 @@ from common import config
 from common.messages import PlanStep
 from services.brain.config import BrainConfig
 from services.speech.recognise.recogniser import Recognition
-from tests.everyday import DATA, planned, sentences
+from tests.everyday import lists, planned
 
 Outcome = Literal["same", "asked", "asked wrongly", "not understood", "wrong"]
 OUTCOMES: tuple[Outcome, ...] = ("same", "asked", "asked wrongly", "not understood", "wrong")
@@ -17,8 +17,7 @@ SURE = config.load("brain", BrainConfig, config.DEFAULT_DIR, {}).confirm_below
 
 def drawn(count: int, seed: int) -> list[str]:
     """That many everyday sentences at random, of those that are said without anything before."""
-    names = sorted(path.name for path in DATA.glob("*everyday_sentences.tsv"))
-    every = dict.fromkeys(row.said for name in names for row in sentences(name) if row.context == "-")
+    every = dict.fromkeys(row.said for rows in lists().values() for row in rows if row.context == "-")
     return Random(seed).sample(list(every), count)
 
 

@@ -1,4 +1,4 @@
-"""What the robot makes of everyday sentences, and whether that is right by the notation of tests/data/*.tsv."""
+"""What the robot makes of everyday sentences, and whether that is right by the notation of tests/data/sentences.tsv."""
 
 import re
 from itertools import permutations
@@ -16,7 +16,7 @@ from services.planner.grammar import grammar
 from services.planner.world import believed
 
 Verdict = Literal["right", "asked rightly", "asked back", "not understood", "wrong"]
-DATA = Path(__file__).parent / "data"
+DATA = Path(__file__).parent / "data" / "sentences.tsv"
 CONFIG = config.load("planner", PlannerConfig, config.DEFAULT_DIR, {})
 HOME = load_household("apartment")
 NOW = 500.0
@@ -52,7 +52,7 @@ FLAT = [
     _object("white can", "dresser", 6.7, 1.5, 0.74, CAN, text="TOMATO SOUP"),
     _object("white bottle", "dresser", 6.7, 2.0, 0.74, (0.07, 0.07, 0.26)),
 ]  # fmt: skip
-"""The flat that the head of everyday_sentences.tsv describes."""
+"""The flat that the head of sentences.tsv describes."""
 
 
 class Sentence(NamedTuple):
@@ -61,10 +61,14 @@ class Sentence(NamedTuple):
     right: str
 
 
-def sentences(name: str) -> list[Sentence]:
-    """The rows of a file of tests/data."""
-    lines = (DATA / name).read_text(encoding="utf-8").splitlines()
-    return [Sentence(*line.split("\t")) for line in lines if line and not line.startswith("#")]
+def lists() -> dict[str, list[Sentence]]:
+    """The rows of tests/data/sentences.tsv by the number of their list."""
+    found: dict[str, list[Sentence]] = {}
+    for line in DATA.read_text(encoding="utf-8").splitlines():
+        if line and not line.startswith("#"):
+            number, *row = line.split("\t")
+            found.setdefault(number, []).append(Sentence(*row))
+    return found
 
 
 class Understood(NamedTuple):
@@ -143,7 +147,11 @@ def after(tag: str, about: str) -> tuple[list[WorldObject], str, History]:
 
 
 def planned(
-    command: str, objects: list[WorldObject] | None = None, held: str = "", history: History | None = None
+    command: str,
+    objects: list[WorldObject] | None = None,
+    held: str = "",
+    history: History | None = None,
+    settings: PlannerConfig = CONFIG,
 ) -> Understood:
     """The planner's last word, after it has looked where it wanted to."""
     objects = FLAT if objects is None else objects
@@ -151,7 +159,7 @@ def planned(
     world = believed(HOME, told, objects, (0.0, 0.0, 0.0), NOW, history)
     looked: list[PlanStep] = []
     for _ in range(5):
-        plan: ActionPlan = grammar.plan(command, world, CONFIG, (), looked)
+        plan: ActionPlan = grammar.plan(command, world, settings, (), looked)
         wrong = objection(plan.steps, told, HOME)
         assert not plan.steps or wrong is None, f"{command!r}: the brain objects: {wrong}"
         if not plan.again:

@@ -24,8 +24,10 @@ _PART = re.compile(
     r"\s*[;.!?]+\s*(?:and\s+)?(?:then\s+)?"
     r"|,?\s+(?:(?:and|but)\s+)?(?:(?:only|just)\s+)?(?:then|after (?:that|which)|afterwards|thereafter|"
     r"(?:once|when|as soon as) (?:that|this|it) (?:is|has been) done|when done),?\s+|,\s*(?:and "
-    r")?(?:finally|lastly|last|next),?\s+(?!to\b)"
+    r")?(?:finally|lastly|last|next),?\s+(?!to\b)|,\s*(?:and )?(?=(?:say|announce)\b)"
 )
+_BEHIND_SPEECH = re.compile(rf",\s*(?:and then|and|then)\s+(?={A_VERB}\b)")
+"""Between what is to be said and the next command."""
 _COMMA = re.compile(r"\s*,[\s,]*(?:and\s+)?")
 
 
@@ -46,7 +48,7 @@ def cut_clauses(rest: str) -> list[str]:
     found: list[str] = []
     while rest:
         saying = LONG_SPEECH.match(without_lead(rest))
-        cut = None if saying else _PART.search(rest)
+        cut = (_BEHIND_SPEECH if saying else _PART).search(rest)
         head, rest = (rest, "") if cut is None else (rest[: cut.start()], rest[cut.end() :])
         if bare := without_politeness(head if saying else _commas_as_and(without_lead(head))):
             found.append(bare)

@@ -99,7 +99,7 @@ _SAME = tuple(
         (r"\b(?:of|in) (?!the\b|that\b|this\b|what\b|which\b|any\b|same\b|a\b)(\w+) colou?r\b", r"that is \1"),
         (rf"\b({A_VERB}) (?:please|kindly) (?=(?:the|my|our|a|an|me|us|it|to|in|on|up|that|this)\b)", r"\1 "),
         (
-            r"^(any\w* (?!idea|chance|clue|sign|way|news)\w.+ (?:(?:in|on|at) (?:the|my|our) \w+(?: "
+            r"^(any\w* (?!idea|chance|clue|sign|way|news)(?:\w.+ )?(?:(?:in|on|at) (?:the|my|our) \w+(?: "
             r"\w+)?|there|around|about|left))[.?!]?$",
             r"is there \1"
         ),
@@ -116,6 +116,16 @@ _SAME = tuple(
         (
             r"^what (?:have (?:we|you)(?: got)?|do (?:we|you) have|is there|can i have)(?: there)? to (drink|eat)\b",
             r"is there anything to \1",
+        ),
+        (
+            r"(?<!\bis)(?<!\bare)(?: anywhere| somewhere)? (?:in|around|inside|within) (?:the|this|our|my|your) "
+            r"(?:(?:whole|entire) )?(?:house|flat|apartment|home|building)\b",
+            "",
+        ),
+        (r"^((?:what|which|who)\b[^,]*), (?=(?:the|my|our|a)\b.* or \w)", r"\1 "),
+        (
+            rf"(?<=\bif )there is nothing (?:left )?(?:on|in|at) ((?:the|my|our) \w+(?: (?!then\b|{A_VERB}\b)\w+)?)",
+            r"\1 is empty",
         ),
         (r"\bdat\b", "that"),
         (r"\bfrom off(?: of)?\b", "from"),

@@ -28,6 +28,8 @@ _RIGHT_FIRST = re.compile(
     r"into|onto) .+)$"
 )
 """`put it on the desk instead of bringing it to me`."""
+_PREFERRED = re.compile(r"^(?P<right>.*\b(?:rather|prefer|sooner)\b.+?),? than (?P<wrong>(?:in|on|at|to|with) .+)$")
+"""`i would rather have it on the desk than on the counter`."""
 NOT_WANTED = re.compile(
     r"^(?:(?:never mind|forget(?: about)?|skip|leave|ignore|not|no need for|no more|(?:i|we) do not (?:need|want|like))"
     r" (?:the|that|my|those|this)(?: \w+){1,3}?|no (?!the\b|no\b|need\b)\w+(?=,))(?:,\s*(?:and |but )?| and | but | )"
@@ -47,7 +49,7 @@ def instead(text: str) -> str | None:
     """What is to be done instead of what is said to be left: `put it there instead of here`; None without such."""
     if text.startswith(("instead of", "rather than")):
         return contrasted(text)
-    if found := _RIGHT_FIRST.match(text):
+    if found := _RIGHT_FIRST.match(text) or _PREFERRED.match(text):
         return filled(found["right"], found["wrong"]) if " one" in found["right"] else found["right"]
     return None
 
@@ -55,7 +57,7 @@ def instead(text: str) -> str | None:
 def contrasted(text: str) -> str:
     """A text without politeness as what is meant by it in the end; as it is when it sets nothing against another."""
     if unwanted := NOT_WANTED.match(text):
-        text = without_politeness(text[unwanted.end() :])
+        text = filled(without_politeness(text[unwanted.end() :]), unwanted[0].replace(",", ""))
     if found := _ELSEWHERE.match(text):
         return f"{found['thing']} {found['right']}"
     text = _NOT_HERE.sub("", text)

@@ -39,7 +39,9 @@ _BUT_FIRST = re.compile(
     r"^(?P<second>.+?),? but (?:first|before (?:that|you do(?: (?:that|it|so))?|doing (?:that|it|so))|beforehand),? "
     r"(?P<first>.+)$"
 )
-_LATER = re.compile(r"^(?P<first>.+?),? (?P<word>before|after) (?:you(?: have)? |(?=\w+ing\b))(?P<second>.+)$")
+_LATER = re.compile(
+    r"^(?P<first>.+?),? (?P<word>before|after|once|when|as soon as) (?:you(?: have)? |(?=\w+ing\b))(?P<second>.+)$"
+)
 _GO_AND_ASK = re.compile(
     r"\b(?:go|drive|walk|run|head|nip|pop|come|wander|hop|dash)(?: over| along| across| down| up)* (?:to|into|in) "
     r"(?:the|my|our) \w+(?: \w+)? (?:and|to) (?:see|tell me|check|look|find out|report|let me know) "

@@ -1,7 +1,8 @@
-"""Who is to act, and when: what forbids, supposes, reports or tells of others is no request to the robot. Pure."""
+"""Who is to act, and when: what forbids, supposes, reports, asks or tells of others is no request. Pure."""
 
 import re
 
+from common.language.lexicon import HANDLING
 from common.language.normalise import Words, infinitive
 from common.language.verb_classes import VERBS, classes
 
@@ -52,6 +53,18 @@ _OWN = re.compile(
     rf"|\b(?:{_FINITE})(?: (?:{_ADVERBS}))*$"
 )
 """What stands before a verb whose subject is not the robot."""
+_QUESTION = re.compile(
+    r"^(?:\w+ ){0,3}?(?:where(?! you)|whereabouts|what(?! (?:about|do you say|i|we)\b)|which|who|how many|count|"
+    r"whether|^(?:tell|see|say|know|check)(?: me| us)? if\b(?!.* (?:could|can|should)\b)|(?:is|are) there|any "
+    r"(?:sign|idea|clue|trace))\b|\bwhere(?:abouts)?$|"
+    r"^(?:is|are(?! you\b)|was|were|did|does|has)\b|^(?:do|have) (?:you|we|i) (?!mind\b)|"
+    r"^(?:can|could|might) (?:i|we) (?:find|see)\b"
+)
+"""How questions about the world begin or end."""
+_REQUESTED = re.compile(
+    r"^(?:is|would|could|will|can|may|might|do|are) .*\b(?:if|that|for) you\b(?! (?:are|were|have|had|did|do)\b)"
+)
+"""What makes a request of a question: `is it okay if you ...`."""
 _WAS = frozenset({"was", "were", "had", "did"})
 
 
@@ -73,3 +86,9 @@ def is_told(words: Words) -> bool:
     verbs = [at for at, word in enumerate(words) if classes(word)]
     own = [at for at in verbs if not is_of_others(words, at) or classes(words[at]) & {"wish", "seek"}]
     return (bool(verbs) and not own) or (not own and bool(_WAS & set(words)))
+
+
+def is_asked(words: Words) -> bool:
+    """Are the words a question about the world rather than a request in the form of one?"""
+    text = " ".join(words)
+    return words[0] not in HANDLING and _QUESTION.search(text) is not None and not _REQUESTED.search(text)

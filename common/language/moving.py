@@ -24,6 +24,7 @@ MOVING: tuple[Wording, ...] = (
     # Putting.
     Wording("put", f"({PUT}) (down <thing> | <thing> down) ({ON} | at) <spot>"),
     Wording("put", f"(line | stack | pile | set | put | lay) <thing> (up | out) ({ON} | at) <spot>"),
+    Wording("put", f"(gather | collect | bring | get | put) <thing> together ({ON} | at) <spot>"),
     Wording("put", f"drop (off <thing> | <thing> off) ({ON} | at) <spot>"),
     Wording(
         "put_down",
@@ -139,7 +140,7 @@ MOVING: tuple[Wording, ...] = (
     Wording("fetch", f"{PERSON} {WISH} <thing> [[over] here]"),
     Wording("fetch", f"{MODAL} (i | we) (have | get) <thing> | let (me | us) (have | borrow | use | hold) <thing>"),
     Wording("fetch", f"{MODAL} i (trouble | bother | ask) you for <thing> | gimme <thing> | how about <thing>"),
-    Wording("fetch", "<thing> would be (nice | great | good | lovely | perfect)"),
+    Wording("fetch", "<thing> (would be (nice | great | good | lovely | perfect) | (will | would) do [nicely | fine])"),
     Wording("fetch", "[is there] any chance of [getting | having] <thing>"),
     Wording("fetch", "(pick | grab | fetch | get) (me | us) up <thing>"),
     Wording("refuse", "(put | place | set) <thing>", reason="you did not say where to put it", lost=True),

@@ -49,24 +49,30 @@ SIDES: dict[str, Which] = {
     "on your left": "left", "on your right": "right", "to your left": "left", "to your right": "right",
 }  # fmt: skip
 _BUT = (
-    "and not", "but not in", "not in", "but not", "but no", "except for", "except", "apart from", "other than",
+    "and not", "but not in", "not in", "but not on", "not on", "not at", "but not",
+    "but no", "except for", "except", "apart from", "other than",
     "besides", "excluding", "without", "but", "not",
 )  # fmt: skip
 """Words before what is left out."""
-UNSEEN = frozenset(
-    {
-        "dirty", "clean", "empty", "full", "used", "old", "new", "nice", "fresh", "cold", "hot", "warm", "favourite",
-        "favorite", "normal", "regular", "ordinary", "own", "lovely", "pretty", "good", "whole", "remaining", "same",
-        "usual", "more", "certain", "single",
-    }
-)  # fmt: skip
+_UNSEEN = (
+    "dirty clean empty full used old new nice fresh cold hot warm favourite favorite normal regular ordinary own "
+    "lovely pretty good whole remaining same usual more certain single stupid silly dumb damn damned darn bloody "
+    "blasted flipping freaking wretched ruddy crappy lousy ugly beautiful gorgeous cute dear precious special "
+    "beloved horrible awful terrible nasty disgusting filthy grubby messy dusty sticky wet damp ancient spare "
+    "extra leftover missing lost forgotten important useless useful handy tasty yummy delicious juicy ripe rotten "
+    "healthy cool chilled lukewarm cheap expensive fancy trusty actual real exact particular specific entire "
+    "annoying boring amazing awesome fantastic brilliant wonderful great perfect best bad heavy fragile poor "
+    "famous funny weird strange proper correct"
+)
+UNSEEN = frozenset(_UNSEEN.split())
 """Qualities that nobody can see or that tell nothing apart."""
 _MEASURES = frozenset(
     {"piece", "pieces", "bit", "pair", "couple", "lot", "one", "some", "any", "all", "both", "each", "kind", "either"}
 )
 """Words before "of" that say how much of it."""
 _TAILS = (
-    "over there", "there", "you see", "you can see", "you found", "you have found", "you are holding", "you hold",
+    "over there", "there", "of mine", "of ours", "of yours", "you see", "you can see", "you found", "you have found",
+    "you are holding", "you hold",
     "you can find", "you have got", "we have", "we own", "i have", "we have got", "you have", "you know",
     "of something", "of any kind", "of some kind", "of some sort", "somewhere", "around here", "in the house",
     "in the flat", "in the apartment", "in the whole house", "at home", "in the building",
@@ -157,7 +163,8 @@ def without_measure(words: Words) -> Words:
 
 _WITH = re.compile(
     r"^(?P<container>.+?)(?: (?:that|which) (?:is|has))? (?:with|containing|full of|filled with|of) "
-    rf"(?:(?:{'|'.join(sorted(DETERMINERS))}) )*(?P<contents>.+?)(?: (?:in|inside|on) it| inside| in there)?$"
+    rf"(?:(?:{'|'.join(sorted(DETERMINERS))}) )*(?P<contents>.+?)"
+    r"(?:(?: written| printed)? (?:in|inside|on) it| inside| in there)?$"
 )
 
 

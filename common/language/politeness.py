@@ -174,6 +174,7 @@ _FOR_ME = re.compile(
 """Taking something for somebody is bringing it."""
 LONG_SPEECH = re.compile(
     r"^(?:(?:say|announce)(?: that)?|tell (?:them|everybody|everyone|people|us|me) that|"
+    r"tell (?:everybody|everyone|people) in (?:the|my|our) \w+(?: \w+)? that|"
     r"tell (?:them|everybody|everyone|people|the others)(?! (?:to|where|what|how|if|whether|about|when|why|who|"
     r"which)\b)|"
     r"(?:tell|inform) (?:my|our|the) \w+(?: that)?(?! (?:to|where|what|how|if|whether|about|when|why|who|which)\b)|"

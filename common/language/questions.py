@@ -5,6 +5,14 @@ from common.language.wording import Wording
 
 ABOUT_THE_WORLD: tuple[Wording, ...] = (
     Wording(
+        "written",
+        f"{ASK} what (does | do) (it say on <thing> | (<thing> | it) say [on (it | them)])"
+        f" | {ASK} what [words] {BE} (written | printed | said) on <thing> | {ASK} what it says on <thing>"
+        f" | {ASK} what does the (label | writing | print | text) [(on | of) <thing>] say"
+        f" | read [out] [(to me | me | us | out)] (what <thing> says | what it says on <thing> | [what is] (the | its)"
+        f" (label | text | writing | print | words) [(on | of) <thing>] [out] | <thing>)",
+    ),
+    Wording(
         "seen",
         "[tell me] what (do you | can you | are you able to) see [now | right now | here | from (here | there | "
         "where you are)]"

@@ -6,7 +6,9 @@ from common.language.contrasts import CONTRAST, contrasted, instead, with_qualit
 from common.language.exchange import PREPOSITIONS, IsPlace, filled, noun_phrases, replaced, verb_first
 from common.language.lexicon import COMMANDING, HANDLING
 from common.language.normalise import DETERMINERS
+from common.language.noun_phrase import WHICH
 from common.language.politeness import without_politeness
+from common.naming.names import ALIKE
 
 _REPAIR = re.compile(
     r"(?:,\s*wait,\s*(?=not\b)|[,.;]\s*(?:no|sorry|actually|rather)(?:,\s*|\s+)|,\s*(?:oh|well|hold on|hang on),\s*"
@@ -30,7 +32,12 @@ _DISLOCATED = re.compile(
 _PRESENTED = re.compile(
     r"^(?P<thing>(?:the|my|that|this|those|these|all|both|our) [^,]+?),\s*(?P<rest>(?:(?:please|just|can you|"
     r"could you|would you)\s+)*\w+"
-    r"(?: me)? (?:it|them|that|those|one)\b.*)$"
+    r"(?: me)? (?:it|them|that|those|one)\b.*|"
+    r"(?:what|which|where|whereabouts|how|is|are|i|we)\b[^,]* (?:it|they|them)\b.*)$"
+)
+_ASKS_OR_WISHES = re.compile(
+    r"^(?:(?:what|which|where|whereabouts|how)\b|(?:is|are) (?:it|they)\b|"
+    r"(?:i|we) (?:\w+ )?(?:want|need|would like|would love)\b)"
 )
 _PRESENTED_AT_ONCE = re.compile(
     r"^(?P<thing>(?:the|my|that|this|those|these|our) "
@@ -89,24 +96,15 @@ _APPOSED = re.compile(
 )
 """A thing, which one it is, and what is to be done with it."""
 _THAT_IS = re.compile(r"(?P<one>(?:the|a|my) \w+ one),? (?:that is|i mean|to be precise|obviously)\b")
-_ONE_OF_THOSE = re.compile(
-    r"^(?:out )?of (?:all )?(?P<those>(?:the|my) (?:things|stuff|objects|\w+s) (?:on|in|at) .+?),? "
-    r"(?P<command>(?:\w+ (?:me )?))the (?P<which>\w+)(?: one)?$"
-)
-"""Which one of several is meant, the several first."""
-_NEITHER = re.compile(r"\bneither .+? nor (?P<other>(?:the |my )?(?:\w+ ){1,2}?)(?:but )?(?P<one>(?:the|a|my) [^,]+)")
-_MADE_SURE = re.compile(r",? (?:but|and) (?:make sure|mind|see)(?: that)? it is (?=(?:the|a) \w+ one\b)")
 _ANY = re.compile(r"\b(an? (\w+)), (?:any|either|whichever)(?: (?:\2|one|of them|will do|you (?:like|want)))?\b")
 
 
 def settled(text: str, is_place: IsPlace) -> str:
     """The text without what was taken back."""
-    text = _MADE_SURE.sub(", ", text)
     text = _THAT_IS.sub(r"\g<one>", _APPOSED.sub(r"\g<thing> \g<which> \g<rest>", text))
-    text = _ONE_OF_THOSE.sub(_singled_out, text)
-    text = _refined(_without_lead(text))
+    text = _refined(_apposed(_without_lead(text)))
     text = _AFTERTHOUGHT.sub(r"\g<said>, i mean \g<meant>", text) if text.count(",") else text
-    text = _with_noun(_NEITHER.sub(lambda found: filled(found["one"], found["other"]), text))
+    text = _with_noun(text)
     if (found := _NOT_THAT_ONE.match(text)) and not _SEVERAL.search(found["said"]):
         others = re.sub(r",? (?:and|nor) not | nor ", " or ", found["more"])
         one_of = "" if "," in found["said"] else f" but not {found['one']}{others}"
@@ -130,12 +128,6 @@ def settled(text: str, is_place: IsPlace) -> str:
     return text if meant == bare else meant
 
 
-def _singled_out(found: re.Match[str]) -> str:
-    """`of the things on the desk bring the taller one` as `bring the taller thing on the desk`."""
-    _, several, *where = found["those"].split()
-    return f"{found['command']}the {found['which']} {several.removesuffix('s')} {' '.join(where)}"
-
-
 def _with_noun(text: str) -> str:
     """`the mug on the desk, bring it to me` and `bring it to me, the mug` as `bring the mug to me`."""
     if (found := _PRESENTED_AT_ONCE.match(text)) and "," not in text:
@@ -143,14 +135,19 @@ def _with_noun(text: str) -> str:
     if found := _DISLOCATED.match(without_politeness(text)):
         if found["verb"].split()[0] in COMMANDING:
             return f"{found['verb']} {found['thing']}{found['rest'] or found['near'] or ''}"
-    elif (found := _PRESENTED.match(text)) and verb_first(without_politeness(found["rest"])):
+    elif (found := _PRESENTED.match(text)) and _speaks_of_it(without_politeness(found["rest"])):
         return _put_in(found["thing"], found["rest"])
     return text
 
 
+def _speaks_of_it(text: str) -> bool:
+    """Is it a command, a question or a wish, in which a pronoun may stand for what was named before?"""
+    return verb_first(text) or _ASKS_OR_WISHES.match(text) is not None
+
+
 def _put_in(thing: str, command: str) -> str:
     """A thing in place of the first pronoun of a command."""
-    return re.sub(r"\b(?:it|them|that|those|one)\b", lambda _: thing, command, count=1)
+    return re.sub(r"\b(?:it|they|them|that|those|one)\b", lambda _: thing, command, count=1)
 
 
 def _repaired(text: str, is_place: IsPlace) -> str:
@@ -186,6 +183,46 @@ def _without_lead(text: str) -> str:
     ):
         return rest
     return text
+
+
+_WHICH_ONE = re.compile(r"^(?:the|a|an|my) (?:\w+ ){1,2}one$")
+_ANY_ONE = re.compile(
+    r"^(?:any|either|whichever|it does not matter which|i do not (?:mind|care))(?: one| (?:one )?will do)?$"
+)
+
+
+def _apposed(text: str) -> str:
+    """A text with which one of its kind is meant said at once: `my ball is gone, the red one, find it`.
+
+    A thing that has its colour already is followed by another one; any one is no other one.
+    """
+    first, *parts = text.split(", ")
+    kept, merged = [first], False
+    for part in parts:
+        if merged and part.split()[0] in PREPOSITIONS:  # "put the mug, the blue one, on the desk"
+            kept[-1], merged = f"{kept[-1]} {part}", False
+            continue
+        merged = False
+        words = kept[-1].split()
+        begin, end = next(iter(noun_phrases(words)), (0, 0))
+        if not verb_first(without_politeness(kept[-1])):  # what is told goes on behind its noun: "my ball rolled off"
+            end = min(end, begin + 2)
+        end = next((at for at in range(begin + 1, end) if words[at] in DETERMINERS or words[at] in WHICH), end)
+        said = words[begin:end]
+        if _ANY_ONE.match(part) and said:
+            continue
+        of_it = (
+            _WHICH_ONE.match(part)
+            and "not" not in words
+            and end - begin > 1
+            and "one" not in said
+            and not ALIKE.keys() & set(said[1:-1])
+        )
+        if not of_it:
+            kept.append(part)
+            continue
+        kept[-1], merged = " ".join((*words[:begin], *filled(part, " ".join(said)).split(), *words[end:])), True
+    return ", ".join(kept)
 
 
 def _refined(text: str) -> str:

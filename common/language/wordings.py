@@ -17,7 +17,8 @@ from common.language.wording import Wording
 WORDINGS: tuple[Wording, ...] = (
     Wording(
         "stop",
-        "[no] (stop | halt | freeze | hold it) [it | that | now | [right] there | at once | immediately | everything]"
+        "[no] (stop | halt | freeze | hold it | whoa)"
+        " [it | that | now | [right] there | at once | immediately | everything]"
         " | [no] stop ([please] stop [stop] | (looking | searching | trying) [for (it | that)] | moving | driving | "
         "going | doing that | what you are doing)"
         " | hold still | [no | please] do not [move | do (that | it | this)]"
@@ -123,6 +124,7 @@ WORDINGS: tuple[Wording, ...] = (
     Wording(
         "say",
         "(say | announce) [that] <words> | tell (them | everybody | everyone | people | us | me) that <words>"
+        " | tell (everybody | everyone | people) in <spot> that <words>"
         f" | (tell | inform) (my | our | the) {FAMILY} [that] <words> | tell (them | everybody | everyone | "
         f"people | the others) <words>"
         " | inform (everyone | everybody | them | people) [that] <words> | let (them | everybody | everyone | "

@@ -11,11 +11,12 @@ class PlannerConfig(Config, frozen=True):
     `llm_tries` answers are asked for within `llm_timeout`; in lockstep they show after `llm_seconds`.
 
     With `open_vocabulary` a thing that nobody has named is looked for by its words, else only what the household names
-    or perception has seen is known. Times in seconds.
+    or perception has seen is known. With `guess` what no wording covers is asked about. Times in seconds.
     """
 
     backend: Literal["auto", "grammar", "llm"] = "auto"
     open_vocabulary: bool = True
+    guess: bool = True
     set_down: tuple[str, ...] = ("counter", "table", "shelf")
     max_steps: int = 60
     fresh: float = 5.0

@@ -52,7 +52,7 @@ class PlanBuilder:
         self.spot: Spot | None = None
         self.need = ""
         self.unmet = ""
-        self.moved = False
+        self.moved, self.leaving = False, False
         self.effort = [0]
         self.collecting: set[str] = set()
         self._found: set[str] = set()
@@ -62,13 +62,15 @@ class PlanBuilder:
         other = PlanBuilder(self.world.copy(), self.vocabulary, self.config, self.choices.fork(), self.done)
         other.steps, other.last, other.spot = list(self.steps), list(self.last), self.spot
         other.need, other.unmet = self.need, self.unmet
-        other.moved, other._found, other.effort = self.moved, set(self._found), self.effort
+        other.moved, other.leaving = self.moved, self.leaving
+        other._found, other.effort = set(self._found), self.effort
         other.collecting = set(self.collecting)
         return other
 
     def adopt(self, other: "PlanBuilder") -> None:
         self.world, self.steps, self.last, self.spot = other.world, other.steps, other.last, other.spot
-        self.moved, self._found, self.collecting = other.moved, other._found, other.collecting
+        self.moved, self.leaving = other.moved, other.leaving
+        self._found, self.collecting = other._found, other.collecting
         self.choices.taken, self.need, self.unmet = other.choices.taken, other.need, other.unmet
 
     # --- steps
@@ -79,7 +81,9 @@ class PlanBuilder:
         self.steps.append(PlanStep(action="wait", seconds=seconds))
 
     def go(self, spot: Spot) -> None:
-        self.spot = spot
+        if self.leaving and self.steps[-1:] == [PlanStep(action="return")]:
+            self.steps.pop()  # "get out of the kitchen and go to the study"
+        self.spot, self.leaving = spot, False
         self.moved = True
         self.steps.append(PlanStep(action="return") if spot.home else PlanStep(action="navigate", target=spot.name))
 

@@ -1,5 +1,7 @@
 """Everyday sentences: at least nine in ten are understood, and none leads to a wrong action."""
 
+from typing import NamedTuple
+
 import pytest
 
 from common.language.discourse import commands
@@ -12,69 +14,69 @@ from services.planner.grammar.vocabulary import Vocabulary
 from services.planner.semantic.forms import tokens
 from services.planner.semantic.parse import parse
 from services.planner.world import World
-from tests.everyday import CONFIG, HOME, Sentence, planned, sentences, understand, verdict
-
-LISTS = ("everyday_sentences.tsv", "more_everyday_sentences.tsv", "last_everyday_sentences.tsv")
-CLOSING = ("sealed_everyday_sentences.tsv", "closing_everyday_sentences.tsv")
-LOTS = ("neighbours_everyday_sentences.tsv", "visitors_everyday_sentences.tsv")
-SEASONS = tuple(f"{season}_everyday_sentences.tsv" for season in ("spring", "summer", "autumn", "winter", "evening"))
-ENOUGH = 0.9
+from tests.everyday import CONFIG, HOME, Sentence, lists, planned, understand, verdict
 
 
-@pytest.mark.parametrize("name", LISTS)
-def test_everyday_sentences(name: str) -> None:
-    rows = sentences(name)
+class Least(NamedTuple):
+    """Of a list: least share that is right, least share that is right or asked about rightly, and most that are wrong.
+
+    `slow`: too many sentences for every run.
+    """
+
+    right: float
+    understood: float
+    wrong: int
+    slow: bool = True
+
+
+LEAST = {
+    "01": Least(0.9, 0.9, 0, slow=False),
+    "02": Least(0.9, 0.9, 0, slow=False),
+    "03": Least(0.9, 0.9, 0, slow=False),
+    "04": Least(0.94, 0.94, 7),
+    "05": Least(0.94, 0.94, 1, slow=False),
+    "06": Least(0.83, 0.83, 1, slow=False),
+    "07": Least(0.94, 0.94, 9),
+    "08": Least(0.94, 0.94, 0),
+    "09": Least(0.94, 0.94, 0),
+    "10": Least(0.94, 0.94, 1),
+    "11": Least(0.94, 0.94, 1),
+    "12": Least(0.94, 0.94, 1),
+    "13": Least(0.94, 0.94, 0),
+    "14": Least(0.9, 0.9, 2),
+    "15": Least(0.84, 0.84, 3),
+    "16": Least(0.7, 0.93, 4),
+    "18": Least(0.8, 0.88, 12),
+    "19": Least(0.65, 0.75, 1),
+    "20": Least(0.94, 0.94, 2),
+    "21": Least(0.9, 0.95, 1),
+    "22": Least(0.9, 0.95, 0),
+    "23": Least(0.8, 0.9, 1),
+    "24": Least(0.6, 0.92, 0),
+    "25": Least(0.93, 0.95, 2),
+    "26": Least(0.65, 0.92, 2),
+    "27": Least(0.85, 0.94, 0),
+    "28": Least(0.84, 0.94, 1),
+    "29": Least(0.88, 0.95, 1, slow=False),
+    "30": Least(0.43, 0.86, 2, slow=False),
+}
+"""By the numbers in tests/data/sentences.tsv; lists that nobody has worked on, such as 06, 15 and 19, ask for less."""
+
+
+@pytest.mark.parametrize("number", [pytest.param(n, marks=[pytest.mark.slow] * row.slow) for n, row in LEAST.items()])
+def test_sentences_are_understood(number: str) -> None:
+    rows, least = lists()[number], LEAST[number]
     verdicts = {row: verdict(row, understand(row)) for row in rows}
-    assert not [row for row, v in verdicts.items() if v == "wrong"]
+    wrong = [row for row, v in verdicts.items() if v == "wrong"]
+    assert len(wrong) <= least.wrong, "\n".join(map(str, wrong))
     missed = [row for row, v in verdicts.items() if v != "right"]
-    assert len(missed) <= (1 - ENOUGH) * len(rows), "\n".join(map(str, missed))
-
-
-def test_sentences_that_nobody_worked_on() -> None:
-    rows = sentences("unseen_everyday_sentences.tsv")
-    verdicts = [verdict(row, understand(row)) for row in rows]
-    assert verdicts.count("right") >= 50 and verdicts.count("wrong") <= 1, "50 of 60 when they were first tried"
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(("name", "right", "wrong"), [(LOTS[0], 90, 2), (LOTS[1], 84, 3)])
-def test_two_halves_of_one_list(name: str, right: int, wrong: int) -> None:
-    """The first was worked on; the second is sealed: what is lost of it was never won by a look at it."""
-    verdicts = [verdict(row, understand(row)) for row in sentences(name)]
-    assert verdicts.count("right") >= right and verdicts.count("wrong") <= wrong
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("name", "understood", "wrong"),
-    [
-        ("porch_everyday_sentences.tsv", 380, 12),
-        ("doorstep_everyday_sentences.tsv", 64, 1),
-        ("morning_everyday_sentences.tsv", 156, 1),
-        ("garden_everyday_sentences.tsv", 95, 0),
-        ("attic_everyday_sentences.tsv", 54, 1),
-    ],
-)
-def test_what_is_not_understood_at_once_is_mostly_asked_about(name: str, understood: int, wrong: int) -> None:
-    """The first was worked on, but for readings that its notation cannot express; the second was sealed meanwhile."""
-    verdicts = [verdict(row, understand(row)) for row in sentences(name)]
-    assert verdicts.count("right") + verdicts.count("asked rightly") >= understood
-    assert verdicts.count("wrong") <= wrong
+    assert len(missed) <= (1 - least.right) * len(rows), "\n".join(map(str, missed))
+    assert len([v for v in verdicts.values() if v in ("right", "asked rightly")]) >= least.understood * len(rows)
 
 
 def test_what_asks_for_nothing_sets_nothing_in_motion() -> None:
-    rows = sentences("nothing_to_do.tsv")
-    assert not [row for row in rows if row.right == "none()" and verdict(row, understand(row)) == "wrong"]
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", ["seven_lists.tsv", "development_sentences.tsv", *CLOSING, *SEASONS])
-def test_lists_of_many_speakers(name: str) -> None:
-    rows = sentences(name)
-    verdicts = {row: verdict(row, understand(row)) for row in rows}
-    wrong = [row for row, v in verdicts.items() if v == "wrong"]
-    assert len(wrong) <= 0.01 * len(rows), wrong
-    assert len([v for v in verdicts.values() if v == "right"]) >= 0.94 * len(rows)
+    rows = [row for row in lists()["05"] if row.right == "none()"]
+    assert rows and not [row for row in rows if verdict(row, understand(row)) == "wrong"]
 
 
 @pytest.mark.parametrize(
@@ -93,7 +95,7 @@ def test_a_condition_is_looked_into(said: str, acts: list[str]) -> None:
 
 
 def test_the_judge_of_sentences_can_say_no() -> None:
-    first = sentences("everyday_sentences.tsv")[0]
+    first = lists()["01"][0]
     assert verdict(first, understand(first)) == "right"
     assert verdict(first._replace(right="fetch(green can)"), understand(first)) == "wrong"
     assert verdict(first._replace(right="put(red mug, counter)"), understand(first)) == "wrong"
@@ -133,6 +135,16 @@ def test_the_judge_of_sentences_can_say_no() -> None:
         ("after you have brought me the mug, go to the kitchen", ["bring me the mug", "go to the kitchen"]),
         ("go to the kitchen, wait, and come back", ["go to the kitchen and wait and come back"]),
         ("say sorry, I mean it", ["say sorry, i mean it"]),
+        ("go to the desk, say lunch time, and come back", ["go to the desk", "say lunch time", "come back"]),
+        ("my ball rolled off, the red one, can you find it", ["the red ball rolled off", "find it"]),
+        ("put the mug, the blue one, on the desk", ["put the blue mug on the desk"]),
+        ("bring the green can, the red one", ["bring the green can and the red one"]),
+        ("get one of the mugs, any one", ["get one of the mugs"]),
+        ("the can on the desk, which colour is it", ["the can on the desk", "which colour is it"]),
+        ("not the red mug, I want the white one", ["i want the white mug"]),
+        ("I would rather have it on the desk than on the counter", ["i would rather have it on the desk"]),
+        ("tidy the desk once you have fetched the apple", ["fetch the apple", "tidy the desk"]),
+        ("if there is nothing on the desk bring me the mug", ["if the desk is empty", "bring me the mug"]),
         ("bring me a mug or a can", ["bring me a mug or a can"]),
     ],
 )
@@ -160,6 +172,18 @@ def test_what_is_meant_in_the_end(text: str, expected: list[str]) -> None:
         ("-", "bring me the apple i don't want it any more", []),
         ("-", "he wants to know if you can bring the mug", []),
         ("-", "are you a machine", ["say"]),
+        ("-", "get me the roll of tape", ["find roll of tape", "grasp roll of tape", "return", "release"]),
+        ("-", "fetch the can opener", ["find can opener", "grasp can opener", "return", "release"]),
+        ("-", "give me the thing with the blue lid",
+         ["find thing with the blue lid", "grasp thing with the blue lid", "return", "release"]),
+        ("-", "get the stupid mug from the desk", ["find white mug", "grasp white mug", "return", "release"]),
+        ("-", "bring me the mug that is not on the desk or the counter",
+         ["find red mug", "grasp red mug", "return", "release"]),
+        ("-", "the dresser can please", ["find white can", "grasp white can", "return", "release"]),
+        ("-", "get out of the kitchen and go to the study", ["navigate study"]),
+        ("-", "do you also have a bicycle", ["say"]),
+        ("-", "what does it say on the soup", ["say"]),
+        ("-", "what is written on the red mug", ["say"]),
         ("last:bring me the apple", "leave the vitamin box where it is", []),
         ("-", "if there is anything on the desk put it on the counter",
          ["find white mug", "grasp white mug", "place white mug", "find orange box", "grasp orange box",
@@ -176,6 +200,25 @@ def test_one_part_tells_what_another_means(context: str, said: str, acts: list[s
                                   "what if i put the ball in the toy box", "no need to bring the mug"])  # fmt: skip
 def test_nothing_is_offered_that_was_not_asked_for(said: str) -> None:
     assert not planned(said).asks
+
+
+@pytest.mark.parametrize(
+    ("said", "asks"),
+    [
+        ("go to the bed room", "go to the bedroom"),
+        ("fetch the white bottle from the dress her", "fetch the white bottle from the dresser"),
+        ("bring me the vitamin books", "bring me the vitamin box"),
+        ("get me the white kan", "get me the white can"),
+    ],
+)
+def test_a_name_that_only_sounds_like_a_known_one_is_asked_about(said: str, asks: str) -> None:
+    found = planned(said)
+    assert (found.steps, found.asks) == ([], asks)
+
+
+def test_a_colour_that_only_sounds_like_a_known_one_and_a_wrong_plural_are_understood() -> None:
+    assert planned("bring me the blew bottle").steps == planned("bring me the blue bottle").steps != []
+    assert planned("put the apple on the desks").steps == planned("put the apple on the desk").steps != []
 
 
 def test_what_names_nothing_replaces_nothing() -> None:
@@ -237,6 +280,22 @@ def test_a_slip_in_a_name_is_asked_about_and_taken_literally_after_a_no() -> Non
 def test_what_is_said_to_a_robot_at_work(said: str, kind: str, text: str) -> None:
     found = interjection(said)
     assert (found.kind, found.text) == (kind, text)
+
+
+@pytest.mark.parametrize(
+    ("said", "doing", "text"),
+    [
+        ("when you're done tidying the living room go to the bedroom", "tidy up the living room", "go to the bedroom"),
+        ("once you've tidied the desk, come back", "tidy up the desk", "come back"),
+        ("and after the apple the blue bottle", "bring me the apple", "the blue bottle"),
+        ("once you've got the mug get the can", "bring me the mug", "get the can"),
+        ("once you've put the can away come here", "bring me the mug", "once you've put the can away come here"),
+        ("after that bring me the apple", "bring me the apple", "bring me the apple"),
+    ],
+)
+def test_what_is_under_way_is_not_queued_again(said: str, doing: str, text: str) -> None:
+    found = interjection(said, doing)
+    assert (found.kind, found.text) == ("queue", text)
 
 
 @pytest.mark.parametrize(

@@ -22,7 +22,8 @@ from common.plan_rules import is_destination
 
 Reply = Literal["yes", "no", "cancel", "correction"]
 _CORRECTION = re.compile(
-    r"^(?:not at all|not really|no way|no|nope|yes|yeah|yep|wrong|not that|i said|i meant|i mean|i want(?:ed)?|i "
+    r"^(?:neither(?!.* nor\b)|none of (?:them|those)|"
+    r"not at all|not really|no way|no|nope|yes|yeah|yep|wrong|not that|i said|i meant|i mean|i want(?:ed)?|i "
     r"need|i would like|actually|"
     r"rather|almost|nearly|close|not quite|oops|whoops|ugh|sorry|wait|but)\s+"
 )
@@ -127,7 +128,8 @@ def chosen(
     if bare.startswith("not "):
         left = [o for o in options if not words - {"not"} <= set(o.split())]
         return left[0] if len(left) == 1 and words - {"not"} else None
-    matching = [o for o in options if words and words <= set(o.split())]
+    printed = {o.label: {w for text in (o.text, *o.names) for w in normalise(text).split()} for o in known}
+    matching = [o for o in options if words and words <= set(o.split()) | printed.get(o, set())]
     if not matching and household is not None:
         matching = [o for o in options if _stands_where(o, bare, known, household)]
     return matching[0] if len(matching) == 1 else None

@@ -29,6 +29,11 @@ _LATER_END = re.compile(
     r"(?:when|once) you(?: are|'re| have|'ve| get| come) (?:done|finished|ready|back))$"
 )
 """The same behind it."""
+_AFTER_DOING = re.compile(
+    r"^(?:and )?(?:after|once|when|as soon as) (?!(?:that|this|it)\b)(?P<you>you(?: are| have)?(?: all)? )?"
+    r"(?:(?:done|finished|ready|through)(?: with)? )?(?P<rest>.+)$"
+)
+"""Before words about the command under way, behind which the next one is to come."""
 _INSTEAD = re.compile(
     r"^(?:no|whatever you are doing|"
     r"stop(?! by\b| (?!bring\b)\w+ing\b)(?: (?:that|it|this|everything|what you are doing))?|"
@@ -91,7 +96,10 @@ def interjection(said: str, doing: str = "") -> Interjection:
     `doing`: the command under way, which a sentence that forbids something of it calls off.
     """
     words = without_fillers(expand(normalise(said, ",")))
-    found = _control(said, words) or _replacement(said, words, doing) or _timed(said, words)
+    found = _control(said, words) or _replacement(said, words, doing)
+    if found is None and (later := _behind(words, doing)):
+        return Interjection("queue", later)
+    found = found or _timed(said, words)
     if found is not None:
         return found
     if is_question(said):
@@ -144,6 +152,24 @@ def _timed(said: str, words: str) -> Interjection | None:
         if bare and bare != words:
             return Interjection(kind, bare)  # type: ignore[arg-type]
     return None
+
+
+def _behind(words: str, doing: str) -> str:
+    """`come back` of `once you have tidied the desk come back` while the desk is tidied; "" of other words."""
+    found = _AFTER_DOING.match(words)
+    if found is None:
+        return ""
+    said, rest = set(doing.split()) - _SMALL, found["rest"].split()
+    at = int(infinitive(rest[0], COMMANDING) in COMMANDING and (rest[0].endswith("ing") or bool(found["you"])))
+    about = {infinitive(rest[0], COMMANDING)} & said
+    while at < len(rest) and (bare := rest[at].strip(",")) in said | _SMALL | {"up", "down", "away", "back"}:
+        about |= {bare} & said
+        at += 1
+        if rest[at - 1].endswith(","):
+            break
+    while 0 < at < len(rest) and rest[at - 1] in DETERMINERS:
+        at -= 1
+    return " ".join(rest[at:]) if about else ""
 
 
 def _forbidden(words: str, doing: str) -> Interjection | None:

@@ -92,6 +92,16 @@ def colour(builder: PlanBuilder, slots: Slots) -> None:
         builder.last = [item]
 
 
+def written(builder: PlanBuilder, slots: Slots) -> None:
+    """What has been read on something."""
+    not_after_moving(builder)
+    for meant in referents(builder, slots.get("thing", ("it",)), prefer_held=True):
+        item = meant.object
+        said = f"It says {item.text}" if item.text else "I have read nothing"
+        builder.say(f"{said} on the {item.label}.")
+        builder.last = [item]
+
+
 def extreme(builder: PlanBuilder, slots: Slots) -> None:
     """Which of several is the biggest, the nearest or the leftmost."""
     not_after_moving(builder)

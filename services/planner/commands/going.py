@@ -34,6 +34,7 @@ def leave(builder: PlanBuilder, slots: Slots) -> None:
     if "spot" not in slots or spot(builder, slots["spot"]).home:
         raise Refusal("you did not say where to go")
     come_back(builder, slots)
+    builder.leaving = True
 
 
 def wait(builder: PlanBuilder, slots: Slots) -> None:
@@ -62,5 +63,8 @@ def find(builder: PlanBuilder, slots: Slots) -> None:
 
 
 def say(builder: PlanBuilder, slots: Slots) -> None:
+    """What was said to be said, where it is to be heard."""
+    if "spot" in slots:
+        go(builder, slots)
     text = " ".join(slots["words"])
     builder.say(f"{text[0].upper()}{text[1:]}.")

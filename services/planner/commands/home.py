@@ -49,7 +49,8 @@ def rule(builder: PlanBuilder, slots: Slots) -> None:
 
 def rule_always(builder: PlanBuilder, slots: Slots) -> None:
     """Where things of the kind belong from now on."""
-    things = " ".join(without_determiners(slots["thing"]))
+    kind = slots["thing"][slots["thing"][:1] in (("all",), ("every",), ("each",)) :]
+    things = " ".join(without_determiners(kind or slots["thing"]))
     if not isinstance(read(slots["thing"], builder.vocabulary), Phrase):
         raise Lost(f"I know no {things}")
     where_to = spot(builder, slots["spot"])

@@ -120,6 +120,9 @@ def exists(builder: PlanBuilder, slots: Slots) -> None:
         if not any(map(fits, known)):
             check(builder, slots)
             return
+    if isinstance(phrase, Phrase) and phrase.sense.new and phrase.any_one and not phrase.relation:
+        builder.say(f"I have seen no {phrase.noun} so far.")
+        return
     answers.where(builder, slots)
 
 

@@ -1,35 +1,46 @@
-"""The known things and places that any words name, whether or not the words are understood. Pure."""
+"""The things and places that any words name, whether or not the words are understood. Pure."""
 
 from typing import Literal, NamedTuple
 
 from common.language.normalise import DETERMINERS, Words
 from services.planner.grammar.phrases import Phrase, read
-from services.planner.grammar.senses import NO_NOUN
+from services.planner.grammar.senses import LIVING, LONGEST_NAME, NO_NOUN
 from services.planner.grammar.vocabulary import Vocabulary
 
 MOST_WORDS = 6
 """Words of the longest phrase for a thing or a place (chosen)."""
 POINTING = ("it", "them", "those")
 """Pronouns that stand for things."""
+_BEFORE_NAMES = frozenset({"the", "my", "our", "a", "an", "some", "your"})
+"""Determiners before names of things that nobody has listed; `that` and `his` mostly go with verbs and people."""
 _NEVER_FIRST = NO_NOUN - DETERMINERS - {"all", "both", "every", "each"}
 """Words that no phrase for a thing or a place begins with."""
 
 
 class Chunk(NamedTuple):
-    """Words from `begin` to before `end`, which name a thing or a place; `text` has its article."""
+    """Words from `begin` to before `end`, which name a thing or a place; `text` has its article.
+
+    `new`: nobody has listed or seen such a thing.
+    """
 
     kind: Literal["thing", "spot"]
     text: str
     begin: int
     end: int
+    new: bool = False
 
 
-def chunks(words: Words, vocabulary: Vocabulary, pronouns: bool = False) -> list[Chunk]:
-    """Phrases for known things and for places among the words, the longest at each spot; pronouns on request."""
+def chunks(words: Words, vocabulary: Vocabulary, pronouns: bool = False, unlisted: bool = False) -> list[Chunk]:
+    """Phrases for known things and for places among the words, the longest at each spot.
+
+    On request also pronouns, and names of `unlisted` things behind a determiner.
+    """
     found: list[Chunk] = []
     at = 0
     while at < len(words):
         chunk = _longest(words, at, vocabulary)
+        if chunk is None and unlisted:
+            chunk = _unlisted(words, at, vocabulary)
         if chunk is None and pronouns and words[at] in POINTING:
             chunk = Chunk("thing", words[at], at, at + 1)
         found += [chunk] if chunk else []
@@ -50,6 +61,21 @@ def _longest(words: Words, at: int, vocabulary: Vocabulary) -> Chunk | None:
         if isinstance(phrase := read(span, vocabulary), Phrase) and _plain(phrase):
             text = " ".join(span)
             return Chunk("thing", text if span[0] in DETERMINERS or phrase.count != 1 else f"the {text}", at, end)
+    return None
+
+
+def _unlisted(words: Words, at: int, vocabulary: Vocabulary) -> Chunk | None:
+    """The longest name behind a determiner that may be of a thing: `my stapler` in `my stapler is on the desk`.
+
+    Behind another word one in -s or -ed is rather a verb: `my stapler jams`.
+    """
+    if words[at] not in _BEFORE_NAMES:
+        return None
+    for end in range(min(len(words), at + 1 + LONGEST_NAME), at + 1, -1):
+        name = words[at + 1 : end]
+        is_told = len(name) > 1 and any(word.endswith(("s", "ed")) for word in name[1:])
+        if not is_told and LIVING.isdisjoint(name) and vocabulary.unlisted(name) is not None:
+            return Chunk("thing", " ".join(words[at:end]), at, end, new=True)
     return None
 
 

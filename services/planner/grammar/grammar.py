@@ -1,8 +1,10 @@
 """The embedded planner: a sentence and the believed world in, a plan or the reason against it out. Pure."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
+from functools import cache
 
+from common.language.addressee import addressee
 from common.language.breaks import is_statement, without_reason_behind
 from common.language.clauses import cut_clauses
 from common.language.contractions import expand
@@ -15,17 +17,20 @@ from services.planner.choice_points import ChoicePoints, every
 from services.planner.commands import answers
 from services.planner.config import PlannerConfig
 from services.planner.grammar.accounting import CONDITIONS, as_command, unaccounted
+from services.planner.grammar.asides import without_asides
+from services.planner.grammar.chunks import chunks
 from services.planner.grammar.clause import read_clause
 from services.planner.grammar.guess import Guess, answer, guess
 from services.planner.grammar.mention import note
 from services.planner.grammar.phrases import Phrase, read
 from services.planner.grammar.repetition import repeated
-from services.planner.grammar.spelling import corrected
+from services.planner.grammar.spelling import corrected, renamed
 from services.planner.grammar.vocabulary import Vocabulary
 from services.planner.plan_builder import NOT_UNDERSTOOD, LookFirst, Lost, PlanBuilder, Refusal, same
 from services.planner.semantic.deeds import contradicted
-from services.planner.semantic.forms import tokens
+from services.planner.semantic.forms import NONE, tokens
 from services.planner.semantic.parse import parse
+from services.planner.semantic.ranker import Ranked, rank
 from services.planner.world import World
 
 SOURCE = "grammar"
@@ -39,6 +44,8 @@ _VERBS = frozenset({"is", "are", "was", "were", "has", "have", "needs", "goes", 
 """Words that make more than a name of a clause that begins with one."""
 
 
+IDLE = 0.7
+"""Least probability that a part of a sentence asks for nothing, so that the rest is read by itself (chosen)."""
 SURE = 0.5
 """Least probability of a guess at what was understood otherwise and refused (chosen on lists left out)."""
 
@@ -63,9 +70,12 @@ def plan(
     vocabulary = Vocabulary(world, config)
     literally = any(not r.steps for r in rejected)
     clauses = commands(command[:MAX_CHARACTERS], lambda words: bool(vocabulary.spot(words)))
+    words = tokens(command[:MAX_CHARACTERS])
+    ranked = cache(lambda: rank(words, vocabulary))
+    other = addressee(command[:MAX_CHARACTERS], lambda name: not (vocabulary.noun(name) or vocabulary.spot((name,))))
 
     def run(choices: ChoicePoints) -> ActionPlan:
-        attempts = _Attempts(command, world, vocabulary, config, choices, done)
+        attempts = _Attempts(command, world, vocabulary, config, choices, None if other else done)
         try:
             steps = attempts.steps(literally)
         except LookFirst as look:
@@ -76,10 +86,15 @@ def plan(
         if len(steps) > config.max_steps:
             detail = f"that is too much at once: {len(steps)} steps"
             return ActionPlan(request_id=request_id, steps=[], source=SOURCE, detail=detail)
-        if detail := _doubt(command, clauses, steps, world, vocabulary):
-            other = None if literally else attempts.guessed()
-            if other and not other.answers and not unaccounted(clauses, other.steps, world, vocabulary):
-                steps = other.steps
+        if other and not literally and any(step.action != "say" for step in steps):
+            detail, meant = f"you said that to {other}", as_command(steps, world)
+            return ActionPlan(request_id=request_id, steps=[], source=SOURCE, detail=detail, suggestion=meant)
+        detail = _ignored(clauses, steps, world, vocabulary)
+        detail = detail or (_unlikely(clauses, words, steps, ranked) if config.guess else "")
+        if detail:
+            guessed = None if literally else attempts.guessed()
+            if guessed and not guessed.answers and not unaccounted(clauses, guessed.steps, world, vocabulary):
+                steps = guessed.steps
             meant = "" if literally else as_command(steps, world)
             return ActionPlan(request_id=request_id, steps=[], source=SOURCE, detail=detail, suggestion=meant)
         return ActionPlan(request_id=request_id, steps=steps, source=SOURCE)
@@ -87,24 +102,27 @@ def plan(
     if not rejected:
         return run(ChoicePoints())
     culprits = [c for r in rejected if (c := _culprit(r)) is not None]
-    other: ActionPlan | None = None
+    second: ActionPlan | None = None
     for candidate in every(run):
         if not candidate.steps or any(same(candidate.steps, r.steps) for r in rejected):
             continue
         if not any(c in candidate.steps for c in culprits):
             return candidate
-        other = other or candidate
-    return other or _spent(run(ChoicePoints()), rejected[-1])
+        second = second or candidate
+    return second or _spent(run(ChoicePoints()), rejected[-1])
 
 
-def _doubt(command: str, clauses: Sequence[str], steps: list[PlanStep], world: World, vocabulary: Vocabulary) -> str:
-    """Why a plan may not be what is meant, so that it is asked about first; "" for no reason."""
-    if ignored := unaccounted(clauses, steps, world, vocabulary):
-        return f"{NOT_UNDERSTOOD} what {enumeration(list(map(repr, ignored)))} has to do with it"
+def _ignored(clauses: Sequence[str], steps: list[PlanStep], world: World, vocabulary: Vocabulary) -> str:
+    """What of the clauses a plan leaves aside, so that it is asked about first; "" where it is nothing."""
+    ignored = unaccounted(clauses, steps, world, vocabulary)
+    return f"{NOT_UNDERSTOOD} what {enumeration(list(map(repr, ignored)))} has to do with it" if ignored else ""
+
+
+def _unlikely(clauses: Sequence[str], words: Words, steps: list[PlanStep], ranked: Callable[[], list[Ranked]]) -> str:
+    """Why a plan may not be what is meant at all, so that it is asked about first; "" for no reason."""
     if any(clause.split()[0] in CONDITIONS for clause in clauses):  # what else is to be done need not be
         return ""
-    unlike = contradicted(tokens(command[:MAX_CHARACTERS]), steps, vocabulary)
-    return f"{NOT_UNDERSTOOD} for certain what I should do" if unlike else ""
+    return f"{NOT_UNDERSTOOD} for certain what I should do" if contradicted(words, steps, ranked()) else ""
 
 
 def _spent(first: ActionPlan, rejected: RejectedPlan) -> ActionPlan:
@@ -147,15 +165,15 @@ class _Attempts:
             return self._read(self._command)
         except Refusal as refusal:
             taken = self._choices.taken
-            asked = without_reason_behind(self._command_words()) if isinstance(refusal, Lost) else ""
-            if asked not in ("", self._command_words()):
+            others = self._without_more() if isinstance(refusal, Lost) else []
+            for text in others:
                 with suppress(Refusal):
-                    return self._read(asked)
+                    return self._read(text)
             if (read := self._without_slips(refusal, literally)) is not None:
                 return read
-            if self._config.open_vocabulary and isinstance(refusal, Lost):
+            for text in (self._command, *others) if self._config.open_vocabulary and isinstance(refusal, Lost) else ():
                 with suppress(Refusal):
-                    return self._read(self._command, new_nouns=True)
+                    return self._read(text, new_nouns=True)
             self._choices.taken = taken
             lost = isinstance(refusal, Lost)
             if (meant := self.guessed()) is None or (not lost and (meant.answers or meant.p < SURE)):
@@ -167,12 +185,30 @@ class _Attempts:
             plainly = as_command(meant.steps, self._world) or ", then ".join(meant.texts)
             raise Suggestion(str(refusal), plainly) from None
 
+    def _without_more(self) -> list[str]:
+        """What was said without the reason behind it, and without the parts that ask for nothing, where it has such."""
+        whole = self._command_words()
+        shorter = (without_reason_behind(whole), without_asides(whole, self._is_idle))
+        return [text for text in dict.fromkeys(shorter) if text != whole]
+
+    def _is_idle(self, words: Words) -> bool:
+        """Do the words name nothing and most likely ask for nothing?"""
+        if (
+            not self._config.guess
+            or words[0] in COMMANDING
+            or chunks(words, self._vocabulary, pronouns=True, unlisted=True)
+        ):
+            return False
+        return sum(p for candidate, p in rank(words, self._vocabulary) if candidate.form == NONE) > IDLE
+
     def _command_words(self) -> str:
         """What was said with its marks, in the spelling of the grammar."""
         return expand(normalise(self._command[:MAX_CHARACTERS], ",;.!?"))
 
     def guessed(self) -> Guess | None:
         """What the words may mean that no construction fits, as it can be done."""
+        if not self._config.guess:
+            return None
         whole = [clause for part in self._command_words().split(".") for clause in cut_clauses(part)]
         for clauses in (commands(self._command[:MAX_CHARACTERS], self._is_place), whole):
             with suppress(Refusal):
@@ -202,9 +238,12 @@ class _Attempts:
         bare = [w.strip(",;.!?") for w in words]
         colours, names = self._vocabulary.words()
         right, named = corrected(bare, colours | WORDS, names)
+        text = " ".join(w.replace(b, r) for w, b, r in zip(words, bare, right, strict=True))
+        if right == bare:
+            right, named = renamed(bare, self._vocabulary.names()), True
+            text = " ".join(right)
         if right == bare or (named and literally):
             return None
-        text = " ".join(w.replace(b, r) for w, b, r in zip(words, bare, right, strict=True))
         try:
             steps = self._read(text)
         except Refusal:

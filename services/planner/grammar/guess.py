@@ -5,20 +5,22 @@ from contextlib import suppress
 from typing import NamedTuple
 
 from common.language.itself import about_itself
-from common.language.mood import forbids
+from common.language.mood import forbids, is_asked
 from common.language.normalise import Words
 from common.messages import PlanStep
 from services.planner.grammar.accounting import unaccounted
 from services.planner.grammar.chunks import chunks
 from services.planner.grammar.clause import read_clause
 from services.planner.grammar.mention import note
-from services.planner.grammar.questions import is_asked, questions
 from services.planner.grammar.rules import ACTIONS
 from services.planner.plan_builder import PlanBuilder, Refusal
 from services.planner.semantic.parse import LEAST, Part
+from services.planner.semantic.ranker import rank
 
 LONGEST = 40
 """Words of the longest question that is read (chosen: bounds the time)."""
+MOST = 4
+"""Most plain questions that one may come to (chosen)."""
 _NOTHING = "there is nothing to guess"
 
 
@@ -54,7 +56,7 @@ def _answer(words: Words, builder: PlanBuilder) -> str:
     """Plan the reading of a question that leaves the fewest names aside, and say which."""
     found: list[tuple[int, str, PlanBuilder]] = []
     about = about_itself(words, wholly=False) if not chunks(words, builder.vocabulary, pronouns=True) else None
-    for text in (" ".join(words), *questions(words, builder.vocabulary)):
+    for text in (" ".join(words), *_likely(words, builder)):
         trial = builder.fork()
         trial.effort = [0]
         with suppress(Refusal):
@@ -73,6 +75,17 @@ def _answer(words: Words, builder: PlanBuilder) -> str:
     return text
 
 
+def _likely(words: Words, builder: PlanBuilder) -> list[str]:
+    """The likeliest plain questions that the words may come to, those first that leave the fewest names aside.
+
+    One that names nothing has to be as likely as any guess.
+    """
+    ranked = [
+        r for r in rank(words, builder.vocabulary) if r.candidate.kind == "ask" and (r.candidate.roles or r.p > LEAST)
+    ]
+    return [r.candidate.text for r in sorted(ranked, key=lambda r: -len(r.candidate.roles))[:MOST]]
+
+
 def guess(parts: Sequence[Part], builder: PlanBuilder) -> Guess:
     """The plan of the likeliest parts of a sentence; what is told in it is noted.
 
@@ -83,11 +96,15 @@ def guess(parts: Sequence[Part], builder: PlanBuilder) -> Guess:
     p = min((part.p for part in asked), default=0.0)
     if p < LEAST:
         raise Refusal(_NOTHING)
-    for part in parts:
-        if part.meant.text:
-            read_clause(tuple(part.meant.text.split()), builder, alone=False)
-        else:
-            note(part.words, builder)
+    builder.vocabulary.new_nouns = builder.config.open_vocabulary
+    try:
+        for part in parts:
+            if part.meant.text:
+                read_clause(tuple(part.meant.text.split()), builder, alone=False)
+            else:
+                note(part.words, builder)
+    finally:
+        builder.vocabulary.new_nouns = False
     if not builder.steps:
         raise Refusal(_NOTHING)
     answers = all(part.meant.kind == "ask" for part in asked) and all(s.action == "say" for s in builder.steps)

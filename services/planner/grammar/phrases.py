@@ -4,7 +4,7 @@ from typing import Literal
 
 import msgspec
 
-from common.language.normalise import DETERMINERS, Words
+from common.language.normalise import DETERMINERS, Words, without_determiners
 from common.language.noun_phrase import (
     NUMBERS,
     RELATIONS,
@@ -76,12 +76,26 @@ def _where(left_out: Words, rest: Words) -> Words:
 def _read(words: Words, vocabulary: Vocabulary) -> Phrase | str:
     if (whole := _unrelated(words, vocabulary)) is not None:
         return whole
+    if (of_place := _of_place(words, vocabulary)) is not None:
+        return of_place
     for head, relation, anchor in related(words):
         if relation == "on" and anchor[:1] == ("the",) and anchor[1:2] in (("left",), ("right",)):
             continue  # "the second mug from the left on the desk"
         if phrase := _unrelated(head, vocabulary):
             return msgspec.structs.replace(phrase, relation=relation, anchor=anchor, text=" ".join(words))
     return _noun_of(words)
+
+
+def _of_place(words: Words, vocabulary: Vocabulary) -> Phrase | None:
+    """`the dresser can` as the can on the dresser, where a known noun follows the name of a place."""
+    begin = len(words) - len(without_determiners(words))
+    for at in range(begin + 1, len(words)):
+        spots, noun = vocabulary.spot(words[begin:at]), vocabulary.noun(" ".join(words[at:]))
+        if spots and not spots[0].home and noun is not None and not noun[0].every:
+            phrase = _head((*words[:begin], *words[at:]), vocabulary)
+            if phrase is not None and not vocabulary.spot(words[begin:]):
+                return msgspec.structs.replace(phrase, relation="on", anchor=words[begin:at], text=" ".join(words))
+    return None
 
 
 def _unrelated(words: Words, vocabulary: Vocabulary) -> Phrase | None:
@@ -132,11 +146,12 @@ def _new_head(words: Words, vocabulary: Vocabulary) -> Phrase | None:
     """The name of a thing that nobody has listed or seen, with a determiner or without."""
     rest = without_measure(words)
     any_one = rest[:1] in (("a",), ("an",), ("some",), ("any",), ("one",))
+    determined = False
     while len(rest) > 1 and (rest[0] in DETERMINERS or rest[0] in NUMBERS):
-        rest = rest[1:]
+        rest, determined = rest[1:], True
     first = next((i for i, w in enumerate(rest[:-1]) if w not in vocabulary.colours), len(rest) - 1)
     colours, noun = tuple(vocabulary.colours[w] for w in rest[:first]), rest[first:]
-    sense = vocabulary.new_noun(noun)
+    sense = vocabulary.new_noun(noun, determined)
     if sense is None:
         return None
     return Phrase(sense=sense, noun=" ".join(noun), any_one=any_one, colours=colours, text=" ".join(words))

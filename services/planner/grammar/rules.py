@@ -75,6 +75,7 @@ ACTIONS: dict[Action, Callable[[PlanBuilder, Slots], None]] = {
     "exists": looking.exists,
     "is_at": looking.is_at,
     "colour": answers.colour,
+    "written": answers.written,
     "beside": answers.beside,
     "kinds": answers.number,
     "extreme": answers.extreme,

@@ -6,6 +6,9 @@ from common.floor_plan import Receptacle
 from common.language.normalise import DETERMINERS
 
 ANY = frozenset({"thing", "object", "item", "stuff", "mess", "one"})
+OBJECT = frozenset({"thing", "object", "item"})
+POSITIONS = frozenset({"top", "bottom", "upper", "lower", "front", "rear", "outer", "inner"})
+"""Where something is rather than how it looks."""
 WHOLE = frozenset({"everything", "anything", "something", "all", "mess"})
 MASSES = frozenset({"stuff", "mess"})
 SHORTEST_NAME = 3
@@ -24,7 +27,7 @@ _SMALL = (
     " like make put take tell thanks please want need try yet now just only also else later soon tomorrow yesterday"
     " today tonight never ever always others"
     " about around through across along against during yourself self"
-    " goes belongs gets lying standing closest might should must ought said says told asked teh"
+    " lot goes belongs gets lying standing closest might should must ought said says told asked teh"
 )
 LIVING = frozenset(
     {

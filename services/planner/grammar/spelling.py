@@ -5,6 +5,19 @@ from collections.abc import Iterable, Sequence
 
 LONG_WORD = 5
 """Letters from which on a name may be taken for a slip of another (chosen: `cat` is no slip of `can`)."""
+LONGEST_RUN = 3
+"""Most words that are one name misheard (chosen)."""
+SOUNDS_PER_SLIP = 6
+"""Sounds of a name of which one may be another (chosen: `toy books` for the toy box)."""
+_SOUNDS = tuple(
+    (re.compile(spelling), sound)
+    for spelling, sound in (
+        (r"^(?:kn|gn)", "n"), (r"^wr", "r"), ("wh", "w"), ("ph", "f"), ("ck|c(?![eiyh])|q", "k"), ("x", "ks"),
+        ("ough|ew$|eu|ue|oo|ou", "u"), ("ea(?=d$)", "e"), ("[ae]i|ay", "a"), ("y$", "i"), (r"(.)\1+", r"\1"),
+        (r"([aeiou])[aeiou]+", r"\1"), (r"(?<=[^aeiou])e$", ""),
+    )
+)  # fmt: skip
+"""Spellings, and one sign for those that sound alike."""
 VERY_LONG = 9
 """Letters from which on two slips are forgiven (chosen)."""
 
@@ -27,15 +40,36 @@ def corrected(words: Sequence[str], plain: Iterable[str], names: Iterable[str]) 
     return found, named
 
 
+def renamed(words: Sequence[str], names: Iterable[str]) -> list[str]:
+    """Words with a run of them replaced by the only name that sounds much like it: `the dress her` as `the dresser`.
+
+    The words as they are where there is no such name, or several.
+    """
+    sounds = {name: _sound(name.replace(" ", "")) for name in names}
+    runs = [(a, b) for b in range(1, len(words) + 1) for a in range(max(0, b - LONGEST_RUN), b)]
+    for begin, end in sorted(runs, key=lambda run: run[0] - run[1]):
+        said = _sound("".join(words[begin:end]))
+        allowed = len(said) // SOUNDS_PER_SLIP
+        spelled = " ".join(words[begin:end])
+        if len(said) < LONG_WORD or spelled in sounds:
+            continue
+        near = {n for n, s in sounds.items() if abs(len(s) - len(said)) <= allowed and distance(s, said) <= allowed}
+        if len(near) == 1 and (end - begin > 1 or " " in next(iter(near))):
+            return [*words[:begin], *next(iter(near)).split(), *words[end:]]
+    return list(words)
+
+
 def _alike(word: str, known: set[str]) -> str | None:
-    """The only known word that is spelled alike but for doubled and silent letters and groups of vowels: `aple`."""
+    """The only known word that sounds alike: `aple`, `blew`."""
     alike = [k for k in known if len(k) > 2 and _sound(k) == _sound(word)]
     return alike[0] if len(alike) == 1 else None
 
 
 def _sound(word: str) -> str:
-    single = re.sub(r"([aeiou])[aeiou]+", r"\1", re.sub(r"(.)\1+", r"\1", word.replace("wh", "w")))
-    return re.sub(r"(?<=[^aeiou])e$", "", single)
+    """How a word is spoken, roughly: one sign for letters that sound alike, no silent ones."""
+    for spelling, sound in _SOUNDS:
+        word = spelling.sub(sound, word)
+    return word
 
 
 def _nearest(word: str, known: set[str]) -> str | None:

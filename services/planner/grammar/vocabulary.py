@@ -20,6 +20,8 @@ from services.planner.grammar.senses import (
     LONGEST_NAME,
     MASSES,
     NO_NOUN,
+    OBJECT,
+    POSITIONS,
     SHORTEST_NAME,
     WHOLE,
     Sense,
@@ -135,30 +137,54 @@ class Vocabulary:
                 return Sense(names=frozenset(printed)), form, plural
         return None
 
-    def new_noun(self, words: Words) -> Sense | None:
-        """The words as the name of a thing that nobody has listed or seen; None for a place or a part of a sentence."""
-        if not self.new_nouns or not 0 < len(words) <= LONGEST_NAME or self._commands(words[0]):
-            return None
+    def new_noun(self, words: Words, determined: bool = True) -> Sense | None:
+        """As `unlisted`, where such names are to be read."""
+        return self.unlisted(words, determined) if self.new_nouns else None
+
+    def unlisted(self, words: Words, determined: bool = True) -> Sense | None:
+        """The words as the name of a thing that nobody has listed or seen; None for a place or a part of a sentence.
+
+        `determined`: a determiner stood before it, so that its first word is no verb (`the hand cream`).
+        """
+        for at in (i for i, word in enumerate(words[1:-1], 1) if word in ("of", "with")):
+            whole, part = words[:at], without_determiners(words[at + 1 :])
+            unknown = whole[-1] in ANY or (whole[-1] not in self.kinds and self._names(whole, determined))
+            if part and unknown and self._names(part, True):
+                return Sense(names=frozenset({" ".join(words)}), new=True)  # the roll of tape, the cup with the lid
+        return Sense(names=frozenset({" ".join(words)}), new=True) if self._names(words, determined) else None
+
+    def _names(self, words: Words, determined: bool) -> bool:
+        """May the words name a thing that nobody has listed or seen?"""
+        if not 0 < len(words) <= LONGEST_NAME or (self._commands(words[0]) and not (determined and len(words) > 1)):
+            return False
         if not all(w.replace("'", "").isalnum() for w in words) or max(map(len, words)) < SHORTEST_NAME:
-            return None
+            return False
         named = words
         if words[1:2] == ("of",) and words[0] in self.kinds:
             words, named = (words[0], *words[2:]), words[2:]  # a can of tuna
         elif words[-1] in self.kinds:
             named = words[:-1] or words  # the tuna can
-        if not words or NO_NOUN & set(named) or is_abstract(words):
-            return None
+        if not words or (NO_NOUN - self.kinds) & set(named) or is_abstract(words):
+            return False
         acts = words[-1].endswith(("ed", "kept")) or self._commands(infinitive(words[-1], COMMANDING))
         if acts or any(
             len(words) > b - a > 1 and self.spot(words[a:b])
             for a in range(len(words))
             for b in range(a + 2, len(words) + 1)
         ):
-            return None
-        if words[-1] in self.colours or words[-1] in WHICH or words[-1] in ANY | WHOLE or words[-1] in UNITS:
-            return None
+            return False
+        of_looks = (
+            determined
+            and len(words) == 2
+            and words[1] in OBJECT
+            and words[0] not in {*self.colours, *UNSEEN, *POSITIONS}
+        )
+        if words[-1] in self.colours or words[-1] in WHICH or words[-1] in UNITS:
+            return False
+        if words[-1] in ANY | WHOLE and not (of_looks and words[0] not in WHICH):  # the round thing
+            return False
         known = self.spot(words) or self.furniture(words) or self._and_place(words)
-        return None if known else Sense(names=frozenset({" ".join(words)}), new=True)
+        return not known
 
     def _commands(self, word: str) -> bool:
         """Is it a verb of a command, and no thing either, as the jam is?"""
@@ -167,6 +193,11 @@ class Vocabulary:
     def _and_place(self, words: Words) -> bool:
         """Are they the name of a thing and that of a place, `box bookshelf`?"""
         return any(self.noun(" ".join(words[:at])) and self.spot(words[at:]) for at in range(1, len(words)))
+
+    def names(self) -> set[str]:
+        """All names of things and places that are known."""
+        places = {n for r in self._household.receptacles for n in (r.name, *r.aliases)}
+        return {*self._nouns, *self._printed, *self._places, *places}
 
     def words(self) -> tuple[set[str], set[str]]:
         """(colours, words of names) that are known."""
@@ -193,6 +224,10 @@ class Vocabulary:
             inside = self._places.get(" ".join(without_determiners(tuple(head.split())))) if found else None
             if inside is not None and inside.room:  # in the bedroom on the dresser
                 return self.spot(tuple(tail.split()), inside.name)
+        for at in range(1, len(phrase.split())) if not room else ():  # the living room table
+            around = self._places.get(" ".join(phrase.split()[:at]))
+            if around is not None and around.room and (there := self.spot(tuple(phrase.split()[at:]), around.name)):
+                return there
         if words and without_determiners(words)[0] in UNSEEN and len(phrase.split()) > 1:
             return self.spot(without_determiners(words)[1:], room)
         if not room and (place := self._places.get(phrase)):
@@ -209,6 +244,8 @@ class Vocabulary:
         ]
         if room:
             named, kin = [r for r in named if self._is_in(r, room)], [r for r in kin if self._is_in(r, room)]
+        if not (named or kin) and phrase.endswith("s") and not phrase.endswith("ss"):
+            return self.spot((*without_determiners(words)[:-1], words[-1][:-1]), room)
         return [Spot(r.name, receptacle=r) for r in named or kin]
 
     def _is_in(self, r: Receptacle, room: str) -> bool:

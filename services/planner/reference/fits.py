@@ -28,16 +28,19 @@ def fitting(builder: PlanBuilder, phrase: Phrase) -> Callable[[BelievedObject], 
 
 
 def _left_out(builder: PlanBuilder, phrase: Phrase) -> Callable[[BelievedObject], bool]:
-    """What the phrases after "except" mean.
+    """What the phrases after "except" mean: things, colours, places where they stand.
 
     Raises:
         Refusal: one of them means nothing.
     """
-    names, colours = set[str](), set[str]()
+    names, colours, places = set[str](), set[str](), set[str]()
     for words in phrase.but:
         bare = [w for w in words if w not in DETERMINERS]
         if " ".join(words) in PRONOUNS | PLURAL_PRONOUNS:
             names |= {m.object.label for m in pronoun(builder, " ".join(words) in PLURAL_PRONOUNS)}
+            continue
+        if spots := builder.vocabulary.spot(words):
+            places |= {s.name for s in spots}
             continue
         if all(w in builder.vocabulary.colours for w in bare):
             colours |= {builder.vocabulary.colours[w] for w in bare}
@@ -48,7 +51,11 @@ def _left_out(builder: PlanBuilder, phrase: Phrase) -> Callable[[BelievedObject]
         if meant.noun in ("one", "ones"):
             meant = msgspec.structs.replace(meant, sense=phrase.sense)
         names |= _labels(builder, meant)
-    return lambda item: item.label in names or any(map(item.is_of, colours))
+    if not places:
+        return lambda item: item.label in names or any(map(item.is_of, colours))
+    return lambda item: (
+        item.label in names or any(map(item.is_of, colours)) or bool({item.on, builder.world.room_of(item)} & places)
+    )
 
 
 def _labels(builder: PlanBuilder, phrase: Phrase) -> set[str]:

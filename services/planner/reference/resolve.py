@@ -120,7 +120,8 @@ def _resolve(builder: PlanBuilder, phrase: Phrase, prefer_held: bool) -> list[Re
     if held and fits(held) and not phrase.relation and phrase.which != "other":
         seen = [held, *seen]
     specs = [t for t in builder.world.specs if fits(t)]
-    if not seen and not specs and builder.vocabulary.new_nouns and (phrase.colours or not sense.every):
+    nameable = phrase.noun not in ("one", "ones") and (phrase.colours or not sense.every)
+    if not seen and not specs and builder.vocabulary.new_nouns and nameable:
         return _never_seen(builder, phrase)
     if not seen and not specs:
         raise unknown(builder, tuple(phrase.text.split()), " ".join((*phrase.colours, phrase.noun)))

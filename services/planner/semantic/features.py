@@ -12,12 +12,11 @@ from itertools import pairwise
 from typing import NamedTuple
 from zlib import crc32
 
-from common.language.mood import forbids, is_told
+from common.language.mood import forbids, is_asked, is_told
 from common.language.normalise import Words
 from common.language.politeness import without_politeness
 from common.language.verb_classes import classes
 from services.planner.grammar.chunks import POINTING, Chunk
-from services.planner.grammar.questions import is_asked
 from services.planner.semantic.forms import MARK, Candidate
 
 BITS = 18
@@ -50,7 +49,8 @@ def abstracted(words: Words, found: Sequence[Chunk], known: frozenset[str]) -> S
         number = begins.get(at)
         parts.append((words[at] if words[at] in known else UNKNOWN) if number is None else number)
         at = at + 1 if number is None else found[number].end
-    return Said(parts, found, _signs(words, found))
+    inside = {f"in {w}" for chunk in found if chunk.new for w in words[chunk.begin : chunk.end] if w in known}
+    return Said(parts, found, [*_signs(words, found), *sorted(inside)])
 
 
 def _signs(words: Words, found: Sequence[Chunk]) -> list[str]:
@@ -73,7 +73,7 @@ def features(said: Said, candidate: Candidate) -> list[int]:
 def _names(said: Said, candidate: Candidate) -> Iterator[str]:
     form, kind, roles = candidate.form, candidate.kind, candidate.roles
     marks = [BEGIN, *(t if isinstance(t, str) else _mark(said.found[t], roles.get(t, "")) for t in said.parts), END]
-    counts = {name: min(marks.count(name), _COUNTED) for name in ("#thing", "#spot", UNKNOWN)}
+    counts = {name: min(marks.count(name), _COUNTED) for name in ("#thing", "#thing new", "#spot", UNKNOWN)}
     for of in (form, kind):
         for name, count in counts.items():
             yield f"{of} {name} {count}"
@@ -111,7 +111,7 @@ def _governed(form: str, marks: Sequence[str]) -> Iterator[str]:
 
 
 def _mark(chunk: Chunk, role: str) -> str:
-    return f"#{role or chunk.kind}{' it' if chunk.text in POINTING else ''}"
+    return f"#{role or chunk.kind}{' it' if chunk.text in POINTING else ' new' if chunk.new else ''}"
 
 
 @lru_cache(maxsize=10_000)

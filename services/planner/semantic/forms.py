@@ -12,42 +12,80 @@ from services.planner.grammar.chunks import Chunk
 
 Role = Literal["object", "goal", "source", "beside"]
 Kind = Literal["act", "ask", "none", "other"]
+Deed = Literal["bring", "put", "take", "go", "fingers", ""]
 NONE, OTHER = "none", "other"
 """Forms of a sentence that asks for nothing, and of one that asks for something that no single form says."""
 MARK = ","
 """The word that stands for every mark."""
 MOST = 200
 """Most candidates of one sentence (chosen: bounds the time; a sentence with two things and a place has 90)."""
-_FORMS = {
-    "bring": "bring me {object}", "find": "find {object}", "where": "where is {object}",
-    "discard": "throw away {object}", "away": "put {object} away", "take": "pick up {object}",
-    "exists": "is there {bare}", "number": "how many {bare} are there", "colour": "what colour is {object}",
-    "belongs": "where does {object} belong",
-    "put": "put {object} on {goal}", "on": "is {object} on {goal}", "number_on": "how many {bare} are there on {goal}",
-    "rule": "{bare} always belong on {goal}", "bring_from": "bring me {object} on {goal}",
-    "discard_from": "throw away {object} on {goal}", "find_on": "find {object} on {goal}",
-    "put_from": "put {object} on {source} on {goal}", "near": "put {object} next to {beside}",
-    "go": "go to {goal}", "wait_at": "go to {goal} and wait", "tidy": "tidy up {goal}", "contents": "what is on {goal}",
-    "look_at": "look at {goal}",
-    "tidy_up": "tidy up", "back": "come back", "look": "look around", "abilities": "what can you do",
-    "doing": "what are you doing", "did": "what did you just do", "why": "why did you fail", "see": "what do you see",
-    "down": "put it down", "wait": "wait", "drink": "bring me something to drink",
-    "eat": "bring me something to eat", "where_you": "where are you", "open": "open your hand",
-    "close": "close your hand", "put_back": "put it back where it was", "again": "try again",
-    "battery": "how full is your battery", "who": "who are you", "holding": "what are you holding",
-    "rules": "what are your rules",
-}  # fmt: skip
-"""Each form as the plain words that the grammar plans; `bare` is the object without its article."""
-_ASKS = frozenset({
-    "where", "exists", "number", "colour", "belongs", "on", "number_on", "contents", "abilities", "doing", "did", "why",
-    "see", "where_you", "battery", "who", "holding", "rules",
-})  # fmt: skip
+
+
+class Form(NamedTuple):
+    """`text`: the plain words that the grammar plans, `bare` for the object without its article; `kind`: act or ask.
+
+    `deed`: what is done for it, a look for an answer, too; "" for words alone.
+    """
+
+    text: str
+    deed: Deed = ""
+    kind: Kind = "act"
+
+    @property
+    def takes(self) -> tuple[Role, ...]:
+        """What it says of the things and places."""
+        return tuple(role for role in _ROLES if f"{{{role}}}" in self.text.replace("bare", "object"))
+
+
 _ROLES: tuple[Role, ...] = ("object", "goal", "source", "beside")
-_TAKES = {
-    name: tuple(role for role in _ROLES if f"{{{role}}}" in form.replace("bare", "object"))
-    for name, form in _FORMS.items()
+FORMS: dict[str, Form] = {
+    "bring": Form("bring me {object}", "bring"),
+    "bring_from": Form("bring me {object} on {goal}", "bring"),
+    "drink": Form("bring me something to drink", "bring"),
+    "eat": Form("bring me something to eat", "bring"),
+    "put": Form("put {object} on {goal}", "put"),
+    "put_from": Form("put {object} on {source} on {goal}", "put"),
+    "near": Form("put {object} next to {beside}", "put"),
+    "away": Form("put {object} away", "put"),
+    "discard": Form("throw away {object}", "put"),
+    "discard_from": Form("throw away {object} on {goal}", "put"),
+    "put_back": Form("put it back where it was", "put"),
+    "down": Form("put it down", "put"),
+    "rule": Form("{bare} always belong on {goal}", "put"),
+    "tidy": Form("tidy up {goal}", "put"),
+    "tidy_up": Form("tidy up", "put"),
+    "take": Form("pick up {object}", "take"),
+    "find": Form("find {object}", "go"),
+    "find_on": Form("find {object} on {goal}", "go"),
+    "go": Form("go to {goal}", "go"),
+    "wait_at": Form("go to {goal} and wait", "go"),
+    "wait": Form("wait", "go"),
+    "back": Form("come back", "go"),
+    "look": Form("look around", "go"),
+    "look_at": Form("look at {goal}", "go"),
+    "open": Form("open your hand", "fingers"),
+    "close": Form("close your hand", "fingers"),
+    "again": Form("try again"),
+    "where": Form("where is {object}", "go", "ask"),
+    "exists": Form("is there {bare}", "go", "ask"),
+    "on": Form("is {object} on {goal}", "go", "ask"),
+    "number": Form("how many {bare} are there", "go", "ask"),
+    "number_on": Form("how many {bare} are there on {goal}", "go", "ask"),
+    "contents": Form("what is on {goal}", "go", "ask"),
+    "see": Form("what do you see", "go", "ask"),
+    "colour": Form("what colour is {object}", kind="ask"),
+    "belongs": Form("where does {object} belong", kind="ask"),
+    "abilities": Form("what can you do", kind="ask"),
+    "doing": Form("what are you doing", kind="ask"),
+    "did": Form("what did you just do", kind="ask"),
+    "why": Form("why did you fail", kind="ask"),
+    "where_you": Form("where are you", kind="ask"),
+    "battery": Form("how full is your battery", kind="ask"),
+    "who": Form("who are you", kind="ask"),
+    "holding": Form("what are you holding", kind="ask"),
+    "rules": Form("what are your rules", kind="ask"),
 }
-"""What each form says of the things and places."""
+"""Each plain command and question by its name."""
 _ARTICLE = re.compile(r"^(?:the|my|all|any|a|an|some|another)(?: the| my)? ")
 
 
@@ -61,8 +99,8 @@ class Candidate(NamedTuple):
     @property
     def kind(self) -> Kind:
         """Whether it acts or asks; "none" and "other" for the forms of that name."""
-        if self.form in _FORMS:
-            return "ask" if self.form in _ASKS else "act"
+        if self.form in FORMS:
+            return FORMS[self.form].kind
         return "other" if self.form == OTHER else "none"
 
 
@@ -88,7 +126,8 @@ def _candidates(found: Sequence[Chunk]) -> Iterator[Candidate]:
         "source": spots,
         "beside": things,
     }
-    for name, takes in _TAKES.items():
+    for name, form in FORMS.items():
+        takes = form.takes
         for chosen in product(*(pools[role] for role in takes)):
             roles = {at: role for role, group in zip(takes, chosen, strict=True) for at in group}
             if len(roles) == sum(map(len, chosen)):
@@ -98,4 +137,4 @@ def _candidates(found: Sequence[Chunk]) -> Iterator[Candidate]:
 def _candidate(name: str, roles: dict[int, Role], found: Sequence[Chunk]) -> Candidate:
     named = {role: " and ".join(found[at].text for at, r in roles.items() if r == role) for role in roles.values()}
     bare = " and ".join(_ARTICLE.sub("", found[at].text) for at, r in roles.items() if r == "object")
-    return Candidate(name, _FORMS[name].format(bare=bare, **named), roles)
+    return Candidate(name, FORMS[name].text.format(bare=bare, **named), roles)

@@ -43,7 +43,7 @@ class Ranker:
 
     def rank(self, words: Words, vocabulary: Vocabulary) -> list[Ranked]:
         """All candidates of a sentence in words and marks (`forms.tokens`), the likeliest first."""
-        found = chunks(words, vocabulary, pronouns=True)
+        found = chunks(words, vocabulary, pronouns=True, unlisted=True)
         said = abstracted(words, found, self._words)
         meant = candidates(found)
         scores = np.array([self._weights[features(said, c)].sum() for c in meant])
