@@ -1,5 +1,8 @@
 """What the hand feels in the joints' torques, and what is decided by it."""
 
+from types import SimpleNamespace
+from typing import Any
+
 import mujoco
 import numpy as np
 import pytest
@@ -23,7 +26,7 @@ from services.manipulation.arm.touch import (
 )
 from services.manipulation.arm.trajectory import back_along, divided
 from services.manipulation.execution.grasp_executor import close
-from services.manipulation.execution.robot import DT, Failure, go_home
+from services.manipulation.execution.robot import DT, Failure, Steps, go_home
 from services.manipulation.execution.robot import SLOWLY as BACK_SLOWLY
 from services.manipulation.execution.setting_down import SLOWLY, set_down
 from services.manipulation.grasps.grasp import approach_rotation
@@ -225,3 +228,22 @@ def test_what_is_met_on_the_way_home_is_backed_off_and_passed_slowly(times: int)
     speeds = np.abs(np.diff(np.array(driven), axis=0)).max(axis=1) / DT
     assert speeds[after + 1 :].max() <= BACK_SLOWLY * CONFIG.joint_speed + 1e-6
     assert driven[-1] == pytest.approx(arm.home, abs=0.01)
+
+
+def test_the_fingers_grip_in_steps_in_which_it_is_felt_that_they_press_something_down() -> None:
+    pressed: list[float] = []
+
+    def move(closed: float, effort: float = 0.0, guard: object = None) -> Steps[None]:
+        pressed.append(effort or CONFIG.grip_effort)
+        if len(pressed) == 2 and guard is not None:
+            raise Failure(TOUCHED, "31 N on the hand")
+        yield
+
+    robot: Any = SimpleNamespace(move_gripper=move)
+    list(close(robot, None))
+    assert pressed == sorted(pressed) and pressed[-1] == CONFIG.grip_effort and len(pressed) > 2
+    pressed.clear()
+    guard: Any = object()
+    with pytest.raises(Failure, match="press it down"):
+        list(close(robot, guard))
+    assert max(pressed) < CONFIG.grip_effort

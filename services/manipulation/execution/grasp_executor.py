@@ -26,9 +26,10 @@ BAD_HOLD = "BAD_HOLD"
 """Code within an attempt: the fingers hold the object by something else than its body; another grasp is tried."""
 TOO_WIDE = "TOO_WIDE"
 """Code: the object does not fit between the open fingers."""
-CLOSING_EFFORT = 8.0
-"""Force [N] with which the fingers come before they grip: slow enough that they do not knock (in simulation 0.16 m/s
-each, three times what they do with the whole grip force)."""
+CLOSING_EFFORTS = (8.0, 14.0)
+"""Forces [N] with which the fingers come, and press, before they grip: slow enough that they do not knock (in
+simulation 0.16 m/s each, three times what they do with the whole grip force), and in steps in which it is felt that
+they press something down: on a slope of 60 degrees the whole of it at once comes to 86 N."""
 WEIGHED = 3
 """Points of the lift at whose end what is too heavy has shown: 40 mm, where 30 N bend the arm by 3; slowly, for where
 the arm is nearly stretched its own damping shows as 20 N at twice the speed."""
@@ -163,7 +164,8 @@ def close(robot: Robot, guard: Guard | None) -> Steps[None]:
         Failure: BLOCKED, more than its surface should bear.
     """
     try:
-        yield from robot.move_gripper(1.0, CLOSING_EFFORT, guard)
+        for effort in CLOSING_EFFORTS:
+            yield from robot.move_gripper(1.0, effort, guard)
         yield from robot.move_gripper(1.0, guard=guard)
     except Failure as failure:
         raise Failure(BLOCKED, f"the fingers press it down: {failure.detail}") from None
