@@ -9,6 +9,7 @@ from common import messages as m
 from common import topics
 from common.approach import delivers_at_home, poses_for
 from common.config import config_dir
+from common.floor_plan import FloorPlan, Wall
 from common.geometry import quat_yaw
 from common.household import told
 from common.scene import load_scene
@@ -123,6 +124,16 @@ def test_the_follower_stops_before_what_the_lidar_sees() -> None:
     assert near.blocked and abs(near.pose[1]) < 0.05
     beside = follower.step(pose, costmap, CONFIG.footprint_radius, np.array([[0.5, -0.3]]))
     assert not beside.blocked
+
+
+def test_who_was_led_off_the_path_behind_a_wall_does_not_go_back_straight() -> None:
+    wall = Wall(start=(1.0, -2.0), end=(1.0, 0.5))
+    flat = FloorPlan(name="flat", low=(-3.0, -3.0), high=(3.0, 3.0), home=SCENE.home, walls=(wall,))
+    costmap, path = Costmap(flat, 0.05, 4.0), [(1.5, -1.5 + 0.05 * i) for i in range(30)]
+    on, off = ((x, -1.0, 0.0) for x in (1.45, 0.5))
+    for pose, strayed in ((on, False), (off, True)):
+        follower = PathFollower(path, (*path[-1], 0.0), 0.5, CONFIG.corridor)
+        assert follower.step(pose, costmap, CONFIG.footprint_radius, None).strayed is strayed
 
 
 class Pilot(Node):

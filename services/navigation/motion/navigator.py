@@ -29,6 +29,8 @@ from services.navigation.planning.planner import PathPlanner, Point
 
 REPLAN_PERIOD = 1.0
 """Least time between two plans [s]; chosen: what the lidar sees seldom changes faster."""
+STRAYED_PERIOD = 0.2
+"""The same while it stands off its path, with a wall between [s]: four steps."""
 
 
 class Navigator:
@@ -187,6 +189,12 @@ class Navigator:
             return self._wait(pose, obstacles, now)
         ahead = follower.step(pose, self._map, self._config.footprint_radius, points)
         self.remaining = ahead.remaining
+        if ahead.strayed:
+            # There is another way from where it has been led to.
+            if now - self._route.planned_at > STRAYED_PERIOD:
+                self._route.follower = None
+                self._plan(pose, now)
+            return self._targets.next(pose)
         self._watch(ahead, pose, obstacles, now)
         return self._targets.ahead(ahead.pose, ahead.final)
 

@@ -26,16 +26,22 @@ STOPPED = 0.05
 """A target this near is none: the path is blocked [m]; chosen: the play of the pose estimate."""
 OFF = 1.0
 """Distance from the path that counts towards what is left, at most [m]."""
+SLACK = 0.03
+"""How much closer to a wall than it stands the base may come on the way back to its path [m]: half a cell."""
 
 
 @dataclass(frozen=True)
 class Lookahead:
-    """The target pose [map]; `final`: it is the goal, `blocked`: something stands before it; `remaining` path [m]."""
+    """The target pose [map]; `final`: it is the goal, `blocked`: something stands before it; `remaining` path [m].
+
+    `strayed`: it has been led off the path, and furniture or a wall of the map is between.
+    """
 
     pose: Pose2
     final: bool
     blocked: bool
     remaining: float
+    strayed: bool = False
 
 
 class PathFollower:
@@ -82,6 +88,8 @@ class PathFollower:
         while reach > self._index + 2 and costmap.line_clearance(here, self.path[reach]) < radius - 0.005:
             reach -= 2
         target = self.path[reach]
+        if _shut_off(here, target, costmap, radius):
+            return Lookahead(pose, False, False, remaining, strayed=True)
         heading = self.goal[2] if near_end else math.atan2(target[1] - pose[1], target[0] - pose[0])
         turn = abs(wrap(heading - pose[2]))
         final = reach == len(self.path) - 1
@@ -94,6 +102,13 @@ class PathFollower:
             return Lookahead((*stop, heading), False, blocked, remaining)
         pose_to = self.goal if final else (target[0], target[1], heading)
         return Lookahead(pose_to, final, False, remaining)
+
+
+def _shut_off(here: Point, target: Point, costmap: Costmap, radius: float) -> bool:
+    """Furniture or a wall of the map is nearer to the straight way to `target` than to where the base stands."""
+    fixed = costmap.static_distance
+    stands = float(fixed[costmap.cell(*here)])
+    return costmap.line_clearance(here, target, fixed) < min(radius - 0.005, stands - SLACK)
 
 
 def braked(here: Point, target: Point, points: Array | None, corridor: float) -> tuple[Point, bool]:

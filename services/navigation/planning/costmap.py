@@ -172,12 +172,12 @@ class Costmap(Cells):
         """Distance [m] from a point to the nearest obstacle."""
         return float(self.distance[self.cell(x, y)])
 
-    def line_clearance(self, a: tuple[float, float], b: tuple[float, float]) -> float:
-        """The least clearance on the straight line between two points."""
+    def line_clearance(self, a: tuple[float, float], b: tuple[float, float], distance: Array | None = None) -> float:
+        """The least clearance on the straight line between two points, or of that `distance` [m] of each cell."""
         count = max(2, math.ceil(math.hypot(b[0] - a[0], b[1] - a[1]) / self.resolution) + 1)
         share = np.arange(count) / (count - 1)
         xs, ys = a[0] + (b[0] - a[0]) * share, a[1] + (b[1] - a[1]) * share
-        return float(self.distance[self.cells(xs, ys)].min())
+        return float((self.distance if distance is None else distance)[self.cells(xs, ys)].min())
 
     # --- lidar
     def see(
