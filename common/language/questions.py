@@ -43,7 +43,6 @@ ABOUT_THE_WORLD: tuple[Wording, ...] = (
         "(on | in | at) <spot>",
         heard="what is that (on | in) [the] <place>",
     ),
-    Wording("where", f"{ASK} where (has | have | is | are) <thing> (gone | been | got to | ended up)"),
     Wording("where", f"{ASK} (where | whereabouts) [exactly] (is | are) <thing>", heard="where (is | are) <thing>"),
     Wording(
         "where",
@@ -52,37 +51,18 @@ ABOUT_THE_WORLD: tuple[Wording, ...] = (
         f" | {ASK} where (it is | is it | they are | stands | lies | sits) <thing> | {ASK} where did <thing> (go "
         f"| end up | get to) [to]",
     ),
-    Wording(
-        "where",
-        "(what do you know | tell me [something | more | all you know] | what can you tell me) (about | of) <thing>"
-        " | describe <thing>",
-    ),
     Wording("recall", f"(is | are) (anything | something) [still | left] [{LYING}] (in | on | at) <spot>"),
-    Wording(
-        "recall",
-        "is <spot> [still] (empty | free | clear | tidy | full | clean | occupied | untidy | a mess)"
-        " | is there nothing (on | in | at) <spot>",
-    ),
     Wording(
         "extreme",
         f"{ASK} (what | which) (is | are) <words> | {ASK} (which | what) [one] [of] <thing> (is | are) [the] <words>",
     ),
     Wording("where", f"{ASK} where <thing> (is | are | was | went | has gone | have gone | might be | "
                      f"could be)"),
-    Wording("where", f"{ASK} where (can | could | might | would) <thing> be"),
     Wording(
         "where",
         f"{ASK} (where | when) (did | do | would | can | could | have) (you | i | we) [last]"
         " (see | seen | put | leave | left | have | find | found | notice) <thing> [last]",
         heard="where did you [last] see <thing>",
-    ),
-    Wording(
-        "where",
-        f"{ASK} [in | on] (which | what) (room | place | surface | shelf | table) ({BE} <thing> | "
-        f"<thing> {BE}) [in | on]",
-    ),
-    Wording(
-        "where", f"{ASK} where (i | we | you) [have] [last] (left | put | saw | seen | have | had) <thing>",
     ),
     Wording(
         "where",
@@ -92,7 +72,6 @@ ABOUT_THE_WORLD: tuple[Wording, ...] = (
         "lose) <thing>",
     ),
     Wording("where", "(do | can) you (see | know) <thing> [anywhere | somewhere]"),
-    Wording("where", "(did you see | any sign of | what about | what happened to) <thing> [anywhere]"),
     Wording(
         "exists",
         f"{ASK} (is | are) there [still] <thing> [lying | standing] [left | anywhere | around | here | somewhere]",
@@ -127,11 +106,6 @@ ABOUT_THE_WORLD: tuple[Wording, ...] = (
         f"{ASK} (what | which) (colour | color) {BE} <thing> | {ASK} (what | which) (colour | color) "
         f"<thing> {BE} | {ASK} what {BE} the (colour | color) of <thing>"
         " | tell me the (colour | color) of <thing>",
-    ),
-    Wording(
-        "kinds",
-        "(which | what) <thing> (do you know [of | about] | have you seen | do you see | can you see | are there |"
-        " do we have)",
     ),
     Wording("compare", f"{ASK} (is | are) <thing> <words> than <spot>"),
     Wording("beside", f"{ASK} what {BE} [{LYING}] <words>"),

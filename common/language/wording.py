@@ -10,7 +10,7 @@ Action = Literal[
     "name_place", "rule", "rule_always", "forget_rule", "rules", "belongs", "usual", "last_seen",
     "look_around", "check", "go_and_see", "mention", "put_back", "put_where", "again", "thanks",
     "recall", "wish_at", "named_at", "put_held",
-    "exists", "is_at", "colour", "written", "beside", "kinds", "extreme", "compare",
+    "exists", "is_at", "colour", "written", "beside", "extreme", "compare",
     "condition", "condition_not", "state", "state_not",
     "rooms", "doing", "done", "why", "origin", "abilities", "identity", "battery", "repeat", "swap",
 ]  # fmt: skip
@@ -19,7 +19,7 @@ Kind = Literal["command", "reply", "name", "told"]
 QUESTIONS: frozenset[Action] = frozenset(
     {
         "seen", "contents", "holding", "whereabouts", "where", "number", "recall", "exists", "is_at", "colour",
-        "written", "beside", "kinds", "extreme", "compare",
+        "written", "beside", "extreme", "compare",
         "rooms", "doing", "done", "why", "origin", "abilities", "identity", "battery",
         "rules", "belongs", "usual", "last_seen", "repeat",
     }

@@ -77,7 +77,6 @@ ACTIONS: dict[Action, Callable[[PlanBuilder, Slots], None]] = {
     "colour": answers.colour,
     "written": answers.written,
     "beside": answers.beside,
-    "kinds": answers.number,
     "extreme": answers.extreme,
     "compare": answers.compare,
     "condition": conditions.condition,
