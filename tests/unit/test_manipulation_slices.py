@@ -11,6 +11,7 @@ from services.manipulation.grasps.antipodal import antipodal
 from services.manipulation.grasps.grasp import candidates
 from services.manipulation.grasps.surface import seen_open, surface
 from services.manipulation.grasps.target import Target
+from tests.unit.test_manipulation_stances import PLANNER
 
 AT = (0.6, 0.0, 0.8)
 TALL = 0.2
@@ -67,3 +68,11 @@ def test_only_into_what_is_seen_to_be_open_a_finger_goes() -> None:
     assert seen_open(vessel) and not seen_open(closed) and seen_open(replace(closed, measured=False))
     assert any(g.rim for g in candidates(vessel, 0.0, 0.0761))
     assert not any(g.rim for g in candidates(closed, 0.0, 0.0761))
+
+
+def test_of_what_is_too_wide_slice_by_slice_the_thin_parts_are_left(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert PLANNER.believed(SPRAY) is SPRAY
+    monkeypatch.setattr(PLANNER, "_on_surface", lambda target: [])
+    thin = PLANNER.believed(SPRAY)
+    below = surface(thin)[:, 2] < AT[2] - 0.05
+    assert thin.family == "long" and np.ptp(surface(thin)[below][:, 1]) > 0.08, "what was seen reaches down"

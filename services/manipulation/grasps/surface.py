@@ -55,7 +55,7 @@ def _maker(target: Target) -> Callable[[Target], Array]:
     if target.points is None or (target.family == "box" and not _thinner(target)):
         return _box
     # Of a box whose top was seen that tells how deep it is.
-    return _slices if target.family != "box" and _stands_up(target) else _columns
+    return _slices if target.family == "irregular" and _stands_up(target) else _columns
 
 
 def _stands_up(target: Target) -> bool:

@@ -12,7 +12,7 @@ from services.manipulation.arm.touch import Reaction
 from services.manipulation.arm.trajectory import connect
 from services.manipulation.grasps.antipodal import antipodal
 from services.manipulation.grasps.clearance import HandClearance
-from services.manipulation.grasps.evidence import as_held, seen_between
+from services.manipulation.grasps.evidence import as_held, believed, seen_between
 from services.manipulation.grasps.grasp import Grasp, candidates
 from services.manipulation.grasps.grasped_object import GraspedObject
 from services.manipulation.grasps.mouth import in_the_mouth
@@ -23,6 +23,8 @@ from services.manipulation.grasps.target import Target
 PLAINLY = 0.012
 """How much wider [m] than the hand takes a flat thing is that is only taken over an edge: the error of extents of
 what is seen in part."""
+FEWEST = 4
+"""Grasps of a completed surface below which there is next to nothing to hold. Chosen: as many as are tried."""
 CARTESIAN_STEP = 0.02
 """Distance [m] between the configurations along a straight line. Chosen: joints in between hardly leave it."""
 MAX_JUMP = 0.6
@@ -68,6 +70,15 @@ class Planner:
     def rng(self) -> np.random.Generator:
         """The same draws for every plan."""
         return np.random.default_rng(self._seed)
+
+    def believed(self, target: Target) -> Target:
+        """The object with its measured shape, or as it was seen. Of what is too wide slice by slice only thin parts can
+        be held, as a teapot by its handle: then what was seen is not completed to the far side.
+        """
+        found = believed(target)
+        if found.family != "irregular" or len(self._on_surface(found)) >= FEWEST:
+            return found
+        return replace(found, shape="long")
 
     def candidates(self, target: Target) -> Iterator[list[Grasp]]:
         """Every grasp that this hand could try, in stages: over an edge; by the rules of kind and shape; on the seen

@@ -9,7 +9,6 @@ import numpy as np
 from services.manipulation.arm.arm_model import Array, Obstacle
 from services.manipulation.arm.contacts import new_sides_first
 from services.manipulation.arm.trajectory import connect
-from services.manipulation.grasps.evidence import believed
 from services.manipulation.grasps.grasp import Grasp, certainly_too_wide
 from services.manipulation.grasps.grasp_verification import MEASURED
 from services.manipulation.grasps.grasped_object import GraspedObject, attach
@@ -63,7 +62,7 @@ def plan_grab(
     Raises:
         PlanError: UNREACHABLE; TOO_WIDE, there is no grasp of it at all and the measures are certain.
     """
-    target = believed(target)
+    target = planner.believed(target)
     distance = float(np.hypot(target.position[0] - planner.arm.forward, target.position[1]))
     if distance > reach:
         raise PlanError("UNREACHABLE", f"{target.label} is {distance:.2f} m from the arm, reach is {reach:.2f} m")

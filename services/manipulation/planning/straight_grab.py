@@ -9,7 +9,6 @@ import numpy as np
 from common.robot.model import Hand
 from services.manipulation.arm.arm_model import Array, Obstacle, Pose
 from services.manipulation.arm.ik import seeds
-from services.manipulation.grasps.evidence import believed
 from services.manipulation.grasps.grasp import Grasp
 from services.manipulation.grasps.grasped_object import attach
 from services.manipulation.grasps.target import Target
@@ -58,7 +57,7 @@ class Way:
 
 def feasible(planner: Planner, target: Target, way: Way, now: Array) -> bool:
     """Some grasp can be come to and lifted straight; the way there and away is not looked for."""
-    target = believed(target)
+    target = planner.believed(target)
     for stage in planner.candidates(target):
         for wanted in stage[:STANCE_GRASPS]:
             if isinstance(with_fingers(planner, target, wanted, way, now, straight_parts), Lines):
