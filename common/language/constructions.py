@@ -21,7 +21,7 @@ _WANT = (
     "am going to need|are going to need|would need|would (?:really |very much |quite |just )?(?:like|love|"
     "prefer)|would rather have|am "
     "needing|am wanting|"
-    "are needing|is asking for|is waiting for|is missing|am craving|am in need of|am after|am dying "
+    "are needing|(?:is|are) asking for|(?:is|are) waiting for|is missing|am craving|am in need of|am after|am dying "
     "for|am longing for|"
     "am in the mood for|are after|is after|(?:would |quite |rather |really )*(?:fancy|fancies)|could "
     "(?:really )?(?:use|do "

@@ -70,7 +70,12 @@ _WAS = frozenset({"was", "were", "had", "did"})
 
 def forbids(text: str) -> bool:
     """Does a text forbid, suppose, report or speak of another time, so that nothing in it is asked for?"""
-    return _FORBIDS.search(_HARMLESS.sub(" ", text)) is not None
+    return _FORBIDS.search(without_harmless(text)) is not None
+
+
+def without_harmless(text: str) -> str:
+    """A text without what looks as if it forbade something and does not: `no rush`, `do not hesitate`."""
+    return _HARMLESS.sub(" ", text)
 
 
 def is_of_others(words: Words, at: int) -> bool:

@@ -140,7 +140,10 @@ MOVING: tuple[Wording, ...] = (
     Wording("fetch", f"{PERSON} {WISH} <thing> [[over] here]"),
     Wording("fetch", f"{MODAL} (i | we) (have | get) <thing> | let (me | us) (have | borrow | use | hold) <thing>"),
     Wording("fetch", f"{MODAL} i (trouble | bother | ask) you for <thing> | gimme <thing> | how about <thing>"),
-    Wording("fetch", "<thing> (would be (nice | great | good | lovely | perfect) | (will | would) do [nicely | fine])"),
+    Wording(
+        "fetch",
+        "<thing> (would be (nice | great | good | lovely | perfect | welcome) | (will | would) do [nicely | fine])",
+    ),
     Wording("fetch", "[is there] any chance of [getting | having] <thing>"),
     Wording("fetch", "(pick | grab | fetch | get) (me | us) up <thing>"),
     Wording("refuse", "(put | place | set) <thing>", reason="you did not say where to put it", lost=True),

@@ -127,7 +127,7 @@ _FRAMES = (
 _ENDINGS = (
     "(?:it )?(?:does|do) not matter(?: which(?: one)?)?|(?:i|we) do not (?:mind|care) which(?: one)?|"
     "(?:pretty )?please(?: with .+)?|right now|(?:right )?about now|right away|now|quickly|at once|"
-    "immediately|straight away|for me|"
+    "immediately|straight away|for me|(?:just )?for now|"
     "at the moment|at all|at present|currently|"
     "for us|thanks|thank you"
     "(?: very much| so much| a lot)?|(?<!real )(?<! a )robot|tidybot|jarvis|then|anyway|and|will you please|okay|"

@@ -71,6 +71,11 @@ ABOUT_THE_WORLD: tuple[Wording, ...] = (
         "| anybody | anyone) (leave | put | forget | "
         "lose) <thing>",
     ),
+    Wording(
+        "where",
+        f"{ASK} [in | on] (which | what) (room | place | surface | shelf | table) ({BE} <thing> | "
+        f"<thing> {BE}) [in | on]",
+    ),
     Wording("where", "(do | can) you (see | know) <thing> [anywhere | somewhere]"),
     Wording(
         "exists",

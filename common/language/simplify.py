@@ -7,7 +7,9 @@ _ADVERBS = frozenset({
     "somewhere", "anywhere",
 })  # fmt: skip
 _NO_ADVERBS = frozenset({"only", "family", "early"})
-_PARTICLES = frozenset({"back", "over", "out", "up", "down", "on", "along", "off", "away", "round", "across", "right"})
+_PARTICLES = frozenset(
+    {"back", "over", "out", "up", "down", "on", "along", "off", "away", "round", "across", "right", "through"}
+)
 _AFTER_PARTICLE = frozenset(
     {"to", "off", "from", "on", "onto", "in", "into", "at", "here", "there", "beside", "next", "near", "behind"}
 )

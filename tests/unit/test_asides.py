@@ -5,7 +5,7 @@ import pytest
 from services.planner.grammar.asides import without_asides
 from tests.everyday import planned
 
-IDLE = frozenset({"they are empties", "ta", "yes you", "not that one", "if you can", "only now"})
+IDLE = frozenset({"they are empties", "ta", "yes you", "not that one", "if you can", "only now", "no rush"})
 
 
 @pytest.mark.parametrize(
@@ -16,6 +16,7 @@ IDLE = frozenset({"they are empties", "ta", "yes you", "not that one", "if you c
         ("bring me the can, not that one", "bring me the can, not that one"),
         ("bring me the can, if you can, ta", "bring me the can, if you can"),
         ("bring me the can, only now", "bring me the can, only now"),
+        ("no rush, bring me the can", "bring me the can"),
         ("bring me the can", "bring me the can"),
         ("ta", "ta"),
         ("", ""),

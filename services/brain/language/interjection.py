@@ -162,7 +162,12 @@ def _behind(words: str, doing: str) -> str:
     said, rest = set(doing.split()) - _SMALL, found["rest"].split()
     at = int(infinitive(rest[0], COMMANDING) in COMMANDING and (rest[0].endswith("ing") or bool(found["you"])))
     about = {infinitive(rest[0], COMMANDING)} & said
-    while at < len(rest) and (bare := rest[at].strip(",")) in said | _SMALL | {"up", "down", "away", "back"}:
+    while at < len(rest) and (bare := rest[at].strip(",")) in said | _SMALL | _POINTING | {
+        "up",
+        "down",
+        "away",
+        "back",
+    }:
         about |= {bare} & said
         at += 1
         if rest[at - 1].endswith(","):

@@ -3,7 +3,7 @@
 import re
 from collections.abc import Callable
 
-from common.language.mood import forbids
+from common.language.mood import forbids, without_harmless
 from common.language.normalise import Words
 
 _MARKS = re.compile(r"\s*([,;.!?]+)\s*")
@@ -33,4 +33,5 @@ def without_asides(text: str, idle: Callable[[Words], bool]) -> str:
 
 
 def _says_nothing(words: Words) -> bool:
-    return _LIMITING.isdisjoint(words) and not forbids(" ".join(words))
+    text = " ".join(words)
+    return _LIMITING.isdisjoint(without_harmless(text).split()) and not forbids(text)
