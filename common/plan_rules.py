@@ -73,8 +73,8 @@ def _objection(step: PlanStep, held: str, found: set[str], world: KnownWorld, ho
         case "place":
             if not held:
                 return "there is nothing in the hand to place"
-            if household.receptacle(step.target) is None:
-                return f"there is no {step.target or 'place'} to put things on"
+            if no_surface := _no_surface(step.target, household):
+                return no_surface
             return _not_a_thing(step.near, world, household) if step.near else ""
         case "release":
             return "" if held else "there is nothing in the hand to release"
@@ -91,9 +91,13 @@ def _objection(step: PlanStep, held: str, found: set[str], world: KnownWorld, ho
         case "rule":
             if not step.object.strip():
                 return "no thing was said that the rule is about"
-            return "" if household.receptacle(step.target) else f"there is no {step.target or 'place'} to put things on"
+            return _no_surface(step.target, household)
         case _:
             return ""
+
+
+def _no_surface(name: str, household: Household) -> str:
+    return "" if household.receptacle(name) else f"there is no {name or 'place'} to put things on"
 
 
 def _no_grasp(thing: str, held: str, found: set[str], world: KnownWorld, household: Household) -> str:

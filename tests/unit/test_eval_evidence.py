@@ -256,3 +256,5 @@ def test_what_is_missing_comes_before_what_was_disturbed(expect: str) -> None:
 )  # fmt: skip
 def test_the_first_shortfall_is_told_without_the_name_of_the_thing(shortfall: str, first: str) -> None:
     assert cause(CASE, seen(BAD, "delivered", shortfall=shortfall), "failed") == f"evidence: {first}"
+    missions = [("map the home", ""), ("bring the mug", shortfall), ("bring the can", "can: lost")]
+    assert cause(CASE, seen(BAD, "delivered", missions=missions), "failed") == f"mission: {first}"

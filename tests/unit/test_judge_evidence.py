@@ -9,9 +9,9 @@ import pytest
 from common import messages as m
 from judge.contacts import ContactBook, describe, is_hit
 from judge.effects import Effect, Shown
-from judge.evidence import Evidence, Recorder, Sample, ThingEvidence, Want, spl
+from judge.evidence import CREEP, Evidence, Recorder, Sample, ThingEvidence, Want, spl
 from judge.goal import Goal, shortfall
-from judge.track import LIFTED, Thing, Track
+from judge.track import DROP, LIFTED, Thing, Track
 
 WANT, MUG = Want("mug", ("tray", "desk")), frozenset({"mug"})
 KINDS = {"mug": "mug", "can": "can", "ball": "ball"}
@@ -190,6 +190,13 @@ def test_what_the_hand_loses_is_dropped_when_it_falls(fall: float, drops: int) -
     assert mug([*GOOD[:5], sample(4.5, above), sample(4.6, again), sample(4.7, ON_TRAY), *GOOD[5:]]).drops == 0
 
 
+def test_a_centimetre_sharp_is_no_fall() -> None:
+    above, below = ((3.0, 0.0, z) for z in (DROP, 0.0))
+    held = sample(4.4, changed(HELD, position=above))
+    lost = [sample(4.5, changed(FALLING, position=above)), sample(4.6, changed(FALLING, position=below))]
+    assert mug([*GOOD[:5], held, *lost, *GOOD[5:]]).drops == 0
+
+
 def test_what_a_sinking_hand_loses_for_one_sample_is_not_dropped() -> None:
     held = sample(3.6, changed(HELD, position=FALLING.position))
     assert mug([*GOOD[:4], sample(3.4, FALLING), held, *GOOD[4:]]).drops == 0
@@ -253,6 +260,19 @@ def test_what_still_topples_as_the_robot_is_asked_counts_from_where_it_comes_to_
     assert found.conclude((WANT,), MUG).disturbed == []
     found.add(sample(2.0, ON_TABLE))
     assert found.conclude((WANT,), MUG).disturbed == ["can"]
+
+
+@pytest.mark.parametrize(
+    ("positions", "creeps"),
+    [((0, 0, 0), False), ((0, 0, CREEP), False), ((0, 0, 1.1 * CREEP), True), ((0, 1.1 * CREEP, 1.1 * CREEP), True)],
+)
+def test_creeping_is_what_half_a_second_shows(positions: tuple[float, ...], creeps: bool) -> None:
+    found = recorder(
+        [sample(0.2 * n, ON_TABLE, can=changed(CAN, position=(x, 0.0, 0.0))) for n, x in enumerate(positions)]
+    )
+    found.restart()
+    found.add(sample(0.5, ON_TABLE, can=changed(CAN, position=(0.1, 0.0, 0.0))))
+    assert found.conclude((WANT,), MUG).disturbed == ([] if creeps else ["can"])
 
 
 def test_what_the_hand_holds_does_not_move_of_itself() -> None:

@@ -53,6 +53,10 @@ def beside(target: str, near: str) -> PlanStep:
     return PlanStep(action="place", target=target, near=near)
 
 
+def rule(thing: str, target: str) -> PlanStep:
+    return PlanStep(action="rule", object=thing, target=target)
+
+
 def go(target: str = "", thing: str = "") -> PlanStep:
     return PlanStep(action="navigate", target=target, object=thing)
 
@@ -106,6 +110,12 @@ NOTHING = "step {}: there is nothing in the hand to release"
         ((PlanStep(action="teach", text=" "),), "", (), "step 1: no name was said"),
         ((PlanStep(action="forget"),), "", (), "step 1: no name was said"),
         ((PlanStep(action="teach", text="vitamin box"), PlanStep(action="forget", text="it")), "", (), ""),
+        ((PlanStep(action="name", text=" "),), "", (), "step 1: no name was said"),
+        ((PlanStep(action="name", text="my desk"),), "", (), ""),
+        ((rule("mugs", "bureau"),), "", (), ""),
+        ((rule(" ", "desk"),), "", (), "step 1: no thing was said that the rule is about"),
+        ((rule("mugs", "moon"),), "", (), "step 1: there is no moon to put things on"),
+        ((rule("mugs", ""),), "", (), "step 1: there is no place to put things on"),
         ((place("desk"), place("desk")), "apple", (), "step 2: there is nothing in the hand to place"),
         ((place("desk"), RELEASE), "apple", (), "step 2: there is nothing in the hand to release"),
         ((RELEASE, RELEASE), "apple", (), "step 2: there is nothing in the hand to release"),
