@@ -56,16 +56,13 @@ class Robot:
         self.supervision, self.link, self.names = supervision, link, tuple(names)
         self.tokens = {s.name for s in SERVICES if s.token and s.name in names}
 
-    def pids(self) -> dict[str, int]:
-        return {p.name: p.pid for p in self.supervision.processes() if p.state == "running"}
-
     def kill(self, names: Sequence[str]) -> float:
         """SIGKILL to all of them; seconds until every one is alive again as another process.
 
         Raises:
             TimeoutError: somebody did not come back.
         """
-        before = self.pids()
+        before = self.supervision.running()
         began = time.monotonic()
         for name in names:
             os.kill(before[name], signal.SIGKILL)
@@ -73,7 +70,7 @@ class Robot:
         return time.monotonic() - began
 
     def _back(self, names: Sequence[str], before: dict[str, int]) -> bool:
-        now = self.pids()
+        now = self.supervision.running()
         if any(now.get(n, 0) in (0, before[n]) for n in names):
             return False
         health = self.link.health()
@@ -95,7 +92,7 @@ class Robot:
         found.shared = sum("zenoh" in p.name for p in Path("/dev/shm").iterdir())
         pids = {p.pid for p in tree} | {os.getpid()}
         found.strays = sum(p.pid not in pids for p in psutil.process_iter() if self._ours(p))
-        labels = {pid: name for name, pid in self.pids().items()} | {parent.pid: "supervisor"}
+        labels = {pid: name for name, pid in self.supervision.running().items()} | {parent.pid: "supervisor"}
         for p in tree:
             sockets = p.net_connections(kind="tcp")
             found.listening += sum(c.status == psutil.CONN_LISTEN for c in sockets)

@@ -61,18 +61,15 @@ class Robot:
             self._recording.wait()
         self.supervision.stop()
 
-    def pids(self) -> dict[str, int]:
-        return {p.name: p.pid for p in self.supervision.processes() if p.state == "running"}
-
     def kill(self, name: str) -> None:
-        os.kill(self.pids()[name], signal.SIGKILL)
+        os.kill(self.supervision.running()[name], signal.SIGKILL)
 
     def power_cut(self) -> None:
         """Kill every process at once, as when the power goes."""
         if self._recording is not None:
             self._recording.kill()
             self._recording.wait()
-        pids = [*self.pids().values(), self.supervision.pid()]
+        pids = [*self.supervision.running().values(), self.supervision.pid()]
         for pid in pids:
             if pid is not None:
                 os.kill(pid, signal.SIGKILL)
@@ -83,7 +80,7 @@ class Robot:
 
     def memory(self) -> dict[str, float]:
         found = {}
-        for name, pid in self.pids().items():
+        for name, pid in self.supervision.running().items():
             try:
                 found[name] = psutil.Process(pid).memory_info().rss / 1e6
             except psutil.NoSuchProcess:

@@ -75,11 +75,10 @@ _EDGE = [
 
 @dataclass
 class Robot:
-    """One of the two: its bus, the joints of its body in physics, and everything that it has told of its way."""
+    """One of the two: its bus, and the joints of its body in physics."""
 
     bus: MemoryBus
     joints: NDArray[np.float64]
-    intents: list[bytes]
 
     @property
     def true(self) -> Pose2:
@@ -115,7 +114,7 @@ class Pair:
             own.robot = NAMES[n] if exchange else ""
             self._world.add(NavigationService(NavigationConfig(), own), own)
         bodies = zip(numbers, self._sim.physics.robots, strict=True)
-        self.robots = {n: Robot(buses[n], body.joints, buses[n].tap(topics.DRIVE_INTENT)) for n, body in bodies}
+        self.robots = {n: Robot(buses[n], body.joints) for n, body in bodies}
         for n, robot in self.robots.items():
             robot.bus.send(topics.BRAIN_STATE, m.BrainState(state="WAITING"))
             if alone is None:

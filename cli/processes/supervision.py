@@ -178,6 +178,14 @@ class Supervision:
         order = {name: i for i, name in enumerate(self.info().services)} if self.info() else {}
         return sorted(found, key=lambda p: order.get(p.name, 99))
 
+    def running(self) -> dict[str, int]:
+        """The process ids of those that run, by name.
+
+        Raises:
+            CliError: nothing is up.
+        """
+        return {p.name: p.pid for p in self.processes() if p.state == "running"}
+
     def restart(self, name: str, forget: Path | None = None) -> None:
         """Stop and start one process; between the two a file that it would go on from can be forgotten.
 

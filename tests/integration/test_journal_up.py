@@ -30,7 +30,7 @@ def plan_of(directory: Path, monkeypatch: pytest.MonkeyPatch) -> Plan:
 
 def brain_of(supervision: Supervision) -> int:
     """Its process id, 0 while it is not running."""
-    return next((p.pid for p in supervision.processes() if p.name == "brain" and p.state == "running"), 0)
+    return supervision.running().get("brain", 0)
 
 
 @pytest.mark.slow
