@@ -129,9 +129,10 @@ def test_only_the_page_may_ask_for_the_missions_and_it_answers_for_nobody() -> N
 def test_a_ros_peer_has_the_keys_of_its_domain_and_nothing_of_the_robot() -> None:
     who = [Subject(name="ros2", domain=7), Subject(name="laptop", role="ros", domain=7), Subject(name="speech")]
     made = access.acl(who)
-    (peer,) = rules(made, "laptop")
-    assert peer["key_exprs"] == ["7/**", "7/**/@adv/**", "@ros2_lv/7/**"]
-    assert peer["key_exprs"] in [r["key_exprs"] for r in rules(made, "ros2")]
+    keys = ["7/**", "7/**/@adv/**", "@ros2_lv/7/**"]
+    assert rules(made, "laptop") == [row("laptop: ros domain 7", EVERY_MESSAGE, "ingress egress", keys)]
+    assert row("ros2: ros domain 7", EVERY_MESSAGE, "ingress egress", keys) in rules(made, "ros2")
+    assert access.grants(who[1]) == access.Grants()
     assert not [r for r in rules(made, "speech") if any("ros" in key for key in r["key_exprs"])]
 
 
@@ -208,6 +209,51 @@ def test_the_rules_of_an_operator() -> None:
         row(f"{name}: asks", "query", "ingress", everything),
         row(f"{name}: finds", "declare_queryable", "egress", everything),
     ]
+
+
+SEEN_ABROAD = "brain/state sim/status navigation/pose navigation/path robot/battery world/objects navigation/costmap"
+SEEN_BY_AGENTS = (
+    "brain/state system_status speech/status sim/status world/objects navigation/pose navigation/costmap "
+    "camera/head/rgbd camera/wrist/rgbd"
+)
+
+
+@pytest.mark.parametrize(
+    ("who", "prefix", "puts", "seen", "question"),
+    [
+        (Subject("bot", "agent", "k"), "k/", "voice_command robot/stop camera/request", SEEN_BY_AGENTS,
+         " brain/missions"),
+        (Subject("desk", "fleet"), "**/", "voice_command robot/stop", SEEN_ABROAD, ""),
+    ],
+)  # fmt: skip
+def test_the_rules_of_who_gives_commands_in_words(
+    who: Subject, prefix: str, puts: str, seen: str, question: str
+) -> None:
+    """A program has them of one robot, a fleet's desk of every one."""
+    asks, reads = f"{seen} service/*/health", f"{seen} service/*/health service/*/alive"
+    name, caches = who.common_name, below(prefix, "", puts)
+    everything = ["k/**", "k/**/@adv/**"] if who.namespace else ["**", "**/@adv/**"]
+    assert access.acl([who])["rules"] == [
+        row(f"{name}: publishes", "put delete", "ingress", below(prefix, puts, puts)),
+        row(f"{name}: is matched", "declare_subscriber", "egress", everything),
+        row(f"{name}: answers", "declare_queryable", "ingress", caches),
+        row(f"{name}: replies", "reply", "ingress", below(prefix, puts, puts)),
+        row(f"{name}: is alive", "liveliness_token", "ingress", caches),
+        row(f"{name}: subscribes", LISTENING, "ingress", below(prefix, reads, reads)),
+        row(f"{name}: receives", COMING, "egress", below(prefix, reads, reads) + below(prefix, question)),
+        row(f"{name}: asks", "query", "ingress", below(prefix, f"{asks}{question}", reads)),
+        row(f"{name}: finds", "declare_queryable", "egress", below(prefix, f"{asks}{question}", reads)),
+    ]
+
+
+def test_the_navigation_of_every_robot_hears_where_the_others_drive() -> None:
+    navigation, speech = (access.grants(Subject(name)) for name in ("navigation", "speech"))
+    assert navigation.abroad == navigation.heard_abroad == ("navigation/intent",)
+    assert speech.abroad == speech.heard_abroad == ()
+    made = {r["id"]: r["key_exprs"] for r in access.acl([Subject("navigation", namespace="k")])["rules"]}
+    assert made["k/navigation: is matched"] == ["k/**", "k/**/@adv/**", "**/navigation/intent"]
+    abroad = {what for what, keys in made.items() if "**/navigation/intent" in keys}
+    assert abroad == {f"k/navigation: {what}" for what in ("is matched", "subscribes", "receives")}
 
 
 def test_the_rules_of_an_observer_beside_another_robot() -> None:
