@@ -1,7 +1,7 @@
 """Things with faces, and bodies from files: what collides, what is seen, and that they stay where they stand."""
 
 import io
-import sys
+from collections.abc import Callable
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -21,7 +21,7 @@ from services.sim.layout import Placement
 from services.sim.objects import body_xml, made
 from services.sim.physics import Physics
 from services.sim.robot import HULL_GROUP
-from services.sim.things import convex
+from services.sim.things import cells, convex
 from services.sim.things.body_file import body as body_of
 from services.sim.things.finish import GROUND, picture
 from services.sim.things.forms import FORMS
@@ -339,46 +339,83 @@ def cup() -> tuple[np.ndarray, np.ndarray]:
     return sewn, index.ravel()[shape.faces]
 
 
-class Decomposer:
-    """Stands in for CoACD: two halves."""
-
-    asked = 0
-
-    def set_log_level(self, level: str) -> None: ...
-
-    def Mesh(self, vertices: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:  # noqa: N802
-        return vertices, faces
-
-    def run_coacd(self, mesh: tuple[np.ndarray, np.ndarray], **_: object) -> list[tuple[np.ndarray, np.ndarray]]:
-        self.asked += 1
-        return [mesh, (mesh[0] * 2, mesh[1])]
+COACD = """
+import pathlib, sys, time
+def set_log_level(level): ...
+def Mesh(vertices, faces): return vertices, faces
+def run_coacd(mesh, **_):
+    with open(pathlib.Path(__file__).with_name("asked"), "a") as asked:
+        asked.write("x")
+    {instead}
+    return [mesh, (mesh[0] * 2, mesh[1])]
+"""
 
 
-def test_parts_are_made_once_and_a_torn_file_is_made_anew(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    made = Decomposer()
-    monkeypatch.setitem(sys.modules, "coacd", made)
-    monkeypatch.setenv("TIDYBOT_CACHE_DIR", str(tmp_path))
+@pytest.fixture
+def decomposer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[str], Path]:
+    """Puts a module in CoACD's place that makes two halves, or does something `instead`; a file counts its calls."""
+
+    def put(instead: str = "") -> Path:
+        folder = tmp_path / "package"
+        folder.mkdir(exist_ok=True)
+        (folder / "coacd.py").write_text(COACD.format(instead=instead))
+        monkeypatch.syspath_prepend(str(folder))
+        return folder / "asked"
+
+    monkeypatch.setenv("TIDYBOT_CACHE_DIR", str(tmp_path / "cache"))
+    return put
+
+
+def open_inside(found: list[convex.Part]) -> bool:
+    """Nothing is where a thumb goes: within 25 mm of the axis, from 15 mm above the ground."""
+    x, y, z = np.meshgrid(np.linspace(-0.025, 0.025, 9), np.linspace(-0.025, 0.025, 9), np.linspace(0.023, 0.09, 9))
+    room = np.stack([x, y, z], axis=-1)[np.hypot(x, y) < 0.025]
+    return not any((Delaunay(corners).find_simplex(room) >= 0).any() for corners, _ in found)
+
+
+def test_parts_are_made_once_and_a_torn_file_is_made_anew(decomposer: Callable[[str], Path], tmp_path: Path) -> None:
+    asked = decomposer("")
     vertices, faces = cup()
     for _ in range(2):
         found = convex.parts(vertices, faces)
         assert len(found) == 2 and np.allclose(found[1][0], 2 * vertices) and np.array_equal(found[0][1], faces)
-    assert made.asked == 1
-    convex.parts(vertices * 1.1, faces)
-    assert made.asked == 2, "another mesh has other parts"
-    for file in (tmp_path / "convex").iterdir():
+    assert asked.read_text() == "x"
+    for file in (tmp_path / "cache" / "convex").iterdir():
         file.write_bytes(file.read_bytes()[:100])
     convex.parts(vertices, faces)
-    assert made.asked == 3
+    assert asked.read_text() == "xx"
 
 
-def test_without_coacd_or_a_disk_it_does_with_less(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("instead", ["import os; os.abort()", "raise ValueError('not manifold')"])
+def test_a_mesh_that_coacd_cannot_take_apart_is_cut_by_planes(
+    instead: str, decomposer: Callable[[str], Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     (tmp_path / "file").write_text("")
     monkeypatch.setenv("TIDYBOT_CACHE_DIR", str(tmp_path / "file"))
-    monkeypatch.setitem(sys.modules, "coacd", None)
-    ((corners, triangles),) = convex.parts(*cup())
-    assert np.allclose(np.ptp(corners, axis=0), (0.08, 0.08, 0.09), atol=1e-3) and triangles.max() == len(corners) - 1
-    monkeypatch.setitem(sys.modules, "coacd", Decomposer())
-    assert len(convex.parts(*cup())) == 2
+    asked = decomposer(instead)
+    found = convex.parts(*cup())
+    assert asked.exists() and 4 < len(found) <= convex.MOST and open_inside(found)
+    corners = np.concatenate([vertices for vertices, _ in found])
+    assert np.allclose(np.ptp(corners, axis=0), (0.08, 0.08, 0.09), atol=1e-3)
+
+
+def test_coacd_does_not_go_on_for_ever(
+    decomposer: Callable[[str], Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    limited: list[tuple[int, tuple[int, int]]] = []
+    decomposer("")
+    monkeypatch.setattr(convex.resource, "setrlimit", lambda what, limits: limited.append((what, limits)))
+    np.savez(tmp_path / "mesh.npz", v0=cup()[0], f0=cup()[1])
+    assert convex.main(str(tmp_path / "mesh.npz"), str(tmp_path / "parts.npz")) == 0
+    assert limited == [(convex.resource.RLIMIT_CPU, (convex.LIMIT, convex.LIMIT))]
+
+
+def test_what_is_convex_stays_in_one_piece_and_a_sheet_gets_some_thickness() -> None:
+    rod = turned(list(pairwise([(0.0, 0.0), (0.03, 0.0), (0.03, 0.2), (0.0, 0.2)])), 0.0, 0.2, 0.0)
+    assert len(cells.parts(rod.vertices, rod.faces, 24)) == 1
+    sheet = np.array([[0.0, 0, 0], [0.1, 0, 0], [0.1, 0.1, 0], [0, 0.1, 0]]), np.array([[0, 1, 2], [0, 2, 3]])
+    ((corners, triangles),) = cells.parts(*sheet, 24)
+    assert 0 < np.ptp(corners[:, 2]) < 0.001 and triangles.max() == len(corners) - 1
 
 
 @pytest.mark.slow
@@ -386,20 +423,11 @@ def test_a_cup_keeps_its_inside(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     pytest.importorskip("coacd")
     monkeypatch.setenv("TIDYBOT_CACHE_DIR", str(tmp_path))
     found = convex.parts(*cup())
-    assert len(found) > 5
-    inside = np.array([0.0, 0.0, 0.06])
-    assert not any(Delaunay(vertices).find_simplex(inside) >= 0 for vertices, _ in found)
+    assert len(found) > 5 and open_inside(found)
 
 
-@pytest.fixture
-def in_halves(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Meshes are taken apart into two, and kept below `tmp_path`."""
-    monkeypatch.setenv("TIDYBOT_CACHE_DIR", str(tmp_path))
-    monkeypatch.setitem(sys.modules, "coacd", Decomposer())
-
-
-@pytest.mark.usefixtures("in_halves")
-def test_the_seams_of_a_texture_are_sewn_before_a_mesh_is_taken_apart() -> None:
+def test_the_seams_of_a_texture_are_sewn_before_a_mesh_is_taken_apart(decomposer: Callable[[str], Path]) -> None:
+    decomposer("")
     corners, triangles = cup()
     loose = corners[triangles.ravel()]
     without_area = [[0, 0, 3]]
@@ -415,8 +443,10 @@ def test_a_mesh_whose_hull_would_fill_it_is_hollow() -> None:
     assert not convex.hollow(rod.vertices, rod.faces)
 
 
-@pytest.mark.usefixtures("in_halves")
-def test_a_hollow_mesh_that_is_seen_and_collides_is_taken_apart(tmp_path: Path) -> None:
+def test_a_hollow_mesh_that_is_seen_and_collides_is_taken_apart(
+    decomposer: Callable[[str], Path], tmp_path: Path
+) -> None:
+    decomposer("")
     corners, triangles = cup()
     lines = [f"v {x} {y} {z}" for x, y, z in corners] + [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in triangles]
     (tmp_path / "cup.obj").write_text("\n".join(lines))

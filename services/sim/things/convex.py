@@ -5,6 +5,10 @@ import hashlib
 import importlib
 import io
 import os
+import resource
+import subprocess
+import sys
+import tempfile
 import zipfile
 from pathlib import Path
 from typing import Any
@@ -13,9 +17,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.files import atomic_file
+from services.sim.things import cells
+from services.sim.things.cells import Array, Part
 
-Array = NDArray[np.float64]
-Part = tuple[Array, NDArray[np.int64]]
 THRESHOLD = 0.05
 """Concavity that CoACD leaves: its own default. A cup keeps its inside."""
 MOST = 24
@@ -25,9 +29,12 @@ FILLED = 0.8
 neck fills .75, a banana .7; fingers that close on it would stop in the air."""
 EFFORT = {"preprocess_resolution": 30, "resolution": 1000, "mcts_nodes": 8, "mcts_iterations": 30, "mcts_max_depth": 2}
 """How hard CoACD tries: 5 s for a bowl of 768 triangles, by its own defaults 13 s; as many parts."""
+LIMIT = 40
+"""Processor time [s] that CoACD may take for a mesh. Most take 5 to 20; a vase of 672 triangles was not done after
+eight minutes, and as long nothing is heard of the simulation."""
 SEAM_DIGITS = 6
 """Decimals [m] of vertices that are one."""
-VERSION = "2"
+VERSION = "3"
 
 
 def directory() -> Path:
@@ -38,25 +45,41 @@ def directory() -> Path:
 
 
 def parts(vertices: Array, faces: NDArray[np.int64]) -> list[Part]:
-    """The parts, from disk if they were made before; the convex hull where CoACD is not installed."""
+    """The parts, from disk if they were made before; by `cells` where CoACD makes none."""
     digest = hashlib.sha256(f"{VERSION} {THRESHOLD} {MOST}".encode() + vertices.tobytes() + faces.tobytes()).hexdigest()
     file = directory() / "convex" / f"{digest[:24]}.npz"
-    try:
-        with np.load(io.BytesIO(file.read_bytes())) as kept:
-            return [(kept[f"v{n}"], kept[f"f{n}"]) for n in range(len(kept.files) // 2)]
-    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
-        pass
+    with contextlib.suppress(OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
+        return _read(file.read_bytes())
+    vertices, faces = _sewn(vertices, faces)
+    found = _decomposed(vertices, faces) or cells.parts(vertices, faces, MOST)
+    _keep(file, found)
+    return found
+
+
+def _decomposed(vertices: Array, faces: NDArray[np.int64]) -> list[Part]:
+    """CoACD's parts; none where it is not installed, fails or does not end: in a process of its own for that."""
+    with tempfile.TemporaryDirectory(prefix="tidybot-convex-") as scratch:
+        given, made = Path(scratch, "mesh.npz"), Path(scratch, "parts.npz")
+        np.savez(given, v0=vertices, f0=faces)
+        paths = {"PYTHONPATH": os.pathsep.join(p for p in sys.path if p)}
+        line = [sys.executable, "-m", "services.sim.things.convex", str(given), str(made)]
+        done = subprocess.run(line, env={**os.environ, **paths}, capture_output=True, check=False)
+        return _read(made.read_bytes()) if done.returncode == 0 else []
+
+
+def main(given: str, made: str) -> int:
+    """Decompose the mesh of one file into another, within `LIMIT`."""
+    resource.setrlimit(resource.RLIMIT_CPU, (LIMIT, LIMIT))
     try:
         coacd = importlib.import_module("coacd")
     except ImportError:
-        return [_hull(vertices)]
+        return os.EX_UNAVAILABLE
     coacd.set_log_level("error")
-    made = coacd.run_coacd(
-        coacd.Mesh(*_sewn(vertices, faces)), threshold=THRESHOLD, max_convex_hull=MOST, seed=0, **EFFORT
-    )
-    found = [(np.asarray(v, np.float64), np.asarray(f, np.int64)) for v, f in made]
-    _keep(file, found)
-    return found
+    ((vertices, faces),) = _read(Path(given).read_bytes())
+    mesh = coacd.Mesh(vertices, faces)
+    found = coacd.run_coacd(mesh, threshold=THRESHOLD, max_convex_hull=MOST, seed=0, **EFFORT)
+    Path(made).write_bytes(_packed([(np.asarray(v, np.float64), np.asarray(f, np.int64)) for v, f in found]))
+    return os.EX_OK
 
 
 def _sewn(vertices: Array, faces: NDArray[np.int64]) -> Part:
@@ -76,22 +99,26 @@ def hollow(vertices: Array, faces: NDArray[np.int64]) -> bool:
     return volume < FILLED * float(ConvexHull(vertices).volume)
 
 
-def _keep(file: Path, found: list[Part]) -> None:
-    """What cannot be kept is made anew the next time."""
+def _read(packed: bytes) -> list[Part]:
+    with np.load(io.BytesIO(packed)) as kept:
+        return [(kept[f"v{n}"], kept[f"f{n}"]) for n in range(len(kept.files) // 2)]
+
+
+def _packed(found: list[Part]) -> bytes:
     arrays: dict[str, Any] = {}
     for n, (vertices, faces) in enumerate(found):
         arrays |= {f"v{n}": vertices, f"f{n}": faces}
     packed = io.BytesIO()
     np.savez_compressed(packed, **arrays)
+    return packed.getvalue()
+
+
+def _keep(file: Path, found: list[Part]) -> None:
+    """What cannot be kept is made anew the next time."""
     with contextlib.suppress(OSError):
         file.parent.mkdir(parents=True, exist_ok=True)
-        atomic_file.replace(file, packed.getvalue())
+        atomic_file.replace(file, _packed(found))
 
 
-def _hull(vertices: Array) -> Part:
-    from scipy.spatial import ConvexHull
-
-    hull = ConvexHull(vertices)
-    corner = np.full(len(vertices), -1)
-    corner[hull.vertices] = np.arange(len(hull.vertices))
-    return vertices[hull.vertices], corner[hull.simplices]
+if __name__ == "__main__":
+    sys.exit(main(*sys.argv[1:]))
