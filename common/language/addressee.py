@@ -14,9 +14,10 @@ from common.language.verb_classes import classes
 
 _TITLES = "mr|mrs|ms|miss|dr|doctor|aunt|auntie|uncle|nurse"
 _ASKS = r"(?:can|could|would|will) you\b(?! (?:see|know)\b)"
+_FOR_ME = re.compile(r"^(?:can|could|may) (?:i|we) (?:please )?(?:have|get|borrow)\b")
 _BEFORE = re.compile(
     rf"^(?:(?:hey|hi|hello|ok|okay|oh|well|and),? )*(?P<name>(?:(?:{_TITLES}) )?[a-z]+)"
-    rf"(?:,\s*(?P<rest>.+)|\s+{_ASKS}.+)$"
+    rf"(?: (?:love|dear|darling|honey))?(?:,\s*(?P<rest>.+)|\s+{_ASKS}.+)$"
 )
 _BEHIND = re.compile(rf"^(?:please )?{_ASKS}[^,]+,\s*(?P<name>(?:(?:{_TITLES}) )?[a-z]+)$")
 _ANSWERS_TO = frozenset({"robot", "tidybot", "jarvis", "bot", "robby", "machine"})
@@ -36,7 +37,7 @@ def addressee(text: str, is_name: Callable[[str], bool] = lambda _: True) -> str
     if found is None:
         return ""
     name, rest = found["name"], found.groupdict().get("rest") or ""
-    if rest and not verb_first(without_politeness(rest)):
+    if rest and not _FOR_ME.match(rest) and not verb_first(without_politeness(rest)):
         return ""
     asked = whole[: found.start("name")] + whole[found.end("name") :]
     if not _is_strange(name) or not is_name(name) or _POINTING.intersection(re.findall(r"\w+", asked)):

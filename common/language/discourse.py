@@ -13,6 +13,7 @@ from common.language.contractions import expand
 from common.language.exchange import IsPlace, verb_first
 from common.language.lexicon import COMMANDING
 from common.language.normalise import DETERMINERS, infinitive, normalise
+from common.language.noun_phrase import NUMBERS
 from common.language.politeness import LONG_SPEECH, without_politeness
 from common.language.repairs import settled
 from common.language.timing import in_time
@@ -48,6 +49,12 @@ _GO_AND_ASK = re.compile(
     r"(?=(?:what|which|how many|if|whether)\b.+ (?:on|in|at) \w+)"
 )
 """`go to the desk and see` before a question that names the place itself: the way there need not be said."""
+_ANNOUNCED = re.compile(
+    rf"\b(?:the following|(?:the following|these|{'|'.join(NUMBERS)})(?: (?:more|other))? (?:things|items|objects))"
+    r"\s*:\s*",
+    re.IGNORECASE,
+)
+"""What only says that an enumeration comes: `bring me two things: the mug and the can`."""
 _EMPTIED = re.compile(
     r"\b(?:empty|clear|clear off|clear out) (?P<from>(?:the|my|our) \w+(?: \w+)?)[,;.]? (?:and )?"
     r"(?:then )?(?:put |move |take |carry |bring )?(?:everything|it all|all of it|the lot)(?: goes)? "
@@ -61,7 +68,8 @@ _NEXT = frozenset(
 
 def commands(text: str, is_place: IsPlace = lambda _: False) -> list[str]:
     """The clauses of a text in the order in which they are to be done, each without its politeness."""
-    whole = without_fillers(expand(normalise(re.sub(r":(?=\s)", ",", text), ",;.!?")))
+    listed = re.sub(r":(?=\s)", ",", _ANNOUNCED.sub("", text))
+    whole = without_fillers(expand(normalise(listed, ",;.!?")))
     whole = _EMPTIED.sub(r"put everything on \g<from> \g<to>", _GO_AND_ASK.sub("tell me ", whole))
     if LONG_SPEECH.match(without_politeness(whole)):
         return cut_clauses(whole)

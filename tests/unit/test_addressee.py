@@ -40,3 +40,23 @@ def test_what_is_said_to_somebody_else_is_asked_about_and_answered() -> None:
     assert "said that to tom" in found.reason
     assert [step.action for step in planned("Tom, where is the red mug").steps] == ["say"]
     assert planned("robot, can you get me the red mug please").steps
+
+
+@pytest.mark.parametrize(
+    ("said", "names"),
+    [
+        ("dad, can I have the ball", ["dad"]),
+        ("Emma love, could you grab the bottle", ["emma"]),
+        ("the ball, can I have it", []),
+    ],
+)
+def test_who_is_asked_to_let_somebody_have_a_thing_is_addressed(said: str, names: list[str]) -> None:
+    assert [name for name in [addressee(said)] if name] == names
+
+
+@pytest.mark.parametrize(
+    "said", ["I need two things: the apple and the red ball", "fetch these items: the apple, red ball"]
+)
+def test_what_announces_an_enumeration_is_no_thing_by_itself(said: str) -> None:
+    steps = planned(said).steps
+    assert [step.object for step in steps if step.action == "grasp"] == ["apple", "red ball"]

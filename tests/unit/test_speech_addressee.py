@@ -136,7 +136,7 @@ def test_the_sentence_or_the_free_transcription_counts(
     ("heard", "text"),
     [
         ("go to the kitten", "go to the kitchen"),
-        ("bring me the read mug", "bring me the red mug"),
+        ("put the apple on the conter", "put the apple on the counter"),
         ("don't go to the kitten", ""),
         ("the parliament met in the kitten", ""),
         ("bring me the hammer", "bring me the hammer"),
