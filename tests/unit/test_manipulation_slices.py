@@ -76,3 +76,13 @@ def test_of_what_is_too_wide_slice_by_slice_the_thin_parts_are_left(monkeypatch:
     thin = PLANNER.believed(SPRAY)
     below = surface(thin)[:, 2] < AT[2] - 0.05
     assert thin.family == "long" and np.ptp(surface(thin)[below][:, 1]) > 0.08, "what was seen reaches down"
+
+
+@pytest.mark.parametrize(("kind", "above"), [("ball", False), ("toy", True)])
+def test_what_shows_its_upper_part_alone_is_taken_there_unless_it_is_a_ball(kind: str, above: bool) -> None:
+    """Fingers above the equator of a ball squeeze it out."""
+    points = front((0.02, 0.02), 0.0, 0.021) * (1.0, 1.0, 1.0)
+    family = "ball" if kind == "ball" else "box"
+    half_hidden = Target("thing", kind, AT, 0.0, (0.042, 0.042, 0.042), 0.0, family, points, 0.003, True)
+    heights = [g.height for g in candidates(half_hidden, 0.0, 0.0761)]
+    assert heights and (min(heights) > 0.025) == above

@@ -165,8 +165,8 @@ def _height(target: Target, rule: GraspRule) -> float:
     That may be something narrower, on which fingers fold in and squeeze what is above them out of the hand.
     """
     tall = target.size[2]
-    if target.points is None or not target.measured:
-        return tall * rule.height
+    if target.points is None or not target.measured or kind_of(target.kind).shape == "sphere":
+        return tall * rule.height  # of a ball its equator alone does not slip out between the pads
     lowest = float(np.quantile(target.points[:, 2], UNSEEN[0])) + tall / 2
     return max(rule.height * tall, (lowest + tall) / 2) if lowest > UNSEEN[1] * tall else rule.height * tall
 
