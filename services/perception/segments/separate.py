@@ -43,7 +43,7 @@ EXPLAINED = 0.6
 HIGH = 0.03
 """Height [m] over the surface from which a piece begins that stands on another one. Chosen: a brick's."""
 OVER = 0.01
-"""How far [m] beyond what was seen of the others, whose far side is hidden, a piece may be that stands on them."""
+"""How far [m] beyond another's shape, whose far side is hidden, the middle of a piece may be that stands on it."""
 VALLEY = 0.75
 """Height on the line between two pieces, by that of the lower one, below which there is a valley."""
 BAND, BRIDGE = 0.006, 0.01
@@ -104,12 +104,18 @@ def _pieces(view: View, whole: Piece, again: int) -> list[Piece]:
 
 
 def _stands_on(piece: Piece, segment: Segment, parts: list[Piece]) -> bool:
-    """A piece begins high over the surface, with its middle over the others: a candle in its holder, a cap."""
+    """A piece begins high over the surface, with its middle over another one: a candle in its holder, a cap."""
     if quantile(piece.segment.points[:, 2], 0.05) - segment.surface.height < HIGH:
         return False
-    below = np.concatenate([segment.dark, *(p.segment.points for p in parts if p is not piece)])[:, :2]
     middle = np.array([piece.shape.x, piece.shape.y])
-    return bool(((below.min(axis=0) - OVER < middle) & (middle < below.max(axis=0) + OVER)).all())
+    return any(_is_over(middle, p.shape) for p in parts if p is not piece)
+
+
+def _is_over(point: Array, shape: Measurement) -> bool:
+    """A point (2,) [map] is over a shape: what is behind another one shows no more of its lower part, but is not."""
+    c, s = math.cos(shape.yaw), math.sin(shape.yaw)
+    local = np.array([[c, s], [-s, c]]) @ (point - (shape.x, shape.y))
+    return bool((np.abs(local) < np.array(shape.size[:2]) / 2 + OVER).all())
 
 
 def _mostly(whole: Piece, parts: list[Piece]) -> bool:
