@@ -463,3 +463,10 @@ def test_the_page_of_commands_is_true() -> None:
     assert len(rows) > 20
     for command, expected in rows:
         assert text(ask(command)) == expected
+
+
+def test_a_thing_may_look_like_what_things_are_put_into() -> None:
+    scene = msgspec.structs.replace(SCENE, things=())
+    assert text(ask("get me the yellow box", scene=scene, objects=[])) == bring("yellow box")
+    assert text(ask("get me the toy box", scene=scene, objects=[])) == "no: I cannot pick up the toy box"
+    assert ask("put the red mug in the yellow box").steps[-1].target == "toy box"

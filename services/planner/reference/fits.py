@@ -80,6 +80,7 @@ def unknown(builder: PlanBuilder, words: Words, noun: str) -> Refusal:
             return Lost(f"I know no {noun}, only {enumeration([f'the {n}' for n in names[:MAX_NAMED]])}")
     if furniture := builder.vocabulary.furniture(words):
         return Refusal(f"I cannot pick up the {noun or furniture}")
-    if builder.vocabulary.spot(words):
+    by_looks = known is not None and front[:1] and front[0] in builder.vocabulary.colours
+    if builder.vocabulary.spot(words) and not by_looks:
         return Refusal(f"I cannot pick up the {noun}")
     return Lost(f"I know no {noun}" if noun else "I did not hear which thing you mean")
