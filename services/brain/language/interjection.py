@@ -81,6 +81,8 @@ _POINTING = frozenset({"it", "that", "this", "them", "those", "anything", "one"}
 _ALL = re.compile(r"\b(?:tidy|clean|clear|empty|sort|all|every|everything)\b")
 """Commands of which one thing can be spared."""
 _SMALL = DETERMINERS | PREPOSITIONS | {"me", "us", "and"}
+_PARTICLES = frozenset({"up", "down", "away", "back"})
+"""What goes with the verb of a command under way: tidied up, put away."""
 
 
 class Interjection(msgspec.Struct, frozen=True):
@@ -162,12 +164,8 @@ def _behind(words: str, doing: str) -> str:
     said, rest = set(doing.split()) - _SMALL, found["rest"].split()
     at = int(infinitive(rest[0], COMMANDING) in COMMANDING and (rest[0].endswith("ing") or bool(found["you"])))
     about = {infinitive(rest[0], COMMANDING)} & said
-    while at < len(rest) and (bare := rest[at].strip(",")) in said | _SMALL | _POINTING | {
-        "up",
-        "down",
-        "away",
-        "back",
-    }:
+    of_it = said | _SMALL | _POINTING | _PARTICLES
+    while at < len(rest) and (bare := rest[at].strip(",")) in of_it:
         about |= {bare} & said
         at += 1
         if rest[at - 1].endswith(","):

@@ -42,7 +42,8 @@ def surface(target: Target) -> Array:
     """Points (n, 3) [m] on the surface of an object in the base frame, `SPACING` apart.
 
     What is round is turned about its axis with the radius that was seen at each height; a box and a ball are what was
-    measured of them; of anything else what was seen from above is taken to reach down to what it rests on.
+    measured of them; what is irregular and seen from its front is completed slice by slice; of anything else what was
+    seen from above is taken to reach down to what it rests on.
     """
     return np.array(target.position) + _maker(target)(target) @ _yaw(target.yaw).T
 

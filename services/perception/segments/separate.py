@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from common.geometry import Array
+from common.geometry import Array, Rectangle
 from services.perception.segments.air import hangs
 from services.perception.segments.segment import Segment
 from services.perception.segments.segmentation import MAX_EXTENT, MIN_PIXELS, extent
@@ -91,7 +91,7 @@ def _pieces(view: View, whole: Piece, again: int) -> list[Piece]:
             whole = beside if beside.shape.residual < whole.shape.residual else whole
             continue
         parts = [Piece(s, measured(view, s)) for s in cuts]
-        if any(_stands_on(p, segment, parts) for p in parts):
+        if any(_stands_on(p, parts) for p in parts):
             continue
         share = np.array([len(p.segment.rows) for p in parts]) / len(segment.rows)
         residual = float(share @ [p.shape.residual for p in parts])
@@ -103,19 +103,16 @@ def _pieces(view: View, whole: Piece, again: int) -> list[Piece]:
     return [whole]
 
 
-def _stands_on(piece: Piece, segment: Segment, parts: list[Piece]) -> bool:
-    """A piece begins high over the surface, with its middle over another one: a candle in its holder, a cap."""
-    if quantile(piece.segment.points[:, 2], 0.05) - segment.surface.height < HIGH:
+def _stands_on(piece: Piece, parts: list[Piece]) -> bool:
+    """A piece begins high over the surface, with its middle over another one: a candle in its holder, a cap.
+
+    What is behind another one shows no more of its lower part, but is not over its shape.
+    """
+    if quantile(piece.segment.points[:, 2], 0.05) - piece.segment.surface.height < HIGH:
         return False
-    middle = np.array([piece.shape.x, piece.shape.y])
-    return any(_is_over(middle, p.shape) for p in parts if p is not piece)
-
-
-def _is_over(point: Array, shape: Measurement) -> bool:
-    """A point (2,) [map] is over a shape: what is behind another one shows no more of its lower part, but is not."""
-    c, s = math.cos(shape.yaw), math.sin(shape.yaw)
-    local = np.array([[c, s], [-s, c]]) @ (point - (shape.x, shape.y))
-    return bool((np.abs(local) < np.array(shape.size[:2]) / 2 + OVER).all())
+    shapes = (p.shape for p in parts if p is not piece)
+    outlines = (Rectangle(s.x, s.y, s.size[0], s.size[1], s.yaw) for s in shapes)
+    return any(outline.contains(piece.shape.x, piece.shape.y, OVER) for outline in outlines)
 
 
 def _mostly(whole: Piece, parts: list[Piece]) -> bool:

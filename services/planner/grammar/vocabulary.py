@@ -7,7 +7,7 @@ from typing import Any
 from common.floor_plan import Receptacle
 from common.household import Household
 from common.language.lexicon import COMMANDING
-from common.language.normalise import Words, enumeration, infinitive, normalise, without_determiners
+from common.language.normalise import Words, infinitive, normalise, without_determiners
 from common.language.noun_phrase import UNSEEN, WHICH
 from common.language.quantities import UNITS
 from common.naming.names import normalise as unmarked
@@ -201,8 +201,7 @@ class Vocabulary:
 
     def words(self) -> tuple[set[str], set[str]]:
         """(colours, words of names) that are known."""
-        places = [n for r in self._household.receptacles for n in (r.name, *r.aliases)]
-        names = {w for n in (*self._nouns, *self._printed, *self._places, *places, *ANY, *WHOLE) for w in n.split()}
+        names = {w for n in (*self.names(), *ANY, *WHOLE) for w in n.split()}
         return set(self.colours), (names | {f"{n}s" for n in names}) - self.colours.keys()
 
     # --- spots
@@ -279,9 +278,6 @@ class Vocabulary:
         return [
             r for r in self._household.receptacles if r.spawn and not r.depth and (not room or self._is_in(r, room))
         ]
-
-    def receptacles_named(self) -> str:
-        return enumeration([r.name for r in self._household.receptacles], "or")
 
 
 def _coloured(r: Receptacle, colour: str, rest: str) -> bool:
