@@ -1,6 +1,7 @@
 """Things with faces, and bodies from files: what collides, what is seen, and that they stay where they stand."""
 
 import io
+import sys
 from collections.abc import Callable
 from itertools import pairwise
 from pathlib import Path
@@ -397,6 +398,16 @@ def test_a_mesh_that_coacd_cannot_take_apart_is_cut_by_planes(
     assert asked.exists() and 4 < len(found) <= convex.MOST and open_inside(found)
     corners = np.concatenate([vertices for vertices, _ in found])
     assert np.allclose(np.ptp(corners, axis=0), (0.08, 0.08, 0.09), atol=1e-3)
+
+
+def test_parts_that_were_cut_for_want_of_coacd_are_made_anew_with_it(
+    decomposer: Callable[[str], Path], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with monkeypatch.context() as without:
+        without.setitem(sys.modules, "coacd", None)
+        assert open_inside(convex.parts(*cup()))
+    decomposer("")
+    assert len(convex.parts(*cup())) == 2
 
 
 def test_coacd_does_not_go_on_for_ever(

@@ -2,7 +2,7 @@
 
 import contextlib
 import hashlib
-import importlib
+import importlib.util
 import io
 import os
 import resource
@@ -51,13 +51,15 @@ def parts(vertices: Array, faces: NDArray[np.int64]) -> list[Part]:
     with contextlib.suppress(OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
         return _read(file.read_bytes())
     vertices, faces = _sewn(vertices, faces)
+    if importlib.util.find_spec("coacd") is None:
+        return cells.parts(vertices, faces, MOST)  # not kept: better ones are to be made once it is installed
     found = _decomposed(vertices, faces) or cells.parts(vertices, faces, MOST)
     _keep(file, found)
     return found
 
 
 def _decomposed(vertices: Array, faces: NDArray[np.int64]) -> list[Part]:
-    """CoACD's parts; none where it is not installed, fails or does not end: in a process of its own for that."""
+    """CoACD's parts; none where it fails or does not end: in a process of its own for that."""
     with tempfile.TemporaryDirectory(prefix="tidybot-convex-") as scratch:
         given, made = Path(scratch, "mesh.npz"), Path(scratch, "parts.npz")
         np.savez(given, v0=vertices, f0=faces)
@@ -70,10 +72,7 @@ def _decomposed(vertices: Array, faces: NDArray[np.int64]) -> list[Part]:
 def main(given: str, made: str) -> int:
     """Decompose the mesh of one file into another, within `LIMIT`."""
     resource.setrlimit(resource.RLIMIT_CPU, (LIMIT, LIMIT))
-    try:
-        coacd = importlib.import_module("coacd")
-    except ImportError:
-        return os.EX_UNAVAILABLE
+    coacd = importlib.import_module("coacd")
     coacd.set_log_level("error")
     ((vertices, faces),) = _read(Path(given).read_bytes())
     mesh = coacd.Mesh(vertices, faces)
