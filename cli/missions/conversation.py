@@ -23,7 +23,6 @@ class Conversation:
         self._link, self._show = link, show
         self._watch = Watch(link, topics.BRAIN_STATE)
         self.state = first = self._watch.first()
-        show(first)
         self._before = {first.mission_id, first.last.id if first.last else ""}
         self.mission_id = ""
 

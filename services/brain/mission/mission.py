@@ -58,7 +58,7 @@ class Failure(msgspec.Struct, frozen=True):
     @property
     def reason(self) -> str:
         """Words and codes in one line, for people."""
-        why = ": ".join(part for part in (self.code, self.detail) if part)
+        why = ": ".join(part for part in (self.code, self.detail) if part and part not in self.spoken)
         return " ".join(part for part in (self.spoken, f"({self.stage}: {why})" if why else "") if part)
 
 

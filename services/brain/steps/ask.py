@@ -168,7 +168,7 @@ class HearMeaning(HearAnswer):
         return meaning(self.ctx)
 
     def spoken(self) -> str:
-        return "I do not understand what I should do."
+        return "I did not hear whether you meant that, so I do nothing."
 
     def succeed(self, result: Result) -> Status:
         mission, heard = self.ctx.mission, result.message
