@@ -77,31 +77,27 @@ def test_who_goes_first_waits_for_one_that_is_not_out_of_its_way_yet() -> None:
 
 
 # --- two robots in one flat
-def intents(pair: Pair, robot: int) -> list[m.DriveIntent]:
-    """What a robot has told of its way."""
-    return [codec.decode(topics.DRIVE_INTENT, payload) for payload in pair.robots[robot].intents]
-
-
-def ran(meeting: Meeting) -> tuple[Pair, float]:
-    pair = Pair(meeting, exchange=True)
+def run(pair: Pair, listen_to: int) -> tuple[float, list[m.DriveIntent]]:
+    """Drive both to their goals: the least distance [m] between them, and what one has told of its way."""
+    payloads = pair.robots[listen_to].bus.tap(topics.DRIVE_INTENT)
     outcome = pair.run()
     assert outcome.arrived, outcome
-    return pair, outcome.nearest
+    return outcome.nearest, [codec.decode(topics.DRIVE_INTENT, payload) for payload in payloads]
 
 
 @pytest.mark.slow
 def test_two_that_meet_in_a_corridor_both_arrive() -> None:
     home = corridor()
     starts, goals = ((3.5, 2.0, 0.0), (9.5, 2.0, 3.1)), ((11.0, 2.0, 0.0), (2.0, 2.0, 3.1))
-    pair, nearest = ran(Meeting(home, starts, goals))
+    nearest, said = run(Pair(Meeting(home, starts, goals), exchange=True), listen_to=1)
     assert nearest > 0.03
-    assert any(told.gives_way_to == ["anna"] for told in intents(pair, 1))
+    assert any(told.gives_way_to == ["anna"] for told in said)
 
 
 def test_one_with_nothing_to_do_makes_way_and_one_at_work_does_not() -> None:
     flat = load_household("apartment")
     meeting = Meeting(flat, ((2.5, -0.75, 0.0), (1.2, -0.75, 0.0)), (None, (3.8, -0.9, 0.0)))
-    _, nearest = ran(meeting)
+    nearest, _ = run(Pair(meeting, exchange=True), listen_to=1)
     assert nearest > 0.03
     working = Pair(meeting, exchange=True)
     state = m.BrainState(state="GRABBING", mission_id="m1", command="grab")
@@ -159,6 +155,6 @@ def test_one_that_is_braked_while_it_should_make_way_is_planned_round() -> None:
     meeting = Meeting(load_household("apartment"), ((1.3, -0.75, 0.0), (0.2, -0.75, 0.0)), (None, (2.0, -1.5, 0.0)))
     pair = Pair(meeting, exchange=True)
     pair.robots[0].bus.send(topics.ROBOT_STOP, m.RobotStop(reason="test", source="test"))
-    assert pair.run().arrived
-    said = [told.state for told in intents(pair, 0)]
+    _, intents = run(pair, listen_to=0)
+    said = [told.state for told in intents]
     assert said.index("free") < said.index("fixed")
