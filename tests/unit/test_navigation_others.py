@@ -85,7 +85,6 @@ def run(pair: Pair, listen_to: int) -> tuple[float, list[m.DriveIntent]]:
     return outcome.nearest, [codec.decode(topics.DRIVE_INTENT, payload) for payload in payloads]
 
 
-@pytest.mark.slow
 def test_two_that_meet_in_a_corridor_both_arrive() -> None:
     home = corridor()
     starts, goals = ((3.5, 2.0, 0.0), (9.5, 2.0, 3.1)), ((11.0, 2.0, 0.0), (2.0, 2.0, 3.1))
@@ -149,7 +148,6 @@ def test_every_kind_of_meeting_can_be_drawn() -> None:
         assert meeting.goals[1] is not None
 
 
-@pytest.mark.slow
 def test_one_that_is_braked_while_it_should_make_way_is_planned_round() -> None:
     """Somebody has pressed its stop: it says that it stays, instead of having the other one wait for it."""
     meeting = Meeting(load_household("apartment"), ((1.3, -0.75, 0.0), (0.2, -0.75, 0.0)), (None, (2.0, -1.5, 0.0)))
