@@ -8,9 +8,13 @@ from numpy.typing import NDArray
 
 JUMP = 0.6
 """Largest way [rad] of a joint to its next set-point that is no mistake."""
+BEGIN = 0.05
+"""Largest way [rad] of a joint to the first set-point after silence: a stream begins where the arm is, or was told to
+be. What went on while nobody heard it would be caught up with at full speed, past the path. Chosen: the arm's sag is
+less."""
 SPEED, ACCELERATION = np.array([1.39] * 4 + [1.22] * 3), np.array([5.2] * 4 + [10.0] * 3)
-"""What the joints (7,) of a Kinova Gen3 can do [rad/s, rad/s^2] (user guide): so set-points that were on their way for
-long, or come all at once, are caught up with."""
+"""What the joints (7,) of a Kinova Gen3 can do [rad/s, rad/s^2] (user guide): so set-points that come late, or all at
+once, are caught up with."""
 LATE = 1.5
 """Periods without a set-point [count] from which the next one is late."""
 Array = NDArray[np.float64]
@@ -26,8 +30,8 @@ class ArmDriver:
         self._velocity: Array = np.zeros(7)
         self._left, self._timeout, self._heard = 0.0, timeout, -math.inf
 
-    def follow(self, position: list[float], period: float, now: float) -> str:
-        """Take the next set-point; the reason when it is refused."""
+    def follow(self, position: list[float], period: float, now: float, actual: Array) -> str:
+        """Take the next set-point, with the joints (7,) measured at `actual`; the reason when it is refused."""
         goal: Any = np.array(position)
         if goal.shape != (7,) or not np.isfinite(goal).all() or not 0 < period <= 1.0:
             return "a set-point is 7 finite angles and a period of at most 1 s"
@@ -35,8 +39,10 @@ class ArmDriver:
             return "set-point beyond a joint limit"
         if np.abs(goal - self._position).max() > JUMP:
             return f"set-point jumps by more than {JUMP} rad"
-        # Where set-points come late it moves as long as they take: it would stop and start again at each of them.
         gap = now - self._heard
+        if gap > self._timeout and min(np.abs(goal - at).max() for at in (self._position, actual)) > BEGIN:
+            return f"the stream does not begin within {BEGIN} rad of where the arm is"
+        # Where set-points come late it moves as long as they take: it would stop and start again at each of them.
         self._left = gap if LATE * period < gap < self._timeout else period
         self._goal, self._heard = goal, now
         return ""

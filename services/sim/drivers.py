@@ -72,10 +72,11 @@ class Drivers:
                 io.count_drop(topics.CMD_VEL.key, "not a finite velocity")
             elif not self.base.stopped:
                 self.base.drive(twist.vx, twist.vy, twist.omega, now)
+        arm = self._body.joints[3:]
         for command in io.take_all(topics.ARM_COMMAND):
             if self.base.stopped:
                 continue
-            if why := self._arm.follow(command.position, command.period, now):
+            if why := self._arm.follow(command.position, command.period, now, arm):
                 io.count_drop(topics.ARM_COMMAND.key, why)
         for grip in io.take_all(topics.GRIPPER_COMMAND):
             if not (0.0 <= grip.position <= 1.0 and grip.max_effort > 0.0):

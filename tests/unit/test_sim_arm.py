@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
-from services.sim.arm import ACCELERATION, SPEED, ArmDriver
+from services.sim.arm import ACCELERATION, BEGIN, SPEED, ArmDriver
 
 DT, PERIOD = 0.01, 0.02
 WIDE = np.full(7, -3.0), np.full(7, 3.0)
+AT = np.zeros(7)
 
 
 def ways(every: float, timeout: float = 0.25) -> np.ndarray:
@@ -17,7 +18,7 @@ def ways(every: float, timeout: float = 0.25) -> np.ndarray:
     for tick in range(60 * period):
         if tick % period == 0:
             goal += min(0.02, 0.001 * (tick // period + 1))
-            assert not driver.follow([goal] * 7, PERIOD, tick * DT)
+            assert not driver.follow([goal] * 7, PERIOD, tick * DT, AT)
         seen.append(float(driver.advance(tick * DT, DT)[0]))
     return np.diff(seen)
 
@@ -34,7 +35,7 @@ def test_late_set_points_make_it_slow_and_not_stop_and_go(every: float) -> None:
 def test_set_points_that_come_at_once_are_caught_up_with_as_the_joints_can() -> None:
     driver = ArmDriver(np.zeros(7), 1.0, WIDE)
     for n in range(1, 21):
-        assert driver.follow([0.02 * n] * 7, 0.02, 1.0) == ""
+        assert driver.follow([0.02 * n] * 7, 0.02, 1.0, AT) == ""
     way = np.array([np.zeros(7)] * 2 + [driver.advance(1.0 + n * DT, DT) for n in range(90)])
     speed = np.diff(way, axis=0) / DT
     assert np.allclose(way[-1], 0.4, atol=1e-3) and way.max() < 0.41
@@ -46,6 +47,18 @@ def test_it_brakes_where_the_stream_ends() -> None:
     driver = ArmDriver(np.zeros(7), 0.1, WIDE)
     for tick in range(100):
         if tick % 2 == 0 and tick < 60:
-            driver.follow([0.02 * (tick // 2 + 1)] * 7, PERIOD, tick * DT)
+            driver.follow([0.02 * (tick // 2 + 1)] * 7, PERIOD, tick * DT, AT)
         last = driver.advance(tick * DT, DT).copy()
     assert np.allclose(driver.advance(1.0, DT), last) and (np.abs(last - 0.6) < 0.2).all()
+
+
+def test_a_stream_begins_where_the_arm_is_or_was_told_to_be() -> None:
+    """What another process of the driver was told meanwhile is no place to hurry to."""
+    driver, pressed = ArmDriver(np.zeros(7), 0.25, WIDE), np.full(7, -0.5)
+    assert "does not begin" in driver.follow([2 * BEGIN] * 7, PERIOD, 1.0, AT)
+    assert np.allclose(driver.advance(1.0, DT), 0.0)
+    assert driver.follow([-0.5] * 7, PERIOD, 1.0, pressed) == ""
+    for n in range(10):
+        driver.advance(1.0 + n * DT, DT)
+    assert driver.follow([-0.3] * 7, PERIOD, 1.2, pressed) == "", "the stream is under way"
+    assert "does not begin" in driver.follow([-0.1] * 7, PERIOD, 1.6, pressed)

@@ -35,6 +35,9 @@ T = TypeVar("T")
 Steps = Generator[None, None, T]
 DT = 0.02
 GRIPPER_TICKS = 5
+SHORT = 0.05
+"""Error [rad] of a joint, at rest, from which the arm has not arrived: some 3 cm of the hand. Chosen: it sags by
+less."""
 BACK, CALM, SLOWLY = 0.12, 0.1, 0.3
 """Way [rad] back off what was met, some 5 cm of the hand; for how long [s] the arm rests before; share of the joint
 speed then. Chosen."""
@@ -105,7 +108,10 @@ class Robot:
             yield
             self._check_touched(feeler)
             if np.abs(self.joints - points[-1]).max() < 0.01:
-                break
+                return
+        error = np.abs(self.joints - points[-1])
+        if error.max() > SHORT:
+            raise _behind(error)
 
     def _back_off(self, path: Sequence[Array]) -> Steps[None]:
         """A little back along a path, slowly, off what was met on it."""
@@ -130,8 +136,7 @@ class Robot:
         self._late = self._late + 1 if error.max() > self.config.blocked_error else 0
         if self._late > 15:
             self._late = 0
-            worst = int(error.argmax())
-            raise Failure(BLOCKED, f"joint_{worst + 1} is {error[worst]:.2f} rad behind")
+            raise _behind(error)
 
     def guard(self, rest: Array, most: float = MET, way: Way = "any") -> Guard | None:
         """For a motion near objects; `rest`: torques (7,) [Nm] of the arm in the air."""
@@ -192,6 +197,12 @@ class Robot:
             return job.result()
         except PlanError as error:
             raise Failure(error.code, str(error), error.blockers) from None
+
+
+def _behind(error: Array) -> Failure:
+    """The joints (7,) [rad] that did not come along."""
+    worst = int(error.argmax())
+    return Failure(BLOCKED, f"joint_{worst + 1} is {error[worst]:.2f} rad behind")
 
 
 def go_home(robot: Robot) -> Steps[str]:
