@@ -22,12 +22,16 @@ Array = NDArray[np.float64]
 
 class ArmDriver:
     """Moves the set-point (7,) linearly to each commanded one within its period, or the time since the last one where
-    that is late, as far as `SPEED` and `ACCELERATION` allow; `limits` lowest and highest angles."""
+    that is late, as far as `SPEED` and `ACCELERATION` allow; `limits` lowest and highest angles.
+
+    Behind a stream it catches up no faster than it can brake to the stream's own speed.
+    """
 
     def __init__(self, position: Array, timeout: float, limits: tuple[Array, Array]) -> None:
         self._low, self._high = limits
         self._position, self._goal = position.copy(), position.copy()
         self._velocity: Array = np.zeros(7)
+        self._stream: Array = np.zeros(7)
         self._left, self._timeout, self._heard = 0.0, timeout, -math.inf
 
     def follow(self, position: list[float], period: float, now: float, actual: Array) -> str:
@@ -44,6 +48,7 @@ class ArmDriver:
             return f"the stream does not begin within {BEGIN} rad of where the arm is"
         # Where set-points come late it moves as long as they take: it would stop and start again at each of them.
         self._left = gap if LATE * period < gap < self._timeout else period
+        self._stream = (goal - self._goal) / self._left if gap < self._timeout else np.zeros(7)
         self._goal, self._heard = goal, now
         return ""
 
@@ -58,7 +63,9 @@ class ArmDriver:
             self._left, self._goal = 0.0, self._position
         way = self._goal - self._position
         if self._left > 0:
-            wanted = way / max(self._left, dt)
+            # Half of the acceleration brakes it to the speed of the stream, which may brake with the other half.
+            room = np.sqrt(ACCELERATION * np.abs(way))
+            wanted = np.clip(way / max(self._left, dt), self._stream - room, self._stream + room)
         else:
             # Nothing more was said: it comes to rest there.
             wanted = np.sign(way) * np.minimum(np.abs(way) / dt, np.sqrt(2 * ACCELERATION * np.abs(way)))

@@ -62,3 +62,20 @@ def test_a_stream_begins_where_the_arm_is_or_was_told_to_be() -> None:
         driver.advance(1.0 + n * DT, DT)
     assert driver.follow([-0.3] * 7, PERIOD, 1.2, pressed) == "", "the stream is under way"
     assert "does not begin" in driver.follow([-0.1] * 7, PERIOD, 1.6, pressed)
+
+
+@pytest.mark.parametrize("behind", [0.05, 0.25, 0.4])
+@pytest.mark.parametrize("speed", [0.0, 0.4, 1.0])
+def test_behind_its_stream_it_catches_up_without_passing_it(behind: float, speed: float) -> None:
+    """Set-points were lost or come all at once: the arm is where the stream was a while ago, and the stream goes on and
+    comes to rest."""
+    driver, dt, goal, ahead = ArmDriver(np.zeros(7), 0.25, WIDE), 0.002, behind, 0.0
+    assert driver.follow([0.0] * 7, PERIOD, -PERIOD, AT) == ""
+    for n in range(100):
+        goal += speed * PERIOD
+        speed = max(0.0, speed - 2.5 * PERIOD) if n > 10 else speed
+        assert driver.follow([goal] * 7, PERIOD, n * PERIOD, AT) == ""
+        for k in range(10):
+            at = driver.advance(n * PERIOD + k * dt, dt)
+            ahead = max(ahead, float((at - goal).max()))
+    assert ahead < 0.01 and at == pytest.approx(goal, abs=1e-3)
