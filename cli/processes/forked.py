@@ -57,7 +57,7 @@ def become(command: Sequence[str], environment: Mapping[str, str]) -> NoReturn:
         del sys.modules[name]
     os.environ.clear()
     os.environ.update(environment)
-    sys.argv = list(command[2:])
+    sys.orig_argv, sys.argv = list(command), list(command[2:])
     name_process(command)
     status = _run(command[2])
     threading._shutdown()  # type: ignore[attr-defined]

@@ -11,14 +11,16 @@ from tests.support import ROOT, eventually
 
 HOOK = """
 import os, sys
-_word = (sys.orig_argv + ["", ""])[sys.orig_argv.index("-m") + 1] if "-m" in sys.orig_argv else "other"
-_log = os.open(os.path.join(os.environ["NOTED"], _word), os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o644)
-def _note(event, args, _write=os.write):
+def _note(event, args):
     if event == "open" and isinstance(args[0], str) and args[0].endswith(".toml"):
-        _write(_log, (args[0] + "\\n").encode())
+        line = sys.orig_argv
+        word = line[line.index("-m") + 1] if "-m" in line else "other"
+        log = os.open(os.path.join(os.environ["NOTED"], word), os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o644)
+        os.write(log, (args[0] + "\\n").encode())
+        os.close(log)
 sys.addaudithook(_note)
 """
-"""Runs in every Python process before its program: notes the TOML files that it opens."""
+"""Runs in every Python process before its program: notes the TOML files that it opens, and what its forks open."""
 MUG = (
     'name = "blue mug", kind = "mug", colour = "blue", size = [0.07, 0.07, 0.09], mass = 0.2, rgba = [0.1, 0.2, 0.8, 1]'
 )

@@ -30,6 +30,7 @@ CASES = {
     "import sys; sys.exit('no')": (1, "", "no"),
     "raise ValueError('broken')": (1, "", "ValueError: broken"),
     "import sys; print(__name__, sys.argv[1:])": (0, "__main__ ['--word']", ""),
+    "import sys; print(sys.orig_argv[1:])": (0, "['-m', '{module}', '--word']", ""),
     "import os; print(sorted(os.environ))": (0, "['GIVEN', 'PATH']", ""),
     "import signal; signal.raise_signal(signal.SIGTERM)": (-15, "", ""),
     "import atexit; atexit.register(print, 'last')": (0, "last", ""),
