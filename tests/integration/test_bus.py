@@ -31,7 +31,8 @@ def heard(session: zenoh.Session, key: str) -> Iterator[list[bytes]]:
 
 def start_echo(here: Site, *args: str, **extra: str) -> "subprocess.Popen[bytes]":
     scene = here.log_dir / "empty.toml"
-    scene.write_text(SCENE)
+    if not scene.exists():  # else a process that starts could read it half written
+        scene.write_text(SCENE)
     extra.setdefault("TIDYBOT_CLOCK", "wall")
     return here.start("tests.fakes", *args, TIDYBOT__RUNTIME__SCENE=str(scene), **extra)
 
