@@ -2,10 +2,12 @@
 
 import math
 
+import msgspec
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from common.floor_plan import Box
 from common.household import load_household
 from services.camera.sensor import StereoCamera
 from services.perception.segments.segmentation import segments
@@ -18,7 +20,10 @@ DOWN = np.array([[0.0, -0.62, 0.785], [-1.0, 0.0, 0.0], [0.0, -0.785, -0.62]])
 PLACE = np.array([-0.5, -1.2, 1.3])
 
 
-def floor(seed: int, box: float = 0.0) -> View:
+RUG = Box(name="rug", center=(PLACE[0] + 0.35, PLACE[1] + 1.1, 0.008), size=(0.5, 0.6, 0.016))
+
+
+def floor(seed: int, box: float = 0.0, rugs: tuple[Box, ...] = ()) -> View:
     """The floor, and on it 1.2 m ahead a cube of `box` [m], as a camera sees them that is off by its mount's error."""
     camera = StereoCamera(seed)
     turned = DOWN @ Rotation.from_rotvec(camera.turn).as_matrix()
@@ -28,6 +33,11 @@ def floor(seed: int, box: float = 0.0) -> View:
     top = (box - PLACE[2]) / np.minimum(rays[..., 2], -0.05)
     on_top = np.abs(rays[..., :2] * top[..., None] - np.array([1.2, 0.0])).max(axis=-1) < box / 2
     depth[on_top] = top[on_top]
+    for rug in rugs:
+        top = (rug.top - PLACE[2]) / np.minimum(rays[..., 2], -0.05)
+        at = rays[..., :2] * top[..., None] + PLACE[:2] - rug.center[:2]
+        on_top = (np.abs(at) < np.array(rug.size[:2]) / 2).all(axis=-1)
+        depth[on_top] = top[on_top]
     taken = camera.expose(np.full((HEIGHT, WIDTH, 3), 120, np.uint8), depth, FOCAL, seed)
     measured = (taken.depth / 1000.0).astype(np.float32)
     return View(taken.rgb, measured, (FOCAL, FOCAL), (WIDTH / 2, HEIGHT / 2), PLACE, DOWN)
@@ -42,6 +52,20 @@ def test_an_empty_floor_is_empty(seed: int) -> None:
 def test_a_block_on_the_floor_is_one_object(seed: int) -> None:
     (found,) = segments(floor(seed, 0.06), SCENE, 3.5)
     assert found.surface.name == ""
+    assert math.dist(found.points[:, :2].mean(axis=0), (PLACE[0] + 1.2, PLACE[1])) < 0.03
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_the_corner_of_a_rug_of_the_map_is_floor(seed: int) -> None:
+    home = msgspec.structs.replace(SCENE, furniture=(RUG,))
+    assert segments(floor(seed, rugs=(RUG,)), SCENE, 3.5), "unmapped, it is taken for an object"
+    assert segments(floor(seed, rugs=(RUG,)), home, 3.5) == []
+
+
+def test_what_lies_on_a_rug_is_seen() -> None:
+    under = Box(name="rug", center=(PLACE[0] + 1.2, PLACE[1], 0.006), size=(0.8, 0.8, 0.012))
+    home = msgspec.structs.replace(SCENE, furniture=(under,))
+    (found,) = segments(floor(0, 0.06), home, 3.5)
     assert math.dist(found.points[:, :2].mean(axis=0), (PLACE[0] + 1.2, PLACE[1])) < 0.03
 
 

@@ -5,9 +5,11 @@ surface, inside its edges and not too tall is kept, cut where the depth jumps, a
 spot are joined again.
 """
 
+from collections.abc import Sequence
+
 import numpy as np
 
-from common.floor_plan import FloorPlan, Receptacle
+from common.floor_plan import Box, FloorPlan, Receptacle
 from common.geometry import Array, Rectangle
 from services.perception.segments.dark import Blobs, blobs
 from services.perception.segments.outlined import is_part, on_surface, with_parts
@@ -75,7 +77,8 @@ def segments(view: View, floor_plan: FloorPlan, max_range: float, robot: Mask | 
         surface = Surface(f.name, f.center[2] + f.size[2] / 2)
         over = _over(view, usable, f.outline.grown(-WALL_EDGE), surface.height)
         found += _on(view, surface, over.outside(on_it), near, own, dark)
-    return found + _on(view, Surface("", 0.0), _above_floor(view, usable).outside(near.boxes), near, own, dark)
+    floor = _above_floor(view, usable, near.rugs).outside(near.boxes)
+    return found + _on(view, Surface("", 0.0), floor, near, own, dark)
 
 
 def _over(view: View, usable: Mask, outline: Rectangle, height: float) -> Cloud:
@@ -105,12 +108,13 @@ def _stands_on(segment: Segment, r: Receptacle) -> bool:
     return bool(np.count_nonzero(inside(x, y, r.outline)) > MOSTLY_ON * len(x))
 
 
-def _above_floor(view: View, usable: Mask) -> Cloud:
-    """The usable pixels that stand up from the floor by more than noise; their heights are above the floor as seen.
+def _above_floor(view: View, usable: Mask, rugs: Sequence[Box]) -> Cloud:
+    """The usable pixels that stand up from the floor, or a rug, by more than noise; heights are above it as seen.
 
     A camera that is tilted by 0.3 degrees more than it is believed to be sees the floor rise by 12 mm within 2.2 m.
     """
-    cloud = _between(view, usable & (view.depth < FLOOR_RANGE), -PLANE_SEARCH, MAX_HEIGHT, view.everywhere)
+    near_by = usable & (view.depth < FLOOR_RANGE)
+    cloud = _between(view, near_by, -PLANE_SEARCH, MAX_HEIGHT, view.everywhere).lowered(rugs)
     few = np.abs(cloud.z[::FLOOR_SAMPLE]) < PLANE_SEARCH
     if few.sum() >= MIN_PLANE:
         x, y, z = (axis[::FLOOR_SAMPLE][few].astype(np.float64) for axis in (cloud.x, cloud.y, cloud.z))
