@@ -22,14 +22,13 @@ def parts(vertices: Array, faces: NDArray[np.int64], most: int) -> list[Part]:
     step = float(np.ptp(vertices, axis=0).max()) / STEPS
     within, open_air = _grid(vertices[faces], step)
     points = np.concatenate([_surface(vertices[faces], step), within])
-    # A number of its own for each, so that two alike are not compared further.
-    found = [(-_filled(points, open_air), 0, points)]
+    found = [_piece(points, open_air, 0)]
     while len(found) < most and found[0][0] < 0:
-        _, _, piece = heapq.heappop(found)
-        axis = int(np.argmax(np.ptp(piece, axis=0)))
-        for side, half in enumerate(_halves(piece, axis, step)):
-            heapq.heappush(found, (-_filled(half, open_air), 2 * len(found) + side, half))
-    return [_hull(piece) for *_, piece in found]
+        *_, piece = heapq.heappop(found)
+        axis = int(np.argmax(np.ptp(piece.points, axis=0)))
+        for side, half in enumerate(_halves(piece.points, axis, step)):
+            heapq.heappush(found, _piece(half, open_air, 2 * len(found) + side))
+    return [_part(hull) for *_, hull in found]
 
 
 def _halves(points: Array, axis: int, step: float) -> list[Array]:
@@ -38,14 +37,16 @@ def _halves(points: Array, axis: int, step: float) -> list[Array]:
     return [points[beyond <= step / 2], points[beyond >= -step / 2]]
 
 
-def _filled(points: Array, open_air: Array) -> int:
-    """How many points outside the mesh (n, 3) lie within the points' hull, by more than `DEPTH`."""
+def _piece(points: Array, open_air: Array, number: int) -> tuple[int, int, Any]:
+    """A row of the heap: minus the points outside the mesh (n, 3) that the points' hull fills, a number, the hull.
+
+    A point counts that lies deeper within the hull than `DEPTH`. Each row has a number of its own, so that two that
+    fill as much are not compared further.
+    """
+    hull = _hull(points)
     near = ((open_air > points.min(axis=0)) & (open_air < points.max(axis=0))).all(axis=1)
-    try:
-        equations = ConvexHull(points).equations
-    except (QhullError, ValueError):
-        return 0
-    return int(np.count_nonzero((open_air[near] @ equations[:, :3].T + equations[:, 3]).max(axis=1) < -DEPTH))
+    beyond = (open_air[near] @ hull.equations[:, :3].T + hull.equations[:, 3]).max(axis=1)
+    return -int(np.count_nonzero(beyond < -DEPTH)), number, hull
 
 
 def _surface(triangles: Array, step: float) -> Array:
@@ -84,14 +85,16 @@ def _grid(triangles: Array, step: float) -> tuple[Array, Array]:
     return everywhere[odd], everywhere[~odd]
 
 
-def _hull(points: Array) -> Part:
+def _hull(points: Array) -> Any:
     """The convex hull; what lies in a plane or on a line gets some thickness."""
-    hull: Any
     try:
-        hull = ConvexHull(points)
+        return ConvexHull(points)
     except (QhullError, ValueError):
-        points = np.concatenate([points + THIN * shift for shift in (*np.eye(3), *-np.eye(3))])
-        hull = ConvexHull(points)
-    corner = np.full(len(points), -1)
+        return ConvexHull(np.concatenate([points + THIN * shift for shift in (*np.eye(3), *-np.eye(3))]))
+
+
+def _part(hull: Any) -> Part:
+    """The hull's corners and triangles."""
+    corner = np.full(len(hull.points), -1)
     corner[hull.vertices] = np.arange(len(hull.vertices))
-    return points[hull.vertices], corner[hull.simplices]
+    return hull.points[hull.vertices], corner[hull.simplices]
