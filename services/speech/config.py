@@ -1,7 +1,5 @@
 """Parameters of speech."""
 
-from typing import Literal
-
 from common.config import Config
 
 
@@ -21,7 +19,6 @@ class SpeechConfig(Config, frozen=True):
     when somebody speaks.
     """
 
-    recogniser: Literal["moonshine", "pocketsphinx"] = "moonshine"
     listen_timeout: float = 60.0
     accept_score: float = -1.0
     ask_score: float = -1.5

@@ -46,7 +46,7 @@ class SpeechService:
             raise StartError(f"speech: {error}") from None
         if config.wake_word and not find_spec("pyopen_wakeword"):
             raise StartError("speech.wake_word needs pyopen-wakeword; install it, or set speech.wake_word = false")
-        if config.recogniser == "moonshine" and speech_weights.find() is None:
+        if speech_weights.find() is None:
             raise StartError(f"speech: {speech_weights.MISSING}")
         self._microphone = Microphone() if config.microphone else None
         self._queue = UtteranceQueue(config, io, lambda: FrontEnd(config, household, found))

@@ -14,15 +14,7 @@ from services.speech.listen.vad import VoiceDetector, speech_span
 from services.speech.recognise.denoise import noise_ratio, reduce_noise
 from services.speech.recognise.free_text import freely, without_wake
 from services.speech.recognise.grammar import Grammar, known_names
-from services.speech.recognise.recogniser import (
-    Array,
-    MoonshineRecogniser,
-    PreparedUtterance,
-    Recogniser,
-    Recognition,
-    Scope,
-)
-from services.speech.recognise.sphinx import SphinxRecogniser
+from services.speech.recognise.recogniser import Array, PreparedUtterance, Recogniser, Recognition, Scope
 
 BEFORE, AFTER = 0.2, 0.6
 """Sound kept around the speech [s]. Chosen: room for soft beginnings and endings, which voice detection misses."""
@@ -67,11 +59,7 @@ class FrontEnd:
     def __init__(self, config: SpeechConfig, household: Household, found: dict[Scope, Grammar]) -> None:
         self._detector, self._config = VoiceDetector(), config
         self._names = known_names(config, household, ())
-        self._recogniser: Recogniser
-        if config.recogniser == "pocketsphinx":
-            self._recogniser = SphinxRecogniser(config, household)
-        else:
-            self._recogniser = MoonshineRecogniser(config, found)
+        self._recogniser = Recogniser(config, found)
 
     def recognise(self, samples: NDArray[np.int16], scope: Scope = "command", detected: float = 0.0) -> Recognition:
         """What 16 kHz int16 samples (n,) say, without the wake word, for which its detector gave a score."""

@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import cache
-from typing import TYPE_CHECKING, Literal, Protocol
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -60,21 +60,12 @@ class PreparedUtterance:
         return np.stack([np.pad(f, (0, longest - len(f))) for f in found])
 
 
-class Recogniser(Protocol):
-    """What turns an utterance into a command.
+class Recogniser:
+    """What turns an utterance into a command: Moonshine base-en under the grammar of a scope.
 
     `scope` is the grammar: a command, with or without the wake word, or the wake word alone (where `woken`, it is also
     verified that the wake word was said, of which the detector's score is `detected`); or stop and cancel only.
     """
-
-    def recognise(self, utterance: PreparedUtterance, scope: Scope, detected: float = 0.0) -> Recognition: ...
-
-    def learn(self, household: Household, names: Sequence[str]) -> None:
-        """Listen for these names of things from now on, beside what the configuration and the household have."""
-
-
-class MoonshineRecogniser:
-    """Moonshine base-en under the grammar of a scope."""
 
     def __init__(self, config: SpeechConfig, grammars: dict[Scope, Grammar]) -> None:
         from services.speech.recognise.moonshine import Moonshine
@@ -86,6 +77,7 @@ class MoonshineRecogniser:
         self._tries = {scope: self._trie(grammar) for scope, grammar in grammars.items()}
 
     def learn(self, household: Household, names: Sequence[str]) -> None:
+        """Listen for these names of things from now on, beside what the configuration and the household have."""
         found = grammars(self._config, household, names)
         self._tries = {scope: self._trie(grammar) for scope, grammar in found.items()}
 
