@@ -1,8 +1,8 @@
 """The whole robot in one process: the real services on the in-memory bus, in lockstep."""
 
 import gc
-import importlib
 import json
+import pkgutil
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
@@ -31,9 +31,8 @@ def replacement(entry: str) -> tuple[str, Any]:
     Raises:
         LookupError: there is no such module or class, or it is no service of the stack.
     """
-    module, _, name = entry.partition(":")
     try:
-        kind = getattr(importlib.import_module(module), name)
+        kind = pkgutil.resolve_name(entry)
     except (ImportError, AttributeError, ValueError) as error:
         raise LookupError(f"{entry}: {error}; expected package.module:Class that can be imported") from None
     missing = [n for n in ("NAME", "HZ", "CONFIG", "READS", "WRITES", "step") if not hasattr(kind, n)]

@@ -4,8 +4,8 @@ The same lane serves the local pool and every machine of a cluster, so that a se
 loses its process is repeated in a new one; one that loses `ATTEMPTS` of them is `crashed`.
 """
 
-import importlib
 import os
+import pkgutil
 import signal
 import subprocess
 import sys
@@ -174,8 +174,7 @@ class Lane:
 def child(descriptor: int, name: str) -> None:
     """A child's life: cases in, signs of life and results out, until the pipe closes."""
     signal.signal(signal.SIGTERM, _leave)
-    module, _, function = name.partition(":")
-    run: Run = getattr(importlib.import_module(module), function)
+    run: Run = pkgutil.resolve_name(name)
     pipe: Connection[Any, Any] = Connection(descriptor)
     encode = msgspec.msgpack.encode
     status = 1

@@ -1,7 +1,7 @@
 """Perception: looks through the cameras, remembers objects, and finds the one that words mean."""
 
-import importlib
 import math
+import pkgutil
 
 from common import topics
 from common.bus.port import Io, Job
@@ -157,11 +157,12 @@ def load_detector(name: str) -> type[Detector]:
     """
     if name == "classical":
         return ClassicalDetector
-    module, _, attribute = name.partition(":")
     try:
-        found: type[Detector] = getattr(importlib.import_module(module), attribute)
+        found = pkgutil.resolve_name(name)
     except (ImportError, AttributeError, ValueError) as error:
         raise StartError(
             f"perception.detector = {name!r}: {error}; expected classical or package.module:Class"
         ) from None
+    if not isinstance(found, type):
+        raise StartError(f"perception.detector = {name!r} is no class; expected classical or package.module:Class")
     return found

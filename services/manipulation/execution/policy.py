@@ -1,6 +1,6 @@
 """A policy that grabs: how it is found, what it sees, and what of its answers is an action."""
 
-import importlib
+import pkgutil
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
@@ -33,9 +33,8 @@ def load_policy(entry: str) -> Callable[[], Policy]:
     Raises:
         PolicyError: it cannot be imported or called.
     """
-    module, _, name = entry.partition(":")
     try:
-        found = getattr(importlib.import_module(module), name)
+        found = pkgutil.resolve_name(entry)
     except (ImportError, AttributeError, ValueError) as error:
         raise PolicyError(f"{entry}: {error}; expected package.module:name that can be imported") from None
     if not callable(found):
