@@ -489,3 +489,23 @@ def test_a_room_with_a_table_in_its_middle_is_gone_to_beside_it() -> None:
     flat.ask("goto nook")
     assert flat.finish(120.0).status == "arrived"
     assert room.low[0] < flat.true[0] < room.high[0] and room.low[1] < flat.true[1] < room.high[1]
+
+
+def test_a_box_that_the_robot_drives_past_does_not_walk() -> None:
+    box = Rectangle(1.2, 0.6, 0.53, 0.25, 0.0)
+    flat = Flat(boxes=[box])
+    flat.step(4.0)
+    for x in np.concatenate([np.arange(0.0, 2.0, 0.025), np.arange(2.0, 0.0, -0.025)]).tolist():
+        flat.true = flat.wheels = (x, 0.0, 0.0)
+        flat.step(0.05)
+        assert not [o for o in flat.service._state.tracker.people() if box.distance(o.x, o.y) < 0.15]
+
+
+def test_who_stood_there_when_the_robot_came_is_seen_to_walk_on() -> None:
+    flat = Flat(boxes=[Rectangle(1.2, 0.0, 0.25, 0.25, 0.0)])
+    flat.step(6.0)
+    for k in range(25):
+        flat.boxes = [Rectangle(1.2, -0.04 * k, 0.25, 0.25, 0.0)]
+        flat.step(0.05)
+    (one,) = [o for o in flat.service._state.tracker.people() if o.moves]
+    assert one.vy == pytest.approx(-0.8, abs=0.3)

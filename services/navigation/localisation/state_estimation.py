@@ -148,7 +148,8 @@ class StateEstimator:
         if not self.lost:
             mapped = self.field.near if self._live is None else self._map.explains
             explained = mapped(placed, EXPLAINED) | _within(placed, self.robots)
-            self.tracker.update(placed[near & ~explained], (frame[0], frame[1]), now)
+            left = placed[near & ~explained]
+            self.tracker.update(left, (frame[0], frame[1]), now, self._map.stood_at(left, now))
             # A map in the making fits by itself.
             if len(placed) and not self.everywhere.broken and self._live is None:
                 self.map_fit.see(frame, float(np.mean(explained | self._map.lasting_at(placed))))

@@ -4,6 +4,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from services.navigation.localisation.distance_field import Array
 
@@ -14,6 +15,8 @@ MATCH = 0.45
 """Distance of a cluster from a track's prediction up to which it is the same [m]; chosen: less than two people's."""
 MIN_POINTS, MAX_EXTENT = 3, 1.0
 """Least points [count] and greatest extent [m] of a cluster; chosen: noise is smaller, furniture larger."""
+STOOD = 0.3
+"""Share of a cluster on what has stood there from which it is that [-]; chosen: a new side of it comes in sight."""
 DEPTH, MIN_RADIUS = 0.12, 0.12
 """How far the middle of a person lies behind the side that is seen, and the least radius [m]; chosen: half a body."""
 POSITION_GAIN, SPEED_GAIN = 0.5, 0.25
@@ -61,10 +64,13 @@ class ObstacleTracker:
         self._tracks: list[Obstacle] = []
         self._hidden: list[Obstacle] = []
 
-    def update(self, points: Array, eye: Point, now: float) -> None:
-        """Take the unexplained points (n, 2) [map] of a scan, in the order of their angles, seen from `eye`."""
+    def update(self, points: Array, eye: Point, now: float, stood: NDArray[np.bool_] | None = None) -> None:
+        """Take the unexplained points (n, 2) [map] of a scan, in the order of their angles, seen from `eye`.
+
+        `stood` (n,): which of them are on what has stood there. As the robot drives past it, it seems to move.
+        """
         free = list(self._tracks)
-        for x, y, radius in clusters(points, eye):
+        for x, y, radius in clusters(points, eye, stood):
             best = min(free, key=lambda t: math.hypot(*_ahead(t, now, x, y)), default=None)
             if best is None or math.hypot(*_ahead(best, now, x, y)) > MATCH:
                 self._tracks.append(Obstacle(x, y, radius, now, start=(x, y), walked=self._shows_again(x, y, now)))
@@ -88,15 +94,17 @@ class ObstacleTracker:
         return [t for t in self._tracks if t.moves or t.walked]
 
 
-def clusters(points: Array, eye: Point) -> list[tuple[float, float, float]]:
-    """Middle and radius [m] of each group of neighbouring points (n, 2) [map], seen from `eye`."""
+def clusters(points: Array, eye: Point, stood: NDArray[np.bool_] | None = None) -> list[tuple[float, float, float]]:
+    """Middle and radius [m] of each group of neighbouring points (n, 2) [map], seen from `eye`, but for what `stood`
+    (n,) there."""
     if len(points) < MIN_POINTS:
         return []
-    gaps = np.hypot(*np.diff(points, axis=0).T)
+    ends = np.nonzero(np.hypot(*np.diff(points, axis=0).T) > GAP)[0] + 1
+    shares = [float(part.mean()) for part in np.split(stood, ends)] if stood is not None else [0.0] * (len(ends) + 1)
     found = []
-    for group in np.split(points, np.nonzero(gaps > GAP)[0] + 1):
+    for group, share in zip(np.split(points, ends), shares, strict=True):
         extent = float(np.hypot(*(group.max(axis=0) - group.min(axis=0))))
-        if len(group) < MIN_POINTS or extent > MAX_EXTENT:
+        if len(group) < MIN_POINTS or extent > MAX_EXTENT or share > STOOD:
             continue
         x, y = group.mean(axis=0).tolist()
         away = math.hypot(x - eye[0], y - eye[1]) or 1.0

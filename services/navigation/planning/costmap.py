@@ -256,6 +256,12 @@ class Costmap(Cells):
         found: Grid = ndimage.binary_dilation(self.changes.lasting, np.ones((3, 3)))[rows, columns]
         return found
 
+    def stood_at(self, points: Array, now: float) -> Grid:
+        """Which points (n, 2) are where something stands that was no person when it came; to a cell."""
+        rows, columns = self.cells(points[:, 0], points[:, 1])
+        found: Grid = ndimage.binary_dilation(self._seen.stood(now), np.ones((3, 3)))[rows, columns]
+        return found
+
     @property
     def sees_unmapped(self) -> bool:
         """True while something is there that the static map does not have."""

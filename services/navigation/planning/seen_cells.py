@@ -43,6 +43,10 @@ class SeenCells:
         """Where something is that was no person when it was seen last (rows, columns)."""
         return self.known & (self._person_until < self._at)
 
+    def stood(self, now: float) -> Mask:
+        """Where something is that came before anybody who is around now, and was nobody (rows, columns)."""
+        return self.things & (self._first < now - _NEW)
+
     def settled(self, now: float) -> Mask:
         """Where something is that has stood there for so long that it is a thing (rows, columns)."""
         return self.things & (self._first < now - SETTLED)
